@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tether/record/reader.h>
+
+namespace tether::audit {
+
+/// One breach of a rule of DESIGN section 2.
+struct Finding {
+  int rule = 0;  ///< 1..8; 0: the record itself is inconsistent
+  std::string uav;
+  std::uint64_t sequence = 0;  ///< of the interaction; 0: none
+  SimTime at;
+  std::string what;  ///< one line with the figures
+};
+
+struct Verdict {
+  bool synchronised = false;  ///< the policy ties ST to ET; otherwise rules 1 to 7 do not apply
+  bool complete = false;      ///< the record has its end
+  std::uint64_t interactions = 0;
+  Duration largest_grid_error{0};
+  std::vector<Finding> findings;
+  bool passed() const { return complete && findings.empty(); }
+};
+
+/// Checks the rules of time from the record alone. Shares no code with the barrier that wrote it:
+/// whatever it needs (grid rounding included) it works out itself.
+Verdict audit(const record::Record& record);
+
+/// For a person: the verdict in a line, then one line per finding (at most `max_findings`).
+std::string to_text(const Verdict& verdict, std::size_t max_findings = 20);
+
+}  // namespace tether::audit

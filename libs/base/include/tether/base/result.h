@@ -1,0 +1,56 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace tether {
+
+/// Why a call that throws nothing failed. Used by the SUT's side of the link (`client`, `link`),
+/// where an exception would be the SUT's problem; host code turns it into an `Error`.
+struct Failure {
+  enum class Kind {
+    kRefused,  ///< the coordinator answered, and said no (wrong name, token, version, argument)
+    kDisconnected,  ///< the connection ended
+    kProtocol,      ///< the peer sent something that the protocol does not allow
+    kTimeout,       ///< no answer within the limit
+    kRunEnded,      ///< the coordinator ended the run
+    kInvalid,       ///< the caller's argument cannot be used
+  };
+  Kind kind = Kind::kInvalid;
+  std::string message;  ///< one line for a person
+};
+
+/// A value or the reason why there is none. `T` must not be `Failure`.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value)
+      : state_(std::in_place_index<0>, std::move(value)) {}  // NOLINT: implicit by design
+  Result(Failure failure)
+      : state_(std::in_place_index<1>, std::move(failure)) {}  // NOLINT: implicit by design
+
+  bool ok() const { return state_.index() == 0; }
+  explicit operator bool() const { return ok(); }
+  /// @pre ok()
+  T& value() & { return *std::get_if<0>(&state_); }
+  const T& value() const& { return *std::get_if<0>(&state_); }
+  T&& value() && { return std::move(*std::get_if<0>(&state_)); }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  T* operator->() { return std::get_if<0>(&state_); }
+  const T* operator->() const { return std::get_if<0>(&state_); }
+  /// @pre !ok()
+  const Failure& failure() const { return *std::get_if<1>(&state_); }
+
+ private:
+  std::variant<T, Failure> state_;
+};
+
+/// Success without a value, or a failure.
+using Status = Result<std::monostate>;
+inline Status ok_status() {
+  return Status(std::monostate{});
+}
+
+}  // namespace tether

@@ -1,0 +1,48 @@
+#include <tether/base/error.h>
+
+namespace tether {
+
+namespace {
+std::string with_location(const FileLocation& where, const std::string& message) {
+  std::string text = where.file;
+  if (where.line > 0) text += ":" + std::to_string(where.line);
+  return text + ": " + message;
+}
+}  // namespace
+
+Error::Error(ErrorCode code, const FileLocation& where, const std::string& message)
+    : Error(code, with_location(where, message)) {}
+
+int exit_code(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kUsage:
+    case ErrorCode::kBadFile:
+      return 2;
+    case ErrorCode::kSetup:
+    case ErrorCode::kLinkLost:
+    case ErrorCode::kHung:
+    case ErrorCode::kInternal:
+      return 3;
+  }
+  return 3;
+}
+
+std::string_view name(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kUsage:
+      return "usage";
+    case ErrorCode::kBadFile:
+      return "bad file";
+    case ErrorCode::kSetup:
+      return "set-up failed";
+    case ErrorCode::kLinkLost:
+      return "link lost";
+    case ErrorCode::kHung:
+      return "hung";
+    case ErrorCode::kInternal:
+      return "internal error";
+  }
+  return "unknown";
+}
+
+}  // namespace tether

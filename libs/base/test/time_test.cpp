@@ -1,0 +1,77 @@
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include <gtest/gtest.h>
+
+#include <tether/base/time.h>
+
+namespace tether {
+namespace {
+
+template <class A, class B>
+concept Subtractable = requires(A a, B b) {
+  a - b;
+};
+template <class A, class B>
+concept Comparable = requires(A a, B b) {
+  a < b;
+};
+
+TEST(Time, AxesDoNotMix) {
+  static_assert(!std::is_convertible_v<SimTime, ExecTime>);
+  static_assert(!std::is_convertible_v<ExecTime, SimTime>);
+  static_assert(!std::is_convertible_v<WallTime, SimTime>);
+  static_assert(!Subtractable<SimTime, ExecTime>);
+  static_assert(!Comparable<SimTime, ExecTime>);
+  static_assert(!std::is_convertible_v<double, Duration>);
+}
+
+TEST(Time, SameInstantKeepsTheTimestamp) {
+  constexpr auto et = from_ns<ExecTime>(123'456'789);
+  static_assert(to_ns(same_instant(et)) == 123'456'789);
+  static_assert(same_instant(same_instant(et)) == et);
+}
+
+TEST(Time, LagIsEtMinusSt) {
+  EXPECT_EQ(lag(from_ns<ExecTime>(10), from_ns<SimTime>(4)), Duration(6));
+  EXPECT_EQ(lag(from_ns<ExecTime>(4), from_ns<SimTime>(10)), Duration(-6));
+}
+
+struct SecondsCase {
+  double seconds;
+  std::int64_t ns;
+};
+
+TEST(Time, SecondsRoundToTheNearestNanosecond) {
+  const SecondsCase cases[] = {
+      {0.0, 0},
+      {1e-9, 1},
+      {0.4e-9, 0},
+      {0.5e-9, 1},
+      {-0.5e-9, -1},
+      {0.1, 100'000'000},
+      {0.0374, 37'400'000},
+      {-2.5, -2'500'000'000},
+      {1e300, std::numeric_limits<std::int64_t>::max()},
+      {-1e300, std::numeric_limits<std::int64_t>::min()},
+      {std::nan(""), 0},
+  };
+  for (const auto& c : cases)
+    EXPECT_EQ(duration_from_seconds(c.seconds).count(), c.ns) << c.seconds;
+}
+
+TEST(Time, SecondsSurviveTheRoundTripForDays) {
+  for (std::int64_t ns = 1; ns < 9'000'000'000'000'000; ns = ns * 7 + 3)
+    EXPECT_EQ(duration_from_seconds(to_seconds(Duration(ns))), Duration(ns));
+}
+
+TEST(Time, RepresentableSeconds) {
+  EXPECT_TRUE(is_representable_seconds(9e9));
+  EXPECT_FALSE(is_representable_seconds(1e10));
+  EXPECT_FALSE(is_representable_seconds(std::numeric_limits<double>::infinity()));
+  EXPECT_FALSE(is_representable_seconds(std::nan("")));
+}
+
+}  // namespace
+}  // namespace tether

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <tether/base/time.h>
+#include <tether/uav/catalogue.h>
+#include <tether/uav/samples.h>
+
+/// What SUT and coordinator say to each other, in our own types. The wire format (FlatBuffers,
+/// `schema/link.fbs`) and this header say the same; `codec.h` converts. Every conversation: Hello →
+/// Welcome or Refusal; then Requests, each answered by one Reply (or by Refusal, which ends it),
+/// with Progress and Annotation one-way in between; Finish ends.
+namespace tether::link {
+
+inline constexpr std::uint32_t kProtocolVersion = 1;
+
+/// How the SUT's execution time is measured (DESIGN section 2).
+enum class ClockKind : std::uint8_t { kWall = 0, kCpu = 1, kScripted = 2, kUnstamped = 3 };
+std::string_view name(ClockKind kind);
+
+/// SUT → coordinator, first.
+struct Hello {
+  std::uint32_t protocol_version = kProtocolVersion;
+  std::string sut;  ///< the program's name and version
+  std::string uav;  ///< which UAV it flies; empty: the only one
+  ClockKind clock = ClockKind::kWall;
+  double cpu_factor = 1.0;  ///< of ClockKind::kCpu: seconds of ET per second of CPU time
+  std::string token;
+};
+
+/// Coordinator → SUT: accepted.
+struct Welcome {
+  uav::Catalogue catalogue;
+  bool free_running = false;  ///< policy: requests are answered at once, nothing is held
+  ExecTime start;             ///< the SUT's ET begins here
+};
+
+/// Coordinator → SUT: not accepted, or the run is over. The connection closes after it.
+struct Refusal {
+  enum class Reason : std::uint8_t { kVersion, kToken, kUav, kBadMessage, kBadRequest, kRunEnded };
+  Reason reason = Reason::kBadMessage;
+  std::string message;
+};
+std::string_view name(Refusal::Reason reason);
+
+/// Read a sensor by its index in the catalogue.
+struct ReadSensor {
+  std::uint32_t sensor = 0;
+  bool latest =
+      false;  ///< periodic sensors: take the last measurement again rather than wait for a new one
+};
+struct SetVelocity {
+  uav::VelocityCommand command;
+};
+/// Wait until ET `until` (in free running the client sleeps by itself and never sends this).
+struct Sleep {
+  ExecTime until;
+};
+/// The SUT is done. The reply confirms that the record has it.
+struct Finish {
+  bool reached_goal = false;
+  std::string outcome;  ///< one line: why
+  std::string details;  ///< JSON object: the task's own results, may be empty
+};
+
+/// SUT → coordinator: an interaction begins.
+struct Request {
+  std::uint64_t sequence = 0;       ///< 1, 2, 3, …
+  ExecTime issued_at;               ///< t_req; ignored from an unstamped client
+  Duration previous_round_trip{0};  ///< WT on the SUT's side from issuing the previous request to
+                                    ///< having its reply; 0: not measured
+  std::variant<ReadSensor, SetVelocity, Sleep, Finish> body;
+};
+
+/// Coordinator → SUT: the interaction ends.
+struct Reply {
+  std::uint64_t sequence = 0;
+  ExecTime resume_at;                 ///< t_rep: the SUT goes on with ET = this
+  std::optional<uav::Sample> sample;  ///< of ReadSensor
+};
+
+/// SUT → coordinator while it computes: ET has reached at least this.
+struct Progress {
+  ExecTime reached;
+};
+
+/// SUT → coordinator: something for the record (ROI, estimate, task phase). Costs no ET; not
+/// answered.
+struct Annotation {
+  ExecTime at;
+  std::string topic;  ///< e.g. "task", "roi", "estimate"
+  std::string json;   ///< one JSON object
+};
+
+using Message = std::variant<Hello, Welcome, Refusal, Request, Reply, Progress, Annotation>;
+
+}  // namespace tether::link

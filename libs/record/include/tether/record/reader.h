@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tether/record/messages.h>
+
+namespace tether::record {
+
+template <class Message>
+struct Logged {
+  SimTime at;  ///< log time
+  Message message;
+};
+
+/// A whole record in memory, each topic in file order.
+struct Record {
+  Header header;
+  std::vector<Logged<Interaction>> interactions;
+  std::vector<Logged<CommandEffect>> commands;
+  std::vector<Logged<GroundTruth>> ground_truth;
+  std::vector<Logged<Annotation>> annotations;
+  std::vector<Logged<Image>> images;
+  std::optional<Footer> footer;
+  /// Where and why reading stopped early (torn or damaged file); empty: read to the end.
+  std::string damage;
+};
+
+struct ReadOptions {
+  bool images = false;  ///< also load images
+};
+
+/// Reads front to back, so that everything before a tear is had.
+/// @throws Error(kBadFile) when the file does not exist, is no MCAP, is not Tether's, or its schema
+/// is newer.
+Record read_record(const std::filesystem::path& file, const ReadOptions& options = {});
+
+}  // namespace tether::record

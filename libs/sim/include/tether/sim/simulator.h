@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <tether/base/step_grid.h>
+#include <tether/base/time.h>
+#include <tether/sim/world.h>
+#include <tether/uav/multirotor.h>
+#include <tether/uav/samples.h>
+
+namespace tether::sim {
+
+/// Where everything of the scene is: the small state from which any sensor of that instant can be
+/// measured later. Opaque; reuse one object for many captures to avoid allocation.
+struct Snapshot {
+  SimTime at;
+  std::vector<double> state;  ///< the back end's own layout
+};
+
+/// The truth about one UAV at one instant, for the record and for scoring only.
+struct GroundTruth {
+  SimTime at;
+  uav::BodyState body;
+};
+
+/// A simulator of UAVs, sensors and world: the host's logical process (paper, Section II).
+///
+/// Call order: construction through a back end's factory puts it at ST 0 of seed 0; then any number
+/// of `apply`, `advance_to`, `capture`, `measure`, `ground_truth`; `reset` starts again. Sensors
+/// and UAVs are addressed by their index in `world()`. Not thread-safe: one thread at a time. Every
+/// function may throw Error(kSetup) when the back end is lost; after that only destruction is
+/// allowed.
+///
+/// Determinism: the same seed, and the same commands at the same ST, give the same bytes from
+/// `measure` and `ground_truth`, whatever else was measured, and however the advance was cut into
+/// calls.
+class Simulator {
+ public:
+  virtual ~Simulator() = default;
+  Simulator(const Simulator&) = delete;
+  Simulator& operator=(const Simulator&) = delete;
+
+  virtual const World& world() const = 0;
+  virtual StepGrid grid() const = 0;
+  /// ST: always a step boundary.
+  virtual SimTime now() const = 0;
+
+  /// Back to ST 0, UAVs hovering at their start poses; `seed` keys all noise from here on.
+  virtual void reset(std::uint64_t seed) = 0;
+
+  /// Steps until `now() == t`. Allocates nothing per step. @pre t ≥ now(), t on the grid.
+  virtual void advance_to(SimTime t) = 0;
+
+  /// Sets the command that UAV `uav` follows in every step from `now()` on, until the next call.
+  virtual void apply(std::size_t uav, const uav::VelocityCommand& command) = 0;
+
+  /// Captures the state at `now()`. Cheap (a copy of the small state; no rendering).
+  virtual void capture(Snapshot& snapshot) const = 0;
+
+  /// Measures a sensor as of a snapshot of this run: renders, casts rays, adds the noise of
+  /// measurement `index`. The sample's `sampled_at` is the snapshot's instant, its `index` is
+  /// `index`.
+  virtual uav::Sample measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
+                              std::uint64_t index) = 0;
+
+  /// At `now()`.
+  virtual GroundTruth ground_truth(std::size_t uav) const = 0;
+
+  /// Name and version, for the record: "MuJoCo 2.2.2, Mesa llvmpipe".
+  virtual std::string description() const = 0;
+
+ protected:
+  Simulator() = default;
+};
+
+}  // namespace tether::sim

@@ -1,0 +1,201 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <tether/base/time.h>
+#include <tether/uav/catalogue.h>
+#include <tether/uav/math.h>
+#include <tether/uav/multirotor.h>
+
+/// The scene as every back end sees it: what SDF files say, in our own types, with everything
+/// resolved (poses in W, files found, units SI).
+namespace tether::sim {
+
+struct BoxGeometry {
+  uav::Vec3 size_m;
+};  ///< edge lengths
+struct CylinderGeometry {
+  double radius_m = 0.0;
+  double length_m = 0.0;
+};  ///< along z
+struct SphereGeometry {
+  double radius_m = 0.0;
+};
+struct CapsuleGeometry {
+  double radius_m = 0.0;
+  double length_m = 0.0;
+};  ///< of the cylindrical part, along z
+struct EllipsoidGeometry {
+  uav::Vec3 radii_m;
+};
+struct PlaneGeometry {
+  uav::Vec3 normal;
+  double size_x_m = 0.0;
+  double size_y_m = 0.0;
+};
+struct MeshGeometry {
+  std::filesystem::path file;  ///< absolute, exists: .obj, .stl or .dae
+  std::string submesh;         ///< empty: all
+  uav::Vec3 scale{1.0, 1.0, 1.0};
+};
+using Geometry = std::variant<BoxGeometry, CylinderGeometry, SphereGeometry, CapsuleGeometry,
+                              EllipsoidGeometry, PlaneGeometry, MeshGeometry>;
+
+struct Material {
+  uav::Vec3 diffuse_rgb{0.7, 0.7, 0.7};  ///< each 0..1
+  uav::Vec3 ambient_rgb{0.7, 0.7, 0.7};
+  uav::Vec3 specular_rgb;
+  uav::Vec3 emissive_rgb;
+  double alpha = 1.0;
+  std::filesystem::path albedo_map;  ///< PNG; empty: none
+  double texture_repeat_x = 1.0;     ///< repetitions per metre of surface (<tether:texture_repeat>)
+  double texture_repeat_y = 1.0;
+};
+
+struct Visual {
+  std::string name;
+  uav::Pose X_LV;  ///< in its link
+  Geometry geometry;
+  Material material;
+  bool cast_shadows = true;
+};
+
+struct Collision {
+  std::string name;
+  uav::Pose X_LC;
+  Geometry geometry;
+  double friction = 1.0;
+};
+
+struct Link {
+  std::string name;
+  uav::Pose X_ML;  ///< in its model
+  double mass_kg = 1.0;
+  uav::Pose X_LI;  ///< centre of mass and principal axes
+  uav::Vec3 inertia_kg_m2{1.0, 1.0, 1.0};
+  std::vector<Visual> visuals;
+  std::vector<Collision> collisions;
+};
+
+struct Model {
+  std::string name;
+  uav::Pose X_WM;
+  bool is_static = false;  ///< a dynamic model's links are free bodies; joints are warned about
+  std::vector<Link> links;
+};
+
+enum class LightKind { kPoint, kDirectional, kSpot };
+struct Light {
+  std::string name;
+  LightKind kind = LightKind::kPoint;
+  uav::Pose X_WL;
+  uav::Vec3 direction{0.0, 0.0, -1.0};  ///< in its own frame
+  uav::Vec3 diffuse_rgb{1.0, 1.0, 1.0};
+  uav::Vec3 specular_rgb;
+  double attenuation_constant = 1.0, attenuation_linear = 0.0, attenuation_quadratic = 0.0;
+  double spot_outer_angle_rad = 0.8;
+  double spot_falloff = 0.0;
+  bool cast_shadows = false;
+};
+
+/// Gaussian noise of one sensor channel, as SDF's <noise>. The bias of a run is drawn once from
+/// (bias_mean, bias_stddev); dynamic bias is a first-order Gauss-Markov walk.
+struct Noise {
+  double mean = 0.0;
+  double stddev = 0.0;
+  double bias_mean = 0.0;
+  double bias_stddev = 0.0;
+  double dynamic_bias_stddev = 0.0;
+  double dynamic_bias_correlation_time_s = 0.0;
+};
+
+struct CameraModel {
+  uav::CameraModel intrinsics;
+  double near_m = 0.05;
+  double far_m = 100.0;
+  Noise pixel_noise;  ///< of intensities 0..1
+};
+struct ImuModel {
+  std::array<Noise, 3> angular_velocity;     ///< x, y, z [rad/s]
+  std::array<Noise, 3> linear_acceleration;  ///< x, y, z [m/s²]
+};
+struct RangeModel {
+  double min_m = 0.02;
+  double max_m = 10.0;
+  double resolution_m = 0.0;  ///< 0: continuous
+  Noise noise;
+};
+
+struct Sensor {
+  std::string name;
+  uav::Pose X_BS;               ///< in the UAV's body frame
+  double update_rate_hz = 0.0;  ///< SDF's <update_rate>; 0: none given
+  std::variant<CameraModel, ImuModel, RangeModel> model;
+  uav::SensorKind kind() const { return static_cast<uav::SensorKind>(model.index()); }
+};
+
+/// A UAV of the scene: its model (visuals and collisions of its body link), its airframe and its
+/// sensors.
+struct Uav {
+  std::string name;
+  uav::Pose X_WB;  ///< at ST 0
+  Link body;
+  uav::MultirotorParameters airframe;
+  std::vector<Sensor> sensors;
+};
+
+/// An anchor: a model of the world that SUTs may know of.
+struct PlacedAnchor {
+  uav::Anchor anchor;
+  uav::Pose X_WA;  ///< its centre, at ST 0
+};
+
+struct World {
+  std::string name;
+  double gravity_m_s2 = 9.81;  ///< along −z of W
+  Duration step = std::chrono::milliseconds(1);
+  uav::Vec3 ambient_rgb{0.4, 0.4, 0.4};
+  uav::Vec3 background_rgb{0.7, 0.7, 0.7};
+  std::vector<Model> models;
+  std::vector<Light> lights;
+  std::vector<Uav> uavs;
+  std::vector<PlacedAnchor> anchors;
+};
+
+/// Which UAV to put where.
+struct UavPlacement {
+  std::string name;
+  std::filesystem::path model;  ///< SDF file with one <model>
+  uav::Vec3 p_WB;
+  double yaw_rad = 0.0;
+};
+
+struct WorldRequest {
+  std::filesystem::path world;  ///< SDF file with one <world>
+  std::vector<UavPlacement> uavs;
+  std::vector<std::string> anchors;  ///< names of models of the world
+};
+
+/// Where a warning goes: one line, with file (and line where known).
+using WarningSink = std::function<void(const std::string&)>;
+
+/// Reads world and UAV models (SDFormat), resolves every pose, include, mesh and texture, and names
+/// through `warn` each element that Tether cannot represent.
+/// @throws Error(kBadFile) with file and line for whatever cannot be used: missing file, XML or SDF
+/// errors, no <world>,
+///   impossible values (negative mass or size, zero-size image), an anchor that is no model or
+///   whose shape is not a box, cylinder or sphere, a UAV model without <tether:multirotor> or with
+///   two sensors of one name.
+World load_world(const WorldRequest& request, const WarningSink& warn);
+
+/// What a SUT flying `uav` is told.
+uav::Catalogue make_catalogue(const World& world, const Uav& uav);
+
+}  // namespace tether::sim

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+
+#include <tether/sim/simulator.h>
+
+namespace tether::sim {
+
+/// Whether this build contains the embedded back end.
+extern const bool kHasMujoco;
+
+/// The embedded simulator: MuJoCo for dynamics, its renderer on a headless EGL display for cameras
+/// (created when the first image is asked for, so that a run without a camera needs no GL at all).
+/// `warn` receives one line for each thing of the world that MuJoCo cannot represent.
+/// @throws Error(kSetup) when the back end is not built in or the model does not compile.
+std::unique_ptr<Simulator> make_mujoco_simulator(World world, const WarningSink& warn);
+
+}  // namespace tether::sim

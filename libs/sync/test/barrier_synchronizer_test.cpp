@@ -1,0 +1,172 @@
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <tether/sync/barrier_synchronizer.h>
+
+namespace tether::sync {
+namespace {
+
+constexpr Duration kStep{1000};
+
+ExecTime et(std::int64_t ns) {
+  return from_ns<ExecTime>(ns);
+}
+SimTime st(std::int64_t ns) {
+  return from_ns<SimTime>(ns);
+}
+
+BarrierSynchronizer with_suts(std::vector<std::int64_t> starts) {
+  BarrierSynchronizer barrier{StepGrid(kStep)};
+  for (const auto start : starts) barrier.add(et(start));
+  return barrier;
+}
+
+void request(BarrierSynchronizer& barrier, SutIndex sut, std::int64_t at, std::int64_t reply_at,
+             std::int64_t now = 0) {
+  barrier.arrive(sut, et(at), st(now));
+  barrier.hold({sut, et(reply_at)});
+}
+
+TEST(Barrier, WithoutSutsNothingBoundsTheSimulation) {
+  EXPECT_EQ(with_suts({}).horizon(), SimTime::max());
+}
+
+// Rule 4: a computing SUT bounds ST by the floor of the last ET it is known to have reached.
+struct HorizonCase {
+  std::vector<std::int64_t> bounds_ns;
+  std::int64_t horizon_ns;
+};
+
+TEST(Barrier, HorizonIsTheFloorOfTheLeastBound) {
+  const HorizonCase cases[] = {
+      {{0}, 0}, {{999}, 0}, {{1000}, 1000}, {{2500, 1999}, 1000}, {{5000, 7000, 5001}, 5000},
+  };
+  for (const auto& c : cases) EXPECT_EQ(with_suts(c.bounds_ns).horizon(), st(c.horizon_ns));
+}
+
+TEST(Barrier, ProgressRaisesTheBoundAndNeverLowersIt) {
+  auto barrier = with_suts({0});
+  barrier.progress(0, et(4200));
+  EXPECT_EQ(barrier.horizon(), st(4000));
+  barrier.progress(0, et(1000));
+  EXPECT_EQ(barrier.horizon(), st(4000));
+}
+
+TEST(Barrier, ProgressOfAHeldSutIsIgnored) {
+  auto barrier = with_suts({0});
+  request(barrier, 0, 500, 2500);
+  barrier.progress(0, et(9000));
+  EXPECT_EQ(barrier.horizon(), st(2000));
+}
+
+// Rule 3: released exactly at floor(t_rep), neither before nor (by the horizon) after.
+struct ReleaseCase {
+  std::int64_t reply_ns;
+  std::int64_t released_ns;
+};
+
+TEST(Barrier, ReleasesWhenStHasReachedTheFloorOfTheReply) {
+  const ReleaseCase cases[] = {{0, 0},       {1, 0},       {999, 0},
+                               {1000, 1000}, {1001, 1000}, {54'321, 54'000}};
+  for (const auto& c : cases) {
+    auto barrier = with_suts({0});
+    request(barrier, 0, 0, c.reply_ns);
+    EXPECT_EQ(barrier.horizon(), st(c.released_ns));
+    for (std::int64_t now = 0; now < c.released_ns; now += kStep.count())
+      EXPECT_FALSE(barrier.release(st(now))) << now;
+    const auto grant = barrier.release(st(c.released_ns));
+    ASSERT_TRUE(grant) << c.reply_ns;
+    EXPECT_EQ(grant->released_at, st(c.released_ns));
+    EXPECT_EQ(grant->resume_at, et(c.reply_ns));  // rule 5
+    EXPECT_FALSE(barrier.is_held(0));
+    EXPECT_EQ(barrier.bound(0), et(c.reply_ns));
+    EXPECT_FALSE(barrier.release(st(c.released_ns)));
+  }
+}
+
+// Rule 3, second half: a reply waits while another SUT could still stamp an earlier command that
+// acts at or before the boundary of its release.
+struct OtherCase {
+  const char* what;
+  std::int64_t reply_ns;
+  std::int64_t other_ns;
+  bool may_resume;
+};
+
+TEST(Barrier, WaitsForEarlierCommandsOfComputingSuts) {
+  const OtherCase cases[] = {
+      {"the other may still act at this very boundary", 3400, 3000, false},
+      {"the other's commands act at the next boundary", 3400, 3001, true},
+      {"the other cannot be earlier", 3000, 3000, true},
+      {"the other is later in the same step", 3400, 3900, true},
+      {"the other is steps ahead", 3400, 9000, true},
+  };
+  for (const auto& c : cases) {
+    auto barrier = with_suts({3000, c.other_ns});
+    request(barrier, 0, 3000, c.reply_ns, 3000);
+    EXPECT_EQ(barrier.release(st(3000)).has_value(), c.may_resume) << c.what;
+  }
+}
+
+TEST(Barrier, AHeldSutDoesNotDelayAnEarlierOne) {
+  auto barrier = with_suts({0, 0});
+  request(barrier, 0, 100, 5000);
+  request(barrier, 1, 200, 200);
+  const auto grant = barrier.release(st(0));
+  ASSERT_TRUE(grant);
+  EXPECT_EQ(grant->sut, 1u);
+  EXPECT_FALSE(barrier.release(st(0)));
+  EXPECT_EQ(barrier.horizon(), st(0));
+}
+
+TEST(Barrier, ReleasesInTheOrderOfTimestampsThenIndices) {
+  auto barrier = with_suts({0, 0, 0});
+  request(barrier, 0, 0, 700);
+  request(barrier, 1, 0, 300);
+  request(barrier, 2, 0, 300);
+  std::vector<SutIndex> order;
+  while (const auto grant = barrier.release(st(0))) {
+    order.push_back(grant->sut);
+    barrier.progress(grant->sut, et(800));
+  }
+  EXPECT_EQ(order, (std::vector<SutIndex>{1, 2, 0}));
+}
+
+TEST(Barrier, LagIsMeasuredAgainstStOnArrival) {
+  auto barrier = with_suts({2000});
+  EXPECT_EQ(barrier.arrive(0, et(7345), st(2000)).lag, Duration(5345));
+}
+
+TEST(Barrier, AStampInThePastIsNamedAndChargedAtTheBound) {
+  auto barrier = with_suts({0});
+  request(barrier, 0, 0, 5000);
+  ASSERT_TRUE(barrier.release(st(5000)));
+  const Arrival arrival = barrier.arrive(0, et(4100), st(5000));
+  ASSERT_TRUE(arrival.violation);
+  EXPECT_EQ(arrival.violation->size, Duration(900));
+  EXPECT_EQ(arrival.charged_at, et(5000));
+  EXPECT_EQ(arrival.lag, Duration(0));
+}
+
+TEST(Barrier, AStampAtTheBoundIsNoViolation) {
+  auto barrier = with_suts({5000});
+  EXPECT_FALSE(barrier.arrive(0, et(5000), st(5000)).violation);
+}
+
+TEST(Barrier, ASutThatLeftBoundsNothing) {
+  auto barrier = with_suts({0, 6000});
+  barrier.remove(0);
+  EXPECT_EQ(barrier.horizon(), st(6000));
+  EXPECT_EQ(barrier.slowest_computing(), SutIndex{1});
+}
+
+TEST(Barrier, NamesWhomEverythingWaitsFor) {
+  auto barrier = with_suts({500, 200, 900});
+  EXPECT_EQ(barrier.slowest_computing(), SutIndex{1});
+  request(barrier, 1, 300, 300);
+  EXPECT_EQ(barrier.slowest_computing(), SutIndex{0});
+}
+
+}  // namespace
+}  // namespace tether::sync
