@@ -80,7 +80,7 @@ constexpr Time from_ns(std::int64_t ns) {
 /// Seconds as a double, for files, displays and simulator interfaces only. Exact to 1 ns up to 2^53
 /// ns (104 days).
 constexpr double to_seconds(Duration d) {
-  return static_cast<double>(d.count()) * 1e-9;
+  return static_cast<double>(d.count()) / 1e9;
 }
 template <class Clock>
 constexpr double to_seconds(std::chrono::time_point<Clock, Duration> t) {

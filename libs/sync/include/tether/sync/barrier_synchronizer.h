@@ -37,7 +37,7 @@ std::string_view name(CausalityViolation::Kind kind);
 struct Arrival {
   ExecTime charged_at;  ///< the stamp, or the SUT's bound if the stamp was before it
   Duration lag{0};      ///< ε = charged_at − ST on arrival (paper, Fig. 3)
-  std::optional<CausalityViolation> violation;
+  std::optional<CausalityViolation> violation{};
 };
 
 /// A held SUT's request that it be resumed once ST has caught up with `reply_at`.
