@@ -1,0 +1,108 @@
+# Shared by the scripts beside this folder; sourced, never run.
+# shellcheck shell=bash
+
+set -euo pipefail
+
+ROOT="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
+JOBS="${JOBS:-$(nproc)}"
+
+say() { printf '\n\033[1m== %s\033[0m\n' "$*"; }
+fail() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
+
+# Prints the lines of the calling script's own leading comment, without the marks.
+usage() { sed -n '2,/^[^#]/{/^#/s/^# \{0,1\}//p}' "$0"; }
+
+# ---- packages ------------------------------------------------------------------------------------
+# Debian 12's names, by what they are for.
+
+# Compiler and libraries of the product, with the software renderer that cameras need without a GPU.
+packages_build=(
+  g++ cmake ninja-build pkg-config
+  libmujoco-dev libegl-dev libgl-dev libegl1 libgl1-mesa-dri
+  libsdformat-dev libassimp-dev
+  libeigen3-dev libopencv-dev
+  libasio-dev libflatbuffers-dev flatbuffers-compiler flatbuffers-compiler-dev
+  libfmt-dev libspdlog-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libzstd-dev
+)
+packages_test=(git libgtest-dev libgmock-dev libbenchmark-dev clang-format)
+packages_tidy=(git clang-tidy)
+
+# True where a package is installed. A name may be satisfied by another package that provides it.
+is_installed() { dpkg-query -W -f='${Status}\n' "$1" 2>/dev/null | grep -q '^install ok installed$'; }
+
+# Runs a command as root, or says what to type.
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then
+    "$@"
+  elif command -v sudo >/dev/null; then
+    sudo "$@"
+  else
+    fail "not root and no sudo here. As root, type:
+  apt-get update && apt-get install --no-install-recommends ${missing[*]}"
+  fi
+}
+
+# install_packages NAME...: installs with apt those of the packages that are missing; silent when none is.
+install_packages() {
+  local name
+  missing=()
+  for name in "$@"; do is_installed "$name" || missing+=("$name"); done
+  [ "${#missing[@]}" -gt 0 ] || return 0
+  command -v apt-get >/dev/null ||
+    fail "no apt-get here. Tether is built on Debian 12; install the equivalents of: ${missing[*]}"
+  say "Installing ${#missing[@]} Debian package(s): ${missing[*]}"
+  as_root apt-get update -q
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
+}
+
+# The record's independent reader (tests/system/mcap) runs on Node.js; any version from 18 on will do.
+install_node() {
+  local needed=()
+  command -v node >/dev/null || needed+=(nodejs)
+  command -v npm >/dev/null || needed+=(npm)
+  [ "${#needed[@]}" -eq 0 ] || install_packages "${needed[@]}"
+}
+
+# install_for build|test|tidy
+install_for() {
+  case "$1" in
+    build) install_packages "${packages_build[@]}" ;;
+    test) install_packages "${packages_build[@]}" "${packages_test[@]}" && install_node ;;
+    tidy) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_tidy[@]}" ;;
+    *) fail "'$1': build, test or tidy" ;;
+  esac
+}
+
+# ---- building ------------------------------------------------------------------------------------
+
+# The address space that a sanitizer expects is not what every kernel's randomisation leaves it.
+without_aslr() {
+  if setarch "$(uname -m)" -R true 2>/dev/null; then
+    setarch "$(uname -m)" -R "$@"
+  else
+    "$@"
+  fi
+}
+
+# build PRESET [TARGET...]: configures (cheap when nothing changed) and builds.
+build() {
+  local preset="$1"
+  shift
+  (
+    cd "$ROOT"
+    cmake --preset "$preset" --log-level=WARNING
+    without_aslr cmake --build --preset "$preset" --parallel "$JOBS" ${1:+--target "$@"}
+  )
+}
+
+# Files that clang-format and clang-tidy look at: tracked and new ones, or all where this is no git checkout.
+source_files() {
+  cd "$ROOT"
+  if git rev-parse --is-inside-work-tree >/dev/null 2>&1; then
+    git ls-files --cached --others --exclude-standard -- "$@" | sort -u | while read -r file; do
+      [ ! -e "$file" ] || echo "$file"
+    done
+  else
+    find apps bench libs tests -type f \( -name '*.h' -o -name '*.cpp' \) | sort
+  fi
+}

@@ -1,0 +1,83 @@
+#include "code_scanner.h"
+#include "source_tree.h"
+
+#include <regex>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tether::layout {
+namespace {
+
+using testing::IsEmpty;
+namespace fs = std::filesystem;
+
+// Put together here, so that this file does not hold what it looks for.
+const std::vector<std::string>& leftover_marks() {
+  static const std::vector<std::string> kMarks = {
+      std::string("TO") + "DO", std::string("FIX") + "ME", std::string("XX") + "X",
+      std::string("HA") + "CK"};
+  return kMarks;
+}
+
+TEST(Documents, NothingIsLeftForLater) {
+  std::vector<std::string> found;
+  for (const fs::path& file : text_files(TETHER_SOURCE_DIR)) {
+    const std::string text = read_text(file);
+    for (const std::string& mark : leftover_marks()) {
+      for (const int line : lines_with_word(text, mark)) {
+        found.push_back(fs::relative(file, TETHER_SOURCE_DIR).generic_string() + ":" +
+                        std::to_string(line) + ": " + mark);
+      }
+    }
+  }
+  EXPECT_THAT(found, IsEmpty());
+}
+
+std::vector<std::string> link_targets(const std::string& markdown) {
+  static const std::regex kLink(R"(\]\(([^)\s]+)\)|(?:src|srcset)="([^"]+)\")");
+  std::vector<std::string> targets;
+  for (std::sregex_iterator it(markdown.begin(), markdown.end(), kLink), end; it != end; ++it) {
+    targets.push_back((*it)[1].matched ? (*it)[1].str() : (*it)[2].str());
+  }
+  return targets;
+}
+
+bool is_external(const std::string& target) {
+  return target.starts_with("http://") || target.starts_with("https://") ||
+         target.starts_with("#") || target.starts_with("mailto:");
+}
+
+TEST(Documents, LinksLeadSomewhere) {
+  std::vector<std::string> dead;
+  for (const fs::path& file : text_files(TETHER_SOURCE_DIR)) {
+    if (file.extension() != ".md") continue;
+    for (const std::string& target : link_targets(read_text(file))) {
+      const std::string path = target.substr(0, target.find('#'));
+      if (is_external(target) || fs::exists(file.parent_path() / path)) continue;
+      dead.push_back(fs::relative(file, TETHER_SOURCE_DIR).generic_string() + ": " + target);
+    }
+  }
+  EXPECT_THAT(dead, IsEmpty());
+}
+
+TEST(Documents, EachDecisionHasItsParts) {
+  std::vector<std::string> wanting;
+  const fs::path folder = fs::path(TETHER_SOURCE_DIR) / "docs/adr";
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name == "README.md") continue;
+    const std::string text = read_text(entry.path());
+    for (const char* part :
+         {"Status:", "## Context", "## Decision", "## Consequences", "## Alternatives"}) {
+      if (text.find(part) == std::string::npos) wanting.push_back(name + ": no '" + part + "'");
+    }
+    const std::string index = read_text(folder / "README.md");
+    if (index.find("(" + name + ")") == std::string::npos)
+      wanting.push_back(name + ": not in docs/adr/README.md");
+  }
+  EXPECT_THAT(wanting, IsEmpty());
+}
+
+}  // namespace
+}  // namespace tether::layout

@@ -1,0 +1,102 @@
+#include "code_scanner.h"
+#include "source_tree.h"
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+/// Sizes (docs/design.md, section 7): files up to 500 lines; functions of the product with a median
+/// of 8 lines, nine in ten within 30, none above 80.
+namespace tether::layout {
+namespace {
+
+using testing::IsEmpty;
+
+constexpr int kMaxFileLines = 500;
+constexpr int kMaxFunctionLines = 80;
+constexpr int kNineInTenFunctionLines = 30;
+constexpr int kMedianFunctionLines = 8;
+
+TEST(Sizes, FilesStayShort) {
+  std::vector<std::string> long_files;
+  for (const SourceFile& file : read_sources(TETHER_SOURCE_DIR)) {
+    const int lines = count_lines(file.text);
+    if (lines > kMaxFileLines)
+      long_files.push_back(file.path + ": " + std::to_string(lines) + " lines");
+  }
+  EXPECT_THAT(long_files, IsEmpty());
+}
+
+TEST(Sizes, FunctionsStayShort) {
+  std::vector<int> lengths;
+  std::vector<std::string> long_functions;
+  for (const SourceFile& file : read_sources(TETHER_SOURCE_DIR)) {
+    if (!file.is_product()) continue;
+    for (const Function& function : functions(file.text)) {
+      lengths.push_back(function.length);
+      if (function.length <= kMaxFunctionLines) continue;
+      long_functions.push_back(file.path + ":" + std::to_string(function.line) + ": " +
+                               function.name + ", " + std::to_string(function.length) + " lines");
+    }
+  }
+  EXPECT_THAT(long_functions, IsEmpty());
+  ASSERT_GT(lengths.size(), 100u) << "the scanner finds too few functions";
+  std::sort(lengths.begin(), lengths.end());
+  const int median = lengths[lengths.size() / 2];
+  const int nine_in_ten = lengths[lengths.size() * 9 / 10];
+  RecordProperty("functions", static_cast<int>(lengths.size()));
+  RecordProperty("median", median);
+  RecordProperty("nine_in_ten", nine_in_ten);
+  EXPECT_LE(median, kMedianFunctionLines);
+  EXPECT_LE(nine_in_ten, kNineInTenFunctionLines);
+}
+
+// Each source has tests of its own: <lib>/src/**/x.cpp → <lib>/test/**/x[_…]_test.cpp. The few that
+// are tested through others are named, with the reason, in untested.txt.
+
+std::string stem(const std::string& path) {
+  return std::filesystem::path(path).stem().string();
+}
+
+std::set<std::string> read_exceptions() {
+  std::istringstream lines(read_text(std::filesystem::path(TETHER_TEST_DIR) / "untested.txt"));
+  std::set<std::string> exceptions;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line.starts_with('#')) continue;
+    const std::size_t space = line.find_first_of(" \t");
+    EXPECT_NE(space, std::string::npos) << "untested.txt: no reason given for " << line;
+    exceptions.insert(line.substr(0, space));
+  }
+  return exceptions;
+}
+
+bool has_test(const SourceFile& source, const std::vector<SourceFile>& files) {
+  return std::any_of(files.begin(), files.end(), [&](const SourceFile& file) {
+    return file.role == Role::kTest && file.library == source.library &&
+           stem(file.path).starts_with(stem(source.path) + "_") &&
+           stem(file.path).ends_with("_test");
+  });
+}
+
+TEST(Mirror, EverySourceHasItsTests) {
+  const std::vector<SourceFile> files = read_sources(TETHER_SOURCE_DIR);
+  std::set<std::string> unused = read_exceptions();
+  std::vector<std::string> untested;
+  for (const SourceFile& file : files) {
+    if (file.role != Role::kSource || file.is_header()) continue;
+    const bool excepted = unused.contains(file.path);
+    if (!has_test(file, files)) {
+      unused.erase(file.path);
+      if (!excepted) untested.push_back(file.path);
+    }
+  }
+  EXPECT_THAT(untested, IsEmpty())
+      << "add a test, or a line with the reason to tests/layout/untested.txt";
+  EXPECT_THAT(unused, IsEmpty()) << "untested.txt names files that have tests or are gone";
+}
+
+}  // namespace
+}  // namespace tether::layout

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// The repository's files as the layout rules see them (docs/design.md, section 4).
+namespace tether::layout {
+
+/// Where in a library (or beside all of them) a file stands.
+enum class Role {
+  kPublicHeader,  ///< libs/<lib>/include
+  kSource,        ///< libs/<lib>/src, private headers too
+  kTesting,       ///< libs/<lib>/testing: fakes for others' tests
+  kTest,          ///< libs/<lib>/test
+  kProgram,       ///< apps
+  kOther,         ///< tests, bench
+};
+
+struct SourceFile {
+  std::string path;     ///< relative to the repository, with '/'
+  std::string library;  ///< name as in `#include <tether/NAME/…>`; empty outside libs
+  Role role = Role::kOther;
+  std::string text;
+
+  /// Neither a test nor a fake nor a benchmark: what the product is made of.
+  bool is_product() const {
+    return role == Role::kPublicHeader || role == Role::kSource || role == Role::kProgram;
+  }
+  bool is_header() const { return path.ends_with(".h"); }
+};
+
+/// Library and role of a path, with the nested library of libs/sim/mujoco told apart from libs/sim.
+SourceFile classify(const std::string& path);
+
+/// Every .h and .cpp below libs, apps, tests and bench, sorted by path.
+std::vector<SourceFile> read_sources(const std::filesystem::path& root);
+
+/// Files below `root` that people read or write (sources, scripts, Markdown, CMake, data), sorted;
+/// without build trees, installed packages and hidden folders other than .ci.
+std::vector<std::filesystem::path> text_files(const std::filesystem::path& root);
+
+std::string read_text(const std::filesystem::path& file);
+
+}  // namespace tether::layout
