@@ -3,9 +3,9 @@
 #include <cmath>
 
 /// Plain vectors and rotations, free of any library, for public interfaces. Notation: `p_WB` is the
-/// position of B's origin in W [m]; `q_WB` rotates a vector's coordinates from B to W; `X_WB` is the
-/// pose of B in W. Frames: W world (ENU), B body (FLU), H heading (W turned by the UAV's yaw about
-/// z), C camera optical (x right, y down, z forward), S any sensor.
+/// position of B's origin in W [m]; `q_WB` rotates a vector's coordinates from B to W; `X_WB` is
+/// the pose of B in W. Frames: W world (ENU), B body (FLU), H heading (W turned by the UAV's yaw
+/// about z), C camera optical (x right, y down, z forward), S any sensor.
 ///
 /// Pure functions of values; safe from any thread.
 namespace tether::uav {
@@ -34,20 +34,27 @@ constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
 constexpr Vec3 operator-(const Vec3& a, const Vec3& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-constexpr Vec3 operator*(double s, const Vec3& v) { return {s * v.x, s * v.y, s * v.z}; }
-constexpr double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr Vec3 operator*(double s, const Vec3& v) {
+  return {s * v.x, s * v.y, s * v.z};
+}
+constexpr double dot(const Vec3& a, const Vec3& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double norm(const Vec3& v) { return std::sqrt(dot(v, v)); }
+inline double norm(const Vec3& v) {
+  return std::sqrt(dot(v, v));
+}
 
 constexpr Quat operator*(const Quat& a, const Quat& b) {
-  return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
-          a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
-          a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-          a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
+  return {
+      a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+      a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
 }
-constexpr Quat inverse(const Quat& q) { return {q.w, -q.x, -q.y, -q.z}; }
+constexpr Quat inverse(const Quat& q) {
+  return {q.w, -q.x, -q.y, -q.z};
+}
 /// `rotate(q_AB, v_B)` → `v_A`.
 constexpr Vec3 rotate(const Quat& q, const Vec3& v) {
   const Vec3 u{q.x, q.y, q.z};
@@ -78,6 +85,8 @@ constexpr Vec3 transform(const Pose& X_AB, const Vec3& p_B) {
 
 /// Rotation from the camera's optical frame C (x right, y down, z forward) to a body-style frame
 /// (x forward, y left, z up) mounted at the same place, as SDF mounts a camera (REP-103).
-constexpr Quat q_body_from_optical() { return {0.5, -0.5, 0.5, -0.5}; }
+constexpr Quat q_body_from_optical() {
+  return {0.5, -0.5, 0.5, -0.5};
+}
 
 }  // namespace tether::uav

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include <tether/base/time.h>
@@ -37,6 +38,13 @@ struct MultirotorParameters {
   double max_horizontal_speed_m_s = 5.0;
   double max_vertical_speed_m_s = 2.0;
   double max_yaw_rate_rad_s = 3.0;
+  /// The velocity set-point follows a new command with this acceleration. Below what the tilt limit
+  /// allows (3.6 m/s² at 0.35 rad), so that the UAV can follow it.
+  double max_acceleration_m_s2 = 3.0;
+  /// The yaw rate follows a new command with this acceleration. Below what the rotors' reaction
+  /// torques can do (9.4 rad/s² at hover for the Hummingbird), so that the yaw stops without
+  /// swinging back.
+  double max_yaw_acceleration_rad_s2 = 6.0;
 };
 
 /// AscTec Hummingbird as documented by RotorS (hummingbird.xacro: mass, inertia, rotor and motor
@@ -55,16 +63,22 @@ struct BodyState {
 struct Wrench {
   Vec3 force_B;
   Vec3 torque_B;
+  friend bool operator==(const Wrench&, const Wrench&) = default;
 };
 
 /// State of rotors and controller between steps. Plain data, fixed size: copying it is the
 /// snapshot.
 struct MultirotorState {
   static constexpr std::size_t kMaxRotors = 8;
-  std::array<double, kMaxRotors> rotor_speed_rad_s{};  ///< the first rotors.size() are in use
+  /// The first rotors.size() are in use.
+  std::array<double, kMaxRotors> rotor_speed_rad_s{};
+  Vec3 velocity_setpoint_H_m_s;   ///< the commanded velocity after its acceleration limit
+  Vec3 velocity_reference_H_m_s;  ///< the same behind the lag with which thrust turns and grows
   Vec3 velocity_integral_W;       ///< integral term of the velocity loop [m/s²]
   Vec3 rate_integral_B;           ///< integral term of the rate loop [rad/s²]
-  double yaw_setpoint_rad = 0.0;  ///< yaw set-point, the integral of the commanded yaw rate
+  double yaw_rate_setpoint_rad_s = 0.0;  ///< the commanded yaw rate after its acceleration limit
+  double yaw_setpoint_rad = 0.0;         ///< integral of the yaw rate set-point; in (−π, π]
+  friend bool operator==(const MultirotorState&, const MultirotorState&) = default;
 };
 
 /// Rotors at hover thrust and the controller at rest, heading along `yaw_rad`.

@@ -1,0 +1,215 @@
+#include "velocity_controller.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tether/base/units.h>
+
+namespace tether::uav {
+namespace {
+
+// Gains. Each loop is several times faster than the one around it; the innermost is bounded by the
+// rotors' lag of 10 to 25 ms. All act on accelerations, so that they hold for any mass and inertia.
+constexpr double kVelocityGain_1_s = 2.6;
+/// How long the acceleration takes to follow: the attitude loops ahead and aside, the rotors
+/// upwards.
+constexpr Vec3 kAccelerationLag_s{0.20, 0.20, 0.02};
+constexpr double kVelocityIntegralGain_1_s2 = 1.2;
+constexpr double kMaxVelocityIntegral_m_s2 = 2.0;
+constexpr double kMaxIntegratedError_m_s = 0.5;  // an upset is no lasting disturbance
+constexpr Vec3 kAttitudeGain_1_s{7.0, 7.0, 5.0};
+constexpr Vec3 kRateGain_1_s{24.0, 24.0, 18.0};
+constexpr double kRateIntegralGain_1_s2 = 25.0;
+constexpr double kMaxRateIntegral_rad_s2 = 5.0;
+
+// Thrust is kept within these, so that there is always some left to turn the body with.
+constexpr double kMinThrustOfWeight = 0.3;
+constexpr double kMaxThrustOfRotors = 0.85;
+
+/// The yaw set-point never runs further ahead of the yaw than this, so that a UAV that was kept
+/// from turning does not unwind later.
+constexpr double kMaxYawLead_rad = 0.2;
+
+constexpr double clamp_to(double value, double limit) {
+  return std::clamp(value, -limit, limit);
+}
+
+Vec3 scaled_by(const Vec3& a, const Vec3& b) {
+  return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+/// Shortens the horizontal part of `v` to at most `limit`.
+Vec3 with_horizontal_limit(const Vec3& v, double limit) {
+  const double length = std::hypot(v.x, v.y);
+  const double scale = length > limit ? limit / length : 1.0;
+  return {scale * v.x, scale * v.y, v.z};
+}
+
+/// Turns `v` by `yaw` about z: H → W.
+Vec3 from_heading(double yaw, const Vec3& v) {
+  const double c = std::cos(yaw);
+  const double s = std::sin(yaw);
+  return {c * v.x - s * v.y, s * v.x + c * v.y, v.z};
+}
+
+struct Axes {
+  Vec3 x, y, z;
+};
+
+Axes axes_of(const Quat& q) {
+  return {rotate(q, {1, 0, 0}), rotate(q, {0, 1, 0}), rotate(q, {0, 0, 1})};
+}
+
+/// The yaw set-point: the commanded rate behind an acceleration limit, integrated. Returns the
+/// acceleration in use [rad/s²].
+double advance_yaw_setpoint(const MultirotorParameters& parameters, double commanded_rate,
+                            double yaw, double dt_s, MultirotorState& state) {
+  const double target = clamp_to(commanded_rate, parameters.max_yaw_rate_rad_s);
+  const double max_change = parameters.max_yaw_acceleration_rad_s2 * dt_s;
+  const double change = clamp_to(target - state.yaw_rate_setpoint_rad_s, max_change);
+  const double advance = (state.yaw_rate_setpoint_rad_s + 0.5 * change) * dt_s;
+  state.yaw_rate_setpoint_rad_s += change;
+
+  const double lead = wrap_angle_rad(state.yaw_setpoint_rad + advance - yaw);
+  state.yaw_setpoint_rad = wrap_angle_rad(yaw + clamp_to(lead, kMaxYawLead_rad));
+  return change / dt_s;
+}
+
+struct VelocitySetpoint {
+  Vec3 velocity_W;      // where the velocity should be by now [m/s]
+  Vec3 acceleration_W;  // to be fed forward, with the centripetal one of a turning heading [m/s²]
+};
+
+/// The commanded velocity, within its limits, behind an acceleration limit. What the velocity is
+/// compared with is a lag later: a following error that nothing can avoid does not wind up the
+/// integral.
+VelocitySetpoint advance_velocity_setpoint(const MultirotorParameters& parameters,
+                                           const Vec3& commanded_H, double yaw, double dt_s,
+                                           MultirotorState& state) {
+  Vec3 target = with_horizontal_limit(commanded_H, parameters.max_horizontal_speed_m_s);
+  target.z = clamp_to(target.z, parameters.max_vertical_speed_m_s);
+  const double max_change = parameters.max_acceleration_m_s2 * dt_s;
+  Vec3& setpoint = state.velocity_setpoint_H_m_s;
+  Vec3 change = with_horizontal_limit(target - setpoint, max_change);
+  change.z = clamp_to(change.z, max_change);
+  setpoint = setpoint + change;
+
+  Vec3& reference = state.velocity_reference_H_m_s;
+  const Vec3 follow{dt_s / (kAccelerationLag_s.x + dt_s), dt_s / (kAccelerationLag_s.y + dt_s),
+                    dt_s / (kAccelerationLag_s.z + dt_s)};
+  reference = reference + scaled_by(follow, setpoint - reference);
+
+  const Vec3 turning = cross({0, 0, state.yaw_rate_setpoint_rad_s}, setpoint);
+  return {from_heading(yaw, reference), from_heading(yaw, (1.0 / dt_s) * change + turning)};
+}
+
+/// Drag of airframe and rotors, as fast as they spin now, at this velocity [N]. Rotors drag only
+/// across their axes, which are all but vertical.
+Vec3 drag_N(const MultirotorParameters& parameters, const MultirotorState& state, const Vec3& v_W) {
+  double speeds = 0.0;
+  for (std::size_t i = 0; i < parameters.rotors.size(); ++i) {
+    speeds += state.rotor_speed_rad_s[i];
+  }
+  const double airframe = parameters.linear_drag_N_s_m;
+  const double across = airframe + parameters.drag_coefficient * speeds;
+  return {across * v_W.x, across * v_W.y, airframe * v_W.z};
+}
+
+/// Force within what thrust and tilt allow.
+Vec3 limited_force(const MultirotorParameters& parameters, double gravity_m_s2, const Vec3& asked) {
+  const double max_thrust = kMaxThrustOfRotors * max_rotor_thrust_N(parameters) *
+                            static_cast<double>(parameters.rotors.size());
+  const double min_up = kMinThrustOfWeight * parameters.mass_kg * gravity_m_s2;
+  const double max_up = std::max(min_up, max_thrust * std::cos(parameters.max_tilt_rad));
+  const Vec3 force{asked.x, asked.y, std::clamp(asked.z, min_up, max_up)};
+  return with_horizontal_limit(force, force.z * std::tan(parameters.max_tilt_rad));
+}
+
+/// The integral of an axis stands still while that axis is at its limit.
+void advance_velocity_integral(const Vec3& error, const Vec3& asked, const Vec3& force, double dt_s,
+                               Vec3& integral) {
+  const double gain = kVelocityIntegralGain_1_s2 * dt_s;
+  if (force.x == asked.x && force.y == asked.y) {
+    const Vec3 bounded = with_horizontal_limit(error, kMaxIntegratedError_m_s);
+    integral.x += gain * bounded.x;
+    integral.y += gain * bounded.y;
+    integral = with_horizontal_limit(integral, kMaxVelocityIntegral_m_s2);
+  }
+  if (force.z == asked.z) {
+    integral.z += gain * clamp_to(error.z, kMaxIntegratedError_m_s);
+    integral.z = clamp_to(integral.z, kMaxVelocityIntegral_m_s2);
+  }
+}
+
+/// Outer loop: the force that the rotors shall exert, in W [N]. PI on the velocity; weight, drag
+/// and the acceleration of the set-point are fed forward.
+Vec3 wanted_force_W(const MultirotorParameters& parameters, double gravity_m_s2,
+                    const BodyState& body, const VelocitySetpoint& setpoint, double dt_s,
+                    MultirotorState& state) {
+  const double mass = parameters.mass_kg;
+  const Vec3 error = setpoint.velocity_W - body.v_WB;
+  const Vec3 acceleration = kVelocityGain_1_s * error + state.velocity_integral_W +
+                            setpoint.acceleration_W + Vec3{0, 0, gravity_m_s2};
+  const Vec3 asked = mass * acceleration + drag_N(parameters, state, setpoint.velocity_W);
+  const Vec3 force = limited_force(parameters, gravity_m_s2, asked);
+  advance_velocity_integral(error, asked, force, dt_s, state.velocity_integral_W);
+  return force;
+}
+
+/// The attitude whose z is along `force_W` and whose x heads along `yaw` (Lee 2010, eq. 12 and
+/// after).
+Axes wanted_attitude(const Vec3& force_W, double yaw) {
+  const Vec3 z = (1.0 / norm(force_W)) * force_W;
+  const Vec3 sideways = cross(z, {std::cos(yaw), std::sin(yaw), 0.0});
+  const Vec3 y = (1.0 / norm(sideways)) * sideways;
+  return {cross(y, z), y, z};
+}
+
+/// ½ (R_dᵀ R − Rᵀ R_d)^∨, in B [rad for small angles] (Lee 2010, eq. 10).
+Vec3 attitude_error_B(const Axes& actual, const Axes& wanted) {
+  return 0.5 * Vec3{dot(wanted.z, actual.y) - dot(wanted.y, actual.z),
+                    dot(wanted.x, actual.z) - dot(wanted.z, actual.x),
+                    dot(wanted.y, actual.x) - dot(wanted.x, actual.y)};
+}
+
+/// Inner loop: torques [N m] that bring the body's rate to `rate_setpoint_B`. PI, with the
+/// set-point's acceleration and the gyroscopic torque fed forward.
+Vec3 wanted_torque_B(const MultirotorParameters& parameters, const BodyState& body,
+                     const Vec3& rate_setpoint_B, const Vec3& acceleration_B, double dt_s,
+                     MultirotorState& state) {
+  const Vec3 error = rate_setpoint_B - body.w_WB_B;
+  const Vec3 acceleration =
+      scaled_by(kRateGain_1_s, error) + state.rate_integral_B + acceleration_B;
+  const Vec3 integral = state.rate_integral_B + (kRateIntegralGain_1_s2 * dt_s) * error;
+  state.rate_integral_B = {clamp_to(integral.x, kMaxRateIntegral_rad_s2),
+                           clamp_to(integral.y, kMaxRateIntegral_rad_s2),
+                           clamp_to(integral.z, kMaxRateIntegral_rad_s2)};
+  const Vec3 momentum = scaled_by(parameters.inertia_kg_m2, body.w_WB_B);
+  return scaled_by(parameters.inertia_kg_m2, acceleration) + cross(body.w_WB_B, momentum);
+}
+
+}  // namespace
+
+Demand control(const MultirotorParameters& parameters, double gravity_m_s2, const BodyState& body,
+               const VelocityCommand& command, double dt_s, MultirotorState& state) {
+  const double yaw = yaw_rad(body.q_WB);
+  const double yaw_acceleration =
+      advance_yaw_setpoint(parameters, command.yaw_rate_rad_s, yaw, dt_s, state);
+  const VelocitySetpoint setpoint =
+      advance_velocity_setpoint(parameters, command.velocity_H_m_s, yaw, dt_s, state);
+  const Vec3 force_W = wanted_force_W(parameters, gravity_m_s2, body, setpoint, dt_s, state);
+
+  const Axes actual = axes_of(body.q_WB);
+  const Axes wanted = wanted_attitude(force_W, state.yaw_setpoint_rad);
+  const Vec3 error_B = attitude_error_B(actual, wanted);
+
+  // World z in B is the third row of R.
+  const Vec3 up_B{actual.x.z, actual.y.z, actual.z.z};
+  const Vec3 rate_setpoint_B =
+      state.yaw_rate_setpoint_rad_s * up_B - scaled_by(kAttitudeGain_1_s, error_B);
+  const Vec3 torque_B =
+      wanted_torque_B(parameters, body, rate_setpoint_B, yaw_acceleration * up_B, dt_s, state);
+  return {dot(force_W, actual.z), torque_B};
+}
+
+}  // namespace tether::uav

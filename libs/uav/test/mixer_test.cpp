@@ -1,0 +1,105 @@
+#include "mixer.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+
+#include <tether/base/random.h>
+
+namespace tether::uav {
+namespace {
+
+/// n rotors on a circle, spinning in alternate directions.
+MultirotorParameters ring(int count, double first_rad) {
+  MultirotorParameters p = hummingbird();
+  p.rotors.clear();
+  for (int i = 0; i < count; ++i) {
+    const double angle = first_rad + 2 * std::numbers::pi * i / count;
+    p.rotors.push_back({{0.2 * std::cos(angle), 0.2 * std::sin(angle), 0}, i % 2 == 0 ? 1 : -1});
+  }
+  return p;
+}
+
+struct Layout {
+  const char* name;
+  MultirotorParameters parameters;
+};
+
+std::vector<Layout> layouts() {
+  MultirotorParameters lopsided = hummingbird();
+  lopsided.rotors[0].p_BR = {0.21, 0.03, 0};
+  return {{"plus", hummingbird()},
+          {"cross", ring(4, std::numbers::pi / 4)},
+          {"hexa", ring(6, 0)},
+          {"octo", ring(8, 0.1)},
+          {"lopsided", lopsided}};
+}
+
+void expect_near(const Demand& a, const Demand& b) {
+  EXPECT_NEAR(a.thrust_N, b.thrust_N, 1e-9);
+  EXPECT_LT(norm(a.torque_B_N_m - b.torque_B_N_m), 1e-9);
+}
+
+TEST(Mixer, GivesWhatIsAskedForWithinTheLimits) {
+  KeyedRandom random({1, 0, 0});
+  for (const Layout& layout : layouts()) {
+    SCOPED_TRACE(layout.name);
+    for (int i = 0; i < 200; ++i) {
+      const auto spread = [&random](double limit) { return limit * (2 * random.uniform() - 1); };
+      const Demand demand{8.0 + spread(2), {spread(0.1), spread(0.1), spread(0.02)}};
+      expect_near(unmix(layout.parameters, mix(layout.parameters, demand)), demand);
+    }
+  }
+}
+
+TEST(Mixer, NeverLeavesTheRotorsLimits) {
+  KeyedRandom random({2, 0, 0});
+  for (const Layout& layout : layouts()) {
+    SCOPED_TRACE(layout.name);
+    const double limit = max_rotor_thrust_N(layout.parameters);
+    for (int i = 0; i < 2000; ++i) {
+      const Demand demand{40 * random.normal(),
+                          {3 * random.normal(), 3 * random.normal(), random.normal()}};
+      for (const double thrust : mix(layout.parameters, demand)) {
+        EXPECT_GE(thrust, 0.0);
+        EXPECT_LE(thrust, limit);
+      }
+    }
+  }
+}
+
+TEST(Mixer, YawGivesWayToThrustRollAndPitch) {
+  const MultirotorParameters p = hummingbird();
+  const Demand got = unmix(p, mix(p, {7.0, {0.3, -0.2, 5.0}}));
+  EXPECT_NEAR(got.thrust_N, 7.0, 1e-9);
+  EXPECT_NEAR(got.torque_B_N_m.x, 0.3, 1e-9);
+  EXPECT_NEAR(got.torque_B_N_m.y, -0.2, 1e-9);
+  EXPECT_GT(got.torque_B_N_m.z, 0.0);
+  EXPECT_LT(got.torque_B_N_m.z, 0.2);
+}
+
+TEST(Mixer, RollAndPitchAreScaledTogether) {
+  const MultirotorParameters p = hummingbird();
+  const Demand got = unmix(p, mix(p, {7.0, {6.0, 3.0, 0.0}}));
+  EXPECT_NEAR(got.thrust_N, 7.0, 1e-9);
+  EXPECT_NEAR(got.torque_B_N_m.x, 2 * got.torque_B_N_m.y, 1e-9);
+  EXPECT_GT(got.torque_B_N_m.x, 0.3);
+}
+
+TEST(Mixer, ThrustBeyondTheRotorsIsCutOff) {
+  const MultirotorParameters p = hummingbird();
+  EXPECT_NEAR(unmix(p, mix(p, {100.0, {}})).thrust_N, 4 * max_rotor_thrust_N(p), 1e-9);
+  EXPECT_EQ(unmix(p, mix(p, {-100.0, {}})).thrust_N, 0.0);
+}
+
+TEST(Mixer, ClockwiseRotorsPushTheYawCounterClockwise) {
+  const MultirotorParameters p = hummingbird();
+  const RotorThrusts thrusts = mix(p, {7.0, {0, 0, 0.05}});
+  for (std::size_t i = 0; i < p.rotors.size(); ++i) {
+    EXPECT_EQ(thrusts[i] > 7.0 / 4, p.rotors[i].direction < 0) << i;
+  }
+}
+
+}  // namespace
+}  // namespace tether::uav

@@ -1,0 +1,180 @@
+#include "velocity_controller.h"
+
+#include "rigid_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+
+#include <tether/base/random.h>
+#include <tether/base/units.h>
+
+namespace tether::uav {
+namespace {
+
+/// How a quantity answered a step from 0 to 1.
+struct Response {
+  double settled_s = 0.0;  ///< last time outside ±5 %
+  double peak = 0.0;
+  double last = 0.0;
+};
+
+template <class Measure>
+Response respond(FlyingBody& uav, const VelocityCommand& command, double seconds, Measure measure) {
+  Response r;
+  uav.fly(command, seconds, [&](double t) {
+    r.last = measure();
+    r.peak = std::max(r.peak, r.last);
+    if (std::abs(r.last - 1.0) > 0.05) {
+      r.settled_s = t;
+    }
+  });
+  return r;
+}
+
+struct Axis {
+  const char* name;
+  Vec3 direction_H;
+};
+
+TEST(VelocityController, StepOfOneMetrePerSecondSettlesWithLittleOvershoot) {
+  for (const Axis& axis : {Axis{"ahead", {1, 0, 0}}, Axis{"left", {0, 1, 0}}, Axis{"up", {0, 0, 1}},
+                           Axis{"down", {0, 0, -1}}, Axis{"back", {-1, 0, 0}}}) {
+    SCOPED_TRACE(axis.name);
+    FlyingBody uav;
+    const Response r = respond(uav, {axis.direction_H, 0}, 4.0,
+                               [&] { return dot(axis.direction_H, uav.body.v_WB); });
+    EXPECT_LT(r.settled_s, 1.5);
+    EXPECT_LT(r.peak, 1.10);
+    EXPECT_NEAR(r.last, 1.0, 0.01);
+    EXPECT_NEAR(uav.yaw(), 0.0, 1e-3);
+  }
+}
+
+TEST(VelocityController, YawRateStepSettlesQuickly) {
+  for (const double sign : {1.0, -1.0}) {
+    FlyingBody uav;
+    const Response r = respond(uav, {{}, sign}, 3.0, [&] { return sign * uav.body.w_WB_B.z; });
+    EXPECT_LT(r.settled_s, 0.4);
+    EXPECT_LT(r.peak, 1.12);
+    EXPECT_NEAR(r.last, 1.0, 0.005);
+    EXPECT_LT(norm(uav.body.p_WB), 0.03);
+  }
+}
+
+TEST(VelocityController, YawStopsShortlyAndDoesNotSwingBack) {
+  for (const double rate : {0.2, 0.5, 1.0}) {
+    SCOPED_TRACE(rate);
+    FlyingBody uav;
+    uav.fly({{}, rate}, 2.0);
+    const double at_command = uav.yaw();
+    double furthest = at_command;
+    uav.fly({}, 3.0, [&](double) { furthest = std::max(furthest, uav.yaw()); });
+    const double coasted = rate * rate / (2 * uav.parameters().max_yaw_acceleration_rad_s2);
+    EXPECT_LT(furthest - at_command, coasted + 0.03 * rate + 1e-3);
+    EXPECT_LT(deg_from_rad(furthest - uav.yaw()), 1.0);
+    EXPECT_NEAR(uav.body.w_WB_B.z, 0.0, 1e-3);
+  }
+}
+
+TEST(VelocityController, StopsFromFlight) {
+  FlyingBody uav;
+  uav.fly({{2, 0, 0}, 0}, 4.0);
+  double slowest = 1.0;
+  uav.fly({}, 3.0, [&](double) { slowest = std::min(slowest, uav.body.v_WB.x); });
+  EXPECT_GT(slowest, -0.2);
+  EXPECT_LT(norm(uav.body.v_WB), 0.03);
+}
+
+TEST(VelocityController, VelocityIsInTheHeadingFrame) {
+  FlyingBody uav(hummingbird(), std::numbers::pi / 2);
+  uav.fly({{1, 0, 0}, 0}, 4.0);
+  EXPECT_NEAR(uav.body.v_WB.x, 0.0, 0.01);
+  EXPECT_NEAR(uav.body.v_WB.y, 1.0, 0.01);
+}
+
+TEST(VelocityController, KeepsItsSpeedAheadWhileTurning) {
+  FlyingBody uav;
+  uav.fly({{1, 0, 0}, 0.5}, 10.0, [&](double t) {
+    if (t < 3.0) {
+      return;
+    }
+    const Vec3 v_H = rotate(from_rpy(0, 0, -uav.yaw()), uav.body.v_WB);
+    ASSERT_NEAR(v_H.x, 1.0, 0.05);
+    ASSERT_NEAR(v_H.y, 0.0, 0.05);
+  });
+}
+
+TEST(VelocityController, HoldsAgainstWindAndAnOffCentreLoad) {
+  FlyingBody uav;
+  uav.disturbance_force_W = {0.4, -0.3, -0.2};
+  uav.disturbance_torque_B = {0.01, -0.01, 0.002};
+  uav.fly({}, 15.0);
+  EXPECT_LT(norm(uav.body.v_WB), 0.01);
+  EXPECT_NEAR(uav.yaw(), 0.0, 0.01);
+}
+
+TEST(VelocityController, RecoversFromAnUpset) {
+  FlyingBody uav;
+  uav.body.q_WB = from_rpy(1.2, -0.6, 0.3);
+  uav.body.w_WB_B = {3, -4, 2};
+  uav.fly({}, 6.0);
+  EXPECT_LT(norm(uav.body.v_WB), 0.1);
+  EXPECT_LT(uav.tilt(), 0.01);
+}
+
+TEST(VelocityController, RespectsTheParametersLimits) {
+  KeyedRandom random({5, 0, 0});
+  FlyingBody uav;
+  const MultirotorParameters& p = uav.parameters();
+  for (int i = 0; i < 60; ++i) {
+    const VelocityCommand wild{{50 * random.normal(), 50 * random.normal(), 20 * random.normal()},
+                               20 * random.normal()};
+    uav.fly(wild, 0.5, [&](double) {
+      ASSERT_LT(uav.tilt(), p.max_tilt_rad + 0.12);
+      ASSERT_LT(std::hypot(uav.body.v_WB.x, uav.body.v_WB.y), 1.2 * p.max_horizontal_speed_m_s);
+      ASSERT_LT(std::abs(uav.body.v_WB.z), 1.4 * p.max_vertical_speed_m_s);
+      ASSERT_LT(std::abs(uav.body.w_WB_B.z), 1.4 * p.max_yaw_rate_rad_s);
+    });
+  }
+}
+
+TEST(VelocityController, DoesNotUnwindAfterBeingHeld) {
+  FlyingBody uav;
+  const BodyState held = uav.body;
+  for (int i = 0; i < 5000; ++i) {
+    step(uav.parameters(), FlyingBody::kGravity, held, {{1, 0, 0}, 1.0}, FlyingBody::kDt,
+         uav.state);
+  }
+  uav.fly({}, 6.0);
+  EXPECT_LT(std::abs(uav.yaw()), 0.7);
+  EXPECT_LT(norm(uav.body.v_WB), 0.05);
+}
+
+/// The UAV has no handedness apart from its rotors' spin: mirrored commands give a mirrored flight,
+/// when the spins are mirrored, too.
+TEST(VelocityController, MirroredCommandsGiveAMirroredFlight) {
+  MultirotorParameters mirrored = hummingbird();
+  for (Rotor& rotor : mirrored.rotors) {
+    rotor.p_BR.y = -rotor.p_BR.y;
+    rotor.direction = -rotor.direction;
+  }
+  KeyedRandom random({6, 0, 0});
+  FlyingBody left;
+  FlyingBody right(mirrored);
+  for (int i = 0; i < 20; ++i) {
+    const VelocityCommand c{{random.normal(), random.normal(), random.normal()}, random.normal()};
+    const Vec3& v = c.velocity_H_m_s;
+    left.fly(c, 0.2);
+    right.fly({{v.x, -v.y, v.z}, -c.yaw_rate_rad_s}, 0.2);
+    ASSERT_NEAR(left.body.p_WB.x, right.body.p_WB.x, 1e-6);
+    ASSERT_NEAR(left.body.p_WB.y, -right.body.p_WB.y, 1e-6);
+    ASSERT_NEAR(left.body.p_WB.z, right.body.p_WB.z, 1e-6);
+    ASSERT_NEAR(left.yaw(), -right.yaw(), 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace tether::uav
