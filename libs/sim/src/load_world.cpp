@@ -1,0 +1,165 @@
+#include "sdf_convert.h"
+
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace tether::sim {
+
+using uav::Pose;
+
+namespace {
+
+FileLocation whole_file(const SdfSource& source) {
+  return {source.file().string(), 0};
+}
+
+/// Adds a model and, behind it, the models nested in it, each as one of its own.
+void add_model(const SdfSource& source, const sdf::Model& model, const Pose& X_WP,
+               const std::string& prefix, bool parent_is_static, World& world) {
+  Model result;
+  result.name = prefix + model.Name();
+  result.X_WM = X_WP * resolved_pose(source, model);
+  result.is_static = parent_is_static || model.Static();
+  for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
+    const sdf::Link& link = *model.LinkByIndex(i);
+    result.links.push_back(read_link(source, link));
+    for (std::uint64_t k = 0; k < link.LightCount(); ++k) {
+      world.lights.push_back(
+          read_light(source, *link.LightByIndex(k), result.X_WM * result.links.back().X_ML));
+    }
+  }
+  const Pose X_WM = result.X_WM;
+  const bool is_static = result.is_static;
+  const std::string name = result.name;
+  world.models.push_back(std::move(result));
+  for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
+    add_model(source, *model.ModelByIndex(i), X_WM, name + "::", is_static, world);
+  }
+}
+
+/// Lights of moving links and nested models that would move with their parents.
+void warn_of_lost_motion(const SdfSource& source, const sdf::Model& model, bool parent_is_static,
+                         const WarningSink& warn) {
+  const bool is_static = parent_is_static || model.Static();
+  for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
+    const sdf::Model& nested = *model.ModelByIndex(i);
+    if (!is_static) {
+      warn_at(source, nested.Element(), "is nested in a dynamic model; it moves on its own", warn);
+    }
+    warn_of_lost_motion(source, nested, is_static, warn);
+  }
+  for (std::uint64_t i = 0; !is_static && i < model.LinkCount(); ++i) {
+    const sdf::Link& link = *model.LinkByIndex(i);
+    for (std::uint64_t k = 0; k < link.LightCount(); ++k) {
+      warn_at(source, link.LightByIndex(k)->Element(),
+              "is on a dynamic model; it stays where it is at the start", warn);
+    }
+  }
+}
+
+double read_gravity(const SdfSource& source, const sdf::World& world) {
+  const auto gravity = world.Gravity();
+  if (gravity.X() != 0.0 || gravity.Y() != 0.0 || gravity.Z() >= 0.0) {
+    refuse(source, world.Element()->FindElement("gravity"),
+           "must point down, along -z: UAVs fly in no other");
+  }
+  return -gravity.Z();
+}
+
+Duration read_step(const SdfSource& source, const sdf::World& world) {
+  const sdf::Physics* physics = world.PhysicsDefault();
+  if (physics == nullptr) return World{}.step;
+  const Duration step = duration_from_seconds(physics->MaxStepSize());
+  if (step < std::chrono::microseconds(10) || step > std::chrono::milliseconds(20)) {
+    refuse(source, physics->Element()->FindElement("max_step_size"),
+           "must be between 0.00001 and 0.02 seconds");
+  }
+  return step;
+}
+
+void read_scene(const sdf::Scene* scene, World& world) {
+  if (scene == nullptr) return;
+  world.ambient_rgb = to_vec3(scene->Ambient());
+  world.background_rgb = to_vec3(scene->Background());
+  if (scene->Shadows()) return;
+  for (Light& light : world.lights) light.cast_shadows = false;
+}
+
+World read_world(const SdfSource& source, const WarningSink& warn) {
+  if (source.root().WorldCount() != 1) {
+    throw Error(ErrorCode::kBadFile, whole_file(source),
+                "has " + std::to_string(source.root().WorldCount()) +
+                    " <world> elements; a world's file holds exactly one");
+  }
+  const sdf::World& sdf_world = *source.root().WorldByIndex(0);
+
+  World world;
+  world.name = sdf_world.Name();
+  world.gravity_m_s2 = read_gravity(source, sdf_world);
+  world.step = read_step(source, sdf_world);
+  for (std::uint64_t i = 0; i < sdf_world.ModelCount(); ++i) {
+    add_model(source, *sdf_world.ModelByIndex(i), {}, "", false, world);
+    warn_of_lost_motion(source, *sdf_world.ModelByIndex(i), false, warn);
+  }
+  for (std::uint64_t i = 0; i < sdf_world.LightCount(); ++i) {
+    world.lights.push_back(read_light(source, *sdf_world.LightByIndex(i), {}));
+  }
+  read_scene(sdf_world.Scene(), world);
+  return world;
+}
+
+LightKind to_light_kind(sdf::LightType type) {
+  if (type == sdf::LightType::DIRECTIONAL) return LightKind::kDirectional;
+  return type == sdf::LightType::SPOT ? LightKind::kSpot : LightKind::kPoint;
+}
+
+void add_uavs(const WorldRequest& request, const WarningSink& warn, World& world) {
+  std::set<std::string> names;
+  for (const UavPlacement& placement : request.uavs) {
+    if (!names.insert(placement.name).second) {
+      throw Error(ErrorCode::kBadFile,
+                  "two UAVs have the name '" + placement.name + "'; give each a name of its own");
+    }
+    const SdfSource source(placement.model);
+    check_elements(source, SdfPurpose::kUav, warn);
+    source.throw_on_errors();
+    world.uavs.push_back(read_uav(source, placement, world.gravity_m_s2, warn));
+  }
+}
+
+}  // namespace
+
+Light read_light(const SdfSource& source, const sdf::Light& light, const Pose& X_WP) {
+  Light result;
+  result.name = light.Name();
+  result.kind = to_light_kind(light.Type());
+  result.X_WL = X_WP * resolved_pose(source, light);
+  result.direction = to_vec3(light.Direction());
+  if (result.kind != LightKind::kPoint && uav::norm(result.direction) == 0.0) {
+    refuse(source, light.Element(), "has a <direction> of length 0");
+  }
+  result.diffuse_rgb = light.Intensity() * to_vec3(light.Diffuse());
+  result.specular_rgb = light.Intensity() * to_vec3(light.Specular());
+  result.attenuation_constant = light.ConstantAttenuationFactor();
+  result.attenuation_linear = light.LinearAttenuationFactor();
+  result.attenuation_quadratic = light.QuadraticAttenuationFactor();
+  result.spot_outer_angle_rad = light.SpotOuterAngle().Radian();
+  result.spot_falloff = light.SpotFalloff();
+  result.cast_shadows = light.CastShadows();
+  return result;
+}
+
+World load_world(const WorldRequest& request, const WarningSink& warn) {
+  const SdfSource source(request.world);
+  check_elements(source, SdfPurpose::kWorld, warn);
+  source.throw_on_errors();
+  World world = read_world(source, warn);
+  add_uavs(request, warn, world);
+  for (const std::string& name : request.anchors) {
+    world.anchors.push_back(find_anchor(source, world, name));
+  }
+  return world;
+}
+
+}  // namespace tether::sim

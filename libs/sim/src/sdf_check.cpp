@@ -1,0 +1,309 @@
+#include "sdf_check.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+namespace tether::sim {
+
+namespace {
+
+using Names = std::set<std::string, std::less<>>;
+using ElementTable = std::map<std::string, Names, std::less<>>;
+
+/// The elements of SDF that Tether represents, by parent.
+const ElementTable kElements = {
+    {"sdf", {"world", "model"}},
+    {"world", {"physics", "gravity", "scene", "light", "model", "frame"}},
+    {"physics", {"max_step_size"}},
+    {"scene", {"ambient", "background", "shadows"}},
+    {"model", {"static", "link", "pose", "frame", "model"}},
+    {"frame", {"pose"}},
+    {"link", {"pose", "inertial", "visual", "collision"}},
+    {"inertial", {"mass", "pose", "inertia"}},
+    {"inertia", {"ixx", "iyy", "izz", "ixy", "ixz", "iyz"}},
+    {"visual", {"pose", "geometry", "material", "cast_shadows", "transparency"}},
+    {"collision", {"pose", "geometry", "surface"}},
+    {"surface", {"friction"}},
+    {"friction", {"ode"}},
+    {"ode", {"mu"}},
+    {"geometry", {"empty", "box", "cylinder", "sphere", "capsule", "ellipsoid", "plane", "mesh"}},
+    {"box", {"size"}},
+    {"cylinder", {"radius", "length"}},
+    {"sphere", {"radius"}},
+    {"capsule", {"radius", "length"}},
+    {"ellipsoid", {"radii"}},
+    {"plane", {"normal", "size"}},
+    {"mesh", {"uri", "scale", "submesh"}},
+    {"submesh", {"name"}},
+    {"material", {"ambient", "diffuse", "specular", "emissive", "pbr", "tether:texture_repeat"}},
+    {"pbr", {"metal", "specular"}},
+    {"metal", {"albedo_map"}},
+    {"specular", {"albedo_map"}},
+    {"light",
+     {"pose", "diffuse", "specular", "attenuation", "direction", "spot", "cast_shadows",
+      "intensity"}},
+    {"attenuation", {"constant", "linear", "quadratic"}},
+    {"spot", {"outer_angle", "falloff"}},
+    {"sensor", {"pose", "update_rate", "camera", "imu", "ray", "lidar"}},
+    {"camera", {"pose", "horizontal_fov", "image", "clip", "noise", "distortion", "lens"}},
+    {"image", {"width", "height", "format"}},
+    {"clip", {"near", "far"}},
+    {"distortion", {"k1", "k2", "k3", "p1", "p2"}},
+    {"lens", {"intrinsics"}},
+    {"intrinsics", {"fx", "fy", "cx", "cy"}},
+    {"noise",
+     {"type", "mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev",
+      "dynamic_bias_correlation_time"}},
+    {"imu", {"angular_velocity", "linear_acceleration"}},
+    {"angular_velocity", {"x", "y", "z"}},
+    {"linear_acceleration", {"x", "y", "z"}},
+    {"x", {"noise"}},
+    {"y", {"noise"}},
+    {"z", {"noise"}},
+    {"ray", {"scan", "range", "noise"}},
+    {"lidar", {"scan", "range", "noise"}},
+    {"scan", {"horizontal", "vertical"}},
+    {"horizontal", {"samples", "resolution", "min_angle", "max_angle"}},
+    {"vertical", {"samples", "resolution", "min_angle", "max_angle"}},
+    {"range", {"min", "max", "resolution"}},
+};
+
+/// Elements that only a world or only a UAV's model may have.
+const ElementTable kWorldElements = {{"link", {"light"}}};
+const ElementTable kUavElements = {{"link", {"sensor"}}, {"model", {"tether:multirotor", "joint"}}};
+
+/// Elements that change nothing of what is simulated: windows, topics, pacing, and what SDF demands
+/// but other elements already imply.
+const ElementTable kWithoutEffect = {
+    {"world", {"gui"}},
+    {"physics", {"real_time_factor", "real_time_update_rate"}},
+    {"scene", {"grid", "origin_visual"}},
+    {"model", {"allow_auto_disable"}},
+    {"attenuation", {"range"}},
+    {"spot", {"inner_angle"}},
+    {"sensor", {"always_on", "visualize", "topic"}},
+    {"camera", {"optical_frame_id"}},
+};
+
+/// Sensor types that Tether represents.
+const Names kSensorTypes = {"camera", "imu", "ray", "gpu_ray", "lidar", "gpu_lidar"};
+
+bool contains(const ElementTable& table, std::string_view parent, std::string_view child) {
+  const auto row = table.find(parent);
+  return row != table.end() && row->second.contains(child);
+}
+
+bool is_represented(SdfPurpose purpose, const std::string& parent, const std::string& child) {
+  return contains(kElements, parent, child) ||
+         contains(purpose == SdfPurpose::kWorld ? kWorldElements : kUavElements, parent, child);
+}
+
+std::string attribute(const sdf::ElementPtr& element, const std::string& key) {
+  return element->HasAttribute(key) ? element->GetAttribute(key)->GetAsString() : "";
+}
+
+/// What a value must be, beyond finite.
+struct Rule {
+  bool (*holds)(double value);
+  const char* allowed;
+};
+
+bool is_positive(double value) {
+  return value > 0.0;
+}
+bool is_not_negative(double value) {
+  return value >= 0.0;
+}
+bool is_fraction(double value) {
+  return value >= 0.0 && value <= 1.0;
+}
+bool is_field_of_view(double value) {
+  return value > 0.0 && value < std::numbers::pi;
+}
+bool is_image_edge(double value) {
+  return value >= 1.0 && value <= 4096.0;
+}
+const Rule kPositive{is_positive, "it must be greater than 0"};
+const Rule kNotNegative{is_not_negative, "it must not be negative"};
+const Rule kFraction{is_fraction, "it must be between 0 and 1"};
+const Rule kFieldOfView{is_field_of_view, "it must be between 0 and pi radians, both excluded"};
+const Rule kImageEdge{is_image_edge, "it must be between 1 and 4096 pixels"};
+
+const std::map<std::string, Rule, std::less<>> kRules = {
+    {"physics/max_step_size", kPositive},
+    {"inertial/mass", kPositive},
+    {"inertia/ixx", kPositive},
+    {"inertia/iyy", kPositive},
+    {"inertia/izz", kPositive},
+    {"box/size", kPositive},
+    {"cylinder/radius", kPositive},
+    {"cylinder/length", kPositive},
+    {"sphere/radius", kPositive},
+    {"capsule/radius", kPositive},
+    {"capsule/length", kPositive},
+    {"ellipsoid/radii", kPositive},
+    {"plane/size", kPositive},
+    {"mesh/scale", kPositive},
+    {"ode/mu", kNotNegative},
+    {"visual/transparency", kFraction},
+    {"scene/ambient", kFraction},
+    {"scene/background", kFraction},
+    {"material/ambient", kFraction},
+    {"material/diffuse", kFraction},
+    {"material/specular", kFraction},
+    {"material/emissive", kFraction},
+    {"light/diffuse", kFraction},
+    {"light/specular", kFraction},
+    {"light/intensity", kNotNegative},
+    {"attenuation/constant", kNotNegative},
+    {"attenuation/linear", kNotNegative},
+    {"attenuation/quadratic", kNotNegative},
+    {"spot/outer_angle", kNotNegative},
+    {"spot/falloff", kNotNegative},
+    {"sensor/update_rate", kNotNegative},
+    {"camera/horizontal_fov", kFieldOfView},
+    {"image/width", kImageEdge},
+    {"image/height", kImageEdge},
+    {"clip/near", kPositive},
+    {"clip/far", kPositive},
+    {"intrinsics/fx", kPositive},
+    {"intrinsics/fy", kPositive},
+    {"noise/stddev", kNotNegative},
+    {"noise/bias_stddev", kNotNegative},
+    {"noise/dynamic_bias_stddev", kNotNegative},
+    {"noise/dynamic_bias_correlation_time", kNotNegative},
+    {"range/min", kNotNegative},
+    {"range/max", kPositive},
+    {"range/resolution", kNotNegative},
+    {"horizontal/samples", kPositive},
+    {"vertical/samples", kPositive},
+};
+
+bool is_numeric(const sdf::ElementPtr& element) {
+  static const Names types = {"double", "float",   "int",      "unsigned int",
+                              "pose",   "vector3", "vector2d", "color"};
+  return element->GetValue() && types.contains(element->GetValue()->GetTypeName());
+}
+
+/// The numbers of a text; none where anything in it is no number.
+std::optional<std::vector<double>> parse_numbers(const std::string& text) {
+  std::vector<double> numbers;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
+    const char* end = word.data() + word.size();
+    double number = 0.0;
+    const auto [rest, error] = std::from_chars(begin, end, number);
+    if (error != std::errc() || rest != end) return std::nullopt;
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+void check_value(const SdfSource& source, const sdf::ElementPtr& element) {
+  if (!is_numeric(element)) return;
+  const std::string text = element->GetValue()->GetAsString();
+  const auto numbers = parse_numbers(text);
+  if (!numbers) return;  // libsdformat has accepted it: nothing that a rule speaks of
+  const auto rule = kRules.find(element->GetParent()->GetName() + "/" + element->GetName());
+  for (const double number : *numbers) {
+    if (!std::isfinite(number)) refuse(source, element, "is " + text + "; it must be finite");
+    if (rule != kRules.end() && !rule->second.holds(number)) {
+      refuse(source, element, "is " + text + "; " + rule->second.allowed);
+    }
+  }
+}
+
+class Walk {
+ public:
+  Walk(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn)
+      : source_(source), purpose_(purpose), warn_(warn) {}
+
+  void visit_children(const sdf::ElementPtr& element) const {
+    for_each_child(element, [&](const sdf::ElementPtr& child) {
+      if (child->GetExplicitlySetInFile()) visit(element->GetName(), child);
+    });
+  }
+
+ private:
+  void visit(const std::string& parent, const sdf::ElementPtr& element) const {
+    const std::string& name = element->GetName();
+    if (contains(kWithoutEffect, parent, name) || is_own_plugin(element)) return;
+    if (!is_represented(purpose_, parent, name)) {
+      warn_at(source_, element, unrepresented(parent, element), warn_);
+      return;
+    }
+    if (name == "sensor" && !kSensorTypes.contains(attribute(element, "type"))) {
+      warn_at(source_, element,
+              "is of type '" + attribute(element, "type") +
+                  "', which is not simulated (camera, imu and single-ray sensors are); left out",
+              warn_);
+      return;
+    }
+    check_value(source_, element);
+    // These two are read, and warned of, where a UAV is put together.
+    if (name != "tether:multirotor" && name != "joint") visit_children(element);
+  }
+
+  static bool is_own_plugin(const sdf::ElementPtr& element) {
+    return element->GetName() == "plugin" &&
+           attribute(element, "filename").find("tether") != std::string::npos;
+  }
+
+  std::string unrepresented(const std::string& parent, const sdf::ElementPtr& element) const {
+    const std::string& name = element->GetName();
+    if (name == "tether:multirotor") {
+      return "is ignored here: UAVs are placed by the scenario, not by the world";
+    }
+    if (name.starts_with("tether:"))
+      return "is no element of Tether's in a <" + parent + ">; ignored";
+    if (name == "sensor") return "belongs to no UAV; left out";
+    if (parent == "geometry") return "is a shape that is not represented; left out";
+    return "is not represented; ignored";
+  }
+
+  const SdfSource& source_;
+  SdfPurpose purpose_;
+  const WarningSink& warn_;
+};
+
+}  // namespace
+
+void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message,
+             const WarningSink& warn) {
+  if (!warn) return;
+  const FileLocation where = source.where(element);
+  warn(where.file + ":" + std::to_string(where.line) + ": " + describe(element) + " " + message);
+}
+
+void refuse(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message) {
+  throw Error(ErrorCode::kBadFile, source.where(element), describe(element) + " " + message);
+}
+
+std::vector<double> read_numbers(const SdfSource& source, const sdf::ElementPtr& element,
+                                 std::size_t count) {
+  const std::string text = element->GetValue() ? element->GetValue()->GetAsString() : "";
+  const auto numbers = parse_numbers(text);
+  const auto is_finite = [](double number) { return std::isfinite(number); };
+  if (!numbers || numbers->size() != count || !std::ranges::all_of(*numbers, is_finite)) {
+    refuse(source, element,
+           "is '" + text + "'; it must be " + std::to_string(count) +
+               (count == 1 ? " finite number" : " finite numbers"));
+  }
+  return *numbers;
+}
+
+void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn) {
+  for (const std::string& warning : source.console_warnings()) {
+    if (warn) warn(source.file().string() + ": " + warning);
+  }
+  Walk(source, purpose, warn).visit_children(source.root().Element());
+}
+
+}  // namespace tether::sim

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "sdf_source.h"
+
+#include <tether/sim/world.h>
+
+namespace tether::sim {
+
+/// What a file is read for: sensors belong to UAVs, lights and physics to worlds.
+enum class SdfPurpose { kWorld, kUav };
+
+/// Walks through everything that the file says: warns of each element that Tether does not
+/// represent, and refuses values that no scene can have.
+/// @throws Error(kBadFile) at the first impossible value.
+void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn);
+
+/// Warns about an element: "file:line: <what> message".
+void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message,
+             const WarningSink& warn);
+/// Refuses an element: the error says where, names the element, and adds `message`.
+[[noreturn]] void refuse(const SdfSource& source, const sdf::ElementPtr& element,
+                         const std::string& message);
+
+/// The finite numbers of an element's text. @throws Error(kBadFile) unless there are `count`.
+std::vector<double> read_numbers(const SdfSource& source, const sdf::ElementPtr& element,
+                                 std::size_t count);
+
+}  // namespace tether::sim

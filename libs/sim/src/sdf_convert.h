@@ -1,0 +1,51 @@
+#pragma once
+
+#include "sdf_check.h"
+#include "sdf_source.h"
+
+#include <ignition/math/Color.hh>
+#include <ignition/math/Pose3.hh>
+
+#include <tether/sim/world.h>
+
+/// From libsdformat's objects to ours, one part each. Values have been checked before
+/// (`check_elements`); what is found wrong here is what needs more than one element to see.
+namespace tether::sim {
+
+uav::Vec3 to_vec3(const ignition::math::Vector3d& v);
+uav::Vec3 to_vec3(const ignition::math::Color& color);
+uav::Pose to_pose(const ignition::math::Pose3d& pose);
+
+/// Pose of an SDF object in the frame that it is given in by default (SDF's frame semantics): a
+/// model or light in its world, a link in its model, a visual, collision or sensor in its link.
+template <class SdfObject>
+uav::Pose resolved_pose(const SdfSource& source, const SdfObject& object) {
+  ignition::math::Pose3d pose;
+  const sdf::Errors errors = object.SemanticPose().Resolve(pose);
+  if (!errors.empty()) refuse(source, object.Element(), "has a pose that cannot be resolved");
+  return to_pose(pose);
+}
+
+/// One link, with its visuals and collisions.
+Link read_link(const SdfSource& source, const sdf::Link& link);
+
+/// A light of the world or of a static link; X_WP is the pose of what it is given in.
+Light read_light(const SdfSource& source, const sdf::Light& light, const uav::Pose& X_WP);
+
+/// A sensor, none if Tether does not simulate its type; X_BL is the pose of its link.
+std::optional<Sensor> read_sensor(const SdfSource& source, const sdf::Sensor& sensor,
+                                  const uav::Pose& X_BL, const WarningSink& warn);
+
+/// Airframe of a UAV: <tether:multirotor>, with mass and inertia of the body.
+uav::MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPtr& model,
+                                        const Link& body, double gravity_m_s2);
+
+/// The UAV of a model file, placed.
+Uav read_uav(const SdfSource& source, const UavPlacement& placement, double gravity_m_s2,
+             const WarningSink& warn);
+
+/// The model `name` of the world as an anchor.
+/// @throws Error(kBadFile) if it is no model, or not one plain box, cylinder or sphere.
+PlacedAnchor find_anchor(const SdfSource& source, const World& world, const std::string& name);
+
+}  // namespace tether::sim

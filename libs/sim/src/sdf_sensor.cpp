@@ -1,0 +1,113 @@
+#include "sdf_convert.h"
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace tether::sim {
+
+namespace {
+
+Noise read_noise(const SdfSource& source, const sdf::Noise& noise, const WarningSink& warn) {
+  if (noise.Type() == sdf::NoiseType::NONE) return {};
+  if (noise.Type() == sdf::NoiseType::GAUSSIAN_QUANTIZED) {
+    warn_at(source, noise.Element(), "is quantized, which is not simulated; taken as gaussian",
+            warn);
+  }
+  return {noise.Mean(),
+          noise.StdDev(),
+          noise.BiasMean(),
+          noise.BiasStdDev(),
+          noise.DynamicBiasStdDev(),
+          noise.DynamicBiasCorrelationTime()};
+}
+
+uav::CameraModel read_intrinsics(const sdf::Camera& camera) {
+  uav::CameraModel model = uav::CameraModel::from_horizontal_fov(
+      static_cast<int>(camera.ImageWidth()), static_cast<int>(camera.ImageHeight()),
+      camera.HorizontalFov().Radian());
+  if (camera.HasLensIntrinsics()) {
+    model.fx_px = camera.LensIntrinsicsFx();
+    model.fy_px = camera.LensIntrinsicsFy();
+    model.cx_px = camera.LensIntrinsicsCx();
+    model.cy_px = camera.LensIntrinsicsCy();
+  }
+  model.k1 = camera.DistortionK1();
+  model.k2 = camera.DistortionK2();
+  model.k3 = camera.DistortionK3();
+  model.p1 = camera.DistortionP1();
+  model.p2 = camera.DistortionP2();
+  return model;
+}
+
+CameraModel read_camera(const SdfSource& source, const sdf::Camera& camera,
+                        const WarningSink& warn) {
+  if (camera.NearClip() >= camera.FarClip()) {
+    refuse(source, camera.Element()->FindElement("clip"),
+           "has its near plane behind its far plane");
+  }
+  const sdf::PixelFormatType format = camera.PixelFormat();
+  if (format != sdf::PixelFormatType::RGB_INT8 &&
+      format != sdf::PixelFormatType::UNKNOWN_PIXEL_FORMAT) {
+    warn_at(source, camera.Element(),
+            "has the image format " + camera.PixelFormatStr() + "; images are R8G8B8", warn);
+  }
+  return {read_intrinsics(camera), camera.NearClip(), camera.FarClip(),
+          read_noise(source, camera.ImageNoise(), warn)};
+}
+
+ImuModel read_imu(const SdfSource& source, const sdf::Imu& imu, const WarningSink& warn) {
+  const auto noise = [&](const sdf::Noise& n) { return read_noise(source, n, warn); };
+  return {{noise(imu.AngularVelocityXNoise()), noise(imu.AngularVelocityYNoise()),
+           noise(imu.AngularVelocityZNoise())},
+          {noise(imu.LinearAccelerationXNoise()), noise(imu.LinearAccelerationYNoise()),
+           noise(imu.LinearAccelerationZNoise())}};
+}
+
+/// A rangefinder: the middle ray of the scan.
+RangeModel read_range(const SdfSource& source, const sdf::Lidar& lidar, const WarningSink& warn) {
+  if (lidar.RangeMin() >= lidar.RangeMax()) {
+    refuse(source, lidar.Element()->FindElement("range"),
+           "has a minimum that is not below its maximum");
+  }
+  if (lidar.HorizontalScanSamples() > 1 || lidar.VerticalScanSamples() > 1) {
+    warn_at(source, lidar.Element(),
+            "has several rays; only the middle one is simulated, as a rangefinder", warn);
+  }
+  return {lidar.RangeMin(), lidar.RangeMax(), lidar.RangeResolution(),
+          read_noise(source, lidar.LidarNoise(), warn)};
+}
+
+/// Where the middle ray points, in the sensor's frame.
+uav::Quat middle_ray(const sdf::Lidar& lidar) {
+  const double azimuth_rad =
+      0.5 * (lidar.HorizontalScanMinAngle().Radian() + lidar.HorizontalScanMaxAngle().Radian());
+  const double elevation_rad =
+      0.5 * (lidar.VerticalScanMinAngle().Radian() + lidar.VerticalScanMaxAngle().Radian());
+  return uav::from_rpy(0.0, -elevation_rad, azimuth_rad);
+}
+
+}  // namespace
+
+std::optional<Sensor> read_sensor(const SdfSource& source, const sdf::Sensor& sensor,
+                                  const uav::Pose& X_BL, const WarningSink& warn) {
+  Sensor result{sensor.Name(), X_BL * resolved_pose(source, sensor), sensor.UpdateRate(), {}};
+  if (const sdf::Camera* camera = sensor.CameraSensor();
+      camera != nullptr && sensor.Type() == sdf::SensorType::CAMERA) {
+    result.X_BS = result.X_BS * to_pose(camera->RawPose());
+    result.model = read_camera(source, *camera, warn);
+    return result;
+  }
+  if (const sdf::Imu* imu = sensor.ImuSensor()) {
+    result.model = read_imu(source, *imu, warn);
+    return result;
+  }
+  if (const sdf::Lidar* lidar = sensor.LidarSensor()) {
+    result.X_BS.q = result.X_BS.q * middle_ray(*lidar);
+    result.model = read_range(source, *lidar, warn);
+    return result;
+  }
+  return std::nullopt;
+}
+
+}  // namespace tether::sim

@@ -1,0 +1,255 @@
+#include "sdf_source.h"
+
+#include <cstdlib>
+#include <regex>
+#include <sstream>
+
+#include <console_bridge/console.h>
+#include <tinyxml2.h>
+
+namespace tether::sim {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Keeps libsdformat and the URDF reader that it tries on broken files from writing to the console
+/// while this lives, and holds what they would have written.
+class QuietConsole {
+ public:
+  QuietConsole() : stream_(sdf::Console::Instance()->GetMsgStream().GetStream()) {
+    sdf::Console::Instance()->GetMsgStream().SetStream(&text_);
+    console_bridge::noOutputHandler();
+  }
+  ~QuietConsole() {
+    sdf::Console::Instance()->GetMsgStream().SetStream(stream_);
+    console_bridge::restorePreviousOutputHandler();
+  }
+  QuietConsole(const QuietConsole&) = delete;
+  QuietConsole& operator=(const QuietConsole&) = delete;
+
+  std::string text() const { return text_.str(); }
+
+ private:
+  std::ostream* stream_;
+  std::ostringstream text_;
+};
+
+void add_folders_of_variable(const char* variable, std::vector<fs::path>& folders) {
+  const char* value = std::getenv(variable);
+  std::istringstream list(value != nullptr ? value : "");
+  for (std::string folder; std::getline(list, folder, ':');) {
+    if (!folder.empty()) folders.emplace_back(folder);
+  }
+}
+
+/// Where model:// leads: around the file first, then where Gazebo would look.
+std::vector<fs::path> model_folders(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  std::vector<fs::path> folders{folder, folder / "models", folder.parent_path(),
+                                folder.parent_path() / "models"};
+  add_folders_of_variable("GAZEBO_MODEL_PATH", folders);
+  add_folders_of_variable("GZ_SIM_RESOURCE_PATH", folders);
+  return folders;
+}
+
+/// One line, without colour codes, trailing blanks and full stop.
+std::string one_line(std::string text) {
+  static const std::regex colour("\x1b\\[[0-9;]*m");
+  static const std::regex blanks("\\s+");
+  text = std::regex_replace(std::regex_replace(text, colour, ""), blanks, " ");
+  while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
+  return text;
+}
+
+sdf::ElementPtr find_named(const sdf::ElementPtr& element, const std::string& name) {
+  if (name_attribute(element) == name) return element;
+  sdf::ElementPtr found;
+  for_each_child(element, [&](const sdf::ElementPtr& child) {
+    if (!found) found = find_named(child, name);
+  });
+  return found;
+}
+
+/// Which of its same-named siblings of the same file this is.
+int ordinal(const sdf::ElementPtr& element) {
+  int count = 0;
+  bool reached = false;
+  for_each_child(element->GetParent(), [&](const sdf::ElementPtr& sibling) {
+    reached = reached || sibling == element;
+    if (!reached && sibling->GetName() == element->GetName() &&
+        sibling->FilePath() == element->FilePath()) {
+      ++count;
+    }
+  });
+  return count;
+}
+
+const tinyxml2::XMLElement* nth_child(const tinyxml2::XMLElement* parent, const std::string& name,
+                                      int n) {
+  const tinyxml2::XMLElement* child = parent->FirstChildElement(name.c_str());
+  for (; child != nullptr && n > 0; --n) child = child->NextSiblingElement(name.c_str());
+  return child;
+}
+
+}  // namespace
+
+std::string name_attribute(const sdf::ElementPtr& element) {
+  return element->HasAttribute("name") ? element->GetAttribute("name")->GetAsString() : "";
+}
+
+std::string describe(const sdf::ElementPtr& element) {
+  const auto named = [](const sdf::ElementPtr& e) {
+    return e->GetName() + " '" + name_attribute(e) + "'";
+  };
+  if (!name_attribute(element).empty()) return named(element);
+  for (sdf::ElementPtr parent = element->GetParent(); parent; parent = parent->GetParent()) {
+    if (!name_attribute(parent).empty()) return "<" + element->GetName() + "> of " + named(parent);
+  }
+  return "<" + element->GetName() + ">";
+}
+
+void for_each_child(const sdf::ElementPtr& element,
+                    const std::function<void(const sdf::ElementPtr&)>& visit) {
+  if (!element) return;
+  for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) {
+    visit(child);
+  }
+}
+
+SdfSource::~SdfSource() = default;
+
+SdfSource::SdfSource(const fs::path& file) : file_(fs::absolute(file).lexically_normal()) {
+  if (!fs::is_regular_file(file_)) {
+    throw Error(ErrorCode::kBadFile, {file_.string(), 0}, "there is no such file");
+  }
+  model_folders_ = model_folders(file_);
+
+  // XML first: libsdformat does not tell the line of an XML error.
+  const tinyxml2::XMLDocument* xml = xml_of(file_.string());
+  if (xml->Error()) {
+    throw Error(ErrorCode::kBadFile, {file_.string(), xml->ErrorLineNum()},
+                "not well-formed XML (" + std::string(xml->ErrorName()) + ")");
+  }
+  if (std::string(xml->RootElement()->Name()) != "sdf") {
+    throw Error(ErrorCode::kBadFile, {file_.string(), xml->RootElement()->GetLineNum()},
+                "the outermost element is <" + std::string(xml->RootElement()->Name()) +
+                    ">; an SDF file begins with <sdf>");
+  }
+  parse();
+  if (!root_.Element()) throw_first_error();
+}
+
+void SdfSource::parse() {
+  sdf::ParserConfig config;
+  // A prefix of every URI: a relative include means the file's folder, not the current one.
+  config.AddURIPath("", file_.parent_path().string());
+  for (const fs::path& folder : model_folders_) config.AddURIPath("model://", folder.string());
+  config.SetFindCallback([](const std::string&) { return std::string(); });
+
+  QuietConsole console;
+  errors_ = root_.Load(file_.string(), config);
+  collect_console(console.text());
+}
+
+void SdfSource::collect_console(const std::string& text) {
+  static const std::regex prefix("^(Error|Warning) \\[[^\\]]*\\] *");
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    line = one_line(line);
+    const std::string message = std::regex_replace(line, prefix, "");
+    if (line.starts_with("Error")) console_errors_.push_back(message);
+    if (line.starts_with("Warning")) console_warnings_.push_back(message);
+  }
+}
+
+void SdfSource::throw_on_errors() const {
+  if (!errors_.empty()) throw_first_error();
+}
+
+void SdfSource::throw_first_error() const {
+  if (errors_.empty()) throw Error(ErrorCode::kBadFile, {file_.string(), 0}, "not an SDF file");
+  const sdf::Error& first = errors_.front();
+  std::string reason = one_line(first.Message());
+  // libsdformat tells what is wrong with a value only on the console.
+  if (reason.starts_with("Error reading element") && !console_errors_.empty()) {
+    reason += ": " + console_errors_.front();
+  }
+  if (first.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID) {
+    reason += "; moments must be positive, and none larger than the sum of the other two";
+  }
+  if (first.Code() == sdf::ErrorCode::URI_LOOKUP) {
+    reason +=
+        "; a model:// is looked for next to the file, in its models/ and ../models/, and in "
+        "GAZEBO_MODEL_PATH";
+  }
+  throw Error(ErrorCode::kBadFile, where(first), reason);
+}
+
+FileLocation SdfSource::where(const sdf::Error& error) const {
+  if (error.LineNumber()) {
+    return {error.FilePath().value_or(file_.string()), *error.LineNumber()};
+  }
+  // Errors between elements carry names instead of lines: "name[x]", "A link named x".
+  static const std::regex naming("name\\[([^\\]]*)\\]|named (\\S+)");
+  const std::string message = error.Message();
+  for (std::sregex_iterator it(message.begin(), message.end(), naming), end; it != end; ++it) {
+    const std::string name = (*it)[1].matched ? (*it)[1].str() : (*it)[2].str();
+    const sdf::ElementPtr element = root_.Element() ? find_named(root_.Element(), name) : nullptr;
+    if (element) return where(element);
+  }
+  return {file_.string(), 0};
+}
+
+FileLocation SdfSource::where(const sdf::ElementPtr& element) const {
+  for (sdf::ElementPtr e = element; e; e = e->GetParent()) {
+    const int line = e->LineNumber() ? *e->LineNumber() : line_in_xml(e);
+    if (line > 0) return {e->FilePath(), line};
+  }
+  return {file_.string(), 0};
+}
+
+/// libsdformat keeps no lines of custom elements; their path leads to them in the XML itself.
+int SdfSource::line_in_xml(const sdf::ElementPtr& element) const {
+  std::vector<sdf::ElementPtr> path;
+  for (sdf::ElementPtr e = element; e && e->GetName() != "sdf"; e = e->GetParent()) {
+    if (e->FilePath() != element->FilePath()) break;
+    path.push_back(e);
+  }
+  const tinyxml2::XMLElement* xml = xml_of(element->FilePath())->RootElement();
+  for (auto it = path.rbegin(); it != path.rend() && xml != nullptr; ++it) {
+    const sdf::ElementPtr parent = (*it)->GetParent();
+    const bool is_top = !parent || parent->FilePath() != (*it)->FilePath();
+    xml = nth_child(xml, (*it)->GetName(), is_top ? 0 : ordinal(*it));
+  }
+  return xml != nullptr ? xml->GetLineNum() : 0;
+}
+
+tinyxml2::XMLDocument* SdfSource::xml_of(const std::string& file) const {
+  auto& document = xml_[file];
+  if (!document) {
+    document = std::make_unique<tinyxml2::XMLDocument>();
+    document->LoadFile(file.c_str());
+  }
+  return document.get();
+}
+
+fs::path SdfSource::find_resource(const sdf::ElementPtr& element, const std::string& uri) const {
+  std::vector<fs::path> candidates;
+  if (uri.starts_with("model://")) {
+    for (const fs::path& folder : model_folders_) candidates.push_back(folder / uri.substr(8));
+  } else {
+    const std::string path = uri.starts_with("file://") ? uri.substr(7) : uri;
+    candidates.push_back(fs::path(element->FilePath()).parent_path() / path);
+  }
+  for (const fs::path& candidate : candidates) {
+    if (fs::is_regular_file(candidate)) return fs::absolute(candidate).lexically_normal();
+  }
+  throw Error(ErrorCode::kBadFile, where(element),
+              describe(element) + " names the file '" + uri +
+                  "', which does not exist (looked for " +
+                  candidates.front().lexically_normal().string() +
+                  (candidates.size() > 1 ? " and in the model path)" : ")"));
+}
+
+}  // namespace tether::sim
