@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <tether/scenario/scenario.h>
+
+namespace tether::scenario {
+
+/// One scenario of a campaign with the conditions to run it under.
+struct CampaignScenario {
+  Scenario scenario;
+  std::vector<std::string> conditions;  ///< names, in the table's order; each exists in `scenario`
+  /// The paper's table that these results go beside: "II" to "V"; empty: none.
+  std::string paper_table;
+};
+
+/// A campaign file (TOML): scenarios × conditions × seeds.
+struct Campaign {
+  std::filesystem::path file;  ///< absolute
+  std::string name;            ///< letters, digits, '_', '-', '.'
+  std::string description;
+  std::vector<std::uint64_t> seeds;         ///< one trial each per condition; unique, not empty
+  std::vector<CampaignScenario> scenarios;  ///< not empty; their names are unique
+};
+
+/// Reads and checks a campaign and every scenario that it names.
+/// @throws Error(kBadFile) as `load_scenario`.
+Campaign load_campaign(const std::filesystem::path& file);
+
+}  // namespace tether::scenario

@@ -1,0 +1,93 @@
+#include "suggest.h"
+#include "toml_table.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <tether/scenario/campaign.h>
+
+namespace tether::scenario {
+namespace {
+
+constexpr std::int64_t kMostTrials = 100'000;
+
+std::vector<std::uint64_t> consecutive(std::int64_t first, std::int64_t count) {
+  std::vector<std::uint64_t> seeds;
+  for (std::int64_t i = 0; i < count; ++i) seeds.push_back(static_cast<std::uint64_t>(first + i));
+  return seeds;
+}
+
+std::vector<std::uint64_t> read_seeds(const TomlTable& root) {
+  if (root.has("seeds") == root.has("trials")) {
+    root.fail("needs either 'trials' (a number, with 'first_seed') or 'seeds' (an array)");
+  }
+  if (root.has("trials")) {
+    const std::int64_t first = root.integer_or("first_seed", 0, 1'000'000'000'000, 1);
+    return consecutive(first, root.integer_or("trials", 1, kMostTrials, 1));
+  }
+  if (root.has("first_seed")) root.fail("first_seed", "goes with 'trials', not with 'seeds'");
+  const std::vector<std::int64_t> seeds = root.integers("seeds", 0);
+  if (seeds.empty()) root.fail("seeds", "must not be empty");
+  if (std::set<std::int64_t>(seeds.begin(), seeds.end()).size() < seeds.size()) {
+    root.fail("seeds", "has one seed twice: the same trial twice is no second sample");
+  }
+  return {seeds.begin(), seeds.end()};
+}
+
+std::vector<std::string> read_conditions(const TomlTable& table, const Scenario& scenario) {
+  std::vector<std::string> all;
+  for (const Condition& condition : scenario.conditions) all.push_back(condition.name);
+  if (!table.has("conditions")) return all;
+
+  const std::vector<std::string> conditions = table.texts("conditions");
+  if (conditions.empty()) table.fail("conditions", "must not be empty; leave it out for all");
+  const std::vector<std::string_view> allowed(all.begin(), all.end());
+  std::set<std::string> seen;
+  for (const std::string& name : conditions) {
+    if (scenario.find_condition(name) == nullptr) {
+      table.fail("conditions", fmt::format("names \"{}\", which {} does not have; {}", name,
+                                           scenario.file.string(), allowed_hint(name, allowed)));
+    }
+    if (!seen.insert(name).second) {
+      table.fail("conditions", fmt::format("names \"{}\" twice", name));
+    }
+  }
+  return conditions;
+}
+
+CampaignScenario read_scenario(const TomlTable& table) {
+  constexpr std::array<std::string_view, 4> kTables = {"II", "III", "IV", "V"};
+  CampaignScenario entry;
+  entry.scenario = load_scenario(table.existing_file("file"));
+  entry.conditions = read_conditions(table, entry.scenario);
+  if (table.has("paper_table")) entry.paper_table = kTables[table.choice("paper_table", kTables)];
+  return entry;
+}
+
+}  // namespace
+
+Campaign load_campaign(const std::filesystem::path& file) {
+  Campaign campaign;
+  campaign.file = std::filesystem::absolute(file).lexically_normal();
+  const toml::table document = parse_toml_file(campaign.file);
+  const TomlTable root(document, "", campaign.file.string(),
+                       {"name", "description", "trials", "first_seed", "seeds", "scenario"});
+  campaign.name = root.identifier("name");
+  campaign.description = root.text_or("description", "");
+  campaign.seeds = read_seeds(root);
+  std::set<std::string> names;
+  for (const TomlTable& table : root.tables("scenario", {"file", "conditions", "paper_table"})) {
+    campaign.scenarios.push_back(read_scenario(table));
+    const std::string& name = campaign.scenarios.back().scenario.name;
+    if (!names.insert(name).second) {
+      table.fail("file",
+                 fmt::format("is a second scenario with the name \"{}\"; names must differ", name));
+    }
+  }
+  return campaign;
+}
+
+}  // namespace tether::scenario

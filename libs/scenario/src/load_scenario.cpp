@@ -1,0 +1,327 @@
+#include "sensor_setup.h"
+#include "suggest.h"
+#include "toml_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <tether/base/units.h>
+#include <tether/scenario/scenario.h>
+
+namespace tether::scenario {
+namespace {
+
+constexpr std::array<std::string_view, 2> kPolicies = {"conservative_barrier", "free_running"};
+constexpr std::array<std::string_view, 2> kClocks = {"wall", "cpu"};
+
+constexpr double kLongestRun_s = 7 * 24 * 3600.0;
+
+std::vector<std::string_view> views(const std::vector<std::string>& words) {
+  return {words.begin(), words.end()};
+}
+
+void require_one_of(const TomlTable& table, std::string_view key, const std::string& word,
+                    const std::vector<std::string>& allowed) {
+  if (std::find(allowed.begin(), allowed.end(), word) != allowed.end()) return;
+  table.fail(key, fmt::format("is \"{}\"; {}", word, allowed_hint(word, views(allowed))));
+}
+
+// The SUT.
+
+using Parameters = std::vector<std::pair<std::string, std::string>>;
+
+// Keys become options of a command line, so they are what an option's name can be.
+bool is_option_name(std::string_view key) {
+  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  return !key.empty() && key.front() >= 'a' && key.front() <= 'z' &&
+         key.find_first_not_of(kAllowed) == std::string_view::npos;
+}
+
+Parameters read_parameters(const TomlTable& sut) {
+  Parameters parameters;
+  if (!sut.has("parameters")) return parameters;
+  const TomlTable table = sut.table("parameters");
+  for (const std::string& key : table.keys()) {
+    if (!is_option_name(key)) {
+      table.fail(key,
+                 "must be lower-case letters, digits and '_', starting with a letter: it "
+                 "becomes an option of the SUT's command line");
+    }
+    parameters.emplace_back(key, table.scalar_as_text(key));
+  }
+  return parameters;
+}
+
+// A program with a folder in its name is a file of the project; a bare one is found when the run
+// starts.
+std::vector<std::string> read_command(const TomlTable& sut, const std::filesystem::path& folder) {
+  std::vector<std::string> command = sut.texts("command");
+  if (command.empty()) sut.fail("command", "must name a program, but is empty");
+  std::string& program = command.front();
+  if (program.find('/') == std::string::npos) return command;
+  std::error_code ignored;
+  const auto path = (folder / program).lexically_normal();
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    sut.fail("command", fmt::format("names the program \"{}\", but there is no such file ({})",
+                                    program, path.string()));
+  }
+  program = path.string();
+  return command;
+}
+
+std::optional<Sut> read_default_sut(const TomlTable& root, const std::filesystem::path& folder) {
+  if (!root.has("sut")) return std::nullopt;
+  const TomlTable sut = root.table("sut", {"command", "parameters"});
+  return Sut{read_command(sut, folder), read_parameters(sut)};
+}
+
+Parameters merged(const Parameters& defaults, const Parameters& own) {
+  std::map<std::string, std::string> all(own.begin(), own.end());
+  all.insert(defaults.begin(), defaults.end());
+  return {all.begin(), all.end()};
+}
+
+Sut read_sut(const TomlTable& uav, const std::optional<Sut>& fallback,
+             const std::filesystem::path& folder) {
+  if (!uav.has("sut")) {
+    if (!fallback)
+      uav.fail("has no SUT: add a table [sut] for all UAVs, or [uav.sut] for this one");
+    return *fallback;
+  }
+  const TomlTable own = uav.table("sut", {"command", "parameters"});
+  const bool inherits = fallback && !own.has("command");
+  Sut sut = inherits ? *fallback : Sut{read_command(own, folder), {}};
+  sut.parameters = merged(sut.parameters, read_parameters(own));
+  return sut;
+}
+
+// UAVs.
+
+UavSetup read_uav(const TomlTable& table, const std::optional<Sut>& default_sut,
+                  Scenario& scenario) {
+  constexpr Range kCoordinate_m{.min = -1e5, .max = 1e5};
+  constexpr Range kYaw_deg{.min = -360.0, .max = 360.0};
+  constexpr Range kLatency_ms{.min = 0.0, .max = 10'000.0};
+  UavSetup uav;
+  uav.placement.name = table.identifier("name");
+  uav.placement.model = table.existing_file("model");
+  scenario.files.push_back(uav.placement.model);
+  const auto position_m = table.numbers("position_m", 3, kCoordinate_m);
+  uav.placement.p_WB = {position_m[0], position_m[1], position_m[2]};
+  uav.placement.yaw_rad = rad_from_deg(table.number_or("yaw_deg", kYaw_deg, 0.0));
+  uav.command_latency = table.duration_or("command_latency_ms", kLatency_ms, Duration{0});
+  if (table.has("sensors")) {
+    const TomlTable sensors = table.table("sensors");
+    for (const std::string& name : sensors.keys()) {
+      uav.sensors.emplace(name, read_sensor_setup(sensors, name, scenario.files));
+    }
+  }
+  uav.sut = read_sut(table, default_sut, scenario.file.parent_path());
+  return uav;
+}
+
+void read_uavs(const TomlTable& root, Scenario& scenario) {
+  const std::optional<Sut> default_sut = read_default_sut(root, scenario.file.parent_path());
+  std::set<std::string> names;
+  for (const TomlTable& table : root.tables("uav", {"name", "model", "position_m", "yaw_deg",
+                                                    "command_latency_ms", "sensors", "sut"})) {
+    scenario.uavs.push_back(read_uav(table, default_sut, scenario));
+    const std::string& name = scenario.uavs.back().placement.name;
+    if (!names.insert(name).second) {
+      table.fail("name", fmt::format("is \"{}\", as that of another UAV; names must differ", name));
+    }
+  }
+}
+
+// Conditions.
+
+Condition read_condition(const TomlTable& table) {
+  constexpr Range kFactor{.min = 1e-3, .max = 1e4};
+  Condition condition;
+  condition.name = table.text("name");
+  if (slug(condition.name).empty()) {
+    table.fail("name", "must contain a letter or a digit: it becomes the name of a folder");
+  }
+  condition.description = table.text_or("description", "");
+  condition.policy = static_cast<Policy>(table.choice("policy", kPolicies));
+  condition.clock = static_cast<Clock>(table.choice("clock", kClocks));
+  condition.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
+  condition.real_time_factor = table.number_or("real_time_factor", kFactor, 0.0);
+  if (condition.clock == Clock::kWall && table.has("cpu_factor")) {
+    table.fail("cpu_factor", "scales CPU time, so it needs clock = \"cpu\"");
+  }
+  if (condition.policy == Policy::kFreeRunning && condition.real_time_factor == 0.0) {
+    table.fail(
+        "lacks the key 'real_time_factor': with policy = \"free_running\" the simulator "
+        "runs at that many seconds of ST per second of wall time");
+  }
+  return condition;
+}
+
+void read_conditions(const TomlTable& root, Scenario& scenario) {
+  std::map<std::string, std::string> slugs;
+  for (const TomlTable& table : root.tables("condition", {"name", "description", "policy", "clock",
+                                                          "cpu_factor", "real_time_factor"})) {
+    scenario.conditions.push_back(read_condition(table));
+    const std::string& name = scenario.conditions.back().name;
+    const auto [other, is_new] = slugs.emplace(slug(name), name);
+    if (!is_new) {
+      table.fail("name", fmt::format("is \"{}\", too like the condition \"{}\": names must differ "
+                                     "in their letters and digits",
+                                     name, other->second));
+    }
+  }
+}
+
+// Metrics.
+
+std::vector<std::string> uav_names(const Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const UavSetup& uav : scenario.uavs) names.push_back(uav.placement.name);
+  return names;
+}
+
+// The one that is named, or the only one there is.
+std::string choose(const TomlTable& table, std::string_view key,
+                   const std::vector<std::string>& candidates) {
+  if (!table.has(key) && candidates.size() == 1) return candidates.front();
+  const std::string word = table.text(key);
+  require_one_of(table, key, word, candidates);
+  return word;
+}
+
+const MetricKind& read_metric_kind(const TomlTable& table) {
+  std::vector<std::string_view> names;
+  for (const MetricKind& kind : metric_kinds()) names.push_back(kind.name);
+  return metric_kinds()[table.choice("kind", names)];
+}
+
+void reject_meaningless(const TomlTable& table, const MetricKind& kind) {
+  if (table.has("anchor") && !kind.needs_anchor) {
+    table.fail("anchor", fmt::format("means nothing to the kind \"{}\"", kind.name));
+  }
+  if (table.has("threshold_deg") && !kind.default_threshold_deg) {
+    table.fail("threshold_deg", fmt::format("means nothing to the kind \"{}\"", kind.name));
+  }
+  const std::string limit = "max" + unit_suffix(kind.unit);
+  for (const std::string& key : table.keys()) {
+    if (!key.starts_with("max") || key == limit) continue;
+    table.fail(key, fmt::format("has the wrong unit for the kind \"{}\"; did you mean '{}'?",
+                                kind.name, limit));
+  }
+}
+
+Metric read_metric(const TomlTable& table, const Scenario& scenario) {
+  constexpr Range kLimit{.min = 0.0, .max = 1e9};
+  constexpr Range kThreshold_deg{.min = 0.0, .max = 180.0};
+  const MetricKind& kind = read_metric_kind(table);
+  reject_meaningless(table, kind);
+  Metric metric;
+  metric.kind = kind.name;
+  metric.unit = kind.unit;
+  metric.name = table.has("name") ? table.identifier("name") : metric.kind;
+  metric.label = table.text_or("label", kind.label);
+  metric.uav = choose(table, "uav", uav_names(scenario));
+  if (kind.needs_anchor) metric.anchor = choose(table, "anchor", scenario.anchors);
+  const double threshold_deg = kind.default_threshold_deg.value_or(0.0);
+  metric.threshold_rad =
+      rad_from_deg(table.number_or("threshold_deg", kThreshold_deg, threshold_deg));
+  const std::string limit = "max" + unit_suffix(kind.unit);
+  if (table.has(limit)) metric.max = table.number(limit, kLimit);
+  return metric;
+}
+
+void read_metrics(const TomlTable& root, Scenario& scenario) {
+  std::set<std::string> names;
+  for (const TomlTable& table :
+       root.tables_or_none("metric", {"name", "kind", "label", "uav", "anchor", "threshold_deg",
+                                      "max", "max_s", "max_m", "max_deg"})) {
+    scenario.metrics.push_back(read_metric(table, scenario));
+    const std::string& name = scenario.metrics.back().name;
+    if (!names.insert(name).second) {
+      table.fail(table.has("name") ? "name" : "kind",
+                 fmt::format("makes a second metric \"{}\"; give it a 'name' of its own", name));
+    }
+  }
+}
+
+// The rest.
+
+void read_anchors(const TomlTable& root, Scenario& scenario) {
+  scenario.anchors = root.texts_or_none("anchors");
+  const std::set<std::string> distinct(scenario.anchors.begin(), scenario.anchors.end());
+  if (distinct.size() < scenario.anchors.size()) root.fail("anchors", "names one anchor twice");
+}
+
+void read_record(const TomlTable& root, Scenario& scenario) {
+  if (!root.has("record")) return;
+  const TomlTable record = root.table("record", {"ground_truth_period_ms", "images"});
+  const Range period_ms{.min = to_seconds(scenario.step) * 1e3, .max = 1e6};
+  scenario.ground_truth_period =
+      record.duration_or("ground_truth_period_ms", period_ms, scenario.ground_truth_period);
+  scenario.record_images = record.boolean_or("images", scenario.record_images);
+}
+
+void read_limits(const TomlTable& root, Scenario& scenario) {
+  constexpr Range kStep_ms{.min = 0.01, .max = 100.0};
+  constexpr Range kSpan_s{.min = 0.0, .max = kLongestRun_s, .above_min = true};
+  scenario.step = root.duration_or("step_ms", kStep_ms, scenario.step);
+  scenario.time_limit = root.duration("time_limit_s", kSpan_s);
+  scenario.hang_limit = root.duration_or("hang_limit_s", kSpan_s, scenario.hang_limit);
+}
+
+}  // namespace
+
+std::string_view name(Policy policy) {
+  return kPolicies[static_cast<std::size_t>(policy)];
+}
+std::string_view name(Clock clock) {
+  return kClocks[static_cast<std::size_t>(clock)];
+}
+
+std::string slug(std::string_view name) {
+  std::string slug;
+  for (const char c : name) {
+    const bool upper = c >= 'A' && c <= 'Z';
+    const bool kept = upper || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (kept) slug += upper ? static_cast<char>(c - 'A' + 'a') : c;
+    if (!kept && !slug.empty() && slug.back() != '-') slug += '-';
+  }
+  while (slug.ends_with('-')) slug.pop_back();
+  return slug;
+}
+
+const Condition* Scenario::find_condition(std::string_view condition) const {
+  const auto found = std::find_if(conditions.begin(), conditions.end(),
+                                  [&](const Condition& c) { return c.name == condition; });
+  return found == conditions.end() ? nullptr : &*found;
+}
+
+Scenario load_scenario(const std::filesystem::path& file) {
+  Scenario scenario;
+  scenario.file = std::filesystem::absolute(file).lexically_normal();
+  const toml::table document = parse_toml_file(scenario.file);
+  const TomlTable root(document, "", scenario.file.string(),
+                       {"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s",
+                        "anchors", "uav", "sut", "condition", "metric", "record"});
+  scenario.name = root.identifier("name");
+  scenario.description = root.text_or("description", "");
+  scenario.world = root.existing_file("world");
+  scenario.files = {scenario.file, scenario.world};
+  read_limits(root, scenario);
+  read_anchors(root, scenario);
+  read_uavs(root, scenario);
+  read_conditions(root, scenario);
+  read_metrics(root, scenario);
+  read_record(root, scenario);
+  std::sort(scenario.files.begin(), scenario.files.end());
+  const auto last = std::unique(scenario.files.begin(), scenario.files.end());
+  scenario.files.erase(last, scenario.files.end());
+  return scenario;
+}
+
+}  // namespace tether::scenario

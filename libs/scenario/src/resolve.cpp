@@ -1,0 +1,69 @@
+#include "suggest.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/scenario/scenario.h>
+
+namespace tether::scenario {
+namespace {
+
+uav::SensorTiming default_timing(const sim::Sensor& sensor) {
+  if (sensor.update_rate_hz <= 0.0) return uav::OnDemandTiming{};
+  uav::PeriodicTiming timing;
+  timing.period = duration_from_seconds(1.0 / sensor.update_rate_hz);
+  return timing;
+}
+
+void require_sensors_exist(const Scenario& scenario, const UavSetup& setup, const sim::Uav& uav) {
+  std::vector<std::string_view> names;
+  for (const sim::Sensor& sensor : uav.sensors) names.push_back(sensor.name);
+  for (const auto& [name, sensor] : setup.sensors) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    throw Error(ErrorCode::kBadFile, FileLocation{scenario.file.string(), sensor.line},
+                fmt::format("the UAV '{}' has no sensor '{}' ({}); {}", uav.name, name,
+                            setup.placement.model.string(), allowed_hint(name, names)));
+  }
+}
+
+std::vector<uav::SensorTiming> timings_of(const UavSetup& setup, const sim::Uav& uav) {
+  std::vector<uav::SensorTiming> timings;
+  for (const sim::Sensor& sensor : uav.sensors) {
+    const auto found = setup.sensors.find(sensor.name);
+    timings.push_back(found == setup.sensors.end() ? default_timing(sensor) : found->second.timing);
+  }
+  return timings;
+}
+
+const UavSetup& setup_of(const Scenario& scenario, const std::string& uav) {
+  for (const UavSetup& setup : scenario.uavs) {
+    if (setup.placement.name == uav) return setup;
+  }
+  throw Error(ErrorCode::kInternal,
+              fmt::format("the world has a UAV '{}' that its scenario does not know", uav));
+}
+
+}  // namespace
+
+sim::WorldRequest world_request(const Scenario& scenario) {
+  sim::WorldRequest request;
+  request.world = scenario.world;
+  for (const UavSetup& uav : scenario.uavs) request.uavs.push_back(uav.placement);
+  request.anchors = scenario.anchors;
+  return request;
+}
+
+std::vector<std::vector<uav::SensorTiming>> resolve_timings(const Scenario& scenario,
+                                                            const sim::World& world) {
+  std::vector<std::vector<uav::SensorTiming>> timings;
+  for (const sim::Uav& uav : world.uavs) {
+    const UavSetup& setup = setup_of(scenario, uav.name);
+    require_sensors_exist(scenario, setup, uav);
+    timings.push_back(timings_of(setup, uav));
+  }
+  return timings;
+}
+
+}  // namespace tether::scenario

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "toml_table.h"
+
+#include <filesystem>
+#include <vector>
+
+#include <tether/scenario/scenario.h>
+
+namespace tether::scenario {
+
+/// Reads one `[uav.sensors.<name>]` table; names of sample files are added to `files`.
+SensorSetup read_sensor_setup(const TomlTable& sensors, std::string_view name,
+                              std::vector<std::filesystem::path>& files);
+
+/// Measured delays: one number per line, in units of `seconds_per_unit`; blank lines and
+/// lines that start with '#' are skipped.
+/// @throws Error(kBadFile) with the line of what is no number, negative or too large, and when
+///   there is no number at all.
+std::vector<Duration> read_delay_samples(const std::filesystem::path& file,
+                                         double seconds_per_unit);
+
+}  // namespace tether::scenario

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <toml++/toml.h>
+
+#include <tether/base/error.h>
+#include <tether/base/time.h>
+
+namespace tether::scenario {
+
+/// The values that a number may have.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool above_min = false;  ///< min itself is not allowed
+
+  bool contains(double value) const;
+  /// "at least 0 and at most 5", "greater than 0", "finite".
+  std::string text() const;
+};
+
+/// The keys that a table may have.
+using Keys = std::initializer_list<std::string_view>;
+
+/// One table of a TOML file, read with full checking. Every reading function throws
+/// Error(kBadFile) at the line of the key (or of the table's header, for a missing key). A view:
+/// the document must outlive it.
+class TomlTable {
+ public:
+  /// Checks that `table` has no other keys than `allowed`. `path` is its name for messages
+  /// ("uav.sensors.camera"; empty: the top of the file).
+  TomlTable(const toml::table& table, std::string path, std::string file, Keys allowed);
+  /// A table in which any key is allowed.
+  TomlTable(const toml::table& table, std::string path, std::string file);
+
+  bool has(std::string_view key) const { return table_->contains(key); }
+  std::vector<std::string> keys() const;
+  /// "[uav.sensors.camera]", or "the file".
+  std::string title() const;
+
+  // Required keys.
+  std::string text(std::string_view key) const;
+  /// Letters, digits, '_', '-' and '.', 1 to 64 of them, not starting with '.'.
+  std::string identifier(std::string_view key) const;
+  double number(std::string_view key, const Range& range) const;
+  std::vector<std::string> texts(std::string_view key) const;
+  std::vector<double> numbers(std::string_view key, std::size_t count, const Range& range) const;
+  std::vector<std::int64_t> integers(std::string_view key, std::int64_t min) const;
+  /// A time span; the unit comes from the key's suffix (_s, _ms).
+  Duration duration(std::string_view key, const Range& range) const;
+  /// An existing regular file, relative to the folder of this file; absolute.
+  std::filesystem::path existing_file(std::string_view key) const;
+  /// Index into `choices`.
+  std::size_t choice(std::string_view key, std::span<const std::string_view> choices) const;
+  TomlTable table(std::string_view key, Keys allowed) const;
+  TomlTable table(std::string_view key) const;
+  /// At least one.
+  std::vector<TomlTable> tables(std::string_view key, Keys allowed) const;
+
+  // Keys that may be missing.
+  std::string text_or(std::string_view key, std::string_view fallback) const;
+  double number_or(std::string_view key, const Range& range, double fallback) const;
+  std::int64_t integer_or(std::string_view key, std::int64_t min, std::int64_t max,
+                          std::int64_t fallback) const;
+  Duration duration_or(std::string_view key, const Range& range, Duration fallback) const;
+  bool boolean_or(std::string_view key, bool fallback) const;
+  std::vector<std::string> texts_or_none(std::string_view key) const;
+  std::vector<TomlTable> tables_or_none(std::string_view key, Keys allowed) const;
+
+  /// A string, number or boolean as a command line would have it.
+  std::string scalar_as_text(std::string_view key) const;
+
+  FileLocation where() const;
+  FileLocation where(std::string_view key) const;
+  /// Throws at the key: "'key' of [table] " + problem.
+  [[noreturn]] void fail(std::string_view key, const std::string& problem) const;
+  /// Throws at the table's header: "[table] " + problem.
+  [[noreturn]] void fail(const std::string& problem) const;
+
+ private:
+  const toml::node& required(std::string_view key) const;
+  [[noreturn]] void fail_type(std::string_view key, const toml::node& found,
+                              std::string_view expected) const;
+  const toml::array& array(std::string_view key, std::string_view expected) const;
+  double number_of(std::string_view key, const toml::node& node, const Range& range) const;
+  std::string child_path(std::string_view key) const;
+
+  const toml::table* table_;
+  std::string path_;
+  std::string file_;
+};
+
+/// The whole text of a file that a person wrote.
+/// @throws Error(kBadFile) when it is missing, no regular file, unreadable or larger than `limit`.
+std::string read_text_file(const std::filesystem::path& file, std::size_t limit);
+
+/// @throws Error(kBadFile) with the line of a syntax error.
+toml::table parse_toml_file(const std::filesystem::path& file);
+
+}  // namespace tether::scenario

@@ -1,0 +1,262 @@
+#include "scratch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/base/units.h>
+#include <tether/scenario/scenario.h>
+
+namespace tether::scenario {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pair;
+
+class LoadScenario : public testing::Test {
+ protected:
+  Scenario load(const std::string& text) const {
+    return load_scenario(write_project(scratch_, text));
+  }
+  Scenario load_with(const std::string& from, const std::string& to) const {
+    return load(replaced(kFullScenario, from, to));
+  }
+  std::string error_with(const std::string& from, const std::string& to) const {
+    return bad_file_message([&] { load_with(from, to); });
+  }
+  Scratch scratch_;
+};
+
+TEST_F(LoadScenario, ReadsTheTop) {
+  const Scenario s = load(kFullScenario);
+  EXPECT_EQ(s.file, scratch_.path("scenario.toml"));
+  EXPECT_EQ(s.name, "full");
+  EXPECT_EQ(s.description, "every key");
+  EXPECT_EQ(s.world, scratch_.path("worlds/room.sdf"));
+  EXPECT_EQ(s.step, milliseconds(2));
+  EXPECT_EQ(s.time_limit, seconds(60));
+  EXPECT_EQ(s.hang_limit, milliseconds(12'500));
+  EXPECT_THAT(s.anchors, ElementsAre("blue_box", "red_box"));
+  EXPECT_EQ(s.ground_truth_period, milliseconds(20));
+  EXPECT_TRUE(s.record_images);
+}
+
+TEST_F(LoadScenario, ReadsUavs) {
+  const Scenario s = load(kFullScenario);
+  ASSERT_EQ(s.uavs.size(), 2u);
+  EXPECT_EQ(s.uavs[0].placement.name, "uav1");
+  EXPECT_EQ(s.uavs[0].placement.model, scratch_.path("models/uav.sdf"));
+  EXPECT_EQ(s.uavs[0].placement.p_WB, (uav::Vec3{1.0, -2.5, 1.2}));
+  EXPECT_DOUBLE_EQ(s.uavs[0].placement.yaw_rad, rad_from_deg(90));
+  EXPECT_EQ(s.uavs[0].command_latency, milliseconds(5));
+  EXPECT_EQ(s.uavs[1].placement.yaw_rad, 0.0);
+  EXPECT_TRUE(s.uavs[1].sensors.empty());
+}
+
+TEST_F(LoadScenario, ReadsSensorTimings) {
+  const Scenario s = load(kFullScenario);
+  const auto& sensors = s.uavs[0].sensors;
+  const auto& camera = std::get<uav::PeriodicTiming>(sensors.at("camera").timing);
+  EXPECT_EQ(camera.period, Duration(33'333'333));
+  EXPECT_EQ(camera.phase, milliseconds(3));
+  EXPECT_EQ(std::get<uav::ConstantDelay>(camera.delay).value, Duration(37'400'000));
+  const auto& imu = std::get<uav::PeriodicTiming>(sensors.at("imu").timing);
+  EXPECT_EQ(imu.period, milliseconds(50));
+  EXPECT_EQ(std::get<uav::NormalDelay>(imu.delay).mean, milliseconds(4));
+  EXPECT_EQ(std::get<uav::NormalDelay>(imu.delay).stddev, Duration(1'500'000));
+  const auto& range = std::get<uav::OnDemandTiming>(sensors.at("range").timing);
+  EXPECT_THAT(std::get<uav::EmpiricalDelay>(range.delay).samples,
+              ElementsAre(milliseconds(10), milliseconds(20), Duration(30'500'000)));
+}
+
+TEST_F(LoadScenario, GivesEachUavItsSut) {
+  const Scenario s = load(kFullScenario);
+  EXPECT_THAT(s.uavs[0].sut.command, ElementsAre("own-sut", "--fast"));
+  EXPECT_THAT(s.uavs[0].sut.parameters, ElementsAre(Pair("anchor", "red_box")));
+  EXPECT_THAT(s.uavs[1].sut.command, ElementsAre("tether-sut", "face-anchor"));
+  EXPECT_THAT(s.uavs[1].sut.parameters,
+              ElementsAre(Pair("anchor", "blue_box"), Pair("precision_deg", "2.5"),
+                          Pair("retries", "3"), Pair("verbose", "true")));
+}
+
+TEST_F(LoadScenario, LaysOwnParametersOverTheCommonOnesWhenTheCommandIsCommon) {
+  const Scenario s = load_with("command = [\"own-sut\", \"--fast\"]\n", "");
+  EXPECT_THAT(s.uavs[0].sut.command, ElementsAre("tether-sut", "face-anchor"));
+  EXPECT_THAT(s.uavs[0].sut.parameters,
+              ElementsAre(Pair("anchor", "red_box"), Pair("precision_deg", "2.5"),
+                          Pair("retries", "3"), Pair("verbose", "true")));
+}
+
+TEST_F(LoadScenario, ReadsConditions) {
+  const Scenario s = load(kFullScenario);
+  ASSERT_EQ(s.conditions.size(), 2u);
+  EXPECT_EQ(s.conditions[0].policy, Policy::kConservativeBarrier);
+  EXPECT_EQ(s.conditions[0].clock, Clock::kCpu);
+  EXPECT_EQ(s.conditions[0].cpu_factor, 1.5);
+  EXPECT_EQ(s.conditions[0].real_time_factor, 0.0);
+  const Condition* no_sync = s.find_condition("target, no sync");
+  ASSERT_NE(no_sync, nullptr);
+  EXPECT_EQ(no_sync->policy, Policy::kFreeRunning);
+  EXPECT_EQ(no_sync->clock, Clock::kWall);
+  EXPECT_EQ(no_sync->real_time_factor, 0.25);
+  EXPECT_EQ(s.find_condition("nowhere"), nullptr);
+}
+
+TEST_F(LoadScenario, ReadsMetrics) {
+  const Scenario s = load(kFullScenario);
+  ASSERT_EQ(s.metrics.size(), 2u);
+  EXPECT_EQ(s.metrics[0].name, "time_required");
+  EXPECT_EQ(s.metrics[0].label, "Time required");
+  EXPECT_EQ(s.metrics[0].unit, "s");
+  EXPECT_EQ(s.metrics[0].max, 30.0);
+  EXPECT_EQ(s.metrics[0].anchor, "");
+  EXPECT_EQ(s.metrics[1].name, "swings");
+  EXPECT_EQ(s.metrics[1].kind, "oscillations");
+  EXPECT_EQ(s.metrics[1].label, "Swings");
+  EXPECT_EQ(s.metrics[1].uav, "uav2");
+  EXPECT_EQ(s.metrics[1].anchor, "red_box");
+  EXPECT_DOUBLE_EQ(s.metrics[1].threshold_rad, rad_from_deg(2));
+  EXPECT_EQ(s.metrics[1].max, 0.0);
+}
+
+TEST_F(LoadScenario, ListsEveryFileItRestsOn) {
+  EXPECT_THAT(load(kFullScenario).files,
+              ElementsAre(scratch_.path("delays.txt"), scratch_.path("models/uav.sdf"),
+                          scratch_.path("scenario.toml"), scratch_.path("worlds/room.sdf")));
+}
+
+TEST_F(LoadScenario, ResolvesAProgramInAFolderAgainstTheScenario) {
+  scratch_.write("bin/sut", "");
+  const Scenario s = load_with("[\"tether-sut\", ", "[\"bin/sut\", ");
+  EXPECT_EQ(s.uavs[1].sut.command.front(), scratch_.path("bin/sut"));
+  EXPECT_THAT(error_with("[\"tether-sut\", ", "[\"bin/none\", "), HasSubstr("no such file"));
+}
+
+TEST_F(LoadScenario, SuggestsTheKeyThatWasMeant) {
+  EXPECT_THAT(error_with("anchors =", "anchor ="),
+              HasSubstr("scenario.toml:7: unknown key 'anchor' in the file; did you mean "
+                        "'anchors'?"));
+  EXPECT_THAT(error_with("step_ms = 2", "step_s = 0.002"), HasSubstr("did you mean 'step_ms'?"));
+  EXPECT_THAT(error_with("rate_hz = 30", "rate = 30"), HasSubstr("did you mean 'rate_hz'?"));
+  EXPECT_THAT(error_with("mean_ms = 4", "mean = 4"), HasSubstr("did you mean 'mean_ms'?"));
+}
+
+TEST_F(LoadScenario, SuggestsTheWordThatWasMeant) {
+  EXPECT_THAT(error_with("\"conservative_barrier\"", "\"conservative\""),
+              HasSubstr("'policy' of [condition] is \"conservative\"; did you mean "
+                        "'conservative_barrier'? Allowed: 'conservative_barrier' and "
+                        "'free_running'"));
+  EXPECT_THAT(error_with("\"oscillations\"", "\"oscilations\""),
+              HasSubstr("did you mean 'oscillations'?"));
+  EXPECT_THAT(error_with("anchor = \"red_box\"\nthreshold", "anchor = \"rd_box\"\nthreshold"),
+              HasSubstr("did you mean 'red_box'?"));
+}
+
+TEST_F(LoadScenario, SaysWhatItFoundAndWhatIsAllowed) {
+  EXPECT_THAT(
+      error_with("time_limit_s = 60", "time_limit_s = \"60\""),
+      HasSubstr(":5: 'time_limit_s' of the file must be a number, but is the string \"60\""));
+  EXPECT_THAT(error_with("cpu_factor = 1.5", "cpu_factor = -1"),
+              HasSubstr("must be at least 0.001 and at most 10000, but is -1"));
+  EXPECT_THAT(error_with("time_limit_s = 60", "time_limit_s = nan"), HasSubstr("but is nan"));
+  EXPECT_THAT(error_with("position_m = [1, -2.5, 1.2]", "position_m = [1, 2]"),
+              HasSubstr("must be an array of 3 numbers, but has 2 elements"));
+}
+
+TEST_F(LoadScenario, NamesAMissingFileAndWhereItLooked) {
+  const std::string message = error_with("worlds/room.sdf", "worlds/rom.sdf");
+  EXPECT_THAT(message, HasSubstr("scenario.toml:3: 'world' of the file names \"worlds/rom.sdf\""));
+  EXPECT_THAT(message, HasSubstr(scratch_.path("worlds/rom.sdf").string()));
+}
+
+TEST_F(LoadScenario, NamesTheLineOfASyntaxError) {
+  EXPECT_THAT(error_with("yaw_deg = 90", "yaw_deg = = 90"),
+              HasSubstr("scenario.toml:13: no valid TOML"));
+}
+
+TEST_F(LoadScenario, RefusesWhatIsNoFile) {
+  EXPECT_THAT(bad_file_message([&] { load_scenario(scratch_.path("none.toml")); }),
+              HasSubstr("no such file"));
+  EXPECT_THAT(bad_file_message([&] { load_scenario(scratch_.path("")); }),
+              HasSubstr("no such file"));
+  EXPECT_THAT(bad_file_message([&] { load(std::string((1 << 20) + 1, '#')); }),
+              HasSubstr("at most 1048576 are read"));
+}
+
+TEST_F(LoadScenario, RefusesNamesThatCollide) {
+  EXPECT_THAT(error_with("name = \"uav2\"", "name = \"uav1\""), HasSubstr("another UAV"));
+  EXPECT_THAT(error_with("name = \"target, no sync\"", "name = \"Host!\""),
+              HasSubstr("too like the condition \"host\""));
+  EXPECT_THAT(error_with("name = \"swings\"", "name = \"time_required\""),
+              HasSubstr("a second metric \"time_required\""));
+  EXPECT_THAT(error_with("\"red_box\"]", "\"blue_box\"]"), HasSubstr("one anchor twice"));
+}
+
+TEST_F(LoadScenario, RefusesNamesThatAreNoFileNames) {
+  for (const std::string name : {"../up", "a/b", ".hidden", "white space", ""}) {
+    EXPECT_THAT(error_with("name = \"full\"", "name = \"" + name + "\""), HasSubstr(":1: 'name'"));
+  }
+}
+
+TEST_F(LoadScenario, RefusesSettingsThatMeanNothingTogether) {
+  EXPECT_THAT(error_with("real_time_factor = 0.25", ""), HasSubstr("lacks the key 'real_time"));
+  EXPECT_THAT(error_with("real_time_factor = 0.25", "real_time_factor = 0.25\ncpu_factor = 2"),
+              HasSubstr("needs clock = \"cpu\""));
+  EXPECT_THAT(error_with("rate_hz = 30", "rate_hz = 30\nperiod_ms = 5"),
+              HasSubstr("either 'rate_hz' or 'period_ms'"));
+  EXPECT_THAT(error_with("max_s = 30", "max_m = 30"), HasSubstr("did you mean 'max_s'?"));
+  EXPECT_THAT(error_with("max_s = 30", "threshold_deg = 1"), HasSubstr("means nothing"));
+  EXPECT_THAT(error_with("ground_truth_period_ms = 20", "ground_truth_period_ms = 1"),
+              HasSubstr("at least 2"));
+  EXPECT_THAT(error_with("timing = \"on_demand\"", "timing = \"on_demand\"\nrate_hz = 5"),
+              HasSubstr("unknown key 'rate_hz'"));
+}
+
+TEST_F(LoadScenario, RefusesAUavWithoutSut) {
+  const std::string sut =
+      "[sut]\ncommand = [\"tether-sut\", \"face-anchor\"]\n\n[sut.parameters]\n"
+      "anchor = \"blue_box\"\nprecision_deg = 2.5\nretries = 3\nverbose = true\n";
+  EXPECT_THAT(error_with(sut, ""), HasSubstr("scenario.toml:37: [uav] has no SUT"));
+}
+
+TEST_F(LoadScenario, RefusesParametersThatAreNoOptions) {
+  EXPECT_THAT(error_with("retries = 3", "\"--x\" = 3"), HasSubstr("option of the SUT's command"));
+  EXPECT_THAT(error_with("retries = 3", "retries = [3]"), HasSubstr("but is an array"));
+  EXPECT_THAT(error_with("retries = 3", "retries = \"a\\u0000b\""), HasSubstr("NUL"));
+}
+
+TEST_F(LoadScenario, TakesTheOnlyUavAndTheOnlyAnchorAsDefaults) {
+  const Scenario s = load(R"(name = "small"
+world = "worlds/room.sdf"
+time_limit_s = 10
+anchors = ["blue_box"]
+[[uav]]
+name = "uav1"
+model = "models/uav.sdf"
+position_m = [0, 0, 1]
+[sut]
+command = ["tether-sut"]
+[[condition]]
+name = "host"
+policy = "conservative_barrier"
+clock = "cpu"
+[[metric]]
+kind = "oscillations"
+)");
+  EXPECT_EQ(s.metrics[0].uav, "uav1");
+  EXPECT_EQ(s.metrics[0].anchor, "blue_box");
+  EXPECT_DOUBLE_EQ(s.metrics[0].threshold_rad, rad_from_deg(1));
+  EXPECT_EQ(s.step, milliseconds(1));
+  EXPECT_FALSE(s.record_images);
+}
+
+TEST(Slug, IsAFileName) {
+  EXPECT_EQ(slug("target, no sync"), "target-no-sync");
+  EXPECT_EQ(slug("  Host (1)  "), "host-1");
+  EXPECT_EQ(slug("../.."), "");
+}
+
+}  // namespace
+}  // namespace tether::scenario

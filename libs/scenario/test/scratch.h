@@ -1,0 +1,153 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+
+namespace tether::scenario {
+
+/// A folder of the running test's own, gone with it.
+class Scratch {
+ public:
+  Scratch() {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() /
+              ("tether_" + std::string(info->test_suite_name()) + "_" + info->name() + "_" +
+               std::to_string(getpid()));
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+
+  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories(path(name).parent_path());
+    std::ofstream(path(name), std::ios::binary) << text;
+    return path(name);
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// The message of the Error(kBadFile) that `action` throws; fails the test when there is none.
+template <class Action>
+std::string bad_file_message(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadFile);
+    return error.what();
+  }
+  ADD_FAILURE() << "no error";
+  return "";
+}
+
+/// A scenario that uses every key, with the files that it names.
+inline const std::string kFullScenario = R"(name = "full"
+description = "every key"
+world = "worlds/room.sdf"
+step_ms = 2
+time_limit_s = 60
+hang_limit_s = 12.5
+anchors = ["blue_box", "red_box"]
+
+[[uav]]
+name = "uav1"
+model = "models/uav.sdf"
+position_m = [1, -2.5, 1.2]
+yaw_deg = 90
+command_latency_ms = 5
+
+[uav.sensors.camera]
+timing = "periodic"
+rate_hz = 30
+phase_ms = 3
+delay = { kind = "constant", ms = 37.4 }
+
+[uav.sensors.imu]
+timing = "periodic"
+period_ms = 50
+delay = { kind = "normal", mean_ms = 4, stddev_ms = 1.5 }
+
+[uav.sensors.range]
+timing = "on_demand"
+delay = { kind = "empirical", file_ms = "delays.txt" }
+
+[uav.sut]
+command = ["own-sut", "--fast"]
+
+[uav.sut.parameters]
+anchor = "red_box"
+
+[[uav]]
+name = "uav2"
+model = "models/uav.sdf"
+position_m = [0, 0, 1]
+
+[sut]
+command = ["tether-sut", "face-anchor"]
+
+[sut.parameters]
+anchor = "blue_box"
+precision_deg = 2.5
+retries = 3
+verbose = true
+
+[[condition]]
+name = "host"
+description = "as it is"
+policy = "conservative_barrier"
+clock = "cpu"
+cpu_factor = 1.5
+
+[[condition]]
+name = "target, no sync"
+policy = "free_running"
+clock = "wall"
+real_time_factor = 0.25
+
+[[metric]]
+kind = "time_required"
+uav = "uav1"
+max_s = 30
+
+[[metric]]
+kind = "oscillations"
+name = "swings"
+label = "Swings"
+uav = "uav2"
+anchor = "red_box"
+threshold_deg = 2
+max = 0
+
+[record]
+ground_truth_period_ms = 20
+images = true
+)";
+
+/// Writes the scenario and the files that it names; returns the scenario's file.
+inline std::filesystem::path write_project(const Scratch& scratch, const std::string& scenario) {
+  scratch.write("worlds/room.sdf", "<sdf/>");
+  scratch.write("models/uav.sdf", "<sdf/>");
+  scratch.write("delays.txt", "10\n20\n30.5\n");
+  return scratch.write("scenario.toml", scenario);
+}
+
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+}  // namespace tether::scenario
