@@ -46,8 +46,8 @@ void add_folders_of_variable(const char* variable, std::vector<fs::path>& folder
 /// Where model:// leads: around the file first, then where Gazebo would look.
 std::vector<fs::path> model_folders(const fs::path& file) {
   const fs::path folder = file.parent_path();
-  std::vector<fs::path> folders{folder, folder / "models", folder.parent_path(),
-                                folder.parent_path() / "models"};
+  std::vector<fs::path> folders{folder / "models", folder.parent_path() / "models",
+                                folder.parent_path(), folder};
   add_folders_of_variable("GAZEBO_MODEL_PATH", folders);
   add_folders_of_variable("GZ_SIM_RESOURCE_PATH", folders);
   return folders;
