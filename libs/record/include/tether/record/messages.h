@@ -3,45 +3,67 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <tether/base/time.h>
 
 /// What a run's record holds (DESIGN section 5): plain data, one struct per kind of message. All
 /// times in a record are integer nanoseconds; a message's log time is the ST at which it was
-/// written.
+/// written. Texts are UTF-8 (a byte that is not is written as U+FFFD); a number that is not finite
+/// is written as null and read as NaN.
 namespace tether::record {
 
 inline constexpr int kSchemaVersion = 1;
 
+/// Values of Header::policy.
+inline constexpr std::string_view kConservativeBarrier = "conservative_barrier";
+inline constexpr std::string_view kFreeRunning = "free_running";
+
+/// Values of Interaction::kind.
+inline constexpr std::string_view kSensor = "sensor";
+inline constexpr std::string_view kCommand = "command";
+inline constexpr std::string_view kSleep = "sleep";
+inline constexpr std::string_view kFinish = "finish";
+
 /// One request of a SUT and its reply. Topic /interactions; log time = ST at release.
 struct Interaction {
   std::string uav;
-  std::uint64_t sequence = 0;
-  std::string kind;                   ///< "sensor", "command", "sleep", "finish"
-  std::string sensor;                 ///< of kind "sensor"
-  std::uint64_t sample_index = 0;     ///< of kind "sensor"
-  ExecTime request_at;                ///< t_req as charged
-  ExecTime reply_at;                  ///< t_rep
-  std::optional<SimTime> sampled_at;  ///< kind "sensor": instant that the timing model asked for
-  std::optional<SimTime>
-      sample_state_at;  ///< kind "sensor": step boundary whose state was measured (its floor)
-  std::optional<SimTime> available_at;  ///< kind "sensor": sampled_at + delay
+  std::uint64_t sequence = 0;  ///< 1, 2, 3, … of this SUT
+  std::string kind;            ///< kSensor, kCommand, kSleep or kFinish
+  ExecTime request_at;         ///< t_req as charged
+  ExecTime reply_at;           ///< t_rep
+
+  // Of kind "sensor".
+  std::string sensor;
+  std::uint64_t sample_index = 0;
+  bool latest = false;                     ///< asked for the last measurement, had before or not
+  std::optional<SimTime> sampled_at;       ///< instant that the timing model asked for
+  std::optional<SimTime> sample_state_at;  ///< step boundary whose state was measured (its floor)
+  std::optional<SimTime> available_at;     ///< sampled_at + delay
+
   std::optional<SimTime> effect_at;     ///< kind "command": first step boundary it acts on
+  std::optional<ExecTime> sleep_until;  ///< kind "sleep": when it asked to be woken
+
   SimTime st_at_arrival;
   SimTime st_at_release;
-  Duration lag{0};         ///< ε = request_at − st_at_arrival
-  Duration grid_error{0};  ///< what the step grid moved: of the sample, the effect or the release
-  bool stamped = true;     ///< request_at came from the SUT's side
+  Duration lag{0};  ///< ε = request_at − st_at_arrival
+  /// What the step grid moved: never negative, below one step. Sensor: sampled_at −
+  /// sample_state_at. Command: effect_at − (request_at + command latency). Sleep and finish:
+  /// reply_at − st_at_release.
+  Duration grid_error{0};
+  bool stamped = true;                   ///< request_at came from the SUT's side
   std::optional<std::string> violation;  ///< causality violation, named
-  WallTime wall_at_arrival;              ///< host clock; differs from run to run
-  WallTime wall_at_release;
-  std::optional<Duration>
-      previous_link_time;  ///< round trip of the previous interaction, less the time it was held
+
+  // Host clock; differs from run to run. 0: not taken.
+  WallTime wall_at_arrival;  ///< when the request was taken up
+  WallTime wall_at_release;  ///< just before the reply was handed to the link
+  /// Round trip of the previous interaction, less the time for which it was held.
+  std::optional<Duration> previous_link_time;
 };
 
 /// A command taking effect: written when the simulator was told. Topic /commands/<uav>; log time =
-/// ST.
+/// ST. Velocity in the heading frame H.
 struct CommandEffect {
   std::string uav;
   std::uint64_t sequence = 0;
@@ -49,7 +71,8 @@ struct CommandEffect {
   double vx_H_m_s = 0, vy_H_m_s = 0, vz_H_m_s = 0, yaw_rate_rad_s = 0;
 };
 
-/// Topic /ground_truth/<uav>.
+/// State of the UAV's body B in the world frame W. Topic /ground_truth/<uav>; log time = `at`. The
+/// pose is also written as foxglove.FrameTransform on /tf, so that a 3D view shows it.
 struct GroundTruth {
   std::string uav;
   SimTime at;
@@ -64,7 +87,7 @@ struct Annotation {
   std::string uav;
   ExecTime at;
   std::string topic;
-  std::string json;  ///< one JSON object
+  std::string json;  ///< one JSON object; anything else is kept as {"text": …}
 };
 
 /// Topic /images/<uav>/<sensor>: foxglove.CompressedImage (PNG).
@@ -73,10 +96,10 @@ struct Image {
   std::string sensor;
   SimTime at;
   std::uint64_t index = 0;
-  std::vector<std::uint8_t> png;
+  std::vector<std::uint8_t> png;  ///< a whole PNG file
 };
 
-/// What rests under every number: written first (metadata record "tether"), as names and values.
+/// An entity of the world known in advance (frame A) in the world frame W.
 struct Anchor {
   std::string name;
   std::string shape;
@@ -94,22 +117,24 @@ struct SensorInfo {
 };
 struct SutInfo {
   std::string uav;
-  std::string sut;    ///< name and version it gave
-  std::string clock;  ///< "wall", "cpu", "scripted", "unstamped"
-  double cpu_factor = 1.0;
+  std::string sut;              ///< name and version it gave
+  std::string clock;            ///< "wall", "cpu", "scripted", "unstamped"
+  double cpu_factor = 1.0;      ///< seconds of ET per second of CPU time, of clock "cpu"
+  Duration command_latency{0};  ///< from a command's stamp to its effect, before the grid rounds up
 };
+/// What rests under every number: written first (metadata record "tether"), as names and values.
 struct Header {
   int schema_version = kSchemaVersion;
   std::string tether_version;
   std::string scenario;
   std::string condition;
-  std::string policy;  ///< "conservative_barrier" or "free_running"
+  std::string policy;  ///< kConservativeBarrier or kFreeRunning
   std::string simulator;
   std::string machine;
   std::uint64_t seed = 0;
   Duration step{0};
-  Duration command_latency{0};
-  double real_time_factor = 0.0;  ///< limit on ST per WT; 0: none
+  Duration ground_truth_period{0};  ///< between two messages of a UAV; 0: no fixed period
+  double real_time_factor = 0.0;    ///< limit on ST per WT; 0: none
   std::vector<SutInfo> suts;
   std::vector<SensorInfo> sensors;
   std::vector<Anchor> anchors;
@@ -118,15 +143,15 @@ struct Header {
 /// How the run ended: written last (metadata record "tether.end"). A record without it was cut
 /// short.
 struct Footer {
-  std::string
-      end;  ///< "finished", "time_limit", "sut_lost", "sut_hung", "simulator_lost", "interrupted"
+  /// "finished", "time_limit", "sut_lost", "sut_hung", "simulator_lost", "interrupted".
+  std::string end;
   std::string reason;  ///< one line
   SimTime st_at_end;
   std::vector<ExecTime> et_at_end;  ///< per SUT, in the header's order
   Duration wall{0};
-  std::uint64_t interactions = 0;
+  std::uint64_t interactions = 0;  ///< in the record
   std::uint64_t causality_violations = 0;
-  Duration largest_lag{0};
+  Duration largest_lag{0};  ///< 0 when none was positive
   Duration largest_grid_error{0};
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,7 +12,8 @@ namespace tether::record {
 
 template <class Message>
 struct Logged {
-  SimTime at;  ///< log time
+  SimTime at;               ///< log time
+  std::uint64_t order = 0;  ///< place among all of Tether's messages in the file: 0, 1, 2, …
   Message message;
 };
 
@@ -32,9 +34,11 @@ struct ReadOptions {
   bool images = false;  ///< also load images
 };
 
-/// Reads front to back, so that everything before a tear is had.
-/// @throws Error(kBadFile) when the file does not exist, is no MCAP, is not Tether's, or its schema
-/// is newer.
+/// Reads front to back, so that everything before a tear is had. Checks every length and every CRC
+/// and stops at the first damage. What it allocates is bounded by the file's size, whatever the
+/// file says.
+/// @throws Error(kBadFile) when the file does not exist, is no MCAP, is not Tether's, its schema is
+/// newer, or it is torn before its header's end.
 Record read_record(const std::filesystem::path& file, const ReadOptions& options = {});
 
 }  // namespace tether::record

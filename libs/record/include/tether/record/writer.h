@@ -24,8 +24,9 @@ class Recorder {
 
 /// Writes an MCAP file (https://mcap.dev/spec): JSON messages with JSON schemas, zstd chunks with
 /// CRCs, summary and indices at the end. A chunk goes to the file every second of ST or 1 MiB, so
-/// that a killed run leaves a readable record. Without `write(Footer)` the destructor leaves the
-/// file as a killed run would.
+/// that a killed run leaves a readable record. Without `write(Footer)` the destructor writes the
+/// last chunk, if it can, and leaves the file without its end. The same messages give the same
+/// bytes.
 /// @throws Error(kSetup) naming the file when it cannot be created or written.
 std::unique_ptr<Recorder> make_mcap_recorder(const std::filesystem::path& file);
 

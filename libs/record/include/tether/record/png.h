@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tether::record {
+
+/// Encodes 8-bit RGB rows, top left first, as a PNG. The same pixels give the same bytes.
+/// @pre rgb.size() == width_px · height_px · 3. @throws Error(kInternal) if the encoder fails.
+std::vector<std::uint8_t> encode_png(int width_px, int height_px,
+                                     std::span<const std::uint8_t> rgb);
+
+}  // namespace tether::record

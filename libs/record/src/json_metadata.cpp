@@ -1,0 +1,204 @@
+#include "json_metadata.h"
+
+#include "damage.h"
+#include "json_fields.h"
+#include "json_text.h"
+
+#include <charconv>
+
+namespace tether::record {
+namespace {
+
+const std::string& value(const StringMap& values, const std::string& name) {
+  const auto found = values.find(name);
+  if (found == values.end()) {
+    throw Damage("value \"" + name + "\" is missing");
+  }
+  return found->second;
+}
+
+template <class Number>
+Number number(const StringMap& values, const std::string& name) {
+  const std::string& text = value(values, name);
+  Number parsed{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw Damage("value \"" + name + "\" is no number that fits");
+  }
+  return parsed;
+}
+
+template <class Time>
+Time time(const StringMap& values, const std::string& name) {
+  return Time(Duration(number<std::int64_t>(values, name)));
+}
+
+std::string number_text(double number) {
+  std::string text;
+  append_json_number(text, number);
+  return text;
+}
+
+// A JSON array of what `append` writes for each item.
+template <class Item, class Append>
+std::string list_text(const std::vector<Item>& items, Append append) {
+  std::string text = "[";
+  for (const Item& item : items) {
+    text += text.size() > 1 ? "," : "";
+    append(text, item);
+  }
+  return text + "]";
+}
+
+template <class Item>
+std::vector<Item> list(const StringMap& values, const std::string& name,
+                       Item (*read)(const Json&)) {
+  const std::string& text = value(values, name);
+  const Json json = json_depth(text) > kMaxJsonDepth ? Json() : Json::parse(text, nullptr, false);
+  if (!json.is_array()) {
+    throw Damage("value \"" + name + "\" is no JSON array");
+  }
+  std::vector<Item> items;
+  for (const Json& element : json) {
+    items.push_back(read(element));
+  }
+  return items;
+}
+
+void append_sut(std::string& out, const SutInfo& sut) {
+  JsonObject object(out);
+  object.text("uav", sut.uav);
+  object.text("sut", sut.sut);
+  object.text("clock", sut.clock);
+  object.number("cpu_factor", sut.cpu_factor);
+  object.integer("command_latency_ns", to_ns(sut.command_latency));
+  object.close();
+}
+
+SutInfo read_sut(const Json& json) {
+  return {text_member(json, "uav"), text_member(json, "sut"), text_member(json, "clock"),
+          number_member(json, "cpu_factor"), time_member<Duration>(json, "command_latency_ns")};
+}
+
+void append_sensor(std::string& out, const SensorInfo& sensor) {
+  JsonObject object(out);
+  object.text("uav", sensor.uav);
+  object.text("name", sensor.name);
+  object.text("kind", sensor.kind);
+  object.boolean("periodic", sensor.periodic);
+  object.integer("period_ns", to_ns(sensor.period));
+  object.integer("phase_ns", to_ns(sensor.phase));
+  object.close();
+}
+
+SensorInfo read_sensor(const Json& json) {
+  return {text_member(json, "uav"),
+          text_member(json, "name"),
+          text_member(json, "kind"),
+          boolean_member(json, "periodic"),
+          time_member<Duration>(json, "period_ns"),
+          time_member<Duration>(json, "phase_ns")};
+}
+
+void append_anchor(std::string& out, const Anchor& anchor) {
+  JsonObject object(out);
+  object.text("name", anchor.name);
+  object.text("shape", anchor.shape);
+  object.numbers("size_m", anchor.size_m);
+  object.numbers("p_WA_m", anchor.p_WA_m);
+  object.numbers("q_WA", anchor.q_WA);
+  object.close();
+}
+
+Anchor read_anchor(const Json& json) {
+  Anchor anchor;
+  anchor.name = text_member(json, "name");
+  anchor.shape = text_member(json, "shape");
+  numbers_member(json, "size_m", anchor.size_m);
+  numbers_member(json, "p_WA_m", anchor.p_WA_m);
+  numbers_member(json, "q_WA", anchor.q_WA);
+  return anchor;
+}
+
+ExecTime read_exec_time(const Json& json) {
+  if (!json.is_number_integer()) {
+    throw Damage("a time in \"et_at_end_ns\" is no integer");
+  }
+  return from_ns<ExecTime>(json.get<std::int64_t>());
+}
+
+}  // namespace
+
+StringMap to_metadata(const Header& header) {
+  return {
+      {"schema_version", std::to_string(header.schema_version)},
+      {"tether_version", to_utf8(header.tether_version)},
+      {"scenario", to_utf8(header.scenario)},
+      {"condition", to_utf8(header.condition)},
+      {"policy", to_utf8(header.policy)},
+      {"simulator", to_utf8(header.simulator)},
+      {"machine", to_utf8(header.machine)},
+      {"seed", std::to_string(header.seed)},
+      {"step_ns", std::to_string(to_ns(header.step))},
+      {"ground_truth_period_ns", std::to_string(to_ns(header.ground_truth_period))},
+      {"real_time_factor", number_text(header.real_time_factor)},
+      {"suts", list_text(header.suts, append_sut)},
+      {"sensors", list_text(header.sensors, append_sensor)},
+      {"anchors", list_text(header.anchors, append_anchor)},
+  };
+}
+
+int schema_version(const StringMap& values) {
+  return number<int>(values, "schema_version");
+}
+
+Header header_from_metadata(const StringMap& values) {
+  Header header;
+  header.schema_version = schema_version(values);
+  header.tether_version = value(values, "tether_version");
+  header.scenario = value(values, "scenario");
+  header.condition = value(values, "condition");
+  header.policy = value(values, "policy");
+  header.simulator = value(values, "simulator");
+  header.machine = value(values, "machine");
+  header.seed = number<std::uint64_t>(values, "seed");
+  header.step = time<Duration>(values, "step_ns");
+  header.ground_truth_period = time<Duration>(values, "ground_truth_period_ns");
+  header.real_time_factor = number<double>(values, "real_time_factor");
+  header.suts = list(values, "suts", read_sut);
+  header.sensors = list(values, "sensors", read_sensor);
+  header.anchors = list(values, "anchors", read_anchor);
+  return header;
+}
+
+StringMap to_metadata(const Footer& footer) {
+  return {
+      {"end", to_utf8(footer.end)},
+      {"reason", to_utf8(footer.reason)},
+      {"st_at_end_ns", std::to_string(to_ns(footer.st_at_end))},
+      {"et_at_end_ns",
+       list_text(footer.et_at_end,
+                 [](std::string& out, ExecTime et) { append_json_integer(out, to_ns(et)); })},
+      {"wall_ns", std::to_string(to_ns(footer.wall))},
+      {"interactions", std::to_string(footer.interactions)},
+      {"causality_violations", std::to_string(footer.causality_violations)},
+      {"largest_lag_ns", std::to_string(to_ns(footer.largest_lag))},
+      {"largest_grid_error_ns", std::to_string(to_ns(footer.largest_grid_error))},
+  };
+}
+
+Footer footer_from_metadata(const StringMap& values) {
+  Footer footer;
+  footer.end = value(values, "end");
+  footer.reason = value(values, "reason");
+  footer.st_at_end = time<SimTime>(values, "st_at_end_ns");
+  footer.et_at_end = list(values, "et_at_end_ns", read_exec_time);
+  footer.wall = time<Duration>(values, "wall_ns");
+  footer.interactions = number<std::uint64_t>(values, "interactions");
+  footer.causality_violations = number<std::uint64_t>(values, "causality_violations");
+  footer.largest_lag = time<Duration>(values, "largest_lag_ns");
+  footer.largest_grid_error = time<Duration>(values, "largest_grid_error_ns");
+  return footer;
+}
+
+}  // namespace tether::record

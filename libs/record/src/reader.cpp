@@ -1,0 +1,125 @@
+#include "damage.h"
+#include "json_messages.h"
+#include "json_metadata.h"
+#include "mcap_reader.h"
+#include "schemas.h"
+
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+
+#include <tether/base/error.h>
+#include <tether/record/reader.h>
+
+namespace tether::record {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
+  throw Error(ErrorCode::kBadFile, FileLocation{file.string(), 0}, what);
+}
+
+// Sorts the messages of a record by what their schema says they are.
+class RecordBuilder final : public McapVisitor {
+ public:
+  RecordBuilder(const std::filesystem::path& file, const ReadOptions& options)
+      : file_(file), options_(options) {}
+
+  void channel(const McapChannel& channel) override {
+    topics_[channel.id] = channel.topic;
+    appenders_[channel.id] = appender(channel.schema_name);
+  }
+
+  void message(const McapMessage& message) override {
+    const Appender append_to_topic = appenders_[message.channel];
+    if (append_to_topic == nullptr) {
+      return;
+    }
+    if (message.log_time_ns >
+        static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
+      throw Damage("a log time is out of range");
+    }
+    try {
+      (this->*append_to_topic)(from_ns<SimTime>(static_cast<std::int64_t>(message.log_time_ns)),
+                               message.data);
+    } catch (const Damage& damage) {
+      throw Damage("message " + std::to_string(message.sequence) + " of " +
+                   topics_[message.channel] + ": " + damage.what());
+    }
+    ++order_;
+  }
+
+  void metadata(std::string_view name, const StringMap& values) override {
+    if (name == kHeaderName && !has_header_) {
+      read_header(values);
+    } else if (name == kFooterName) {
+      record_.footer = footer_from_metadata(values);
+    }
+  }
+
+  Record finish(std::string damage) && {
+    if (!has_header_) {
+      fail(file_, "not a record of Tether's, or torn before its header's end" +
+                      (damage.empty() ? "" : " (" + damage + ")"));
+    }
+    record_.damage = std::move(damage);
+    return std::move(record_);
+  }
+
+ private:
+  using Appender = void (RecordBuilder::*)(SimTime, std::string_view);
+
+  Appender appender(std::string_view schema) const {
+    if (schema == kInteractionSchema.name) {
+      return &RecordBuilder::append<&Record::interactions, interaction_from_json>;
+    }
+    if (schema == kCommandEffectSchema.name) {
+      return &RecordBuilder::append<&Record::commands, command_effect_from_json>;
+    }
+    if (schema == kGroundTruthSchema.name) {
+      return &RecordBuilder::append<&Record::ground_truth, ground_truth_from_json>;
+    }
+    if (schema == kAnnotationSchema.name) {
+      return &RecordBuilder::append<&Record::annotations, annotation_from_json>;
+    }
+    if (schema == kCompressedImageSchema.name) {
+      return options_.images ? &RecordBuilder::append<&Record::images, image_from_json>
+                             : &RecordBuilder::skip;
+    }
+    return nullptr;
+  }
+
+  template <auto messages, auto parse>
+  void append(SimTime at, std::string_view json) {
+    (record_.*messages).push_back({at, order_, parse(json)});
+  }
+  void skip(SimTime, std::string_view) {}
+
+  void read_header(const StringMap& values) {
+    if (schema_version(values) > kSchemaVersion) {
+      fail(file_, "written by a newer Tether (record schema " +
+                      std::to_string(schema_version(values)) + ", this one knows " +
+                      std::to_string(kSchemaVersion) + "); read it with that one");
+    }
+    record_.header = header_from_metadata(values);
+    has_header_ = true;
+  }
+
+  const std::filesystem::path& file_;
+  const ReadOptions& options_;
+  Record record_;
+  bool has_header_ = false;
+  std::uint64_t order_ = 0;
+  std::map<std::uint16_t, Appender> appenders_;
+  std::map<std::uint16_t, std::string> topics_;
+};
+
+}  // namespace
+
+Record read_record(const std::filesystem::path& file, const ReadOptions& options) {
+  RecordBuilder builder(file, options);
+  std::string damage = read_mcap(file, builder);
+  return std::move(builder).finish(std::move(damage));
+}
+
+}  // namespace tether::record

@@ -1,0 +1,140 @@
+#include "json_messages.h"
+#include "json_metadata.h"
+#include "json_text.h"
+#include "mcap_writer.h"
+#include "schemas.h"
+
+#include <map>
+#include <string>
+
+#include <tether/base/error.h>
+#include <tether/record/writer.h>
+
+namespace tether::record {
+namespace {
+
+// Fixed, so that equal runs give equal files; the version that wrote the record is in its header.
+constexpr std::string_view kLibrary = "tether";
+
+// Channels of one schema, one per topic, made when the first message comes. Looked up by the parts
+// of the topic, so that a message costs no concatenation.
+class Channels {
+ public:
+  Channels(McapWriter& mcap, const Schema& schema) : mcap_(mcap), schema_(schema) {}
+
+  std::uint16_t of(std::string_view prefix, std::string_view uav, std::string_view sensor = {}) {
+    const auto of_uav = ids_.find(uav);
+    if (of_uav != ids_.end()) {
+      const auto found = of_uav->second.find(sensor);
+      if (found != of_uav->second.end()) {
+        return found->second;
+      }
+    }
+    return add(prefix, uav, sensor);
+  }
+
+ private:
+  std::uint16_t add(std::string_view prefix, std::string_view uav, std::string_view sensor) {
+    if (schema_id_ == 0) {
+      schema_id_ = mcap_.add_schema(schema_.name, "jsonschema", schema_.json);
+    }
+    std::string topic(prefix);
+    for (const std::string_view part : {uav, sensor}) {
+      topic += part.empty() ? "" : "/" + to_utf8(part);
+    }
+    const std::uint16_t id = mcap_.add_channel(topic, schema_id_, "json");
+    ids_[std::string(uav)][std::string(sensor)] = id;
+    return id;
+  }
+
+  McapWriter& mcap_;
+  const Schema& schema_;
+  std::uint16_t schema_id_ = 0;
+  using BySensor = std::map<std::string, std::uint16_t, std::less<>>;
+  std::map<std::string, BySensor, std::less<>> ids_;
+};
+
+class McapRecorder final : public Recorder {
+ public:
+  explicit McapRecorder(const std::filesystem::path& file) : mcap_(file, kLibrary) {}
+
+  // A run that broke off: what there is goes to the file; a second failure would say nothing new.
+  ~McapRecorder() override {
+    try {
+      if (!finished_) {
+        mcap_.flush();
+      }
+    } catch (const Error&) {
+    }
+  }
+
+  void write(const Header& header) override {
+    mcap_.add_metadata(kHeaderName, to_metadata(header));
+  }
+
+  void write(SimTime at, const Interaction& message) override {
+    write_json(interactions_.of("/interactions", {}), at, message);
+  }
+  void write(SimTime at, const CommandEffect& message) override {
+    write_json(commands_.of("/commands", message.uav), at, message);
+  }
+  void write(SimTime at, const GroundTruth& message) override {
+    write_json(ground_truth_.of("/ground_truth", message.uav), at, message);
+    append_frame_transform(begin(transforms_.of("/tf", {}), at), message);
+    mcap_.end_message();
+  }
+  void write(SimTime at, const Annotation& message) override {
+    write_json(annotations_.of("/task", message.uav), at, message);
+  }
+  void write(SimTime at, const Image& message) override {
+    write_json(images_.of("/images", message.uav, message.sensor), at, message);
+  }
+
+  void write(const Footer& footer) override {
+    mcap_.add_metadata(kFooterName, to_metadata(footer));
+    mcap_.finish();
+    finished_ = true;
+  }
+
+ private:
+  std::string& begin(std::uint16_t channel, SimTime at) {
+    return mcap_.begin_message(channel, static_cast<std::uint64_t>(to_ns(at)));
+  }
+  template <class Message>
+  void write_json(std::uint16_t channel, SimTime at, const Message& message) {
+    append_json(begin(channel, at), message);
+    mcap_.end_message();
+  }
+
+  McapWriter mcap_;
+  Channels interactions_{mcap_, kInteractionSchema};
+  Channels commands_{mcap_, kCommandEffectSchema};
+  Channels ground_truth_{mcap_, kGroundTruthSchema};
+  Channels transforms_{mcap_, kFrameTransformSchema};
+  Channels annotations_{mcap_, kAnnotationSchema};
+  Channels images_{mcap_, kCompressedImageSchema};
+  bool finished_ = false;
+};
+
+class NullRecorder final : public Recorder {
+ public:
+  void write(const Header&) override {}
+  void write(SimTime, const Interaction&) override {}
+  void write(SimTime, const CommandEffect&) override {}
+  void write(SimTime, const GroundTruth&) override {}
+  void write(SimTime, const Annotation&) override {}
+  void write(SimTime, const Image&) override {}
+  void write(const Footer&) override {}
+};
+
+}  // namespace
+
+std::unique_ptr<Recorder> make_mcap_recorder(const std::filesystem::path& file) {
+  return std::make_unique<McapRecorder>(file);
+}
+
+std::unique_ptr<Recorder> make_null_recorder() {
+  return std::make_unique<NullRecorder>();
+}
+
+}  // namespace tether::record

@@ -1,0 +1,141 @@
+#include "schemas.h"
+
+namespace tether::record {
+
+const Schema kInteractionSchema{"tether.Interaction", R"json({
+  "title": "tether.Interaction",
+  "description": "One request of a SUT and its reply. Log time: ST at release.",
+  "type": "object",
+  "properties": {
+    "uav": {"type": "string"},
+    "sequence": {"type": "integer", "minimum": 1},
+    "kind": {"type": "string", "enum": ["sensor", "command", "sleep", "finish"]},
+    "request_at_ns": {"type": "integer", "description": "ET when the request was issued"},
+    "reply_at_ns": {"type": "integer", "description": "ET with which the SUT goes on"},
+    "sensor": {"type": "string"},
+    "sample_index": {"type": "integer", "minimum": 0},
+    "latest": {"type": "boolean", "description": "the last measurement was asked for, new or not"},
+    "sampled_at_ns": {"type": "integer", "description": "ST that the timing model asked for"},
+    "sample_state_at_ns": {"type": "integer", "description": "ST of the state that was measured"},
+    "available_at_ns": {"type": "integer", "description": "sampled_at + delay"},
+    "effect_at_ns": {"type": "integer", "description": "first step boundary the command acts on"},
+    "sleep_until_ns": {"type": "integer", "description": "ET at which the SUT asked to be woken"},
+    "st_at_arrival_ns": {"type": "integer"},
+    "lag_ns": {"type": "integer", "description": "request_at - st_at_arrival"},
+    "st_at_release_ns": {"type": "integer"},
+    "grid_error_ns": {"type": "integer", "description": "what the step grid moved"},
+    "stamped": {"type": "boolean", "description": "request_at was taken on the SUT's side"},
+    "violation": {"type": "string", "description": "causality violation"},
+    "wall": {
+      "type": "object",
+      "description": "host clock; differs from run to run",
+      "properties": {
+        "arrival_ns": {"type": "integer"},
+        "release_ns": {"type": "integer"},
+        "previous_link_ns": {"type": "integer"}
+      },
+      "required": ["arrival_ns", "release_ns"]
+    }
+  },
+  "required": ["uav", "sequence", "kind", "request_at_ns", "reply_at_ns", "st_at_arrival_ns",
+               "lag_ns", "st_at_release_ns", "grid_error_ns", "stamped", "wall"]
+})json"};
+
+const Schema kCommandEffectSchema{"tether.CommandEffect", R"json({
+  "title": "tether.CommandEffect",
+  "description": "A velocity command taking effect, in the heading frame H.",
+  "type": "object",
+  "properties": {
+    "uav": {"type": "string"},
+    "sequence": {"type": "integer", "minimum": 1, "description": "of its interaction"},
+    "applied_at_ns": {"type": "integer"},
+    "vx_H_m_s": {"type": ["number", "null"]},
+    "vy_H_m_s": {"type": ["number", "null"]},
+    "vz_H_m_s": {"type": ["number", "null"]},
+    "yaw_rate_rad_s": {"type": ["number", "null"]}
+  },
+  "required": ["uav", "sequence", "applied_at_ns", "vx_H_m_s", "vy_H_m_s", "vz_H_m_s",
+               "yaw_rate_rad_s"]
+})json"};
+
+const Schema kGroundTruthSchema{"tether.GroundTruth", R"json({
+  "title": "tether.GroundTruth",
+  "description": "State of the UAV's body B in the world frame W (ENU).",
+  "type": "object",
+  "properties": {
+    "uav": {"type": "string"},
+    "at_ns": {"type": "integer"},
+    "p_WB_m": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 3, "maxItems": 3},
+    "q_WB": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 4, "maxItems": 4,
+             "description": "w x y z"},
+    "v_WB_m_s": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 3, "maxItems": 3},
+    "w_WB_B_rad_s": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 3, "maxItems": 3}
+  },
+  "required": ["uav", "at_ns", "p_WB_m", "q_WB", "v_WB_m_s", "w_WB_B_rad_s"]
+})json"};
+
+const Schema kAnnotationSchema{"tether.Annotation", R"json({
+  "title": "tether.Annotation",
+  "description": "What the SUT had to say. Log time: ST when it arrived.",
+  "type": "object",
+  "properties": {
+    "uav": {"type": "string"},
+    "at_ns": {"type": "integer", "description": "ET"},
+    "topic": {"type": "string"},
+    "data": {"type": "object"}
+  },
+  "required": ["uav", "at_ns", "topic", "data"]
+})json"};
+
+const Schema kCompressedImageSchema{"foxglove.CompressedImage", R"json({
+  "title": "foxglove.CompressedImage",
+  "type": "object",
+  "properties": {
+    "timestamp": {
+      "type": "object", "title": "time",
+      "properties": {
+        "sec": {"type": "integer", "minimum": 0},
+        "nsec": {"type": "integer", "minimum": 0, "maximum": 999999999}
+      }
+    },
+    "frame_id": {"type": "string"},
+    "format": {"type": "string"},
+    "uav": {"type": "string"},
+    "sensor": {"type": "string"},
+    "index": {"type": "integer", "minimum": 0, "description": "which measurement of the sensor"},
+    "data": {"type": "string", "contentEncoding": "base64"}
+  },
+  "required": ["timestamp", "frame_id", "format", "uav", "sensor", "index", "data"]
+})json"};
+
+const Schema kFrameTransformSchema{"foxglove.FrameTransform", R"json({
+  "title": "foxglove.FrameTransform",
+  "type": "object",
+  "properties": {
+    "timestamp": {
+      "type": "object", "title": "time",
+      "properties": {
+        "sec": {"type": "integer", "minimum": 0},
+        "nsec": {"type": "integer", "minimum": 0, "maximum": 999999999}
+      }
+    },
+    "parent_frame_id": {"type": "string"},
+    "child_frame_id": {"type": "string"},
+    "translation": {
+      "type": "object", "title": "foxglove.Vector3",
+      "properties": {
+        "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"}
+      }
+    },
+    "rotation": {
+      "type": "object", "title": "foxglove.Quaternion",
+      "properties": {
+        "x": {"type": "number"}, "y": {"type": "number"}, "z": {"type": "number"},
+        "w": {"type": "number"}
+      }
+    }
+  },
+  "required": ["timestamp", "parent_frame_id", "child_frame_id", "translation", "rotation"]
+})json"};
+
+}  // namespace tether::record

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string_view>
+
+/// JSON schemas of the topics, for readers that show or check messages.
+namespace tether::record {
+
+struct Schema {
+  std::string_view name;
+  std::string_view json;
+};
+
+extern const Schema kInteractionSchema;
+extern const Schema kCommandEffectSchema;
+extern const Schema kGroundTruthSchema;
+extern const Schema kAnnotationSchema;
+/// Well-known schemas of Foxglove, by their names.
+extern const Schema kCompressedImageSchema;
+extern const Schema kFrameTransformSchema;
+
+}  // namespace tether::record

@@ -1,0 +1,89 @@
+#include "sample_messages.h"
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <tether/record/canonical.h>
+
+namespace tether::record {
+namespace {
+
+Record sample() {
+  Record record;
+  record.header = header();
+  record.interactions = {{st_ms(37), 0, sensor_interaction()},
+                         {st_ms(40), 2, command_interaction()}};
+  record.commands = {{st_ms(41), 4, command_effect()}};
+  record.ground_truth = {{st_ms(40), 3, ground_truth()}};
+  record.annotations = {{st_ms(38), 1, annotation()}};
+  record.images = {{st_ms(41), 5, image()}};
+  record.footer = footer();
+  return record;
+}
+
+struct Change {
+  const char* what;
+  std::function<void(Record&)> apply;
+};
+
+TEST(Canonical, WallTimeAndHeaderDoNotShow) {
+  Record changed = sample();
+  changed.header.real_time_factor = 99;
+  changed.interactions[0].message.wall_at_arrival += Duration(1);
+  changed.interactions[0].message.wall_at_release += Duration(1);
+  changed.interactions[0].message.previous_link_time.reset();
+  changed.footer->wall += Duration(1);
+  EXPECT_EQ(canonical(changed), canonical(sample()));
+  EXPECT_EQ(canonical(changed, {.arrivals = true}), canonical(sample(), {.arrivals = true}));
+}
+
+TEST(Canonical, ArrivalsShowOnlyWhenAskedFor) {
+  const Change changes[] = {
+      {"arrival", [](Record& r) { r.interactions[0].message.st_at_arrival += Duration(1); }},
+      {"lag", [](Record& r) { r.interactions[0].message.lag += Duration(1); }},
+      {"annotation", [](Record& r) { r.annotations[0].at += Duration(1); }},
+      {"largest lag", [](Record& r) { r.footer->largest_lag += Duration(1); }},
+  };
+  for (const Change& change : changes) {
+    Record changed = sample();
+    change.apply(changed);
+    EXPECT_EQ(canonical(changed), canonical(sample())) << change.what;
+    EXPECT_NE(canonical(changed, {.arrivals = true}), canonical(sample(), {.arrivals = true}))
+        << change.what;
+  }
+}
+
+TEST(Canonical, EverythingElseShows) {
+  const Change changes[] = {
+      {"request", [](Record& r) { r.interactions[0].message.request_at += Duration(1); }},
+      {"reply", [](Record& r) { r.interactions[0].message.reply_at += Duration(1); }},
+      {"release", [](Record& r) { r.interactions[0].message.st_at_release += Duration(1); }},
+      {"log time", [](Record& r) { r.interactions[0].at += Duration(1); }},
+      {"one less", [](Record& r) { r.interactions.pop_back(); }},
+      {"command", [](Record& r) { r.commands[0].message.vx_H_m_s = 0.2; }},
+      {"last bit",
+       [](Record& r) { r.ground_truth[0].message.p_WB_m[0] = std::nextafter(1.0 / 3.0, 1); }},
+      {"annotation", [](Record& r) { r.annotations[0].message.json = "{}"; }},
+      {"image", [](Record& r) { r.images[0].message.png[4] ^= 1; }},
+      {"end", [](Record& r) { r.footer->end = "time_limit"; }},
+      {"no end", [](Record& r) { r.footer.reset(); }},
+  };
+  for (const Change& change : changes) {
+    Record changed = sample();
+    change.apply(changed);
+    EXPECT_NE(canonical(changed), canonical(sample())) << change.what;
+  }
+}
+
+// Replies to two SUTs at one ST may leave in either order.
+TEST(Canonical, OrderBetweenUavsDoesNotShow) {
+  Record swapped = sample();
+  std::swap(swapped.interactions[0], swapped.interactions[1]);
+  EXPECT_EQ(canonical(swapped), canonical(sample()));
+}
+
+}  // namespace
+}  // namespace tether::record

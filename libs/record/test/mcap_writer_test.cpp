@@ -1,0 +1,290 @@
+#include "mcap_writer.h"
+
+#include "bytes.h"
+#include "mcap_reader.h"
+#include "sample_messages.h"
+
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <tether/base/error.h>
+
+namespace tether::record {
+namespace {
+
+struct Raw {
+  std::uint64_t offset;
+  Opcode opcode;
+  std::string_view content;
+};
+
+// All records of a file that is whole, top level only.
+std::vector<Raw> raw_records(std::string_view file) {
+  EXPECT_TRUE(file.starts_with(kMagic) && file.ends_with(kMagic));
+  std::vector<Raw> records;
+  std::size_t at = kMagic.size();
+  while (at < file.size() - kMagic.size()) {
+    FieldReader fields(file.substr(at));
+    const auto opcode = static_cast<Opcode>(fields.u8());
+    const std::string_view content = fields.bytes(fields.u64());
+    records.push_back({at, opcode, content});
+    at += kRecordPrefixBytes + content.size();
+  }
+  return records;
+}
+
+class Collector : public McapVisitor {
+ public:
+  void channel(const McapChannel& channel) override {
+    topics[channel.id] = channel.topic;
+    schema_names[channel.id] = channel.schema_name;
+  }
+  void message(const McapMessage& message) override {
+    messages.emplace_back(topics.at(message.channel), message.sequence, message.log_time_ns,
+                          std::string(message.data));
+    EXPECT_EQ(message.publish_time_ns, message.log_time_ns);
+  }
+  void metadata(std::string_view name, const StringMap& values) override {
+    all_metadata.emplace_back(name, values);
+  }
+
+  std::map<std::uint16_t, std::string> topics;
+  std::map<std::uint16_t, std::string> schema_names;
+  std::vector<std::tuple<std::string, std::uint32_t, std::uint64_t, std::string>> messages;
+  std::vector<std::pair<std::string, StringMap>> all_metadata;
+};
+
+// Two channels, a message every 10 ms on one and every 30 ms on the other.
+void write_file(const std::filesystem::path& path, int messages, ChunkLimits limits = {}) {
+  McapWriter writer(path, "test", limits);
+  writer.add_metadata("first", {{"a", "1"}, {"b", ""}});
+  const std::uint16_t schema = writer.add_schema("s", "jsonschema", "{}");
+  const std::uint16_t often = writer.add_channel("/often", schema, "json");
+  const std::uint16_t seldom = writer.add_channel("/seldom", 0, "json");
+  for (int i = 0; i < messages; ++i) {
+    const auto time = static_cast<std::uint64_t>(i) * 10'000'000;
+    writer.begin_message(often, time) += "{\"i\":" + std::to_string(i) + "}";
+    writer.end_message();
+    if (i % 3 == 0) {
+      writer.begin_message(seldom, time) += "{}";
+      writer.end_message();
+    }
+  }
+  writer.add_metadata("last", {});
+  writer.finish();
+}
+
+TEST(McapWriter, ReadsBack) {
+  const TemporaryFile file;
+  write_file(file.path(), 250);
+  Collector collector;
+  EXPECT_EQ(read_mcap(file.path(), collector), "");
+  ASSERT_EQ(collector.messages.size(), 250U + 84U);
+  EXPECT_EQ(collector.messages[0], std::tuple("/often", 0U, 0U, "{\"i\":0}"));
+  EXPECT_EQ(collector.messages[1], std::tuple("/seldom", 0U, 0U, "{}"));
+  EXPECT_EQ(collector.messages.back(), std::tuple("/seldom", 83U, 2'490'000'000U, "{}"));
+  EXPECT_EQ(collector.schema_names[1], "s");
+  EXPECT_EQ(collector.schema_names[2], "");
+  ASSERT_EQ(collector.all_metadata.size(), 2U);
+  EXPECT_EQ(collector.all_metadata[0].second, (StringMap{{"a", "1"}, {"b", ""}}));
+}
+
+TEST(McapWriter, ChunkEverySecondOfLogTime) {
+  const TemporaryFile file;
+  write_file(file.path(), 250);
+  int chunks = 0;
+  for (const Raw& record : raw_records(file.bytes())) {
+    chunks += record.opcode == Opcode::kChunk ? 1 : 0;
+  }
+  EXPECT_EQ(chunks, 3);  // [0, 1 s), [1 s, 2 s), [2 s, 2.49 s]
+}
+
+TEST(McapWriter, ChunkWhenFull) {
+  const TemporaryFile file;
+  write_file(file.path(), 50, {.bytes = 400, .span_ns = 1'000'000'000'000});
+  std::uint64_t largest = 0;
+  int chunks = 0;
+  const std::string bytes = file.bytes();
+  for (const Raw& record : raw_records(bytes)) {
+    if (record.opcode == Opcode::kChunk) {
+      FieldReader fields(record.content);
+      fields.bytes(16);
+      largest = std::max(largest, fields.u64());
+      ++chunks;
+    }
+  }
+  EXPECT_GT(chunks, 5);
+  EXPECT_LT(largest, 400U + 60U);  // one message more than the limit at most
+}
+
+TEST(McapWriter, ChunkIndicesPointAtChunksAndMessageIndices) {
+  const TemporaryFile file;
+  write_file(file.path(), 250);
+  const std::string bytes = file.bytes();
+  const auto records = raw_records(bytes);
+  std::map<std::uint64_t, Raw> by_offset;
+  for (const Raw& record : records) {
+    by_offset.emplace(record.offset, record);
+  }
+  int indices = 0;
+  for (const Raw& record : records) {
+    if (record.opcode != Opcode::kChunkIndex) {
+      continue;
+    }
+    ++indices;
+    FieldReader fields(record.content);
+    const std::uint64_t first = fields.u64();
+    const std::uint64_t last = fields.u64();
+    EXPECT_LE(first, last);
+    const Raw chunk = by_offset.at(fields.u64());
+    EXPECT_EQ(chunk.opcode, Opcode::kChunk);
+    EXPECT_EQ(fields.u64(), chunk.content.size() + kRecordPrefixBytes);
+    FieldReader map(fields.string());
+    std::uint64_t index_bytes = 0;
+    while (!map.empty()) {
+      const std::uint16_t channel = map.u16();
+      const Raw index = by_offset.at(map.u64());
+      EXPECT_EQ(index.opcode, Opcode::kMessageIndex);
+      index_bytes += index.content.size() + kRecordPrefixBytes;
+      FieldReader entries(index.content);
+      EXPECT_EQ(entries.u16(), channel);
+    }
+    EXPECT_EQ(fields.u64(), index_bytes);
+    EXPECT_EQ(fields.string(), "zstd");
+  }
+  EXPECT_EQ(indices, 3);
+}
+
+TEST(McapWriter, MessageIndexPointsAtMessages) {
+  const TemporaryFile file;
+  // One small chunk; its records begin with schema and channels.
+  write_file(file.path(), 5);
+  const std::string bytes = file.bytes();
+  int entries = 0;
+  for (const Raw& record : raw_records(bytes)) {
+    if (record.opcode == Opcode::kMessageIndex) {
+      FieldReader fields(record.content);
+      const std::uint16_t channel = fields.u16();
+      FieldReader list(fields.string());
+      for (std::uint64_t previous = 0; !list.empty(); ++entries) {
+        EXPECT_EQ(list.u64() % (channel == 1 ? 10'000'000U : 30'000'000U), 0U);
+        const std::uint64_t offset = list.u64();
+        EXPECT_GT(offset, previous);
+        previous = offset;
+      }
+    }
+  }
+  EXPECT_EQ(entries, 5 + 2);
+}
+
+TEST(McapWriter, StatisticsCountEverything) {
+  const TemporaryFile file;
+  write_file(file.path(), 250);
+  const std::string bytes = file.bytes();
+  int found = 0;
+  for (const Raw& record : raw_records(bytes)) {
+    if (record.opcode != Opcode::kStatistics) {
+      continue;
+    }
+    ++found;
+    FieldReader fields(record.content);
+    EXPECT_EQ(fields.u64(), 250U + 84U);
+    EXPECT_EQ(fields.u16(), 1U);  // schemas
+    EXPECT_EQ(fields.u32(), 2U);  // channels
+    EXPECT_EQ(fields.u32(), 0U);  // attachments
+    EXPECT_EQ(fields.u32(), 2U);  // metadata
+    EXPECT_EQ(fields.u32(), 3U);  // chunks
+    EXPECT_EQ(fields.u64(), 0U);
+    EXPECT_EQ(fields.u64(), 2'490'000'000U);
+    FieldReader counts(fields.string());
+    EXPECT_EQ(counts.u16(), 1U);
+    EXPECT_EQ(counts.u64(), 250U);
+    EXPECT_EQ(counts.u16(), 2U);
+    EXPECT_EQ(counts.u64(), 84U);
+  }
+  EXPECT_EQ(found, 1);
+}
+
+TEST(McapWriter, SummaryOffsetsNameTheGroups) {
+  const TemporaryFile file;
+  write_file(file.path(), 250);
+  const std::string bytes = file.bytes();
+  const auto records = raw_records(bytes);
+  const Raw& footer = records.back();
+  ASSERT_EQ(footer.opcode, Opcode::kFooter);
+  const std::uint64_t summary_start = FieldReader(footer.content).u64();
+
+  std::set<Opcode> groups;
+  std::uint64_t next_group = summary_start;
+  for (const Raw& record : records) {
+    if (record.opcode == Opcode::kSummaryOffset) {
+      FieldReader fields(record.content);
+      groups.insert(static_cast<Opcode>(fields.u8()));
+      EXPECT_EQ(fields.u64(), next_group);
+      next_group += fields.u64();
+    }
+  }
+  EXPECT_EQ(groups, (std::set{Opcode::kSchema, Opcode::kChannel, Opcode::kChunkIndex,
+                              Opcode::kMetadataIndex, Opcode::kStatistics}));
+}
+
+TEST(McapWriter, MetadataIndicesPointAtMetadata) {
+  const TemporaryFile file;
+  write_file(file.path(), 5);
+  const std::string bytes = file.bytes();
+  std::vector<std::string> names;
+  for (const Raw& record : raw_records(bytes)) {
+    if (record.opcode == Opcode::kMetadataIndex) {
+      FieldReader fields(record.content);
+      const std::uint64_t offset = fields.u64();
+      const std::uint64_t length = fields.u64();
+      FieldReader target(std::string_view(bytes).substr(offset, length));
+      EXPECT_EQ(target.u8(), static_cast<std::uint8_t>(Opcode::kMetadata));
+      const std::uint64_t content_length = target.u64();
+      EXPECT_EQ(content_length, target.size());
+      names.emplace_back(target.string());
+      EXPECT_EQ(fields.string(), names.back());
+    }
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"first", "last"}));
+}
+
+TEST(McapWriter, SameCallsSameBytes) {
+  const TemporaryFile one;
+  const TemporaryFile two;
+  write_file(one.path(), 300);
+  write_file(two.path(), 300);
+  EXPECT_EQ(one.bytes(), two.bytes());
+}
+
+TEST(McapWriter, NamesTheFileItCannotCreate) {
+  try {
+    McapWriter writer("/nonexistent/folder/record.mcap", "test");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kSetup);
+    EXPECT_NE(std::string(error.what()).find("/nonexistent/folder/record.mcap"), std::string::npos);
+  }
+}
+
+TEST(McapWriter, NamesTheFileWhenTheDiskIsFull) {
+  if (!std::filesystem::exists("/dev/full")) {
+    GTEST_SKIP() << "no /dev/full here";
+  }
+  try {
+    McapWriter writer("/dev/full", "test");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kSetup);
+    EXPECT_NE(std::string(error.what()).find("/dev/full"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("No space left"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace tether::record
