@@ -1,0 +1,78 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <tether/base/result.h>
+#include <tether/uav/camera_model.h>
+#include <tether/uav/catalogue.h>
+#include <tether/uav/samples.h>
+
+namespace tether::vision {
+
+/// Where an anchor appears in an image: the paper's region of interest (Section III, Algorithm 2).
+/// Pixel coordinates as in uav::Pixel.
+struct Roi {
+  uav::Pixel center;       ///< of the upright bounding rectangle
+  double width_px = 0.0;   ///< of the upright bounding rectangle
+  double height_px = 0.0;  ///< of the upright bounding rectangle
+  double angle_rad = 0.0;  ///< of the region's long axis, clockwise from the image's right
+  double score = 0.0;      ///< how well colour, fill and proportions fit the anchor, 0..1
+
+  /// Height that the anchor's visible vertical edges have [px], to a fraction of a pixel.
+  double edge_height_px = 0.0;
+
+  bool cut_left_or_right = false;  ///< touches that border of the image: more of it may be outside
+  bool cut_above_or_below = false;
+  bool searched_for = false;  ///< found by a search of the whole image, not from the last window
+};
+
+/// Smoothing of the image before its colours are looked at.
+enum class Prefilter { kNone, kGaussian, kMedian };
+
+struct TrackerOptions {
+  Prefilter prefilter = Prefilter::kGaussian;
+  int prefilter_size_px = 5;        ///< odd
+  double hue_tolerance_deg = 14.0;  ///< about the anchor's hue
+  double min_saturation = 0.30;     ///< 0..1; paler pixels have no reliable hue
+  double min_value = 0.12;          ///< 0..1; nor have darker ones
+  double max_value = 1.0;           ///< 0..1
+  int min_area_px = 30;             ///< smaller regions are noise
+  double min_score = 0.40;          ///< below it the anchor counts as lost
+  double max_area_change = 3.0;  ///< factor between images beyond which the window is not trusted
+};
+
+/// Follows one anchor of known colour through a sequence of images with CamShift (Bradski,
+/// "Computer vision face tracking for use in a perceptual user interface", Intel Technology Journal
+/// 1998; the paper's reference 29): back-projection of a hue histogram, masked by saturation and
+/// value.
+///
+/// The histogram is made from the anchor's colour, so nobody has to select anything. The whole
+/// image is searched at first and whenever the window has lost the anchor; else CamShift goes on
+/// from the last window. Every image is filtered, converted and back-projected whole.
+///
+/// Movable; one thread at a time. Its result depends on the images alone. Throws nothing but
+/// bad_alloc.
+class AnchorTracker {
+ public:
+  /// Fails if the anchor's colour has no hue to speak of (grey, or too dark), or for an unusable
+  /// option.
+  static Result<AnchorTracker> create(const uav::Anchor& anchor,
+                                      const TrackerOptions& options = {});
+  AnchorTracker(AnchorTracker&&) noexcept;
+  AnchorTracker& operator=(AnchorTracker&&) noexcept;
+  ~AnchorTracker();
+
+  /// Nothing, if the anchor is not seen. @pre image.rgb holds width × height × 3 bytes (else:
+  /// nothing).
+  std::optional<Roi> track(const uav::CameraSample& image);
+  /// Forgets the window: the next image is searched whole.
+  void reset();
+
+ private:
+  struct Impl;
+  explicit AnchorTracker(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tether::vision

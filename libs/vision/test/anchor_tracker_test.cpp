@@ -1,0 +1,221 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <opencv2/imgproc.hpp>
+
+#include <tether/base/random.h>
+#include <tether/vision/anchor_tracker.h>
+
+namespace tether::vision {
+namespace {
+
+const uav::Anchor kCube{"cube", uav::AnchorShape::kBox, {0.4, 0.4, 0.4}, {0.1, 0.2, 0.9}};
+const cv::Scalar kBlue(25, 51, 230);
+
+/// A drawn image: grey wall, brown floor.
+class Picture {
+ public:
+  explicit Picture(int width_px = 320, int height_px = 240) {
+    sample_.width_px = width_px;
+    sample_.height_px = height_px;
+    sample_.rgb.resize(3 * static_cast<std::size_t>(width_px * height_px));
+    rgb() = cv::Scalar(150, 148, 145);
+    fill({0, 3 * height_px / 4, width_px, height_px / 4}, {110, 90, 70});
+  }
+  Picture& fill(const cv::Rect& where, const cv::Scalar& color) {
+    cv::Mat image = rgb();
+    cv::rectangle(image, where, color, cv::FILLED);
+    return *this;
+  }
+  Picture& add_noise(double stddev, std::uint64_t index) {
+    KeyedRandom random({11, 0, index});
+    for (std::uint8_t& byte : sample_.rgb) {
+      byte = cv::saturate_cast<std::uint8_t>(byte + stddev * random.normal());
+    }
+    return *this;
+  }
+  const uav::CameraSample& sample() const { return sample_; }
+
+ private:
+  cv::Mat rgb() { return {sample_.height_px, sample_.width_px, CV_8UC3, sample_.rgb.data()}; }
+  uav::CameraSample sample_;
+};
+
+AnchorTracker tracker(const TrackerOptions& options = {}) {
+  Result<AnchorTracker> created = AnchorTracker::create(kCube, options);
+  return std::move(created).value();
+}
+
+TEST(AnchorTracker, FindsTheAnchorWithoutBeingToldWhere) {
+  AnchorTracker t = tracker();
+  const auto roi = t.track(Picture().fill({200, 60, 41, 41}, kBlue).sample());
+  ASSERT_TRUE(roi);
+  EXPECT_NEAR(roi->center.u_px, 220, 0.3);
+  EXPECT_NEAR(roi->center.v_px, 80, 0.3);
+  EXPECT_NEAR(roi->width_px, 41, 3);
+  EXPECT_NEAR(roi->height_px, 41, 3);
+  EXPECT_NEAR(roi->edge_height_px, 41, 0.5);
+  EXPECT_GT(roi->score, 0.8);
+  EXPECT_TRUE(roi->searched_for);
+}
+
+TEST(AnchorTracker, FollowsFromTheLastWindow) {
+  AnchorTracker t = tracker();
+  for (int i = 0; i < 30; ++i) {
+    const int u = 40 + 7 * i;
+    const int v = 60 + (i % 5);
+    const auto roi = t.track(Picture().fill({u, v, 31, 31}, kBlue).sample());
+    ASSERT_TRUE(roi) << i;
+    EXPECT_NEAR(roi->center.u_px, u + 15, 0.5);
+    EXPECT_NEAR(roi->center.v_px, v + 15, 0.5);
+    EXPECT_EQ(roi->searched_for, i == 0);
+  }
+}
+
+TEST(AnchorTracker, SeesNothingWhereNothingIs) {
+  AnchorTracker t = tracker();
+  EXPECT_FALSE(t.track(Picture().sample()));
+  EXPECT_FALSE(t.track(Picture().fill({100, 100, 40, 40}, {200, 40, 30}).sample())) << "red";
+  EXPECT_FALSE(t.track(Picture().fill({100, 100, 3, 3}, kBlue).sample())) << "too small";
+}
+
+TEST(AnchorTracker, NoticesLossAndFindsTheAnchorAgainElsewhere) {
+  AnchorTracker t = tracker();
+  ASSERT_TRUE(t.track(Picture().fill({30, 60, 31, 31}, kBlue).sample()));
+  EXPECT_FALSE(t.track(Picture().sample()));
+  EXPECT_FALSE(t.track(Picture().sample()));
+  const auto again = t.track(Picture().fill({250, 90, 31, 31}, kBlue).sample());
+  ASSERT_TRUE(again);
+  EXPECT_NEAR(again->center.u_px, 265, 0.5);
+  EXPECT_TRUE(again->searched_for);
+}
+
+TEST(AnchorTracker, AJumpOutOfTheWindowCostsNoImage) {
+  AnchorTracker t = tracker();
+  ASSERT_TRUE(t.track(Picture().fill({30, 60, 31, 31}, kBlue).sample()));
+  const auto roi = t.track(Picture().fill({230, 60, 31, 31}, kBlue).sample());
+  ASSERT_TRUE(roi);
+  EXPECT_NEAR(roi->center.u_px, 245, 0.5);
+}
+
+TEST(AnchorTracker, IsNotDistractedByClutter) {
+  AnchorTracker t = tracker();
+  const auto scene = [](int u) {
+    return Picture()
+        .fill({0, 200, 320, 12}, {40, 70, 210})  // a blue skirting board
+        .fill({120, 20, 60, 50}, {200, 60, 40})  // a red picture
+        .fill({270, 40, 30, 60}, {60, 160, 70})  // a plant
+        .fill({20, 30, 50, 60}, {95, 100, 130})  // a bluish grey door
+        .fill({u, 100, 36, 36}, kBlue);
+  };
+  for (int u = 60; u < 260; u += 9) {
+    const auto roi = t.track(scene(u).sample());
+    ASSERT_TRUE(roi) << u;
+    EXPECT_NEAR(roi->center.u_px, u + 17.5, 1.0);
+    EXPECT_NEAR(roi->center.v_px, 117.5, 1.0);
+  }
+}
+
+TEST(AnchorTracker, PrefersTheBetterShapeToTheLargerOne) {
+  AnchorTracker t = tracker();
+  const auto roi =
+      t.track(Picture().fill({10, 10, 300, 30}, kBlue).fill({150, 100, 40, 40}, kBlue).sample());
+  ASSERT_TRUE(roi);
+  EXPECT_NEAR(roi->center.v_px, 119.5, 1.0);
+}
+
+TEST(AnchorTracker, HalfOutsideIsSaidToBeCut) {
+  AnchorTracker t = tracker();
+  const auto roi = t.track(Picture().fill({300, 60, 60, 40}, kBlue).sample());
+  ASSERT_TRUE(roi);
+  EXPECT_TRUE(roi->cut_left_or_right);
+  EXPECT_FALSE(roi->cut_above_or_below);
+  EXPECT_NEAR(roi->center.u_px, 309.5, 1.0);
+  EXPECT_NEAR(roi->edge_height_px, 40, 0.7);
+}
+
+class WithNoise : public ::testing::TestWithParam<Prefilter> {};
+
+TEST_P(WithNoise, CentreStaysWithinHalfAPixel) {
+  TrackerOptions options;
+  options.prefilter = GetParam();
+  AnchorTracker t = tracker(options);
+  KeyedRandom random({12, 0, 0});
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    const int u = static_cast<int>(20 + 240 * random.uniform());
+    const int v = static_cast<int>(10 + 150 * random.uniform());
+    const int side = 2 * static_cast<int>(8 + 15 * random.uniform()) + 1;
+    const auto roi = t.track(Picture().fill({u, v, side, side}, kBlue).add_noise(6.0, i).sample());
+    ASSERT_TRUE(roi) << i;
+    EXPECT_NEAR(roi->center.u_px, u + side / 2, 0.5);
+    EXPECT_NEAR(roi->center.v_px, v + side / 2, 0.5);
+    EXPECT_NEAR(roi->edge_height_px, side, 0.05 * side);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Prefilters, WithNoise,
+                         ::testing::Values(Prefilter::kNone, Prefilter::kGaussian,
+                                           Prefilter::kMedian));
+
+TEST(AnchorTracker, DependsOnTheImagesAlone) {
+  AnchorTracker a = tracker();
+  AnchorTracker b = tracker();
+  for (int i = 0; i < 20; ++i) {
+    const Picture picture = Picture()
+                                .fill({40 + 9 * i, 60, 31, 31}, kBlue)
+                                .add_noise(4.0, static_cast<std::uint64_t>(i));
+    const auto roi_a = a.track(picture.sample());
+    const auto roi_b = b.track(picture.sample());
+    ASSERT_TRUE(roi_a && roi_b);
+    EXPECT_EQ(roi_a->center.u_px, roi_b->center.u_px);
+    EXPECT_EQ(roi_a->score, roi_b->score);
+  }
+}
+
+TEST(AnchorTracker, ResetForgetsTheWindow) {
+  AnchorTracker t = tracker();
+  const Picture picture = Picture().fill({100, 60, 31, 31}, kBlue);
+  ASSERT_TRUE(t.track(picture.sample()));
+  EXPECT_FALSE(t.track(picture.sample())->searched_for);
+  t.reset();
+  EXPECT_TRUE(t.track(picture.sample())->searched_for);
+}
+
+TEST(AnchorTracker, SurvivesImagesThatAreNone) {
+  AnchorTracker t = tracker();
+  uav::CameraSample truncated = Picture().sample();
+  truncated.rgb.pop_back();
+  EXPECT_FALSE(t.track(truncated));
+  EXPECT_FALSE(t.track(uav::CameraSample{}));
+  Picture tiny(1, 1);
+  EXPECT_FALSE(t.track(tiny.sample()));
+}
+
+TEST(AnchorTracker, ImagesMayChangeTheirSize) {
+  AnchorTracker t = tracker();
+  ASSERT_TRUE(t.track(Picture(640, 480).fill({600, 300, 31, 31}, kBlue).sample()));
+  EXPECT_TRUE(t.track(Picture(320, 240).fill({20, 30, 31, 31}, kBlue).sample()));
+}
+
+TEST(AnchorTracker, RefusesWhatItCannotTrack) {
+  uav::Anchor grey = kCube;
+  grey.color_rgb = {0.5, 0.5, 0.52};
+  EXPECT_THAT(AnchorTracker::create(grey).failure().message, testing::HasSubstr("\"cube\""));
+  uav::Anchor flat = kCube;
+  flat.size_m.z = 0;
+  EXPECT_FALSE(AnchorTracker::create(flat));
+}
+
+TEST(AnchorTracker, RefusesUnusableOptions) {
+  TrackerOptions even;
+  even.prefilter_size_px = 4;
+  EXPECT_FALSE(AnchorTracker::create(kCube, even));
+  TrackerOptions wide;
+  wide.hue_tolerance_deg = std::nan("");
+  EXPECT_FALSE(AnchorTracker::create(kCube, wide));
+  TrackerOptions share;
+  share.min_value = 1.5;
+  EXPECT_FALSE(AnchorTracker::create(kCube, share));
+}
+
+}  // namespace
+}  // namespace tether::vision
