@@ -18,7 +18,9 @@ target_compile_options(tether_compile_options INTERFACE
   # Bit-identical results on every machine: no fused multiply-add behind our back.
   -ffp-contract=off)
 if(TETHER_SANITIZE)
-  add_compile_options(-fsanitize=${TETHER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_compile_options(-fsanitize=${TETHER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
+    # GCC's own instrumentation sets this one off in the standard library.
+    -Wno-maybe-uninitialized)
   add_link_options(-fsanitize=${TETHER_SANITIZE})
 endif()
 

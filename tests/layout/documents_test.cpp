@@ -1,8 +1,6 @@
 #include "code_scanner.h"
 #include "source_tree.h"
 
-#include <regex>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -34,12 +32,19 @@ TEST(Documents, NothingIsLeftForLater) {
   EXPECT_THAT(found, IsEmpty());
 }
 
-std::vector<std::string> link_targets(const std::string& markdown) {
-  static const std::regex kLink(R"(\]\(([^)\s]+)\)|(?:src|srcset)="([^"]+)\")");
-  std::vector<std::string> targets;
-  for (std::sregex_iterator it(markdown.begin(), markdown.end(), kLink), end; it != end; ++it) {
-    targets.push_back((*it)[1].matched ? (*it)[1].str() : (*it)[2].str());
+/// What stands between each `open` and the next `close`.
+std::vector<std::string> between(const std::string& text, const std::string& open, char close) {
+  std::vector<std::string> found;
+  for (std::size_t at = text.find(open); at != std::string::npos; at = text.find(open, at + 1)) {
+    const std::size_t begin = at + open.size();
+    found.push_back(text.substr(begin, text.find(close, begin) - begin));
   }
+  return found;
+}
+
+std::vector<std::string> link_targets(const std::string& markdown) {
+  std::vector<std::string> targets = between(markdown, "](", ')');
+  for (const std::string& image : between(markdown, "src=\"", '"')) targets.push_back(image);
   return targets;
 }
 

@@ -54,8 +54,9 @@ TEST(Sizes, FunctionsStayShort) {
   EXPECT_LE(nine_in_ten, kNineInTenFunctionLines);
 }
 
-// Each source has tests of its own: <lib>/src/**/x.cpp → <lib>/test/**/x[_…]_test.cpp. The few that
-// are tested through others are named, with the reason, in untested.txt.
+// Each source has tests of its own: a test named after it (src/x.cpp → test/x[_…]_test.cpp), or one
+// that includes its header. The few that are tested through others are named, with the reason, in
+// untested.txt.
 
 std::string stem(const std::string& path) {
   return std::filesystem::path(path).stem().string();
@@ -73,11 +74,19 @@ std::set<std::string> read_exceptions() {
   return exceptions;
 }
 
+bool includes_header_of(const SourceFile& test, const std::string& name) {
+  const std::vector<Include> found = includes(test.text);
+  return std::any_of(found.begin(), found.end(),
+                     [&](const Include& include) { return stem(include.path) == name; });
+}
+
 bool has_test(const SourceFile& source, const std::vector<SourceFile>& files) {
+  const std::string name = stem(source.path);
   return std::any_of(files.begin(), files.end(), [&](const SourceFile& file) {
-    return file.role == Role::kTest && file.library == source.library &&
-           stem(file.path).starts_with(stem(source.path) + "_") &&
-           stem(file.path).ends_with("_test");
+    if (file.role != Role::kTest || file.library != source.library) return false;
+    const std::string test = stem(file.path);
+    return (test.starts_with(name + "_") && test.ends_with("_test")) ||
+           includes_header_of(file, name);
   });
 }
 
