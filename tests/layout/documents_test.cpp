@@ -1,13 +1,11 @@
 #include "code_scanner.h"
 #include "source_tree.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace tether::layout {
 namespace {
 
-using testing::IsEmpty;
 namespace fs = std::filesystem;
 
 // Put together here, so that this file does not hold what it looks for.
@@ -29,7 +27,7 @@ TEST(Documents, NothingIsLeftForLater) {
       }
     }
   }
-  EXPECT_THAT(found, IsEmpty());
+  EXPECT_EQ(one_per_line(found), "");
 }
 
 /// What stands between each `open` and the next `close`.
@@ -63,7 +61,7 @@ TEST(Documents, LinksLeadSomewhere) {
       dead.push_back(fs::relative(file, TETHER_SOURCE_DIR).generic_string() + ": " + target);
     }
   }
-  EXPECT_THAT(dead, IsEmpty());
+  EXPECT_EQ(one_per_line(dead), "");
 }
 
 TEST(Documents, EachDecisionHasItsParts) {
@@ -81,7 +79,7 @@ TEST(Documents, EachDecisionHasItsParts) {
     if (index.find("(" + name + ")") == std::string::npos)
       wanting.push_back(name + ": not in docs/adr/README.md");
   }
-  EXPECT_THAT(wanting, IsEmpty());
+  EXPECT_EQ(one_per_line(wanting), "");
 }
 
 }  // namespace

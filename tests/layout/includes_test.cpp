@@ -134,25 +134,25 @@ TEST_F(Repository, IsRead) {
 }
 
 TEST_F(Repository, FollowsTheArrows) {
-  EXPECT_THAT(check_arrows(files_), IsEmpty());
+  EXPECT_EQ(one_per_line(check_arrows(files_)), "");
 }
 TEST_F(Repository, HasNoCycles) {
-  EXPECT_THAT(check_cycles(files_), IsEmpty());
+  EXPECT_EQ(one_per_line(check_cycles(files_)), "");
 }
 TEST_F(Repository, KeepsThirdPartiesOutOfPublicHeaders) {
-  EXPECT_THAT(check_public_headers(files_), IsEmpty());
+  EXPECT_EQ(one_per_line(check_public_headers(files_)), "");
 }
 TEST_F(Repository, KeepsPrivateHeadersPrivate) {
-  EXPECT_THAT(check_private_headers(files_), IsEmpty());
+  EXPECT_EQ(one_per_line(check_private_headers(files_)), "");
 }
 TEST_F(Repository, KeepsSyncPure) {
-  EXPECT_THAT(check_sync_is_pure(files_), IsEmpty());
+  EXPECT_EQ(one_per_line(check_sync_is_pure(files_)), "");
 }
 TEST_F(Repository, KeepsTheCoordinatorNeutral) {
-  EXPECT_THAT(check_coordinator_is_neutral(files_), IsEmpty());
+  EXPECT_EQ(one_per_line(check_coordinator_is_neutral(files_)), "");
 }
 TEST_F(Repository, DrawsRandomNumbersByKey) {
-  EXPECT_THAT(check_randomness(files_), IsEmpty());
+  EXPECT_EQ(one_per_line(check_randomness(files_)), "");
 }
 
 }  // namespace

@@ -5,15 +5,12 @@
 #include <set>
 #include <sstream>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 /// Sizes (docs/design.md, section 7): files up to 500 lines; functions of the product with a median
 /// of 8 lines, nine in ten within 30, none above 80.
 namespace tether::layout {
 namespace {
-
-using testing::IsEmpty;
 
 constexpr int kMaxFileLines = 500;
 constexpr int kMaxFunctionLines = 80;
@@ -27,7 +24,7 @@ TEST(Sizes, FilesStayShort) {
     if (lines > kMaxFileLines)
       long_files.push_back(file.path + ": " + std::to_string(lines) + " lines");
   }
-  EXPECT_THAT(long_files, IsEmpty());
+  EXPECT_EQ(one_per_line(long_files), "");
 }
 
 TEST(Sizes, FunctionsStayShort) {
@@ -42,7 +39,7 @@ TEST(Sizes, FunctionsStayShort) {
                                function.name + ", " + std::to_string(function.length) + " lines");
     }
   }
-  EXPECT_THAT(long_functions, IsEmpty());
+  EXPECT_EQ(one_per_line(long_functions), "");
   ASSERT_GT(lengths.size(), 100u) << "the scanner finds too few functions";
   std::sort(lengths.begin(), lengths.end());
   const int median = lengths[lengths.size() / 2];
@@ -92,19 +89,16 @@ bool has_test(const SourceFile& source, const std::vector<SourceFile>& files) {
 
 TEST(Mirror, EverySourceHasItsTests) {
   const std::vector<SourceFile> files = read_sources(TETHER_SOURCE_DIR);
-  std::set<std::string> unused = read_exceptions();
+  std::set<std::string> exceptions = read_exceptions();
   std::vector<std::string> untested;
   for (const SourceFile& file : files) {
     if (file.role != Role::kSource || file.is_header()) continue;
-    const bool excepted = unused.contains(file.path);
-    if (!has_test(file, files)) {
-      unused.erase(file.path);
-      if (!excepted) untested.push_back(file.path);
-    }
+    if (!has_test(file, files) && exceptions.erase(file.path) == 0) untested.push_back(file.path);
   }
-  EXPECT_THAT(untested, IsEmpty())
+  EXPECT_EQ(one_per_line(untested), "")
       << "add a test, or a line with the reason to tests/layout/untested.txt";
-  EXPECT_THAT(unused, IsEmpty()) << "untested.txt names files that have tests or are gone";
+  const std::vector<std::string> unused(exceptions.begin(), exceptions.end());
+  EXPECT_EQ(one_per_line(unused), "") << "untested.txt names files that have tests or are gone";
 }
 
 }  // namespace

@@ -91,6 +91,12 @@ std::vector<fs::path> text_files(const fs::path& root) {
   return walk(root, is_text);
 }
 
+std::string one_per_line(const std::vector<std::string>& texts) {
+  std::string joined;
+  for (const std::string& text : texts) joined += "\n" + text;
+  return joined;
+}
+
 std::string read_text(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};

@@ -41,6 +41,9 @@ std::vector<SourceFile> read_sources(const std::filesystem::path& root);
 /// without build trees, installed packages and hidden folders other than .ci.
 std::vector<std::filesystem::path> text_files(const std::filesystem::path& root);
 
+/// For messages; empty where there is none.
+std::string one_per_line(const std::vector<std::string>& texts);
+
 std::string read_text(const std::filesystem::path& file);
 
 }  // namespace tether::layout
