@@ -146,9 +146,13 @@ class TemporaryFile {
     std::ifstream stream(path_, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   }
+  // In place: a file system may flush a file that was truncated to be written anew, which takes
+  // long.
   void set_bytes(std::string_view bytes) const {
-    std::ofstream(path_, std::ios::binary)
+    std::ofstream(path_, std::ios::binary | std::ios::app);
+    std::fstream(path_, std::ios::binary | std::ios::in | std::ios::out)
         .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    std::filesystem::resize_file(path_, bytes.size());
   }
 
  private:
