@@ -1,9 +1,10 @@
 #include "sdf_check.h"
 
+#include "sdf_rules.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -108,83 +109,6 @@ std::string attribute(const sdf::ElementPtr& element, const std::string& key) {
   return element->HasAttribute(key) ? element->GetAttribute(key)->GetAsString() : "";
 }
 
-/// What a value must be, beyond finite.
-struct Rule {
-  bool (*holds)(double value);
-  const char* allowed;
-};
-
-bool is_positive(double value) {
-  return value > 0.0;
-}
-bool is_not_negative(double value) {
-  return value >= 0.0;
-}
-bool is_fraction(double value) {
-  return value >= 0.0 && value <= 1.0;
-}
-bool is_field_of_view(double value) {
-  return value > 0.0 && value < std::numbers::pi;
-}
-bool is_image_edge(double value) {
-  return value >= 1.0 && value <= 4096.0;
-}
-const Rule kPositive{is_positive, "it must be greater than 0"};
-const Rule kNotNegative{is_not_negative, "it must not be negative"};
-const Rule kFraction{is_fraction, "it must be between 0 and 1"};
-const Rule kFieldOfView{is_field_of_view, "it must be between 0 and pi radians, both excluded"};
-const Rule kImageEdge{is_image_edge, "it must be between 1 and 4096 pixels"};
-
-const std::map<std::string, Rule, std::less<>> kRules = {
-    {"physics/max_step_size", kPositive},
-    {"inertial/mass", kPositive},
-    {"inertia/ixx", kPositive},
-    {"inertia/iyy", kPositive},
-    {"inertia/izz", kPositive},
-    {"box/size", kPositive},
-    {"cylinder/radius", kPositive},
-    {"cylinder/length", kPositive},
-    {"sphere/radius", kPositive},
-    {"capsule/radius", kPositive},
-    {"capsule/length", kPositive},
-    {"ellipsoid/radii", kPositive},
-    {"plane/size", kPositive},
-    {"mesh/scale", kPositive},
-    {"ode/mu", kNotNegative},
-    {"visual/transparency", kFraction},
-    {"scene/ambient", kFraction},
-    {"scene/background", kFraction},
-    {"material/ambient", kFraction},
-    {"material/diffuse", kFraction},
-    {"material/specular", kFraction},
-    {"material/emissive", kFraction},
-    {"light/diffuse", kFraction},
-    {"light/specular", kFraction},
-    {"light/intensity", kNotNegative},
-    {"attenuation/constant", kNotNegative},
-    {"attenuation/linear", kNotNegative},
-    {"attenuation/quadratic", kNotNegative},
-    {"spot/outer_angle", kNotNegative},
-    {"spot/falloff", kNotNegative},
-    {"sensor/update_rate", kNotNegative},
-    {"camera/horizontal_fov", kFieldOfView},
-    {"image/width", kImageEdge},
-    {"image/height", kImageEdge},
-    {"clip/near", kPositive},
-    {"clip/far", kPositive},
-    {"intrinsics/fx", kPositive},
-    {"intrinsics/fy", kPositive},
-    {"noise/stddev", kNotNegative},
-    {"noise/bias_stddev", kNotNegative},
-    {"noise/dynamic_bias_stddev", kNotNegative},
-    {"noise/dynamic_bias_correlation_time", kNotNegative},
-    {"range/min", kNotNegative},
-    {"range/max", kPositive},
-    {"range/resolution", kNotNegative},
-    {"horizontal/samples", kPositive},
-    {"vertical/samples", kPositive},
-};
-
 bool is_numeric(const sdf::ElementPtr& element) {
   static const Names types = {"double", "float",   "int",      "unsigned int",
                               "pose",   "vector3", "vector2d", "color"};
@@ -211,11 +135,11 @@ void check_value(const SdfSource& source, const sdf::ElementPtr& element) {
   const std::string text = element->GetValue()->GetAsString();
   const auto numbers = parse_numbers(text);
   if (!numbers) return;  // libsdformat has accepted it: nothing that a rule speaks of
-  const auto rule = kRules.find(element->GetParent()->GetName() + "/" + element->GetName());
+  const ValueRule* rule = find_rule(element->GetParent()->GetName(), element->GetName());
   for (const double number : *numbers) {
     if (!std::isfinite(number)) refuse(source, element, "is " + text + "; it must be finite");
-    if (rule != kRules.end() && !rule->second.holds(number)) {
-      refuse(source, element, "is " + text + "; " + rule->second.allowed);
+    if (rule != nullptr && !rule->holds(number)) {
+      refuse(source, element, "is " + text + "; " + rule->allowed);
     }
   }
 }

@@ -1,5 +1,7 @@
 #include "sdf_source.h"
 
+#include "sdf_rules.h"
+
 #include <cstdlib>
 #include <regex>
 #include <sstream>
@@ -62,6 +64,16 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// What the value at the end of an XML path ("/sdf/.../link[@name="l"]/inertial/mass") must be, as
+/// the end of a message; empty where no rule speaks of it.
+std::string allowed_value(const std::string& xml_path) {
+  static const std::regex tail("([a-z_]+)(\\[[^/]*\\])?/([a-z_]+)$");
+  std::smatch match;
+  if (!std::regex_search(xml_path, match, tail)) return "";
+  const ValueRule* rule = find_rule(match[1], match[3]);
+  return rule != nullptr ? std::string("; ") + rule->allowed : "";
+}
+
 sdf::ElementPtr find_named(const sdf::ElementPtr& element, const std::string& name) {
   if (name_attribute(element) == name) return element;
   sdf::ElementPtr found;
@@ -95,7 +107,9 @@ const tinyxml2::XMLElement* nth_child(const tinyxml2::XMLElement* parent, const 
 }  // namespace
 
 std::string name_attribute(const sdf::ElementPtr& element) {
-  return element->HasAttribute("name") ? element->GetAttribute("name")->GetAsString() : "";
+  const std::string name =
+      element->HasAttribute("name") ? element->GetAttribute("name")->GetAsString() : "";
+  return name == "__default__" ? "" : name;
 }
 
 std::string describe(const sdf::ElementPtr& element) {
@@ -173,7 +187,7 @@ void SdfSource::throw_first_error() const {
   std::string reason = one_line(first.Message());
   // libsdformat tells what is wrong with a value only on the console.
   if (reason.starts_with("Error reading element") && !console_errors_.empty()) {
-    reason += ": " + console_errors_.front();
+    reason += ": " + console_errors_.front() + allowed_value(first.XmlPath().value_or(""));
   }
   if (first.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID) {
     reason += "; moments must be positive, and none larger than the sum of the other two";

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+namespace tether::sim {
+
+/// What the numbers of an element must be, beyond finite.
+struct ValueRule {
+  bool (*holds)(double value);
+  const char* allowed;  ///< in words, to end an error message with
+};
+
+/// The rule for the element `child` in `parent`; nullptr where any finite number will do.
+const ValueRule* find_rule(const std::string& parent, const std::string& child);
+
+}  // namespace tether::sim
