@@ -11,27 +11,36 @@
 
 namespace tether::link {
 
-/// The SUT's end of a connection: blocking, whole messages. One thread sends requests and receives;
-/// `send` may be called from several threads (progress), `receive` from one at a time.
+/// The SUT's end of a connection: blocking, whole messages. `send` and `close` may be called from
+/// any thread at any time, `receive` and `receive_within` from one thread at a time.
 class Channel {
  public:
   virtual ~Channel() = default;
+  /// Fails with kInvalid (the message breaks `validate`; nothing was sent) or kDisconnected.
   virtual Status send(const Message& message) = 0;
-  /// Blocks until a whole message is there.
+  /// Blocks until a whole message is there. Fails with kDisconnected or kProtocol; what arrived
+  /// before the connection ended is delivered first.
   virtual Result<Message> receive() = 0;
-  /// Unblocks `receive` on this and the other end.
+  /// The same, but fails with kTimeout if no whole message is there after `timeout`; a message that
+  /// had begun to come is not lost.
+  virtual Result<Message> receive_within(Duration timeout) = 0;
+  /// Ends the connection; unblocks `receive` on this and the other end.
   virtual void close() = 0;
 };
 
 /// "host:port", "[v6]:port".
 struct Address {
-  std::string host;
+  std::string host;  ///< a name, an IPv4 address, or an IPv6 address without brackets
   std::uint16_t port = 0;
+  friend bool operator==(const Address&, const Address&) = default;
 };
+/// Fails with kInvalid, saying what is expected.
 Result<Address> parse_address(const std::string& text);
 std::string to_string(const Address& address);
 
-/// Connects over TCP with TCP_NODELAY (paper, Section II).
+/// Connects over TCP with TCP_NODELAY (paper, Section II), trying every address of the host in
+/// turn. Fails with kDisconnected (name unknown, refused, unreachable) or kTimeout; the text names
+/// the address.
 Result<std::unique_ptr<Channel>> connect_tcp(const Address& address, Duration timeout);
 
 }  // namespace tether::link

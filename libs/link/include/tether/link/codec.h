@@ -4,13 +4,12 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 #include <tether/base/result.h>
 #include <tether/link/messages.h>
 
-/// Frames: a little-endian uint32 length, then that many bytes of FlatBuffer (root `Envelope` of
-/// `schema/link.fbs`).
+/// Frames: a little-endian uint32 length, then that many bytes of FlatBuffer (size-prefixed, root
+/// `Envelope` of `schema/link.fbs`).
 namespace tether::link {
 
 inline constexpr std::size_t kFrameHeaderBytes = 4;
@@ -19,8 +18,36 @@ inline constexpr std::uint32_t kMaxReplyBytes = 64u << 20;
 /// Largest frame towards the coordinator; nothing a SUT says is long.
 inline constexpr std::uint32_t kMaxRequestBytes = 1u << 20;
 
+/// Longest name, token or topic [bytes].
+inline constexpr std::size_t kMaxNameBytes = 256;
+/// Longest text for a person: a refusal's message, an outcome [bytes].
+inline constexpr std::size_t kMaxTextBytes = 4096;
+/// Longest JSON text: details of an outcome, an annotation [bytes].
+inline constexpr std::size_t kMaxJsonBytes = 1000u << 10;
+/// Most sensors, and most anchors, of a catalogue.
+inline constexpr std::size_t kMaxCatalogueEntries = 1024;
+/// Every timestamp t has 0 ≤ t < this (146 years), so that sums of two cannot overflow [ns].
+inline constexpr std::int64_t kMaxTimestampNs = std::int64_t{1} << 62;
+
+/// Whether the message may go over the wire: enumerations in range, numbers finite (a range may be
+/// ±inf), timestamps within bounds, texts and lists no longer than the limits above, images of as
+/// many bytes as width × height × 3. Fails with Failure::Kind::kInvalid, naming the field. The
+/// protocol version of a Hello may be any.
+Status validate(const Message& message);
+
+/// A frame in up to three pieces, to be sent one right after the other. `image` is the message's
+/// own pixel buffer, so that an image goes from there to the socket without a copy; it is empty for
+/// messages without one.
+struct FramePieces {
+  std::span<const std::uint8_t> head;
+  std::span<const std::uint8_t> image;
+  std::span<const std::uint8_t> tail;
+
+  std::size_t size() const { return head.size() + image.size() + tail.size(); }
+};
+
 /// Serialises messages into whole frames (length included). Keeps its buffer, so that steady use
-/// allocates nothing. Not thread-safe.
+/// allocates nothing. Not thread-safe. @pre of both calls: validate(message).ok()
 class Encoder {
  public:
   Encoder();
@@ -30,17 +57,19 @@ class Encoder {
 
   /// The frame; valid until the next call.
   std::span<const std::uint8_t> encode(const Message& message);
+  /// The same in pieces; valid until the next call, and as long as `message` stays as it is.
+  FramePieces encode_pieces(const Message& message);
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// Decodes the payload of one frame (without the length). Verifies every offset before use;
-/// enumerations, sizes and numbers are range-checked. Fails with Failure::Kind::kProtocol.
-Result<Message> decode(std::span<const std::uint8_t> payload);
+/// Decodes one whole frame (length included). Verifies every offset before use, then `validate`s.
+/// Fails with Failure::Kind::kProtocol, whatever the bytes are; never reads outside of them.
+Result<Message> decode(std::span<const std::uint8_t> frame);
 
-/// The length announced by a frame header. Fails if it is 0 or above `limit`.
+/// The length announced by a frame header. Fails with kProtocol if it is 0 or above `limit`.
 Result<std::uint32_t> decode_frame_length(std::span<const std::uint8_t, kFrameHeaderBytes> header,
                                           std::uint32_t limit);
 

@@ -2,10 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 
+#include <tether/base/result.h>
 #include <tether/base/time.h>
 #include <tether/link/channel.h>
 #include <tether/link/codec.h>
@@ -16,18 +16,23 @@ namespace tether::link {
 /// Identifies one connection for its whole life; never reused within a server.
 using PeerId = std::uint64_t;
 
-/// What happened on the coordinator's end. Called from within `Server::poll`, on its thread; must
-/// not throw.
+/// What happened on the coordinator's end. Called from within `Server::poll`, on its thread; may
+/// call `send` and `close`, but not `poll`; must not throw.
 class ServerEvents {
  public:
   virtual ~ServerEvents() = default;
   virtual void on_connected(PeerId peer, const std::string& remote_address) = 0;
   virtual void on_message(PeerId peer, Message message) = 0;
-  /// The connection is gone; the peer's id is not used again. `failure` says why (kDisconnected: it
-  /// closed; kProtocol: it sent what it must not, and was told so with a Refusal before being
-  /// closed).
+  /// The connection is gone; the peer's id is not used again. `failure` says why. kDisconnected: it
+  /// closed, or did not read what it was sent. kProtocol: it sent what it must not. kTimeout: it
+  /// never sent a whole frame. In the latter two cases it was told so with a Refusal.
   virtual void on_closed(PeerId peer, const Failure& failure) = 0;
 };
+
+/// Bytes that may wait for a peer that reads slowly; one frame of any size may always wait.
+inline constexpr std::size_t kMaxQueuedBytes = 16u << 20;
+/// Connections at the same time; one more is refused.
+inline constexpr std::size_t kMaxPeers = 64;
 
 /// The coordinator's end: many connections, one thread, no locks. Frames go out whole and in order.
 class Server {
@@ -35,18 +40,21 @@ class Server {
   virtual ~Server() = default;
   /// Where to connect.
   virtual Address address() const = 0;
-  /// Handles what is there; if nothing is, waits at most `max_wait` (0: does not wait) for
-  /// something to come. Returns whether anything was handled.
+  /// Handles what is there, calling the events from within. If nothing is, waits at most `max_wait`
+  /// (0: does not wait) for something to come. Returns whether anything was handled.
   virtual bool poll(Duration max_wait) = 0;
-  /// Queues a frame. A peer that does not read is closed when more than the queue's bound waits for
-  /// it.
-  virtual void send(PeerId peer, const Message& message) = 0;
-  /// Sends what is queued, then closes; `on_closed` is not called for it.
+  /// Writes the message to the connection at once as far as it takes it, and keeps the rest for
+  /// `poll`. Move the message in: its image is then never copied. A peer that does not read is
+  /// closed (`on_closed` comes from the next poll) when something is to be sent while more than
+  /// kMaxQueuedBytes wait for it. Does nothing for a peer that is gone.
+  /// @throws Error(kInternal) if the message breaks `validate`.
+  virtual void send(PeerId peer, Message message) = 0;
+  /// Sends what is queued, then closes; no event comes from this peer any more.
   virtual void close(PeerId peer) = 0;
 };
 
 /// Listens on TCP with TCP_NODELAY; port 0 takes a free one. A peer that has not sent its first
-/// whole frame within `hello_timeout` is closed.
+/// whole frame within `hello_timeout` is refused. `events` must outlive the server.
 /// @throws Error(kSetup) when the address cannot be bound.
 std::unique_ptr<Server> listen_tcp(const Address& address, Duration hello_timeout,
                                    ServerEvents& events);

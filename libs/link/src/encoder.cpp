@@ -1,0 +1,230 @@
+#include "link_generated.h"
+
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include <tether/link/codec.h>
+
+namespace tether::link {
+namespace {
+
+using flatbuffers::FlatBufferBuilder;
+using flatbuffers::Offset;
+
+wire::Vec3 to_wire(const uav::Vec3& v) {
+  return {v.x, v.y, v.z};
+}
+wire::Quat to_wire(const uav::Quat& q) {
+  return {q.w, q.x, q.y, q.z};
+}
+wire::Pose to_wire(const uav::Pose& X) {
+  return {to_wire(X.p), to_wire(X.q)};
+}
+
+/// A union member: its type and where it was written.
+template <class Kind>
+struct Member {
+  Kind kind;
+  Offset<void> at;
+};
+
+// --- Welcome ------------------------------------------------------------------------------------
+
+using Properties = Member<wire::SensorProperties>;
+
+Properties write(FlatBufferBuilder& b, const uav::CameraProperties& camera) {
+  const uav::CameraModel& m = camera.model;
+  return {wire::SensorProperties::CameraProperties,
+          wire::CreateCameraProperties(b, m.width_px, m.height_px, m.fx_px, m.fy_px, m.cx_px,
+                                       m.cy_px, m.k1, m.k2, m.k3, m.p1, m.p2)
+              .Union()};
+}
+Properties write(FlatBufferBuilder& b, const uav::ImuProperties&) {
+  return {wire::SensorProperties::ImuProperties, wire::CreateImuProperties(b).Union()};
+}
+Properties write(FlatBufferBuilder& b, const uav::RangeProperties& range) {
+  return {wire::SensorProperties::RangeProperties,
+          wire::CreateRangeProperties(b, range.min_m, range.max_m).Union()};
+}
+
+Offset<wire::Sensor> write(FlatBufferBuilder& b, const uav::SensorDescription& sensor) {
+  const auto name = b.CreateString(sensor.name);
+  const Properties properties =
+      std::visit([&b](const auto& p) { return write(b, p); }, sensor.properties);
+  const wire::Pose X_BS = to_wire(sensor.X_BS);
+  return wire::CreateSensor(b, name, &X_BS, sensor.rate_hz, properties.kind, properties.at);
+}
+
+Offset<wire::Anchor> write(FlatBufferBuilder& b, const uav::Anchor& anchor) {
+  const auto name = b.CreateString(anchor.name);
+  const wire::Vec3 size_m = to_wire(anchor.size_m);
+  const wire::Vec3 color_rgb = to_wire(anchor.color_rgb);
+  return wire::CreateAnchor(b, name, static_cast<wire::AnchorShape>(anchor.shape), &size_m,
+                            &color_rgb);
+}
+
+Offset<wire::Catalogue> write(FlatBufferBuilder& b, const uav::Catalogue& catalogue) {
+  std::vector<Offset<wire::Sensor>> sensors;
+  for (const auto& sensor : catalogue.sensors) sensors.push_back(write(b, sensor));
+  std::vector<Offset<wire::Anchor>> anchors;
+  for (const auto& anchor : catalogue.anchors) anchors.push_back(write(b, anchor));
+  const auto uav = b.CreateString(catalogue.uav);
+  const auto sensor_list = b.CreateVector(sensors);
+  return wire::CreateCatalogue(b, uav, sensor_list, b.CreateVector(anchors));
+}
+
+// --- Request ------------------------------------------------------------------------------------
+
+using Body = Member<wire::RequestBody>;
+
+Body write(FlatBufferBuilder& b, const ReadSensor& read) {
+  return {wire::RequestBody::ReadSensor,
+          wire::CreateReadSensor(b, read.sensor, read.latest).Union()};
+}
+Body write(FlatBufferBuilder& b, const SetVelocity& set) {
+  const wire::Vec3 velocity = to_wire(set.command.velocity_H_m_s);
+  return {wire::RequestBody::SetVelocity,
+          wire::CreateSetVelocity(b, &velocity, set.command.yaw_rate_rad_s).Union()};
+}
+Body write(FlatBufferBuilder& b, const Sleep& sleep) {
+  return {wire::RequestBody::Sleep, wire::CreateSleep(b, to_ns(sleep.until)).Union()};
+}
+Body write(FlatBufferBuilder& b, const Finish& finish) {
+  const auto outcome = b.CreateString(finish.outcome);
+  const auto details = b.CreateString(finish.details);
+  return {wire::RequestBody::FinishMission,
+          wire::CreateFinishMission(b, finish.reached_goal, outcome, details).Union()};
+}
+
+// --- Reply --------------------------------------------------------------------------------------
+
+/// Where an image belongs in the finished buffer.
+struct ImageSlot {
+  std::span<const std::uint8_t> pixels;
+  std::size_t end_distance = 0;  ///< from the vector's length field to the end of the buffer
+};
+
+using SampleMember = Member<wire::Sample>;
+
+/// Leaves room for the pixels without touching it. Being written first, they lie at the end of the
+/// buffer (it grows downwards), so that a frame is one piece before them and, at most, padding
+/// after.
+SampleMember write(FlatBufferBuilder& b, const uav::CameraSample& sample, ImageSlot& slot) {
+  std::uint8_t* room = nullptr;
+  const Offset<flatbuffers::Vector<std::uint8_t>> rgb(
+      b.CreateUninitializedVector<std::uint8_t>(sample.rgb.size(), &room));
+  slot = {sample.rgb, rgb.o};
+  return {wire::Sample::CameraSample,
+          wire::CreateCameraSample(b, to_ns(sample.sampled_at), sample.index, sample.width_px,
+                                   sample.height_px, rgb)
+              .Union()};
+}
+SampleMember write(FlatBufferBuilder& b, const uav::ImuSample& sample, ImageSlot&) {
+  const wire::Vec3 angular_velocity = to_wire(sample.angular_velocity_rad_s);
+  const wire::Vec3 specific_force = to_wire(sample.specific_force_m_s2);
+  const wire::Quat q_WS = to_wire(sample.q_WS);
+  return {wire::Sample::ImuSample, wire::CreateImuSample(b, to_ns(sample.sampled_at), sample.index,
+                                                         &angular_velocity, &specific_force, &q_WS)
+                                       .Union()};
+}
+SampleMember write(FlatBufferBuilder& b, const uav::RangeSample& sample, ImageSlot&) {
+  return {
+      wire::Sample::RangeSample,
+      wire::CreateRangeSample(b, to_ns(sample.sampled_at), sample.index, sample.range_m).Union()};
+}
+
+// --- Envelope -----------------------------------------------------------------------------------
+
+using Content = Member<wire::Content>;
+
+Content write(FlatBufferBuilder& b, const Hello& hello, ImageSlot&) {
+  const auto sut = b.CreateString(hello.sut);
+  const auto uav = b.CreateString(hello.uav);
+  const auto token = b.CreateString(hello.token);
+  return {wire::Content::Hello,
+          wire::CreateHello(b, hello.protocol_version, sut, uav,
+                            static_cast<wire::ClockKind>(hello.clock), hello.cpu_factor, token)
+              .Union()};
+}
+Content write(FlatBufferBuilder& b, const Welcome& welcome, ImageSlot&) {
+  const auto catalogue = write(b, welcome.catalogue);
+  return {wire::Content::Welcome,
+          wire::CreateWelcome(b, catalogue, welcome.free_running, to_ns(welcome.start)).Union()};
+}
+Content write(FlatBufferBuilder& b, const Refusal& refusal, ImageSlot&) {
+  const auto message = b.CreateString(refusal.message);
+  return {
+      wire::Content::Refusal,
+      wire::CreateRefusal(b, static_cast<wire::RefusalReason>(refusal.reason), message).Union()};
+}
+Content write(FlatBufferBuilder& b, const Request& request, ImageSlot&) {
+  const Body body = std::visit([&b](const auto& r) { return write(b, r); }, request.body);
+  return {wire::Content::Request,
+          wire::CreateRequest(b, request.sequence, to_ns(request.issued_at),
+                              to_ns(request.previous_round_trip), body.kind, body.at)
+              .Union()};
+}
+Content write(FlatBufferBuilder& b, const Reply& reply, ImageSlot& slot) {
+  SampleMember sample{wire::Sample::NONE, 0};
+  if (reply.sample) {
+    sample = std::visit([&](const auto& s) { return write(b, s, slot); }, *reply.sample);
+  }
+  return {
+      wire::Content::Reply,
+      wire::CreateReply(b, reply.sequence, to_ns(reply.resume_at), sample.kind, sample.at).Union()};
+}
+Content write(FlatBufferBuilder& b, const Progress& progress, ImageSlot&) {
+  return {wire::Content::Progress, wire::CreateProgress(b, to_ns(progress.reached)).Union()};
+}
+Content write(FlatBufferBuilder& b, const Annotation& annotation, ImageSlot&) {
+  const auto topic = b.CreateString(annotation.topic);
+  const auto json = b.CreateString(annotation.json);
+  return {wire::Content::Annotation,
+          wire::CreateAnnotation(b, to_ns(annotation.at), topic, json).Union()};
+}
+
+}  // namespace
+
+struct Encoder::Impl {
+  FlatBufferBuilder builder;
+  ImageSlot slot;
+
+  void build(const Message& message) {
+    builder.Clear();
+    slot = {};
+    const Content content =
+        std::visit([this](const auto& m) { return write(builder, m, slot); }, message);
+    const auto envelope = wire::CreateEnvelope(builder, content.kind, content.at);
+    wire::FinishSizePrefixedEnvelopeBuffer(builder, envelope);
+  }
+
+  std::span<std::uint8_t> frame() { return {builder.GetBufferPointer(), builder.GetSize()}; }
+  std::size_t image_begin() {
+    return frame().size() - slot.end_distance + sizeof(flatbuffers::uoffset_t);
+  }
+};
+
+Encoder::Encoder() : impl_(std::make_unique<Impl>()) {}
+Encoder::~Encoder() = default;
+Encoder::Encoder(Encoder&&) noexcept = default;
+Encoder& Encoder::operator=(Encoder&&) noexcept = default;
+
+std::span<const std::uint8_t> Encoder::encode(const Message& message) {
+  impl_->build(message);
+  const auto frame = impl_->frame();
+  const auto pixels = impl_->slot.pixels;
+  if (!pixels.empty()) std::memcpy(&frame[impl_->image_begin()], pixels.data(), pixels.size());
+  return frame;
+}
+
+FramePieces Encoder::encode_pieces(const Message& message) {
+  impl_->build(message);
+  const auto frame = impl_->frame();
+  const auto pixels = impl_->slot.pixels;
+  if (pixels.empty()) return {frame, {}, {}};
+  const std::size_t begin = impl_->image_begin();
+  return {frame.first(begin), pixels, frame.subspan(begin + pixels.size())};
+}
+
+}  // namespace tether::link

@@ -1,0 +1,134 @@
+#include "peer.h"
+
+#include <utility>
+#include <variant>
+
+#include <poll.h>
+#include <sys/socket.h>
+
+namespace tether::link {
+namespace {
+
+/// How long a connection that is being closed waits for its peer to close too.
+constexpr std::chrono::seconds kDrainLimit{2};
+
+std::vector<std::uint8_t> take_image(Message& message) {
+  auto* reply = std::get_if<Reply>(&message);
+  if (reply == nullptr || !reply->sample) return {};
+  auto* camera = std::get_if<uav::CameraSample>(&*reply->sample);
+  return camera == nullptr ? std::vector<std::uint8_t>{} : std::move(camera->rgb);
+}
+
+std::vector<std::uint8_t> copy(std::span<const std::uint8_t> bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+Peer::Peer(PeerId id, Tcp::socket socket, std::string remote)
+    : id_(id), socket_(std::move(socket)), remote_(std::move(remote)) {
+  tune(socket_);
+  std::error_code ignored;
+  socket_.native_non_blocking(true, ignored);
+}
+
+Status Peer::send(const FramePieces& pieces, Message& message) {
+  if (queued_bytes_ > kMaxQueuedBytes) {
+    die();
+    return Failure{Failure::Kind::kDisconnected,
+                   remote_ + " does not read what it is sent: " + std::to_string(queued_bytes_) +
+                       " bytes wait for it"};
+  }
+  std::size_t done = 0;
+  if (queue_.empty()) {
+    const Transfer sent = send_some(descriptor(), pieces, 0);
+    if (sent.error) {
+      die();
+      return lost(remote_, sent.error);
+    }
+    done = sent.bytes;
+  }
+  if (done < pieces.size()) enqueue(pieces, done, message);
+  return ok_status();
+}
+
+void Peer::enqueue(const FramePieces& pieces, std::size_t done, Message& message) {
+  QueuedFrame frame{copy(pieces.head), take_image(message), copy(pieces.tail), done};
+  queued_bytes_ += frame.left();
+  queue_.push_back(std::move(frame));
+}
+
+Status Peer::flush() {
+  while (!queue_.empty()) {
+    QueuedFrame& frame = queue_.front();
+    const Transfer sent = send_some(descriptor(), frame.pieces(), frame.done);
+    if (sent.error) {
+      die();
+      return lost(remote_, sent.error);
+    }
+    frame.done += sent.bytes;
+    queued_bytes_ -= sent.bytes;
+    if (frame.left() > 0) return ok_status();
+    queue_.pop_front();
+  }
+  shut_when_flushed();
+  return ok_status();
+}
+
+Result<bool> Peer::receive() {
+  const Transfer received = receive_some(descriptor(), input_.space());
+  if (received.error) {
+    die();
+    return lost(remote_, received.error);
+  }
+  if (received.ended) {
+    die();
+    return Failure{Failure::Kind::kDisconnected, remote_ + " closed the connection"};
+  }
+  input_.commit(received.bytes);
+  return received.bytes > 0;
+}
+
+void Peer::discard_input() {
+  const Transfer received = receive_some(descriptor(), input_.space());
+  if (received.ended || received.error) die();
+}
+
+void Peer::drain() {
+  if (state_ != State::kOpen) return;
+  state_ = State::kDraining;
+  deadline = std::chrono::steady_clock::now() + kDrainLimit;
+  shut_when_flushed();
+}
+
+void Peer::shut_when_flushed() {
+  if (state_ == State::kDraining && queue_.empty()) ::shutdown(descriptor(), SHUT_WR);
+}
+
+void Peer::die() {
+  state_ = State::kDead;
+  deadline.reset();
+  queue_.clear();
+  queued_bytes_ = 0;
+  std::error_code ignored;
+  socket_.close(ignored);
+}
+
+void Peer::finish(Duration limit) {
+  const auto end = std::chrono::steady_clock::now() + limit;
+  while (state_ != State::kDead && wants_to_write()) {
+    const auto left =
+        std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    pollfd entry{descriptor(), POLLOUT, 0};
+    if (left.count() <= 0 || ::poll(&entry, 1, static_cast<int>(left.count())) <= 0) break;
+    if (!flush()) return;
+  }
+  if (state_ == State::kDead) return;
+  // Reading what is there keeps the close from becoming a reset.
+  ::shutdown(descriptor(), SHUT_WR);
+  while (receive_some(descriptor(), input_.space()).bytes > 0) {
+  }
+  die();
+}
+
+}  // namespace tether::link

@@ -1,0 +1,82 @@
+#pragma once
+
+#include "frame_buffer.h"
+#include "socket.h"
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tether/link/server.h>
+
+namespace tether::link {
+
+/// A frame, or what is left of it, that the socket did not take at once.
+struct QueuedFrame {
+  std::vector<std::uint8_t> head;
+  std::vector<std::uint8_t> image;
+  std::vector<std::uint8_t> tail;
+  std::size_t done = 0;
+
+  FramePieces pieces() const { return {head, image, tail}; }
+  std::size_t left() const { return head.size() + image.size() + tail.size() - done; }
+};
+
+/// One connection of a TcpServer.
+///
+///   kOpen ──drain()──► kDraining ──peer closed or deadline──► kDead
+///     └──────────────── connection lost ───────────────────────┘
+///
+/// While draining, what is queued still goes out, then our side is shut; what comes in is dropped.
+/// Closing at once instead could destroy a Refusal on its way: unread input makes TCP reset.
+class Peer {
+ public:
+  enum class State { kOpen, kDraining, kDead };
+  using Deadline = std::optional<std::chrono::steady_clock::time_point>;
+
+  Peer(PeerId id, Tcp::socket socket, std::string remote);
+
+  PeerId id() const { return id_; }
+  const std::string& remote() const { return remote_; }
+  State state() const { return state_; }
+  int descriptor() { return socket_.native_handle(); }
+  bool wants_to_write() const { return !queue_.empty(); }
+
+  /// Sends what the socket takes and queues the rest, whose image it takes out of `message`.
+  /// Fails (and is dead then) if the connection is lost or too much is waiting.
+  Status send(const FramePieces& pieces, Message& message);
+  /// Sends what is queued as far as the socket takes it.
+  Status flush();
+  /// Receives once. True: something came.
+  Result<bool> receive();
+  /// The next whole frame; empty: none.
+  Result<std::span<const std::uint8_t>> next_frame() { return input_.next(); }
+  /// Receives once and drops it; dead when the peer has closed.
+  void discard_input();
+
+  void drain();
+  void die();
+  /// Waits for the queue to empty, blocking up to `limit`, then closes.
+  void finish(Duration limit);
+
+  Deadline deadline;               ///< of the first frame, or of draining
+  std::optional<Failure> closing;  ///< what on_closed still has to tell
+
+ private:
+  void enqueue(const FramePieces& pieces, std::size_t done, Message& message);
+  void shut_when_flushed();
+
+  PeerId id_;
+  Tcp::socket socket_;
+  std::string remote_;
+  FrameBuffer input_{kMaxRequestBytes};
+  std::deque<QueuedFrame> queue_;
+  std::size_t queued_bytes_ = 0;
+  State state_ = State::kOpen;
+};
+
+}  // namespace tether::link

@@ -1,0 +1,108 @@
+#include "socket.h"
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/uio.h>
+#include <time.h>
+
+namespace tether::link {
+namespace {
+
+void set_option(int descriptor, int level, int option, int value) {
+  ::setsockopt(descriptor, level, option, &value, sizeof value);
+}
+
+Transfer outcome(ssize_t result) {
+  Transfer transfer;
+  if (result >= 0) {
+    transfer.bytes = static_cast<std::size_t>(result);
+  } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
+    transfer.would_block = true;
+  } else {
+    transfer.error = {errno, std::system_category()};
+  }
+  return transfer;
+}
+
+/// Repeats a call that a signal interrupted.
+template <class Call>
+ssize_t uninterrupted(Call call) {
+  ssize_t result = 0;
+  do {
+    result = call();
+  } while (result < 0 && errno == EINTR);
+  return result;
+}
+
+}  // namespace
+
+void tune(Tcp::socket& socket) {
+  const int descriptor = socket.native_handle();
+  set_option(descriptor, IPPROTO_TCP, TCP_NODELAY, 1);
+  set_option(descriptor, SOL_SOCKET, SO_KEEPALIVE, 1);
+  set_option(descriptor, IPPROTO_TCP, TCP_KEEPIDLE, 10);
+  set_option(descriptor, IPPROTO_TCP, TCP_KEEPINTVL, 5);
+  set_option(descriptor, IPPROTO_TCP, TCP_KEEPCNT, 4);
+  close_on_exec(descriptor);
+}
+
+void close_on_exec(int descriptor) {
+  ::fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+}
+
+Transfer send_some(int descriptor, const FramePieces& pieces, std::size_t done) {
+  std::array<iovec, 3> parts{};
+  std::size_t count = 0;
+  for (std::span<const std::uint8_t> piece : {pieces.head, pieces.image, pieces.tail}) {
+    const std::size_t skipped = done < piece.size() ? done : piece.size();
+    done -= skipped;
+    if (skipped == piece.size()) continue;
+    // iovec serves reading too and so points to non-const.
+    parts[count++] = {const_cast<std::uint8_t*>(piece.data() + skipped), piece.size() - skipped};
+  }
+  msghdr message{};
+  message.msg_iov = parts.data();
+  message.msg_iovlen = count;
+  return outcome(uninterrupted([&] { return ::sendmsg(descriptor, &message, MSG_NOSIGNAL); }));
+}
+
+Transfer receive_some(int descriptor, std::span<std::uint8_t> space, bool whole) {
+  const int flags = whole ? MSG_WAITALL : 0;
+  Transfer transfer =
+      outcome(uninterrupted([&] { return ::recv(descriptor, space.data(), space.size(), flags); }));
+  transfer.ended = transfer.bytes == 0 && !transfer.would_block && !transfer.error;
+  return transfer;
+}
+
+bool wait_readable(int descriptor, Duration timeout) {
+  using std::chrono::steady_clock;
+  const auto deadline = steady_clock::now() + timeout;
+  pollfd entry{descriptor, POLLIN, 0};
+  while (true) {
+    const Duration left = deadline - steady_clock::now();
+    const std::int64_t ns = left.count() > 0 ? left.count() : 0;
+    const timespec wait{ns / 1'000'000'000, ns % 1'000'000'000};
+    const int ready = ::ppoll(&entry, 1, &wait, nullptr);
+    if (ready > 0) return true;
+    if (ready == 0) return false;
+    if (errno != EINTR) return true;  // the receiving call will tell what is wrong
+  }
+}
+
+Address to_address(const Tcp::endpoint& endpoint) {
+  return {endpoint.address().to_string(), endpoint.port()};
+}
+
+Failure lost(const std::string& peer, const std::error_code& error) {
+  return {Failure::Kind::kDisconnected,
+          "the connection to " + peer + " was lost: " + error.message()};
+}
+
+}  // namespace tether::link

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <system_error>
+
+#include <asio/ip/tcp.hpp>
+
+#include <tether/base/result.h>
+#include <tether/base/time.h>
+#include <tether/link/channel.h>
+#include <tether/link/codec.h>
+
+/// What both ends do with a socket. Asio finds addresses, connects, accepts and owns the
+/// descriptors; bytes move through the system calls themselves, one call each way per frame.
+namespace tether::link {
+
+using Tcp = asio::ip::tcp;
+
+/// Longer limits mean this one, so that a point in time can be reckoned.
+inline constexpr Duration kLongestTimeout = std::chrono::hours(24 * 365);
+
+/// No delay, keep-alive probes (a peer that vanished is noticed within half a minute), large
+/// buffers, not inherited by child processes. What the system does not grant is done without.
+void tune(Tcp::socket& socket);
+/// Child processes (the SUT that `tether run` starts) must not hold our connections open.
+void close_on_exec(int descriptor);
+
+/// What one call did. `bytes` is 0 when the call would have blocked, failed, or found the end.
+struct Transfer {
+  std::size_t bytes = 0;
+  bool would_block = false;
+  bool ended = false;     ///< the peer closed its side (receiving only)
+  std::error_code error;  ///< not of would_block
+};
+
+/// Sends what is left of the pieces after the first `done` bytes with one call.
+Transfer send_some(int descriptor, const FramePieces& pieces, std::size_t done);
+/// Receives into `space` with one call; with `whole`, blocks until it is full.
+Transfer receive_some(int descriptor, std::span<std::uint8_t> space, bool whole = false);
+
+/// Waits until the socket can be read (also: has ended). False: not within `timeout`.
+bool wait_readable(int descriptor, Duration timeout);
+
+Address to_address(const Tcp::endpoint& endpoint);
+/// "the connection to HOST:PORT was lost: REASON".
+Failure lost(const std::string& peer, const std::error_code& error);
+
+}  // namespace tether::link

@@ -1,0 +1,272 @@
+#include "peer.h"
+#include "socket.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <asio/io_context.hpp>
+#include <poll.h>
+#include <time.h>
+
+#include <tether/base/error.h>
+#include <tether/link/server.h>
+
+namespace tether::link {
+namespace {
+
+using std::chrono::steady_clock;
+
+/// After a failed accept (no descriptors left), how long before the next try.
+constexpr std::chrono::milliseconds kAcceptPause{100};
+/// On destruction, how long unsent frames may take.
+constexpr std::chrono::seconds kFinishLimit{1};
+
+class TcpServer final : public Server {
+ public:
+  TcpServer(const Address& address, Duration hello_timeout, ServerEvents& events);
+  ~TcpServer() override;
+
+  Address address() const override { return address_; }
+  bool poll(Duration max_wait) override;
+  void send(PeerId id, Message message) override;
+  void close(PeerId id) override;
+
+ private:
+  Peer* find(PeerId id);
+  /// The earliest of the deadlines, or none.
+  Peer::Deadline next_deadline() const;
+
+  // The parts of poll(), in order.
+  bool wait(Duration max_wait);
+  void accept_all();
+  void accept_one(Tcp::socket socket);
+  void serve(Peer& peer, int happened);
+  void handle_frames(Peer& peer);
+  void expire_deadlines();
+  bool report_and_remove_dead();
+
+  void refuse(Peer& peer, const Failure& failure);
+
+  asio::io_context context_{1};
+  Tcp::acceptor acceptor_{context_};
+  Address address_;
+  Duration hello_timeout_;
+  ServerEvents& events_;
+  Encoder encoder_;
+  std::vector<std::unique_ptr<Peer>> peers_;
+  std::vector<pollfd> watched_;  // the acceptor, then peers_ in order
+  PeerId next_id_ = 1;
+  Peer::Deadline accept_paused_until_;
+};
+
+[[noreturn]] void cannot_listen(const Address& address, const std::error_code& error) {
+  throw Error(ErrorCode::kSetup,
+              "cannot listen on " + to_string(address) + ": " + error.message() +
+                  " (choose an address of this machine and a free port; port 0 takes any)");
+}
+
+TcpServer::TcpServer(const Address& address, Duration hello_timeout, ServerEvents& events)
+    : hello_timeout_(std::min(hello_timeout, kLongestTimeout)), events_(events) {
+  std::error_code error;
+  const auto found = Tcp::resolver(context_).resolve(address.host, std::to_string(address.port),
+                                                     asio::ip::resolver_base::passive, error);
+  if (error) cannot_listen(address, error);
+  const Tcp::endpoint endpoint = found.begin()->endpoint();
+  acceptor_.open(endpoint.protocol(), error);
+  if (!error) acceptor_.set_option(Tcp::acceptor::reuse_address(true), error);
+  if (!error) acceptor_.bind(endpoint, error);
+  if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+  if (!error) acceptor_.non_blocking(true, error);
+  if (!error) address_ = to_address(acceptor_.local_endpoint(error));
+  if (error) cannot_listen(address, error);
+  close_on_exec(acceptor_.native_handle());
+}
+
+TcpServer::~TcpServer() {
+  for (auto& peer : peers_) peer->finish(kFinishLimit);
+}
+
+Peer* TcpServer::find(PeerId id) {
+  const auto found = std::find_if(peers_.begin(), peers_.end(),
+                                  [id](const auto& peer) { return peer->id() == id; });
+  return found == peers_.end() ? nullptr : found->get();
+}
+
+// --- sending ------------------------------------------------------------------------------------
+
+void TcpServer::send(PeerId id, Message message) {
+  Peer* const peer = find(id);
+  if (peer == nullptr || peer->state() != Peer::State::kOpen) return;
+  if (const Status valid = validate(message); !valid) {
+    throw Error(ErrorCode::kInternal,
+                "message to " + peer->remote() + " cannot be sent: " + valid.failure().message);
+  }
+  const FramePieces pieces = encoder_.encode_pieces(message);
+  if (const Status sent = peer->send(pieces, message); !sent) peer->closing = sent.failure();
+}
+
+void TcpServer::close(PeerId id) {
+  Peer* const peer = find(id);
+  if (peer == nullptr) return;
+  peer->closing.reset();
+  peer->drain();
+}
+
+void TcpServer::refuse(Peer& peer, const Failure& failure) {
+  std::string text = failure.message.substr(0, kMaxTextBytes);
+  send(peer.id(), Refusal{Refusal::Reason::kBadMessage, std::move(text)});
+  peer.drain();
+  if (!peer.closing) peer.closing = Failure{failure.kind, peer.remote() + ": " + failure.message};
+}
+
+// --- polling ------------------------------------------------------------------------------------
+
+bool TcpServer::poll(Duration max_wait) {
+  bool handled = report_and_remove_dead();
+  if (wait(handled ? Duration::zero() : max_wait)) {
+    handled = true;
+    // Peers that come now are served the next time.
+    const std::size_t served = peers_.size();
+    if (watched_[0].revents != 0) accept_all();
+    for (std::size_t i = 0; i < served; ++i) {
+      if (watched_[i + 1].revents != 0) serve(*peers_[i], watched_[i + 1].revents);
+    }
+  }
+  expire_deadlines();
+  return report_and_remove_dead() || handled;
+}
+
+bool TcpServer::wait(Duration max_wait) {
+  Duration limit = max_wait;
+  if (const auto deadline = next_deadline()) {
+    limit = std::min(limit, std::max<Duration>(*deadline - steady_clock::now(), Duration::zero()));
+  }
+  watched_.resize(peers_.size() + 1);
+  watched_[0] = {accept_paused_until_ ? -1 : acceptor_.native_handle(), POLLIN, 0};
+  for (std::size_t i = 0; i < peers_.size(); ++i) {
+    const int out = peers_[i]->wants_to_write() ? POLLOUT : 0;
+    watched_[i + 1] = {peers_[i]->descriptor(), static_cast<short>(POLLIN | out), 0};
+  }
+  const std::int64_t ns = limit.count();
+  const timespec timeout{ns / 1'000'000'000, ns % 1'000'000'000};
+  return ::ppoll(watched_.data(), watched_.size(), &timeout, nullptr) > 0;
+}
+
+Peer::Deadline TcpServer::next_deadline() const {
+  Peer::Deadline next = accept_paused_until_;
+  for (const auto& peer : peers_) {
+    if (peer->deadline && (!next || *peer->deadline < *next)) next = peer->deadline;
+  }
+  return next;
+}
+
+void TcpServer::accept_all() {
+  while (true) {
+    std::error_code error;
+    Tcp::socket socket(context_);
+    acceptor_.accept(socket, error);
+    if (!error) {
+      accept_one(std::move(socket));
+    } else if (error == std::errc::connection_aborted) {
+      continue;
+    } else {
+      const bool none_left = error == std::errc::operation_would_block ||
+                             error == std::errc::resource_unavailable_try_again;
+      if (!none_left) accept_paused_until_ = steady_clock::now() + kAcceptPause;
+      return;
+    }
+  }
+}
+
+void TcpServer::accept_one(Tcp::socket socket) {
+  std::error_code error;
+  const Tcp::endpoint remote = socket.remote_endpoint(error);
+  if (error) return;  // gone already
+  peers_.push_back(
+      std::make_unique<Peer>(next_id_++, std::move(socket), to_string(to_address(remote))));
+  Peer& peer = *peers_.back();
+  if (peers_.size() > kMaxPeers) {
+    send(peer.id(),
+         Refusal{Refusal::Reason::kBadRequest, "the coordinator has " + std::to_string(kMaxPeers) +
+                                                   " connections already and takes no more"});
+    peer.closing.reset();  // the events never heard of it
+    peer.drain();
+    return;
+  }
+  peer.deadline = steady_clock::now() + hello_timeout_;
+  events_.on_connected(peer.id(), peer.remote());
+}
+
+void TcpServer::serve(Peer& peer, int happened) {
+  if (peer.state() == Peer::State::kDead) return;
+  if (happened & POLLOUT) {
+    if (const Status flushed = peer.flush(); !flushed) {
+      if (peer.state() == Peer::State::kOpen) peer.closing = flushed.failure();
+      return;
+    }
+  }
+  if ((happened & ~POLLOUT) == 0) return;
+  if (peer.state() == Peer::State::kDraining) return peer.discard_input();
+  const auto received = peer.receive();
+  if (!received) {
+    peer.closing = received.failure();
+  } else if (*received) {
+    handle_frames(peer);
+  }
+}
+
+void TcpServer::handle_frames(Peer& peer) {
+  while (peer.state() == Peer::State::kOpen) {
+    const auto frame = peer.next_frame();
+    if (!frame) return refuse(peer, frame.failure());
+    if (frame->empty()) return;
+    auto message = decode(*frame);
+    if (!message) return refuse(peer, message.failure());
+    peer.deadline.reset();
+    events_.on_message(peer.id(), std::move(message).value());
+  }
+}
+
+void TcpServer::expire_deadlines() {
+  const auto deadline = next_deadline();
+  if (!deadline) return;
+  const auto now = steady_clock::now();
+  if (accept_paused_until_ && *accept_paused_until_ <= now) accept_paused_until_.reset();
+  for (std::size_t i = 0; i < peers_.size(); ++i) {
+    Peer& peer = *peers_[i];
+    if (!peer.deadline || *peer.deadline > now) continue;
+    if (peer.state() == Peer::State::kOpen) {
+      refuse(peer, {Failure::Kind::kTimeout, "no whole Hello came within the limit"});
+    } else {
+      peer.die();
+    }
+  }
+}
+
+bool TcpServer::report_and_remove_dead() {
+  bool reported = false;
+  for (std::size_t i = 0; i < peers_.size(); ++i) {
+    if (!peers_[i]->closing) continue;
+    const Failure failure = *std::exchange(peers_[i]->closing, std::nullopt);
+    events_.on_closed(peers_[i]->id(), failure);
+    reported = true;
+  }
+  std::erase_if(peers_, [](const auto& peer) {
+    return peer->state() == Peer::State::kDead && !peer->closing;
+  });
+  return reported;
+}
+
+}  // namespace
+
+std::unique_ptr<Server> listen_tcp(const Address& address, Duration hello_timeout,
+                                   ServerEvents& events) {
+  return std::make_unique<TcpServer>(address, hello_timeout, events);
+}
+
+}  // namespace tether::link

@@ -1,0 +1,41 @@
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include <sys/random.h>
+
+#include <tether/base/error.h>
+#include <tether/link/server.h>
+
+namespace tether::link {
+
+std::string make_token() {
+  std::array<unsigned char, 16> bytes{};
+  ssize_t got = 0;
+  do {
+    got = ::getrandom(bytes.data(), bytes.size(), 0);
+  } while (got < 0 && errno == EINTR);
+  if (got != static_cast<ssize_t>(bytes.size())) {
+    throw Error(ErrorCode::kSetup,
+                std::string("no random bytes for the token: ") + std::strerror(errno));
+  }
+  constexpr char kHex[] = "0123456789abcdef";
+  std::string token;
+  for (unsigned char byte : bytes) {
+    token += kHex[byte >> 4];
+    token += kHex[byte & 15];
+  }
+  return token;
+}
+
+bool tokens_equal(const std::string& a, const std::string& b) {
+  if (a.size() != b.size()) return false;
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference |=
+        static_cast<unsigned char>(a[i]) ^ static_cast<unsigned>(static_cast<unsigned char>(b[i]));
+  }
+  return difference == 0;
+}
+
+}  // namespace tether::link

@@ -1,0 +1,209 @@
+#include <cmath>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include <tether/link/codec.h>
+
+namespace tether::link {
+namespace {
+
+/// The first complaint about a message; later ones are dropped. Checks read as one line per field.
+class Checker {
+ public:
+  void require(bool holds, std::string_view field, std::string_view rule) {
+    if (holds || !complaint_.empty()) return;
+    complaint_ = where_ + std::string(field) + " " + std::string(rule);
+  }
+  void in(std::string where) { where_ = std::move(where); }
+  void text(const std::string& value, std::size_t limit, std::string_view field) {
+    require(value.size() <= limit, field, "is longer than " + std::to_string(limit) + " bytes");
+    require(value.find('\0') == std::string::npos, field, "contains a zero byte");
+  }
+  void json_object(const std::string& value, std::string_view field) {
+    text(value, kMaxJsonBytes, field);
+    require(value.size() >= 2 && value.front() == '{' && value.back() == '}', field,
+            "is not a JSON object in braces");
+  }
+  void finite(double value, std::string_view field) {
+    require(std::isfinite(value), field, "is not a finite number");
+  }
+  void finite(const uav::Vec3& v, std::string_view field) {
+    require(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z), field, "is not finite");
+  }
+  void unit(const uav::Quat& q, std::string_view field) {
+    const double squared_norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+    require(std::abs(squared_norm - 1.0) < 1e-3, field, "is not a unit quaternion");
+  }
+  void timestamp(std::int64_t ns, std::string_view field) {
+    require(ns >= 0 && ns < kMaxTimestampNs, field, "is negative or beyond 146 years");
+  }
+  template <class Clock>
+  void timestamp(std::chrono::time_point<Clock, Duration> t, std::string_view field) {
+    timestamp(to_ns(t), field);
+  }
+
+  Status status() const {
+    if (complaint_.empty()) return ok_status();
+    return Failure{Failure::Kind::kInvalid, complaint_};
+  }
+
+ private:
+  std::string where_;
+  std::string complaint_;
+};
+
+// --- catalogue ----------------------------------------------------------------------------------
+
+void check(Checker& c, const uav::CameraProperties& camera) {
+  const uav::CameraModel& m = camera.model;
+  c.require(m.width_px > 0 && m.height_px > 0 && m.width_px <= 1 << 16 && m.height_px <= 1 << 16,
+            "image size", "is not within 1..65536 pixels");
+  c.require(m.fx_px > 0.0 && m.fy_px > 0.0, "focal length", "is not positive");
+  for (double value : {m.fx_px, m.fy_px, m.cx_px, m.cy_px, m.k1, m.k2, m.k3, m.p1, m.p2}) {
+    c.finite(value, "camera intrinsic");
+  }
+}
+
+void check(Checker&, const uav::ImuProperties&) {}
+
+void check(Checker& c, const uav::RangeProperties& range) {
+  c.finite(range.max_m, "max_m");
+  c.require(range.min_m >= 0.0 && range.min_m <= range.max_m, "min_m", "is not within 0..max_m");
+}
+
+void check(Checker& c, const uav::SensorDescription& sensor) {
+  c.in("sensor '" + sensor.name.substr(0, kMaxNameBytes) + "': ");
+  c.text(sensor.name, kMaxNameBytes, "name");
+  c.require(!sensor.name.empty(), "name", "is empty");
+  c.finite(sensor.X_BS.p, "position");
+  c.unit(sensor.X_BS.q, "orientation");
+  c.finite(sensor.rate_hz, "rate_hz");
+  c.require(sensor.rate_hz >= 0.0, "rate_hz", "is negative");
+  std::visit([&c](const auto& properties) { check(c, properties); }, sensor.properties);
+}
+
+void check(Checker& c, const uav::Anchor& anchor) {
+  c.in("anchor '" + anchor.name.substr(0, kMaxNameBytes) + "': ");
+  c.text(anchor.name, kMaxNameBytes, "name");
+  c.require(!anchor.name.empty(), "name", "is empty");
+  c.require(anchor.shape >= uav::AnchorShape::kBox && anchor.shape <= uav::AnchorShape::kSphere,
+            "shape", "is unknown");
+  c.finite(anchor.size_m, "size_m");
+  c.require(anchor.size_m.x >= 0.0 && anchor.size_m.y >= 0.0 && anchor.size_m.z >= 0.0, "size_m",
+            "is negative");
+  for (double channel : {anchor.color_rgb.x, anchor.color_rgb.y, anchor.color_rgb.z}) {
+    c.require(channel >= 0.0 && channel <= 1.0, "color_rgb", "is not within 0..1");
+  }
+}
+
+template <class Entry>
+void check_entries(Checker& c, const std::vector<Entry>& entries, std::string_view field) {
+  c.require(entries.size() <= kMaxCatalogueEntries, field, "has too many entries");
+  std::set<std::string_view> names;
+  for (const Entry& entry : entries) {
+    check(c, entry);
+    c.require(names.insert(entry.name).second, "name", "is there twice");
+  }
+}
+
+// --- messages -----------------------------------------------------------------------------------
+
+void check(Checker& c, const Hello& hello) {
+  c.in("Hello: ");
+  c.text(hello.sut, kMaxNameBytes, "sut");
+  c.text(hello.uav, kMaxNameBytes, "uav");
+  c.text(hello.token, kMaxNameBytes, "token");
+  c.require(hello.clock <= ClockKind::kUnstamped, "clock", "is unknown");
+  c.require(hello.cpu_factor >= 1e-6 && hello.cpu_factor <= 1e6, "cpu_factor",
+            "is not within 1e-6..1e6");
+}
+
+void check(Checker& c, const Welcome& welcome) {
+  c.in("Welcome: ");
+  c.timestamp(welcome.start, "start");
+  c.text(welcome.catalogue.uav, kMaxNameBytes, "uav");
+  check_entries(c, welcome.catalogue.sensors, "sensors");
+  c.in("Welcome: ");
+  check_entries(c, welcome.catalogue.anchors, "anchors");
+}
+
+void check(Checker& c, const Refusal& refusal) {
+  c.in("Refusal: ");
+  c.require(refusal.reason <= Refusal::Reason::kRunEnded, "reason", "is unknown");
+  c.text(refusal.message, kMaxTextBytes, "message");
+}
+
+void check(Checker& c, const ReadSensor& read) {
+  c.require(read.sensor < kMaxCatalogueEntries, "sensor", "is beyond any catalogue");
+}
+void check(Checker& c, const SetVelocity& set) {
+  c.require(uav::is_valid(set.command), "velocity command", "is not finite or beyond any UAV");
+}
+void check(Checker& c, const Sleep& sleep) {
+  c.timestamp(sleep.until, "until");
+}
+void check(Checker& c, const Finish& finish) {
+  c.text(finish.outcome, kMaxTextBytes, "outcome");
+  if (!finish.details.empty()) c.json_object(finish.details, "details");
+}
+
+void check(Checker& c, const Request& request) {
+  c.in("Request: ");
+  c.require(request.sequence > 0, "sequence", "is 0");
+  c.timestamp(request.issued_at, "issued_at");
+  c.timestamp(to_ns(request.previous_round_trip), "previous_round_trip");
+  std::visit([&c](const auto& body) { check(c, body); }, request.body);
+}
+
+void check(Checker& c, const uav::CameraSample& sample) {
+  c.require(sample.width_px > 0 && sample.height_px > 0, "image size", "is not positive");
+  const std::int64_t pixels = std::int64_t{sample.width_px} * sample.height_px;
+  c.require(
+      sample.rgb.size() % 3 == 0 && static_cast<std::int64_t>(sample.rgb.size() / 3) == pixels,
+      "image", "is not width x height x 3 bytes");
+  c.require(sample.rgb.size() <= kMaxReplyBytes - 4096, "image", "is larger than a frame may be");
+}
+void check(Checker& c, const uav::ImuSample& sample) {
+  c.finite(sample.angular_velocity_rad_s, "angular_velocity_rad_s");
+  c.finite(sample.specific_force_m_s2, "specific_force_m_s2");
+  c.unit(sample.q_WS, "q_WS");
+}
+void check(Checker& c, const uav::RangeSample& sample) {
+  c.require(!std::isnan(sample.range_m), "range_m", "is not a number");
+}
+
+void check(Checker& c, const Reply& reply) {
+  c.in("Reply: ");
+  c.require(reply.sequence > 0, "sequence", "is 0");
+  c.timestamp(reply.resume_at, "resume_at");
+  if (!reply.sample) return;
+  const auto check_sample = [&c](const auto& sample) {
+    c.timestamp(sample.sampled_at, "sampled_at");
+    check(c, sample);
+  };
+  std::visit(check_sample, *reply.sample);
+}
+
+void check(Checker& c, const Progress& progress) {
+  c.in("Progress: ");
+  c.timestamp(progress.reached, "reached");
+}
+
+void check(Checker& c, const Annotation& annotation) {
+  c.in("Annotation: ");
+  c.timestamp(annotation.at, "at");
+  c.text(annotation.topic, kMaxNameBytes, "topic");
+  c.require(!annotation.topic.empty(), "topic", "is empty");
+  c.json_object(annotation.json, "json");
+}
+
+}  // namespace
+
+Status validate(const Message& message) {
+  Checker checker;
+  std::visit([&checker](const auto& content) { check(checker, content); }, message);
+  return checker.status();
+}
+
+}  // namespace tether::link

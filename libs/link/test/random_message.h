@@ -1,0 +1,148 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <utility>
+
+#include <tether/base/random.h>
+#include <tether/link/messages.h>
+
+namespace tether::link {
+
+/// Draws valid messages of every kind, edges included, from keyed randomness.
+class RandomMessage {
+ public:
+  explicit RandomMessage(std::uint64_t index) : random_({7, 1, index}) {}
+
+  Message draw() { return draw(random_.bits() % 7); }
+
+  Message draw(std::uint32_t kind) {
+    switch (kind) {
+      case 0:
+        return Hello{random_.bits(),  text(), text(), static_cast<ClockKind>(random_.bits() % 4),
+                     0.01 + number(), text()};
+      case 1:
+        return welcome();
+      case 2:
+        return Refusal{static_cast<Refusal::Reason>(random_.bits() % 6), text()};
+      case 3:
+        return request();
+      case 4:
+        return reply();
+      case 5:
+        return Progress{time<ExecTime>()};
+      default:
+        return Annotation{time<ExecTime>(), "t" + text(), json()};
+    }
+  }
+
+ private:
+  bool coin() { return random_.bits() % 2 == 0; }
+  double number() { return 50.0 * random_.uniform(); }
+  uav::Vec3 vec3() { return {number() - 25.0, number(), -number()}; }
+  uav::Quat quat() { return uav::from_rpy(number(), number(), number()); }
+  uav::Vec3 color() { return {random_.uniform(), random_.uniform(), random_.uniform()}; }
+  std::uint64_t word() { return std::uint64_t{random_.bits()} << 32 | random_.bits(); }
+
+  template <class Time>
+  Time time() {
+    return from_ns<Time>(static_cast<std::int64_t>(word() >> 2));
+  }
+  std::string text() {
+    std::string out(random_.bits() % 40, '\0');
+    for (char& c : out) c = static_cast<char>(1 + random_.bits() % 255);
+    return out;
+  }
+  std::string json() { return "{\"text\": \"" + text() + "\"}"; }
+
+  uav::SensorDescription sensor(std::size_t i) {
+    uav::SensorDescription out{"s" + std::to_string(i), {vec3(), quat()}, number(), {}};
+    switch (random_.bits() % 3) {
+      case 0:
+        out.properties = uav::CameraProperties{
+            {640, 480, 1.0 + number(), 2.0, number(), number(), 0.1, 0.2, 0.3, 0.4, number()}};
+        break;
+      case 1:
+        out.properties = uav::ImuProperties{};
+        break;
+      default:
+        out.properties = uav::RangeProperties{0.1, 0.2 + number()};
+    }
+    return out;
+  }
+
+  Message welcome() {
+    Welcome out;
+    out.catalogue.uav = text();
+    for (std::size_t i = 0; i < random_.bits() % 5; ++i) {
+      out.catalogue.sensors.push_back(sensor(i));
+      out.catalogue.anchors.push_back({"a" + std::to_string(i),
+                                       static_cast<uav::AnchorShape>(random_.bits() % 3),
+                                       {number(), 0.0, number()},
+                                       color()});
+    }
+    out.free_running = coin();
+    out.start = time<ExecTime>();
+    return out;
+  }
+
+  Message request() {
+    Request out;
+    out.sequence = 1 + word() / 2;
+    out.issued_at = time<ExecTime>();
+    out.previous_round_trip = time<ExecTime>().time_since_epoch();
+    switch (random_.bits() % 4) {
+      case 0:
+        out.body = ReadSensor{random_.bits() % 1000, coin()};
+        break;
+      case 1:
+        out.body = SetVelocity{{vec3(), number()}};
+        break;
+      case 2:
+        out.body = Sleep{time<ExecTime>()};
+        break;
+      default:
+        out.body = Finish{coin(), text(), coin() ? json() : ""};
+    }
+    return out;
+  }
+
+  uav::CameraSample image() {
+    uav::CameraSample out{time<SimTime>(),
+                          word(),
+                          1 + static_cast<int>(random_.bits() % 40),
+                          1 + static_cast<int>(random_.bits() % 40),
+                          {}};
+    out.rgb.resize(static_cast<std::size_t>(3 * out.width_px * out.height_px));
+    for (auto& byte : out.rgb) byte = static_cast<std::uint8_t>(random_.bits());
+    return out;
+  }
+
+  Message reply() {
+    Reply out;
+    out.sequence = 1 + word() / 2;
+    out.resume_at = time<ExecTime>();
+    constexpr double kInf = std::numeric_limits<double>::infinity();
+    switch (random_.bits() % 5) {
+      case 0:
+        out.sample = image();
+        break;
+      case 1:
+        out.sample = uav::ImuSample{time<SimTime>(), word(), vec3(), vec3(), quat()};
+        break;
+      case 2:
+        out.sample = uav::RangeSample{time<SimTime>(), word(), number()};
+        break;
+      case 3:
+        out.sample = uav::RangeSample{time<SimTime>(), word(), coin() ? kInf : -kInf};
+        break;
+      default:
+        break;
+    }
+    return out;
+  }
+
+  KeyedRandom random_;
+};
+
+}  // namespace tether::link

@@ -1,0 +1,125 @@
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include <tether/link/codec.h>
+
+namespace tether::link {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+struct Case {
+  std::string complaint;  // part of the text; empty: valid
+  Message message;
+};
+
+void expect(const Case& c) {
+  const Status status = validate(c.message);
+  if (c.complaint.empty()) {
+    EXPECT_TRUE(status.ok()) << status.failure().message;
+    return;
+  }
+  ASSERT_FALSE(status.ok()) << "expected: " << c.complaint;
+  EXPECT_EQ(status.failure().kind, Failure::Kind::kInvalid);
+  EXPECT_NE(status.failure().message.find(c.complaint), std::string::npos)
+      << status.failure().message << "\nexpected: " << c.complaint;
+}
+
+Hello hello_with(double factor, std::string sut = "", ClockKind clock = ClockKind::kCpu) {
+  return {1, std::move(sut), "", clock, factor, ""};
+}
+Request request_with(decltype(Request::body) body, std::int64_t issued_ns = 0) {
+  return {1, from_ns<ExecTime>(issued_ns), Duration(0), std::move(body)};
+}
+Reply reply_with(uav::Sample sample) {
+  return {1, ExecTime{}, std::move(sample)};
+}
+Welcome welcome_with(uav::SensorDescription sensor) {
+  Welcome welcome;
+  welcome.catalogue.sensors = {std::move(sensor)};
+  return welcome;
+}
+Welcome welcome_with(uav::Anchor anchor) {
+  Welcome welcome;
+  welcome.catalogue.anchors = {std::move(anchor)};
+  return welcome;
+}
+uav::CameraSample image(int width, int height, std::size_t bytes) {
+  return {SimTime{}, 0, width, height, std::vector<std::uint8_t>(bytes)};
+}
+
+TEST(Validate, Hello) {
+  expect({"", hello_with(1.0)});
+  expect({"cpu_factor", hello_with(0.0)});
+  expect({"cpu_factor", hello_with(-1.0)});
+  expect({"cpu_factor", hello_with(kNan)});
+  expect({"cpu_factor", hello_with(kInf)});
+  expect({"sut is longer than 256 bytes", hello_with(1.0, std::string(257, 'x'))});
+  expect({"sut contains a zero byte", hello_with(1.0, std::string(1, '\0'))});
+  expect({"clock", hello_with(1.0, "", static_cast<ClockKind>(4))});
+}
+
+TEST(Validate, Requests) {
+  expect({"", request_with(ReadSensor{3, true})});
+  expect({"sensor", request_with(ReadSensor{5000, false})});
+  expect({"issued_at", request_with(ReadSensor{}, -1)});
+  expect({"issued_at", request_with(ReadSensor{}, kMaxTimestampNs)});
+  expect({"sequence", Request{}});
+  expect({"velocity command", request_with(SetVelocity{{{kNan, 0, 0}, 0}})});
+  expect({"velocity command", request_with(SetVelocity{{{0, 0, 0}, 1e9}})});
+  expect({"until", request_with(Sleep{from_ns<ExecTime>(-5)})});
+  expect({"", request_with(Finish{true, "facing the anchor", ""})});
+  expect({"outcome is longer", request_with(Finish{true, std::string(5000, 'x'), ""})});
+  expect({"details is not a JSON object", request_with(Finish{true, "", "[1]"})});
+  Request request = request_with(ReadSensor{});
+  request.previous_round_trip = Duration(-1);
+  expect({"previous_round_trip", request});
+}
+
+TEST(Validate, Samples) {
+  expect({"", reply_with(image(2, 3, 18))});
+  expect({"width x height x 3", reply_with(image(2, 3, 17))});
+  expect({"width x height x 3", reply_with(image(2, 3, 21))});
+  expect({"image size", reply_with(image(0, 3, 0))});
+  expect({"image size", reply_with(image(-2, -3, 18))});
+  expect({"width x height x 3", reply_with(image(1 << 30, 1 << 30, 3))});
+  expect({"", reply_with(uav::RangeSample{SimTime{}, 0, kInf})});
+  expect({"", reply_with(uav::RangeSample{SimTime{}, 0, -kInf})});
+  expect({"range_m", reply_with(uav::RangeSample{SimTime{}, 0, kNan})});
+  expect({"", reply_with(uav::ImuSample{})});
+  expect({"specific_force", reply_with(uav::ImuSample{SimTime{}, 0, {}, {0, kInf, 0}, {}})});
+  expect({"q_WS", reply_with(uav::ImuSample{SimTime{}, 0, {}, {}, {0, 0, 0, 0}})});
+  expect({"sampled_at", reply_with(uav::RangeSample{from_ns<SimTime>(-1), 0, 1.0})});
+}
+
+TEST(Validate, Catalogue) {
+  const uav::CameraProperties camera{{640, 480, 500, 500, 320, 240, 0, 0, 0, 0, 0}};
+  expect({"", welcome_with({"camera", {}, 30.0, camera})});
+  expect({"'camera': rate_hz", welcome_with({"camera", {}, -1.0, camera})});
+  expect({"name is empty", welcome_with({"", {}, 30.0, camera})});
+  expect({"orientation", welcome_with({"camera", {{}, {2, 0, 0, 0}}, 30.0, camera})});
+  expect({"focal length", welcome_with({"camera", {}, 1.0, uav::CameraProperties{{1, 1}}})});
+  expect({"min_m", welcome_with({"down", {}, 1.0, uav::RangeProperties{3.0, 2.0}})});
+  expect({"max_m", welcome_with({"down", {}, 1.0, uav::RangeProperties{0.0, kInf}})});
+  expect({"", welcome_with({"box", uav::AnchorShape::kBox, {1, 1, 1}, {0, 0, 1}})});
+  expect({"color_rgb", welcome_with({"box", uav::AnchorShape::kBox, {1, 1, 1}, {0, 0, 255}})});
+  expect({"size_m", welcome_with({"box", uav::AnchorShape::kBox, {1, -1, 1}, {0, 0, 1}})});
+  expect({"shape", welcome_with({"box", static_cast<uav::AnchorShape>(7), {1, 1, 1}, {}})});
+
+  Welcome twice = welcome_with({"camera", {}, 30.0, camera});
+  twice.catalogue.sensors.push_back(twice.catalogue.sensors.front());
+  expect({"twice", twice});
+}
+
+TEST(Validate, OneWayMessages) {
+  expect({"", Annotation{ExecTime{}, "roi", "{}"}});
+  expect({"topic is empty", Annotation{ExecTime{}, "", "{}"}});
+  expect({"json is not a JSON object", Annotation{ExecTime{}, "roi", ""}});
+  expect({"reached", Progress{from_ns<ExecTime>(-1)}});
+  expect({"reason", Refusal{static_cast<Refusal::Reason>(6), ""}});
+}
+
+}  // namespace
+}  // namespace tether::link
