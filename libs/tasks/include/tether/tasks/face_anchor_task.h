@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <tether/base/time.h>
+#include <tether/base/units.h>
+#include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/task.h>
+
+namespace tether::tasks {
+
+struct FaceAnchorOptions {
+  double precision_rad = rad_from_deg(1.5);    ///< the goal: |bearing| ≤ this; > 0
+  double yaw_rate_rad_s = rad_from_deg(25.0);  ///< at first; > 0
+  double slowdown = 0.5;  ///< factor of the yaw rate at each overshoot; in (0, 1]
+  double min_yaw_rate_rad_s = rad_from_deg(2.0);  ///< never slower than this; > 0
+  ConvergenceOptions convergence;
+  bool search_clockwise = false;  ///< which way to turn while the anchor was never seen
+  Duration lost_limit =
+      std::chrono::seconds(20);  ///< without seeing the anchor; then "anchor lost"
+  Duration time_limit = std::chrono::seconds(60);  ///< of the SUT's clock; then "time limit"
+};
+
+/// Algorithm 3, "face anchor": turns until the anchor is in the middle of the image. An overshoot
+/// reverses the rotation and slows it down; an anchor that is not seen is looked for by turning on.
+/// Results: "overshoots", "duration_s" (ET), "looks" (runs of Algorithm 2), "yaw_rate_rad_s" (the
+/// last), "bearing_rad" (the last seen).
+class FaceAnchorTask : public Task {
+ public:
+  explicit FaceAnchorTask(std::string anchor, const FaceAnchorOptions& options = {});
+
+  std::string_view name() const override { return "face_anchor"; }
+  Progress initialise(TaskContext& context) override;
+  Progress step(TaskContext& context) override;
+  void finalise(TaskContext& context, TaskOutcome& outcome) override;
+
+ private:
+  Progress look(TaskContext& context, std::optional<double>& bearing_rad);
+  Progress turn_to(TaskContext& context, std::string_view phase, double direction,
+                   std::string_view event);
+  Progress keep_searching(TaskContext& context);
+
+  FaceAnchorOptions options_;
+  RelativePositionTask relative_position_;
+
+  // Of the current run.
+  ExecTime started_at_;
+  ExecTime last_seen_at_;
+  std::optional<double> bearing_rad_;  ///< the last one seen
+  double yaw_rate_rad_s_ = 0.0;        ///< its size now
+  double direction_ = 0.0;             ///< +1 counter-clockwise, −1 clockwise
+  int overshoots_ = 0;
+  int looks_ = 0;
+};
+
+}  // namespace tether::tasks

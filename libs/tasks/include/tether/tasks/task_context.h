@@ -1,0 +1,51 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <tether/base/result.h>
+#include <tether/client/vehicle.h>
+#include <tether/vision/anchor_tracker.h>
+#include <tether/vision/relative_position.h>
+
+namespace tether::tasks {
+
+/// What tasks that run in one another share: the UAV, and the trackers, so that a task that is run
+/// in a loop goes on tracking where it stopped. `vehicle` must outlive it. One thread.
+class TaskContext {
+ public:
+  explicit TaskContext(client::Vehicle& vehicle, std::string camera = "camera",
+                       const vision::TrackerOptions& tracker_options = {});
+
+  client::Vehicle& vehicle() { return vehicle_; }
+
+  /// Fails (kInvalid) if the UAV has no camera of the name given at construction.
+  Result<const uav::SensorDescription*> camera() const;
+  /// Fails (kInvalid) if there is no such anchor.
+  Result<const uav::Anchor*> anchor(std::string_view name) const;
+  /// The one tracker of this anchor. Fails (kInvalid) if there is no such anchor, or its colour
+  /// cannot be tracked. The pointer stays valid as long as the context.
+  Result<vision::AnchorTracker*> tracker(std::string_view anchor);
+
+  /// @name Notes for the record (topics "task", "roi", "estimate"). An annotation that cannot be
+  /// sent is no failure of its own: the link's next interaction tells.
+  /// @{
+  using Values = std::vector<std::pair<std::string_view, double>>;
+  void note_event(std::string_view task, std::string_view phase, std::string_view event,
+                  const Values& values = {});
+  void note_end(std::string_view task, std::string_view status, std::string_view reason);
+  void note_roi(const vision::Roi& roi, std::uint64_t image_index);
+  void note_estimate(const vision::RelativePosition& estimate, bool converged);
+  /// @}
+
+ private:
+  client::Vehicle& vehicle_;
+  std::string camera_;
+  vision::TrackerOptions tracker_options_;
+  std::map<std::string, vision::AnchorTracker, std::less<>> trackers_;
+};
+
+}  // namespace tether::tasks

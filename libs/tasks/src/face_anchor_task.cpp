@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <tether/tasks/face_anchor_task.h>
+#include <tether/tasks/task_context.h>
+
+namespace tether::tasks {
+namespace {
+
+double sign_of(double value) {
+  return value < 0.0 ? -1.0 : 1.0;
+}
+
+Status turn(TaskContext& context, double yaw_rate_rad_s) {
+  return context.vehicle().command_velocity({{}, yaw_rate_rad_s});
+}
+
+Status stop(TaskContext& context) {
+  return turn(context, 0.0);
+}
+
+}  // namespace
+
+FaceAnchorTask::FaceAnchorTask(std::string anchor, const FaceAnchorOptions& options)
+    : options_(options), relative_position_(std::move(anchor), options.convergence) {}
+
+Progress FaceAnchorTask::initialise(TaskContext& context) {
+  started_at_ = context.vehicle().now();
+  last_seen_at_ = started_at_;
+  bearing_rad_.reset();
+  yaw_rate_rad_s_ = options_.yaw_rate_rad_s;
+  overshoots_ = 0;
+  looks_ = 0;
+
+  if (const Status stopped = stop(context); !stopped) {
+    return TaskOutcome::failed(stopped.failure());
+  }
+  std::optional<double> bearing;
+  if (Progress end = look(context, bearing)) {
+    return end;
+  }
+  if (!bearing) {
+    return turn_to(context, "initialise", options_.search_clockwise ? -1.0 : 1.0, "search");
+  }
+  bearing_rad_ = bearing;
+  return turn_to(context, "initialise", sign_of(*bearing), "rotate");
+}
+
+Progress FaceAnchorTask::step(TaskContext& context) {
+  if (context.vehicle().now() - started_at_ > options_.time_limit) {
+    return TaskOutcome::not_reached("time limit");
+  }
+  std::optional<double> bearing;
+  if (Progress end = look(context, bearing)) {
+    return end;
+  }
+  if (!bearing) {
+    return keep_searching(context);
+  }
+  const bool overshot = bearing_rad_ && sign_of(*bearing_rad_) != sign_of(*bearing);
+  bearing_rad_ = bearing;
+  if (overshot) {
+    ++overshoots_;
+    yaw_rate_rad_s_ = std::max(yaw_rate_rad_s_ * options_.slowdown, options_.min_yaw_rate_rad_s);
+    return turn_to(context, "loop", sign_of(*bearing), "reverse");
+  }
+  if (direction_ != sign_of(*bearing)) {
+    return turn_to(context, "loop", sign_of(*bearing), "rotate");
+  }
+  return std::nullopt;
+}
+
+/// Algorithm 2. Ends the task if the goal is reached or the UAV is gone. An estimate that did not
+/// converge is used all the same: to turn on past the anchor would be worse.
+Progress FaceAnchorTask::look(TaskContext& context, std::optional<double>& bearing_rad) {
+  const TaskOutcome outcome = run(relative_position_, context);
+  ++looks_;
+  if (outcome.status == TaskStatus::kFailed) {
+    return outcome;
+  }
+  if (!relative_position_.estimate()) {
+    return std::nullopt;
+  }
+  bearing_rad = relative_position_.estimate()->bearing_rad;
+  last_seen_at_ = context.vehicle().now();
+  if (outcome.reached() && std::abs(*bearing_rad) <= options_.precision_rad) {
+    bearing_rad_ = bearing_rad;
+    return TaskOutcome::goal_reached();
+  }
+  return std::nullopt;
+}
+
+Progress FaceAnchorTask::turn_to(TaskContext& context, std::string_view phase, double direction,
+                                 std::string_view event) {
+  direction_ = direction;
+  const double rate = direction * yaw_rate_rad_s_;
+  if (const Status turning = turn(context, rate); !turning) {
+    return TaskOutcome::failed(turning.failure());
+  }
+  context.note_event(name(), phase, event, {{"yaw_rate_rad_s", rate}});
+  return std::nullopt;
+}
+
+/// Turns on as before, for a while.
+Progress FaceAnchorTask::keep_searching(TaskContext& context) {
+  if (context.vehicle().now() - last_seen_at_ > options_.lost_limit) {
+    return TaskOutcome::not_reached(bearing_rad_ ? "anchor lost" : "anchor never seen");
+  }
+  context.note_event(name(), "loop", "unseen");
+  return std::nullopt;
+}
+
+void FaceAnchorTask::finalise(TaskContext& context, TaskOutcome& outcome) {
+  const Status stopped = stop(context);
+  if (!stopped && outcome.status != TaskStatus::kFailed) {
+    outcome.status = TaskStatus::kFailed;
+    outcome.reason = stopped.failure().message;
+    outcome.failure = stopped.failure().kind;
+  }
+  outcome.results["overshoots"] = overshoots_;
+  outcome.results["looks"] = looks_;
+  outcome.results["duration_s"] = to_seconds(context.vehicle().now() - started_at_);
+  outcome.results["yaw_rate_rad_s"] = yaw_rate_rad_s_;
+  if (bearing_rad_) {
+    outcome.results["bearing_rad"] = *bearing_rad_;
+  }
+}
+
+}  // namespace tether::tasks

@@ -1,0 +1,92 @@
+#include "convergence.h"
+
+#include <utility>
+
+#include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/task_context.h>
+
+namespace tether::tasks {
+
+struct RelativePositionTask::Loop {
+  const uav::SensorDescription* camera = nullptr;
+  const uav::Anchor* anchor = nullptr;
+  vision::AnchorTracker* tracker = nullptr;
+  ConvergenceMonitor convergence;
+  int frames = 0;
+  int unseen_in_a_row = 0;
+};
+
+RelativePositionTask::RelativePositionTask(std::string anchor, const ConvergenceOptions& options)
+    : anchor_(std::move(anchor)), options_(options) {}
+
+RelativePositionTask::~RelativePositionTask() = default;
+
+Progress RelativePositionTask::initialise(TaskContext& context) {
+  estimate_.reset();
+  loop_.reset();
+  const auto camera = context.camera();
+  if (!camera) {
+    return TaskOutcome::failed(camera.failure());
+  }
+  const auto anchor = context.anchor(anchor_);
+  if (!anchor) {
+    return TaskOutcome::failed(anchor.failure());
+  }
+  const auto tracker = context.tracker(anchor_);
+  if (!tracker) {
+    return TaskOutcome::failed(tracker.failure());
+  }
+  loop_ =
+      std::make_unique<Loop>(Loop{*camera, *anchor, *tracker, ConvergenceMonitor(options_), 0, 0});
+  return std::nullopt;
+}
+
+Progress RelativePositionTask::step(TaskContext& context) {
+  const Result<uav::CameraSample> image = context.vehicle().read_camera(loop_->camera->name);
+  if (!image) {
+    return TaskOutcome::failed(image.failure());
+  }
+  ++loop_->frames;
+  if (Progress progress = look(context, *image)) {
+    return progress;
+  }
+  if (loop_->frames >= options_.max_frames) {
+    return TaskOutcome::not_reached(estimate_ ? "did not converge" : "anchor not seen");
+  }
+  return std::nullopt;
+}
+
+Progress RelativePositionTask::look(TaskContext& context, const uav::CameraSample& image) {
+  const std::optional<vision::Roi> roi = loop_->tracker->track(image);
+  if (!roi) {
+    return miss();
+  }
+  loop_->unseen_in_a_row = 0;
+  loop_->convergence.see(image.sampled_at, *roi);
+  const bool converged = loop_->convergence.has_converged();
+  estimate_ = vision::relative_position(*loop_->camera, *loop_->anchor, *roi);
+  context.note_roi(*roi, image.index);
+  context.note_estimate(*estimate_, converged);
+  return converged ? Progress(TaskOutcome::goal_reached()) : std::nullopt;
+}
+
+Progress RelativePositionTask::miss() {
+  loop_->convergence.miss();
+  if (++loop_->unseen_in_a_row >= options_.max_unseen_frames) {
+    return TaskOutcome::not_reached("anchor not seen");
+  }
+  return std::nullopt;
+}
+
+void RelativePositionTask::finalise(TaskContext&, TaskOutcome& outcome) {
+  outcome.results["frames"] = loop_ ? loop_->frames : 0;
+  if (!estimate_) {
+    return;
+  }
+  outcome.results["bearing_rad"] = estimate_->bearing_rad;
+  if (estimate_->distance_m) {
+    outcome.results["distance_m"] = *estimate_->distance_m;
+  }
+}
+
+}  // namespace tether::tasks

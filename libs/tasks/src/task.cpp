@@ -1,0 +1,51 @@
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include <tether/tasks/task.h>
+#include <tether/tasks/task_context.h>
+
+namespace tether::tasks {
+
+std::string_view name(TaskStatus status) {
+  switch (status) {
+    case TaskStatus::kReached:
+      return "reached";
+    case TaskStatus::kNotReached:
+      return "not_reached";
+    case TaskStatus::kFailed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+TaskOutcome TaskOutcome::not_reached(std::string reason) {
+  return {TaskStatus::kNotReached, std::move(reason), {}, {}};
+}
+
+TaskOutcome TaskOutcome::failed(const Failure& failure) {
+  return {TaskStatus::kFailed, failure.message, failure.kind, {}};
+}
+
+std::string details_json(const TaskOutcome& outcome) {
+  const nlohmann::json details = {
+      {"status", name(outcome.status)}, {"reason", outcome.reason}, {"results", outcome.results}};
+  return details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+TaskOutcome run(Task& task, TaskContext& context) {
+  context.note_event(task.name(), "initialise", "start");
+  Progress progress = task.initialise(context);
+  if (!progress) {
+    context.note_event(task.name(), "loop", "start");
+  }
+  while (!progress) {
+    progress = task.step(context);
+  }
+  context.note_event(task.name(), "finalise", "start");
+  task.finalise(context, *progress);
+  context.note_end(task.name(), name(progress->status), progress->reason);
+  return *std::move(progress);
+}
+
+}  // namespace tether::tasks

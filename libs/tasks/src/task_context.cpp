@@ -1,0 +1,97 @@
+#include <limits>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include <tether/tasks/task_context.h>
+
+namespace tether::tasks {
+namespace {
+
+using nlohmann::json;
+
+void annotate(client::Vehicle& vehicle, std::string_view topic, const json& note) {
+  (void)vehicle.annotate(topic, note.dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+Failure no_such(std::string_view kind, std::string_view name) {
+  return {Failure::Kind::kInvalid,
+          "the catalogue has no " + std::string(kind) + " \"" + std::string(name) + "\""};
+}
+
+}  // namespace
+
+TaskContext::TaskContext(client::Vehicle& vehicle, std::string camera,
+                         const vision::TrackerOptions& tracker_options)
+    : vehicle_(vehicle), camera_(std::move(camera)), tracker_options_(tracker_options) {}
+
+Result<const uav::SensorDescription*> TaskContext::camera() const {
+  const uav::SensorDescription* sensor = vehicle_.catalogue().find_sensor(camera_);
+  if (sensor == nullptr || sensor->kind() != uav::SensorKind::kCamera) {
+    return no_such("camera", camera_);
+  }
+  return sensor;
+}
+
+Result<const uav::Anchor*> TaskContext::anchor(std::string_view name) const {
+  const uav::Anchor* anchor = vehicle_.catalogue().find_anchor(name);
+  if (anchor == nullptr) {
+    return no_such("anchor", name);
+  }
+  return anchor;
+}
+
+Result<vision::AnchorTracker*> TaskContext::tracker(std::string_view anchor_name) {
+  if (const auto known = trackers_.find(anchor_name); known != trackers_.end()) {
+    return &known->second;
+  }
+  const Result<const uav::Anchor*> anchor = this->anchor(anchor_name);
+  if (!anchor) {
+    return anchor.failure();
+  }
+  Result<vision::AnchorTracker> tracker = vision::AnchorTracker::create(**anchor, tracker_options_);
+  if (!tracker) {
+    return tracker.failure();
+  }
+  return &trackers_.emplace(anchor_name, std::move(tracker).value()).first->second;
+}
+
+void TaskContext::note_event(std::string_view task, std::string_view phase, std::string_view event,
+                             const Values& values) {
+  json note = {{"task", task}, {"phase", phase}, {"event", event}};
+  for (const auto& [key, value] : values) {
+    note[std::string(key)] = value;
+  }
+  annotate(vehicle_, "task", note);
+}
+
+void TaskContext::note_end(std::string_view task, std::string_view status,
+                           std::string_view reason) {
+  annotate(vehicle_, "task",
+           {{"task", task},
+            {"phase", "finalise"},
+            {"event", "end"},
+            {"status", status},
+            {"reason", reason}});
+}
+
+void TaskContext::note_roi(const vision::Roi& roi, std::uint64_t image_index) {
+  annotate(vehicle_, "roi",
+           {{"u_px", roi.center.u_px},
+            {"v_px", roi.center.v_px},
+            {"width_px", roi.width_px},
+            {"height_px", roi.height_px},
+            {"angle_rad", roi.angle_rad},
+            {"score", roi.score},
+            {"image_index", image_index}});
+}
+
+void TaskContext::note_estimate(const vision::RelativePosition& estimate, bool converged) {
+  // JSON has no NaN: an unknown distance becomes null.
+  annotate(vehicle_, "estimate",
+           {{"bearing_rad", estimate.bearing_rad},
+            {"distance_m", estimate.distance_m.value_or(std::numeric_limits<double>::quiet_NaN())},
+            {"converged", converged}});
+}
+
+}  // namespace tether::tasks

@@ -1,0 +1,111 @@
+#include <gmock/gmock.h>
+
+#include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/task_context.h>
+#include <tether/tasks/testing/turning_vehicle.h>
+
+namespace tether::tasks {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// The fake's images are a quarter as wide as those that the default is for.
+const ConvergenceOptions kConvergence{.tolerance_px = 2.0};
+
+struct Fixture {
+  explicit Fixture(const testing::TurningVehicle::Options& options = {}) : vehicle(options) {}
+  TaskOutcome run_task(const std::string& anchor = "blue_box") {
+    task = std::make_unique<RelativePositionTask>(anchor, kConvergence);
+    return run(*task, context);
+  }
+  int count(std::string_view topic) const {
+    int n = 0;
+    for (const auto& annotation : vehicle.annotations()) {
+      n += annotation.topic == topic ? 1 : 0;
+    }
+    return n;
+  }
+  testing::TurningVehicle vehicle;
+  TaskContext context{vehicle};
+  std::unique_ptr<RelativePositionTask> task;
+};
+
+TEST(RelativePositionTask, MeasuresBearingAndDistance) {
+  Fixture f({.anchor_bearing_rad = rad_from_deg(20), .anchor_distance_m = 3});
+  const TaskOutcome outcome = f.run_task();
+  EXPECT_TRUE(outcome.reached()) << outcome.reason;
+  EXPECT_NEAR(deg_from_rad(outcome.results.at("bearing_rad")), 20, 0.4);
+  EXPECT_NEAR(outcome.results.at("distance_m"), 3, 0.2);
+  EXPECT_EQ(outcome.results.at("frames"), 3);
+  ASSERT_TRUE(f.task->estimate());
+  EXPECT_EQ(f.task->estimate()->bearing_rad, outcome.results.at("bearing_rad"));
+}
+
+TEST(RelativePositionTask, MovesNothingAndNotesEachImage) {
+  Fixture f;
+  f.run_task();
+  EXPECT_TRUE(f.vehicle.commands().empty());
+  EXPECT_EQ(f.vehicle.images_read(), 3);
+  EXPECT_EQ(f.count("roi"), 3);
+  EXPECT_EQ(f.count("estimate"), 3);
+}
+
+TEST(RelativePositionTask, ConvergesWhileTurning) {
+  for (const auto compute : {milliseconds(2), milliseconds(150)}) {
+    Fixture f({.anchor_bearing_rad = rad_from_deg(25), .compute_per_image = compute});
+    ASSERT_TRUE(f.vehicle.command_velocity({{}, rad_from_deg(15)}));
+    ASSERT_TRUE(f.vehicle.sleep_for(milliseconds(300)));
+    const TaskOutcome outcome = f.run_task();
+    EXPECT_TRUE(outcome.reached()) << outcome.reason;
+    EXPECT_EQ(outcome.results.at("frames"), compute < milliseconds(50) ? 3 : 4);
+  }
+}
+
+TEST(RelativePositionTask, NotSeenIsAnOutcome) {
+  Fixture f({.anchor_is_there = false});
+  const TaskOutcome outcome = f.run_task();
+  EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(outcome.reason, "anchor not seen");
+  EXPECT_FALSE(f.task->estimate());
+  EXPECT_EQ(f.vehicle.images_read(), kConvergence.max_unseen_frames);
+}
+
+TEST(RelativePositionTask, DoesNotConvergeForEver) {
+  Fixture f;
+  ConvergenceOptions impossible = kConvergence;
+  impossible.tolerance_px = -1;
+  RelativePositionTask task("blue_box", impossible);
+  const TaskOutcome outcome = run(task, f.context);
+  EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(outcome.reason, "did not converge");
+  EXPECT_EQ(f.vehicle.images_read(), impossible.max_frames);
+  EXPECT_TRUE(task.estimate());
+}
+
+TEST(RelativePositionTask, AShortLossCostsImagesOnly) {
+  Fixture f({.anchor_hidden = {milliseconds(60), milliseconds(130)}});
+  const TaskOutcome outcome = f.run_task();
+  EXPECT_TRUE(outcome.reached()) << outcome.reason;
+  EXPECT_GT(outcome.results.at("frames"), 3);
+}
+
+TEST(RelativePositionTask, FailsWithItsReason) {
+  EXPECT_EQ(Fixture().run_task("door").failure, Failure::Kind::kInvalid);
+  EXPECT_EQ(Fixture().run_task("grey_box").failure, Failure::Kind::kInvalid);
+  Fixture cut({.disconnect_at = 1});
+  const TaskOutcome outcome = cut.run_task();
+  EXPECT_EQ(outcome.status, TaskStatus::kFailed);
+  EXPECT_EQ(outcome.failure, Failure::Kind::kDisconnected);
+}
+
+TEST(RelativePositionTask, MayRunAgain) {
+  Fixture f;
+  RelativePositionTask task("blue_box", kConvergence);
+  const TaskOutcome first = run(task, f.context);
+  const TaskOutcome second = run(task, f.context);
+  EXPECT_TRUE(first.reached() && second.reached());
+  EXPECT_EQ(first.results.at("bearing_rad"), second.results.at("bearing_rad"));
+}
+
+}  // namespace
+}  // namespace tether::tasks

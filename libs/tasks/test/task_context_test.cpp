@@ -1,0 +1,68 @@
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <tether/tasks/task_context.h>
+#include <tether/tasks/testing/turning_vehicle.h>
+
+namespace tether::tasks {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+TEST(TaskContext, FindsCameraAndAnchor) {
+  testing::TurningVehicle vehicle({});
+  TaskContext context(vehicle);
+  ASSERT_TRUE(context.camera());
+  EXPECT_EQ((*context.camera())->name, "camera");
+  ASSERT_TRUE(context.anchor("blue_box"));
+  EXPECT_EQ((*context.anchor("blue_box"))->size_m.z, 0.5);
+}
+
+TEST(TaskContext, SaysWhatTheCatalogueLacks) {
+  testing::TurningVehicle vehicle({});
+  EXPECT_THAT(TaskContext(vehicle, "eye").camera().failure().message, HasSubstr("camera \"eye\""));
+  EXPECT_FALSE(TaskContext(vehicle, "imu").camera()) << "not a camera";
+  TaskContext context(vehicle);
+  EXPECT_THAT(context.anchor("door").failure().message, HasSubstr("anchor \"door\""));
+  EXPECT_THAT(context.tracker("door").failure().message, HasSubstr("anchor \"door\""));
+  EXPECT_THAT(context.tracker("grey_box").failure().message, HasSubstr("hue"));
+}
+
+TEST(TaskContext, KeepsOneTrackerForEachAnchor) {
+  testing::TurningVehicle vehicle({});
+  TaskContext context(vehicle);
+  const auto first = context.tracker("blue_box");
+  const auto again = context.tracker("blue_box");
+  ASSERT_TRUE(first && again);
+  EXPECT_EQ(*first, *again);
+}
+
+TEST(TaskContext, NotesHaveTheFieldsOfTheRecord) {
+  testing::TurningVehicle vehicle({});
+  TaskContext context(vehicle);
+  vision::Roi roi;
+  roi.center = {12.5, 7};
+  roi.width_px = 20;
+  context.note_roi(roi, 42);
+  context.note_estimate({0.25, std::nullopt}, true);
+  context.note_event("face_anchor", "loop", "reverse", {{"yaw_rate_rad_s", -0.2}});
+
+  const auto& notes = vehicle.annotations();
+  ASSERT_EQ(notes.size(), 3u);
+  EXPECT_EQ(notes[0].topic, "roi");
+  const json noted_roi = json::parse(notes[0].json);
+  EXPECT_EQ(noted_roi.at("u_px"), 12.5);
+  EXPECT_EQ(noted_roi.at("image_index"), 42);
+  for (const char* field : {"v_px", "width_px", "height_px", "angle_rad", "score"}) {
+    EXPECT_TRUE(noted_roi.contains(field)) << field;
+  }
+  EXPECT_EQ(notes[1].topic, "estimate");
+  EXPECT_EQ(json::parse(notes[1].json),
+            json({{"bearing_rad", 0.25}, {"distance_m", nullptr}, {"converged", true}}));
+  EXPECT_EQ(notes[2].topic, "task");
+  EXPECT_EQ(json::parse(notes[2].json).at("yaw_rate_rad_s"), -0.2);
+}
+
+}  // namespace
+}  // namespace tether::tasks
