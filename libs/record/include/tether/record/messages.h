@@ -48,9 +48,9 @@ struct Interaction {
   SimTime st_at_arrival;
   SimTime st_at_release;
   Duration lag{0};  ///< ε = request_at − st_at_arrival
-  /// What the step grid moved: never negative, below one step. Sensor: sampled_at −
-  /// sample_state_at. Command: effect_at − (request_at + command latency). Sleep and finish:
-  /// reply_at − st_at_release.
+  /// The largest distance by which the step grid moved something: the sample (sampled_at −
+  /// sample_state_at), the effect (effect_at − (request_at + command latency)) or the release
+  /// (reply_at − st_at_release). Never negative, below one step.
   Duration grid_error{0};
   bool stamped = true;                   ///< request_at came from the SUT's side
   std::optional<std::string> violation;  ///< causality violation, named

@@ -1,0 +1,35 @@
+#include "checks.h"
+
+#include <algorithm>
+
+#include <tether/audit/audit.h>
+
+namespace tether::audit {
+
+Verdict audit(const record::Record& record) {
+  Verdict verdict;
+  Report report(verdict);
+  verdict.synchronised = record.header.policy == record::kConservativeBarrier;
+  verdict.complete = record.footer.has_value();
+  verdict.interactions = record.interactions.size();
+  if (!verdict.synchronised && record.header.policy != record::kFreeRunning) {
+    report.add("unknown policy \"" + record.header.policy + "\"");
+  }
+  if (record.header.step <= Duration(0)) {
+    report.add("the simulator's step is not positive");
+    return verdict;
+  }
+
+  const Boundaries grid(record.header.step);
+  check_consistency(record, grid, report);
+  if (verdict.synchronised) {
+    check_interactions(record, grid, report);
+    check_commands(record, grid, report);
+    check_order(record, grid, report);
+  }
+  check_end(record, grid, report);
+  std::ranges::stable_sort(verdict.findings, {}, &Finding::at);
+  return verdict;
+}
+
+}  // namespace tether::audit

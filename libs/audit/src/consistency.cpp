@@ -1,0 +1,176 @@
+#include "checks.h"
+#include "file_order.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+namespace tether::audit {
+namespace {
+
+using record::CommandEffect;
+using record::GroundTruth;
+using record::Interaction;
+using record::Logged;
+
+bool is_known_kind(std::string_view kind) {
+  return kind == record::kSensor || kind == record::kCommand || kind == record::kSleep ||
+         kind == record::kFinish;
+}
+
+// How far from 1 the length of a rotation may be.
+constexpr double kRotationTolerance = 1e-6;
+
+class ConsistencyCheck {
+ public:
+  ConsistencyCheck(const record::Record& record, const Boundaries& grid, Report& report)
+      : record_(record), grid_(grid), report_(report) {
+    for (const record::SutInfo& sut : record.header.suts) {
+      last_sequence_[sut.uav] = 0;
+    }
+  }
+
+  void run() {
+    if (last_sequence_.size() != record_.header.suts.size()) {
+      report_.add("two SUTs fly one UAV");
+    }
+    for_each_in_file_order(record_, [&](const auto& entry) { visit(entry); });
+  }
+
+ private:
+  void visit(const Logged<Interaction>& entry) {
+    const Interaction& message = entry.message;
+    if (entry.at != message.st_at_release) {
+      report_.add(0, entry,
+                  "logged at ST " + ns(wide(entry.at)) + ", released at " +
+                      ns(wide(message.st_at_release)));
+    }
+    if (!is_known_kind(message.kind)) {
+      report_.add(0, entry, "unknown kind \"" + message.kind + "\"");
+    }
+    if (record_.header.policy == record::kFreeRunning) {
+      check_free_running(entry);
+    }
+    const auto last = last_sequence_.find(message.uav);
+    if (last == last_sequence_.end()) {
+      return report_.add(0, entry, "no UAV \"" + message.uav + "\" in the record's header");
+    }
+    if (message.sequence != last->second + 1) {
+      report_.add(5, entry,
+                  "interaction " + std::to_string(message.sequence) + " follows interaction " +
+                      std::to_string(last->second));
+    }
+    last->second = message.sequence;
+    reached_ = std::max(reached_, wide(entry.at));
+  }
+
+  // Rule 8: nothing is held. (Of a synchronised record, check_order sees to the log times.)
+  void check_free_running(const Logged<Interaction>& entry) {
+    const Interaction& message = entry.message;
+    if (wide(entry.at) < reached_) {
+      report_.add(0, entry, "logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_));
+    }
+    if (message.st_at_release != message.st_at_arrival) {
+      report_.add(8, entry,
+                  "held from ST " + ns(wide(message.st_at_arrival)) + " to " +
+                      ns(wide(message.st_at_release)) + " in a free-running record");
+    }
+  }
+
+  void visit(const Logged<CommandEffect>& entry) {
+    const CommandEffect& message = entry.message;
+    if (entry.at != message.applied_at) {
+      report_.add(
+          0, entry,
+          "logged at ST " + ns(wide(entry.at)) + ", applied at " + ns(wide(message.applied_at)));
+    }
+    if (!std::isfinite(message.vx_H_m_s + message.vy_H_m_s + message.vz_H_m_s +
+                       message.yaw_rate_rad_s)) {
+      report_.add(0, entry, "a command that is not finite");
+    }
+    if (wide(entry.at) < reached_) {
+      report_.add(0, entry, "logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_));
+    }
+    reached_ = std::max(reached_, wide(entry.at));
+  }
+
+  void visit(const Logged<GroundTruth>& entry) {
+    const GroundTruth& message = entry.message;
+    if (entry.at != message.at) {
+      report_.add(entry,
+                  "logged at ST " + ns(wide(entry.at)) + ", true at " + ns(wide(message.at)));
+    }
+    if (!last_sequence_.contains(message.uav)) {
+      return report_.add(entry, "no UAV \"" + message.uav + "\" in the record's header");
+    }
+    if (wide(entry.at) < reached_) {
+      report_.add(entry, "logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_));
+    }
+    check_instant(entry);
+    check_state(entry);
+    reached_ = std::max(reached_, wide(entry.at));
+  }
+
+  void visit(const Logged<record::Annotation>& entry) {
+    if (wide(entry.at) < reached_) {
+      report_.add({0, entry.message.uav, 0, entry.at,
+                   "annotation logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_)});
+    }
+    reached_ = std::max(reached_, wide(entry.at));
+  }
+
+  // Ground truth k is that of the first boundary from k·period on; without a period it only grows.
+  void check_instant(const Logged<GroundTruth>& entry) {
+    TruthRow& row = truth_[entry.message.uav];
+    const Wide at = wide(entry.message.at);
+    const Wide period = wide(record_.header.ground_truth_period);
+    if (!grid_.contain(at)) {
+      report_.add(entry, "ground truth at " + ns(at) + ", no step boundary");
+    } else if (period > 0 && at != grid_.at_or_after(row.count * period)) {
+      report_.add(entry, "ground truth at " + ns(at) + ", expected at " +
+                             ns(grid_.at_or_after(row.count * period)));
+    } else if (row.count > 0 && at <= row.last) {
+      report_.add(entry, "ground truth at " + ns(at) + " follows that at " + ns(row.last));
+    }
+    ++row.count;
+    row.last = at;
+  }
+
+  void check_state(const Logged<GroundTruth>& entry) {
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      sum += entry.message.p_WB_m[i] + entry.message.v_WB_m_s[i] + entry.message.w_WB_B_rad_s[i];
+    }
+    double square = 0.0;
+    for (const double q : entry.message.q_WB) {
+      square += q * q;
+    }
+    if (!std::isfinite(sum)) {
+      report_.add(entry, "ground truth that is not finite");
+    }
+    if (!(std::abs(std::sqrt(square) - 1.0) <= kRotationTolerance)) {
+      report_.add(entry, "a rotation of length " + std::to_string(std::sqrt(square)));
+    }
+  }
+
+  struct TruthRow {
+    Wide count = 0;
+    Wide last = 0;
+  };
+
+  const record::Record& record_;
+  const Boundaries& grid_;
+  Report& report_;
+  std::map<std::string, std::uint64_t> last_sequence_;
+  std::map<std::string, TruthRow> truth_;
+  Wide reached_ = 0;
+};
+
+}  // namespace
+
+void check_consistency(const record::Record& record, const Boundaries& grid, Report& report) {
+  ConsistencyCheck(record, grid, report).run();
+}
+
+}  // namespace tether::audit

@@ -1,0 +1,56 @@
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <tether/audit/audit.h>
+
+namespace tether::audit {
+namespace {
+
+std::string headline(const Verdict& verdict) {
+  const std::size_t findings = verdict.findings.size() + verdict.further_findings;
+  if (findings > 0) {
+    return fmt::format("FAILED: {} finding{} in {} interactions\n", findings,
+                       findings == 1 ? "" : "s", verdict.interactions);
+  }
+  const char* how = verdict.complete ? "passed" : "INCOMPLETE, no finding up to where it stops";
+  if (!verdict.synchronised) {
+    return fmt::format("{}: {} interactions, not synchronised: rules 1 to 7 do not apply\n", how,
+                       verdict.interactions);
+  }
+  return fmt::format("{}: {} interactions keep the rules of time; largest grid error {:.6f} ms\n",
+                     how, verdict.interactions, to_seconds(verdict.largest_grid_error) * 1e3);
+}
+
+std::string line(const Finding& finding) {
+  std::string where = fmt::format("ST {:.6f} s", to_seconds(finding.at));
+  if (!finding.uav.empty()) {
+    where += fmt::format(", {}", finding.uav);
+  }
+  if (finding.sequence != 0) {
+    where += fmt::format(" #{}", finding.sequence);
+  }
+  const std::string rule = finding.rule == 0 ? "record" : fmt::format("rule {}", finding.rule);
+  return fmt::format("  {} ({}): {}\n", rule, where, finding.what);
+}
+
+}  // namespace
+
+std::string to_text(const Verdict& verdict, std::size_t max_findings) {
+  std::string text = headline(verdict);
+  for (const std::string& note : verdict.notes) {
+    text += fmt::format("  note: {}\n", note);
+  }
+  const std::size_t shown = std::min(max_findings, verdict.findings.size());
+  for (std::size_t i = 0; i < shown; ++i) {
+    text += line(verdict.findings[i]);
+  }
+  const std::size_t more = verdict.findings.size() - shown + verdict.further_findings;
+  if (more > 0) {
+    text += fmt::format("  … and {} more\n", more);
+  }
+  return text;
+}
+
+}  // namespace tether::audit

@@ -1,0 +1,194 @@
+#include "record_generator.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <tether/audit/audit.h>
+#include <tether/base/random.h>
+
+namespace tether::audit {
+namespace {
+
+using record::Interaction;
+using record::Record;
+using Entry = record::Logged<Interaction>;
+using Rules = std::set<int>;
+
+constexpr Duration kStep{1'000'000};
+
+Rules rules_of(const Verdict& verdict) {
+  Rules rules;
+  for (const Finding& finding : verdict.findings) {
+    rules.insert(finding.rule);
+  }
+  return rules;
+}
+
+// ---- What keeps the rules passes
+// -----------------------------------------------------------------
+
+class ValidRecord : public ::testing::TestWithParam<int> {};
+
+TEST_P(ValidRecord, Passes) {
+  GeneratorOptions options;
+  options.seed = static_cast<std::uint64_t>(GetParam());
+  options.suts = 1 + GetParam() % 4;
+  options.step = Duration(GetParam() % 3 == 0 ? 4'000'000 : 1'000'000);
+  options.wall_times = GetParam() % 5 != 0;
+  if (GetParam() % 2 == 0) {
+    options.stop_at = from_ns<SimTime>(1'000'000'000);
+  }
+  const Record record = generate(options);
+  ASSERT_GT(record.interactions.size(), 30U);
+  ASSERT_FALSE(record.commands.empty());
+  const Verdict verdict = audit(record);
+  EXPECT_TRUE(verdict.passed()) << to_text(verdict);
+  EXPECT_TRUE(verdict.synchronised);
+  EXPECT_EQ(verdict.interactions, record.interactions.size());
+  EXPECT_EQ(verdict.largest_grid_error, record.footer->largest_grid_error);
+  EXPECT_LT(verdict.largest_grid_error, options.step);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ValidRecord, ::testing::Range(1, 61));
+
+// ---- Other verdicts
+// --------------------------------------------------------------------------------
+
+TEST(Audit, UnstampedIsANoteAndNoFinding) {
+  Record record = generate({.suts = 1});
+  record.header.suts[0].clock = "unstamped";
+  for (Entry& entry : record.interactions) {
+    entry.message.stamped = false;
+  }
+  const Verdict verdict = audit(record);
+  EXPECT_TRUE(verdict.passed()) << to_text(verdict);
+  ASSERT_EQ(verdict.notes.size(), 1U);
+  EXPECT_NE(verdict.notes[0].find("rule 6"), std::string::npos);
+}
+
+TEST(Audit, WithoutItsEndARecordDoesNotPass) {
+  Record record = generate({});
+  record.footer.reset();
+  record.damage = "damaged at byte 5: the file ends too early";
+  const Verdict verdict = audit(record);
+  EXPECT_TRUE(verdict.findings.empty()) << to_text(verdict);
+  EXPECT_FALSE(verdict.complete);
+  EXPECT_FALSE(verdict.passed());
+  ASSERT_EQ(verdict.notes.size(), 1U);
+  EXPECT_NE(verdict.notes[0].find("byte 5"), std::string::npos);
+}
+
+// A command whose reply is still held when the run ends has its effect but no interaction.
+TEST(Audit, CommandHeldAtTheEndIsNoOrphan) {
+  Record record = generate({.stop_at = from_ns<SimTime>(1'000'000'000)});
+  std::uint64_t last = 0;
+  for (const Entry& entry : record.interactions) {
+    last = entry.message.uav == "uav0" ? entry.message.sequence : last;
+  }
+  record.commands.push_back({record.footer->st_at_end,
+                             record.interactions.back().order + 1000,
+                             {"uav0", last + 1, record.footer->st_at_end, 0, 0, 0, 0}});
+  EXPECT_TRUE(audit(record).passed()) << to_text(audit(record));
+  record.commands.back().message.sequence = last + 2;
+  EXPECT_EQ(rules_of(audit(record)), Rules{2});
+}
+
+Record free_running() {
+  Record record = generate({});
+  record.header.policy = record::kFreeRunning;
+  for (Entry& entry : record.interactions) {
+    entry.message.st_at_arrival = entry.message.st_at_release;
+    entry.message.lag = Duration(0);
+  }
+  record.footer->largest_lag = Duration(0);
+  return record;
+}
+
+TEST(Audit, FreeRunningIsNotSynchronised) {
+  const Verdict verdict = audit(free_running());
+  EXPECT_FALSE(verdict.synchronised);
+  EXPECT_TRUE(verdict.passed()) << to_text(verdict);
+}
+
+TEST(Audit, FreeRunningMustNotHold) {
+  Record record = free_running();
+  record.interactions[3].message.st_at_arrival -= kStep;
+  EXPECT_EQ(rules_of(audit(record)), Rules{8});
+}
+
+TEST(Audit, FreeRunningRecordsMustBeConsistent) {
+  Record record = free_running();
+  record.footer->interactions -= 1;
+  record.ground_truth.erase(record.ground_truth.begin());
+  EXPECT_EQ(rules_of(audit(record)), Rules{0});
+}
+
+TEST(Audit, EmptyRecordDoesNotPass) {
+  EXPECT_FALSE(audit(Record{}).passed());
+}
+
+TEST(Audit, FindingsAreBounded) {
+  Record record = generate({.interactions_per_sut = 5000});
+  for (Entry& entry : record.interactions) {
+    entry.message.lag -= Duration(1);
+  }
+  const Verdict verdict = audit(record);
+  EXPECT_EQ(verdict.findings.size(), kMaxFindings);
+  EXPECT_GT(verdict.further_findings, 0U);
+}
+
+// Any single time changed anywhere is noticed, and nothing that a record can say breaks the audit.
+TEST(Audit, RandomChangesOfTimesAreNoticed) {
+  const Record valid = generate({.seed = 9, .interactions_per_sut = 60, .wall_times = false});
+  KeyedRandom random({.seed = 2});
+  constexpr std::int64_t kExtremes[] = {0, -1, std::numeric_limits<std::int64_t>::max(),
+                                        std::numeric_limits<std::int64_t>::min()};
+  for (int round = 0; round < 3000; ++round) {
+    Record record = valid;
+    Interaction& m = record.interactions[random.bits() % record.interactions.size()].message;
+    const bool extreme = random.bits() % 4 == 0;
+    const std::int64_t value = kExtremes[random.bits() % 4];
+    const Duration change(1 + random.bits() % 5'000'000);
+    const auto alter = [&](auto& time) {
+      using Time = std::decay_t<decltype(time)>;
+      const Time before = time;
+      time = extreme ? from_ns<Time>(value) : time - change;
+      return time != before;
+    };
+    bool changed = false;
+    switch (random.bits() % 4) {
+      case 0:
+        changed = alter(m.request_at);
+        break;
+      case 1:
+        changed = alter(m.reply_at);
+        break;
+      case 2:
+        changed = alter(m.st_at_release);
+        break;
+      default:
+        changed = alter(m.st_at_arrival);
+    }
+    EXPECT_EQ(audit(record).findings.empty(), !changed) << "round " << round;
+  }
+}
+
+// 10^6 interactions within seconds: generously, ten on a busy machine.
+TEST(Audit, AMillionInteractionsWithinSeconds) {
+  const Record record = generate({.suts = 4, .interactions_per_sut = 250'000});
+  ASSERT_EQ(record.interactions.size(), 1'000'000U);
+  const auto start = std::chrono::steady_clock::now();
+  const Verdict verdict = audit(record);
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+  EXPECT_TRUE(verdict.passed()) << to_text(verdict);
+  RecordProperty("seconds", std::to_string(spent.count()));
+  EXPECT_LT(spent.count(), 10.0);
+}
+
+}  // namespace
+}  // namespace tether::audit

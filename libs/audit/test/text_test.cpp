@@ -1,0 +1,40 @@
+#include <gtest/gtest.h>
+
+#include <tether/audit/audit.h>
+
+namespace tether::audit {
+namespace {
+
+TEST(ToText, SaysThatARecordPassed) {
+  Verdict verdict;
+  verdict.synchronised = verdict.complete = true;
+  verdict.interactions = 42;
+  verdict.largest_grid_error = Duration(999'999);
+  EXPECT_EQ(to_text(verdict),
+            "passed: 42 interactions keep the rules of time; largest grid error 0.999999 ms\n");
+}
+
+TEST(ToText, SaysWhatDoesNotApplyAndWhatIsMissing) {
+  Verdict verdict;
+  EXPECT_EQ(to_text(verdict),
+            "INCOMPLETE, no finding up to where it stops: 0 interactions, not synchronised: rules "
+            "1 to 7 do not apply\n");
+}
+
+TEST(ToText, ListsFindingsUpToTheLimit) {
+  Verdict verdict;
+  verdict.notes = {"a note"};
+  verdict.further_findings = 2;
+  verdict.findings = {{3, "a", 7, from_ns<SimTime>(1'500'000'000), "too late"},
+                      {0, "", 0, {}, "wrong"},
+                      {0, "", 0, {}, "not shown"}};
+  EXPECT_EQ(to_text(verdict, 2),
+            "FAILED: 5 findings in 0 interactions\n"
+            "  note: a note\n"
+            "  rule 3 (ST 1.500000 s, a #7): too late\n"
+            "  record (ST 0.000000 s): wrong\n"
+            "  … and 3 more\n");
+}
+
+}  // namespace
+}  // namespace tether::audit
