@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+/// Tables for people and programs.
+namespace tether::experiment {
+
+/// One heading over one or more columns.
+struct Heading {
+  std::string text;
+  std::size_t columns = 1;
+};
+
+struct Table {
+  std::string title;
+  std::vector<std::vector<Heading>> headings;  ///< from the top; each row spans all columns
+  std::vector<std::vector<std::string>> rows;  ///< each as wide as the headings
+  std::vector<std::string> notes;              ///< lines below it
+  std::size_t text_columns = 1;                ///< the first ones, of words; the others of numbers
+};
+
+/// Columns aligned for a terminal: words to the left, numbers to the right. UTF-8 aware.
+std::string to_text(const Table& table);
+/// GitHub's Markdown, the rows of headings joined into one.
+std::string to_markdown(const Table& table);
+/// RFC 4180, the rows of headings joined into one; no title, no notes.
+std::string to_csv(const Table& table);
+
+}  // namespace tether::experiment

@@ -1,0 +1,137 @@
+#include <cerrno>
+#include <cstring>
+#include <optional>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <tether/experiment/campaign_folder.h>
+#include <tether/experiment/text_file.h>
+
+namespace tether::experiment {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLockFile = ".lock";
+
+void make_folder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (!failed) return;
+  throw Error(ErrorCode::kSetup, FileLocation{folder.string()},
+              "the folder cannot be made: " + failed.message());
+}
+
+bool holds_anything(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().filename() != kLockFile) return true;
+  }
+  return false;
+}
+
+// The first setting that is not the same; empty: none.
+std::string difference(const Settings& then, const Settings& now) {
+  for (const auto& [name, value] : now) {
+    const auto before = then.find(name);
+    if (before == then.end()) return fmt::format("'{}' is new", name);
+    if (before->second == value) continue;
+    return fmt::format("'{}' was {} and is {}", name, before->second, value);
+  }
+  for (const auto& [name, value] : then) {
+    if (!now.contains(name)) return fmt::format("'{}' is no longer there", name);
+  }
+  return "";
+}
+
+[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
+  throw Error(ErrorCode::kUsage, FileLocation{folder.string()}, why);
+}
+
+}  // namespace
+
+// Held until the process ends, however it ends.
+class CampaignFolder::Lock {
+ public:
+  explicit Lock(const fs::path& folder) {
+    const fs::path file = folder / kLockFile;
+    fd_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (fd_ < 0) {
+      throw Error(ErrorCode::kSetup, FileLocation{file.string()},
+                  fmt::format("cannot be opened: {}", std::strerror(errno)));
+    }
+    if (::flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
+    ::close(fd_);
+    refuse(folder, "another campaign is running in this folder; wait for it or choose another");
+  }
+  ~Lock() { ::close(fd_); }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+
+ private:
+  int fd_ = -1;
+};
+
+CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campaign,
+                               const Settings& settings, OpenMode mode)
+    : folder_(std::move(folder)) {
+  const CampaignManifest manifest = manifest_of(campaign, settings);
+  make_folder(folder_);
+  lock_ = std::make_unique<Lock>(folder_);
+  if (holds_anything(folder_)) check_existing(manifest, mode);
+  find_missing(campaign);
+  if (mode == OpenMode::kFresh && finished_ > 0) {
+    refuse(folder_, fmt::format("already holds {} of {} trials; go on with --resume, or choose "
+                                "another folder",
+                                finished_, finished_ + missing_.size()));
+  }
+  write_file_atomically(folder_ / kCampaignFile, to_json(manifest));
+}
+
+CampaignFolder::~CampaignFolder() = default;
+
+void CampaignFolder::check_existing(const CampaignManifest& now, OpenMode mode) const {
+  std::error_code ignored;
+  if (!fs::exists(folder_ / kCampaignFile, ignored)) {
+    refuse(folder_, "is not empty and holds no campaign; choose another folder");
+  }
+  const CampaignManifest then = read_manifest(folder_);
+  if (then.name != now.name) {
+    refuse(folder_, fmt::format("holds the campaign '{}', not '{}'; choose another folder",
+                                then.name, now.name));
+  }
+  const std::string changed = difference(then.settings, now.settings);
+  if (changed.empty()) return;
+  refuse(folder_, fmt::format("holds trials of other settings: {}; results of both must not be "
+                              "mixed, so choose another folder{}",
+                              changed, mode == OpenMode::kResume ? " and leave out --resume" : ""));
+}
+
+void CampaignFolder::find_missing(const scenario::Campaign& campaign) {
+  for (TrialPlan& plan : plan_trials(campaign, folder_)) {
+    if (has_usable_result(plan)) {
+      ++finished_;
+    } else {
+      missing_.push_back(std::move(plan));
+    }
+  }
+}
+
+bool CampaignFolder::has_usable_result(const TrialPlan& plan) {
+  std::error_code ignored;
+  if (!fs::exists(plan.folder / kResultFile, ignored)) return false;
+  try {
+    const TrialResult result = read_result(plan.folder);
+    const bool is_this_trial = result.scenario == plan.scenario->name &&
+                               result.condition == plan.condition->name && result.seed == plan.seed;
+    if (!is_this_trial) warnings_.push_back(plan.folder.string() + ": is of another trial");
+    return is_this_trial && result.end != kEndSetupFailed;
+  } catch (const Error& error) {
+    warnings_.emplace_back(error.what());
+    return false;
+  }
+}
+
+}  // namespace tether::experiment

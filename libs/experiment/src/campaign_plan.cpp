@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/experiment/campaign_plan.h>
+#include <tether/experiment/text_file.h>
+
+namespace tether::experiment {
+
+std::filesystem::path trial_folder(const std::string& scenario, const std::string& condition,
+                                   std::uint64_t seed) {
+  return std::filesystem::path(scenario) / scenario::slug(condition) /
+         fmt::format("seed-{:04}", seed);
+}
+
+std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
+                                   const std::filesystem::path& folder) {
+  std::vector<TrialPlan> plans;
+  for (const scenario::CampaignScenario& entry : campaign.scenarios) {
+    for (const std::uint64_t seed : campaign.seeds) {
+      for (const std::string& condition : entry.conditions) {
+        plans.push_back({&entry.scenario, entry.scenario.find_condition(condition), seed,
+                         folder / trial_folder(entry.scenario.name, condition, seed)});
+      }
+    }
+  }
+  return plans;
+}
+
+bool may_run_beside_others(const scenario::Condition& condition) {
+  return condition.clock == scenario::Clock::kCpu &&
+         condition.policy == scenario::Policy::kConservativeBarrier;
+}
+
+void require_jobs_allowed(const scenario::Campaign& campaign, int jobs) {
+  if (jobs < 1) throw Error(ErrorCode::kUsage, fmt::format("--jobs {}: must be at least 1", jobs));
+  if (jobs == 1) return;
+  for (const scenario::CampaignScenario& entry : campaign.scenarios) {
+    for (const std::string& name : entry.conditions) {
+      if (entry.scenario.find_condition(name)->clock == scenario::Clock::kCpu) continue;
+      throw Error(ErrorCode::kUsage,
+                  fmt::format("--jobs {}: condition '{}' of {} measures its SUT by the wall clock, "
+                              "which trials side by side would disturb; use --jobs 1, or "
+                              "clock = \"cpu\"",
+                              jobs, name, entry.scenario.file.string()));
+    }
+  }
+}
+
+Settings campaign_settings(const scenario::Campaign& campaign, const Settings& versions,
+                           const std::vector<std::filesystem::path>& more_files) {
+  Settings settings = versions;
+  const std::filesystem::path base = campaign.file.parent_path();
+  const auto add = [&](const std::filesystem::path& file) {
+    const std::string name = file.lexically_proximate(base).string();
+    settings["file " + name] = digest_of_file(file);
+  };
+  for (const scenario::CampaignScenario& entry : campaign.scenarios) {
+    for (const std::filesystem::path& file : entry.scenario.files) add(file);
+  }
+  for (const std::filesystem::path& file : more_files) add(file);
+  return settings;
+}
+
+}  // namespace tether::experiment

@@ -1,0 +1,83 @@
+#include <array>
+
+#include <tether/experiment/paper_figures.h>
+
+namespace tether::experiment {
+namespace {
+
+constexpr std::string_view kHost = "host";
+constexpr std::string_view kTarget = "target";
+constexpr std::string_view kNoSync = "target, no sync";
+constexpr std::string_view kRealSensor = "target, real sensor";
+
+constexpr std::array kTableII = {
+    PaperFigure{kRealSensor, "bearing_error", 0.285, std::nullopt},
+    PaperFigure{kRealSensor, "distance_error", 0.083, std::nullopt},
+    PaperFigure{kRealSensor, "time_required", 0.558, std::nullopt},
+    PaperFigure{kTarget, "bearing_error", 0.158, std::nullopt},
+    PaperFigure{kTarget, "distance_error", 0.112, std::nullopt},
+    PaperFigure{kTarget, "time_required", 0.644, std::nullopt},
+    PaperFigure{kHost, "bearing_error", 0.269, std::nullopt},
+    PaperFigure{kHost, "distance_error", 0.071, std::nullopt},
+    PaperFigure{kHost, "time_required", 0.513, std::nullopt},
+};
+
+constexpr std::array kTableIII = {
+    PaperFigure{kHost, "oscillations", 0.0, 0.0},
+    PaperFigure{kHost, "time_required", 2.480, 0.033},
+    PaperFigure{kTarget, "oscillations", 1.0, 1.612},
+    PaperFigure{kTarget, "time_required", 9.242, 13.767},
+    PaperFigure{kNoSync, "oscillations", 0.0, 0.0},
+    PaperFigure{kNoSync, "time_required", 2.504, 0.108},
+};
+
+constexpr std::array kTableIV = {
+    PaperFigure{kHost, "position_error", 0.027, 0.0187},
+    PaperFigure{kHost, "time_required", 59.689, 0.800},
+    PaperFigure{kTarget, "position_error", 0.106, 0.0440},
+    PaperFigure{kTarget, "time_required", 58.484, 0.517},
+    PaperFigure{kNoSync, "position_error", 0.046, 0.0454},
+    PaperFigure{kNoSync, "time_required", 59.014, 0.960},
+};
+
+constexpr std::array kTableV = {
+    PaperFigure{kHost, "position_error", 0.320, 0.256},
+    PaperFigure{kHost, "estimate_error", 0.218, 0.131},
+    PaperFigure{kHost, "time_required", 27.816, 1.242},
+    PaperFigure{kTarget, "position_error", 0.359, 0.301},
+    PaperFigure{kTarget, "estimate_error", 0.211, 0.195},
+    PaperFigure{kTarget, "time_required", 27.121, 1.815},
+    PaperFigure{kNoSync, "position_error", 0.328, 0.262},
+    PaperFigure{kNoSync, "estimate_error", 0.245, 0.122},
+    PaperFigure{kNoSync, "time_required", 26.899, 1.596},
+};
+
+constexpr std::array kTables = {
+    PaperTable{"II", "Performance of the \"relative position\" task",
+               "Table II, Section IV; means of ten experiments, no spread published", kTableII},
+    PaperTable{"III", "Performance of the \"face anchor\" task",
+               "Table III, Section V; ten experiments per condition", kTableIII},
+    PaperTable{"IV", "Performance of the \"move forward\" task",
+               "Table IV, Section V; ten experiments per condition", kTableIV},
+    PaperTable{"V", "Performance of the \"closed path\" task",
+               "Table V, Section V; ten experiments per condition", kTableV},
+};
+
+}  // namespace
+
+const PaperFigure* PaperTable::find(std::string_view condition,
+                                    std::string_view metric_kind) const {
+  for (const PaperFigure& figure : figures) {
+    if (figure.condition == condition && figure.metric_kind == metric_kind) return &figure;
+  }
+  return nullptr;
+}
+
+const PaperTable* find_paper_table(std::string_view number) {
+  for (const PaperTable& table : kTables) {
+    if (table.number == number) return &table;
+  }
+  return nullptr;
+}
+
+}  // namespace tether::experiment

@@ -1,0 +1,243 @@
+#include "report_format.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <tether/experiment/paper_figures.h>
+#include <tether/experiment/report.h>
+
+namespace tether::experiment {
+namespace {
+
+struct Column {
+  std::string name;
+  std::string kind;
+  std::string heading;  // label with unit
+  bool in_paper = false;
+};
+
+std::vector<Column> columns_of(const ScenarioResults& scenario) {
+  const PaperTable* paper = find_paper_table(scenario.paper_table);
+  std::vector<Column> columns;
+  for (const std::string& name : scenario.metrics) {
+    const MetricValue* metric = scenario.find_metric(name);
+    if (metric == nullptr) continue;
+    const bool in_paper = paper != nullptr &&
+                          std::any_of(paper->figures.begin(), paper->figures.end(),
+                                      [&](const auto& f) { return f.metric_kind == metric->kind; });
+    columns.push_back({name, metric->kind, with_unit(metric->label, metric->unit), in_paper});
+  }
+  return columns;
+}
+
+// The paper's form.
+
+void add_headings(Table& table, const std::vector<Column>& columns) {
+  table.headings = {{{"", 1}}, {{"", 1}}, {{"SUT location", 1}}};
+  for (const Column& column : columns) {
+    table.headings[0].push_back({column.heading, column.in_paper ? 4u : 2u});
+    table.headings[1].push_back({"measured", 2});
+    if (column.in_paper) table.headings[1].push_back({"paper", 2});
+    for (int i = 0; i < (column.in_paper ? 2 : 1); ++i) {
+      table.headings[2].push_back({"mean", 1});
+      table.headings[2].push_back({"std. dev.", 1});
+    }
+  }
+}
+
+void add_cells(std::vector<std::string>& row, const ConditionResults& results, const Column& column,
+               const PaperTable* paper) {
+  const Summary summary = summarise(results.values(column.name));
+  row.push_back(summary.n > 0 ? decimals(summary.mean) : kNone);
+  row.push_back(decimals(summary.stddev));
+  if (!column.in_paper) return;
+  const PaperFigure* figure = paper->find(results.condition, column.kind);
+  row.push_back(figure != nullptr ? exact(figure->mean) : kNone);
+  row.push_back(figure != nullptr && figure->stddev ? exact(*figure->stddev) : kNone);
+}
+
+std::string trials_note(const ScenarioResults& scenario) {
+  std::string note = "Trials:";
+  const char* separator = "";
+  for (const ConditionResults& results : scenario.conditions) {
+    note +=
+        fmt::format("{} {} {} of {} ({} reached the goal)", separator, results.condition,
+                    results.trials.size(), results.planned, results.count(Outcome::kGoalReached));
+    separator = ";";
+  }
+  return note + ". Times are simulated time.";
+}
+
+// Why a trial has no value: said once per trial and reason.
+void add_missing_notes(Table& table, const ConditionResults& results,
+                       const std::vector<Column>& columns) {
+  for (const TrialResult& trial : results.trials) {
+    std::set<std::string> reasons;
+    for (const Column& column : columns) {
+      const MetricValue* metric = trial.find_metric(column.name);
+      const bool has_value = metric != nullptr && metric->value;
+      if (has_value) continue;
+      const std::string why = metric != nullptr ? metric->missing_because : "not computed";
+      const std::string& reason = trial.outcome == Outcome::kFailed ? trial.reason : why;
+      if (!reasons.insert(reason).second) continue;
+      table.notes.push_back(
+          fmt::format("Not in a mean: {}, seed {}: {}.", results.condition, trial.seed, reason));
+    }
+  }
+  if (results.trials.size() == results.planned) return;
+  table.notes.push_back(fmt::format("Not run yet, or without a readable result: {} trials of {}.",
+                                    results.planned - results.trials.size(), results.condition));
+}
+
+// Comparisons.
+
+std::optional<Comparison> compare(const std::string& metric, const std::string& unit,
+                                  const ConditionResults& a, const ConditionResults& b) {
+  const std::vector<double> values_a = a.values(metric), values_b = b.values(metric);
+  if (values_a.empty() || values_b.empty()) return std::nullopt;
+  return Comparison{metric,
+                    unit,
+                    a.condition,
+                    b.condition,
+                    compare_means(values_a, values_b),
+                    mann_whitney(values_a, values_b)};
+}
+
+template <class Wanted>
+std::vector<Comparison> compare_where(const ScenarioResults& scenario, const Wanted& wanted) {
+  std::vector<Comparison> comparisons;
+  for (const std::string& name : scenario.metrics) {
+    const MetricValue* metric = scenario.find_metric(name);
+    if (metric == nullptr) continue;
+    for (std::size_t i = 0; i < scenario.conditions.size(); ++i) {
+      for (std::size_t j = 0; j < scenario.conditions.size(); ++j) {
+        if (!wanted(i, j)) continue;
+        const ConditionResults &a = scenario.conditions[i], &b = scenario.conditions[j];
+        if (auto result = compare(name, metric->unit, a, b)) comparisons.push_back(*result);
+      }
+    }
+  }
+  return comparisons;
+}
+
+bool is_synchronised_twin(const ConditionResults& a, const ConditionResults& b) {
+  if (a.trials.empty() || b.trials.empty()) return false;
+  const TrialResult &first_a = a.trials.front(), &first_b = b.trials.front();
+  return first_a.policy == scenario::name(scenario::Policy::kConservativeBarrier) &&
+         first_b.policy == scenario::name(scenario::Policy::kFreeRunning) &&
+         first_a.clock == first_b.clock && first_a.cpu_factor == first_b.cpu_factor;
+}
+
+Table table_of(const ScenarioResults& scenario, const std::vector<Comparison>& comparisons) {
+  Table table;
+  table.text_columns = 2;
+  table.headings = {{{"Metric", 1},
+                     {"Conditions", 1},
+                     {"Difference of means", 1},
+                     {"95 % interval", 1},
+                     {"p", 1}}};
+  for (const Comparison& c : comparisons) {
+    const MetricValue* metric = scenario.find_metric(c.metric);
+    table.rows.push_back({with_unit(metric->label, c.unit), fmt::format("{} − {}", c.a, c.b),
+                          decimals(c.means.difference), interval(c.means.ci95),
+                          p_value(c.ranks.p_two_sided)});
+  }
+  const bool all_exact = std::all_of(comparisons.begin(), comparisons.end(),
+                                     [](const Comparison& c) { return c.ranks.exact; });
+  table.notes = {fmt::format("Interval: Welch's t. p: Mann-Whitney U, two-sided, {}.",
+                             all_exact ? "exact" : "exact up to 100 trials, else approximate")};
+  return table;
+}
+
+}  // namespace
+
+Table paper_form_table(const ScenarioResults& scenario) {
+  const PaperTable* paper = find_paper_table(scenario.paper_table);
+  const std::vector<Column> columns = columns_of(scenario);
+  Table table;
+  table.title = paper != nullptr ? fmt::format("Table {}: {}", paper->number, paper->title)
+                                 : fmt::format("Scenario {}", scenario.scenario);
+  add_headings(table, columns);
+  for (const ConditionResults& results : scenario.conditions) {
+    std::vector<std::string> row = {results.condition};
+    for (const Column& column : columns) add_cells(row, results, column, paper);
+    table.rows.push_back(std::move(row));
+  }
+  table.notes.push_back(trials_note(scenario));
+  if (paper != nullptr) table.notes.push_back(fmt::format("Paper: {}.", paper->source));
+  for (const ConditionResults& results : scenario.conditions) {
+    add_missing_notes(table, results, columns);
+  }
+  return table;
+}
+
+Table details_table(const ScenarioResults& scenario) {
+  Table table;
+  table.title = fmt::format("Details of {}", scenario.scenario);
+  table.text_columns = 2;
+  table.headings = {{{"Metric", 1},
+                     {"Condition", 1},
+                     {"n", 1},
+                     {"Mean", 1},
+                     {"95 % interval", 1},
+                     {"Std. dev.", 1},
+                     {"Median", 1},
+                     {"Min", 1},
+                     {"Max", 1}}};
+  for (const Column& column : columns_of(scenario)) {
+    for (const ConditionResults& results : scenario.conditions) {
+      const Summary s = summarise(results.values(column.name));
+      std::vector<std::string> row = {column.heading, results.condition, std::to_string(s.n)};
+      if (s.n == 0) {
+        row.resize(9, kNone);
+      } else {
+        row.insert(row.end(), {decimals(s.mean), interval(s.ci95), decimals(s.stddev),
+                               decimals(s.median), decimals(s.min), decimals(s.max)});
+      }
+      table.rows.push_back(std::move(row));
+    }
+  }
+  table.notes = {"Interval: of the mean, Student's t."};
+  return table;
+}
+
+std::vector<Comparison> compare_conditions(const ScenarioResults& scenario) {
+  // Each pair once, the later minus the earlier.
+  return compare_where(scenario, [](std::size_t a, std::size_t b) { return a > b; });
+}
+
+Table comparisons_table(const ScenarioResults& scenario) {
+  Table table = table_of(scenario, compare_conditions(scenario));
+  table.title = fmt::format("How the conditions of {} differ", scenario.scenario);
+  return table;
+}
+
+std::vector<Comparison> optimism(const ScenarioResults& scenario) {
+  return compare_where(scenario, [&](std::size_t a, std::size_t b) {
+    return is_synchronised_twin(scenario.conditions[a], scenario.conditions[b]);
+  });
+}
+
+Table optimism_table(const ScenarioResults& scenario) {
+  Table table = table_of(scenario, optimism(scenario));
+  table.title = fmt::format("The optimism of an unsynchronised test of {}", scenario.scenario);
+  table.notes.push_back(
+      "Positive: without synchronisation the same target looks better by this much than it is.");
+  return table;
+}
+
+std::vector<Table> report_tables(const CampaignResults& results) {
+  std::vector<Table> tables;
+  for (const ScenarioResults& scenario : results.scenarios) {
+    tables.push_back(paper_form_table(scenario));
+    tables.push_back(details_table(scenario));
+    if (!compare_conditions(scenario).empty()) tables.push_back(comparisons_table(scenario));
+    if (!optimism(scenario).empty()) tables.push_back(optimism_table(scenario));
+  }
+  tables.push_back(basis_table(results));
+  return tables;
+}
+
+}  // namespace tether::experiment

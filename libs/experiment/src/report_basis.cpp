@@ -1,0 +1,142 @@
+#include "report_format.h"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <tether/experiment/paper_figures.h>
+#include <tether/experiment/report.h>
+
+namespace tether::experiment {
+namespace {
+
+std::string joined(const std::set<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : "; ") + word;
+  return text.empty() ? kNone : text;
+}
+
+std::string seeds_text(const std::vector<std::uint64_t>& seeds) {
+  if (seeds.empty()) return kNone;
+  const auto [first, last] = std::minmax_element(seeds.begin(), seeds.end());
+  if (*last - *first + 1 == seeds.size()) return fmt::format("{} to {}", *first, *last);
+  return fmt::format("{}", fmt::join(seeds, ", "));
+}
+
+template <class Visit>
+void for_each_trial(const CampaignResults& results, const Visit& visit) {
+  for (const ScenarioResults& scenario : results.scenarios) {
+    for (const ConditionResults& condition : scenario.conditions) {
+      for (const TrialResult& trial : condition.trials) visit(scenario, trial);
+    }
+  }
+}
+
+std::string tie_text(const TrialResult& trial) {
+  std::string text = fmt::format("{}: {}, {} clock", trial.condition, trial.policy, trial.clock);
+  if (trial.clock == "cpu") text += fmt::format(" × {}", trial.cpu_factor);
+  if (trial.real_time_factor > 0.0) {
+    text += fmt::format(", simulator at most {} × real time", trial.real_time_factor);
+  }
+  return text;
+}
+
+struct Basis {
+  std::set<std::string> ties, machines, suts;
+  std::size_t audited = 0, passed = 0, synchronised = 0;
+  std::uint64_t violations = 0, interactions = 0;
+
+  void add(const TrialResult& trial) {
+    ties.insert(tie_text(trial));
+    if (!trial.this_run.machine.empty()) machines.insert(trial.this_run.machine);
+    for (const SutResult& sut : trial.suts) suts.insert(sut.sut);
+    violations += trial.sync.causality_violations;
+    interactions += trial.sync.interactions;
+    if (trial.policy == scenario::name(scenario::Policy::kConservativeBarrier)) ++synchronised;
+    if (!trial.audit) return;
+    ++audited;
+    if (trial.audit->passed) ++passed;
+  }
+};
+
+}  // namespace
+
+Table basis_table(const CampaignResults& results) {
+  Basis basis;
+  for_each_trial(results, [&](const ScenarioResults&, const TrialResult& t) { basis.add(t); });
+  Table table;
+  table.title = fmt::format("What the numbers of {} rest on", results.manifest.name);
+  table.text_columns = 2;
+  table.headings = {{{"", 1}, {"", 1}}};
+  table.rows = {{"Machine", joined(basis.machines)},
+                {"SUT", joined(basis.suts)},
+                {"Seeds", seeds_text(results.manifest.seeds)},
+                {"Interactions", std::to_string(basis.interactions)},
+                {"Causality violations", std::to_string(basis.violations)},
+                {"Audits passed", fmt::format("{} of {} ({} synchronised trials)", basis.passed,
+                                              basis.audited, basis.synchronised)}};
+  for (const std::string& tie : basis.ties) table.rows.push_back({"Condition", tie});
+  for (const auto& [name, value] : results.manifest.settings) table.rows.push_back({name, value});
+  table.notes = results.damaged;
+  return table;
+}
+
+Table trials_table(const CampaignResults& results) {
+  Table table;
+  table.headings = {{{"scenario", 1},
+                     {"condition", 1},
+                     {"seed", 1},
+                     {"outcome", 1},
+                     {"metric", 1},
+                     {"unit", 1},
+                     {"value", 1},
+                     {"reason", 1}}};
+  for_each_trial(results, [&](const ScenarioResults& scenario, const TrialResult& trial) {
+    for (const MetricValue& metric : trial.metrics) {
+      table.rows.push_back({scenario.scenario, trial.condition, std::to_string(trial.seed),
+                            std::string(name(trial.outcome)), metric.name, metric.unit,
+                            exact(metric.value), trial.reason});
+    }
+  });
+  return table;
+}
+
+Table summaries_table(const CampaignResults& results) {
+  Table table;
+  table.headings = {{{"scenario", 1},
+                     {"condition", 1},
+                     {"metric", 1},
+                     {"unit", 1},
+                     {"planned", 1},
+                     {"n", 1},
+                     {"mean", 1},
+                     {"stddev", 1},
+                     {"median", 1},
+                     {"ci95_low", 1},
+                     {"ci95_high", 1},
+                     {"paper_mean", 1},
+                     {"paper_stddev", 1}}};
+  for (const ScenarioResults& scenario : results.scenarios) {
+    const PaperTable* paper = find_paper_table(scenario.paper_table);
+    for (const std::string& name : scenario.metrics) {
+      const MetricValue* metric = scenario.find_metric(name);
+      if (metric == nullptr) continue;
+      for (const ConditionResults& condition : scenario.conditions) {
+        const Summary s = summarise(condition.values(name));
+        const bool any = s.n > 0;
+        const PaperFigure* figure =
+            paper != nullptr ? paper->find(condition.condition, metric->kind) : nullptr;
+        table.rows.push_back({scenario.scenario, condition.condition, name, metric->unit,
+                              std::to_string(condition.planned), std::to_string(s.n),
+                              any ? exact(s.mean) : "", exact(s.stddev), any ? exact(s.median) : "",
+                              s.ci95 ? exact(s.ci95->low) : "", s.ci95 ? exact(s.ci95->high) : "",
+                              figure != nullptr ? exact(figure->mean) : "",
+                              figure != nullptr ? exact(figure->stddev) : ""});
+      }
+    }
+  }
+  return table;
+}
+
+}  // namespace tether::experiment

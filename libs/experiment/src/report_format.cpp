@@ -1,0 +1,36 @@
+#include "report_format.h"
+
+#include <fmt/format.h>
+
+namespace tether::experiment {
+
+std::string decimals(double value) {
+  const std::string text = fmt::format("{:.3f}", value);
+  return text == "-0.000" ? "0.000" : text;
+}
+
+std::string decimals(const std::optional<double>& value) {
+  return value ? decimals(*value) : kNone;
+}
+
+std::string interval(const std::optional<Interval>& value) {
+  if (!value) return kNone;
+  return fmt::format("[{}, {}]", decimals(value->low), decimals(value->high));
+}
+
+std::string p_value(double p) {
+  return p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", p);
+}
+
+std::string exact(double value) {
+  return fmt::format("{}", value);
+}
+std::string exact(const std::optional<double>& value) {
+  return value ? exact(*value) : "";
+}
+
+std::string with_unit(const std::string& label, const std::string& unit) {
+  return unit == "1" ? label : fmt::format("{} ({})", label, unit);
+}
+
+}  // namespace tether::experiment

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <tether/experiment/statistics.h>
+
+/// How the numbers of a report are written.
+namespace tether::experiment {
+
+inline constexpr const char* kNone = "–";
+
+/// Three decimals, as in the paper.
+std::string decimals(double value);
+std::string decimals(const std::optional<double>& value);
+/// "[1.234, 5.678]".
+std::string interval(const std::optional<Interval>& value);
+/// "0.012", "< 0.001".
+std::string p_value(double p);
+/// The shortest text that reads back as the same number; empty for none.
+std::string exact(double value);
+std::string exact(const std::optional<double>& value);
+/// "Time required (s)"; counts have no unit.
+std::string with_unit(const std::string& label, const std::string& unit);
+
+}  // namespace tether::experiment

@@ -1,0 +1,87 @@
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+#include <tether/experiment/text_file.h>
+
+namespace tether::experiment {
+namespace {
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+[[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
+  throw Error(ErrorCode::kSetup, FileLocation{file.string()},
+              fmt::format("cannot be {}: {}", what, std::strerror(errno)));
+}
+
+void write_all(int fd, std::string_view text, const std::filesystem::path& file) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(fd, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) fail(file, "written");
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void write_and_flush(const std::filesystem::path& file, std::string_view text) {
+  const Descriptor fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+  if (fd.get() < 0) fail(file, "created");
+  write_all(fd.get(), text, file);
+  if (::fsync(fd.get()) != 0) fail(file, "flushed to the disk");
+}
+
+}  // namespace
+
+void write_file_atomically(const std::filesystem::path& file, std::string_view text) {
+  const std::filesystem::path beside = file.string() + ".part";
+  try {
+    write_and_flush(beside, text);
+    if (::rename(beside.c_str(), file.c_str()) != 0) fail(file, "replaced");
+  } catch (...) {
+    ::unlink(beside.c_str());
+    throw;
+  }
+  // The rename itself is on the disk once the folder is.
+  const Descriptor folder(::open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (folder.get() >= 0) ::fsync(folder.get());
+}
+
+std::string read_file(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "there is no such file");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!stream) throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "cannot be read");
+  return text;
+}
+
+std::string digest_of_file(const std::filesystem::path& file) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : read_file(file)) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace tether::experiment

@@ -1,0 +1,139 @@
+#include "scratch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/experiment/report.h>
+
+namespace tether::experiment {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class Report : public testing::Test {
+ protected:
+  Report() {
+    CampaignFolder folder(out_, campaign_, {{"tether", "0.1.0"}}, OpenMode::kFresh);
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const double s = static_cast<double>(seed);
+      write("host", seed, 0, 2.4 + 0.1 * s);
+      write("target", seed, s - 1, 4.0 * s);
+      write("target, no sync", seed, 0, 2.3 + 0.2 * s);
+    }
+  }
+  void write(const std::string& condition, std::uint64_t seed, double oscillations, double time_s) {
+    write(make_trial(scenario(), condition, seed, oscillations, time_s));
+  }
+  void write(const TrialResult& result) {
+    const auto folder = out_ / trial_folder("turn", result.condition, result.seed);
+    std::filesystem::create_directories(folder);
+    write_result(folder, result);
+  }
+  const scenario::Scenario& scenario() const { return campaign_.scenarios[0].scenario; }
+  ScenarioResults results() const { return read_campaign(out_).scenarios[0]; }
+
+  Scratch scratch_;
+  std::filesystem::path out_ = scratch_.path("out");
+  scenario::Campaign campaign_ = make_campaign(scratch_);
+};
+
+TEST_F(Report, HasThePapersForm) {
+  EXPECT_EQ(
+      to_text(paper_form_table(results())),
+      "Table III: Performance of the \"face anchor\" task\n"
+      "\n"
+      "                 Oscillations                       Time required (s)\n"
+      "                 measured          paper            measured          paper\n"
+      "SUT location      mean  std. dev.  mean  std. dev.   mean  std. dev.   mean  std. dev.\n"
+      "──────────────────────────────────────────────────────────────────────────────────────\n"
+      "host             0.000      0.000     0          0  2.600      0.100   2.48      0.033\n"
+      "target           1.000      1.000     1      1.612  8.000      4.000  9.242     13.767\n"
+      "target, no sync  0.000      0.000     0          0  2.700      0.200  2.504      0.108\n"
+      "\n"
+      "Trials: host 3 of 3 (3 reached the goal); target 3 of 3 (3 reached the goal); target, no "
+      "sync 3 of 3 (3 reached the goal). Times are simulated time.\n"
+      "Paper: Table III, Section V; ten experiments per condition.\n");
+}
+
+TEST_F(Report, NamesEveryTrialThatIsInNoMean) {
+  TrialResult unfinished = make_trial(scenario(), "target", 2, 3, 0);
+  unfinished.metrics[1].value.reset();
+  unfinished.metrics[1].missing_because = "the SUT of 'uav1' did not finish";
+  write(unfinished);
+  write(make_setup_failure(scenario(), scenario().conditions[0], 3, "no port"));
+  std::filesystem::remove_all(out_ / "turn/target-no-sync/seed-0001");
+  scratch_.write("out/turn/target-no-sync/seed-0002/result.json", "{");
+
+  const CampaignResults all = read_campaign(out_);
+  const Table table = paper_form_table(all.scenarios[0]);
+  EXPECT_THAT(table.notes,
+              Contains("Not in a mean: target, seed 2: the SUT of 'uav1' did not finish."));
+  EXPECT_THAT(table.notes, Contains("Not in a mean: host, seed 3: no port."));
+  EXPECT_THAT(table.notes, Contains("Not run yet, or without a readable result: 2 trials of "
+                                    "target, no sync."));
+  EXPECT_THAT(all.damaged, ElementsAre(HasSubstr("target-no-sync/seed-0002/result.json")));
+  EXPECT_THAT(to_text(table), HasSubstr("target           1.667      1.528"));
+}
+
+TEST_F(Report, OfNothingRunYetHasRowsWithoutNumbers) {
+  std::filesystem::remove_all(out_ / "turn");
+  const CampaignResults all = read_campaign(out_);
+  for (const Table& table : report_tables(all)) EXPECT_FALSE(to_text(table).empty());
+  EXPECT_EQ(paper_form_table(all.scenarios[0]).rows.size(), 3u);
+}
+
+TEST_F(Report, ComparesEveryPairOnce) {
+  const auto comparisons = compare_conditions(results());
+  ASSERT_EQ(comparisons.size(), 6u);  // three pairs, two metrics
+  EXPECT_EQ(comparisons[3].metric, "time_required");
+  EXPECT_EQ(comparisons[3].a, "target");
+  EXPECT_EQ(comparisons[3].b, "host");
+  EXPECT_NEAR(comparisons[3].means.difference, 5.4, 1e-12);
+  EXPECT_NEAR(comparisons[3].ranks.p_two_sided, 0.1, 1e-12);  // 2 of 20 orders
+}
+
+TEST_F(Report, StatesTheOptimismOfNoSync) {
+  const auto found = optimism(results());
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[1].a, "target");
+  EXPECT_EQ(found[1].b, "target, no sync");
+  EXPECT_NEAR(found[1].means.difference, 5.3, 1e-12);
+  const std::string text = to_text(optimism_table(results()));
+  EXPECT_THAT(text, HasSubstr("Time required (s)  target − target, no sync"));
+  EXPECT_THAT(text, HasSubstr("5.300"));
+}
+
+TEST_F(Report, SaysWhatItRestsOn) {
+  TrialResult bad = make_trial(scenario(), "target", 2, 0, 3);
+  bad.audit = AuditVerdict{false, "a command in the past"};
+  bad.sync.causality_violations = 2;
+  write(bad);
+  const std::string text = to_text(basis_table(read_campaign(out_)));
+  EXPECT_THAT(text, HasSubstr("a machine"));
+  EXPECT_THAT(text, HasSubstr("tether-sut 0.1.0"));
+  EXPECT_THAT(text, HasSubstr("1 to 3"));
+  EXPECT_THAT(text, HasSubstr("8 of 9 (6 synchronised trials)"));
+  EXPECT_THAT(text, HasSubstr("target: conservative_barrier, cpu clock × 8"));
+  EXPECT_THAT(text, HasSubstr("simulator at most 0.25 × real time"));
+}
+
+TEST_F(Report, ForProgramsIsComplete) {
+  const CampaignResults all = read_campaign(out_);
+  EXPECT_EQ(trials_table(all).rows.size(), 18u);
+  const Table summaries = summaries_table(all);
+  EXPECT_EQ(summaries.rows.size(), 6u);
+  EXPECT_THAT(to_csv(summaries), HasSubstr("turn,target,time_required,s,3,3,8,4,8,"));
+  EXPECT_THAT(to_csv(summaries), HasSubstr(",9.242,13.767\r\n"));
+}
+
+TEST_F(Report, DetailsHaveAllStatistics) {
+  EXPECT_THAT(
+      to_text(details_table(results())),
+      HasSubstr("Time required (s)  target           3  8.000  [-1.937, 17.937]      4.000   "
+                "8.000  4.000  12.000"));
+}
+
+}  // namespace
+}  // namespace tether::experiment

@@ -1,0 +1,231 @@
+#include "scratch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/experiment/result.h>
+#include <tether/experiment/text_file.h>
+
+namespace tether::experiment {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+class Result : public testing::Test {
+ protected:
+  Scratch scratch_;
+  scenario::Campaign campaign_ = make_campaign(scratch_);
+  const scenario::Scenario& scenario_ = campaign_.scenarios[0].scenario;
+  TrialResult trial_ = make_trial(scenario_, "target", 2, 1.0, 9.242);
+};
+
+TEST_F(Result, ReadsBackAsItWasWritten) {
+  write_result(scratch_.path(""), trial_);
+  EXPECT_EQ(read_result(scratch_.path("")), trial_);
+}
+
+TEST_F(Result, ReadsBackWithEverythingMissing) {
+  TrialResult failed = make_setup_failure(scenario_, scenario_.conditions[0], 7, "no port");
+  failed.this_run.attempts = 2;
+  failed.this_run.first_failure = "no port either";
+  write_result(scratch_.path(""), failed);
+  EXPECT_EQ(read_result(scratch_.path("")), failed);
+  EXPECT_EQ(failed.outcome, Outcome::kFailed);
+  EXPECT_EQ(failed.reason, "no port");
+}
+
+TEST_F(Result, KeepsEveryNanosecond) {
+  for (const std::int64_t ns :
+       {0L, 1L, 999'999'999L, 1'000'000'001L, 123'456'789'012'345'678L / 100}) {
+    trial_.sync.st_at_end = SimTime(Duration(ns));
+    EXPECT_EQ(result_from_json(to_json(trial_), "f").sync.st_at_end, trial_.sync.st_at_end) << ns;
+  }
+}
+
+TEST_F(Result, TextIsTheSameApartFromThisRun) {
+  TrialResult other = trial_;
+  other.this_run = {"2031-01-01T00:00:00Z", "another machine", seconds(99), seconds(1), 2, "x"};
+  const std::string a = to_json(trial_), b = to_json(other);
+  const auto part = a.find("\"this_run\"");
+  ASSERT_NE(part, std::string::npos);
+  EXPECT_NE(a, b);
+  EXPECT_EQ(a.substr(0, part), b.substr(0, part));
+}
+
+TEST_F(Result, IsReadableForPeople) {
+  const std::string text = to_json(trial_);
+  EXPECT_THAT(text, HasSubstr("\"outcome\": \"goal_reached\""));
+  EXPECT_THAT(text, HasSubstr("\"exit_code\": 0"));
+  EXPECT_THAT(text, HasSubstr("\"st_at_end_s\": 2.481000001"));
+  EXPECT_THAT(text, HasSubstr("\"value\": 9.242"));
+  EXPECT_THAT(text, HasSubstr("\"steps\": 12"));
+}
+
+TEST_F(Result, TextOfAnyBytesIsKeptReadable) {
+  trial_.reason = "bad \xff bytes \n and \"quotes\"";
+  trial_.suts[0].details = "{ no JSON";
+  const TrialResult back = result_from_json(to_json(trial_), "f");
+  EXPECT_THAT(back.reason, HasSubstr("and \"quotes\""));
+  EXPECT_EQ(back.suts[0].details, "{ no JSON");
+}
+
+TEST_F(Result, TornAnywhereIsDetected) {
+  const std::string text = to_json(trial_);
+  for (std::size_t size = 0; size + 2 < text.size(); size += 3) {
+    EXPECT_THAT(error_message(ErrorCode::kBadFile,
+                              [&] { (void)result_from_json(text.substr(0, size), "r.json"); }),
+                HasSubstr("r.json: is torn or damaged"));
+  }
+}
+
+TEST_F(Result, AnyMemberMissingOrOfAnotherTypeIsDetected) {
+  std::istringstream stream(to_json(trial_));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  int members = 0;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto colon = lines[i].find("\": ");
+    const bool computed = lines[i].find("\"met\"") != std::string::npos ||
+                          lines[i].find("\"exit_code\"") != std::string::npos ||
+                          lines[i].find("\"steps\"") != std::string::npos;
+    if (colon == std::string::npos || computed) continue;
+    const std::string value = lines[i].substr(colon + 3);
+    if (value.starts_with("{") || value.starts_with("[")) continue;
+    ++members;
+    std::string retyped, renamed;
+    for (std::size_t j = 0; j < lines.size(); ++j) {
+      const bool comma = lines[i].ends_with(",");
+      retyped += (j == i ? lines[i].substr(0, colon + 3) + "[]" + (comma ? "," : "") : lines[j]);
+      const auto quote = lines[i].find('"');
+      renamed +=
+          j == i ? lines[i].substr(0, quote + 1) + "x" + lines[i].substr(quote + 1) : lines[j];
+    }
+    // A SUT's version may have any name, and the number of a version any text.
+    const bool is_version = lines[i].find("\"simulator\"") != std::string::npos ||
+                            lines[i].find("\"tether\"") != std::string::npos;
+    error_message(ErrorCode::kBadFile, [&] { (void)result_from_json(retyped, "f"); });
+    if (is_version) continue;
+    EXPECT_THAT(error_message(ErrorCode::kBadFile, [&] { (void)result_from_json(renamed, "f"); }),
+                HasSubstr("lacks the member"))
+        << lines[i];
+  }
+  EXPECT_GT(members, 40);
+}
+
+TEST_F(Result, OfANewerSchemaIsRefused) {
+  std::string text = to_json(trial_);
+  text.replace(text.find("\"schema\": 1"), 11, "\"schema\": 2");
+  EXPECT_THAT(error_message(ErrorCode::kBadFile, [&] { (void)result_from_json(text, "f"); }),
+              HasSubstr("has schema 2"));
+}
+
+// make_result.
+
+record::Record finished_record() {
+  record::Record record;
+  record.header.seed = 5;
+  record.header.policy = "conservative_barrier";
+  record.header.tether_version = "0.1.0";
+  record.header.simulator = "mujoco 2.2.2";
+  record.header.machine = "a machine";
+  record.header.suts = {{"uav1", "tether-sut 0.1.0", "cpu", 8.0, Duration{0}}};
+  record.header.anchors = {{"box", "box", {}, {4, 0, 1}, {1, 0, 0, 0}}};
+  record::GroundTruth truth;
+  truth.uav = "uav1";
+  record.ground_truth = {{SimTime{}, 0, truth}};
+  record::Interaction finish;
+  finish.uav = "uav1";
+  finish.kind = "finish";
+  finish.request_at = ExecTime(seconds(3));
+  record.interactions = {{SimTime(seconds(3)), 0, finish}};
+  record.footer = record::Footer{.end = "finished",
+                                 .reason = "",
+                                 .st_at_end = SimTime(seconds(3)),
+                                 .et_at_end = {ExecTime(seconds(3))},
+                                 .wall = seconds(2),
+                                 .interactions = 9,
+                                 .causality_violations = 0,
+                                 .largest_lag = milliseconds(40),
+                                 .largest_grid_error = milliseconds(1)};
+  return record;
+}
+
+const std::vector<TaskEnd> kReached = {{"uav1", true, "in the middle", "{}"}};
+
+class MakeResult : public Result {
+ protected:
+  TrialResult make(const record::Record& record, const std::vector<TaskEnd>& ends) const {
+    return make_result(scenario_, scenario_.conditions[1], record, ends);
+  }
+};
+
+TEST_F(MakeResult, TakesEverythingFromTheRecord) {
+  const TrialResult result = make(finished_record(), kReached);
+  EXPECT_EQ(result.outcome, Outcome::kGoalReached);
+  EXPECT_EQ(result.scenario, "turn");
+  EXPECT_EQ(result.condition, "target");
+  EXPECT_EQ(result.seed, 5u);
+  EXPECT_EQ(result.policy, "conservative_barrier");
+  EXPECT_EQ(result.cpu_factor, 8.0);
+  EXPECT_EQ(result.find_metric("time_required")->value, 3.0);
+  EXPECT_EQ(result.suts[0].et_at_end, ExecTime(seconds(3)));
+  EXPECT_EQ(result.suts[0].outcome, "in the middle");
+  EXPECT_EQ(result.sync.interactions, 9u);
+  EXPECT_EQ(result.sync.largest_grid_error, milliseconds(1));
+  EXPECT_EQ(result.this_run.largest_lag, milliseconds(40));
+  EXPECT_EQ(result.this_run.wall, seconds(2));
+  EXPECT_EQ(result.versions.at("sut of uav1"), "tether-sut 0.1.0");
+}
+
+TEST_F(MakeResult, MissesTheGoalWithAReason) {
+  EXPECT_THAT(make(finished_record(), {{"uav1", false, "anchor never seen", ""}}).reason,
+              HasSubstr("did not reach its goal: anchor never seen"));
+  EXPECT_THAT(make(finished_record(), {}).reason, HasSubstr("did not finish"));
+
+  record::Record late = finished_record();
+  late.interactions[0].message.request_at = ExecTime(seconds(31));
+  const TrialResult result = make(late, kReached);
+  EXPECT_EQ(result.outcome, Outcome::kGoalMissed);
+  EXPECT_EQ(exit_code(result.outcome), 1);
+  EXPECT_EQ(result.reason, "time_required is 31 s, beyond its limit of 30 s");
+}
+
+TEST_F(MakeResult, TheTimeLimitMissesTheGoal) {
+  record::Record record = finished_record();
+  record.footer->end = "time_limit";
+  EXPECT_EQ(make(record, kReached).outcome, Outcome::kGoalMissed);
+  EXPECT_EQ(make(record, kReached).reason, "the time limit was reached");
+}
+
+TEST_F(MakeResult, ALostPartIsAFailure) {
+  for (const char* end : {"sut_lost", "sut_hung", "simulator_lost", "interrupted"}) {
+    record::Record record = finished_record();
+    record.footer->end = end;
+    record.footer->reason = "because";
+    const TrialResult result = make(record, kReached);
+    EXPECT_EQ(exit_code(result.outcome), 3) << end;
+    EXPECT_EQ(result.reason, "because");
+    EXPECT_EQ(result.end, end);
+  }
+}
+
+TEST_F(MakeResult, ASutThatNeverDidAnythingIsAMatterOfTheSetUp) {
+  record::Record record = finished_record();
+  record.footer->end = "sut_lost";
+  record.footer->interactions = 0;
+  EXPECT_EQ(make(record, {}).end, kEndSetupFailed);
+}
+
+TEST_F(MakeResult, ARecordWithoutItsEndIsAFailure) {
+  record::Record record = finished_record();
+  record.footer.reset();
+  record.damage = "torn at byte 17";
+  const TrialResult result = make(record, kReached);
+  EXPECT_EQ(result.outcome, Outcome::kFailed);
+  EXPECT_THAT(result.reason, HasSubstr("torn at byte 17"));
+}
+
+}  // namespace
+}  // namespace tether::experiment
