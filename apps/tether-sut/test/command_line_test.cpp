@@ -1,0 +1,151 @@
+#include "command_line.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include <tether/base/units.h>
+
+namespace tether::sut {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+
+std::variant<CommandLine, Refusal> parse(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "tether-sut");
+  return parse_command_line(static_cast<int>(arguments.size()), arguments.data());
+}
+
+CommandLine parsed(std::vector<const char*> arguments) {
+  auto result = parse(std::move(arguments));
+  EXPECT_TRUE(std::holds_alternative<CommandLine>(result)) << std::get<Refusal>(result).text;
+  return std::get<CommandLine>(result);
+}
+
+TEST(CommandLine, FaceAnchorHasTheTasksDefaults) {
+  const CommandLine line = parsed({"face_anchor", "--anchor", "blue_box"});
+  EXPECT_EQ(line.mission.anchor, "blue_box");
+  EXPECT_EQ(line.mission.camera, "camera");
+  EXPECT_FALSE(line.address || line.uav || line.clock);
+  const auto& options = std::get<tasks::FaceAnchorOptions>(line.mission.task);
+  const tasks::FaceAnchorOptions defaults;
+  EXPECT_DOUBLE_EQ(options.precision_rad, defaults.precision_rad);
+  EXPECT_DOUBLE_EQ(options.yaw_rate_rad_s, defaults.yaw_rate_rad_s);
+  EXPECT_DOUBLE_EQ(options.min_yaw_rate_rad_s, defaults.min_yaw_rate_rad_s);
+  EXPECT_EQ(options.time_limit, defaults.time_limit);
+  EXPECT_EQ(options.lost_limit, defaults.lost_limit);
+}
+
+TEST(CommandLine, TakesEveryOption) {
+  const CommandLine line = parsed({"face_anchor",
+                                   "--anchor",
+                                   "b",
+                                   "--precision-deg",
+                                   "2",
+                                   "--yaw-rate-deg-s",
+                                   "40",
+                                   "--slowdown",
+                                   "0.6",
+                                   "--min-yaw-rate-deg-s",
+                                   "3",
+                                   "--search-clockwise",
+                                   "--lost-limit-s",
+                                   "5",
+                                   "--time-limit-s",
+                                   "12.5",
+                                   "--tolerance-px",
+                                   "4",
+                                   "--stable-frames",
+                                   "3",
+                                   "--max-frames",
+                                   "9",
+                                   "--max-unseen-frames",
+                                   "2",
+                                   "--prefilter",
+                                   "median",
+                                   "--prefilter-size-px",
+                                   "7",
+                                   "--hue-tolerance-deg",
+                                   "9",
+                                   "--min-saturation",
+                                   "0.4",
+                                   "--min-value",
+                                   "0.2",
+                                   "--min-score",
+                                   "0.5",
+                                   "--camera",
+                                   "eye",
+                                   "--address",
+                                   "h:1",
+                                   "--uav",
+                                   "u",
+                                   "--clock",
+                                   "cpu*3"});
+  const auto& options = std::get<tasks::FaceAnchorOptions>(line.mission.task);
+  EXPECT_DOUBLE_EQ(options.precision_rad, rad_from_deg(2));
+  EXPECT_DOUBLE_EQ(options.yaw_rate_rad_s, rad_from_deg(40));
+  EXPECT_DOUBLE_EQ(options.min_yaw_rate_rad_s, rad_from_deg(3));
+  EXPECT_EQ(options.slowdown, 0.6);
+  EXPECT_TRUE(options.search_clockwise);
+  EXPECT_EQ(options.lost_limit, std::chrono::seconds(5));
+  EXPECT_EQ(options.time_limit, std::chrono::milliseconds(12'500));
+  EXPECT_EQ(options.convergence.tolerance_px, 4);
+  EXPECT_EQ(options.convergence.stable_frames, 3);
+  EXPECT_EQ(options.convergence.max_frames, 9);
+  EXPECT_EQ(options.convergence.max_unseen_frames, 2);
+  const vision::TrackerOptions& tracker = line.mission.tracker;
+  EXPECT_EQ(tracker.prefilter, vision::Prefilter::kMedian);
+  EXPECT_EQ(tracker.prefilter_size_px, 7);
+  EXPECT_EQ(tracker.hue_tolerance_deg, 9);
+  EXPECT_EQ(tracker.min_saturation, 0.4);
+  EXPECT_EQ(tracker.min_value, 0.2);
+  EXPECT_EQ(tracker.min_score, 0.5);
+  EXPECT_EQ(line.mission.camera, "eye");
+  EXPECT_EQ(line.address, "h:1");
+  EXPECT_EQ(line.uav, "u");
+  EXPECT_EQ(line.clock, "cpu*3");
+}
+
+TEST(CommandLine, RelativePosition) {
+  const CommandLine line =
+      parsed({"relative_position", "--anchor", "blue_box", "--stable-frames", "4"});
+  EXPECT_EQ(std::get<tasks::ConvergenceOptions>(line.mission.task).stable_frames, 4);
+}
+
+TEST(CommandLine, HelpAndVersionAreNoMistake) {
+  for (const auto& arguments : {std::vector<const char*>{"--help"}, {"face_anchor", "--help"}}) {
+    const auto help = std::get<Refusal>(parse(arguments));
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.text, AllOf(HasSubstr("Examples:"), HasSubstr("TETHER_TOKEN")));
+  }
+  EXPECT_THAT(std::get<Refusal>(parse({"--version"})).text, HasSubstr("tether-sut "));
+}
+
+TEST(CommandLine, MistakesGetOneLineAndExitCode2) {
+  const std::vector<std::vector<const char*>> mistakes = {
+      {},
+      {"land"},
+      {"face_anchor"},
+      {"face_anchor", "--anchor", "b", "--precision-deg", "0"},
+      {"face_anchor", "--anchor", "b", "--precision-deg", "nan"},
+      {"face_anchor", "--anchor", "b", "--yaw-rate-deg-s", "fast"},
+      {"face_anchor", "--anchor", "b", "--slowdown", "2"},
+      {"face_anchor", "--anchor", "b", "--token", "secret"},
+      {"relative_position", "--anchor", "b", "--precision-deg", "1"},
+      {"relative_position", "--anchor", "b", "--prefilter", "sharpen"},
+      {"face_anchor", "--anchor", "b", "relative_position"}};
+  for (const auto& arguments : mistakes) {
+    const auto result = parse(arguments);
+    ASSERT_TRUE(std::holds_alternative<Refusal>(result)) << ::testing::PrintToString(arguments);
+    const Refusal& refused = std::get<Refusal>(result);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_EQ(std::count(refused.text.begin(), refused.text.end(), '\n'), 1) << refused.text;
+    EXPECT_THAT(refused.text, EndsWith("(see tether-sut --help)\n"));
+  }
+}
+
+}  // namespace
+}  // namespace tether::sut
