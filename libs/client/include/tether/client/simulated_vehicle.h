@@ -13,21 +13,41 @@ namespace tether::client {
 struct ConnectOptions {
   link::Address address;
   std::string token;
-  std::string sut_name;
+  std::string sut_name;              ///< the program's name and version, for the record
   std::string uav;                   ///< empty: the only one
   std::unique_ptr<TimeSource> time;  ///< null: the wall clock
   Duration connect_timeout = std::chrono::seconds(10);
+  /// How long the coordinator may take to answer the Hello (it may wait for other SUTs, or load the
+  /// world).
+  Duration welcome_timeout = std::chrono::seconds(60);
   /// Tell the coordinator this often how far ET has come, so that it can simulate meanwhile. 0:
-  /// never (scripted clocks).
+  /// never. Scripted clocks never do.
   Duration progress_period = std::chrono::milliseconds(2);
 };
 
 /// Address, token, UAV and clock from the environment that `tether run` sets for the SUT it starts:
-/// TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV, TETHER_CLOCK ("wall", "cpu" or "cpu*FACTOR").
+/// TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV (may be unset: the only one), TETHER_CLOCK ("wall",
+/// which is also meant when it is unset; "cpu"; "cpu*FACTOR", FACTOR within 1e-6..1e6;
+/// "scripted*MILLISECONDS", see make_scripted_source). Fails with kInvalid, naming the variable,
+/// its value and what is allowed.
 Result<ConnectOptions> options_from_environment();
 
 /// Connects to a coordinator and shakes hands. The returned vehicle's ET starts with the
 /// coordinator's Welcome.
+///
+/// Fails with kDisconnected or kTimeout (no coordinator there, or no answer), kRefused (the
+/// coordinator's own words), kInvalid (options that cannot be used, or a clock faster than the CPU
+/// in free running).
+///
+/// The vehicle's calls fail with kInvalid for wrong arguments, and can then be called again. After
+/// any other failure (kRefused, kRunEnded, kDisconnected, kProtocol) every later call fails with
+/// the same.
+///
+/// Under the barrier, calls are interactions in the sense of the paper (Section II): ET is stamped
+/// when the call begins, stands still until the reply is there whole, and goes on from the reply's
+/// timestamp. In free running nothing is held: ET is the wall time since the Welcome, sleeps are
+/// real, and with a CPU clock the client stalls before each call for the time by which the virtual
+/// target would have been slower.
 Result<std::unique_ptr<Vehicle>> connect(ConnectOptions options);
 /// The same over a channel that is already there (tests, other transports). Ignores
 /// options.address.

@@ -1,0 +1,58 @@
+#include "simulated_vehicle_impl.h"
+
+#include <utility>
+#include <variant>
+
+#include <tether/client/simulated_vehicle.h>
+
+namespace tether::client {
+namespace {
+
+link::Hello hello_for(const ConnectOptions& options) {
+  link::Hello hello;
+  hello.sut = options.sut_name;
+  hello.uav = options.uav;
+  hello.clock = options.time->kind();
+  hello.cpu_factor = options.time->factor();
+  hello.token = options.token;
+  return hello;
+}
+
+Result<link::Welcome> shake_hands(link::Channel& channel, const ConnectOptions& options) {
+  const Status sent = channel.send(hello_for(options));
+  if (!sent && sent.failure().kind == Failure::Kind::kInvalid) return sent.failure();
+  // Even if the Hello did not go out: the coordinator may have refused the connection itself.
+  auto message = channel.receive_within(options.welcome_timeout);
+  if (!message) return sent ? message.failure() : sent.failure();
+  if (const auto* refusal = std::get_if<link::Refusal>(&*message)) return to_failure(*refusal);
+  if (auto* welcome = std::get_if<link::Welcome>(&*message)) return std::move(*welcome);
+  return Failure{Failure::Kind::kProtocol,
+                 "the coordinator answered the Hello with neither "
+                 "Welcome nor Refusal"};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,
+                                         ConnectOptions options) {
+  if (!options.time) options.time = make_wall_source();
+  const bool scripted = options.time->kind() == link::ClockKind::kScripted;
+  auto welcome = shake_hands(*channel, options);
+  if (!welcome) return welcome.failure();
+  if (welcome->free_running && options.time->factor() < 1.0) {
+    return Failure{Failure::Kind::kInvalid,
+                   "a CPU clock factor below 1 cannot be used in free running: a machine faster "
+                   "than this one cannot be imitated by stalling"};
+  }
+  return std::unique_ptr<Vehicle>(std::make_unique<SimulatedVehicle>(
+      std::move(channel), std::move(*welcome), std::move(options.time), make_wall_timer(),
+      scripted ? Duration::zero() : options.progress_period));
+}
+
+Result<std::unique_ptr<Vehicle>> connect(ConnectOptions options) {
+  auto channel = link::connect_tcp(options.address, options.connect_timeout);
+  if (!channel) return channel.failure();
+  return connect(std::move(*channel), std::move(options));
+}
+
+}  // namespace tether::client

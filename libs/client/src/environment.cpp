@@ -1,0 +1,86 @@
+#include <cstdlib>
+#include <locale>
+#include <optional>
+#include <sstream>
+#include <string>
+
+#include <tether/client/simulated_vehicle.h>
+
+namespace tether::client {
+namespace {
+
+std::optional<std::string> variable(const char* name) {
+  const char* const value = std::getenv(name);
+  if (value == nullptr) return std::nullopt;
+  return std::string(value);
+}
+
+Failure not_set(const std::string& name, const std::string& meaning) {
+  return {Failure::Kind::kInvalid, name +
+                                       " is not set: start this program through `tether run`, "
+                                       "or set it to " +
+                                       meaning};
+}
+
+/// A decimal number that is all of the text, within the bounds; whatever the locale.
+std::optional<double> parse_number(const std::string& text, double least, double most) {
+  std::istringstream stream(text);
+  stream.imbue(std::locale::classic());
+  double value = 0.0;
+  if (!(stream >> value) || stream.peek() != std::istringstream::traits_type::eof()) return {};
+  if (!(value >= least && value <= most)) return {};
+  return value;
+}
+
+/// What follows `prefix` in `text`, if it begins so.
+std::optional<std::string> after(const std::string& text, const std::string& prefix) {
+  if (text.rfind(prefix, 0) != 0) return std::nullopt;
+  return text.substr(prefix.size());
+}
+
+/// Null: not a clock.
+std::unique_ptr<TimeSource> parse_clock(const std::string& text) {
+  if (text == "wall") return make_wall_source();
+  if (text == "cpu") return make_cpu_source(1.0);
+  if (const auto factor = after(text, "cpu*")) {
+    const auto value = parse_number(*factor, 1e-6, 1e6);
+    return value ? make_cpu_source(*value) : nullptr;
+  }
+  if (const auto step_ms = after(text, "scripted*")) {
+    const auto value = parse_number(*step_ms, 1e-6, 1e6);
+    return value ? make_scripted_source(duration_from_seconds(*value * 1e-3)) : nullptr;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+Result<ConnectOptions> options_from_environment() {
+  ConnectOptions options;
+  const auto address_text = variable("TETHER_ADDRESS");
+  if (!address_text) return not_set("TETHER_ADDRESS", "the coordinator's host:port");
+  const auto address = link::parse_address(*address_text);
+  if (!address) {
+    return Failure{Failure::Kind::kInvalid, "TETHER_ADDRESS: " + address.failure().message};
+  }
+  options.address = *address;
+
+  const auto token = variable("TETHER_TOKEN");
+  if (!token || token->empty()) {
+    return not_set("TETHER_TOKEN", "the token that the coordinator prints");
+  }
+  options.token = *token;
+  options.uav = variable("TETHER_UAV").value_or("");
+
+  const std::string clock = variable("TETHER_CLOCK").value_or("wall");
+  options.time = parse_clock(clock);
+  if (!options.time) {
+    return Failure{Failure::Kind::kInvalid,
+                   "TETHER_CLOCK is '" + clock +
+                       "'; allowed are wall, cpu, cpu*FACTOR (e.g. cpu*4: a target four times "
+                       "slower; 1e-6 to 1e6) and scripted*MILLISECONDS"};
+  }
+  return options;
+}
+
+}  // namespace tether::client

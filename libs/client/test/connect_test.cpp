@@ -1,0 +1,93 @@
+#include "scripted_coordinator.h"
+
+#include <chrono>
+
+#include <gtest/gtest.h>
+
+#include <tether/client/simulated_vehicle.h>
+#include <tether/client_testing/manual_time_source.h>
+#include <tether/link/server.h>
+
+namespace tether::client {
+namespace {
+
+using namespace std::chrono_literals;
+using client_testing::ManualTimeSource;
+
+ConnectOptions options_with(double factor = 1.0) {
+  ConnectOptions options;
+  options.token = "secret";
+  options.sut_name = "sut 1";
+  options.uav = "uav";
+  options.time = std::make_unique<ManualTimeSource>(link::ClockKind::kCpu, factor);
+  return options;
+}
+
+TEST(Connect, SaysHelloAndStartsWithTheWelcome) {
+  link::Welcome welcome = welcome_with_sensors();
+  welcome.start = from_ns<ExecTime>(5000);
+  ScriptedCoordinator coordinator(welcome);
+  const auto vehicle = connect(coordinator.connect(), options_with(2.0));
+  ASSERT_TRUE(vehicle.ok()) << vehicle.failure().message;
+  EXPECT_EQ(to_ns((*vehicle)->now()), 5000);
+  EXPECT_EQ((*vehicle)->catalogue().sensors.size(), 3u);
+  const auto heard = coordinator.heard();
+  const auto& hello = std::get<link::Hello>(heard.at(0));
+  EXPECT_EQ(hello.protocol_version, link::kProtocolVersion);
+  EXPECT_EQ(hello.sut, "sut 1");
+  EXPECT_EQ(hello.uav, "uav");
+  EXPECT_EQ(hello.token, "secret");
+  EXPECT_EQ(hello.clock, link::ClockKind::kCpu);
+  EXPECT_EQ(hello.cpu_factor, 2.0);
+}
+
+TEST(Connect, ReportsTheCoordinatorsRefusal) {
+  ScriptedCoordinator coordinator(link::Refusal{link::Refusal::Reason::kToken, "wrong token"});
+  const auto vehicle = connect(coordinator.connect(), options_with());
+  ASSERT_FALSE(vehicle.ok());
+  EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kRefused);
+  EXPECT_EQ(vehicle.failure().message, "wrong token");
+}
+
+TEST(Connect, RefusesAnotherAnswer) {
+  ScriptedCoordinator coordinator(link::Reply{1, ExecTime{}, std::nullopt});
+  const auto vehicle = connect(coordinator.connect(), options_with());
+  ASSERT_FALSE(vehicle.ok());
+  EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kProtocol);
+}
+
+TEST(Connect, DoesNotWaitForeverForAWelcome) {
+  struct Deaf final : link::ServerEvents {
+    void on_connected(link::PeerId, const std::string&) override {}
+    void on_message(link::PeerId, link::Message) override {}
+    void on_closed(link::PeerId, const Failure&) override {}
+  } deaf;
+  link_testing::MemoryServer server(deaf);
+  ConnectOptions options = options_with();
+  options.welcome_timeout = 1ms;
+  const auto vehicle = connect(server.connect(), std::move(options));
+  ASSERT_FALSE(vehicle.ok());
+  EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kTimeout);
+}
+
+TEST(Connect, AFasterMachineCannotBeImitatedInFreeRunning) {
+  link::Welcome welcome;
+  welcome.free_running = true;
+  ScriptedCoordinator coordinator(welcome);
+  const auto vehicle = connect(coordinator.connect(), options_with(0.5));
+  ASSERT_FALSE(vehicle.ok());
+  EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kInvalid);
+  EXPECT_NE(vehicle.failure().message.find("faster"), std::string::npos);
+}
+
+TEST(Connect, UnusableOptionsAreNotSent) {
+  ScriptedCoordinator coordinator(link::Welcome{});
+  ConnectOptions options = options_with();
+  options.token = std::string(1000, 'x');
+  const auto vehicle = connect(coordinator.connect(), std::move(options));
+  ASSERT_FALSE(vehicle.ok());
+  EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kInvalid);
+}
+
+}  // namespace
+}  // namespace tether::client

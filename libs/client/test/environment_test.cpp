@@ -1,0 +1,86 @@
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <tether/client/simulated_vehicle.h>
+
+namespace tether::client {
+namespace {
+
+class Environment : public testing::Test {
+ protected:
+  void SetUp() override {
+    set("TETHER_ADDRESS", "127.0.0.1:5200");
+    set("TETHER_TOKEN", "secret");
+    ::unsetenv("TETHER_UAV");
+    ::unsetenv("TETHER_CLOCK");
+  }
+  void TearDown() override {
+    for (const char* name : {"TETHER_ADDRESS", "TETHER_TOKEN", "TETHER_UAV", "TETHER_CLOCK"}) {
+      ::unsetenv(name);
+    }
+  }
+  static void set(const char* name, const std::string& value) { ::setenv(name, value.c_str(), 1); }
+  static void expect_failure(const std::string& variable, const std::string& text) {
+    const auto options = options_from_environment();
+    ASSERT_FALSE(options.ok()) << variable << ": " << text;
+    EXPECT_EQ(options.failure().kind, Failure::Kind::kInvalid);
+    EXPECT_NE(options.failure().message.find(variable), std::string::npos);
+    EXPECT_NE(options.failure().message.find(text), std::string::npos) << options.failure().message;
+  }
+};
+
+TEST_F(Environment, GivesEverything) {
+  set("TETHER_UAV", "scout");
+  set("TETHER_CLOCK", "cpu*2.5");
+  const auto options = options_from_environment();
+  ASSERT_TRUE(options.ok()) << options.failure().message;
+  EXPECT_EQ(options->address, (link::Address{"127.0.0.1", 5200}));
+  EXPECT_EQ(options->token, "secret");
+  EXPECT_EQ(options->uav, "scout");
+  EXPECT_EQ(options->time->kind(), link::ClockKind::kCpu);
+  EXPECT_EQ(options->time->factor(), 2.5);
+}
+
+TEST_F(Environment, UavAndClockMayBeUnset) {
+  const auto options = options_from_environment();
+  ASSERT_TRUE(options.ok());
+  EXPECT_EQ(options->uav, "");
+  EXPECT_EQ(options->time->kind(), link::ClockKind::kWall);
+}
+
+TEST_F(Environment, Clocks) {
+  for (const auto& [text, kind] :
+       {std::pair{"wall", link::ClockKind::kWall}, std::pair{"cpu", link::ClockKind::kCpu},
+        std::pair{"cpu*0.5", link::ClockKind::kCpu},
+        std::pair{"scripted*12.5", link::ClockKind::kScripted}}) {
+    set("TETHER_CLOCK", text);
+    const auto options = options_from_environment();
+    ASSERT_TRUE(options.ok()) << text;
+    EXPECT_EQ(options->time->kind(), kind) << text;
+  }
+}
+
+TEST_F(Environment, SaysWhatIsMissing) {
+  ::unsetenv("TETHER_TOKEN");
+  expect_failure("TETHER_TOKEN", "is not set");
+  set("TETHER_TOKEN", "");
+  expect_failure("TETHER_TOKEN", "is not set");
+  ::unsetenv("TETHER_ADDRESS");
+  expect_failure("TETHER_ADDRESS", "tether run");
+}
+
+TEST_F(Environment, SaysWhatIsWrong) {
+  set("TETHER_ADDRESS", "nowhere");
+  expect_failure("TETHER_ADDRESS", "'nowhere'");
+  set("TETHER_ADDRESS", "127.0.0.1:5200");
+  for (const std::string clock : {"", "clock", "cpu*", "cpu*0", "cpu*-1", "cpu*nan", "cpu*2x",
+                                  "cpu*1e9", "cpu*2,5", "scripted", "scripted*0", "Wall"}) {
+    set("TETHER_CLOCK", clock);
+    expect_failure("TETHER_CLOCK", "'" + clock + "'; allowed are wall, cpu");
+  }
+}
+
+}  // namespace
+}  // namespace tether::client

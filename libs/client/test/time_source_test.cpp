@@ -1,0 +1,102 @@
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <time.h>
+
+#include <tether/client/sut_clock.h>
+
+namespace tether::client {
+namespace {
+
+Duration thread_cpu() {
+  timespec t{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
+}
+
+/// Uses that much CPU time of this thread.
+void compute(Duration duration) {
+  const Duration end = thread_cpu() + duration;
+  while (thread_cpu() < end) {
+  }
+}
+
+constexpr Duration kBusy = std::chrono::milliseconds(20);
+
+TEST(WallSource, KeepsUpWithTheMonotonicClock) {
+  const auto source = make_wall_source();
+  EXPECT_EQ(source->kind(), link::ClockKind::kWall);
+  EXPECT_EQ(source->factor(), 1.0);
+  const Duration begin = source->elapsed();
+  compute(kBusy);
+  EXPECT_GE(source->elapsed() - begin, kBusy);
+}
+
+TEST(CpuSource, MeasuresComputingTimesItsFactor) {
+  const auto source = make_cpu_source(8.0);
+  EXPECT_EQ(source->kind(), link::ClockKind::kCpu);
+  EXPECT_EQ(source->factor(), 8.0);
+  const Duration begin = source->elapsed();
+  const Duration cpu_begin = thread_cpu();
+  compute(kBusy);
+  const Duration cpu = thread_cpu() - cpu_begin;
+  const Duration measured = source->elapsed() - begin;
+  EXPECT_GE(measured, 8 * kBusy);
+  EXPECT_LE(measured, 8 * (cpu + kBusy));
+}
+
+TEST(CpuSource, CountsEveryThreadOfTheSut) {
+  const auto source = make_cpu_source(1.0);
+  const Duration begin = source->elapsed();
+  std::thread other([] { compute(kBusy); });
+  other.join();
+  EXPECT_GE(source->elapsed() - begin, kBusy);
+}
+
+TEST(CpuSource, DoesNotCountAnExcludedThread) {
+  const auto source = make_cpu_source(1.0);
+  const Duration begin = source->elapsed();
+  std::thread library([&source] {
+    source->exclude_calling_thread();
+    compute(10 * kBusy);
+    source->elapsed();
+    compute(10 * kBusy);
+    source->release_calling_thread();
+  });
+  library.join();
+  EXPECT_LT(source->elapsed() - begin, 10 * kBusy);
+  compute(kBusy);
+  EXPECT_GE(source->elapsed() - begin, kBusy);
+}
+
+TEST(CpuSource, IsMonotoneWhileAnExcludedThreadRuns) {
+  const auto source = make_cpu_source(1.0);
+  std::thread library([&source] {
+    source->exclude_calling_thread();
+    compute(2 * kBusy);
+    source->release_calling_thread();
+  });
+  Duration last = source->elapsed();
+  const Duration end = thread_cpu() + 3 * kBusy;
+  while (thread_cpu() < end) {
+    const Duration now = source->elapsed();
+    ASSERT_GE(now, last);
+    last = now;
+  }
+  library.join();
+  EXPECT_GE(source->elapsed(), last);
+}
+
+TEST(ScriptedSource, MovesByItsStepAtEachReading) {
+  const auto source = make_scripted_source(std::chrono::milliseconds(12));
+  EXPECT_EQ(source->kind(), link::ClockKind::kScripted);
+  SutClock clock(*source, from_ns<ExecTime>(0));
+  for (int i = 0; i < 3; ++i) {
+    const ExecTime stamp = clock.hold();
+    EXPECT_EQ(stamp.time_since_epoch(), std::chrono::milliseconds(12 + 112 * i));
+    clock.resume(stamp + std::chrono::milliseconds(100));
+  }
+}
+
+}  // namespace
+}  // namespace tether::client

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include <tether/client/sut_clock.h>
+
+namespace tether::client_testing {
+
+/// A time source that moves only when told to. Copies move together, so that a test keeps one and
+/// gives the other away. Thread-safe.
+class ManualTimeSource final : public client::TimeSource {
+ public:
+  /// A kind other than scripted lets a vehicle report progress.
+  explicit ManualTimeSource(link::ClockKind kind = link::ClockKind::kScripted, double factor = 1.0);
+
+  link::ClockKind kind() const override { return kind_; }
+  double factor() const override { return factor_; }
+  Duration elapsed() const override { return Duration(elapsed_ns_->load()); }
+
+  /// The SUT computes for `duration` [ET]. @pre duration ≥ 0
+  void advance(Duration duration) { *elapsed_ns_ += duration.count(); }
+
+ private:
+  link::ClockKind kind_;
+  double factor_;
+  std::shared_ptr<std::atomic<std::int64_t>> elapsed_ns_;  // shared by the copies
+};
+
+}  // namespace tether::client_testing
