@@ -162,6 +162,7 @@ Breaches check_private_headers(const std::vector<SourceFile>& files) {
   for (const SourceFile& file : files) paths.insert(file.path);
   return for_each_include(
       files, [&](const SourceFile& file, const Include& include) -> std::string {
+        if (file.role == Role::kOther) return {};
         if (!include.quoted || include.path.ends_with("_generated.h")) return {};
         if (include.path.find("..") != std::string::npos)
           return "\"" + include.path + "\" climbs out of its folder";

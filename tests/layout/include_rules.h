@@ -25,7 +25,8 @@ std::vector<std::string> check_cycles(const std::vector<SourceFile>& files);
 /// nothing.
 std::vector<std::string> check_public_headers(const std::vector<SourceFile>& files);
 
-/// A quoted include names a file of the same library (or program, or test folder), without "..".
+/// A quoted include names a file of the same library or program, without "..". Benchmarks and
+/// tests/ may quote any.
 std::vector<std::string> check_private_headers(const std::vector<SourceFile>& files);
 
 /// `sync` holds no socket, thread, clock read, sleep, file or log.

@@ -27,6 +27,7 @@ TEST(Classify, KnowsLibraryAndRole) {
   EXPECT_EQ(classify("libs/base/test/time_test.cpp").role, Role::kTest);
   EXPECT_EQ(classify("libs/base/testing/include/tether/base_testing/c.h").role, Role::kTesting);
   EXPECT_EQ(classify("apps/tether/main.cpp").role, Role::kProgram);
+  EXPECT_EQ(classify("apps/tether-sut/test/mission_test.cpp").role, Role::kTest);
   EXPECT_EQ(classify("bench/link_bench.cpp").role, Role::kOther);
 }
 
@@ -85,6 +86,8 @@ TEST(PrivateHeaders, PlantedBreachesAreFound) {
   EXPECT_THAT(check_private_headers({header, file_of("libs/client/src/a.cpp",
                                                      "#include \"../../link/src/frame.h\"\n")}),
               ElementsAre(HasSubstr("climbs")));
+  EXPECT_THAT(check_private_headers({header, file_of("bench/a.cpp", "#include \"frame.h\"\n")}),
+              IsEmpty());
 }
 
 TEST(Sync, PlantedBreachesAreFound) {

@@ -59,7 +59,10 @@ SourceFile classify(const std::string& path) {
   SourceFile file;
   file.path = path;
   const std::vector<std::string> parts = parts_of(path);
-  if (parts.front() == "apps") file.role = Role::kProgram;
+  if (parts.front() == "apps") {
+    const bool is_test = std::find(parts.begin(), parts.end(), "test") != parts.end();
+    file.role = is_test ? Role::kTest : Role::kProgram;
+  }
   if (parts.front() != "libs") return file;
   // The library's name is the folders between libs/ and the first of include, src, test, testing.
   for (std::size_t i = 1; i < parts.size(); ++i) {

@@ -13,7 +13,7 @@ enum class Role {
   kPublicHeader,  ///< libs/<lib>/include
   kSource,        ///< libs/<lib>/src, private headers too
   kTesting,       ///< libs/<lib>/testing: fakes for others' tests
-  kTest,          ///< libs/<lib>/test
+  kTest,          ///< libs/<lib>/test, apps/<program>/test
   kProgram,       ///< apps
   kOther,         ///< tests, bench
 };
