@@ -1,0 +1,128 @@
+#include "physics_model.h"
+#include "renderer.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include <benchmark/benchmark.h>
+#include <mujoco/mujoco.h>
+
+#include <tether/sim/world.h>
+#include <tether/sim_mujoco/mujoco_simulator.h>
+
+// The embedded simulator in the corridor world: steps and images per second, each beside the least
+// that the same work could cost in the same program.
+namespace tether::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+void print_warning(const std::string& line) {
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+World corridor() {
+  const std::filesystem::path root = TETHER_SOURCE_DIR;
+  WorldRequest request;
+  request.world = root / "worlds/corridor.sdf";
+  request.uavs = {{"alpha", root / "models/hummingbird/model.sdf", {0.0, 0.0, 1.2}, 0.0}};
+  return load_world(request, print_warning);
+}
+
+std::size_t camera_of(const World& world) {
+  const auto& sensors = world.uavs[0].sensors;
+  std::size_t i = 0;
+  while (sensors[i].kind() != uav::SensorKind::kCamera) ++i;
+  return i;
+}
+
+void count_items(benchmark::State& state, const char* name, double per_iteration) {
+  state.counters[name] = benchmark::Counter(per_iteration * static_cast<double>(state.iterations()),
+                                            benchmark::Counter::kIsRate);
+}
+
+// The UAV flies to and fro under control, one simulated second an iteration.
+void BM_steps_corridor(benchmark::State& state) {
+  const auto simulator = make_mujoco_simulator(corridor(), print_warning);
+  double speed = 0.5;
+  for (auto _ : state) {
+    simulator->apply(0, {{speed, 0.0, 0.0}, 0.2});
+    simulator->advance_to(simulator->now() + 1s);
+    speed = -speed;
+  }
+  count_items(state, "steps", 1000.0);
+}
+BENCHMARK(BM_steps_corridor);
+
+// The yardstick: the engine alone with the same model, held up by a constant force.
+void BM_steps_engine_alone(benchmark::State& state) {
+  const World world = corridor();
+  const ModelPtr model = make_physics_model(world, print_warning);
+  const DataPtr data = make_data(*model);
+  data->xfrc_applied[6 + 2] = world.uavs[0].airframe.mass_kg * world.gravity_m_s2;
+  for (auto _ : state) {
+    for (int i = 0; i < 1000; ++i) mj_step(model.get(), data.get());
+  }
+  count_items(state, "steps", 1000.0);
+}
+BENCHMARK(BM_steps_engine_alone);
+
+// Images along a flight down the corridor, noise and all.
+void images(benchmark::State& state, int width_px, int height_px) {
+  World world = corridor();
+  const std::size_t camera = camera_of(world);
+  auto& model = std::get<CameraModel>(world.uavs[0].sensors[camera].model);
+  model.intrinsics = uav::CameraModel::from_horizontal_fov(width_px, height_px,
+                                                           model.intrinsics.horizontal_fov_rad());
+  const auto simulator = make_mujoco_simulator(world, print_warning);
+  simulator->apply(0, {{0.5, 0.0, 0.0}, 0.1});
+  Snapshot snapshot;
+  simulator->capture(snapshot);
+  simulator->measure(snapshot, 0, camera, 0);  // sets the renderer up
+  std::uint64_t index = 0;
+  for (auto _ : state) {
+    if (simulator->now() > SimTime(10s)) simulator->reset(1);
+    simulator->advance_to(simulator->now() + 33ms);
+    simulator->capture(snapshot);
+    benchmark::DoNotOptimize(simulator->measure(snapshot, 0, camera, index++));
+  }
+  state.SetLabel(simulator->description());
+  count_items(state, "images", 1.0);
+}
+void BM_images_640x480(benchmark::State& state) {
+  images(state, 640, 480);
+}
+void BM_images_320x240(benchmark::State& state) {
+  images(state, 320, 240);
+}
+BENCHMARK(BM_images_640x480)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_images_320x240)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
+
+// The yardstick: an empty picture of the same size, cleared, multisampled and read back.
+void empty_images(benchmark::State& state, int width_px, int height_px) {
+  Scene scene;
+  scene.lights.resize(1);
+  Renderer renderer(scene, width_px, height_px);
+  const auto camera = uav::CameraModel::from_horizontal_fov(width_px, height_px, 1.4);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(renderer.render({camera, 0.05, 50.0, {}, {}, {}}).rgba.data());
+  }
+  count_items(state, "images", 1.0);
+}
+void BM_empty_images_640x480(benchmark::State& state) {
+  empty_images(state, 640, 480);
+}
+void BM_empty_images_320x240(benchmark::State& state) {
+  empty_images(state, 320, 240);
+}
+BENCHMARK(BM_empty_images_640x480)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_empty_images_320x240)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace tether::sim

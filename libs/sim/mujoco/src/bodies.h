@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <tether/sim/world.h>
+
+namespace tether::sim {
+
+/// A body that moves: a UAV, or a link of a dynamic model. Its index in `moving_bodies` is its
+/// index in the engine's state and in the renderer.
+struct MovingBody {
+  const Link* link = nullptr;
+  const Uav* uav = nullptr;  ///< nullptr: not a UAV
+  uav::Pose X_WB;            ///< at ST 0
+};
+
+/// The UAVs in order, then the links of the dynamic models in order. Refers into `world`.
+std::vector<MovingBody> moving_bodies(const World& world);
+
+/// A link of a static model, with its fixed pose. Refers into the world.
+struct FixedBody {
+  const Link* link = nullptr;
+  uav::Pose X_WB;
+};
+std::vector<FixedBody> fixed_bodies(const World& world);
+
+}  // namespace tether::sim

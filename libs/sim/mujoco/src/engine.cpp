@@ -1,0 +1,90 @@
+#include "engine.h"
+
+#include <array>
+#include <cstring>
+#include <fstream>
+
+#include <tether/base/error.h>
+
+namespace tether::sim {
+namespace {
+
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (c == '\n') c = ' ';
+  }
+  return text;
+}
+
+[[noreturn]] void raise_engine_error(const char* message) {
+  throw Error(ErrorCode::kInternal, "MuJoCo: " + one_line(message));
+}
+
+// What matters of the engine's warnings is counted in mjData, where the simulator looks.
+void ignore_engine_warning(const char* /*message*/) {}
+
+// The engine's file system of fixed-size tables (2 MB).
+class MemoryFiles {
+ public:
+  MemoryFiles() { mj_defaultVFS(vfs_.get()); }
+  ~MemoryFiles() { mj_deleteVFS(vfs_.get()); }
+  MemoryFiles(const MemoryFiles&) = delete;
+  MemoryFiles& operator=(const MemoryFiles&) = delete;
+
+  void add(const std::string& name, const char* bytes, std::size_t size) {
+    if (mj_makeEmptyFileVFS(vfs_.get(), name.c_str(), static_cast<int>(size)) != 0) {
+      throw Error(ErrorCode::kSetup, "MuJoCo: too many files in the model (at " + name + ")");
+    }
+    const int slot = mj_findFileVFS(vfs_.get(), name.c_str());
+    std::memcpy(vfs_->filedata[slot], bytes, size);
+  }
+  const mjVFS* get() const { return vfs_.get(); }
+
+ private:
+  std::unique_ptr<mjVFS> vfs_ = std::make_unique<mjVFS>();
+};
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  if (!in || bytes.empty()) {
+    throw Error(ErrorCode::kBadFile, {path.string(), 0}, "cannot be read");
+  }
+  return bytes;
+}
+
+}  // namespace
+
+void install_engine_handlers() {
+  mju_user_error = raise_engine_error;
+  mju_user_warning = ignore_engine_warning;
+}
+
+ModelPtr compile_model(const std::string& xml, const std::vector<ModelFile>& files) {
+  install_engine_handlers();
+  constexpr const char* kName = "world.xml";
+  MemoryFiles memory;
+  memory.add(kName, xml.data(), xml.size());
+  for (const ModelFile& file : files) {
+    const std::string bytes = read_file(file.path);
+    memory.add(file.name, bytes.data(), bytes.size());
+  }
+  std::array<char, 1000> message{};
+  ModelPtr model(mj_loadXML(kName, memory.get(), message.data(), static_cast<int>(message.size())));
+  if (!model) {
+    throw Error(ErrorCode::kSetup, "MuJoCo cannot use the world: " + one_line(message.data()));
+  }
+  return model;
+}
+
+DataPtr make_data(const mjModel& model) {
+  DataPtr data(mj_makeData(&model));
+  if (!data) throw Error(ErrorCode::kSetup, "MuJoCo: not enough memory for the world's state");
+  return data;
+}
+
+std::string engine_version() {
+  return mj_versionString();
+}
+
+}  // namespace tether::sim

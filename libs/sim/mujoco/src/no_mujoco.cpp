@@ -1,0 +1,14 @@
+#include <tether/base/error.h>
+#include <tether/sim_mujoco/mujoco_simulator.h>
+
+namespace tether::sim {
+
+const bool kHasMujoco = false;
+
+std::unique_ptr<Simulator> make_mujoco_simulator(World /*world*/, const WarningSink& /*warn*/) {
+  throw Error(ErrorCode::kSetup,
+              "this build has no embedded simulator: install libmujoco-dev, libassimp-dev and "
+              "libegl-dev, and build again");
+}
+
+}  // namespace tether::sim

@@ -1,0 +1,143 @@
+#include "physics_model.h"
+
+#include "mesh_file.h"
+#include "triangle_mesh.h"
+
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include <tether/sim/world.h>
+
+namespace tether::sim {
+namespace {
+
+using uav::Pose;
+using uav::Vec3;
+
+// MuJoCo's MJCF, written piece by piece. Numbers are written so that they read back exactly.
+class PhysicsXml {
+ public:
+  explicit PhysicsXml(const WarningSink& warn) : warn_(warn) {}
+
+  // The shapes of a link, at `X` in the engine's body: W for a static link, its own frame for a
+  // moving one.
+  void add_collisions(const Link& link, const Pose& X, bool is_static) {
+    for (const Collision& collision : link.collisions) {
+      const Pose X_C = X * collision.X_LC;
+      const std::string shape =
+          std::visit([&](const auto& g) { return describe(g, X_C, collision, is_static); },
+                     collision.geometry);
+      if (shape.empty()) continue;
+      append(R"(<geom {} contype="{}" conaffinity="1" friction="{} 0.005 0.0001"/>)", shape,
+             is_static ? 0 : 1, collision.friction);
+    }
+  }
+
+  void add_moving(const MovingBody& body) {
+    append("<body {}><freejoint/>", place(body.X_WB));
+    const Link& link = *body.link;
+    if (body.uav) {
+      const uav::MultirotorParameters& frame = body.uav->airframe;
+      add_inertia({link.X_LI.p, {}}, frame.mass_kg, frame.inertia_kg_m2);
+    } else {
+      add_inertia(link.X_LI, link.mass_kg, link.inertia_kg_m2);
+    }
+    add_collisions(link, {}, false);
+    body_ += "</body>";
+  }
+
+  std::string text(const World& world) const {
+    return fmt::format(R"(<mujoco><compiler angle="radian" inertiafromgeom="false"/>)"
+                       R"(<option timestep="{}" gravity="0 0 {}" integrator="Euler">)"
+                       R"(<flag equality="disable" limit="disable" passive="disable"/></option>)"
+                       R"(<size nconmax="{}" njmax="{}"/>)"
+                       "<asset>{}</asset><worldbody>{}</worldbody></mujoco>",
+                       to_seconds(world.step), -world.gravity_m_s2, kMaxContacts, 4 * kMaxContacts,
+                       assets_, body_);
+  }
+
+ private:
+  static constexpr int kMaxContacts = 500;
+
+  template <class... Args>
+  void append(fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(body_), format, std::forward<Args>(args)...);
+  }
+
+  static std::string place(const Pose& X) {
+    return fmt::format(R"(pos="{} {} {}" quat="{} {} {} {}")", X.p.x, X.p.y, X.p.z, X.q.w, X.q.x,
+                       X.q.y, X.q.z);
+  }
+
+  void add_inertia(const Pose& X, double mass_kg, const Vec3& inertia) {
+    append(R"(<inertial {} mass="{}" diaginertia="{} {} {}"/>)", place(X), mass_kg, inertia.x,
+           inertia.y, inertia.z);
+  }
+
+  std::string describe(const BoxGeometry& box, const Pose& X, const Collision&, bool) const {
+    return fmt::format(R"(type="box" {} size="{} {} {}")", place(X), 0.5 * box.size_m.x,
+                       0.5 * box.size_m.y, 0.5 * box.size_m.z);
+  }
+  std::string describe(const CylinderGeometry& cylinder, const Pose& X, const Collision&,
+                       bool) const {
+    return fmt::format(R"(type="cylinder" {} size="{} {}")", place(X), cylinder.radius_m,
+                       0.5 * cylinder.length_m);
+  }
+  std::string describe(const SphereGeometry& sphere, const Pose& X, const Collision&, bool) const {
+    return fmt::format(R"(type="sphere" {} size="{}")", place(X), sphere.radius_m);
+  }
+  std::string describe(const CapsuleGeometry& capsule, const Pose& X, const Collision&,
+                       bool) const {
+    return fmt::format(R"(type="capsule" {} size="{} {}")", place(X), capsule.radius_m,
+                       0.5 * capsule.length_m);
+  }
+  std::string describe(const EllipsoidGeometry& ellipsoid, const Pose& X, const Collision&,
+                       bool) const {
+    return fmt::format(R"(type="ellipsoid" {} size="{} {} {}")", place(X), ellipsoid.radii_m.x,
+                       ellipsoid.radii_m.y, ellipsoid.radii_m.z);
+  }
+
+  // The engine's planes are without end, as SDF's collision planes are; and they cannot move.
+  std::string describe(const PlaneGeometry& plane, const Pose& X, const Collision& collision,
+                       bool is_static) {
+    if (!is_static) {
+      warn_(
+          fmt::format("collision '{}': a plane of a moving body does not collide", collision.name));
+      return {};
+    }
+    const Pose X_P{X.p, X.q * rotation_from_z(plane.normal)};
+    return fmt::format(R"(type="plane" {} size="0 0 1")", place(X_P));
+  }
+
+  std::string describe(const MeshGeometry& mesh, const Pose& X, const Collision& collision, bool) {
+    warn_(fmt::format("{}: collision '{}' collides as the convex hull of its mesh",
+                      mesh.file.string(), collision.name));
+    const std::string name = fmt::format("m{}", meshes_++);
+    std::string vertices;
+    for (const TriangleMesh::Vertex& v : load_mesh(mesh, {}, [](const auto&) {}).vertices) {
+      fmt::format_to(std::back_inserter(vertices), "{} {} {} ", v.position[0], v.position[1],
+                     v.position[2]);
+    }
+    assets_ += fmt::format(R"(<mesh name="{}" vertex="{}"/>)", name, vertices);
+    return fmt::format(R"(type="mesh" {} mesh="{}")", place(X), name);
+  }
+
+  const WarningSink& warn_;
+  std::string assets_;
+  std::string body_;
+  int meshes_ = 0;
+};
+
+}  // namespace
+
+ModelPtr make_physics_model(const World& world, const WarningSink& warn) {
+  PhysicsXml xml(warn);
+  for (const FixedBody& body : fixed_bodies(world)) {
+    xml.add_collisions(*body.link, body.X_WB, true);
+  }
+  for (const MovingBody& body : moving_bodies(world)) xml.add_moving(body);
+  return compile_model(xml.text(world), {});
+}
+
+}  // namespace tether::sim

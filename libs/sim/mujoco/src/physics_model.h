@@ -1,0 +1,26 @@
+#pragma once
+
+#include "bodies.h"
+#include "engine.h"
+
+namespace tether::sim {
+
+/// The world as the physics engine needs it: the collision shapes only, with gravity and the step.
+/// Static links are shapes of the engine's world body; body i of `moving_bodies` has a free joint
+/// at qpos 7·i and qvel 6·i, and is the engine's body i + 1. Static shapes never meet each other.
+/// @throws Error(kBadFile) for a mesh that cannot be read, Error(kSetup) when the model does not
+/// compile.
+ModelPtr make_physics_model(const World& world, const WarningSink& warn);
+
+/// Where body i of `moving_bodies` is in the engine's arrays.
+constexpr int qpos_address(std::size_t body) {
+  return static_cast<int>(body) * 7;
+}
+constexpr int qvel_address(std::size_t body) {
+  return static_cast<int>(body) * 6;
+}
+constexpr int engine_body(std::size_t body) {
+  return static_cast<int>(body) + 1;
+}
+
+}  // namespace tether::sim

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "egl_context.h"
+#include "image.h"
+#include "scene.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <mujoco/mujoco.h>
+
+#include <tether/sim/world.h>
+
+namespace tether::sim {
+
+/// The engine's renderer with its scene, mjvScene, as a value with an owner.
+class EngineScene {
+ public:
+  explicit EngineScene(int max_geoms);
+  ~EngineScene();
+  EngineScene(const EngineScene&) = delete;
+  EngineScene& operator=(const EngineScene&) = delete;
+  mjvScene* operator->() { return &scene_; }
+  mjvScene* get() { return &scene_; }
+
+ private:
+  mjvScene scene_{};
+};
+
+/// Draws a scene headless. One thread at a time, any thread.
+///
+/// MuJoCo's renderer sets up lights, materials and textures; the triangles are ours, because it has
+/// no texture coordinates for primitives and lights each vertex only. Same input, same bytes on one
+/// machine: in software whatever the number of threads.
+class Renderer {
+ public:
+  /// Images of at most this size. @throws Error(kSetup) without OpenGL, Error(kBadFile) for a bad
+  /// texture.
+  Renderer(Scene scene, int max_width_px, int max_height_px);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// What to draw.
+  struct View {
+    uav::CameraModel camera;  ///< without distortion, fx = fy
+    double near_m = 0.05;
+    double far_m = 100.0;
+    uav::Pose X_WS;                     ///< of the camera: x ahead, z up
+    std::span<const uav::Pose> X_WB;    ///< of each moving body
+    std::optional<std::size_t> hidden;  ///< a moving body that is not drawn
+  };
+  /// The image is valid until the next call.
+  const RawImage& render(const View& view);
+
+  /// OpenGL's name of the renderer.
+  const std::string& name() const { return egl_.renderer_name(); }
+
+ private:
+  void fill_mesh_lists();
+  void set_camera(const View& view);
+  void place_items(const View& view);
+  void read_back();
+
+  Scene scene_;
+  EglContext egl_;
+  ModelPtr model_;
+  EngineScene engine_scene_;
+  mjrContext context_{};
+  RawImage image_;
+};
+
+}  // namespace tether::sim

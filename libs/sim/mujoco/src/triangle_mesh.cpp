@@ -1,0 +1,217 @@
+#include "triangle_mesh.h"
+
+#include "conversions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tether::sim {
+namespace {
+
+using uav::Vec3;
+using Vertex = TriangleMesh::Vertex;
+
+constexpr int kMaxPieces = 64;
+constexpr int kSlices = 32;
+constexpr int kStacksPerQuarter = 8;
+
+int pieces(double length_m) {
+  return std::clamp(static_cast<int>(std::ceil(length_m / kMaxEdge_m)), 1, kMaxPieces);
+}
+
+Vertex make_vertex(const Vec3& position, const Vec3& normal, double u, double v) {
+  Vertex vertex;
+  copy_to(position, vertex.position.data());
+  copy_to(normal, vertex.normal.data());
+  vertex.uv = {static_cast<float>(u), static_cast<float>(v)};
+  return vertex;
+}
+
+std::uint32_t index(std::size_t i) {
+  return static_cast<std::uint32_t>(i);
+}
+
+// Two triangles for each cell of a (rows+1) × (columns+1) lattice of vertices whose rows run down
+// and whose columns run right, seen from outside.
+void add_lattice_triangles(TriangleMesh& mesh, std::size_t first, int rows, int columns) {
+  const auto stride = static_cast<std::size_t>(columns) + 1;
+  for (std::size_t r = 0; r < static_cast<std::size_t>(rows); ++r) {
+    for (std::size_t c = 0; c + 1 < stride; ++c) {
+      const std::size_t a = first + r * stride + c;
+      mesh.triangles.push_back({index(a), index(a + stride), index(a + stride + 1)});
+      mesh.triangles.push_back({index(a), index(a + stride + 1), index(a + 1)});
+    }
+  }
+}
+
+// A flat rectangle around `centre`; `right` and `down` are unit, seen from outside.
+void add_rectangle(TriangleMesh& mesh, const Vec3& centre, const Vec3& right, double width_m,
+                   const Vec3& down, double height_m, const TextureScale& scale) {
+  const int columns = pieces(width_m);
+  const int rows = pieces(height_m);
+  const Vec3 normal = cross(down, right);
+  const Vec3 corner = centre - 0.5 * width_m * right - 0.5 * height_m * down;
+  const std::size_t first = mesh.vertices.size();
+  for (int r = 0; r <= rows; ++r) {
+    for (int c = 0; c <= columns; ++c) {
+      const double x = width_m * c / columns;
+      const double y = height_m * r / rows;
+      mesh.vertices.push_back(make_vertex(corner + x * right + y * down, normal,
+                                          x * scale.repeat_x_per_m, y * scale.repeat_y_per_m));
+    }
+  }
+  add_lattice_triangles(mesh, first, rows, columns);
+}
+
+// One ring of a surface of revolution about z.
+struct Ring {
+  double radius_m;
+  double z_m;
+  double normal_r;    // the normal's radial part
+  double normal_z;    // and its part along z
+  double distance_m;  // along the profile from the top: the texture's v
+};
+
+// The profile runs from top to bottom.
+void add_revolution(TriangleMesh& mesh, const std::vector<Ring>& profile, double texture_radius_m,
+                    const TextureScale& scale) {
+  const std::size_t first = mesh.vertices.size();
+  for (const Ring& ring : profile) {
+    for (int i = 0; i <= kSlices; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kSlices;
+      const double c = std::cos(angle);
+      const double s = std::sin(angle);
+      mesh.vertices.push_back(make_vertex({ring.radius_m * c, ring.radius_m * s, ring.z_m},
+                                          {ring.normal_r * c, ring.normal_r * s, ring.normal_z},
+                                          angle * texture_radius_m * scale.repeat_x_per_m,
+                                          ring.distance_m * scale.repeat_y_per_m));
+    }
+  }
+  add_lattice_triangles(mesh, first, static_cast<int>(profile.size()) - 1, kSlices);
+}
+
+// A flat disc at height z, facing `up` (+1 or −1), in rings fine enough for the light.
+void add_disc(TriangleMesh& mesh, double radius_m, double z_m, double up,
+              const TextureScale& scale) {
+  const int rings = pieces(radius_m);
+  std::vector<Ring> profile;
+  for (int i = 0; i <= rings; ++i) {
+    const double r = radius_m * (up > 0.0 ? i : rings - i) / rings;
+    profile.push_back({r, z_m, 0.0, up, 0.0});
+  }
+  const std::size_t first = mesh.vertices.size();
+  add_revolution(mesh, profile, 1.0, scale);
+  for (std::size_t i = first; i < mesh.vertices.size(); ++i) {
+    Vertex& vertex = mesh.vertices[i];
+    vertex.uv[0] = vertex.position[0] * static_cast<float>(scale.repeat_x_per_m);
+    vertex.uv[1] = vertex.position[1] * static_cast<float>(-up * scale.repeat_y_per_m);
+  }
+}
+
+// The rings of a quarter circle, from polar angle `from` to `from` + 90°, around height z.
+void append_quarter(std::vector<Ring>& profile, double radius_m, double z_m, double from,
+                    double distance_m) {
+  for (int i = 0; i <= kStacksPerQuarter; ++i) {
+    const double turned = 0.5 * std::numbers::pi * i / kStacksPerQuarter;
+    const double polar = from + turned;
+    profile.push_back({radius_m * std::sin(polar), z_m + radius_m * std::cos(polar),
+                       std::sin(polar), std::cos(polar), distance_m + radius_m * turned});
+  }
+}
+
+void append_side(std::vector<Ring>& profile, double radius_m, double length_m, double distance_m) {
+  const int count = pieces(length_m);
+  for (int i = 0; i <= count; ++i) {
+    const double down = length_m * i / count;
+    profile.push_back({radius_m, 0.5 * length_m - down, 1.0, 0.0, distance_m + down});
+  }
+}
+
+}  // namespace
+
+TriangleMesh box_mesh(const Vec3& size_m, const TextureScale& scale) {
+  const auto [x, y, z] = size_m;
+  const Vec3 down{0.0, 0.0, -1.0};
+  TriangleMesh mesh;
+  add_rectangle(mesh, {0.5 * x, 0.0, 0.0}, {0.0, 1.0, 0.0}, y, down, z, scale);
+  add_rectangle(mesh, {-0.5 * x, 0.0, 0.0}, {0.0, -1.0, 0.0}, y, down, z, scale);
+  add_rectangle(mesh, {0.0, 0.5 * y, 0.0}, {-1.0, 0.0, 0.0}, x, down, z, scale);
+  add_rectangle(mesh, {0.0, -0.5 * y, 0.0}, {1.0, 0.0, 0.0}, x, down, z, scale);
+  add_rectangle(mesh, {0.0, 0.0, 0.5 * z}, {1.0, 0.0, 0.0}, x, {0.0, -1.0, 0.0}, y, scale);
+  add_rectangle(mesh, {0.0, 0.0, -0.5 * z}, {-1.0, 0.0, 0.0}, x, {0.0, -1.0, 0.0}, y, scale);
+  return mesh;
+}
+
+TriangleMesh cylinder_mesh(double radius_m, double length_m, const TextureScale& scale) {
+  TriangleMesh mesh;
+  std::vector<Ring> side;
+  append_side(side, radius_m, length_m, 0.0);
+  add_revolution(mesh, side, radius_m, scale);
+  add_disc(mesh, radius_m, 0.5 * length_m, 1.0, scale);
+  add_disc(mesh, radius_m, -0.5 * length_m, -1.0, scale);
+  return mesh;
+}
+
+TriangleMesh capsule_mesh(double radius_m, double length_m, const TextureScale& scale) {
+  const double quarter_m = 0.5 * std::numbers::pi * radius_m;
+  std::vector<Ring> profile;
+  append_quarter(profile, radius_m, 0.5 * length_m, 0.0, 0.0);
+  append_side(profile, radius_m, length_m, quarter_m);
+  append_quarter(profile, radius_m, -0.5 * length_m, 0.5 * std::numbers::pi, quarter_m + length_m);
+  TriangleMesh mesh;
+  add_revolution(mesh, profile, radius_m, scale);
+  return mesh;
+}
+
+TriangleMesh ellipsoid_mesh(const Vec3& radii_m, const TextureScale& scale) {
+  const double mean_m = (radii_m.x + radii_m.y + radii_m.z) / 3.0;
+  const TextureScale unit{scale.repeat_x_per_m * mean_m, scale.repeat_y_per_m * mean_m};
+  std::vector<Ring> profile;
+  append_quarter(profile, 1.0, 0.0, 0.0, 0.0);
+  append_quarter(profile, 1.0, 0.0, 0.5 * std::numbers::pi, 0.5 * std::numbers::pi);
+  TriangleMesh mesh;
+  add_revolution(mesh, profile, 1.0, unit);
+  for (Vertex& vertex : mesh.vertices) {
+    const auto [x, y, z] = vertex.position;
+    const Vec3 normal{x / radii_m.x, y / radii_m.y, z / radii_m.z};
+    copy_to((1.0 / norm(normal)) * normal, vertex.normal.data());
+    copy_to(Vec3{x * radii_m.x, y * radii_m.y, z * radii_m.z}, vertex.position.data());
+  }
+  return mesh;
+}
+
+TriangleMesh plane_mesh(const PlaneGeometry& plane, const TextureScale& scale) {
+  const uav::Quat q = rotation_from_z(plane.normal);
+  TriangleMesh mesh;
+  add_rectangle(mesh, {}, rotate(q, {1.0, 0.0, 0.0}), plane.size_x_m, rotate(q, {0.0, -1.0, 0.0}),
+                plane.size_y_m, scale);
+  return mesh;
+}
+
+uav::Quat rotation_from_z(const Vec3& normal) {
+  const double length = norm(normal);
+  if (length == 0.0) return {};
+  const Vec3 n = (1.0 / length) * normal;
+  const Vec3 axis = cross({0.0, 0.0, 1.0}, n);
+  const double sine = norm(axis);
+  if (sine < 1e-12) return n.z > 0.0 ? uav::Quat{} : uav::Quat{0.0, 1.0, 0.0, 0.0};
+  return uav::from_axis_angle((1.0 / sine) * axis, std::atan2(sine, n.z));
+}
+
+BoundingSphere bounding_sphere(const TriangleMesh& mesh) {
+  if (mesh.vertices.empty()) return {};
+  std::array<float, 3> low = mesh.vertices.front().position;
+  std::array<float, 3> high = low;
+  for (const Vertex& vertex : mesh.vertices) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], vertex.position[i]);
+      high[i] = std::max(high[i], vertex.position[i]);
+    }
+  }
+  const Vec3 a{low[0], low[1], low[2]};
+  const Vec3 b{high[0], high[1], high[2]};
+  return {0.5 * (a + b), 0.5 * norm(b - a)};
+}
+
+}  // namespace tether::sim

@@ -1,0 +1,116 @@
+#include "dynamics.h"
+
+#include "test_worlds.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace tether::sim {
+namespace {
+
+using testing::box_model;
+using testing::no_warnings;
+using testing::test_world;
+
+void run(Dynamics& dynamics, int steps) {
+  for (int i = 0; i < steps; ++i) dynamics.step();
+}
+
+TEST(DynamicsTest, HoverHoldsItsPlace) {
+  const World world = test_world();
+  Dynamics dynamics(world, no_warnings());
+  run(dynamics, 10'000);
+  const uav::BodyState body = dynamics.body_state(0);
+  EXPECT_LT(norm(body.p_WB - uav::Vec3{0.0, 0.0, 1.0}), 1e-3);
+  EXPECT_LT(norm(body.v_WB), 1e-3);
+}
+
+TEST(DynamicsTest, ReachesAndKeepsAVelocity) {
+  const World world = test_world();
+  Dynamics dynamics(world, no_warnings());
+  dynamics.set_command(0, {{0.8, -0.3, 0.2}, 0.0});
+  run(dynamics, 4'000);
+  EXPECT_LT(norm(dynamics.body_state(0).v_WB - uav::Vec3{0.8, -0.3, 0.2}), 0.03);
+  dynamics.set_command(0, {});
+  run(dynamics, 4'000);
+  EXPECT_LT(norm(dynamics.body_state(0).v_WB), 0.02);
+}
+
+TEST(DynamicsTest, TurnsAtTheCommandedRate) {
+  const World world = test_world();
+  Dynamics dynamics(world, no_warnings());
+  dynamics.set_command(0, {{}, 0.5});
+  run(dynamics, 2'000);
+  EXPECT_NEAR(dynamics.body_state(0).w_WB_B.z, 0.5, 0.01);
+}
+
+TEST(DynamicsTest, VelocityIsInTheHeadingFrame) {
+  World world = test_world();
+  world.uavs[0].X_WB.q = uav::from_axis_angle({0.0, 0.0, 1.0}, 0.5 * std::numbers::pi);
+  Dynamics dynamics(world, no_warnings());
+  dynamics.set_command(0, {{0.5, 0.0, 0.0}, 0.0});
+  run(dynamics, 4'000);
+  EXPECT_LT(norm(dynamics.body_state(0).v_WB - uav::Vec3{0.0, 0.5, 0.0}), 0.03);
+}
+
+TEST(DynamicsTest, AWallStopsTheUav) {
+  World world = test_world();
+  world.models.push_back(box_model("wall", {2.0, 0.0, 1.5}, {0.2, 6.0, 3.0}, {1.0, 1.0, 1.0}));
+  Dynamics dynamics(world, no_warnings());
+  dynamics.set_command(0, {{1.0, 0.0, 0.0}, 0.0});
+  run(dynamics, 5'000);
+  const double front_m = dynamics.body_state(0).p_WB.x + 0.2;
+  EXPECT_GT(front_m, 1.7);
+  EXPECT_LT(front_m, 2.0) << "inside the wall, which begins at 1.9";
+}
+
+TEST(DynamicsTest, LooseBodiesFallAndRest) {
+  World world = test_world();
+  Model loose = box_model("loose", {2.0, 0.0, 1.0}, {0.2, 0.2, 0.2}, {1.0, 0.0, 0.0}, false);
+  loose.links[0].inertia_kg_m2 = {0.0067, 0.0067, 0.0067};
+  world.models.push_back(loose);
+  Dynamics dynamics(world, no_warnings());
+  std::vector<double> state;
+  run(dynamics, 200);
+  dynamics.capture(state);
+  EXPECT_NEAR(Dynamics::pose_of(state, 1).p.z, 1.0 - 0.5 * 9.81 * 0.04, 1.5e-3) << "free fall";
+  run(dynamics, 3'000);
+  dynamics.capture(state);
+  EXPECT_NEAR(Dynamics::pose_of(state, 1).p.z, 0.1, 5e-3) << "on the floor";
+}
+
+TEST(DynamicsTest, ResetRestoresEverything) {
+  const World world = test_world();
+  Dynamics dynamics(world, no_warnings());
+  std::vector<double> fresh;
+  dynamics.capture(fresh);
+  dynamics.set_command(0, {{1.0, 0.0, 0.0}, 1.0});
+  run(dynamics, 500);
+  dynamics.reset();
+  std::vector<double> again;
+  dynamics.capture(again);
+  EXPECT_EQ(again, fresh);
+  run(dynamics, 500);
+  EXPECT_LT(norm(dynamics.body_state(0).v_WB), 1e-3) << "the command was forgotten";
+}
+
+TEST(DynamicsTest, MotionIsTheChangeOfVelocity) {
+  const World world = test_world();
+  Dynamics dynamics(world, no_warnings());
+  dynamics.set_command(0, {{1.0, 0.5, 0.2}, 1.0});
+  run(dynamics, 150);
+  const uav::BodyState before = dynamics.body_state(0);
+  dynamics.step();
+  const uav::BodyState after = dynamics.body_state(0);
+  std::vector<double> state;
+  dynamics.capture(state);
+  const BodyMotion motion = dynamics.motion_of(state, 0);
+  EXPECT_EQ(motion.w_WB_B, after.w_WB_B);
+  EXPECT_LT(norm(motion.a_WB_W - 1000.0 * (after.v_WB - before.v_WB)), 1e-9);
+  EXPECT_LT(norm(motion.alpha_WB_B - 1000.0 * (after.w_WB_B - before.w_WB_B)), 1e-9);
+}
+
+}  // namespace
+}  // namespace tether::sim

@@ -1,0 +1,80 @@
+#include "mesh_file.h"
+
+#include "test_worlds.h"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/base/error.h>
+
+namespace tether::sim {
+namespace {
+
+using testing::no_warnings;
+
+MeshGeometry mesh_file(const std::string& name) {
+  return {std::filesystem::path(TETHER_TEST_DIR) / "data" / name, "", {1.0, 1.0, 1.0}};
+}
+
+TEST(MeshFileTest, ReadsObjWithSubmeshAndScale) {
+  MeshGeometry mesh = mesh_file("slab.obj");
+  mesh.submesh = "slab";
+  mesh.scale = {2.0, 1.0, 10.0};
+  const TriangleMesh slab = load_mesh(mesh, {}, no_warnings());
+  EXPECT_EQ(slab.triangles.size(), 12U);
+  const BoundingSphere sphere = bounding_sphere(slab);
+  EXPECT_LT(norm(sphere.centre), 1e-6);
+  EXPECT_NEAR(sphere.radius_m, 0.5 * std::sqrt(16.0 + 1.0 + 4.0), 1e-6);
+}
+
+TEST(MeshFileTest, KeepsTextureCoordinatesWithVDown) {
+  MeshGeometry mesh = mesh_file("slab.obj");
+  mesh.submesh = "card";
+  for (const TriangleMesh::Vertex& v : load_mesh(mesh, {}, no_warnings()).vertices) {
+    EXPECT_NEAR(v.uv[0], v.position[1], 1e-6);
+    EXPECT_NEAR(v.uv[1], 1.0F - v.position[2], 1e-6);
+  }
+}
+
+TEST(MeshFileTest, MirroringKeepsTheOutsideOut) {
+  MeshGeometry mesh = mesh_file("tetra.stl");
+  mesh.scale = {-1.0, 1.0, 1.0};
+  const TriangleMesh out = load_mesh(mesh, {}, no_warnings());
+  double volume = 0.0;
+  for (const auto& [a, b, c] : out.triangles) {
+    const auto at = [&](std::uint32_t i) {
+      const auto [x, y, z] = out.vertices[i].position;
+      return uav::Vec3{x, y, z};
+    };
+    volume += dot(at(a), cross(at(b), at(c))) / 6.0;
+  }
+  EXPECT_NEAR(volume, 1.0 / 6.0, 1e-6);
+}
+
+TEST(MeshFileTest, ColladaUnitsAndNodesButNotItsUpAxis) {
+  const TriangleMesh mesh = load_mesh(mesh_file("triangle.dae"), {}, no_warnings());
+  ASSERT_EQ(mesh.triangles.size(), 1U);
+  const auto& apex = mesh.vertices[mesh.triangles[0][2]].position;
+  EXPECT_NEAR(apex[0], 0.0, 1e-5);
+  EXPECT_NEAR(apex[1], 3.0, 1e-5);
+  EXPECT_NEAR(apex[2], 2.0, 1e-5);
+}
+
+TEST(MeshFileTest, SaysWhatIsWrong) {
+  MeshGeometry mesh = mesh_file("slab.obj");
+  mesh.submesh = "lid";
+  try {
+    load_mesh(mesh, {}, no_warnings());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadFile);
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("slab.obj"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("'lid'"));
+  }
+  EXPECT_THROW(load_mesh(mesh_file("../mesh_file_test.cpp"), {}, no_warnings()), Error);
+}
+
+}  // namespace
+}  // namespace tether::sim

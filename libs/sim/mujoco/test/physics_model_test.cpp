@@ -1,0 +1,96 @@
+#include "physics_model.h"
+
+#include "test_worlds.h"
+
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/base/error.h>
+
+namespace tether::sim {
+namespace {
+
+using testing::no_warnings;
+using testing::test_world;
+
+Collision collision_of(const Geometry& geometry) {
+  Collision collision;
+  collision.name = "shape";
+  collision.geometry = geometry;
+  return collision;
+}
+
+TEST(PhysicsModelTest, KeepsStepGravityAndMass) {
+  World world = test_world();
+  world.step = std::chrono::microseconds(2500);
+  world.gravity_m_s2 = 1.62;
+  const ModelPtr model = make_physics_model(world, no_warnings());
+  EXPECT_EQ(model->opt.timestep, 0.0025);
+  EXPECT_EQ(model->opt.gravity[2], -1.62);
+  EXPECT_EQ(model->nbody, 2);
+  EXPECT_EQ(model->body_mass[1], world.uavs[0].airframe.mass_kg);
+  EXPECT_EQ(model->body_inertia[5], world.uavs[0].airframe.inertia_kg_m2.z);
+  EXPECT_EQ(model->qpos0[2], 1.0);
+}
+
+TEST(PhysicsModelTest, EveryShapeIsSolid) {
+  World world = test_world();
+  world.models.resize(1);
+  auto& collisions = world.models[0].links[0].collisions;
+  collisions = {collision_of(BoxGeometry{{1.0, 2.0, 3.0}}),
+                collision_of(CylinderGeometry{0.5, 2.0}),
+                collision_of(SphereGeometry{0.5}),
+                collision_of(CapsuleGeometry{0.5, 2.0}),
+                collision_of(EllipsoidGeometry{{1.0, 2.0, 3.0}}),
+                collision_of(PlaneGeometry{{0.0, 0.0, 1.0}, 1.0, 1.0})};
+  const ModelPtr model = make_physics_model(world, no_warnings());
+  ASSERT_EQ(model->ngeom, 7);
+  const int types[] = {mjGEOM_BOX,     mjGEOM_CYLINDER,  mjGEOM_SPHERE,
+                       mjGEOM_CAPSULE, mjGEOM_ELLIPSOID, mjGEOM_PLANE};
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(model->geom_type[i], types[i]);
+    EXPECT_EQ(model->geom_contype[i], 0);
+    EXPECT_EQ(model->geom_conaffinity[i], 1);
+  }
+  EXPECT_EQ(model->geom_size[0], 0.5);
+  EXPECT_EQ(model->geom_size[3 + 1], 1.0) << "half the cylinder's length";
+}
+
+TEST(PhysicsModelTest, MeshesCollideAsHullsWithAWarning) {
+  World world = test_world();
+  world.models[0].links[0].collisions = {collision_of(MeshGeometry{
+      std::filesystem::path(TETHER_TEST_DIR) / "data/tetra.stl", "", {1.0, 1.0, 1.0}})};
+  std::vector<std::string> warnings;
+  const ModelPtr model =
+      make_physics_model(world, [&](const std::string& line) { warnings.push_back(line); });
+  EXPECT_EQ(model->geom_type[0], mjGEOM_MESH);
+  EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::HasSubstr("convex hull")));
+}
+
+TEST(PhysicsModelTest, PlanesThatMoveAreNamed) {
+  World world = test_world();
+  world.uavs[0].body.collisions = {collision_of(PlaneGeometry{{0.0, 0.0, 1.0}, 1.0, 1.0})};
+  std::vector<std::string> warnings;
+  const ModelPtr model =
+      make_physics_model(world, [&](const std::string& line) { warnings.push_back(line); });
+  EXPECT_EQ(model->ngeom, 1);
+  EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::HasSubstr("does not collide")));
+}
+
+TEST(PhysicsModelTest, ImpossibleInertiaIsAnError) {
+  World world = test_world();
+  world.uavs[0].airframe.inertia_kg_m2 = {1.0, 1.0, 3.0};
+  try {
+    make_physics_model(world, no_warnings());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kSetup);
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("inertia"));
+    EXPECT_THAT(error.what(), ::testing::Not(::testing::HasSubstr("\n")));
+  }
+}
+
+}  // namespace
+}  // namespace tether::sim

@@ -1,0 +1,247 @@
+#include "renderer.h"
+
+#include "test_worlds.h"
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tether::sim {
+namespace {
+
+using testing::box_model;
+using testing::box_visual;
+using testing::camera_intrinsics;
+using testing::no_warnings;
+using uav::Pose;
+using uav::Vec3;
+
+// A world that shows colours as they are: full ambient light, nothing else.
+World flat_world() {
+  World world;
+  world.ambient_rgb = {1.0, 1.0, 1.0};
+  world.background_rgb = {0.0, 0.0, 0.0};
+  return world;
+}
+
+RawImage render(const World& world, const uav::CameraModel& camera, const Pose& X_WS,
+                const std::vector<Pose>& bodies = {}, std::optional<std::size_t> hidden = {}) {
+  Renderer renderer(make_scene(world, no_warnings()), camera.width_px, camera.height_px);
+  return renderer.render({camera, 0.05, 100.0, X_WS, bodies, hidden});
+}
+
+std::array<int, 3> colour(const RawImage& image, int column, int row) {
+  const std::uint8_t* p = image.pixel(column, row);
+  return {p[0], p[1], p[2]};
+}
+
+// The rectangle of red pixels; a pixel covered in part counts in part.
+struct Rectangle {
+  double left, right, top, bottom;
+};
+
+Rectangle red_rectangle(const RawImage& image) {
+  std::vector<double> columns(static_cast<std::size_t>(image.width_px));
+  std::vector<double> rows(static_cast<std::size_t>(image.height_px));
+  for (int row = 0; row < image.height_px; ++row) {
+    for (int column = 0; column < image.width_px; ++column) {
+      const double red = image.pixel(column, row)[0] / 255.0;
+      auto& c = columns[static_cast<std::size_t>(column)];
+      auto& r = rows[static_cast<std::size_t>(row)];
+      c = std::max(c, red);
+      r = std::max(r, red);
+    }
+  }
+  const auto edges = [](const std::vector<double>& v) {
+    std::size_t first = 0;
+    while (first < v.size() && v[first] == 0.0) ++first;
+    std::size_t last = v.size() - 1;
+    while (last > first && v[last] == 0.0) --last;
+    return std::pair{static_cast<double>(first) + 0.5 - v[first],
+                     static_cast<double>(last) - 0.5 + v[last]};
+  };
+  const auto [left, right] = edges(columns);
+  const auto [top, bottom] = edges(rows);
+  return {left, right, top, bottom};
+}
+
+// Where a box's front face, facing the camera, must appear.
+Rectangle projected_front(const uav::CameraModel& camera, const Pose& X_WS, const Vec3& centre,
+                          const Vec3& size) {
+  const Pose X_CW = inverse(X_WS * Pose{{}, uav::q_body_from_optical()});
+  const double x = centre.x - 0.5 * size.x;
+  const auto at = [&](double sign_y, double sign_z) {
+    return *camera.project(
+        transform(X_CW, {x, centre.y + sign_y * 0.5 * size.y, centre.z + sign_z * 0.5 * size.z}));
+  };
+  return {at(1, 1).u_px, at(-1, 1).u_px, at(1, 1).v_px, at(1, -1).v_px};
+}
+
+void expect_box_where_it_projects(const uav::CameraModel& camera) {
+  const Vec3 centre{3.0, 0.35, 1.2};
+  const Vec3 size{0.02, 0.5, 0.3};
+  World world = flat_world();
+  world.models.push_back(box_model("box", centre, size, {1.0, 0.0, 0.0}));
+  const Pose X_WS{{0.0, 0.1, 1.0}, {}};
+  const Rectangle seen = red_rectangle(render(world, camera, X_WS));
+  const Rectangle expected = projected_front(camera, X_WS, centre, size);
+  EXPECT_NEAR(seen.left, expected.left, 0.5);
+  EXPECT_NEAR(seen.right, expected.right, 0.5);
+  EXPECT_NEAR(seen.top, expected.top, 0.5);
+  EXPECT_NEAR(seen.bottom, expected.bottom, 0.5);
+}
+
+TEST(RendererTest, ABoxAppearsWhereTheCameraModelProjectsIt) {
+  expect_box_where_it_projects(camera_intrinsics(640, 480));
+  expect_box_where_it_projects(camera_intrinsics(321, 240));
+}
+
+TEST(RendererTest, ThePrincipalPointMayBeAnywhere) {
+  uav::CameraModel camera = camera_intrinsics(320, 240);
+  camera.cx_px += 37.25;
+  camera.cy_px -= 18.5;
+  expect_box_where_it_projects(camera);
+}
+
+TEST(RendererTest, TheImageIsUprightAndNotMirrored) {
+  World world = flat_world();
+  world.models.push_back(box_model("left", {2.0, 0.4, 0.0}, {0.1, 0.2, 0.2}, {1.0, 0.0, 0.0}));
+  world.models.push_back(box_model("right", {2.0, -0.4, 0.0}, {0.1, 0.2, 0.2}, {0.0, 1.0, 0.0}));
+  world.models.push_back(box_model("above", {2.0, 0.0, 0.4}, {0.1, 0.2, 0.2}, {0.0, 0.0, 1.0}));
+  const uav::CameraModel camera = camera_intrinsics(161, 121);
+  const RawImage image = render(world, camera, {});
+  const int offset = static_cast<int>(std::lround(camera.fx_px * 0.4 / 1.95));
+  EXPECT_EQ(colour(image, 80 - offset, 60), (std::array{255, 0, 0}));
+  EXPECT_EQ(colour(image, 80 + offset, 60), (std::array{0, 255, 0}));
+  EXPECT_EQ(colour(image, 80, 60 - offset), (std::array{0, 0, 255}));
+  EXPECT_EQ(colour(image, 80, 60), (std::array{0, 0, 0}));
+}
+
+TEST(RendererTest, BackgroundFillsWhereNothingIs) {
+  World world = flat_world();
+  world.background_rgb = {0.2, 0.4, 0.8};
+  EXPECT_EQ(colour(render(world, camera_intrinsics(64, 48), {}), 30, 20),
+            (std::array{51, 102, 204}));
+}
+
+TEST(RendererTest, NothingBeyondTheFarPlane) {
+  World world = flat_world();
+  world.models.push_back(box_model("far", {101.0, 0.0, 0.0}, {0.1, 90.0, 90.0}, {1.0, 0.0, 0.0}));
+  EXPECT_EQ(colour(render(world, camera_intrinsics(64, 48), {}), 30, 20)[0], 0);
+}
+
+// quarters.png: red, green (above), blue, white (below).
+TEST(RendererTest, ATextureIsUprightAndRepeatsPerMetre) {
+  World world = flat_world();
+  world.models.push_back(box_model("card", {2.0, 0.0, 0.0}, {0.1, 2.0, 1.0}, {1.0, 1.0, 1.0}));
+  Material& material = world.models[0].links[0].visuals[0].material;
+  material.albedo_map = std::filesystem::path(TETHER_TEST_DIR) / "data/quarters.png";
+  const uav::CameraModel camera = camera_intrinsics(401, 301);
+  const RawImage image = render(world, camera, {});
+  // Seen from the camera, the card's left edge is at y = 1 m; each metre holds one picture.
+  const auto at = [&](double right_m, double down_m) {
+    const double scale = camera.fx_px / 1.95;
+    return colour(image, static_cast<int>(std::lround(camera.cx_px + scale * (right_m - 1.0))),
+                  static_cast<int>(std::lround(camera.cy_px + scale * (down_m - 0.5))));
+  };
+  for (const double metre : {0.0, 1.0}) {
+    EXPECT_EQ(at(metre + 0.25, 0.25), (std::array{255, 0, 0}));
+    EXPECT_EQ(at(metre + 0.75, 0.25), (std::array{0, 255, 0}));
+    EXPECT_EQ(at(metre + 0.25, 0.75), (std::array{0, 0, 255}));
+    EXPECT_EQ(at(metre + 0.75, 0.75), (std::array{255, 255, 255}));
+  }
+}
+
+TEST(RendererTest, EveryShapeIsDrawn) {
+  const std::filesystem::path tetra = std::filesystem::path(TETHER_TEST_DIR) / "data/tetra.stl";
+  const std::vector<Geometry> shapes{BoxGeometry{{0.5, 0.5, 0.5}},
+                                     CylinderGeometry{0.3, 0.5},
+                                     SphereGeometry{0.3},
+                                     CapsuleGeometry{0.2, 0.3},
+                                     EllipsoidGeometry{{0.3, 0.2, 0.4}},
+                                     PlaneGeometry{{-1.0, 0.0, 0.0}, 0.5, 0.5},
+                                     MeshGeometry{tetra, "", {1.0, 1.0, 1.0}}};
+  for (const Geometry& shape : shapes) {
+    World world = flat_world();
+    world.models.push_back(box_model("shape", {2.0, -0.1, -0.1}, {1.0, 1.0, 1.0}, {0.0, 1.0, 0.0}));
+    world.models[0].links[0].visuals[0].geometry = shape;
+    EXPECT_EQ(colour(render(world, camera_intrinsics(65, 49), {}), 32, 24), (std::array{0, 255, 0}))
+        << shape.index();
+  }
+}
+
+TEST(RendererTest, LightsShadeByDistanceAndAngle) {
+  World world = flat_world();
+  world.ambient_rgb = {};
+  world.models.push_back(box_model("wall", {2.0, 0.0, 0.0}, {0.1, 8.0, 8.0}, {1.0, 1.0, 1.0}));
+  Light lamp;
+  lamp.X_WL.p = {1.0, 0.0, 0.0};
+  lamp.diffuse_rgb = {0.8, 0.4, 0.0};
+  world.lights = {lamp};
+  const RawImage image = render(world, camera_intrinsics(161, 121), {});
+  const auto centre = colour(image, 80, 60);
+  EXPECT_NEAR(centre[0], 204, 6);
+  EXPECT_NEAR(centre[1], 102, 4);
+  EXPECT_EQ(centre[2], 0);
+  EXPECT_LT(colour(image, 5, 60)[0], 150);
+}
+
+TEST(RendererTest, MovingBodiesFollowTheirPoseAndTheOwnOneIsHidden) {
+  World world = flat_world();
+  Uav uav;
+  uav.body.visuals.push_back(box_visual({0.2, 0.2, 0.2}, {1.0, 0.0, 0.0}));
+  world.uavs = {uav};
+  const uav::CameraModel camera = camera_intrinsics(65, 49);
+  const std::vector<Pose> ahead{{{2.0, 0.0, 0.0}, {}}};
+  const std::vector<Pose> aside{{{2.0, 0.5, 0.0}, {}}};
+  EXPECT_EQ(colour(render(world, camera, {}, ahead), 32, 24)[0], 255);
+  EXPECT_EQ(colour(render(world, camera, {}, aside), 32, 24)[0], 0);
+  EXPECT_EQ(colour(render(world, camera, {}, ahead, 0), 32, 24)[0], 0);
+}
+
+// Turning around among many boxes: what may be in the picture must not be left out.
+TEST(RendererTest, CullingNeverShows) {
+  World world = flat_world();
+  for (int i = 0; i < 40; ++i) {
+    const double angle = 0.5 * i;
+    const double distance = 1.0 + 0.1 * i;
+    world.models.push_back(box_model(
+        "box", {distance * std::cos(angle), distance * std::sin(angle), 0.2 * (i % 7) - 0.6},
+        {0.3, 0.1, 0.5}, {0.02 * i, 1.0 - 0.02 * i, 0.5}));
+  }
+  Scene endless = make_scene(world, no_warnings());
+  for (SceneItem& item : endless.items) item.bounds.radius_m = 1e6;
+  const uav::CameraModel camera = camera_intrinsics(160, 120);
+  Renderer culling(make_scene(world, no_warnings()), 160, 120);
+  Renderer complete(std::move(endless), 160, 120);
+  for (int i = 0; i < 24; ++i) {
+    const Pose X_WS{{0.1, 0.0, 0.0}, uav::from_rpy(0.05 * i, 0.02 * i, 0.27 * i)};
+    const Renderer::View view{camera, 0.05, 100.0, X_WS, {}, {}};
+    EXPECT_TRUE(culling.render(view).rgba == complete.render(view).rgba) << i;
+  }
+}
+
+TEST(RendererTest, SameInputSameBytesInAnyThread) {
+  World world = flat_world();
+  world.ambient_rgb = {0.3, 0.3, 0.3};
+  world.models.push_back(box_model("box", {2.0, 0.3, 0.1}, {0.5, 0.5, 0.5}, {0.7, 0.3, 0.2}));
+  world.models.back().links[0].visuals[0].material.albedo_map =
+      std::filesystem::path(TETHER_TEST_DIR) / "data/quarters.png";
+  world.lights.resize(2);
+  const uav::CameraModel camera = camera_intrinsics(320, 240);
+  const Renderer::View view{camera, 0.05, 100.0, {{0.0, 0.0, 0.1}, {}}, {}, {}};
+  Renderer a(make_scene(world, no_warnings()), 320, 240);
+  Renderer b(make_scene(world, no_warnings()), 640, 480);
+  const RawImage first = a.render(view);
+  EXPECT_TRUE(first.rgba == b.render(view).rgba);
+  EXPECT_TRUE(first.rgba == a.render(view).rgba);
+  std::thread other([&] { EXPECT_TRUE(first.rgba == a.render(view).rgba); });
+  other.join();
+}
+
+}  // namespace
+}  // namespace tether::sim

@@ -1,0 +1,93 @@
+#include "test_worlds.h"
+
+#include <cmath>
+
+#include <tether/sim_mujoco/mujoco_simulator.h>
+
+namespace tether::sim::testing {
+
+Visual box_visual(const uav::Vec3& size_m, const uav::Vec3& rgb) {
+  Visual visual;
+  visual.name = "box";
+  visual.geometry = BoxGeometry{size_m};
+  visual.material.diffuse_rgb = rgb;
+  visual.material.ambient_rgb = rgb;
+  return visual;
+}
+
+Collision box_collision(const uav::Vec3& size_m) {
+  Collision collision;
+  collision.name = "box";
+  collision.geometry = BoxGeometry{size_m};
+  return collision;
+}
+
+Model box_model(const std::string& name, const uav::Vec3& p_WM, const uav::Vec3& size_m,
+                const uav::Vec3& rgb, bool is_static) {
+  Model model;
+  model.name = name;
+  model.X_WM.p = p_WM;
+  model.is_static = is_static;
+  model.links.resize(1);
+  model.links[0].visuals.push_back(box_visual(size_m, rgb));
+  model.links[0].collisions.push_back(box_collision(size_m));
+  return model;
+}
+
+uav::CameraModel camera_intrinsics(int width_px, int height_px) {
+  return uav::CameraModel::from_horizontal_fov(width_px, height_px, 1.2);
+}
+
+Sensor camera_sensor(const std::string& name, int width_px, int height_px) {
+  CameraModel model;
+  model.intrinsics = camera_intrinsics(width_px, height_px);
+  Sensor sensor;
+  sensor.name = name;
+  sensor.X_BS.p = {0.2, 0.0, 0.0};
+  sensor.model = model;
+  return sensor;
+}
+
+Sensor imu_sensor(const std::string& name) {
+  Sensor sensor;
+  sensor.name = name;
+  sensor.model = ImuModel{};
+  return sensor;
+}
+
+Sensor range_sensor(const std::string& name) {
+  Sensor sensor;
+  sensor.name = name;
+  sensor.model = RangeModel{};
+  return sensor;
+}
+
+Uav test_uav(const std::string& name, const uav::Vec3& p_WB) {
+  Uav uav;
+  uav.name = name;
+  uav.X_WB.p = p_WB;
+  uav.airframe = uav::hummingbird();
+  uav.body.name = "body";
+  uav.body.visuals.push_back(box_visual({0.4, 0.4, 0.1}, {0.2, 0.2, 0.2}));
+  uav.body.collisions.push_back(box_collision({0.4, 0.4, 0.1}));
+  uav.sensors = {camera_sensor("camera", 160, 120), imu_sensor("imu"), range_sensor("range")};
+  return uav;
+}
+
+World test_world() {
+  World world;
+  world.name = "test";
+  world.models.push_back(box_model("floor", {0.0, 0.0, -0.05}, {20.0, 20.0, 0.1}, {0.5, 0.5, 0.5}));
+  world.uavs.push_back(test_uav("alpha", {0.0, 0.0, 1.0}));
+  return world;
+}
+
+WarningSink no_warnings() {
+  return [](const std::string& line) { ADD_FAILURE() << "unexpected warning: " << line; };
+}
+
+std::unique_ptr<Simulator> make_simulator(World world) {
+  return make_mujoco_simulator(std::move(world), no_warnings());
+}
+
+}  // namespace tether::sim::testing

@@ -1,0 +1,100 @@
+#include "triangle_mesh.h"
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace tether::sim {
+namespace {
+
+using uav::Vec3;
+
+Vec3 position(const TriangleMesh& mesh, std::uint32_t i) {
+  const auto [x, y, z] = mesh.vertices[i].position;
+  return {x, y, z};
+}
+
+// By the divergence theorem; positive only if the triangles look outwards.
+double volume_m3(const TriangleMesh& mesh) {
+  double sum = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    sum += dot(position(mesh, a), cross(position(mesh, b), position(mesh, c))) / 6.0;
+  }
+  return sum;
+}
+
+// The least cosine between a vertex normal and the normal of a triangle there.
+double worst_normal(const TriangleMesh& mesh) {
+  double worst = 1.0;
+  for (const auto& triangle : mesh.triangles) {
+    const auto& [a, b, c] = triangle;
+    const Vec3 n =
+        cross(position(mesh, b) - position(mesh, a), position(mesh, c) - position(mesh, a));
+    if (norm(n) < 1e-9) continue;  // at a pole
+    for (const std::uint32_t i : triangle) {
+      const auto [x, y, z] = mesh.vertices[i].normal;
+      worst = std::min(worst, dot((1.0 / norm(n)) * n, {x, y, z}));
+    }
+  }
+  return worst;
+}
+
+struct Case {
+  std::string name;
+  TriangleMesh mesh;
+  double volume_m3;
+  double tolerance;
+};
+
+TEST(TriangleMeshTest, ClosedShapesHaveTheirVolumeAndLookOutwards) {
+  const double pi = std::numbers::pi;
+  const Case cases[] = {
+      {"box", box_mesh({1.0, 2.0, 0.5}, {}), 1.0, 1e-6},
+      {"cylinder", cylinder_mesh(0.5, 2.0, {}), pi * 0.25 * 2.0, 0.02},
+      {"capsule", capsule_mesh(0.5, 1.0, {}), pi * (0.25 + 4.0 / 3.0 * 0.125), 0.03},
+      {"ellipsoid", ellipsoid_mesh({1.0, 0.5, 0.25}, {}), 4.0 / 3.0 * pi * 0.125, 0.03},
+  };
+  for (const Case& c : cases) {
+    EXPECT_NEAR(volume_m3(c.mesh), c.volume_m3, c.tolerance * c.volume_m3) << c.name;
+    EXPECT_GT(worst_normal(c.mesh), 0.8) << c.name;
+  }
+}
+
+TEST(TriangleMeshTest, LargeFacesAreDividedForTheLight) {
+  const TriangleMesh mesh = box_mesh({4.0, 3.0, 0.1}, {});
+  for (const auto& [a, b, c] : mesh.triangles) {
+    EXPECT_LE(norm(position(mesh, a) - position(mesh, b)), 0.36);
+    EXPECT_LE(norm(position(mesh, b) - position(mesh, c)), 0.36);
+  }
+}
+
+TEST(TriangleMeshTest, TextureCountsRepetitionsPerMetreAndStartsAtTheUpperLeft) {
+  const TriangleMesh mesh = box_mesh({0.1, 4.0, 2.0}, {0.5, 2.0});
+  for (const TriangleMesh::Vertex& v : mesh.vertices) {
+    if (v.normal[0] < 0.5F) continue;  // the face that looks along +x; its left is −y
+    EXPECT_NEAR(v.uv[0], (v.position[1] + 2.0) * 0.5, 1e-5);
+    EXPECT_NEAR(v.uv[1], (1.0 - v.position[2]) * 2.0, 1e-5);
+  }
+}
+
+TEST(TriangleMeshTest, PlaneLooksAlongItsNormal) {
+  for (const Vec3& normal : {Vec3{0.0, 0.0, 1.0}, Vec3{0.0, 0.0, -1.0}, Vec3{1.0, 2.0, 0.5}}) {
+    const TriangleMesh mesh = plane_mesh({normal, 2.0, 1.0}, {});
+    const auto [x, y, z] = mesh.vertices.front().normal;
+    EXPECT_NEAR(dot(normal, {x, y, z}), norm(normal), 1e-6);
+    EXPECT_GT(worst_normal(mesh), 0.999);
+  }
+}
+
+TEST(TriangleMeshTest, BoundingSphereHoldsEveryVertex) {
+  const TriangleMesh mesh = capsule_mesh(0.3, 1.0, {});
+  const BoundingSphere sphere = bounding_sphere(mesh);
+  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
+    EXPECT_LE(norm(position(mesh, i) - sphere.centre), sphere.radius_m + 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace tether::sim
