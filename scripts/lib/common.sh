@@ -17,12 +17,12 @@ usage() { sed -n '2,/^[^#]/{/^#/s/^# \{0,1\}//p}' "$0"; }
 
 # Compiler and libraries of the product, with the software renderer that cameras need without a GPU.
 packages_build=(
-  g++ cmake ninja-build pkg-config
+  g++ cmake ninja-build
   libmujoco-dev libegl-dev libgl-dev libopengl-dev libegl1 libgl1-mesa-dri
   libsdformat-dev libtinyxml2-dev libconsole-bridge-dev libassimp-dev
-  libeigen3-dev libopencv-dev libpng-dev zlib1g-dev libboost-dev
-  libasio-dev libflatbuffers-dev flatbuffers-compiler flatbuffers-compiler-dev
-  libfmt-dev libspdlog-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libzstd-dev
+  libopencv-dev libpng-dev zlib1g-dev libzstd-dev libboost-dev
+  libasio-dev libflatbuffers-dev flatbuffers-compiler
+  libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
 )
 packages_test=(git libgtest-dev libgmock-dev libbenchmark-dev clang-format)
 packages_tidy=(git clang-tidy)
