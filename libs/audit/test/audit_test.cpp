@@ -1,7 +1,7 @@
 #include "record_generator.h"
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <limits>
 #include <set>
 #include <string>
@@ -178,16 +178,16 @@ TEST(Audit, RandomChangesOfTimesAreNoticed) {
   }
 }
 
-// 10^6 interactions within seconds: generously, ten on a busy machine.
+// One to two seconds of CPU time; the limit leaves room for sanitizers.
 TEST(Audit, AMillionInteractionsWithinSeconds) {
   const Record record = generate({.suts = 4, .interactions_per_sut = 250'000});
   ASSERT_EQ(record.interactions.size(), 1'000'000U);
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   const Verdict verdict = audit(record);
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+  const double spent_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   EXPECT_TRUE(verdict.passed()) << to_text(verdict);
-  RecordProperty("seconds", std::to_string(spent.count()));
-  EXPECT_LT(spent.count(), 10.0);
+  RecordProperty("seconds", std::to_string(spent_s));
+  EXPECT_LT(spent_s, 20.0);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace tether::record {
 namespace {
@@ -172,7 +173,7 @@ bool decode_base64(std::string_view text, std::vector<std::uint8_t>& out) {
       group = 0;
     }
   }
-  out.resize(out.size() - padding);
+  out.erase(out.end() - static_cast<std::ptrdiff_t>(padding), out.end());
   return true;
 }
 
