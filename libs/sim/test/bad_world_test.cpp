@@ -133,21 +133,5 @@ INSTANTIATE_TEST_SUITE_P(Files, BadWorlds, ::testing::ValuesIn(kBadFiles), name_
 INSTANTIATE_TEST_SUITE_P(Values, BadWorlds, ::testing::ValuesIn(kBadValues), name_of);
 INSTANTIATE_TEST_SUITE_P(Resources, BadWorlds, ::testing::ValuesIn(kBadResources), name_of);
 
-TEST(BadWorld, MissingFileIsNamed) {
-  EXPECT_EQ(refusal({"/nowhere/w.sdf", {}, {}}), "/nowhere/w.sdf: there is no such file");
-}
-
-TEST(BadWorld, ErrorInAnIncludedFileNamesThatFile) {
-  const SdfFolder folder;
-  folder.write("models/thing/model.config",
-               "<model><name>thing</name><sdf version='1.7'>model.sdf</sdf></model>");
-  const auto inner = folder.write("models/thing/model.sdf",
-                                  "<sdf version='1.7'>\n<model name='thing'><link name='l'>\n"
-                                  "<visual name='v'><geometry><sphere>\n<radius>-1</radius>\n"
-                                  "</sphere></geometry></visual></link></model></sdf>");
-  const auto file = folder.write("w.sdf", world_sdf("<include><uri>model://thing</uri></include>"));
-  EXPECT_THAT(refusal({file, {}, {}}), HasSubstr(inner.string() + ":4: <radius>"));
-}
-
 }  // namespace
 }  // namespace tether::sim

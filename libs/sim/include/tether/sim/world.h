@@ -19,19 +19,19 @@
 namespace tether::sim {
 
 struct BoxGeometry {
-  uav::Vec3 size_m;
-};  ///< edge lengths
+  uav::Vec3 size_m;  ///< edge lengths
+};
 struct CylinderGeometry {
   double radius_m = 0.0;
-  double length_m = 0.0;
-};  ///< along z
+  double length_m = 0.0;  ///< along z
+};
 struct SphereGeometry {
   double radius_m = 0.0;
 };
 struct CapsuleGeometry {
   double radius_m = 0.0;
-  double length_m = 0.0;
-};  ///< of the cylindrical part, along z
+  double length_m = 0.0;  ///< of the cylindrical part, along z
+};
 struct EllipsoidGeometry {
   uav::Vec3 radii_m;
 };
@@ -48,6 +48,8 @@ struct MeshGeometry {
 using Geometry = std::variant<BoxGeometry, CylinderGeometry, SphereGeometry, CapsuleGeometry,
                               EllipsoidGeometry, PlaneGeometry, MeshGeometry>;
 
+/// How a surface looks. A texture is multiplied by the colours. On a flat face it begins in the
+/// upper left corner, seen from outside.
 struct Material {
   uav::Vec3 diffuse_rgb{0.7, 0.7, 0.7};  ///< each 0..1
   uav::Vec3 ambient_rgb{0.7, 0.7, 0.7};
@@ -186,13 +188,24 @@ struct WorldRequest {
 /// Where a warning goes: one line, with file (and line where known).
 using WarningSink = std::function<void(const std::string&)>;
 
-/// Reads world and UAV models (SDFormat), resolves every pose, include, mesh and texture, and names
-/// through `warn` each element that Tether cannot represent.
+/// Reads world and UAV models (SDFormat up to 1.9), resolves every pose, include, mesh and texture,
+/// and names through `warn`, with file and line, each element that Tether cannot represent.
+///
+/// URIs of meshes and textures are relative to the file that they stand in, those of includes to
+/// the file given; model:// is looked for in models/ and ../models/ next to the file given, beside
+/// it, and in GAZEBO_MODEL_PATH and GZ_SIM_RESOURCE_PATH. Nested models become models of their own,
+/// "outer::inner". A UAV's body is its link "base_link", else its first one; links fixed to it are
+/// merged into it. Its airframe is its <tether:multirotor>, all of whose elements are required;
+/// models/hummingbird/model.sdf shows them.
+///
 /// @throws Error(kBadFile) with file and line for whatever cannot be used: missing file, XML or SDF
-/// errors, no <world>,
-///   impossible values (negative mass or size, zero-size image), an anchor that is no model or
-///   whose shape is not a box, cylinder or sphere, a UAV model without <tether:multirotor> or with
-///   two sensors of one name.
+///   errors, not exactly one <world>, impossible values (negative mass or size, zero-size image,
+///   gravity that does not point down, a step outside 10 µs to 20 ms), two UAVs of one name, an
+///   anchor that is no model or not one untextured box, cylinder or sphere, a UAV model without
+///   <tether:multirotor>, with two sensors of one name, a centre of mass off its origin, or less
+///   thrust than weight.
+///
+/// Not thread-safe: libsdformat's console is silenced while this runs.
 World load_world(const WorldRequest& request, const WarningSink& warn);
 
 /// What a SUT flying `uav` is told.

@@ -1,0 +1,58 @@
+#include "sdf_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tether::sim {
+namespace {
+
+using ::testing::HasSubstr;
+using uav::Vec3;
+
+/// One world with an anchor of each shape.
+const char* const kAnchors = R"(
+    <model name='box'><static>true</static><pose>1 0 0 0 0 0</pose><link name='l'>
+      <pose>0 1 0 0 0 0</pose><visual name='v'><pose>0 0 1 0 0 0</pose>
+      <geometry><box><size>1 2 3</size></box></geometry>
+      <material><diffuse>0 0.25 1 1</diffuse></material></visual></link></model>
+    <model name='cylinder'><link name='l'><visual name='v'>
+      <geometry><cylinder><radius>0.5</radius><length>2</length></cylinder></geometry></visual></link></model>
+    <model name='sphere'><link name='l'><visual name='v'>
+      <geometry><sphere><radius>0.5</radius></sphere></geometry></visual></link></model>
+    <model name='two'><link name='l'>
+      <visual name='v'><geometry><sphere><radius>0.5</radius></sphere></geometry></visual>
+      <visual name='w'><geometry><sphere><radius>0.5</radius></sphere></geometry></visual></link></model>
+    <model name='plane'><link name='l'><visual name='v'><geometry><plane/></geometry></visual></link></model>
+    <model name='textured'><link name='l'><visual name='v'>
+      <geometry><sphere><radius>0.5</radius></sphere></geometry>
+      <material><pbr><metal><albedo_map>t.png</albedo_map></metal></pbr></material></visual></link></model>)";
+
+TEST(Anchor, ReadsAnchors) {
+  const SdfFolder folder;
+  folder.write("t.png", "png");
+  const auto file = folder.write("w.sdf", world_sdf(kAnchors));
+  const auto anchors = load({file, {}, {"cylinder", "box", "sphere"}}).world.anchors;
+  ASSERT_EQ(anchors.size(), 3u);
+  EXPECT_EQ(anchors[0].anchor.shape, uav::AnchorShape::kCylinder);
+  EXPECT_EQ(anchors[0].anchor.size_m, (Vec3{1, 1, 2}));
+  EXPECT_EQ(anchors[1].anchor.name, "box");
+  EXPECT_EQ(anchors[1].anchor.size_m, (Vec3{1, 2, 3}));
+  EXPECT_EQ(anchors[1].anchor.color_rgb, (Vec3{0, 0.25, 1}));
+  EXPECT_EQ(anchors[1].X_WA.p, (Vec3{1, 1, 1}));
+  EXPECT_EQ(anchors[2].anchor.size_m, (Vec3{1, 1, 1}));
+}
+
+TEST(Anchor, RefusesWhatCannotBeAnAnchor) {
+  const SdfFolder folder;
+  folder.write("t.png", "png");
+  const auto file = folder.write("w.sdf", world_sdf(kAnchors));
+  const auto refused = [&](const std::string& anchor) { return refusal({file, {}, {anchor}}); };
+  EXPECT_THAT(refused("nothing"),
+              HasSubstr("w.sdf: anchor 'nothing' is no model of the world; models are box, "));
+  EXPECT_THAT(refused("two"), HasSubstr("w.sdf:12: anchor 'two' has 2 visuals"));
+  EXPECT_THAT(refused("plane"), HasSubstr("neither a box nor a cylinder nor a sphere"));
+  EXPECT_THAT(refused("textured"), HasSubstr("is textured"));
+}
+
+}  // namespace
+}  // namespace tether::sim
