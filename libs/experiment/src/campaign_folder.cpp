@@ -127,7 +127,7 @@ bool CampaignFolder::has_usable_result(const TrialPlan& plan) {
     const bool is_this_trial = result.scenario == plan.scenario->name &&
                                result.condition == plan.condition->name && result.seed == plan.seed;
     if (!is_this_trial) warnings_.push_back(plan.folder.string() + ": is of another trial");
-    return is_this_trial && result.end != kEndSetupFailed;
+    return is_this_trial && result.end != kEndSetupFailed && result.end != kEndInterrupted;
   } catch (const Error& error) {
     warnings_.emplace_back(error.what());
     return false;

@@ -14,7 +14,8 @@ ConditionResults read_condition(const std::filesystem::path& folder,
     std::error_code ignored;
     if (!std::filesystem::exists(trial / kResultFile, ignored)) continue;
     try {
-      results.trials.push_back(read_result(trial));
+      TrialResult result = read_result(trial);
+      if (result.end != kEndInterrupted) results.trials.push_back(std::move(result));
     } catch (const Error& error) {
       damaged.emplace_back(error.what());
     }
@@ -55,7 +56,7 @@ const MetricValue* ScenarioResults::find_metric(std::string_view metric) const {
   return nullptr;
 }
 
-CampaignResults read_campaign(const std::filesystem::path& folder) {
+CampaignResults read_campaign_results(const std::filesystem::path& folder) {
   CampaignResults results;
   results.manifest = read_manifest(folder);
   for (const CampaignManifest::Entry& entry : results.manifest.scenarios) {

@@ -72,11 +72,14 @@ TEST_F(Folder, DetectsTheResultOfAnotherTrial) {
   EXPECT_THAT(folder.warnings(), ElementsAre(HasSubstr("is of another trial")));
 }
 
-TEST_F(Folder, RunsAgainWhatFailedToSetUpButNotWhatFailedLater) {
+TEST_F(Folder, RunsAgainWhatNeverRanToItsEndButNotWhatFailed) {
   open(OpenMode::kFresh);
   const auto plans = plan_trials(campaign_, out_);
   TrialResult failed = make_setup_failure(*plans[0].scenario, *plans[0].condition, 1, "no port");
   std::filesystem::create_directories(plans[0].folder);
+  write_result(plans[0].folder, failed);
+  EXPECT_EQ(open(OpenMode::kResume).missing().size(), 9u);
+  failed.end = kEndInterrupted;
   write_result(plans[0].folder, failed);
   EXPECT_EQ(open(OpenMode::kResume).missing().size(), 9u);
   failed.end = "sut_hung";

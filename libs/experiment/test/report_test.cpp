@@ -32,7 +32,7 @@ class Report : public testing::Test {
     write_result(folder, result);
   }
   const scenario::Scenario& scenario() const { return campaign_.scenarios[0].scenario; }
-  ScenarioResults results() const { return read_campaign(out_).scenarios[0]; }
+  ScenarioResults results() const { return read_campaign_results(out_).scenarios[0]; }
 
   Scratch scratch_;
   std::filesystem::path out_ = scratch_.path("out");
@@ -66,7 +66,7 @@ TEST_F(Report, NamesEveryTrialThatIsInNoMean) {
   std::filesystem::remove_all(out_ / "turn/target-no-sync/seed-0001");
   scratch_.write("out/turn/target-no-sync/seed-0002/result.json", "{");
 
-  const CampaignResults all = read_campaign(out_);
+  const CampaignResults all = read_campaign_results(out_);
   const Table table = paper_form_table(all.scenarios[0]);
   EXPECT_THAT(table.notes,
               Contains("Not in a mean: target, seed 2: the SUT of 'uav1' did not finish."));
@@ -79,7 +79,7 @@ TEST_F(Report, NamesEveryTrialThatIsInNoMean) {
 
 TEST_F(Report, OfNothingRunYetHasRowsWithoutNumbers) {
   std::filesystem::remove_all(out_ / "turn");
-  const CampaignResults all = read_campaign(out_);
+  const CampaignResults all = read_campaign_results(out_);
   for (const Table& table : report_tables(all)) EXPECT_FALSE(to_text(table).empty());
   EXPECT_EQ(paper_form_table(all.scenarios[0]).rows.size(), 3u);
 }
@@ -110,7 +110,7 @@ TEST_F(Report, SaysWhatItRestsOn) {
   bad.audit = AuditVerdict{false, "a command in the past"};
   bad.sync.causality_violations = 2;
   write(bad);
-  const std::string text = to_text(basis_table(read_campaign(out_)));
+  const std::string text = to_text(basis_table(read_campaign_results(out_)));
   EXPECT_THAT(text, HasSubstr("a machine"));
   EXPECT_THAT(text, HasSubstr("tether-sut 0.1.0"));
   EXPECT_THAT(text, HasSubstr("1 to 3"));
@@ -120,7 +120,7 @@ TEST_F(Report, SaysWhatItRestsOn) {
 }
 
 TEST_F(Report, ForProgramsIsComplete) {
-  const CampaignResults all = read_campaign(out_);
+  const CampaignResults all = read_campaign_results(out_);
   EXPECT_EQ(trials_table(all).rows.size(), 18u);
   const Table summaries = summaries_table(all);
   EXPECT_EQ(summaries.rows.size(), 6u);

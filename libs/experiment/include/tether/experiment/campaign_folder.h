@@ -50,7 +50,7 @@ enum class OpenMode {
 class CampaignFolder {
  public:
   /// Makes the folder or opens it again, and finds out which trials are missing: those without a
-  /// result, with a torn or damaged one, and those that failed to be set up.
+  /// result, with a torn or damaged one, and those that failed to be set up or were interrupted.
   /// @throws Error(kUsage), changing nothing, when the folder holds something else, results of
   ///   other settings or versions (named), results although `mode` is kFresh, or is held by
   ///   another process; Error(kSetup) when the file system refuses.

@@ -40,6 +40,6 @@ struct CampaignResults {
 };
 
 /// @throws Error(kBadFile) when the folder holds no campaign.
-CampaignResults read_campaign(const std::filesystem::path& folder);
+CampaignResults read_campaign_results(const std::filesystem::path& folder);
 
 }  // namespace tether::experiment
