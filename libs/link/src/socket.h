@@ -22,8 +22,9 @@ using Tcp = asio::ip::tcp;
 /// Longer limits mean this one, so that a point in time can be reckoned.
 inline constexpr Duration kLongestTimeout = std::chrono::hours(24 * 365);
 
-/// No delay, keep-alive probes (a peer that vanished is noticed within half a minute), large
-/// buffers, not inherited by child processes. What the system does not grant is done without.
+/// No delay; keep-alive probes, so that a peer that vanished is noticed within half a minute; not
+/// inherited by child processes. Buffer sizes are left to the system, which fits them to the
+/// traffic. What the system does not grant is done without.
 void tune(Tcp::socket& socket);
 /// Child processes (the SUT that `tether run` starts) must not hold our connections open.
 void close_on_exec(int descriptor);

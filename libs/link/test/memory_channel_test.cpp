@@ -45,6 +45,7 @@ TEST(MemoryServer, WhatWasSentBeforeClosingArrives) {
   }
   EXPECT_EQ(events.received.size(), 1u);
   ASSERT_EQ(events.closed.size(), 1u);
+  EXPECT_EQ(events.closed[0].peer, events.connected[0]);
   EXPECT_EQ(events.closed[0].failure.kind, Failure::Kind::kDisconnected);
 
   auto refused = server.connect();

@@ -116,7 +116,8 @@ struct Event {
 /// Takes the next event, peers in turn of their ids. @pre hub's mutex held
 std::optional<Event> take_event(MemoryServer::Hub& hub) {
   for (auto it = hub.connections.begin(); it != hub.connections.end(); ++it) {
-    auto& [id, c] = *it;
+    const PeerId id = it->first;
+    Connection& c = it->second;
     if (c.server_closed) {
       if (!c.client_closed) continue;
       hub.connections.erase(it);
