@@ -77,8 +77,8 @@ constexpr Time from_ns(std::int64_t ns) {
   return Time(Duration(ns));
 }
 
-/// Seconds as a double, for files, displays and simulator interfaces only. Exact to 1 ns up to 2^53
-/// ns (104 days).
+/// Seconds as a double, for files, displays and simulator interfaces only. The round trip through
+/// `duration_from_seconds` is exact up to 2^51 ns (26 days).
 constexpr double to_seconds(Duration d) {
   return static_cast<double>(d.count()) / 1e9;
 }

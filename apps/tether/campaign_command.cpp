@@ -1,0 +1,111 @@
+#include "child_process.h"
+#include "commands.h"
+#include "interrupt.h"
+#include "machine.h"
+#include "print_report.h"
+#include "progress_bar.h"
+
+#include <filesystem>
+#include <memory>
+#include <stop_token>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/base/version.h>
+#include <tether/experiment/campaign_folder.h>
+#include <tether/experiment/run_campaign.h>
+#include <tether/scenario/campaign.h>
+
+namespace tether::app {
+
+namespace {
+
+constexpr Duration kLook = std::chrono::milliseconds(50);
+
+struct CampaignOptions {
+  std::filesystem::path campaign;
+  std::filesystem::path out;
+  int jobs = 1;
+  bool resume = false;
+};
+
+experiment::Settings settings_of(const scenario::Campaign& campaign) {
+  std::vector<std::filesystem::path> programs{own_file()};
+  for (const auto& entry : campaign.scenarios)
+    for (const auto& uav : entry.scenario.uavs)
+      programs.push_back(find_program(uav.sut.command.front()));
+  return experiment::campaign_settings(
+      campaign, {{"tether", std::string(version())}, {"machine", describe_machine()}}, programs);
+}
+
+/// A trial is a `tether run` of its own, so that whatever happens in one leaves the others alone.
+experiment::TrialResult execute(const experiment::TrialPlan& plan, std::stop_source& stop) {
+  const std::filesystem::path log = plan.folder / "run.log";
+  ChildProcess process(
+      {.arguments = {own_file().string(), "run", plan.scenario->file.string(), "--condition",
+                     plan.condition->name, "--seed", std::to_string(plan.seed), "--out",
+                     plan.folder.string(), "--quiet"},
+       .environment = {},
+       .log = log});
+  while (!process.wait(kLook)) {
+    if (!interrupted()) continue;
+    stop.request_stop();
+    process.terminate();
+  }
+  if (interrupted()) {
+    auto result = experiment::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
+                                                 "interrupted by the user");
+    result.end = experiment::kEndInterrupted;
+    return result;
+  }
+  if (std::filesystem::exists(plan.folder / experiment::kResultFile))
+    return experiment::read_result(plan.folder);
+  throw Error(ErrorCode::kSetup, fmt::format("the trial left no result: it {}; see {}",
+                                             process.poll()->description, log.string()));
+}
+
+int run(const CampaignOptions& options) {
+  const scenario::Campaign campaign = scenario::load_campaign(options.campaign);
+  experiment::require_jobs_allowed(campaign, options.jobs);
+  const std::filesystem::path out =
+      options.out.empty() ? std::filesystem::path("out") / campaign.name : options.out;
+  const experiment::CampaignFolder folder(
+      out, campaign, settings_of(campaign),
+      options.resume ? experiment::OpenMode::kResume : experiment::OpenMode::kFresh);
+  for (const std::string& warning : folder.warnings()) fmt::print(stderr, "warning: {}\n", warning);
+
+  std::stop_source stop;
+  ProgressBar bar;
+  const auto outcome = experiment::run_campaign(
+      folder, campaign, [&](const experiment::TrialPlan& plan) { return execute(plan, stop); },
+      {.jobs = options.jobs, .stop = stop.get_token(), .wall = {}},
+      [&](const experiment::CampaignProgress& progress) { bar.show(progress); });
+  bar.finish();
+  if (outcome.interrupted) {
+    fmt::print(stderr, "tether: interrupted; go on with: tether campaign {} --out {} --resume\n",
+               options.campaign.string(), out.string());
+    return exit_code(ErrorCode::kSetup);
+  }
+  print_campaign_summary(out);
+  return outcome.failed > 0 ? exit_code(ErrorCode::kSetup) : 0;
+}
+
+}  // namespace
+
+void add_campaign_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<CampaignOptions>();
+  CLI::App* command =
+      program.add_subcommand("campaign", "Run many trials: scenarios x conditions x seeds");
+  command->add_option("campaign", options->campaign, "Campaign file (TOML)")->required();
+  command->add_option("--out", options->out, "Folder for the trials [out/CAMPAIGN]");
+  command
+      ->add_option("--jobs", options->jobs,
+                   "Trials side by side; only where that cannot disturb the measured time")
+      ->capture_default_str();
+  command->add_flag("--resume", options->resume, "Go on with a folder: run only what is missing");
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace tether::app

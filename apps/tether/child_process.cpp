@@ -1,0 +1,171 @@
+#include "child_process.h"
+
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <sstream>
+#include <thread>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+
+extern char** environ;
+
+namespace tether::app {
+
+namespace {
+
+constexpr auto kGrace = std::chrono::seconds(1);
+constexpr auto kPollPeriod = std::chrono::milliseconds(5);
+
+bool is_program(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0;
+}
+
+std::vector<std::string> merged_environment(
+    const std::vector<std::pair<std::string, std::string>>& extra) {
+  std::map<std::string, std::string> variables;
+  for (char** entry = environ; *entry; ++entry) {
+    const std::string text = *entry;
+    const auto equals = text.find('=');
+    if (equals != std::string::npos) variables[text.substr(0, equals)] = text.substr(equals + 1);
+  }
+  for (const auto& [name, value] : extra) variables[name] = value;
+  std::vector<std::string> list;
+  for (const auto& [name, value] : variables) list.push_back(name + "=" + value);
+  return list;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& strings) {
+  std::vector<char*> list;
+  for (std::string& s : strings) list.push_back(s.data());
+  list.push_back(nullptr);
+  return list;
+}
+
+int open_log(const std::filesystem::path& log) {
+  const std::filesystem::path file = log.empty() ? "/dev/null" : log;
+  const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (fd < 0)
+    throw Error(ErrorCode::kSetup,
+                fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+  return fd;
+}
+
+// Between fork and exec only calls that are safe after a fork of a program with threads. Tells
+// `report` why it failed.
+[[noreturn]] void become(const char* program, char* const* arguments, char* const* environment,
+                         int log, int report, pid_t parent) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(127);
+  const int null = open("/dev/null", O_RDONLY);
+  dup2(null, STDIN_FILENO);
+  dup2(log, STDOUT_FILENO);
+  dup2(log, STDERR_FILENO);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  execve(program, arguments, environment);
+  const int why = errno;
+  const auto written = write(report, &why, sizeof why);
+  _exit(written == sizeof why ? 127 : 126);
+}
+
+}  // namespace
+
+std::filesystem::path own_file() {
+  return std::filesystem::read_symlink("/proc/self/exe");
+}
+
+std::filesystem::path find_program(const std::string& name) {
+  if (name.find('/') != std::string::npos) {
+    if (is_program(name)) return name;
+    throw Error(ErrorCode::kSetup,
+                fmt::format("cannot start \"{}\": no such program, or not executable", name));
+  }
+  std::vector<std::filesystem::path> folders{own_file().parent_path()};
+  const char* path = std::getenv("PATH");
+  std::istringstream list(path ? path : "");
+  for (std::string folder; std::getline(list, folder, ':');) folders.emplace_back(folder);
+  for (const auto& folder : folders)
+    if (is_program(folder / name)) return folder / name;
+  throw Error(ErrorCode::kSetup, fmt::format("cannot start \"{}\": it is neither in {} nor in PATH",
+                                             name, own_file().parent_path().string()));
+}
+
+ChildProcess::ChildProcess(const ChildCommand& command)
+    : program_(find_program(command.arguments.at(0)).string()) {
+  std::vector<std::string> arguments = command.arguments;
+  std::vector<std::string> environment = merged_environment(command.environment);
+  const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
+  const int log = open_log(command.log);
+  int report[2];
+  if (pipe2(report, O_CLOEXEC) != 0)
+    throw Error(ErrorCode::kSetup, std::string("pipe: ") + std::strerror(errno));
+
+  const pid_t parent = getpid();
+  pid_ = fork();
+  if (pid_ == 0) become(program_.c_str(), argv.data(), envp.data(), log, report[1], parent);
+  close(log);
+  close(report[1]);
+  int why = pid_ < 0 ? errno : 0;
+  // Ends with nothing read once the exec has succeeded.
+  if (pid_ > 0 && read(report[0], &why, sizeof why) > 0) waitpid(pid_, nullptr, 0);
+  close(report[0]);
+  if (why != 0) {
+    pid_ = -1;
+    throw Error(ErrorCode::kSetup,
+                fmt::format("cannot start \"{}\": {}", program_, std::strerror(why)));
+  }
+}
+
+ChildProcess::~ChildProcess() {
+  terminate();
+}
+
+void ChildProcess::reap(int status) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    exit_ = {128 + signal, fmt::format("was ended by signal {} ({})", signal, strsignal(signal))};
+  } else {
+    exit_ = {WEXITSTATUS(status), fmt::format("exited with code {}", WEXITSTATUS(status))};
+  }
+}
+
+const std::optional<ChildExit>& ChildProcess::poll() {
+  int status = 0;
+  if (!exit_ && pid_ > 0 && waitpid(pid_, &status, WNOHANG) == pid_) reap(status);
+  return exit_;
+}
+
+bool ChildProcess::wait(Duration limit) {
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  while (!poll() && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(kPollPeriod);
+  return exit_.has_value();
+}
+
+void ChildProcess::terminate() {
+  if (pid_ < 0) return;
+  if (!poll()) {
+    kill(-pid_, SIGTERM);
+    kill(-pid_, SIGCONT);
+    wait(kGrace);
+  }
+  kill(-pid_, SIGKILL);  // what is left of its group
+  int status = 0;
+  if (!exit_ && waitpid(pid_, &status, 0) == pid_) reap(status);
+  pid_ = -1;
+}
+
+}  // namespace tether::app

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sys/types.h>
+
+#include <tether/base/time.h>
+
+namespace tether::app {
+
+/// What to start, and how.
+struct ChildCommand {
+  std::vector<std::string> arguments;                            ///< program first
+  std::vector<std::pair<std::string, std::string>> environment;  ///< over this process' own
+  std::filesystem::path log;  ///< gets stdout and stderr; empty: /dev/null
+};
+
+/// How a child ended.
+struct ChildExit {
+  int code = 0;             ///< exit code; 128 + signal where a signal ended it
+  std::string description;  ///< "exited with code 3", "was ended by signal 11 (Segmentation fault)"
+};
+
+/// A process of ours that never outlives us: it dies with its object, and with this process however
+/// that ends. In a process group of its own, so that Ctrl-C at the terminal reaches only us. Not
+/// thread-safe.
+class ChildProcess {
+ public:
+  /// Starts it. A program without '/' is looked for beside this program's own file, then in PATH.
+  /// @throws Error(kSetup) naming the program and why it cannot be started.
+  explicit ChildProcess(const ChildCommand& command);
+  /// Ends it if it still runs.
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Whether and how it has ended. Does not block.
+  const std::optional<ChildExit>& poll();
+  /// Waits at most `limit` for it to end; whether it has.
+  bool wait(Duration limit);
+  /// Asks it and its children to end (SIGTERM), and makes them after a second (SIGKILL).
+  void terminate();
+
+  pid_t pid() const { return pid_; }
+  const std::string& program() const { return program_; }
+
+ private:
+  void reap(int status);
+
+  std::string program_;
+  pid_t pid_ = -1;
+  std::optional<ChildExit> exit_;
+};
+
+/// This program's own file.
+std::filesystem::path own_file();
+/// The file that a command starts: beside this program's own file, else in PATH; a name with '/' is
+/// taken as it is.
+/// @throws Error(kSetup) when there is none.
+std::filesystem::path find_program(const std::string& name);
+
+}  // namespace tether::app

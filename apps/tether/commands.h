@@ -1,0 +1,19 @@
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+/// The subcommands of `tether`, a file each. Every function adds one to the program; its action
+/// returns the exit code.
+namespace tether::app {
+
+using Action = std::function<int()>;
+
+/// Sets `action` when the subcommand is chosen.
+void add_run_command(CLI::App& program, Action& action);
+void add_campaign_command(CLI::App& program, Action& action);
+void add_report_command(CLI::App& program, Action& action);
+void add_audit_command(CLI::App& program, Action& action);
+
+}  // namespace tether::app

@@ -1,0 +1,11 @@
+#pragma once
+
+namespace tether::app {
+
+/// From now on SIGINT and SIGTERM only set a flag; a second one ends the process at once. Call
+/// once, early.
+void catch_interrupts();
+/// Whether one has come.
+bool interrupted();
+
+}  // namespace tether::app

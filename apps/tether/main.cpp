@@ -1,0 +1,57 @@
+#include "commands.h"
+#include "interrupt.h"
+
+#include <cstdio>
+#include <exception>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/base/version.h>
+
+namespace {
+
+constexpr const char* kFooter =
+    R"(Exit codes: 0 goal reached, 1 goal missed, 2 wrong use or a bad file, 3 set-up failed.
+
+Examples:
+  tether run scenarios/face_anchor.toml
+  tether run scenarios/face_anchor.toml --condition "target, no sync" --seed 7
+  tether campaign campaigns/face_anchor.toml --out out/face_anchor
+  tether audit out/face_anchor/face_anchor/host/seed-1/record.mcap)";
+
+int run(int argc, char** argv) {
+  CLI::App program{
+      "Tells whether a UAV's computer is fast enough for its task, before anything flies."};
+  program.name("tether");
+  program.footer(kFooter);
+  program.set_version_flag("--version", std::string(tether::version()));
+  program.require_subcommand(1);
+
+  tether::app::Action action;
+  tether::app::add_run_command(program, action);
+  tether::app::add_campaign_command(program, action);
+  tether::app::add_report_command(program, action);
+  tether::app::add_audit_command(program, action);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return program.exit(e) == 0 ? 0 : tether::exit_code(tether::ErrorCode::kUsage);
+  }
+  tether::app::catch_interrupts();
+  return action();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const tether::Error& e) {
+    fmt::print(stderr, "tether: {}\n", e.what());
+    return tether::exit_code(e.code());
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "tether: internal error: {}\n", e.what());
+    return tether::exit_code(tether::ErrorCode::kInternal);
+  }
+}

@@ -1,0 +1,133 @@
+#include "commands.h"
+#include "status_line.h"
+#include "trial.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/experiment/campaign_plan.h>
+#include <tether/experiment/result.h>
+#include <tether/scenario/scenario.h>
+
+namespace tether::app {
+
+namespace {
+
+struct RunOptions {
+  std::filesystem::path scenario;
+  std::string condition;
+  std::uint64_t seed = 1;
+  std::filesystem::path out;
+  std::string listen = "127.0.0.1:0";
+  double real_time_factor = 0.0;
+  bool external_sut = false;
+  bool record_images = false;
+  bool json = false;
+  bool quiet = false;
+};
+
+scenario::Condition pick_condition(const scenario::Scenario& scenario, const std::string& wanted) {
+  if (wanted.empty()) return scenario.conditions.front();
+  if (const auto* condition = scenario.find_condition(wanted)) return *condition;
+  std::string names;
+  for (const auto& condition : scenario.conditions)
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", condition.name);
+  throw Error(ErrorCode::kUsage, fmt::format("{} has no condition \"{}\"; it has {}",
+                                             scenario.file.string(), wanted, names));
+}
+
+TrialSpec make_spec(const RunOptions& options) {
+  TrialSpec spec;
+  spec.scenario = scenario::load_scenario(options.scenario);
+  spec.scenario.record_images |= options.record_images;
+  spec.condition = pick_condition(spec.scenario, options.condition);
+  if (options.real_time_factor > 0.0) spec.condition.real_time_factor = options.real_time_factor;
+  spec.seed = options.seed;
+  spec.folder =
+      options.out.empty()
+          ? "out" / experiment::trial_folder(spec.scenario.name, spec.condition.name, spec.seed)
+          : options.out;
+  const auto address = link::parse_address(options.listen);
+  if (!address) throw Error(ErrorCode::kUsage, "--listen: " + address.failure().message);
+  spec.listen = *address;
+  spec.external_sut = options.external_sut;
+  return spec;
+}
+
+void print_result(const TrialSpec& spec, const experiment::TrialResult& result) {
+  fmt::print("{} under \"{}\", seed {}: {}: {}\n", result.scenario, result.condition, result.seed,
+             experiment::name(result.outcome), result.reason);
+  for (const auto& metric : result.metrics) {
+    const std::string value = metric.value ? fmt::format("{:.4g} {}", *metric.value,
+                                                         metric.unit == "1" ? "" : metric.unit)
+                                           : "none: " + metric.missing_because;
+    fmt::print("  {:<24} {}{}\n", metric.label, value,
+               metric.max ? fmt::format("  (limit {:.4g})", *metric.max) : "");
+  }
+  fmt::print("  {:<24} {:.3f} s in {:.3f} s of wall time, {} interactions\n", "simulated",
+             to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
+             result.sync.interactions);
+  if (result.audit) fmt::print("  {:<24} {}\n", "audit", result.audit->summary);
+  if (std::filesystem::exists(spec.folder / kRecordFile))
+    fmt::print("  {:<24} {}\n", "record", (spec.folder / kRecordFile).string());
+}
+
+int run(const RunOptions& options) {
+  const TrialSpec spec = make_spec(options);
+  experiment::TrialResult result;
+  {
+    StatusLine line;
+    TrialObserver observer;
+    observer.warn = [&](const std::string& text) { fmt::print(stderr, "warning: {}\n", text); };
+    if (!options.quiet)
+      observer.on_status = [&](const coordinator::RunStatus& status) {
+        line.show(to_line(status));
+      };
+    observer.on_listening = [](const std::string& text) {
+      fmt::print(stderr, "Waiting for the SUT. Start it with:\n{}", text);
+    };
+    result = run_trial(spec, observer);
+  }
+  if (options.json)
+    fmt::print("{}\n", experiment::to_json(result));
+  else if (!options.quiet)
+    print_result(spec, result);
+  if (result.outcome == experiment::Outcome::kFailed)
+    fmt::print(stderr, "tether: {}\n", result.reason);
+  return experiment::exit_code(result.outcome);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = program.add_subcommand("run", "Run one trial of a scenario");
+  command->add_option("scenario", options->scenario, "Scenario file (TOML)")->required();
+  command->add_option("--condition", options->condition,
+                      "Condition of the scenario; its first one if not given");
+  command->add_option("--seed", options->seed, "Seed of noise and delays")->capture_default_str();
+  command->add_option(
+      "--out", options->out,
+      "Folder for result.json, record.mcap and the SUT's log [out/SCENARIO/CONDITION/seed-N]");
+  command
+      ->add_option("--real-time-factor", options->real_time_factor,
+                   "Simulate at most this fast against the wall clock")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--listen", options->listen, "Address for the SUT; port 0 takes a free one")
+      ->capture_default_str();
+  command->add_flag("--external-sut", options->external_sut,
+                    "Do not start the SUT: print what it needs, and wait for it");
+  command->add_flag("--images", options->record_images,
+                    "Keep the camera images that the SUT consumed in the record");
+  command->add_flag("--json", options->json, "Print result.json instead of a summary");
+  command->add_flag("--quiet", options->quiet, "Print errors and warnings only");
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace tether::app

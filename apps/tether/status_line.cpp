@@ -1,0 +1,36 @@
+#include "status_line.h"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace tether::app {
+
+std::string to_line(const coordinator::RunStatus& status) {
+  if (status.wall == Duration(0))
+    return fmt::format("waiting for {}",
+                       status.waiting_for.empty() ? "the SUT to join" : status.waiting_for);
+  const double st_s = to_seconds(status.st);
+  return fmt::format(
+      "ST {:7.3f} s   ET {:7.3f} s   lag {:6.1f} ms   {:5.2f}x real time   {} frames   {} "
+      "interactions{}",
+      st_s, to_seconds(status.et), to_seconds(lag(status.et, status.st)) * 1e3,
+      st_s / to_seconds(status.wall), status.images, status.interactions,
+      status.waiting_for.empty() ? "" : "   " + status.waiting_for + " computing");
+}
+
+StatusLine::StatusLine() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
+
+StatusLine::~StatusLine() {
+  if (shown_) fmt::print(stderr, "\r\x1b[K");
+}
+
+void StatusLine::show(const std::string& line) {
+  if (!is_terminal_) return;
+  fmt::print(stderr, "\r\x1b[K{}", line);
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+}  // namespace tether::app

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <tether/coordinator/coordinator.h>
+#include <tether/experiment/result.h>
+#include <tether/link/channel.h>
+#include <tether/link/server.h>
+#include <tether/scenario/scenario.h>
+#include <tether/sim/simulator.h>
+
+namespace tether::app {
+
+inline constexpr const char* kRecordFile = "record.mcap";
+
+/// One trial to run.
+struct TrialSpec {
+  scenario::Scenario scenario;
+  scenario::Condition condition;
+  std::uint64_t seed = 1;
+  std::filesystem::path folder;  ///< gets result.json, record.mcap and the SUTs' logs
+  link::Address listen{"127.0.0.1", 0};
+  bool external_sut =
+      false;  ///< the user starts the SUT; else the scenario's command is started here
+};
+
+/// Who is told what while a trial runs.
+struct TrialObserver {
+  std::function<void(const std::string&)> warn;  ///< one line each
+  std::function<void(const coordinator::RunStatus&)> on_status;
+  /// External SUT: where to connect, and the environment that it needs.
+  std::function<void(const std::string& instructions)> on_listening;
+};
+
+/// Runs one trial and leaves its result in the folder, whatever it was. An earlier trial's files
+/// there are replaced.
+/// @throws Error(kBadFile) before anything is written, when world or models cannot be used;
+/// Error(kSetup) when the folder
+///   cannot be written.
+experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer);
+
+}  // namespace tether::app

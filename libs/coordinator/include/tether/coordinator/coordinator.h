@@ -1,0 +1,123 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tether/base/time.h>
+#include <tether/link/server.h>
+#include <tether/record/messages.h>
+#include <tether/record/writer.h>
+#include <tether/sim/simulator.h>
+#include <tether/sync/barrier_synchronizer.h>
+#include <tether/uav/sensor_timing.h>
+
+/// The program between simulator and SUTs (paper, Section II and Fig. 2): sessions, sensor timing,
+/// the barrier's decisions carried out, and the record of it all.
+namespace tether::coordinator {
+
+/// How one UAV of the world meets its SUT.
+struct UavOptions {
+  std::vector<uav::SensorTiming> timings;  ///< one per sensor of the UAV, in the world's order
+  Duration command_latency{0};             ///< from a command's stamp to its effect; ≥ 0
+};
+
+struct RunOptions {
+  sync::SyncPolicy policy = sync::SyncPolicy::kConservativeBarrier;
+  std::vector<UavOptions>
+      uavs;                ///< one per UAV of the world, in its order; each is flown by one SUT
+  std::string token;       ///< without it nobody is let in; not empty
+  std::uint64_t seed = 0;  ///< of noise and delays
+  double real_time_factor = 0.0;  ///< limit on ST per WT; 0: none. Free running needs one
+  Duration time_limit = std::chrono::minutes(10);     ///< of ST; > 0
+  Duration connect_limit = std::chrono::seconds(30);  ///< of WT until every SUT has joined
+  Duration hang_limit =
+      std::chrono::seconds(30);  ///< of WT without a word from a SUT that computes
+  Duration ground_truth_period = std::chrono::milliseconds(10);  ///< of ST; > 0
+  bool record_images = false;                                    ///< those that a SUT consumed
+  record::Header header;  ///< what the caller knows; the coordinator adds policy, timing and SUTs
+};
+
+/// Why a run ended.
+enum class RunEnd {
+  kFinished,       ///< every SUT said that it is done
+  kTimeLimit,      ///< ST reached the limit first
+  kSutLost,        ///< a SUT disconnected, broke the protocol, or never joined
+  kSutHung,        ///< a SUT gave no word for longer than its limit
+  kSimulatorLost,  ///< the simulator failed
+  kInterrupted,    ///< the caller's `should_stop` said so
+};
+std::string_view name(RunEnd end);
+
+/// What one SUT left behind.
+struct SutReport {
+  std::string uav;
+  std::string sut;                     ///< the name it gave; empty: never joined
+  std::optional<link::Finish> finish;  ///< what it said at its end
+  ExecTime et;                         ///< its ET at the end of the run
+};
+
+struct RunReport {
+  RunEnd end = RunEnd::kFinished;
+  std::string reason;  ///< one line; names the culprit
+  SimTime st;          ///< at the end
+  Duration wall{0};    ///< from the moment when every SUT had joined
+  std::uint64_t interactions = 0;
+  std::uint64_t images = 0;  ///< rendered because a SUT read them
+  std::uint64_t causality_violations = 0;
+  Duration largest_lag{0};
+  Duration largest_grid_error{0};
+  std::vector<SutReport> suts;  ///< in the world's order of UAVs
+};
+
+/// What is going on, for a person who watches.
+struct RunStatus {
+  std::size_t joined = 0;  ///< SUTs
+  SimTime st;
+  ExecTime et;  ///< greatest of all SUTs
+  Duration wall{0};
+  std::uint64_t interactions = 0;
+  std::uint64_t images = 0;
+  std::string waiting_for;  ///< the SUT that ST waits for; empty: none
+};
+
+/// What the caller has a say in while a run goes on. Both are called from `run`, some tens of times
+/// per second of WT.
+struct RunHooks {
+  /// A reason to end the run now (the user's interrupt, a SUT's process that died); empty: go on.
+  std::function<std::optional<std::pair<RunEnd, std::string>>()> should_stop;
+  std::function<void(const RunStatus&)> on_status;
+};
+
+/// One run. Construct, let `events()` hear a server, call `run` once.
+///
+/// Everything happens on the caller's thread: messages are handled, decisions taken and steps made
+/// in one loop, so that there is nothing to lock and no order left to chance. `host_clock` is read
+/// for the record, for limits of WT and for pacing; no decision of the barrier depends on it.
+class Coordinator {
+ public:
+  /// `simulator` and `recorder` must outlive the coordinator.
+  /// @throws Error(kInternal) if the options do not fit the simulator's world.
+  Coordinator(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
+              std::function<WallTime()> host_clock);
+  ~Coordinator();
+  Coordinator(const Coordinator&) = delete;
+  Coordinator& operator=(const Coordinator&) = delete;
+
+  link::ServerEvents& events();
+
+  /// Waits for every UAV's SUT, runs until the end, tells the SUTs, and writes the record's footer.
+  /// Every way in which a run can fail is in the report. @throws Error(kSetup) only when the record
+  /// cannot be written.
+  RunReport run(link::Server& server, const RunHooks& hooks = {});
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tether::coordinator

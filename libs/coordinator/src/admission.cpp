@@ -1,0 +1,44 @@
+#include "admission.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <tether/link/server.h>
+
+namespace tether::coordinator {
+
+using link::Refusal;
+
+std::variant<std::size_t, Refusal> admit(const link::Hello& hello, const std::string& token,
+                                         const std::vector<std::string>& uavs,
+                                         const std::vector<bool>& taken) {
+  if (hello.protocol_version != link::kProtocolVersion)
+    return Refusal{Refusal::Reason::kVersion,
+                   fmt::format("this coordinator speaks link protocol {}, the SUT speaks {}; "
+                               "install the same version of Tether on both sides",
+                               link::kProtocolVersion, hello.protocol_version)};
+  if (!link::tokens_equal(hello.token, token))
+    return Refusal{Refusal::Reason::kToken,
+                   "wrong token; pass the run's TETHER_TOKEN to the SUT unchanged"};
+
+  std::size_t uav = 0;
+  if (hello.uav.empty() && uavs.size() > 1)
+    return Refusal{
+        Refusal::Reason::kUav,
+        fmt::format("say which UAV to fly with TETHER_UAV; there are: {}", fmt::join(uavs, ", "))};
+  if (!hello.uav.empty()) {
+    const auto found = std::find(uavs.begin(), uavs.end(), hello.uav);
+    if (found == uavs.end())
+      return Refusal{Refusal::Reason::kUav, fmt::format("there is no UAV \"{}\"; there are: {}",
+                                                        hello.uav, fmt::join(uavs, ", "))};
+    uav = static_cast<std::size_t>(found - uavs.begin());
+  }
+  if (taken[uav])
+    return Refusal{Refusal::Reason::kUav,
+                   fmt::format("UAV \"{}\" is already flown by another SUT", uavs[uav])};
+  return uav;
+}
+
+}  // namespace tether::coordinator

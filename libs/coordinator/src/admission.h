@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <tether/link/messages.h>
+
+namespace tether::coordinator {
+
+/// Who may join, decided from the Hello alone: the UAV's index, or why not. `taken[i]` says that
+/// UAV i has its SUT. Checks version, then token, then UAV, so that a stranger learns nothing about
+/// the run.
+std::variant<std::size_t, link::Refusal> admit(const link::Hello& hello, const std::string& token,
+                                               const std::vector<std::string>& uavs,
+                                               const std::vector<bool>& taken);
+
+}  // namespace tether::coordinator

@@ -1,0 +1,25 @@
+#include "command_queue.h"
+
+#include <algorithm>
+
+namespace tether::coordinator {
+
+void CommandQueue::push(const PendingCommand& command) {
+  const auto place = std::find_if(commands_.begin(), commands_.end(), [&](const PendingCommand& c) {
+    return c.effect_at <= command.effect_at;
+  });
+  commands_.insert(place, command);
+}
+
+SimTime CommandQueue::next_effect() const {
+  return commands_.empty() ? SimTime::max() : commands_.back().effect_at;
+}
+
+std::optional<PendingCommand> CommandQueue::pop_due(SimTime st) {
+  if (commands_.empty() || commands_.back().effect_at > st) return std::nullopt;
+  const PendingCommand command = commands_.back();
+  commands_.pop_back();
+  return command;
+}
+
+}  // namespace tether::coordinator

@@ -1,0 +1,367 @@
+#include "coordinator_impl.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <tether/coordinator/coordinator.h>
+
+namespace tether::coordinator {
+
+namespace {
+
+// Steps between two looks at the sockets: about half a millisecond of WT in the embedded simulator.
+constexpr int kStepsPerTurn = 64;
+// How long the loop sleeps when there is nothing to do; a message wakes it at once.
+constexpr Duration kIdleWait = std::chrono::milliseconds(20);
+// How often limits of WT are looked at.
+constexpr Duration kWatchPeriod = std::chrono::milliseconds(20);
+// A paced simulation may catch up this much ST after a late turn (rendering an image, say).
+constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
+
+SensorState make_sensor(const sim::Uav& uav, const sim::Sensor& sensor,
+                        const uav::SensorTiming& timing, std::uint64_t seed) {
+  return {.name = sensor.name,
+          .schedule = SensorSchedule(timing, seed, random_stream(uav.name, sensor.name, "delay")),
+          .captures = {}};
+}
+
+Session make_session(std::size_t index, const sim::Uav& uav, const UavOptions& options,
+                     std::uint64_t seed) {
+  Session session;
+  session.uav = index;
+  session.uav_name = uav.name;
+  session.command_latency = options.command_latency;
+  for (std::size_t i = 0; i < uav.sensors.size(); ++i)
+    session.sensors.push_back(make_sensor(uav, uav.sensors[i], options.timings[i], seed));
+  return session;
+}
+
+record::SensorInfo describe(const std::string& uav, const sim::Sensor& sensor,
+                            const uav::SensorTiming& timing) {
+  record::SensorInfo info{
+      .uav = uav, .name = sensor.name, .kind = std::string(uav::name(sensor.kind()))};
+  if (const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing)) {
+    info.periodic = true;
+    info.period = periodic->period;
+    info.phase = periodic->phase;
+  }
+  return info;
+}
+
+record::Anchor describe(const sim::PlacedAnchor& placed) {
+  const auto& [anchor, X_WA] = placed;
+  return {.name = anchor.name,
+          .shape = std::string(uav::name(anchor.shape)),
+          .size_m = {anchor.size_m.x, anchor.size_m.y, anchor.size_m.z},
+          .p_WA_m = {X_WA.p.x, X_WA.p.y, X_WA.p.z},
+          .q_WA = {X_WA.q.w, X_WA.q.x, X_WA.q.y, X_WA.q.z}};
+}
+
+void check_options(const RunOptions& options, const sim::World& world) {
+  const auto require = [](bool condition, const char* what) {
+    if (!condition) throw Error(ErrorCode::kInternal, std::string("coordinator options: ") + what);
+  };
+  require(options.uavs.size() == world.uavs.size(), "one entry per UAV of the world is needed");
+  for (std::size_t i = 0; i < world.uavs.size(); ++i)
+    require(options.uavs[i].timings.size() == world.uavs[i].sensors.size(),
+            "one timing per sensor is needed");
+  require(!options.token.empty(), "a token is needed");
+  require(options.time_limit > Duration(0), "the time limit must be positive");
+  require(options.ground_truth_period > Duration(0), "the ground truth's period must be positive");
+  require(
+      options.policy == sync::SyncPolicy::kConservativeBarrier || options.real_time_factor > 0.0,
+      "free running needs a real-time factor");
+}
+
+}  // namespace
+
+std::string_view name(RunEnd end) {
+  switch (end) {
+    case RunEnd::kFinished:
+      return "finished";
+    case RunEnd::kTimeLimit:
+      return "time_limit";
+    case RunEnd::kSutLost:
+      return "sut_lost";
+    case RunEnd::kSutHung:
+      return "sut_hung";
+    case RunEnd::kSimulatorLost:
+      return "simulator_lost";
+    case RunEnd::kInterrupted:
+      return "interrupted";
+  }
+  return "unknown";
+}
+
+Coordinator::Coordinator(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
+                         std::function<WallTime()> host_clock)
+    : impl_(
+          std::make_unique<Impl>(simulator, recorder, std::move(options), std::move(host_clock))) {}
+Coordinator::~Coordinator() = default;
+link::ServerEvents& Coordinator::events() {
+  return *impl_;
+}
+RunReport Coordinator::run(link::Server& server, const RunHooks& hooks) {
+  return impl_->run(server, hooks);
+}
+
+Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
+                        std::function<WallTime()> host_clock)
+    : simulator_(&simulator),
+      log_(recorder),
+      options_(std::move(options)),
+      host_clock_(std::move(host_clock)),
+      grid_(simulator.grid()),
+      barrier_(grid_),
+      time_limit_(grid_.ceil(SimTime(options_.time_limit))) {
+  check_options(options_, world());
+  options_.ground_truth_period = std::max(options_.ground_truth_period, grid_.dt());
+  for (std::size_t i = 0; i < world().uavs.size(); ++i)
+    sessions_.push_back(make_session(i, world().uavs[i], options_.uavs[i], options_.seed));
+  started_ = watched_ = host_clock_();
+}
+
+RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
+  server_ = &server;
+  while (!running_ && !ended_) {
+    server.poll(kIdleWait);
+    watch(hooks);
+  }
+  while (!ended_) {
+    guarded([&] {
+      const bool moved = advance();
+      server.poll(moved ? Duration(0)
+                        : std::min(kIdleWait, pace_ ? pace_->wait_for(grid_.dt()) : kIdleWait));
+    });
+    watch(hooks);
+  }
+  if (failure_) std::rethrow_exception(failure_);
+  return close_run();
+}
+
+// Every SUT has joined: ST and every ET begin at 0.
+void Coordinator::Impl::start() {
+  ask_simulator([&](sim::Simulator& s) { s.reset(options_.seed); });
+  log_.begin(make_header());
+  running_ = true;
+  started_ = host_clock_();
+  if (options_.real_time_factor > 0.0)
+    pace_.emplace(options_.real_time_factor, kPaceCredit, started_);
+  for (Session& session : sessions_) {
+    barrier_.add(ExecTime{});
+    session.last_word = started_;
+    if (session.hello.clock == link::ClockKind::kUnstamped)
+      session.timer.emplace(ExecTime{}, started_);
+  }
+  at_boundary();
+  for (const Session& session : sessions_)
+    server_->send(session.peer, link::Welcome{.catalogue = sim::make_catalogue(
+                                                  world(), world().uavs[session.uav]),
+                                              .free_running = !tied(),
+                                              .start = ExecTime{}});
+}
+
+record::Header Coordinator::Impl::make_header() const {
+  record::Header header = options_.header;
+  header.seed = options_.seed;
+  header.policy = std::string(sync::name(options_.policy));
+  header.simulator = simulator_->description();
+  header.step = grid_.dt();
+  header.ground_truth_period = options_.ground_truth_period;
+  header.real_time_factor = options_.real_time_factor;
+  for (const Session& session : sessions_) {
+    header.suts.push_back({.uav = session.uav_name,
+                           .sut = session.hello.sut,
+                           .clock = std::string(link::name(session.hello.clock)),
+                           .cpu_factor = session.hello.cpu_factor,
+                           .command_latency = session.command_latency});
+    const sim::Uav& uav = world().uavs[session.uav];
+    for (std::size_t i = 0; i < uav.sensors.size(); ++i)
+      header.sensors.push_back(
+          describe(uav.name, uav.sensors[i], options_.uavs[session.uav].timings[i]));
+  }
+  for (const sim::PlacedAnchor& anchor : world().anchors)
+    header.anchors.push_back(describe(anchor));
+  return header;
+}
+
+// One turn of stepping; false if ST may not move now.
+bool Coordinator::Impl::advance() {
+  const WallTime now = host_clock_();
+  for (Session& session : sessions_)
+    if (session.timer && session.computing())
+      barrier_.progress(session.uav, session.timer->read(now));
+
+  SimTime target = std::min(next_stop(), st_ + kStepsPerTurn * grid_.dt());
+  if (target <= st_) {
+    if (pace_) pace_->idle(now);
+    return false;
+  }
+  if (pace_) {
+    target = std::min(target, grid_.floor(st_ + pace_->allowance(now)));
+    if (target <= st_) return false;
+    pace_->spend(target - st_);
+  }
+  ask_simulator([&](sim::Simulator& s) { s.advance_to(target); });
+  st_ = target;
+  at_boundary();
+  if (tied()) release_ready();
+  if (st_ >= time_limit_ && !ended_)
+    end(RunEnd::kTimeLimit,
+        fmt::format("ST reached the scenario's time limit of {} s before the task was done",
+                    to_seconds(time_limit_)));
+  return true;
+}
+
+SimTime Coordinator::Impl::horizon() const {
+  return std::min(time_limit_, tied() ? barrier_.horizon() : SimTime::max());
+}
+
+// The next boundary at which something other than stepping is due, and no further than ST may go.
+SimTime Coordinator::Impl::next_stop() const {
+  SimTime stop = std::min(horizon(), commands_.next_effect());
+  stop = std::min(stop, grid_.ceil(SimTime(ground_truths_ * options_.ground_truth_period)));
+  for (const Session& session : sessions_) {
+    if (session.pending && session.pending->on_demand && !session.pending->captured)
+      stop = std::min(stop, grid_.floor(session.pending->measurement->sampled_at));
+    if (!tied() || session.left) continue;
+    for (const SensorState& sensor : session.sensors)
+      if (const auto instant = sensor.schedule.sampling_instant(sensor.next_capture))
+        stop = std::min(stop, grid_.floor(*instant));
+  }
+  return stop;
+}
+
+// What is due at the present ST. Samples come first: they show what the steps up to here have led
+// to, so the commands that act from here on make no difference to them, in whatever order SUTs were
+// heard.
+void Coordinator::Impl::at_boundary() {
+  capture_due();
+  apply_due();
+  log_ground_truth();
+}
+
+void Coordinator::Impl::capture_due() {
+  for (Session& session : sessions_) {
+    if (session.pending && session.pending->on_demand && !session.pending->captured &&
+        grid_.floor(session.pending->measurement->sampled_at) <= st_) {
+      ask_simulator([&](sim::Simulator& s) { s.capture(session.on_demand_state); });
+      session.pending->captured = true;
+    }
+    if (!tied() || session.left) continue;
+    for (SensorState& sensor : session.sensors) capture_periodic(session, sensor);
+  }
+}
+
+// Keeps the states from which a later read may still be answered; images are rendered only when one
+// is.
+void Coordinator::Impl::capture_periodic(const Session& session, SensorState& sensor) {
+  auto instant = sensor.schedule.sampling_instant(sensor.next_capture);
+  while (instant && grid_.floor(*instant) <= st_) {
+    ask_simulator([&](sim::Simulator& s) { s.capture(sensor.captures.add(sensor.next_capture)); });
+    instant = sensor.schedule.sampling_instant(++sensor.next_capture);
+    // The next read is stamped at `bound` or later; one that is held was stamped at its request.
+    const ExecTime bound =
+        session.pending ? session.pending->entry.request_at : barrier_.bound(session.uav);
+    sensor.captures.drop_before(sensor.schedule.first_readable(same_instant(bound)));
+  }
+}
+
+void Coordinator::Impl::apply_due() {
+  while (const auto command = commands_.pop_due(st_)) {
+    ask_simulator([&](sim::Simulator& s) { s.apply(command->uav, command->command); });
+    log_.command_effect(st_, sessions_[command->uav].uav_name, *command);
+  }
+}
+
+void Coordinator::Impl::log_ground_truth() {
+  if (grid_.ceil(SimTime(ground_truths_ * options_.ground_truth_period)) > st_) return;
+  ++ground_truths_;
+  for (const Session& session : sessions_)
+    log_.ground_truth(session.uav_name, ask_simulator([&](sim::Simulator& s) {
+                        return s.ground_truth(session.uav);
+                      }));
+}
+
+void Coordinator::Impl::end(RunEnd how, const std::string& reason) {
+  if (!ended_) ended_.emplace(how, reason);
+}
+
+// Limits of WT, the caller's wishes, the status: none of it reaches a decision of the barrier.
+void Coordinator::Impl::watch(const RunHooks& hooks) {
+  const WallTime now = host_clock_();
+  if (now - watched_ < kWatchPeriod) return;
+  watched_ = now;
+  if (!ended_) check_words(now);
+  if (hooks.should_stop && !ended_)
+    if (const auto stop = hooks.should_stop()) end(stop->first, stop->second);
+  if (hooks.on_status) hooks.on_status(status());
+}
+
+void Coordinator::Impl::check_words(WallTime now) {
+  for (const Session& session : sessions_) {
+    if (!running_ && !session.joined() && now - started_ > options_.connect_limit)
+      return end(RunEnd::kSutLost,
+                 fmt::format("no SUT joined for UAV \"{}\" within {} s", session.uav_name,
+                             to_seconds(options_.connect_limit)));
+    if (running_ && session.computing() && now - session.last_word > options_.hang_limit)
+      return end(
+          RunEnd::kSutHung,
+          fmt::format("SUT \"{}\" of UAV \"{}\" gave no word for {} s (limit), last at ET {:.6f} s",
+                      session.hello.sut, session.uav_name, to_seconds(options_.hang_limit),
+                      to_seconds(barrier_.bound(session.uav))));
+  }
+}
+
+RunStatus Coordinator::Impl::status() const {
+  RunStatus status{.st = st_,
+                   .et = {},
+                   .wall = running_ ? host_clock_() - started_ : Duration(0),
+                   .interactions = log_.figures().interactions,
+                   .images = log_.figures().images,
+                   .waiting_for = {}};
+  for (const Session& session : sessions_) {
+    if (session.joined()) ++status.joined;
+    if (running_) status.et = std::max(status.et, barrier_.bound(session.uav));
+  }
+  if (running_ && tied())
+    if (const auto slowest = barrier_.slowest_computing())
+      status.waiting_for = sessions_[*slowest].uav_name;
+  return status;
+}
+
+// Whoever is still there is told; then the record gets its end.
+RunReport Coordinator::Impl::close_run() {
+  const SyncFigures& figures = log_.figures();
+  RunReport report{.end = ended_->first,
+                   .reason = ended_->second,
+                   .st = st_,
+                   .wall = running_ ? host_clock_() - started_ : Duration(0),
+                   .interactions = figures.interactions,
+                   .images = figures.images,
+                   .causality_violations = figures.causality_violations,
+                   .largest_lag = figures.largest_lag,
+                   .largest_grid_error = figures.largest_grid_error,
+                   .suts = {}};
+  for (const Session& session : sessions_) {
+    if (session.joined() && !session.left)
+      refuse(session.peer, link::Refusal::Reason::kRunEnded, "the run has ended: " + report.reason);
+    report.suts.push_back({.uav = session.uav_name,
+                           .sut = session.hello.sut,
+                           .finish = session.finish,
+                           .et = running_ ? barrier_.bound(session.uav) : ExecTime{}});
+  }
+  if (!running_) return report;
+
+  record::Footer footer;
+  footer.end = name(report.end);
+  footer.reason = report.reason;
+  footer.st_at_end = st_;
+  footer.wall = report.wall;
+  for (const SutReport& sut : report.suts) footer.et_at_end.push_back(sut.et);
+  log_.end(footer);
+  return report;
+}
+
+}  // namespace tether::coordinator

@@ -1,0 +1,127 @@
+#pragma once
+
+#include "command_queue.h"
+#include "run_log.h"
+#include "session.h"
+
+#include <exception>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tether/base/error.h>
+#include <tether/coordinator/coordinator.h>
+#include <tether/sync/real_time_limit.h>
+
+namespace tether::coordinator {
+
+/// The simulator threw: nothing may be asked of it any more.
+struct SimulatorFailure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The loop (coordinator.cpp), what SUTs say (incoming.cpp) and what they are told (outgoing.cpp)
+/// over one state.
+class Coordinator::Impl final : public link::ServerEvents {
+ public:
+  Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
+       std::function<WallTime()> host_clock);
+
+  RunReport run(link::Server& server, const RunHooks& hooks);
+
+  // Incoming.
+  void on_connected(link::PeerId peer, const std::string& remote_address) override;
+  void on_message(link::PeerId peer, link::Message message) override;
+  void on_closed(link::PeerId peer, const Failure& failure) override;
+
+ private:
+  // The loop.
+  void start();
+  record::Header make_header() const;
+  bool advance();
+  SimTime next_stop() const;
+  SimTime horizon() const;
+  void at_boundary();
+  void capture_due();
+  void capture_periodic(const Session& session, SensorState& sensor);
+  void apply_due();
+  void log_ground_truth();
+  void watch(const RunHooks& hooks);
+  void check_words(WallTime now);
+  void end(RunEnd how, const std::string& reason);
+  RunReport close_run();
+  RunStatus status() const;
+
+  // Incoming.
+
+  /// Runs what may meet a lost simulator, which ends the run; anything else that is thrown is kept
+  /// for run(), because the server's callbacks must not throw.
+  template <class F>
+  void guarded(F&& f) {
+    try {
+      f();
+    } catch (const SimulatorFailure& e) {
+      end(RunEnd::kSimulatorLost, e.what());
+    } catch (...) {
+      failure_ = std::current_exception();
+      end(RunEnd::kInterrupted, "internal failure");
+    }
+  }
+  void join(link::PeerId peer, const link::Hello& hello);
+  void on_request(Session& session, const link::Request& request);
+  void on_progress(Session& session, const link::Progress& progress);
+  std::optional<std::string> fault_of(const Session& session, const link::Request& request) const;
+  void begin(Session& session, const link::Request& request);
+  ExecTime charge(Session& session, const link::Request& request, record::Interaction& entry);
+  ExecTime accept(Session& session, PendingInteraction& pending);
+  ExecTime accept_read(Session& session, PendingInteraction& pending, const link::ReadSensor& read);
+  ExecTime accept_command(Session& session, PendingInteraction& pending,
+                          const link::SetVelocity& set);
+  Session* find(link::PeerId peer);
+  void refuse(link::PeerId peer, link::Refusal::Reason reason, const std::string& message);
+
+  // Outgoing.
+  void release_ready();
+  void reply(Session& session, SimTime st);
+  void leave(Session& session);
+  std::optional<uav::CameraSample> image_to_record(const link::Reply& reply) const;
+  std::optional<uav::Sample> take_sample(Session& session, PendingInteraction& pending);
+
+  bool tied() const { return options_.policy == sync::SyncPolicy::kConservativeBarrier; }
+  const sim::World& world() const { return simulator_->world(); }
+
+  /// Calls the simulator; what it throws becomes a SimulatorFailure.
+  template <class F>
+  auto ask_simulator(F&& f) {
+    try {
+      return f(*simulator_);
+    } catch (const Error& e) {
+      throw SimulatorFailure(e.what());
+    }
+  }
+
+  sim::Simulator* simulator_;
+  RunLog log_;
+  RunOptions options_;
+  std::function<WallTime()> host_clock_;
+  link::Server* server_ = nullptr;
+
+  StepGrid grid_;
+  sync::BarrierSynchronizer barrier_;
+  CommandQueue commands_;
+  std::vector<Session> sessions_;   // one per UAV, in the world's order
+  SimTime st_{};                    // the simulator's present ST
+  SimTime time_limit_;              // a step boundary
+  std::int64_t ground_truths_ = 0;  // instants logged so far
+  std::optional<sync::RealTimeLimit> pace_;
+
+  bool running_ = false;  // every SUT has joined
+  WallTime started_;      // construction, then the moment when every SUT had joined
+  WallTime watched_;      // when the limits of WT were last looked at
+  std::optional<std::pair<RunEnd, std::string>> ended_;
+  std::exception_ptr failure_;  // thrown in a callback, to be thrown again in run()
+};
+
+}  // namespace tether::coordinator

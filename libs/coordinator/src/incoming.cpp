@@ -1,0 +1,210 @@
+#include "admission.h"
+#include "coordinator_impl.h"
+
+#include <algorithm>
+#include <variant>
+
+#include <fmt/format.h>
+
+/// What SUTs say: joining, requests, progress, annotations, leaving.
+namespace tether::coordinator {
+
+namespace {
+
+// No honest stamp comes near (292 years are 2^63 ns); sums of stamps and delays stay within int64.
+constexpr ExecTime kLatestStamp = from_ns<ExecTime>(std::int64_t{1} << 62);
+bool is_stamp(ExecTime t) {
+  return t >= ExecTime{} && t < kLatestStamp;
+}
+
+std::string kind_of(const link::Request& request) {
+  constexpr const char* kKinds[] = {"sensor", "command", "sleep", "finish"};
+  return kKinds[request.body.index()];
+}
+
+}  // namespace
+
+Session* Coordinator::Impl::find(link::PeerId peer) {
+  const auto session = std::find_if(sessions_.begin(), sessions_.end(),
+                                    [&](const Session& s) { return s.peer == peer; });
+  return session == sessions_.end() ? nullptr : &*session;
+}
+
+void Coordinator::Impl::refuse(link::PeerId peer, link::Refusal::Reason reason,
+                               const std::string& message) {
+  server_->send(peer, link::Refusal{reason, message});
+  server_->close(peer);
+}
+
+void Coordinator::Impl::on_connected(link::PeerId, const std::string&) {}
+
+void Coordinator::Impl::on_message(link::PeerId peer, link::Message message) {
+  if (ended_) return;
+  guarded([&] {
+    Session* session = find(peer);
+    if (const auto* hello = std::get_if<link::Hello>(&message); hello && !session)
+      return join(peer, *hello);
+    if (!session)
+      return refuse(peer, link::Refusal::Reason::kBadMessage, "the first message must be a Hello");
+    session->last_word = host_clock_();
+    if (const auto* request = std::get_if<link::Request>(&message))
+      return on_request(*session, *request);
+    if (const auto* progress = std::get_if<link::Progress>(&message))
+      return on_progress(*session, *progress);
+    if (const auto* note = std::get_if<link::Annotation>(&message))
+      return log_.annotation(st_, {session->uav_name, note->at, note->topic, note->json});
+    refuse(peer, link::Refusal::Reason::kBadMessage, "a SUT may not send this kind of message");
+    session->left = true;
+    end(RunEnd::kSutLost,
+        fmt::format("the SUT of UAV \"{}\" sent a message that only coordinators send",
+                    session->uav_name));
+  });
+}
+
+void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
+  const Session* session = find(peer);
+  if (!session || session->left) return;
+  end(RunEnd::kSutLost,
+      fmt::format("lost the SUT of UAV \"{}\": {}", session->uav_name, failure.message));
+}
+
+void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
+  std::vector<std::string> uavs;
+  std::vector<bool> taken;
+  for (const Session& session : sessions_) {
+    uavs.push_back(session.uav_name);
+    taken.push_back(session.joined());
+  }
+  const auto admitted = admit(hello, options_.token, uavs, taken);
+  if (const auto* refusal = std::get_if<link::Refusal>(&admitted))
+    return refuse(peer, refusal->reason, refusal->message);
+
+  Session& session = sessions_[std::get<std::size_t>(admitted)];
+  session.peer = peer;
+  session.hello = hello;
+  session.hello.token.clear();
+  if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.joined(); }))
+    start();
+}
+
+void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress) {
+  if (running_ && is_stamp(progress.reached)) barrier_.progress(session.uav, progress.reached);
+}
+
+std::optional<std::string> Coordinator::Impl::fault_of(const Session& session,
+                                                       const link::Request& request) const {
+  if (!running_) return "a request before the Welcome";
+  if (session.pending) return "a request while another one is held";
+  if (session.finish) return "a request after Finish";
+  if (request.sequence != session.next_sequence)
+    return fmt::format("request number {}, expected {}", request.sequence, session.next_sequence);
+  if (!is_stamp(request.issued_at)) return "a time stamp out of range";
+  if (const auto* read = std::get_if<link::ReadSensor>(&request.body);
+      read && read->sensor >= session.sensors.size())
+    return fmt::format("sensor number {}, but the UAV has {}", read->sensor,
+                       session.sensors.size());
+  if (const auto* set = std::get_if<link::SetVelocity>(&request.body);
+      set && !uav::is_valid(set->command))
+    return "a velocity command that is not finite or beyond any multirotor";
+  if (const auto* sleep = std::get_if<link::Sleep>(&request.body)) {
+    if (!is_stamp(sleep->until)) return "a time to sleep until that is out of range";
+    if (!tied()) return "a sleep, which in free running is the SUT's own affair";
+  }
+  return std::nullopt;
+}
+
+void Coordinator::Impl::on_request(Session& session, const link::Request& request) {
+  if (const auto fault = fault_of(session, request)) {
+    refuse(session.peer, link::Refusal::Reason::kBadRequest, *fault);
+    session.left = true;
+    return end(RunEnd::kSutLost,
+               fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, *fault));
+  }
+  ++session.next_sequence;
+  begin(session, request);
+  capture_due();
+  apply_due();
+  if (tied())
+    release_ready();
+  else
+    reply(session, st_);
+}
+
+// From arrival to being held.
+void Coordinator::Impl::begin(Session& session, const link::Request& request) {
+  PendingInteraction& pending = session.pending.emplace();
+  pending.request = request;
+  record::Interaction& entry = pending.entry;
+  entry.uav = session.uav_name;
+  entry.sequence = request.sequence;
+  entry.kind = kind_of(request);
+  entry.st_at_arrival = st_;
+  entry.wall_at_arrival = session.last_word;
+  entry.stamped = !session.timer && tied();
+  if (request.previous_round_trip > Duration(0) && session.last_hold > Duration(0))
+    entry.previous_link_time = request.previous_round_trip - session.last_hold;
+
+  entry.request_at = charge(session, request, entry);
+  entry.reply_at = accept(session, pending);
+  if (tied()) barrier_.hold({session.uav, entry.reply_at});
+}
+
+// The timestamp of a request: the SUT's own; of an unstamped client the coordinator's timer; in
+// free running, ST.
+ExecTime Coordinator::Impl::charge(Session& session, const link::Request& request,
+                                   record::Interaction& entry) {
+  if (!tied()) return same_instant(st_);
+  const ExecTime stamp =
+      session.timer ? session.timer->pause(session.last_word) : request.issued_at;
+  const sync::Arrival arrival = barrier_.arrive(session.uav, stamp, st_);
+  entry.lag = arrival.lag;
+  if (arrival.violation)
+    entry.violation =
+        fmt::format("{} by {} ns", name(arrival.violation->kind), arrival.violation->size.count());
+  return arrival.charged_at;
+}
+
+// Plans the interaction; returns the timestamp of its reply.
+ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending) {
+  const link::Request& request = pending.request;
+  if (const auto* read = std::get_if<link::ReadSensor>(&request.body))
+    return accept_read(session, pending, *read);
+  if (const auto* set = std::get_if<link::SetVelocity>(&request.body))
+    return accept_command(session, pending, *set);
+  if (const auto* sleep = std::get_if<link::Sleep>(&request.body)) {
+    pending.entry.sleep_until = sleep->until;
+    return std::max(pending.entry.request_at, sleep->until);
+  }
+  session.finish = std::get<link::Finish>(request.body);
+  return pending.entry.request_at;
+}
+
+ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pending,
+                                        const link::ReadSensor& read) {
+  SensorState& sensor = session.sensors[read.sensor];
+  record::Interaction& entry = pending.entry;
+  const SimTime t = same_instant(entry.request_at);
+
+  // Free running: the state of this moment, whatever the sensor's timing.
+  pending.measurement =
+      tied() ? sensor.schedule.choose(t, read.latest) : Measurement{session.next_sequence, t, t};
+  if (tied()) sensor.schedule.mark_read(*pending.measurement);
+  pending.on_demand = !tied() || !sensor.schedule.sampling_instant(0);
+
+  entry.sensor = sensor.name;
+  entry.sample_index = pending.measurement->index;
+  entry.sampled_at = pending.measurement->sampled_at;
+  entry.available_at = pending.measurement->available_at;
+  return std::max(entry.request_at, same_instant(pending.measurement->available_at));
+}
+
+ExecTime Coordinator::Impl::accept_command(Session& session, PendingInteraction& pending,
+                                           const link::SetVelocity& set) {
+  const SimTime acts = same_instant(pending.entry.request_at) + session.command_latency;
+  pending.entry.effect_at = grid_.ceil(acts);
+  pending.entry.grid_error = *pending.entry.effect_at - acts;
+  commands_.push({*pending.entry.effect_at, session.uav, pending.entry.sequence, set.command});
+  return pending.entry.request_at;
+}
+
+}  // namespace tether::coordinator

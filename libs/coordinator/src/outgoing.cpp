@@ -1,0 +1,71 @@
+#include "coordinator_impl.h"
+
+#include <algorithm>
+
+/// What SUTs are told: replies, when the barrier lets them go.
+namespace tether::coordinator {
+
+void Coordinator::Impl::release_ready() {
+  while (const auto grant = barrier_.release(st_)) reply(sessions_[grant->sut], grant->released_at);
+}
+
+// The reply goes out first and is recorded afterwards, so that the record costs the SUT no wall
+// time.
+void Coordinator::Impl::reply(Session& session, SimTime st) {
+  PendingInteraction pending = std::move(*session.pending);
+  session.pending.reset();
+  record::Interaction& entry = pending.entry;
+
+  link::Reply message{.sequence = entry.sequence,
+                      .resume_at = entry.reply_at,
+                      .sample = take_sample(session, pending)};
+  const std::optional<uav::CameraSample> image = image_to_record(message);
+  entry.st_at_release = st;
+  entry.grid_error = std::max(entry.grid_error, same_instant(entry.reply_at) - st);
+  entry.wall_at_release = host_clock_();
+  server_->send(session.peer, std::move(message));
+
+  session.last_hold = entry.wall_at_release - entry.wall_at_arrival;
+  session.last_word = entry.wall_at_release;
+  if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
+  log_.interaction(st, entry);
+  if (image) log_.image(st, session.uav_name, entry.sensor, *image);
+  if (session.finish) leave(session);
+}
+
+std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
+    const link::Reply& reply) const {
+  if (!options_.record_images || !reply.sample) return std::nullopt;
+  const auto* image = std::get_if<uav::CameraSample>(&*reply.sample);
+  return image ? std::optional(*image) : std::nullopt;
+}
+
+void Coordinator::Impl::leave(Session& session) {
+  session.left = true;
+  barrier_.remove(session.uav);
+  server_->close(session.peer);
+  if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.left; }))
+    end(RunEnd::kFinished, "every SUT has finished");
+}
+
+std::optional<uav::Sample> Coordinator::Impl::take_sample(Session& session,
+                                                          PendingInteraction& pending) {
+  if (!pending.measurement) return std::nullopt;
+  const auto& read = std::get<link::ReadSensor>(pending.request.body);
+  const Measurement& measurement = *pending.measurement;
+  const sim::Snapshot* state = pending.on_demand
+                                   ? &session.on_demand_state
+                                   : session.sensors[read.sensor].captures.find(measurement.index);
+  if (!state)
+    throw Error(ErrorCode::kInternal, "the state of a measurement was dropped before it was read");
+
+  pending.entry.sample_state_at = state->at;
+  pending.entry.grid_error = std::max(pending.entry.grid_error, measurement.sampled_at - state->at);
+  auto sample = ask_simulator([&](sim::Simulator& s) {
+    return s.measure(*state, session.uav, read.sensor, measurement.index);
+  });
+  if (std::holds_alternative<uav::CameraSample>(sample)) log_.count_image();
+  return sample;
+}
+
+}  // namespace tether::coordinator

@@ -1,0 +1,54 @@
+#include "run_log.h"
+
+#include <tether/record/png.h>
+
+namespace tether::coordinator {
+
+void RunLog::interaction(SimTime st, const record::Interaction& entry) {
+  ++figures_.interactions;
+  if (entry.violation) ++figures_.causality_violations;
+  figures_.largest_lag = std::max(figures_.largest_lag, entry.lag);
+  figures_.largest_grid_error = std::max(figures_.largest_grid_error, entry.grid_error);
+  recorder_->write(st, entry);
+}
+
+void RunLog::command_effect(SimTime st, const std::string& uav, const PendingCommand& command) {
+  const auto& [velocity, yaw_rate] = command.command;
+  recorder_->write(st, record::CommandEffect{.uav = uav,
+                                             .sequence = command.sequence,
+                                             .applied_at = st,
+                                             .vx_H_m_s = velocity.x,
+                                             .vy_H_m_s = velocity.y,
+                                             .vz_H_m_s = velocity.z,
+                                             .yaw_rate_rad_s = yaw_rate});
+}
+
+void RunLog::ground_truth(const std::string& uav, const sim::GroundTruth& truth) {
+  const auto& [p, q, v, w] = truth.body;
+  recorder_->write(truth.at, record::GroundTruth{.uav = uav,
+                                                 .at = truth.at,
+                                                 .p_WB_m = {p.x, p.y, p.z},
+                                                 .q_WB = {q.w, q.x, q.y, q.z},
+                                                 .v_WB_m_s = {v.x, v.y, v.z},
+                                                 .w_WB_B_rad_s = {w.x, w.y, w.z}});
+}
+
+void RunLog::image(SimTime st, const std::string& uav, const std::string& sensor,
+                   const uav::CameraSample& sample) {
+  recorder_->write(
+      st, record::Image{.uav = uav,
+                        .sensor = sensor,
+                        .at = sample.sampled_at,
+                        .index = sample.index,
+                        .png = record::encode_png(sample.width_px, sample.height_px, sample.rgb)});
+}
+
+void RunLog::end(record::Footer footer) {
+  footer.interactions = figures_.interactions;
+  footer.causality_violations = figures_.causality_violations;
+  footer.largest_lag = figures_.largest_lag;
+  footer.largest_grid_error = figures_.largest_grid_error;
+  recorder_->write(footer);
+}
+
+}  // namespace tether::coordinator

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "capture_store.h"
+#include "sensor_schedule.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tether/link/messages.h>
+#include <tether/link/server.h>
+#include <tether/record/messages.h>
+#include <tether/sim/simulator.h>
+#include <tether/sync/barrier_synchronizer.h>
+#include <tether/sync/execution_timer.h>
+
+namespace tether::coordinator {
+
+/// One sensor of a session: when it measures, and the states that may still be read.
+struct SensorState {
+  std::string name;
+  SensorSchedule schedule;
+  CaptureStore captures;
+  std::uint64_t next_capture = 0;  ///< periodic: index of the first measurement not yet captured
+};
+
+/// A request between its arrival and its reply.
+struct PendingInteraction {
+  link::Request request;
+  record::Interaction entry;               ///< filled in as things happen
+  std::optional<Measurement> measurement;  ///< of ReadSensor
+  bool on_demand = false;                  ///< its state is captured for it alone …
+  bool captured = false;                   ///< … and has been, into Session::on_demand_state
+};
+
+/// One SUT and the UAV that it flies. Plain state; `Coordinator` acts on it.
+struct Session {
+  std::size_t uav = 0;  ///< index in the world, and of the SUT in the barrier
+  std::string uav_name;
+  Duration command_latency{0};
+  std::vector<SensorState> sensors;
+
+  // From joining to leaving.
+  link::PeerId peer = 0;  ///< 0: nobody
+  link::Hello hello;
+  std::optional<sync::ExecutionTimer> timer;  ///< of an unstamped client
+  std::uint64_t next_sequence = 1;
+  WallTime last_word;  ///< when it was last heard
+  std::optional<link::Finish> finish;
+  bool left = false;  ///< finished or sent away: nothing more is expected or told
+
+  // From one request to the next.
+  std::optional<PendingInteraction> pending;
+  sim::Snapshot on_demand_state;
+  Duration last_hold{0};  ///< WT between the last request's arrival and its reply; 0: none yet
+
+  bool joined() const { return peer != 0; }
+  bool computing() const { return joined() && !left && !pending; }
+};
+
+}  // namespace tether::coordinator

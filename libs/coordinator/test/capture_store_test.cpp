@@ -1,0 +1,31 @@
+#include "capture_store.h"
+
+#include <gtest/gtest.h>
+
+namespace tether::coordinator {
+namespace {
+
+TEST(CaptureStore, KeepsWhatMayStillBeRead) {
+  CaptureStore store;
+  for (std::uint64_t i = 0; i < 5; ++i)
+    store.add(i).at = from_ns<SimTime>(static_cast<std::int64_t>(i) * 10);
+  store.drop_before(3);
+  EXPECT_EQ(store.size(), 2u);
+  EXPECT_EQ(store.find(2), nullptr);
+  ASSERT_NE(store.find(3), nullptr);
+  EXPECT_EQ(store.find(3)->at, from_ns<SimTime>(30));
+  EXPECT_EQ(store.find(5), nullptr);
+  store.drop_before(100);
+  EXPECT_EQ(store.size(), 0u);
+}
+
+TEST(CaptureStore, ReusesTheStorageOfWhatWasDropped) {
+  CaptureStore store;
+  store.add(0).state.assign(64, 1.0);
+  const double* storage = store.find(0)->state.data();
+  store.drop_before(1);
+  EXPECT_EQ(store.add(1).state.data(), storage);
+}
+
+}  // namespace
+}  // namespace tether::coordinator

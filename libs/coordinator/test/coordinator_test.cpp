@@ -1,0 +1,398 @@
+#include "scripted_server.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/base/error.h>
+#include <tether/coordinator/coordinator.h>
+#include <tether/sim_testing/fake_simulator.h>
+
+namespace tether::coordinator {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+constexpr std::uint32_t kCamera = 0, kImu = 1, kRange = 2;
+constexpr uav::PeriodicTiming kCameraTiming{milliseconds(33), Duration(0),
+                                            uav::ConstantDelay{microseconds(10'400)}};
+constexpr uav::PeriodicTiming kImuTiming{milliseconds(50), Duration(0),
+                                         uav::ConstantDelay{Duration(0)}};
+constexpr uav::OnDemandTiming kRangeTiming{uav::ConstantDelay{microseconds(97'700)}};
+
+ExecTime us(std::int64_t value) {
+  return ExecTime(microseconds(value));
+}
+SimTime st_ms(std::int64_t value) {
+  return SimTime(milliseconds(value));
+}
+
+link::Hello hello(const std::string& uav = "", link::ClockKind clock = link::ClockKind::kScripted) {
+  link::Hello h;
+  h.sut = "script";
+  h.uav = uav;
+  h.clock = clock;
+  h.token = "secret";
+  return h;
+}
+
+Act read(Duration compute, std::uint32_t sensor, bool latest = false) {
+  return {compute, link::ReadSensor{sensor, latest}};
+}
+Act turn(Duration compute, double yaw_rate_rad_s) {
+  return {compute, link::SetVelocity{{.velocity_H_m_s = {}, .yaw_rate_rad_s = yaw_rate_rad_s}}};
+}
+Act sleep(Duration compute, Duration duration) {
+  return {compute, duration};
+}
+Act finish(Duration compute) {
+  return {compute, link::Finish{true, "done", "{}"}};
+}
+
+/// A coordinator over a fake simulator of `uavs` UAVs, on a clock that moves a millisecond per
+/// reading.
+class CoordinatorTest : public testing::Test {
+ protected:
+  void make(std::size_t uavs = 1) {
+    simulator_ = std::make_unique<sim::FakeSimulator>(sim::make_fake_world(uavs));
+    options_.token = "secret";
+    options_.uavs.assign(uavs, {{kCameraTiming, kImuTiming, kRangeTiming}, latency_});
+    coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
+                                                 [this] { return now_ += tick_; });
+    server_ = std::make_unique<ScriptedServer>(coordinator_->events());
+  }
+  RunReport run(ScriptedServer::Script script) {
+    if (!coordinator_) make();
+    server_->add_sut(hello(), std::move(script));
+    return coordinator_->run(*server_, hooks_);
+  }
+  const link::Refusal& refusal(link::PeerId peer) {
+    return std::get<link::Refusal>(server_->sent.at(peer).back());
+  }
+
+  RunOptions options_;
+  Duration latency_{0};
+  Duration tick_ = milliseconds(1);
+  WallTime now_{};
+  RunHooks hooks_;
+  MemoryRecorder recorder_;
+  std::unique_ptr<sim::FakeSimulator> simulator_;
+  std::unique_ptr<Coordinator> coordinator_;
+  std::unique_ptr<ScriptedServer> server_;
+};
+
+TEST_F(CoordinatorTest, AFinishedRunIsReportedAndRecorded) {
+  const RunReport report =
+      run({sleep(microseconds(1500), milliseconds(10)), finish(microseconds(700))});
+  EXPECT_EQ(report.end, RunEnd::kFinished);
+  EXPECT_EQ(report.st, st_ms(12));
+  ASSERT_EQ(report.suts.size(), 1u);
+  EXPECT_EQ(report.suts[0].et, us(12'200));
+  ASSERT_TRUE(report.suts[0].finish);
+  EXPECT_TRUE(report.suts[0].finish->reached_goal);
+  EXPECT_EQ(report.interactions, 2u);
+  EXPECT_EQ(report.causality_violations, 0u);
+  ASSERT_TRUE(recorder_.footer);
+  EXPECT_EQ(recorder_.footer->end, "finished");
+  EXPECT_EQ(recorder_.header.suts.at(0).sut, "script");
+  EXPECT_EQ(recorder_.header.sensors.size(), 3u);
+}
+
+TEST_F(CoordinatorTest, TheWelcomeBringsTheCatalogue) {
+  run({finish(Duration(0))});
+  const auto& welcome = std::get<link::Welcome>(server_->sent.at(1).front());
+  EXPECT_EQ(welcome.catalogue.uav, "uav0");
+  EXPECT_EQ(welcome.catalogue.sensors.size(), 3u);
+  EXPECT_EQ(welcome.catalogue.anchors.size(), 1u);
+  EXPECT_FALSE(welcome.free_running);
+}
+
+// Paper, Fig. 8: the measurement starts when asked for; simulation goes on until the data is there,
+// and no further.
+TEST_F(CoordinatorTest, AnOnDemandReadIsSampledAtItsRequestAndDeliveredADelayLater) {
+  run({read(microseconds(2'300), kRange), finish(Duration(0))});
+  const record::Interaction& entry = recorder_.interactions.at(0);
+  EXPECT_EQ(entry.request_at, us(2'300));
+  EXPECT_EQ(entry.sampled_at, same_instant(us(2'300)));
+  EXPECT_EQ(entry.sample_state_at, st_ms(2));
+  EXPECT_EQ(entry.reply_at, us(100'000));
+  EXPECT_EQ(entry.st_at_arrival, st_ms(0));
+  EXPECT_EQ(entry.st_at_release, st_ms(100));
+  EXPECT_EQ(entry.lag, microseconds(2'300));
+  EXPECT_EQ(entry.grid_error, microseconds(300));
+  EXPECT_EQ(simulator_->now(), st_ms(100));
+}
+
+TEST_F(CoordinatorTest, PeriodicReadsGetTheNewestOrWaitForTheNext) {
+  run({read(Duration(0), kCamera), read(milliseconds(1), kCamera), read(milliseconds(95), kCamera),
+       read(Duration(0), kCamera, true), finish(Duration(0))});
+  const auto& log = recorder_.interactions;
+  EXPECT_EQ(log.at(0).sample_index, 0u);  // waits until 0 + 10.4 ms
+  EXPECT_EQ(log.at(0).reply_at, us(10'400));
+  EXPECT_EQ(log.at(1).sample_index, 1u);  // waits until 33 + 10.4 ms
+  EXPECT_EQ(log.at(1).reply_at, us(43'400));
+  EXPECT_EQ(log.at(2).sample_index, 3u);  // at 138.4 ms: number 3 (99 + 10.4) is the newest
+  EXPECT_EQ(log.at(2).reply_at, us(138'400));
+  EXPECT_EQ(log.at(2).sample_state_at, st_ms(99));
+  EXPECT_EQ(log.at(3).sample_index, 3u);  // the same again
+  EXPECT_EQ(simulator_->calls().measure, 4u);
+}
+
+TEST_F(CoordinatorTest, FramesThatNobodyReadsAreNeverMeasured) {
+  const RunReport report =
+      run({sleep(Duration(0), seconds(10)), read(Duration(0), kCamera), finish(Duration(0))});
+  EXPECT_EQ(report.images, 1u);
+  EXPECT_EQ(simulator_->calls().measure, 1u);
+}
+
+struct EffectCase {
+  std::int64_t stamp_us;
+  std::int64_t latency_us;
+  std::int64_t effect_ms;
+};
+
+TEST_F(CoordinatorTest, CommandsActAtTheFirstBoundaryNotBeforeTheirStamp) {
+  for (const EffectCase& c :
+       {EffectCase{0, 0, 0}, {1'000, 0, 1}, {1'001, 0, 2}, {2'999, 0, 3}, {2'000, 1'500, 4}}) {
+    latency_ = microseconds(c.latency_us);
+    recorder_ = {};
+    make();
+    run({turn(microseconds(c.stamp_us), 1.0), sleep(Duration(0), milliseconds(9)),
+         finish(Duration(0))});
+    ASSERT_EQ(simulator_->applied().size(), 1u);
+    EXPECT_EQ(simulator_->applied()[0].at, st_ms(c.effect_ms)) << c.stamp_us;
+    EXPECT_EQ(recorder_.interactions.at(0).effect_at, st_ms(c.effect_ms));
+    EXPECT_EQ(recorder_.commands.at(0).applied_at, st_ms(c.effect_ms));
+    EXPECT_EQ(recorder_.commands.at(0).sequence, 1u);
+  }
+}
+
+TEST_F(CoordinatorTest, ASutIsNotHeldForItsOwnCommandToAct) {
+  run({turn(microseconds(2'500), 1.0), finish(Duration(0))});
+  EXPECT_EQ(recorder_.interactions.at(0).st_at_release, st_ms(2));
+  EXPECT_EQ(recorder_.interactions.at(0).effect_at, st_ms(3));
+}
+
+// Everything but wall times.
+std::string without_wall(const MemoryRecorder& r) {
+  std::string text;
+  for (const auto& i : r.interactions)
+    for (const std::int64_t v :
+         {to_ns(i.request_at), to_ns(i.reply_at), to_ns(i.st_at_arrival), to_ns(i.st_at_release),
+          to_ns(i.sample_state_at.value_or(SimTime::min())),
+          to_ns(i.effect_at.value_or(SimTime::min())), static_cast<std::int64_t>(i.sample_index)})
+      text += std::to_string(v) + " ";
+  for (const auto& g : r.ground_truth)
+    text += std::to_string(g.p_WB_m[0]) + " " + std::to_string(to_ns(g.at)) + "\n";
+  return text;
+}
+
+ScriptedServer::Script busy_script() {
+  ScriptedServer::Script script;
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    script.push_back(read(microseconds(i * 731 % 9'000), i % 3));
+    script.push_back(turn(microseconds(i * 377 % 4'000), i % 2 ? 0.5 : -0.3));
+  }
+  script.push_back(finish(milliseconds(1)));
+  return script;
+}
+
+TEST_F(CoordinatorTest, TheSimulatorsSpeedMakesNoDifference) {
+  run(busy_script());
+  const std::string unhindered = without_wall(recorder_);
+  options_.real_time_factor = 0.1;
+  recorder_ = {};
+  make();
+  const RunReport slowed = run(busy_script());
+  EXPECT_EQ(without_wall(recorder_), unhindered);
+  EXPECT_GE(to_seconds(slowed.wall), 9.0 * to_seconds(slowed.st));
+}
+
+TEST_F(CoordinatorTest, ProgressLetsTheSimulatorRunAheadWithoutChangingAnything) {
+  make();
+  const link::PeerId peer =
+      server_->add_sut(hello(), {read(milliseconds(40), kRange), finish(Duration(0))});
+  server_->deliver(peer, link::Progress{us(30'500)});
+  for (int i = 0; i < 3; ++i) server_->deliver(peer, link::Progress{us(30'500)});
+  coordinator_->run(*server_);
+  const record::Interaction& entry = recorder_.interactions.at(0);
+  EXPECT_EQ(entry.request_at, us(40'000));
+  EXPECT_EQ(entry.sample_state_at, st_ms(40));
+  EXPECT_EQ(entry.reply_at, us(137'700));
+}
+
+TEST_F(CoordinatorTest, SeveralSutsShareOneTime) {
+  make(2);
+  server_->add_sut(hello("uav1"), {turn(milliseconds(5), 1.0), sleep(Duration(0), milliseconds(20)),
+                                   finish(Duration(0))});
+  server_->add_sut(hello("uav0"), {read(milliseconds(7), kRange), turn(milliseconds(1), 1.0),
+                                   finish(Duration(0))});
+  const RunReport report = coordinator_->run(*server_);
+  EXPECT_EQ(report.end, RunEnd::kFinished);
+  ASSERT_EQ(recorder_.interactions.size(), 6u);
+  EXPECT_TRUE(std::is_sorted(
+      recorder_.interactions.begin(), recorder_.interactions.end(),
+      [](const auto& a, const auto& b) { return a.st_at_release < b.st_at_release; }));
+  EXPECT_EQ(simulator_->applied().at(0).uav, 1u);
+  EXPECT_EQ(simulator_->applied().at(0).at, st_ms(5));
+}
+
+TEST_F(CoordinatorTest, AnUnstampedClientIsChargedByTheCoordinatorsTimer) {
+  make();
+  server_->add_sut(hello("", link::ClockKind::kUnstamped),
+                   {read(seconds(99), kRange), finish(seconds(99))});
+  coordinator_->run(*server_);
+  const record::Interaction& entry = recorder_.interactions.at(0);
+  EXPECT_FALSE(entry.stamped);
+  EXPECT_GT(entry.request_at, us(0));
+  EXPECT_LT(entry.request_at,
+            us(1'000'000));  // a few readings of the host's clock, not the script's 99 s
+  EXPECT_EQ(recorder_.header.suts.at(0).clock, "unstamped");
+}
+
+TEST_F(CoordinatorTest, FreeRunningServesTheStateOfTheMomentAndChargesNothing) {
+  options_.policy = sync::SyncPolicy::kFreeRunning;
+  options_.real_time_factor = 0.25;
+  const RunReport report =
+      run({read(seconds(5), kRange), read(seconds(5), kCamera), finish(seconds(5))});
+  EXPECT_EQ(report.end, RunEnd::kFinished);
+  EXPECT_LT(report.st, st_ms(100));
+  for (const record::Interaction& entry : recorder_.interactions) {
+    EXPECT_EQ(same_instant(entry.request_at), entry.st_at_arrival);
+    EXPECT_EQ(entry.reply_at, entry.request_at);
+    EXPECT_EQ(entry.st_at_release, entry.st_at_arrival);
+  }
+  EXPECT_TRUE(std::get<link::Welcome>(server_->sent.at(1).front()).free_running);
+}
+
+TEST_F(CoordinatorTest, FreeRunningFollowsTheWallClock) {
+  options_.policy = sync::SyncPolicy::kFreeRunning;
+  options_.real_time_factor = 0.5;
+  options_.time_limit = seconds(1);
+  const RunReport report = run({});
+  EXPECT_EQ(report.end, RunEnd::kTimeLimit);
+  EXPECT_NEAR(to_seconds(report.wall), 2.0, 0.1);
+}
+
+// Ways to fail: each names the culprit, ends the run, and leaves the record up to there.
+
+TEST_F(CoordinatorTest, TheTimeLimitEndsTheRun) {
+  options_.time_limit = seconds(2);
+  const RunReport report = run({sleep(Duration(0), seconds(60))});
+  EXPECT_EQ(report.end, RunEnd::kTimeLimit);
+  EXPECT_EQ(report.st, st_ms(2'000));
+  EXPECT_EQ(refusal(1).reason, link::Refusal::Reason::kRunEnded);
+  EXPECT_EQ(recorder_.footer->end, "time_limit");
+  EXPECT_EQ(recorder_.ground_truth.size(), 201u);
+}
+
+TEST_F(CoordinatorTest, ASutThatGivesNoWordIsHung) {
+  options_.hang_limit = seconds(3);
+  const RunReport report = run({sleep(Duration(0), milliseconds(5))});
+  EXPECT_EQ(report.end, RunEnd::kSutHung);
+  EXPECT_THAT(report.reason, HasSubstr("\"script\" of UAV \"uav0\" gave no word for 3 s"));
+  EXPECT_EQ(recorder_.interactions.size(), 1u);
+}
+
+TEST_F(CoordinatorTest, ASutThatNeverJoinsEndsTheRun) {
+  options_.connect_limit = seconds(1);
+  make();
+  const RunReport report = coordinator_->run(*server_);
+  EXPECT_EQ(report.end, RunEnd::kSutLost);
+  EXPECT_THAT(report.reason, HasSubstr("no SUT joined for UAV \"uav0\" within 1 s"));
+}
+
+TEST_F(CoordinatorTest, ASutThatDisconnectsIsLost) {
+  make();
+  const auto peer = server_->add_sut(hello(), {});
+  server_->disconnect(peer);
+  const RunReport report = coordinator_->run(*server_);
+  EXPECT_EQ(report.end, RunEnd::kSutLost);
+  EXPECT_THAT(report.reason, HasSubstr("lost the SUT of UAV \"uav0\": connection closed"));
+}
+
+TEST_F(CoordinatorTest, ALostSimulatorEndsTheRun) {
+  make();
+  simulator_->on_advance([](SimTime, SimTime to) {
+    if (to >= st_ms(50)) throw Error(ErrorCode::kSetup, "the simulator crashed");
+  });
+  const RunReport report = run({sleep(Duration(0), seconds(1))});
+  EXPECT_EQ(report.end, RunEnd::kSimulatorLost);
+  EXPECT_EQ(report.reason, "the simulator crashed");
+  EXPECT_LT(report.st, st_ms(50));
+  EXPECT_TRUE(recorder_.footer);
+}
+
+TEST_F(CoordinatorTest, TheCallerMayInterrupt) {
+  hooks_.should_stop = [] {
+    return std::optional(std::pair(RunEnd::kInterrupted, std::string("Ctrl-C")));
+  };
+  EXPECT_EQ(run({sleep(Duration(0), seconds(500))}).end, RunEnd::kInterrupted);
+}
+
+TEST_F(CoordinatorTest, StrangersAreRefusedAndTheRunIsUnharmed) {
+  make();
+  server_->add_sut(hello(), busy_script());
+  link::Hello thief = hello();
+  thief.token = "guess";
+  const auto wrong_token = server_->add_sut(thief, {});
+  const auto second = server_->add_sut(hello(), {});
+  const RunReport report = coordinator_->run(*server_);
+  EXPECT_EQ(report.end, RunEnd::kFinished);
+  EXPECT_EQ(refusal(wrong_token).reason, link::Refusal::Reason::kToken);
+  EXPECT_EQ(refusal(second).reason, link::Refusal::Reason::kUav);
+}
+
+struct BadRequestCase {
+  const char* text;
+  link::Request request;
+};
+
+TEST_F(CoordinatorTest, BadRequestsAreAnsweredAndEndTheRun) {
+  const auto request = [](std::uint64_t sequence, ExecTime at, auto body) {
+    return link::Request{.sequence = sequence, .issued_at = at, .body = body};
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const BadRequestCase cases[] = {
+      {"request number 3, expected 1", request(3, us(0), link::ReadSensor{kImu, false})},
+      {"time stamp out of range", request(1, us(-1), link::ReadSensor{kImu, false})},
+      {"time stamp out of range", request(1, ExecTime::max(), link::ReadSensor{kImu, false})},
+      {"sensor number 3", request(1, us(0), link::ReadSensor{3, false})},
+      {"not finite", request(1, us(0), link::SetVelocity{{{nan, 0, 0}, 0}})},
+      {"sleep until", request(1, us(0), link::Sleep{ExecTime::max()})},
+  };
+  for (const auto& c : cases) {
+    make();
+    const auto peer = server_->add_sut(hello(), {});
+    server_->deliver(peer, c.request);
+    const RunReport report = coordinator_->run(*server_);
+    EXPECT_EQ(report.end, RunEnd::kSutLost);
+    EXPECT_THAT(report.reason, HasSubstr(c.text));
+    EXPECT_EQ(refusal(peer).reason, link::Refusal::Reason::kBadRequest);
+  }
+}
+
+TEST_F(CoordinatorTest, AStampInThePastIsCountedAndNamed) {
+  make();
+  const auto peer = server_->add_sut(hello(), {sleep(Duration(0), milliseconds(10))});
+  bool sent = false;
+  hooks_.on_status = [&](const RunStatus& status) {
+    if (sent || status.st < st_ms(10)) return;
+    sent = true;
+    server_->deliver(
+        peer,
+        link::Request{.sequence = 2, .issued_at = us(9'000), .body = link::Finish{true, "", ""}});
+  };
+  const RunReport report = coordinator_->run(*server_, hooks_);
+  EXPECT_EQ(report.end, RunEnd::kFinished);
+  EXPECT_EQ(report.causality_violations, 1u);
+  EXPECT_EQ(recorder_.interactions.at(1).violation, "request in the past by 1000000 ns");
+  EXPECT_EQ(recorder_.interactions.at(1).request_at, us(10'000));
+}
+
+}  // namespace
+}  // namespace tether::coordinator

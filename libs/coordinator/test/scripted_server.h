@@ -1,0 +1,119 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <tether/link/server.h>
+#include <tether/record/writer.h>
+
+namespace tether::coordinator {
+
+/// What a scripted SUT does next: computes for so long, then asks.
+struct Act {
+  Duration compute{0};
+  std::variant<link::ReadSensor, link::SetVelocity, Duration /* sleep */, link::Finish> what;
+};
+
+/// A server whose peers are scripts: everything happens inside `poll`, in a fixed order, with no
+/// thread, socket or clock.
+class ScriptedServer final : public link::Server {
+ public:
+  using Script = std::vector<Act>;
+
+  explicit ScriptedServer(link::ServerEvents& events) : events_(&events) {}
+
+  /// A peer that says `hello` and then follows its script; returns its id.
+  link::PeerId add_sut(link::Hello hello, Script script) {
+    const link::PeerId peer = ++last_peer_;
+    suts_[peer] = {std::move(script), 0, ExecTime{}, 0};
+    deliver(peer, std::move(hello));
+    return peer;
+  }
+  /// A message of `peer` at the next poll.
+  void deliver(link::PeerId peer, link::Message message) {
+    queue_.push_back(
+        [this, peer, message = std::move(message)] { events_->on_message(peer, message); });
+  }
+  void disconnect(link::PeerId peer) {
+    queue_.push_back([this, peer] {
+      events_->on_closed(peer, {Failure::Kind::kDisconnected, "connection closed"});
+    });
+  }
+
+  link::Address address() const override { return {"script", 0}; }
+  bool poll(Duration) override {
+    ++polls;
+    if (queue_.empty()) return false;
+    const auto action = std::move(queue_.front());
+    queue_.pop_front();
+    action();
+    return true;
+  }
+  void send(link::PeerId peer, link::Message message) override {
+    sent[peer].push_back(message);
+    if (const auto* welcome = std::get_if<link::Welcome>(&message)) proceed(peer, welcome->start);
+    if (const auto* reply = std::get_if<link::Reply>(&message)) proceed(peer, reply->resume_at);
+  }
+  void close(link::PeerId peer) override { closed.push_back(peer); }
+
+  std::map<link::PeerId, std::vector<link::Message>> sent;
+  std::vector<link::PeerId> closed;
+  std::uint64_t polls = 0;
+
+ private:
+  struct Sut {
+    Script script;
+    std::size_t next = 0;
+    ExecTime et;
+    std::uint64_t sequence = 0;
+  };
+
+  void proceed(link::PeerId peer, ExecTime resume_at) {
+    Sut& sut = suts_[peer];
+    sut.et = resume_at;
+    if (sut.next == sut.script.size()) return;
+    const Act& act = sut.script[sut.next++];
+    sut.et += act.compute;
+    link::Request request{.sequence = ++sut.sequence, .issued_at = sut.et, .body = {}};
+    std::visit(
+        [&](const auto& what) {
+          if constexpr (std::is_same_v<std::decay_t<decltype(what)>, Duration>)
+            request.body = link::Sleep{sut.et + what};
+          else
+            request.body = what;
+        },
+        act.what);
+    deliver(peer, request);
+  }
+
+  link::ServerEvents* events_;
+  link::PeerId last_peer_ = 0;
+  std::map<link::PeerId, Sut> suts_;
+  std::deque<std::function<void()>> queue_;
+};
+
+/// Keeps everything, for assertions.
+class MemoryRecorder final : public record::Recorder {
+ public:
+  void write(const record::Header& m) override { header = m; }
+  void write(SimTime, const record::Interaction& m) override { interactions.push_back(m); }
+  void write(SimTime, const record::CommandEffect& m) override { commands.push_back(m); }
+  void write(SimTime, const record::GroundTruth& m) override { ground_truth.push_back(m); }
+  void write(SimTime, const record::Annotation& m) override { annotations.push_back(m); }
+  void write(SimTime, const record::Image& m) override { images.push_back(m); }
+  void write(const record::Footer& m) override { footer = m; }
+
+  record::Header header;
+  std::vector<record::Interaction> interactions;
+  std::vector<record::CommandEffect> commands;
+  std::vector<record::GroundTruth> ground_truth;
+  std::vector<record::Annotation> annotations;
+  std::vector<record::Image> images;
+  std::optional<record::Footer> footer;
+};
+
+}  // namespace tether::coordinator
