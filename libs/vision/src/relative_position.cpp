@@ -37,7 +37,8 @@ double surface_to_centre_m(const uav::Anchor& anchor) {
 RelativePosition relative_position(const uav::SensorDescription& camera, const uav::Anchor& anchor,
                                    const Roi& roi) {
   const uav::CameraModel& model = std::get<uav::CameraProperties>(camera.properties).model;
-  const auto [u, v] = roi.center;
+  const double u = roi.center.u_px;
+  const double v = roi.center.v_px;
   const auto bearing_at = [&](double u_px) {
     return bearing_rad(direction_B(camera, model, {u_px, v}));
   };

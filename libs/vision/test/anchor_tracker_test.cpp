@@ -147,8 +147,8 @@ TEST_P(WithNoise, CentreStaysWithinHalfAPixel) {
     const int side = 2 * static_cast<int>(8 + 15 * random.uniform()) + 1;
     const auto roi = t.track(Picture().fill({u, v, side, side}, kBlue).add_noise(6.0, i).sample());
     ASSERT_TRUE(roi) << i;
-    EXPECT_NEAR(roi->center.u_px, u + side / 2, 0.5);
-    EXPECT_NEAR(roi->center.v_px, v + side / 2, 0.5);
+    EXPECT_NEAR(roi->center.u_px, u + 0.5 * (side - 1), 0.5);
+    EXPECT_NEAR(roi->center.v_px, v + 0.5 * (side - 1), 0.5);
     EXPECT_NEAR(roi->edge_height_px, side, 0.05 * side);
   }
 }
