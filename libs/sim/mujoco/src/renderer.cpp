@@ -89,6 +89,10 @@ Renderer::Renderer(Scene scene, int max_width_px, int max_height_px)
     throw Error(ErrorCode::kSetup, "OpenGL (" + name() + ") cannot draw into memory");
   }
   fill_mesh_lists();
+  // Small things tend to stand before large ones, and what is hidden costs little.
+  std::stable_sort(
+      scene_.items.begin(), scene_.items.end(),
+      [](const SceneItem& a, const SceneItem& b) { return a.bounds.radius_m < b.bounds.radius_m; });
   std::copy(scene_.lights.begin(), scene_.lights.end(), engine_scene_->lights);
   engine_scene_->nlight = static_cast<int>(scene_.lights.size());
   engine_scene_->flags[mjRND_SHADOW] = scene_.shadows ? 1 : 0;

@@ -20,7 +20,7 @@ using uav::Vec3;
 
 constexpr std::size_t kMaxLights = 8;     // OpenGL's guaranteed number
 constexpr std::size_t kMaxTextures = 99;  // the engine keeps 100; the sky takes one
-constexpr int kSamples = 0;  // beyond one per pixel: smoother edges at twice the time
+constexpr int kSamples = 0;               // beyond one per pixel: smoother edges at twice the time
 constexpr float kShininess = 0.25F;
 constexpr double kVisibleDifference = 0.05;
 

@@ -36,7 +36,7 @@ BoundingSphere bounding_sphere(const TriangleMesh& mesh);
 
 /// Light is computed per vertex, so large faces are divided into pieces of at most this edge
 /// length.
-inline constexpr double kMaxEdge_m = 0.25;
+inline constexpr double kMaxEdge_m = 0.5;
 
 /// Each face carries its texture upright (seen from outside, with z up), starting at its upper left
 /// corner.

@@ -65,8 +65,8 @@ TEST(TriangleMeshTest, ClosedShapesHaveTheirVolumeAndLookOutwards) {
 TEST(TriangleMeshTest, LargeFacesAreDividedForTheLight) {
   const TriangleMesh mesh = box_mesh({4.0, 3.0, 0.1}, {});
   for (const auto& [a, b, c] : mesh.triangles) {
-    EXPECT_LE(norm(position(mesh, a) - position(mesh, b)), 0.36);
-    EXPECT_LE(norm(position(mesh, b) - position(mesh, c)), 0.36);
+    EXPECT_LE(norm(position(mesh, a) - position(mesh, b)), 1.5 * kMaxEdge_m);
+    EXPECT_LE(norm(position(mesh, b) - position(mesh, c)), 1.5 * kMaxEdge_m);
   }
 }
 
