@@ -181,6 +181,13 @@ void add_lights(Scene& scene, const World& world, const WarningSink& warn) {
   }
 }
 
+void warn_about_shadows(const Link& link, const WarningSink& warn) {
+  for (const Visual& visual : link.visuals) {
+    if (visual.cast_shadows) continue;
+    warn(fmt::format("visual '{}' casts a shadow all the same", visual.name));
+  }
+}
+
 }  // namespace
 
 Scene make_scene(const World& world, const WarningSink& warn) {
@@ -193,6 +200,10 @@ Scene make_scene(const World& world, const WarningSink& warn) {
   const std::vector<MovingBody> moving = moving_bodies(world);
   for (std::size_t i = 0; i < moving.size(); ++i) builder.add_link(*moving[i].link, {}, i);
   add_lights(scene, world, warn);
+  if (scene.shadows) {
+    for (const FixedBody& body : fixed_bodies(world)) warn_about_shadows(*body.link, warn);
+    for (const MovingBody& body : moving) warn_about_shadows(*body.link, warn);
+  }
   return scene;
 }
 

@@ -38,7 +38,7 @@ struct Scene {
 
 /// Names through `warn` what the renderer cannot show: coloured specular light, an ambient colour
 /// of its own, lights beyond the eighth (ambient light counts as one), textures beyond the 99th or
-/// that are no PNG.
+/// that are no PNG, visuals that should cast no shadow where others do.
 /// @throws Error(kBadFile) for a mesh or texture that cannot be read.
 Scene make_scene(const World& world, const WarningSink& warn);
 

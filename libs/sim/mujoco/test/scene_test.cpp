@@ -75,6 +75,15 @@ TEST(SceneTest, LightsKeepTheirKind) {
   EXPECT_FALSE(scene.shadows);
 }
 
+TEST(SceneTest, ShadowsAreDrawnOnlyWhenALightAsksForThem) {
+  World world = test_world();
+  world.lights = {light_named("sun")};
+  world.models[0].links[0].visuals[0].cast_shadows = false;
+  EXPECT_FALSE(make_scene(world, no_warnings()).shadows);
+  world.lights[0].cast_shadows = true;
+  EXPECT_THAT(warnings_of(world), ElementsAre(HasSubstr("shadow")));
+}
+
 TEST(SceneTest, TexturesAreSharedAndOnlyPng) {
   World world = test_world();
   const std::filesystem::path png = std::filesystem::path(TETHER_TEST_DIR) / "data/quarters.png";
