@@ -228,7 +228,7 @@ std::string utc_now() {
 
 experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer) {
   // Whatever is wrong with the user's files shows before anything is written.
-  sim::World world = sim::load_world(scenario::world_request(spec.scenario), observer.warn);
+  sim::World world = sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
   scenario::resolve_timings(spec.scenario, world);
   prepare_folder(spec.folder);
 

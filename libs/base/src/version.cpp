@@ -2,6 +2,8 @@
 
 namespace tether {
 
-std::string_view version() { return TETHER_VERSION; }
+std::string_view version() {
+  return TETHER_VERSION;
+}
 
 }  // namespace tether

@@ -1,8 +1,8 @@
-#include <tether/base/version.h>
-
 #include <cstdio>
 
 #include <gtest/gtest.h>
+
+#include <tether/base/version.h>
 
 namespace tether {
 namespace {

@@ -105,6 +105,7 @@ UavSetup read_uav(const TomlTable& table, const std::optional<Sut>& default_sut,
                   Scenario& scenario) {
   constexpr Range kCoordinate_m{.min = -1e5, .max = 1e5};
   constexpr Range kYaw_deg{.min = -360.0, .max = 360.0};
+  constexpr Range kYawSpread_deg{.min = 0.0, .max = 180.0};
   constexpr Range kLatency_ms{.min = 0.0, .max = 10'000.0};
   UavSetup uav;
   uav.placement.name = table.identifier("name");
@@ -113,6 +114,7 @@ UavSetup read_uav(const TomlTable& table, const std::optional<Sut>& default_sut,
   const auto position_m = table.numbers("position_m", 3, kCoordinate_m);
   uav.placement.p_WB = {position_m[0], position_m[1], position_m[2]};
   uav.placement.yaw_rad = rad_from_deg(table.number_or("yaw_deg", kYaw_deg, 0.0));
+  uav.yaw_spread_rad = rad_from_deg(table.number_or("yaw_spread_deg", kYawSpread_deg, 0.0));
   uav.command_latency = table.duration_or("command_latency_ms", kLatency_ms, Duration{0});
   if (table.has("sensors")) {
     const TomlTable sensors = table.table("sensors");
@@ -127,8 +129,9 @@ UavSetup read_uav(const TomlTable& table, const std::optional<Sut>& default_sut,
 void read_uavs(const TomlTable& root, Scenario& scenario) {
   const std::optional<Sut> default_sut = read_default_sut(root, scenario.file.parent_path());
   std::set<std::string> names;
-  for (const TomlTable& table : root.tables("uav", {"name", "model", "position_m", "yaw_deg",
-                                                    "command_latency_ms", "sensors", "sut"})) {
+  for (const TomlTable& table :
+       root.tables("uav", {"name", "model", "position_m", "yaw_deg", "yaw_spread_deg",
+                           "command_latency_ms", "sensors", "sut"})) {
     scenario.uavs.push_back(read_uav(table, default_sut, scenario));
     const std::string& name = scenario.uavs.back().placement.name;
     if (!names.insert(name).second) {

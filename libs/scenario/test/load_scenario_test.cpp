@@ -218,7 +218,7 @@ TEST_F(LoadScenario, RefusesAUavWithoutSut) {
   const std::string sut =
       "[sut]\ncommand = [\"tether-sut\", \"face-anchor\"]\n\n[sut.parameters]\n"
       "anchor = \"blue_box\"\nprecision_deg = 2.5\nretries = 3\nverbose = true\n";
-  EXPECT_THAT(error_with(sut, ""), HasSubstr("scenario.toml:37: [uav] has no SUT"));
+  EXPECT_THAT(error_with(sut, ""), HasSubstr("scenario.toml:38: [uav] has no SUT"));
 }
 
 TEST_F(LoadScenario, RefusesParametersThatAreNoOptions) {

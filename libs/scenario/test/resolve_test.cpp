@@ -1,8 +1,11 @@
 #include "scratch.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/base/units.h>
 #include <tether/scenario/scenario.h>
 
 namespace tether::scenario {
@@ -32,11 +35,24 @@ class Resolve : public testing::Test {
 };
 
 TEST_F(Resolve, WorldRequestPlacesTheUavs) {
-  const sim::WorldRequest request = world_request(scenario_);
+  const sim::WorldRequest request = world_request(scenario_, 1);
   EXPECT_EQ(request.world, scenario_.world);
   ASSERT_EQ(request.uavs.size(), 2u);
   EXPECT_EQ(request.uavs[1].name, "uav2");
   EXPECT_THAT(request.anchors, testing::ElementsAre("blue_box", "red_box"));
+}
+
+TEST_F(Resolve, TheStartYawIsDrawnFromItsSpreadBySeed) {
+  double least = 1e9, greatest = -1e9;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const sim::WorldRequest request = world_request(scenario_, seed);
+    EXPECT_EQ(request.uavs[0].yaw_rad, world_request(scenario_, seed).uavs[0].yaw_rad);
+    EXPECT_EQ(request.uavs[1].yaw_rad, scenario_.uavs[1].placement.yaw_rad);
+    least = std::min(least, deg_from_rad(request.uavs[0].yaw_rad));
+    greatest = std::max(greatest, deg_from_rad(request.uavs[0].yaw_rad));
+  }
+  EXPECT_NEAR(least, 87.5, 0.1);
+  EXPECT_NEAR(greatest, 92.5, 0.1);
 }
 
 TEST_F(Resolve, TimingsFollowTheOrderOfTheWorldsSensors) {
@@ -62,7 +78,7 @@ TEST_F(Resolve, ATimedSensorThatTheUavLacksIsAnErrorAtItsLine) {
   sim::World world = world_of_two();
   world.uavs[0].sensors[2].name = "camera1";
   const std::string message = bad_file_message([&] { (void)resolve_timings(scenario_, world); });
-  EXPECT_THAT(message, HasSubstr("scenario.toml:16: the UAV 'uav1' has no sensor 'camera'"));
+  EXPECT_THAT(message, HasSubstr("scenario.toml:17: the UAV 'uav1' has no sensor 'camera'"));
   EXPECT_THAT(message, HasSubstr("did you mean 'camera1'?"));
 }
 

@@ -116,7 +116,7 @@ TEST_F(ScenarioKeys, AMissingKeyIsNamedAtItsTable) {
       EXPECT_THAT(error.what(), HasSubstr("'" + key.key + "'"));
     }
   }
-  EXPECT_EQ(optional_keys, 24);
+  EXPECT_EQ(optional_keys, 25);
 }
 
 // Whatever the bytes, it is loaded or refused with a reason.

@@ -67,6 +67,7 @@ name = "uav1"
 model = "models/uav.sdf"
 position_m = [1, -2.5, 1.2]
 yaw_deg = 90
+yaw_spread_deg = 2.5
 command_latency_ms = 5
 
 [uav.sensors.camera]

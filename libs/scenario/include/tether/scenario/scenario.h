@@ -50,6 +50,7 @@ struct Sut {
 
 struct UavSetup {
   sim::UavPlacement placement;                 ///< model: absolute path
+  double yaw_spread_rad = 0.0;                 ///< the start yaw of a trial lies within ± this
   std::map<std::string, SensorSetup> sensors;  ///< by name; those that the scenario times
   Duration command_latency{0};
   Sut sut;  ///< its own, or the scenario's; own parameters go over the scenario's
@@ -87,14 +88,14 @@ std::string slug(std::string_view name);
 ///   TOML errors, an unknown key, a wrong type, a value out of its range, a missing file or key.
 Scenario load_scenario(const std::filesystem::path& file);
 
-/// The world request of a scenario.
-sim::WorldRequest world_request(const Scenario& scenario);
+/// The world request of a trial: each UAV's start yaw is drawn from its spread, keyed by the seed.
+sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
 
 /// Each UAV's timing models: one list per UAV of `world`, in the order of its sensors. A sensor
 /// that the scenario does not time is periodic at its SDF update rate without delay, or on demand
 /// without delay where SDF gives no rate.
 /// @throws Error(kBadFile) when the scenario times a sensor that the UAV does not have.
-/// @pre `world` was loaded from `world_request(scenario)`.
+/// @pre `world` was loaded from `world_request(scenario, seed)`.
 std::vector<std::vector<uav::SensorTiming>> resolve_timings(const Scenario& scenario,
                                                             const sim::World& world);
 
