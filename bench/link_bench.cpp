@@ -1,12 +1,13 @@
 // What the link costs above the bare wire. Each benchmark takes turns, a few exchanges long,
 // between a raw TCP ping-pong and a call of a vehicle that moves as many bytes, both over loopback
-// to a thread of this program; so whatever disturbs the machine disturbs both. Counters: the
+// to a thread of this program: a whole coordinator, with its record, over a world that is always
+// there already; so whatever disturbs the machine disturbs both. Counters: the
 // medians [us] and their ratio.
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
@@ -24,7 +25,10 @@
 #include <unistd.h>
 
 #include <tether/client/simulated_vehicle.h>
+#include <tether/coordinator/coordinator.h>
 #include <tether/link/server.h>
+#include <tether/record/writer.h>
+#include <tether/sim/simulator.h>
 
 namespace {
 
@@ -109,67 +113,108 @@ class RawExchange {
 
 // --- the other side of the vehicle --------------------------------------------------------------
 
-/// Where a vehicle connects: something that answers in a thread of its own until destroyed.
-class Host {
+/// A world that is always there already: steps cost nothing, and images lie ready.
+class StillSimulator final : public sim::Simulator {
  public:
-  virtual ~Host() = default;
-  virtual client::ConnectOptions options() const = 0;
+  StillSimulator() {
+    sim::Uav uav;
+    uav.name = "uav1";
+    uav.sensors.push_back({.name = "camera", .X_BS = {}, .update_rate_hz = 0.0, .model = {}});
+    std::get<sim::CameraModel>(uav.sensors[0].model).intrinsics =
+        uav::CameraModel::from_horizontal_fov(kWidthPx, kHeightPx, 1.0);
+    world_.uavs.push_back(uav);
+    make_image_ready();
+  }
+
+  void make_image_ready() { image_.rgb.assign(kImageBytes, 42); }
+
+  const sim::World& world() const override { return world_; }
+  StepGrid grid() const override { return StepGrid(world_.step); }
+  SimTime now() const override { return now_; }
+  void reset(std::uint64_t) override { now_ = {}; }
+  void advance_to(SimTime t) override { now_ = t; }
+  void apply(std::size_t, const uav::VelocityCommand&) override {}
+  void capture(sim::Snapshot& snapshot) const override { snapshot.at = now_; }
+  uav::Sample measure(const sim::Snapshot& snapshot, std::size_t, std::size_t,
+                      std::uint64_t index) override {
+    return uav::CameraSample{snapshot.at, index, kWidthPx, kHeightPx, std::move(image_.rgb)};
+  }
+  sim::GroundTruth ground_truth(std::size_t) const override { return {now_, {}}; }
+  std::string description() const override { return "still"; }
+
+ private:
+  sim::World world_;
+  SimTime now_{};
+  uav::CameraSample image_;
 };
 
-/// A server that answers at once, with the world always there already: the link alone.
-class BareHost final : public Host, private link::ServerEvents {
+/// A whole coordinator with its record, in a thread of its own.
+class CoordinatorHost {
  public:
-  BareHost() : server_(link::listen_tcp({"127.0.0.1", 0}, std::chrono::seconds(10), *this)) {
-    image_ = next_image();
-    thread_ = std::thread([this] {
-      while (!stopping_) server_->poll(std::chrono::milliseconds(50));
-    });
-  }
-  ~BareHost() override {
-    stopping_ = true;
-    thread_.join();
-  }
+  CoordinatorHost()
+      : folder_(std::filesystem::temp_directory_path() /
+                ("tether_link_bench." + std::to_string(::getpid()))),
+        recorder_(folder_, simulator_),
+        coordinator_(simulator_, recorder_, run_options(), wall_now),
+        server_(
+            link::listen_tcp({"127.0.0.1", 0}, std::chrono::seconds(10), coordinator_.events())),
+        thread_([this] { coordinator_.run(*server_); }) {}
+  ~CoordinatorHost() { thread_.join(); }
 
-  client::ConnectOptions options() const override {
+  client::ConnectOptions options() const {
     client::ConnectOptions options;
     options.address = server_->address();
+    options.token = kToken;
     return options;
   }
 
  private:
-  static uav::CameraSample next_image() {
-    return {SimTime{}, 0, kWidthPx, kHeightPx, std::vector<std::uint8_t>(kImageBytes, 42)};
+  static constexpr const char* kToken = "benchmark";
+
+  /// Records as always; and once the reply to a read has gone out, has the next image lie ready in
+  /// memory, as a renderer would.
+  class Recorder final : public record::Recorder {
+   public:
+    Recorder(const std::filesystem::path& folder, StillSimulator& simulator)
+        : folder_(folder), simulator_(&simulator) {
+      std::filesystem::create_directories(folder_);
+      file_ = record::make_mcap_recorder(folder_ / "record.mcap");
+    }
+    ~Recorder() override {
+      file_.reset();
+      std::filesystem::remove_all(folder_);
+    }
+    void write(const record::Header& m) override { file_->write(m); }
+    void write(SimTime at, const record::Interaction& m) override {
+      if (m.kind == record::kSensor) simulator_->make_image_ready();
+      file_->write(at, m);
+    }
+    void write(SimTime at, const record::CommandEffect& m) override { file_->write(at, m); }
+    void write(SimTime at, const record::GroundTruth& m) override { file_->write(at, m); }
+    void write(SimTime at, const record::Annotation& m) override { file_->write(at, m); }
+    void write(SimTime at, const record::Image& m) override { file_->write(at, m); }
+    void write(const record::Footer& m) override { file_->write(m); }
+
+   private:
+    std::filesystem::path folder_;
+    StillSimulator* simulator_;
+    std::unique_ptr<record::Recorder> file_;
+  };
+
+  static WallTime wall_now() { return WallTime(steady_clock::now().time_since_epoch()); }
+
+  static coordinator::RunOptions run_options() {
+    coordinator::RunOptions options;
+    options.token = kToken;
+    options.uavs = {{.timings = {uav::OnDemandTiming{uav::ConstantDelay{}}}}};
+    return options;
   }
 
-  void on_connected(link::PeerId, const std::string&) override {}
-  void on_closed(link::PeerId, const Failure&) override {}
-  void on_message(link::PeerId peer, link::Message message) override {
-    if (std::holds_alternative<link::Hello>(message)) return server_->send(peer, welcome());
-    if (const auto* request = std::get_if<link::Request>(&message)) answer(peer, *request);
-  }
-
-  void answer(link::PeerId peer, const link::Request& request) {
-    link::Reply reply{request.sequence, request.issued_at, std::nullopt};
-    const bool wants_image = std::holds_alternative<link::ReadSensor>(request.body);
-    if (wants_image) reply.sample = std::move(image_);
-    server_->send(peer, std::move(reply));
-    // A renderer would have the next one ready in memory just so.
-    if (wants_image) image_ = next_image();
-  }
-
-  static link::Welcome welcome() {
-    link::Welcome welcome;
-    welcome.catalogue.sensors = {
-        {"camera",
-         {},
-         30.0,
-         uav::CameraProperties{uav::CameraModel::from_horizontal_fov(kWidthPx, kHeightPx, 1.0)}}};
-    return welcome;
-  }
-
-  uav::CameraSample image_;
+  std::filesystem::path folder_;
+  StillSimulator simulator_;
+  Recorder recorder_;
+  coordinator::Coordinator coordinator_;
   std::unique_ptr<link::Server> server_;
-  std::atomic<bool> stopping_ = false;
   std::thread thread_;
 };
 
@@ -195,7 +240,7 @@ constexpr int kTurn = 20;
 
 /// Takes turns of raw exchanges that are answered with `answer_bytes` and of calls of a vehicle on
 /// `host`.
-void compare(benchmark::State& state, std::size_t answer_bytes, const Host& host,
+void compare(benchmark::State& state, std::size_t answer_bytes, const CoordinatorHost& host,
              const Call& call) {
   RawExchange raw(answer_bytes);
   auto vehicle = client::connect(host.options());
@@ -218,6 +263,7 @@ void compare(benchmark::State& state, std::size_t answer_bytes, const Host& host
     for (int i = 0; i < kTurn; ++i) tether_us.push_back(time_us(call_vehicle));
     state.SetIterationTime(tether_us.back() * 1e-6);
   }
+  if (!(*vehicle)->finish(true, "measured", "{}")) state.SkipWithError("the run did not end well");
   state.counters["raw_us"] = median(raw_us);
   state.counters["tether_us"] = median(tether_us);
   state.counters["ratio"] = median(tether_us) / median(raw_us);
@@ -225,7 +271,7 @@ void compare(benchmark::State& state, std::size_t answer_bytes, const Host& host
 
 /// Against 64 bytes each way. Required: at most 1.25 times the raw exchange.
 void command(benchmark::State& state) {
-  const BareHost host;
+  const CoordinatorHost host;
   compare(state, kPingBytes, host, [](client::Vehicle& vehicle) {
     return vehicle.command_velocity({{1.0, 0.0, 0.0}, 0.1});
   });
@@ -233,7 +279,7 @@ void command(benchmark::State& state) {
 
 /// Against as many bytes as the image has. Required: at most 1.5 times the raw exchange.
 void image(benchmark::State& state) {
-  const BareHost host;
+  const CoordinatorHost host;
   compare(state, kImageBytes, host, [](client::Vehicle& vehicle) -> Status {
     const auto sample = vehicle.read_camera("camera");
     if (!sample) return sample.failure();

@@ -159,6 +159,18 @@ std::string instructions(const TrialSpec& spec, const std::string& address,
   return text;
 }
 
+/// A camera's first image costs the most by far (GL start-up, shaders); it is made while the SUTs'
+/// processes start.
+void warm_up_cameras(sim::Simulator& simulator) {
+  sim::Snapshot snapshot;
+  simulator.capture(snapshot);
+  for (std::size_t u = 0; u < simulator.world().uavs.size(); ++u) {
+    const auto& sensors = simulator.world().uavs[u].sensors;
+    for (std::size_t s = 0; s < sensors.size(); ++s)
+      if (sensors[s].kind() == uav::SensorKind::kCamera) simulator.measure(snapshot, u, s, 0);
+  }
+}
+
 /// The coordinator's run with its SUTs, up to the closed record.
 coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
                                const TrialObserver& observer) {
@@ -171,6 +183,7 @@ coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
 
   Suts suts;
   if (!spec.external_sut) suts.start(spec, address, token);
+  warm_up_cameras(simulator);
   if (spec.external_sut && observer.on_listening)
     observer.on_listening(instructions(spec, address, token));
 
@@ -228,7 +241,8 @@ std::string utc_now() {
 
 experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer) {
   // Whatever is wrong with the user's files shows before anything is written.
-  sim::World world = sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
+  sim::World world =
+      sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
   scenario::resolve_timings(spec.scenario, world);
   prepare_folder(spec.folder);
 

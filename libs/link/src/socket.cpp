@@ -8,6 +8,7 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <time.h>
@@ -79,6 +80,12 @@ Transfer receive_some(int descriptor, std::span<std::uint8_t> space, bool whole)
       outcome(uninterrupted([&] { return ::recv(descriptor, space.data(), space.size(), flags); }));
   transfer.ended = transfer.bytes == 0 && !transfer.would_block && !transfer.error;
   return transfer;
+}
+
+bool may_look_out() {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  return ::sched_getaffinity(0, sizeof cores, &cores) == 0 && CPU_COUNT(&cores) > 1;
 }
 
 bool wait_readable(int descriptor, Duration timeout) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -41,6 +42,12 @@ struct Transfer {
 Transfer send_some(int descriptor, const FramePieces& pieces, std::size_t done);
 /// Receives into `space` with one call; with `whole`, blocks until it is full.
 Transfer receive_some(int descriptor, std::span<std::uint8_t> space, bool whole = false);
+
+/// Replies and the next requests often come at once: a command, then an image. Looking out for them
+/// so long before sleeping saves the time of falling asleep and waking, most of an exchange.
+inline constexpr std::chrono::microseconds kLookOut{20};
+/// Whether a thread that looks out leaves a core to its peer.
+bool may_look_out();
 
 /// Waits until the socket can be read (also: has ended). False: not within `timeout`.
 bool wait_readable(int descriptor, Duration timeout);

@@ -20,7 +20,10 @@ namespace {
 class TcpChannel final : public Channel {
  public:
   TcpChannel(std::unique_ptr<asio::io_context> context, Tcp::socket socket, std::string peer)
-      : context_(std::move(context)), socket_(std::move(socket)), peer_(std::move(peer)) {
+      : context_(std::move(context)),
+        socket_(std::move(socket)),
+        descriptor_(socket_.native_handle()),
+        peer_(std::move(peer)) {
     tune(socket_);
   }
 
@@ -34,12 +37,15 @@ class TcpChannel final : public Channel {
  private:
   using Deadline = std::optional<std::chrono::steady_clock::time_point>;
 
-  int descriptor() { return socket_.native_handle(); }
+  int descriptor() const { return descriptor_; }
+  void look_out() const;
   Result<Message> receive_until(const Deadline& deadline);
   Status receive_more(const Deadline& deadline);
 
   std::unique_ptr<asio::io_context> context_;
   Tcp::socket socket_;
+  int descriptor_;
+  const bool may_look_out_ = may_look_out();
   std::string peer_;
   std::mutex sending_;
   Encoder encoder_;  // guarded by sending_
@@ -67,6 +73,13 @@ Result<Message> TcpChannel::receive_until(const Deadline& deadline) {
   }
 }
 
+void TcpChannel::look_out() const {
+  if (!may_look_out_) return;
+  const auto end = std::chrono::steady_clock::now() + kLookOut;
+  while (!wait_readable(descriptor(), Duration(0)) && std::chrono::steady_clock::now() < end) {
+  }
+}
+
 Status TcpChannel::receive_more(const Deadline& deadline) {
   // Of a frame that has begun to come, the rest is fetched in one go.
   std::span<std::uint8_t> space = input_.space();
@@ -75,6 +88,7 @@ Status TcpChannel::receive_more(const Deadline& deadline) {
   if (deadline && !wait_readable(descriptor(), *deadline - std::chrono::steady_clock::now())) {
     return Failure{Failure::Kind::kTimeout, "no answer from " + peer_ + " within the limit"};
   }
+  if (!deadline && !rest_of_frame) look_out();
   const Transfer received = receive_some(descriptor(), space, rest_of_frame);
   if (received.error) return lost(peer_, received.error);
   if (received.ended) {

@@ -11,7 +11,6 @@
 
 #include <asio/io_context.hpp>
 #include <poll.h>
-#include <sched.h>
 #include <time.h>
 
 #include <tether/base/error.h>
@@ -24,19 +23,10 @@ using std::chrono::steady_clock;
 
 /// After a failed accept (no descriptors left), how long before the next try.
 constexpr std::chrono::milliseconds kAcceptPause{100};
-/// A SUT that has its reply often asks again at once (a command, then an image). Looking out for
-/// that so long before sleeping saves the time of falling asleep and waking, most of an exchange.
-constexpr std::chrono::microseconds kLookOut{20};
-/// Successes in a row before the other peers are looked after again.
+/// Successful look-outs in a row before the other peers are looked after again.
 constexpr int kMaxLookOuts = 16;
 /// On destruction, how long unsent frames may take.
 constexpr std::chrono::seconds kFinishLimit{1};
-
-int usable_cores() {
-  cpu_set_t cores;
-  CPU_ZERO(&cores);
-  return ::sched_getaffinity(0, sizeof cores, &cores) == 0 ? CPU_COUNT(&cores) : 1;
-}
 
 class TcpServer final : public Server {
  public:
@@ -76,7 +66,7 @@ class TcpServer final : public Server {
   std::vector<pollfd> watched_;  // the acceptor, then peers_ in order
   PeerId next_id_ = 1;
   Peer::Deadline accept_paused_until_;
-  const bool may_look_out_ = usable_cores() > 1;  // alone on a core, it would keep the SUT waiting
+  const bool may_look_out_ = may_look_out();
   PeerId spoke_last_ = 0;
   int look_outs_ = 0;
 };
