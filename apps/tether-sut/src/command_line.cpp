@@ -8,6 +8,7 @@
 
 #include <tether/base/time.h>
 #include <tether/base/units.h>
+#include <tether/base/version.h>
 
 namespace tether::sut {
 namespace {
@@ -119,8 +120,9 @@ void add_face_anchor_options(CLI::App& app, Written& written) {
   app.add_option("--min-yaw-rate-deg-s", written.min_yaw_rate_deg_s, "Never slower than this")
       ->check(within(0.01, 720.0))
       ->capture_default_str();
-  app.add_flag("--search-clockwise", written.face.search_clockwise,
-               "Turn this way while the anchor was never seen");
+  app.add_option("--search-clockwise", written.face.search_clockwise,
+                 "true or false: which way to turn while the anchor was never seen")
+      ->capture_default_str();
   app.add_option("--lost-limit-s", written.lost_limit_s, "Gives up so long after the last sight")
       ->check(seconds)
       ->capture_default_str();
@@ -156,7 +158,7 @@ std::variant<CommandLine, Refusal> parse_command_line(int argc, const char* cons
   CommandLine line;
   Written written;
   CLI::App app(kDescription, "tether-sut");
-  app.set_version_flag("--version", "tether-sut " TETHER_VERSION);
+  app.set_version_flag("--version", "tether-sut " + std::string(version()));
   app.footer(kExamples);
   app.require_subcommand(1);
 

@@ -8,6 +8,7 @@
 
 #include <malloc.h>
 
+#include <tether/base/version.h>
 #include <tether/client/simulated_vehicle.h>
 #include <tether/vision/runtime.h>
 
@@ -44,7 +45,7 @@ Result<std::unique_ptr<client::Vehicle>> connect_as(const CommandLine& line) {
   if (!options) {
     return options.failure();
   }
-  options->sut_name = "tether-sut";
+  options->sut_name = "tether-sut " + std::string(tether::version());
   prepare();
   return client::connect(std::move(options).value());
 }
