@@ -1,3 +1,5 @@
+#include "json_text.h"
+
 #include <png.h>
 
 #include <tether/base/error.h>
@@ -22,6 +24,12 @@ std::vector<std::uint8_t> encode_png(int width_px, int height_px,
                 std::string("cannot encode an image as PNG: ") + image.message);
   png.resize(size);
   return png;
+}
+
+std::string to_data_uri(std::span<const std::uint8_t> png) {
+  std::string uri = "data:image/png;base64,";
+  append_base64(uri, png);
+  return uri;
 }
 
 }  // namespace tether::record

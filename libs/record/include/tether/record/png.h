@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace tether::record {
@@ -10,5 +11,8 @@ namespace tether::record {
 /// @pre rgb.size() == width_px · height_px · 3. @throws Error(kInternal) if the encoder fails.
 std::vector<std::uint8_t> encode_png(int width_px, int height_px,
                                      std::span<const std::uint8_t> rgb);
+
+/// A PNG file as a data: URI, to embed it in SVG or HTML.
+std::string to_data_uri(std::span<const std::uint8_t> png);
 
 }  // namespace tether::record

@@ -1,0 +1,54 @@
+#include "commands.h"
+
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/experiment/camera_frame.h>
+#include <tether/experiment/text_file.h>
+#include <tether/record/reader.h>
+
+namespace tether::app {
+
+namespace {
+
+struct FramesOptions {
+  std::filesystem::path record;
+  std::filesystem::path out;
+};
+
+int run(const FramesOptions& options) {
+  const record::Record record = record::read_record(options.record, {.images = true});
+  if (record.images.empty())
+    throw Error(ErrorCode::kBadFile, {options.record.string()},
+                "holds no images; record them with: tether run SCENARIO --images");
+  const std::filesystem::path out =
+      options.out.empty() ? options.record.parent_path() / "frames" : options.out;
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error) throw Error(ErrorCode::kSetup, fmt::format("{}: {}", out.string(), error.message()));
+  for (const auto& logged : record.images) {
+    const record::Image& image = logged.message;
+    experiment::write_file_atomically(
+        out / fmt::format("{}-{}-{:06}.svg", image.uav, image.sensor, image.index),
+        experiment::frame_svg(image, experiment::find_roi(record, image)));
+  }
+  fmt::print("{} images in {}\n", record.images.size(), out.string());
+  return 0;
+}
+
+}  // namespace
+
+void add_frames_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<FramesOptions>();
+  CLI::App* command =
+      program.add_subcommand("frames", "Recorded camera images with the ROI that the SUT tracked");
+  command->add_option("record", options->record, "record.mcap of a run with --images")->required();
+  command->add_option("--out", options->out,
+                      "Folder for the pictures (SVG) [frames, beside the record]");
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace tether::app
