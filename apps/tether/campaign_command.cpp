@@ -32,12 +32,17 @@ struct CampaignOptions {
 };
 
 experiment::Settings settings_of(const scenario::Campaign& campaign) {
-  std::vector<std::filesystem::path> programs{own_file()};
-  for (const auto& entry : campaign.scenarios)
+  std::vector<std::filesystem::path> files{own_file()};
+  const auto every_trial_says_it = [](const std::string&) {};
+  for (const auto& entry : campaign.scenarios) {
     for (const auto& uav : entry.scenario.uavs)
-      programs.push_back(find_program(uav.sut.command.front()));
+      files.push_back(find_program(uav.sut.command.front()));
+    const sim::World world = sim::load_world(
+        scenario::world_request(entry.scenario, campaign.seeds.front()), every_trial_says_it);
+    files.insert(files.end(), world.files.begin(), world.files.end());
+  }
   return experiment::campaign_settings(
-      campaign, {{"tether", std::string(version())}, {"machine", describe_machine()}}, programs);
+      campaign, {{"tether", std::string(version())}, {"machine", describe_machine()}}, files);
 }
 
 /// A trial is a `tether run` of its own, so that whatever happens in one leaves the others alone.

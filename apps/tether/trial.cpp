@@ -244,6 +244,7 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
   sim::World world =
       sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
   scenario::resolve_timings(spec.scenario, world);
+  world.step = spec.scenario.step;
   prepare_folder(spec.folder);
 
   const std::string started_at = utc_now();

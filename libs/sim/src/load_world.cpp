@@ -125,6 +125,7 @@ void add_uavs(const WorldRequest& request, const WarningSink& warn, World& world
     check_elements(source, SdfPurpose::kUav, warn);
     source.throw_on_errors();
     world.uavs.push_back(read_uav(source, placement, world.gravity_m_s2, warn));
+    world.files.merge(source.files());
   }
 }
 
@@ -159,6 +160,7 @@ World load_world(const WorldRequest& request, const WarningSink& warn) {
   for (const std::string& name : request.anchors) {
     world.anchors.push_back(find_anchor(source, world, name));
   }
+  world.files.merge(source.files());
   return world;
 }
 

@@ -248,6 +248,18 @@ tinyxml2::XMLDocument* SdfSource::xml_of(const std::string& file) const {
   return document.get();
 }
 
+std::set<fs::path> SdfSource::files() const {
+  std::set<fs::path> files = resources_;
+  files.insert(file_);
+  const std::function<void(const sdf::ElementPtr&)> visit = [&](const sdf::ElementPtr& element) {
+    const fs::path file = element->FilePath();
+    if (fs::is_regular_file(file)) files.insert(fs::absolute(file).lexically_normal());
+    for_each_child(element, visit);
+  };
+  visit(root_.Element());
+  return files;
+}
+
 fs::path SdfSource::find_resource(const sdf::ElementPtr& element, const std::string& uri) const {
   std::vector<fs::path> candidates;
   if (uri.starts_with("model://")) {
@@ -257,7 +269,8 @@ fs::path SdfSource::find_resource(const sdf::ElementPtr& element, const std::str
     candidates.push_back(fs::path(element->FilePath()).parent_path() / path);
   }
   for (const fs::path& candidate : candidates) {
-    if (fs::is_regular_file(candidate)) return fs::absolute(candidate).lexically_normal();
+    if (fs::is_regular_file(candidate))
+      return *resources_.insert(fs::absolute(candidate).lexically_normal()).first;
   }
   throw Error(ErrorCode::kBadFile, where(element),
               describe(element) + " names the file '" + uri +

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,10 @@ class SdfSource {
   /// @throws Error(kBadFile) where there is none.
   std::filesystem::path find_resource(const sdf::ElementPtr& element, const std::string& uri) const;
 
+  /// Every file that this one was made of so far: itself, what it includes, and the resources
+  /// found. Absolute.
+  std::set<std::filesystem::path> files() const;
+
  private:
   int line_in_xml(const sdf::ElementPtr& element) const;
   tinyxml2::XMLDocument* xml_of(const std::string& file) const;
@@ -58,6 +63,7 @@ class SdfSource {
   sdf::Errors errors_;
   std::vector<std::string> console_errors_;
   std::vector<std::string> console_warnings_;
+  mutable std::set<std::filesystem::path> resources_;
   mutable std::map<std::string, std::unique_ptr<tinyxml2::XMLDocument>> xml_;
 };
 

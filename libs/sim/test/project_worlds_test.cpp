@@ -185,5 +185,20 @@ TEST(ShippedTextures, AreSmall) {
   }
 }
 
+TEST(ProjectWorlds, NameEveryFileThatTheyWereReadFrom) {
+  const std::filesystem::path root = TETHER_SOURCE_DIR;
+  const World world = load_world({.world = root / "worlds/room.sdf", .uavs = {}, .anchors = {}},
+                                 [](const std::string&) {});
+  EXPECT_TRUE(world.files.contains(root / "worlds/room.sdf"));
+  bool sdf_model = false, texture = false, mesh = false;
+  for (const auto& file : world.files) {
+    EXPECT_TRUE(std::filesystem::is_regular_file(file)) << file;
+    sdf_model |= file.filename() == "model.sdf";
+    texture |= file.extension() == ".png";
+    mesh |= file.extension() == ".obj";
+  }
+  EXPECT_TRUE(sdf_model && texture && mesh);
+}
+
 }  // namespace
 }  // namespace tether::sim

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -169,6 +170,8 @@ struct World {
   std::vector<Light> lights;
   std::vector<Uav> uavs;
   std::vector<PlacedAnchor> anchors;
+  std::set<std::filesystem::path>
+      files;  ///< everything that it was read from: SDF, meshes, textures; absolute
 };
 
 /// Which UAV to put where.
