@@ -1,0 +1,57 @@
+#include "support/trials.h"
+
+#include <cmath>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+/// With real CPU times no two trials are alike; a slow simulator must not show in them all the
+/// same.
+namespace tether::system_test {
+namespace {
+
+constexpr int kTrials = 5;
+constexpr double kFramePeriod_s = 1.0 / 30.0;
+
+struct Times {
+  std::vector<double> values_s;
+
+  double mean() const { return std::accumulate(values_s.begin(), values_s.end(), 0.0) / kTrials; }
+  double squared_standard_error() const {
+    double sum = 0.0;
+    for (const double value : values_s) sum += (value - mean()) * (value - mean());
+    return sum / (kTrials - 1) / kTrials;
+  }
+};
+
+Times fly(const TempFolder& folder, const std::string& name,
+          const std::vector<std::string>& options) {
+  const auto scenario = write_face_scenario(folder.path());
+  Times times;
+  for (int seed = 1; seed <= kTrials; ++seed) {
+    const auto out = folder / (name + std::to_string(seed));
+    Command command =
+        tether({"run", scenario, "--quiet", "--seed", std::to_string(seed), "--out", out});
+    command.arguments.insert(command.arguments.end(), options.begin(), options.end());
+    const Output output = run(command);
+    EXPECT_EQ(output.code, 0) << output.err;
+    const auto result = read_result(out);
+    for (const auto& metric : result["metrics"])
+      if (metric["name"] == "time_required") times.values_s.push_back(metric["value"]);
+  }
+  return times;
+}
+
+TEST(Spread, HoldsWhateverASlowSimulatorChanges) {
+  const TempFolder folder;
+  const Times fast = fly(folder, "fast", {});
+  const Times slow = fly(folder, "slow", {"--real-time-factor", "0.3"});
+  ASSERT_EQ(fast.values_s.size(), static_cast<std::size_t>(kTrials));
+  ASSERT_EQ(slow.values_s.size(), static_cast<std::size_t>(kTrials));
+  const double pooled = std::sqrt(fast.squared_standard_error() + slow.squared_standard_error());
+  // One frame: whether an image is caught or just missed.
+  EXPECT_NEAR(fast.mean(), slow.mean(), 3.0 * pooled + kFramePeriod_s);
+}
+
+}  // namespace
+}  // namespace tether::system_test

@@ -1,0 +1,73 @@
+#pragma once
+
+#include "files.h"
+#include "process.h"
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include <tether/record/reader.h>
+
+namespace tether::system_test {
+
+/// Writes data/face_anchor.toml (with a UAV whose camera has 320 × 240 pixels) or data/hover.toml
+/// (with the SUT of bad_sut.cpp in that mode) into `folder` with the substitutions made, and
+/// returns the file.
+std::filesystem::path write_face_scenario(const std::filesystem::path& folder,
+                                          const std::vector<Substitution>& substitutions = {});
+std::filesystem::path write_hover_scenario(const std::filesystem::path& folder,
+                                           const std::string& mode,
+                                           const std::vector<Substitution>& substitutions = {});
+
+/// `tether` with these arguments. A mark makes its processes findable.
+Command tether(const std::vector<std::string>& arguments, const std::string& mark = "none");
+
+/// The files that a run left. @throws std::runtime_error when one is missing or cannot be read.
+nlohmann::json read_result(const std::filesystem::path& folder);
+record::Record read_record(const std::filesystem::path& folder);
+
+/// What does not depend on how fast anything ran: result.json without "this_run", and without the
+/// limit of the simulator's speed, which is a setting of the run.
+std::string timeless_result(const std::filesystem::path& folder);
+/// The record as text with everything in it but wall times.
+std::string timeless_record(const std::filesystem::path& folder);
+
+/// Writes the record as a file that says the same.
+void write_record(const std::filesystem::path& file, const record::Record& record);
+
+/// One run whose SUTs are started by the test, so that they can have a scripted clock and a wire of
+/// their own.
+class ExternalRun {
+ public:
+  /// Starts `tether run --external-sut --quiet` and waits until it listens.
+  /// @throws std::runtime_error with its output if it does not.
+  ExternalRun(const std::filesystem::path& scenario, const std::filesystem::path& out,
+              const std::vector<std::string>& options = {});
+
+  /// host:port.
+  const std::string& address() const { return address_; }
+  /// Starts a SUT: `arguments` with the environment that joins it to this run. What is given in
+  /// `environment` goes over that.
+  std::unique_ptr<Process> start_sut(
+      const std::vector<std::string>& arguments,
+      const std::vector<std::pair<std::string, std::string>>& environment = {}) const;
+  Output wait(std::chrono::duration<double> limit = std::chrono::seconds(90)) {
+    return tether_->wait(limit);
+  }
+  Process& process() { return *tether_; }
+
+ private:
+  std::unique_ptr<Process> tether_;
+  std::string address_;
+};
+
+/// tether-sut with the parameters of data/face_anchor.toml.
+std::vector<std::string> face_sut();
+
+}  // namespace tether::system_test
