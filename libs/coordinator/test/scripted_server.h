@@ -105,6 +105,7 @@ class MemoryRecorder final : public record::Recorder {
   void write(SimTime, const record::GroundTruth& m) override { ground_truth.push_back(m); }
   void write(SimTime, const record::Annotation& m) override { annotations.push_back(m); }
   void write(SimTime, const record::Image& m) override { images.push_back(m); }
+  void flush() override {}
   void write(const record::Footer& m) override { footer = m; }
 
   record::Header header;

@@ -90,6 +90,8 @@ class McapRecorder final : public Recorder {
     write_json(images_.of("/images", message.uav, message.sensor), at, message);
   }
 
+  void flush() override { mcap_.flush(); }
+
   void write(const Footer& footer) override {
     mcap_.add_metadata(kFooterName, to_metadata(footer));
     mcap_.finish();
@@ -124,6 +126,7 @@ class NullRecorder final : public Recorder {
   void write(SimTime, const GroundTruth&) override {}
   void write(SimTime, const Annotation&) override {}
   void write(SimTime, const Image&) override {}
+  void flush() override {}
   void write(const Footer&) override {}
 };
 

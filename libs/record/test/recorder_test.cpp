@@ -84,9 +84,36 @@ TEST(Recorder, ChunksAreInTheFileWhileTheRunGoesOn) {
   EXPECT_EQ(record.ground_truth.back().at, st_ms(4990));
 }
 
+// What a killed process leaves: all up to the last flush.
+TEST(Recorder, WhatWasFlushedIsInTheFile) {
+  const TemporaryFile file;
+  const TemporaryFile killed;
+  const auto recorder = make_mcap_recorder(file.path());
+  write_messages(*recorder);
+  recorder->flush();
+  recorder->flush();
+  killed.set_bytes(file.bytes());
+  recorder->write(st_ms(51), command_interaction(4));
+
+  const Record record = read_record(killed.path(), {.images = true});
+  EXPECT_EQ(record.interactions.size(), 3U);
+  EXPECT_EQ(record.interactions.back().at, st_ms(50));
+  EXPECT_EQ(record.images.size(), 1U);
+  EXPECT_FALSE(record.footer.has_value());
+  EXPECT_EQ(killed.bytes().size(), file.bytes().size());
+
+  recorder->write(footer());
+  recorder->flush();
+  const Record whole = read_record(file.path());
+  EXPECT_EQ(whole.damage, "");
+  EXPECT_EQ(whole.interactions.size(), 4U);
+  EXPECT_TRUE(whole.footer.has_value());
+}
+
 TEST(Recorder, NullRecorderTakesEverything) {
   const auto recorder = make_null_recorder();
   write_messages(*recorder);
+  recorder->flush();
   recorder->write(footer());
 }
 
