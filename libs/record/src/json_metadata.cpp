@@ -88,16 +88,25 @@ void append_sensor(std::string& out, const SensorInfo& sensor) {
   object.boolean("periodic", sensor.periodic);
   object.integer("period_ns", to_ns(sensor.period));
   object.integer("phase_ns", to_ns(sensor.phase));
+  object.integer("delay_min_ns", to_ns(sensor.delay_min));
+  object.integer("delay_max_ns", to_ns(sensor.delay_max));
   object.close();
 }
 
+// A record need not bound the delay.
 SensorInfo read_sensor(const Json& json) {
-  return {text_member(json, "uav"),
-          text_member(json, "name"),
-          text_member(json, "kind"),
-          boolean_member(json, "periodic"),
-          time_member<Duration>(json, "period_ns"),
-          time_member<Duration>(json, "phase_ns")};
+  SensorInfo sensor;
+  sensor.uav = text_member(json, "uav");
+  sensor.name = text_member(json, "name");
+  sensor.kind = text_member(json, "kind");
+  sensor.periodic = boolean_member(json, "periodic");
+  sensor.period = time_member<Duration>(json, "period_ns");
+  sensor.phase = time_member<Duration>(json, "phase_ns");
+  sensor.delay_min =
+      optional_time_member<Duration>(json, "delay_min_ns").value_or(sensor.delay_min);
+  sensor.delay_max =
+      optional_time_member<Duration>(json, "delay_max_ns").value_or(sensor.delay_max);
+  return sensor;
 }
 
 void append_anchor(std::string& out, const Anchor& anchor) {

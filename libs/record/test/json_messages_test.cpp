@@ -175,9 +175,24 @@ TEST(JsonMetadata, HeaderRoundTrip) {
   ASSERT_EQ(out.sensors.size(), 2U);
   EXPECT_EQ(out.sensors[0].period, Duration(33'333'333));
   EXPECT_TRUE(out.sensors[0].periodic);
+  EXPECT_EQ(out.sensors[0].delay_min, Duration(7));
+  EXPECT_EQ(out.sensors[0].delay_max, Duration(8));
+  EXPECT_EQ(out.sensors[1].delay_max, Duration::max());
   ASSERT_EQ(out.anchors.size(), 1U);
   EXPECT_EQ(out.anchors[0].size_m[2], 0.6);
   EXPECT_EQ(out.anchors[0].q_WA[2], -0.5);
+}
+
+TEST(JsonMetadata, WithoutBoundsTheDelayOfASensorIsNotBounded) {
+  StringMap values = to_metadata(header());
+  std::string& sensors = values["sensors"];
+  const std::string bounds = R"(,"delay_min_ns":7,"delay_max_ns":8)";
+  ASSERT_NE(sensors.find(bounds), std::string::npos) << sensors;
+  sensors.erase(sensors.find(bounds), bounds.size());
+  const Header out = header_from_metadata(values);
+  EXPECT_EQ(out.sensors[0].phase, Duration(5));
+  EXPECT_EQ(out.sensors[0].delay_min, Duration(0));
+  EXPECT_EQ(out.sensors[0].delay_max, Duration::max());
 }
 
 TEST(JsonMetadata, FooterRoundTrip) {

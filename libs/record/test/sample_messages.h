@@ -105,8 +105,9 @@ inline Header header() {
   header.real_time_factor = 0.3;
   header.suts = {{"a", "tether-sut 0.1.0", "cpu", 6.5, Duration(2'000'000)},
                  {"b", "other", "wall", 1.0, {}}};
-  header.sensors = {{"a", "camera", "camera", true, Duration(33'333'333), Duration(5)},
-                    {"a", "range", "range", false, {}, {}}};
+  header.sensors = {
+      {"a", "camera", "camera", true, Duration(33'333'333), Duration(5), Duration(7), Duration(8)},
+      {"a", "range", "range", false, {}, {}}};
   header.anchors = {{"box", "box", {0.4, 0.5, 0.6}, {8, 0, 1.5}, {0.5, 0.5, -0.5, 0.5}}};
   return header;
 }

@@ -114,6 +114,9 @@ struct SensorInfo {
   bool periodic = false;
   Duration period{0};
   Duration phase{0};
+  /// Bounds of what the delay model can draw (available_at − sampled_at), both inclusive.
+  Duration delay_min{0};
+  Duration delay_max{Duration::max()};
 };
 struct SutInfo {
   std::string uav;
