@@ -65,7 +65,8 @@ class ConsistencyCheck {
     reached_ = std::max(reached_, wide(entry.at));
   }
 
-  // Rule 8: nothing is held. (Of a synchronised record, check_order sees to the log times.)
+  // Rule 8: nothing is held, and readings are of the state on arrival. (Of a synchronised record,
+  // check_order sees to the log times.)
   void check_free_running(const Logged<Interaction>& entry) {
     const Interaction& message = entry.message;
     if (wide(entry.at) < reached_) {
@@ -75,6 +76,22 @@ class ConsistencyCheck {
       report_.add(8, entry,
                   "held from ST " + ns(wide(message.st_at_arrival)) + " to " +
                       ns(wide(message.st_at_release)) + " in a free-running record");
+    }
+    if (message.kind == record::kSensor) {
+      check_free_reading(entry);
+    }
+  }
+
+  void check_free_reading(const Logged<Interaction>& entry) {
+    if (!entry.message.sample_state_at) {
+      return report_.add(0, entry, "a sensor reading without its times");
+    }
+    const Wide state = wide(*entry.message.sample_state_at);
+    const Wide present = grid_.at_or_before(wide(entry.message.st_at_arrival));
+    if (state != present) {
+      report_.add(8, entry,
+                  "arrived at ST " + ns(wide(entry.message.st_at_arrival)) +
+                      " and read the state of ST " + ns(state));
     }
   }
 

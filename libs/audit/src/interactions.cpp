@@ -11,6 +11,10 @@ namespace {
 using record::Interaction;
 using Entry = record::Logged<Interaction>;
 
+// How far the clocks of target and host may differ: one part in a thousand, and 1 ms.
+constexpr Wide kClockDrift = 1000;
+constexpr Wide kClockJitter = 1'000'000;
+
 struct SensorHistory {
   const record::SensorInfo* info = nullptr;
   std::optional<std::uint64_t> newest;  // greatest index read
@@ -21,6 +25,7 @@ struct SensorHistory {
 
 struct SutHistory {
   const record::SutInfo* info = nullptr;
+  WallTime last_wall_at_release;
   Wide last_reply_at = 0;    // a SUT begins with ET 0 …
   Wide last_release_at = 0;  // … at ST 0
   bool finished = false;
@@ -58,6 +63,7 @@ class InteractionCheck {
  private:
   void check(const Entry& entry, SutHistory& sut) {
     check_row(entry, sut);
+    check_growth(entry, sut);
     check_arrival(entry, sut);
     check_release(entry);
     check_stamp(entry, sut);
@@ -74,6 +80,7 @@ class InteractionCheck {
     if (entry.message.violation) {
       report_.add(5, entry, "recorded as a causality violation: " + *entry.message.violation);
     }
+    sut.last_wall_at_release = entry.message.wall_at_release;
     sut.last_reply_at = wide(entry.message.reply_at);
     sut.last_release_at = wide(entry.message.st_at_release);
     sut.finished = sut.finished || entry.message.kind == record::kFinish;
@@ -99,6 +106,22 @@ class InteractionCheck {
     if (wide(entry.message.lag) != lag) {
       report_.add(5, entry,
                   "lag of " + ns(wide(entry.message.lag)) + " recorded, it was " + ns(lag));
+    }
+  }
+
+  // Rule 5: ET by a wall clock grows no faster than the host's, within what two clocks may differ.
+  // The host sees a SUT compute for longer than it did, as the link adds to it, never for less.
+  void check_growth(const Entry& entry, const SutHistory& sut) {
+    if (sut.info->clock != "wall" || sut.last_wall_at_release == WallTime{} ||
+        entry.message.wall_at_arrival == WallTime{}) {
+      return;
+    }
+    const Wide grown = wide(entry.message.request_at) - sut.last_reply_at;
+    const Wide elapsed = wide(entry.message.wall_at_arrival) - wide(sut.last_wall_at_release);
+    if (grown > elapsed + elapsed / kClockDrift + kClockJitter) {
+      report_.add(5, entry,
+                  "ET grew by " + ns(grown) + " since its previous reply, while " + ns(elapsed) +
+                      " went by on the host");
     }
   }
 
@@ -152,6 +175,7 @@ class InteractionCheck {
       return report_.add(0, entry, "a sensor reading without its times");
     }
     check_sample(entry);
+    check_delay(entry, *found->second.info);
     check_timing(entry, *found->second.info);
     check_newness(entry, found->second);
   }
@@ -179,6 +203,16 @@ class InteractionCheck {
       report_.add(1, entry,
                   "requested at " + ns(request) + ", available at " + ns(available) +
                       ", but replied at " + ns(reply));
+    }
+  }
+
+  // Rule 1: the data was there when the sensor's delay says. (Negative ones: check_sample.)
+  void check_delay(const Entry& entry, const record::SensorInfo& sensor) {
+    const Wide delay = wide(*entry.message.available_at) - wide(*entry.message.sampled_at);
+    if (delay >= 0 && (delay < wide(sensor.delay_min) || delay > wide(sensor.delay_max))) {
+      report_.add(1, entry,
+                  "available " + ns(delay) + " after it was sampled, the sensor's delay is " +
+                      ns(wide(sensor.delay_min)) + " to " + ns(wide(sensor.delay_max)));
     }
   }
 

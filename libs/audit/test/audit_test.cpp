@@ -56,6 +56,74 @@ TEST_P(ValidRecord, Passes) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ValidRecord, ::testing::Range(1, 61));
 
+// ---- ET of a wall clock against the host's
+// ---------------------------------------------------------
+
+// One SUT that computes for `grown` of its ET while `elapsed` goes by on the host, twice.
+Record wall_clocked(Duration grown, Duration elapsed) {
+  Record record = generate({.seed = 4, .suts = 1, .interactions_per_sut = 3});
+  record.header.suts[0].clock = "wall";
+  WallTime wall = from_ns<WallTime>(5'000'000'000);
+  ExecTime et{};
+  SimTime st{};
+  record.commands.clear();
+  for (Entry& entry : record.interactions) {
+    const bool last = entry.message.sequence == 3;
+    Interaction m;
+    m.uav = entry.message.uav;
+    m.sequence = entry.message.sequence;
+    m.kind = last ? record::kFinish : record::kSleep;
+    m.request_at = et += entry.message.sequence == 1 ? Duration(0) : grown;
+    m.wall_at_arrival = wall += elapsed;
+    m.reply_at = et += last ? Duration(0) : 7 * kStep;  // waiting costs no wall time
+    m.wall_at_release = wall += Duration(10);
+    m.sleep_until = m.reply_at;
+    m.st_at_arrival = st;
+    m.lag = lag(m.request_at, st);
+    st = SimTime(m.reply_at.time_since_epoch() / kStep * kStep);
+    m.st_at_release = st;
+    m.grid_error = same_instant(m.reply_at) - st;
+    entry.message = m;
+    entry.at = st;
+  }
+  record.footer->et_at_end = {et};
+  return record;
+}
+
+// Counts rule 5 alone, which nothing but growth can break in such a record.
+std::size_t growth_findings(Record record) {
+  const Verdict verdict = audit(record);
+  return static_cast<std::size_t>(std::ranges::count_if(
+      verdict.findings, [](const Finding& finding) { return finding.rule == 5; }));
+}
+
+TEST(Audit, EtByAWallClockGrowsNoFasterThanTheHostsWallTime) {
+  using std::chrono::milliseconds;
+  const auto s = Duration(1'000'000'000);
+  EXPECT_EQ(growth_findings(wall_clocked(s, s)), 0U);
+  EXPECT_EQ(growth_findings(wall_clocked(s / 2, s)), 0U);  // the link takes time
+  // 1 ms and a thousandth are granted, not a nanosecond more.
+  EXPECT_EQ(growth_findings(wall_clocked(s + milliseconds(2), s)), 0U);
+  EXPECT_EQ(growth_findings(wall_clocked(s + milliseconds(2) + Duration(1), s)), 2U);
+  EXPECT_EQ(growth_findings(wall_clocked(milliseconds(1), Duration(0))), 0U);
+  EXPECT_EQ(growth_findings(wall_clocked(milliseconds(1) + Duration(1), Duration(0))), 2U);
+}
+
+TEST(Audit, EtIsComparedWithWallTimeOnlyWhereBothSayTheSame) {
+  const Duration s(1'000'000'000);
+  const Record fast = wall_clocked(2 * s, s);
+  for (const char* clock : {"cpu", "scripted"}) {
+    Record record = fast;
+    record.header.suts[0].clock = clock;
+    EXPECT_EQ(growth_findings(record), 0U) << clock;
+  }
+  Record record = fast;
+  record.interactions[1].message.wall_at_arrival = WallTime{};
+  EXPECT_EQ(growth_findings(record), 1U);
+  record.interactions[1].message.wall_at_release = WallTime{};
+  EXPECT_EQ(growth_findings(record), 0U);
+}
+
 // ---- Other verdicts
 // --------------------------------------------------------------------------------
 
@@ -104,6 +172,9 @@ Record free_running() {
   for (Entry& entry : record.interactions) {
     entry.message.st_at_arrival = entry.message.st_at_release;
     entry.message.lag = Duration(0);
+    if (entry.message.sample_state_at) {
+      entry.message.sample_state_at = entry.message.st_at_arrival;
+    }
   }
   record.footer->largest_lag = Duration(0);
   return record;
@@ -119,6 +190,26 @@ TEST(Audit, FreeRunningMustNotHold) {
   Record record = free_running();
   record.interactions[3].message.st_at_arrival -= kStep;
   EXPECT_EQ(rules_of(audit(record)), Rules{8});
+}
+
+Interaction& first_reading(Record& record) {
+  return std::ranges::find_if(
+             record.interactions,
+             [](const Entry& entry) { return entry.message.kind == record::kSensor; })
+      ->message;
+}
+
+TEST(Audit, FreeRunningReadsTheStateOnArrival) {
+  for (const Duration off : {kStep, -kStep, Duration(1)}) {
+    Record record = free_running();
+    *first_reading(record).sample_state_at += off;
+    const Verdict verdict = audit(record);
+    EXPECT_EQ(rules_of(verdict), Rules{8}) << to_text(verdict);
+    EXPECT_EQ(verdict.findings.size(), 1U);
+  }
+  Record record = free_running();
+  first_reading(record).sample_state_at.reset();
+  EXPECT_EQ(rules_of(audit(record)), Rules{0});
 }
 
 TEST(Audit, FreeRunningRecordsMustBeConsistent) {

@@ -72,6 +72,12 @@ Logged<CommandEffect>& effect_of(Record& record, const Interaction& command) {
   });
 }
 
+record::SensorInfo& info_of(Record& record, const Interaction& reading) {
+  return *std::ranges::find_if(record.header.sensors, [&](const record::SensorInfo& sensor) {
+    return sensor.uav == reading.uav && sensor.name == reading.sensor;
+  });
+}
+
 // A command that takes effect a step or more before some later reply leaves.
 Entry& early_command(Record& record) {
   return find(record, [&](const Interaction& m) {
@@ -156,6 +162,18 @@ const Planted kPlanted[] = {
                             r, [](const Interaction& i) { return is_range(i) && !waits(i); }, 0)
                             .message;
        m.available_at = *m.sampled_at - Duration(1);
+     }},
+    {"delay_shorter_than_the_sensors",
+     {1},
+     [](Record& r) {
+       const Interaction& m = find(r, is_range).message;
+       info_of(r, m).delay_min = Duration(1) + (*m.available_at - *m.sampled_at);
+     }},
+    {"delay_longer_than_the_sensors",
+     {1},
+     [](Record& r) {
+       const Interaction& m = find(r, is_new_image).message;
+       info_of(r, m).delay_max = *m.available_at - *m.sampled_at - Duration(1);
      }},
     {"reading_without_its_times",
      {0},

@@ -17,6 +17,8 @@ using record::Record;
 
 constexpr Duration kCameraPeriod{33'333'333};
 constexpr Duration kCameraPhase{1'234'567};
+constexpr Duration kMostCameraDelay{50'000'000};  // drawn from 0 up to this
+constexpr Duration kMostRangeDelay{60'000'000};
 constexpr Duration kTruthPeriod{9'999'999};  // no multiple of any step
 
 std::int64_t floor_ns(std::int64_t t, std::int64_t step) {
@@ -93,7 +95,7 @@ class Sut {
     message.kind = record::kSensor;
     message.sensor = "range";
     message.sample_index = range_index_++;
-    sample(message, et_, et_ + below(60'000'000));
+    sample(message, et_, et_ + below(to_ns(kMostRangeDelay)));
   }
 
   void camera(Interaction& message) {
@@ -127,7 +129,8 @@ class Sut {
   }
   std::int64_t available_at(std::uint64_t index) const {
     KeyedRandom delay({options_.seed, random_stream(uav_, "camera", "delay"), index});
-    return sampled_at(index) + static_cast<std::int64_t>(delay.uniform() * 50e6);
+    return sampled_at(index) + static_cast<std::int64_t>(
+                                   delay.uniform() * static_cast<double>(to_ns(kMostCameraDelay)));
   }
   // The newest camera measurement that is available now, wherever it is in the order of reading.
   std::uint64_t newest_available() const {
@@ -204,8 +207,8 @@ class Host {
       const std::string uav = "uav" + std::to_string(i);
       record_.header.suts.push_back({uav, "test", "scripted", 1.0, latency});
       record_.header.sensors.push_back(
-          {uav, "camera", "camera", true, kCameraPeriod, kCameraPhase});
-      record_.header.sensors.push_back({uav, "range", "range", false, {}, {}});
+          {uav, "camera", "camera", true, kCameraPeriod, kCameraPhase, {}, kMostCameraDelay});
+      record_.header.sensors.push_back({uav, "range", "range", false, {}, {}, {}, kMostRangeDelay});
       rows_.push_back(Sut(options_, i, latency).live());
     }
   }
