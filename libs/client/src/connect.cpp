@@ -31,12 +31,19 @@ Result<link::Welcome> shake_hands(link::Channel& channel, const ConnectOptions& 
                  "Welcome nor Refusal"};
 }
 
+/// How often to send Progress; 0: never. In free running a scripted SUT sends it too: nothing there
+/// repeats to the byte.
+Duration progress_period(const ConnectOptions& options, const link::Welcome& welcome) {
+  if (welcome.free_running) return options.heartbeat_period;
+  const bool scripted = options.time->kind() == link::ClockKind::kScripted;
+  return scripted ? Duration::zero() : options.progress_period;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,
                                          ConnectOptions options) {
   if (!options.time) options.time = make_wall_source();
-  const bool scripted = options.time->kind() == link::ClockKind::kScripted;
   auto welcome = shake_hands(*channel, options);
   if (!welcome) return welcome.failure();
   if (welcome->free_running && options.time->factor() < 1.0) {
@@ -44,9 +51,9 @@ Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,
                    "a CPU clock factor below 1 cannot be used in free running: a machine faster "
                    "than this one cannot be imitated by stalling"};
   }
+  const Duration period = progress_period(options, *welcome);
   return std::unique_ptr<Vehicle>(std::make_unique<SimulatedVehicle>(
-      std::move(channel), std::move(*welcome), std::move(options.time), make_wall_timer(),
-      scripted ? Duration::zero() : options.progress_period));
+      std::move(channel), std::move(*welcome), std::move(options.time), make_wall_timer(), period));
 }
 
 Result<std::unique_ptr<Vehicle>> connect(ConnectOptions options) {

@@ -1,5 +1,6 @@
 #include "free_running_clock.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tether::client {
@@ -12,29 +13,56 @@ FreeRunningClock::FreeRunningClock(const TimeSource& source, WallTimer& wall, Ex
       accounted_(source.elapsed()) {}
 
 ExecTime FreeRunningClock::now() const {
-  return start_ + (wall_->now() - wall_at_start_);
+  const std::lock_guard lock(mutex_);
+  return et_at(wall_of_target());
+}
+
+std::optional<ExecTime> FreeRunningClock::while_computing() const {
+  const std::lock_guard lock(mutex_);
+  if (phase_ == Phase::kCall) return std::nullopt;
+  return et_at(wall_of_target());
+}
+
+// Where the target's wall clock would be. With the mutex held.
+Duration FreeRunningClock::wall_of_target() const {
+  const Duration here = wall_->now();
+  if (phase_ == Phase::kStalling) return std::max(here, stall_until_);
+  if (phase_ != Phase::kComputing || source_->factor() <= 1.0) return here;
+  // Of the target's time, 1/factor has gone by here already.
+  const Duration on_target = source_->elapsed() - accounted_;
+  const double missing = 1.0 - 1.0 / source_->factor();
+  return here + Duration(std::llround(static_cast<double>(on_target.count()) * missing));
 }
 
 ExecTime FreeRunningClock::begin() {
-  if (source_->factor() > 1.0) {
-    // Of the target's time, 1/factor has gone by here already.
-    const Duration on_target = source_->elapsed() - accounted_;
-    const double missing = 1.0 - 1.0 / source_->factor();
-    const Duration stall(std::llround(static_cast<double>(on_target.count()) * missing));
-    wall_->sleep_until(wall_->now() + stall);
+  Duration stall_until{};
+  {
+    const std::lock_guard lock(mutex_);
+    if (phase_ != Phase::kComputing) return et_at(wall_of_target());
+    stall_until = stall_until_ = wall_of_target();
+    phase_ = Phase::kStalling;
   }
-  accounted_ = source_->elapsed();
+  wall_->sleep_until(stall_until);
+  enter(Phase::kCall);
   return now();
 }
 
 void FreeRunningClock::end(ExecTime) {
+  const std::lock_guard lock(mutex_);
   accounted_ = source_->elapsed();
+  phase_ = Phase::kComputing;
 }
 
 void FreeRunningClock::sleep_until(ExecTime until) {
   begin();
+  enter(Phase::kSleeping);
   wall_->sleep_until(wall_at_start_ + (until - start_));
   end(until);
+}
+
+void FreeRunningClock::enter(Phase phase) {
+  const std::lock_guard lock(mutex_);
+  phase_ = phase;
 }
 
 }  // namespace tether::client

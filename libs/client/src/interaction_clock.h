@@ -18,7 +18,7 @@ class InteractionClock {
   virtual ExecTime begin() = 0;
   /// It goes on computing; `at` is the reply's timestamp, ≥ that of begin().
   virtual void end(ExecTime at) = 0;
-  /// ET while the SUT computes; none between begin() and end().
+  /// ET while the SUT computes; none while it waits for a reply (from begin() to end()).
   virtual std::optional<ExecTime> while_computing() const = 0;
 };
 

@@ -46,9 +46,9 @@ SimulatedVehicle::SimulatedVehicle(std::unique_ptr<link::Channel> channel, link:
     auto clock = std::make_unique<FreeRunningClock>(*source_, *wall_, welcome.start);
     free_running_ = clock.get();
     clock_ = std::move(clock);
-    return;
+  } else {
+    clock_ = std::make_unique<BarrierClock>(*source_, welcome.start);
   }
-  clock_ = std::make_unique<BarrierClock>(*source_, welcome.start);
   if (progress_period > Duration::zero()) {
     progress_ = std::make_unique<ProgressReporter>(progress_period, *source_,
                                                    [this] { return report_progress(); });

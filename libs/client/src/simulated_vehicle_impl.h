@@ -20,7 +20,7 @@ Failure to_failure(const link::Refusal& refusal);
 /// A UAV in the simulator, reached over a channel whose handshake is done.
 class SimulatedVehicle final : public Vehicle {
  public:
-  /// `progress_period` 0: no progress messages.
+  /// `progress_period` 0: no progress messages. In free running they are a sign of life, no more.
   SimulatedVehicle(std::unique_ptr<link::Channel> channel, link::Welcome welcome,
                    std::unique_ptr<TimeSource> source, std::unique_ptr<WallTimer> wall,
                    Duration progress_period);
@@ -53,7 +53,7 @@ class SimulatedVehicle final : public Vehicle {
   /// Of a camera: whether the image has the size that the catalogue promised.
   Status check(const uav::Sample& sample, const uav::SensorDescription& sensor) const;
 
-  /// Sends a Progress if the SUT is computing. From the reporter's thread.
+  /// Sends a Progress unless the SUT waits for a reply. From the reporter's thread.
   bool report_progress();
   /// Remembers a failure after which there is no going on, and returns it.
   Failure give_up(Failure failure);

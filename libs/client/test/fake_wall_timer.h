@@ -2,24 +2,32 @@
 
 #include "wall_timer.h"
 
-#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <utility>
 
 namespace tether::client {
 
-/// A wall clock that moves only by sleeping and when told to.
+/// A wall clock that moves only by sleeping and when told to. One thread moves it; others may read.
 class FakeWallTimer final : public WallTimer {
  public:
-  Duration now() const override { return now_; }
+  Duration now() const override { return Duration(now_ns_.load()); }
   void sleep_until(Duration instant) override {
-    slept_ += std::max(instant - now_, Duration::zero());
-    now_ = std::max(now_, instant);
+    if (instant <= now()) return;
+    if (during_sleep_) during_sleep_();
+    slept_ += instant - now();
+    now_ns_ = instant.count();
   }
-  void advance(Duration duration) { now_ += duration; }
+  void advance(Duration duration) { now_ns_ += duration.count(); }
   Duration slept() const { return slept_; }
+  /// What happens at the beginning of each sleep that is none of zero length.
+  void during_sleep(std::function<void()> action) { during_sleep_ = std::move(action); }
 
  private:
-  Duration now_{1'000'000'000};
+  std::atomic<std::int64_t> now_ns_{1'000'000'000};
   Duration slept_{0};
+  std::function<void()> during_sleep_;
 };
 
 }  // namespace tether::client

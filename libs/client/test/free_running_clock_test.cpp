@@ -65,8 +65,63 @@ TEST_F(FreeRunning, SleepsOnTheWallClockAfterStalling) {
   EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 20ms);
 }
 
-TEST_F(FreeRunning, ReportsNoProgress) {
+TEST_F(FreeRunning, ShowsTheStallThatIsOwed) {
+  compute(10ms);
+  EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 40ms);
+  compute(1ms);
+  EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 44ms);
+  EXPECT_EQ(wall_.slept(), 0ms);
+  EXPECT_EQ(clock_.begin(), from_ns<ExecTime>(100) + 44ms);
+  compute(1ms);  // the library at work
+  EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 45ms);
+  clock_.end(ExecTime{});
+  EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 45ms);
+  compute(2ms);
+  EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 53ms);
+}
+
+TEST_F(FreeRunning, ShowsTheSameTimeBeforeDuringAndAfterAStall) {
+  compute(10ms);
+  int stalls = 0;
+  wall_.during_sleep([&] {
+    EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 40ms);
+    wall_.advance(20ms);
+    EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 40ms);
+    ++stalls;
+  });
+  clock_.begin();
+  EXPECT_EQ(stalls, 1);
+  EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 40ms);
+}
+
+TEST_F(FreeRunning, OwesNothingWhereTheTargetIsThisMachine) {
+  ManualTimeSource source(link::ClockKind::kWall);
+  FreeRunningClock clock(source, wall_, ExecTime{});
+  source.advance(5ms);
+  wall_.advance(5ms);
+  EXPECT_EQ(clock.now(), ExecTime(5ms));
+  EXPECT_EQ(clock.begin(), ExecTime(5ms));
+  EXPECT_EQ(wall_.slept(), 0ms);
+}
+
+TEST_F(FreeRunning, GivesSignsOfLifeButWhileItWaitsForAReply) {
+  compute(10ms);
+  EXPECT_EQ(clock_.while_computing(), from_ns<ExecTime>(100) + 40ms);
+  int sleeps = 0;
+  wall_.during_sleep([&] {
+    EXPECT_TRUE(clock_.while_computing().has_value());
+    ++sleeps;
+  });
+  clock_.begin();
+  EXPECT_EQ(sleeps, 1);  // the stall
   EXPECT_FALSE(clock_.while_computing().has_value());
+  clock_.end(ExecTime{});
+  EXPECT_TRUE(clock_.while_computing().has_value());
+
+  compute(1ms);
+  clock_.sleep_until(clock_.now() + 20ms);
+  EXPECT_EQ(sleeps, 3);  // a stall and a sleep
+  EXPECT_EQ(clock_.while_computing(), clock_.now());
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
+#include "fake_wall_timer.h"
 #include "progress_reporter.h"
 #include "scripted_coordinator.h"
+#include "simulated_vehicle_impl.h"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
@@ -133,6 +136,81 @@ TEST(Progress, ScriptedClocksReportNone) {
   for (const auto& message : coordinator.heard()) {
     EXPECT_FALSE(std::holds_alternative<Progress>(message));
   }
+}
+
+// --- signs of life in free running
+// ---------------------------------------------------------------
+
+link::Welcome free_running() {
+  link::Welcome welcome;
+  welcome.free_running = true;
+  return welcome;
+}
+
+std::size_t count_progress(const std::vector<link::Message>& heard) {
+  return static_cast<std::size_t>(
+      std::count_if(heard.begin(), heard.end(),
+                    [](const auto& message) { return std::holds_alternative<Progress>(message); }));
+}
+
+/// Blocks until the coordinator has heard two more; the first may have been under way.
+bool wait_for_two_more(ScriptedCoordinator& coordinator) {
+  const std::size_t before = count_progress(coordinator.heard());
+  return coordinator.wait_for_all(
+      [before](const auto& heard) { return count_progress(heard) >= before + 2; });
+}
+
+TEST(Heartbeat, OfEveryClockInFreeRunning) {
+  for (const auto kind :
+       {link::ClockKind::kWall, link::ClockKind::kCpu, link::ClockKind::kScripted}) {
+    ScriptedCoordinator coordinator(free_running());
+    ConnectOptions options;
+    options.time = std::make_unique<ManualTimeSource>(kind);
+    options.progress_period = Duration::zero();
+    options.heartbeat_period = 20us;
+    const auto vehicle = connect(coordinator.connect(), std::move(options)).value();
+    EXPECT_TRUE(wait_for_two_more(coordinator));
+    EXPECT_TRUE(vehicle->command_velocity({}).ok());
+    EXPECT_TRUE(wait_for_two_more(coordinator));
+    EXPECT_TRUE(vehicle->finish(true, "done", "{}").ok());
+  }
+}
+
+TEST(Heartbeat, IsNoneUnderTheBarrierAndNoneWhenNotWanted) {
+  for (const bool free : {false, true}) {
+    ManualTimeSource source(link::ClockKind::kWall);
+    ScriptedCoordinator coordinator(free ? free_running() : link::Welcome{});
+    ConnectOptions options;
+    options.time = std::make_unique<ManualTimeSource>(source);
+    options.progress_period = free ? 20us : 0us;
+    options.heartbeat_period = free ? 0us : 20us;
+    const auto vehicle = connect(coordinator.connect(), std::move(options)).value();
+    for (int i = 0; i < 200; ++i) {
+      source.advance(1ms);
+      ASSERT_TRUE(vehicle->command_velocity({}).ok());
+    }
+    EXPECT_EQ(count_progress(coordinator.heard()), 0u);
+  }
+}
+
+/// The stall before a call and a sleep each last until the coordinator has heard from the SUT.
+TEST(Heartbeat, GoesOnDuringStallsAndSleeps) {
+  ManualTimeSource source(link::ClockKind::kCpu, 4.0);
+  ScriptedCoordinator coordinator(free_running());
+  auto wall = std::make_unique<FakeWallTimer>();
+  int sleeps = 0;
+  wall->during_sleep([&] {
+    EXPECT_TRUE(wait_for_two_more(coordinator));
+    ++sleeps;
+  });
+  SimulatedVehicle vehicle(coordinator.connect(), free_running(),
+                           std::make_unique<ManualTimeSource>(source), std::move(wall), 20us);
+  source.advance(40ms);
+  ASSERT_TRUE(vehicle.command_velocity({}).ok());
+  EXPECT_EQ(sleeps, 1);
+  ASSERT_TRUE(vehicle.sleep_for(20ms).ok());
+  EXPECT_EQ(sleeps, 2);
+  expect_monotone(coordinator.heard());
 }
 
 TEST(ProgressReporter, StopsWhenToldAndWhenTheReportFails) {

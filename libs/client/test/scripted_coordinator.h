@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <functional>
@@ -36,13 +37,14 @@ class ScriptedCoordinator final : public link::ServerEvents {
 
   /// Blocks until the message has come for which `wanted` holds; false: it never did.
   bool wait_for(const std::function<bool(const link::Message&)>& wanted) {
-    std::unique_lock lock(mutex_);
-    return heard_more_.wait_for(lock, std::chrono::seconds(20), [&] {
-      for (const auto& message : heard_) {
-        if (wanted(message)) return true;
-      }
-      return false;
+    return wait_for_all([&](const std::vector<link::Message>& heard) {
+      return std::any_of(heard.begin(), heard.end(), wanted);
     });
+  }
+  /// Blocks until `wanted` holds for everything heard so far; false: it never did.
+  bool wait_for_all(const std::function<bool(const std::vector<link::Message>&)>& wanted) {
+    std::unique_lock lock(mutex_);
+    return heard_more_.wait_for(lock, std::chrono::seconds(20), [&] { return wanted(heard_); });
   }
   /// Everything that it heard, in order.
   std::vector<link::Message> heard() {

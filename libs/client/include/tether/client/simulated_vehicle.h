@@ -23,6 +23,10 @@ struct ConnectOptions {
   /// Tell the coordinator this often how far ET has come, so that it can simulate meanwhile. 0:
   /// never. Scripted clocks never do.
   Duration progress_period = std::chrono::milliseconds(2);
+  /// In free running, where ST waits for nobody, the same message serves as a sign of life, sent
+  /// this often while the SUT computes, stalls or sleeps. 0: never; the coordinator then takes a
+  /// SUT for hung that makes no call for long.
+  Duration heartbeat_period = std::chrono::milliseconds(500);
 };
 
 /// Address, token, UAV and clock from the environment that `tether run` sets for the SUT it starts:
@@ -47,7 +51,7 @@ Result<ConnectOptions> options_from_environment();
 /// when the call begins, stands still until the reply is there whole, and goes on from the reply's
 /// timestamp. In free running nothing is held: ET is the wall time since the Welcome, sleeps are
 /// real, and with a CPU clock the client stalls before each call for the time by which the virtual
-/// target would have been slower.
+/// target would have been slower; its ET includes that time as soon as it is owed.
 Result<std::unique_ptr<Vehicle>> connect(ConnectOptions options);
 /// The same over a channel that is already there (tests, other transports). Ignores
 /// options.address.
