@@ -32,6 +32,7 @@ INSTANTIATE_TEST_SUITE_P(
                     std::vector<std::string>{tether_program(), "campaign", "--help"},
                     std::vector<std::string>{tether_program(), "report", "--help"},
                     std::vector<std::string>{tether_program(), "audit", "--help"},
+                    std::vector<std::string>{tether_program(), "frames", "--help"},
                     std::vector<std::string>{sut_program(), "--help"},
                     std::vector<std::string>{sut_program(), "face_anchor", "--help"},
                     std::vector<std::string>{sut_program(), "relative_position", "--help"}),
@@ -242,6 +243,12 @@ TEST(FaceAnchorImages, AreInTheRecordWhenAskedFor) {
   for (const auto& entry : record.interactions) reads += entry.message.sensor == "camera" ? 1u : 0u;
   EXPECT_GT(reads, 5u);
   EXPECT_EQ(record.images.size(), reads);
+
+  const Output frames =
+      run(tether({"frames", folder / "out/record.mcap", "--out", folder / "frames"}));
+  EXPECT_EQ(frames.code, 0) << frames.err;
+  const std::filesystem::directory_iterator pictures(folder / "frames");
+  EXPECT_EQ(static_cast<std::size_t>(std::distance(begin(pictures), end(pictures))), reads);
 }
 
 }  // namespace
