@@ -1,13 +1,11 @@
 #include "sdf_check.h"
 
+#include "sdf_numbers.h"
 #include "sdf_rules.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <optional>
 #include <set>
-#include <sstream>
 #include <string_view>
 
 namespace tether::sim {
@@ -49,8 +47,8 @@ const ElementTable kElements = {
     {"light",
      {"pose", "diffuse", "specular", "attenuation", "direction", "spot", "cast_shadows",
       "intensity"}},
-    {"attenuation", {"constant", "linear", "quadratic"}},
-    {"spot", {"outer_angle", "falloff"}},
+    {"attenuation", {"range", "constant", "linear", "quadratic"}},
+    {"spot", {"inner_angle", "outer_angle", "falloff"}},
     {"sensor", {"pose", "update_rate", "camera", "imu", "ray", "lidar"}},
     {"camera", {"pose", "horizontal_fov", "image", "clip", "noise", "distortion", "lens"}},
     {"image", {"width", "height", "format"}},
@@ -86,8 +84,6 @@ const ElementTable kWithoutEffect = {
     {"physics", {"real_time_factor", "real_time_update_rate"}},
     {"scene", {"grid", "origin_visual"}},
     {"model", {"allow_auto_disable"}},
-    {"attenuation", {"range"}},
-    {"spot", {"inner_angle"}},
     {"sensor", {"always_on", "visualize", "topic"}},
     {"camera", {"optical_frame_id"}},
 };
@@ -115,32 +111,52 @@ bool is_numeric(const sdf::ElementPtr& element) {
   return element->GetValue() && types.contains(element->GetValue()->GetTypeName());
 }
 
-/// The numbers of a text; none where anything in it is no number.
-std::optional<std::vector<double>> parse_numbers(const std::string& text) {
-  std::vector<double> numbers;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const char* begin = word.data() + (word.starts_with('+') ? 1 : 0);
-    const char* end = word.data() + word.size();
-    double number = 0.0;
-    const auto [rest, error] = std::from_chars(begin, end, number);
-    if (error != std::errc() || rest != end) return std::nullopt;
-    numbers.push_back(number);
+void check_numbers_of(const SdfSource& source, const sdf::ElementPtr& element,
+                      const std::vector<double>& numbers, const std::string& text) {
+  const ValueRule* rule = find_rule(element->GetParent()->GetName(), element->GetName());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!std::isfinite(numbers[i])) refuse(source, element, "is " + text + "; it must be finite");
+    if (rule != nullptr && i < rule->count && !rule->holds(numbers[i])) {
+      refuse(source, element, "is " + text + "; " + rule->allowed);
+    }
   }
-  return numbers;
 }
 
 void check_value(const SdfSource& source, const sdf::ElementPtr& element) {
   if (!is_numeric(element)) return;
   const std::string text = element->GetValue()->GetAsString();
   const auto numbers = parse_numbers(text);
-  if (!numbers) return;  // libsdformat has accepted it: nothing that a rule speaks of
-  const ValueRule* rule = find_rule(element->GetParent()->GetName(), element->GetName());
-  for (const double number : *numbers) {
-    if (!std::isfinite(number)) refuse(source, element, "is " + text + "; it must be finite");
-    if (rule != nullptr && !rule->holds(number)) {
-      refuse(source, element, "is " + text + "; " + rule->allowed);
-    }
+  if (!numbers) refuse(source, element, "is '" + text + "'; it must be numbers, without unit");
+  check_numbers_of(source, element, *numbers, text);
+}
+
+/// Lights reach as far as their attenuation lets them; from this range on, no scene shows the end.
+constexpr double kEndlessRange_m = 1000.0;
+
+bool shows_range(const sdf::ElementPtr& light, const sdf::ElementPtr& range) {
+  return attribute(light, "type") != "directional" && range->Get<double>() < kEndlessRange_m;
+}
+
+/// Inside an inner cone the light is even. It is so everywhere without a falloff.
+bool shows_inner_angle(const sdf::ElementPtr& light, const sdf::ElementPtr& angle) {
+  const sdf::ElementPtr falloff = angle->GetParent()->FindElement("falloff");
+  return attribute(light, "type") == "spot" && angle->Get<double>() > 0.0 && falloff &&
+         falloff->Get<double>() > 0.0;
+}
+
+/// Warns of what other simulators would show of a light, and Tether does not. libsdformat adds
+/// these elements to lights without them; only those of the file have a line.
+void check_light_shape(const SdfSource& source, const std::string& parent,
+                       const sdf::ElementPtr& element, const WarningSink& warn) {
+  if (!element->LineNumber()) return;
+  const sdf::ElementPtr light = element->GetParent()->GetParent();
+  if (parent == "attenuation" && element->GetName() == "range" && shows_range(light, element)) {
+    warn_at(source, element, "is not represented: lights do not end; give at least 1000 m", warn);
+  }
+  if (parent == "spot" && element->GetName() == "inner_angle" &&
+      shows_inner_angle(light, element)) {
+    warn_at(source, element, "is not represented: lights fall off from their axis on; give 0",
+            warn);
   }
 }
 
@@ -171,6 +187,7 @@ class Walk {
       return;
     }
     check_value(source_, element);
+    check_light_shape(source_, parent, element, warn_);
     // These two are read, and warned of, where a UAV is put together.
     if (name != "tether:multirotor" && name != "joint") visit_children(element);
   }
@@ -220,6 +237,7 @@ std::vector<double> read_numbers(const SdfSource& source, const sdf::ElementPtr&
            "is '" + text + "'; it must be " + std::to_string(count) +
                (count == 1 ? " finite number" : " finite numbers"));
   }
+  check_numbers_of(source, element, *numbers, text);
   return *numbers;
 }
 

@@ -1,11 +1,16 @@
 #include "sdf_rules.h"
 
+#include <cmath>
 #include <map>
 #include <numbers>
 
 namespace tether::sim {
 
 namespace {
+
+/// Beyond what a scene can hold: single-precision rendering and contacts fail long before.
+constexpr double kMaxLength_m = 1e5;
+constexpr double kMaxMass_kg = 1e6;
 
 bool is_positive(double value) {
   return value > 0.0;
@@ -16,34 +21,63 @@ bool is_not_negative(double value) {
 bool is_fraction(double value) {
   return value >= 0.0 && value <= 1.0;
 }
+bool is_length(double value) {
+  return value > 0.0 && value <= kMaxLength_m;
+}
+bool is_distance(double value) {
+  return value >= 0.0 && value <= kMaxLength_m;
+}
+bool is_coordinate(double value) {
+  return std::abs(value) <= kMaxLength_m;
+}
+bool is_mass(double value) {
+  return value > 0.0 && value <= kMaxMass_kg;
+}
 bool is_field_of_view(double value) {
   return value > 0.0 && value < std::numbers::pi;
 }
 bool is_image_edge(double value) {
   return value >= 1.0 && value <= 4096.0;
 }
-const ValueRule kPositive{is_positive, "it must be greater than 0"};
-const ValueRule kNotNegative{is_not_negative, "it must not be negative"};
+
+constexpr const char* kPositiveText = "it must be greater than 0";
+constexpr const char* kNotNegativeText = "it must not be negative";
+
+const ValueRule kPositive{is_positive, kPositiveText};
+const ValueRule kSeconds{is_positive, kPositiveText, "seconds"};
+const ValueRule kPixels{is_positive, kPositiveText, "pixels"};
+const ValueRule kInertia{is_positive, kPositiveText, "kg m^2"};
+const ValueRule kNotNegative{is_not_negative, kNotNegativeText};
+const ValueRule kAngle{is_not_negative, kNotNegativeText, "radians"};
+const ValueRule kRate{is_not_negative, kNotNegativeText, "hertz"};
 const ValueRule kFraction{is_fraction, "it must be between 0 and 1"};
-const ValueRule kFieldOfView{is_field_of_view,
-                             "it must be between 0 and pi radians, both excluded"};
-const ValueRule kImageEdge{is_image_edge, "it must be between 1 and 4096 pixels"};
+const ValueRule kLength{is_length, "it must be greater than 0 and at most 100000 m", "metres"};
+const ValueRule kDistance{is_distance, "it must not be negative, and at most 100000 m", "metres"};
+const ValueRule kScale{is_length, "it must be greater than 0 and at most 100000"};
+const ValueRule kMass{is_mass, "it must be greater than 0 and at most 1000000 kg", "kilograms"};
+const ValueRule kFieldOfView{is_field_of_view, "it must be between 0 and pi radians, both excluded",
+                             "radians"};
+const ValueRule kImageEdge{is_image_edge, "it must be between 1 and 4096 pixels", "pixels"};
+const ValueRule kPose{is_coordinate, "it must be within 100000 m of its frame's origin",
+                      "metres and radians", 3};
+const ValueRule kPosition{is_coordinate, "it must be within 100000 m of its frame's origin",
+                          "metres"};
 
 const std::map<std::string, ValueRule, std::less<>> kRules = {
-    {"physics/max_step_size", kPositive},
-    {"inertial/mass", kPositive},
-    {"inertia/ixx", kPositive},
-    {"inertia/iyy", kPositive},
-    {"inertia/izz", kPositive},
-    {"box/size", kPositive},
-    {"cylinder/radius", kPositive},
-    {"cylinder/length", kPositive},
-    {"sphere/radius", kPositive},
-    {"capsule/radius", kPositive},
-    {"capsule/length", kPositive},
-    {"ellipsoid/radii", kPositive},
-    {"plane/size", kPositive},
-    {"mesh/scale", kPositive},
+    {"physics/max_step_size", kSeconds},
+    {"inertial/mass", kMass},
+    {"inertia/ixx", kInertia},
+    {"inertia/iyy", kInertia},
+    {"inertia/izz", kInertia},
+    {"box/size", kLength},
+    {"cylinder/radius", kLength},
+    {"cylinder/length", kLength},
+    {"sphere/radius", kLength},
+    {"capsule/radius", kLength},
+    {"capsule/length", kLength},
+    {"ellipsoid/radii", kLength},
+    {"plane/size", kLength},
+    {"mesh/scale", kScale},
     {"ode/mu", kNotNegative},
     {"visual/transparency", kFraction},
     {"scene/ambient", kFraction},
@@ -58,23 +92,26 @@ const std::map<std::string, ValueRule, std::less<>> kRules = {
     {"attenuation/constant", kNotNegative},
     {"attenuation/linear", kNotNegative},
     {"attenuation/quadratic", kNotNegative},
-    {"spot/outer_angle", kNotNegative},
+    {"attenuation/range", kDistance},
+    {"spot/inner_angle", kAngle},
+    {"spot/outer_angle", kAngle},
     {"spot/falloff", kNotNegative},
-    {"sensor/update_rate", kNotNegative},
+    {"sensor/update_rate", kRate},
     {"camera/horizontal_fov", kFieldOfView},
     {"image/width", kImageEdge},
     {"image/height", kImageEdge},
-    {"clip/near", kPositive},
-    {"clip/far", kPositive},
-    {"intrinsics/fx", kPositive},
-    {"intrinsics/fy", kPositive},
+    {"clip/near", kLength},
+    {"clip/far", kLength},
+    {"intrinsics/fx", kPixels},
+    {"intrinsics/fy", kPixels},
     {"noise/stddev", kNotNegative},
     {"noise/bias_stddev", kNotNegative},
     {"noise/dynamic_bias_stddev", kNotNegative},
     {"noise/dynamic_bias_correlation_time", kNotNegative},
-    {"range/min", kNotNegative},
-    {"range/max", kPositive},
-    {"range/resolution", kNotNegative},
+    {"range/min", kDistance},
+    {"range/max", kLength},
+    {"range/resolution", kDistance},
+    {"rotor/position_m", kPosition},
     {"horizontal/samples", kPositive},
     {"vertical/samples", kPositive},
 };
@@ -82,6 +119,7 @@ const std::map<std::string, ValueRule, std::less<>> kRules = {
 }  // namespace
 
 const ValueRule* find_rule(const std::string& parent, const std::string& child) {
+  if (child == "pose") return &kPose;
   const auto rule = kRules.find(parent + "/" + child);
   return rule == kRules.end() ? nullptr : &rule->second;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace tether::sim {
@@ -7,7 +8,9 @@ namespace tether::sim {
 /// What the numbers of an element must be, beyond finite.
 struct ValueRule {
   bool (*holds)(double value);
-  const char* allowed;  ///< in words, to end an error message with
+  const char* allowed;    ///< in words, to end an error message with
+  const char* unit = "";  ///< in words; empty where the numbers have none
+  std::size_t count = 8;  ///< of how many numbers it speaks, from the first on
 };
 
 /// The rule for the element `child` in `parent`; nullptr where any finite number will do.

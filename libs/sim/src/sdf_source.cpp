@@ -1,5 +1,6 @@
 #include "sdf_source.h"
 
+#include "sdf_numbers.h"
 #include "sdf_rules.h"
 
 #include <cstdlib>
@@ -134,6 +135,10 @@ void for_each_child(const sdf::ElementPtr& element,
 SdfSource::~SdfSource() = default;
 
 SdfSource::SdfSource(const fs::path& file) : file_(fs::absolute(file).lexically_normal()) {
+  if (fs::is_directory(file_)) {
+    throw Error(ErrorCode::kBadFile, {file_.string(), 0},
+                "is a directory; name the SDF file in it, such as model.sdf");
+  }
   if (!fs::is_regular_file(file_)) {
     throw Error(ErrorCode::kBadFile, {file_.string(), 0}, "there is no such file");
   }
@@ -150,8 +155,16 @@ SdfSource::SdfSource(const fs::path& file) : file_(fs::absolute(file).lexically_
                 "the outermost element is <" + std::string(xml->RootElement()->Name()) +
                     ">; an SDF file begins with <sdf>");
   }
+  check_numbers(file_.string(), *xml);
   parse();
   if (!root_.Element()) throw_first_error();
+  check_included_numbers();
+}
+
+void SdfSource::check_included_numbers() const {
+  for (const fs::path& file : files()) {
+    if (file != file_) check_numbers(file.string(), *xml_of(file.string()));
+  }
 }
 
 void SdfSource::parse() {

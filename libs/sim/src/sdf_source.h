@@ -23,8 +23,9 @@ namespace tether::sim {
 /// console collected instead, and with the place of every element.
 class SdfSource {
  public:
-  /// @throws Error(kBadFile) where the file is missing, is no XML, no SDF, or has a value that SDF
-  ///   does not allow.
+  /// @throws Error(kBadFile) where the file is missing or a directory, is no XML, no SDF, or has a
+  /// value
+  ///   that SDF does not allow or would read in part only ("1 kg").
   explicit SdfSource(const std::filesystem::path& file);
   ~SdfSource();
   SdfSource(const SdfSource&) = delete;
@@ -53,6 +54,7 @@ class SdfSource {
   int line_in_xml(const sdf::ElementPtr& element) const;
   tinyxml2::XMLDocument* xml_of(const std::string& file) const;
   void parse();
+  void check_included_numbers() const;
   void collect_console(const std::string& text);
   [[noreturn]] void throw_first_error() const;
   FileLocation where(const sdf::Error& error) const;

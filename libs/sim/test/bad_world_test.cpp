@@ -99,6 +99,59 @@ const BadWorld kBadValues[] = {
      "w.sdf:3: ", "length 0"},
 };
 
+const BadWorld kBadNumbers[] = {
+    {"mass_with_unit", link_sdf("<inertial>\n<mass>1 kg</mass></inertial>"),
+     "w.sdf:6: ", "<mass> of link 'l' is '1 kg'; it must be one number in kilograms, without unit"},
+    {"size_with_unit", visual("<box>\n<size>1 1 1 m</size></box>"), "w.sdf:7: ",
+     "<size> of visual 'v' is '1 1 1 m'; it must be three numbers in metres, without unit"},
+    {"angle_with_unit",
+     world_sdf("<light name='s' type='spot'><spot>\n<outer_angle>11.5deg</outer_angle></spot>"
+               "</light>"),
+     "w.sdf:4: ", "'11.5deg'; it must be one number in radians, without unit"},
+    {"size_of_two_numbers", visual("<box><size>1 1</size></box>"), "w.sdf:6: ", "three numbers"},
+    {"size_of_four_numbers", visual("<box><size>1 1 1 1</size></box>"),
+     "w.sdf:6: ", "three numbers"},
+    {"decimal_comma", visual("<sphere><radius>2,5</radius></sphere>"), "w.sdf:6: ", "'2,5'"},
+    {"no_number", visual("<sphere><radius/></sphere>"),
+     "w.sdf:6: ", "is ''; it must be one number"},
+    {"unit_behind_a_comment", visual("<sphere><radius>2<!-- --> m</radius></sphere>"),
+     "w.sdf:6: ", "'2 m'"},
+    {"pose_with_unit", link_sdf("<pose>0 0 1 m 0 0 0</pose>"),
+     "w.sdf:5: ", "six numbers, metres and radians, without unit"},
+    {"pose_in_degrees", link_sdf("<pose degrees='true'>0 0 1 0 0 90deg</pose>"),
+     "w.sdf:5: ", "six numbers, metres and degrees, without unit"},
+    {"quaternion_pose", link_sdf("<pose rotation_format='quat_xyzw'>0 0 1 0 0 0</pose>"),
+     "w.sdf:5: ", "seven numbers"},
+    {"pose_of_an_include",
+     world_sdf("<include>\n<pose>1m 0 0 0 0 0</pose><uri>model://a</uri></include>"),
+     "w.sdf:4: ", "'1m 0 0 0 0 0'"},
+    {"colour_with_text",
+     visual("<empty/>", "<material>\n<diffuse>0 0 1 1 blue</diffuse></material>"),
+     "w.sdf:8: ", "three or four numbers"},
+    {"whole_number",
+     world_sdf("<model name='m'><link name='l'><collision name='c'><geometry><empty/></geometry>\n"
+               "<max_contacts>1.5</max_contacts></collision></link></model>"),
+     "w.sdf:4: ", "'1.5'; it must be one whole number"},
+    {"attribute",
+     visual("<empty/>",
+            "<material><pbr><metal>\n<light_map uv_set='1 px'>l.png</light_map></metal>"
+            "</pbr></material>"),
+     "w.sdf:8: ", "<light_map> of visual 'v' has uv_set='1 px'; it must be one whole number"},
+    {"nested_model",
+     world_sdf("<model name='m'><link name='l'/><model name='n'><link name='k'>\n"
+               "<inertial><mass>2kg</mass></inertial></link></model></model>"),
+     "w.sdf:4: ", "<mass> of link 'k' is '2kg'"},
+    {"element_without_effect", world_sdf("<gui><camera name='c'>\n<pose>1 m</pose></camera></gui>"),
+     "w.sdf:4: ", "'1 m'"},
+    {"absurd_size", visual("<box><size>1e300 1 1</size></box>"),
+     "w.sdf:6: ", "it must be greater than 0 and at most 100000 m"},
+    {"size_beyond_a_double", visual("<box><size>1e400 1 1</size></box>"), "w.sdf:6: ", "1e400"},
+    {"absurd_mass", link_sdf("<inertial><mass>1e7</mass></inertial>"),
+     "w.sdf:5: ", "at most 1000000 kg"},
+    {"absurd_position", link_sdf("<pose>0 -1e6 0 0 0 0</pose>"),
+     "w.sdf:5: ", "within 100000 m of its frame's origin"},
+};
+
 const BadWorld kBadResources[] = {
     {"missing_mesh", visual("<mesh>\n<uri>no.obj</uri></mesh>"),
      "w.sdf:7: ", "<uri> of visual 'v' names the file 'no.obj', which does not exist"},
@@ -131,6 +184,7 @@ std::string name_of(const ::testing::TestParamInfo<BadWorld>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Files, BadWorlds, ::testing::ValuesIn(kBadFiles), name_of);
 INSTANTIATE_TEST_SUITE_P(Values, BadWorlds, ::testing::ValuesIn(kBadValues), name_of);
+INSTANTIATE_TEST_SUITE_P(Numbers, BadWorlds, ::testing::ValuesIn(kBadNumbers), name_of);
 INSTANTIATE_TEST_SUITE_P(Resources, BadWorlds, ::testing::ValuesIn(kBadResources), name_of);
 
 }  // namespace

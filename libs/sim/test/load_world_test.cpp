@@ -56,9 +56,9 @@ TEST(LoadWorld, ReadsPhysicsSceneAndLights) {
       <scene><ambient>0.25 0.25 0.25 1</ambient><background>0 0.5 1 1</background></scene>
       <light name='lamp' type='spot'><pose>1 2 3 0 0 0</pose><cast_shadows>true</cast_shadows>
         <diffuse>0.5 0.5 0.5 1</diffuse><intensity>0.5</intensity><direction>1 0 0</direction>
-        <attenuation><range>9</range><constant>0.5</constant><linear>0.25</linear>
+        <attenuation><range>1000</range><constant>0.5</constant><linear>0.25</linear>
           <quadratic>0.125</quadratic></attenuation>
-        <spot><inner_angle>0.5</inner_angle><outer_angle>0.75</outer_angle><falloff>2</falloff></spot></light>
+        <spot><inner_angle>0</inner_angle><outer_angle>0.75</outer_angle><falloff>2</falloff></spot></light>
       <light name='sun' type='directional'/>)")),
                             {},
                             {}});

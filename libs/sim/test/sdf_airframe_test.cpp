@@ -58,6 +58,8 @@ const BadUav kBadAirframes[] = {
      "uav.sdf:5: ", "is 'left'; it must be cw or ccw"},
     {"rotor_position", "<position_m>0 -0.2 0", "<position_m>0 -0.2",
      "uav.sdf:7: ", "3 finite numbers"},
+    {"absurd_rotor_position", "<position_m>0 -0.2 0", "<position_m>0 -1e6 0",
+     "uav.sdf:7: ", "within 100000 m"},
     {"rotor_without_direction", "<direction>cw</direction>", "",
      "uav.sdf:4: ", "<rotor> of model 'drone' has no <direction>"},
     {"three_rotors", "<rotor><position_m>0 -0.2 0</position_m><direction>ccw</direction></rotor>",

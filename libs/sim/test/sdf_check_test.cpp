@@ -82,6 +82,14 @@ const Unrepresented kUnrepresented[] = {
     {"light_on_a_dynamic_model",
      world_sdf("<model name='m'><link name='l'>\n<light name='lamp' type='point'/></link></model>"),
      "w.sdf:4: ", "light 'lamp' is on a dynamic model"},
+    {"range_of_a_light",
+     world_sdf("<light name='lamp' type='point'><attenuation>\n<range>20</range></attenuation>"
+               "</light>"),
+     "w.sdf:4: ", "<range> of light 'lamp' is not represented"},
+    {"inner_angle_of_a_spot",
+     world_sdf("<light name='lamp' type='spot'><spot><outer_angle>0.8</outer_angle>\n"
+               "<inner_angle>0.2</inner_angle><falloff>1</falloff></spot></light>"),
+     "w.sdf:4: ", "<inner_angle> of light 'lamp' is not represented"},
     {"nested_in_a_dynamic_model",
      world_sdf(
          "<model name='m'><link name='l'/>\n<model name='n'><link name='l'/></model></model>"),
@@ -98,6 +106,20 @@ TEST(SdfWarning, ElementsWithoutEffectAreSilent) {
       <plugin name='tether' filename='libtether_gazebo.so'/>
       <scene><grid>false</grid><origin_visual>false</origin_visual></scene>
       <physics name='p' type='ode'><real_time_update_rate>0</real_time_update_rate></physics>)"));
+  EXPECT_THAT(load({file, {}, {}}).warnings, IsEmpty());
+}
+
+TEST(SdfWarning, LightsThatLookAlikeEverywhereAreSilent) {
+  const SdfFolder folder;
+  const auto file = folder.write("w.sdf", world_sdf(R"(
+      <light name='endless' type='point'><attenuation><range>1000</range></attenuation></light>
+      <light name='sun' type='directional'><attenuation><range>20</range></attenuation></light>
+      <light name='even' type='spot'><spot><inner_angle>0.2</inner_angle>
+        <outer_angle>0.8</outer_angle><falloff>0</falloff></spot></light>
+      <light name='soft' type='spot'><spot><inner_angle>0</inner_angle>
+        <outer_angle>0.8</outer_angle><falloff>1</falloff></spot></light>
+      <light name='bulb' type='point'><spot><inner_angle>0.2</inner_angle>
+        <outer_angle>0.8</outer_angle><falloff>1</falloff></spot></light>)"));
   EXPECT_THAT(load({file, {}, {}}).warnings, IsEmpty());
 }
 

@@ -29,6 +29,13 @@ constexpr Case kCases[] = {
     {"image", "width", 4096.0, true},
     {"image", "width", 4097.0, false},
     {"image", "height", 0.0, false},
+    {"inertial", "mass", 1e6, true},
+    {"inertial", "mass", 1.001e6, false},
+    {"box", "size", 1e5, true},
+    {"box", "size", 1.001e5, false},
+    {"range", "min", 0.0, true},
+    {"link", "pose", -1e5, true},
+    {"link", "pose", -1.001e5, false},
     {"box", "size", std::numeric_limits<double>::quiet_NaN(), false},
 };
 
@@ -41,8 +48,12 @@ TEST(SdfRules, SayWhichValuesAreAllowed) {
   }
 }
 
+TEST(SdfRules, BoundOnlyThePositionOfAPose) {
+  EXPECT_EQ(find_rule("link", "pose")->count, 3u);
+}
+
 TEST(SdfRules, LeaveOtherElementsAlone) {
-  EXPECT_EQ(find_rule("link", "pose"), nullptr);
+  EXPECT_EQ(find_rule("plane", "normal"), nullptr);
   EXPECT_EQ(find_rule("attenuation", "mass"), nullptr);
 }
 

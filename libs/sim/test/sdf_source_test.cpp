@@ -48,6 +48,27 @@ TEST(SdfSource, MissingFileIsNamed) {
   EXPECT_EQ(refusal({"/nowhere/w.sdf", {}, {}}), "/nowhere/w.sdf: there is no such file");
 }
 
+TEST(SdfSource, DirectoryIsCalledOne) {
+  const SdfFolder folder;
+  const auto world = folder.write("w.sdf", world_sdf(""));
+  const std::string message =
+      world.parent_path().string() + ": is a directory; name the SDF file in it, such as model.sdf";
+  EXPECT_EQ(refusal({world.parent_path(), {}, {}}), message);
+  EXPECT_EQ(refusal({world, {{"uav", world.parent_path(), {}, 0.0}}, {}}), message);
+}
+
+TEST(SdfSource, UnitInAnIncludedFileNamesThatFile) {
+  const SdfFolder folder;
+  folder.write("models/thing/model.config",
+               "<model><name>thing</name><sdf version='1.7'>model.sdf</sdf></model>");
+  const auto inner = folder.write("models/thing/model.sdf",
+                                  "<sdf version='1.7'>\n<model name='thing'><link name='l'>\n"
+                                  "<inertial><mass>1 kg</mass></inertial></link></model></sdf>");
+  const auto file = folder.write("w.sdf", world_sdf("<include><uri>model://thing</uri></include>"));
+  EXPECT_THAT(refusal({file, {}, {}}),
+              HasSubstr(inner.string() + ":3: <mass> of link 'l' is '1 kg'"));
+}
+
 TEST(SdfSource, ErrorInAnIncludedFileNamesThatFile) {
   const SdfFolder folder;
   folder.write("models/thing/model.config",

@@ -202,9 +202,10 @@ using WarningSink = std::function<void(const std::string&)>;
 /// models/hummingbird/model.sdf shows them.
 ///
 /// @throws Error(kBadFile) with file and line for whatever cannot be used: missing file, XML or SDF
-///   errors, not exactly one <world>, impossible values (negative mass or size, zero-size image,
-///   gravity that does not point down, a step outside 10 µs to 20 ms), two UAVs of one name, an
-///   anchor that is no model or not one untextured box, cylinder or sphere, a UAV model without
+///   errors, not exactly one <world>, numbers with a unit or other text behind them, impossible
+///   values (negative mass or size, lengths and positions beyond 1e5 m, more than 1e6 kg, zero-size
+///   image, gravity that does not point down, a step outside 10 µs to 20 ms), two UAVs of one name,
+///   an anchor that is no model or not one untextured box, cylinder or sphere, a UAV model without
 ///   <tether:multirotor>, with two sensors of one name, a centre of mass off its origin, or less
 ///   thrust than weight.
 ///
