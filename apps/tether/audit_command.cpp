@@ -32,7 +32,12 @@ void add_audit_command(CLI::App& program, Action& action) {
       "audit", "Check a record against the rules of time, from the record alone");
   command->add_option("record", options->record, "record.mcap of a run")->required();
   command->add_option("--max-findings", options->max_findings, "Print at most this many")
+      ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
+  command->footer(R"(Exit code 0: every rule is kept; 1: not, or the record has no end.
+
+Example:
+  tether audit out/one/record.mcap)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -110,6 +110,9 @@ void add_campaign_command(CLI::App& program, Action& action) {
                    "Trials side by side; only where that cannot disturb the measured time")
       ->capture_default_str();
   command->add_flag("--resume", options->resume, "Go on with a folder: run only what is missing");
+  command->footer(R"(Examples:
+  tether campaign campaigns/face_anchor.toml --out out/face_anchor
+  tether campaign campaigns/face_anchor.toml --out out/face_anchor --resume)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

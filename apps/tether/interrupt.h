@@ -2,7 +2,8 @@
 
 namespace tether::app {
 
-/// From now on SIGINT and SIGTERM only set a flag; a second one ends the process at once. Call
+/// From now on SIGINT and SIGTERM only set a flag; one that comes half a
+/// second later or more ends the process at once. Call
 /// once, early.
 void catch_interrupts();
 /// Whether one has come.

@@ -18,7 +18,7 @@ Examples:
   tether run scenarios/face_anchor.toml
   tether run scenarios/face_anchor.toml --condition "target, no sync" --seed 7
   tether campaign campaigns/face_anchor.toml --out out/face_anchor
-  tether audit out/face_anchor/face_anchor/host/seed-1/record.mcap)";
+  tether audit out/face_anchor/face_anchor/host/seed-0001/record.mcap)";
 
 int run(int argc, char** argv) {
   CLI::App program{

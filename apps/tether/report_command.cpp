@@ -46,7 +46,7 @@ void print_campaign_summary(const std::filesystem::path& folder) {
       "Records and results: {0}\n"
       "Look next at:  tether report {0}      all tables: intervals, comparisons, the optimism of "
       "\"no sync\"\n"
-      "               tether audit {0}/SCENARIO/CONDITION/seed-N/record.mcap\n"
+      "               tether audit {0}/SCENARIO/CONDITION/seed-NNNN/record.mcap\n"
       "               any record.mcap opens in Foxglove (log time = simulated time)\n",
       folder.string());
 }
@@ -60,6 +60,9 @@ void add_report_command(CLI::App& program, Action& action) {
                    "text, markdown, or csv (one row per trial and metric)")
       ->check(CLI::IsMember({"text", "markdown", "csv"}))
       ->capture_default_str();
+  command->footer(R"(Examples:
+  tether report out/face_anchor
+  tether report out/face_anchor --format csv)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -89,6 +89,9 @@ int run(const RunOptions& options) {
       observer.on_status = [&](const coordinator::RunStatus& status) {
         line.show(to_line(status));
       };
+    observer.on_refused = [](const std::string& text) {
+      fmt::print(stderr, "warning: {}\n", text);
+    };
     observer.on_listening = [](const std::string& text) {
       fmt::print(stderr, "Waiting for the SUT. Start it with:\n{}", text);
     };
@@ -111,14 +114,16 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_option("scenario", options->scenario, "Scenario file (TOML)")->required();
   command->add_option("--condition", options->condition,
                       "Condition of the scenario; its first one if not given");
-  command->add_option("--seed", options->seed, "Seed of noise and delays")->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of noise, delays and start poses")
+      ->check(CLI::Range(0.0, 9007199254740992.0))
+      ->capture_default_str();
   command->add_option(
       "--out", options->out,
       "Folder for result.json, record.mcap and the SUT's log [out/SCENARIO/CONDITION/seed-N]");
   command
       ->add_option("--real-time-factor", options->real_time_factor,
                    "Simulate at most this fast against the wall clock")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1e-3, 1e4));
   command->add_option("--listen", options->listen, "Address for the SUT; port 0 takes a free one")
       ->capture_default_str();
   command->add_flag("--external-sut", options->external_sut,
@@ -127,6 +132,10 @@ void add_run_command(CLI::App& program, Action& action) {
                     "Keep the camera images that the SUT consumed in the record");
   command->add_flag("--json", options->json, "Print result.json instead of a summary");
   command->add_flag("--quiet", options->quiet, "Print errors and warnings only");
+  command->footer(R"(Examples:
+  tether run scenarios/face_anchor.toml
+  tether run scenarios/face_anchor.toml --condition "target, no sync" --seed 7
+  tether run scenarios/face_anchor.toml --images --out out/one)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -12,12 +12,13 @@ std::string to_line(const coordinator::RunStatus& status) {
     return fmt::format("waiting for {}",
                        status.waiting_for.empty() ? "the SUT to join" : status.waiting_for);
   const double st_s = to_seconds(status.st);
-  return fmt::format(
-      "ST {:7.3f} s   ET {:7.3f} s   lag {:6.1f} ms   {:5.2f}x real time   {} frames   {} "
-      "interactions{}",
-      st_s, to_seconds(status.et), to_seconds(lag(status.et, status.st)) * 1e3,
-      st_s / to_seconds(status.wall), status.images, status.interactions,
-      status.waiting_for.empty() ? "" : "   " + status.waiting_for + " computing");
+  const std::string et =
+      status.et ? fmt::format("   ET {:7.3f} s   lag {:6.1f} ms", to_seconds(*status.et),
+                              to_seconds(lag(*status.et, status.st)) * 1e3)
+                : "";
+  return fmt::format("ST {:7.3f} s{}   {:5.2f}x real time   {} frames   {} interactions{}", st_s,
+                     et, st_s / to_seconds(status.wall), status.images, status.interactions,
+                     status.waiting_for.empty() ? "" : "   " + status.waiting_for + " computing");
 }
 
 StatusLine::StatusLine() : is_terminal_(isatty(STDERR_FILENO) == 1) {}

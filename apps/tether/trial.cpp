@@ -5,15 +5,20 @@
 #include "machine.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <memory>
 #include <vector>
 
+#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <tether/audit/audit.h>
 #include <tether/base/error.h>
@@ -66,8 +71,12 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const sim::World& wor
                        ? sync::SyncPolicy::kFreeRunning
                        : sync::SyncPolicy::kConservativeBarrier;
   const auto timings = scenario::resolve_timings(spec.scenario, world);
+  const coordinator::ClockSetting clock{spec.condition.clock == scenario::Clock::kWall
+                                            ? link::ClockKind::kWall
+                                            : link::ClockKind::kCpu,
+                                        spec.condition.cpu_factor};
   for (std::size_t i = 0; i < timings.size(); ++i)
-    options.uavs.push_back({timings[i], spec.scenario.uavs[i].command_latency});
+    options.uavs.push_back({timings[i], spec.scenario.uavs[i].command_latency, clock});
   options.token = token;
   options.seed = spec.seed;
   options.real_time_factor = spec.condition.real_time_factor;
@@ -140,13 +149,54 @@ class Suts {
   std::vector<Sut> suts_;
 };
 
-void prepare_folder(const std::filesystem::path& folder) {
+/// A folder that only this process writes results to while the object lives.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder)
+      : fd_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (fd_ >= 0 && flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
+    const bool is_taken = fd_ >= 0 && errno == EWOULDBLOCK;
+    const std::string why =
+        is_taken ? "another run writes there; give this one a folder of its own with --out"
+                 : std::strerror(errno);
+    if (fd_ >= 0) close(fd_);
+    throw Error(is_taken ? ErrorCode::kUsage : ErrorCode::kSetup, folder.string() + ": " + why);
+  }
+  ~FolderLock() { close(fd_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int fd_;
+};
+
+void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (!error) std::filesystem::remove(folder / experiment::kResultFile, error);
-  if (!error) std::filesystem::remove(folder / kRecordFile, error);
   if (error)
     throw Error(ErrorCode::kSetup, fmt::format("{}: {}", folder.string(), error.message()));
+}
+
+/// Nothing of an earlier trial may be taken for this one's.
+void clear_folder(const std::filesystem::path& folder) {
+  for (const std::filesystem::path& file :
+       {std::filesystem::path(experiment::kResultFile), std::filesystem::path(kRecordFile)}) {
+    std::error_code error;
+    std::filesystem::remove(folder / file, error);
+    if (error)
+      throw Error(ErrorCode::kSetup,
+                  fmt::format("{}: {}", (folder / file).string(), error.message()));
+  }
+}
+
+/// @throws Error(kBadFile) for a SUT that cannot be started.
+void require_programs(const scenario::Scenario& scenario) {
+  for (const scenario::UavSetup& uav : scenario.uavs) try {
+      find_program(uav.sut.command.front());
+    } catch (const Error& e) {
+      throw Error(ErrorCode::kBadFile, {scenario.file.string()},
+                  fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()));
+    }
 }
 
 std::string instructions(const TrialSpec& spec, const std::string& address,
@@ -200,6 +250,7 @@ coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
     joined = status.joined == spec.scenario.uavs.size();
     if (observer.on_status) observer.on_status(status);
   };
+  hooks.on_refused = observer.on_refused;
   auto report = coordinator.run(*server, hooks);
   if (report.end == RunEnd::kSutLost && joined) report.reason += suts.post_mortem();
   if (report.end == RunEnd::kFinished) suts.let_leave();
@@ -216,7 +267,8 @@ std::vector<experiment::TaskEnd> task_ends(const coordinator::RunReport& report)
 
 /// A run that never began (no SUT joined) leaves no record worth reading.
 experiment::TrialResult judge(const TrialSpec& spec, const coordinator::RunReport& report) {
-  if (report.wall == Duration(0)) {
+  if (!report.began) {
+    std::filesystem::remove(spec.folder / kRecordFile);
     auto result =
         experiment::make_setup_failure(spec.scenario, spec.condition, spec.seed, report.reason);
     if (report.end == RunEnd::kInterrupted) result.end = experiment::kEndInterrupted;
@@ -227,7 +279,10 @@ experiment::TrialResult judge(const TrialSpec& spec, const coordinator::RunRepor
   const audit::Verdict verdict = audit::audit(record);
   const std::string text = audit::to_text(verdict, 0);
   result.audit = {verdict.passed(), text.substr(0, text.find('\n'))};
-  if (result.outcome == experiment::Outcome::kFailed) result.reason = report.reason;
+  if (result.outcome == experiment::Outcome::kFailed)
+    result.reason = report.reason;
+  else if (!verdict.passed())
+    experiment::invalidate(result, "the record breaks the rules of time: " + result.audit->summary);
   return result;
 }
 
@@ -245,7 +300,10 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
       sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
   scenario::resolve_timings(spec.scenario, world);
   world.step = spec.scenario.step;
-  prepare_folder(spec.folder);
+  if (!spec.external_sut) require_programs(spec.scenario);
+  make_folder(spec.folder);
+  const FolderLock lock(spec.folder);
+  clear_folder(spec.folder);
 
   const std::string started_at = utc_now();
   experiment::TrialResult result;

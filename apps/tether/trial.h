@@ -32,6 +32,8 @@ struct TrialSpec {
 struct TrialObserver {
   std::function<void(const std::string&)> warn;  ///< one line each
   std::function<void(const coordinator::RunStatus&)> on_status;
+  /// Somebody was not let in; one line.
+  std::function<void(const std::string&)> on_refused;
   /// External SUT: where to connect, and the environment that it needs.
   std::function<void(const std::string& instructions)> on_listening;
 };

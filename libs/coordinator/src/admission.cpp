@@ -41,4 +41,25 @@ std::variant<std::size_t, Refusal> admit(const link::Hello& hello, const std::st
   return uav;
 }
 
+namespace {
+std::string setting_of(link::ClockKind kind, double cpu_factor) {
+  return kind == link::ClockKind::kCpu ? fmt::format("cpu*{}", cpu_factor)
+                                       : std::string(link::name(kind));
+}
+}  // namespace
+
+std::optional<std::string> clock_fault(const link::Hello& hello,
+                                       const std::optional<ClockSetting>& wanted) {
+  const bool is_measured =
+      hello.clock == link::ClockKind::kWall || hello.clock == link::ClockKind::kCpu;
+  if (!wanted || !is_measured) return std::nullopt;
+  const std::string given = setting_of(hello.clock, hello.cpu_factor);
+  const std::string asked = setting_of(wanted->kind, wanted->cpu_factor);
+  if (given == asked) return std::nullopt;
+  return fmt::format(
+      "the SUT measures its time by \"{}\", the condition by \"{}\"; start it with "
+      "TETHER_CLOCK='{}'",
+      given, asked, asked);
+}
+
 }  // namespace tether::coordinator

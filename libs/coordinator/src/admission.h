@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include <tether/coordinator/coordinator.h>
 #include <tether/link/messages.h>
 
 namespace tether::coordinator {
@@ -15,5 +17,10 @@ namespace tether::coordinator {
 std::variant<std::size_t, link::Refusal> admit(const link::Hello& hello, const std::string& token,
                                                const std::vector<std::string>& uavs,
                                                const std::vector<bool>& taken);
+
+/// Why a SUT's clock is not the one that its condition asks for; none if it is, or is scripted or
+/// unstamped.
+std::optional<std::string> clock_fault(const link::Hello& hello,
+                                       const std::optional<ClockSetting>& wanted);
 
 }  // namespace tether::coordinator

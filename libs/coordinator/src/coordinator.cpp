@@ -1,6 +1,8 @@
 #include "coordinator_impl.h"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -16,8 +18,11 @@ constexpr int kStepsPerTurn = 64;
 constexpr Duration kIdleWait = std::chrono::milliseconds(20);
 // How often limits of WT are looked at.
 constexpr Duration kWatchPeriod = std::chrono::milliseconds(20);
-// A paced simulation may catch up this much ST after a late turn (rendering an image, say).
+// A paced simulation may catch up this much ST after a late turn (rendering an image, say); two
+// steps at least.
 constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
+// How often the record goes to its file, so that a killed run leaves what it had.
+constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
 SensorState make_sensor(const sim::Uav& uav, const sim::Sensor& sensor,
                         const uav::SensorTiming& timing, std::uint64_t seed) {
@@ -37,10 +42,24 @@ Session make_session(std::size_t index, const sim::Uav& uav, const UavOptions& o
   return session;
 }
 
+/// The least and the greatest delay that the model can draw.
+std::pair<Duration, Duration> bounds(const uav::Delay& delay) {
+  if (const auto* constant = std::get_if<uav::ConstantDelay>(&delay))
+    return {constant->value, constant->value};
+  if (const auto* empirical = std::get_if<uav::EmpiricalDelay>(&delay)) {
+    const auto [least, greatest] =
+        std::minmax_element(empirical->samples.begin(), empirical->samples.end());
+    return {*least, *greatest};
+  }
+  return {Duration(0), Duration::max()};
+}
+
 record::SensorInfo describe(const std::string& uav, const sim::Sensor& sensor,
                             const uav::SensorTiming& timing) {
   record::SensorInfo info{
       .uav = uav, .name = sensor.name, .kind = std::string(uav::name(sensor.kind()))};
+  std::tie(info.delay_min, info.delay_max) =
+      bounds(std::visit([](const auto& t) { return t.delay; }, timing));
   if (const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing)) {
     info.periodic = true;
     info.period = periodic->period;
@@ -119,14 +138,15 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
   options_.ground_truth_period = std::max(options_.ground_truth_period, grid_.dt());
   for (std::size_t i = 0; i < world().uavs.size(); ++i)
     sessions_.push_back(make_session(i, world().uavs[i], options_.uavs[i], options_.seed));
-  started_ = watched_ = host_clock_();
+  started_ = watched_ = flushed_ = host_clock_();
 }
 
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
   server_ = &server;
+  hooks_ = hooks;
   while (!running_ && !ended_) {
     server.poll(kIdleWait);
-    watch(hooks);
+    watch();
   }
   while (!ended_) {
     guarded([&] {
@@ -134,7 +154,7 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
       server.poll(moved ? Duration(0)
                         : std::min(kIdleWait, pace_ ? pace_->wait_for(grid_.dt()) : kIdleWait));
     });
-    watch(hooks);
+    watch();
   }
   if (failure_) std::rethrow_exception(failure_);
   return close_run();
@@ -147,7 +167,7 @@ void Coordinator::Impl::start() {
   running_ = true;
   started_ = host_clock_();
   if (options_.real_time_factor > 0.0)
-    pace_.emplace(options_.real_time_factor, kPaceCredit, started_);
+    pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid_.dt()), started_);
   for (Session& session : sessions_) {
     barrier_.add(ExecTime{});
     session.last_word = started_;
@@ -192,6 +212,9 @@ bool Coordinator::Impl::advance() {
   for (Session& session : sessions_)
     if (session.timer && session.computing())
       barrier_.progress(session.uav, session.timer->read(now));
+
+  // An unstamped client's clock may just have let another SUT go on.
+  if (tied()) release_ready();
 
   SimTime target = std::min(next_stop(), st_ + kStepsPerTurn * grid_.dt());
   if (target <= st_) {
@@ -250,22 +273,31 @@ void Coordinator::Impl::capture_due() {
       session.pending->captured = true;
     }
     if (!tied() || session.left) continue;
-    for (SensorState& sensor : session.sensors) capture_periodic(session, sensor);
+    for (std::size_t i = 0; i < session.sensors.size(); ++i) capture_periodic(session, i);
   }
 }
 
 // Keeps the states from which a later read may still be answered; images are rendered only when one
 // is.
-void Coordinator::Impl::capture_periodic(const Session& session, SensorState& sensor) {
+void Coordinator::Impl::capture_periodic(const Session& session, std::size_t sensor_index) {
+  SensorState& sensor = sessions_[session.uav].sensors[sensor_index];
   auto instant = sensor.schedule.sampling_instant(sensor.next_capture);
   while (instant && grid_.floor(*instant) <= st_) {
     ask_simulator([&](sim::Simulator& s) { s.capture(sensor.captures.add(sensor.next_capture)); });
     instant = sensor.schedule.sampling_instant(++sensor.next_capture);
-    // The next read is stamped at `bound` or later; one that is held was stamped at its request.
-    const ExecTime bound =
-        session.pending ? session.pending->entry.request_at : barrier_.bound(session.uav);
-    sensor.captures.drop_before(sensor.schedule.first_readable(same_instant(bound)));
+    sensor.captures.drop_before(
+        sensor.schedule.first_readable(same_instant(earliest_read(session, sensor_index))));
   }
+}
+
+// The least timestamp of a read of this sensor that is still to be answered: of one that is held,
+// its own; else no read can come before the SUT goes on.
+ExecTime Coordinator::Impl::earliest_read(const Session& session, std::size_t sensor_index) const {
+  if (session.pending)
+    if (const auto* read = std::get_if<link::ReadSensor>(&session.pending->request.body);
+        read && read->sensor == sensor_index)
+      return session.pending->entry.request_at;
+  return barrier_.bound(session.uav);
 }
 
 void Coordinator::Impl::apply_due() {
@@ -289,14 +321,18 @@ void Coordinator::Impl::end(RunEnd how, const std::string& reason) {
 }
 
 // Limits of WT, the caller's wishes, the status: none of it reaches a decision of the barrier.
-void Coordinator::Impl::watch(const RunHooks& hooks) {
+void Coordinator::Impl::watch() {
   const WallTime now = host_clock_();
   if (now - watched_ < kWatchPeriod) return;
   watched_ = now;
+  if (running_ && now - flushed_ >= kFlushPeriod) {
+    flushed_ = now;
+    log_.flush();
+  }
   if (!ended_) check_words(now);
-  if (hooks.should_stop && !ended_)
-    if (const auto stop = hooks.should_stop()) end(stop->first, stop->second);
-  if (hooks.on_status) hooks.on_status(status());
+  if (hooks_.should_stop && !ended_)
+    if (const auto stop = hooks_.should_stop()) end(stop->first, stop->second);
+  if (hooks_.on_status) hooks_.on_status(status());
 }
 
 void Coordinator::Impl::check_words(WallTime now) {
@@ -316,14 +352,15 @@ void Coordinator::Impl::check_words(WallTime now) {
 
 RunStatus Coordinator::Impl::status() const {
   RunStatus status{.st = st_,
-                   .et = {},
+                   .et = std::nullopt,
                    .wall = running_ ? host_clock_() - started_ : Duration(0),
                    .interactions = log_.figures().interactions,
                    .images = log_.figures().images,
                    .waiting_for = {}};
   for (const Session& session : sessions_) {
     if (session.joined()) ++status.joined;
-    if (running_) status.et = std::max(status.et, barrier_.bound(session.uav));
+    if (running_ && tied())
+      status.et = std::max(status.et.value_or(ExecTime{}), barrier_.bound(session.uav));
   }
   if (running_ && tied())
     if (const auto slowest = barrier_.slowest_computing())
@@ -337,6 +374,7 @@ RunReport Coordinator::Impl::close_run() {
   RunReport report{.end = ended_->first,
                    .reason = ended_->second,
                    .st = st_,
+                   .began = running_,
                    .wall = running_ ? host_clock_() - started_ : Duration(0),
                    .interactions = figures.interactions,
                    .images = figures.images,

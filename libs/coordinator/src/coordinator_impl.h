@@ -5,6 +5,7 @@
 #include "session.h"
 
 #include <exception>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -45,10 +46,11 @@ class Coordinator::Impl final : public link::ServerEvents {
   SimTime horizon() const;
   void at_boundary();
   void capture_due();
-  void capture_periodic(const Session& session, SensorState& sensor);
+  void capture_periodic(const Session& session, std::size_t sensor_index);
+  ExecTime earliest_read(const Session& session, std::size_t sensor_index) const;
   void apply_due();
   void log_ground_truth();
-  void watch(const RunHooks& hooks);
+  void watch();
   void check_words(WallTime now);
   void end(RunEnd how, const std::string& reason);
   RunReport close_run();
@@ -70,10 +72,11 @@ class Coordinator::Impl final : public link::ServerEvents {
     }
   }
   void join(link::PeerId peer, const link::Hello& hello);
-  void on_request(Session& session, const link::Request& request);
+  void on_request(Session& session, const link::Request& request, WallTime now);
+  bool is_word(const Session& session, const link::Message& message) const;
   void on_progress(Session& session, const link::Progress& progress);
   std::optional<std::string> fault_of(const Session& session, const link::Request& request) const;
-  void begin(Session& session, const link::Request& request);
+  void begin(Session& session, const link::Request& request, WallTime now);
   ExecTime charge(Session& session, const link::Request& request, record::Interaction& entry);
   ExecTime accept(Session& session, PendingInteraction& pending);
   ExecTime accept_read(Session& session, PendingInteraction& pending, const link::ReadSensor& read);
@@ -107,6 +110,8 @@ class Coordinator::Impl final : public link::ServerEvents {
   RunOptions options_;
   std::function<WallTime()> host_clock_;
   link::Server* server_ = nullptr;
+  RunHooks hooks_;
+  std::map<link::PeerId, std::string> remote_;  // address of each connection
 
   StepGrid grid_;
   sync::BarrierSynchronizer barrier_;
@@ -119,6 +124,7 @@ class Coordinator::Impl final : public link::ServerEvents {
 
   bool running_ = false;  // every SUT has joined
   WallTime started_;      // construction, then the moment when every SUT had joined
+  WallTime flushed_;      // when the record last went to its file
   WallTime watched_;      // when the limits of WT were last looked at
   std::optional<std::pair<RunEnd, std::string>> ended_;
   std::exception_ptr failure_;  // thrown in a callback, to be thrown again in run()

@@ -32,11 +32,15 @@ Session* Coordinator::Impl::find(link::PeerId peer) {
 
 void Coordinator::Impl::refuse(link::PeerId peer, link::Refusal::Reason reason,
                                const std::string& message) {
+  if (hooks_.on_refused && reason != link::Refusal::Reason::kRunEnded)
+    hooks_.on_refused(fmt::format("refused {}: {}", remote_[peer], message));
   server_->send(peer, link::Refusal{reason, message});
   server_->close(peer);
 }
 
-void Coordinator::Impl::on_connected(link::PeerId, const std::string&) {}
+void Coordinator::Impl::on_connected(link::PeerId peer, const std::string& remote_address) {
+  remote_[peer] = remote_address;
+}
 
 void Coordinator::Impl::on_message(link::PeerId peer, link::Message message) {
   if (ended_) return;
@@ -46,9 +50,10 @@ void Coordinator::Impl::on_message(link::PeerId peer, link::Message message) {
       return join(peer, *hello);
     if (!session)
       return refuse(peer, link::Refusal::Reason::kBadMessage, "the first message must be a Hello");
-    session->last_word = host_clock_();
+    const WallTime now = host_clock_();
+    if (is_word(*session, message)) session->last_word = now;
     if (const auto* request = std::get_if<link::Request>(&message))
-      return on_request(*session, *request);
+      return on_request(*session, *request, now);
     if (const auto* progress = std::get_if<link::Progress>(&message))
       return on_progress(*session, *progress);
     if (const auto* note = std::get_if<link::Annotation>(&message))
@@ -63,6 +68,9 @@ void Coordinator::Impl::on_message(link::PeerId peer, link::Message message) {
 
 void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
   const Session* session = find(peer);
+  if (!session && hooks_.on_refused && failure.kind != Failure::Kind::kDisconnected)
+    hooks_.on_refused(fmt::format("refused {}: {}", remote_[peer], failure.message));
+  remote_.erase(peer);
   if (!session || session->left) return;
   end(RunEnd::kSutLost,
       fmt::format("lost the SUT of UAV \"{}\": {}", session->uav_name, failure.message));
@@ -80,6 +88,8 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
     return refuse(peer, refusal->reason, refusal->message);
 
   Session& session = sessions_[std::get<std::size_t>(admitted)];
+  if (const auto fault = clock_fault(hello, options_.uavs[session.uav].clock))
+    return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
   session.peer = peer;
   session.hello = hello;
   session.hello.token.clear();
@@ -87,8 +97,17 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
     start();
 }
 
+/// Whether a message tells that the SUT lives. Under the barrier a progress that goes nowhere does
+/// not: its sender is a helper thread, and the SUT itself may be stuck.
+bool Coordinator::Impl::is_word(const Session& session, const link::Message& message) const {
+  const auto* progress = std::get_if<link::Progress>(&message);
+  return !progress || !running_ || !tied() || progress->reached > barrier_.bound(session.uav);
+}
+
 void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress) {
-  if (running_ && is_stamp(progress.reached)) barrier_.progress(session.uav, progress.reached);
+  if (!running_ || !tied() || !is_stamp(progress.reached)) return;
+  barrier_.progress(session.uav, progress.reached);
+  release_ready();
 }
 
 std::optional<std::string> Coordinator::Impl::fault_of(const Session& session,
@@ -113,7 +132,7 @@ std::optional<std::string> Coordinator::Impl::fault_of(const Session& session,
   return std::nullopt;
 }
 
-void Coordinator::Impl::on_request(Session& session, const link::Request& request) {
+void Coordinator::Impl::on_request(Session& session, const link::Request& request, WallTime now) {
   if (const auto fault = fault_of(session, request)) {
     refuse(session.peer, link::Refusal::Reason::kBadRequest, *fault);
     session.left = true;
@@ -121,7 +140,7 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
                fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, *fault));
   }
   ++session.next_sequence;
-  begin(session, request);
+  begin(session, request, now);
   capture_due();
   apply_due();
   if (tied())
@@ -131,7 +150,7 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
 }
 
 // From arrival to being held.
-void Coordinator::Impl::begin(Session& session, const link::Request& request) {
+void Coordinator::Impl::begin(Session& session, const link::Request& request, WallTime now) {
   PendingInteraction& pending = session.pending.emplace();
   pending.request = request;
   record::Interaction& entry = pending.entry;
@@ -139,7 +158,7 @@ void Coordinator::Impl::begin(Session& session, const link::Request& request) {
   entry.sequence = request.sequence;
   entry.kind = kind_of(request);
   entry.st_at_arrival = st_;
-  entry.wall_at_arrival = session.last_word;
+  entry.wall_at_arrival = now;
   entry.stamped = !session.timer && tied();
   if (request.previous_round_trip > Duration(0) && session.last_hold > Duration(0))
     entry.previous_link_time = request.previous_round_trip - session.last_hold;
@@ -155,7 +174,7 @@ ExecTime Coordinator::Impl::charge(Session& session, const link::Request& reques
                                    record::Interaction& entry) {
   if (!tied()) return same_instant(st_);
   const ExecTime stamp =
-      session.timer ? session.timer->pause(session.last_word) : request.issued_at;
+      session.timer ? session.timer->pause(entry.wall_at_arrival) : request.issued_at;
   const sync::Arrival arrival = barrier_.arrive(session.uav, stamp, st_);
   entry.lag = arrival.lag;
   if (arrival.violation)

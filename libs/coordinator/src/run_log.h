@@ -35,6 +35,7 @@ class RunLog {
   }
   void image(SimTime st, const std::string& uav, const std::string& sensor,
              const uav::CameraSample& sample);
+  void flush() { recorder_->flush(); }
   void end(record::Footer footer);
 
   const SyncFigures& figures() const { return figures_; }

@@ -60,7 +60,7 @@ class CoordinatorTest : public testing::Test {
   void make(std::size_t uavs = 1) {
     simulator_ = std::make_unique<sim::FakeSimulator>(sim::make_fake_world(uavs));
     options_.token = "secret";
-    options_.uavs.assign(uavs, {{kCameraTiming, kImuTiming, kRangeTiming}, latency_});
+    options_.uavs.assign(uavs, {{kCameraTiming, kImuTiming, kRangeTiming}, latency_, clock_});
     coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
                                                  [this] { return now_ += tick_; });
     server_ = std::make_unique<ScriptedServer>(coordinator_->events());
@@ -76,6 +76,7 @@ class CoordinatorTest : public testing::Test {
 
   RunOptions options_;
   Duration latency_{0};
+  std::optional<ClockSetting> clock_;
   Duration tick_ = milliseconds(1);
   WallTime now_{};
   RunHooks hooks_;
@@ -392,6 +393,71 @@ TEST_F(CoordinatorTest, AStampInThePastIsCountedAndNamed) {
   EXPECT_EQ(report.causality_violations, 1u);
   EXPECT_EQ(recorder_.interactions.at(1).violation, "request in the past by 1000000 ns");
   EXPECT_EQ(recorder_.interactions.at(1).request_at, us(10'000));
+}
+
+// A SUT that is stuck keeps a helper thread that says so again and again: no word.
+TEST_F(CoordinatorTest, ProgressThatGoesNowhereIsNoWord) {
+  options_.hang_limit = seconds(3);
+  make();
+  const auto peer = server_->add_sut(hello(), {});
+  hooks_.on_status = [&](const RunStatus&) { server_->deliver(peer, link::Progress{us(0)}); };
+  EXPECT_EQ(coordinator_->run(*server_, hooks_).end, RunEnd::kSutHung);
+}
+
+TEST_F(CoordinatorTest, InFreeRunningAnyProgressIsAWord) {
+  options_.policy = sync::SyncPolicy::kFreeRunning;
+  options_.real_time_factor = 1.0;
+  options_.hang_limit = milliseconds(300);
+  options_.time_limit = seconds(2);
+  make();
+  const auto peer = server_->add_sut(hello(), {});
+  hooks_.on_status = [&](const RunStatus&) { server_->deliver(peer, link::Progress{us(0)}); };
+  EXPECT_EQ(coordinator_->run(*server_, hooks_).end, RunEnd::kTimeLimit);
+}
+
+// Two SUTs may wait for each other behind our back: one's progress must let the other go on.
+TEST_F(CoordinatorTest, ProgressOfOneSutReleasesAnother) {
+  make(2);
+  bool released = false;
+  const auto slow = server_->add_sut(hello("uav0"), {});
+  const auto quick = server_->add_sut(hello("uav1"), {turn(Duration(110), 1.0)});
+  hooks_.on_status = [&](const RunStatus& status) {
+    released = server_->sent[quick].size() > 1;
+    if (status.interactions == 0) server_->deliver(slow, link::Progress{us(900)});
+  };
+  hooks_.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
+    if (!released && to_seconds(now_) < 100.0) return std::nullopt;
+    return std::pair(RunEnd::kInterrupted, std::string("enough"));
+  };
+  coordinator_->run(*server_, hooks_);
+  EXPECT_TRUE(released);
+}
+
+TEST_F(CoordinatorTest, LongStepsArePacedToo) {
+  options_.policy = sync::SyncPolicy::kFreeRunning;
+  options_.real_time_factor = 0.5;
+  options_.time_limit = seconds(1);
+  simulator_ = std::make_unique<sim::FakeSimulator>(sim::make_fake_world(1, milliseconds(80)));
+  options_.token = "secret";
+  options_.uavs.assign(1, {{kCameraTiming, kImuTiming, kRangeTiming}, Duration(0), std::nullopt});
+  coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
+                                               [this] { return now_ += tick_; });
+  server_ = std::make_unique<ScriptedServer>(coordinator_->events());
+  server_->add_sut(hello(), {});
+  EXPECT_EQ(coordinator_->run(*server_).end, RunEnd::kTimeLimit);
+}
+
+TEST_F(CoordinatorTest, ASutOnAnotherClockThanTheConditionsIsRefusedAndTheUserTold) {
+  clock_ = ClockSetting{link::ClockKind::kCpu, 12.0};
+  options_.connect_limit = seconds(1);
+  make();
+  std::vector<std::string> told;
+  hooks_.on_refused = [&](const std::string& text) { told.push_back(text); };
+  const auto peer = server_->add_sut(hello("", link::ClockKind::kWall), {});
+  EXPECT_EQ(coordinator_->run(*server_, hooks_).end, RunEnd::kSutLost);
+  EXPECT_THAT(refusal(peer).message, HasSubstr("TETHER_CLOCK='cpu*12'"));
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_THAT(told[0], HasSubstr("TETHER_CLOCK='cpu*12'"));
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ std::vector<SutResult> sut_results(const record::Record& record,
     sut.clock = info.clock;
     sut.cpu_factor = info.cpu_factor;
     const std::size_t index = suts.size();
-    if (record.footer && index < record.footer->et_at_end.size()) {
+    const bool tied = record.header.policy == record::kConservativeBarrier;
+    if (tied && record.footer && index < record.footer->et_at_end.size()) {
       sut.et_at_end = record.footer->et_at_end[index];
     }
     for (const TaskEnd& end : task_ends) {
@@ -113,6 +114,15 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   result.this_run.largest_lag = footer.largest_lag;
   settle(result, footer.reason);
   return result;
+}
+
+void invalidate(TrialResult& result, const std::string& reason) {
+  result.outcome = Outcome::kFailed;
+  result.reason = reason;
+  for (MetricValue& metric : result.metrics) {
+    metric.value.reset();
+    metric.missing_because = reason;
+  }
 }
 
 TrialResult make_setup_failure(const scenario::Scenario& scenario,

@@ -54,7 +54,7 @@ Json json_of(const SutResult& sut) {
               {"sut", sut.sut},
               {"clock", sut.clock},
               {"cpu_factor", sut.cpu_factor},
-              {"et_at_end_s", exact_seconds(sut.et_at_end)},
+              {"et_at_end_s", sut.et_at_end ? Json(exact_seconds(*sut.et_at_end)) : Json(nullptr)},
               {"finished", sut.finished},
               {"reached_goal", sut.reached_goal},
               {"outcome", sut.outcome},
@@ -122,7 +122,7 @@ SutResult read_sut(const JsonReader& json) {
   sut.sut = json.text("sut");
   sut.clock = json.text("clock");
   sut.cpu_factor = json.number("cpu_factor");
-  sut.et_at_end = ExecTime(json.seconds("et_at_end_s"));
+  if (!json.member("et_at_end_s").is_null()) sut.et_at_end = ExecTime(json.seconds("et_at_end_s"));
   sut.finished = json.boolean("finished");
   sut.reached_goal = json.boolean("reached_goal");
   sut.outcome = json.text("outcome");

@@ -227,5 +227,22 @@ TEST_F(MakeResult, ARecordWithoutItsEndIsAFailure) {
   EXPECT_THAT(result.reason, HasSubstr("torn at byte 17"));
 }
 
+TEST(Result, AnInvalidOneKeepsNoNumbers) {
+  TrialResult result;
+  result.outcome = Outcome::kGoalReached;
+  result.metrics.push_back({.name = "time_required",
+                            .kind = "time_required",
+                            .label = "",
+                            .unit = "s",
+                            .value = 2.0,
+                            .missing_because = "",
+                            .max = {}});
+  invalidate(result, "broken rules");
+  EXPECT_EQ(result.outcome, Outcome::kFailed);
+  EXPECT_EQ(result.reason, "broken rules");
+  EXPECT_FALSE(result.metrics[0].value);
+  EXPECT_EQ(result.metrics[0].missing_because, "broken rules");
+}
+
 }  // namespace
 }  // namespace tether::experiment

@@ -20,10 +20,18 @@
 /// the barrier's decisions carried out, and the record of it all.
 namespace tether::coordinator {
 
+struct ClockSetting {
+  link::ClockKind kind = link::ClockKind::kWall;
+  double cpu_factor = 1.0;  ///< of link::ClockKind::kCpu
+};
+
 /// How one UAV of the world meets its SUT.
 struct UavOptions {
   std::vector<uav::SensorTiming> timings;  ///< one per sensor of the UAV, in the world's order
   Duration command_latency{0};             ///< from a command's stamp to its effect; ≥ 0
+  /// How the condition measures this SUT's time. One that measures otherwise is refused; scripted
+  /// and unstamped ones are let in, and the record names them. None: any.
+  std::optional<ClockSetting> clock;
 };
 
 struct RunOptions {
@@ -65,7 +73,8 @@ struct RunReport {
   RunEnd end = RunEnd::kFinished;
   std::string reason;  ///< one line; names the culprit
   SimTime st;          ///< at the end
-  Duration wall{0};    ///< from the moment when every SUT had joined
+  bool began = false;  ///< every SUT had joined
+  Duration wall{0};    ///< from that moment on
   std::uint64_t interactions = 0;
   std::uint64_t images = 0;  ///< rendered because a SUT read them
   std::uint64_t causality_violations = 0;
@@ -78,19 +87,21 @@ struct RunReport {
 struct RunStatus {
   std::size_t joined = 0;  ///< SUTs
   SimTime st;
-  ExecTime et;  ///< greatest of all SUTs
+  std::optional<ExecTime> et;  ///< greatest of all SUTs; none where it is not tied to ST
   Duration wall{0};
   std::uint64_t interactions = 0;
   std::uint64_t images = 0;
   std::string waiting_for;  ///< the SUT that ST waits for; empty: none
 };
 
-/// What the caller has a say in while a run goes on. Both are called from `run`, some tens of times
-/// per second of WT.
+/// What the caller has a say in while a run goes on. Called from `run`; the first two some tens of
+/// times per second of WT.
 struct RunHooks {
   /// A reason to end the run now (the user's interrupt, a SUT's process that died); empty: go on.
   std::function<std::optional<std::pair<RunEnd, std::string>>()> should_stop;
   std::function<void(const RunStatus&)> on_status;
+  /// Somebody was not let in, or sent what no SUT sends: whence, and why. One line.
+  std::function<void(const std::string&)> on_refused;
 };
 
 /// One run. Construct, let `events()` hear a server, call `run` once.

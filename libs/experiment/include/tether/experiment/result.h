@@ -44,7 +44,7 @@ struct SutResult {
   std::string sut;  ///< name and version
   std::string clock;
   double cpu_factor = 1.0;
-  ExecTime et_at_end;
+  std::optional<ExecTime> et_at_end;  ///< none where ET was not tied to ST
   bool finished = false;
   bool reached_goal = false;
   std::string outcome;  ///< one line: why
@@ -118,6 +118,10 @@ struct TaskEnd {
 /// record without a footer is a failed trial. The caller adds audit, more versions, `started_at`.
 TrialResult make_result(const scenario::Scenario& scenario, const scenario::Condition& condition,
                         const record::Record& record, const std::vector<TaskEnd>& task_ends);
+
+/// The trial ran, and its numbers cannot be trusted: it counts as failed for `reason`, and no
+/// metric keeps a value that a mean could take up.
+void invalidate(TrialResult& result, const std::string& reason);
 
 /// The result of a trial that left no record because it could not be set up.
 TrialResult make_setup_failure(const scenario::Scenario& scenario,
