@@ -227,7 +227,7 @@ TEST_F(MakeResult, ARecordWithoutItsEndIsAFailure) {
   EXPECT_THAT(result.reason, HasSubstr("torn at byte 17"));
 }
 
-TEST(Result, AnInvalidOneKeepsNoNumbers) {
+TEST_F(Result, AnInvalidOneKeepsNoNumbers) {
   TrialResult result;
   result.outcome = Outcome::kGoalReached;
   result.metrics.push_back({.name = "time_required",

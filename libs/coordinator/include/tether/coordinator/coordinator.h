@@ -31,7 +31,7 @@ struct UavOptions {
   Duration command_latency{0};             ///< from a command's stamp to its effect; ≥ 0
   /// How the condition measures this SUT's time. One that measures otherwise is refused; scripted
   /// and unstamped ones are let in, and the record names them. None: any.
-  std::optional<ClockSetting> clock;
+  std::optional<ClockSetting> clock{};
 };
 
 struct RunOptions {
