@@ -100,6 +100,14 @@ TEST(Scenario, ThatIsAFolderIsRefused) {
                  folder / "out");
 }
 
+TEST(SutProgram, ThatDoesNotExistIsRefused) {
+  const TempFolder folder;
+  const auto scenario =
+      write_hover_scenario(folder.path(), "good", {{bad_sut_program().string(), "no-such-sut"}});
+  expect_refused(run(tether({"run", scenario, "--out", folder / "out"})),
+                 {scenario, "\"uav1\"", "no-such-sut"}, folder / "out");
+}
+
 TEST(Condition, ThatTheScenarioLacksIsRefused) {
   const TempFolder folder;
   const auto scenario = write_hover_scenario(folder.path(), "good");

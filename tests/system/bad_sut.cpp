@@ -95,6 +95,7 @@ void drain(int fd) {
 void send_hello(int fd) {
   tether::link::Hello hello;
   hello.sut = "bad_sut";
+  hello.clock = tether::link::ClockKind::kCpu;
   hello.token = std::getenv("TETHER_TOKEN");
   hello.uav = std::getenv("TETHER_UAV");
   tether::link::Encoder encoder;

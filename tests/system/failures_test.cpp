@@ -102,16 +102,6 @@ const Failing kAtStart[] = {
 INSTANTIATE_TEST_SUITE_P(Modes, FailingAtStart, testing::ValuesIn(kAtStart),
                          [](const auto& failing) { return failing.param.mode; });
 
-TEST(FailingAtStart, ForWantOfTheProgram) {
-  const TempFolder folder;
-  const auto scenario =
-      write_hover_scenario(folder.path(), "good", {{bad_sut_program().string(), "no-such-sut"}});
-  const Output output = run(tether({"run", scenario, "--out", folder / "out"}));
-  EXPECT_EQ(output.code, 3);
-  EXPECT_THAT(output.err, HasSubstr("no-such-sut"));
-  EXPECT_EQ(read_result(folder / "out")["end"], "setup_failed");
-}
-
 TEST(FailingAtStart, BecauseThePortIsTaken) {
   const TempFolder folder;
   const auto scenario = write_hover_scenario(folder.path(), "good");
