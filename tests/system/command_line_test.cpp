@@ -48,7 +48,7 @@ TEST_P(Examples, StandInTheHelpOfEachCommand) {
   EXPECT_THAT(run(tether({GetParam(), "--help"})).out, HasSubstr("\n  tether " + GetParam() + " "));
 }
 
-INSTANTIATE_TEST_SUITE_P(Commands, Examples, testing::Values("run", "campaign", "audit"),
+INSTANTIATE_TEST_SUITE_P(Commands, Examples, testing::Values("run", "campaign", "report", "audit"),
                          [](const auto& command) { return command.param; });
 
 TEST(Version, IsOneLineOfEachProgram) {
@@ -81,6 +81,8 @@ INSTANTIATE_TEST_SUITE_P(
                     std::vector<std::string>{"run"}, std::vector<std::string>{"--speed"},
                     std::vector<std::string>{"run", "a.toml", "--seed", "many"},
                     std::vector<std::string>{"run", "a.toml", "--real-time-factor", "-1"},
+                    std::vector<std::string>{"run", "a.toml", "--seed", "-1"},
+                    std::vector<std::string>{"run", "a.toml", "--real-time-factor", "nan"},
                     std::vector<std::string>{"audit", "nothing.mcap"},
                     std::vector<std::string>{"report", "nowhere"},
                     std::vector<std::string>{"report", ".", "--format", "xml"},

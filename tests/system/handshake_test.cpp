@@ -56,6 +56,11 @@ TEST_F(Intruders, AreRefusedAndChangeNothing) {
     EXPECT_THAT(uav.err, HasSubstr("uav9"));
     EXPECT_THAT(uav.err, HasSubstr("uav1"));
 
+    const Output clock =
+        run.start_sut({bad_sut_program(), "good"}, {{"TETHER_CLOCK", "cpu*7"}})->wait(20s);
+    EXPECT_EQ(clock.code, 3);
+    EXPECT_THAT(clock.err, AnyOf(HasSubstr("\"cpu*7\""), HasSubstr("already")));
+
     const Output garbage = run.start_sut({bad_sut_program(), "garbage"})->wait(20s);
     EXPECT_EQ(garbage.code, 0);
 
