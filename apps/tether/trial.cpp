@@ -121,12 +121,11 @@ class Suts {
     return std::nullopt;
   }
 
-  /// What is known of those that ended in a bad way; empty: nothing.
+  /// After a SUT was lost: how those that ended did so; empty: nothing is known.
   std::string post_mortem() {
     std::string text;
     for (Sut& sut : suts_)
-      if (sut.process->wait(std::chrono::milliseconds(200)) && sut.process->poll()->code > 1)
-        text += "; " + describe_end(sut);
+      if (sut.process->wait(std::chrono::milliseconds(200))) text += "; " + describe_end(sut);
     return text;
   }
 

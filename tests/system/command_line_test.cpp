@@ -48,7 +48,7 @@ TEST_P(Examples, StandInTheHelpOfEachCommand) {
   EXPECT_THAT(run(tether({GetParam(), "--help"})).out, HasSubstr("\n  tether " + GetParam() + " "));
 }
 
-INSTANTIATE_TEST_SUITE_P(Commands, Examples, testing::Values("run", "campaign", "report", "audit"),
+INSTANTIATE_TEST_SUITE_P(Commands, Examples, testing::Values("run", "campaign", "report", "audit", "frames"),
                          [](const auto& command) { return command.param; });
 
 TEST(Version, IsOneLineOfEachProgram) {
@@ -147,6 +147,17 @@ TEST(Run, RecordsWhatTheSutDid) {
   EXPECT_EQ(record.annotations.size(), 100u);
   EXPECT_EQ(record.interactions.back().message.kind, record::kFinish);
   EXPECT_GE(record.footer->st_at_end, from_ns<SimTime>(1'400'000'000));
+}
+
+// The same measurement again and again is no breach of the rules where it was asked for.
+TEST(Run, MayReadTheLatestMeasurementAgain) {
+  const TempFolder folder;
+  ASSERT_EQ(run(tether({"run", write_hover_scenario(folder.path(), "latest"), "--out",
+                        folder / "out", "--quiet"}))
+                .code,
+            0);
+  const Output audit = run(tether({"audit", folder / "out/record.mcap"}));
+  EXPECT_EQ(audit.code, 0) << audit.out;
 }
 
 TEST(Run, PrintsTheResultAsJson) {

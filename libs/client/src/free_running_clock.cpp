@@ -5,6 +5,12 @@
 
 namespace tether::client {
 
+namespace {
+// Whoever sleeps until the end of time sleeps this long; sums with the wall clock stay within
+// int64.
+constexpr Duration kLongestSleep = std::chrono::hours(24 * 365);
+}  // namespace
+
 FreeRunningClock::FreeRunningClock(const TimeSource& source, WallTimer& wall, ExecTime start)
     : source_(&source),
       wall_(&wall),
@@ -56,7 +62,7 @@ void FreeRunningClock::end(ExecTime) {
 void FreeRunningClock::sleep_until(ExecTime until) {
   begin();
   enter(Phase::kSleeping);
-  wall_->sleep_until(wall_at_start_ + (until - start_));
+  wall_->sleep_until(wall_at_start_ + std::min(until - start_, kLongestSleep));
   end(until);
 }
 

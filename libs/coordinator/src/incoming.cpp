@@ -211,6 +211,7 @@ ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pe
   pending.on_demand = !tied() || !sensor.schedule.sampling_instant(0);
 
   entry.sensor = sensor.name;
+  entry.latest = read.latest;
   entry.sample_index = pending.measurement->index;
   entry.sampled_at = pending.measurement->sampled_at;
   entry.available_at = pending.measurement->available_at;

@@ -140,6 +140,8 @@ TEST_F(CoordinatorTest, PeriodicReadsGetTheNewestOrWaitForTheNext) {
   EXPECT_EQ(log.at(2).reply_at, us(138'400));
   EXPECT_EQ(log.at(2).sample_state_at, st_ms(99));
   EXPECT_EQ(log.at(3).sample_index, 3u);  // the same again
+  EXPECT_TRUE(log.at(3).latest);
+  EXPECT_FALSE(log.at(2).latest);
   EXPECT_EQ(simulator_->calls().measure, 4u);
 }
 
