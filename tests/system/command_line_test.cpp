@@ -48,7 +48,8 @@ TEST_P(Examples, StandInTheHelpOfEachCommand) {
   EXPECT_THAT(run(tether({GetParam(), "--help"})).out, HasSubstr("\n  tether " + GetParam() + " "));
 }
 
-INSTANTIATE_TEST_SUITE_P(Commands, Examples, testing::Values("run", "campaign", "report", "audit", "frames"),
+INSTANTIATE_TEST_SUITE_P(Commands, Examples,
+                         testing::Values("run", "campaign", "report", "audit", "frames"),
                          [](const auto& command) { return command.param; });
 
 TEST(Version, IsOneLineOfEachProgram) {
