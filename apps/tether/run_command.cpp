@@ -1,6 +1,7 @@
 #include "commands.h"
 #include "status_line.h"
 #include "trial.h"
+#include "trial_folder.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,24 +1,17 @@
 #include "trial.h"
 
-#include "child_process.h"
 #include "interrupt.h"
 #include "machine.h"
+#include "sut_processes.h"
+#include "trial_folder.h"
 
-#include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <memory>
 #include <vector>
 
-#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <tether/audit/audit.h>
 #include <tether/base/error.h>
@@ -34,8 +27,6 @@ namespace {
 using coordinator::RunEnd;
 
 constexpr Duration kHelloTimeout = std::chrono::seconds(5);
-// How long a SUT that has finished may take to leave.
-constexpr Duration kLeaveLimit = std::chrono::seconds(2);
 
 WallTime host_now() {
   return WallTime(
@@ -45,23 +36,6 @@ WallTime host_now() {
 std::string token_of_run() {
   const char* given = std::getenv("TETHER_TOKEN");
   return given && *given ? given : link::make_token();
-}
-
-/// The SUT's program with its parameters as options: max_frames = 5 becomes --max-frames 5.
-std::vector<std::string> command_line(const scenario::Sut& sut) {
-  std::vector<std::string> words = sut.command;
-  for (const auto& [key, value] : sut.parameters) {
-    std::string option = "--" + key;
-    std::replace(option.begin(), option.end(), '_', '-');
-    words.push_back(option);
-    words.push_back(value);
-  }
-  return words;
-}
-
-std::string clock_setting(const scenario::Condition& condition) {
-  return condition.clock == scenario::Clock::kWall ? "wall"
-                                                   : fmt::format("cpu*{}", condition.cpu_factor);
 }
 
 coordinator::RunOptions run_options(const TrialSpec& spec, const sim::World& world,
@@ -92,122 +66,6 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const sim::World& wor
   return options;
 }
 
-/// The scenario's SUTs as processes of this machine, or none where the user starts them.
-class Suts {
- public:
-  struct Sut {
-    std::string uav;
-    std::filesystem::path log;
-    std::unique_ptr<ChildProcess> process;
-  };
-
-  void start(const TrialSpec& spec, const std::string& address, const std::string& token) {
-    for (const scenario::UavSetup& uav : spec.scenario.uavs) {
-      const std::string& name = uav.placement.name;
-      ChildCommand command{.arguments = command_line(uav.sut),
-                           .environment = {{"TETHER_ADDRESS", address},
-                                           {"TETHER_TOKEN", token},
-                                           {"TETHER_UAV", name},
-                                           {"TETHER_CLOCK", clock_setting(spec.condition)}},
-                           .log = spec.folder / fmt::format("sut-{}.log", name)};
-      suts_.push_back({name, command.log, std::make_unique<ChildProcess>(command)});
-    }
-  }
-
-  /// Before every SUT has joined: the first that ended already.
-  std::optional<std::string> early_end() {
-    for (Sut& sut : suts_)
-      if (sut.process->poll()) return describe_end(sut);
-    return std::nullopt;
-  }
-
-  /// After a SUT was lost: how those that ended did so; empty: nothing is known.
-  std::string post_mortem() {
-    std::string text;
-    for (Sut& sut : suts_)
-      if (sut.process->wait(std::chrono::milliseconds(200))) text += "; " + describe_end(sut);
-    return text;
-  }
-
-  void let_leave() {
-    for (Sut& sut : suts_) sut.process->wait(kLeaveLimit);
-  }
-
- private:
-  static std::string describe_end(Sut& sut) {
-    std::ifstream log(sut.log);
-    std::string last;
-    for (std::string line; std::getline(log, line);)
-      if (!line.empty()) last = line;
-    return fmt::format(
-        "the SUT of UAV \"{}\" ({}) {}{}", sut.uav, sut.process->program(),
-        sut.process->poll()->description,
-        last.empty() ? "" : fmt::format("; its last words in {}: {}", sut.log.string(), last));
-  }
-
-  std::vector<Sut> suts_;
-};
-
-/// A folder that only this process writes results to while the object lives.
-class FolderLock {
- public:
-  explicit FolderLock(const std::filesystem::path& folder)
-      : fd_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    if (fd_ >= 0 && flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
-    const bool is_taken = fd_ >= 0 && errno == EWOULDBLOCK;
-    const std::string why =
-        is_taken ? "another run writes there; give this one a folder of its own with --out"
-                 : std::strerror(errno);
-    if (fd_ >= 0) close(fd_);
-    throw Error(is_taken ? ErrorCode::kUsage : ErrorCode::kSetup, folder.string() + ": " + why);
-  }
-  ~FolderLock() { close(fd_); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int fd_;
-};
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw Error(ErrorCode::kSetup, fmt::format("{}: {}", folder.string(), error.message()));
-}
-
-/// Nothing of an earlier trial may be taken for this one's.
-void clear_folder(const std::filesystem::path& folder) {
-  for (const std::filesystem::path& file :
-       {std::filesystem::path(experiment::kResultFile), std::filesystem::path(kRecordFile)}) {
-    std::error_code error;
-    std::filesystem::remove(folder / file, error);
-    if (error)
-      throw Error(ErrorCode::kSetup,
-                  fmt::format("{}: {}", (folder / file).string(), error.message()));
-  }
-}
-
-/// @throws Error(kBadFile) for a SUT that cannot be started.
-void require_programs(const scenario::Scenario& scenario) {
-  for (const scenario::UavSetup& uav : scenario.uavs) try {
-      find_program(uav.sut.command.front());
-    } catch (const Error& e) {
-      throw Error(ErrorCode::kBadFile, {scenario.file.string()},
-                  fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()));
-    }
-}
-
-std::string instructions(const TrialSpec& spec, const std::string& address,
-                         const std::string& token) {
-  std::string text;
-  for (const scenario::UavSetup& uav : spec.scenario.uavs)
-    text += fmt::format("TETHER_ADDRESS={} TETHER_TOKEN={} TETHER_UAV={} TETHER_CLOCK='{}' {}\n",
-                        address, token, uav.placement.name, clock_setting(spec.condition),
-                        fmt::join(command_line(uav.sut), " "));
-  return text;
-}
-
 /// A camera's first image costs the most by far (GL start-up, shaders); it is made while the SUTs'
 /// processes start.
 void warm_up_cameras(sim::Simulator& simulator) {
@@ -228,13 +86,12 @@ coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
   coordinator::Coordinator coordinator(simulator, *recorder,
                                        run_options(spec, simulator.world(), token), host_now);
   const auto server = link::listen_tcp(spec.listen, kHelloTimeout, coordinator.events());
-  const std::string address = link::to_string(server->address());
-
-  Suts suts;
-  if (!spec.external_sut) suts.start(spec, address, token);
+  const SutRun sut_run{link::to_string(server->address()), token, spec.condition};
+  SutProcesses suts;
+  if (!spec.external_sut) suts.start(spec.scenario, sut_run, spec.folder);
   warm_up_cameras(simulator);
   if (spec.external_sut && observer.on_listening)
-    observer.on_listening(instructions(spec, address, token));
+    observer.on_listening(sut_instructions(spec.scenario, sut_run));
 
   bool joined = false;
   coordinator::RunHooks hooks;
@@ -299,10 +156,8 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
       sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
   scenario::resolve_timings(spec.scenario, world);
   world.step = spec.scenario.step;
-  if (!spec.external_sut) require_programs(spec.scenario);
-  make_folder(spec.folder);
-  const FolderLock lock(spec.folder);
-  clear_folder(spec.folder);
+  if (!spec.external_sut) require_sut_programs(spec.scenario);
+  const TrialFolder folder(spec.folder);
 
   const std::string started_at = utc_now();
   experiment::TrialResult result;

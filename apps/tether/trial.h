@@ -15,8 +15,6 @@
 
 namespace tether::app {
 
-inline constexpr const char* kRecordFile = "record.mcap";
-
 /// One trial to run.
 struct TrialSpec {
   scenario::Scenario scenario;

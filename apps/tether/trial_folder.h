@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+
+namespace tether::app {
+
+/// The record's file in a trial's folder.
+inline constexpr const char* kRecordFile = "record.mcap";
+
+/// A trial's folder, made if need be, into which only this process writes results while the object
+/// lives. Nothing of an earlier trial is left in it that could be taken for this one's.
+class TrialFolder {
+ public:
+  /// @throws Error(kUsage) when another run writes there; Error(kSetup) when the file system
+  /// refuses.
+  explicit TrialFolder(const std::filesystem::path& folder);
+  ~TrialFolder();
+  TrialFolder(const TrialFolder&) = delete;
+  TrialFolder& operator=(const TrialFolder&) = delete;
+
+ private:
+  int descriptor_ = -1;  // of the folder, locked
+};
+
+}  // namespace tether::app
