@@ -92,5 +92,16 @@ TEST(Token, IsNewForEachRun) {
   EXPECT_NE(tokens[0], tokens[1]);
 }
 
+/// Two runs into one folder would each take the other's record for their own.
+TEST_F(Intruders, ASecondRunIntoTheSameFolderIsRefusedAndTheFirstUnharmed) {
+  fly_alone("alone");
+  fly("shared_folder", {"--real-time-factor", "0.5"}, [this](const ExternalRun&, bool) {
+    const Output second = run(tether({"run", scenario_, "--out", folder_ / "shared_folder"}));
+    EXPECT_EQ(second.code, 2);
+    EXPECT_THAT(second.err, HasSubstr("another run writes there"));
+  });
+  expect_same("alone", "shared_folder");
+}
+
 }  // namespace
 }  // namespace tether::system_test
