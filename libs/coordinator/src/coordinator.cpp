@@ -279,8 +279,8 @@ void Coordinator::Impl::capture_due() {
 
 // Keeps the states from which a later read may still be answered; images are rendered only when one
 // is.
-void Coordinator::Impl::capture_periodic(const Session& session, std::size_t sensor_index) {
-  SensorState& sensor = sessions_[session.uav].sensors[sensor_index];
+void Coordinator::Impl::capture_periodic(Session& session, std::size_t sensor_index) {
+  SensorState& sensor = session.sensors[sensor_index];
   auto instant = sensor.schedule.sampling_instant(sensor.next_capture);
   while (instant && grid_.floor(*instant) <= st_) {
     ask_simulator([&](sim::Simulator& s) { s.capture(sensor.captures.add(sensor.next_capture)); });

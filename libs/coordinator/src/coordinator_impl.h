@@ -46,7 +46,7 @@ class Coordinator::Impl final : public link::ServerEvents {
   SimTime horizon() const;
   void at_boundary();
   void capture_due();
-  void capture_periodic(const Session& session, std::size_t sensor_index);
+  void capture_periodic(Session& session, std::size_t sensor_index);
   ExecTime earliest_read(const Session& session, std::size_t sensor_index) const;
   void apply_due();
   void log_ground_truth();

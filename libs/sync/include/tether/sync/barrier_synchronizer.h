@@ -60,16 +60,13 @@ struct TimeAdvanceGrant {
 /// which it can stamp nothing any more; or *held*, with the timestamp of its reply, at which it
 /// will go on.
 ///
-///     arrive(sut, stamp, ST) ──► hold(sut, reply_at) ──► … ST advances up to horizon() … ──►
-///     release(ST) ──► computing
+///     arrive(sut, stamp, ST) → hold(sut, reply_at) → ST advances up to horizon() → release(ST)
 ///
 /// Two guarantees, for any schedule:
 ///  - ST ≤ horizon() = min over all SUTs of floor(bound or reply_at): nothing that can still be
-///  requested lies in the
-///    simulator's past (rule 4);
+///    requested lies in the simulator's past (rule 4);
 ///  - a reply stamped t leaves at ST = floor(t), when no other SUT can any more put a command into
-///  effect at or before
-///    that boundary with a stamp earlier than t (rule 3).
+///    effect at or before that boundary with a stamp earlier than t (rule 3).
 /// And one of progress: as long as some SUT is held and those computing come back, some SUT gets
 /// released.
 ///
