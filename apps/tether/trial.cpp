@@ -38,13 +38,15 @@ std::string token_of_run() {
   return given && *given ? given : link::make_token();
 }
 
-coordinator::RunOptions run_options(const TrialSpec& spec, const sim::World& world,
+/// One list per UAV of the world, in the order of its sensors.
+using Timings = std::vector<std::vector<uav::SensorTiming>>;
+
+coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timings,
                                     const std::string& token) {
   coordinator::RunOptions options;
   options.policy = spec.condition.policy == scenario::Policy::kFreeRunning
                        ? sync::SyncPolicy::kFreeRunning
                        : sync::SyncPolicy::kConservativeBarrier;
-  const auto timings = scenario::resolve_timings(spec.scenario, world);
   const coordinator::ClockSetting clock{spec.condition.clock == scenario::Clock::kWall
                                             ? link::ClockKind::kWall
                                             : link::ClockKind::kCpu,
@@ -80,11 +82,11 @@ void warm_up_cameras(sim::Simulator& simulator) {
 
 /// The coordinator's run with its SUTs, up to the closed record.
 coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
-                               const TrialObserver& observer) {
+                               const Timings& timings, const TrialObserver& observer) {
   const std::string token = token_of_run();
   const auto recorder = record::make_mcap_recorder(spec.folder / kRecordFile);
-  coordinator::Coordinator coordinator(simulator, *recorder,
-                                       run_options(spec, simulator.world(), token), host_now);
+  coordinator::Coordinator coordinator(simulator, *recorder, run_options(spec, timings, token),
+                                       host_now);
   const auto server = link::listen_tcp(spec.listen, kHelloTimeout, coordinator.events());
   const SutRun sut_run{link::to_string(server->address()), token, spec.condition};
   SutProcesses suts;
@@ -154,7 +156,7 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
   // Whatever is wrong with the user's files shows before anything is written.
   sim::World world =
       sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
-  scenario::resolve_timings(spec.scenario, world);
+  const Timings timings = scenario::resolve_timings(spec.scenario, world);
   world.step = spec.scenario.step;
   if (!spec.external_sut) require_sut_programs(spec.scenario);
   const TrialFolder folder(spec.folder);
@@ -163,7 +165,7 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
   experiment::TrialResult result;
   try {
     const auto simulator = sim::make_mujoco_simulator(std::move(world), observer.warn);
-    result = judge(spec, conduct(spec, *simulator, observer));
+    result = judge(spec, conduct(spec, *simulator, timings, observer));
     result.versions["simulator"] = simulator->description();
   } catch (const Error& e) {
     result = experiment::make_setup_failure(spec.scenario, spec.condition, spec.seed, e.what());
