@@ -36,30 +36,35 @@ void expect_reason(const Output& output, const nlohmann::json& result,
   EXPECT_THAT(output.err, HasSubstr("tether: " + reason));
 }
 
+/// Flies the SUT in its mode, and expects what every failure must show; returns the result.
+nlohmann::json expect_failure(const TempFolder& folder, const Failing& failing) {
+  const std::string mark = mark_of_test();
+  const Output output = run(tether(
+      {"run", write_hover_scenario(folder.path(), failing.mode), "--out", folder / "out"}, mark));
+  EXPECT_EQ(output.code, 3);
+  EXPECT_LT(output.wall.count(), failing.wall_limit_s);
+  const auto result = read_result(folder / "out");
+  EXPECT_EQ(result["outcome"], "failed");
+  EXPECT_EQ(result["end"], failing.end);
+  expect_reason(output, result, failing.reason);
+  EXPECT_TRUE(wait_until_gone(mark));
+  return result;
+}
+
 // ---- After it has flown for 1.5 s
 
 class FailingInFlight : public testing::TestWithParam<Failing> {};
 
 TEST_P(FailingInFlight, EndsTheRunAndLeavesItsRecord) {
   const TempFolder folder;
-  const std::string mark = mark_of_test();
-  const Output output = run(
-      tether({"run", write_hover_scenario(folder.path(), GetParam().mode), "--out", folder / "out"},
-             mark));
-  EXPECT_EQ(output.code, 3);
-  EXPECT_LT(output.wall.count(), GetParam().wall_limit_s);
-  const auto result = read_result(folder / "out");
-  EXPECT_EQ(result["outcome"], "failed");
+  const auto result = expect_failure(folder, GetParam());
   EXPECT_EQ(result["exit_code"], 3);
-  EXPECT_EQ(result["end"], GetParam().end);
-  expect_reason(output, result, GetParam().reason);
 
   const record::Record record = read_record(folder / "out");
   EXPECT_EQ(record.damage, "");
   EXPECT_GE(record.interactions.size(), 400u);
   EXPECT_EQ(record.footer->end, GetParam().end);
   EXPECT_EQ(run(tether({"audit", folder / "out/record.mcap"})).code, 0);
-  EXPECT_TRUE(wait_until_gone(mark));
 }
 
 const Failing kInFlight[] = {
@@ -77,18 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, FailingInFlight, testing::ValuesIn(kInFlight),
 class FailingAtStart : public testing::TestWithParam<Failing> {};
 
 TEST_P(FailingAtStart, IsASetUpThatFailed) {
-  const TempFolder folder;
-  const std::string mark = mark_of_test();
-  const Output output = run(
-      tether({"run", write_hover_scenario(folder.path(), GetParam().mode), "--out", folder / "out"},
-             mark));
-  EXPECT_EQ(output.code, 3);
-  EXPECT_LT(output.wall.count(), GetParam().wall_limit_s);
-  const auto result = read_result(folder / "out");
-  EXPECT_EQ(result["outcome"], "failed");
-  EXPECT_EQ(result["end"], GetParam().end);
-  expect_reason(output, result, GetParam().reason);
-  EXPECT_TRUE(wait_until_gone(mark));
+  expect_failure(TempFolder(), GetParam());
 }
 
 const Failing kAtStart[] = {
