@@ -65,34 +65,59 @@ class ConsistencyCheck {
     reached_ = std::max(reached_, wide(entry.at));
   }
 
-  // Rule 8: nothing is held, and readings are of the state on arrival. (Of a synchronised record,
-  // check_order sees to the log times.)
+  // Rule 8: nothing is held but a read that waits for its sensor's next measurement, and readings
+  // are of the state at release. (Of a synchronised record, check_order sees to the log times.)
   void check_free_running(const Logged<Interaction>& entry) {
     const Interaction& message = entry.message;
     if (wide(entry.at) < reached_) {
       report_.add(0, entry, "logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_));
     }
-    if (message.st_at_release != message.st_at_arrival) {
+    if (message.kind == record::kSensor) {
+      check_free_reading(entry);
+    } else if (message.st_at_release != message.st_at_arrival) {
       report_.add(8, entry,
                   "held from ST " + ns(wide(message.st_at_arrival)) + " to " +
                       ns(wide(message.st_at_release)) + " in a free-running record");
     }
-    if (message.kind == record::kSensor) {
-      check_free_reading(entry);
-    }
   }
 
   void check_free_reading(const Logged<Interaction>& entry) {
-    if (!entry.message.sample_state_at) {
+    const Interaction& message = entry.message;
+    if (!message.sample_state_at || !message.sampled_at) {
       return report_.add(0, entry, "a sensor reading without its times");
     }
-    const Wide state = wide(*entry.message.sample_state_at);
-    const Wide present = grid_.at_or_before(wide(entry.message.st_at_arrival));
-    if (state != present) {
+    const Wide released = wide(message.st_at_release);
+    const Wide arrived = wide(message.st_at_arrival);
+    if (wide(*message.sample_state_at) != grid_.at_or_before(released)) {
       report_.add(8, entry,
-                  "arrived at ST " + ns(wide(entry.message.st_at_arrival)) +
-                      " and read the state of ST " + ns(state));
+                  "released at ST " + ns(released) + " with the state of ST " +
+                      ns(wide(*message.sample_state_at)));
     }
+    if (released != arrived && !has_waited_for_next(message)) {
+      report_.add(8, entry,
+                  "held from ST " + ns(arrived) + " to " + ns(released) +
+                      ", which is not when its sensor measured next");
+    }
+  }
+
+  // Whether a read was released just when the measurement that it says it got was due, and no
+  // earlier one after its arrival.
+  bool has_waited_for_next(const Interaction& message) const {
+    const record::SensorInfo* sensor = find_sensor(message.uav, message.sensor);
+    if (sensor == nullptr || !sensor->periodic || sensor->period <= Duration(0)) return false;
+    const Wide due =
+        wide(sensor->phase) + static_cast<Wide>(message.sample_index) * wide(sensor->period);
+    const bool is_next =
+        due - wide(sensor->period) <= wide(message.st_at_arrival) || message.sample_index == 0;
+    return wide(*message.sampled_at) == due && is_next &&
+           grid_.at_or_before(due) == wide(message.st_at_release);
+  }
+
+  const record::SensorInfo* find_sensor(const std::string& uav, const std::string& name) const {
+    for (const record::SensorInfo& sensor : record_.header.sensors) {
+      if (sensor.uav == uav && sensor.name == name) return &sensor;
+    }
+    return nullptr;
   }
 
   void visit(const Logged<CommandEffect>& entry) {

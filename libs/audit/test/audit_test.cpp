@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <functional>
 #include <limits>
 #include <set>
 #include <string>
@@ -210,6 +211,43 @@ TEST(Audit, FreeRunningReadsTheStateOnArrival) {
   Record record = free_running();
   first_reading(record).sample_state_at.reset();
   EXPECT_EQ(rules_of(audit(record)), Rules{0});
+}
+
+// A read that came a while before its periodic sensor measured.
+Record waiting_for_next(Duration wait) {
+  Record record = free_running();
+  record.header.sensors = {{.uav = first_reading(record).uav,
+                            .name = first_reading(record).sensor,
+                            .kind = "imu",
+                            .periodic = true,
+                            .period = 10 * kStep,
+                            .phase = Duration(0)}};
+  Interaction& read = first_reading(record);
+  read.sample_index =
+      static_cast<std::uint64_t>(read.st_at_release.time_since_epoch() / (10 * kStep));
+  record.header.sensors[0].phase =
+      read.st_at_release.time_since_epoch() - read.sample_index * 10 * kStep;
+  read.sampled_at = read.st_at_release;
+  read.st_at_arrival = read.st_at_release - wait;
+  return record;
+}
+
+TEST(Audit, FreeRunningReadsMayWaitForTheNextMeasurement) {
+  const Verdict verdict = audit(waiting_for_next(9 * kStep));
+  EXPECT_TRUE(verdict.passed()) << to_text(verdict);
+}
+
+TEST(Audit, FreeRunningReadsMayNotWaitForAnythingElse) {
+  const auto altered = [](const std::function<void(Record&)>& alter) {
+    Record record = waiting_for_next(9 * kStep);
+    alter(record);
+    return rules_of(audit(record));
+  };
+  EXPECT_EQ(rules_of(audit(waiting_for_next(11 * kStep))), Rules{8}) << "missed a measurement";
+  EXPECT_EQ(altered([](Record& r) { *first_reading(r).sampled_at -= Duration(1); }), Rules{8});
+  EXPECT_EQ(altered([](Record& r) { first_reading(r).sample_index += 1; }), Rules{8});
+  EXPECT_EQ(altered([](Record& r) { r.header.sensors[0].periodic = false; }), Rules{8});
+  EXPECT_EQ(altered([](Record& r) { r.header.sensors.clear(); }), Rules{8});
 }
 
 TEST(Audit, FreeRunningRecordsMustBeConsistent) {

@@ -214,7 +214,7 @@ bool Coordinator::Impl::advance() {
       barrier_.progress(session.uav, session.timer->read(now));
 
   // An unstamped client's clock may just have let another SUT go on.
-  if (tied()) release_ready();
+  release_ready();
 
   SimTime target = std::min(next_stop(), st_ + kStepsPerTurn * grid_.dt());
   if (target <= st_) {
@@ -229,7 +229,7 @@ bool Coordinator::Impl::advance() {
   ask_simulator([&](sim::Simulator& s) { s.advance_to(target); });
   st_ = target;
   at_boundary();
-  if (tied()) release_ready();
+  release_ready();
   if (st_ >= time_limit_ && !ended_)
     end(RunEnd::kTimeLimit,
         fmt::format("ST reached the scenario's time limit of {} s before the task was done",

@@ -87,6 +87,7 @@ class Coordinator::Impl final : public link::ServerEvents {
 
   // Outgoing.
   void release_ready();
+  void answer_untied();
   void reply(Session& session, SimTime st);
   void leave(Session& session);
   std::optional<uav::CameraSample> image_to_record(const link::Reply& reply) const;

@@ -143,10 +143,7 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   begin(session, request, now);
   capture_due();
   apply_due();
-  if (tied())
-    release_ready();
-  else
-    reply(session, st_);
+  release_ready();
 }
 
 // From arrival to being held.
@@ -204,10 +201,9 @@ ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pe
   record::Interaction& entry = pending.entry;
   const SimTime t = same_instant(entry.request_at);
 
-  // Free running: the state of this moment, whatever the sensor's timing.
-  pending.measurement =
-      tied() ? sensor.schedule.choose(t, read.latest) : Measurement{session.next_sequence, t, t};
-  if (tied()) sensor.schedule.mark_read(*pending.measurement);
+  pending.measurement = tied() ? sensor.schedule.choose(t, read.latest)
+                               : sensor.schedule.choose_untied(t, read.latest);
+  sensor.schedule.mark_read(*pending.measurement);
   pending.on_demand = !tied() || !sensor.schedule.sampling_instant(0);
 
   entry.sensor = sensor.name;

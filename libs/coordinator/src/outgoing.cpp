@@ -6,7 +6,18 @@
 namespace tether::coordinator {
 
 void Coordinator::Impl::release_ready() {
+  if (!tied()) return answer_untied();
   while (const auto grant = barrier_.release(st_)) reply(sessions_[grant->sut], grant->released_at);
+}
+
+// In free running nothing is held but a read that waits for its sensor's next measurement.
+void Coordinator::Impl::answer_untied() {
+  for (Session& session : sessions_) {
+    if (!session.pending) continue;
+    if (session.pending->measurement && !session.pending->captured) continue;
+    session.pending->entry.reply_at = same_instant(st_);
+    reply(session, st_);
+  }
 }
 
 // The reply goes out first and is recorded afterwards, so that the record costs the SUT no wall

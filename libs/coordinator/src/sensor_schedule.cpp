@@ -13,13 +13,20 @@ Measurement SensorSchedule::periodic(const uav::PeriodicTiming& timing, std::uin
   return {index, sampled_at, sampled_at + uav::draw(timing.delay, {seed_, stream_, index})};
 }
 
+std::optional<std::uint64_t> SensorSchedule::newest_sampled(const uav::PeriodicTiming& timing,
+                                                            SimTime t) {
+  const Duration since_phase = t.time_since_epoch() - timing.phase;
+  if (since_phase < Duration(0)) return std::nullopt;
+  return static_cast<std::uint64_t>(since_phase / timing.period);
+}
+
 // Walks back from the last measurement that was sampled by t. Delays may reorder what becomes
 // available, so the first hit from the newest side is the answer.
 std::optional<Measurement> SensorSchedule::newest_available(const uav::PeriodicTiming& timing,
                                                             SimTime t, std::uint64_t first) const {
-  const Duration since_phase = t.time_since_epoch() - timing.phase;
-  if (since_phase < Duration(0)) return std::nullopt;
-  for (auto k = static_cast<std::uint64_t>(since_phase / timing.period) + 1; k-- > first;) {
+  const auto newest = newest_sampled(timing, t);
+  if (!newest) return std::nullopt;
+  for (std::uint64_t k = *newest + 1; k-- > first;) {
     const Measurement candidate = periodic(timing, k);
     if (candidate.available_at <= t) return candidate;
   }
@@ -45,6 +52,15 @@ Measurement SensorSchedule::choose(SimTime t, bool latest) const {
   }
   const auto& timing = std::get<uav::OnDemandTiming>(timing_);
   return {unread_, t, t + uav::draw(timing.delay, {seed_, stream_, unread_})};
+}
+
+Measurement SensorSchedule::choose_untied(SimTime t, bool latest) const {
+  const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_);
+  if (!timing) return {unread_, t, t};
+  if (const auto newest = newest_sampled(*timing, t); newest && (latest || *newest >= unread_))
+    return {*newest, t, t};
+  const SimTime next = uav::sampling_instant(*timing, unread_);
+  return {unread_, next, next};
 }
 
 void SensorSchedule::mark_read(const Measurement& measurement) {

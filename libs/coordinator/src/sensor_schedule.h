@@ -27,6 +27,10 @@ class SensorSchedule {
   /// not yet read (with `latest`: read or not), else the one available first after t. On demand:
   /// sampled at t.
   Measurement choose(SimTime t, bool latest) const;
+  /// The same in free running (DESIGN section 2, rule 8): the state of the moment, without delay.
+  /// Periodic: one reading per period, so that a read whose period's measurement was already read
+  /// (and is not asked for again with `latest`) waits for the next sampling instant.
+  Measurement choose_untied(SimTime t, bool latest) const;
   /// It was read.
   void mark_read(const Measurement& measurement);
 
@@ -37,6 +41,7 @@ class SensorSchedule {
 
  private:
   Measurement periodic(const uav::PeriodicTiming& timing, std::uint64_t index) const;
+  static std::optional<std::uint64_t> newest_sampled(const uav::PeriodicTiming& timing, SimTime t);
   std::optional<Measurement> newest_available(const uav::PeriodicTiming& timing, SimTime t,
                                               std::uint64_t first) const;
   Measurement next_available(const uav::PeriodicTiming& timing, std::uint64_t first) const;

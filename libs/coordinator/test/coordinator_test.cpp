@@ -272,6 +272,25 @@ TEST_F(CoordinatorTest, FreeRunningServesTheStateOfTheMomentAndChargesNothing) {
   EXPECT_TRUE(std::get<link::Welcome>(server_->sent.at(1).front()).free_running);
 }
 
+TEST_F(CoordinatorTest, InFreeRunningAPeriodicSensorKeepsItsRate) {
+  options_.policy = sync::SyncPolicy::kFreeRunning;
+  options_.real_time_factor = 1.0;
+  const Duration none{0};
+  run({read(none, kImu), read(none, kImu), read(none, kImu), read(none, kImu, true),
+       read(none, kRange), read(none, kRange), finish(none)});
+  ASSERT_EQ(recorder_.interactions.size(), 7u);
+  const auto entry = [&](std::size_t i) { return recorder_.interactions[i]; };
+  for (const std::size_t waited : {1u, 2u}) {
+    EXPECT_EQ(*entry(waited).sampled_at, st_ms(50 * static_cast<std::int64_t>(waited)));
+    EXPECT_EQ(entry(waited).sample_index, waited);
+    EXPECT_EQ(entry(waited).st_at_release, *entry(waited).sampled_at);
+    EXPECT_EQ(entry(waited).sample_state_at, entry(waited).sampled_at);
+  }
+  for (const std::size_t at_once : {0u, 3u, 4u, 5u})
+    EXPECT_EQ(entry(at_once).st_at_release, entry(at_once).st_at_arrival) << at_once;
+  EXPECT_EQ(entry(3).sample_index, 2u);
+}
+
 TEST_F(CoordinatorTest, FreeRunningFollowsTheWallClock) {
   options_.policy = sync::SyncPolicy::kFreeRunning;
   options_.real_time_factor = 0.5;

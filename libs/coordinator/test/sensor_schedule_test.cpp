@@ -57,6 +57,25 @@ TEST(SensorSchedule, OnDemandMeasuresWhenAskedAndDeliversADelayLater) {
   EXPECT_FALSE(schedule.sampling_instant(0));
 }
 
+// Free running: measurement 1 (of 33 ms) has been read.
+TEST(SensorSchedule, UntiedReadsAreOfTheMomentOncePerPeriod) {
+  SensorSchedule schedule = camera(milliseconds(10));
+  schedule.mark_read({1, ms(40), ms(40)});
+  const PeriodicCase cases[] = {
+      {"its period's was read: waits for the next", 44, false, {2, ms(66), ms(66)}},
+      {"latest: now, again", 44, true, {1, ms(44), ms(44)}},
+      {"a new period: now", 70, false, {2, ms(70), ms(70)}},
+      {"periods that passed by are not read later", 150, false, {4, ms(150), ms(150)}},
+  };
+  for (const auto& c : cases)
+    EXPECT_EQ(schedule.choose_untied(ms(c.read_ms), c.latest), c.expected) << c.what;
+  EXPECT_EQ(camera(Duration(0), milliseconds(5)).choose_untied(ms(0), true),
+            (Measurement{0, ms(5), ms(5)}))
+      << "before the phase";
+  const SensorSchedule on_demand(uav::OnDemandTiming{uav::ConstantDelay{milliseconds(98)}}, 0, 0);
+  EXPECT_EQ(on_demand.choose_untied(ms(7), false), (Measurement{0, ms(7), ms(7)}));
+}
+
 // Against the definition, by trying every measurement: random delays up to several periods reorder
 // what becomes available.
 TEST(SensorSchedule, AgreesWithTheDefinitionUnderRandomDelays) {
