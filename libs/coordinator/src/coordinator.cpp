@@ -54,6 +54,22 @@ std::pair<Duration, Duration> bounds(const uav::Delay& delay) {
   return {Duration(0), Duration::max()};
 }
 
+record::CameraInfo describe(const uav::Pose& X_BS, const uav::CameraModel& model) {
+  return {.p_BS_m = {X_BS.p.x, X_BS.p.y, X_BS.p.z},
+          .q_BS = {X_BS.q.w, X_BS.q.x, X_BS.q.y, X_BS.q.z},
+          .width_px = model.width_px,
+          .height_px = model.height_px,
+          .fx_px = model.fx_px,
+          .fy_px = model.fy_px,
+          .cx_px = model.cx_px,
+          .cy_px = model.cy_px,
+          .k1 = model.k1,
+          .k2 = model.k2,
+          .k3 = model.k3,
+          .p1 = model.p1,
+          .p2 = model.p2};
+}
+
 record::SensorInfo describe(const std::string& uav, const sim::Sensor& sensor,
                             const uav::SensorTiming& timing) {
   record::SensorInfo info{
@@ -65,6 +81,8 @@ record::SensorInfo describe(const std::string& uav, const sim::Sensor& sensor,
     info.period = periodic->period;
     info.phase = periodic->phase;
   }
+  if (const auto* camera = std::get_if<sim::CameraModel>(&sensor.model))
+    info.camera = describe(sensor.X_BS, camera->intrinsics);
   return info;
 }
 

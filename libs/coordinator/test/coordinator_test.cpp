@@ -103,6 +103,22 @@ TEST_F(CoordinatorTest, AFinishedRunIsReportedAndRecorded) {
   EXPECT_EQ(recorder_.header.sensors.size(), 3u);
 }
 
+// What the SUT is told of its camera is what the record holds.
+TEST_F(CoordinatorTest, TheRecordDescribesItsCameras) {
+  run({finish(Duration(0))});
+  const auto& [name, X_BS, rate_hz, properties] =
+      std::get<link::Welcome>(server_->sent.at(1).front()).catalogue.sensors.at(kCamera);
+  const uav::CameraModel& model = std::get<uav::CameraProperties>(properties).model;
+  const auto& camera = recorder_.header.sensors.at(kCamera).camera;
+  ASSERT_TRUE(camera);
+  EXPECT_THAT(camera->p_BS_m, testing::ElementsAre(X_BS.p.x, X_BS.p.y, X_BS.p.z));
+  EXPECT_THAT(camera->q_BS, testing::ElementsAre(X_BS.q.w, X_BS.q.x, X_BS.q.y, X_BS.q.z));
+  EXPECT_EQ(camera->width_px, model.width_px);
+  EXPECT_EQ(camera->fx_px, model.fx_px);
+  EXPECT_EQ(camera->cy_px, model.cy_px);
+  EXPECT_FALSE(recorder_.header.sensors.at(kRange).camera);
+}
+
 TEST_F(CoordinatorTest, TheWelcomeBringsTheCatalogue) {
   run({finish(Duration(0))});
   const auto& welcome = std::get<link::Welcome>(server_->sent.at(1).front());

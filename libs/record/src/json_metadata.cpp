@@ -9,6 +9,15 @@
 namespace tether::record {
 namespace {
 
+struct CameraNumber {
+  const char* name;
+  double CameraInfo::*member;
+};
+constexpr CameraNumber kCameraNumbers[] = {
+    {"fx_px", &CameraInfo::fx_px}, {"fy_px", &CameraInfo::fy_px}, {"cx_px", &CameraInfo::cx_px},
+    {"cy_px", &CameraInfo::cy_px}, {"k1", &CameraInfo::k1},       {"k2", &CameraInfo::k2},
+    {"k3", &CameraInfo::k3},       {"p1", &CameraInfo::p1},       {"p2", &CameraInfo::p2}};
+
 const std::string& value(const StringMap& values, const std::string& name) {
   const auto found = values.find(name);
   if (found == values.end()) {
@@ -80,6 +89,38 @@ SutInfo read_sut(const Json& json) {
           number_member(json, "cpu_factor"), time_member<Duration>(json, "command_latency_ns")};
 }
 
+void append_camera(JsonObject& sensor, const CameraInfo& camera) {
+  JsonObject object = sensor.object("camera");
+  object.numbers("p_BS_m", camera.p_BS_m);
+  object.numbers("q_BS", camera.q_BS);
+  object.integer("width_px", camera.width_px);
+  object.integer("height_px", camera.height_px);
+  for (const auto& [name, member] : kCameraNumbers) object.number(name, camera.*member);
+  object.close();
+}
+
+int image_side(const Json& json, const char* name) {
+  constexpr std::int64_t kLargest = 100'000;
+  const std::int64_t side_px = integer_member(json, name);
+  if (side_px < 1 || side_px > kLargest) {
+    throw Damage("member \"" + std::string(name) + "\" is no size of an image");
+  }
+  return static_cast<int>(side_px);
+}
+
+CameraInfo read_camera(const Json& json) {
+  CameraInfo camera;
+  numbers_member(json, "p_BS_m", camera.p_BS_m);
+  numbers_member(json, "q_BS", camera.q_BS);
+  camera.width_px = image_side(json, "width_px");
+  camera.height_px = image_side(json, "height_px");
+  for (const auto& [name, member] : kCameraNumbers) camera.*member = number_member(json, name);
+  if (!(camera.fx_px > 0.0) || !(camera.fy_px > 0.0)) {
+    throw Damage("a camera's focal length is not positive");
+  }
+  return camera;
+}
+
 void append_sensor(std::string& out, const SensorInfo& sensor) {
   JsonObject object(out);
   object.text("uav", sensor.uav);
@@ -90,10 +131,13 @@ void append_sensor(std::string& out, const SensorInfo& sensor) {
   object.integer("phase_ns", to_ns(sensor.phase));
   object.integer("delay_min_ns", to_ns(sensor.delay_min));
   object.integer("delay_max_ns", to_ns(sensor.delay_max));
+  if (sensor.camera) {
+    append_camera(object, *sensor.camera);
+  }
   object.close();
 }
 
-// A record need not bound the delay.
+// A record need not bound the delay, nor describe its cameras.
 SensorInfo read_sensor(const Json& json) {
   SensorInfo sensor;
   sensor.uav = text_member(json, "uav");
@@ -106,6 +150,9 @@ SensorInfo read_sensor(const Json& json) {
       optional_time_member<Duration>(json, "delay_min_ns").value_or(sensor.delay_min);
   sensor.delay_max =
       optional_time_member<Duration>(json, "delay_max_ns").value_or(sensor.delay_max);
+  if (json.contains("camera")) {
+    sensor.camera = read_camera(member(json, "camera"));
+  }
   return sensor;
 }
 

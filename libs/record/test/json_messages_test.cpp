@@ -183,6 +183,58 @@ TEST(JsonMetadata, HeaderRoundTrip) {
   EXPECT_EQ(out.anchors[0].q_WA[2], -0.5);
 }
 
+TEST(JsonMetadata, ACameraIsDescribedAndNothingElse) {
+  const Header out = header_from_metadata(to_metadata(header()));
+  EXPECT_FALSE(out.sensors[1].camera);
+  ASSERT_TRUE(out.sensors[0].camera);
+  const CameraInfo& camera = *out.sensors[0].camera;
+  EXPECT_EQ(camera.p_BS_m[2], -0.3);
+  EXPECT_EQ(camera.q_BS[2], -0.5);
+  EXPECT_EQ(camera.width_px, 640);
+  EXPECT_EQ(camera.height_px, 480);
+  EXPECT_EQ(camera.fx_px, 381.5);
+  EXPECT_EQ(camera.fy_px, 382.5);
+  EXPECT_EQ(camera.cx_px, 319.5);
+  EXPECT_EQ(camera.cy_px, 239.25);
+  EXPECT_EQ(camera.k1, 0.1);
+  EXPECT_EQ(camera.k2, -0.2);
+  EXPECT_EQ(camera.k3, 0.3);
+  EXPECT_EQ(camera.p1, -0.4);
+  EXPECT_EQ(camera.p2, 0.5);
+}
+
+StringMap with_sensors_changed(const std::string& from, const std::string& to) {
+  StringMap values = to_metadata(header());
+  std::string& sensors = values["sensors"];
+  const auto at = sensors.find(from);
+  EXPECT_NE(at, std::string::npos) << sensors;
+  if (at != std::string::npos) sensors.replace(at, from.size(), to);
+  return values;
+}
+
+// Records of Tether 0.1.0 say nothing of their cameras.
+TEST(JsonMetadata, ARecordNeedNotDescribeItsCameras) {
+  const std::string& sensors = to_metadata(header()).at("sensors");
+  const auto begin = sensors.find(R"(,"camera":{)");
+  const std::string camera = sensors.substr(begin, sensors.find('}', begin) + 1 - begin);
+  EXPECT_FALSE(header_from_metadata(with_sensors_changed(camera, "")).sensors[0].camera);
+}
+
+TEST(JsonMetadata, ACameraThatCannotBeIsRefused) {
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {R"("width_px":640)", R"("width_px":0)"},
+           {R"("width_px":640)", R"("width_px":4294967297)"},
+           {R"("height_px":480)", R"("height_px":-480)"},
+           {R"("height_px":480,)", ""},
+           {R"("fx_px":381.5)", R"("fx_px":0)"},
+           {R"("fy_px":382.5)", R"("fy_px":null)"},
+           {R"("k3":0.3,)", ""},
+           {R"("q_BS":[0.5,)", R"("q_BS":[)"},
+           {R"("camera":{)", R"("camera":7,"x":{)"}}) {
+    EXPECT_THROW(header_from_metadata(with_sensors_changed(from, to)), Damage) << to;
+  }
+}
+
 TEST(JsonMetadata, WithoutBoundsTheDelayOfASensorIsNotBounded) {
   StringMap values = to_metadata(header());
   std::string& sensors = values["sensors"];

@@ -108,6 +108,19 @@ inline Header header() {
   header.sensors = {
       {"a", "camera", "camera", true, Duration(33'333'333), Duration(5), Duration(7), Duration(8)},
       {"a", "range", "range", false, {}, {}}};
+  header.sensors[0].camera = CameraInfo{{0.1, 0.2, -0.3},
+                                        {0.5, 0.5, -0.5, 0.5},
+                                        640,
+                                        480,
+                                        381.5,
+                                        382.5,
+                                        319.5,
+                                        239.25,
+                                        0.1,
+                                        -0.2,
+                                        0.3,
+                                        -0.4,
+                                        0.5};
   header.anchors = {{"box", "box", {0.4, 0.5, 0.6}, {8, 0, 1.5}, {0.5, 0.5, -0.5, 0.5}}};
   return header;
 }

@@ -107,6 +107,17 @@ struct Anchor {
   double p_WA_m[3] = {};
   double q_WA[4] = {1, 0, 0, 0};
 };
+/// How a camera is mounted and what it makes of the world: whoever has the record can project into
+/// its images.
+struct CameraInfo {
+  double p_BS_m[3] = {};  ///< mounting in the UAV's body B; S is body-style (x forward)
+  double q_BS[4] = {1, 0, 0, 0};
+  int width_px = 0;  ///< 1 to 100 000, as the height
+  int height_px = 0;
+  double fx_px = 0, fy_px = 0;  ///< focal lengths, > 0
+  double cx_px = 0, cy_px = 0;  ///< principal point, from the centre of the upper left pixel
+  double k1 = 0, k2 = 0, k3 = 0, p1 = 0, p2 = 0;  ///< Brown-Conrady distortion, as in SDF
+};
 struct SensorInfo {
   std::string uav;
   std::string name;
@@ -117,6 +128,7 @@ struct SensorInfo {
   /// Bounds of what the delay model can draw (available_at − sampled_at), both inclusive.
   Duration delay_min{0};
   Duration delay_max{Duration::max()};
+  std::optional<CameraInfo> camera{};  ///< of a camera; records of Tether 0.1.0 have none
 };
 struct SutInfo {
   std::string uav;
