@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/camera_frame.h>
 #include <tether/experiment/text_file.h>
 #include <tether/record/reader.h>
+#include <tether/report/camera_frame.h>
 
 namespace tether::app {
 
@@ -33,7 +33,7 @@ int run(const FramesOptions& options) {
     const record::Image& image = logged.message;
     experiment::write_file_atomically(
         out / fmt::format("{}-{}-{:06}.svg", image.uav, image.sensor, image.index),
-        experiment::frame_svg(image, experiment::find_roi(record, image)));
+        report::frame_svg(image, report::find_roi(record, image)));
   }
   fmt::print("{} images in {}\n", record.images.size(), out.string());
   return 0;

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include <tether/experiment/campaign_results.h>
-#include <tether/experiment/report.h>
+#include <tether/report/report.h>
 
 namespace tether::app {
 
@@ -21,17 +21,16 @@ struct ReportOptions {
   std::string format = "text";
 };
 
-using Render = std::string (*)(const experiment::Table&);
+using Render = std::string (*)(const report::Table&);
 
 int run(const ReportOptions& options) {
   const experiment::CampaignResults results = experiment::read_campaign_results(options.folder);
   if (options.format == "csv") {
-    fmt::print("{}", to_csv(experiment::trials_table(results)));
+    fmt::print("{}", to_csv(report::trials_table(results)));
     return 0;
   }
-  const Render render =
-      options.format == "markdown" ? experiment::to_markdown : experiment::to_text;
-  for (const experiment::Table& table : experiment::report_tables(results))
+  const Render render = options.format == "markdown" ? report::to_markdown : report::to_text;
+  for (const report::Table& table : report::report_tables(results))
     fmt::print("{}\n", render(table));
   return 0;
 }
@@ -41,7 +40,7 @@ int run(const ReportOptions& options) {
 void print_campaign_summary(const std::filesystem::path& folder) {
   const experiment::CampaignResults results = experiment::read_campaign_results(folder);
   for (const auto& scenario : results.scenarios)
-    fmt::print("{}\n", to_text(experiment::paper_form_table(scenario)));
+    fmt::print("{}\n", to_text(report::paper_form_table(scenario)));
   fmt::print(
       "Records and results: {0}\n"
       "Look next at:  tether report {0}      all tables: intervals, comparisons, the optimism of "

@@ -23,6 +23,7 @@ packages_build=(
   libopencv-dev libpng-dev zlib1g-dev libzstd-dev libboost-dev
   libasio-dev libflatbuffers-dev flatbuffers-compiler
   libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
+  gnuplot-nox
 )
 packages_test=(git libgtest-dev libgmock-dev libbenchmark-dev clang-format)
 packages_tidy=(git clang-tidy)

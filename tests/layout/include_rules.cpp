@@ -98,7 +98,8 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"sim_gazebo", {"base", "uav", "sim", "link"}},
       {"coordinator", {"base", "uav", "sync", "sim", "link", "record"}},
       {"scenario", {"base", "uav", "sim"}},
-      {"experiment", {"base", "scenario", "record"}},
+      {"experiment", {"base", "uav", "scenario", "record"}},
+      {"report", {"base", "uav", "record", "scenario", "experiment"}},
   };
   return kArrows;
 }

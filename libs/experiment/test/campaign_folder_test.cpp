@@ -1,10 +1,9 @@
-#include "scratch.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/experiment/campaign_folder.h>
 #include <tether/experiment/text_file.h>
+#include <tether/experiment_testing/scratch.h>
 
 namespace tether::experiment {
 namespace {

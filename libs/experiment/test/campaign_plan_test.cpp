@@ -1,9 +1,8 @@
-#include "scratch.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/experiment/campaign_plan.h>
+#include <tether/experiment_testing/scratch.h>
 
 namespace tether::experiment {
 namespace {

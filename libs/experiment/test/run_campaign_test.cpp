@@ -1,5 +1,3 @@
-#include "scratch.h"
-
 #include <atomic>
 #include <condition_variable>
 #include <map>
@@ -10,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/experiment/run_campaign.h>
+#include <tether/experiment_testing/scratch.h>
 
 namespace tether::experiment {
 namespace {

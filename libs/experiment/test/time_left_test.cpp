@@ -1,8 +1,8 @@
 #include "time_left.h"
 
-#include "scratch.h"
-
 #include <gtest/gtest.h>
+
+#include <tether/experiment_testing/scratch.h>
 
 namespace tether::experiment {
 namespace {

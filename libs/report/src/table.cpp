@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include <tether/experiment/table.h>
+#include <tether/report/table.h>
 
-namespace tether::experiment {
+namespace tether::report {
 namespace {
 
 constexpr std::size_t kGap = 2;
@@ -171,4 +171,4 @@ std::string to_csv(const Table& table) {
   return text;
 }
 
-}  // namespace tether::experiment
+}  // namespace tether::report

@@ -5,7 +5,7 @@
 #include <string_view>
 
 /// The paper's own results, to stand beside ours. Data only.
-namespace tether::experiment {
+namespace tether::report {
 
 struct PaperFigure {
   std::string_view condition;    ///< by our names: "host", "target", "target, no sync"
@@ -27,4 +27,4 @@ struct PaperTable {
 /// nullptr where there is none of that number.
 const PaperTable* find_paper_table(std::string_view number);
 
-}  // namespace tether::experiment
+}  // namespace tether::report

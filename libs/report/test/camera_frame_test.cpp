@@ -1,10 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/experiment/camera_frame.h>
 #include <tether/record/png.h>
+#include <tether/report/camera_frame.h>
 
-namespace tether::experiment {
+namespace tether::report {
 namespace {
 
 using testing::HasSubstr;
@@ -58,4 +58,4 @@ TEST(CameraFrame, SaysWhereNothingWasFound) {
 }
 
 }  // namespace
-}  // namespace tether::experiment
+}  // namespace tether::report

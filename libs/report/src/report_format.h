@@ -6,7 +6,7 @@
 #include <tether/experiment/statistics.h>
 
 /// How the numbers of a report are written.
-namespace tether::experiment {
+namespace tether::report {
 
 inline constexpr const char* kNone = "–";
 
@@ -14,7 +14,7 @@ inline constexpr const char* kNone = "–";
 std::string decimals(double value);
 std::string decimals(const std::optional<double>& value);
 /// "[1.234, 5.678]".
-std::string interval(const std::optional<Interval>& value);
+std::string interval(const std::optional<experiment::Interval>& value);
 /// "0.012", "< 0.001".
 std::string p_value(double p);
 /// The shortest text that reads back as the same number; empty for none.
@@ -23,4 +23,4 @@ std::string exact(const std::optional<double>& value);
 /// "Time required (s)"; counts have no unit.
 std::string with_unit(const std::string& label, const std::string& unit);
 
-}  // namespace tether::experiment
+}  // namespace tether::report

@@ -5,7 +5,7 @@
 #include <vector>
 
 /// Tables for people and programs.
-namespace tether::experiment {
+namespace tether::report {
 
 /// One heading over one or more columns.
 struct Heading {
@@ -28,4 +28,4 @@ std::string to_markdown(const Table& table);
 /// RFC 4180, the rows of headings joined into one; no title, no notes.
 std::string to_csv(const Table& table);
 
-}  // namespace tether::experiment
+}  // namespace tether::report

@@ -6,18 +6,18 @@
 
 #include <tether/experiment/campaign_results.h>
 #include <tether/experiment/statistics.h>
-#include <tether/experiment/table.h>
+#include <tether/report/table.h>
 
 /// What a campaign showed, as tables. Pure functions of the results.
-namespace tether::experiment {
+namespace tether::report {
 
 /// In the paper's form: a row per condition; mean and standard deviation per metric, the paper's
 /// figures beside ours where the scenario names one of its tables. The notes say how many trials
 /// each number rests on and name every trial that is missing from a mean, and why.
-Table paper_form_table(const ScenarioResults& scenario);
+Table paper_form_table(const experiment::ScenarioResults& scenario);
 
 /// A row per metric and condition: n, mean, 95 % interval, standard deviation, median, range.
-Table details_table(const ScenarioResults& scenario);
+Table details_table(const experiment::ScenarioResults& scenario);
 
 /// How two conditions differ in one metric. @pre of both: at least one value each.
 struct Comparison {
@@ -25,29 +25,29 @@ struct Comparison {
   std::string unit;
   std::string a;  ///< condition
   std::string b;
-  MeanDifference means;  ///< a − b
-  RankTest ranks;
+  experiment::MeanDifference means;  ///< a − b
+  experiment::RankTest ranks;
 };
 /// Every pair of conditions in every metric.
-std::vector<Comparison> compare_conditions(const ScenarioResults& scenario);
-Table comparisons_table(const ScenarioResults& scenario);
+std::vector<Comparison> compare_conditions(const experiment::ScenarioResults& scenario);
+Table comparisons_table(const experiment::ScenarioResults& scenario);
 
 /// The optimism of an unsynchronised test: per metric, the mean under the barrier minus the mean
 /// in free running, for conditions that are alike in clock and factor. All of our metrics are
 /// better when smaller, so a positive difference is what the unsynchronised test hides.
-std::vector<Comparison> optimism(const ScenarioResults& scenario);
-Table optimism_table(const ScenarioResults& scenario);
+std::vector<Comparison> optimism(const experiment::ScenarioResults& scenario);
+Table optimism_table(const experiment::ScenarioResults& scenario);
 
 /// What the numbers rest on: settings and versions, machines, clocks, seeds, audit verdicts,
 /// causality violations.
-Table basis_table(const CampaignResults& results);
+Table basis_table(const experiment::CampaignResults& results);
 
 /// One row per trial and metric, full precision: for other programs.
-Table trials_table(const CampaignResults& results);
+Table trials_table(const experiment::CampaignResults& results);
 /// One row per condition and metric, full precision, the paper's figures beside: for programs.
-Table summaries_table(const CampaignResults& results);
+Table summaries_table(const experiment::CampaignResults& results);
 
 /// All tables for people, in reading order.
-std::vector<Table> report_tables(const CampaignResults& results);
+std::vector<Table> report_tables(const experiment::CampaignResults& results);
 
-}  // namespace tether::experiment
+}  // namespace tether::report

@@ -1,8 +1,8 @@
 #include <array>
 
-#include <tether/experiment/paper_figures.h>
+#include <tether/report/paper_figures.h>
 
-namespace tether::experiment {
+namespace tether::report {
 namespace {
 
 constexpr std::string_view kHost = "host";
@@ -80,4 +80,4 @@ const PaperTable* find_paper_table(std::string_view number) {
   return nullptr;
 }
 
-}  // namespace tether::experiment
+}  // namespace tether::report

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <tether/experiment/table.h>
+#include <tether/report/table.h>
 
-namespace tether::experiment {
+namespace tether::report {
 namespace {
 
 Table small_table() {
@@ -73,4 +73,4 @@ TEST(Tables, MayBeEmpty) {
 }
 
 }  // namespace
-}  // namespace tether::experiment
+}  // namespace tether::report

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/experiment/paper_figures.h>
+#include <tether/report/paper_figures.h>
 
-namespace tether::experiment {
+namespace tether::report {
 namespace {
 
 TEST(PaperFigures, AreFoundByTableConditionAndKind) {
@@ -33,4 +33,4 @@ TEST(PaperFigures, AreThereOnceEach) {
 }
 
 }  // namespace
-}  // namespace tether::experiment
+}  // namespace tether::report

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include <tether/experiment/paper_figures.h>
-#include <tether/experiment/report.h>
+#include <tether/report/paper_figures.h>
+#include <tether/report/report.h>
 
-namespace tether::experiment {
+namespace tether::report {
 namespace {
 
 std::string joined(const std::set<std::string>& words) {
@@ -25,15 +25,15 @@ std::string seeds_text(const std::vector<std::uint64_t>& seeds) {
 }
 
 template <class Visit>
-void for_each_trial(const CampaignResults& results, const Visit& visit) {
-  for (const ScenarioResults& scenario : results.scenarios) {
-    for (const ConditionResults& condition : scenario.conditions) {
-      for (const TrialResult& trial : condition.trials) visit(scenario, trial);
+void for_each_trial(const experiment::CampaignResults& results, const Visit& visit) {
+  for (const experiment::ScenarioResults& scenario : results.scenarios) {
+    for (const experiment::ConditionResults& condition : scenario.conditions) {
+      for (const experiment::TrialResult& trial : condition.trials) visit(scenario, trial);
     }
   }
 }
 
-std::string tie_text(const TrialResult& trial) {
+std::string tie_text(const experiment::TrialResult& trial) {
   std::string text = fmt::format("{}: {}, {} clock", trial.condition, trial.policy, trial.clock);
   if (trial.clock == "cpu") text += fmt::format(" × {}", trial.cpu_factor);
   if (trial.real_time_factor > 0.0) {
@@ -47,10 +47,10 @@ struct Basis {
   std::size_t audited = 0, passed = 0, synchronised = 0;
   std::uint64_t violations = 0, interactions = 0;
 
-  void add(const TrialResult& trial) {
+  void add(const experiment::TrialResult& trial) {
     ties.insert(tie_text(trial));
     if (!trial.this_run.machine.empty()) machines.insert(trial.this_run.machine);
-    for (const SutResult& sut : trial.suts) suts.insert(sut.sut);
+    for (const experiment::SutResult& sut : trial.suts) suts.insert(sut.sut);
     violations += trial.sync.causality_violations;
     interactions += trial.sync.interactions;
     if (trial.policy == scenario::name(scenario::Policy::kConservativeBarrier)) ++synchronised;
@@ -62,9 +62,10 @@ struct Basis {
 
 }  // namespace
 
-Table basis_table(const CampaignResults& results) {
+Table basis_table(const experiment::CampaignResults& results) {
   Basis basis;
-  for_each_trial(results, [&](const ScenarioResults&, const TrialResult& t) { basis.add(t); });
+  for_each_trial(results, [&](const experiment::ScenarioResults&,
+                              const experiment::TrialResult& t) { basis.add(t); });
   Table table;
   table.title = fmt::format("What the numbers of {} rest on", results.manifest.name);
   table.text_columns = 2;
@@ -82,7 +83,7 @@ Table basis_table(const CampaignResults& results) {
   return table;
 }
 
-Table trials_table(const CampaignResults& results) {
+Table trials_table(const experiment::CampaignResults& results) {
   Table table;
   table.headings = {{{"scenario", 1},
                      {"condition", 1},
@@ -92,8 +93,9 @@ Table trials_table(const CampaignResults& results) {
                      {"unit", 1},
                      {"value", 1},
                      {"reason", 1}}};
-  for_each_trial(results, [&](const ScenarioResults& scenario, const TrialResult& trial) {
-    for (const MetricValue& metric : trial.metrics) {
+  for_each_trial(results, [&](const experiment::ScenarioResults& scenario,
+                              const experiment::TrialResult& trial) {
+    for (const experiment::MetricValue& metric : trial.metrics) {
       table.rows.push_back({scenario.scenario, trial.condition, std::to_string(trial.seed),
                             std::string(name(trial.outcome)), metric.name, metric.unit,
                             exact(metric.value), trial.reason});
@@ -102,7 +104,7 @@ Table trials_table(const CampaignResults& results) {
   return table;
 }
 
-Table summaries_table(const CampaignResults& results) {
+Table summaries_table(const experiment::CampaignResults& results) {
   Table table;
   table.headings = {{{"scenario", 1},
                      {"condition", 1},
@@ -117,13 +119,13 @@ Table summaries_table(const CampaignResults& results) {
                      {"ci95_high", 1},
                      {"paper_mean", 1},
                      {"paper_stddev", 1}}};
-  for (const ScenarioResults& scenario : results.scenarios) {
+  for (const experiment::ScenarioResults& scenario : results.scenarios) {
     const PaperTable* paper = find_paper_table(scenario.paper_table);
     for (const std::string& name : scenario.metrics) {
-      const MetricValue* metric = scenario.find_metric(name);
+      const experiment::MetricValue* metric = scenario.find_metric(name);
       if (metric == nullptr) continue;
-      for (const ConditionResults& condition : scenario.conditions) {
-        const Summary s = summarise(condition.values(name));
+      for (const experiment::ConditionResults& condition : scenario.conditions) {
+        const experiment::Summary s = experiment::summarise(condition.values(name));
         const bool any = s.n > 0;
         const PaperFigure* figure =
             paper != nullptr ? paper->find(condition.condition, metric->kind) : nullptr;
@@ -139,4 +141,4 @@ Table summaries_table(const CampaignResults& results) {
   return table;
 }
 
-}  // namespace tether::experiment
+}  // namespace tether::report

@@ -6,7 +6,7 @@
 #include <tether/record/reader.h>
 
 /// Recorded camera images as a person looks at them (paper, Fig. 5).
-namespace tether::experiment {
+namespace tether::report {
 
 /// The region of interest that a SUT reported for an image: its "roi" annotation.
 struct ReportedRoi {
@@ -22,4 +22,4 @@ std::optional<ReportedRoi> find_roi(const record::Record& record, const record::
 /// The image with its ROI framed and its ST below: one self-contained SVG.
 std::string frame_svg(const record::Image& image, const std::optional<ReportedRoi>& roi);
 
-}  // namespace tether::experiment
+}  // namespace tether::report

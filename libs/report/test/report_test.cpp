@@ -1,12 +1,13 @@
-#include "scratch.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/experiment/report.h>
+#include <tether/experiment_testing/scratch.h>
+#include <tether/report/report.h>
 
-namespace tether::experiment {
+namespace tether::report {
 namespace {
+
+using namespace experiment;  // NOLINT: the results that the tables are of
 
 using testing::Contains;
 using testing::ElementsAre;
@@ -136,4 +137,4 @@ TEST_F(Report, DetailsHaveAllStatistics) {
 }
 
 }  // namespace
-}  // namespace tether::experiment
+}  // namespace tether::report

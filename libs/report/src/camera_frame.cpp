@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <tether/experiment/camera_frame.h>
 #include <tether/record/png.h>
+#include <tether/report/camera_frame.h>
 
-namespace tether::experiment {
+namespace tether::report {
 
 namespace {
 
@@ -80,4 +80,4 @@ std::string frame_svg(const record::Image& image, const std::optional<ReportedRo
   return svg;
 }
 
-}  // namespace tether::experiment
+}  // namespace tether::report

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include <tether/experiment/paper_figures.h>
-#include <tether/experiment/report.h>
+#include <tether/report/paper_figures.h>
+#include <tether/report/report.h>
 
-namespace tether::experiment {
+namespace tether::report {
 namespace {
 
 struct Column {
@@ -18,11 +18,11 @@ struct Column {
   bool in_paper = false;
 };
 
-std::vector<Column> columns_of(const ScenarioResults& scenario) {
+std::vector<Column> columns_of(const experiment::ScenarioResults& scenario) {
   const PaperTable* paper = find_paper_table(scenario.paper_table);
   std::vector<Column> columns;
   for (const std::string& name : scenario.metrics) {
-    const MetricValue* metric = scenario.find_metric(name);
+    const experiment::MetricValue* metric = scenario.find_metric(name);
     if (metric == nullptr) continue;
     const bool in_paper = paper != nullptr &&
                           std::any_of(paper->figures.begin(), paper->figures.end(),
@@ -47,9 +47,9 @@ void add_headings(Table& table, const std::vector<Column>& columns) {
   }
 }
 
-void add_cells(std::vector<std::string>& row, const ConditionResults& results, const Column& column,
-               const PaperTable* paper) {
-  const Summary summary = summarise(results.values(column.name));
+void add_cells(std::vector<std::string>& row, const experiment::ConditionResults& results,
+               const Column& column, const PaperTable* paper) {
+  const experiment::Summary summary = experiment::summarise(results.values(column.name));
   row.push_back(summary.n > 0 ? decimals(summary.mean) : kNone);
   row.push_back(decimals(summary.stddev));
   if (!column.in_paper) return;
@@ -58,29 +58,30 @@ void add_cells(std::vector<std::string>& row, const ConditionResults& results, c
   row.push_back(figure != nullptr && figure->stddev ? exact(*figure->stddev) : kNone);
 }
 
-std::string trials_note(const ScenarioResults& scenario) {
+std::string trials_note(const experiment::ScenarioResults& scenario) {
   std::string note = "Trials:";
   const char* separator = "";
-  for (const ConditionResults& results : scenario.conditions) {
-    note +=
-        fmt::format("{} {} {} of {} ({} reached the goal)", separator, results.condition,
-                    results.trials.size(), results.planned, results.count(Outcome::kGoalReached));
+  for (const experiment::ConditionResults& results : scenario.conditions) {
+    note += fmt::format("{} {} {} of {} ({} reached the goal)", separator, results.condition,
+                        results.trials.size(), results.planned,
+                        results.count(experiment::Outcome::kGoalReached));
     separator = ";";
   }
   return note + ". Times are simulated time.";
 }
 
 // Why a trial has no value: said once per trial and reason.
-void add_missing_notes(Table& table, const ConditionResults& results,
+void add_missing_notes(Table& table, const experiment::ConditionResults& results,
                        const std::vector<Column>& columns) {
-  for (const TrialResult& trial : results.trials) {
+  for (const experiment::TrialResult& trial : results.trials) {
     std::set<std::string> reasons;
     for (const Column& column : columns) {
-      const MetricValue* metric = trial.find_metric(column.name);
+      const experiment::MetricValue* metric = trial.find_metric(column.name);
       const bool has_value = metric != nullptr && metric->value;
       if (has_value) continue;
       const std::string why = metric != nullptr ? metric->missing_because : "not computed";
-      const std::string& reason = trial.outcome == Outcome::kFailed ? trial.reason : why;
+      const std::string& reason =
+          trial.outcome == experiment::Outcome::kFailed ? trial.reason : why;
       if (!reasons.insert(reason).second) continue;
       table.notes.push_back(
           fmt::format("Not in a mean: {}, seed {}: {}.", results.condition, trial.seed, reason));
@@ -94,27 +95,29 @@ void add_missing_notes(Table& table, const ConditionResults& results,
 // Comparisons.
 
 std::optional<Comparison> compare(const std::string& metric, const std::string& unit,
-                                  const ConditionResults& a, const ConditionResults& b) {
+                                  const experiment::ConditionResults& a,
+                                  const experiment::ConditionResults& b) {
   const std::vector<double> values_a = a.values(metric), values_b = b.values(metric);
   if (values_a.empty() || values_b.empty()) return std::nullopt;
   return Comparison{metric,
                     unit,
                     a.condition,
                     b.condition,
-                    compare_means(values_a, values_b),
-                    mann_whitney(values_a, values_b)};
+                    experiment::compare_means(values_a, values_b),
+                    experiment::mann_whitney(values_a, values_b)};
 }
 
 template <class Wanted>
-std::vector<Comparison> compare_where(const ScenarioResults& scenario, const Wanted& wanted) {
+std::vector<Comparison> compare_where(const experiment::ScenarioResults& scenario,
+                                      const Wanted& wanted) {
   std::vector<Comparison> comparisons;
   for (const std::string& name : scenario.metrics) {
-    const MetricValue* metric = scenario.find_metric(name);
+    const experiment::MetricValue* metric = scenario.find_metric(name);
     if (metric == nullptr) continue;
     for (std::size_t i = 0; i < scenario.conditions.size(); ++i) {
       for (std::size_t j = 0; j < scenario.conditions.size(); ++j) {
         if (!wanted(i, j)) continue;
-        const ConditionResults &a = scenario.conditions[i], &b = scenario.conditions[j];
+        const experiment::ConditionResults &a = scenario.conditions[i], &b = scenario.conditions[j];
         if (auto result = compare(name, metric->unit, a, b)) comparisons.push_back(*result);
       }
     }
@@ -122,15 +125,17 @@ std::vector<Comparison> compare_where(const ScenarioResults& scenario, const Wan
   return comparisons;
 }
 
-bool is_synchronised_twin(const ConditionResults& a, const ConditionResults& b) {
+bool is_synchronised_twin(const experiment::ConditionResults& a,
+                          const experiment::ConditionResults& b) {
   if (a.trials.empty() || b.trials.empty()) return false;
-  const TrialResult &first_a = a.trials.front(), &first_b = b.trials.front();
+  const experiment::TrialResult &first_a = a.trials.front(), &first_b = b.trials.front();
   return first_a.policy == scenario::name(scenario::Policy::kConservativeBarrier) &&
          first_b.policy == scenario::name(scenario::Policy::kFreeRunning) &&
          first_a.clock == first_b.clock && first_a.cpu_factor == first_b.cpu_factor;
 }
 
-Table table_of(const ScenarioResults& scenario, const std::vector<Comparison>& comparisons) {
+Table table_of(const experiment::ScenarioResults& scenario,
+               const std::vector<Comparison>& comparisons) {
   Table table;
   table.text_columns = 2;
   table.headings = {{{"Metric", 1},
@@ -139,41 +144,41 @@ Table table_of(const ScenarioResults& scenario, const std::vector<Comparison>& c
                      {"95 % interval", 1},
                      {"p", 1}}};
   for (const Comparison& c : comparisons) {
-    const MetricValue* metric = scenario.find_metric(c.metric);
+    const experiment::MetricValue* metric = scenario.find_metric(c.metric);
     table.rows.push_back({with_unit(metric->label, c.unit), fmt::format("{} − {}", c.a, c.b),
                           decimals(c.means.difference), interval(c.means.ci95),
                           p_value(c.ranks.p_two_sided)});
   }
   const bool all_exact = std::all_of(comparisons.begin(), comparisons.end(),
                                      [](const Comparison& c) { return c.ranks.exact; });
-  table.notes = {fmt::format("Interval: Welch's t. p: Mann-Whitney U, two-sided, {}.",
+  table.notes = {fmt::format("experiment::Interval: Welch's t. p: Mann-Whitney U, two-sided, {}.",
                              all_exact ? "exact" : "exact up to 100 trials, else approximate")};
   return table;
 }
 
 }  // namespace
 
-Table paper_form_table(const ScenarioResults& scenario) {
+Table paper_form_table(const experiment::ScenarioResults& scenario) {
   const PaperTable* paper = find_paper_table(scenario.paper_table);
   const std::vector<Column> columns = columns_of(scenario);
   Table table;
   table.title = paper != nullptr ? fmt::format("Table {}: {}", paper->number, paper->title)
                                  : fmt::format("Scenario {}", scenario.scenario);
   add_headings(table, columns);
-  for (const ConditionResults& results : scenario.conditions) {
+  for (const experiment::ConditionResults& results : scenario.conditions) {
     std::vector<std::string> row = {results.condition};
     for (const Column& column : columns) add_cells(row, results, column, paper);
     table.rows.push_back(std::move(row));
   }
   table.notes.push_back(trials_note(scenario));
   if (paper != nullptr) table.notes.push_back(fmt::format("Paper: {}.", paper->source));
-  for (const ConditionResults& results : scenario.conditions) {
+  for (const experiment::ConditionResults& results : scenario.conditions) {
     add_missing_notes(table, results, columns);
   }
   return table;
 }
 
-Table details_table(const ScenarioResults& scenario) {
+Table details_table(const experiment::ScenarioResults& scenario) {
   Table table;
   table.title = fmt::format("Details of {}", scenario.scenario);
   table.text_columns = 2;
@@ -187,8 +192,8 @@ Table details_table(const ScenarioResults& scenario) {
                      {"Min", 1},
                      {"Max", 1}}};
   for (const Column& column : columns_of(scenario)) {
-    for (const ConditionResults& results : scenario.conditions) {
-      const Summary s = summarise(results.values(column.name));
+    for (const experiment::ConditionResults& results : scenario.conditions) {
+      const experiment::Summary s = experiment::summarise(results.values(column.name));
       std::vector<std::string> row = {column.heading, results.condition, std::to_string(s.n)};
       if (s.n == 0) {
         row.resize(9, kNone);
@@ -199,28 +204,28 @@ Table details_table(const ScenarioResults& scenario) {
       table.rows.push_back(std::move(row));
     }
   }
-  table.notes = {"Interval: of the mean, Student's t."};
+  table.notes = {"experiment::Interval: of the mean, Student's t."};
   return table;
 }
 
-std::vector<Comparison> compare_conditions(const ScenarioResults& scenario) {
+std::vector<Comparison> compare_conditions(const experiment::ScenarioResults& scenario) {
   // Each pair once, the later minus the earlier.
   return compare_where(scenario, [](std::size_t a, std::size_t b) { return a > b; });
 }
 
-Table comparisons_table(const ScenarioResults& scenario) {
+Table comparisons_table(const experiment::ScenarioResults& scenario) {
   Table table = table_of(scenario, compare_conditions(scenario));
   table.title = fmt::format("How the conditions of {} differ", scenario.scenario);
   return table;
 }
 
-std::vector<Comparison> optimism(const ScenarioResults& scenario) {
+std::vector<Comparison> optimism(const experiment::ScenarioResults& scenario) {
   return compare_where(scenario, [&](std::size_t a, std::size_t b) {
     return is_synchronised_twin(scenario.conditions[a], scenario.conditions[b]);
   });
 }
 
-Table optimism_table(const ScenarioResults& scenario) {
+Table optimism_table(const experiment::ScenarioResults& scenario) {
   Table table = table_of(scenario, optimism(scenario));
   table.title = fmt::format("The optimism of an unsynchronised test of {}", scenario.scenario);
   table.notes.push_back(
@@ -228,9 +233,9 @@ Table optimism_table(const ScenarioResults& scenario) {
   return table;
 }
 
-std::vector<Table> report_tables(const CampaignResults& results) {
+std::vector<Table> report_tables(const experiment::CampaignResults& results) {
   std::vector<Table> tables;
-  for (const ScenarioResults& scenario : results.scenarios) {
+  for (const experiment::ScenarioResults& scenario : results.scenarios) {
     tables.push_back(paper_form_table(scenario));
     tables.push_back(details_table(scenario));
     if (!compare_conditions(scenario).empty()) tables.push_back(comparisons_table(scenario));
@@ -240,4 +245,4 @@ std::vector<Table> report_tables(const CampaignResults& results) {
   return tables;
 }
 
-}  // namespace tether::experiment
+}  // namespace tether::report

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace tether::experiment {
+namespace tether::report {
 
 std::string decimals(double value) {
   const std::string text = fmt::format("{:.3f}", value);
@@ -13,7 +13,7 @@ std::string decimals(const std::optional<double>& value) {
   return value ? decimals(*value) : kNone;
 }
 
-std::string interval(const std::optional<Interval>& value) {
+std::string interval(const std::optional<experiment::Interval>& value) {
   if (!value) return kNone;
   return fmt::format("[{}, {}]", decimals(value->low), decimals(value->high));
 }
@@ -33,4 +33,4 @@ std::string with_unit(const std::string& label, const std::string& unit) {
   return unit == "1" ? label : fmt::format("{} ({})", label, unit);
 }
 
-}  // namespace tether::experiment
+}  // namespace tether::report
