@@ -7,13 +7,24 @@
 namespace tether::sut {
 namespace {
 
-std::unique_ptr<tasks::Task> make_task(const Mission& mission) {
-  if (const auto* options = std::get_if<tasks::FaceAnchorOptions>(&mission.task)) {
-    return std::make_unique<tasks::FaceAnchorTask>(mission.anchor, *options);
+using TaskPointer = std::unique_ptr<tasks::Task>;
+
+struct TaskMaker {
+  const std::string& anchor;
+
+  TaskPointer operator()(const tasks::RelativePositionOptions& options) const {
+    return std::make_unique<tasks::RelativePositionTask>(anchor, options);
   }
-  const auto& options = std::get<tasks::ConvergenceOptions>(mission.task);
-  return std::make_unique<tasks::RelativePositionTask>(mission.anchor, options);
-}
+  TaskPointer operator()(const tasks::FaceAnchorOptions& options) const {
+    return std::make_unique<tasks::FaceAnchorTask>(anchor, options);
+  }
+  TaskPointer operator()(const tasks::MoveForwardOptions& options) const {
+    return std::make_unique<tasks::MoveForwardTask>(anchor, options);
+  }
+  TaskPointer operator()(const tasks::ClosedPathOptions& options) const {
+    return std::make_unique<tasks::ClosedPathTask>(anchor, options);
+  }
+};
 
 /// Whether nobody is left to hear how it ended.
 bool is_link_gone(const tasks::TaskOutcome& outcome) {
@@ -26,7 +37,7 @@ bool is_link_gone(const tasks::TaskOutcome& outcome) {
 
 tasks::TaskOutcome fly(const Mission& mission, client::Vehicle& vehicle) {
   tasks::TaskContext context(vehicle, mission.camera, mission.tracker);
-  const std::unique_ptr<tasks::Task> task = make_task(mission);
+  const TaskPointer task = std::visit(TaskMaker{mission.anchor}, mission.task);
   tasks::TaskOutcome outcome = tasks::run(*task, context);
   if (is_link_gone(outcome)) {
     return outcome;

@@ -2,18 +2,24 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <tether/client/vehicle.h>
+#include <tether/tasks/closed_path_task.h>
 #include <tether/tasks/face_anchor_task.h>
+#include <tether/tasks/move_forward_task.h>
 #include <tether/tasks/relative_position_task.h>
 #include <tether/tasks/task.h>
 #include <tether/vision/anchor_tracker.h>
 
 namespace tether::sut {
 
+using TaskOptions = std::variant<tasks::RelativePositionOptions, tasks::FaceAnchorOptions,
+                                 tasks::MoveForwardOptions, tasks::ClosedPathOptions>;
+
 /// What the program is asked to fly.
 struct Mission {
-  std::variant<tasks::FaceAnchorOptions, tasks::ConvergenceOptions> task;
+  TaskOptions task;
   std::string anchor;
   std::string camera = "camera";
   vision::TrackerOptions tracker;

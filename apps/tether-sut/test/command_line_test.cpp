@@ -91,7 +91,8 @@ TEST(CommandLine, TakesEveryOption) {
 TEST(CommandLine, RelativePosition) {
   const CommandLine line =
       parsed({"relative_position", "--anchor", "blue_box", "--stable-frames", "4"});
-  EXPECT_EQ(std::get<tasks::ConvergenceOptions>(line.mission.task).stable_frames, 4);
+  EXPECT_EQ(std::get<tasks::RelativePositionOptions>(line.mission.task).convergence.stable_frames,
+            4);
 }
 
 TEST(CommandLine, HelpAndVersionAreNoMistake) {

@@ -2,12 +2,12 @@
 
 #include <gmock/gmock.h>
 
-#include <tether/tasks/testing/turning_vehicle.h>
+#include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::sut {
 namespace {
 
-using tasks::testing::TurningVehicle;
+using tasks::testing::PlanarVehicle;
 using ::testing::HasSubstr;
 
 Mission face_anchor() {
@@ -21,7 +21,7 @@ Mission face_anchor() {
 }
 
 TEST(Fly, TellsTheCoordinatorThatTheGoalIsReached) {
-  TurningVehicle vehicle({});
+  PlanarVehicle vehicle({});
   const tasks::TaskOutcome outcome = fly(face_anchor(), vehicle);
   EXPECT_EQ(exit_code(outcome), 0);
   ASSERT_TRUE(vehicle.finished());
@@ -31,7 +31,7 @@ TEST(Fly, TellsTheCoordinatorThatTheGoalIsReached) {
 }
 
 TEST(Fly, TellsTheCoordinatorThatItIsNot) {
-  TurningVehicle vehicle({.anchor_is_there = false});
+  PlanarVehicle vehicle({.anchor_is_there = false});
   const tasks::TaskOutcome outcome = fly(face_anchor(), vehicle);
   EXPECT_EQ(exit_code(outcome), 1);
   ASSERT_TRUE(vehicle.finished());
@@ -40,15 +40,15 @@ TEST(Fly, TellsTheCoordinatorThatItIsNot) {
 }
 
 TEST(Fly, RelativePositionReportsItsResults) {
-  TurningVehicle vehicle({});
+  PlanarVehicle vehicle({});
   Mission mission = face_anchor();
-  mission.task = tasks::ConvergenceOptions{.tolerance_px = 2.0};
+  mission.task = tasks::RelativePositionOptions{.convergence = {.tolerance_px = 2.0}};
   EXPECT_EQ(exit_code(fly(mission, vehicle)), 0);
   EXPECT_THAT(vehicle.finished()->details_json, HasSubstr("\"distance_m\""));
 }
 
 TEST(Fly, AnUnknownAnchorIsWrongUseAndEndsTheMission) {
-  TurningVehicle vehicle({});
+  PlanarVehicle vehicle({});
   Mission mission = face_anchor();
   mission.anchor = "door";
   const tasks::TaskOutcome outcome = fly(mission, vehicle);
@@ -59,7 +59,7 @@ TEST(Fly, AnUnknownAnchorIsWrongUseAndEndsTheMission) {
 }
 
 TEST(Fly, ALostLinkIsExitCode3) {
-  TurningVehicle vehicle({.disconnect_at = 5});
+  PlanarVehicle vehicle({.disconnect_at = 5});
   EXPECT_EQ(exit_code(fly(face_anchor(), vehicle)), 3);
   EXPECT_FALSE(vehicle.finished());
 }

@@ -1,3 +1,5 @@
+#include "motion.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,26 +14,21 @@ double sign_of(double value) {
   return value < 0.0 ? -1.0 : 1.0;
 }
 
-Status turn(TaskContext& context, double yaw_rate_rad_s) {
-  return context.vehicle().command_velocity({{}, yaw_rate_rad_s});
-}
-
-Status stop(TaskContext& context) {
-  return turn(context, 0.0);
-}
-
 }  // namespace
 
 FaceAnchorTask::FaceAnchorTask(std::string anchor, const FaceAnchorOptions& options)
-    : options_(options), relative_position_(std::move(anchor), options.convergence) {}
+    : options_(options),
+      limit_(options.time_limit, options.max_looks),
+      relative_position_(std::move(anchor), {options.convergence, options.time_limit}) {}
 
 Progress FaceAnchorTask::initialise(TaskContext& context) {
-  started_at_ = context.vehicle().now();
-  last_seen_at_ = started_at_;
+  last_seen_at_ = context.vehicle().now();
+  limit_.start(last_seen_at_);
   bearing_rad_.reset();
   yaw_rate_rad_s_ = options_.yaw_rate_rad_s;
   overshoots_ = 0;
   looks_ = 0;
+  lost_ = false;
 
   if (const Status stopped = stop(context); !stopped) {
     return TaskOutcome::failed(stopped.failure());
@@ -48,8 +45,8 @@ Progress FaceAnchorTask::initialise(TaskContext& context) {
 }
 
 Progress FaceAnchorTask::step(TaskContext& context) {
-  if (context.vehicle().now() - started_at_ > options_.time_limit) {
-    return TaskOutcome::not_reached("time limit");
+  if (Progress end = limit_.next_round(context.vehicle().now())) {
+    return end;
   }
   std::optional<double> bearing;
   if (Progress end = look(context, bearing)) {
@@ -105,6 +102,7 @@ Progress FaceAnchorTask::turn_to(TaskContext& context, std::string_view phase, d
 /// Turns on as before, for a while.
 Progress FaceAnchorTask::keep_searching(TaskContext& context) {
   if (context.vehicle().now() - last_seen_at_ > options_.lost_limit) {
+    lost_ = true;
     return TaskOutcome::not_reached(bearing_rad_ ? "anchor lost" : "anchor never seen");
   }
   context.note_event(name(), "loop", "unseen");
@@ -112,15 +110,10 @@ Progress FaceAnchorTask::keep_searching(TaskContext& context) {
 }
 
 void FaceAnchorTask::finalise(TaskContext& context, TaskOutcome& outcome) {
-  const Status stopped = stop(context);
-  if (!stopped && outcome.status != TaskStatus::kFailed) {
-    outcome.status = TaskStatus::kFailed;
-    outcome.reason = stopped.failure().message;
-    outcome.failure = stopped.failure().kind;
-  }
+  fail_on(stop(context), outcome);
   outcome.results["overshoots"] = overshoots_;
   outcome.results["looks"] = looks_;
-  outcome.results["duration_s"] = to_seconds(context.vehicle().now() - started_at_);
+  outcome.results["duration_s"] = to_seconds(limit_.elapsed(context.vehicle().now()));
   outcome.results["yaw_rate_rad_s"] = yaw_rate_rad_s_;
   if (bearing_rad_) {
     outcome.results["bearing_rad"] = *bearing_rad_;

@@ -16,14 +16,22 @@ struct RelativePositionTask::Loop {
   int unseen_in_a_row = 0;
 };
 
-RelativePositionTask::RelativePositionTask(std::string anchor, const ConvergenceOptions& options)
-    : anchor_(std::move(anchor)), options_(options) {}
+RelativePositionTask::RelativePositionTask(std::string anchor,
+                                           const RelativePositionOptions& options)
+    : anchor_(std::move(anchor)),
+      options_(options),
+      limit_(options.time_limit, options.convergence.max_frames) {}
 
 RelativePositionTask::~RelativePositionTask() = default;
 
 Progress RelativePositionTask::initialise(TaskContext& context) {
+  limit_.start(context.vehicle().now());
   estimate_.reset();
   loop_.reset();
+  return prepare(context);
+}
+
+Progress RelativePositionTask::prepare(TaskContext& context) {
   const auto camera = context.camera();
   if (!camera) {
     return TaskOutcome::failed(camera.failure());
@@ -36,12 +44,15 @@ Progress RelativePositionTask::initialise(TaskContext& context) {
   if (!tracker) {
     return TaskOutcome::failed(tracker.failure());
   }
-  loop_ =
-      std::make_unique<Loop>(Loop{*camera, *anchor, *tracker, ConvergenceMonitor(options_), 0, 0});
+  loop_ = std::make_unique<Loop>(
+      Loop{*camera, *anchor, *tracker, ConvergenceMonitor(options_.convergence), 0, 0});
   return std::nullopt;
 }
 
 Progress RelativePositionTask::step(TaskContext& context) {
+  if (Progress end = limit_.next_round(context.vehicle().now())) {
+    return end;
+  }
   const Result<uav::CameraSample> image = context.vehicle().read_camera(loop_->camera->name);
   if (!image) {
     return TaskOutcome::failed(image.failure());
@@ -50,7 +61,7 @@ Progress RelativePositionTask::step(TaskContext& context) {
   if (Progress progress = look(context, *image)) {
     return progress;
   }
-  if (loop_->frames >= options_.max_frames) {
+  if (loop_->frames >= options_.convergence.max_frames) {
     return TaskOutcome::not_reached(estimate_ ? "did not converge" : "anchor not seen");
   }
   return std::nullopt;
@@ -66,19 +77,20 @@ Progress RelativePositionTask::look(TaskContext& context, const uav::CameraSampl
   const bool converged = loop_->convergence.has_converged();
   estimate_ = vision::relative_position(*loop_->camera, *loop_->anchor, *roi);
   context.note_roi(*roi, image.index);
-  context.note_estimate(*estimate_, converged);
+  context.note_estimate(anchor_, image.index, *estimate_, converged);
   return converged ? Progress(TaskOutcome::goal_reached()) : std::nullopt;
 }
 
 Progress RelativePositionTask::miss() {
   loop_->convergence.miss();
-  if (++loop_->unseen_in_a_row >= options_.max_unseen_frames) {
+  if (++loop_->unseen_in_a_row >= options_.convergence.max_unseen_frames) {
     return TaskOutcome::not_reached("anchor not seen");
   }
   return std::nullopt;
 }
 
-void RelativePositionTask::finalise(TaskContext&, TaskOutcome& outcome) {
+void RelativePositionTask::finalise(TaskContext& context, TaskOutcome& outcome) {
+  outcome.results["duration_s"] = to_seconds(limit_.elapsed(context.vehicle().now()));
   outcome.results["frames"] = loop_ ? loop_->frames : 0;
   if (!estimate_) {
     return;

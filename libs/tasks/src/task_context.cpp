@@ -25,12 +25,17 @@ TaskContext::TaskContext(client::Vehicle& vehicle, std::string camera,
                          const vision::TrackerOptions& tracker_options)
     : vehicle_(vehicle), camera_(std::move(camera)), tracker_options_(tracker_options) {}
 
-Result<const uav::SensorDescription*> TaskContext::camera() const {
-  const uav::SensorDescription* sensor = vehicle_.catalogue().find_sensor(camera_);
-  if (sensor == nullptr || sensor->kind() != uav::SensorKind::kCamera) {
-    return no_such("camera", camera_);
+Result<const uav::SensorDescription*> TaskContext::sensor(std::string_view name,
+                                                          uav::SensorKind kind) const {
+  const uav::SensorDescription* sensor = vehicle_.catalogue().find_sensor(name);
+  if (sensor == nullptr || sensor->kind() != kind) {
+    return no_such(uav::name(kind), name);
   }
   return sensor;
+}
+
+Result<const uav::SensorDescription*> TaskContext::camera() const {
+  return sensor(camera_, uav::SensorKind::kCamera);
 }
 
 Result<const uav::Anchor*> TaskContext::anchor(std::string_view name) const {
@@ -77,7 +82,8 @@ void TaskContext::note_end(std::string_view task, std::string_view status,
 
 void TaskContext::note_roi(const vision::Roi& roi, std::uint64_t image_index) {
   annotate(vehicle_, "roi",
-           {{"u_px", roi.center.u_px},
+           {{"camera", camera_},
+            {"u_px", roi.center.u_px},
             {"v_px", roi.center.v_px},
             {"width_px", roi.width_px},
             {"height_px", roi.height_px},
@@ -86,12 +92,24 @@ void TaskContext::note_roi(const vision::Roi& roi, std::uint64_t image_index) {
             {"image_index", image_index}});
 }
 
-void TaskContext::note_estimate(const vision::RelativePosition& estimate, bool converged) {
+void TaskContext::note_estimate(std::string_view anchor, std::uint64_t image_index,
+                                const vision::RelativePosition& estimate, bool converged) {
   // JSON has no NaN: an unknown distance becomes null.
   annotate(vehicle_, "estimate",
-           {{"bearing_rad", estimate.bearing_rad},
+           {{"anchor", anchor},
+            {"camera", camera_},
+            {"image_index", image_index},
+            {"bearing_rad", estimate.bearing_rad},
             {"distance_m", estimate.distance_m.value_or(std::numeric_limits<double>::quiet_NaN())},
             {"converged", converged}});
+}
+
+void TaskContext::note_odometry(const uav::Vec3& p_H0B, double yaw_rad) {
+  annotate(vehicle_, "odometry", {{"x_m", p_H0B.x}, {"y_m", p_H0B.y}, {"yaw_rad", yaw_rad}});
+}
+
+void TaskContext::note_displacement(const uav::Vec3& p_H0B) {
+  annotate(vehicle_, "displacement", {{"x_m", p_H0B.x}, {"y_m", p_H0B.y}});
 }
 
 }  // namespace tether::tasks

@@ -5,18 +5,18 @@
 
 #include <tether/tasks/face_anchor_task.h>
 #include <tether/tasks/task_context.h>
-#include <tether/tasks/testing/turning_vehicle.h>
+#include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::tasks {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-using testing::TurningVehicle;
+using testing::PlanarVehicle;
 
 struct Flight {
   TaskOutcome outcome;
-  TurningVehicle vehicle;
+  PlanarVehicle vehicle;
   double overshoots() const { return outcome.results.at("overshoots"); }
   std::vector<std::string> events() const {
     std::vector<std::string> events;
@@ -31,10 +31,10 @@ struct Flight {
   }
 };
 
-Flight fly(const TurningVehicle::Options& world, FaceAnchorOptions options = {}) {
+Flight fly(const PlanarVehicle::Options& world, FaceAnchorOptions options = {}) {
   // The fake's images are a quarter as wide as those that the default is for.
   options.convergence.tolerance_px = 2.0;
-  Flight flight{{}, TurningVehicle(world)};
+  Flight flight{{}, PlanarVehicle(world)};
   TaskContext context(flight.vehicle);
   FaceAnchorTask task("blue_box", options);
   flight.outcome = run(task, context);
@@ -142,6 +142,14 @@ TEST(FaceAnchorTask, EndsAtItsTimeLimit) {
   EXPECT_NEAR(flight.outcome.results.at("duration_s"), 4.0, 1.5);
 }
 
+TEST(FaceAnchorTask, EndsWhileTheClockStandsStill) {
+  FaceAnchorOptions options;
+  options.max_looks = 3;
+  const Flight flight = fly({.anchor_is_there = false, .clock_stands_still = true}, options);
+  EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(flight.outcome.reason, "round limit");
+}
+
 TEST(FaceAnchorTask, FailsWhereverTheConnectionEnds) {
   for (int n = 0; n < 12; ++n) {
     const Flight flight = fly({.disconnect_at = n});
@@ -158,7 +166,7 @@ TEST(FaceAnchorTask, NotesItsPhases) {
 }
 
 TEST(FaceAnchorTask, IsDeterministic) {
-  const TurningVehicle::Options slow{.compute_per_image = milliseconds(200)};
+  const PlanarVehicle::Options slow{.compute_per_image = milliseconds(200)};
   EXPECT_EQ(details_json(fly(slow).outcome), details_json(fly(slow).outcome));
 }
 

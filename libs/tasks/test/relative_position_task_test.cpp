@@ -2,7 +2,7 @@
 
 #include <tether/tasks/relative_position_task.h>
 #include <tether/tasks/task_context.h>
-#include <tether/tasks/testing/turning_vehicle.h>
+#include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::tasks {
 namespace {
@@ -10,12 +10,12 @@ namespace {
 using std::chrono::milliseconds;
 
 /// The fake's images are a quarter as wide as those that the default is for.
-const ConvergenceOptions kConvergence{.tolerance_px = 2.0};
+const RelativePositionOptions kOptions{.convergence = {.tolerance_px = 2.0}};
 
 struct Fixture {
-  explicit Fixture(const testing::TurningVehicle::Options& options = {}) : vehicle(options) {}
+  explicit Fixture(const testing::PlanarVehicle::Options& options = {}) : vehicle(options) {}
   TaskOutcome run_task(const std::string& anchor = "blue_box") {
-    task = std::make_unique<RelativePositionTask>(anchor, kConvergence);
+    task = std::make_unique<RelativePositionTask>(anchor, kOptions);
     return run(*task, context);
   }
   int count(std::string_view topic) const {
@@ -25,7 +25,7 @@ struct Fixture {
     }
     return n;
   }
-  testing::TurningVehicle vehicle;
+  testing::PlanarVehicle vehicle;
   TaskContext context{vehicle};
   std::unique_ptr<RelativePositionTask> task;
 };
@@ -67,19 +67,35 @@ TEST(RelativePositionTask, NotSeenIsAnOutcome) {
   EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
   EXPECT_EQ(outcome.reason, "anchor not seen");
   EXPECT_FALSE(f.task->estimate());
-  EXPECT_EQ(f.vehicle.images_read(), kConvergence.max_unseen_frames);
+  EXPECT_EQ(f.vehicle.images_read(), kOptions.convergence.max_unseen_frames);
 }
 
 TEST(RelativePositionTask, DoesNotConvergeForEver) {
   Fixture f;
-  ConvergenceOptions impossible = kConvergence;
-  impossible.tolerance_px = -1;
+  RelativePositionOptions impossible = kOptions;
+  impossible.convergence.tolerance_px = -1;
   RelativePositionTask task("blue_box", impossible);
   const TaskOutcome outcome = run(task, f.context);
   EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
   EXPECT_EQ(outcome.reason, "did not converge");
-  EXPECT_EQ(f.vehicle.images_read(), impossible.max_frames);
+  EXPECT_EQ(f.vehicle.images_read(), impossible.convergence.max_frames);
   EXPECT_TRUE(task.estimate());
+}
+
+TEST(RelativePositionTask, EndsAtItsTimeLimit) {
+  Fixture f({.compute_per_image = milliseconds(400)});
+  RelativePositionOptions hurried = kOptions;
+  hurried.time_limit = milliseconds(500);
+  RelativePositionTask task("blue_box", hurried);
+  const TaskOutcome outcome = run(task, f.context);
+  EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(outcome.reason, "time limit");
+  EXPECT_NEAR(outcome.results.at("duration_s"), 0.8, 0.1);
+}
+
+TEST(RelativePositionTask, EndsWhileTheClockStandsStill) {
+  Fixture f({.anchor_is_there = false, .clock_stands_still = true});
+  EXPECT_EQ(f.run_task().reason, "anchor not seen");
 }
 
 TEST(RelativePositionTask, AShortLossCostsImagesOnly) {
@@ -100,7 +116,7 @@ TEST(RelativePositionTask, FailsWithItsReason) {
 
 TEST(RelativePositionTask, MayRunAgain) {
   Fixture f;
-  RelativePositionTask task("blue_box", kConvergence);
+  RelativePositionTask task("blue_box", kOptions);
   const TaskOutcome first = run(task, f.context);
   const TaskOutcome second = run(task, f.context);
   EXPECT_TRUE(first.reached() && second.reached());

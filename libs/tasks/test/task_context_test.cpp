@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/tasks/task_context.h>
-#include <tether/tasks/testing/turning_vehicle.h>
+#include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::tasks {
 namespace {
@@ -11,18 +11,22 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 
 TEST(TaskContext, FindsCameraAndAnchor) {
-  testing::TurningVehicle vehicle({});
+  testing::PlanarVehicle vehicle({});
   TaskContext context(vehicle);
   ASSERT_TRUE(context.camera());
   EXPECT_EQ((*context.camera())->name, "camera");
   ASSERT_TRUE(context.anchor("blue_box"));
   EXPECT_EQ((*context.anchor("blue_box"))->size_m.z, 0.5);
+  ASSERT_TRUE(context.sensor("imu", uav::SensorKind::kImu));
+  EXPECT_EQ((*context.sensor("imu", uav::SensorKind::kImu))->name, "imu");
 }
 
 TEST(TaskContext, SaysWhatTheCatalogueLacks) {
-  testing::TurningVehicle vehicle({});
+  testing::PlanarVehicle vehicle({});
   EXPECT_THAT(TaskContext(vehicle, "eye").camera().failure().message, HasSubstr("camera \"eye\""));
   EXPECT_FALSE(TaskContext(vehicle, "imu").camera()) << "not a camera";
+  EXPECT_THAT(TaskContext(vehicle).sensor("gps", uav::SensorKind::kImu).failure().message,
+              HasSubstr("imu \"gps\""));
   TaskContext context(vehicle);
   EXPECT_THAT(context.anchor("door").failure().message, HasSubstr("anchor \"door\""));
   EXPECT_THAT(context.tracker("door").failure().message, HasSubstr("anchor \"door\""));
@@ -30,7 +34,7 @@ TEST(TaskContext, SaysWhatTheCatalogueLacks) {
 }
 
 TEST(TaskContext, KeepsOneTrackerForEachAnchor) {
-  testing::TurningVehicle vehicle({});
+  testing::PlanarVehicle vehicle({});
   TaskContext context(vehicle);
   const auto first = context.tracker("blue_box");
   const auto again = context.tracker("blue_box");
@@ -39,29 +43,40 @@ TEST(TaskContext, KeepsOneTrackerForEachAnchor) {
 }
 
 TEST(TaskContext, NotesHaveTheFieldsOfTheRecord) {
-  testing::TurningVehicle vehicle({});
+  testing::PlanarVehicle vehicle({});
   TaskContext context(vehicle);
   vision::Roi roi;
   roi.center = {12.5, 7};
   roi.width_px = 20;
   context.note_roi(roi, 42);
-  context.note_estimate({0.25, std::nullopt}, true);
+  context.note_estimate("blue_box", 42, {0.25, std::nullopt}, true);
   context.note_event("face_anchor", "loop", "reverse", {{"yaw_rate_rad_s", -0.2}});
 
   const auto& notes = vehicle.annotations();
-  ASSERT_EQ(notes.size(), 3u);
+  context.note_odometry({1, -2, 0}, 0.5);
+  context.note_displacement({0.25, 0.5, 0});
+  ASSERT_EQ(notes.size(), 5u);
   EXPECT_EQ(notes[0].topic, "roi");
   const json noted_roi = json::parse(notes[0].json);
+  EXPECT_EQ(noted_roi.at("camera"), "camera");
   EXPECT_EQ(noted_roi.at("u_px"), 12.5);
   EXPECT_EQ(noted_roi.at("image_index"), 42);
   for (const char* field : {"v_px", "width_px", "height_px", "angle_rad", "score"}) {
     EXPECT_TRUE(noted_roi.contains(field)) << field;
   }
   EXPECT_EQ(notes[1].topic, "estimate");
-  EXPECT_EQ(json::parse(notes[1].json),
-            json({{"bearing_rad", 0.25}, {"distance_m", nullptr}, {"converged", true}}));
+  EXPECT_EQ(json::parse(notes[1].json), json({{"anchor", "blue_box"},
+                                              {"camera", "camera"},
+                                              {"image_index", 42},
+                                              {"bearing_rad", 0.25},
+                                              {"distance_m", nullptr},
+                                              {"converged", true}}));
   EXPECT_EQ(notes[2].topic, "task");
   EXPECT_EQ(json::parse(notes[2].json).at("yaw_rate_rad_s"), -0.2);
+  EXPECT_EQ(notes[3].topic, "odometry");
+  EXPECT_EQ(json::parse(notes[3].json), json({{"x_m", 1.0}, {"y_m", -2.0}, {"yaw_rad", 0.5}}));
+  EXPECT_EQ(notes[4].topic, "displacement");
+  EXPECT_EQ(json::parse(notes[4].json), json({{"x_m", 0.25}, {"y_m", 0.5}}));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <tether/tasks/task.h>
 #include <tether/tasks/task_context.h>
-#include <tether/tasks/testing/turning_vehicle.h>
+#include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::tasks {
 namespace {
@@ -44,7 +44,7 @@ class DiaryTask : public Task {
 };
 
 struct Fixture {
-  testing::TurningVehicle vehicle{{}};
+  testing::PlanarVehicle vehicle{{}};
   TaskContext context{vehicle};
   std::vector<std::string> diary;
 };

@@ -5,6 +5,7 @@
 
 #include <tether/base/time.h>
 #include <tether/base/units.h>
+#include <tether/tasks/loop_limit.h>
 #include <tether/tasks/relative_position_task.h>
 #include <tether/tasks/task.h>
 
@@ -20,6 +21,7 @@ struct FaceAnchorOptions {
   Duration lost_limit =
       std::chrono::seconds(20);  ///< without seeing the anchor; then "anchor lost"
   Duration time_limit = std::chrono::seconds(60);  ///< of the SUT's clock; then "time limit"
+  int max_looks = 10'000;  ///< runs of Algorithm 2, should that clock stand still; "round limit"
 };
 
 /// Algorithm 3, "face anchor": turns until the anchor is in the middle of the image. An overshoot
@@ -29,6 +31,13 @@ struct FaceAnchorOptions {
 class FaceAnchorTask : public Task {
  public:
   explicit FaceAnchorTask(std::string anchor, const FaceAnchorOptions& options = {});
+
+  /// In the last run: the bearing last seen, if any.
+  const std::optional<double>& bearing_rad() const { return bearing_rad_; }
+  /// In the last run: runs of Algorithm 2.
+  int looks() const { return looks_; }
+  /// In the last run: whether the anchor had been out of sight for the limit of that when it ended.
+  bool has_lost_anchor() const { return lost_; }
 
   std::string_view name() const override { return "face_anchor"; }
   Progress initialise(TaskContext& context) override;
@@ -42,16 +51,17 @@ class FaceAnchorTask : public Task {
   Progress keep_searching(TaskContext& context);
 
   FaceAnchorOptions options_;
+  LoopLimit limit_;
   RelativePositionTask relative_position_;
 
   // Of the current run.
-  ExecTime started_at_;
   ExecTime last_seen_at_;
   std::optional<double> bearing_rad_;  ///< the last one seen
   double yaw_rate_rad_s_ = 0.0;        ///< its size now
   double direction_ = 0.0;             ///< +1 counter-clockwise, −1 clockwise
   int overshoots_ = 0;
   int looks_ = 0;
+  bool lost_ = false;
 };
 
 }  // namespace tether::tasks

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include <tether/base/time.h>
+#include <tether/tasks/loop_limit.h>
 #include <tether/tasks/task.h>
 #include <tether/vision/relative_position.h>
 
@@ -24,11 +26,16 @@ struct ConvergenceOptions {
       4;  ///< images in a row without the anchor; then: not reached, "anchor not seen"
 };
 
+struct RelativePositionOptions {
+  ConvergenceOptions convergence;
+  Duration time_limit = std::chrono::seconds(60);  ///< of the SUT's clock; then "time limit"
+};
+
 /// Algorithm 2, "compute relative position": looks at images until the estimate converges. Moves
-/// nothing. Results: "bearing_rad", "distance_m" (if known), "frames".
+/// nothing. Results: "duration_s" (ET), "bearing_rad", "distance_m" (if known), "frames".
 class RelativePositionTask : public Task {
  public:
-  explicit RelativePositionTask(std::string anchor, const ConvergenceOptions& options = {});
+  explicit RelativePositionTask(std::string anchor, const RelativePositionOptions& options = {});
   ~RelativePositionTask() override;
 
   std::string_view name() const override { return "relative_position"; }
@@ -42,11 +49,13 @@ class RelativePositionTask : public Task {
 
  private:
   struct Loop;
+  Progress prepare(TaskContext& context);
   Progress look(TaskContext& context, const uav::CameraSample& image);
   Progress miss();
 
   std::string anchor_;
-  ConvergenceOptions options_;
+  RelativePositionOptions options_;
+  LoopLimit limit_;
   std::unique_ptr<Loop> loop_;  ///< state of the task loop, new for each run
   std::optional<vision::RelativePosition> estimate_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
@@ -22,6 +23,8 @@ class TaskContext {
 
   client::Vehicle& vehicle() { return vehicle_; }
 
+  /// Fails (kInvalid) if the UAV has no sensor of this name and kind.
+  Result<const uav::SensorDescription*> sensor(std::string_view name, uav::SensorKind kind) const;
   /// Fails (kInvalid) if the UAV has no camera of the name given at construction.
   Result<const uav::SensorDescription*> camera() const;
   /// Fails (kInvalid) if there is no such anchor.
@@ -30,15 +33,22 @@ class TaskContext {
   /// cannot be tracked. The pointer stays valid as long as the context.
   Result<vision::AnchorTracker*> tracker(std::string_view anchor);
 
-  /// @name Notes for the record (topics "task", "roi", "estimate"). An annotation that cannot be
-  /// sent is no failure of its own: the link's next interaction tells.
+  /// @name Notes for the record (topics "task", "roi", "estimate", "odometry", "displacement"). An
+  /// annotation that cannot be sent is no failure of its own: the link's next interaction tells.
+  /// Which camera a ROI or an estimate is of is the one given at construction.
   /// @{
   using Values = std::vector<std::pair<std::string_view, double>>;
   void note_event(std::string_view task, std::string_view phase, std::string_view event,
                   const Values& values = {});
   void note_end(std::string_view task, std::string_view status, std::string_view reason);
   void note_roi(const vision::Roi& roi, std::uint64_t image_index);
-  void note_estimate(const vision::RelativePosition& estimate, bool converged);
+  void note_estimate(std::string_view anchor, std::uint64_t image_index,
+                     const vision::RelativePosition& estimate, bool converged);
+  /// Where dead reckoning has the UAV, in the start-heading frame H0 (x ahead at the start, y left,
+  /// origin at the start) [m, rad].
+  void note_odometry(const uav::Vec3& p_H0B, double yaw_rad);
+  /// Algorithm 5's own estimate of end minus start, in H0 [m].
+  void note_displacement(const uav::Vec3& p_H0B);
   /// @}
 
  private:

@@ -11,20 +11,33 @@
 
 namespace tether::tasks::testing {
 
-/// A UAV that turns on the spot in front of a blue box, with a computer of scripted speed: ET moves
-/// only by waiting for images and by `compute_per_image` for each of them. Deterministic; needs no
-/// network and no simulator.
-class TurningVehicle : public client::Vehicle {
+/// A UAV that flies level in a world with one blue box, with a computer of scripted speed: ET moves
+/// only by waiting and by `compute_per_image` for each image. Yaw rate and velocity follow the
+/// command with limited acceleration. Deterministic; needs no network and no simulator.
+///
+/// Starts at the world's origin. Sensors: "camera" (30 Hz), "imu" (200 Hz), "range" (on demand: the
+/// distance to a wall at x = 10 m).
+class PlanarVehicle : public client::Vehicle {
  public:
   struct Options {
     double anchor_bearing_rad = rad_from_deg(30.0);  ///< at the start
-    double anchor_distance_m = 4.0;
+    double anchor_distance_m = 4.0;                  ///< from the UAV
+    double anchor_height_m = 0.5;
     bool anchor_is_there = true;
     std::pair<Duration, Duration> anchor_hidden{};  ///< from, until
+    double start_yaw_rad = 0.0;
+    double camera_ahead_m = 0.0;  ///< its mounting
+    uav::Quat q_BS_imu{};           ///< the IMU's mounting
+    uav::Vec3 imu_bias_m_s2{};      ///< of the specific force
+    bool imu_is_stuck = false;    ///< it reports a UAV that never moves
     Duration compute_per_image{0};
     Duration image_period = std::chrono::nanoseconds(33'333'333);
     Duration image_delay = std::chrono::milliseconds(20);
+    /// What a rangefinder's measurement takes, in turn.
+    std::vector<Duration> range_delays{std::chrono::milliseconds(30)};
+    double max_acceleration_m_s2 = 3.0;
     double max_yaw_acceleration_rad_s2 = 6.0;
+    bool clock_stands_still = false;  ///< `now` always says 0, whatever happens
     /// The connection ends with this interaction (counted from 0).
     std::optional<int> disconnect_at = std::nullopt;
   };
@@ -39,9 +52,9 @@ class TurningVehicle : public client::Vehicle {
     std::string details_json;
   };
 
-  explicit TurningVehicle(const Options& options);
+  explicit PlanarVehicle(const Options& options);
 
-  ExecTime now() const override { return now_; }
+  ExecTime now() const override { return options_.clock_stands_still ? ExecTime() : now_; }
   const uav::Catalogue& catalogue() const override { return catalogue_; }
   Result<uav::CameraSample> read_camera(std::string_view sensor, client::Read read) override;
   Result<uav::ImuSample> read_imu(std::string_view sensor, client::Read read) override;
@@ -53,11 +66,16 @@ class TurningVehicle : public client::Vehicle {
   Status finish(bool reached_goal, std::string_view outcome,
                 std::string_view details_json) override;
 
+  /// Turns the UAV by force, as a gust would.
+  void disturb_yaw(double yaw_rad) { states_.back().yaw_rad += yaw_rad; }
+
   /// @name What happened
   /// @{
-  double yaw() const { return yaw_at_ms_.back(); }
+  double yaw() const { return states_.back().yaw_rad; }
+  const uav::Vec3& position() const { return states_.back().p_W; }
+  const uav::Vec3& anchor_position() const { return with_anchor_.boxes.front().p_W; }
   /// What is left to turn: the true bearing of the anchor's centre [rad].
-  double bearing() const { return options_.anchor_bearing_rad - yaw(); }
+  double bearing() const;
   const std::vector<uav::VelocityCommand>& commands() const { return commands_; }
   const std::vector<Annotation>& annotations() const { return annotations_; }
   const std::optional<Finish>& finished() const { return finish_; }
@@ -65,19 +83,28 @@ class TurningVehicle : public client::Vehicle {
   /// @}
 
  private:
-  Status begin_interaction();
+  struct State {
+    uav::Vec3 p_W, v_W, a_W;
+    double yaw_rad = 0.0;
+    double yaw_rate_rad_s = 0.0;
+  };
+
+  Status begin_interaction(std::string_view sensor = {}, std::string_view expected = {});
+  State next(const State& state) const;
+  const State& at(Duration since_start) const;
   void simulate_until(ExecTime until);
 
   Options options_;
   uav::Catalogue catalogue_;
   vision::testing::SyntheticScene with_anchor_, without_anchor_;
   ExecTime now_;
-  std::vector<double> yaw_at_ms_{0.0};  // [rad] at each millisecond up to now
-  double yaw_rate_rad_s_ = 0.0;
+  std::vector<State> states_;  // at each millisecond up to now
   uav::VelocityCommand command_;
   std::optional<std::uint64_t> last_image_;
+  std::optional<std::uint64_t> last_imu_;
   int interactions_ = 0;
   int images_read_ = 0;
+  std::uint64_t ranges_read_ = 0;
   std::vector<uav::VelocityCommand> commands_;
   std::vector<Annotation> annotations_;
   std::optional<Finish> finish_;

@@ -1,0 +1,150 @@
+#include "task_arguments.h"
+
+#include "common_arguments.h"
+
+namespace tether::sut {
+namespace {
+
+constexpr const char* kTimeLimit = "Gives up after this time of its own clock";
+
+class RelativePositionArguments : public TaskArguments {
+ public:
+  std::string_view name() const override { return "relative_position"; }
+  std::string_view description() const override {
+    return "Measure bearing and distance of the anchor";
+  }
+  void add_to(CLI::App& app) override {
+    add_vision_options(app, mission_);
+    add_convergence_options(app, options_.convergence);
+    add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
+  }
+  Mission mission() const override {
+    Mission mission = mission_;
+    mission.task = options_;
+    return mission;
+  }
+
+ private:
+  Mission mission_;
+  tasks::RelativePositionOptions options_;
+};
+
+class FaceAnchorArguments : public TaskArguments {
+ public:
+  std::string_view name() const override { return "face_anchor"; }
+  std::string_view description() const override {
+    return "Turn until the anchor is straight ahead";
+  }
+  void add_to(CLI::App& app) override {
+    add_vision_options(app, mission_);
+    add_degrees(app, "--precision-deg", options_.precision_rad, "The goal: bearing at most this",
+                0.001, 90.0);
+    add_turning_options(app, options_);
+    add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
+  }
+  Mission mission() const override {
+    Mission mission = mission_;
+    mission.task = options_;
+    return mission;
+  }
+
+ private:
+  Mission mission_;
+  tasks::FaceAnchorOptions options_;
+};
+
+class MoveForwardArguments : public TaskArguments {
+ public:
+  std::string_view name() const override { return "move_forward"; }
+  std::string_view description() const override {
+    return "Move ahead facing the anchor until it is abeam";
+  }
+  void add_to(CLI::App& app) override {
+    add_vision_options(app, mission_);
+    app.add_option("--speed-m-s", options_.speed_m_s, "Of moving")
+        ->check(within(0.001, 5.0))
+        ->capture_default_str();
+    add_degrees(app, "--precision-deg", options_.precision_rad,
+                "Stops and faces the anchor when its bearing is more than this", 0.001, 90.0);
+    add_degrees(app, "--face-precision-deg", options_.face.precision_rad,
+                "Facing it: until its bearing is at most this", 0.001, 90.0);
+    add_seconds(app, "--face-time-limit-s", options_.face.time_limit,
+                "Facing it: moves on after this time");
+    add_turning_options(app, options_.face);
+    app.add_option("--imu", options_.imu, "Name of the IMU that tells the heading")
+        ->capture_default_str();
+    add_seconds(app, "--settle-s", options_.settle, "Waits so long after the final stop", 0.0);
+    add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
+  }
+  Mission mission() const override {
+    Mission mission = mission_;
+    mission.task = options_;
+    return mission;
+  }
+
+ private:
+  Mission mission_;
+  tasks::MoveForwardOptions options_;
+};
+
+class ClosedPathArguments : public TaskArguments {
+ public:
+  std::string_view name() const override { return "closed_path"; }
+  std::string_view description() const override {
+    return "Fly a square by the IMU and see how far from its start it ends";
+  }
+  void add_to(CLI::App& app) override {
+    add_vision_options(app, mission_);
+    add_path_options(app);
+    add_convergence_options(app, options_.convergence);
+    add_limits(app);
+  }
+  Mission mission() const override {
+    Mission mission = mission_;
+    mission.task = options_;
+    return mission;
+  }
+
+ private:
+  void add_path_options(CLI::App& app) {
+    app.add_option("--distance-m", options_.distance_m, "Length of each of the four legs")
+        ->check(within(0.01, 1000.0))
+        ->capture_default_str();
+    app.add_option("--speed-m-s", options_.speed_m_s, "Of moving")
+        ->check(within(0.001, 5.0))
+        ->capture_default_str();
+    app.add_option("--imu", options_.imu, "Name of the IMU")->capture_default_str();
+    app.add_option("--rest-readings", options_.rest_readings,
+                   "Readings of the IMU before the start, from which its bias is taken")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
+    add_degrees(app, "--turn-rate-deg-s", options_.turn_rate_rad_s,
+                "Turning back to the start heading: at most this fast", 0.01, 720.0);
+    add_degrees(app, "--turn-tolerance-deg", options_.turn_tolerance_rad,
+                "... until the heading is off by at most this", 0.01, 90.0);
+    add_seconds(app, "--settle-s", options_.settle, "Comes to rest for so long after the stop",
+                0.0);
+  }
+  void add_limits(CLI::App& app) {
+    add_seconds(app, "--turn-limit-s", options_.turn_limit, "Gives up turning back after this");
+    add_seconds(app, "--leg-slack-s", options_.leg_slack,
+                "Gives up a leg after five times its time and this");
+    add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
+  }
+
+  Mission mission_;
+  tasks::ClosedPathOptions options_;
+};
+
+}  // namespace
+
+std::vector<std::unique_ptr<TaskArguments>> all_task_arguments() {
+  std::vector<std::unique_ptr<TaskArguments>> all;
+  all.push_back(std::make_unique<RelativePositionArguments>());
+  all.push_back(std::make_unique<FaceAnchorArguments>());
+  all.push_back(std::make_unique<MoveForwardArguments>());
+  all.push_back(std::make_unique<ClosedPathArguments>());
+  return all;
+}
+
+}  // namespace tether::sut

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <tether/base/time.h>
+#include <tether/base/units.h>
+#include <tether/tasks/face_anchor_task.h>
+#include <tether/tasks/loop_limit.h>
+#include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/task.h>
+
+namespace tether::tasks {
+
+struct MoveForwardOptions {
+  double speed_m_s = 0.3;  ///< > 0
+  /// With the anchor further than this from straight ahead, the lower-level task is run; > 0. Its
+  /// own goal, `face.precision_rad`, should not be larger.
+  double precision_rad = rad_from_deg(3.0);
+  FaceAnchorOptions face;   ///< of the lower-level task; its convergence is also this task's
+  std::string imu = "imu";  ///< the sensor that tells the heading
+  Duration settle = std::chrono::seconds(1);  ///< after the final stop, to come to rest; 0: none
+  Duration time_limit = std::chrono::seconds(180);  ///< of the SUT's clock; then "time limit"
+  int max_rounds = 10'000;  ///< of the loop, should that clock stand still; then "round limit"
+};
+
+/// Algorithm 4: moves in the direction that the UAV heads to at the start, facing the anchor
+/// meanwhile, until it has turned by 90°: then the anchor is abeam of the way.
+///
+/// An anchor that is not seen is looked for by the lower-level task, which stands still meanwhile;
+/// when that gives up, so does this one ("anchor lost", "anchor never seen"). One that cannot be
+/// faced within the lower-level task's limits is moved on from.
+///
+/// Results: "duration_s" (ET, until the final stop), "yaw_turned_rad", "face_anchors" (runs of the
+/// lower-level task), "face_anchors_missed" (those that did not reach their goal), "looks" (runs of
+/// Algorithm 2, also those of the lower-level task), "overshoots" (of all its runs), "bearing_rad"
+/// (the last seen).
+class MoveForwardTask : public Task {
+ public:
+  explicit MoveForwardTask(std::string anchor, const MoveForwardOptions& options = {});
+
+  std::string_view name() const override { return "move_forward"; }
+  Progress initialise(TaskContext& context) override;
+  Progress step(TaskContext& context) override;
+  void finalise(TaskContext& context, TaskOutcome& outcome) override;
+
+ private:
+  Progress look(TaskContext& context, bool& is_ahead);
+  Progress face_anchor(TaskContext& context);
+  Progress update_yaw(TaskContext& context);
+
+  std::string anchor_;
+  MoveForwardOptions options_;
+  LoopLimit limit_;
+  RelativePositionTask relative_position_;
+
+  // Of the current run.
+  double starting_yaw_rad_ = 0.0;
+  double yaw_turned_rad_ = 0.0;        ///< since the start, in (−π, π]
+  std::optional<double> bearing_rad_;  ///< the last one seen
+  int face_anchors_ = 0;
+  int missed_ = 0;
+  int looks_ = 0;
+  double overshoots_ = 0.0;
+};
+
+}  // namespace tether::tasks

@@ -1,0 +1,45 @@
+#include "motion.h"
+
+#include <cmath>
+
+namespace tether::tasks {
+
+Status stop(TaskContext& context) {
+  return context.vehicle().command_velocity({});
+}
+
+Status turn(TaskContext& context, double yaw_rate_rad_s) {
+  return context.vehicle().command_velocity({{}, yaw_rate_rad_s});
+}
+
+Status move_direction(TaskContext& context, double direction_rad, double speed_m_s) {
+  const uav::Vec3 ahead{std::cos(direction_rad), std::sin(direction_rad), 0.0};
+  return context.vehicle().command_velocity({speed_m_s * ahead, 0.0});
+}
+
+uav::Quat attitude(const uav::SensorDescription& imu, const uav::ImuSample& reading) {
+  return reading.q_WS * inverse(imu.X_BS.q);
+}
+
+Result<double> get_yaw(TaskContext& context, std::string_view imu) {
+  const auto sensor = context.sensor(imu, uav::SensorKind::kImu);
+  if (!sensor) {
+    return sensor.failure();
+  }
+  const Result<uav::ImuSample> reading = context.vehicle().read_imu(imu, client::Read::kLatest);
+  if (!reading) {
+    return reading.failure();
+  }
+  return uav::yaw_rad(attitude(**sensor, *reading));
+}
+
+void fail_on(const Status& status, TaskOutcome& outcome) {
+  if (status || outcome.status == TaskStatus::kFailed) {
+    return;
+  }
+  outcome.status = TaskStatus::kFailed;
+  outcome.reason = status.failure().message;
+  outcome.failure = status.failure().kind;
+}
+
+}  // namespace tether::tasks

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string_view>
+
+#include <tether/base/result.h>
+#include <tether/client/vehicle.h>
+#include <tether/tasks/task.h>
+#include <tether/tasks/task_context.h>
+
+/// The commands of the paper's listings, in the words of the listings.
+namespace tether::tasks {
+
+/// stop(): neither moves nor turns.
+Status stop(TaskContext& context);
+/// Turns on the spot; counter-clockwise is positive.
+Status turn(TaskContext& context, double yaw_rate_rad_s);
+/// move_direction(): flies level at `speed_m_s` in the direction `direction_rad` from where the
+/// nose points (counter-clockwise positive), and does not turn.
+Status move_direction(TaskContext& context, double direction_rad, double speed_m_s);
+
+/// Attitude of the body in the reading of an IMU: undoes the IMU's mounting.
+uav::Quat attitude(const uav::SensorDescription& imu, const uav::ImuSample& reading);
+/// get_yaw(): heading from the newest reading of the IMU, counter-clockwise from east [rad]. Fails
+/// (kInvalid) if the UAV has no IMU of that name.
+Result<double> get_yaw(TaskContext& context, std::string_view imu);
+
+/// Makes a failure of what had not failed before; does nothing if `status` is success.
+void fail_on(const Status& status, TaskOutcome& outcome);
+
+}  // namespace tether::tasks

@@ -1,0 +1,203 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <tether/tasks/closed_path_task.h>
+#include <tether/tasks/task_context.h>
+#include <tether/tasks/testing/planar_vehicle.h>
+
+namespace tether::tasks {
+namespace {
+
+using nlohmann::json;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::PlanarVehicle;
+
+struct Flight {
+  TaskOutcome outcome;
+  PlanarVehicle vehicle;
+  double result(const std::string& name) const { return outcome.results.at(name); }
+  std::vector<json> notes(std::string_view topic) const {
+    std::vector<json> notes;
+    for (const auto& annotation : vehicle.annotations()) {
+      if (annotation.topic == topic) {
+        notes.push_back(json::parse(annotation.json));
+      }
+    }
+    return notes;
+  }
+};
+
+Flight fly(const PlanarVehicle::Options& world, ClosedPathOptions options = {}) {
+  // The fake's images are a quarter as wide as those that the default is for.
+  options.convergence.tolerance_px = 2.0;
+  Flight flight{{}, PlanarVehicle(world)};
+  TaskContext context(flight.vehicle);
+  ClosedPathTask task("blue_box", options);
+  flight.outcome = run(task, context);
+  if (flight.outcome.status != TaskStatus::kFailed) {
+    EXPECT_EQ(flight.vehicle.commands().back(), uav::VelocityCommand{}) << "not stopped";
+  }
+  return flight;
+}
+
+TEST(ClosedPathTask, ComesBackToItsStart) {
+  for (const double start_yaw_deg : {0.0, -130.0}) {
+    const PlanarVehicle::Options world{.anchor_bearing_rad = rad_from_deg(10),
+                                       .start_yaw_rad = rad_from_deg(start_yaw_deg),
+                                       .camera_ahead_m = 0.1,
+                                       .q_BS_imu = uav::from_rpy(0.1, 0.2, 0.3)};
+    const Flight flight = fly(world);
+    EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
+    EXPECT_LT(norm(flight.vehicle.position()), 0.15);
+    EXPECT_NEAR(flight.vehicle.yaw(), world.start_yaw_rad, rad_from_deg(1));
+    EXPECT_EQ(flight.result("legs"), 4);
+    EXPECT_NEAR(flight.result("path_length_m"), 4.0, 0.3);
+  }
+}
+
+TEST(ClosedPathTask, FliesASquareAheadAndToTheLeft) {
+  const Flight flight = fly({.anchor_bearing_rad = 0.0, .start_yaw_rad = 0.5});
+  double most_x = 0.0, most_y = 0.0, least = 0.0;
+  for (const json& note : flight.notes("odometry")) {
+    most_x = std::max(most_x, note.at("x_m").get<double>());
+    most_y = std::max(most_y, note.at("y_m").get<double>());
+    least = std::min({least, note.at("x_m").get<double>(), note.at("y_m").get<double>()});
+    EXPECT_NEAR(note.at("yaw_rad").get<double>(), 0.0, 1e-9);
+  }
+  EXPECT_NEAR(most_x, 1.0, 0.1);
+  EXPECT_NEAR(most_y, 1.0, 0.1);
+  EXPECT_GT(least, -0.1);
+}
+
+TEST(ClosedPathTask, ReckonsWhereItIs) {
+  const Flight flight = fly({.anchor_bearing_rad = 0.0});
+  EXPECT_NEAR(flight.result("end_x_m"), flight.vehicle.position().x, 0.06);
+  EXPECT_NEAR(flight.result("end_y_m"), flight.vehicle.position().y, 0.06);
+  const json last = flight.notes("odometry").back();
+  EXPECT_EQ(last.at("x_m"), flight.result("end_x_m"));
+}
+
+/// A bias that the task was not told of takes it elsewhere; its estimate by vision says where.
+TEST(ClosedPathTask, SeesHowFarFromItsStartItEnded) {
+  ClosedPathOptions options;
+  options.rest_readings = 0;
+  const PlanarVehicle::Options world{.anchor_bearing_rad = rad_from_deg(-10),
+                                     .start_yaw_rad = rad_from_deg(70),
+                                     .camera_ahead_m = 0.1,
+                                     .imu_bias_m_s2 = {0.005, -0.004, 0}};
+  const Flight flight = fly(world, options);
+  ASSERT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
+  const uav::Vec3 p_H0 =
+      rotate(uav::from_rpy(0, 0, -world.start_yaw_rad), flight.vehicle.position());
+  EXPECT_GT(norm(p_H0), 0.2);
+  EXPECT_NEAR(flight.result("displacement_x_m"), p_H0.x, 0.12);
+  EXPECT_NEAR(flight.result("displacement_y_m"), p_H0.y, 0.12);
+  const auto notes = flight.notes("displacement");
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_EQ(notes[0].at("x_m"), flight.result("displacement_x_m"));
+  EXPECT_EQ(notes[0].at("y_m"), flight.result("displacement_y_m"));
+  EXPECT_DOUBLE_EQ(flight.result("displacement_m"),
+                   std::hypot(notes[0].at("x_m").get<double>(), notes[0].at("y_m").get<double>()));
+}
+
+TEST(ClosedPathTask, LearnsTheBiasBeforeItStarts) {
+  const Flight flight = fly({.anchor_bearing_rad = 0.0, .imu_bias_m_s2 = {0.05, -0.05, 0.02}});
+  EXPECT_LT(norm(flight.vehicle.position()), 0.15);
+}
+
+/// Turned by a gust in its first leg, it flies on along the path's directions and turns back.
+struct GustyVehicle : PlanarVehicle {
+  using PlanarVehicle::PlanarVehicle;
+  Status command_velocity(const uav::VelocityCommand& command) override {
+    if (commands().size() == 1) {
+      disturb_yaw(0.3);
+    }
+    return PlanarVehicle::command_velocity(command);
+  }
+};
+
+TEST(ClosedPathTask, TurnsBackToTheStartHeading) {
+  GustyVehicle vehicle({.anchor_bearing_rad = 0.0});
+  TaskContext context(vehicle);
+  ClosedPathOptions options;
+  options.convergence.tolerance_px = 2.0;
+  ClosedPathTask task("blue_box", options);
+  const TaskOutcome outcome = run(task, context);
+  EXPECT_TRUE(outcome.reached()) << outcome.reason;
+  EXPECT_NEAR(vehicle.yaw(), 0.0, 1.5 * options.turn_tolerance_rad);
+  EXPECT_NEAR(outcome.results.at("displacement_x_m"), vehicle.position().x, 0.15);
+  EXPECT_NEAR(outcome.results.at("displacement_y_m"), vehicle.position().y, 0.15);
+  bool turned = false;
+  for (const auto& command : vehicle.commands()) {
+    turned = turned || command.yaw_rate_rad_s < 0.0;
+    EXPECT_LE(std::abs(command.yaw_rate_rad_s), options.turn_rate_rad_s);
+  }
+  EXPECT_TRUE(turned);
+}
+
+TEST(ClosedPathTask, NeverSeenIsAnOutcome) {
+  const Flight flight = fly({.anchor_is_there = false});
+  EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(flight.outcome.reason, "anchor not seen at the start");
+  EXPECT_EQ(flight.result("legs"), 0);
+  EXPECT_EQ(flight.vehicle.position(), uav::Vec3{});
+}
+
+TEST(ClosedPathTask, AnAnchorThatIsGoneAtTheEndIsAnOutcome) {
+  const Flight flight = fly({.anchor_bearing_rad = 0, .anchor_hidden = {seconds(5), seconds(99)}});
+  EXPECT_EQ(flight.outcome.reason, "anchor not seen at the end");
+  EXPECT_EQ(flight.result("legs"), 4);
+  EXPECT_FALSE(flight.outcome.results.contains("displacement_m"));
+  EXPECT_TRUE(flight.notes("displacement").empty());
+}
+
+TEST(ClosedPathTask, AnAnchorCutOffHasNoDistance) {
+  const Flight flight =
+      fly({.anchor_bearing_rad = 0, .anchor_distance_m = 1.0, .anchor_height_m = 4.0});
+  EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(flight.outcome.reason, "no distance to the anchor at the start");
+}
+
+TEST(ClosedPathTask, EndsWhileTheImuSaysThatNothingMoves) {
+  ClosedPathOptions options;
+  options.distance_m = 0.3;
+  options.leg_slack = seconds(2);
+  const Flight flight = fly({.anchor_bearing_rad = 0, .imu_is_stuck = true}, options);
+  EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(flight.outcome.reason, "time limit in leg 1");
+  EXPECT_NEAR(flight.result("duration_s"), 7.2, 0.5);
+}
+
+TEST(ClosedPathTask, EndsAtItsTimeLimit) {
+  ClosedPathOptions options;
+  options.time_limit = seconds(6);
+  const Flight flight = fly({.anchor_bearing_rad = 0}, options);
+  EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(flight.outcome.reason, "time limit in leg 2");
+}
+
+TEST(ClosedPathTask, EndsWhileTheClockStandsStill) {
+  ClosedPathOptions options;
+  options.max_readings = 50;
+  const Flight flight =
+      fly({.anchor_bearing_rad = 0, .imu_is_stuck = true, .clock_stands_still = true}, options);
+  EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(flight.outcome.reason, "round limit in leg 1");
+}
+
+TEST(ClosedPathTask, FailsWithItsReason) {
+  ClosedPathOptions options;
+  options.imu = "camera";
+  EXPECT_EQ(fly({}, options).outcome.failure, Failure::Kind::kInvalid);
+  for (const int n : {0, 2, 5, 24, 25, 100}) {
+    const Flight flight = fly({.anchor_bearing_rad = 0, .disconnect_at = n});
+    EXPECT_EQ(flight.outcome.status, TaskStatus::kFailed) << n;
+    EXPECT_EQ(flight.outcome.failure, Failure::Kind::kDisconnected) << n;
+  }
+}
+
+}  // namespace
+}  // namespace tether::tasks
