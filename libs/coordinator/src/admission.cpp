@@ -42,9 +42,12 @@ std::variant<std::size_t, Refusal> admit(const link::Hello& hello, const std::st
 }
 
 namespace {
-std::string setting_of(link::ClockKind kind, double cpu_factor) {
-  return kind == link::ClockKind::kCpu ? fmt::format("cpu*{}", cpu_factor)
-                                       : std::string(link::name(kind));
+/// As TETHER_CLOCK has it.
+std::string text_of(const ClockSetting& setting) {
+  if (setting.kind == link::ClockKind::kCpu) return fmt::format("cpu*{}", setting.cpu_factor);
+  if (setting.kind == link::ClockKind::kScripted)
+    return fmt::format("scripted*{}", static_cast<double>(setting.computing.count()) / 1e6);
+  return std::string(link::name(setting.kind));
 }
 }  // namespace
 
@@ -53,8 +56,8 @@ std::optional<std::string> clock_fault(const link::Hello& hello,
   const bool is_measured =
       hello.clock == link::ClockKind::kWall || hello.clock == link::ClockKind::kCpu;
   if (!wanted || !is_measured) return std::nullopt;
-  const std::string given = setting_of(hello.clock, hello.cpu_factor);
-  const std::string asked = setting_of(wanted->kind, wanted->cpu_factor);
+  const std::string given = text_of({.kind = hello.clock, .cpu_factor = hello.cpu_factor});
+  const std::string asked = text_of(*wanted);
   if (given == asked) return std::nullopt;
   return fmt::format(
       "the SUT measures its time by \"{}\", the condition by \"{}\"; start it with "

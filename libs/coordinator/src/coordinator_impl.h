@@ -90,7 +90,8 @@ class Coordinator::Impl final : public link::ServerEvents {
   void answer_untied();
   void reply(Session& session, SimTime st);
   void leave(Session& session);
-  std::optional<uav::CameraSample> image_to_record(const link::Reply& reply) const;
+  std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
+                                                   const link::Reply& reply) const;
   std::optional<uav::Sample> take_sample(Session& session, PendingInteraction& pending);
 
   bool tied() const { return options_.policy == sync::SyncPolicy::kConservativeBarrier; }

@@ -30,7 +30,7 @@ void Coordinator::Impl::reply(Session& session, SimTime st) {
   link::Reply message{.sequence = entry.sequence,
                       .resume_at = entry.reply_at,
                       .sample = take_sample(session, pending)};
-  const std::optional<uav::CameraSample> image = image_to_record(message);
+  const std::optional<uav::CameraSample> image = image_to_record(session, pending.request, message);
   entry.st_at_release = st;
   entry.grid_error = std::max(entry.grid_error, same_instant(entry.reply_at) - st);
   entry.wall_at_release = host_clock_();
@@ -45,10 +45,14 @@ void Coordinator::Impl::reply(Session& session, SimTime st) {
 }
 
 std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
-    const link::Reply& reply) const {
+    Session& session, const link::Request& request, const link::Reply& reply) const {
   if (!options_.record_images || !reply.sample) return std::nullopt;
   const auto* image = std::get_if<uav::CameraSample>(&*reply.sample);
-  return image ? std::optional(*image) : std::nullopt;
+  if (image == nullptr) return std::nullopt;
+  auto& last = session.sensors[std::get<link::ReadSensor>(request.body).sensor].recorded_image_at;
+  if (last && image->sampled_at < *last + options_.image_period) return std::nullopt;
+  last = image->sampled_at;
+  return *image;
 }
 
 void Coordinator::Impl::leave(Session& session) {

@@ -23,6 +23,7 @@ struct SensorState {
   SensorSchedule schedule;
   CaptureStore captures;
   std::uint64_t next_capture = 0;  ///< periodic: index of the first measurement not yet captured
+  std::optional<SimTime> recorded_image_at{};  ///< when the last image in the record was taken
 };
 
 /// A request between its arrival and its reply.

@@ -168,6 +168,28 @@ TEST_F(CoordinatorTest, FramesThatNobodyReadsAreNeverMeasured) {
   EXPECT_EQ(simulator_->calls().measure, 1u);
 }
 
+// Images are 33 ms apart; what is recorded is thinned, what the SUT gets is not.
+TEST_F(CoordinatorTest, RecordsImagesNoOftenerThanAsked) {
+  options_.record_images = true;
+  options_.image_period = milliseconds(66);
+  ScriptedServer::Script script;
+  for (int i = 0; i < 6; ++i) script.push_back(read(Duration(0), kCamera));
+  script.push_back(read(Duration(0), kCamera, true));
+  script.push_back(finish(Duration(0)));
+  const RunReport report = run(script);
+  EXPECT_EQ(report.images, 7u);
+  std::vector<std::uint64_t> indices;
+  for (const record::Image& image : recorder_.images) indices.push_back(image.index);
+  EXPECT_THAT(indices, testing::ElementsAre(0u, 2u, 4u));
+}
+
+TEST_F(CoordinatorTest, RecordsEveryImageThatIsReadUnlessAskedOtherwise) {
+  options_.record_images = true;
+  run({read(Duration(0), kCamera), read(Duration(0), kCamera), read(Duration(0), kCamera, true),
+       read(Duration(0), kRange), finish(Duration(0))});
+  EXPECT_EQ(recorder_.images.size(), 3u);
+}
+
 struct EffectCase {
   std::int64_t stamp_us;
   std::int64_t latency_us;
@@ -495,6 +517,15 @@ TEST_F(CoordinatorTest, ASutOnAnotherClockThanTheConditionsIsRefusedAndTheUserTo
   EXPECT_THAT(refusal(peer).message, HasSubstr("TETHER_CLOCK='cpu*12'"));
   ASSERT_EQ(told.size(), 1u);
   EXPECT_THAT(told[0], HasSubstr("TETHER_CLOCK='cpu*12'"));
+}
+
+TEST_F(CoordinatorTest, ASutThatMeasuresItsTimeIsRefusedWhereItIsScripted) {
+  clock_ = ClockSetting{.kind = link::ClockKind::kScripted, .computing = microseconds(2500)};
+  options_.connect_limit = seconds(1);
+  make();
+  const auto peer = server_->add_sut(hello("", link::ClockKind::kWall), {});
+  EXPECT_EQ(coordinator_->run(*server_, hooks_).end, RunEnd::kSutLost);
+  EXPECT_THAT(refusal(peer).message, HasSubstr("TETHER_CLOCK='scripted*2.5'"));
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ namespace tether::coordinator {
 struct ClockSetting {
   link::ClockKind kind = link::ClockKind::kWall;
   double cpu_factor = 1.0;  ///< of link::ClockKind::kCpu
+  Duration computing{0};    ///< of link::ClockKind::kScripted: for each phase of computing
 };
 
 /// How one UAV of the world meets its SUT.
@@ -47,6 +48,7 @@ struct RunOptions {
       std::chrono::seconds(30);  ///< of WT without a word from a SUT that computes
   Duration ground_truth_period = std::chrono::milliseconds(10);  ///< of ST; > 0
   bool record_images = false;                                    ///< those that a SUT consumed
+  Duration image_period{0};  ///< least ST between two recorded images of one camera; 0: every one
   record::Header header;  ///< what the caller knows; the coordinator adds policy, timing and SUTs
 };
 
