@@ -1,3 +1,5 @@
+#include "metric_outcome.h"
+
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -10,25 +12,9 @@
 namespace tether::experiment {
 namespace {
 
-struct Outcome {
-  std::optional<double> value;
-  std::string missing_because;
-};
-
 double yaw_rad(const double q_WB[4]) {
   const double w = q_WB[0], x = q_WB[1], y = q_WB[2], z = q_WB[3];
   return std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
-}
-
-const record::Anchor* find_anchor(const record::Record& record, const std::string& name) {
-  for (const record::Anchor& anchor : record.header.anchors) {
-    if (anchor.name == name) return &anchor;
-  }
-  return nullptr;
-}
-
-Outcome no_finish(const scenario::Metric& metric) {
-  return {std::nullopt, fmt::format("the SUT of '{}' did not finish", metric.uav)};
 }
 
 // Bearings of the anchor from the UAV, up to the moment when its SUT finished (or the run ended).
@@ -45,32 +31,29 @@ std::vector<double> bearings_until_finish(const scenario::Metric& metric,
   return bearings_rad;
 }
 
-Outcome with_bearings(const scenario::Metric& metric, const record::Record& record,
-                      double (*evaluate)(const scenario::Metric&, const std::vector<double>&)) {
+MetricOutcome with_bearings(const scenario::Metric& metric, const record::Record& record,
+                            double (*evaluate)(const scenario::Metric&,
+                                               const std::vector<double>&)) {
   const record::Anchor* anchor = find_anchor(record, metric.anchor);
-  if (anchor == nullptr) {
-    return {std::nullopt, fmt::format("the record has no anchor '{}'", metric.anchor)};
-  }
+  if (anchor == nullptr) return no_anchor(metric);
   const std::vector<double> bearings_rad = bearings_until_finish(metric, record, *anchor);
-  if (bearings_rad.empty()) {
-    return {std::nullopt, fmt::format("the record has no ground truth of '{}'", metric.uav)};
-  }
+  if (bearings_rad.empty()) return no_ground_truth(metric);
   return {evaluate(metric, bearings_rad), ""};
 }
 
-Outcome time_required(const scenario::Metric& metric, const record::Record& record) {
+MetricOutcome time_required(const scenario::Metric& metric, const record::Record& record) {
   const std::optional<SimTime> finish = finish_time(record, metric.uav);
-  return finish ? Outcome{to_seconds(*finish), ""} : no_finish(metric);
+  return finish ? MetricOutcome{to_seconds(*finish), ""} : no_finish(metric);
 }
 
-Outcome oscillations(const scenario::Metric& metric, const record::Record& record) {
+MetricOutcome oscillations(const scenario::Metric& metric, const record::Record& record) {
   return with_bearings(metric, record,
                        [](const scenario::Metric& m, const std::vector<double>& bearings_rad) {
                          return double{1} * count_overshoots(bearings_rad, m.threshold_rad);
                        });
 }
 
-Outcome final_bearing_error(const scenario::Metric& metric, const record::Record& record) {
+MetricOutcome final_bearing_error(const scenario::Metric& metric, const record::Record& record) {
   if (!finish_time(record, metric.uav)) return no_finish(metric);
   return with_bearings(metric, record,
                        [](const scenario::Metric&, const std::vector<double>& bearings_rad) {
@@ -78,9 +61,30 @@ Outcome final_bearing_error(const scenario::Metric& metric, const record::Record
                        });
 }
 
+// What the SUT waited for its data: by its own clock, which the barrier holds to ST; without the
+// barrier in ST.
+Duration waited(const record::Interaction& read, bool free_running) {
+  return free_running ? read.st_at_release - read.st_at_arrival : read.reply_at - read.request_at;
+}
+
+MetricOutcome acquisition_time(const scenario::Metric& metric, const record::Record& record) {
+  const bool free_running = record.header.policy == record::kFreeRunning;
+  Duration sum{0};
+  int reads = 0;
+  for (const auto& logged : record.interactions) {
+    const record::Interaction& read = logged.message;
+    if (read.kind != record::kSensor || read.uav != metric.uav || read.sensor != metric.sensor)
+      continue;
+    sum += waited(read, free_running);
+    ++reads;
+  }
+  if (reads > 0) return {to_seconds(sum) / reads, ""};
+  return missing(fmt::format("the SUT of '{}' never read '{}'", metric.uav, metric.sensor));
+}
+
 struct Kind {
   std::string_view name;
-  Outcome (*compute)(const scenario::Metric&, const record::Record&);
+  MetricOutcome (*compute)(const scenario::Metric&, const record::Record&);
 };
 
 // One entry for each of scenario::metric_kinds().
@@ -88,16 +92,50 @@ constexpr std::array kKinds = {
     Kind{"time_required", time_required},
     Kind{"oscillations", oscillations},
     Kind{"final_bearing_error", final_bearing_error},
+    Kind{"bearing_error", bearing_error},
+    Kind{"distance_error", distance_error},
+    Kind{"abeam_error", abeam_error},
+    Kind{"return_error", return_error},
+    Kind{"estimate_error", estimate_error},
+    Kind{"acquisition_time", acquisition_time},
 };
 
-Outcome compute(const scenario::Metric& metric, const record::Record& record) {
+MetricOutcome compute(const scenario::Metric& metric, const record::Record& record) {
   for (const Kind& kind : kKinds) {
     if (kind.name == metric.kind) return kind.compute(metric, record);
   }
-  return {std::nullopt, fmt::format("there is no metric of the kind '{}'", metric.kind)};
+  return missing(fmt::format("there is no metric of the kind '{}'", metric.kind));
 }
 
 }  // namespace
+
+MetricOutcome missing(std::string because) {
+  return {std::nullopt, std::move(because)};
+}
+MetricOutcome no_finish(const scenario::Metric& metric) {
+  return missing(fmt::format("the SUT of '{}' did not finish", metric.uav));
+}
+MetricOutcome no_anchor(const scenario::Metric& metric) {
+  return missing(fmt::format("the record has no anchor '{}'", metric.anchor));
+}
+MetricOutcome no_ground_truth(const scenario::Metric& metric) {
+  return missing(fmt::format("the record has no ground truth of '{}' for it", metric.uav));
+}
+
+const record::Anchor* find_anchor(const record::Record& record, const std::string& name) {
+  for (const record::Anchor& anchor : record.header.anchors) {
+    if (anchor.name == name) return &anchor;
+  }
+  return nullptr;
+}
+
+const record::Logged<record::Interaction>* find_finish(const record::Record& record,
+                                                       const std::string& uav) {
+  for (const auto& logged : record.interactions) {
+    if (logged.message.kind == record::kFinish && logged.message.uav == uav) return &logged;
+  }
+  return nullptr;
+}
 
 double true_bearing_rad(const record::GroundTruth& uav, const record::Anchor& anchor) {
   const double dx_m = anchor.p_WA_m[0] - uav.p_WB_m[0];
@@ -122,22 +160,19 @@ int count_overshoots(std::span<const double> bearings_rad, double threshold_rad)
 }
 
 std::optional<SimTime> finish_time(const record::Record& record, const std::string& uav) {
-  for (const auto& logged : record.interactions) {
-    const record::Interaction& interaction = logged.message;
-    if (interaction.kind != record::kFinish || interaction.uav != uav) continue;
-    const bool free_running = record.header.policy == record::kFreeRunning;
-    return free_running ? interaction.st_at_arrival : same_instant(interaction.request_at);
-  }
-  return std::nullopt;
+  const auto* finish = find_finish(record, uav);
+  if (finish == nullptr) return std::nullopt;
+  const bool free_running = record.header.policy == record::kFreeRunning;
+  return free_running ? finish->message.st_at_arrival : same_instant(finish->message.request_at);
 }
 
 std::vector<MetricValue> compute_metrics(std::span<const scenario::Metric> metrics,
                                          const record::Record& record) {
   std::vector<MetricValue> values;
   for (const scenario::Metric& metric : metrics) {
-    Outcome outcome = compute(metric, record);
+    MetricOutcome outcome = compute(metric, record);
     if (outcome.value && !std::isfinite(*outcome.value)) {
-      outcome = {std::nullopt, "the ground truth is not finite"};
+      outcome = missing("what the record says is not finite");
     }
     values.push_back({metric.name, metric.kind, metric.label, metric.unit, outcome.value,
                       outcome.missing_because, metric.max});

@@ -1,3 +1,5 @@
+#include "flight.h"
+
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -195,6 +197,31 @@ TEST(FinalBearingError, IsItsMagnitudeWhenTheSutFinished) {
   EXPECT_NEAR(*compute_one(record, "final_bearing_error").value, 3.0, 1e-9);
 }
 
+TEST(AcquisitionTime, IsTheMeanOverTheSensorsReads) {
+  Flight flight;
+  flight.image(0, 0, 30).image(100, 1, 60).image(200, 2, 0).finish(300);
+  EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.03, 1e-12);
+}
+
+TEST(AcquisitionTime, IsOfSimulatedTimeInFreeRunning) {
+  Flight flight;
+  flight.image(0, 0, 30).finish(300);
+  flight.record().interactions[0].message.st_at_release += milliseconds(20);
+  EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.03, 1e-12);
+  flight.record().header.policy = record::kFreeRunning;
+  EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.05, 1e-12);
+}
+
+TEST(AcquisitionTime, IsMissingWhereTheSensorWasNotRead) {
+  Flight flight;
+  flight.image(0, 0).image(0, 1).finish(300);
+  flight.record().interactions[0].message.uav = "uav2";
+  flight.record().interactions[1].message.sensor = "range";
+  EXPECT_FALSE(flight.metric("acquisition_time").value);
+  EXPECT_THAT(flight.metric("acquisition_time").missing_because,
+              HasSubstr("the SUT of 'uav1' never read 'camera'"));
+}
+
 TEST(ComputeMetrics, SayWhatTheRecordLacks) {
   record::Record record = record_of_bearings_deg({0});
   record.header.anchors.clear();
@@ -209,12 +236,17 @@ TEST(ComputeMetrics, NeverGiveANumberThatIsNone) {
 
 // The registry here and the list that scenarios are checked against are the same.
 TEST(ComputeMetrics, KnowEveryKindThatAScenarioMayAskFor) {
-  record::Record record = record_of_bearings_deg({30, 10});
-  add_finish(record, milliseconds(50), milliseconds(50));
+  Flight flight;
+  flight.pose(0, 0.0, 0.0, 0.0).image(0, 7).note("displacement", R"({"x_m":1,"y_m":2})");
+  flight.note(
+      "estimate",
+      R"({"anchor":"box","camera":"camera","image_index":7,"bearing_rad":0,"distance_m":1})");
+  flight.finish(50);
   for (const scenario::MetricKind& kind : scenario::metric_kinds()) {
-    EXPECT_TRUE(compute_one(record, std::string(kind.name)).value) << kind.name;
+    const MetricValue value = flight.metric(std::string(kind.name));
+    EXPECT_TRUE(value.value) << kind.name << ": " << value.missing_because;
   }
-  EXPECT_THAT(compute_one(record, "nonsense").missing_because, HasSubstr("no metric of the kind"));
+  EXPECT_THAT(flight.metric("nonsense").missing_because, HasSubstr("no metric of the kind"));
 }
 
 TEST(MetricValue, IsMetUpToItsLimit) {

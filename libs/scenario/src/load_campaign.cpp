@@ -59,7 +59,7 @@ std::vector<std::string> read_conditions(const TomlTable& table, const Scenario&
 }
 
 CampaignScenario read_scenario(const TomlTable& table) {
-  constexpr std::array<std::string_view, 4> kTables = {"II", "III", "IV", "V"};
+  constexpr std::array<std::string_view, 5> kTables = {"I", "II", "III", "IV", "V"};
   CampaignScenario entry;
   entry.scenario = load_scenario(table.existing_file("file"));
   entry.conditions = read_conditions(table, entry.scenario);

@@ -16,7 +16,7 @@ namespace tether::scenario {
 namespace {
 
 constexpr std::array<std::string_view, 2> kPolicies = {"conservative_barrier", "free_running"};
-constexpr std::array<std::string_view, 2> kClocks = {"wall", "cpu"};
+constexpr std::array<std::string_view, 3> kClocks = {"wall", "cpu", "scripted"};
 
 constexpr double kLongestRun_s = 7 * 24 * 3600.0;
 
@@ -41,18 +41,43 @@ bool is_option_name(std::string_view key) {
          key.find_first_not_of(kAllowed) == std::string_view::npos;
 }
 
-Parameters read_parameters(const TomlTable& sut) {
-  Parameters parameters;
-  if (!sut.has("parameters")) return parameters;
+void require_option_name(const TomlTable& table, const std::string& key) {
+  if (is_option_name(key)) return;
+  table.fail(key,
+             "must be lower-case letters, digits and '_', starting with a letter: it becomes an "
+             "option of the SUT's command line");
+}
+
+void read_values(const TomlTable& sut, Parameters& parameters) {
+  if (!sut.has("parameters")) return;
   const TomlTable table = sut.table("parameters");
   for (const std::string& key : table.keys()) {
-    if (!is_option_name(key)) {
-      table.fail(key,
-                 "must be lower-case letters, digits and '_', starting with a letter: it "
-                 "becomes an option of the SUT's command line");
-    }
+    require_option_name(table, key);
     parameters.emplace_back(key, table.scalar_as_text(key));
   }
+}
+
+// The SUT's working folder is not the scenario's, so that its files go by their whole path.
+void read_files(const TomlTable& sut, Parameters& parameters,
+                std::vector<std::filesystem::path>& files) {
+  if (!sut.has("files")) return;
+  const TomlTable table = sut.table("files");
+  for (const std::string& key : table.keys()) {
+    require_option_name(table, key);
+    const bool is_taken =
+        std::any_of(parameters.begin(), parameters.end(),
+                    [&](const auto& parameter) { return parameter.first == key; });
+    if (is_taken) table.fail(key, "is one of the parameters already");
+    files.push_back(table.existing_file(key));
+    parameters.emplace_back(key, files.back().string());
+  }
+}
+
+Parameters read_parameters(const TomlTable& sut, std::vector<std::filesystem::path>& files) {
+  Parameters parameters;
+  read_values(sut, parameters);
+  read_files(sut, parameters, files);
+  std::sort(parameters.begin(), parameters.end());
   return parameters;
 }
 
@@ -73,10 +98,10 @@ std::vector<std::string> read_command(const TomlTable& sut, const std::filesyste
   return command;
 }
 
-std::optional<Sut> read_default_sut(const TomlTable& root, const std::filesystem::path& folder) {
+std::optional<Sut> read_default_sut(const TomlTable& root, Scenario& scenario) {
   if (!root.has("sut")) return std::nullopt;
-  const TomlTable sut = root.table("sut", {"command", "parameters"});
-  return Sut{read_command(sut, folder), read_parameters(sut)};
+  const TomlTable sut = root.table("sut", {"command", "parameters", "files"});
+  return Sut{read_command(sut, scenario.file.parent_path()), read_parameters(sut, scenario.files)};
 }
 
 Parameters merged(const Parameters& defaults, const Parameters& own) {
@@ -85,17 +110,16 @@ Parameters merged(const Parameters& defaults, const Parameters& own) {
   return {all.begin(), all.end()};
 }
 
-Sut read_sut(const TomlTable& uav, const std::optional<Sut>& fallback,
-             const std::filesystem::path& folder) {
+Sut read_sut(const TomlTable& uav, const std::optional<Sut>& fallback, Scenario& scenario) {
   if (!uav.has("sut")) {
     if (!fallback)
       uav.fail("has no SUT: add a table [sut] for all UAVs, or [uav.sut] for this one");
     return *fallback;
   }
-  const TomlTable own = uav.table("sut", {"command", "parameters"});
+  const TomlTable own = uav.table("sut", {"command", "parameters", "files"});
   const bool inherits = fallback && !own.has("command");
-  Sut sut = inherits ? *fallback : Sut{read_command(own, folder), {}};
-  sut.parameters = merged(sut.parameters, read_parameters(own));
+  Sut sut = inherits ? *fallback : Sut{read_command(own, scenario.file.parent_path()), {}};
+  sut.parameters = merged(sut.parameters, read_parameters(own, scenario.files));
   return sut;
 }
 
@@ -122,12 +146,12 @@ UavSetup read_uav(const TomlTable& table, const std::optional<Sut>& default_sut,
       uav.sensors.emplace(name, read_sensor_setup(sensors, name, scenario.files));
     }
   }
-  uav.sut = read_sut(table, default_sut, scenario.file.parent_path());
+  uav.sut = read_sut(table, default_sut, scenario);
   return uav;
 }
 
 void read_uavs(const TomlTable& root, Scenario& scenario) {
-  const std::optional<Sut> default_sut = read_default_sut(root, scenario.file.parent_path());
+  const std::optional<Sut> default_sut = read_default_sut(root, scenario);
   std::set<std::string> names;
   for (const TomlTable& table :
        root.tables("uav", {"name", "model", "position_m", "yaw_deg", "yaw_spread_deg",
@@ -142,6 +166,29 @@ void read_uavs(const TomlTable& root, Scenario& scenario) {
 
 // Conditions.
 
+// What goes with one clock or policy only.
+void read_clock(const TomlTable& table, Condition& condition) {
+  constexpr Range kFactor{.min = 1e-3, .max = 1e4};
+  constexpr Range kComputing_ms{.min = 1e-3, .max = 60'000.0};
+  condition.clock = static_cast<Clock>(table.choice("clock", kClocks));
+  condition.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
+  if (condition.clock != Clock::kCpu && table.has("cpu_factor")) {
+    table.fail("cpu_factor", "scales CPU time, so it needs clock = \"cpu\"");
+  }
+  if (condition.clock != Clock::kScripted) {
+    if (!table.has("computing_ms")) return;
+    table.fail("computing_ms",
+               "stands in for the measured time of computing, so it needs clock = \"scripted\"");
+  }
+  condition.computing = table.duration("computing_ms", kComputing_ms);
+  if (condition.policy == Policy::kFreeRunning) {
+    table.fail(
+        "clock",
+        "is \"scripted\", which needs policy = \"conservative_barrier\": free running goes by "
+        "the wall clock");
+  }
+}
+
 Condition read_condition(const TomlTable& table) {
   constexpr Range kFactor{.min = 1e-3, .max = 1e4};
   Condition condition;
@@ -151,12 +198,8 @@ Condition read_condition(const TomlTable& table) {
   }
   condition.description = table.text_or("description", "");
   condition.policy = static_cast<Policy>(table.choice("policy", kPolicies));
-  condition.clock = static_cast<Clock>(table.choice("clock", kClocks));
-  condition.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
+  read_clock(table, condition);
   condition.real_time_factor = table.number_or("real_time_factor", kFactor, 0.0);
-  if (condition.clock == Clock::kWall && table.has("cpu_factor")) {
-    table.fail("cpu_factor", "scales CPU time, so it needs clock = \"cpu\"");
-  }
   if (condition.policy == Policy::kFreeRunning && condition.real_time_factor == 0.0) {
     table.fail(
         "lacks the key 'real_time_factor': with policy = \"free_running\" the simulator "
@@ -167,8 +210,9 @@ Condition read_condition(const TomlTable& table) {
 
 void read_conditions(const TomlTable& root, Scenario& scenario) {
   std::map<std::string, std::string> slugs;
-  for (const TomlTable& table : root.tables("condition", {"name", "description", "policy", "clock",
-                                                          "cpu_factor", "real_time_factor"})) {
+  for (const TomlTable& table :
+       root.tables("condition", {"name", "description", "policy", "clock", "cpu_factor",
+                                 "computing_ms", "real_time_factor"})) {
     scenario.conditions.push_back(read_condition(table));
     const std::string& name = scenario.conditions.back().name;
     const auto [other, is_new] = slugs.emplace(slug(name), name);
@@ -207,6 +251,9 @@ void reject_meaningless(const TomlTable& table, const MetricKind& kind) {
   if (table.has("anchor") && !kind.needs_anchor) {
     table.fail("anchor", fmt::format("means nothing to the kind \"{}\"", kind.name));
   }
+  if (table.has("sensor") && !kind.needs_sensor) {
+    table.fail("sensor", fmt::format("means nothing to the kind \"{}\"", kind.name));
+  }
   if (table.has("threshold_deg") && !kind.default_threshold_deg) {
     table.fail("threshold_deg", fmt::format("means nothing to the kind \"{}\"", kind.name));
   }
@@ -230,6 +277,10 @@ Metric read_metric(const TomlTable& table, const Scenario& scenario) {
   metric.label = table.text_or("label", kind.label);
   metric.uav = choose(table, "uav", uav_names(scenario));
   if (kind.needs_anchor) metric.anchor = choose(table, "anchor", scenario.anchors);
+  if (kind.needs_sensor) {
+    metric.sensor = table.text("sensor");
+    metric.line = table.where("sensor").line;
+  }
   const double threshold_deg = kind.default_threshold_deg.value_or(0.0);
   metric.threshold_rad =
       rad_from_deg(table.number_or("threshold_deg", kThreshold_deg, threshold_deg));
@@ -241,8 +292,8 @@ Metric read_metric(const TomlTable& table, const Scenario& scenario) {
 void read_metrics(const TomlTable& root, Scenario& scenario) {
   std::set<std::string> names;
   for (const TomlTable& table :
-       root.tables_or_none("metric", {"name", "kind", "label", "uav", "anchor", "threshold_deg",
-                                      "max", "max_s", "max_m", "max_deg"})) {
+       root.tables_or_none("metric", {"name", "kind", "label", "uav", "anchor", "sensor",
+                                      "threshold_deg", "max", "max_s", "max_m", "max_deg"})) {
     scenario.metrics.push_back(read_metric(table, scenario));
     const std::string& name = scenario.metrics.back().name;
     if (!names.insert(name).second) {
@@ -262,11 +313,15 @@ void read_anchors(const TomlTable& root, Scenario& scenario) {
 
 void read_record(const TomlTable& root, Scenario& scenario) {
   if (!root.has("record")) return;
-  const TomlTable record = root.table("record", {"ground_truth_period_ms", "images"});
+  const TomlTable record =
+      root.table("record", {"ground_truth_period_ms", "images", "image_period_ms"});
+  constexpr Range kImagePeriod_ms{.min = 0.0, .max = 1e6};
   const Range period_ms{.min = to_seconds(scenario.step) * 1e3, .max = 1e6};
   scenario.ground_truth_period =
       record.duration_or("ground_truth_period_ms", period_ms, scenario.ground_truth_period);
   scenario.record_images = record.boolean_or("images", scenario.record_images);
+  scenario.image_period =
+      record.duration_or("image_period_ms", kImagePeriod_ms, scenario.image_period);
 }
 
 void read_limits(const TomlTable& root, Scenario& scenario) {

@@ -21,11 +21,15 @@ uav::SensorTiming default_timing(const sim::Sensor& sensor) {
 void require_sensors_exist(const Scenario& scenario, const UavSetup& setup, const sim::Uav& uav) {
   std::vector<std::string_view> names;
   for (const sim::Sensor& sensor : uav.sensors) names.push_back(sensor.name);
-  for (const auto& [name, sensor] : setup.sensors) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    throw Error(ErrorCode::kBadFile, FileLocation{scenario.file.string(), sensor.line},
+  const auto require = [&](const std::string& name, int line) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) return;
+    throw Error(ErrorCode::kBadFile, FileLocation{scenario.file.string(), line},
                 fmt::format("the UAV '{}' has no sensor '{}' ({}); {}", uav.name, name,
                             setup.placement.model.string(), allowed_hint(name, names)));
+  };
+  for (const auto& [name, sensor] : setup.sensors) require(name, sensor.line);
+  for (const Metric& metric : scenario.metrics) {
+    if (metric.uav == uav.name && !metric.sensor.empty()) require(metric.sensor, metric.line);
   }
 }
 

@@ -27,6 +27,7 @@ class LoadScenario : public testing::Test {
     return bad_file_message([&] { load_with(from, to); });
   }
   Scratch scratch_;
+  const std::string mission_ = scratch_.path("missions/around.toml");
 };
 
 TEST_F(LoadScenario, ReadsTheTop) {
@@ -41,6 +42,7 @@ TEST_F(LoadScenario, ReadsTheTop) {
   EXPECT_THAT(s.anchors, ElementsAre("blue_box", "red_box"));
   EXPECT_EQ(s.ground_truth_period, milliseconds(20));
   EXPECT_TRUE(s.record_images);
+  EXPECT_EQ(s.image_period, milliseconds(500));
 }
 
 TEST_F(LoadScenario, ReadsUavs) {
@@ -76,37 +78,63 @@ TEST_F(LoadScenario, GivesEachUavItsSut) {
   EXPECT_THAT(s.uavs[0].sut.command, ElementsAre("own-sut", "--fast"));
   EXPECT_THAT(s.uavs[0].sut.parameters, ElementsAre(Pair("anchor", "red_box")));
   EXPECT_THAT(s.uavs[1].sut.command, ElementsAre("tether-sut", "face-anchor"));
-  EXPECT_THAT(s.uavs[1].sut.parameters,
-              ElementsAre(Pair("anchor", "blue_box"), Pair("precision_deg", "2.5"),
-                          Pair("retries", "3"), Pair("verbose", "true")));
+  EXPECT_THAT(
+      s.uavs[1].sut.parameters,
+      ElementsAre(Pair("anchor", "blue_box"), Pair("mission", mission_),
+                  Pair("precision_deg", "2.5"), Pair("retries", "3"), Pair("verbose", "true")));
 }
 
 TEST_F(LoadScenario, LaysOwnParametersOverTheCommonOnesWhenTheCommandIsCommon) {
   const Scenario s = load_with("command = [\"own-sut\", \"--fast\"]\n", "");
   EXPECT_THAT(s.uavs[0].sut.command, ElementsAre("tether-sut", "face-anchor"));
-  EXPECT_THAT(s.uavs[0].sut.parameters,
-              ElementsAre(Pair("anchor", "red_box"), Pair("precision_deg", "2.5"),
-                          Pair("retries", "3"), Pair("verbose", "true")));
+  EXPECT_THAT(
+      s.uavs[0].sut.parameters,
+      ElementsAre(Pair("anchor", "red_box"), Pair("mission", mission_),
+                  Pair("precision_deg", "2.5"), Pair("retries", "3"), Pair("verbose", "true")));
+}
+
+TEST_F(LoadScenario, GivesASutItsFilesByTheirWholePath) {
+  const std::string own = scratch_.write("own.toml", "");
+  const Scenario s = load_with("[uav.sut.parameters]\nanchor = \"red_box\"",
+                               "[uav.sut.files]\nmission = \"missions/../own.toml\"");
+  EXPECT_THAT(s.uavs[0].sut.parameters, ElementsAre(Pair("mission", own)));
+  EXPECT_THAT(s.uavs[1].sut.parameters, testing::Contains(Pair("mission", mission_)));
+  EXPECT_THAT(s.files, testing::IsSupersetOf({own, mission_}));
+}
+
+TEST_F(LoadScenario, RefusesFilesThatASutCannotBeGiven) {
+  const std::string mission = "mission = \"missions/around.toml\"";
+  EXPECT_THAT(error_with(mission, "mission = \"missions/none.toml\""),
+              HasSubstr("scenario.toml:53: 'mission' of [sut.files] names \"missions/none.toml\", "
+                        "but there is no such file"));
+  EXPECT_THAT(error_with(mission, "mission = \"missions\""), HasSubstr("no such file"));
+  EXPECT_THAT(error_with(mission, "Mission = \"missions/around.toml\""),
+              HasSubstr("option of the SUT's command"));
+  EXPECT_THAT(error_with(mission, "anchor = \"missions/around.toml\""),
+              HasSubstr("'anchor' of [sut.files] is one of the parameters already"));
 }
 
 TEST_F(LoadScenario, ReadsConditions) {
   const Scenario s = load(kFullScenario);
-  ASSERT_EQ(s.conditions.size(), 2u);
+  ASSERT_EQ(s.conditions.size(), 3u);
   EXPECT_EQ(s.conditions[0].policy, Policy::kConservativeBarrier);
   EXPECT_EQ(s.conditions[0].clock, Clock::kCpu);
   EXPECT_EQ(s.conditions[0].cpu_factor, 1.5);
+  EXPECT_EQ(s.conditions[0].computing, Duration(0));
   EXPECT_EQ(s.conditions[0].real_time_factor, 0.0);
   const Condition* no_sync = s.find_condition("target, no sync");
   ASSERT_NE(no_sync, nullptr);
   EXPECT_EQ(no_sync->policy, Policy::kFreeRunning);
   EXPECT_EQ(no_sync->clock, Clock::kWall);
   EXPECT_EQ(no_sync->real_time_factor, 0.25);
+  EXPECT_EQ(s.conditions[2].clock, Clock::kScripted);
+  EXPECT_EQ(s.conditions[2].computing, Duration(2'500'000));
   EXPECT_EQ(s.find_condition("nowhere"), nullptr);
 }
 
 TEST_F(LoadScenario, ReadsMetrics) {
   const Scenario s = load(kFullScenario);
-  ASSERT_EQ(s.metrics.size(), 2u);
+  ASSERT_EQ(s.metrics.size(), 3u);
   EXPECT_EQ(s.metrics[0].name, "time_required");
   EXPECT_EQ(s.metrics[0].label, "Time required");
   EXPECT_EQ(s.metrics[0].unit, "s");
@@ -119,11 +147,14 @@ TEST_F(LoadScenario, ReadsMetrics) {
   EXPECT_EQ(s.metrics[1].anchor, "red_box");
   EXPECT_DOUBLE_EQ(s.metrics[1].threshold_rad, rad_from_deg(2));
   EXPECT_EQ(s.metrics[1].max, 0.0);
+  EXPECT_EQ(s.metrics[1].sensor, "");
+  EXPECT_EQ(s.metrics[2].kind, "acquisition_time");
+  EXPECT_EQ(s.metrics[2].sensor, "camera");
 }
 
 TEST_F(LoadScenario, ListsEveryFileItRestsOn) {
   EXPECT_THAT(load(kFullScenario).files,
-              ElementsAre(scratch_.path("delays.txt"), scratch_.path("models/uav.sdf"),
+              ElementsAre(scratch_.path("delays.txt"), mission_, scratch_.path("models/uav.sdf"),
                           scratch_.path("scenario.toml"), scratch_.path("worlds/room.sdf")));
 }
 
@@ -204,6 +235,16 @@ TEST_F(LoadScenario, RefusesSettingsThatMeanNothingTogether) {
   EXPECT_THAT(error_with("real_time_factor = 0.25", ""), HasSubstr("lacks the key 'real_time"));
   EXPECT_THAT(error_with("real_time_factor = 0.25", "real_time_factor = 0.25\ncpu_factor = 2"),
               HasSubstr("needs clock = \"cpu\""));
+  EXPECT_THAT(error_with("cpu_factor = 1.5", "computing_ms = 2"),
+              HasSubstr("needs clock = \"scripted\""));
+  EXPECT_THAT(error_with("computing_ms = 2.5", ""), HasSubstr("lacks the key 'computing_ms'"));
+  EXPECT_THAT(error_with("computing_ms = 2.5", "computing_ms = 0"), HasSubstr("at least 0.001"));
+  EXPECT_THAT(error_with("computing_ms = 2.5", "computing_ms = 2.5\ncpu_factor = 2"),
+              HasSubstr("needs clock = \"cpu\""));
+  EXPECT_THAT(error_with("clock = \"wall\"", "clock = \"scripted\"\ncomputing_ms = 1"),
+              HasSubstr("needs policy = \"conservative_barrier\""));
+  EXPECT_THAT(error_with("max_s = 30", "sensor = \"camera\""), HasSubstr("means nothing"));
+  EXPECT_THAT(error_with("sensor = \"camera\"", ""), HasSubstr("'sensor'"));
   EXPECT_THAT(error_with("rate_hz = 30", "rate_hz = 30\nperiod_ms = 5"),
               HasSubstr("either 'rate_hz' or 'period_ms'"));
   EXPECT_THAT(error_with("max_s = 30", "max_m = 30"), HasSubstr("did you mean 'max_s'?"));
@@ -217,7 +258,8 @@ TEST_F(LoadScenario, RefusesSettingsThatMeanNothingTogether) {
 TEST_F(LoadScenario, RefusesAUavWithoutSut) {
   const std::string sut =
       "[sut]\ncommand = [\"tether-sut\", \"face-anchor\"]\n\n[sut.parameters]\n"
-      "anchor = \"blue_box\"\nprecision_deg = 2.5\nretries = 3\nverbose = true\n";
+      "anchor = \"blue_box\"\nprecision_deg = 2.5\nretries = 3\nverbose = true\n\n[sut.files]\n"
+      "mission = \"missions/around.toml\"\n";
   EXPECT_THAT(error_with(sut, ""), HasSubstr("scenario.toml:38: [uav] has no SUT"));
 }
 

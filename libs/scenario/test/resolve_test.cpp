@@ -82,5 +82,14 @@ TEST_F(Resolve, ATimedSensorThatTheUavLacksIsAnErrorAtItsLine) {
   EXPECT_THAT(message, HasSubstr("did you mean 'camera1'?"));
 }
 
+TEST_F(Resolve, AMetricOfASensorThatTheUavLacksIsAnErrorAtItsLine) {
+  Scenario scenario = scenario_;
+  scenario.metrics.back().sensor = "rang";
+  const std::string message =
+      bad_file_message([&] { (void)resolve_timings(scenario, world_of_two()); });
+  EXPECT_THAT(message, HasSubstr("scenario.toml:91: the UAV 'uav1' has no sensor 'rang'"));
+  EXPECT_THAT(message, HasSubstr("did you mean 'range'?"));
+}
+
 }  // namespace
 }  // namespace tether::scenario

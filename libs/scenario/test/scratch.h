@@ -105,6 +105,9 @@ precision_deg = 2.5
 retries = 3
 verbose = true
 
+[sut.files]
+mission = "missions/around.toml"
+
 [[condition]]
 name = "host"
 description = "as it is"
@@ -117,6 +120,12 @@ name = "target, no sync"
 policy = "free_running"
 clock = "wall"
 real_time_factor = 0.25
+
+[[condition]]
+name = "scripted"
+policy = "conservative_barrier"
+clock = "scripted"
+computing_ms = 2.5
 
 [[metric]]
 kind = "time_required"
@@ -132,9 +141,15 @@ anchor = "red_box"
 threshold_deg = 2
 max = 0
 
+[[metric]]
+kind = "acquisition_time"
+uav = "uav1"
+sensor = "camera"
+
 [record]
 ground_truth_period_ms = 20
 images = true
+image_period_ms = 500
 )";
 
 /// Writes the scenario and the files that it names; returns the scenario's file.
@@ -142,6 +157,7 @@ inline std::filesystem::path write_project(const Scratch& scratch, const std::st
   scratch.write("worlds/room.sdf", "<sdf/>");
   scratch.write("models/uav.sdf", "<sdf/>");
   scratch.write("delays.txt", "10\n20\n30.5\n");
+  scratch.write("missions/around.toml", "");
   return scratch.write("scenario.toml", scenario);
 }
 

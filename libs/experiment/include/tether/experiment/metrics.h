@@ -9,8 +9,8 @@
 #include <tether/record/reader.h>
 #include <tether/scenario/metric.h>
 
-/// What a run was like, computed from its record alone: ground truth, never the SUT's own opinion
-/// (paper, Section V). Pure functions.
+/// What a run was like, computed from its record alone: from ground truth (paper, Section V), and
+/// how far from it the SUT's own estimates were (Tables II and V). Pure functions.
 namespace tether::experiment {
 
 struct MetricValue {

@@ -13,7 +13,7 @@ namespace tether::scenario {
 struct CampaignScenario {
   Scenario scenario;
   std::vector<std::string> conditions;  ///< names, in the table's order; each exists in `scenario`
-  /// The paper's table that these results go beside: "II" to "V"; empty: none.
+  /// The paper's table that these results go beside: "I" to "V"; empty: none.
   std::string paper_table;
 };
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-/// What a run is judged by: numbers computed from the record's ground truth (`experiment` computes
-/// them; here is what a scenario may ask for).
+/// What a run is judged by: numbers computed from the record, against its ground truth
+/// (`experiment` computes them; here is what a scenario may ask for).
 namespace tether::scenario {
 
 /// A number to compute after a run, with the limit within which the goal counts as reached.
@@ -19,6 +19,8 @@ struct Metric {
   std::string anchor;          ///< of those that need one, else empty
   double threshold_rad = 0.0;  ///< of those that have one
   std::optional<double> max;   ///< in `unit`; the goal is missed beyond it
+  std::string sensor{};        ///< of those that need one, else empty
+  int line = 0;                ///< of its `sensor`, in the scenario's file; 0: it has none
 };
 
 /// A kind of metric and what it takes.
@@ -27,8 +29,9 @@ struct MetricKind {
   std::string_view label;
   std::string_view unit;
   bool needs_anchor = false;
-  std::optional<double> default_threshold_deg;  ///< set: has a threshold
-  std::string_view help;                        ///< one line: the definition
+  bool needs_sensor = false;
+  std::optional<double> default_threshold_deg{};  ///< set: has a threshold
+  std::string_view help;                          ///< one line: the definition
 };
 
 /// All kinds, in the order in which help lists them.

@@ -19,10 +19,10 @@
 namespace tether::scenario {
 
 enum class Policy { kConservativeBarrier, kFreeRunning };
-enum class Clock { kWall, kCpu };
+enum class Clock { kWall, kCpu, kScripted };
 /// As written in files: "conservative_barrier", "free_running".
 std::string_view name(Policy policy);
-/// As written in files: "wall", "cpu".
+/// As written in files: "wall", "cpu", "scripted".
 std::string_view name(Clock clock);
 
 /// Where the SUT runs and how it is tied: "host", "target", "target, no sync" (paper, Section V).
@@ -33,6 +33,9 @@ struct Condition {
   Clock clock = Clock::kCpu;
   double cpu_factor = 1.0;        ///< slowdown of the virtual target: seconds of ET per CPU second
   double real_time_factor = 0.0;  ///< limit on ST per WT; 0: none (free running: required, > 0)
+  /// Of kScripted: what the SUT is charged for each phase of computing, whatever it took. > 0; such
+  /// a run is the same every time. Of other clocks 0.
+  Duration computing{0};
 };
 
 /// When a sensor measures, and where the scenario says so.
@@ -41,7 +44,8 @@ struct SensorSetup {
   int line = 0;  ///< in the scenario's file
 };
 
-/// The SUT's command; its parameters become `--key value` arguments (underscores as dashes).
+/// The SUT's command; its parameters become `--key value` arguments (underscores as dashes). Those
+/// that the scenario gives as files are absolute paths here.
 /// A program with a '/' in its name is relative to the scenario's folder, and absolute here.
 struct Sut {
   std::vector<std::string> command;  ///< program and fixed arguments; not empty
@@ -70,8 +74,9 @@ struct Scenario {
   std::vector<Metric> metrics;
   Duration ground_truth_period{std::chrono::milliseconds(10)};
   bool record_images = false;
-  /// Every file that was named: the scenario itself, world, models, delay samples. Absolute,
-  /// sorted.
+  Duration image_period{0};  ///< least ST between two recorded images of one camera; 0: every one
+  /// Every file that was named: the scenario itself, world, models, delay samples, the SUTs' files.
+  /// Absolute, sorted.
   std::vector<std::filesystem::path> files;
 
   /// nullptr where there is none of that name.
@@ -94,7 +99,8 @@ sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
 /// Each UAV's timing models: one list per UAV of `world`, in the order of its sensors. A sensor
 /// that the scenario does not time is periodic at its SDF update rate without delay, or on demand
 /// without delay where SDF gives no rate.
-/// @throws Error(kBadFile) when the scenario times a sensor that the UAV does not have.
+/// @throws Error(kBadFile) when the scenario times a sensor that the UAV does not have, or asks for
+/// a metric of one.
 /// @pre `world` was loaded from `world_request(scenario, seed)`.
 std::vector<std::vector<uav::SensorTiming>> resolve_timings(const Scenario& scenario,
                                                             const sim::World& world);
