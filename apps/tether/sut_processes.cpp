@@ -32,13 +32,25 @@ std::vector<std::string> command_line(const scenario::Sut& sut) {
   return words;
 }
 
+/// As the client library takes it.
+std::string clock_of(const scenario::Condition& condition) {
+  switch (condition.clock) {
+    case scenario::Clock::kWall:
+      return "wall";
+    case scenario::Clock::kCpu:
+      return fmt::format("cpu*{}", condition.cpu_factor);
+    case scenario::Clock::kScripted:
+      return fmt::format("scripted*{}", static_cast<double>(condition.computing.count()) / 1e6);
+  }
+  return "wall";
+}
+
 std::vector<std::pair<std::string, std::string>> environment_of(const std::string& uav,
                                                                 const SutRun& run) {
-  const bool is_wall = run.condition.clock == scenario::Clock::kWall;
   return {{"TETHER_ADDRESS", run.address},
           {"TETHER_TOKEN", run.token},
           {"TETHER_UAV", uav},
-          {"TETHER_CLOCK", is_wall ? "wall" : fmt::format("cpu*{}", run.condition.cpu_factor)}};
+          {"TETHER_CLOCK", clock_of(run.condition)}};
 }
 
 /// As a shell takes it for one word and nothing more.

@@ -41,16 +41,26 @@ std::string token_of_run() {
 /// One list per UAV of the world, in the order of its sensors.
 using Timings = std::vector<std::vector<uav::SensorTiming>>;
 
+link::ClockKind kind_of(scenario::Clock clock) {
+  switch (clock) {
+    case scenario::Clock::kWall:
+      return link::ClockKind::kWall;
+    case scenario::Clock::kCpu:
+      return link::ClockKind::kCpu;
+    case scenario::Clock::kScripted:
+      return link::ClockKind::kScripted;
+  }
+  return link::ClockKind::kWall;
+}
+
 coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timings,
                                     const std::string& token) {
   coordinator::RunOptions options;
   options.policy = spec.condition.policy == scenario::Policy::kFreeRunning
                        ? sync::SyncPolicy::kFreeRunning
                        : sync::SyncPolicy::kConservativeBarrier;
-  const coordinator::ClockSetting clock{spec.condition.clock == scenario::Clock::kWall
-                                            ? link::ClockKind::kWall
-                                            : link::ClockKind::kCpu,
-                                        spec.condition.cpu_factor};
+  const coordinator::ClockSetting clock{kind_of(spec.condition.clock), spec.condition.cpu_factor,
+                                        spec.condition.computing};
   for (std::size_t i = 0; i < timings.size(); ++i)
     options.uavs.push_back({timings[i], spec.scenario.uavs[i].command_latency, clock});
   options.token = token;
@@ -61,6 +71,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
   if (spec.external_sut) options.connect_limit = std::chrono::hours(24);
   options.ground_truth_period = spec.scenario.ground_truth_period;
   options.record_images = spec.scenario.record_images;
+  options.image_period = spec.scenario.image_period;
   options.header.tether_version = version();
   options.header.scenario = spec.scenario.name;
   options.header.condition = spec.condition.name;

@@ -27,7 +27,7 @@ std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
 }
 
 bool may_run_beside_others(const scenario::Condition& condition) {
-  return condition.clock == scenario::Clock::kCpu &&
+  return condition.clock != scenario::Clock::kWall &&
          condition.policy == scenario::Policy::kConservativeBarrier;
 }
 
@@ -36,11 +36,11 @@ void require_jobs_allowed(const scenario::Campaign& campaign, int jobs) {
   if (jobs == 1) return;
   for (const scenario::CampaignScenario& entry : campaign.scenarios) {
     for (const std::string& name : entry.conditions) {
-      if (entry.scenario.find_condition(name)->clock == scenario::Clock::kCpu) continue;
+      if (entry.scenario.find_condition(name)->clock != scenario::Clock::kWall) continue;
       throw Error(ErrorCode::kUsage,
                   fmt::format("--jobs {}: condition '{}' of {} measures its SUT by the wall clock, "
                               "which trials side by side would disturb; use --jobs 1, or "
-                              "clock = \"cpu\"",
+                              "clock = \"cpu\" or \"scripted\"",
                               jobs, name, entry.scenario.file.string()));
     }
   }

@@ -16,6 +16,7 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
   result.policy = scenario::name(condition.policy);
   result.clock = scenario::name(condition.clock);
   result.cpu_factor = condition.cpu_factor;
+  result.computing = condition.computing;
   result.real_time_factor = condition.real_time_factor;
   return result;
 }

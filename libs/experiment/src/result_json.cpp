@@ -13,6 +13,7 @@
 namespace tether::experiment {
 namespace {
 
+constexpr std::string_view kScripted = "scripted";
 constexpr std::array<std::string_view, 3> kOutcomes = {"goal_reached", "goal_missed", "failed"};
 
 // Division rounds correctly, so that every nanosecond count prints short and reads back exactly.
@@ -163,6 +164,7 @@ void read_trial(const JsonReader& json, TrialResult& result) {
   result.policy = json.text("policy");
   result.clock = json.text("clock");
   result.cpu_factor = json.number("cpu_factor");
+  if (result.clock == kScripted) result.computing = json.seconds("computing_s");
   result.real_time_factor = json.number("real_time_factor");
   result.outcome = read_outcome(json);
   result.end = json.text("end");
@@ -188,24 +190,22 @@ const MetricValue* TrialResult::find_metric(std::string_view metric) const {
 }
 
 std::string to_json(const TrialResult& result) {
-  const Json json{{"schema", kResultSchemaVersion},
-                  {"scenario", result.scenario},
-                  {"condition", result.condition},
-                  {"seed", result.seed},
-                  {"policy", result.policy},
-                  {"clock", result.clock},
-                  {"cpu_factor", result.cpu_factor},
-                  {"real_time_factor", result.real_time_factor},
-                  {"outcome", name(result.outcome)},
-                  {"exit_code", exit_code(result.outcome)},
-                  {"end", result.end},
-                  {"reason", result.reason},
-                  {"metrics", json_of(result.metrics)},
-                  {"suts", json_of(result.suts)},
-                  {"sync", json_of(result.sync)},
-                  {"audit", json_of(result.audit)},
-                  {"versions", json_of(result.versions)},
-                  {"this_run", json_of(result.this_run)}};
+  Json json{{"schema", kResultSchemaVersion}, {"scenario", result.scenario},
+            {"condition", result.condition},  {"seed", result.seed},
+            {"policy", result.policy},        {"clock", result.clock},
+            {"cpu_factor", result.cpu_factor}};
+  if (result.clock == kScripted) json["computing_s"] = exact_seconds(result.computing);
+  json.update(Json{{"real_time_factor", result.real_time_factor},
+                   {"outcome", name(result.outcome)},
+                   {"exit_code", exit_code(result.outcome)},
+                   {"end", result.end},
+                   {"reason", result.reason},
+                   {"metrics", json_of(result.metrics)},
+                   {"suts", json_of(result.suts)},
+                   {"sync", json_of(result.sync)},
+                   {"audit", json_of(result.audit)},
+                   {"versions", json_of(result.versions)},
+                   {"this_run", json_of(result.this_run)}});
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -34,7 +34,7 @@ TEST_F(CampaignPlan, PointsIntoTheCampaign) {
   EXPECT_EQ(plans[5].seed, 2u);
 }
 
-TEST_F(CampaignPlan, OnlySynchronisedCpuTimeMayRunBesideOthers) {
+TEST_F(CampaignPlan, OnlySynchronisedCpuOrScriptedTimeMayRunBesideOthers) {
   const auto& conditions = campaign_.scenarios[0].scenario.conditions;
   EXPECT_TRUE(may_run_beside_others(conditions[0]));
   EXPECT_TRUE(may_run_beside_others(conditions[1]));
@@ -42,10 +42,15 @@ TEST_F(CampaignPlan, OnlySynchronisedCpuTimeMayRunBesideOthers) {
   scenario::Condition board = conditions[0];
   board.clock = scenario::Clock::kWall;
   EXPECT_FALSE(may_run_beside_others(board));
+  scenario::Condition scripted = conditions[0];
+  scripted.clock = scenario::Clock::kScripted;
+  EXPECT_TRUE(may_run_beside_others(scripted));
 }
 
 TEST_F(CampaignPlan, RefusesJobsThatWouldDisturbAWallClock) {
   EXPECT_NO_THROW(require_jobs_allowed(campaign_, 1));
+  EXPECT_NO_THROW(require_jobs_allowed(campaign_, 2));
+  campaign_.scenarios[0].scenario.conditions[0].clock = scenario::Clock::kScripted;
   EXPECT_NO_THROW(require_jobs_allowed(campaign_, 2));
   EXPECT_THAT(error_message(ErrorCode::kUsage, [&] { require_jobs_allowed(campaign_, 0); }),
               HasSubstr("at least 1"));

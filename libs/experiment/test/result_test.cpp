@@ -62,6 +62,18 @@ TEST_F(Result, IsReadableForPeople) {
   EXPECT_THAT(text, HasSubstr("\"steps\": 12"));
 }
 
+TEST_F(Result, SaysWhatAScriptedSutWasCharged) {
+  trial_.clock = "scripted";
+  trial_.computing = Duration(2'500'000);
+  const std::string text = to_json(trial_);
+  EXPECT_THAT(text, HasSubstr("\"computing_s\": 0.0025"));
+  EXPECT_EQ(result_from_json(text, "f").computing, trial_.computing);
+}
+
+TEST_F(Result, SaysNothingOfAScriptWhereTimeWasMeasured) {
+  EXPECT_THAT(to_json(trial_), testing::Not(HasSubstr("computing_s")));
+}
+
 TEST_F(Result, TextOfAnyBytesIsKeptReadable) {
   trial_.reason = "bad \xff bytes \n and \"quotes\"";
   trial_.suts[0].details = "{ no JSON";
@@ -159,6 +171,15 @@ class MakeResult : public Result {
     return make_result(scenario_, scenario_.conditions[1], record, ends);
   }
 };
+
+TEST_F(MakeResult, TakesWhatAScriptedSutIsChargedFromTheCondition) {
+  scenario::Condition& condition = campaign_.scenarios[0].scenario.conditions[1];
+  condition.clock = scenario::Clock::kScripted;
+  condition.computing = milliseconds(3);
+  const TrialResult result = make(finished_record(), kReached);
+  EXPECT_EQ(result.clock, "scripted");
+  EXPECT_EQ(result.computing, milliseconds(3));
+}
 
 TEST_F(MakeResult, TakesEverythingFromTheRecord) {
   const TrialResult result = make(finished_record(), kReached);

@@ -22,7 +22,7 @@ struct CampaignManifest {
   struct Entry {
     std::string scenario;
     std::string description;
-    std::string paper_table;  ///< "II" to "V"; empty: none
+    std::string paper_table;  ///< "I" to "V"; empty: none
     std::vector<std::string> conditions;
     std::vector<std::string> metrics;  ///< names
 

@@ -28,7 +28,7 @@ std::filesystem::path trial_folder(const std::string& scenario, const std::strin
 std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
                                    const std::filesystem::path& folder);
 
-/// Whether a trial may run beside others on one machine: its measured time is CPU time, and no
+/// Whether a trial may run beside others on one machine: its time is CPU time or scripted, and no
 /// wall clock moves its simulation.
 bool may_run_beside_others(const scenario::Condition& condition);
 

@@ -89,6 +89,7 @@ struct TrialResult {
   std::string policy;
   std::string clock;
   double cpu_factor = 1.0;
+  Duration computing{0};  ///< of clock "scripted": charged for each phase of computing
   double real_time_factor = 0.0;
   Outcome outcome = Outcome::kFailed;
   std::string end;     ///< see kEnd…
