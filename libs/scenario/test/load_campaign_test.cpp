@@ -1,4 +1,4 @@
-#include "scratch.h"
+#include "full_scenario.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST_F(LoadCampaign, RefusesWhatCannotBeRun) {
   EXPECT_THAT(error_with("trials = 3", "seeds = [1]"), HasSubstr("goes with 'trials'"));
   EXPECT_THAT(error_with("\"host\"", "\"hots\""), HasSubstr("did you mean 'host'?"));
   EXPECT_THAT(error_with(", \"host\"", ", \"target, no sync\""), HasSubstr("twice"));
-  EXPECT_THAT(error_with("\"III\"", "\"3\""), HasSubstr("Allowed: 'II', 'III', 'IV' and 'V'"));
+  EXPECT_THAT(error_with("\"III\"", "\"3\""), HasSubstr("Allowed: 'I', 'II', 'III', 'IV' and 'V'"));
   EXPECT_THAT(error_with("\"scenario.toml\"", "\"none.toml\""), HasSubstr("no such file"));
 }
 

@@ -1,4 +1,4 @@
-#include "scratch.h"
+#include "full_scenario.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Properties of every key of a scenario, whichever it is: the full scenario is changed at one key
 // at a time.
-#include "scratch.h"
+#include "full_scenario.h"
 
 #include <map>
 #include <sstream>

@@ -1,6 +1,6 @@
 #include "sensor_setup.h"
 
-#include "scratch.h"
+#include "full_scenario.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,56 +1,18 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <tether/base/error.h>
+#include <tether/scenario_testing/scratch.h>
 
 namespace tether::scenario {
 
-/// A folder of the running test's own, gone with it.
-class Scratch {
- public:
-  Scratch() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("tether_" + std::string(info->test_suite_name()) + "_" + info->name() + "_" +
-               std::to_string(getpid()));
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-
-  std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::filesystem::create_directories(path(name).parent_path());
-    std::ofstream(path(name), std::ios::binary) << text;
-    return path(name);
-  }
-
- private:
-  std::filesystem::path folder_;
-};
-
-/// The message of the Error(kBadFile) that `action` throws; fails the test when there is none.
+/// As error_message, of Error(kBadFile).
 template <class Action>
 std::string bad_file_message(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kBadFile);
-    return error.what();
-  }
-  ADD_FAILURE() << "no error";
-  return "";
+  return error_message(ErrorCode::kBadFile, action);
 }
 
 /// A scenario that uses every key, with the files that it names.
