@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include <tether/report/paper_figures.h>
@@ -9,6 +10,18 @@ constexpr std::string_view kHost = "host";
 constexpr std::string_view kTarget = "target";
 constexpr std::string_view kNoSync = "target, no sync";
 constexpr std::string_view kRealSensor = "target, real sensor";
+
+constexpr std::string_view kRange = "range_acquisition_time";
+constexpr std::string_view kCamera = "camera_acquisition_time";
+
+constexpr std::array kTableI = {
+    PaperFigure{kRealSensor, "acquisition_time", 0.0977, std::nullopt, kRange},
+    PaperFigure{kRealSensor, "acquisition_time", 0.0374, std::nullopt, kCamera},
+    PaperFigure{kTarget, "acquisition_time", 0.0492, std::nullopt, kRange},
+    PaperFigure{kTarget, "acquisition_time", 0.2510, std::nullopt, kCamera},
+    PaperFigure{kHost, "acquisition_time", 0.0441, std::nullopt, kRange},
+    PaperFigure{kHost, "acquisition_time", 0.0561, std::nullopt, kCamera},
+};
 
 constexpr std::array kTableII = {
     PaperFigure{kRealSensor, "bearing_error", 0.285, std::nullopt},
@@ -32,27 +45,29 @@ constexpr std::array kTableIII = {
 };
 
 constexpr std::array kTableIV = {
-    PaperFigure{kHost, "position_error", 0.027, 0.0187},
+    PaperFigure{kHost, "abeam_error", 0.027, 0.0187},
     PaperFigure{kHost, "time_required", 59.689, 0.800},
-    PaperFigure{kTarget, "position_error", 0.106, 0.0440},
+    PaperFigure{kTarget, "abeam_error", 0.106, 0.0440},
     PaperFigure{kTarget, "time_required", 58.484, 0.517},
-    PaperFigure{kNoSync, "position_error", 0.046, 0.0454},
+    PaperFigure{kNoSync, "abeam_error", 0.046, 0.0454},
     PaperFigure{kNoSync, "time_required", 59.014, 0.960},
 };
 
 constexpr std::array kTableV = {
-    PaperFigure{kHost, "position_error", 0.320, 0.256},
+    PaperFigure{kHost, "return_error", 0.320, 0.256},
     PaperFigure{kHost, "estimate_error", 0.218, 0.131},
     PaperFigure{kHost, "time_required", 27.816, 1.242},
-    PaperFigure{kTarget, "position_error", 0.359, 0.301},
+    PaperFigure{kTarget, "return_error", 0.359, 0.301},
     PaperFigure{kTarget, "estimate_error", 0.211, 0.195},
     PaperFigure{kTarget, "time_required", 27.121, 1.815},
-    PaperFigure{kNoSync, "position_error", 0.328, 0.262},
+    PaperFigure{kNoSync, "return_error", 0.328, 0.262},
     PaperFigure{kNoSync, "estimate_error", 0.245, 0.122},
     PaperFigure{kNoSync, "time_required", 26.899, 1.596},
 };
 
 constexpr std::array kTables = {
+    PaperTable{"I", "Sensor characterization results",
+               "Table I, Section IV; means of ten experiments, no spread published", kTableI},
     PaperTable{"II", "Performance of the \"relative position\" task",
                "Table II, Section IV; means of ten experiments, no spread published", kTableII},
     PaperTable{"III", "Performance of the \"face anchor\" task",
@@ -63,14 +78,34 @@ constexpr std::array kTables = {
                "Table V, Section V; ten experiments per condition", kTableV},
 };
 
+bool is_of(const PaperFigure& figure, std::string_view metric_kind, std::string_view metric_name) {
+  return figure.metric_kind == metric_kind &&
+         (figure.metric_name.empty() || figure.metric_name == metric_name);
+}
+
 }  // namespace
 
-const PaperFigure* PaperTable::find(std::string_view condition,
-                                    std::string_view metric_kind) const {
+const PaperFigure* PaperTable::find(std::string_view condition, std::string_view metric_kind,
+                                    std::string_view metric_name) const {
   for (const PaperFigure& figure : figures) {
-    if (figure.condition == condition && figure.metric_kind == metric_kind) return &figure;
+    if (figure.condition == condition && is_of(figure, metric_kind, metric_name)) return &figure;
   }
   return nullptr;
+}
+
+bool PaperTable::has_metric(std::string_view metric_kind, std::string_view metric_name) const {
+  return std::any_of(figures.begin(), figures.end(), [&](const PaperFigure& figure) {
+    return is_of(figure, metric_kind, metric_name);
+  });
+}
+
+std::vector<std::string_view> PaperTable::conditions() const {
+  std::vector<std::string_view> names;
+  for (const PaperFigure& figure : figures) {
+    if (std::find(names.begin(), names.end(), figure.condition) == names.end())
+      names.push_back(figure.condition);
+  }
+  return names;
 }
 
 const PaperTable* find_paper_table(std::string_view number) {

@@ -24,9 +24,7 @@ std::vector<Column> columns_of(const experiment::ScenarioResults& scenario) {
   for (const std::string& name : scenario.metrics) {
     const experiment::MetricValue* metric = scenario.find_metric(name);
     if (metric == nullptr) continue;
-    const bool in_paper = paper != nullptr &&
-                          std::any_of(paper->figures.begin(), paper->figures.end(),
-                                      [&](const auto& f) { return f.metric_kind == metric->kind; });
+    const bool in_paper = paper != nullptr && paper->has_metric(metric->kind, name);
     columns.push_back({name, metric->kind, with_unit(metric->label, metric->unit), in_paper});
   }
   return columns;
@@ -47,15 +45,36 @@ void add_headings(Table& table, const std::vector<Column>& columns) {
   }
 }
 
+void add_paper_cells(std::vector<std::string>& row, std::string_view condition,
+                     const Column& column, const PaperTable& paper) {
+  const PaperFigure* figure = paper.find(condition, column.kind, column.name);
+  row.push_back(figure != nullptr ? exact(figure->mean) : kNone);
+  row.push_back(figure != nullptr && figure->stddev ? exact(*figure->stddev) : kNone);
+}
+
 void add_cells(std::vector<std::string>& row, const experiment::ConditionResults& results,
                const Column& column, const PaperTable* paper) {
   const experiment::Summary summary = experiment::summarise(results.values(column.name));
   row.push_back(summary.n > 0 ? decimals(summary.mean) : kNone);
   row.push_back(decimals(summary.stddev));
-  if (!column.in_paper) return;
-  const PaperFigure* figure = paper->find(results.condition, column.kind);
-  row.push_back(figure != nullptr ? exact(figure->mean) : kNone);
-  row.push_back(figure != nullptr && figure->stddev ? exact(*figure->stddev) : kNone);
+  if (column.in_paper) add_paper_cells(row, results.condition, column, *paper);
+}
+
+// What the paper measured and the campaign did not, such as with real sensors.
+void add_rows_of_the_paper_alone(Table& table, const experiment::ScenarioResults& scenario,
+                                 const std::vector<Column>& columns, const PaperTable& paper) {
+  const bool any = std::any_of(columns.begin(), columns.end(),
+                               [](const Column& column) { return column.in_paper; });
+  if (!any) return;
+  for (const std::string_view condition : paper.conditions()) {
+    if (scenario.find_condition(condition) != nullptr) continue;
+    std::vector<std::string> row = {fmt::format("{} (paper only)", condition)};
+    for (const Column& column : columns) {
+      row.insert(row.end(), 2, kNone);
+      if (column.in_paper) add_paper_cells(row, condition, column, paper);
+    }
+    table.rows.push_back(std::move(row));
+  }
 }
 
 std::string trials_note(const experiment::ScenarioResults& scenario) {
@@ -170,6 +189,7 @@ Table paper_form_table(const experiment::ScenarioResults& scenario) {
     for (const Column& column : columns) add_cells(row, results, column, paper);
     table.rows.push_back(std::move(row));
   }
+  if (paper != nullptr) add_rows_of_the_paper_alone(table, scenario, columns, *paper);
   table.notes.push_back(trials_note(scenario));
   if (paper != nullptr) table.notes.push_back(fmt::format("Paper: {}.", paper->source));
   for (const experiment::ConditionResults& results : scenario.conditions) {

@@ -128,7 +128,7 @@ Table summaries_table(const experiment::CampaignResults& results) {
         const experiment::Summary s = experiment::summarise(condition.values(name));
         const bool any = s.n > 0;
         const PaperFigure* figure =
-            paper != nullptr ? paper->find(condition.condition, metric->kind) : nullptr;
+            paper != nullptr ? paper->find(condition.condition, metric->kind, name) : nullptr;
         table.rows.push_back({scenario.scenario, condition.condition, name, metric->unit,
                               std::to_string(condition.planned), std::to_string(s.n),
                               any ? exact(s.mean) : "", exact(s.stddev), any ? exact(s.median) : "",

@@ -78,6 +78,15 @@ TEST_F(Report, NamesEveryTrialThatIsInNoMean) {
   EXPECT_THAT(to_text(table), HasSubstr("target           1.667      1.528"));
 }
 
+TEST_F(Report, ShowsWhatThePaperAloneMeasured) {
+  ScenarioResults two = results();
+  two.conditions.erase(two.conditions.begin());
+  const Table table = paper_form_table(two);
+  ASSERT_EQ(table.rows.size(), 3u);
+  EXPECT_THAT(table.rows[2],
+              ElementsAre("host (paper only)", "–", "–", "0", "0", "–", "–", "2.48", "0.033"));
+}
+
 TEST_F(Report, OfNothingRunYetHasRowsWithoutNumbers) {
   std::filesystem::remove_all(out_ / "turn");
   const CampaignResults all = read_campaign_results(out_);
