@@ -15,6 +15,7 @@ void add_run_command(CLI::App& program, Action& action);
 void add_campaign_command(CLI::App& program, Action& action);
 void add_report_command(CLI::App& program, Action& action);
 void add_frames_command(CLI::App& program, Action& action);
+void add_plot_command(CLI::App& program, Action& action);
 void add_audit_command(CLI::App& program, Action& action);
 
 }  // namespace tether::app

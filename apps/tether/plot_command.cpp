@@ -1,0 +1,96 @@
+#include "commands.h"
+
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/experiment/text_file.h>
+#include <tether/record/reader.h>
+#include <tether/report/gnuplot.h>
+#include <tether/report/plots.h>
+
+namespace tether::app {
+
+namespace {
+
+struct PlotOptions {
+  std::filesystem::path record;
+  std::filesystem::path out;
+};
+
+using NamedPlot = std::pair<std::string, report::Plot>;
+
+std::vector<report::PlottedRun> runs_of(const record::Record& record) {
+  std::vector<report::PlottedRun> runs;
+  std::set<std::string> seen;
+  for (const record::SutInfo& sut : record.header.suts) {
+    if (!seen.insert(sut.uav).second) continue;
+    const std::string& condition = record.header.condition;
+    const bool alone = record.header.suts.size() == 1;
+    runs.push_back({&record, sut.uav, alone ? condition : condition + ", " + sut.uav, runs.size()});
+  }
+  return runs;
+}
+
+std::vector<NamedPlot> plots_of(const record::Record& record) {
+  std::vector<NamedPlot> plots;
+  const auto add = [&](const std::string& name, std::optional<report::Plot> plot) {
+    if (plot) plots.emplace_back(name + ".svg", std::move(*plot));
+  };
+  const std::vector<report::PlottedRun> runs = runs_of(record);
+  for (const report::PlottedRun& run : runs) {
+    const std::string suffix = runs.size() == 1 ? "" : "-" + run.uav;
+    add("timeline" + suffix, timeline_plot(run, report::Extent::kWhole));
+    add("timeline_zoom" + suffix, timeline_plot(run, report::Extent::kFirstInteractions));
+    add("lag" + suffix, lag_plot(run));
+  }
+  add("path", report::path_plot(runs));
+  return plots;
+}
+
+int run(const PlotOptions& options) {
+  const record::Record record = record::read_record(options.record);
+  if (!record.damage.empty())
+    fmt::print(stderr, "tether: {}: plotted up to where it is torn: {}\n", options.record.string(),
+               record.damage);
+  // All are drawn before the first is written.
+  std::vector<std::pair<std::string, std::string>> drawings;
+  for (const auto& [name, plot] : plots_of(record)) drawings.emplace_back(name, draw_svg(plot));
+  if (drawings.empty())
+    throw Error(ErrorCode::kBadFile, {options.record.string()},
+                "holds neither interactions nor ground truth: nothing to plot");
+  const std::filesystem::path out =
+      options.out.empty() ? options.record.parent_path() / "plots" : options.out;
+  std::error_code error;
+  std::filesystem::create_directories(out, error);
+  if (error) throw Error(ErrorCode::kSetup, fmt::format("{}: {}", out.string(), error.message()));
+  for (const auto& [name, svg] : drawings) {
+    experiment::write_file_atomically(out / name, svg);
+    fmt::print("{}\n", (out / name).string());
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_plot_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<PlotOptions>();
+  CLI::App* command = program.add_subcommand(
+      "plot", "ST and ET against wall time, lag, and the path from above, as SVG");
+  command->add_option("record", options->record, "record.mcap of a run")->required();
+  command->add_option("--out", options->out, "Folder for the plots [plots, beside the record]");
+  command->footer(R"(Writes timeline.svg (the whole run), timeline_zoom.svg (its first interactions), lag.svg (not of a
+run without synchronisation: nothing lags there) and path.svg. Needs gnuplot.
+
+Example:
+  tether plot out/one/record.mcap)");
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace tether::app

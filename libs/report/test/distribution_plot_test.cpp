@@ -1,0 +1,73 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/report/plots.h>
+
+namespace tether::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+experiment::TrialResult trial(double value) {
+  experiment::TrialResult result;
+  result.outcome = experiment::Outcome::kGoalReached;
+  experiment::MetricValue metric;
+  metric.name = metric.kind = "time_required";
+  metric.label = "Time required";
+  metric.unit = "s";
+  metric.value = value;
+  result.metrics = {metric};
+  return result;
+}
+
+experiment::ScenarioResults results(const std::vector<double>& host) {
+  experiment::ScenarioResults scenario;
+  scenario.scenario = "turn";
+  scenario.metrics = {"time_required"};
+  experiment::ConditionResults condition;
+  condition.condition = "host";
+  condition.planned = host.size();
+  for (const double value : host) condition.trials.push_back(trial(value));
+  scenario.conditions = {condition};
+  return scenario;
+}
+
+TEST(DistributionPlot, HasAPointForEachTrialAndABoxOfQuartiles) {
+  const auto plot = distribution_plot(results({4, 1, 2, 3, 5}), "time_required");
+  ASSERT_TRUE(plot);
+  // Quartiles by linear interpolation, as R's quantile() by default: 2, 3, 4.
+  EXPECT_THAT(plot->script, HasSubstr("set object rectangle from 2,0.7 to 4,1.3"));
+  EXPECT_THAT(plot->script, HasSubstr("set arrow from 3,0.7 to 3,1.3 nohead"));
+  EXPECT_THAT(plot->script, HasSubstr("$trials0 << END\n4 1.042492\n1 "));
+  EXPECT_THAT(plot->script, HasSubstr("'Time required (s)'"));
+}
+
+TEST(DistributionPlot, BetweenTrialsInterpolates) {
+  const auto plot = distribution_plot(results({1, 2, 4, 8}), "time_required");
+  EXPECT_THAT(plot->script, HasSubstr("from 1.75,0.7 to 5,1.3"));
+  EXPECT_THAT(plot->script, HasSubstr("set arrow from 3,0.7"));
+}
+
+TEST(DistributionPlot, OfTwoTrialsHasNoBox) {
+  const auto plot = distribution_plot(results({1, 2}), "time_required");
+  ASSERT_TRUE(plot);
+  EXPECT_THAT(plot->script, Not(HasSubstr("rectangle")));
+}
+
+TEST(DistributionPlot, SaysHowManyTrialsAreMissing) {
+  experiment::ScenarioResults scenario = results({1, 2, 3});
+  scenario.conditions[0].planned = 5;
+  scenario.conditions[0].trials[1].metrics[0].value.reset();
+  EXPECT_THAT(distribution_plot(scenario, "time_required")->script, HasSubstr("'host (2 of 5)' 1"));
+}
+
+TEST(DistributionPlot, NeedsAValue) {
+  experiment::ScenarioResults scenario = results({1});
+  EXPECT_FALSE(distribution_plot(scenario, "oscillations"));
+  scenario.conditions[0].trials[0].metrics[0].value.reset();
+  EXPECT_FALSE(distribution_plot(scenario, "time_required"));
+}
+
+}  // namespace
+}  // namespace tether::report
