@@ -33,6 +33,23 @@ TEST(Summarise, StudentsSleepData) {
   EXPECT_NEAR(*second.stddev, 2.002249, 5e-7);
 }
 
+// Henderson and Velleman (1981): miles per gallon of 32 cars, with automatic and manual gears; R's
+// data set `mtcars`.
+const std::vector<double> kAutomatic = {21.4, 18.7, 18.1, 14.3, 24.4, 22.8, 19.2, 17.8, 16.4, 17.3,
+                                        15.2, 10.4, 10.4, 14.7, 21.5, 15.5, 15.2, 13.3, 19.2};
+const std::vector<double> kManual = {21.0, 21.0, 22.8, 32.4, 30.4, 33.9, 27.3,
+                                     26.0, 30.4, 15.8, 19.7, 15.0, 21.4};
+
+// R, summary(mtcars): median 19.20, mean 20.09. Of the 19 automatic ones alone, 17.30 and 17.15.
+TEST(Summarise, MedianOfEvenAndOddNumbersOfCars) {
+  std::vector<double> all = kAutomatic;
+  all.insert(all.end(), kManual.begin(), kManual.end());
+  EXPECT_NEAR(summarise(all).median, 19.20, 1e-12);
+  EXPECT_NEAR(summarise(all).mean, 20.09, 5e-3);
+  EXPECT_NEAR(summarise(kAutomatic).median, 17.30, 1e-12);
+  EXPECT_NEAR(summarise(kAutomatic).mean, 17.15, 5e-3);
+}
+
 // NIST Statistical Reference Datasets, NumAcc1 and NumAcc2: certified means and deviations.
 TEST(Summarise, NistNumericalAccuracy) {
   const Summary first = summarise(std::vector<double>{10000001, 10000003, 10000002});
@@ -74,6 +91,16 @@ TEST(CompareMeans, WelchOnStudentsSleepData) {
   EXPECT_NEAR(result.ci95->high, 0.2054832, 5e-8);
 }
 
+// R, t.test(mpg ~ am, data = mtcars): means 17.14737 and 24.39231, df = 18.332, interval from
+// -11.280194 to -3.209684; of other sizes and spreads than the above.
+TEST(CompareMeans, WelchOnMileages) {
+  const MeanDifference result = compare_means(kAutomatic, kManual);
+  EXPECT_NEAR(result.difference, 17.14737 - 24.39231, 1e-5);
+  EXPECT_NEAR(result.degrees_of_freedom, 18.332, 5e-4);
+  EXPECT_NEAR(result.ci95->low, -11.280194, 5e-7);
+  EXPECT_NEAR(result.ci95->high, -3.209684, 5e-7);
+}
+
 TEST(CompareMeans, WithoutSpread) {
   const std::vector<double> a = {2.0, 2.0}, b = {0.5, 0.5, 0.5}, one = {1.0};
   EXPECT_EQ(compare_means(a, b).ci95, (Interval{1.5, 1.5}));
@@ -98,6 +125,18 @@ TEST(MannWhitney, SciPysDiagnosisAges) {
   const RankTest test = mann_whitney(males, females);
   EXPECT_EQ(test.u, 17.0);
   EXPECT_NEAR(test.p_two_sided, 1.0 / 9.0, 1e-14);
+}
+
+// Blood pressure of two groups, with ties: Mehta & Patel (2001), StatXact-5 manual, p. 229, as on
+// the help page of `bloodp` in R's exactRankTests: the exact one-sided p is 0.0542. (Two-sided it
+// is given as 0.0989, by adding the other tail from the same distance on; here the smaller tail is
+// doubled.)
+TEST(MannWhitney, MehtaPatelBloodPressure) {
+  const std::vector<double> treated = {94, 108, 110, 90};
+  const std::vector<double> control = {80, 94, 85, 90, 90, 90, 108, 94, 78, 105, 88};
+  const RankTest test = mann_whitney(treated, control);
+  EXPECT_TRUE(test.exact);
+  EXPECT_NEAR(test.p_two_sided / 2.0, 0.0542, 5e-5);
 }
 
 // Critical values of U at two-sided 5 % (Mann & Whitney's tables, as in any textbook): 23 for
