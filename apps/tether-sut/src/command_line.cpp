@@ -1,8 +1,10 @@
 #include "command_line.h"
 
+#include "mission_file.h"
 #include "task_arguments.h"
 
 #include <sstream>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 
@@ -21,6 +23,8 @@ Examples:
   tether-sut relative_position --anchor blue_box --address 192.168.1.10:4810
   tether-sut move_forward --anchor blue_box --speed-m-s 0.3
   TETHER_CLOCK='cpu*20' tether-sut closed_path --anchor blue_box --distance-m 1
+  tether-sut sensor_characterization --sensor camera --acquisitions 100
+  tether-sut mission missions/look_around.toml
 
 Environment (set by `tether run` for the SUT that it starts):
   TETHER_ADDRESS  the coordinator, host:port
@@ -67,15 +71,27 @@ std::variant<CommandLine, Refusal> parse_command_line(int argc, const char* cons
   for (const auto& task : tasks) {
     task->add_to(*add_subcommand(app, task->name(), task->description(), line));
   }
+  std::string mission_file;
+  CLI::App* mission =
+      add_subcommand(app, "mission", "Fly the tasks of a file, one after the other", line);
+  mission->add_option("file,--file", mission_file, "The mission file (TOML)")->required();
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return refusal(app, error);
   }
+  if (mission->parsed()) {
+    Result<Mission> loaded = load_mission(mission_file);
+    if (!loaded) {
+      return Refusal{2, "tether-sut: " + loaded.failure().message + "\n"};
+    }
+    line.mission = std::move(loaded).value();
+    return line;
+  }
   for (const auto& task : tasks) {
     if (app.got_subcommand(std::string(task->name()))) {
-      line.mission = task->mission();
+      line.mission.tasks = {task->spec()};
     }
   }
   return line;

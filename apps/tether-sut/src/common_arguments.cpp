@@ -44,15 +44,15 @@ CLI::Option* add_degrees(CLI::App& app, const std::string& name, double& radians
       ->default_str(usual);
 }
 
-void add_vision_options(CLI::App& app, Mission& mission) {
+void add_vision_options(CLI::App& app, TaskSpec& spec) {
   using vision::Prefilter;
   static const std::map<std::string, Prefilter> kPrefilters = {{"none", Prefilter::kNone},
                                                                {"gaussian", Prefilter::kGaussian},
                                                                {"median", Prefilter::kMedian}};
-  vision::TrackerOptions& tracker = mission.tracker;
+  vision::TrackerOptions& tracker = spec.vision.tracker;
   const CLI::Validator share = within(0.0, 1.0);
-  app.add_option("--anchor", mission.anchor, "Name of the anchor")->required();
-  app.add_option("--camera", mission.camera, "Name of the camera")->capture_default_str();
+  app.add_option("--anchor", spec.anchor, "Name of the anchor")->required();
+  app.add_option("--camera", spec.vision.camera, "Name of the camera")->capture_default_str();
   app.add_option("--prefilter", tracker.prefilter,
                  "Smoothing of each image: none, gaussian (default) or median")
       ->transform(CLI::Transformer(kPrefilters))

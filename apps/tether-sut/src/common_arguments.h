@@ -22,7 +22,7 @@ CLI::Option* add_degrees(CLI::App& app, const std::string& name, double& radians
                          const std::string& description, double least_deg, double most_deg);
 
 /// --anchor, --camera and what the tracker looks for.
-void add_vision_options(CLI::App& app, Mission& mission);
+void add_vision_options(CLI::App& app, TaskSpec& spec);
 /// When an estimate has converged.
 void add_convergence_options(CLI::App& app, tasks::ConvergenceOptions& options);
 /// How "face anchor" turns; neither its precision nor its time limit.

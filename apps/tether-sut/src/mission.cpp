@@ -1,8 +1,10 @@
 #include "mission.h"
 
 #include <memory>
+#include <utility>
 
 #include <tether/tasks/task_context.h>
+#include <tether/tasks/task_sequence.h>
 
 namespace tether::sut {
 namespace {
@@ -10,21 +12,39 @@ namespace {
 using TaskPointer = std::unique_ptr<tasks::Task>;
 
 struct TaskMaker {
-  const std::string& anchor;
+  const TaskSpec& spec;
 
+  TaskPointer operator()(const tasks::SensorCharacterizationOptions& options) const {
+    return std::make_unique<tasks::SensorCharacterizationTask>(spec.sensor, options);
+  }
   TaskPointer operator()(const tasks::RelativePositionOptions& options) const {
-    return std::make_unique<tasks::RelativePositionTask>(anchor, options);
+    return std::make_unique<tasks::RelativePositionTask>(spec.anchor, options);
   }
   TaskPointer operator()(const tasks::FaceAnchorOptions& options) const {
-    return std::make_unique<tasks::FaceAnchorTask>(anchor, options);
+    return std::make_unique<tasks::FaceAnchorTask>(spec.anchor, options);
   }
   TaskPointer operator()(const tasks::MoveForwardOptions& options) const {
-    return std::make_unique<tasks::MoveForwardTask>(anchor, options);
+    return std::make_unique<tasks::MoveForwardTask>(spec.anchor, options);
   }
   TaskPointer operator()(const tasks::ClosedPathOptions& options) const {
-    return std::make_unique<tasks::ClosedPathTask>(anchor, options);
+    return std::make_unique<tasks::ClosedPathTask>(spec.anchor, options);
   }
 };
+
+TaskPointer make_task(const TaskSpec& spec) {
+  return std::visit(TaskMaker{spec}, spec.options);
+}
+
+TaskPointer make_task(const Mission& mission) {
+  if (!mission.is_sequence) {
+    return make_task(mission.tasks.front());
+  }
+  std::vector<tasks::SequenceItem> items;
+  for (const TaskSpec& spec : mission.tasks) {
+    items.push_back({make_task(spec), spec.vision, spec.required});
+  }
+  return std::make_unique<tasks::TaskSequence>(std::move(items));
+}
 
 /// Whether nobody is left to hear how it ended.
 bool is_link_gone(const tasks::TaskOutcome& outcome) {
@@ -36,8 +56,8 @@ bool is_link_gone(const tasks::TaskOutcome& outcome) {
 }  // namespace
 
 tasks::TaskOutcome fly(const Mission& mission, client::Vehicle& vehicle) {
-  tasks::TaskContext context(vehicle, mission.camera, mission.tracker);
-  const TaskPointer task = std::visit(TaskMaker{mission.anchor}, mission.task);
+  tasks::TaskContext context(vehicle, mission.tasks.front().vision);
+  const TaskPointer task = make_task(mission);
   tasks::TaskOutcome outcome = tasks::run(*task, context);
   if (is_link_gone(outcome)) {
     return outcome;

@@ -9,23 +9,31 @@
 #include <tether/tasks/face_anchor_task.h>
 #include <tether/tasks/move_forward_task.h>
 #include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/sensor_characterization_task.h>
 #include <tether/tasks/task.h>
-#include <tether/vision/anchor_tracker.h>
+#include <tether/tasks/task_context.h>
 
 namespace tether::sut {
 
-using TaskOptions = std::variant<tasks::RelativePositionOptions, tasks::FaceAnchorOptions,
-                                 tasks::MoveForwardOptions, tasks::ClosedPathOptions>;
+using TaskOptions =
+    std::variant<tasks::SensorCharacterizationOptions, tasks::RelativePositionOptions,
+                 tasks::FaceAnchorOptions, tasks::MoveForwardOptions, tasks::ClosedPathOptions>;
+
+struct TaskSpec {
+  TaskOptions options;
+  std::string sensor;  ///< that sensor_characterization is about
+  std::string anchor;  ///< that the others are about
+  tasks::VisionOptions vision;
+  bool required = true;  ///< of a mission file's: see tasks::SequenceItem
+};
 
 /// What the program is asked to fly.
 struct Mission {
-  TaskOptions task;
-  std::string anchor;
-  std::string camera = "camera";
-  vision::TrackerOptions tracker;
+  std::vector<TaskSpec> tasks;  ///< at least one
+  bool is_sequence = false;  ///< from a mission file; else one task, whose outcome is the mission's
 };
 
-/// Runs the task and tells the coordinator how it ended.
+/// Runs the tasks and tells the coordinator how it ended.
 tasks::TaskOutcome fly(const Mission& mission, client::Vehicle& vehicle);
 
 /// Exit code of the program (DESIGN section 5): 0 reached, 1 not reached, 2 the mission cannot be

@@ -2,65 +2,78 @@
 
 #include "common_arguments.h"
 
+#include <utility>
+
 namespace tether::sut {
 namespace {
 
 constexpr const char* kTimeLimit = "Gives up after this time of its own clock";
 
-class RelativePositionArguments : public TaskArguments {
+template <class Options>
+class ArgumentsFor : public TaskArguments {
+ public:
+  TaskSpec spec() const override {
+    TaskSpec spec = spec_;
+    spec.options = options_;
+    return spec;
+  }
+
+ protected:
+  TaskSpec spec_;
+  Options options_;
+};
+
+class SensorCharacterizationArguments : public ArgumentsFor<tasks::SensorCharacterizationOptions> {
+ public:
+  std::string_view name() const override { return "sensor_characterization"; }
+  std::string_view description() const override {
+    return "Time the acquisition of a sensor's data";
+  }
+  void add_to(CLI::App& app) override {
+    app.add_option("--sensor", spec_.sensor, "Name of the sensor, of any kind")->required();
+    app.add_option("--acquisitions", options_.acquisitions, "How many")
+        ->check(CLI::Range(1, 10'000'000))
+        ->capture_default_str();
+    add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
+  }
+};
+
+class RelativePositionArguments : public ArgumentsFor<tasks::RelativePositionOptions> {
  public:
   std::string_view name() const override { return "relative_position"; }
   std::string_view description() const override {
     return "Measure bearing and distance of the anchor";
   }
   void add_to(CLI::App& app) override {
-    add_vision_options(app, mission_);
+    add_vision_options(app, spec_);
     add_convergence_options(app, options_.convergence);
     add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
   }
-  Mission mission() const override {
-    Mission mission = mission_;
-    mission.task = options_;
-    return mission;
-  }
-
- private:
-  Mission mission_;
-  tasks::RelativePositionOptions options_;
 };
 
-class FaceAnchorArguments : public TaskArguments {
+class FaceAnchorArguments : public ArgumentsFor<tasks::FaceAnchorOptions> {
  public:
   std::string_view name() const override { return "face_anchor"; }
   std::string_view description() const override {
     return "Turn until the anchor is straight ahead";
   }
   void add_to(CLI::App& app) override {
-    add_vision_options(app, mission_);
+    add_vision_options(app, spec_);
     add_degrees(app, "--precision-deg", options_.precision_rad, "The goal: bearing at most this",
                 0.001, 90.0);
     add_turning_options(app, options_);
     add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
   }
-  Mission mission() const override {
-    Mission mission = mission_;
-    mission.task = options_;
-    return mission;
-  }
-
- private:
-  Mission mission_;
-  tasks::FaceAnchorOptions options_;
 };
 
-class MoveForwardArguments : public TaskArguments {
+class MoveForwardArguments : public ArgumentsFor<tasks::MoveForwardOptions> {
  public:
   std::string_view name() const override { return "move_forward"; }
   std::string_view description() const override {
     return "Move ahead facing the anchor until it is abeam";
   }
   void add_to(CLI::App& app) override {
-    add_vision_options(app, mission_);
+    add_vision_options(app, spec_);
     app.add_option("--speed-m-s", options_.speed_m_s, "Of moving")
         ->check(within(0.001, 5.0))
         ->capture_default_str();
@@ -76,33 +89,19 @@ class MoveForwardArguments : public TaskArguments {
     add_seconds(app, "--settle-s", options_.settle, "Waits so long after the final stop", 0.0);
     add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
   }
-  Mission mission() const override {
-    Mission mission = mission_;
-    mission.task = options_;
-    return mission;
-  }
-
- private:
-  Mission mission_;
-  tasks::MoveForwardOptions options_;
 };
 
-class ClosedPathArguments : public TaskArguments {
+class ClosedPathArguments : public ArgumentsFor<tasks::ClosedPathOptions> {
  public:
   std::string_view name() const override { return "closed_path"; }
   std::string_view description() const override {
     return "Fly a square by the IMU and see how far from its start it ends";
   }
   void add_to(CLI::App& app) override {
-    add_vision_options(app, mission_);
+    add_vision_options(app, spec_);
     add_path_options(app);
     add_convergence_options(app, options_.convergence);
     add_limits(app);
-  }
-  Mission mission() const override {
-    Mission mission = mission_;
-    mission.task = options_;
-    return mission;
   }
 
  private:
@@ -131,20 +130,27 @@ class ClosedPathArguments : public TaskArguments {
                 "Gives up a leg after five times its time and this");
     add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
   }
-
-  Mission mission_;
-  tasks::ClosedPathOptions options_;
 };
 
 }  // namespace
 
 std::vector<std::unique_ptr<TaskArguments>> all_task_arguments() {
   std::vector<std::unique_ptr<TaskArguments>> all;
+  all.push_back(std::make_unique<SensorCharacterizationArguments>());
   all.push_back(std::make_unique<RelativePositionArguments>());
   all.push_back(std::make_unique<FaceAnchorArguments>());
   all.push_back(std::make_unique<MoveForwardArguments>());
   all.push_back(std::make_unique<ClosedPathArguments>());
   return all;
+}
+
+std::unique_ptr<TaskArguments> make_task_arguments(std::string_view task) {
+  for (auto& arguments : all_task_arguments()) {
+    if (arguments->name() == task) {
+      return std::move(arguments);
+    }
+  }
+  return nullptr;
 }
 
 }  // namespace tether::sut

@@ -24,10 +24,12 @@ class TaskArguments {
   /// outlive `app`'s parsing.
   virtual void add_to(CLI::App& app) = 0;
   /// What was written, after parsing.
-  virtual Mission mission() const = 0;
+  virtual TaskSpec spec() const = 0;
 };
 
 /// A fresh one of each kind of task, in the order of the paper.
 std::vector<std::unique_ptr<TaskArguments>> all_task_arguments();
+/// A fresh one of this task; nullptr if there is none of this name.
+std::unique_ptr<TaskArguments> make_task_arguments(std::string_view task);
 
 }  // namespace tether::sut

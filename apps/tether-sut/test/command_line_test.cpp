@@ -25,12 +25,17 @@ CommandLine parsed(std::vector<const char*> arguments) {
   return std::get<CommandLine>(result);
 }
 
+const TaskSpec& only(const CommandLine& line) {
+  EXPECT_FALSE(line.mission.is_sequence);
+  return line.mission.tasks.at(0);
+}
+
 TEST(CommandLine, FaceAnchorHasTheTasksDefaults) {
   const CommandLine line = parsed({"face_anchor", "--anchor", "blue_box"});
-  EXPECT_EQ(line.mission.anchor, "blue_box");
-  EXPECT_EQ(line.mission.camera, "camera");
+  EXPECT_EQ(only(line).anchor, "blue_box");
+  EXPECT_EQ(only(line).vision.camera, "camera");
   EXPECT_FALSE(line.address || line.uav || line.clock);
-  const auto& options = std::get<tasks::FaceAnchorOptions>(line.mission.task);
+  const auto& options = std::get<tasks::FaceAnchorOptions>(only(line).options);
   const tasks::FaceAnchorOptions defaults;
   EXPECT_DOUBLE_EQ(options.precision_rad, defaults.precision_rad);
   EXPECT_DOUBLE_EQ(options.yaw_rate_rad_s, defaults.yaw_rate_rad_s);
@@ -63,7 +68,7 @@ TEST(CommandLine, TakesEveryOption) {
                                    "h:1",         "--uav",
                                    "u",           "--clock",
                                    "cpu*3"});
-  const auto& options = std::get<tasks::FaceAnchorOptions>(line.mission.task);
+  const auto& options = std::get<tasks::FaceAnchorOptions>(only(line).options);
   EXPECT_DOUBLE_EQ(options.precision_rad, rad_from_deg(2));
   EXPECT_DOUBLE_EQ(options.yaw_rate_rad_s, rad_from_deg(40));
   EXPECT_DOUBLE_EQ(options.min_yaw_rate_rad_s, rad_from_deg(3));
@@ -75,24 +80,124 @@ TEST(CommandLine, TakesEveryOption) {
   EXPECT_EQ(options.convergence.stable_frames, 3);
   EXPECT_EQ(options.convergence.max_frames, 9);
   EXPECT_EQ(options.convergence.max_unseen_frames, 2);
-  const vision::TrackerOptions& tracker = line.mission.tracker;
+  const vision::TrackerOptions& tracker = only(line).vision.tracker;
   EXPECT_EQ(tracker.prefilter, vision::Prefilter::kMedian);
   EXPECT_EQ(tracker.prefilter_size_px, 7);
   EXPECT_EQ(tracker.hue_tolerance_deg, 9);
   EXPECT_EQ(tracker.min_saturation, 0.4);
   EXPECT_EQ(tracker.min_value, 0.2);
   EXPECT_EQ(tracker.min_score, 0.5);
-  EXPECT_EQ(line.mission.camera, "eye");
+  EXPECT_EQ(only(line).vision.camera, "eye");
   EXPECT_EQ(line.address, "h:1");
   EXPECT_EQ(line.uav, "u");
   EXPECT_EQ(line.clock, "cpu*3");
 }
 
 TEST(CommandLine, RelativePosition) {
-  const CommandLine line =
-      parsed({"relative_position", "--anchor", "blue_box", "--stable-frames", "4"});
-  EXPECT_EQ(std::get<tasks::RelativePositionOptions>(line.mission.task).convergence.stable_frames,
-            4);
+  const CommandLine line = parsed(
+      {"relative_position", "--anchor", "blue_box", "--stable-frames", "4", "--time-limit-s", "9"});
+  const auto& options = std::get<tasks::RelativePositionOptions>(only(line).options);
+  EXPECT_EQ(options.convergence.stable_frames, 4);
+  EXPECT_EQ(options.time_limit, std::chrono::seconds(9));
+}
+
+TEST(CommandLine, SensorCharacterization) {
+  const CommandLine line = parsed(
+      {"sensor_characterization", "--sensor", "imu", "--acquisitions", "7", "--time-limit-s", "3"});
+  const auto& options = std::get<tasks::SensorCharacterizationOptions>(only(line).options);
+  EXPECT_EQ(only(line).sensor, "imu");
+  EXPECT_EQ(options.acquisitions, 7);
+  EXPECT_EQ(options.time_limit, std::chrono::seconds(3));
+}
+
+TEST(CommandLine, MoveForward) {
+  const CommandLine line = parsed({"move_forward",
+                                   "--anchor",
+                                   "b",
+                                   "--speed-m-s",
+                                   "0.4",
+                                   "--precision-deg",
+                                   "4",
+                                   "--face-precision-deg",
+                                   "2",
+                                   "--face-time-limit-s",
+                                   "11",
+                                   "--imu",
+                                   "gyro",
+                                   "--settle-s",
+                                   "0",
+                                   "--time-limit-s",
+                                   "90",
+                                   "--yaw-rate-deg-s",
+                                   "30",
+                                   "--stable-frames",
+                                   "3"});
+  const auto& options = std::get<tasks::MoveForwardOptions>(only(line).options);
+  EXPECT_EQ(options.speed_m_s, 0.4);
+  EXPECT_DOUBLE_EQ(options.precision_rad, rad_from_deg(4));
+  EXPECT_DOUBLE_EQ(options.face.precision_rad, rad_from_deg(2));
+  EXPECT_DOUBLE_EQ(options.face.yaw_rate_rad_s, rad_from_deg(30));
+  EXPECT_EQ(options.face.time_limit, std::chrono::seconds(11));
+  EXPECT_EQ(options.face.convergence.stable_frames, 3);
+  EXPECT_EQ(options.imu, "gyro");
+  EXPECT_EQ(options.settle, Duration::zero());
+  EXPECT_EQ(options.time_limit, std::chrono::seconds(90));
+}
+
+TEST(CommandLine, ClosedPath) {
+  const CommandLine line = parsed({"closed_path",
+                                   "--anchor",
+                                   "b",
+                                   "--distance-m",
+                                   "1.5",
+                                   "--speed-m-s",
+                                   "0.4",
+                                   "--imu",
+                                   "gyro",
+                                   "--rest-readings",
+                                   "40",
+                                   "--turn-rate-deg-s",
+                                   "10",
+                                   "--turn-tolerance-deg",
+                                   "2",
+                                   "--settle-s",
+                                   "2",
+                                   "--turn-limit-s",
+                                   "7",
+                                   "--leg-slack-s",
+                                   "3",
+                                   "--time-limit-s",
+                                   "99",
+                                   "--tolerance-px",
+                                   "5"});
+  const auto& options = std::get<tasks::ClosedPathOptions>(only(line).options);
+  EXPECT_EQ(options.distance_m, 1.5);
+  EXPECT_EQ(options.speed_m_s, 0.4);
+  EXPECT_EQ(options.imu, "gyro");
+  EXPECT_EQ(options.rest_readings, 40);
+  EXPECT_DOUBLE_EQ(options.turn_rate_rad_s, rad_from_deg(10));
+  EXPECT_DOUBLE_EQ(options.turn_tolerance_rad, rad_from_deg(2));
+  EXPECT_EQ(options.settle, std::chrono::seconds(2));
+  EXPECT_EQ(options.turn_limit, std::chrono::seconds(7));
+  EXPECT_EQ(options.leg_slack, std::chrono::seconds(3));
+  EXPECT_EQ(options.time_limit, std::chrono::seconds(99));
+  EXPECT_EQ(options.convergence.tolerance_px, 5);
+}
+
+TEST(CommandLine, MissionTakesItsFileByPlaceOrByName) {
+  const char* file = TETHER_SOURCE_DIR "/missions/look_around.toml";
+  for (const auto& arguments :
+       {std::vector<const char*>{"mission", file}, {"mission", "--file", file, "--uav", "u"}}) {
+    const CommandLine line = parsed(arguments);
+    EXPECT_TRUE(line.mission.is_sequence);
+    EXPECT_EQ(line.mission.tasks.size(), 3u);
+  }
+}
+
+TEST(CommandLine, ABadMissionFileIsWrongUse) {
+  const auto refused = std::get<Refusal>(parse({"mission", "/nowhere/m.toml"}));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.text, "tether-sut: /nowhere/m.toml: cannot be read, or is no mission file\n");
 }
 
 TEST(CommandLine, HelpAndVersionAreNoMistake) {
@@ -115,6 +220,12 @@ TEST(CommandLine, MistakesGetOneLineAndExitCode2) {
       {"face_anchor", "--anchor", "b", "--slowdown", "2"},
       {"face_anchor", "--anchor", "b", "--token", "secret"},
       {"relative_position", "--anchor", "b", "--precision-deg", "1"},
+      {"sensor_characterization"},
+      {"sensor_characterization", "--sensor", "imu", "--acquisitions", "0"},
+      {"move_forward", "--anchor", "b", "--speed-m-s", "-1"},
+      {"move_forward", "--anchor", "b", "--settle-s", "-1"},
+      {"closed_path", "--anchor", "b", "--distance-m", "nan"},
+      {"mission"},
       {"relative_position", "--anchor", "b", "--prefilter", "sharpen"},
       {"face_anchor", "--anchor", "b", "relative_position"}};
   for (const auto& arguments : mistakes) {

@@ -1,5 +1,9 @@
 #include "mission.h"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <gmock/gmock.h>
 
 #include <tether/tasks/testing/planar_vehicle.h>
@@ -10,14 +14,23 @@ namespace {
 using tasks::testing::PlanarVehicle;
 using ::testing::HasSubstr;
 
+Mission mission_of(TaskOptions options) {
+  TaskSpec spec;
+  spec.options = std::move(options);
+  spec.anchor = "blue_box";
+  spec.sensor = "range";
+  return {{spec}, false};
+}
+
+tasks::ConvergenceOptions convergence() {
+  return {.tolerance_px = 2.0};
+}
+
 Mission face_anchor() {
-  Mission mission;
   tasks::FaceAnchorOptions options;
-  options.convergence.tolerance_px = 2.0;
+  options.convergence = convergence();
   options.lost_limit = std::chrono::seconds(1);
-  mission.task = options;
-  mission.anchor = "blue_box";
-  return mission;
+  return mission_of(options);
 }
 
 TEST(Fly, TellsTheCoordinatorThatTheGoalIsReached) {
@@ -39,18 +52,48 @@ TEST(Fly, TellsTheCoordinatorThatItIsNot) {
   EXPECT_EQ(vehicle.finished()->outcome, "anchor never seen");
 }
 
-TEST(Fly, RelativePositionReportsItsResults) {
+TEST(Fly, EachTaskReportsItsResults) {
+  tasks::MoveForwardOptions forward;
+  forward.face.convergence = convergence();
+  forward.speed_m_s = 1.0;
+  const std::vector<std::pair<TaskOptions, std::string>> expected = {
+      {tasks::SensorCharacterizationOptions{}, "mean_s"},
+      {tasks::RelativePositionOptions{.convergence = convergence()}, "distance_m"},
+      {forward, "face_anchors"},
+      {tasks::ClosedPathOptions{.convergence = convergence()}, "displacement_m"}};
+  for (const auto& [options, result] : expected) {
+    PlanarVehicle vehicle({});
+    EXPECT_EQ(exit_code(fly(mission_of(options), vehicle)), 0) << result;
+    ASSERT_TRUE(vehicle.finished());
+    EXPECT_THAT(vehicle.finished()->details_json, HasSubstr("\"" + result + "\""));
+  }
+}
+
+TEST(Fly, AMissionTellsOfEachTask) {
   PlanarVehicle vehicle({});
   Mission mission = face_anchor();
-  mission.task = tasks::RelativePositionOptions{.convergence = {.tolerance_px = 2.0}};
+  mission.tasks.push_back(
+      mission_of(tasks::RelativePositionOptions{.convergence = convergence()}).tasks.front());
+  mission.is_sequence = true;
   EXPECT_EQ(exit_code(fly(mission, vehicle)), 0);
-  EXPECT_THAT(vehicle.finished()->details_json, HasSubstr("\"distance_m\""));
+  const auto& details = vehicle.finished()->details_json;
+  EXPECT_THAT(details, HasSubstr("\"tasks\""));
+  EXPECT_THAT(details, HasSubstr("\"task\":\"face_anchor\""));
+  EXPECT_THAT(details, HasSubstr("\"task\":\"relative_position\""));
+}
+
+TEST(Fly, AMissionNamesTheTaskThatEndedIt) {
+  PlanarVehicle vehicle({.anchor_is_there = false});
+  Mission mission = face_anchor();
+  mission.is_sequence = true;
+  EXPECT_EQ(exit_code(fly(mission, vehicle)), 1);
+  EXPECT_EQ(vehicle.finished()->outcome, "task 1 (face_anchor): anchor never seen");
 }
 
 TEST(Fly, AnUnknownAnchorIsWrongUseAndEndsTheMission) {
   PlanarVehicle vehicle({});
   Mission mission = face_anchor();
-  mission.anchor = "door";
+  mission.tasks.front().anchor = "door";
   const tasks::TaskOutcome outcome = fly(mission, vehicle);
   EXPECT_EQ(exit_code(outcome), 2);
   EXPECT_THAT(outcome.reason, HasSubstr("door"));

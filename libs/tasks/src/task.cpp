@@ -7,6 +7,20 @@
 
 namespace tether::tasks {
 
+namespace {
+
+nlohmann::json details_of(const TaskOutcome& outcome) {
+  nlohmann::json details = {
+      {"status", name(outcome.status)}, {"reason", outcome.reason}, {"results", outcome.results}};
+  for (const TaskOutcome& part : outcome.parts) {
+    details["tasks"].push_back(details_of(part));
+    details["tasks"].back()["task"] = part.task;
+  }
+  return details;
+}
+
+}  // namespace
+
 std::string_view name(TaskStatus status) {
   switch (status) {
     case TaskStatus::kReached:
@@ -28,9 +42,7 @@ TaskOutcome TaskOutcome::failed(const Failure& failure) {
 }
 
 std::string details_json(const TaskOutcome& outcome) {
-  const nlohmann::json details = {
-      {"status", name(outcome.status)}, {"reason", outcome.reason}, {"results", outcome.results}};
-  return details.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return details_of(outcome).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 TaskOutcome run(Task& task, TaskContext& context) {
@@ -44,6 +56,7 @@ TaskOutcome run(Task& task, TaskContext& context) {
   }
   context.note_event(task.name(), "finalise", "start");
   task.finalise(context, *progress);
+  progress->task = task.name();
   context.note_end(task.name(), name(progress->status), progress->reason);
   return *std::move(progress);
 }

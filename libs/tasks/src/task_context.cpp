@@ -21,9 +21,21 @@ Failure no_such(std::string_view kind, std::string_view name) {
 
 }  // namespace
 
-TaskContext::TaskContext(client::Vehicle& vehicle, std::string camera,
-                         const vision::TrackerOptions& tracker_options)
-    : vehicle_(vehicle), camera_(std::move(camera)), tracker_options_(tracker_options) {}
+TaskContext::TaskContext(client::Vehicle& vehicle, VisionOptions vision)
+    : vehicle_(vehicle), vision_(std::move(vision)) {}
+
+void TaskContext::look_with(VisionOptions vision) {
+  vision_ = std::move(vision);
+  trackers_.clear();
+}
+
+Result<const uav::SensorDescription*> TaskContext::sensor(std::string_view name) const {
+  const uav::SensorDescription* sensor = vehicle_.catalogue().find_sensor(name);
+  if (sensor == nullptr) {
+    return no_such("sensor", name);
+  }
+  return sensor;
+}
 
 Result<const uav::SensorDescription*> TaskContext::sensor(std::string_view name,
                                                           uav::SensorKind kind) const {
@@ -35,7 +47,7 @@ Result<const uav::SensorDescription*> TaskContext::sensor(std::string_view name,
 }
 
 Result<const uav::SensorDescription*> TaskContext::camera() const {
-  return sensor(camera_, uav::SensorKind::kCamera);
+  return sensor(vision_.camera, uav::SensorKind::kCamera);
 }
 
 Result<const uav::Anchor*> TaskContext::anchor(std::string_view name) const {
@@ -54,7 +66,7 @@ Result<vision::AnchorTracker*> TaskContext::tracker(std::string_view anchor_name
   if (!anchor) {
     return anchor.failure();
   }
-  Result<vision::AnchorTracker> tracker = vision::AnchorTracker::create(**anchor, tracker_options_);
+  Result<vision::AnchorTracker> tracker = vision::AnchorTracker::create(**anchor, vision_.tracker);
   if (!tracker) {
     return tracker.failure();
   }
@@ -82,7 +94,7 @@ void TaskContext::note_end(std::string_view task, std::string_view status,
 
 void TaskContext::note_roi(const vision::Roi& roi, std::uint64_t image_index) {
   annotate(vehicle_, "roi",
-           {{"camera", camera_},
+           {{"camera", vision_.camera},
             {"u_px", roi.center.u_px},
             {"v_px", roi.center.v_px},
             {"width_px", roi.width_px},
@@ -97,7 +109,7 @@ void TaskContext::note_estimate(std::string_view anchor, std::uint64_t image_ind
   // JSON has no NaN: an unknown distance becomes null.
   annotate(vehicle_, "estimate",
            {{"anchor", anchor},
-            {"camera", camera_},
+            {"camera", vision_.camera},
             {"image_index", image_index},
             {"bearing_rad", estimate.bearing_rad},
             {"distance_m", estimate.distance_m.value_or(std::numeric_limits<double>::quiet_NaN())},

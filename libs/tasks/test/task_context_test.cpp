@@ -23,8 +23,9 @@ TEST(TaskContext, FindsCameraAndAnchor) {
 
 TEST(TaskContext, SaysWhatTheCatalogueLacks) {
   testing::PlanarVehicle vehicle({});
-  EXPECT_THAT(TaskContext(vehicle, "eye").camera().failure().message, HasSubstr("camera \"eye\""));
-  EXPECT_FALSE(TaskContext(vehicle, "imu").camera()) << "not a camera";
+  EXPECT_THAT(TaskContext(vehicle, {"eye", {}}).camera().failure().message,
+              HasSubstr("camera \"eye\""));
+  EXPECT_FALSE(TaskContext(vehicle, {"imu", {}}).camera()) << "not a camera";
   EXPECT_THAT(TaskContext(vehicle).sensor("gps", uav::SensorKind::kImu).failure().message,
               HasSubstr("imu \"gps\""));
   TaskContext context(vehicle);
@@ -40,6 +41,17 @@ TEST(TaskContext, KeepsOneTrackerForEachAnchor) {
   const auto again = context.tracker("blue_box");
   ASSERT_TRUE(first && again);
   EXPECT_EQ(*first, *again);
+}
+
+TEST(TaskContext, LooksWithWhatItIsTold) {
+  testing::PlanarVehicle vehicle({});
+  TaskContext context(vehicle);
+  VisionOptions unusable{"eye", {}};
+  unusable.tracker.prefilter_size_px = 4;
+  ASSERT_TRUE(context.tracker("blue_box"));
+  context.look_with(unusable);
+  EXPECT_THAT(context.camera().failure().message, HasSubstr("camera \"eye\""));
+  EXPECT_FALSE(context.tracker("blue_box")) << "the old options were kept";
 }
 
 TEST(TaskContext, NotesHaveTheFieldsOfTheRecord) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tether/base/result.h>
 
@@ -24,6 +25,8 @@ struct TaskOutcome {
   std::string reason;  ///< a short phrase: "goal reached", "time limit", "anchor lost", …
   std::optional<Failure::Kind> failure;   ///< of what failed, if kFailed
   std::map<std::string, double> results;  ///< figures by name; names carry units
+  std::string task = {};                  ///< the task's name; `run` sets it
+  std::vector<TaskOutcome> parts = {};    ///< of the tasks that a sequence is made of, in order
 
   bool reached() const { return status == TaskStatus::kReached; }
   static TaskOutcome goal_reached() { return {TaskStatus::kReached, "goal reached", {}, {}}; }
@@ -31,8 +34,8 @@ struct TaskOutcome {
   static TaskOutcome failed(const Failure& failure);
 };
 
-/// {"status", "reason", "results": {…}}, for Vehicle::finish. A figure that is not finite becomes
-/// null.
+/// {"status", "reason", "results": {…}}, for Vehicle::finish; for a sequence also "tasks":
+/// [{"task", "status", "reason", "results"}, …]. A figure that is not finite becomes null.
 std::string details_json(const TaskOutcome& outcome);
 
 /// What a phase says: nothing (go on), or how the task ended.

@@ -14,28 +14,39 @@
 
 namespace tether::tasks {
 
+/// How a task looks at the world.
+struct VisionOptions {
+  std::string camera = "camera";  ///< a sensor's name
+  vision::TrackerOptions tracker;
+};
+
 /// What tasks that run in one another share: the UAV, and the trackers, so that a task that is run
 /// in a loop goes on tracking where it stopped. `vehicle` must outlive it. One thread.
 class TaskContext {
  public:
-  explicit TaskContext(client::Vehicle& vehicle, std::string camera = "camera",
-                       const vision::TrackerOptions& tracker_options = {});
+  explicit TaskContext(client::Vehicle& vehicle, VisionOptions vision = {});
 
   client::Vehicle& vehicle() { return vehicle_; }
 
+  /// From now on; forgets what was tracked. Not while a task is looking.
+  void look_with(VisionOptions vision);
+
+  /// Fails (kInvalid) if the UAV has no sensor of this name.
+  Result<const uav::SensorDescription*> sensor(std::string_view name) const;
   /// Fails (kInvalid) if the UAV has no sensor of this name and kind.
   Result<const uav::SensorDescription*> sensor(std::string_view name, uav::SensorKind kind) const;
-  /// Fails (kInvalid) if the UAV has no camera of the name given at construction.
+  /// Fails (kInvalid) if the UAV has no camera of the name that it looks with.
   Result<const uav::SensorDescription*> camera() const;
   /// Fails (kInvalid) if there is no such anchor.
   Result<const uav::Anchor*> anchor(std::string_view name) const;
   /// The one tracker of this anchor. Fails (kInvalid) if there is no such anchor, or its colour
-  /// cannot be tracked. The pointer stays valid as long as the context.
+  /// cannot be tracked. The pointer stays valid until
+  /// `look_with`.
   Result<vision::AnchorTracker*> tracker(std::string_view anchor);
 
   /// @name Notes for the record (topics "task", "roi", "estimate", "odometry", "displacement"). An
   /// annotation that cannot be sent is no failure of its own: the link's next interaction tells.
-  /// Which camera a ROI or an estimate is of is the one given at construction.
+  /// Which camera a ROI or an estimate is of is the one that it looks with.
   /// @{
   using Values = std::vector<std::pair<std::string_view, double>>;
   void note_event(std::string_view task, std::string_view phase, std::string_view event,
@@ -53,8 +64,7 @@ class TaskContext {
 
  private:
   client::Vehicle& vehicle_;
-  std::string camera_;
-  vision::TrackerOptions tracker_options_;
+  VisionOptions vision_;
   std::map<std::string, vision::AnchorTracker, std::less<>> trackers_;
 };
 

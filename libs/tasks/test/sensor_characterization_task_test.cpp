@@ -1,0 +1,96 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include <tether/tasks/sensor_characterization_task.h>
+#include <tether/tasks/task_context.h>
+#include <tether/tasks/testing/planar_vehicle.h>
+
+namespace tether::tasks {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::PlanarVehicle;
+
+TaskOutcome characterize(PlanarVehicle& vehicle, const std::string& sensor,
+                         const SensorCharacterizationOptions& options = {}) {
+  TaskContext context(vehicle);
+  SensorCharacterizationTask task(sensor, options);
+  return run(task, context);
+}
+
+TEST(SensorCharacterizationTask, TimesEachAcquisition) {
+  PlanarVehicle vehicle(
+      {.range_delays = {milliseconds(10), milliseconds(40), milliseconds(20), milliseconds(30)}});
+  SensorCharacterizationOptions options;
+  options.acquisitions = 8;
+  const TaskOutcome outcome = characterize(vehicle, "range", options);
+  EXPECT_TRUE(outcome.reached());
+  EXPECT_NEAR(outcome.results.at("duration_s"), 0.2, 1e-12);
+  EXPECT_EQ(outcome.results.at("acquisitions"), 8);
+  EXPECT_NEAR(outcome.results.at("mean_s"), 0.025, 1e-12);
+  EXPECT_NEAR(outcome.results.at("median_s"), 0.025, 1e-12);
+  EXPECT_NEAR(outcome.results.at("min_s"), 0.01, 1e-12);
+  EXPECT_NEAR(outcome.results.at("max_s"), 0.04, 1e-12);
+  // Squares off the mean: 2 · (15² + 15² + 5² + 5²) = 1000 ms², over 7.
+  EXPECT_NEAR(outcome.results.at("stddev_s"), std::sqrt(1000.0 / 7.0) * 1e-3, 1e-12);
+  EXPECT_TRUE(vehicle.commands().empty());
+}
+
+TEST(SensorCharacterizationTask, MedianOfAnOddCount) {
+  PlanarVehicle vehicle({.range_delays = {milliseconds(50), milliseconds(10), milliseconds(20)}});
+  SensorCharacterizationOptions options;
+  options.acquisitions = 3;
+  EXPECT_NEAR(characterize(vehicle, "range", options).results.at("median_s"), 0.02, 1e-12);
+}
+
+TEST(SensorCharacterizationTask, TakesAnySensorWaitingForWhatIsNew) {
+  PlanarVehicle vehicle({});
+  const TaskOutcome camera = characterize(vehicle, "camera");
+  EXPECT_TRUE(camera.reached());
+  EXPECT_EQ(vehicle.images_read(), 100);
+  EXPECT_NEAR(camera.results.at("mean_s"), 1.0 / 30.0, 1e-3);
+  const TaskOutcome imu = characterize(vehicle, "imu");
+  EXPECT_TRUE(imu.reached());
+  EXPECT_NEAR(imu.results.at("median_s"), 0.005, 1e-9);
+}
+
+TEST(SensorCharacterizationTask, OneAcquisitionHasNoSpread) {
+  PlanarVehicle vehicle({});
+  SensorCharacterizationOptions options;
+  options.acquisitions = 1;
+  const TaskOutcome outcome = characterize(vehicle, "range", options);
+  EXPECT_EQ(outcome.results.at("mean_s"), outcome.results.at("max_s"));
+  EXPECT_FALSE(outcome.results.contains("stddev_s"));
+}
+
+TEST(SensorCharacterizationTask, EndsAtItsTimeLimit) {
+  PlanarVehicle vehicle({.range_delays = {milliseconds(300)}});
+  SensorCharacterizationOptions options;
+  options.time_limit = milliseconds(700);
+  const TaskOutcome outcome = characterize(vehicle, "range", options);
+  EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(outcome.reason, "time limit");
+  EXPECT_EQ(outcome.results.at("acquisitions"), 3);
+}
+
+TEST(SensorCharacterizationTask, EndsWhileTheClockStandsStill) {
+  PlanarVehicle vehicle({.clock_stands_still = true});
+  const TaskOutcome outcome = characterize(vehicle, "range");
+  EXPECT_TRUE(outcome.reached());
+  EXPECT_EQ(outcome.results.at("duration_s"), 0.0);
+}
+
+TEST(SensorCharacterizationTask, FailsWithItsReason) {
+  PlanarVehicle vehicle({});
+  const TaskOutcome unknown = characterize(vehicle, "gps");
+  EXPECT_EQ(unknown.failure, Failure::Kind::kInvalid);
+  EXPECT_THAT(unknown.reason, ::testing::HasSubstr("sensor \"gps\""));
+  PlanarVehicle cut({.disconnect_at = 2});
+  const TaskOutcome outcome = characterize(cut, "imu");
+  EXPECT_EQ(outcome.failure, Failure::Kind::kDisconnected);
+  EXPECT_EQ(outcome.results.at("acquisitions"), 2);
+}
+
+}  // namespace
+}  // namespace tether::tasks

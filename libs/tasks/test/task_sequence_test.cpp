@@ -1,0 +1,142 @@
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <tether/tasks/face_anchor_task.h>
+#include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/task_sequence.h>
+#include <tether/tasks/testing/planar_vehicle.h>
+
+namespace tether::tasks {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::PlanarVehicle;
+
+/// Ends as it is told to, and counts its runs.
+class ToldTask : public Task {
+ public:
+  ToldTask(TaskOutcome outcome, int& runs) : outcome_(std::move(outcome)), runs_(runs) {}
+  std::string_view name() const override { return "told"; }
+  Progress initialise(TaskContext&) override {
+    ++runs_;
+    return outcome_;
+  }
+  Progress step(TaskContext&) override { return outcome_; }
+  void finalise(TaskContext&, TaskOutcome& outcome) override { outcome.results["run"] = runs_; }
+
+ private:
+  TaskOutcome outcome_;
+  int& runs_;
+};
+
+struct Told {
+  TaskOutcome outcome;
+  bool required = true;
+};
+
+struct Fixture {
+  TaskOutcome run_all(const std::vector<Told>& all) {
+    std::vector<SequenceItem> items;
+    for (const Told& told : all) {
+      items.push_back({std::make_unique<ToldTask>(told.outcome, runs), {}, told.required});
+    }
+    TaskSequence sequence(std::move(items));
+    return run(sequence, context);
+  }
+  PlanarVehicle vehicle{{}};
+  TaskContext context{vehicle};
+  int runs = 0;
+};
+
+const Failure kGone{Failure::Kind::kDisconnected, "gone"};
+
+TEST(TaskSequence, ReachesItsGoalWithTheLastTask) {
+  Fixture f;
+  const TaskOutcome outcome =
+      f.run_all({{TaskOutcome::goal_reached()}, {TaskOutcome::goal_reached()}});
+  EXPECT_TRUE(outcome.reached());
+  EXPECT_EQ(outcome.reason, "goal reached");
+  EXPECT_EQ(outcome.results.at("tasks_run"), 2);
+  EXPECT_EQ(outcome.results.at("tasks_reached"), 2);
+  ASSERT_EQ(outcome.parts.size(), 2u);
+  EXPECT_EQ(outcome.parts[1].task, "told");
+  EXPECT_EQ(outcome.parts[1].results.at("run"), 2);
+}
+
+TEST(TaskSequence, EndsWithARequiredTaskThatDoesNotReachItsGoal) {
+  Fixture f;
+  const TaskOutcome outcome = f.run_all({{TaskOutcome::goal_reached()},
+                                         {TaskOutcome::not_reached("anchor lost")},
+                                         {TaskOutcome::goal_reached()}});
+  EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(outcome.reason, "task 2 (told): anchor lost");
+  EXPECT_EQ(f.runs, 2);
+  EXPECT_EQ(outcome.results.at("tasks_reached"), 1);
+}
+
+TEST(TaskSequence, GoesOnAfterOneThatIsNotRequired) {
+  Fixture f;
+  const TaskOutcome outcome =
+      f.run_all({{TaskOutcome::not_reached("anchor lost"), false}, {TaskOutcome::goal_reached()}});
+  EXPECT_TRUE(outcome.reached());
+  EXPECT_EQ(outcome.results.at("tasks_run"), 2);
+  EXPECT_EQ(outcome.results.at("tasks_reached"), 1);
+  EXPECT_EQ(outcome.parts[0].reason, "anchor lost");
+}
+
+TEST(TaskSequence, AFailureEndsItRequiredOrNot) {
+  for (const bool required : {true, false}) {
+    Fixture f;
+    const TaskOutcome outcome =
+        f.run_all({{TaskOutcome::failed(kGone), required}, {TaskOutcome::goal_reached()}});
+    EXPECT_EQ(outcome.status, TaskStatus::kFailed);
+    EXPECT_EQ(outcome.failure, Failure::Kind::kDisconnected);
+    EXPECT_EQ(outcome.reason, "task 1 (told): gone");
+    EXPECT_EQ(f.runs, 1);
+  }
+}
+
+TEST(TaskSequence, WithoutTasksEndsAtOnce) {
+  EXPECT_TRUE(Fixture().run_all({}).reached());
+}
+
+TEST(TaskSequence, MayRunAgain) {
+  Fixture f;
+  std::vector<SequenceItem> items;
+  items.push_back({std::make_unique<ToldTask>(TaskOutcome::goal_reached(), f.runs), {}, true});
+  TaskSequence sequence(std::move(items));
+  run(sequence, f.context);
+  const TaskOutcome outcome = run(sequence, f.context);
+  EXPECT_EQ(outcome.parts.size(), 1u);
+  EXPECT_EQ(f.runs, 2);
+}
+
+TEST(TaskSequence, ComposesTheTasksEachWithItsOwnEyes) {
+  Fixture f;
+  FaceAnchorOptions face;
+  face.convergence.tolerance_px = 2.0;
+  const RelativePositionOptions look{.convergence = face.convergence};
+  VisionOptions blind;
+  blind.tracker.min_score = 1.0;
+  std::vector<SequenceItem> items;
+  items.push_back({std::make_unique<RelativePositionTask>("blue_box", look), blind, false});
+  items.push_back({std::make_unique<FaceAnchorTask>("blue_box", face), {}, true});
+  items.push_back({std::make_unique<RelativePositionTask>("blue_box", look), {}, true});
+  TaskSequence sequence(std::move(items));
+  const TaskOutcome outcome = run(sequence, f.context);
+  EXPECT_TRUE(outcome.reached()) << outcome.reason;
+
+  const auto json = nlohmann::json::parse(details_json(outcome));
+  std::vector<std::string> ends;
+  for (const auto& part : json.at("tasks")) {
+    ends.push_back(part.at("task").get<std::string>() + ": " +
+                   part.at("reason").get<std::string>());
+  }
+  EXPECT_THAT(ends, ElementsAre("relative_position: anchor not seen", "face_anchor: goal reached",
+                                "relative_position: goal reached"));
+  EXPECT_LT(std::abs(json.at("tasks").at(2).at("results").at("bearing_rad").get<double>()), 0.06);
+  EXPECT_EQ(json.at("results").at("tasks_run"), 3);
+}
+
+}  // namespace
+}  // namespace tether::tasks
