@@ -1,4 +1,4 @@
-#include "scripted_server.h"
+#include "coordinator_fixture.h"
 
 #include <algorithm>
 
@@ -7,7 +7,6 @@
 
 #include <tether/base/error.h>
 #include <tether/coordinator/coordinator.h>
-#include <tether/sim_testing/fake_simulator.h>
 
 namespace tether::coordinator {
 namespace {
@@ -16,75 +15,6 @@ using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::HasSubstr;
-
-constexpr std::uint32_t kCamera = 0, kImu = 1, kRange = 2;
-constexpr uav::PeriodicTiming kCameraTiming{milliseconds(33), Duration(0),
-                                            uav::ConstantDelay{microseconds(10'400)}};
-constexpr uav::PeriodicTiming kImuTiming{milliseconds(50), Duration(0),
-                                         uav::ConstantDelay{Duration(0)}};
-constexpr uav::OnDemandTiming kRangeTiming{uav::ConstantDelay{microseconds(97'700)}};
-
-ExecTime us(std::int64_t value) {
-  return ExecTime(microseconds(value));
-}
-SimTime st_ms(std::int64_t value) {
-  return SimTime(milliseconds(value));
-}
-
-link::Hello hello(const std::string& uav = "", link::ClockKind clock = link::ClockKind::kScripted) {
-  link::Hello h;
-  h.sut = "script";
-  h.uav = uav;
-  h.clock = clock;
-  h.token = "secret";
-  return h;
-}
-
-Act read(Duration compute, std::uint32_t sensor, bool latest = false) {
-  return {compute, link::ReadSensor{sensor, latest}};
-}
-Act turn(Duration compute, double yaw_rate_rad_s) {
-  return {compute, link::SetVelocity{{.velocity_H_m_s = {}, .yaw_rate_rad_s = yaw_rate_rad_s}}};
-}
-Act sleep(Duration compute, Duration duration) {
-  return {compute, duration};
-}
-Act finish(Duration compute) {
-  return {compute, link::Finish{true, "done", "{}"}};
-}
-
-/// A coordinator over a fake simulator of `uavs` UAVs, on a clock that moves a millisecond per
-/// reading.
-class CoordinatorTest : public testing::Test {
- protected:
-  void make(std::size_t uavs = 1) {
-    simulator_ = std::make_unique<sim::FakeSimulator>(sim::make_fake_world(uavs));
-    options_.token = "secret";
-    options_.uavs.assign(uavs, {{kCameraTiming, kImuTiming, kRangeTiming}, latency_, clock_});
-    coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
-                                                 [this] { return now_ += tick_; });
-    server_ = std::make_unique<ScriptedServer>(coordinator_->events());
-  }
-  RunReport run(ScriptedServer::Script script) {
-    if (!coordinator_) make();
-    server_->add_sut(hello(), std::move(script));
-    return coordinator_->run(*server_, hooks_);
-  }
-  const link::Refusal& refusal(link::PeerId peer) {
-    return std::get<link::Refusal>(server_->sent.at(peer).back());
-  }
-
-  RunOptions options_;
-  Duration latency_{0};
-  std::optional<ClockSetting> clock_;
-  Duration tick_ = milliseconds(1);
-  WallTime now_{};
-  RunHooks hooks_;
-  MemoryRecorder recorder_;
-  std::unique_ptr<sim::FakeSimulator> simulator_;
-  std::unique_ptr<Coordinator> coordinator_;
-  std::unique_ptr<ScriptedServer> server_;
-};
 
 TEST_F(CoordinatorTest, AFinishedRunIsReportedAndRecorded) {
   const RunReport report =
@@ -159,35 +89,6 @@ TEST_F(CoordinatorTest, PeriodicReadsGetTheNewestOrWaitForTheNext) {
   EXPECT_TRUE(log.at(3).latest);
   EXPECT_FALSE(log.at(2).latest);
   EXPECT_EQ(simulator_->calls().measure, 4u);
-}
-
-TEST_F(CoordinatorTest, FramesThatNobodyReadsAreNeverMeasured) {
-  const RunReport report =
-      run({sleep(Duration(0), seconds(10)), read(Duration(0), kCamera), finish(Duration(0))});
-  EXPECT_EQ(report.images, 1u);
-  EXPECT_EQ(simulator_->calls().measure, 1u);
-}
-
-// Images are 33 ms apart; what is recorded is thinned, what the SUT gets is not.
-TEST_F(CoordinatorTest, RecordsImagesNoOftenerThanAsked) {
-  options_.record_images = true;
-  options_.image_period = milliseconds(66);
-  ScriptedServer::Script script;
-  for (int i = 0; i < 6; ++i) script.push_back(read(Duration(0), kCamera));
-  script.push_back(read(Duration(0), kCamera, true));
-  script.push_back(finish(Duration(0)));
-  const RunReport report = run(script);
-  EXPECT_EQ(report.images, 7u);
-  std::vector<std::uint64_t> indices;
-  for (const record::Image& image : recorder_.images) indices.push_back(image.index);
-  EXPECT_THAT(indices, testing::ElementsAre(0u, 2u, 4u));
-}
-
-TEST_F(CoordinatorTest, RecordsEveryImageThatIsReadUnlessAskedOtherwise) {
-  options_.record_images = true;
-  run({read(Duration(0), kCamera), read(Duration(0), kCamera), read(Duration(0), kCamera, true),
-       read(Duration(0), kRange), finish(Duration(0))});
-  EXPECT_EQ(recorder_.images.size(), 3u);
 }
 
 struct EffectCase {
