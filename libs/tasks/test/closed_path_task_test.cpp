@@ -138,6 +138,21 @@ TEST(ClosedPathTask, TurnsBackToTheStartHeading) {
   EXPECT_TRUE(turned);
 }
 
+/// Heading elsewhere at the end, the camera is elsewhere, too: an offset that does not cancel out.
+TEST(ClosedPathTask, KnowsWhereItsCameraIs) {
+  GustyVehicle vehicle({.anchor_bearing_rad = 0.0, .camera_ahead_m = 1.0});
+  TaskContext context(vehicle);
+  ClosedPathOptions options;
+  options.convergence.tolerance_px = 2.0;
+  options.turn_tolerance_rad = 0.5;
+  ClosedPathTask task("blue_box", options);
+  const TaskOutcome outcome = run(task, context);
+  ASSERT_TRUE(outcome.reached()) << outcome.reason;
+  EXPECT_NEAR(vehicle.yaw(), 0.3, 1e-9);
+  EXPECT_NEAR(outcome.results.at("displacement_x_m"), vehicle.position().x, 0.15);
+  EXPECT_NEAR(outcome.results.at("displacement_y_m"), vehicle.position().y, 0.15);
+}
+
 TEST(ClosedPathTask, NeverSeenIsAnOutcome) {
   const Flight flight = fly({.anchor_is_there = false});
   EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
