@@ -33,7 +33,8 @@ int run(const FramesOptions& options) {
     const record::Image& image = logged.message;
     experiment::write_file_atomically(
         out / fmt::format("{}-{}-{:06}.svg", image.uav, image.sensor, image.index),
-        report::frame_svg(image, report::find_roi(record, image)));
+        report::frame_svg(image, report::find_roi(record, image),
+                          report::find_true_roi(record, image)));
   }
   fmt::print("{} images in {}\n", record.images.size(), out.string());
   return 0;
@@ -43,8 +44,8 @@ int run(const FramesOptions& options) {
 
 void add_frames_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<FramesOptions>();
-  CLI::App* command =
-      program.add_subcommand("frames", "Recorded camera images with the ROI that the SUT tracked");
+  CLI::App* command = program.add_subcommand(
+      "frames", "Recorded camera images with the ROI that the SUT tracked and the true one");
   command->add_option("record", options->record, "record.mcap of a run with --images")->required();
   command->add_option("--out", options->out,
                       "Folder for the pictures (SVG) [frames, beside the record]");

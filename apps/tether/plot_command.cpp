@@ -85,7 +85,8 @@ void add_plot_command(CLI::App& program, Action& action) {
       "plot", "ST and ET against wall time, lag, and the path from above, as SVG");
   command->add_option("record", options->record, "record.mcap of a run")->required();
   command->add_option("--out", options->out, "Folder for the plots [plots, beside the record]");
-  command->footer(R"(Writes timeline.svg (the whole run), timeline_zoom.svg (its first interactions), lag.svg (not of a
+  command->footer(
+      R"(Writes timeline.svg (the whole run), timeline_zoom.svg (its first interactions), lag.svg (not of a
 run without synchronisation: nothing lags there) and path.svg. Needs gnuplot.
 
 Example:

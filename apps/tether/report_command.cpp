@@ -1,37 +1,73 @@
 #include "commands.h"
 #include "print_report.h"
 
+#include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <tether/base/error.h>
 #include <tether/experiment/campaign_results.h>
+#include <tether/experiment/result.h>
+#include <tether/experiment/text_file.h>
+#include <tether/report/page.h>
 #include <tether/report/report.h>
 
 namespace tether::app {
 
 namespace {
 
+constexpr const char* kHtml = "html";
+
 struct ReportOptions {
   std::filesystem::path folder;
   std::string format = "text";
+  std::filesystem::path out;
 };
 
-using Render = std::string (*)(const report::Table&);
+bool is_run(const std::filesystem::path& folder) {
+  return !std::filesystem::exists(folder / experiment::kCampaignFile) &&
+         std::filesystem::exists(folder / experiment::kResultFile);
+}
+
+std::string joined(const std::vector<report::Table>& tables,
+                   std::string (*render)(const report::Table&)) {
+  std::string text;
+  for (const report::Table& table : tables) text += render(table) + "\n";
+  return text;
+}
+
+std::vector<report::Table> run_tables(const experiment::CampaignResults& results) {
+  const auto& trial = results.scenarios.front().conditions.front().trials.front();
+  return {report::run_table(trial), report::basis_table(results)};
+}
+
+std::string rendered(const ReportOptions& options) {
+  const bool run = is_run(options.folder);
+  if (options.format == kHtml && run) return report::run_page(options.folder);
+  const experiment::CampaignResults results =
+      run ? report::read_run_results(options.folder)
+          : experiment::read_campaign_results(options.folder);
+  if (options.format == kHtml) return report::campaign_page(results, options.folder);
+  if (options.format == "csv") return to_csv(report::trials_table(results));
+  if (options.format == "summary-csv") return to_csv(report::summaries_table(results));
+  return joined(run ? run_tables(results) : report::report_tables(results),
+                options.format == "markdown" ? report::to_markdown : report::to_text);
+}
 
 int run(const ReportOptions& options) {
-  const experiment::CampaignResults results = experiment::read_campaign_results(options.folder);
-  if (options.format == "csv") {
-    fmt::print("{}", to_csv(report::trials_table(results)));
-    return 0;
+  const std::string text = rendered(options);
+  std::filesystem::path out = options.out;
+  if (out.empty() && options.format == kHtml) out = options.folder / "report.html";
+  if (out.empty()) {
+    fmt::print("{}", text);
+  } else {
+    experiment::write_file_atomically(out, text);
+    fmt::print("{}\n", out.string());
   }
-  const Render render = options.format == "markdown" ? report::to_markdown : report::to_text;
-  for (const report::Table& table : report::report_tables(results))
-    fmt::print("{}\n", render(table));
   return 0;
 }
 
@@ -43,8 +79,10 @@ void print_campaign_summary(const std::filesystem::path& folder) {
     fmt::print("{}\n", to_text(report::paper_form_table(scenario)));
   fmt::print(
       "Records and results: {0}\n"
-      "Look next at:  tether report {0}      all tables: intervals, comparisons, the optimism of "
+      "Look next at:  tether report {0} --format html      one page: tables, plots, the optimism "
+      "of "
       "\"no sync\"\n"
+      "               tether report {0}      the tables alone\n"
       "               tether audit {0}/SCENARIO/CONDITION/seed-NNNN/record.mcap\n"
       "               any record.mcap opens in Foxglove (log time = simulated time)\n",
       folder.string());
@@ -52,16 +90,22 @@ void print_campaign_summary(const std::filesystem::path& folder) {
 
 void add_report_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<ReportOptions>();
-  CLI::App* command = program.add_subcommand("report", "Tables of a campaign's results");
-  command->add_option("folder", options->folder, "Folder of a campaign")->required();
+  CLI::App* command =
+      program.add_subcommand("report", "Tables and plots of a campaign's results, or of one run's");
+  command->add_option("folder", options->folder, "Folder of a campaign or of a run")->required();
   command
       ->add_option("--format", options->format,
-                   "text, markdown, or csv (one row per trial and metric)")
-      ->check(CLI::IsMember({"text", "markdown", "csv"}))
+                   "text, markdown, csv (one row per trial and metric), summary-csv (one row per "
+                   "condition and metric), or html (one self-contained page; needs gnuplot)")
+      ->check(CLI::IsMember({"text", "markdown", "csv", "summary-csv", kHtml}))
       ->capture_default_str();
+  command->add_option("--out", options->out,
+                      "File to write [standard output; of html: report.html in the folder]");
   command->footer(R"(Examples:
   tether report out/face_anchor
-  tether report out/face_anchor --format csv)");
+  tether report out/face_anchor --format html
+  tether report out/one --format html --out one.html
+  tether report out/face_anchor --format csv --out trials.csv)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -26,9 +26,9 @@ std::vector<std::uint8_t> encode_png(int width_px, int height_px,
   return png;
 }
 
-std::string to_data_uri(std::span<const std::uint8_t> png) {
-  std::string uri = "data:image/png;base64,";
-  append_base64(uri, png);
+std::string to_data_uri(std::span<const std::uint8_t> file, const std::string& media_type) {
+  std::string uri = "data:" + media_type + ";base64,";
+  append_base64(uri, file);
   return uri;
 }
 

@@ -1,4 +1,7 @@
-#include <array>
+#include "jpeg.h"
+#include "svg.h"
+
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -43,6 +46,81 @@ std::optional<ReportedRoi> parse_roi(const std::string& text, std::uint64_t imag
   return roi;
 }
 
+// What an "estimate" says of itself.
+struct Estimate {
+  std::string anchor;
+  std::uint64_t image_index = 0;
+};
+
+std::optional<Estimate> parse_estimate(const std::string& text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  if (!json.is_object()) return std::nullopt;
+  const auto anchor = json.find("anchor"), index = json.find("image_index");
+  if (anchor == json.end() || !anchor->is_string()) return std::nullopt;
+  if (index == json.end() || !index->is_number_unsigned()) return std::nullopt;
+  return Estimate{anchor->get<std::string>(), index->get<std::uint64_t>()};
+}
+
+std::optional<std::string> anchor_looked_for(const record::Record& record,
+                                             const record::Image& image) {
+  std::optional<std::string> found;
+  for (const auto& logged : record.annotations) {
+    const record::Annotation& note = logged.message;
+    if (note.uav != image.uav || note.topic != "estimate") continue;
+    const auto estimate = parse_estimate(note.json);
+    if (!estimate) continue;
+    if (!found || estimate->image_index <= image.index) found = estimate->anchor;
+  }
+  if (!found && record.header.anchors.size() == 1) found = record.header.anchors.front().name;
+  return found;
+}
+
+template <class Item, class Matches>
+const Item* find_if(const std::vector<Item>& items, const Matches& matches) {
+  const auto it = std::find_if(items.begin(), items.end(), matches);
+  return it != items.end() ? &*it : nullptr;
+}
+
+// Drawing.
+
+std::string data_uri(const record::Image& image, ImageQuality quality) {
+  if (quality == ImageQuality::kSmall) {
+    if (const auto jpeg = jpeg_from_png(image.png)) return record::to_data_uri(*jpeg, "image/jpeg");
+  }
+  return record::to_data_uri(image.png);
+}
+
+constexpr unsigned kCaptionLine_px = 22;
+constexpr const char* kTracked = "#ffd21f";
+constexpr const char* kTrue = "#4de1ff";
+
+std::string caption_line(unsigned y_px, const char* colour, bool dashed, const std::string& text) {
+  return fmt::format(
+      R"(<line x1="10" x2="34" y1="{0}" y2="{0}" stroke="{1}" stroke-width="2.5"{2}/>)"
+      R"(<text x="42" y="{3}" font-size="14" fill="#f2f2f2">{4}</text>)"
+      "\n",
+      y_px - 5, colour, dashed ? R"( stroke-dasharray="7 4")" : "", y_px, escape_markup(text));
+}
+
+// Pixel centres lie at whole coordinates in a ROI, at halves in the picture.
+std::string framed(const experiment::PixelRect& rect, const char* colour, bool dashed) {
+  return fmt::format(
+      R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="none" stroke="{}" stroke-width="2.5"{}/>)"
+      "\n",
+      rect.left_px + 0.5, rect.top_px + 0.5, rect.right_px - rect.left_px,
+      rect.bottom_px - rect.top_px, colour, dashed ? R"( stroke-dasharray="7 4")" : "");
+}
+
+experiment::PixelRect rect_of(const ReportedRoi& roi) {
+  return {roi.u_px - roi.width_px / 2.0, roi.v_px - roi.height_px / 2.0,
+          roi.u_px + roi.width_px / 2.0, roi.v_px + roi.height_px / 2.0};
+}
+
+std::string size_text(const experiment::PixelRect& rect) {
+  return fmt::format("{:.0f} x {:.0f} px", rect.right_px - rect.left_px,
+                     rect.bottom_px - rect.top_px);
+}
+
 }  // namespace
 
 std::optional<ReportedRoi> find_roi(const record::Record& record, const record::Image& image) {
@@ -54,30 +132,49 @@ std::optional<ReportedRoi> find_roi(const record::Record& record, const record::
   return std::nullopt;
 }
 
-std::string frame_svg(const record::Image& image, const std::optional<ReportedRoi>& roi) {
-  constexpr unsigned kCaption_px = 28;
+std::optional<experiment::PixelRect> find_true_roi(const record::Record& record,
+                                                   const record::Image& image) {
+  const auto name = anchor_looked_for(record, image);
+  const auto* anchor = find_if(record.header.anchors, [&](const record::Anchor& candidate) {
+    return name && candidate.name == *name;
+  });
+  const auto* camera = find_if(record.header.sensors, [&](const record::SensorInfo& candidate) {
+    return candidate.uav == image.uav && candidate.name == image.sensor && candidate.camera;
+  });
+  const auto X_WB = experiment::pose_at(record, image.uav, image.at);
+  if (anchor == nullptr || camera == nullptr || !X_WB) return std::nullopt;
+  const auto whole = experiment::true_roi(*camera, *X_WB, *anchor);
+  return whole ? experiment::visible_part(*camera, *whole) : std::nullopt;
+}
+
+std::string frame_svg(const record::Image& image, const std::optional<ReportedRoi>& roi,
+                      const std::optional<experiment::PixelRect>& true_roi, ImageQuality quality) {
   const PixelSize size = size_of_png(image.png);
+  const unsigned caption_px = 10 + kCaptionLine_px * (true_roi ? 3 : 2);
+  const std::string what = escape_markup(
+      fmt::format("{} / {}, ST {:.3f} s", image.uav, image.sensor, to_seconds(image.at)));
   std::string svg = fmt::format(
-      R"(<svg xmlns="http://www.w3.org/2000/svg" width="{0}" height="{1}" viewBox="0 0 {0} {1}" font-family="sans-serif">)"
+      R"(<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{4}" width="{0}" height="{1}" viewBox="0 0 {0} {1}" font-family="sans-serif">)"
       "\n"
       R"(<rect width="{0}" height="{1}" fill="#1b1b1b"/><image width="{0}" height="{2}" href="{3}"/>)"
       "\n",
-      size.width, size.height + kCaption_px, size.height, record::to_data_uri(image.png));
-  std::string what = "anchor not found";
-  if (roi) {
-    // Pixel centres lie at whole coordinates in the ROI, at halves in the picture.
-    svg += fmt::format(
-        R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="none" stroke="#ffd21f" stroke-width="2.5"/>)"
-        "\n",
-        roi->u_px + 0.5 - roi->width_px / 2.0, roi->v_px + 0.5 - roi->height_px / 2.0,
-        roi->width_px, roi->height_px);
-    what = fmt::format("tracked ROI {:.0f} x {:.0f} px", roi->width_px, roi->height_px);
-  }
-  svg += fmt::format(
-      R"(<text x="10" y="{}" font-size="15" fill="#f2f2f2">{} / {}   ST {:.3f} s   {}</text>)"
-      "\n</svg>\n",
-      size.height + kCaption_px - 9, image.uav, image.sensor, to_seconds(image.at), what);
-  return svg;
+      size.width, size.height + caption_px, size.height, data_uri(image, quality),
+      "Camera image, " + what);
+  // Where the two lie on each other, the dashes leave the line below to be seen.
+  if (roi) svg += framed(rect_of(*roi), kTracked, false);
+  if (true_roi) svg += framed(*true_roi, kTrue, true);
+  unsigned y_px = size.height + kCaptionLine_px;
+  svg += fmt::format(R"(<text x="10" y="{}" font-size="14" fill="#f2f2f2">{}</text>)"
+                     "\n",
+                     y_px, what);
+  y_px += kCaptionLine_px;
+  svg += caption_line(y_px, kTracked, false,
+                      roi ? "ROI that the SUT tracked, " + size_text(rect_of(*roi))
+                          : "the SUT reported no ROI for this image");
+  if (true_roi)
+    svg += caption_line(y_px + kCaptionLine_px, kTrue, true,
+                        "true ROI, from ground truth, " + size_text(*true_roi));
+  return svg + "</svg>\n";
 }
 
 }  // namespace tether::report

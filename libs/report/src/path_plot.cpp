@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -199,6 +200,21 @@ std::string scaled(Frame& frame, const Bounds& bounds) {
          range_script("y", y_m - 0.5 * height_m, y_m + 0.5 * height_m);
 }
 
+// gnuplot sets the legend in columns as wide as its longest entry; letters are about 7.5 px wide.
+int key_rows(std::span<const PlottedRun> runs, const std::vector<Way>& ways) {
+  constexpr double kLetter_px = 7.5, kSample_px = 60.0;
+  constexpr std::string_view kAfter = ", dead reckoning";
+  std::size_t entries = 2, longest = 5;  // "start" and "end"
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    const bool both = !ways[i].odometry.empty();
+    entries += both ? 2 : 1;
+    longest = std::max(longest, runs[i].label.size() + (both ? kAfter.size() : 0));
+  }
+  const double column_px = kLetter_px * static_cast<double>(longest) + kSample_px;
+  const auto columns = static_cast<std::size_t>(std::max(1.0, kPlotWidth_px / column_px));
+  return static_cast<int>((entries + columns - 1) / columns);
+}
+
 }  // namespace
 
 std::optional<Plot> path_plot(std::span<const PlottedRun> runs) {
@@ -209,7 +225,11 @@ std::optional<Plot> path_plot(std::span<const PlottedRun> runs) {
   if (!any) return std::nullopt;
   const std::vector<record::Anchor>& anchors = runs.front().record->header.anchors;
   const Bounds bounds = bounds_of(ways, anchors);
-  Frame frame{.top_px = 58, .key_rows = 2, .x_label = "East, x (m)", .y_label = "North, y (m)"};
+  const int rows = key_rows(runs, ways);
+  Frame frame{.top_px = 18 + 21 * rows,
+              .key_rows = rows,
+              .x_label = "East, x (m)",
+              .y_label = "North, y (m)"};
   const std::string ranges = scaled(frame, bounds);
   const double tick_m = 0.05 * std::max({bounds.width_m(), bounds.height_m(), 1.0});
   Drawing drawing;

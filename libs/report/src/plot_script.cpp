@@ -77,6 +77,7 @@ std::string Drawing::script() const {
 
 std::vector<std::size_t> thinned(std::size_t count, std::size_t limit) {
   std::vector<std::size_t> kept;
+  if (limit == 1 && count > 1) return {count / 2};
   if (count <= limit) {
     for (std::size_t i = 0; i < count; ++i) kept.push_back(i);
   } else {

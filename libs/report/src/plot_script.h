@@ -64,7 +64,8 @@ class Drawing {
   std::vector<std::string> parts_;
 };
 
-/// At most `limit` of 0 … count − 1, evenly spaced, the first and the last among them.
+/// At most `limit` of 0 … count − 1, evenly spaced, the first and the last among them; of one, the
+/// middle. @pre limit ≥ 1.
 std::vector<std::size_t> thinned(std::size_t count, std::size_t limit);
 
 }  // namespace tether::report

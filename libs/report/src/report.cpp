@@ -170,7 +170,7 @@ Table table_of(const experiment::ScenarioResults& scenario,
   }
   const bool all_exact = std::all_of(comparisons.begin(), comparisons.end(),
                                      [](const Comparison& c) { return c.ranks.exact; });
-  table.notes = {fmt::format("experiment::Interval: Welch's t. p: Mann-Whitney U, two-sided, {}.",
+  table.notes = {fmt::format("Interval: Welch's t. p: Mann-Whitney U, two-sided, {}.",
                              all_exact ? "exact" : "exact up to 100 trials, else approximate")};
   return table;
 }
@@ -224,7 +224,7 @@ Table details_table(const experiment::ScenarioResults& scenario) {
       table.rows.push_back(std::move(row));
     }
   }
-  table.notes = {"experiment::Interval: of the mean, Student's t."};
+  table.notes = {"Interval: of the mean, Student's t."};
   return table;
 }
 

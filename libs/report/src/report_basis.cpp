@@ -1,7 +1,9 @@
 #include "report_format.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -36,19 +38,48 @@ void for_each_trial(const experiment::CampaignResults& results, const Visit& vis
 std::string tie_text(const experiment::TrialResult& trial) {
   std::string text = fmt::format("{}: {}, {} clock", trial.condition, trial.policy, trial.clock);
   if (trial.clock == "cpu") text += fmt::format(" × {}", trial.cpu_factor);
+  if (trial.computing > Duration{0})
+    text += fmt::format(", {} ms for each phase of computing", 1e3 * to_seconds(trial.computing));
   if (trial.real_time_factor > 0.0) {
     text += fmt::format(", simulator at most {} × real time", trial.real_time_factor);
   }
   return text;
 }
 
+// Seconds of ST per second of wall time, under each condition.
+class Speeds {
+ public:
+  void add(const experiment::TrialResult& trial) {
+    const double wall_s = to_seconds(trial.this_run.wall);
+    if (wall_s <= 0.0) return;
+    const double speed = to_seconds(trial.sync.st_at_end) / wall_s;
+    const auto [it, is_new] = range_.try_emplace(trial.condition, speed, speed);
+    it->second.first = std::min(it->second.first, speed);
+    it->second.second = std::max(it->second.second, speed);
+  }
+  std::string text() const {
+    std::string text;
+    for (const auto& [condition, range] : range_)
+      text += fmt::format("{}{}: {:.2f} to {:.2f}", text.empty() ? "" : "; ", condition,
+                          range.first, range.second);
+    return text.empty() ? kNone : text;
+  }
+
+ private:
+  std::map<std::string, std::pair<double, double>> range_;
+};
+
 struct Basis {
+  Speeds speeds;
+  std::size_t trials = 0, planned = 0;
   std::set<std::string> ties, machines, suts;
   std::size_t audited = 0, passed = 0, synchronised = 0;
   std::uint64_t violations = 0, interactions = 0;
 
   void add(const experiment::TrialResult& trial) {
     ties.insert(tie_text(trial));
+    speeds.add(trial);
+    ++trials;
     if (!trial.this_run.machine.empty()) machines.insert(trial.this_run.machine);
     for (const experiment::SutResult& sut : trial.suts) suts.insert(sut.sut);
     violations += trial.sync.causality_violations;
@@ -66,6 +97,9 @@ Table basis_table(const experiment::CampaignResults& results) {
   Basis basis;
   for_each_trial(results, [&](const experiment::ScenarioResults&,
                               const experiment::TrialResult& t) { basis.add(t); });
+  for (const experiment::ScenarioResults& scenario : results.scenarios) {
+    for (const auto& condition : scenario.conditions) basis.planned += condition.planned;
+  }
   Table table;
   table.title = fmt::format("What the numbers of {} rest on", results.manifest.name);
   table.text_columns = 2;
@@ -73,6 +107,8 @@ Table basis_table(const experiment::CampaignResults& results) {
   table.rows = {{"Machine", joined(basis.machines)},
                 {"SUT", joined(basis.suts)},
                 {"Seeds", seeds_text(results.manifest.seeds)},
+                {"Trials", fmt::format("{} of {}", basis.trials, basis.planned)},
+                {"Speed achieved (× real time)", basis.speeds.text()},
                 {"Interactions", std::to_string(basis.interactions)},
                 {"Causality violations", std::to_string(basis.violations)},
                 {"Audits passed", fmt::format("{} of {} ({} synchronised trials)", basis.passed,
@@ -80,6 +116,21 @@ Table basis_table(const experiment::CampaignResults& results) {
   for (const std::string& tie : basis.ties) table.rows.push_back({"Condition", tie});
   for (const auto& [name, value] : results.manifest.settings) table.rows.push_back({name, value});
   table.notes = results.damaged;
+  return table;
+}
+
+Table run_table(const experiment::TrialResult& trial) {
+  Table table;
+  table.title = fmt::format("{}, {}, seed {}: {}", trial.scenario, trial.condition, trial.seed,
+                            name(trial.outcome));
+  table.headings = {{{"Metric", 1}, {"Value", 1}, {"At most", 1}}};
+  for (const experiment::MetricValue& metric : trial.metrics) {
+    table.rows.push_back({with_unit(metric.label, metric.unit), decimals(metric.value),
+                          metric.max ? exact(*metric.max) : kNone});
+    if (!metric.value)
+      table.notes.push_back(fmt::format("No {}: {}.", metric.label, metric.missing_because));
+  }
+  if (!trial.reason.empty()) table.notes.push_back(trial.reason + ".");
   return table;
 }
 

@@ -44,17 +44,80 @@ TEST(CameraFrame, FindsTheRoiOfItsImage) {
   EXPECT_FALSE(find_roi(record_with({{"uav1", {}, "roi", roi_json(3)}}), image()));
 }
 
-TEST(CameraFrame, FramesTheRoiInTheImage) {
-  const std::string svg = frame_svg(image(), ReportedRoi{5.0, 3.0, 4.0, 2.0});
+// A UAV at the origin of W whose camera looks east, with a box of 0.4 m straight ahead, its near
+// side at 2 m: at 10 px of focal length, 2 px wide.
+record::Record record_with_truth() {
+  record::Record record;
+  record::SensorInfo sensor;
+  sensor.uav = "uav1";
+  sensor.name = "camera";
+  record::CameraInfo camera;
+  camera.width_px = 12;
+  camera.height_px = 8;
+  camera.fx_px = camera.fy_px = 10.0;
+  camera.cx_px = 5.5;
+  camera.cy_px = 3.5;
+  sensor.camera = camera;
+  record.header.sensors = {sensor};
+  record.header.anchors = {{"box", "box", {0.4, 0.4, 0.4}, {2.2, 0, 0}, {1, 0, 0, 0}},
+                           {"aside", "box", {0.4, 0.4, 0.4}, {2.2, 0.6, 0}, {1, 0, 0, 0}}};
+  record::GroundTruth truth;
+  truth.uav = "uav1";
+  truth.at = image().at;
+  record.ground_truth = {{truth.at, 0, truth}};
+  return record;
+}
+
+void add_estimate(record::Record& record, const std::string& anchor, int image_index) {
+  record.annotations.push_back(
+      {SimTime{},
+       0,
+       {"uav1",
+        {},
+        "estimate",
+        R"({"anchor":")" + anchor + R"(","image_index":)" + std::to_string(image_index) + "}"}});
+}
+
+TEST(CameraFrame, FindsTheTrueRoiOfTheAnchorLookedFor) {
+  record::Record record = record_with_truth();
+  EXPECT_FALSE(find_true_roi(record, image()));  // two anchors, and no word which
+  add_estimate(record, "box", 4);
+  const auto roi = find_true_roi(record, image());
+  ASSERT_TRUE(roi);
+  EXPECT_NEAR(roi->left_px, 4.5, 1e-9);
+  EXPECT_NEAR(roi->right_px, 6.5, 1e-9);
+  EXPECT_NEAR(roi->top_px, 2.5, 1e-9);
+
+  add_estimate(record, "aside", 5);  // of a later image
+  EXPECT_NEAR(find_true_roi(record, image())->left_px, 4.5, 1e-9);
+  add_estimate(record, "aside", 4);
+  EXPECT_NEAR(find_true_roi(record, image())->left_px, 1.5, 1e-9);
+}
+
+TEST(CameraFrame, TakesTheOnlyAnchorWithoutAWord) {
+  record::Record record = record_with_truth();
+  record.header.anchors.pop_back();
+  EXPECT_TRUE(find_true_roi(record, image()));
+  record.header.sensors[0].camera.reset();
+  EXPECT_FALSE(find_true_roi(record, image()));
+}
+
+TEST(CameraFrame, FramesBothRoisAndSaysWhichIsWhich) {
+  const std::string svg = frame_svg(image(), ReportedRoi{5.0, 3.0, 4.0, 2.0},
+                                    experiment::PixelRect{1.0, 2.0, 4.0, 7.0});
   EXPECT_THAT(svg, HasSubstr(R"(<image width="12" height="8" href="data:image/png;base64,iVBOR)"));
   EXPECT_THAT(svg, HasSubstr(R"(<rect x="3.50" y="2.50" width="4.00" height="2.00")"));
+  EXPECT_THAT(svg, HasSubstr(R"(<rect x="1.50" y="2.50" width="3.00" height="5.00")"));
   EXPECT_THAT(svg, HasSubstr("ST 1.500 s"));
+  EXPECT_THAT(svg, HasSubstr("ROI that the SUT tracked, 4 x 2 px"));
+  EXPECT_THAT(svg, HasSubstr("true ROI, from ground truth, 3 x 5 px"));
 }
 
 TEST(CameraFrame, SaysWhereNothingWasFound) {
-  const std::string svg = frame_svg(image(), std::nullopt);
-  EXPECT_THAT(svg, HasSubstr("anchor not found"));
-  EXPECT_THAT(svg, Not(HasSubstr("stroke=")));
+  const std::string svg = frame_svg(image(), std::nullopt, std::nullopt);
+  EXPECT_THAT(svg, HasSubstr("the SUT reported no ROI for this image"));
+  EXPECT_THAT(svg, Not(HasSubstr("true ROI")));
+  EXPECT_THAT(svg, Not(HasSubstr(R"(fill="none")")));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@ namespace {
 
 using namespace experiment;  // NOLINT: the results that the tables are of
 
+using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -124,9 +125,31 @@ TEST_F(Report, SaysWhatItRestsOn) {
   EXPECT_THAT(text, HasSubstr("a machine"));
   EXPECT_THAT(text, HasSubstr("tether-sut 0.1.0"));
   EXPECT_THAT(text, HasSubstr("1 to 3"));
+  EXPECT_THAT(text, HasSubstr("9 of 9"));
+  // 2.481 s of ST in 1.235 s.
+  EXPECT_THAT(text, HasSubstr("host: 2.01 to 2.01; target: 2.01 to 2.01"));
   EXPECT_THAT(text, HasSubstr("8 of 9 (6 synchronised trials)"));
   EXPECT_THAT(text, HasSubstr("target: conservative_barrier, cpu clock × 8"));
   EXPECT_THAT(text, HasSubstr("simulator at most 0.25 × real time"));
+}
+
+TEST_F(Report, SaysWhatAScriptedClockCharges) {
+  TrialResult scripted = make_trial(scenario(), "target", 2, 0, 3);
+  scripted.clock = "scripted";
+  scripted.computing = Duration(2'500'000);
+  write(scripted);
+  EXPECT_THAT(to_text(basis_table(read_campaign_results(out_))),
+              HasSubstr("scripted clock, 2.5 ms for each phase of computing"));
+}
+
+TEST_F(Report, OfOneRunHasItsLimits) {
+  TrialResult trial = make_trial(scenario(), "target", 2, 3, 12.5);
+  trial.metrics[0].value.reset();
+  trial.metrics[0].missing_because = "no ground truth";
+  const Table table = run_table(trial);
+  EXPECT_THAT(table.rows[0], ElementsAre("Oscillations", "–", "–"));
+  EXPECT_THAT(table.rows[1], ElementsAre("Time required (s)", "12.500", "30"));
+  EXPECT_THAT(table.notes, Contains("No Oscillations: no ground truth."));
 }
 
 TEST_F(Report, ForProgramsIsComplete) {
@@ -141,8 +164,9 @@ TEST_F(Report, ForProgramsIsComplete) {
 TEST_F(Report, DetailsHaveAllStatistics) {
   EXPECT_THAT(
       to_text(details_table(results())),
-      HasSubstr("Time required (s)  target           3  8.000  [-1.937, 17.937]      4.000   "
-                "8.000  4.000  12.000"));
+      AllOf(HasSubstr("\nInterval: of the mean, Student's t."),
+            HasSubstr("Time required (s)  target           3  8.000  [-1.937, 17.937]      4.000   "
+                      "8.000  4.000  12.000")));
 }
 
 }  // namespace

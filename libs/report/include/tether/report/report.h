@@ -47,6 +47,9 @@ Table trials_table(const experiment::CampaignResults& results);
 /// One row per condition and metric, full precision, the paper's figures beside: for programs.
 Table summaries_table(const experiment::CampaignResults& results);
 
+/// One run's metrics, each with its limit.
+Table run_table(const experiment::TrialResult& trial);
+
 /// All tables for people, in reading order.
 std::vector<Table> report_tables(const experiment::CampaignResults& results);
 

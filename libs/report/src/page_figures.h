@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tether/experiment/campaign_results.h>
+#include <tether/record/reader.h>
+#include <tether/report/plots.h>
+
+/// The figures of a page as HTML: drawn, made part of the page, captioned.
+namespace tether::report {
+
+/// Draws for one page: ids that clash with no other figure's, and camera frames of so many bytes
+/// that the page stays below 8 MB.
+class FigureMaker {
+ public:
+  /// @param frame_groups how often `frames` will be called; each may take as much as the others.
+  explicit FigureMaker(std::size_t frame_groups);
+  /// Empty where there is no plot.
+  std::string plot(const std::optional<Plot>& plot, const std::string& caption);
+  /// At most four of the record's images, evenly over the run; empty where it has none.
+  std::string frames(const record::Record& record) const;
+
+ private:
+  std::size_t figures_ = 0;
+  std::size_t bytes_per_group_;
+};
+
+/// The records of one seed, one for each condition that has one.
+struct SeedRecords {
+  struct OfCondition {
+    std::size_t series = 0;  ///< the condition's place in its scenario
+    std::string condition;
+    record::Record record;
+  };
+  std::vector<OfCondition> records;
+  std::vector<std::string> unreadable;  ///< one line each
+};
+
+/// Of the first seed that has a record under every condition; else each condition's first.
+SeedRecords read_seed_records(const experiment::ScenarioResults& scenario,
+                              const std::filesystem::path& folder);
+
+}  // namespace tether::report

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string_view>
+
+namespace tether::report {
+
+/// The page's CSS, but for the inks of its plots.
+extern const std::string_view kPageStyle;
+
+}  // namespace tether::report

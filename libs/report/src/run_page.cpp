@@ -1,0 +1,96 @@
+#include "html.h"
+#include "page_figures.h"
+#include "report_format.h"
+#include "svg.h"
+#include "verdict.h"
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/report/page.h>
+#include <tether/report/report.h>
+
+namespace tether::report {
+namespace {
+
+const experiment::TrialResult& trial_of(const experiment::CampaignResults& results) {
+  return results.scenarios.front().conditions.front().trials.front();
+}
+
+std::string outcome_sentence(const experiment::TrialResult& trial) {
+  std::string text = fmt::format("Outcome: {}. {}", name(trial.outcome), trial.reason);
+  for (const experiment::SutResult& sut : trial.suts) {
+    if (!sut.outcome.empty())
+      text += fmt::format(" {} of {} says: {}.", sut.sut, sut.uav, sut.outcome);
+  }
+  return text;
+}
+
+std::string plots_part(FigureMaker& figures, const record::Record& record) {
+  std::vector<PlottedRun> runs;
+  std::string html;
+  for (const record::SutInfo& sut : record.header.suts) {
+    const PlottedRun run{&record, sut.uav, sut.uav, runs.size()};
+    runs.push_back(run);
+    html += figures.plot(timeline_plot(run, Extent::kFirstInteractions),
+                         fmt::format("Time against time, {}: the first interactions.", sut.uav));
+    html += figures.plot(timeline_plot(run, Extent::kWhole),
+                         fmt::format("Time against time, {}: the whole run.", sut.uav));
+    html += figures.plot(
+        lag_plot(run),
+        fmt::format("How far ST was behind ET when each request of {} arrived.", sut.uav));
+  }
+  html += figures.plot(path_plot(runs),
+                       "Path from above. Ticks point where the nose points; dashed, if any: the "
+                       "software's own dead reckoning, from the true start.");
+  return html;
+}
+
+std::string record_part(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "record.mcap";
+  try {
+    const record::Record record = record::read_record(file, {.images = true});
+    FigureMaker figures(1);
+    std::string html = plots_part(figures, record);
+    const std::string frames = figures.frames(record);
+    if (!frames.empty()) html += element("h2", "What the camera saw") + frames;
+    if (!record.damage.empty())
+      html += element("p", "The record is shown up to where it is torn: " + record.damage);
+    return html;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::kBadFile) throw;
+    return element("p", fmt::format("No plots: {}", error.what()));
+  }
+}
+
+}  // namespace
+
+experiment::CampaignResults read_run_results(const std::filesystem::path& folder) {
+  const experiment::TrialResult trial = experiment::read_result(folder);
+  experiment::ScenarioResults scenario;
+  scenario.scenario = trial.scenario;
+  for (const experiment::MetricValue& metric : trial.metrics)
+    scenario.metrics.push_back(metric.name);
+  scenario.conditions = {{trial.condition, {trial}, 1}};
+  experiment::CampaignResults results;
+  results.manifest.name =
+      fmt::format("{}, {}, seed {}", trial.scenario, trial.condition, trial.seed);
+  results.manifest.seeds = {trial.seed};
+  results.manifest.settings = trial.versions;
+  results.scenarios = {scenario};
+  return results;
+}
+
+std::string run_page(const std::filesystem::path& folder) {
+  const experiment::CampaignResults results = read_run_results(folder);
+  const experiment::TrialResult& trial = trial_of(results);
+  const std::string& title = results.manifest.name;
+  std::string body = element("h1", title);
+  body += "<p class=\"verdict\">" + escape_markup(outcome_sentence(trial)) + "</p>\n";
+  body += problems_box(problems(results));
+  body += to_html(run_table(trial)) + record_part(folder);
+  body += element("h2", "What the numbers rest on") + basis_html(results);
+  return html_page(title, body);
+}
+
+}  // namespace tether::report

@@ -1,0 +1,203 @@
+#include "verdict.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace tether::report {
+namespace {
+
+constexpr double kSignificant = 0.05;
+
+std::string in_quotes(const std::string& condition) {
+  return "“" + condition + "”";
+}
+
+// "Time required" → "time required"; "ROI error" stays.
+std::string in_a_sentence(std::string label) {
+  const bool is_word = label.size() > 1 && std::islower(static_cast<unsigned char>(label[1])) != 0;
+  if (is_word) label[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(label[0])));
+  return label;
+}
+
+std::string with_and(const std::vector<std::string>& parts) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i > 0) text += i + 1 == parts.size() ? " and " : ", ";
+    text += parts[i];
+  }
+  return text;
+}
+
+// Decimals that show the interval's half width with one digit, or two where the first is below 5.
+int decimals_for(const experiment::MeanDifference& means) {
+  const double scale = means.ci95 && means.ci95->high > means.ci95->low
+                           ? 0.5 * (means.ci95->high - means.ci95->low)
+                           : std::abs(means.difference) / 10.0;
+  if (!(scale > 0.0)) return 1;
+  const int exponent = static_cast<int>(std::floor(std::log10(scale)));
+  const bool begins_low = scale < 5.0 * std::pow(10.0, exponent);
+  return std::clamp(-exponent + (begins_low ? 1 : 0), 0, 6);
+}
+
+std::string number(double value, int places) {
+  const std::string text = fmt::format("{:.{}f}", value, places);
+  const bool is_zero = text.find_first_of("123456789") == std::string::npos;
+  if (is_zero && text.starts_with('-')) return text.substr(1);
+  return text.starts_with('-') ? "−" + text.substr(1) : text;
+}
+
+std::string amount(double value, int places, const std::string& unit) {
+  return number(value, places) + (unit == "1" ? "" : " " + unit);
+}
+
+std::string interval_text(const std::optional<experiment::Interval>& interval, int places,
+                          bool negated) {
+  if (!interval) return "too few trials for an interval";
+  const double low = negated ? -interval->high : interval->low;
+  const double high = negated ? -interval->low : interval->high;
+  return fmt::format("95 % interval {} to {}", number(low, places), number(high, places));
+}
+
+bool holds_zero(const std::optional<experiment::Interval>& interval) {
+  return interval && interval->low <= 0.0 && interval->high >= 0.0;
+}
+
+bool is_told_apart(const Comparison& comparison) {
+  return comparison.ranks.p_two_sided < kSignificant && !holds_zero(comparison.means.ci95);
+}
+
+// The verdict.
+
+std::string goals_sentence(const experiment::ScenarioResults& scenario) {
+  std::vector<std::string> parts;
+  for (const experiment::ConditionResults& condition : scenario.conditions) {
+    parts.push_back(fmt::format("{} of {} trials on {}",
+                                condition.count(experiment::Outcome::kGoalReached),
+                                condition.planned, in_quotes(condition.condition)));
+  }
+  return fmt::format("The software reached its goal within the limits in {}.", with_and(parts));
+}
+
+std::string difference_text(const Comparison& c, const std::string& label) {
+  const int places = decimals_for(c.means);
+  const bool smaller = c.means.difference < 0.0;
+  return fmt::format("{} is {} by {} ({})", in_a_sentence(label), smaller ? "smaller" : "larger",
+                     amount(std::abs(c.means.difference), places, c.unit),
+                     interval_text(c.means.ci95, places, smaller));
+}
+
+std::string comparison_sentence(const experiment::ScenarioResults& scenario,
+                                const std::vector<Comparison>& comparisons,
+                                const std::string& first, const std::string& other) {
+  std::vector<std::string> differences, alike;
+  for (const Comparison& c : comparisons) {
+    const bool is_meant = c.a == other && c.b == first;
+    if (!is_meant) continue;
+    const std::string& label = scenario.find_metric(c.metric)->label;
+    if (is_told_apart(c)) {
+      differences.push_back(difference_text(c, label));
+    } else {
+      alike.push_back(in_a_sentence(label));
+    }
+  }
+  if (differences.empty() && alike.empty()) return "";
+  const std::string start =
+      fmt::format(" Compared with {}, on {} ", in_quotes(first), in_quotes(other));
+  const std::string not_apart = with_and(alike) + " cannot be told apart by these trials";
+  if (differences.empty()) return start + not_apart + ".";
+  return start + with_and(differences) + (alike.empty() ? "." : "; " + not_apart + ".");
+}
+
+// Problems.
+
+std::string place(const experiment::ScenarioResults& scenario,
+                  const experiment::ConditionResults& condition) {
+  return fmt::format("{}, {}", scenario.scenario, condition.condition);
+}
+
+void add_trial_problems(std::vector<std::string>& lines, const std::string& where,
+                        const experiment::TrialResult& trial) {
+  const std::string which = fmt::format("{}, seed {}", where, trial.seed);
+  if (trial.outcome == experiment::Outcome::kFailed) {
+    lines.push_back(fmt::format("{}: failed, and is in no mean: {}", which, trial.reason));
+    return;
+  }
+  for (const experiment::MetricValue& metric : trial.metrics) {
+    if (!metric.value)
+      lines.push_back(
+          fmt::format("{}: no {}: {}", which, in_a_sentence(metric.label), metric.missing_because));
+  }
+  if (trial.audit && !trial.audit->passed)
+    lines.push_back(fmt::format("{}: the audit found: {}", which, trial.audit->summary));
+  if (trial.sync.causality_violations > 0)
+    lines.push_back(
+        fmt::format("{}: {} causality violations", which, trial.sync.causality_violations));
+}
+
+void add_missing_seeds(std::vector<std::string>& lines, const std::string& where,
+                       const std::vector<std::uint64_t>& seeds,
+                       const experiment::ConditionResults& condition) {
+  std::vector<std::string> missing;
+  for (const std::uint64_t seed : seeds) {
+    const bool is_there = std::any_of(condition.trials.begin(), condition.trials.end(),
+                                      [&](const auto& trial) { return trial.seed == seed; });
+    if (!is_there) missing.push_back(std::to_string(seed));
+  }
+  if (!missing.empty())
+    lines.push_back(fmt::format("{}: not run yet, or without a readable result: seed{} {}", where,
+                                missing.size() > 1 ? "s" : "", with_and(missing)));
+}
+
+}  // namespace
+
+std::string verdict(const experiment::ScenarioResults& scenario) {
+  std::string text = goals_sentence(scenario);
+  if (scenario.conditions.empty()) return text;
+  const std::vector<Comparison> comparisons = compare_conditions(scenario);
+  const std::string& first = scenario.conditions.front().condition;
+  for (const experiment::ConditionResults& other : scenario.conditions)
+    text += comparison_sentence(scenario, comparisons, first, other.condition);
+  return text;
+}
+
+std::string optimism_sentence(const Comparison& comparison, const experiment::MetricValue& metric) {
+  const double hidden = comparison.means.difference;
+  const int places = decimals_for(comparison.means);
+  if (hidden == 0.0 || holds_zero(comparison.means.ci95)) {
+    return fmt::format(
+        "In {}, no optimism of the test without synchronisation can be told from the spread: {} "
+        "({}).",
+        in_a_sentence(metric.label), amount(hidden, places, metric.unit),
+        interval_text(comparison.means.ci95, places, false));
+  }
+  const bool better = hidden > 0.0;
+  const std::string size = amount(std::abs(hidden), places, metric.unit);
+  const std::string range = interval_text(comparison.means.ci95, places, !better);
+  const std::string start = fmt::format("Without synchronisation the {} ", comparison.a);
+  if (metric.unit == "s") {
+    return start + fmt::format("looks {} {} than it is ({}; {}).", size,
+                               better ? "faster" : "slower", in_a_sentence(metric.label), range);
+  }
+  return start + fmt::format("looks {} than it is: {} {} by {} ({}).", better ? "better" : "worse",
+                             in_a_sentence(metric.label), better ? "smaller" : "larger", size,
+                             range);
+}
+
+std::vector<std::string> problems(const experiment::CampaignResults& results) {
+  std::vector<std::string> lines;
+  for (const experiment::ScenarioResults& scenario : results.scenarios) {
+    for (const experiment::ConditionResults& condition : scenario.conditions) {
+      const std::string where = place(scenario, condition);
+      for (const experiment::TrialResult& trial : condition.trials)
+        add_trial_problems(lines, where, trial);
+      add_missing_seeds(lines, where, results.manifest.seeds, condition);
+    }
+  }
+  lines.insert(lines.end(), results.damaged.begin(), results.damaged.end());
+  return lines;
+}
+
+}  // namespace tether::report
