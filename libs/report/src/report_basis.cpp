@@ -21,6 +21,7 @@ std::string joined(const std::set<std::string>& words) {
 
 std::string seeds_text(const std::vector<std::uint64_t>& seeds) {
   if (seeds.empty()) return kNone;
+  if (seeds.size() == 1) return std::to_string(seeds.front());
   const auto [first, last] = std::minmax_element(seeds.begin(), seeds.end());
   if (*last - *first + 1 == seeds.size()) return fmt::format("{} to {}", *first, *last);
   return fmt::format("{}", fmt::join(seeds, ", "));
@@ -59,9 +60,10 @@ class Speeds {
   }
   std::string text() const {
     std::string text;
-    for (const auto& [condition, range] : range_)
-      text += fmt::format("{}{}: {:.2f} to {:.2f}", text.empty() ? "" : "; ", condition,
-                          range.first, range.second);
+    for (const auto& [condition, range] : range_) {
+      text += fmt::format("{}{}: {:.2f}", text.empty() ? "" : "; ", condition, range.first);
+      if (range.second > range.first) text += fmt::format(" to {:.2f}", range.second);
+    }
     return text.empty() ? kNone : text;
   }
 

@@ -17,11 +17,23 @@ const experiment::TrialResult& trial_of(const experiment::CampaignResults& resul
   return results.scenarios.front().conditions.front().trials.front();
 }
 
-std::string outcome_sentence(const experiment::TrialResult& trial) {
-  std::string text = fmt::format("Outcome: {}. {}", name(trial.outcome), trial.reason);
+std::string outcome_words(experiment::Outcome outcome) {
+  switch (outcome) {
+    case experiment::Outcome::kGoalReached:
+      return "Goal reached";
+    case experiment::Outcome::kGoalMissed:
+      return "Goal missed";
+    case experiment::Outcome::kFailed:
+      return "Failed";
+  }
+  return std::string(name(outcome));
+}
+
+std::string outcome_sentences(const experiment::TrialResult& trial) {
+  std::string text = fmt::format("{}: {}.", outcome_words(trial.outcome), trial.reason);
   for (const experiment::SutResult& sut : trial.suts) {
     if (!sut.outcome.empty())
-      text += fmt::format(" {} of {} says: {}.", sut.sut, sut.uav, sut.outcome);
+      text += fmt::format(" The software of {} ended with: {}.", sut.uav, sut.outcome);
   }
   return text;
 }
@@ -86,7 +98,7 @@ std::string run_page(const std::filesystem::path& folder) {
   const experiment::TrialResult& trial = trial_of(results);
   const std::string& title = results.manifest.name;
   std::string body = element("h1", title);
-  body += "<p class=\"verdict\">" + escape_markup(outcome_sentence(trial)) + "</p>\n";
+  body += "<p class=\"verdict\">" + escape_markup(outcome_sentences(trial)) + "</p>\n";
   body += problems_box(problems(results));
   body += to_html(run_table(trial)) + record_part(folder);
   body += element("h2", "What the numbers rest on") + basis_html(results);

@@ -151,7 +151,9 @@ TEST_F(CampaignPage, OfOneRunShowsItsOutcomeAndPlots) {
   write_records();
   const std::string html = run_page(folder_of("target", 1));
   EXPECT_THAT(html, HasSubstr("<h1>turn, target, seed 1</h1>"));
-  EXPECT_THAT(html, HasSubstr("Outcome: goal_reached."));
+  EXPECT_THAT(html,
+              HasSubstr("Goal reached: every SUT reached its goal within the limits. The software "
+                        "of uav1 ended with: the anchor is in the middle."));
   EXPECT_THAT(html, HasSubstr("Time required (s)"));
   // Timeline twice, lag, path, four frames.
   EXPECT_EQ(between(html, "<svg", "</svg>").size(), 8u);
