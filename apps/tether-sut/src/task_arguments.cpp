@@ -83,8 +83,11 @@ class MoveForwardArguments : public ArgumentsFor<tasks::MoveForwardOptions> {
                 "Facing it: until its bearing is at most this", 0.001, 90.0);
     add_seconds(app, "--face-time-limit-s", options_.face.time_limit,
                 "Facing it: moves on after this time");
+    app.add_option("--stop-to-face", options_.stop_to_face,
+                   "true or false: stop while turning towards the anchor")
+        ->capture_default_str();
     add_turning_options(app, options_.face);
-    app.add_option("--imu", options_.imu, "Name of the IMU that tells the heading")
+    app.add_option("--imu", options_.face.imu, "Name of the IMU that tells the heading")
         ->capture_default_str();
     add_seconds(app, "--settle-s", options_.settle, "Waits so long after the final stop", 0.0);
     add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);

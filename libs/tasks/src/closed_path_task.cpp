@@ -20,10 +20,6 @@ double direction_rad(int leg) {
   return 0.5 * std::numbers::pi * leg;
 }
 
-uav::Vec3 level(double direction_rad) {
-  return {std::cos(direction_rad), std::sin(direction_rad), 0.0};
-}
-
 uav::Quat about_z(double yaw_rad) {
   return uav::from_axis_angle({0, 0, 1}, yaw_rad);
 }

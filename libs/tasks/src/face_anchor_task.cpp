@@ -29,9 +29,10 @@ Progress FaceAnchorTask::initialise(TaskContext& context) {
   overshoots_ = 0;
   looks_ = 0;
   lost_ = false;
+  in_sight_ = true;
 
-  if (const Status stopped = stop(context); !stopped) {
-    return TaskOutcome::failed(stopped.failure());
+  if (const Status still = turn(context, 0.0); !still) {
+    return TaskOutcome::failed(still.failure());
   }
   std::optional<double> bearing;
   if (Progress end = look(context, bearing)) {
@@ -65,7 +66,7 @@ Progress FaceAnchorTask::step(TaskContext& context) {
   if (direction_ != sign_of(*bearing)) {
     return turn_to(context, "loop", sign_of(*bearing), "rotate");
   }
-  return std::nullopt;
+  return hold_course(context);
 }
 
 /// Algorithm 2. Ends the task if the goal is reached or the UAV is gone. An estimate that did not
@@ -76,7 +77,8 @@ Progress FaceAnchorTask::look(TaskContext& context, std::optional<double>& beari
   if (outcome.status == TaskStatus::kFailed) {
     return outcome;
   }
-  if (!relative_position_.estimate()) {
+  in_sight_ = relative_position_.estimate().has_value();
+  if (!in_sight_) {
     return std::nullopt;
   }
   bearing_rad = relative_position_.estimate()->bearing_rad;
@@ -91,12 +93,27 @@ Progress FaceAnchorTask::look(TaskContext& context, std::optional<double>& beari
 Progress FaceAnchorTask::turn_to(TaskContext& context, std::string_view phase, double direction,
                                  std::string_view event) {
   direction_ = direction;
-  const double rate = direction * yaw_rate_rad_s_;
-  if (const Status turning = turn(context, rate); !turning) {
-    return TaskOutcome::failed(turning.failure());
+  if (Progress end = keep_turning(context)) {
+    return end;
   }
-  context.note_event(name(), phase, event, {{"yaw_rate_rad_s", rate}});
+  context.note_event(name(), phase, event, {{"yaw_rate_rad_s", direction_ * yaw_rate_rad_s_}});
   return std::nullopt;
+}
+
+Status FaceAnchorTask::turn(TaskContext& context, double yaw_rate_rad_s) const {
+  return options_.course && in_sight_
+             ? turn_on_course(context, yaw_rate_rad_s, *options_.course, options_.imu)
+             : tasks::turn(context, yaw_rate_rad_s);
+}
+
+Progress FaceAnchorTask::keep_turning(TaskContext& context) {
+  const Status turning = turn(context, direction_ * yaw_rate_rad_s_);
+  return turning ? std::nullopt : Progress(TaskOutcome::failed(turning.failure()));
+}
+
+/// Under way, the heading of the last command has become another one; on the spot, nothing changes.
+Progress FaceAnchorTask::hold_course(TaskContext& context) {
+  return options_.course ? keep_turning(context) : std::nullopt;
 }
 
 /// Turns on as before, for a while.
@@ -106,11 +123,11 @@ Progress FaceAnchorTask::keep_searching(TaskContext& context) {
     return TaskOutcome::not_reached(bearing_rad_ ? "anchor lost" : "anchor never seen");
   }
   context.note_event(name(), "loop", "unseen");
-  return std::nullopt;
+  return hold_course(context);
 }
 
 void FaceAnchorTask::finalise(TaskContext& context, TaskOutcome& outcome) {
-  fail_on(stop(context), outcome);
+  fail_on(turn(context, 0.0), outcome);
   outcome.results["overshoots"] = overshoots_;
   outcome.results["looks"] = looks_;
   outcome.results["duration_s"] = to_seconds(limit_.elapsed(context.vehicle().now()));

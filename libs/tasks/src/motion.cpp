@@ -4,6 +4,10 @@
 
 namespace tether::tasks {
 
+uav::Vec3 level(double direction_rad) {
+  return {std::cos(direction_rad), std::sin(direction_rad), 0.0};
+}
+
 Status stop(TaskContext& context) {
   return context.vehicle().command_velocity({});
 }
@@ -12,9 +16,18 @@ Status turn(TaskContext& context, double yaw_rate_rad_s) {
   return context.vehicle().command_velocity({{}, yaw_rate_rad_s});
 }
 
+Status turn_on_course(TaskContext& context, double yaw_rate_rad_s, const Course& course,
+                      std::string_view imu) {
+  const Result<double> yaw = get_yaw(context, imu);
+  if (!yaw) {
+    return yaw.failure();
+  }
+  return context.vehicle().command_velocity(
+      {course.speed_m_s * level(course.yaw_rad - *yaw), yaw_rate_rad_s});
+}
+
 Status move_direction(TaskContext& context, double direction_rad, double speed_m_s) {
-  const uav::Vec3 ahead{std::cos(direction_rad), std::sin(direction_rad), 0.0};
-  return context.vehicle().command_velocity({speed_m_s * ahead, 0.0});
+  return context.vehicle().command_velocity({speed_m_s * level(direction_rad), 0.0});
 }
 
 uav::Quat attitude(const uav::SensorDescription& imu, const uav::ImuSample& reading) {

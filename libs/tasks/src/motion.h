@@ -4,16 +4,24 @@
 
 #include <tether/base/result.h>
 #include <tether/client/vehicle.h>
+#include <tether/tasks/face_anchor_task.h>
 #include <tether/tasks/task.h>
 #include <tether/tasks/task_context.h>
 
 /// The commands of the paper's listings, in the words of the listings.
 namespace tether::tasks {
 
+/// Unit vector in the horizontal plane, counter-clockwise from x.
+uav::Vec3 level(double direction_rad);
+
 /// stop(): neither moves nor turns.
 Status stop(TaskContext& context);
 /// Turns on the spot; counter-clockwise is positive.
 Status turn(TaskContext& context, double yaw_rate_rad_s);
+/// Turns and keeps a course, as the heading of the moment has it: while the UAV turns, this has to
+/// be said again and again.
+Status turn_on_course(TaskContext& context, double yaw_rate_rad_s, const Course& course,
+                      std::string_view imu);
 /// move_direction(): flies level at `speed_m_s` in the direction `direction_rad` from where the
 /// nose points (counter-clockwise positive), and does not turn.
 Status move_direction(TaskContext& context, double direction_rad, double speed_m_s);

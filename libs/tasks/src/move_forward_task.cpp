@@ -10,6 +10,14 @@
 
 namespace tether::tasks {
 
+FaceAnchorOptions facing_under_way() {
+  FaceAnchorOptions options;
+  options.precision_rad = rad_from_deg(2.0);
+  options.slowdown = 0.9;
+  options.min_yaw_rate_rad_s = rad_from_deg(16.0);
+  return options;
+}
+
 MoveForwardTask::MoveForwardTask(std::string anchor, const MoveForwardOptions& options)
     : anchor_(std::move(anchor)),
       options_(options),
@@ -23,7 +31,7 @@ Progress MoveForwardTask::initialise(TaskContext& context) {
   face_anchors_ = missed_ = looks_ = 0;
   overshoots_ = 0.0;
 
-  const Result<double> yaw = get_yaw(context, options_.imu);
+  const Result<double> yaw = get_yaw(context, options_.face.imu);
   if (!yaw) {
     return TaskOutcome::failed(yaw.failure());
   }
@@ -79,6 +87,9 @@ Progress MoveForwardTask::face_anchor(TaskContext& context) {
   if (bearing_rad_) {
     options.search_clockwise = wrap_angle_rad(yaw_turned_rad_ + *bearing_rad_) < 0.0;
   }
+  if (!options_.stop_to_face) {
+    options.course = Course{starting_yaw_rad_, options_.speed_m_s};
+  }
   options.time_limit = std::min(options.time_limit, limit_.left(context.vehicle().now()));
   FaceAnchorTask face(anchor_, options);
   const TaskOutcome outcome = run(face, context);
@@ -99,7 +110,7 @@ Progress MoveForwardTask::face_anchor(TaskContext& context) {
 }
 
 Progress MoveForwardTask::update_yaw(TaskContext& context) {
-  const Result<double> yaw = get_yaw(context, options_.imu);
+  const Result<double> yaw = get_yaw(context, options_.face.imu);
   if (!yaw) {
     return TaskOutcome::failed(yaw.failure());
   }

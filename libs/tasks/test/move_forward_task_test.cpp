@@ -38,11 +38,18 @@ Flight fly(const PlanarVehicle::Options& world, MoveForwardOptions options = {})
   return flight;
 }
 
+/// The anchor, a metre to the side, goes by at 9°/s at most.
+MoveForwardOptions slow_flight() {
+  MoveForwardOptions options;
+  options.speed_m_s = 0.15;
+  return options;
+}
+
 TEST(MoveForwardTask, StopsWhereTheAnchorIsAbeam) {
   for (const double start_yaw_deg : {0.0, 100.0}) {
     PlanarVehicle::Options world = wall_on_the_left();
     world.start_yaw_rad = rad_from_deg(start_yaw_deg);
-    const Flight flight = fly(world);
+    const Flight flight = fly(world, slow_flight());
     EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
     const uav::Vec3 p_H0 =
         rotate(uav::from_rpy(0, 0, -world.start_yaw_rad), flight.vehicle.position());
@@ -58,10 +65,27 @@ TEST(MoveForwardTask, StopsWhereTheAnchorIsAbeam) {
 TEST(MoveForwardTask, AnAnchorOnTheRightTurnsItTheOtherWay) {
   PlanarVehicle::Options world = wall_on_the_left();
   world.anchor_bearing_rad = -world.anchor_bearing_rad;
-  const Flight flight = fly(world);
+  const Flight flight = fly(world, slow_flight());
   EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
   EXPECT_NEAR(flight.vehicle.position().x, 2.0, 0.15);
   EXPECT_NEAR(deg_from_rad(flight.vehicle.yaw()), -90.0, 5.0);
+}
+
+TEST(MoveForwardTask, GoesOnWhileItFacesTheAnchorUnlessToldToStop) {
+  for (const bool stop_to_face : {false, true}) {
+    MoveForwardOptions options = slow_flight();
+    options.stop_to_face = stop_to_face;
+    const Flight flight = fly(wall_on_the_left(), options);
+    EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
+    int turning = 0;
+    for (const uav::VelocityCommand& command : flight.vehicle.commands()) {
+      if (command.yaw_rate_rad_s == 0.0) continue;
+      ++turning;
+      EXPECT_NEAR(norm(command.velocity_H_m_s), stop_to_face ? 0.0 : options.speed_m_s, 1e-12);
+    }
+    EXPECT_GT(turning, 5);
+    EXPECT_NEAR(flight.vehicle.position().y, 0.0, 0.1) << "off the line of the start heading";
+  }
 }
 
 TEST(MoveForwardTask, ASlowComputerOvershootsTheAnchorAndIsFurtherOff) {
@@ -160,7 +184,7 @@ TEST(MoveForwardTask, MovesOnFromAnAnchorThatItCannotFace) {
 
 TEST(MoveForwardTask, FailsWithItsReason) {
   MoveForwardOptions options;
-  options.imu = "compass";
+  options.face.imu = "compass";
   EXPECT_EQ(fly(wall_on_the_left(), options).outcome.failure, Failure::Kind::kInvalid);
   for (const int n : {0, 1, 2, 5, 9, 20, 40}) {
     PlanarVehicle::Options world = wall_on_the_left();

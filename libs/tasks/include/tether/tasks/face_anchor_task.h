@@ -11,12 +11,20 @@
 
 namespace tether::tasks {
 
+/// Level flight that goes on while the UAV turns.
+struct Course {
+  double yaw_rad = 0.0;    ///< its direction, counter-clockwise from east
+  double speed_m_s = 0.0;  ///< ≥ 0
+};
+
 struct FaceAnchorOptions {
   double precision_rad = rad_from_deg(1.5);    ///< the goal: |bearing| ≤ this; > 0
   double yaw_rate_rad_s = rad_from_deg(25.0);  ///< at first; > 0
   double slowdown = 0.5;  ///< factor of the yaw rate at each overshoot; in (0, 1]
   double min_yaw_rate_rad_s = rad_from_deg(2.0);  ///< never slower than this; > 0
   ConvergenceOptions convergence;
+  std::optional<Course> course;   ///< kept while the anchor is in sight; none: stands still
+  std::string imu = "imu";        ///< the sensor that tells the heading; of a course only
   bool search_clockwise = false;  ///< which way to turn while the anchor was never seen
   Duration lost_limit =
       std::chrono::seconds(20);  ///< without seeing the anchor; then "anchor lost"
@@ -26,8 +34,9 @@ struct FaceAnchorOptions {
 
 /// Algorithm 3, "face anchor": turns until the anchor is in the middle of the image. An overshoot
 /// reverses the rotation and slows it down; an anchor that is not seen is looked for by turning on.
-/// Results: "overshoots", "duration_s" (ET), "looks" (runs of Algorithm 2), "yaw_rate_rad_s" (the
-/// last), "bearing_rad" (the last seen).
+/// On a course it goes on meanwhile, and stands still to look for an anchor that is out of sight.
+/// At the end it no longer turns. Results: "overshoots", "duration_s" (ET), "looks" (runs of
+/// Algorithm 2), "yaw_rate_rad_s" (the last), "bearing_rad" (the last seen).
 class FaceAnchorTask : public Task {
  public:
   explicit FaceAnchorTask(std::string anchor, const FaceAnchorOptions& options = {});
@@ -48,6 +57,9 @@ class FaceAnchorTask : public Task {
   Progress look(TaskContext& context, std::optional<double>& bearing_rad);
   Progress turn_to(TaskContext& context, std::string_view phase, double direction,
                    std::string_view event);
+  Status turn(TaskContext& context, double yaw_rate_rad_s) const;
+  Progress keep_turning(TaskContext& context);
+  Progress hold_course(TaskContext& context);
   Progress keep_searching(TaskContext& context);
 
   FaceAnchorOptions options_;
@@ -59,6 +71,7 @@ class FaceAnchorTask : public Task {
   std::optional<double> bearing_rad_;  ///< the last one seen
   double yaw_rate_rad_s_ = 0.0;        ///< its size now
   double direction_ = 0.0;             ///< +1 counter-clockwise, −1 clockwise
+  bool in_sight_ = true;               ///< at the last look
   int overshoots_ = 0;
   int looks_ = 0;
   bool lost_ = false;

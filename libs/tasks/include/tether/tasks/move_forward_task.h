@@ -12,13 +12,18 @@
 
 namespace tether::tasks {
 
+/// Facing an anchor on the way: its bearing goes on changing, by speed ÷ distance, so the rotation
+/// must not become slower than that.
+FaceAnchorOptions facing_under_way();
+
 struct MoveForwardOptions {
   double speed_m_s = 0.3;  ///< > 0
   /// With the anchor further than this from straight ahead, the lower-level task is run; > 0. Its
   /// own goal, `face.precision_rad`, should not be larger.
-  double precision_rad = rad_from_deg(3.0);
-  FaceAnchorOptions face;   ///< of the lower-level task; its convergence is also this task's
-  std::string imu = "imu";  ///< the sensor that tells the heading
+  double precision_rad = rad_from_deg(2.0);
+  bool stop_to_face = false;  ///< the lower-level task stands still, as Algorithm 3 alone does
+  /// Of the lower-level task; its convergence and IMU are also this task's.
+  FaceAnchorOptions face = facing_under_way();
   Duration settle = std::chrono::seconds(1);  ///< after the final stop, to come to rest; 0: none
   Duration time_limit = std::chrono::seconds(180);  ///< of the SUT's clock; then "time limit"
   int max_rounds = 10'000;  ///< of the loop, should that clock stand still; then "round limit"
@@ -27,9 +32,14 @@ struct MoveForwardOptions {
 /// Algorithm 4: moves in the direction that the UAV heads to at the start, facing the anchor
 /// meanwhile, until it has turned by 90°: then the anchor is abeam of the way.
 ///
-/// An anchor that is not seen is looked for by the lower-level task, which stands still meanwhile;
-/// when that gives up, so does this one ("anchor lost", "anchor never seen"). One that cannot be
-/// faced within the lower-level task's limits is moved on from.
+/// While the lower-level task turns it, the UAV keeps its course: "keeping a line of sight" is
+/// something that happens on the way (paper, Section III), and a slow computer is then late at the
+/// end. With `stop_to_face` it stops for each run, as the two listings say taken together, and a
+/// slow computer takes longer.
+///
+/// An anchor that is not seen is looked for by the lower-level task, standing still; when that
+/// gives up, so does this one ("anchor lost", "anchor never seen"). One that cannot be faced within
+/// the lower-level task's limits is moved on from.
 ///
 /// Results: "duration_s" (ET, until the final stop), "yaw_turned_rad", "face_anchors" (runs of the
 /// lower-level task), "face_anchors_missed" (those that did not reach their goal), "looks" (runs of
