@@ -48,12 +48,12 @@ experiment::Settings settings_of(const scenario::Campaign& campaign) {
 /// A trial is a `tether run` of its own, so that whatever happens in one leaves the others alone.
 experiment::TrialResult execute(const experiment::TrialPlan& plan, std::stop_source& stop) {
   const std::filesystem::path log = plan.folder / "run.log";
-  ChildProcess process(
-      {.arguments = {own_file().string(), "run", plan.scenario->file.string(), "--condition",
-                     plan.condition->name, "--seed", std::to_string(plan.seed), "--out",
-                     plan.folder.string(), "--quiet"},
-       .environment = {},
-       .log = log});
+  std::vector<std::string> arguments = {
+      own_file().string(),  "run",    plan.scenario->file.string(), "--condition",
+      plan.condition->name, "--seed", std::to_string(plan.seed),    "--out",
+      plan.folder.string(), "--quiet"};
+  if (plan.record_images) arguments.push_back("--images");
+  ChildProcess process({.arguments = std::move(arguments), .environment = {}, .log = log});
   while (!process.wait(kLook)) {
     if (!interrupted()) continue;
     stop.request_stop();
@@ -106,8 +106,9 @@ void add_campaign_command(CLI::App& program, Action& action) {
   command->add_option("campaign", options->campaign, "Campaign file (TOML)")->required();
   command->add_option("--out", options->out, "Folder for the trials [out/CAMPAIGN]");
   command
-      ->add_option("--jobs", options->jobs,
-                   "Trials side by side; only where that cannot disturb the measured time")
+      ->add_option(
+          "--jobs", options->jobs,
+          "Cores for trials side by side; refused where that would disturb the measured time")
       ->capture_default_str();
   command->add_flag("--resume", options->resume, "Go on with a folder: run only what is missing");
   command->footer(R"(Examples:

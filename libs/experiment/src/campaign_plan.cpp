@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <map>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
@@ -19,16 +23,36 @@ std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
     for (const std::uint64_t seed : campaign.seeds) {
       for (const std::string& condition : entry.conditions) {
         plans.push_back({&entry.scenario, entry.scenario.find_condition(condition), seed,
-                         folder / trial_folder(entry.scenario.name, condition, seed)});
+                         folder / trial_folder(entry.scenario.name, condition, seed),
+                         campaign.images_of_first_seed && seed == campaign.seeds.front()});
       }
     }
   }
   return plans;
 }
 
-bool may_run_beside_others(const scenario::Condition& condition) {
-  return condition.clock != scenario::Clock::kWall &&
-         condition.policy == scenario::Policy::kConservativeBarrier;
+int trials_side_by_side(const scenario::Condition& condition, int jobs) {
+  if (condition.clock == scenario::Clock::kWall) return 1;
+  if (condition.policy == scenario::Policy::kConservativeBarrier) return jobs;
+  // A stalling SUT computes for one part in `cpu_factor` of the time; the simulator with its camera
+  // took up to half a core at real time.
+  constexpr double kSimulatorLoad = 0.5, kShareInUse = 0.5;
+  const double load = 1.0 / condition.cpu_factor + kSimulatorLoad * condition.real_time_factor;
+  return std::max(1, static_cast<int>(kShareInUse * jobs / load));
+}
+
+std::vector<Batch> make_batches(const std::vector<const TrialPlan*>& plans, int jobs) {
+  std::map<std::pair<bool, int>, Batch> batches;
+  for (const TrialPlan* plan : plans) {
+    const int side_by_side = trials_side_by_side(*plan->condition, jobs);
+    const bool is_free = plan->condition->policy == scenario::Policy::kFreeRunning;
+    Batch& batch = batches[{is_free, side_by_side}];
+    batch.jobs = side_by_side;
+    batch.plans.push_back(plan);
+  }
+  std::vector<Batch> in_order;
+  for (auto& [key, batch] : batches) in_order.push_back(std::move(batch));
+  return in_order;
 }
 
 void require_jobs_allowed(const scenario::Campaign& campaign, int jobs) {

@@ -63,15 +63,13 @@ class Run {
         wall_(options.wall ? options.wall : machine_wall),
         done_before_(folder.finished()),
         total_(folder.finished() + folder.missing().size()) {
-    for (const TrialPlan& plan : folder.missing()) {
-      const bool beside = may_run_beside_others(*plan.condition);
-      (beside ? side_by_side_ : alone_).push_back(&plan);
-    }
+    Queue missing;
+    for (const TrialPlan& plan : folder.missing()) missing.push_back(&plan);
+    batches_ = make_batches(missing, options.jobs);
   }
 
   CampaignOutcome run() {
-    run_all(side_by_side_, options_.jobs);
-    run_all(alone_, 1);
+    for (const Batch& batch : batches_) run_all(batch.plans, batch.jobs);
     if (error_) std::rethrow_exception(error_);
     outcome_.interrupted = outcome_.interrupted || options_.stop.stop_requested();
     return outcome_;
@@ -138,7 +136,7 @@ class Run {
     now.total = total_;
     now.running = running_;
     now.failed = outcome_.failed;
-    now.time_left = estimate_time_left(finished_, side_by_side_, alone_, options_.jobs);
+    now.time_left = estimate_time_left(finished_, batches_);
     now.latest = &plan;
     now.result = result;
     progress_(now);
@@ -148,7 +146,7 @@ class Run {
   const CampaignOptions& options_;
   const ProgressCallback& progress_;
   std::function<Duration()> wall_;
-  Queue side_by_side_, alone_;
+  std::vector<Batch> batches_;
   std::size_t done_before_, total_;
 
   std::mutex mutex_;  // of everything below, and of the position in a queue

@@ -1,6 +1,5 @@
 #include "time_left.h"
 
-#include <algorithm>
 #include <map>
 #include <set>
 
@@ -20,8 +19,7 @@ struct Mean {
 }  // namespace
 
 std::optional<Duration> estimate_time_left(std::span<const FinishedTrial> finished,
-                                           const std::vector<const TrialPlan*>& side_by_side,
-                                           const std::vector<const TrialPlan*>& alone, int jobs) {
+                                           std::span<const Batch> batches) {
   if (finished.empty()) return std::nullopt;
   Mean of_all;
   std::map<const scenario::Condition*, Mean> of_condition;
@@ -40,7 +38,9 @@ std::optional<Duration> estimate_time_left(std::span<const FinishedTrial> finish
     }
     return left;
   };
-  return left_of(side_by_side) / std::max(1, jobs) + left_of(alone);
+  Duration left{0};
+  for (const Batch& batch : batches) left += left_of(batch.plans) / batch.jobs;
+  return left;
 }
 
 }  // namespace tether::experiment

@@ -34,17 +34,55 @@ TEST_F(CampaignPlan, PointsIntoTheCampaign) {
   EXPECT_EQ(plans[5].seed, 2u);
 }
 
-TEST_F(CampaignPlan, OnlySynchronisedCpuOrScriptedTimeMayRunBesideOthers) {
-  const auto& conditions = campaign_.scenarios[0].scenario.conditions;
-  EXPECT_TRUE(may_run_beside_others(conditions[0]));
-  EXPECT_TRUE(may_run_beside_others(conditions[1]));
-  EXPECT_FALSE(may_run_beside_others(conditions[2]));
-  scenario::Condition board = conditions[0];
-  board.clock = scenario::Clock::kWall;
-  EXPECT_FALSE(may_run_beside_others(board));
-  scenario::Condition scripted = conditions[0];
-  scripted.clock = scenario::Clock::kScripted;
-  EXPECT_TRUE(may_run_beside_others(scripted));
+struct SideBySideCase {
+  const char* what;
+  scenario::Policy policy;
+  scenario::Clock clock;
+  double cpu_factor, real_time_factor;
+  int jobs, expected;
+};
+
+TEST(TrialsSideBySide, AreAsManyAsDisturbNothing) {
+  using enum scenario::Policy;
+  using enum scenario::Clock;
+  const SideBySideCase cases[] = {
+      {"barrier", kConservativeBarrier, kCpu, 6.0, 0.0, 4, 4},
+      {"scripted", kConservativeBarrier, kScripted, 1.0, 0.0, 4, 4},
+      {"a wall clock", kConservativeBarrier, kWall, 1.0, 0.0, 4, 1},
+      {"free, a wall clock", kFreeRunning, kWall, 1.0, 0.3, 4, 1},
+      {"free, one core", kFreeRunning, kCpu, 6.0, 0.3, 1, 1},
+      // Each takes a sixth of a core and 0.15 of one; one core of the two may be in use.
+      {"free, two cores", kFreeRunning, kCpu, 6.0, 0.3, 2, 3},
+      {"free, a SUT that is always busy", kFreeRunning, kCpu, 1.0, 1.0, 2, 1},
+  };
+  for (const auto& c : cases) {
+    scenario::Condition condition;
+    condition.policy = c.policy;
+    condition.clock = c.clock;
+    condition.cpu_factor = c.cpu_factor;
+    condition.real_time_factor = c.real_time_factor;
+    EXPECT_EQ(trials_side_by_side(condition, c.jobs), c.expected) << c.what;
+  }
+}
+
+TEST_F(CampaignPlan, RecordsTheImagesOfTheFirstSeedWhereAsked) {
+  for (const TrialPlan& plan : plan_trials(campaign_, "out")) EXPECT_FALSE(plan.record_images);
+  campaign_.images_of_first_seed = true;
+  for (const TrialPlan& plan : plan_trials(campaign_, "out"))
+    EXPECT_EQ(plan.record_images, plan.seed == campaign_.seeds.front());
+}
+
+TEST_F(CampaignPlan, BatchesPutWhatRunsFreeLast) {
+  const auto plans = plan_trials(campaign_, "out");
+  std::vector<const TrialPlan*> pointers;
+  for (const TrialPlan& plan : plans) pointers.push_back(&plan);
+  const std::vector<Batch> batches = make_batches(pointers, 2);
+  ASSERT_EQ(batches.size(), 2u);
+  EXPECT_EQ(batches[0].jobs, 2);
+  EXPECT_EQ(batches[0].plans.size(), 6u);
+  ASSERT_EQ(batches[1].plans.size(), 3u);
+  for (const TrialPlan* plan : batches[1].plans)
+    EXPECT_EQ(plan->condition->policy, scenario::Policy::kFreeRunning);
 }
 
 TEST_F(CampaignPlan, RefusesJobsThatWouldDisturbAWallClock) {

@@ -11,27 +11,28 @@ using std::chrono::seconds;
 
 class TimeLeft : public testing::Test {
  protected:
-  TimeLeft() {
-    for (const TrialPlan& plan : plans_) {
-      (may_run_beside_others(*plan.condition) ? side_by_side_ : alone_).push_back(&plan);
-    }
+  std::vector<Batch> batches(int jobs) const {
+    std::vector<const TrialPlan*> plans;
+    for (const TrialPlan& plan : plans_) plans.push_back(&plan);
+    return make_batches(plans, jobs);
   }
   Scratch scratch_;
   scenario::Campaign campaign_ = make_campaign(scratch_);
   std::vector<TrialPlan> plans_ = plan_trials(campaign_, "out");
-  std::vector<const TrialPlan*> side_by_side_, alone_;
 };
 
 TEST_F(TimeLeft, IsUnknownAtFirst) {
-  EXPECT_FALSE(estimate_time_left({}, side_by_side_, alone_, 2));
+  EXPECT_FALSE(estimate_time_left({}, batches(2)));
 }
 
-TEST_F(TimeLeft, SharesOutOnlyWhatRunsSideBySide) {
+TEST_F(TimeLeft, SharesOutWhatRunsSideBySide) {
+  // One trial each of host, target and the free-running one, of three.
   const std::vector<FinishedTrial> finished = {
-      {side_by_side_[0], seconds(2)}, {side_by_side_[1], seconds(6)}, {alone_[0], seconds(10)}};
-  // host: 2 × 2 s, target: 2 × 6 s, over two jobs; 2 × 10 s alone.
-  EXPECT_EQ(estimate_time_left(finished, side_by_side_, alone_, 2), seconds(8 + 20));
-  EXPECT_EQ(estimate_time_left(finished, side_by_side_, alone_, 1), seconds(16 + 20));
+      {&plans_[0], seconds(2)}, {&plans_[1], seconds(6)}, {&plans_[2], seconds(10)}};
+  EXPECT_EQ(estimate_time_left(finished, batches(1)), seconds(4 + 12 + 20));
+  const auto two = batches(2);
+  ASSERT_EQ(two.size(), 2u);
+  EXPECT_EQ(estimate_time_left(finished, two), seconds((4 + 12) / 2) + seconds(20) / two[1].jobs);
 }
 
 }  // namespace

@@ -73,11 +73,13 @@ Campaign load_campaign(const std::filesystem::path& file) {
   Campaign campaign;
   campaign.file = std::filesystem::absolute(file).lexically_normal();
   const toml::table document = parse_toml_file(campaign.file);
-  const TomlTable root(document, "", campaign.file.string(),
-                       {"name", "description", "trials", "first_seed", "seeds", "scenario"});
+  const TomlTable root(
+      document, "", campaign.file.string(),
+      {"name", "description", "trials", "first_seed", "seeds", "images_of_first_seed", "scenario"});
   campaign.name = root.identifier("name");
   campaign.description = root.text_or("description", "");
   campaign.seeds = read_seeds(root);
+  campaign.images_of_first_seed = root.boolean_or("images_of_first_seed", false);
   std::set<std::string> names;
   for (const TomlTable& table : root.tables("scenario", {"file", "conditions", "paper_table"})) {
     campaign.scenarios.push_back(read_scenario(table));

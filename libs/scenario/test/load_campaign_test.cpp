@@ -38,6 +38,9 @@ TEST_F(LoadCampaign, ReadsAll) {
   const Campaign campaign = load(kCampaign);
   EXPECT_EQ(campaign.name, "study");
   EXPECT_EQ(campaign.description, "a study");
+  EXPECT_FALSE(campaign.images_of_first_seed);
+  EXPECT_TRUE(load(replaced(kCampaign, "trials = 3", "trials = 3\nimages_of_first_seed = true"))
+                  .images_of_first_seed);
   EXPECT_THAT(campaign.seeds, ElementsAre(11u, 12u, 13u));
   ASSERT_EQ(campaign.scenarios.size(), 1u);
   EXPECT_EQ(campaign.scenarios[0].scenario.name, "full");

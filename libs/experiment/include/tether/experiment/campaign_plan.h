@@ -17,6 +17,7 @@ struct TrialPlan {
   const scenario::Condition* condition = nullptr;  ///< of that scenario
   std::uint64_t seed = 0;
   std::filesystem::path folder;  ///< where its record and result go
+  bool record_images = false;    ///< whatever its scenario says
 };
 
 /// `<scenario>/<condition's slug>/seed-<seed>`, relative to the campaign's folder.
@@ -28,9 +29,21 @@ std::filesystem::path trial_folder(const std::string& scenario, const std::strin
 std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
                                    const std::filesystem::path& folder);
 
-/// Whether a trial may run beside others on one machine: its time is CPU time or scripted, and no
-/// wall clock moves its simulation.
-bool may_run_beside_others(const scenario::Condition& condition);
+/// Trials that may run side by side, so many at a time.
+struct Batch {
+  int jobs = 1;
+  std::vector<const TrialPlan*> plans;
+};
+
+/// How many trials of a condition may run side by side on `jobs` cores. Under the barrier on a
+/// clock that other load leaves alone: as many as there are cores. Free running, where the wall
+/// clock moves the simulation: as many as leave half of the cores idle (ADR 0015). On a wall clock:
+/// one. @pre jobs ≥ 1.
+int trials_side_by_side(const scenario::Condition& condition, int jobs);
+
+/// The plans in the order of running: those under the barrier, then those that run free. Nothing
+/// runs beside another batch.
+std::vector<Batch> make_batches(const std::vector<const TrialPlan*>& plans, int jobs);
 
 /// @throws Error(kUsage) with the reason when `jobs` is less than 1, or more than 1 although a
 ///   condition measures its SUT by the wall clock.

@@ -29,7 +29,7 @@ struct CampaignProgress {
 using ProgressCallback = std::function<void(const CampaignProgress&)>;
 
 struct CampaignOptions {
-  int jobs = 1;          ///< trials side by side, of conditions that may
+  int jobs = 1;          ///< cores for trials side by side, see trials_side_by_side()
   std::stop_token stop;  ///< no further trial starts once requested
   /// Monotonic wall time, for the time left only. Default: the machine's.
   std::function<Duration()> wall;
@@ -41,8 +41,7 @@ struct CampaignOutcome {
   bool interrupted = false;
 };
 
-/// Runs what the folder misses. Trials of conditions that may run beside others go first, `jobs`
-/// at a time; then the others, one at a time with nothing beside them. Each result is on the disk
+/// Runs what the folder misses, batch after batch (see make_batches). Each result is on the disk
 /// before the next trial of its thread starts. A trial that could not be set up is tried once
 /// more, then kept as a failed one with its reason; nothing is left out.
 /// @throws Error(kUsage) as `require_jobs_allowed`; and whatever else a trial threw as kUsage or

@@ -23,6 +23,7 @@ struct Campaign {
   std::string name;            ///< letters, digits, '_', '-', '.'
   std::string description;
   std::vector<std::uint64_t> seeds;         ///< one trial each per condition; unique, not empty
+  bool images_of_first_seed = false;        ///< its trials record their images, for the report
   std::vector<CampaignScenario> scenarios;  ///< not empty; their names are unique
 };
 
