@@ -139,7 +139,7 @@ TEST(CommandLine, MoveForward) {
   EXPECT_DOUBLE_EQ(options.face.yaw_rate_rad_s, rad_from_deg(30));
   EXPECT_EQ(options.face.time_limit, std::chrono::seconds(11));
   EXPECT_EQ(options.face.convergence.stable_frames, 3);
-  EXPECT_EQ(options.imu, "gyro");
+  EXPECT_EQ(options.face.imu, "gyro");
   EXPECT_EQ(options.settle, Duration::zero());
   EXPECT_EQ(options.time_limit, std::chrono::seconds(90));
 }
