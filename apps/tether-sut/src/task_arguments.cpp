@@ -124,8 +124,10 @@ class ClosedPathArguments : public ArgumentsFor<tasks::ClosedPathOptions> {
                 "Turning back to the start heading: at most this fast", 0.01, 720.0);
     add_degrees(app, "--turn-tolerance-deg", options_.turn_tolerance_rad,
                 "... until the heading is off by at most this", 0.01, 90.0);
-    add_seconds(app, "--settle-s", options_.settle, "Comes to rest for so long after the stop",
-                0.0);
+    app.add_option("--settle-readings", options_.settle_readings,
+                   "Readings of the IMU after the stop, while the UAV comes to rest")
+        ->check(CLI::Range(0, 100000))
+        ->capture_default_str();
   }
   void add_limits(CLI::App& app) {
     add_seconds(app, "--turn-limit-s", options_.turn_limit, "Gives up turning back after this");

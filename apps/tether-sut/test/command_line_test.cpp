@@ -160,8 +160,8 @@ TEST(CommandLine, ClosedPath) {
                                    "10",
                                    "--turn-tolerance-deg",
                                    "2",
-                                   "--settle-s",
-                                   "2",
+                                   "--settle-readings",
+                                   "40",
                                    "--turn-limit-s",
                                    "7",
                                    "--leg-slack-s",
@@ -177,7 +177,7 @@ TEST(CommandLine, ClosedPath) {
   EXPECT_EQ(options.rest_readings, 40);
   EXPECT_DOUBLE_EQ(options.turn_rate_rad_s, rad_from_deg(10));
   EXPECT_DOUBLE_EQ(options.turn_tolerance_rad, rad_from_deg(2));
-  EXPECT_EQ(options.settle, std::chrono::seconds(2));
+  EXPECT_EQ(options.settle_readings, 40);
   EXPECT_EQ(options.turn_limit, std::chrono::seconds(7));
   EXPECT_EQ(options.leg_slack, std::chrono::seconds(3));
   EXPECT_EQ(options.time_limit, std::chrono::seconds(99));

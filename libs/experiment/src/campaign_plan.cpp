@@ -32,7 +32,7 @@ std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
 }
 
 int trials_side_by_side(const scenario::Condition& condition, int jobs) {
-  if (condition.clock == scenario::Clock::kWall) return 1;
+  if (condition.clock == scenario::Clock::kWall || jobs == 1) return 1;
   if (condition.policy == scenario::Policy::kConservativeBarrier) return jobs;
   // A stalling SUT computes for one part in `cpu_factor` of the time; the simulator with its camera
   // took up to half a core at real time.

@@ -50,7 +50,7 @@ TEST(TrialsSideBySide, AreAsManyAsDisturbNothing) {
       {"scripted", kConservativeBarrier, kScripted, 1.0, 0.0, 4, 4},
       {"a wall clock", kConservativeBarrier, kWall, 1.0, 0.0, 4, 1},
       {"free, a wall clock", kFreeRunning, kWall, 1.0, 0.3, 4, 1},
-      {"free, one core", kFreeRunning, kCpu, 6.0, 0.3, 1, 1},
+      {"free, one core", kFreeRunning, kCpu, 20.0, 0.1, 1, 1},
       // Each takes a sixth of a core and 0.15 of one; one core of the two may be in use.
       {"free, two cores", kFreeRunning, kCpu, 6.0, 0.3, 2, 3},
       {"free, a SUT that is always busy", kFreeRunning, kCpu, 1.0, 1.0, 2, 1},

@@ -40,6 +40,7 @@ struct ClosedPathTask::Flight {
   Phase phase = Phase::kLegs;
   ExecTime phase_started_at;                ///< of the leg, in kLegs
   int leg = 0;                              ///< as many are flown to their end
+  int settled = 0;                          ///< readings since the stop
   uav::Vec3 leg_start_m;                    ///< in H0
   uav::Vec3 p_H0A;                          ///< the anchor, seen from the start
   std::optional<uav::Vec3> displacement_m;  ///< in H0
@@ -195,7 +196,7 @@ Progress ClosedPathTask::turn_back(TaskContext& context) {
 }
 
 Progress ClosedPathTask::settle(TaskContext& context) {
-  if (context.vehicle().now() - flight_->phase_started_at >= options_.settle) {
+  if (flight_->settled++ >= options_.settle_readings) {
     return measure(context);
   }
   return read_imu(context);

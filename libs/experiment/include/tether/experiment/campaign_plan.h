@@ -37,8 +37,8 @@ struct Batch {
 
 /// How many trials of a condition may run side by side on `jobs` cores. Under the barrier on a
 /// clock that other load leaves alone: as many as there are cores. Free running, where the wall
-/// clock moves the simulation: as many as leave half of the cores idle (ADR 0015). On a wall clock:
-/// one. @pre jobs ≥ 1.
+/// clock moves the simulation: as many as leave half of the cores idle (ADR 0015). On a wall clock,
+/// or on one core: one. @pre jobs ≥ 1.
 int trials_side_by_side(const scenario::Condition& condition, int jobs);
 
 /// The plans in the order of running: those under the barrier, then those that run free. Nothing

@@ -22,8 +22,8 @@ struct ClosedPathOptions {
   double turn_rate_rad_s = rad_from_deg(25.0);     ///< back to the start heading: at most this; > 0
   double turn_tolerance_rad = rad_from_deg(1.0);   ///< > 0
   Duration turn_limit = std::chrono::seconds(15);  ///< then "time limit turning back"
-  Duration settle = std::chrono::seconds(1);       ///< after the stop, to come to rest; 0: none
-  Duration leg_slack = std::chrono::seconds(5);    ///< a leg's limit: five times its time and this
+  int settle_readings = 20;  ///< of the IMU after the stop, while the UAV comes to rest; ≥ 0
+  Duration leg_slack = std::chrono::seconds(5);     ///< a leg's limit: five times its time and this
   Duration time_limit = std::chrono::seconds(180);  ///< of the SUT's clock
   int max_readings = 200'000;                       ///< of the IMU, should that clock stand still
 };
