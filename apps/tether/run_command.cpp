@@ -65,9 +65,11 @@ void print_result(const TrialSpec& spec, const experiment::TrialResult& result) 
   fmt::print("{} under \"{}\", seed {}: {}: {}\n", result.scenario, result.condition, result.seed,
              experiment::name(result.outcome), result.reason);
   for (const auto& metric : result.metrics) {
-    const std::string value = metric.value ? fmt::format("{:.4g} {}", *metric.value,
-                                                         metric.unit == "1" ? "" : metric.unit)
-                                           : "none: " + metric.missing_because;
+    const std::string value =
+        metric.value
+            ? fmt::format("{:.4g} {}", *metric.value, metric.unit == "1" ? "" : metric.unit)
+        : metric.missing_because == result.reason ? "none"
+                                                  : "none: " + metric.missing_because;
     fmt::print("  {:<24} {}{}\n", metric.label, value,
                metric.max ? fmt::format("  (limit {:.4g})", *metric.max) : "");
   }

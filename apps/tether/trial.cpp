@@ -106,13 +106,16 @@ coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
   if (spec.external_sut && observer.on_listening)
     observer.on_listening(sut_instructions(spec.scenario, sut_run));
 
-  bool joined = false;
+  bool joined = false, left_early = false;
   coordinator::RunHooks hooks;
   hooks.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
     if (interrupted())
       return std::pair(RunEnd::kInterrupted, std::string("interrupted by the user"));
     if (!joined)
-      if (const auto end = suts.early_end()) return std::pair(RunEnd::kSutLost, *end);
+      if (const auto end = suts.early_end()) {
+        left_early = true;
+        return std::pair(RunEnd::kSutLost, *end);
+      }
     return std::nullopt;
   };
   hooks.on_status = [&](const coordinator::RunStatus& status) {
@@ -121,7 +124,7 @@ coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
   };
   hooks.on_refused = observer.on_refused;
   auto report = coordinator.run(*server, hooks);
-  if (report.end == RunEnd::kSutLost && joined) report.reason += suts.post_mortem();
+  if (report.end == RunEnd::kSutLost && !left_early) report.reason += suts.post_mortem();
   if (report.end == RunEnd::kFinished) suts.let_leave();
   return report;
 }
@@ -149,7 +152,7 @@ experiment::TrialResult judge(const TrialSpec& spec, const coordinator::RunRepor
   const std::string text = audit::to_text(verdict, 0);
   result.audit = {verdict.passed(), text.substr(0, text.find('\n'))};
   if (result.outcome == experiment::Outcome::kFailed)
-    result.reason = report.reason;
+    experiment::invalidate(result, report.reason);
   else if (!verdict.passed())
     experiment::invalidate(result, "the record breaks the rules of time: " + result.audit->summary);
   return result;

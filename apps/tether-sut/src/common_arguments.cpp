@@ -44,6 +44,19 @@ CLI::Option* add_degrees(CLI::App& app, const std::string& name, double& radians
       ->default_str(usual);
 }
 
+namespace {
+
+CLI::Validator odd() {
+  return CLI::Validator(
+      [](std::string& text) {
+        const bool is_odd = !text.empty() && (text.back() - '0') % 2 == 1;
+        return is_odd ? std::string() : text + " is not odd";
+      },
+      "odd");
+}
+
+}  // namespace
+
 void add_vision_options(CLI::App& app, TaskSpec& spec) {
   using vision::Prefilter;
   static const std::map<std::string, Prefilter> kPrefilters = {{"none", Prefilter::kNone},
@@ -58,6 +71,8 @@ void add_vision_options(CLI::App& app, TaskSpec& spec) {
       ->transform(CLI::Transformer(kPrefilters))
       ->type_name("NAME");
   app.add_option("--prefilter-size-px", tracker.prefilter_size_px, "Odd, 1 to 31")
+      ->check(CLI::Range(1, 31))
+      ->check(odd())
       ->capture_default_str();
   app.add_option("--hue-tolerance-deg", tracker.hue_tolerance_deg, "About the anchor's hue")
       ->check(within(0.1, 90.0))

@@ -46,20 +46,13 @@ TaskPointer make_task(const Mission& mission) {
   return std::make_unique<tasks::TaskSequence>(std::move(items));
 }
 
-/// Whether nobody is left to hear how it ended.
-bool is_link_gone(const tasks::TaskOutcome& outcome) {
-  return outcome.failure == Failure::Kind::kDisconnected ||
-         outcome.failure == Failure::Kind::kProtocol ||
-         outcome.failure == Failure::Kind::kTimeout || outcome.failure == Failure::Kind::kRunEnded;
-}
-
 }  // namespace
 
 tasks::TaskOutcome fly(const Mission& mission, client::Vehicle& vehicle) {
   tasks::TaskContext context(vehicle, mission.tasks.front().vision);
   const TaskPointer task = make_task(mission);
   tasks::TaskOutcome outcome = tasks::run(*task, context);
-  if (is_link_gone(outcome)) {
+  if (outcome.failure) {
     return outcome;
   }
   const Status finished =

@@ -9,6 +9,13 @@ namespace {
 
 constexpr const char* kTimeLimit = "Gives up after this time of its own clock";
 
+void add_settling(CLI::App& app, int& readings) {
+  app.add_option("--settle-readings", readings,
+                 "Readings of the IMU after the final stop, while the UAV comes to rest")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+}
+
 template <class Options>
 class ArgumentsFor : public TaskArguments {
  public:
@@ -78,7 +85,7 @@ class MoveForwardArguments : public ArgumentsFor<tasks::MoveForwardOptions> {
         ->check(within(0.001, 5.0))
         ->capture_default_str();
     add_degrees(app, "--precision-deg", options_.precision_rad,
-                "Stops and faces the anchor when its bearing is more than this", 0.001, 90.0);
+                "Faces the anchor when its bearing is more than this", 0.001, 90.0);
     add_degrees(app, "--face-precision-deg", options_.face.precision_rad,
                 "Facing it: until its bearing is at most this", 0.001, 90.0);
     add_seconds(app, "--face-time-limit-s", options_.face.time_limit,
@@ -89,7 +96,7 @@ class MoveForwardArguments : public ArgumentsFor<tasks::MoveForwardOptions> {
     add_turning_options(app, options_.face);
     app.add_option("--imu", options_.face.imu, "Name of the IMU that tells the heading")
         ->capture_default_str();
-    add_seconds(app, "--settle-s", options_.settle, "Waits so long after the final stop", 0.0);
+    add_settling(app, options_.settle_readings);
     add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
   }
 };
@@ -124,10 +131,7 @@ class ClosedPathArguments : public ArgumentsFor<tasks::ClosedPathOptions> {
                 "Turning back to the start heading: at most this fast", 0.01, 720.0);
     add_degrees(app, "--turn-tolerance-deg", options_.turn_tolerance_rad,
                 "... until the heading is off by at most this", 0.01, 90.0);
-    app.add_option("--settle-readings", options_.settle_readings,
-                   "Readings of the IMU after the stop, while the UAV comes to rest")
-        ->check(CLI::Range(0, 100000))
-        ->capture_default_str();
+    add_settling(app, options_.settle_readings);
   }
   void add_limits(CLI::App& app) {
     add_seconds(app, "--turn-limit-s", options_.turn_limit, "Gives up turning back after this");

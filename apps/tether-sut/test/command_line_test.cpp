@@ -124,7 +124,7 @@ TEST(CommandLine, MoveForward) {
                                    "11",
                                    "--imu",
                                    "gyro",
-                                   "--settle-s",
+                                   "--settle-readings",
                                    "0",
                                    "--time-limit-s",
                                    "90",
@@ -140,7 +140,7 @@ TEST(CommandLine, MoveForward) {
   EXPECT_EQ(options.face.time_limit, std::chrono::seconds(11));
   EXPECT_EQ(options.face.convergence.stable_frames, 3);
   EXPECT_EQ(options.face.imu, "gyro");
-  EXPECT_EQ(options.settle, Duration::zero());
+  EXPECT_EQ(options.settle_readings, 0);
   EXPECT_EQ(options.time_limit, std::chrono::seconds(90));
 }
 
@@ -223,7 +223,9 @@ TEST(CommandLine, MistakesGetOneLineAndExitCode2) {
       {"sensor_characterization"},
       {"sensor_characterization", "--sensor", "imu", "--acquisitions", "0"},
       {"move_forward", "--anchor", "b", "--speed-m-s", "-1"},
-      {"move_forward", "--anchor", "b", "--settle-s", "-1"},
+      {"move_forward", "--anchor", "b", "--settle-readings", "-1"},
+      {"move_forward", "--anchor", "b", "--prefilter-size-px", "4"},
+      {"move_forward", "--anchor", "b", "--prefilter-size-px", "33"},
       {"closed_path", "--anchor", "b", "--distance-m", "nan"},
       {"mission"},
       {"relative_position", "--anchor", "b", "--prefilter", "sharpen"},

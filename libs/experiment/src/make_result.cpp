@@ -47,6 +47,22 @@ std::vector<SutResult> sut_results(const record::Record& record,
   return suts;
 }
 
+// A task that was given up measures nothing of what it is for: an UAV that never set out ends where
+// it began, and at once.
+void drop_metrics_of_missed_tasks(TrialResult& result, const scenario::Scenario& scenario) {
+  for (const SutResult& sut : result.suts) {
+    if (sut.reached_goal) continue;
+    const std::string why = sut.finished ? fmt::format("the SUT of '{}' did not reach its goal: {}",
+                                                       sut.uav, sut.outcome)
+                                         : fmt::format("the SUT of '{}' did not finish", sut.uav);
+    for (std::size_t i = 0; i < result.metrics.size(); ++i) {
+      if (scenario.metrics[i].uav != sut.uav) continue;
+      result.metrics[i].value.reset();
+      result.metrics[i].missing_because = why;
+    }
+  }
+}
+
 std::string text_of(double value, const std::string& unit) {
   return unit == "1" ? fmt::format("{:.6g}", value) : fmt::format("{:.6g} {}", value, unit);
 }
@@ -76,11 +92,7 @@ std::string end_of(const record::Footer& footer) {
 
 void settle(TrialResult& result, const std::string& reason_of_end) {
   const bool ran = result.end == kEndFinished || result.end == kEndTimeLimit;
-  if (!ran) {
-    result.outcome = Outcome::kFailed;
-    result.reason = reason_of_end.empty() ? result.end : reason_of_end;
-    return;
-  }
+  if (!ran) return invalidate(result, reason_of_end.empty() ? result.end : reason_of_end);
   const std::string missed = result.end == kEndTimeLimit ? reason_of_end : why_missed(result);
   const bool reached = result.end == kEndFinished && missed.empty();
   result.outcome = reached ? Outcome::kGoalReached : Outcome::kGoalMissed;
@@ -95,6 +107,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   TrialResult result = result_of(scenario, condition, record.header.seed);
   result.metrics = compute_metrics(scenario.metrics, record);
   result.suts = sut_results(record, task_ends);
+  drop_metrics_of_missed_tasks(result, scenario);
   result.versions = {{"tether", record.header.tether_version},
                      {"simulator", record.header.simulator}};
   for (const record::SutInfo& sut : record.header.suts) {

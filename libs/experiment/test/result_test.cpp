@@ -212,6 +212,24 @@ TEST_F(MakeResult, MissesTheGoalWithAReason) {
   EXPECT_EQ(result.reason, "time_required is 31 s, beyond its limit of 30 s");
 }
 
+// A mean must not take up the position of an UAV that never set out.
+TEST_F(MakeResult, AMissedTaskMeasuresNothing) {
+  const auto metric = [](const TrialResult& result) {
+    return *result.find_metric("time_required");
+  };
+  const MetricValue missed =
+      metric(make(finished_record(), {{"uav1", false, "anchor never seen", ""}}));
+  EXPECT_FALSE(missed.value);
+  EXPECT_EQ(missed.missing_because, "the SUT of 'uav1' did not reach its goal: anchor never seen");
+  EXPECT_EQ(metric(make(finished_record(), {})).missing_because,
+            "the SUT of 'uav1' did not finish");
+  record::Record lost = finished_record();
+  lost.footer->end = "sut_lost";
+  lost.footer->reason = "because";
+  EXPECT_FALSE(metric(make(lost, kReached)).value);
+  EXPECT_EQ(metric(make(lost, kReached)).missing_because, "because");
+}
+
 TEST_F(MakeResult, TheTimeLimitMissesTheGoal) {
   record::Record record = finished_record();
   record.footer->end = "time_limit";

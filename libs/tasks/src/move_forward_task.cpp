@@ -28,6 +28,7 @@ Progress MoveForwardTask::initialise(TaskContext& context) {
   limit_.start(context.vehicle().now());
   bearing_rad_.reset();
   yaw_turned_rad_ = 0.0;
+  in_sight_ = false;
   face_anchors_ = missed_ = looks_ = 0;
   overshoots_ = 0.0;
 
@@ -43,7 +44,7 @@ Progress MoveForwardTask::initialise(TaskContext& context) {
 }
 
 Progress MoveForwardTask::step(TaskContext& context) {
-  if (std::abs(yaw_turned_rad_) >= 0.5 * std::numbers::pi) {
+  if (in_sight_ && std::abs(yaw_turned_rad_) >= 0.5 * std::numbers::pi) {
     return TaskOutcome::goal_reached();
   }
   if (Progress end = limit_.next_round(context.vehicle().now())) {
@@ -73,6 +74,7 @@ Progress MoveForwardTask::look(TaskContext& context, bool& is_ahead) {
   if (outcome.status == TaskStatus::kFailed) {
     return outcome;
   }
+  in_sight_ = relative_position_.estimate().has_value();
   if (const auto& estimate = relative_position_.estimate()) {
     bearing_rad_ = estimate->bearing_rad;
     is_ahead = std::abs(estimate->bearing_rad) <= options_.precision_rad;
@@ -95,6 +97,7 @@ Progress MoveForwardTask::face_anchor(TaskContext& context) {
   const TaskOutcome outcome = run(face, context);
   ++face_anchors_;
   looks_ += face.looks();
+  in_sight_ = face.is_in_sight();
   overshoots_ += outcome.results.at("overshoots");
   if (face.bearing_rad()) {
     bearing_rad_ = face.bearing_rad();
@@ -118,6 +121,17 @@ Progress MoveForwardTask::update_yaw(TaskContext& context) {
   return std::nullopt;
 }
 
+/// Comes to rest: in readings of the IMU, which are simulated time under every policy.
+Status MoveForwardTask::settle(TaskContext& context, const TaskOutcome& outcome) {
+  const int readings = outcome.status == TaskStatus::kFailed ? 0 : options_.settle_readings;
+  for (int i = 0; i < readings; ++i) {
+    if (const auto reading = context.vehicle().read_imu(options_.face.imu); !reading) {
+      return reading.failure();
+    }
+  }
+  return ok_status();
+}
+
 void MoveForwardTask::finalise(TaskContext& context, TaskOutcome& outcome) {
   fail_on(stop(context), outcome);
   outcome.results["duration_s"] = to_seconds(limit_.elapsed(context.vehicle().now()));
@@ -129,9 +143,7 @@ void MoveForwardTask::finalise(TaskContext& context, TaskOutcome& outcome) {
   if (bearing_rad_) {
     outcome.results["bearing_rad"] = *bearing_rad_;
   }
-  if (outcome.status != TaskStatus::kFailed && options_.settle > Duration::zero()) {
-    fail_on(context.vehicle().sleep_for(options_.settle), outcome);
-  }
+  fail_on(settle(context, outcome), outcome);
 }
 
 }  // namespace tether::tasks

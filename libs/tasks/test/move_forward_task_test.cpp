@@ -103,11 +103,13 @@ TEST(MoveForwardTask, ASlowComputerOvershootsTheAnchorAndIsFurtherOff) {
 
 TEST(MoveForwardTask, ComesToRestBeforeItEnds) {
   MoveForwardOptions options;
-  options.settle = milliseconds(1500);
+  options.settle_readings = 30;
   const Flight settled = fly(wall_on_the_left(), options);
-  options.settle = milliseconds(0);
+  options.settle_readings = 0;
   const Flight at_once = fly(wall_on_the_left(), options);
-  EXPECT_EQ(settled.vehicle.now() - at_once.vehicle.now(), milliseconds(1500));
+  const Duration waited = settled.vehicle.now() - at_once.vehicle.now();
+  EXPECT_GT(waited, milliseconds(145));  // at 200 Hz
+  EXPECT_LE(waited, milliseconds(150));
   EXPECT_EQ(settled.result("duration_s"), at_once.result("duration_s"));
 }
 
@@ -120,6 +122,18 @@ TEST(MoveForwardTask, NeverSeenIsAnOutcome) {
   EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
   EXPECT_EQ(flight.outcome.reason, "anchor never seen");
   EXPECT_LT(norm(flight.vehicle.position()), 0.2) << "searches standing still";
+}
+
+// A search on the spot may well turn by more than 90°: that is no arrival.
+TEST(MoveForwardTask, TurningPastTheSideInASearchIsNoArrival) {
+  MoveForwardOptions options;
+  options.face.time_limit = seconds(5);
+  options.time_limit = seconds(6);
+  PlanarVehicle::Options world = wall_on_the_left();
+  world.anchor_is_there = false;
+  const Flight flight = fly(world, options);
+  EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached) << flight.outcome.reason;
+  EXPECT_GT(std::abs(flight.result("yaw_turned_rad")), rad_from_deg(90));
 }
 
 TEST(MoveForwardTask, AnAnchorThatVanishesIsLost) {

@@ -116,7 +116,8 @@ struct TaskEnd {
 };
 
 /// The result of a trial from its record: metrics, figures and the outcome with its reason. A
-/// record without a footer is a failed trial. The caller adds audit, more versions, `started_at`.
+/// record without a footer is a failed trial. Metrics have values only where the trial did not fail
+/// and the SUT reached its own goal. The caller adds audit, more versions, `started_at`.
 TrialResult make_result(const scenario::Scenario& scenario, const scenario::Condition& condition,
                         const record::Record& record, const std::vector<TaskEnd>& task_ends);
 

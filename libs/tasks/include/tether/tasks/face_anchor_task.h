@@ -43,6 +43,8 @@ class FaceAnchorTask : public Task {
 
   /// In the last run: the bearing last seen, if any.
   const std::optional<double>& bearing_rad() const { return bearing_rad_; }
+  /// In the last run: whether the anchor was seen at the last look.
+  bool is_in_sight() const { return in_sight_; }
   /// In the last run: runs of Algorithm 2.
   int looks() const { return looks_; }
   /// In the last run: whether the anchor had been out of sight for the limit of that when it ended.

@@ -24,7 +24,7 @@ struct MoveForwardOptions {
   bool stop_to_face = false;  ///< the lower-level task stands still, as Algorithm 3 alone does
   /// Of the lower-level task; its convergence and IMU are also this task's.
   FaceAnchorOptions face = facing_under_way();
-  Duration settle = std::chrono::seconds(1);  ///< after the final stop, to come to rest; 0: none
+  int settle_readings = 20;  ///< of the IMU after the final stop, to come to rest; ≥ 0
   Duration time_limit = std::chrono::seconds(180);  ///< of the SUT's clock; then "time limit"
   int max_rounds = 10'000;  ///< of the loop, should that clock stand still; then "round limit"
 };
@@ -58,6 +58,7 @@ class MoveForwardTask : public Task {
   Progress look(TaskContext& context, bool& is_ahead);
   Progress face_anchor(TaskContext& context);
   Progress update_yaw(TaskContext& context);
+  Status settle(TaskContext& context, const TaskOutcome& outcome);
 
   std::string anchor_;
   MoveForwardOptions options_;
@@ -66,6 +67,7 @@ class MoveForwardTask : public Task {
 
   // Of the current run.
   double starting_yaw_rad_ = 0.0;
+  bool in_sight_ = false;              ///< the anchor, at the last look
   double yaw_turned_rad_ = 0.0;        ///< since the start, in (−π, π]
   std::optional<double> bearing_rad_;  ///< the last one seen
   int face_anchors_ = 0;
