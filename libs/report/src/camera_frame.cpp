@@ -31,9 +31,11 @@ PixelSize size_of_png(std::span<const std::uint8_t> png) {
   return {number(kWidthAt), number(kHeightAt)};
 }
 
-std::optional<ReportedRoi> parse_roi(const std::string& text, std::uint64_t image_index) {
+// Of a note that names no camera, any image of that index may be meant.
+std::optional<ReportedRoi> parse_roi(const std::string& text, const record::Image& image) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
-  if (!json.is_object() || json.value("image_index", nlohmann::json()) != image_index)
+  if (!json.is_object() || json.value("image_index", nlohmann::json()) != image.index ||
+      json.value("camera", nlohmann::json(image.sensor)) != image.sensor)
     return std::nullopt;
   ReportedRoi roi;
   for (const auto& [key, value] :
@@ -127,7 +129,7 @@ std::optional<ReportedRoi> find_roi(const record::Record& record, const record::
   for (const auto& logged : record.annotations) {
     const record::Annotation& note = logged.message;
     if (note.uav != image.uav || note.topic != "roi") continue;
-    if (const auto roi = parse_roi(note.json, image.index)) return roi;
+    if (const auto roi = parse_roi(note.json, image)) return roi;
   }
   return std::nullopt;
 }

@@ -42,6 +42,9 @@ TEST(CameraFrame, FindsTheRoiOfItsImage) {
   EXPECT_EQ(roi->u_px, 5.0);
   EXPECT_EQ(roi->height_px, 2.0);
   EXPECT_FALSE(find_roi(record_with({{"uav1", {}, "roi", roi_json(3)}}), image()));
+  const std::string of_another =
+      R"({"camera":"rear","u_px":5,"v_px":3,"width_px":4,"height_px":2,"image_index":4})";
+  EXPECT_FALSE(find_roi(record_with({{"uav1", {}, "roi", of_another}}), image()));
 }
 
 // A UAV at the origin of W whose camera looks east, with a box of 0.4 m straight ahead, its near
