@@ -39,11 +39,14 @@ void OutputFile::write(std::string_view bytes) {
   }
 }
 
+// A pipe or a device has nothing to flush and says EINVAL.
 void OutputFile::close() {
   const int descriptor = std::exchange(descriptor_, -1);
-  if (descriptor >= 0 && ::close(descriptor) != 0) {
-    fail("cannot finish the record", errno);
-  }
+  if (descriptor < 0) return;
+  int why = 0;
+  if (::fsync(descriptor) != 0 && errno != EINVAL) why = errno;
+  if (::close(descriptor) != 0 && why == 0) why = errno;
+  if (why != 0) fail("cannot finish the record", why);
 }
 
 void OutputFile::fail(const char* what, int error_number) {

@@ -18,7 +18,8 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   void write(std::string_view bytes);
-  /// Reports what only closing shows (a full network disk). Later calls do nothing.
+  /// Flushes to the disk, so that what was written outlives a power cut as well, and reports what
+  /// only that or closing shows (a full network disk). Later calls do nothing.
   void close();
 
   std::uint64_t position() const { return position_; }

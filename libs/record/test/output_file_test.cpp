@@ -1,0 +1,51 @@
+#include "output_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+namespace {
+
+int flushes = 0;
+
+}  // namespace
+
+// Stands in for the C library's, to count.
+extern "C" int fsync(int descriptor) {
+  ++flushes;
+  return static_cast<int>(syscall(SYS_fsync, descriptor));
+}
+
+namespace tether::record {
+namespace {
+
+TEST(OutputFile, IsOnTheDiskOnceClosedAndIsFlushedNoMoreThanThat) {
+  const std::filesystem::path path =
+      std::filesystem::path(testing::TempDir()) / ("output-file-" + std::to_string(getpid()));
+  flushes = 0;
+  OutputFile file(path);
+  file.write("first, ");
+  file.write("second");
+  EXPECT_EQ(flushes, 0);
+  file.close();
+  EXPECT_EQ(flushes, 1);
+  file.close();
+  EXPECT_EQ(flushes, 1);
+  std::ifstream stream(path);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "first, second");
+  std::filesystem::remove(path);
+}
+
+TEST(OutputFile, MayBeADeviceThatHasNothingToFlush) {
+  OutputFile file("/dev/null");
+  file.write("gone");
+  EXPECT_NO_THROW(file.close());
+}
+
+}  // namespace
+}  // namespace tether::record
