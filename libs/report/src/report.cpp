@@ -171,7 +171,8 @@ Table table_of(const experiment::ScenarioResults& scenario,
   const bool all_exact = std::all_of(comparisons.begin(), comparisons.end(),
                                      [](const Comparison& c) { return c.ranks.exact; });
   table.notes = {fmt::format("Interval: Welch's t. p: Mann-Whitney U, two-sided, {}.",
-                             all_exact ? "exact" : "exact up to 100 trials, else approximate")};
+                             all_exact ? "exact" : "exact up to 100 trials, else approximate"),
+                 "p is not corrected for the number of comparisons."};
   return table;
 }
 

@@ -114,6 +114,9 @@ TEST_F(Report, StatesTheOptimismOfNoSync) {
   const std::string text = to_text(optimism_table(results()));
   EXPECT_THAT(text, HasSubstr("Time required (s)  target − target, no sync"));
   EXPECT_THAT(text, HasSubstr("5.300"));
+  const auto uncorrected = HasSubstr("p is not corrected for the number of comparisons.");
+  EXPECT_THAT(text, uncorrected);
+  EXPECT_THAT(to_text(comparisons_table(results())), uncorrected);
 }
 
 TEST_F(Report, SaysWhatItRestsOn) {
