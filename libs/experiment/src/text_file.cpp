@@ -42,6 +42,32 @@ void write_all(int fd, std::string_view text, const std::filesystem::path& file)
   }
 }
 
+bool is_special(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
+void write_to_special(const std::filesystem::path& file, std::string_view text) {
+  const Descriptor fd(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
+  if (fd.get() < 0) fail(file, "opened");
+  write_all(fd.get(), text, file);
+}
+
+// The file behind the symbolic links, which need not exist.
+std::filesystem::path behind_links(std::filesystem::path file) {
+  constexpr int kMostLinks = 40;  // as Linux follows
+  std::error_code ignored;
+  for (int i = 0; std::filesystem::is_symlink(file, ignored); ++i) {
+    if (i == kMostLinks) {
+      errno = ELOOP;
+      fail(file, "followed");
+    }
+    file = file.parent_path() / std::filesystem::read_symlink(file, ignored);
+  }
+  return file;
+}
+
 void write_and_flush(const std::filesystem::path& file, std::string_view text) {
   const Descriptor fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
   if (fd.get() < 0) fail(file, "created");
@@ -51,8 +77,10 @@ void write_and_flush(const std::filesystem::path& file, std::string_view text) {
 
 }  // namespace
 
-void write_file_atomically(const std::filesystem::path& file, std::string_view text) {
-  const std::filesystem::path beside = file.string() + ".part";
+void write_file_atomically(const std::filesystem::path& path, std::string_view text) {
+  if (is_special(path)) return write_to_special(path, text);
+  const std::filesystem::path file = behind_links(path);
+  const std::filesystem::path beside = file.string() + std::string(kPartSuffix);
   try {
     write_and_flush(beside, text);
     if (::rename(beside.c_str(), file.c_str()) != 0) fail(file, "replaced");
@@ -61,7 +89,8 @@ void write_file_atomically(const std::filesystem::path& file, std::string_view t
     throw;
   }
   // The rename itself is on the disk once the folder is.
-  const Descriptor folder(::open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const Descriptor folder(
+      ::open((file.parent_path() / ".").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (folder.get() >= 0) ::fsync(folder.get());
 }
 
@@ -71,8 +100,13 @@ std::string read_file(const std::filesystem::path& file) {
     throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "there is no such file");
   }
   std::ifstream stream(file, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream) throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "cannot be read");
+  std::string text;
+  char block[1 << 16];
+  while (stream.read(block, sizeof block) || stream.gcount() > 0) {
+    text.append(block, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream.eof())
+    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "cannot be read");
   return text;
 }
 

@@ -1,5 +1,8 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <tether/experiment/text_file.h>
 #include <tether/experiment_testing/scratch.h>
@@ -41,6 +44,46 @@ TEST(WriteFileAtomically, KeepsTheOldContentWhenItFails) {
   std::filesystem::create_directories(scratch.path("a.json.part"));
   error_message(ErrorCode::kSetup, [&] { write_file_atomically(file, "new"); });
   EXPECT_EQ(read_file(file), "old");
+}
+
+TEST(WriteFileAtomically, ReplacesTheFileBehindALinkAndNotTheLink) {
+  const Scratch scratch;
+  const auto file = scratch.write("there/a.json", "old");
+  const auto link = scratch.path("link.json"), link_to_link = scratch.path("second.json");
+  std::filesystem::create_symlink("there/a.json", link);
+  std::filesystem::create_symlink(link, link_to_link);
+  write_file_atomically(link_to_link, "new");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_TRUE(std::filesystem::is_symlink(link_to_link));
+  EXPECT_EQ(read_file(file), "new");
+  std::filesystem::remove(file);
+  write_file_atomically(link, "made");
+  EXPECT_EQ(read_file(file), "made");
+}
+
+TEST(WriteFileAtomically, EndsALoopOfLinks) {
+  const Scratch scratch;
+  std::filesystem::create_symlink("b", scratch.path("a"));
+  std::filesystem::create_symlink("a", scratch.path("b"));
+  EXPECT_THAT(
+      error_message(ErrorCode::kSetup, [&] { write_file_atomically(scratch.path("a"), "text"); }),
+      HasSubstr("cannot be followed"));
+}
+
+TEST(WriteFileAtomically, WritesIntoAPipeAlsoThroughALink) {
+  const Scratch scratch;
+  const auto pipe = scratch.path("pipe"), link = scratch.path("link");
+  std::filesystem::create_symlink(pipe, link);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  write_file_atomically(pipe, "a ");
+  write_file_atomically(link, "page");
+  char text[16] = {};
+  EXPECT_EQ(read(reader, text, sizeof text), 6);
+  EXPECT_STREQ(text, "a page");
+  EXPECT_EQ(std::filesystem::symlink_status(pipe).type(), std::filesystem::file_type::fifo);
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  close(reader);
 }
 
 TEST(ReadFile, NamesAMissingFile) {

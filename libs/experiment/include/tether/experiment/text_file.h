@@ -6,9 +6,14 @@
 
 namespace tether::experiment {
 
-/// Replaces `file` by `text`, whole or not at all: written beside it, flushed to the disk, renamed.
+/// Ends the name of a file that is being written, or was when the machine or the process stopped.
+inline constexpr std::string_view kPartSuffix = ".part";
+
+/// Replaces `path` by `text`, whole or not at all: written beside it, flushed to the disk, renamed.
+/// A symbolic link stays one, and the file behind it is replaced. What exists and is no regular
+/// file (a pipe, a device) is written to directly.
 /// @throws Error(kSetup) naming the file when the file system refuses; the old content stays.
-void write_file_atomically(const std::filesystem::path& file, std::string_view text);
+void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
 /// @throws Error(kBadFile) when it is missing or unreadable.
 std::string read_file(const std::filesystem::path& file);
