@@ -26,8 +26,10 @@ void make_folder(const fs::path& folder) {
 }
 
 bool holds_anything(const fs::path& folder) {
+  const std::string torn = std::string(kCampaignFile) + std::string(kPartSuffix);
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().filename() != kLockFile) return true;
+    const fs::path name = entry.path().filename();
+    if (name != kLockFile && name != torn) return true;
   }
   return false;
 }

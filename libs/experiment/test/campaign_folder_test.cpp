@@ -115,6 +115,13 @@ TEST_F(Folder, TakesMoreTrialsOfTheSame) {
   EXPECT_THAT(read_manifest(out_).seeds, ElementsAre(1u, 2u, 3u, 4u));
 }
 
+TEST_F(Folder, MakesNothingOfAManifestThatWasBeingWritten) {
+  scratch_.write("out/campaign.json.part", "{");
+  EXPECT_EQ(open(OpenMode::kFresh).missing().size(), 9u);
+  EXPECT_EQ(read_manifest(out_), manifest_of(campaign_, settings_));
+  EXPECT_FALSE(std::filesystem::exists(out_ / "campaign.json.part"));
+}
+
 TEST_F(Folder, RefusesAFolderOfSomethingElse) {
   scratch_.write("out/thesis.tex", "years of work");
   EXPECT_THAT(refusal(OpenMode::kFresh), HasSubstr("holds no campaign"));
