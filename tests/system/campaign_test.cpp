@@ -105,6 +105,15 @@ TEST_F(Campaign, RefusesToResumeUnderOtherSettings) {
   EXPECT_EQ(texts(), before);
 }
 
+TEST_F(Campaign, RefusesToResumeWithFewerTrials) {
+  ASSERT_EQ(run(campaign()).code, 0);
+  write_text(folder_ / "campaign.toml",
+             "name = \"small\"\ntrials = 1\n\n[[scenario]]\nfile = \"hover.toml\"\n");
+  const Output output = run(campaign({"--resume"}));
+  EXPECT_EQ(output.code, 2);
+  EXPECT_THAT(output.err, HasSubstr("with seed 2, which this one leaves out"));
+}
+
 TEST_F(Campaign, GoesOnAfterCtrlC) {
   const std::string mark = "campaign" + std::to_string(getpid());
   Process process(campaign({}, mark));

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <optional>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -25,6 +27,7 @@ void make_folder(const fs::path& folder) {
               "the folder cannot be made: " + failed.message());
 }
 
+// A campaign.json that was being written when all ended goes with the next one.
 bool holds_anything(const fs::path& folder) {
   const std::string torn = std::string(kCampaignFile) + std::string(kPartSuffix);
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -46,6 +49,50 @@ std::string difference(const Settings& then, const Settings& now) {
     if (!now.contains(name)) return fmt::format("'{}' is no longer there", name);
   }
   return "";
+}
+
+bool has_scenario(const CampaignManifest& manifest, const std::string& name) {
+  return std::any_of(manifest.scenarios.begin(), manifest.scenarios.end(),
+                     [&](const auto& entry) { return entry.scenario == name; });
+}
+
+bool has_condition(const CampaignManifest& manifest, const std::string& scenario,
+                   const std::string& condition) {
+  return std::any_of(manifest.scenarios.begin(), manifest.scenarios.end(), [&](const auto& entry) {
+    return entry.scenario == scenario && std::find(entry.conditions.begin(), entry.conditions.end(),
+                                                   condition) != entry.conditions.end();
+  });
+}
+
+// What was planned then and is no longer: its results would be in no table.
+std::vector<std::string> left_out(const CampaignManifest& then, const CampaignManifest& now) {
+  std::vector<std::string> missing;
+  for (const auto& entry : then.scenarios) {
+    if (!has_scenario(now, entry.scenario)) {
+      missing.push_back(fmt::format("scenario '{}'", entry.scenario));
+      continue;
+    }
+    for (const std::string& condition : entry.conditions) {
+      if (has_condition(now, entry.scenario, condition)) continue;
+      missing.push_back(fmt::format("condition '{}' of '{}'", condition, entry.scenario));
+    }
+  }
+  for (const std::uint64_t seed : then.seeds) {
+    if (std::find(now.seeds.begin(), now.seeds.end(), seed) != now.seeds.end()) continue;
+    missing.push_back(fmt::format("seed {}", seed));
+  }
+  return missing;
+}
+
+// The first few by name.
+std::string listed(std::vector<std::string> names) {
+  constexpr std::size_t kMost = 4;
+  if (names.size() > kMost) {
+    const std::size_t more = names.size() - kMost;
+    names.resize(kMost);
+    names.push_back(fmt::format("{} more", more));
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 [[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
@@ -103,6 +150,12 @@ void CampaignFolder::check_existing(const CampaignManifest& now, OpenMode mode) 
   if (then.name != now.name) {
     refuse(folder_, fmt::format("holds the campaign '{}', not '{}'; choose another folder",
                                 then.name, now.name));
+  }
+  const std::vector<std::string> missing = left_out(then, now);
+  if (!missing.empty()) {
+    refuse(folder_, fmt::format("holds a campaign with {}, which this one leaves out, and with it "
+                                "finished trials; choose another folder, or put it back",
+                                listed(missing)));
   }
   const std::string changed = difference(then.settings, now.settings);
   if (changed.empty()) return;

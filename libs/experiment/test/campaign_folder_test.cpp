@@ -8,6 +8,7 @@
 namespace tether::experiment {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -113,6 +114,46 @@ TEST_F(Folder, TakesMoreTrialsOfTheSame) {
   EXPECT_EQ(folder.finished(), 1u);
   EXPECT_EQ(folder.missing().size(), 11u);
   EXPECT_THAT(read_manifest(out_).seeds, ElementsAre(1u, 2u, 3u, 4u));
+}
+
+TEST_F(Folder, RefusesToDropTrials) {
+  open(OpenMode::kFresh);
+  keep(0);
+  const scenario::Campaign whole = campaign_;
+  const std::string advice = "choose another folder, or put it back";
+
+  campaign_.seeds = {2};
+  EXPECT_THAT(refusal(OpenMode::kResume),
+              AllOf(HasSubstr("with seed 1, seed 3, which"), HasSubstr(advice)));
+  EXPECT_THAT(refusal(OpenMode::kFresh), HasSubstr(advice));
+  campaign_ = whole;
+  campaign_.scenarios[0].conditions.erase(campaign_.scenarios[0].conditions.begin());
+  EXPECT_THAT(refusal(OpenMode::kResume), HasSubstr("with condition 'host' of 'turn', which"));
+  campaign_ = whole;
+  campaign_.scenarios[0].scenario.name = "other";
+  EXPECT_THAT(refusal(OpenMode::kResume), HasSubstr("with scenario 'turn', which"));
+
+  EXPECT_THAT(read_manifest(out_).seeds, ElementsAre(1u, 2u, 3u));
+  campaign_ = whole;
+  EXPECT_EQ(open(OpenMode::kResume).finished(), 1u);
+}
+
+TEST_F(Folder, NamesAFewOfManyTrialsThatItWouldDrop) {
+  campaign_.seeds = {1, 2, 3, 4, 5, 6, 7};
+  open(OpenMode::kFresh);
+  campaign_.seeds = {1};
+  EXPECT_THAT(refusal(OpenMode::kResume), HasSubstr("seed 5, 2 more, which"));
+}
+
+TEST_F(Folder, TakesMoreConditionsAndScenarios) {
+  const auto all = campaign_.scenarios[0].conditions;
+  campaign_.scenarios[0].conditions = {"host"};
+  open(OpenMode::kFresh);
+  keep(0);
+  campaign_.scenarios[0].conditions = all;
+  campaign_.scenarios.push_back(campaign_.scenarios[0]);
+  campaign_.scenarios[1].scenario.name = "second";
+  EXPECT_EQ(open(OpenMode::kResume).missing().size(), 17u);
 }
 
 TEST_F(Folder, MakesNothingOfAManifestThatWasBeingWritten) {

@@ -52,8 +52,9 @@ class CampaignFolder {
   /// Makes the folder or opens it again, and finds out which trials are missing: those without a
   /// result, with a torn or damaged one, and those that failed to be set up or were interrupted.
   /// @throws Error(kUsage), changing nothing, when the folder holds something else, results of
-  ///   other settings or versions (named), results although `mode` is kFresh, or is held by
-  ///   another process; Error(kSetup) when the file system refuses.
+  ///   other settings or versions (named), a campaign with more seeds, conditions or scenarios
+  ///   (named: their trials would drop out of every mean), results although `mode` is kFresh, or is
+  ///   held by another process; Error(kSetup) when the file system refuses.
   /// @pre `campaign` outlives the object.
   CampaignFolder(std::filesystem::path folder, const scenario::Campaign& campaign,
                  const Settings& settings, OpenMode mode);
