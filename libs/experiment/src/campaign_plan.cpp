@@ -31,20 +31,23 @@ std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
   return plans;
 }
 
-int trials_side_by_side(const scenario::Condition& condition, int jobs) {
+int trials_side_by_side(const TrialPlan& plan, int jobs) {
+  const scenario::Condition& condition = *plan.condition;
   if (condition.clock == scenario::Clock::kWall || jobs == 1) return 1;
   if (condition.policy == scenario::Policy::kConservativeBarrier) return jobs;
   // A stalling SUT computes for one part in `cpu_factor` of the time; the simulator with its camera
   // took up to half a core at real time.
   constexpr double kSimulatorLoad = 0.5, kShareInUse = 0.5;
-  const double load = 1.0 / condition.cpu_factor + kSimulatorLoad * condition.real_time_factor;
+  const double load_of_one =
+      1.0 / condition.cpu_factor + kSimulatorLoad * condition.real_time_factor;
+  const double load = load_of_one * static_cast<double>(plan.scenario->uavs.size());
   return std::max(1, static_cast<int>(kShareInUse * jobs / load));
 }
 
 std::vector<Batch> make_batches(const std::vector<const TrialPlan*>& plans, int jobs) {
   std::map<std::pair<bool, int>, Batch> batches;
   for (const TrialPlan* plan : plans) {
-    const int side_by_side = trials_side_by_side(*plan->condition, jobs);
+    const int side_by_side = trials_side_by_side(*plan, jobs);
     const bool is_free = plan->condition->policy == scenario::Policy::kFreeRunning;
     Batch& batch = batches[{is_free, side_by_side}];
     batch.jobs = side_by_side;

@@ -39,21 +39,23 @@ struct SideBySideCase {
   scenario::Policy policy;
   scenario::Clock clock;
   double cpu_factor, real_time_factor;
-  int jobs, expected;
+  int uavs, jobs, expected;
 };
 
 TEST(TrialsSideBySide, AreAsManyAsDisturbNothing) {
   using enum scenario::Policy;
   using enum scenario::Clock;
   const SideBySideCase cases[] = {
-      {"barrier", kConservativeBarrier, kCpu, 6.0, 0.0, 4, 4},
-      {"scripted", kConservativeBarrier, kScripted, 1.0, 0.0, 4, 4},
-      {"a wall clock", kConservativeBarrier, kWall, 1.0, 0.0, 4, 1},
-      {"free, a wall clock", kFreeRunning, kWall, 1.0, 0.3, 4, 1},
-      {"free, one core", kFreeRunning, kCpu, 20.0, 0.1, 1, 1},
+      {"barrier", kConservativeBarrier, kCpu, 6.0, 0.0, 2, 4, 4},
+      {"scripted", kConservativeBarrier, kScripted, 1.0, 0.0, 1, 4, 4},
+      {"a wall clock", kConservativeBarrier, kWall, 1.0, 0.0, 1, 4, 1},
+      {"free, a wall clock", kFreeRunning, kWall, 1.0, 0.3, 1, 4, 1},
+      {"free, one core", kFreeRunning, kCpu, 20.0, 0.1, 1, 1, 1},
       // Each takes a sixth of a core and 0.15 of one; one core of the two may be in use.
-      {"free, two cores", kFreeRunning, kCpu, 6.0, 0.3, 2, 3},
-      {"free, a SUT that is always busy", kFreeRunning, kCpu, 1.0, 1.0, 2, 1},
+      {"free, two cores", kFreeRunning, kCpu, 6.0, 0.3, 1, 2, 3},
+      {"free, two UAVs on two cores", kFreeRunning, kCpu, 6.0, 0.3, 2, 2, 1},
+      {"free, two UAVs on four cores", kFreeRunning, kCpu, 6.0, 0.3, 2, 4, 3},
+      {"free, a SUT that is always busy", kFreeRunning, kCpu, 1.0, 1.0, 1, 2, 1},
   };
   for (const auto& c : cases) {
     scenario::Condition condition;
@@ -61,7 +63,10 @@ TEST(TrialsSideBySide, AreAsManyAsDisturbNothing) {
     condition.clock = c.clock;
     condition.cpu_factor = c.cpu_factor;
     condition.real_time_factor = c.real_time_factor;
-    EXPECT_EQ(trials_side_by_side(condition, c.jobs), c.expected) << c.what;
+    scenario::Scenario scenario;
+    scenario.uavs.resize(static_cast<std::size_t>(c.uavs));
+    const TrialPlan plan{&scenario, &condition, 1, "out", false};
+    EXPECT_EQ(trials_side_by_side(plan, c.jobs), c.expected) << c.what;
   }
 }
 

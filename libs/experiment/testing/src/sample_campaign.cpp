@@ -11,6 +11,7 @@ scenario::Campaign make_campaign(const Scratch& scratch) {
   s.files = {s.world, s.file};
   s.name = "turn";
   s.description = "turn to the box";
+  s.uavs.resize(1);
   s.conditions = {{"host", "", Policy::kConservativeBarrier, Clock::kCpu, 1.0, 0.0},
                   {"target", "", Policy::kConservativeBarrier, Clock::kCpu, 8.0, 0.0},
                   {"target, no sync", "", Policy::kFreeRunning, Clock::kCpu, 8.0, 0.25}};
