@@ -114,6 +114,45 @@ TEST_F(Campaign, RefusesToResumeWithFewerTrials) {
   EXPECT_THAT(output.err, HasSubstr("with seed 2, which this one leaves out"));
 }
 
+/// scripts/reproduce with a campaign that ends as told in place of the paper's.
+struct ReproduceCase {
+  const char* what;
+  const char* campaign;
+  const char* report;
+  int code;
+  bool has_page;
+};
+
+TEST_F(Campaign, OfThePaperIsReportedWhateverFailed) {
+  const ReproduceCase cases[] = {
+      {"all well", "touch $4/campaign.json", "true", 0, true},
+      {"a trial failed", "touch $4/campaign.json; exit 3", "true", 3, true},
+      {"nothing was run", "exit 2", "true", 2, false},
+      {"no page", "touch $4/campaign.json", "exit 5", 5, true},
+      {"a trial failed, no page", "touch $4/campaign.json; exit 3", "exit 5", 3, true},
+  };
+  for (const ReproduceCase& c : cases) {
+    const TempFolder root;
+    for (const char* folder : {"scripts/lib", "build/release/bin", "out"})
+      std::filesystem::create_directories(root / folder);
+    std::filesystem::copy(std::string(TETHER_SOURCE_DIR) + "/scripts/reproduce",
+                          root / "scripts/reproduce");
+    write_text(root / "scripts/lib/common.sh", "set -euo pipefail\nROOT='" + root.path().string() +
+                                                   "'\nJOBS=1\ninstall_for() { :; }\n"
+                                                   "say() { :; }\nbuild() { :; }\n");
+    const auto tether = root / "build/release/bin/tether";
+    write_text(tether, "#!/bin/sh\nif [ $1 = report ]; then touch $2/report.html; " +
+                           std::string(c.report) + "; else " + c.campaign + "; fi\n");
+    std::filesystem::permissions(tether, std::filesystem::perms::owner_all);
+    const Output output =
+        run(Command{.arguments = {"bash", root / "scripts/reproduce", root / "out"},
+                    .environment = {},
+                    .working_folder = {}});
+    EXPECT_EQ(output.code, c.code) << c.what << output.err;
+    EXPECT_EQ(std::filesystem::exists(root / "out/report.html"), c.has_page) << c.what;
+  }
+}
+
 TEST_F(Campaign, GoesOnAfterCtrlC) {
   const std::string mark = "campaign" + std::to_string(getpid());
   Process process(campaign({}, mark));
