@@ -6,9 +6,11 @@
 #include "progress_bar.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -31,8 +33,10 @@ struct CampaignOptions {
   bool resume = false;
 };
 
-experiment::Settings settings_of(const scenario::Campaign& campaign) {
-  std::vector<std::filesystem::path> files{own_file()};
+/// Everything that a trial's result rests on, as far as files go.
+std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign) {
+  std::vector<std::filesystem::path> files = experiment::files_of(campaign);
+  files.push_back(own_file());
   const auto every_trial_says_it = [](const std::string&) {};
   for (const auto& entry : campaign.scenarios) {
     for (const auto& uav : entry.scenario.uavs)
@@ -41,8 +45,7 @@ experiment::Settings settings_of(const scenario::Campaign& campaign) {
         scenario::world_request(entry.scenario, campaign.seeds.front()), every_trial_says_it);
     files.insert(files.end(), world.files.begin(), world.files.end());
   }
-  return experiment::campaign_settings(
-      campaign, {{"tether", std::string(version())}, {"machine", describe_machine()}}, files);
+  return files;
 }
 
 /// A trial is a `tether run` of its own, so that whatever happens in one leaves the others alone.
@@ -71,23 +74,39 @@ experiment::TrialResult execute(const experiment::TrialPlan& plan, std::stop_sou
                                              process.poll()->description, log.string()));
 }
 
+experiment::CampaignOutcome fly(const experiment::CampaignFolder& folder,
+                                const scenario::Campaign& campaign, int jobs,
+                                const std::function<void()>& check) {
+  std::stop_source stop;
+  ProgressBar bar;
+  try {
+    const auto outcome = experiment::run_campaign(
+        folder, campaign, [&](const experiment::TrialPlan& plan) { return execute(plan, stop); },
+        {.jobs = jobs, .stop = stop.get_token(), .wall = {}, .check = check},
+        [&](const experiment::CampaignProgress& progress) { bar.show(progress); });
+    bar.finish();
+    return outcome;
+  } catch (...) {
+    bar.finish();
+    throw;
+  }
+}
+
 int run(const CampaignOptions& options) {
   const scenario::Campaign campaign = scenario::load_campaign(options.campaign);
   experiment::require_jobs_allowed(campaign, options.jobs);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out") / campaign.name : options.out;
+  const std::vector<std::filesystem::path> files = all_files(campaign);
+  const experiment::Settings settings = experiment::campaign_settings(
+      campaign, {{"tether", std::string(version())}, {"machine", describe_machine()}}, files);
   const experiment::CampaignFolder folder(
-      out, campaign, settings_of(campaign),
+      out, campaign, settings,
       options.resume ? experiment::OpenMode::kResume : experiment::OpenMode::kFresh);
   for (const std::string& warning : folder.warnings()) fmt::print(stderr, "warning: {}\n", warning);
 
-  std::stop_source stop;
-  ProgressBar bar;
-  const auto outcome = experiment::run_campaign(
-      folder, campaign, [&](const experiment::TrialPlan& plan) { return execute(plan, stop); },
-      {.jobs = options.jobs, .stop = stop.get_token(), .wall = {}},
-      [&](const experiment::CampaignProgress& progress) { bar.show(progress); });
-  bar.finish();
+  const auto outcome = fly(folder, campaign, options.jobs,
+                           [&] { experiment::require_unchanged(campaign, settings, files); });
   if (outcome.interrupted) {
     fmt::print(stderr, "tether: interrupted; go on with: tether campaign {} --out {} --resume\n",
                options.campaign.string(), out.string());

@@ -38,6 +38,14 @@ class Campaign : public testing::Test {
     for (const std::string& name : kTrials) texts.push_back(read_text(trial(name) / "result.json"));
     return texts;
   }
+  /// The SUT is a script, given to its shell as an argument, that does `more` first.
+  void write_script_sut(const std::string& more) const {
+    const std::string program = bad_sut_program().string();
+    write_text(folder_ / "sut.sh", more + "\nexec '" + program + "' \"$@\"\n");
+    write_hover_scenario(
+        folder_.path(), "good",
+        {{"\"" + program + "\"", "\"/bin/sh\", \"" + (folder_ / "sut.sh").string() + "\""}});
+  }
   Output report(const std::string& format) const {
     return run(tether({"report", folder_ / "out", "--format", format}));
   }
@@ -103,6 +111,27 @@ TEST_F(Campaign, RefusesToResumeUnderOtherSettings) {
   EXPECT_THAT(output.err, HasSubstr("hover.toml"));
   EXPECT_EQ(std::count(output.err.begin(), output.err.end(), '\n'), 1) << output.err;
   EXPECT_EQ(texts(), before);
+}
+
+TEST_F(Campaign, EndsWhenAFileIsEditedMeanwhile) {
+  const std::string scenario = folder_ / "hover.toml";
+  write_script_sut("echo '# edited' >> '" + scenario + "'");
+  const Output output = run(campaign());
+  EXPECT_EQ(output.code, 2);
+  EXPECT_THAT(output.err, HasSubstr(scenario + ": was changed while the campaign ran"));
+  EXPECT_THAT(output.err, HasSubstr("--resume"));
+  EXPECT_EQ(std::count(output.err.begin(), output.err.end(), '\n'), 1) << output.err;
+  for (const std::string& name : kTrials)
+    EXPECT_FALSE(std::filesystem::exists(trial(name) / "result.json")) << name;
+}
+
+TEST_F(Campaign, RefusesToResumeWithAnotherScriptOfTheSut) {
+  write_script_sut("# first");
+  ASSERT_EQ(run(campaign()).code, 0);
+  write_script_sut("# second");
+  const Output output = run(campaign({"--resume"}));
+  EXPECT_EQ(output.code, 2);
+  EXPECT_THAT(output.err, HasSubstr("'file sut.sh' was"));
 }
 
 TEST_F(Campaign, RefusesToResumeWithFewerTrials) {

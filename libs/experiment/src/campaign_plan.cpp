@@ -9,6 +9,22 @@
 #include <tether/experiment/text_file.h>
 
 namespace tether::experiment {
+namespace {
+
+// Such as the script of ["python3", "sut.py"]. What runs them is looked for as programs are.
+void add_argument_files(std::vector<std::filesystem::path>& files, const scenario::Sut& sut) {
+  for (std::size_t i = 1; i < sut.command.size(); ++i) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(sut.command[i], ignored)) continue;
+    files.push_back(std::filesystem::absolute(sut.command[i]));
+  }
+}
+
+std::string setting_name(const scenario::Campaign& campaign, const std::filesystem::path& file) {
+  return "file " + file.lexically_proximate(campaign.file.parent_path()).string();
+}
+
+}  // namespace
 
 std::filesystem::path trial_folder(const std::string& scenario, const std::string& condition,
                                    std::uint64_t seed) {
@@ -73,19 +89,37 @@ void require_jobs_allowed(const scenario::Campaign& campaign, int jobs) {
   }
 }
 
-Settings campaign_settings(const scenario::Campaign& campaign, const Settings& versions,
-                           const std::vector<std::filesystem::path>& more_files) {
-  Settings settings = versions;
-  const std::filesystem::path base = campaign.file.parent_path();
-  const auto add = [&](const std::filesystem::path& file) {
-    const std::string name = file.lexically_proximate(base).string();
-    settings["file " + name] = digest_of_file(file);
-  };
+std::vector<std::filesystem::path> files_of(const scenario::Campaign& campaign) {
+  std::vector<std::filesystem::path> files;
   for (const scenario::CampaignScenario& entry : campaign.scenarios) {
-    for (const std::filesystem::path& file : entry.scenario.files) add(file);
+    const scenario::Scenario& scenario = entry.scenario;
+    files.insert(files.end(), scenario.files.begin(), scenario.files.end());
+    for (const scenario::UavSetup& uav : scenario.uavs) add_argument_files(files, uav.sut);
   }
-  for (const std::filesystem::path& file : more_files) add(file);
+  return files;
+}
+
+Settings campaign_settings(const scenario::Campaign& campaign, const Settings& versions,
+                           const std::vector<std::filesystem::path>& files) {
+  Settings settings = versions;
+  for (const std::filesystem::path& file : files) {
+    settings[setting_name(campaign, file)] = digest_of_file(file);
+  }
   return settings;
+}
+
+void require_unchanged(const scenario::Campaign& campaign, const Settings& settings,
+                       const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) {
+    std::error_code ignored;
+    const bool exists = std::filesystem::is_regular_file(file, ignored);
+    if (exists && digest_of_file(file) == settings.at(setting_name(campaign, file))) continue;
+    throw Error(
+        ErrorCode::kBadFile, FileLocation{file.string()},
+        fmt::format("was {} while the campaign ran, so the trial that has just ended is not "
+                    "kept; put it back and go on with --resume, or choose another folder",
+                    exists ? "changed" : "removed"));
+  }
 }
 
 }  // namespace tether::experiment

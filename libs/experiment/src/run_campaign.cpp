@@ -106,13 +106,25 @@ class Run {
     try {
       const TrialResult result = attempt_twice(plan, execute_, options_.stop);
       const bool is_result = result.end != kEndInterrupted;
-      if (is_result) write_result(plan.folder, result);
+      if (is_result) keep(plan, result);
       finish(plan, is_result ? &result : nullptr, wall_() - start);
     } catch (...) {
       const std::lock_guard lock(mutex_);
       --running_;
       if (!error_) error_ = std::current_exception();
     }
+  }
+
+  // The executor may have left a result of its own, which must not be taken for one that was kept.
+  void keep(const TrialPlan& plan, const TrialResult& result) const {
+    try {
+      if (options_.check) options_.check();
+    } catch (...) {
+      std::error_code ignored;
+      std::filesystem::remove(plan.folder / kResultFile, ignored);
+      throw;
+    }
+    write_result(plan.folder, result);
   }
 
   void finish(const TrialPlan& plan, const TrialResult* result, Duration took) {

@@ -7,6 +7,7 @@
 namespace tether::experiment {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Pair;
@@ -104,15 +105,43 @@ TEST_F(CampaignPlan, RefusesJobsThatWouldDisturbAWallClock) {
 }
 
 TEST_F(CampaignPlan, SettingsAreVersionsAndDigestsOfFiles) {
-  const auto more = scratch_.write("in/mesh.obj", "a mesh");
-  const Settings before = campaign_settings(campaign_, {{"tether", "0.1.0"}}, {more});
+  auto files = files_of(campaign_);
+  files.push_back(scratch_.write("in/mesh.obj", "a mesh"));
+  const Settings before = campaign_settings(campaign_, {{"tether", "0.1.0"}}, files);
   EXPECT_THAT(before,
               ElementsAre(Pair("file mesh.obj", testing::_), Pair("file room.sdf", testing::_),
                           Pair("file turn.toml", testing::_), Pair("tether", "0.1.0")));
   scratch_.write("in/room.sdf", "another world");
-  const Settings after = campaign_settings(campaign_, {{"tether", "0.1.0"}}, {more});
+  const Settings after = campaign_settings(campaign_, {{"tether", "0.1.0"}}, files);
   EXPECT_NE(before.at("file room.sdf"), after.at("file room.sdf"));
   EXPECT_EQ(before.at("file turn.toml"), after.at("file turn.toml"));
+}
+
+TEST_F(CampaignPlan, FilesAreAlsoThoseAmongTheFixedArgumentsOfASut) {
+  const auto script = scratch_.write("in/sut.py", "import tether");
+  const auto folder = script.parent_path();
+  campaign_.scenarios[0].scenario.uavs[0].sut.command = {"python3", "-u", script, folder,
+                                                         folder / "not-there"};
+  const scenario::Scenario& s = campaign_.scenarios[0].scenario;
+  EXPECT_THAT(files_of(campaign_), ElementsAre(s.world, s.file, script));
+}
+
+TEST_F(CampaignPlan, NamesTheFileThatIsNoLongerTheSame) {
+  const auto world = campaign_.scenarios[0].scenario.world;
+  const auto files = files_of(campaign_);
+  const Settings settings = campaign_settings(campaign_, {{"tether", "0.1.0"}}, files);
+  const auto complaint = [&] {
+    return error_message(ErrorCode::kBadFile,
+                         [&] { require_unchanged(campaign_, settings, files); });
+  };
+  EXPECT_NO_THROW(require_unchanged(campaign_, settings, files));
+  scratch_.write("in/room.sdf", "another world");
+  EXPECT_THAT(complaint(), AllOf(HasSubstr(world.string() + ": was changed"),
+                                 HasSubstr("put it back and go on with --resume")));
+  std::filesystem::remove(world);
+  EXPECT_THAT(complaint(), HasSubstr(world.string() + ": was removed"));
+  scratch_.write("in/room.sdf", "the world");
+  EXPECT_NO_THROW(require_unchanged(campaign_, settings, files));
 }
 
 }  // namespace

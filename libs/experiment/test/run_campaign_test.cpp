@@ -107,6 +107,22 @@ TEST_F(RunCampaign, TriesASetUpFailureOnceMore) {
   EXPECT_EQ(result_of(3).outcome, Outcome::kGoalReached);
 }
 
+TEST_F(RunCampaign, EndsWithoutKeepingTheTrialThatTheCheckRefuses) {
+  int checks = 0;
+  options_.check = [&] {
+    if (++checks == 3) throw Error(ErrorCode::kBadFile, "room.sdf was changed");
+  };
+  const std::string message = error_message(ErrorCode::kBadFile, [&] {
+    run(open(), [&](const TrialPlan& plan) {
+      write_result(plan.folder, good(plan));  // as a child does
+      return good(plan);
+    });
+  });
+  EXPECT_EQ(message, "room.sdf was changed");
+  EXPECT_EQ(checks, 3);
+  EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
+}
+
 TEST_F(RunCampaign, KeepsATrialThatFailedTwiceAsFailed) {
   std::map<std::string, int> attempts;
   const CampaignOutcome outcome = run(open(), [&](const TrialPlan& plan) {

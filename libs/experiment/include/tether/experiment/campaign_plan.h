@@ -54,11 +54,21 @@ void require_jobs_allowed(const scenario::Campaign& campaign, int jobs);
 /// scenarios/face_anchor.toml" → digest of its content.
 using Settings = std::map<std::string, std::string>;
 
-/// The digests of every file that the campaign's scenarios name and of `more_files`, and
-/// `versions` (program, simulator, machine, SUT, … as the caller knows them). The campaign file
-/// itself is left out: more trials of the same may be added to a folder.
+/// Every file that the campaign's scenarios name, and those regular files that exist and are fixed
+/// arguments of a SUT's command (as `sut.py` in ["python3", "sut.py"]). The campaign file itself is
+/// left out: more trials of the same may be added to a folder.
+std::vector<std::filesystem::path> files_of(const scenario::Campaign& campaign);
+
+/// The digests of `files` (those of files_of(), and what else the caller knows of), and `versions`
+/// (program, simulator, machine, SUT, … as the caller knows them).
 /// @throws Error(kBadFile) when a file cannot be read.
 Settings campaign_settings(const scenario::Campaign& campaign, const Settings& versions,
-                           const std::vector<std::filesystem::path>& more_files = {});
+                           const std::vector<std::filesystem::path>& files);
+
+/// Whether the files are still as `settings` = campaign_settings(campaign, …, files) found them.
+/// Thread-safe.
+/// @throws Error(kBadFile) naming the first file that is not, and what to do.
+void require_unchanged(const scenario::Campaign& campaign, const Settings& settings,
+                       const std::vector<std::filesystem::path>& files);
 
 }  // namespace tether::experiment

@@ -33,6 +33,9 @@ struct CampaignOptions {
   std::stop_token stop;  ///< no further trial starts once requested
   /// Monotonic wall time, for the time left only. Default: the machine's.
   std::function<Duration()> wall;
+  /// Called after each trial, before its result is kept, from several threads at once when there
+  /// are several jobs. What it throws ends the run, and that trial counts as not run.
+  std::function<void()> check;
 };
 
 struct CampaignOutcome {
@@ -45,7 +48,8 @@ struct CampaignOutcome {
 /// before the next trial of its thread starts. A trial that could not be set up is tried once
 /// more, then kept as a failed one with its reason; nothing is left out.
 /// @throws Error(kUsage) as `require_jobs_allowed`; and whatever else a trial threw as kUsage or
-///   kBadFile or the file system refused, after the trials under way have ended.
+///   kBadFile, `options.check` threw, or the file system refused, after the trials under way have
+///   ended.
 CampaignOutcome run_campaign(const CampaignFolder& folder, const scenario::Campaign& campaign,
                              const TrialExecutor& execute, const CampaignOptions& options,
                              const ProgressCallback& progress);
