@@ -48,9 +48,15 @@ std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign)
   return files;
 }
 
+/// The second attempt leaves the first one's log alone.
+std::filesystem::path log_file(const experiment::TrialPlan& plan) {
+  const std::filesystem::path first = plan.folder / experiment::kTrialLog;
+  return std::filesystem::exists(first) ? plan.folder / "run-2.log" : first;
+}
+
 /// A trial is a `tether run` of its own, so that whatever happens in one leaves the others alone.
 experiment::TrialResult execute(const experiment::TrialPlan& plan, std::stop_source& stop) {
-  const std::filesystem::path log = plan.folder / "run.log";
+  const std::filesystem::path log = log_file(plan);
   std::vector<std::string> arguments = {
       own_file().string(),  "run",    plan.scenario->file.string(), "--condition",
       plan.condition->name, "--seed", std::to_string(plan.seed),    "--out",

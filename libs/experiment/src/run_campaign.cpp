@@ -19,13 +19,30 @@ Duration machine_wall() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
+void require_made(const std::filesystem::path& folder, const std::error_code& failed) {
+  if (!failed) return;
+  throw Error(ErrorCode::kSetup, FileLocation{folder.string()},
+              "the trial's folder cannot be made: " + failed.message());
+}
+
 void empty_folder(const std::filesystem::path& folder) {
   std::error_code failed;
   std::filesystem::remove_all(folder, failed);
   if (!failed) std::filesystem::create_directories(folder, failed);
-  if (!failed) return;
-  throw Error(ErrorCode::kSetup, FileLocation{folder.string()},
-              "the trial's folder cannot be made: " + failed.message());
+  require_made(folder, failed);
+}
+
+// For a second attempt: the log says why the first one failed.
+void empty_but_for_log(const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::vector<std::filesystem::path> others;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+    if (entry.path().filename() != kTrialLog) others.push_back(entry.path());
+  }
+  for (const std::filesystem::path& other : others) {
+    if (!failed) std::filesystem::remove_all(other, failed);
+  }
+  require_made(folder, failed);
 }
 
 bool is_users_fault(const Error& error) {
@@ -33,7 +50,6 @@ bool is_users_fault(const Error& error) {
 }
 
 TrialResult attempt(const TrialPlan& plan, const TrialExecutor& execute) {
-  empty_folder(plan.folder);
   try {
     return execute(plan);
   } catch (const Error& error) {
@@ -44,8 +60,10 @@ TrialResult attempt(const TrialPlan& plan, const TrialExecutor& execute) {
 
 TrialResult attempt_twice(const TrialPlan& plan, const TrialExecutor& execute,
                           const std::stop_token& stop) {
+  empty_folder(plan.folder);
   TrialResult first = attempt(plan, execute);
   if (first.end != kEndSetupFailed || stop.stop_requested()) return first;
+  empty_but_for_log(plan.folder);
   TrialResult second = attempt(plan, execute);
   second.this_run.attempts = 2;
   second.this_run.first_failure = first.reason;

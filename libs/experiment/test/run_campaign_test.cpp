@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/experiment/run_campaign.h>
+#include <tether/experiment/text_file.h>
 #include <tether/experiment_testing/scratch.h>
 
 namespace tether::experiment {
@@ -105,6 +106,26 @@ TEST_F(RunCampaign, TriesASetUpFailureOnceMore) {
   EXPECT_EQ(result_of(3).this_run.attempts, 2);
   EXPECT_EQ(result_of(3).this_run.first_failure, "the port was taken");
   EXPECT_EQ(result_of(3).outcome, Outcome::kGoalReached);
+}
+
+TEST_F(RunCampaign, KeepsTheLogOfTheFirstAttemptAlone) {
+  const std::string log(kTrialLog);
+  int attempts = 0;
+  run(open(), [&](const TrialPlan& plan) {
+    if (plan.seed != 2 || plan.condition->name != "host") return good(plan);
+    const auto at = [&](const std::string& name) {
+      return folder_of(plan).insert(0, "out/") + "/" + name;
+    };
+    if (++attempts == 1) {
+      scratch_.write(at(log), "no port");
+      scratch_.write(at("record.mcap"), "torn");
+      throw Error(ErrorCode::kSetup, "the port was taken");
+    }
+    EXPECT_FALSE(std::filesystem::exists(plan.folder / "record.mcap"));
+    return good(plan);
+  });
+  EXPECT_EQ(attempts, 2);
+  EXPECT_EQ(read_file(plan_trials(campaign_, out_)[3].folder / log), "no port");
 }
 
 TEST_F(RunCampaign, EndsWithoutKeepingTheTrialThatTheCheckRefuses) {

@@ -111,6 +111,15 @@ void add_missing_notes(Table& table, const experiment::ConditionResults& results
                                     results.planned - results.trials.size(), results.condition));
 }
 
+void add_second_attempt_notes(Table& table, const experiment::ConditionResults& results) {
+  for (const experiment::TrialResult& trial : results.trials) {
+    if (trial.this_run.attempts < 2) continue;
+    table.notes.push_back(
+        fmt::format("Second attempt: {}, seed {}; the first could not be set up: {}.",
+                    results.condition, trial.seed, trial.this_run.first_failure));
+  }
+}
+
 // Comparisons.
 
 std::optional<Comparison> compare(const std::string& metric, const std::string& unit,
@@ -195,6 +204,7 @@ Table paper_form_table(const experiment::ScenarioResults& scenario) {
   if (paper != nullptr) table.notes.push_back(fmt::format("Paper: {}.", paper->source));
   for (const experiment::ConditionResults& results : scenario.conditions) {
     add_missing_notes(table, results, columns);
+    add_second_attempt_notes(table, results);
   }
   return table;
 }

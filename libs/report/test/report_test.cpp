@@ -79,6 +79,18 @@ TEST_F(Report, NamesEveryTrialThatIsInNoMean) {
   EXPECT_THAT(to_text(table), HasSubstr("target           1.667      1.528"));
 }
 
+TEST_F(Report, NamesEveryTrialThatNeededASecondAttempt) {
+  TrialResult again = make_trial(scenario(), "host", 3, 0, 2.7);
+  again.this_run.attempts = 2;
+  again.this_run.first_failure = "the port was taken";
+  write(again);
+  std::vector<std::string> found;
+  for (const std::string& note : paper_form_table(results()).notes)
+    if (note.starts_with("Second attempt")) found.push_back(note);
+  EXPECT_THAT(found, ElementsAre("Second attempt: host, seed 3; the first could not be set up: "
+                                 "the port was taken."));
+}
+
 TEST_F(Report, ShowsWhatThePaperAloneMeasured) {
   ScenarioResults two = results();
   two.conditions.erase(two.conditions.begin());

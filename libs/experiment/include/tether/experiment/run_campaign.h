@@ -4,14 +4,19 @@
 #include <functional>
 #include <optional>
 #include <stop_token>
+#include <string_view>
 
 #include <tether/base/time.h>
 #include <tether/experiment/campaign_folder.h>
 
 namespace tether::experiment {
 
-/// Runs one trial, leaves its record in `plan.folder` (which exists and is empty), and returns its
-/// result; writing it is the campaign's business. Called from several threads at once when there
+/// What a trial's program says, in the trial's folder.
+inline constexpr std::string_view kTrialLog = "run.log";
+
+/// Runs one trial, leaves its record in `plan.folder` (which exists and is empty; at a second
+/// attempt it holds the first one's kTrialLog), and returns its result; writing it is the
+/// campaign's business. Called from several threads at once when there
 /// are several jobs. A result whose `end` is kEndSetupFailed, or an Error other than kUsage and
 /// kBadFile, says that the trial could not be set up; kEndInterrupted, that the user stopped it.
 using TrialExecutor = std::function<TrialResult(const TrialPlan& plan)>;
