@@ -214,7 +214,7 @@ StringMap with_sensors_changed(const std::string& from, const std::string& to) {
 
 // Records of Tether 0.1.0 say nothing of their cameras.
 TEST(JsonMetadata, ARecordNeedNotDescribeItsCameras) {
-  const std::string& sensors = to_metadata(header()).at("sensors");
+  const std::string sensors = to_metadata(header()).at("sensors");
   const auto begin = sensors.find(R"(,"camera":{)");
   const std::string camera = sensors.substr(begin, sensors.find('}', begin) + 1 - begin);
   EXPECT_FALSE(header_from_metadata(with_sensors_changed(camera, "")).sensors[0].camera);
