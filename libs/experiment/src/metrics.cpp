@@ -8,14 +8,10 @@
 
 #include <tether/base/units.h>
 #include <tether/experiment/metrics.h>
+#include <tether/uav/math.h>
 
 namespace tether::experiment {
 namespace {
-
-double yaw_rad(const double q_WB[4]) {
-  const double w = q_WB[0], x = q_WB[1], y = q_WB[2], z = q_WB[3];
-  return std::atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z));
-}
 
 // Bearings of the anchor from the UAV, up to the moment when its SUT finished (or the run ended).
 std::vector<double> bearings_until_finish(const scenario::Metric& metric,
@@ -140,7 +136,8 @@ const record::Logged<record::Interaction>* find_finish(const record::Record& rec
 double true_bearing_rad(const record::GroundTruth& uav, const record::Anchor& anchor) {
   const double dx_m = anchor.p_WA_m[0] - uav.p_WB_m[0];
   const double dy_m = anchor.p_WA_m[1] - uav.p_WB_m[1];
-  return wrap_angle_rad(std::atan2(dy_m, dx_m) - yaw_rad(uav.q_WB));
+  const double(&q)[4] = uav.q_WB;
+  return wrap_angle_rad(std::atan2(dy_m, dx_m) - uav::yaw_rad({q[0], q[1], q[2], q[3]}));
 }
 
 int count_overshoots(std::span<const double> bearings_rad, double threshold_rad) {
