@@ -35,7 +35,6 @@ uav::Vec3 position_HA(const uav::SensorDescription& camera,
 }  // namespace
 
 struct ClosedPathTask::Flight {
-  const uav::SensorDescription* imu = nullptr;
   DeadReckoning reckoning;
   Phase phase = Phase::kLegs;
   ExecTime phase_started_at;                ///< of the leg, in kLegs
@@ -60,7 +59,6 @@ Progress ClosedPathTask::initialise(TaskContext& context) {
   if (!imu) {
     return TaskOutcome::failed(imu.failure());
   }
-  flight_->imu = *imu;
   flight_->reckoning = DeadReckoning((*imu)->X_BS.q);
   if (Progress end = see_anchor(context, "at the start", flight_->p_H0A)) {
     return end;
