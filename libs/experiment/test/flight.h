@@ -10,26 +10,30 @@
 
 namespace tether::experiment {
 
-/// A record made by hand: one UAV "uav1" with a camera "camera" 0.1 m ahead of its middle, 90
-/// degrees wide (a ray of slope s lies 320·s px beside the middle column, 319.5), and the anchor
-/// "box", a cube of 1 m.
+/// "camera" of "uav1", 0.1 m ahead of its middle, 90 degrees wide: a ray of slope s lies 320·s px
+/// beside the middle column, 319.5.
+inline record::SensorInfo camera() {
+  record::SensorInfo sensor;
+  sensor.uav = "uav1";
+  sensor.name = "camera";
+  sensor.kind = "camera";
+  sensor.camera = record::CameraInfo{.p_BS_m = {0.1, 0.0, 0.0},
+                                     .width_px = 640,
+                                     .height_px = 480,
+                                     .fx_px = 320.0,
+                                     .fy_px = 320.0,
+                                     .cx_px = 319.5,
+                                     .cy_px = 239.5};
+  return sensor;
+}
+
+/// A record made by hand: one UAV "uav1" with `camera()`, and the anchor "box", a cube of 1 m.
 class Flight {
  public:
   Flight() {
     record_.header.policy = record::kConservativeBarrier;
     record_.header.ground_truth_period = std::chrono::milliseconds(100);
-    record::SensorInfo camera;
-    camera.uav = "uav1";
-    camera.name = "camera";
-    camera.kind = "camera";
-    camera.camera = record::CameraInfo{.p_BS_m = {0.1, 0.0, 0.0},
-                                       .width_px = 640,
-                                       .height_px = 480,
-                                       .fx_px = 320.0,
-                                       .fy_px = 320.0,
-                                       .cx_px = 319.5,
-                                       .cy_px = 239.5};
-    record_.header.sensors = {camera};
+    record_.header.sensors = {camera()};
     anchor_at(4.6, 2.0);
   }
 

@@ -1,4 +1,6 @@
 // The expected figures are worked out by hand in the comments: rays from a pinhole.
+#include "flight.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -11,22 +13,6 @@ namespace tether::experiment {
 namespace {
 
 using std::chrono::milliseconds;
-
-// 90 degrees wide: a ray of slope s lies 320·s px beside the middle. Mounted 0.1 m ahead.
-record::SensorInfo camera() {
-  record::SensorInfo sensor;
-  sensor.uav = "uav1";
-  sensor.name = "camera";
-  sensor.kind = "camera";
-  sensor.camera = record::CameraInfo{.p_BS_m = {0.1, 0.0, 0.0},
-                                     .width_px = 640,
-                                     .height_px = 480,
-                                     .fx_px = 320.0,
-                                     .fy_px = 320.0,
-                                     .cx_px = 319.5,
-                                     .cy_px = 239.5};
-  return sensor;
-}
 
 record::SensorInfo camera_turned(double yaw_rad, double pitch_rad = 0.0) {
   record::SensorInfo sensor = camera();

@@ -1,3 +1,5 @@
+#include "flight.h"
+
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -15,32 +17,10 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::PlanarVehicle;
 
-struct Flight {
-  TaskOutcome outcome;
-  PlanarVehicle vehicle;
-  double result(const std::string& name) const { return outcome.results.at(name); }
-  std::vector<json> notes(std::string_view topic) const {
-    std::vector<json> notes;
-    for (const auto& annotation : vehicle.annotations()) {
-      if (annotation.topic == topic) {
-        notes.push_back(json::parse(annotation.json));
-      }
-    }
-    return notes;
-  }
-};
-
 Flight fly(const PlanarVehicle::Options& world, ClosedPathOptions options = {}) {
-  // The fake's images are a quarter as wide as those that the default is for.
-  options.convergence.tolerance_px = 2.0;
-  Flight flight{{}, PlanarVehicle(world)};
-  TaskContext context(flight.vehicle);
+  options.convergence.tolerance_px = kTolerance_px;
   ClosedPathTask task("blue_box", options);
-  flight.outcome = run(task, context);
-  if (flight.outcome.status != TaskStatus::kFailed) {
-    EXPECT_EQ(flight.vehicle.commands().back(), uav::VelocityCommand{}) << "not stopped";
-  }
-  return flight;
+  return fly(task, world);
 }
 
 TEST(ClosedPathTask, ComesBackToItsStart) {

@@ -1,3 +1,5 @@
+#include "flight.h"
+
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -14,33 +16,21 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::PlanarVehicle;
 
-struct Flight {
-  TaskOutcome outcome;
-  PlanarVehicle vehicle;
-  double overshoots() const { return outcome.results.at("overshoots"); }
-  std::vector<std::string> events() const {
-    std::vector<std::string> events;
-    for (const auto& annotation : vehicle.annotations()) {
-      const auto note = nlohmann::json::parse(annotation.json);
-      if (annotation.topic == "task" && note.at("task") == "face_anchor") {
-        events.push_back(note.at("phase").get<std::string>() + " " +
-                         note.at("event").get<std::string>());
-      }
+std::vector<std::string> events(const Flight& flight) {
+  std::vector<std::string> events;
+  for (const auto& note : flight.notes("task")) {
+    if (note.at("task") == "face_anchor") {
+      events.push_back(note.at("phase").get<std::string>() + " " +
+                       note.at("event").get<std::string>());
     }
-    return events;
   }
-};
+  return events;
+}
 
 Flight fly(const PlanarVehicle::Options& world, FaceAnchorOptions options = {}) {
-  // The fake's images are a quarter as wide as those that the default is for.
-  options.convergence.tolerance_px = 2.0;
-  Flight flight{{}, PlanarVehicle(world)};
-  TaskContext context(flight.vehicle);
+  options.convergence.tolerance_px = kTolerance_px;
   FaceAnchorTask task("blue_box", options);
-  flight.outcome = run(task, context);
-  if (flight.outcome.status != TaskStatus::kFailed) {
-    EXPECT_EQ(flight.vehicle.commands().back(), uav::VelocityCommand{}) << "not stopped";
-  }
+  Flight flight = fly(task, world);
   (void)flight.vehicle.sleep_for(seconds(1));  // until it has come to rest
   return flight;
 }
@@ -50,7 +40,7 @@ TEST(FaceAnchorTask, AFastComputerDoesNotOvershoot) {
     const Flight flight = fly(
         {.anchor_bearing_rad = rad_from_deg(bearing_deg), .compute_per_image = milliseconds(2)});
     EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
-    EXPECT_EQ(flight.overshoots(), 0) << bearing_deg;
+    EXPECT_EQ(flight.result("overshoots"), 0) << bearing_deg;
     EXPECT_LT(std::abs(deg_from_rad(flight.vehicle.bearing())), 4.0) << bearing_deg;
     EXPECT_LT(flight.outcome.results.at("duration_s"), 2.5);
   }
@@ -63,7 +53,7 @@ TEST(FaceAnchorTask, ASlowComputerOvershootsAndRecovers) {
         {.anchor_bearing_rad = rad_from_deg(bearing_deg), .compute_per_image = milliseconds(300)});
     EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
     EXPECT_LT(std::abs(deg_from_rad(flight.vehicle.bearing())), 6.0);
-    overshoots += flight.overshoots();
+    overshoots += flight.result("overshoots");
   }
   EXPECT_GE(overshoots, 3);
 }
@@ -87,7 +77,7 @@ TEST(FaceAnchorTask, EachOvershootReversesAndSlowsDown) {
         std::max(std::abs(rates[i - 1]) * options.slowdown, options.min_yaw_rate_rad_s);
     EXPECT_DOUBLE_EQ(rates[i], rates[i - 1] > 0 ? -expected : expected);
   }
-  EXPECT_EQ(flight.overshoots(), static_cast<double>(rates.size()) - 1);
+  EXPECT_EQ(flight.result("overshoots"), static_cast<double>(rates.size()) - 1);
 }
 
 TEST(FaceAnchorTask, StopsAtOnceWhereItFacesTheAnchorAlready) {
@@ -107,7 +97,7 @@ TEST(FaceAnchorTask, LooksForAnAnchorOutsideTheImage) {
   const Flight right = fly({.anchor_bearing_rad = rad_from_deg(-90)}, clockwise);
   EXPECT_TRUE(right.outcome.reached());
   EXPECT_LT(right.vehicle.yaw(), 0.0);
-  EXPECT_EQ(right.overshoots(), 0);
+  EXPECT_EQ(right.result("overshoots"), 0);
 }
 
 TEST(FaceAnchorTask, AnAnchorThatIsNeverSeenIsAnOutcome) {
@@ -124,7 +114,7 @@ TEST(FaceAnchorTask, AnAnchorThatVanishesIsLostAfterAWhile) {
   options.lost_limit = seconds(2);
   const Flight flight = fly({.anchor_hidden = {milliseconds(500), seconds(100)}}, options);
   EXPECT_EQ(flight.outcome.reason, "anchor lost");
-  EXPECT_THAT(flight.events(), ::testing::Contains("loop unseen"));
+  EXPECT_THAT(events(flight), ::testing::Contains("loop unseen"));
 }
 
 TEST(FaceAnchorTask, AnAnchorThatHidesForAMomentIsFoundAgain) {
@@ -160,7 +150,7 @@ TEST(FaceAnchorTask, FailsWhereverTheConnectionEnds) {
 
 TEST(FaceAnchorTask, NotesItsPhases) {
   const Flight flight = fly({.anchor_bearing_rad = rad_from_deg(10)});
-  EXPECT_THAT(flight.events(),
+  EXPECT_THAT(events(flight),
               ::testing::ElementsAre("initialise start", "initialise rotate", "loop start",
                                      "finalise start", "finalise end"));
 }

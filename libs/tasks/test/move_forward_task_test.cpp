@@ -1,3 +1,5 @@
+#include "flight.h"
+
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -14,28 +16,15 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::PlanarVehicle;
 
-struct Flight {
-  TaskOutcome outcome;
-  PlanarVehicle vehicle;
-  double result(const std::string& name) const { return outcome.results.at(name); }
-};
-
 /// An anchor 2 m ahead and 1 m to the left.
 PlanarVehicle::Options wall_on_the_left() {
   return {.anchor_bearing_rad = std::atan2(1.0, 2.0), .anchor_distance_m = std::sqrt(5.0)};
 }
 
 Flight fly(const PlanarVehicle::Options& world, MoveForwardOptions options = {}) {
-  // The fake's images are a quarter as wide as those that the default is for.
-  options.face.convergence.tolerance_px = 2.0;
-  Flight flight{{}, PlanarVehicle(world)};
-  TaskContext context(flight.vehicle);
+  options.face.convergence.tolerance_px = kTolerance_px;
   MoveForwardTask task("blue_box", options);
-  flight.outcome = run(task, context);
-  if (flight.outcome.status != TaskStatus::kFailed) {
-    EXPECT_EQ(flight.vehicle.commands().back(), uav::VelocityCommand{}) << "not stopped";
-  }
-  return flight;
+  return fly(task, world);
 }
 
 /// The anchor, a metre to the side, goes by at 9°/s at most.
