@@ -16,7 +16,7 @@ std::filesystem::path scripted(const TempFolder& folder, const std::string& scen
   text =
       substituted(text, {{"clock = \"cpu\"\ncpu_factor = 1.0",
                           "clock = \"scripted\"\ncomputing_ms = " + std::to_string(computing_ms)}});
-  for (const std::string data : {"worlds", "models", "missions"}) {
+  for (const std::string data : {"worlds", "models", "missions", "profiles"}) {
     const std::string relative = "\"../" + data;
     if (text.find(relative) != std::string::npos)
       text = substituted(text, {{relative, "\"" + sources + "/" + data}});
