@@ -124,16 +124,29 @@ struct CameraModel {
   double near_m = 0.05;
   double far_m = 100.0;
   Noise pixel_noise;  ///< of intensities 0..1
+  /// How long each row gathers light [s]; 0: an instant. What moves meanwhile is blurred, by the
+  /// mean of the light (not of the sRGB bytes).
+  double exposure_s = 0.0;
+  /// Rolling shutter: from the end of the first row's exposure to the end of the last row's [s];
+  /// 0: all rows at once. A sample's `sampled_at` is the end of the LAST row's exposure, so that
+  /// nothing in an image is from its future: of H rows, row r gathers light during
+  /// [e − exposure_s, e] with e = sampled_at − readout_s·(H−1−r)/(H−1).
+  double readout_s = 0.0;
 };
 struct ImuModel {
   std::array<Noise, 3> angular_velocity;     ///< x, y, z [rad/s]
   std::array<Noise, 3> linear_acceleration;  ///< x, y, z [m/s²]
 };
+/// A rangefinder reads the distance of the nearest thing on any of its rays. Farther than `max_m`,
+/// or nothing at all, reads +inf; closer than `min_m` reads −inf (REP-117); never NaN.
 struct RangeModel {
   double min_m = 0.02;
   double max_m = 10.0;
   double resolution_m = 0.0;  ///< 0: continuous
-  Noise noise;
+  Noise noise;                ///< of the nearest distance [m]
+  std::vector<uav::Vec3> rays_S{
+      {1.0, 0.0, 0.0}};              ///< unit vectors in the sensor's frame, not empty
+  double dropout_probability = 0.0;  ///< 0..1, of a measurement that reads +inf whatever is there
 };
 
 struct Sensor {
