@@ -89,6 +89,7 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"sync", {"base"}},
       {"link", {"base", "uav"}},
       {"client", {"base", "uav", "link"}},
+      {"devices", {"base", "uav", "client"}},
       {"vision", {"base", "uav"}},
       {"tasks", {"base", "uav", "client", "vision"}},
       {"record", {"base"}},

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tether/base/result.h>
+#include <tether/client/vehicle.h>
+#include <tether/uav/catalogue.h>
+
+/// Real sensors behind the interface of the simulated ones, so that a task's perception runs
+/// unchanged on real input (paper, Section IV: "Real sensor" in Tables I and II).
+namespace tether::devices {
+
+/// One sensor and the device that is read for it.
+struct RigSensor {
+  /// What the SUT is told of it. The device says nothing of its mounting, field of view or limits,
+  /// so these are the rig's to know.
+  uav::SensorDescription description;
+  /// A camera: "/dev/videoN" or "N" (Video4Linux), a video file's path, or a stream's URL. A
+  /// rangefinder or an IMU: a folder laid out like /sys/bus/iio/devices/iio:deviceN, or "iio:NAME"
+  /// with NAME "deviceN" or what the driver's `name` file says.
+  std::string device;
+};
+
+/// Sensors on a bench or on a UAV's frame, with no UAV that could be flown.
+struct Rig {
+  std::string uav;
+  std::vector<RigSensor> sensors;  ///< names unique
+  std::vector<uav::Anchor> anchors;
+};
+
+/// Opens every device, in the rig's order; the devices are closed with the vehicle. A camera whose
+/// description has width 0 takes the device's size: its principal point is then the centre, and
+/// focal lengths that are 0 stay so (nothing but a calibration knows them). A camera whose rate is
+/// 0 takes the rate that the device says, if it says one.
+///
+/// Of the vehicle returned:
+/// - `now()` is the wall clock's ET since this call; sleeps are real; `annotate` drops what it is
+///   given, `finish` succeeds, and `command_velocity` fails with kInvalid: a rig cannot fly.
+/// - A camera's sample is from when the device says that the frame was taken (Video4Linux's
+///   timestamp, where it is plausible), else from its arrival. `Read::kNext` waits for a frame that
+///   was not yet read; `Read::kLatest` returns the last one read again unless a newer one has been
+///   there for the taking. Missed frames are counted in the index where they are known.
+/// - A video file plays at its own rate from the first read on, like a live camera: whoever reads
+///   slowly misses frames. A frame is from the instant at which it was due. The file's end is a
+///   device that stopped.
+/// - Rangefinder and IMU measure when asked; their sample is from the instant at which the read
+///   returned. A range beyond the description's `max_m` reads +inf, one below its `min_m` −inf.
+///   The four components of an IMU's `q_WS` are NaN: the kernel's interface gives no attitude.
+///
+/// Fails with kInvalid (a device that is missing, not allowed, of another kind or size, or busy; a
+/// sensor named twice). Reads fail with kInvalid for a sensor that the rig does not have, and with
+/// kDisconnected when a device stopped, and then again on every later read of that sensor. Each
+/// failure is one line that names the device and says what to do. Throws nothing. Not thread-safe,
+/// as any Vehicle.
+Result<std::unique_ptr<client::Vehicle>> open_rig(Rig rig);
+
+/// Whether an option's value means a device rather than a sensor's name: it has a '/' (a path or a
+/// URL), is a number N (/dev/videoN), or begins with "iio:".
+bool is_device(std::string_view text);
+
+}  // namespace tether::devices
