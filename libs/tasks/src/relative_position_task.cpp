@@ -27,6 +27,7 @@ RelativePositionTask::~RelativePositionTask() = default;
 Progress RelativePositionTask::initialise(TaskContext& context) {
   limit_.start(context.vehicle().now());
   estimate_.reset();
+  sighting_.reset();
   loop_.reset();
   return prepare(context);
 }
@@ -53,12 +54,12 @@ Progress RelativePositionTask::step(TaskContext& context) {
   if (Progress end = limit_.next_round(context.vehicle().now())) {
     return end;
   }
-  const Result<uav::CameraSample> image = context.vehicle().read_camera(loop_->camera->name);
+  Result<uav::CameraSample> image = context.vehicle().read_camera(loop_->camera->name);
   if (!image) {
     return TaskOutcome::failed(image.failure());
   }
   ++loop_->frames;
-  if (Progress progress = look(context, *image)) {
+  if (Progress progress = look(context, std::move(image).value())) {
     return progress;
   }
   if (loop_->frames >= options_.convergence.max_frames) {
@@ -67,7 +68,7 @@ Progress RelativePositionTask::step(TaskContext& context) {
   return std::nullopt;
 }
 
-Progress RelativePositionTask::look(TaskContext& context, const uav::CameraSample& image) {
+Progress RelativePositionTask::look(TaskContext& context, uav::CameraSample image) {
   const std::optional<vision::Roi> roi = loop_->tracker->track(image);
   if (!roi) {
     return miss();
@@ -78,6 +79,7 @@ Progress RelativePositionTask::look(TaskContext& context, const uav::CameraSampl
   estimate_ = vision::relative_position(*loop_->camera, *loop_->anchor, *roi);
   context.note_roi(*roi, image.index);
   context.note_estimate(anchor_, image.index, *estimate_, converged);
+  sighting_ = Sighting{std::move(image), *roi};
   return converged ? Progress(TaskOutcome::goal_reached()) : std::nullopt;
 }
 

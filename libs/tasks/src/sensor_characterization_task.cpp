@@ -9,21 +9,40 @@
 namespace tether::tasks {
 namespace {
 
+/// Where a sample stands among those of its sensor.
+struct Place {
+  SimTime sampled_at;
+  std::uint64_t index = 0;
+};
+
 template <class Sample>
-Status status_of(const Result<Sample>& sample) {
-  return sample ? ok_status() : Status(sample.failure());
+Result<Place> place_of(const Result<Sample>& sample) {
+  if (!sample) {
+    return sample.failure();
+  }
+  return Place{sample->sampled_at, sample->index};
 }
 
-Status acquire(client::Vehicle& vehicle, const std::string& sensor, uav::SensorKind kind) {
+Result<Place> acquire(client::Vehicle& vehicle, const std::string& sensor, uav::SensorKind kind) {
   switch (kind) {
     case uav::SensorKind::kCamera:
-      return status_of(vehicle.read_camera(sensor));
+      return place_of(vehicle.read_camera(sensor));
     case uav::SensorKind::kImu:
-      return status_of(vehicle.read_imu(sensor));
+      return place_of(vehicle.read_imu(sensor));
     case uav::SensorKind::kRange:
       break;
   }
-  return status_of(vehicle.read_range(sensor));
+  return place_of(vehicle.read_range(sensor));
+}
+
+/// What each took, the shortest first.
+std::vector<double> sorted_times_s(const std::vector<Acquisition>& acquisitions) {
+  std::vector<double> taken_s;
+  for (const Acquisition& acquisition : acquisitions) {
+    taken_s.push_back(to_seconds(acquisition.had_at - acquisition.asked_at));
+  }
+  std::sort(taken_s.begin(), taken_s.end());
+  return taken_s;
 }
 
 double mean(const std::vector<double>& values) {
@@ -56,7 +75,7 @@ SensorCharacterizationTask::SensorCharacterizationTask(std::string sensor,
 
 Progress SensorCharacterizationTask::initialise(TaskContext& context) {
   limit_.start(context.vehicle().now());
-  taken_s_.clear();
+  acquisitions_.clear();
   const auto sensor = context.sensor(sensor_);
   if (!sensor) {
     return TaskOutcome::failed(sensor.failure());
@@ -70,27 +89,28 @@ Progress SensorCharacterizationTask::step(TaskContext& context) {
   if (Progress end = limit_.next_round(before)) {
     return end;
   }
-  if (const Status acquired = acquire(context.vehicle(), sensor_, kind_); !acquired) {
-    return TaskOutcome::failed(acquired.failure());
+  const Result<Place> place = acquire(context.vehicle(), sensor_, kind_);
+  if (!place) {
+    return TaskOutcome::failed(place.failure());
   }
-  taken_s_.push_back(to_seconds(context.vehicle().now() - before));
-  const bool is_last = taken_s_.size() >= static_cast<std::size_t>(options_.acquisitions);
+  acquisitions_.push_back({before, context.vehicle().now(), place->sampled_at, place->index});
+  const bool is_last = acquisitions_.size() >= static_cast<std::size_t>(options_.acquisitions);
   return is_last ? Progress(TaskOutcome::goal_reached()) : std::nullopt;
 }
 
 void SensorCharacterizationTask::finalise(TaskContext& context, TaskOutcome& outcome) {
   outcome.results["duration_s"] = to_seconds(limit_.elapsed(context.vehicle().now()));
-  outcome.results["acquisitions"] = static_cast<double>(taken_s_.size());
-  if (taken_s_.empty()) {
+  outcome.results["acquisitions"] = static_cast<double>(acquisitions_.size());
+  if (acquisitions_.empty()) {
     return;
   }
-  std::sort(taken_s_.begin(), taken_s_.end());
-  outcome.results["mean_s"] = mean(taken_s_);
-  outcome.results["min_s"] = taken_s_.front();
-  outcome.results["median_s"] = median(taken_s_);
-  outcome.results["max_s"] = taken_s_.back();
-  if (taken_s_.size() > 1) {
-    outcome.results["stddev_s"] = sample_stddev(taken_s_);
+  const std::vector<double> taken_s = sorted_times_s(acquisitions_);
+  outcome.results["mean_s"] = mean(taken_s);
+  outcome.results["min_s"] = taken_s.front();
+  outcome.results["median_s"] = median(taken_s);
+  outcome.results["max_s"] = taken_s.back();
+  if (taken_s.size() > 1) {
+    outcome.results["stddev_s"] = sample_stddev(taken_s);
   }
 }
 

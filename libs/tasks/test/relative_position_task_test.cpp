@@ -41,6 +41,23 @@ TEST(RelativePositionTask, MeasuresBearingAndDistance) {
   EXPECT_EQ(f.task->estimate()->bearing_rad, outcome.results.at("bearing_rad"));
 }
 
+TEST(RelativePositionTask, KeepsWhatItsLastEstimateWasMadeFrom) {
+  // The anchor is gone after the second image, so that later ones bring no estimate.
+  Fixture f({.anchor_hidden = {milliseconds(60), std::chrono::hours(1)}});
+  EXPECT_FALSE(f.run_task().reached());
+  EXPECT_GT(f.vehicle.images_read(), 2);
+  ASSERT_TRUE(f.task->sighting());
+  const auto& [image, roi] = *f.task->sighting();
+  EXPECT_EQ(image.index, 1u);
+  EXPECT_EQ(image.rgb.size(), 160u * 120u * 3u);
+  EXPECT_TRUE(f.task->estimate());
+  EXPECT_GT(roi.width_px, 5.0);
+  const auto& camera = f.vehicle.catalogue().sensors.front();
+  const auto again =
+      vision::relative_position(camera, *f.vehicle.catalogue().find_anchor("blue_box"), roi);
+  EXPECT_EQ(again.bearing_rad, f.task->estimate()->bearing_rad);
+}
+
 TEST(RelativePositionTask, MovesNothingAndNotesEachImage) {
   Fixture f;
   f.run_task();
@@ -67,6 +84,7 @@ TEST(RelativePositionTask, NotSeenIsAnOutcome) {
   EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
   EXPECT_EQ(outcome.reason, "anchor not seen");
   EXPECT_FALSE(f.task->estimate());
+  EXPECT_FALSE(f.task->sighting());
   EXPECT_EQ(f.vehicle.images_read(), kOptions.convergence.max_unseen_frames);
 }
 

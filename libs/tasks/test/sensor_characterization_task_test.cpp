@@ -55,6 +55,35 @@ TEST(SensorCharacterizationTask, TakesAnySensorWaitingForWhatIsNew) {
   EXPECT_NEAR(imu.results.at("median_s"), 0.005, 1e-9);
 }
 
+TEST(SensorCharacterizationTask, TellsOfEachAcquisition) {
+  PlanarVehicle vehicle({.range_delays = {milliseconds(10), milliseconds(40)}});
+  TaskContext context(vehicle);
+  SensorCharacterizationOptions options;
+  options.acquisitions = 3;
+  SensorCharacterizationTask task("range", options);
+  ASSERT_TRUE(run(task, context).reached());
+  ASSERT_EQ(task.acquisitions().size(), 3u);
+  const std::vector<int> asked_ms = {0, 10, 50};
+  const std::vector<int> had_ms = {10, 50, 60};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Acquisition& acquisition = task.acquisitions()[i];
+    EXPECT_EQ(acquisition.asked_at, ExecTime(milliseconds(asked_ms[i])));
+    EXPECT_EQ(acquisition.had_at, ExecTime(milliseconds(had_ms[i])));
+    EXPECT_EQ(acquisition.sampled_at, SimTime(milliseconds(asked_ms[i])));
+    EXPECT_EQ(acquisition.index, i);
+  }
+}
+
+TEST(SensorCharacterizationTask, KeepsWhatItHadWhenItFails) {
+  PlanarVehicle vehicle({.disconnect_at = 2});
+  TaskContext context(vehicle);
+  SensorCharacterizationTask task("imu");
+  EXPECT_FALSE(run(task, context).reached());
+  EXPECT_EQ(task.acquisitions().size(), 2u);
+  EXPECT_FALSE(run(task, context).reached());
+  EXPECT_TRUE(task.acquisitions().empty()) << "of the last run only";
+}
+
 TEST(SensorCharacterizationTask, OneAcquisitionHasNoSpread) {
   PlanarVehicle vehicle({});
   SensorCharacterizationOptions options;

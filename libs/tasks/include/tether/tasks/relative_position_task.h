@@ -7,6 +7,8 @@
 #include <tether/base/time.h>
 #include <tether/tasks/loop_limit.h>
 #include <tether/tasks/task.h>
+#include <tether/uav/samples.h>
+#include <tether/vision/anchor_tracker.h>
 #include <tether/vision/relative_position.h>
 
 namespace tether::tasks {
@@ -47,10 +49,17 @@ class RelativePositionTask : public Task {
   /// not seen at all.
   const std::optional<vision::RelativePosition>& estimate() const { return estimate_; }
 
+  /// What that estimate was made from.
+  struct Sighting {
+    uav::CameraSample image;
+    vision::Roi roi;
+  };
+  const std::optional<Sighting>& sighting() const { return sighting_; }
+
  private:
   struct Loop;
   Progress prepare(TaskContext& context);
-  Progress look(TaskContext& context, const uav::CameraSample& image);
+  Progress look(TaskContext& context, uav::CameraSample image);
   Progress miss();
 
   std::string anchor_;
@@ -58,6 +67,7 @@ class RelativePositionTask : public Task {
   LoopLimit limit_;
   std::unique_ptr<Loop> loop_;  ///< state of the task loop, new for each run
   std::optional<vision::RelativePosition> estimate_;
+  std::optional<Sighting> sighting_;
 };
 
 }  // namespace tether::tasks

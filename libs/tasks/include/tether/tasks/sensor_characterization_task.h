@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,14 @@ namespace tether::tasks {
 struct SensorCharacterizationOptions {
   int acquisitions = 100;                          ///< > 0
   Duration time_limit = std::chrono::seconds(60);  ///< of the SUT's clock; then "time limit"
+};
+
+/// One reading of a sensor, with the instants that its time is made of.
+struct Acquisition {
+  ExecTime asked_at;
+  ExecTime had_at;          ///< ≥ asked_at; the difference is what Algorithm 1 measures
+  SimTime sampled_at;       ///< of the sample, as the sensor says
+  std::uint64_t index = 0;  ///< of the sample
 };
 
 /// Algorithm 1: acquires one sensor's data again and again, each time waiting for what was not read
@@ -32,6 +41,9 @@ class SensorCharacterizationTask : public Task {
   Progress step(TaskContext& context) override;
   void finalise(TaskContext& context, TaskOutcome& outcome) override;
 
+  /// Those of the last run, in the order in which they were made, whatever the run's end was.
+  const std::vector<Acquisition>& acquisitions() const { return acquisitions_; }
+
  private:
   std::string sensor_;
   SensorCharacterizationOptions options_;
@@ -39,7 +51,7 @@ class SensorCharacterizationTask : public Task {
 
   // Of the current run.
   uav::SensorKind kind_ = uav::SensorKind::kCamera;
-  std::vector<double> taken_s_;  ///< each acquisition
+  std::vector<Acquisition> acquisitions_;
 };
 
 }  // namespace tether::tasks
