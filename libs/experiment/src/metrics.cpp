@@ -57,21 +57,33 @@ MetricOutcome final_bearing_error(const scenario::Metric& metric, const record::
                        });
 }
 
-// What the SUT waited for its data: by its own clock, which the barrier holds to ST; without the
-// barrier in ST.
-Duration waited(const record::Interaction& read, bool free_running) {
-  return free_running ? read.st_at_release - read.st_at_arrival : read.reply_at - read.request_at;
+// What the SUT waited for its data: by its own clock, which the barrier holds to ST. Without the
+// barrier in ST, which runs on while the link carries request and reply; how long that was, the SUT
+// tells with its next request.
+Duration waited(const record::Interaction& read, const record::Interaction* next,
+                const record::Header& header) {
+  if (header.policy != record::kFreeRunning) return read.reply_at - read.request_at;
+  const Duration link = next ? next->previous_link_time.value_or(Duration(0)) : Duration(0);
+  return read.st_at_release - read.st_at_arrival +
+         duration_from_seconds(header.real_time_factor * to_seconds(link));
+}
+
+std::vector<const record::Interaction*> interactions_of(const std::string& uav,
+                                                        const record::Record& record) {
+  std::vector<const record::Interaction*> own;
+  for (const auto& logged : record.interactions) {
+    if (logged.message.uav == uav) own.push_back(&logged.message);
+  }
+  return own;
 }
 
 MetricOutcome acquisition_time(const scenario::Metric& metric, const record::Record& record) {
-  const bool free_running = record.header.policy == record::kFreeRunning;
+  const auto own = interactions_of(metric.uav, record);
   Duration sum{0};
   int reads = 0;
-  for (const auto& logged : record.interactions) {
-    const record::Interaction& read = logged.message;
-    if (read.kind != record::kSensor || read.uav != metric.uav || read.sensor != metric.sensor)
-      continue;
-    sum += waited(read, free_running);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    if (own[i]->kind != record::kSensor || own[i]->sensor != metric.sensor) continue;
+    sum += waited(*own[i], i + 1 < own.size() ? own[i + 1] : nullptr, record.header);
     ++reads;
   }
   if (reads > 0) return {to_seconds(sum) / reads, ""};

@@ -212,6 +212,17 @@ TEST(AcquisitionTime, IsOfSimulatedTimeInFreeRunning) {
   EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.05, 1e-12);
 }
 
+// ST goes on at its own pace while the link carries an image.
+TEST(AcquisitionTime, CountsTheLinkInFreeRunningOnly) {
+  Flight flight;
+  flight.image(0, 0, 30).image(100, 1, 30).finish(300);
+  flight.record().interactions[1].message.previous_link_time = milliseconds(40);
+  flight.record().header.real_time_factor = 0.5;
+  EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.03, 1e-12);
+  flight.record().header.policy = record::kFreeRunning;
+  EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.03 + 0.5 * 0.02, 1e-12);
+}
+
 TEST(AcquisitionTime, IsMissingWhereTheSensorWasNotRead) {
   Flight flight;
   flight.image(0, 0).image(0, 1).finish(300);
