@@ -20,8 +20,12 @@ struct RigSensor {
   uav::SensorDescription description;
   /// A camera: "/dev/videoN" or "N" (Video4Linux), a video file's path, or a stream's URL. A
   /// rangefinder or an IMU: a folder laid out like /sys/bus/iio/devices/iio:deviceN, or "iio:NAME"
-  /// with NAME "deviceN" or what the driver's `name` file says.
+  /// with NAME "deviceN" or what the driver's `name` file says; two of these with a comma between
+  /// where an IMU's driver shows accelerometer and gyroscope as two devices.
   std::string device;
+  /// A camera whose description has width 0 gets the model of this field of view, for the size that
+  /// its device has; 0: not known.
+  double horizontal_fov_rad = 0.0;
 };
 
 /// Sensors on a bench or on a UAV's frame, with no UAV that could be flown.
@@ -32,9 +36,9 @@ struct Rig {
 };
 
 /// Opens every device, in the rig's order; the devices are closed with the vehicle. A camera whose
-/// description has width 0 takes the device's size: its principal point is then the centre, and
-/// focal lengths that are 0 stay so (nothing but a calibration knows them). A camera whose rate is
-/// 0 takes the rate that the device says, if it says one.
+/// description has width 0 takes the device's size, the centre as its principal point, and the
+/// focal lengths of `horizontal_fov_rad`, if that is given. One whose rate is 0 takes the rate that
+/// the device says, if it says one.
 ///
 /// Of the vehicle returned:
 /// - `now()` is the wall clock's ET since this call; sleeps are real; `annotate` drops what it is
@@ -48,7 +52,7 @@ struct Rig {
 ///   device that stopped.
 /// - Rangefinder and IMU measure when asked; their sample is from the instant at which the read
 ///   returned. A range beyond the description's `max_m` reads +inf, one below its `min_m` −inf.
-///   The four components of an IMU's `q_WS` are NaN: the kernel's interface gives no attitude.
+///   The four components of an IMU's `q_WS` are NaN: such sensors know no attitude.
 ///
 /// Fails with kInvalid (a device that is missing, not allowed, of another kind or size, or busy; a
 /// sensor named twice). Reads fail with kInvalid for a sensor that the rig does not have, and with

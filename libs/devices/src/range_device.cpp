@@ -1,0 +1,97 @@
+#include "range_device.h"
+
+#include "iio_folder.h"
+
+#include <array>
+#include <cerrno>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+namespace tether::devices {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// What drivers of the kernel do when there is nothing within range (drivers/iio/proximity).
+struct NoTarget {
+  std::string_view driver;  ///< what its `name` file says
+  bool eio;                 ///< the read fails with EIO
+  double from_m;            ///< the read gives this or more
+};
+constexpr std::array<NoTarget, 3> kNoTarget = {{
+    // No look at the sensor's status; the sensor itself gives 8190 or 8191 mm.
+    {"vl53l0x", false, 8.19},
+    // Each range status but "valid".
+    {"vl53l1x", true, kInfinity},
+    // An echo later than from 6.45 m.
+    {"srf04", true, kInfinity},
+}};
+
+NoTarget no_target_of(std::string_view driver) {
+  for (const NoTarget& known : kNoTarget) {
+    if (known.driver == driver) return known;
+  }
+  return {driver, false, kInfinity};
+}
+
+Failure invalid(const std::string& message) {
+  return {Failure::Kind::kInvalid, message};
+}
+
+}  // namespace
+
+RangeDevice::RangeDevice(const Timeline& time, std::string label, Channel channel,
+                         const uav::RangeProperties& limits)
+    : time_(time),
+      label_(std::move(label)),
+      channel_(std::move(channel)),
+      limits_(limits),
+      no_target_m_(kInfinity) {}
+
+Result<std::unique_ptr<RangeDevice>> RangeDevice::open(System& system, const Timeline& time,
+                                                       std::string label, const std::string& folder,
+                                                       const uav::RangeProperties& limits) {
+  std::optional<Channel> channel = Channel::open(system, time.clock(), folder, "in_distance", "");
+  if (!channel) {
+    return invalid(label + ": no rangefinder: " + folder +
+                   " has neither in_distance_input nor in_distance_raw");
+  }
+  if (!channel->fault().empty()) return invalid(label + ": " + channel->fault());
+  // make_unique cannot reach the constructor.
+  std::unique_ptr<RangeDevice> device(
+      new RangeDevice(time, std::move(label), std::move(*channel), limits));
+  const NoTarget no_target = no_target_of(iio_name(system, time.clock(), folder));
+  device->eio_is_no_target_ = no_target.eio;
+  device->no_target_m_ = no_target.from_m;
+  const Reading first = device->measure();
+  if (!first.ok()) return invalid(device->label_ + ": " + first.fault);
+  return device;
+}
+
+Reading RangeDevice::measure() const {
+  Reading reading = channel_.read(time_.clock());
+  if (eio_is_no_target_ && reading.error == EIO) reading = {kInfinity, 0, {}};
+  return reading;
+}
+
+Result<uav::RangeSample> RangeDevice::read() {
+  if (stopped_) return *stopped_;
+  const Reading reading = measure();
+  uav::RangeSample sample;
+  sample.sampled_at = time_.at(time_.clock().now());
+  if (!reading.ok()) {
+    stopped_ = Failure{Failure::Kind::kDisconnected, label_ + " stopped after " +
+                                                         std::to_string(measured_) +
+                                                         " measurements (" + reading.fault + ")"};
+    return *stopped_;
+  }
+  sample.index = measured_++;
+  const bool too_far = limits_.max_m > 0.0 && reading.value > limits_.max_m;
+  sample.range_m = too_far || reading.value >= no_target_m_ ? kInfinity
+                   : reading.value < limits_.min_m          ? -kInfinity
+                                                            : reading.value;
+  return sample;
+}
+
+}  // namespace tether::devices

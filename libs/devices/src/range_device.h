@@ -1,0 +1,51 @@
+#pragma once
+
+#include "clock.h"
+#include "iio_attribute.h"
+#include "system.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <tether/base/result.h>
+#include <tether/uav/catalogue.h>
+#include <tether/uav/samples.h>
+
+namespace tether::devices {
+
+/// A rangefinder of the kernel's IIO interface: in_distance_input, or in_distance_raw with scale
+/// and offset [m]. Measures whenever it is read.
+///
+/// A sample is from the instant at which the read returned: the sensor gathers light for some time
+/// before, the kernel does not say when, and what is known for certain is that nothing later is in
+/// the value (DESIGN section 2, rule 1).
+class RangeDevice {
+ public:
+  /// Opens the channel in `folder`, and measures once, so that a sensor that does not answer is
+  /// told at once. `label` begins each message. Fails with kInvalid.
+  static Result<std::unique_ptr<RangeDevice>> open(System& system, const Timeline& time,
+                                                   std::string label, const std::string& folder,
+                                                   const uav::RangeProperties& limits);
+
+  /// A range beyond the limits' maximum (0: none known), or none that the driver holds for valid,
+  /// reads +inf; one below the minimum −inf. Fails with kDisconnected, and then for ever.
+  Result<uav::RangeSample> read();
+
+ private:
+  RangeDevice(const Timeline& time, std::string label, Channel channel,
+              const uav::RangeProperties& limits);
+  /// The range, with what the driver gives where it has none; no reading at all has a fault.
+  Reading measure() const;
+
+  Timeline time_;
+  std::string label_;
+  Channel channel_;
+  uav::RangeProperties limits_;
+  bool eio_is_no_target_ = false;
+  double no_target_m_;  ///< the driver's value for "nothing there", and all above it
+  std::uint64_t measured_ = 0;
+  std::optional<Failure> stopped_;
+};
+
+}  // namespace tether::devices
