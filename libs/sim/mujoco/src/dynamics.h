@@ -2,7 +2,9 @@
 
 #include "bodies.h"
 #include "engine.h"
+#include "pose_history.h"
 
+#include <span>
 #include <vector>
 
 #include <tether/base/time.h>
@@ -22,7 +24,9 @@ struct BodyMotion {
 /// The moving part of the world: rigid bodies, contacts, rotors and controllers.
 ///
 /// The layout of a captured state is: position and quaternion of each moving body (7 numbers each),
-/// then the BodyMotion of each UAV (9 numbers each).
+/// then the BodyMotion of each UAV (9 numbers each), then the positions and quaternions again at
+/// each past step that some camera's shutter reaches back to, oldest first (none without a
+/// shutter). What was before ST 0 is as at ST 0.
 class Dynamics {
  public:
   /// `world` must outlive this object.
@@ -44,6 +48,10 @@ class Dynamics {
 
   static uav::Pose pose_of(const std::vector<double>& state, std::size_t body);
   BodyMotion motion_of(const std::vector<double>& state, std::size_t uav) const;
+  /// Where a body was `steps_ago` steps before the capture, a whole number or between two. @pre not
+  /// negative, and within the longest shutter.
+  uav::Pose past_pose_of(const std::vector<double>& state, std::size_t body,
+                         double steps_ago) const;
 
  private:
   struct Flight {
@@ -54,12 +62,14 @@ class Dynamics {
 
   void apply_rotors(std::size_t uav);
   void check_engine() const;
+  std::span<const double> poses() const;
 
   const World& world_;
   std::size_t bodies_ = 0;
   ModelPtr model_;
   DataPtr data_;
   std::vector<Flight> flights_;
+  PoseHistory past_;
 };
 
 }  // namespace tether::sim

@@ -118,6 +118,8 @@ const RawImage& Renderer::render(const View& view) {
   const EglBinding binding(egl_);
   image_.width_px = view.camera.width_px;
   image_.height_px = view.camera.height_px;
+  near_m_ = view.near_m;
+  far_m_ = view.far_m;
   set_camera(view);
   place_items(view);
   mjr_render({0, 0, image_.width_px, image_.height_px}, engine_scene_.get(), &context_);
@@ -176,6 +178,15 @@ void Renderer::read_back() {
   glReadBuffer(GL_COLOR_ATTACHMENT0);
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, image_.rgba.data());
   mjr_restoreBuffer(&context_);
+}
+
+// The buffer holds the share of the way from 1/near to 1/far.
+double Renderer::nearest_depth_m() {
+  const EglBinding binding(egl_);
+  depth_.resize(image_.rgba.size());
+  mjr_readPixels(nullptr, depth_.data(), {0, 0, image_.width_px, image_.height_px}, &context_);
+  const double share = *std::min_element(depth_.begin(), depth_.end());
+  return 1.0 / ((1.0 - share) / near_m_ + share / far_m_);
 }
 
 }  // namespace tether::sim

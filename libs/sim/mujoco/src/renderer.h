@@ -56,6 +56,9 @@ class Renderer {
   };
   /// The image is valid until the next call.
   const RawImage& render(const View& view);
+  /// How far ahead the nearest thing is that the last image shows, along the camera's axis; no
+  /// farther than the far plane [m].
+  double nearest_depth_m();
 
   /// OpenGL's name of the renderer.
   const std::string& name() const { return egl_.renderer_name(); }
@@ -72,6 +75,9 @@ class Renderer {
   EngineScene engine_scene_;
   mjrContext context_{};
   RawImage image_;
+  std::vector<float> depth_;
+  double near_m_ = 0.0;  ///< of the last image
+  double far_m_ = 0.0;
 };
 
 }  // namespace tether::sim

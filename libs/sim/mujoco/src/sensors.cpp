@@ -35,6 +35,12 @@ Vec3 specific_force_B(const Vec3& p_BS, const uav::Quat& q_WB, const BodyMotion&
          cross(motion.w_WB_B, cross(motion.w_WB_B, p_BS));
 }
 
+bool is_dropped(const RangeModel& range, const MeasurementKey& key) {
+  if (range.dropout_probability == 0.0) return false;
+  const std::uint64_t stream = random_stream(key.uav, key.sensor, "dropout");
+  return KeyedRandom({key.seed, stream, key.index}).uniform() < range.dropout_probability;
+}
+
 }  // namespace
 
 uav::ImuSample measure_imu(const ImuModel& imu, const uav::Pose& X_BS, const uav::Pose& X_WB,
@@ -57,7 +63,7 @@ uav::ImuSample measure_imu(const ImuModel& imu, const uav::Pose& X_BS, const uav
 uav::RangeSample measure_range(const RangeModel& range, double distance_m,
                                const MeasurementKey& key) {
   uav::RangeSample sample{key.at, key.index, kInfinity};
-  if (distance_m == kInfinity) return sample;
+  if (distance_m == kInfinity || is_dropped(range, key)) return sample;
   double measured_m = distance_m + noise_value(range.noise, noise_key(key, "range"));
   if (range.resolution_m > 0.0) {
     measured_m = range.resolution_m * std::round(measured_m / range.resolution_m);
@@ -70,18 +76,23 @@ uav::RangeSample measure_range(const RangeModel& range, double distance_m,
 RayCaster::RayCaster(const Dynamics& dynamics)
     : dynamics_(dynamics), data_(make_data(dynamics.model())) {}
 
-double RayCaster::cast(const std::vector<double>& state, const uav::Pose& X_WS, std::size_t uav) {
+double RayCaster::cast(const std::vector<double>& state, const uav::Pose& X_WS,
+                       const std::vector<uav::Vec3>& rays_S, std::size_t uav) {
   const mjModel& model = dynamics_.model();
   std::copy_n(state.begin(), model.nq, data_->qpos);
   mj_kinematics(&model, data_.get());
   std::array<mjtNum, 3> origin{};
-  std::array<mjtNum, 3> direction{};
   copy_to(X_WS.p, origin.data());
-  copy_to(rotate(X_WS.q, {1.0, 0.0, 0.0}), direction.data());
-  int geom = -1;
-  const double distance_m = mj_ray(&model, data_.get(), origin.data(), direction.data(), nullptr, 1,
-                                   engine_body(uav), &geom);
-  return geom < 0 ? kInfinity : distance_m;
+  double nearest_m = kInfinity;
+  for (const Vec3& ray_S : rays_S) {
+    std::array<mjtNum, 3> direction{};
+    copy_to(rotate(X_WS.q, ray_S), direction.data());
+    int geom = -1;
+    const double distance_m = mj_ray(&model, data_.get(), origin.data(), direction.data(), nullptr,
+                                     1, engine_body(uav), &geom);
+    if (geom >= 0) nearest_m = std::min(nearest_m, distance_m);
+  }
+  return nearest_m;
 }
 
 }  // namespace tether::sim

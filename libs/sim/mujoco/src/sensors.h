@@ -28,7 +28,7 @@ uav::ImuSample measure_imu(const ImuModel& imu, const uav::Pose& X_BS, const uav
                            const BodyMotion& motion, double gravity_m_s2,
                            const MeasurementKey& key);
 
-/// What a rangefinder reports for the true distance [m] (infinite: nothing there): noise,
+/// What a rangefinder reports for the true distance [m] (infinite: nothing there): dropouts, noise,
 /// resolution, limits.
 uav::RangeSample measure_range(const RangeModel& range, double distance_m,
                                const MeasurementKey& key);
@@ -39,9 +39,10 @@ class RayCaster {
   /// `dynamics` must outlive this object.
   explicit RayCaster(const Dynamics& dynamics);
 
-  /// Distance from the origin of `X_WS` along its x axis to the first shape that is not of UAV
-  /// `uav`; infinite where there is none [m].
-  double cast(const std::vector<double>& state, const uav::Pose& X_WS, std::size_t uav);
+  /// Distance from the origin of `X_WS` to the nearest point that any of the rays meets of a shape
+  /// that is not of UAV `uav`; infinite where there is none [m].
+  double cast(const std::vector<double>& state, const uav::Pose& X_WS,
+              const std::vector<uav::Vec3>& rays_S, std::size_t uav);
 
  private:
   const Dynamics& dynamics_;

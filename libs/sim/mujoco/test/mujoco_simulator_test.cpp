@@ -5,6 +5,7 @@
 
 #include <tether/base/error.h>
 #include <tether/base/random.h>
+#include <tether/sim/range_rays.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
 
 namespace tether::sim {
@@ -25,7 +26,7 @@ SimTime at(Duration d) {
   return SimTime(d);
 }
 
-// A world in which everything is noisy and two UAVs fly past a loose box.
+// A world in which everything is noisy and blurred, and two UAVs fly past a loose box.
 World busy_world() {
   World world = test_world();
   world.uavs.push_back(test_uav("beta", {2.0, 1.0, 1.5}));
@@ -35,10 +36,16 @@ World busy_world() {
   world.models.push_back(loose);
   const Noise noise{0.0, 0.02, 0.0, 0.01, 0.001, 100.0};
   for (Uav& uav : world.uavs) {
-    std::get<CameraModel>(uav.sensors[kCamera].model).pixel_noise = noise;
+    auto& camera = std::get<CameraModel>(uav.sensors[kCamera].model);
+    camera.pixel_noise = noise;
+    camera.exposure_s = 0.008;
+    camera.readout_s = 0.0155;
     std::get<ImuModel>(uav.sensors[kImu].model).angular_velocity.fill(noise);
     std::get<ImuModel>(uav.sensors[kImu].model).linear_acceleration.fill(noise);
-    std::get<RangeModel>(uav.sensors[kRange].model).noise = noise;
+    auto& range = std::get<RangeModel>(uav.sensors[kRange].model);
+    range.noise = noise;
+    range.rays_S = cone_of_rays(0.5);
+    range.dropout_probability = 0.3;
   }
   return world;
 }

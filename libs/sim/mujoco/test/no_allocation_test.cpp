@@ -59,10 +59,14 @@ TEST(NoAllocationTest, CountsAllocations) {
   EXPECT_GE(allocations.exchange(0), 2);
 }
 
-TEST(NoAllocationTest, SteppingAndCapturingAllocateNothing) {
+class SteppingTest : public ::testing::TestWithParam<double> {};
+
+// With a shutter, every step is remembered.
+TEST_P(SteppingTest, SteppingAndCapturingAllocateNothing) {
   World world = testing::test_world();
   world.models.push_back(
       testing::box_model("wall", {1.0, 0.0, 1.0}, {0.2, 4.0, 3.0}, {1.0, 1.0, 1.0}));
+  std::get<CameraModel>(world.uavs[0].sensors[testing::kCamera].model).readout_s = GetParam();
   const auto simulator = testing::make_simulator(world);
   Snapshot snapshot;
   simulator->capture(snapshot);
@@ -72,10 +76,13 @@ TEST(NoAllocationTest, SteppingAndCapturingAllocateNothing) {
   simulator->capture(snapshot);
   simulator->ground_truth(0);
   simulator->reset(2);
+  simulator->capture(snapshot);
   simulator->advance_to(SimTime(100ms));
   counting = false;
   EXPECT_EQ(allocations.exchange(0), 0);
 }
+
+INSTANTIATE_TEST_SUITE_P(Readout_s, SteppingTest, ::testing::Values(0.0, 0.03));
 
 }  // namespace
 }  // namespace tether::sim

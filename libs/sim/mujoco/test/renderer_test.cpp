@@ -131,6 +131,24 @@ TEST(RendererTest, BackgroundFillsWhereNothingIs) {
             (std::array{51, 102, 204}));
 }
 
+TEST(RendererTest, TellsHowNearTheNearestThingIs) {
+  World world = flat_world();
+  const uav::CameraModel camera = camera_intrinsics(64, 48);
+  const Renderer::View view{camera, 0.05, 100.0, {}, {}, {}};
+  Renderer empty(make_scene(world, no_warnings()), 64, 48);
+  empty.render(view);
+  EXPECT_GT(empty.nearest_depth_m(), 50.0) << "the sky is somewhere before the far plane";
+  world.models.push_back(box_model("wall", {8.0, 0.0, 0.0}, {1.0, 90.0, 90.0}, {1.0, 1.0, 1.0}));
+  world.models.push_back(box_model("hidden", {1.0, 9.0, 0.0}, {1.0, 1.0, 1.0}, {1.0, 1.0, 1.0}));
+  Renderer wall(make_scene(world, no_warnings()), 64, 48);
+  wall.render(view);
+  EXPECT_NEAR(wall.nearest_depth_m(), 7.5, 0.01);
+  world.models.push_back(box_model("post", {0.6, 0.2, 0.0}, {0.2, 0.1, 0.1}, {1.0, 1.0, 1.0}));
+  Renderer post(make_scene(world, no_warnings()), 64, 48);
+  post.render(view);
+  EXPECT_NEAR(post.nearest_depth_m(), 0.5, 0.001);
+}
+
 TEST(RendererTest, NothingBeyondTheFarPlane) {
   World world = flat_world();
   world.models.push_back(box_model("far", {101.0, 0.0, 0.0}, {0.1, 90.0, 90.0}, {1.0, 0.0, 0.0}));

@@ -130,7 +130,8 @@ struct CameraModel {
   /// Rolling shutter: from the end of the first row's exposure to the end of the last row's [s];
   /// 0: all rows at once. A sample's `sampled_at` is the end of the LAST row's exposure, so that
   /// nothing in an image is from its future: of H rows, row r gathers light during
-  /// [e − exposure_s, e] with e = sampled_at − readout_s·(H−1−r)/(H−1).
+  /// [e − exposure_s, e] with e = sampled_at − readout_s·(H−1−r)/(H−1). Neither is negative, and
+  /// both together are at most 1 s.
   double readout_s = 0.0;
 };
 struct ImuModel {

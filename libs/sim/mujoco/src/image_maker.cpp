@@ -1,0 +1,149 @@
+#include "image_maker.h"
+
+#include "sensor_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tether::sim {
+namespace {
+
+// How far each moving body reaches from its origin.
+std::vector<double> body_radii(const Scene& scene, std::size_t bodies) {
+  std::vector<double> radii_m(bodies, 0.0);
+  for (const SceneItem& item : scene.items) {
+    if (!item.body) continue;
+    double& radius_m = radii_m[*item.body];
+    const double reach_m = norm(transform(item.X_BV, item.bounds.centre)) + item.bounds.radius_m;
+    radius_m = std::max(radius_m, reach_m);
+  }
+  return radii_m;
+}
+
+}  // namespace
+
+ImageMaker::Plan::Plan(const uav::CameraModel& camera) : rendered(camera) {
+  if (!ImageWarp::is_needed(camera)) return;
+  warp.emplace(camera);
+  rendered = warp->source();
+}
+
+ImageMaker::ImageMaker(const World& world, const Dynamics& dynamics, const WarningSink& warn)
+    : world_(world),
+      dynamics_(dynamics),
+      scene_(make_scene(world, warn)),
+      body_radii_m_(body_radii(scene_, moving_bodies(world).size())),
+      poses_(body_radii_m_.size()) {}
+
+uav::CameraSample ImageMaker::make(const CameraModel& camera, const Request& r) {
+  const auto width = static_cast<std::size_t>(camera.intrinsics.width_px);
+  const auto height = static_cast<std::size_t>(camera.intrinsics.height_px);
+  uav::CameraSample sample{r.key.at, r.key.index, camera.intrinsics.width_px,
+                           camera.intrinsics.height_px,
+                           std::vector<std::uint8_t>(width * height * 3)};
+  draw(camera, r, 0.0, sample.rgb);
+  if (Shutter(camera).window_s() > 0.0) {
+    const int instants = count_instants(motion_px(camera, r));
+    if (instants > 1) mix(camera, r, instants, sample.rgb);
+  }
+  const std::uint64_t stream = random_stream(r.key.uav, r.key.sensor, "pixels");
+  add_pixel_noise(camera.pixel_noise, {r.key.seed, stream, r.key.index, r.key.at}, sample.rgb);
+  return sample;
+}
+
+// The image of one instant, through the lens.
+void ImageMaker::draw(const CameraModel& camera, const Request& r, double steps_ago, Bytes rgb) {
+  const Plan& plan = plan_of(r.sensor, camera);
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    poses_[i] = dynamics_.past_pose_of(r.state, i, steps_ago);
+  }
+  const RawImage& raw = renderer().render(
+      {plan.rendered, camera.near_m, camera.far_m, poses_[r.uav] * r.sensor.X_BS, poses_, r.uav});
+  if (plan.warp) {
+    plan.warp->apply(raw, rgb);
+  } else {
+    convert_to_rgb(raw, rgb);
+  }
+}
+
+// How far things move in the picture within the shutter's window, were they as fast throughout as
+// in its fastest step: instants are evenly spaced. The last instant's image tells how near things
+// are.
+double ImageMaker::motion_px(const CameraModel& camera, const Request& r) {
+  const double steps = steps_of(Shutter(camera).window_s());
+  const double nearest_m = renderer().nearest_depth_m();
+  double fastest_px = 0.0;
+  for (double ago = 0.0; ago < steps; ago += 1.0) {
+    fastest_px = std::max(fastest_px, step_motion_px(camera, r, ago, nearest_m));
+  }
+  return steps * fastest_px;
+}
+
+double ImageMaker::step_motion_px(const CameraModel& camera, const Request& r, double steps_ago,
+                                  double nearest_m) {
+  const double focal_px = plan_of(r.sensor, camera).rendered.fx_px;
+  const Movement carrier = movement_of(r, r.uav, steps_ago);
+  const Movement eye{carrier.before * r.sensor.X_BS, carrier.after * r.sensor.X_BS};
+  double of_bodies_px = 0.0;
+  for (std::size_t i = 0; i < body_radii_m_.size(); ++i) {
+    if (i == r.uav) continue;
+    of_bodies_px =
+        std::max(of_bodies_px, body_motion_px(movement_of(r, i, steps_ago), body_radii_m_[i],
+                                              eye.after.p, camera.near_m, focal_px));
+  }
+  return camera_motion_px(eye, nearest_m, focal_px) + of_bodies_px;
+}
+
+Movement ImageMaker::movement_of(const Request& r, std::size_t body, double steps_ago) const {
+  return {dynamics_.past_pose_of(r.state, body, steps_ago + 1.0),
+          dynamics_.past_pose_of(r.state, body, steps_ago)};
+}
+
+// `rgb` is the image of the last instant, and becomes the mix.
+void ImageMaker::mix(const CameraModel& camera, const Request& r, int instants, Bytes rgb) {
+  const Shutter shutter(camera);
+  const double steps = steps_of(shutter.window_s());
+  light_.clear(rgb.size());
+  instant_rgb_.resize(rgb.size());
+  for (int i = 0; i + 1 < instants; ++i) {
+    draw(camera, r, steps * (instants - 1 - i) / (instants - 1), instant_rgb_);
+    add_rows(shutter, i, instants, instant_rgb_);
+  }
+  add_rows(shutter, instants - 1, instants, rgb);
+  light_.encode(rgb);
+}
+
+void ImageMaker::add_rows(const Shutter& shutter, int instant, int instants, Bytes rgb) {
+  const std::size_t stride = rgb.size() / static_cast<std::size_t>(shutter.rows);
+  for (int row = 0; row < shutter.rows; ++row) {
+    const double weight = row_weight(shutter, row, instant, instants);
+    if (weight == 0.0) continue;
+    const std::size_t first = static_cast<std::size_t>(row) * stride;
+    light_.add(first, rgb.subspan(first, stride), weight);
+  }
+}
+
+const ImageMaker::Plan& ImageMaker::plan_of(const Sensor& sensor, const CameraModel& camera) {
+  return plans_.try_emplace(&sensor, camera.intrinsics).first->second;
+}
+
+// Made at the first image, large enough for every camera of the world.
+Renderer& ImageMaker::renderer() {
+  if (renderer_) return *renderer_;
+  int width_px = 1;
+  int height_px = 1;
+  for (const Uav& uav : world_.uavs) {
+    for (const Sensor& sensor : uav.sensors) {
+      const auto* camera = std::get_if<CameraModel>(&sensor.model);
+      if (!camera) continue;
+      const Plan& plan = plan_of(sensor, *camera);
+      width_px = std::max(width_px, plan.rendered.width_px);
+      height_px = std::max(height_px, plan.rendered.height_px);
+    }
+  }
+  renderer_.emplace(std::move(scene_), width_px, height_px);
+  return *renderer_;
+}
+
+}  // namespace tether::sim
