@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -33,8 +34,20 @@ struct CampaignOptions {
   bool resume = false;
 };
 
-/// Everything that a trial's result rests on, as far as files go.
+/// Lays every condition's profiles over a world of its own, so that what is wrong with them shows
+/// before anything is written. What means nothing to any UAV is said once.
+void try_profiles(const scenario::CampaignScenario& entry, const sim::World& world,
+                  std::set<std::string>& warnings) {
+  for (const std::string& name : entry.conditions) {
+    sim::World copy = world;
+    scenario::resolve_sensors(entry.scenario, *entry.scenario.find_condition(name), copy,
+                              [&](const std::string& text) { warnings.insert(text); });
+  }
+}
+
+/// Everything that a trial's result rests on, as far as files go. Each is looked into.
 std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign) {
+  std::set<std::string> warnings;
   std::vector<std::filesystem::path> files = experiment::files_of(campaign);
   files.push_back(own_file());
   const auto every_trial_says_it = [](const std::string&) {};
@@ -44,7 +57,9 @@ std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign)
     const sim::World world = sim::load_world(
         scenario::world_request(entry.scenario, campaign.seeds.front()), every_trial_says_it);
     files.insert(files.end(), world.files.begin(), world.files.end());
+    try_profiles(entry, world, warnings);
   }
+  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
   return files;
 }
 
@@ -61,6 +76,8 @@ experiment::TrialResult execute(const experiment::TrialPlan& plan, std::stop_sou
       own_file().string(),  "run",    plan.scenario->file.string(), "--condition",
       plan.condition->name, "--seed", std::to_string(plan.seed),    "--out",
       plan.folder.string(), "--quiet"};
+  if (!plan.profile.empty())
+    arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
   if (plan.record_images) arguments.push_back("--images");
   ChildProcess process({.arguments = std::move(arguments), .environment = {}, .log = log});
   while (!process.wait(kLook)) {

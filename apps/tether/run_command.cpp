@@ -10,6 +10,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tether/base/error.h>
 #include <tether/experiment/campaign_plan.h>
@@ -23,6 +24,7 @@ namespace {
 struct RunOptions {
   std::filesystem::path scenario;
   std::string condition;
+  std::filesystem::path profile;
   std::uint64_t seed = 1;
   std::filesystem::path out;
   std::string listen = "127.0.0.1:0";
@@ -47,6 +49,8 @@ TrialSpec make_spec(const RunOptions& options) {
   TrialSpec spec;
   spec.scenario = scenario::load_scenario(options.scenario);
   spec.scenario.record_images |= options.record_images;
+  if (!options.profile.empty())
+    scenario::lay_profile(spec.scenario, scenario::load_profile(options.profile));
   spec.condition = pick_condition(spec.scenario, options.condition);
   if (options.real_time_factor > 0.0) spec.condition.real_time_factor = options.real_time_factor;
   spec.seed = options.seed;
@@ -76,6 +80,8 @@ void print_result(const TrialSpec& spec, const experiment::TrialResult& result) 
   fmt::print("  {:<24} {:.3f} s in {:.3f} s of wall time, {} interactions\n", "simulated",
              to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
              result.sync.interactions);
+  if (!result.profiles.empty())
+    fmt::print("  {:<24} {}\n", "profiles", fmt::join(result.profiles, ", "));
   if (result.audit) fmt::print("  {:<24} {}\n", "audit", result.audit->summary);
   if (std::filesystem::exists(spec.folder / kRecordFile))
     fmt::print("  {:<24} {}\n", "record", (spec.folder / kRecordFile).string());
@@ -117,6 +123,8 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_option("scenario", options->scenario, "Scenario file (TOML)")->required();
   command->add_option("--condition", options->condition,
                       "Condition of the scenario; its first one if not given");
+  command->add_option("--profile", options->profile,
+                      "Profile of the sensors (TOML), laid over what the scenario says of them");
   command->add_option("--seed", options->seed, "Seed of noise, delays and start poses")
       ->check(CLI::Range(0.0, 9007199254740992.0))
       ->capture_default_str();
@@ -138,6 +146,7 @@ void add_run_command(CLI::App& program, Action& action) {
   command->footer(R"(Examples:
   tether run scenarios/face_anchor.toml
   tether run scenarios/face_anchor.toml --condition "target, no sync" --seed 7
+  tether run scenarios/face_anchor.toml --profile profiles/ideal.toml
   tether run scenarios/face_anchor.toml --images --out out/one)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -170,7 +170,8 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
   // Whatever is wrong with the user's files shows before anything is written.
   sim::World world =
       sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
-  const Timings timings = scenario::resolve_timings(spec.scenario, world);
+  const Timings timings =
+      scenario::resolve_sensors(spec.scenario, spec.condition, world, observer.warn);
   world.step = spec.scenario.step;
   if (!spec.external_sut) require_sut_programs(spec.scenario);
   const TrialFolder folder(spec.folder);

@@ -38,7 +38,7 @@ struct TrialObserver {
 
 /// Runs one trial and leaves its result in the folder, whatever it was. An earlier trial's files
 /// there are replaced.
-/// @throws Error(kBadFile) before anything is written, when world or models cannot be used;
+/// @throws Error(kBadFile) before anything is written, when world, models or profiles cannot be used;
 /// Error(kSetup) when the folder
 ///   cannot be written.
 experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer);

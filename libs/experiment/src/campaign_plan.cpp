@@ -20,8 +20,12 @@ void add_argument_files(std::vector<std::filesystem::path>& files, const scenari
   }
 }
 
+std::string name_in(const scenario::Campaign& campaign, const std::filesystem::path& file) {
+  return file.lexically_proximate(campaign.file.parent_path()).string();
+}
+
 std::string setting_name(const scenario::Campaign& campaign, const std::filesystem::path& file) {
-  return "file " + file.lexically_proximate(campaign.file.parent_path()).string();
+  return "file " + name_in(campaign, file);
 }
 
 }  // namespace
@@ -40,7 +44,8 @@ std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
       for (const std::string& condition : entry.conditions) {
         plans.push_back({&entry.scenario, entry.scenario.find_condition(condition), seed,
                          folder / trial_folder(entry.scenario.name, condition, seed),
-                         campaign.images_of_first_seed && seed == campaign.seeds.front()});
+                         campaign.images_of_first_seed && seed == campaign.seeds.front(),
+                         entry.profile});
       }
     }
   }
@@ -104,6 +109,10 @@ Settings campaign_settings(const scenario::Campaign& campaign, const Settings& v
   Settings settings = versions;
   for (const std::filesystem::path& file : files) {
     settings[setting_name(campaign, file)] = digest_of_file(file);
+  }
+  for (const scenario::CampaignScenario& entry : campaign.scenarios) {
+    if (entry.profile.empty()) continue;
+    settings["profile of " + entry.scenario.name] = name_in(campaign, entry.profile);
   }
   return settings;
 }

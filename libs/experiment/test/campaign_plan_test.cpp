@@ -117,6 +117,16 @@ TEST_F(CampaignPlan, SettingsAreVersionsAndDigestsOfFiles) {
   EXPECT_EQ(before.at("file turn.toml"), after.at("file turn.toml"));
 }
 
+TEST_F(CampaignPlan, TrialsAndSettingsNameTheProfileThatTheCampaignLaysOnTop) {
+  EXPECT_EQ(plan_trials(campaign_, "out")[0].profile, "");
+  const Settings before = campaign_settings(campaign_, {}, {});
+  campaign_.scenarios[0].profile = scratch_.path("in/../rigs/slow.toml").lexically_normal();
+  EXPECT_EQ(plan_trials(campaign_, "out")[0].profile, campaign_.scenarios[0].profile);
+  EXPECT_THAT(before, testing::IsEmpty());
+  EXPECT_THAT(campaign_settings(campaign_, {}, {}),
+              ElementsAre(Pair("profile of turn", "../rigs/slow.toml")));
+}
+
 TEST_F(CampaignPlan, FilesAreAlsoThoseAmongTheFixedArgumentsOfASut) {
   const auto script = scratch_.write("in/sut.py", "import tether");
   const auto folder = script.parent_path();

@@ -70,6 +70,15 @@ TEST_F(Result, SaysWhatAScriptedSutWasCharged) {
   EXPECT_EQ(result_from_json(text, "f").computing, trial_.computing);
 }
 
+TEST_F(Result, NamesItsProfiles) {
+  trial_.profiles = {"rig", "top"};
+  EXPECT_EQ(result_from_json(to_json(trial_), "f").profiles, trial_.profiles);
+  const std::string text = to_json(trial_);
+  const auto begin = text.find("  \"profiles\""), end = text.find("  \"outcome\"");
+  EXPECT_EQ(result_from_json(text.substr(0, begin) + text.substr(end), "f").profiles,
+            std::vector<std::string>{});
+}
+
 TEST_F(Result, SaysNothingOfAScriptWhereTimeWasMeasured) {
   EXPECT_THAT(to_json(trial_), testing::Not(HasSubstr("computing_s")));
 }
@@ -179,6 +188,16 @@ TEST_F(MakeResult, TakesWhatAScriptedSutIsChargedFromTheCondition) {
   const TrialResult result = make(finished_record(), kReached);
   EXPECT_EQ(result.clock, "scripted");
   EXPECT_EQ(result.computing, milliseconds(3));
+}
+
+TEST_F(MakeResult, TakesTheProfilesFromScenarioAndCondition) {
+  scenario::Scenario& scenario = campaign_.scenarios[0].scenario;
+  scenario::Profile rig, top;
+  rig.name = "rig";
+  top.name = "top";
+  scenario.uavs[0].profile = rig;
+  scenario.conditions[1].profiles = {top};
+  EXPECT_THAT(make(finished_record(), kReached).profiles, testing::ElementsAre("rig", "top"));
 }
 
 TEST_F(MakeResult, TakesEverythingFromTheRecord) {

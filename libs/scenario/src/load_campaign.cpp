@@ -63,6 +63,10 @@ CampaignScenario read_scenario(const TomlTable& table) {
   CampaignScenario entry;
   entry.scenario = load_scenario(table.existing_file("file"));
   entry.conditions = read_conditions(table, entry.scenario);
+  if (table.has("profile")) {
+    entry.profile = table.existing_file("profile");
+    lay_profile(entry.scenario, load_profile(entry.profile));
+  }
   if (table.has("paper_table")) entry.paper_table = kTables[table.choice("paper_table", kTables)];
   return entry;
 }
@@ -81,7 +85,8 @@ Campaign load_campaign(const std::filesystem::path& file) {
   campaign.seeds = read_seeds(root);
   campaign.images_of_first_seed = root.boolean_or("images_of_first_seed", false);
   std::set<std::string> names;
-  for (const TomlTable& table : root.tables("scenario", {"file", "conditions", "paper_table"})) {
+  for (const TomlTable& table :
+       root.tables("scenario", {"file", "conditions", "profile", "paper_table"})) {
     campaign.scenarios.push_back(read_scenario(table));
     const std::string& name = campaign.scenarios.back().scenario.name;
     if (!names.insert(name).second) {

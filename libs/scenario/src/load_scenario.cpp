@@ -1,4 +1,4 @@
-#include "sensor_setup.h"
+#include "read_sensor_profile.h"
 #include "suggest.h"
 #include "toml_table.h"
 
@@ -123,7 +123,35 @@ Sut read_sut(const TomlTable& uav, const std::optional<Sut>& fallback, Scenario&
   return sut;
 }
 
+// Profiles.
+
+void add_files(Scenario& scenario, const std::vector<std::filesystem::path>& more) {
+  scenario.files.insert(scenario.files.end(), more.begin(), more.end());
+}
+
+void sort_files(Scenario& scenario) {
+  std::sort(scenario.files.begin(), scenario.files.end());
+  const auto last = std::unique(scenario.files.begin(), scenario.files.end());
+  scenario.files.erase(last, scenario.files.end());
+}
+
+std::optional<Profile> read_profile(const TomlTable& table, Scenario& scenario) {
+  if (!table.has("profile")) return std::nullopt;
+  Profile profile = load_profile(table.existing_file("profile"));
+  add_files(scenario, profile.files);
+  return profile;
+}
+
 // UAVs.
+
+void read_sensors(const TomlTable& table, Scenario& scenario, UavSetup& uav) {
+  if (!table.has("sensors")) return;
+  const TomlTable sensors = table.table("sensors");
+  for (const std::string& name : sensors.keys()) {
+    uav.sensors.emplace(name,
+                        read_sensor_profile(sensors, name, KindKey::kOptional, scenario.files));
+  }
+}
 
 UavSetup read_uav(const TomlTable& table, const std::optional<Sut>& default_sut,
                   Scenario& scenario) {
@@ -140,12 +168,8 @@ UavSetup read_uav(const TomlTable& table, const std::optional<Sut>& default_sut,
   uav.placement.yaw_rad = rad_from_deg(table.number_or("yaw_deg", kYaw_deg, 0.0));
   uav.yaw_spread_rad = rad_from_deg(table.number_or("yaw_spread_deg", kYawSpread_deg, 0.0));
   uav.command_latency = table.duration_or("command_latency_ms", kLatency_ms, Duration{0});
-  if (table.has("sensors")) {
-    const TomlTable sensors = table.table("sensors");
-    for (const std::string& name : sensors.keys()) {
-      uav.sensors.emplace(name, read_sensor_setup(sensors, name, scenario.files));
-    }
-  }
+  uav.profile = read_profile(table, scenario);
+  read_sensors(table, scenario, uav);
   uav.sut = read_sut(table, default_sut, scenario);
   return uav;
 }
@@ -155,7 +179,7 @@ void read_uavs(const TomlTable& root, Scenario& scenario) {
   std::set<std::string> names;
   for (const TomlTable& table :
        root.tables("uav", {"name", "model", "position_m", "yaw_deg", "yaw_spread_deg",
-                           "command_latency_ms", "sensors", "sut"})) {
+                           "command_latency_ms", "profile", "sensors", "sut"})) {
     scenario.uavs.push_back(read_uav(table, default_sut, scenario));
     const std::string& name = scenario.uavs.back().placement.name;
     if (!names.insert(name).second) {
@@ -212,8 +236,11 @@ void read_conditions(const TomlTable& root, Scenario& scenario) {
   std::map<std::string, std::string> slugs;
   for (const TomlTable& table :
        root.tables("condition", {"name", "description", "policy", "clock", "cpu_factor",
-                                 "computing_ms", "real_time_factor"})) {
+                                 "computing_ms", "real_time_factor", "profile"})) {
     scenario.conditions.push_back(read_condition(table));
+    if (auto profile = read_profile(table, scenario)) {
+      scenario.conditions.back().profiles.push_back(std::move(*profile));
+    }
     const std::string& name = scenario.conditions.back().name;
     const auto [other, is_new] = slugs.emplace(slug(name), name);
     if (!is_new) {
@@ -376,10 +403,25 @@ Scenario load_scenario(const std::filesystem::path& file) {
   read_conditions(root, scenario);
   read_metrics(root, scenario);
   read_record(root, scenario);
-  std::sort(scenario.files.begin(), scenario.files.end());
-  const auto last = std::unique(scenario.files.begin(), scenario.files.end());
-  scenario.files.erase(last, scenario.files.end());
+  sort_files(scenario);
   return scenario;
+}
+
+void lay_profile(Scenario& scenario, const Profile& profile) {
+  for (Condition& condition : scenario.conditions) condition.profiles.push_back(profile);
+  add_files(scenario, profile.files);
+  sort_files(scenario);
+}
+
+std::vector<std::string> profile_names(const Scenario& scenario, const Condition& condition) {
+  std::vector<std::string> names;
+  for (const UavSetup& uav : scenario.uavs) {
+    const bool is_new =
+        uav.profile && std::find(names.begin(), names.end(), uav.profile->name) == names.end();
+    if (is_new) names.push_back(uav.profile->name);
+  }
+  for (const Profile& profile : condition.profiles) names.push_back(profile.name);
+  return names;
 }
 
 }  // namespace tether::scenario

@@ -45,14 +45,18 @@ double seconds_per_unit(std::string_view key) {
 }  // namespace
 
 bool Range::contains(double value) const {
-  return std::isfinite(value) && (above_min ? value > min : value >= min) && value <= max;
+  return std::isfinite(value) && (above_min ? value > min : value >= min) &&
+         (below_max ? value < max : value <= max);
 }
 
 std::string Range::text() const {
   const bool has_min = std::isfinite(min), has_max = std::isfinite(max);
   std::string text;
   if (has_min) text = fmt::format("{} {}", above_min ? "greater than" : "at least", min);
-  if (has_max) text += fmt::format("{}at most {}", has_min ? " and " : "", max);
+  if (has_max) {
+    text +=
+        fmt::format("{}{} {}", has_min ? " and " : "", below_max ? "less than" : "at most", max);
+  }
   return text.empty() ? "finite" : text;
 }
 
@@ -61,12 +65,16 @@ TomlTable::TomlTable(const toml::table& table, std::string path, std::string fil
 
 TomlTable::TomlTable(const toml::table& table, std::string path, std::string file, Keys allowed)
     : TomlTable(table, std::move(path), std::move(file)) {
+  require_keys_in({allowed.begin(), allowed.size()});
+}
+
+void TomlTable::require_keys_in(std::span<const std::string_view> allowed) const {
   for (const auto& [key, node] : *table_) {
     if (std::find(allowed.begin(), allowed.end(), key.str()) != allowed.end()) continue;
     const FileLocation at{file_, static_cast<int>(key.source().begin.line)};
     throw Error(ErrorCode::kBadFile, at,
                 fmt::format("unknown key '{}' in {}; {}", key.str(), title(),
-                            allowed_hint(key.str(), {allowed.begin(), allowed.size()})));
+                            allowed_hint(key.str(), allowed)));
   }
 }
 
@@ -156,6 +164,10 @@ double TomlTable::number(std::string_view key, const Range& range) const {
 
 double TomlTable::number_or(std::string_view key, const Range& range, double fallback) const {
   return has(key) ? number(key, range) : fallback;
+}
+
+std::optional<double> TomlTable::number_if(std::string_view key, const Range& range) const {
+  return has(key) ? std::optional(number(key, range)) : std::nullopt;
 }
 
 std::int64_t TomlTable::integer_or(std::string_view key, std::int64_t min, std::int64_t max,
@@ -251,6 +263,21 @@ std::vector<double> TomlTable::numbers(std::string_view key, std::size_t count,
   return numbers;
 }
 
+std::vector<double> TomlTable::numbers(std::string_view key, const Range& range) const {
+  std::vector<double> numbers;
+  for (const toml::node& element : array(key, "an array of numbers")) {
+    const double value = element.is_number() ? *element.value<double>() : NAN;
+    if (!range.contains(value)) {
+      throw Error(ErrorCode::kBadFile, {file_, static_cast<int>(element.source().begin.line)},
+                  fmt::format("'{}' of {} must be numbers of {}, but has {}", key, title(),
+                              range.text(), describe(element)));
+    }
+    numbers.push_back(value);
+  }
+  if (numbers.empty()) fail(key, "must hold at least one number, but is empty");
+  return numbers;
+}
+
 std::vector<std::int64_t> TomlTable::integers(std::string_view key, std::int64_t min) const {
   std::vector<std::int64_t> integers;
   for (const toml::node& element : array(key, "an array of integers")) {
@@ -272,6 +299,12 @@ TomlTable TomlTable::table(std::string_view key) const {
 TomlTable TomlTable::table(std::string_view key, Keys allowed) const {
   const TomlTable any = table(key);
   return TomlTable(*any.table_, any.path_, any.file_, allowed);
+}
+
+TomlTable TomlTable::table(std::string_view key, std::span<const std::string_view> allowed) const {
+  const TomlTable any = table(key);
+  any.require_keys_in(allowed);
+  return any;
 }
 
 std::vector<TomlTable> TomlTable::tables(std::string_view key, Keys allowed) const {

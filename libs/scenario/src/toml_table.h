@@ -23,9 +23,10 @@ struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
   bool above_min = false;  ///< min itself is not allowed
+  bool below_max = false;  ///< max itself is not allowed
 
   bool contains(double value) const;
-  /// "at least 0 and at most 5", "greater than 0", "finite".
+  /// "at least 0 and at most 5", "greater than 0 and less than 180", "finite".
   std::string text() const;
 };
 
@@ -55,6 +56,8 @@ class TomlTable {
   double number(std::string_view key, const Range& range) const;
   std::vector<std::string> texts(std::string_view key) const;
   std::vector<double> numbers(std::string_view key, std::size_t count, const Range& range) const;
+  /// At least one. A wrong one is named at its own line.
+  std::vector<double> numbers(std::string_view key, const Range& range) const;
   std::vector<std::int64_t> integers(std::string_view key, std::int64_t min) const;
   /// A time span; the unit comes from the key's suffix (_s, _ms).
   Duration duration(std::string_view key, const Range& range) const;
@@ -63,6 +66,7 @@ class TomlTable {
   /// Index into `choices`.
   std::size_t choice(std::string_view key, std::span<const std::string_view> choices) const;
   TomlTable table(std::string_view key, Keys allowed) const;
+  TomlTable table(std::string_view key, std::span<const std::string_view> allowed) const;
   TomlTable table(std::string_view key) const;
   /// At least one.
   std::vector<TomlTable> tables(std::string_view key, Keys allowed) const;
@@ -70,6 +74,7 @@ class TomlTable {
   // Keys that may be missing.
   std::string text_or(std::string_view key, std::string_view fallback) const;
   double number_or(std::string_view key, const Range& range, double fallback) const;
+  std::optional<double> number_if(std::string_view key, const Range& range) const;
   std::int64_t integer_or(std::string_view key, std::int64_t min, std::int64_t max,
                           std::int64_t fallback) const;
   Duration duration_or(std::string_view key, const Range& range, Duration fallback) const;
@@ -88,6 +93,7 @@ class TomlTable {
   [[noreturn]] void fail(const std::string& problem) const;
 
  private:
+  void require_keys_in(std::span<const std::string_view> allowed) const;
   const toml::node& required(std::string_view key) const;
   [[noreturn]] void fail_type(std::string_view key, const toml::node& found,
                               std::string_view expected) const;

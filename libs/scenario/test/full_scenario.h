@@ -31,6 +31,7 @@ position_m = [1, -2.5, 1.2]
 yaw_deg = 90
 yaw_spread_deg = 2.5
 command_latency_ms = 5
+profile = "profiles/rig.toml"
 
 [uav.sensors.camera]
 timing = "periodic"
@@ -88,6 +89,7 @@ name = "scripted"
 policy = "conservative_barrier"
 clock = "scripted"
 computing_ms = 2.5
+profile = "profiles/fog.toml"
 
 [[metric]]
 kind = "time_required"
@@ -114,12 +116,31 @@ images = true
 image_period_ms = 500
 )";
 
+inline const std::string kRigProfile = R"(name = "rig"
+
+[sensors.camera]
+kind = "camera"
+timing = "on_demand"
+noise = { stddev = 0.02 }
+)";
+
+inline const std::string kFogProfile = R"(name = "fog"
+
+[sensors.range]
+kind = "range"
+max_m = 3
+delay = { kind = "empirical", file_ms = "fog.txt" }
+)";
+
 /// Writes the scenario and the files that it names; returns the scenario's file.
 inline std::filesystem::path write_project(const Scratch& scratch, const std::string& scenario) {
   scratch.write("worlds/room.sdf", "<sdf/>");
   scratch.write("models/uav.sdf", "<sdf/>");
   scratch.write("delays.txt", "10\n20\n30.5\n");
   scratch.write("missions/around.toml", "");
+  scratch.write("profiles/rig.toml", kRigProfile);
+  scratch.write("profiles/fog.toml", kFogProfile);
+  scratch.write("profiles/fog.txt", "90\n110\n");
   return scratch.write("scenario.toml", scenario);
 }
 

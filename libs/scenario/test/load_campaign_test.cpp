@@ -56,6 +56,20 @@ TEST_F(LoadCampaign, TakesSeedsAndAllConditions) {
   EXPECT_EQ(campaign.scenarios[0].paper_table, "");
 }
 
+TEST_F(LoadCampaign, LaysItsProfileOnTopOfTheScenarios) {
+  const auto file = scratch_.write("top.toml", replaced(kRigProfile, "\"rig\"", "\"top\""));
+  const Campaign campaign =
+      load(replaced(kCampaign, "paper_table", "profile = \"top.toml\"\npaper_table"));
+  const CampaignScenario& entry = campaign.scenarios[0];
+  EXPECT_EQ(entry.profile, file);
+  EXPECT_THAT(entry.scenario.files, testing::Contains(file));
+  EXPECT_THAT(profile_names(entry.scenario, *entry.scenario.find_condition("scripted")),
+              ElementsAre("rig", "fog", "top"));
+  EXPECT_TRUE(load(kCampaign).scenarios[0].profile.empty());
+  EXPECT_THAT(error_with("paper_table", "profile = \"none.toml\"\npaper_table"),
+              HasSubstr("campaign.toml:9: 'profile' of [scenario] names \"none.toml\""));
+}
+
 TEST_F(LoadCampaign, RefusesWhatCannotBeRun) {
   EXPECT_THAT(error_with("trials = 3", "trials = 0"), HasSubstr("campaign.toml:3: 'trials'"));
   EXPECT_THAT(error_with("trials = 3", "trials = 3\nseeds = [1]"), HasSubstr("either 'trials'"));

@@ -1,5 +1,7 @@
 #include "full_scenario.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -60,17 +62,47 @@ TEST_F(LoadScenario, ReadsUavs) {
 TEST_F(LoadScenario, ReadsSensorTimings) {
   const Scenario s = load(kFullScenario);
   const auto& sensors = s.uavs[0].sensors;
-  const auto& camera = std::get<uav::PeriodicTiming>(sensors.at("camera").timing);
+  const auto& camera = std::get<uav::PeriodicTiming>(*sensors.at("camera").timing);
   EXPECT_EQ(camera.period, Duration(33'333'333));
   EXPECT_EQ(camera.phase, milliseconds(3));
   EXPECT_EQ(std::get<uav::ConstantDelay>(camera.delay).value, Duration(37'400'000));
-  const auto& imu = std::get<uav::PeriodicTiming>(sensors.at("imu").timing);
+  const auto& imu = std::get<uav::PeriodicTiming>(*sensors.at("imu").timing);
   EXPECT_EQ(imu.period, milliseconds(50));
   EXPECT_EQ(std::get<uav::NormalDelay>(imu.delay).mean, milliseconds(4));
   EXPECT_EQ(std::get<uav::NormalDelay>(imu.delay).stddev, Duration(1'500'000));
-  const auto& range = std::get<uav::OnDemandTiming>(sensors.at("range").timing);
+  const auto& range = std::get<uav::OnDemandTiming>(*sensors.at("range").timing);
   EXPECT_THAT(std::get<uav::EmpiricalDelay>(range.delay).samples,
               ElementsAre(milliseconds(10), milliseconds(20), Duration(30'500'000)));
+}
+
+TEST_F(LoadScenario, ReadsProfiles) {
+  const Scenario s = load(kFullScenario);
+  ASSERT_TRUE(s.uavs[0].profile);
+  EXPECT_EQ(s.uavs[0].profile->name, "rig");
+  EXPECT_EQ(s.uavs[0].profile->file, scratch_.path("profiles/rig.toml"));
+  EXPECT_FALSE(s.uavs[1].profile);
+  EXPECT_TRUE(s.conditions[0].profiles.empty());
+  ASSERT_EQ(s.conditions[2].profiles.size(), 1u);
+  EXPECT_EQ(s.conditions[2].profiles[0].name, "fog");
+}
+
+TEST_F(LoadScenario, NamesTheProfileThatIsWrong) {
+  EXPECT_THAT(error_with("profiles/fog.toml", "profiles/frog.toml"),
+              HasSubstr("'profile' of [condition] names \"profiles/frog.toml\", but there is no"));
+  EXPECT_THAT(error_with("profiles/rig.toml", "delays.txt"),
+              HasSubstr("delays.txt:1: no valid TOML"));
+}
+
+TEST_F(LoadScenario, LaysAProfileOnTopUnderEachCondition) {
+  Scenario s = load(kFullScenario);
+  const auto file = scratch_.write("top.toml", replaced(kRigProfile, "\"rig\"", "\"top\""));
+  lay_profile(s, load_profile(file));
+  EXPECT_THAT(profile_names(s, s.conditions[0]), ElementsAre("rig", "top"));
+  EXPECT_THAT(profile_names(s, s.conditions[2]), ElementsAre("rig", "fog", "top"));
+  EXPECT_THAT(s.files, testing::Contains(file));
+  EXPECT_TRUE(std::is_sorted(s.files.begin(), s.files.end()));
+  s.uavs[1].profile = s.uavs[0].profile;
+  EXPECT_THAT(profile_names(s, s.conditions[0]), ElementsAre("rig", "top"));
 }
 
 TEST_F(LoadScenario, GivesEachUavItsSut) {
@@ -105,7 +137,7 @@ TEST_F(LoadScenario, GivesASutItsFilesByTheirWholePath) {
 TEST_F(LoadScenario, RefusesFilesThatASutCannotBeGiven) {
   const std::string mission = "mission = \"missions/around.toml\"";
   EXPECT_THAT(error_with(mission, "mission = \"missions/none.toml\""),
-              HasSubstr("scenario.toml:53: 'mission' of [sut.files] names \"missions/none.toml\", "
+              HasSubstr("scenario.toml:54: 'mission' of [sut.files] names \"missions/none.toml\", "
                         "but there is no such file"));
   EXPECT_THAT(error_with(mission, "mission = \"missions\""), HasSubstr("no such file"));
   EXPECT_THAT(error_with(mission, "Mission = \"missions/around.toml\""),
@@ -155,7 +187,9 @@ TEST_F(LoadScenario, ReadsMetrics) {
 TEST_F(LoadScenario, ListsEveryFileItRestsOn) {
   EXPECT_THAT(load(kFullScenario).files,
               ElementsAre(scratch_.path("delays.txt"), mission_, scratch_.path("models/uav.sdf"),
-                          scratch_.path("scenario.toml"), scratch_.path("worlds/room.sdf")));
+                          scratch_.path("profiles/fog.toml"), scratch_.path("profiles/fog.txt"),
+                          scratch_.path("profiles/rig.toml"), scratch_.path("scenario.toml"),
+                          scratch_.path("worlds/room.sdf")));
 }
 
 TEST_F(LoadScenario, ResolvesAProgramInAFolderAgainstTheScenario) {
@@ -252,7 +286,11 @@ TEST_F(LoadScenario, RefusesSettingsThatMeanNothingTogether) {
   EXPECT_THAT(error_with("ground_truth_period_ms = 20", "ground_truth_period_ms = 1"),
               HasSubstr("at least 2"));
   EXPECT_THAT(error_with("timing = \"on_demand\"", "timing = \"on_demand\"\nrate_hz = 5"),
-              HasSubstr("unknown key 'rate_hz'"));
+              HasSubstr("scenario.toml:31: 'rate_hz' of [uav.sensors.range] goes with timing = "
+                        "\"periodic\", but the timing is \"on_demand\""));
+  EXPECT_THAT(error_with("timing = \"periodic\"\nrate_hz = 30", "rate_hz = 30"),
+              HasSubstr("scenario.toml:18: [uav.sensors.camera] lacks the key 'timing': 'rate_hz' "
+                        "goes with"));
 }
 
 TEST_F(LoadScenario, RefusesAUavWithoutSut) {
@@ -260,7 +298,7 @@ TEST_F(LoadScenario, RefusesAUavWithoutSut) {
       "[sut]\ncommand = [\"tether-sut\", \"face-anchor\"]\n\n[sut.parameters]\n"
       "anchor = \"blue_box\"\nprecision_deg = 2.5\nretries = 3\nverbose = true\n\n[sut.files]\n"
       "mission = \"missions/around.toml\"\n";
-  EXPECT_THAT(error_with(sut, ""), HasSubstr("scenario.toml:38: [uav] has no SUT"));
+  EXPECT_THAT(error_with(sut, ""), HasSubstr("scenario.toml:39: [uav] has no SUT"));
 }
 
 TEST_F(LoadScenario, RefusesParametersThatAreNoOptions) {

@@ -1,9 +1,7 @@
 // Properties of every key of a scenario, whichever it is: the full scenario is changed at one key
 // at a time.
 #include "full_scenario.h"
-
-#include <map>
-#include <sstream>
+#include "key_lines.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,41 +13,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::StartsWith;
-
-struct KeyLine {
-  int line = 0;    // 1-based
-  int header = 0;  // line of the table it is in; 0: the top of the file
-  std::string key;
-  std::string value;
-};
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-std::vector<KeyLine> key_lines() {
-  std::vector<KeyLine> keys;
-  int number = 0, header = 0;
-  for (const std::string& line : lines_of(kFullScenario)) {
-    ++number;
-    if (line.starts_with("[")) header = number;
-    const auto equals = line.find(" = ");
-    if (line.starts_with("[") || equals == std::string::npos) continue;
-    keys.push_back({number, header, line.substr(0, equals), line.substr(equals + 3)});
-  }
-  return keys;
-}
-
-std::string with_line(int number, const std::string& text) {
-  std::string all;
-  int at = 0;
-  for (const std::string& line : lines_of(kFullScenario))
-    all += (++at == number ? text : line) + "\n";
-  return all;
-}
 
 class ScenarioKeys : public testing::Test {
  protected:
@@ -71,31 +34,34 @@ bool is_parameter(const KeyLine& key) {
 }
 
 TEST_F(ScenarioKeys, AMisspelledKeyIsNamedAtItsLine) {
-  for (const KeyLine& key : key_lines()) {
+  for (const KeyLine& key : key_lines(kFullScenario)) {
     if (is_parameter(key)) continue;
     SCOPED_TRACE(key.key);
-    const std::string message = error_of(with_line(key.line, key.key + "q = " + key.value));
+    const std::string message =
+        error_of(with_line(kFullScenario, key.line, key.key + "q = " + key.value));
     EXPECT_THAT(message, StartsWith(at_line(key.line) + "unknown key '" + key.key + "q'"));
     EXPECT_THAT(message, HasSubstr("did you mean '" + key.key + "'?"));
   }
 }
 
 TEST_F(ScenarioKeys, AValueOfTheWrongTypeIsNamedAtItsLine) {
-  for (const KeyLine& key : key_lines()) {
+  for (const KeyLine& key : key_lines(kFullScenario)) {
     SCOPED_TRACE(key.key);
-    const std::string message = error_of(with_line(key.line, key.key + " = 1979-05-27"));
+    const std::string message =
+        error_of(with_line(kFullScenario, key.line, key.key + " = 1979-05-27"));
     EXPECT_THAT(message, StartsWith(at_line(key.line) + "'" + key.key + "' of "));
     EXPECT_THAT(message, HasSubstr(", but is a date or time"));
   }
 }
 
 TEST_F(ScenarioKeys, ANumberOutOfAnyRangeIsNamedAtItsLine) {
-  for (const KeyLine& key : key_lines()) {
+  for (const KeyLine& key : key_lines(kFullScenario)) {
     const bool is_number = key.value.find_first_not_of("0123456789.") == std::string::npos;
     if (!is_number || is_parameter(key)) continue;
     for (const std::string value : {"inf", "nan", "-1e300", "1e300"}) {
       SCOPED_TRACE(key.key + " = " + value);
-      const std::string message = error_of(with_line(key.line, key.key + " = " + value));
+      const std::string message =
+          error_of(with_line(kFullScenario, key.line, key.key + " = " + value));
       EXPECT_THAT(message, StartsWith(at_line(key.line) + "'" + key.key + "' of "));
       EXPECT_THAT(message, HasSubstr("must be "));
     }
@@ -106,18 +72,18 @@ TEST_F(ScenarioKeys, ANumberOutOfAnyRangeIsNamedAtItsLine) {
 // without it, the metric that names one of them is wrong.)
 TEST_F(ScenarioKeys, AMissingKeyIsNamedAtItsTable) {
   int optional_keys = 0;
-  for (const KeyLine& key : key_lines()) {
+  for (const KeyLine& key : key_lines(kFullScenario)) {
     if (key.key == "anchors") continue;
     SCOPED_TRACE(key.key + " of line " + std::to_string(key.line));
     try {
-      load_scenario(write_project(scratch_, with_line(key.line, "")));
+      load_scenario(write_project(scratch_, with_line(kFullScenario, key.line, "")));
       ++optional_keys;
     } catch (const Error& error) {
       EXPECT_THAT(error.what(), StartsWith(at_line(key.header)));
       EXPECT_THAT(error.what(), HasSubstr("'" + key.key + "'"));
     }
   }
-  EXPECT_EQ(optional_keys, 27);
+  EXPECT_EQ(optional_keys, 30);
 }
 
 // Whatever the bytes, it is loaded or refused with a reason.

@@ -18,6 +18,9 @@ struct TrialPlan {
   std::uint64_t seed = 0;
   std::filesystem::path folder;  ///< where its record and result go
   bool record_images = false;    ///< whatever its scenario says
+  /// What the campaign lays on top of the scenario's sensors (part of `condition` already); empty:
+  /// nothing.
+  std::filesystem::path profile{};
 };
 
 /// `<scenario>/<condition's slug>/seed-<seed>`, relative to the campaign's folder.
@@ -59,8 +62,9 @@ using Settings = std::map<std::string, std::string>;
 /// left out: more trials of the same may be added to a folder.
 std::vector<std::filesystem::path> files_of(const scenario::Campaign& campaign);
 
-/// The digests of `files` (those of files_of(), and what else the caller knows of), and `versions`
-/// (program, simulator, machine, SUT, … as the caller knows them).
+/// The digests of `files` (those of files_of(), and what else the caller knows of), the profile
+/// that each scenario is given, and `versions` (program, simulator, machine, SUT, … as the caller
+/// knows them).
 /// @throws Error(kBadFile) when a file cannot be read.
 Settings campaign_settings(const scenario::Campaign& campaign, const Settings& versions,
                            const std::vector<std::filesystem::path>& files);

@@ -91,6 +91,8 @@ struct TrialResult {
   double cpu_factor = 1.0;
   Duration computing{0};  ///< of clock "scripted": charged for each phase of computing
   double real_time_factor = 0.0;
+  /// Names of the profiles in use, in the order of their layers: the later goes over the earlier.
+  std::vector<std::string> profiles;
   Outcome outcome = Outcome::kFailed;
   std::string end;     ///< see kEnd…
   std::string reason;  ///< one line: why this outcome

@@ -15,6 +15,9 @@ struct CampaignScenario {
   std::vector<std::string> conditions;  ///< names, in the table's order; each exists in `scenario`
   /// The paper's table that these results go beside: "I" to "V"; empty: none.
   std::string paper_table;
+  /// Laid on top of all that the scenario says (it is part of `scenario` already); absolute; empty:
+  /// none.
+  std::filesystem::path profile{};
 };
 
 /// A campaign file (TOML): scenarios × conditions × seeds.

@@ -11,6 +11,7 @@
 
 #include <tether/base/time.h>
 #include <tether/scenario/metric.h>
+#include <tether/scenario/profile.h>
 #include <tether/sim/world.h>
 #include <tether/uav/sensor_timing.h>
 
@@ -36,12 +37,9 @@ struct Condition {
   /// Of kScripted: what the SUT is charged for each phase of computing, whatever it took. > 0; such
   /// a run is the same every time. Of other clocks 0.
   Duration computing{0};
-};
-
-/// When a sensor measures, and where the scenario says so.
-struct SensorSetup {
-  uav::SensorTiming timing;
-  int line = 0;  ///< in the scenario's file
+  /// Laid over every UAV's sensors in this order: its own, then what a campaign or the command line
+  /// lays on top.
+  std::vector<Profile> profiles{};
 };
 
 /// The SUT's command; its parameters become `--key value` arguments (underscores as dashes). Those
@@ -53,9 +51,10 @@ struct Sut {
 };
 
 struct UavSetup {
-  sim::UavPlacement placement;                 ///< model: absolute path
-  double yaw_spread_rad = 0.0;                 ///< the start yaw of a trial lies within ± this
-  std::map<std::string, SensorSetup> sensors;  ///< by name; those that the scenario times
+  sim::UavPlacement placement;                   ///< model: absolute path
+  double yaw_spread_rad = 0.0;                   ///< the start yaw of a trial lies within ± this
+  std::optional<Profile> profile;                ///< laid over SDF's sensors
+  std::map<std::string, SensorProfile> sensors;  ///< by name; laid over the profile
   Duration command_latency{0};
   Sut sut;  ///< its own, or the scenario's; own parameters go over the scenario's
 };
@@ -75,8 +74,8 @@ struct Scenario {
   Duration ground_truth_period{std::chrono::milliseconds(10)};
   bool record_images = false;
   Duration image_period{0};  ///< least ST between two recorded images of one camera; 0: every one
-  /// Every file that was named: the scenario itself, world, models, delay samples, the SUTs' files.
-  /// Absolute, sorted.
+  /// Every file that was named: the scenario itself, world, models, profiles, delay samples, the
+  /// SUTs' files. Absolute, sorted.
   std::vector<std::filesystem::path> files;
 
   /// nullptr where there is none of that name.
@@ -96,13 +95,30 @@ Scenario load_scenario(const std::filesystem::path& file);
 /// The world request of a trial: each UAV's start yaw is drawn from its spread, keyed by the seed.
 sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
 
-/// Each UAV's timing models: one list per UAV of `world`, in the order of its sensors. A sensor
-/// that the scenario does not time is periodic at its SDF update rate without delay, or on demand
-/// without delay where SDF gives no rate.
-/// @throws Error(kBadFile) when the scenario times a sensor that the UAV does not have, or asks for
-/// a metric of one.
-/// @pre `world` was loaded from `world_request(scenario, seed)`.
-std::vector<std::vector<uav::SensorTiming>> resolve_timings(const Scenario& scenario,
-                                                            const sim::World& world);
+/// Lays the profile on top of all that the scenario says of its sensors, under each condition.
+void lay_profile(Scenario& scenario, const Profile& profile);
+
+/// The names of the profiles in use, in the order of their layers: the UAVs' (each once), then the
+/// condition's.
+std::vector<std::string> profile_names(const Scenario& scenario, const Condition& condition);
+
+/// Lays over the sensors of `world` what profiles and scenario say of them, the later over the
+/// earlier: SDF, the UAV's profile, its [uav.sensors.NAME], the condition's profiles. Returns each
+/// UAV's timing models: one list per UAV of `world`, in the order of its sensors. A sensor that
+/// nothing times is periodic at its SDF update rate without delay, or on demand without delay where
+/// SDF gives no rate.
+///
+/// An entry of a profile is of the UAV's sensor of that name and kind; where there is none, of its
+/// only sensor of that kind, unless another entry names that one; where there is none either,
+/// `warn` gets a line.
+/// @throws Error(kBadFile) with file and line when the scenario speaks of a sensor that the UAV
+/// does not have, or asks for a metric of one; when an entry could be of several sensors, two of
+/// one, or has keys of another kind; when what comes of the layers excludes itself (a rangefinder's
+/// minimum that is not below its maximum, a camera that exposes for longer than its period).
+/// @pre `world` was loaded from `world_request(scenario, seed)`; `condition` is of `scenario`.
+std::vector<std::vector<uav::SensorTiming>> resolve_sensors(const Scenario& scenario,
+                                                            const Condition& condition,
+                                                            sim::World& world,
+                                                            const sim::WarningSink& warn);
 
 }  // namespace tether::scenario

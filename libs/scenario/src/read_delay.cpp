@@ -1,4 +1,4 @@
-#include "sensor_setup.h"
+#include "read_delay.h"
 
 #include <algorithm>
 #include <array>
@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kLongestDelay_ms = 60'000.0;
 constexpr Range kDelay_ms{.min = 0.0, .max = kLongestDelay_ms};
+constexpr std::array<std::string_view, 3> kSampleKeys = {"samples_ms", "file_ms", "file_s"};
 
 std::string_view trimmed(std::string_view line) {
   const auto first = line.find_first_not_of(" \t\r");
@@ -33,18 +34,32 @@ Duration parse_sample(std::string_view text, double seconds_per_unit, const File
   return duration_from_seconds(value * seconds_per_unit);
 }
 
-uav::Delay read_empirical(const TomlTable& delay, std::vector<std::filesystem::path>& files) {
-  if (delay.has("file_ms") == delay.has("file_s")) {
-    delay.fail("needs either 'file_ms' or 'file_s': a file with one delay per line in that unit");
+std::vector<Duration> read_inline_samples(const TomlTable& delay) {
+  std::vector<Duration> samples;
+  for (const double value_ms : delay.numbers("samples_ms", kDelay_ms)) {
+    samples.push_back(duration_from_seconds(value_ms * 1e-3));
   }
+  return samples;
+}
+
+uav::Delay read_empirical(const TomlTable& delay, std::vector<std::filesystem::path>& files) {
+  const auto given = std::count_if(kSampleKeys.begin(), kSampleKeys.end(),
+                                   [&](std::string_view key) { return delay.has(key); });
+  if (given != 1) {
+    delay.fail(
+        "needs one of 'samples_ms' (an array of delays), 'file_ms' and 'file_s' (a file with one "
+        "delay per line in that unit)");
+  }
+  if (delay.has("samples_ms")) return uav::EmpiricalDelay{read_inline_samples(delay)};
   const std::string_view key = delay.has("file_ms") ? "file_ms" : "file_s";
   files.push_back(delay.existing_file(key));
   return uav::EmpiricalDelay{read_delay_samples(files.back(), key == "file_ms" ? 1e-3 : 1.0)};
 }
 
+}  // namespace
+
 // The kind decides which keys are allowed, so it is read first, with any key allowed.
 uav::Delay read_delay(const TomlTable& sensor, std::vector<std::filesystem::path>& files) {
-  if (!sensor.has("delay")) return uav::ConstantDelay{};
   constexpr std::array<std::string_view, 3> kKinds = {"constant", "normal", "empirical"};
   switch (sensor.table("delay").choice("kind", kKinds)) {
     case 0: {
@@ -57,21 +72,10 @@ uav::Delay read_delay(const TomlTable& sensor, std::vector<std::filesystem::path
                               delay.duration("stddev_ms", kDelay_ms)};
     }
     default:
-      return read_empirical(sensor.table("delay", {"kind", "file_ms", "file_s"}), files);
+      return read_empirical(sensor.table("delay", {"kind", "samples_ms", "file_ms", "file_s"}),
+                            files);
   }
 }
-
-Duration read_period(const TomlTable& sensor) {
-  if (sensor.has("rate_hz") == sensor.has("period_ms")) {
-    sensor.fail("needs either 'rate_hz' or 'period_ms', because its timing is \"periodic\"");
-  }
-  constexpr Range kRate_hz{.min = 1e-3, .max = 1e5};
-  constexpr Range kPeriod_ms{.min = 1e-2, .max = 1e6};
-  if (sensor.has("period_ms")) return sensor.duration("period_ms", kPeriod_ms);
-  return duration_from_seconds(1.0 / sensor.number("rate_hz", kRate_hz));
-}
-
-}  // namespace
 
 std::vector<Duration> read_delay_samples(const std::filesystem::path& file,
                                          double seconds_per_unit) {
@@ -93,24 +97,6 @@ std::vector<Duration> read_delay_samples(const std::filesystem::path& file,
                 "holds no delay; expected one number per line");
   }
   return samples;
-}
-
-SensorSetup read_sensor_setup(const TomlTable& sensors, std::string_view name,
-                              std::vector<std::filesystem::path>& files) {
-  constexpr std::array<std::string_view, 2> kTimings = {"periodic", "on_demand"};
-  const TomlTable any =
-      sensors.table(name, {"timing", "rate_hz", "period_ms", "phase_ms", "delay"});
-  const int line = any.where().line;
-  if (any.choice("timing", kTimings) == 1) {
-    const TomlTable sensor = sensors.table(name, {"timing", "delay"});
-    return {uav::OnDemandTiming{read_delay(sensor, files)}, line};
-  }
-  constexpr Range kPhase_ms{.min = 0.0, .max = 1e6};
-  uav::PeriodicTiming timing;
-  timing.period = read_period(any);
-  timing.phase = any.duration_or("phase_ms", kPhase_ms, Duration{0});
-  timing.delay = read_delay(any, files);
-  return {timing, line};
 }
 
 }  // namespace tether::scenario

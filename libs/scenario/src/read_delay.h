@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <vector>
 
-#include <tether/scenario/scenario.h>
+#include <tether/base/time.h>
+#include <tether/uav/sensor_timing.h>
 
 namespace tether::scenario {
 
-/// Reads one `[uav.sensors.<name>]` table; names of sample files are added to `files`.
-SensorSetup read_sensor_setup(const TomlTable& sensors, std::string_view name,
-                              std::vector<std::filesystem::path>& files);
+/// The key 'delay' of a sensor's table; names of sample files are added to `files`.
+uav::Delay read_delay(const TomlTable& sensor, std::vector<std::filesystem::path>& files);
 
 /// Measured delays: one number per line, in units of `seconds_per_unit`; blank lines and
 /// lines that start with '#' are skipped.

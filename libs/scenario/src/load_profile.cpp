@@ -1,0 +1,27 @@
+#include "read_sensor_profile.h"
+#include "toml_table.h"
+
+#include <tether/scenario/profile.h>
+
+namespace tether::scenario {
+
+Profile load_profile(const std::filesystem::path& file) {
+  Profile profile;
+  profile.file = std::filesystem::absolute(file).lexically_normal();
+  profile.files = {profile.file};
+  const toml::table document = parse_toml_file(profile.file);
+  const TomlTable root(document, "", profile.file.string(), {"name", "description", "sensors"});
+  profile.name = root.identifier("name");
+  profile.description = root.text_or("description", "");
+  const TomlTable sensors = root.table("sensors");
+  if (sensors.keys().empty()) {
+    root.fail("sensors", "names no sensor; add a table [sensors.NAME] for each");
+  }
+  for (const std::string& name : sensors.keys()) {
+    profile.sensors.emplace(name,
+                            read_sensor_profile(sensors, name, KindKey::kRequired, profile.files));
+  }
+  return profile;
+}
+
+}  // namespace tether::scenario

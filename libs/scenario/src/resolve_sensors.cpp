@@ -1,0 +1,178 @@
+#include "layered_sensor.h"
+#include "suggest.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/scenario/scenario.h>
+
+namespace tether::scenario {
+namespace {
+
+using Sensors = std::vector<LayeredSensor>;
+
+Sensors sensors_of(sim::Uav& uav) {
+  Sensors sensors;
+  for (sim::Sensor& sensor : uav.sensors) sensors.emplace_back(sensor);
+  return sensors;
+}
+
+std::vector<std::string_view> names_of(const std::vector<const LayeredSensor*>& sensors) {
+  std::vector<std::string_view> names;
+  for (const LayeredSensor* sensor : sensors) names.push_back(sensor->sensor().name);
+  return names;
+}
+
+LayeredSensor* find_sensor(Sensors& sensors, std::string_view name) {
+  const auto found = std::find_if(sensors.begin(), sensors.end(),
+                                  [&](const LayeredSensor& s) { return s.sensor().name == name; });
+  return found == sensors.end() ? nullptr : &*found;
+}
+
+// A profile: its author need not have known the UAV.
+
+/// One profile on its way to one UAV's sensors.
+class ProfileLayer {
+ public:
+  ProfileLayer(const Profile& profile, const sim::Uav& uav, Sensors& sensors)
+      : profile_(profile), uav_(uav), sensors_(sensors) {}
+
+  /// By name first, so that no other entry is taken for a sensor that is named.
+  void lay(const sim::WarningSink& warn) {
+    for (const auto& [name, entry] : profile_.sensors) {
+      LayeredSensor* sensor = find_sensor(sensors_, name);
+      if (sensor != nullptr && sensor->sensor().kind() == entry.kind) sensor_of_[name] = sensor;
+    }
+    for (const auto& [name, entry] : profile_.sensors) {
+      if (!sensor_of_.contains(name)) match_by_kind(name, entry, warn);
+    }
+    for (const auto& [name, sensor] : sensor_of_) sensor->lay(profile_.sensors.at(name));
+  }
+
+ private:
+  void match_by_kind(const std::string& name, const SensorProfile& entry,
+                     const sim::WarningSink& warn) {
+    std::vector<LayeredSensor*> candidates;
+    for (LayeredSensor& sensor : sensors_) {
+      if (sensor.sensor().kind() == entry.kind) candidates.push_back(&sensor);
+    }
+    if (candidates.size() > 1) refuse_choice(name, entry, {candidates.begin(), candidates.end()});
+    LayeredSensor* only = candidates.empty() ? nullptr : candidates.front();
+    const std::string* other = entry_of(only);
+    if (only == nullptr || (other != nullptr && *other == only->sensor().name)) {
+      return warn(no_sensor(name, entry));
+    }
+    if (other != nullptr) refuse_second(name, entry, *other, only->sensor().name);
+    sensor_of_[name] = only;
+  }
+
+  /// nullptr where there is none yet.
+  const std::string* entry_of(const LayeredSensor* sensor) const {
+    const auto found = std::find_if(sensor_of_.begin(), sensor_of_.end(),
+                                    [&](const auto& match) { return match.second == sensor; });
+    return found == sensor_of_.end() ? nullptr : &found->first;
+  }
+
+  std::string no_sensor(const std::string& name, const SensorProfile& entry) const {
+    return fmt::format(
+        "{}:{}: the UAV '{}' has no sensor of the kind \"{}\" for [sensors.{}] of "
+        "the profile '{}'",
+        entry.where.file, entry.where.line, uav_.name, uav::name(*entry.kind), name, profile_.name);
+  }
+
+  [[noreturn]] void refuse_choice(const std::string& name, const SensorProfile& entry,
+                                  const std::vector<const LayeredSensor*>& candidates) const {
+    throw Error(
+        ErrorCode::kBadFile, entry.where,
+        fmt::format("the UAV '{}' has no sensor '{}' of the kind \"{}\", but {}; name the "
+                    "one that is meant",
+                    uav_.name, name, uav::name(*entry.kind), quoted_list(names_of(candidates))));
+  }
+
+  [[noreturn]] void refuse_second(const std::string& name, const SensorProfile& entry,
+                                  const std::string& other, const std::string& sensor) const {
+    throw Error(ErrorCode::kBadFile, entry.where,
+                fmt::format("[sensors.{}] and [sensors.{}] (line {}) would both be of '{}', the "
+                            "only sensor of the kind \"{}\" of the UAV '{}'; call the one that is "
+                            "meant [sensors.{}]",
+                            name, other, profile_.sensors.at(other).where.line, sensor,
+                            uav::name(*entry.kind), uav_.name, sensor));
+  }
+
+  const Profile& profile_;
+  const sim::Uav& uav_;
+  Sensors& sensors_;
+  std::map<std::string, LayeredSensor*> sensor_of_;  // by the entry's name
+};
+
+// The scenario's own words: its author knows the UAV.
+
+[[noreturn]] void refuse_name(const UavSetup& setup, const Sensors& sensors,
+                              const std::string& name, const FileLocation& at) {
+  std::vector<const LayeredSensor*> all;
+  for (const LayeredSensor& sensor : sensors) all.push_back(&sensor);
+  throw Error(ErrorCode::kBadFile, at,
+              fmt::format("the UAV '{}' has no sensor '{}' ({}); {}", setup.placement.name, name,
+                          setup.placement.model.string(), allowed_hint(name, names_of(all))));
+}
+
+void lay_setup(const UavSetup& setup, Sensors& sensors) {
+  for (const auto& [name, layer] : setup.sensors) {
+    LayeredSensor* sensor = find_sensor(sensors, name);
+    if (sensor == nullptr) refuse_name(setup, sensors, name, layer.where);
+    const uav::SensorKind kind = sensor->sensor().kind();
+    if (layer.kind && layer.kind != kind) {
+      throw Error(ErrorCode::kBadFile, layer.at("kind"),
+                  fmt::format("'kind' is \"{}\", but the sensor '{}' of the UAV '{}' is of the "
+                              "kind \"{}\"",
+                              uav::name(*layer.kind), name, setup.placement.name, uav::name(kind)));
+    }
+    sensor->lay(layer);
+  }
+}
+
+void require_sensors_of_metrics(const Scenario& scenario, const UavSetup& setup, Sensors& sensors) {
+  for (const Metric& metric : scenario.metrics) {
+    if (metric.uav != setup.placement.name || metric.sensor.empty()) continue;
+    if (find_sensor(sensors, metric.sensor) != nullptr) continue;
+    refuse_name(setup, sensors, metric.sensor, {scenario.file.string(), metric.line});
+  }
+}
+
+const UavSetup& setup_of(const Scenario& scenario, const std::string& uav) {
+  for (const UavSetup& setup : scenario.uavs) {
+    if (setup.placement.name == uav) return setup;
+  }
+  throw Error(ErrorCode::kInternal,
+              fmt::format("the world has a UAV '{}' that its scenario does not know", uav));
+}
+
+std::vector<uav::SensorTiming> resolve(const Scenario& scenario, const Condition& condition,
+                                       sim::Uav& uav, const sim::WarningSink& warn) {
+  const UavSetup& setup = setup_of(scenario, uav.name);
+  Sensors sensors = sensors_of(uav);
+  if (setup.profile) ProfileLayer(*setup.profile, uav, sensors).lay(warn);
+  lay_setup(setup, sensors);
+  for (const Profile& profile : condition.profiles) ProfileLayer(profile, uav, sensors).lay(warn);
+  require_sensors_of_metrics(scenario, setup, sensors);
+
+  std::vector<uav::SensorTiming> timings;
+  for (LayeredSensor& sensor : sensors) timings.push_back(sensor.finish());
+  return timings;
+}
+
+}  // namespace
+
+std::vector<std::vector<uav::SensorTiming>> resolve_sensors(const Scenario& scenario,
+                                                            const Condition& condition,
+                                                            sim::World& world,
+                                                            const sim::WarningSink& warn) {
+  std::vector<std::vector<uav::SensorTiming>> timings;
+  for (sim::Uav& uav : world.uavs) timings.push_back(resolve(scenario, condition, uav, warn));
+  return timings;
+}
+
+}  // namespace tether::scenario
