@@ -1,6 +1,7 @@
 #include "physics_model.h"
 #include "renderer.h"
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 
@@ -97,6 +98,58 @@ void BM_images_320x240(benchmark::State& state) {
 }
 BENCHMARK(BM_images_640x480)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_images_320x240)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
+
+// What a shutter costs: the images of two cameras in one place along the same flight, one with it
+// and one without. `times_plain` is how many times as long the one takes.
+void shutter(benchmark::State& state, double exposure_s, double readout_s) {
+  World world = corridor();
+  const std::size_t plain = camera_of(world);
+  const std::size_t exposed = world.uavs[0].sensors.size();
+  Sensor copy = world.uavs[0].sensors[plain];
+  copy.name = "exposed";
+  std::get<CameraModel>(copy.model).exposure_s = exposure_s;
+  std::get<CameraModel>(copy.model).readout_s = readout_s;
+  world.uavs[0].sensors.push_back(copy);
+  const auto simulator = make_mujoco_simulator(world, print_warning);
+  Snapshot snapshot;
+  std::uint64_t index = 0;
+  const auto seconds = [&](std::size_t camera) {
+    const auto begin = std::chrono::steady_clock::now();
+    benchmark::DoNotOptimize(simulator->measure(snapshot, 0, camera, index));
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  const auto take_off = [&] {
+    simulator->reset(1);
+    simulator->apply(0, {{0.5, 0.0, 0.0}, 0.1});
+    simulator->advance_to(SimTime(2s));
+  };
+  take_off();
+  simulator->capture(snapshot);
+  seconds(plain);  // sets the renderer up
+  double plain_s = 0.0;
+  double exposed_s = 0.0;
+  for (auto _ : state) {
+    if (simulator->now() > SimTime(10s)) take_off();
+    simulator->advance_to(simulator->now() + 33ms);
+    simulator->capture(snapshot);
+    plain_s += seconds(plain);
+    exposed_s += seconds(exposed);
+    ++index;
+  }
+  state.counters["times_plain"] = exposed_s / plain_s;
+}
+void BM_exposed_10ms(benchmark::State& state) {
+  shutter(state, 0.010, 0.0);
+}
+void BM_rolling_20ms(benchmark::State& state) {
+  shutter(state, 0.0, 0.020);
+}
+void BM_exposed_10ms_rolling_20ms(benchmark::State& state) {
+  shutter(state, 0.010, 0.020);
+}
+BENCHMARK(BM_exposed_10ms)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_rolling_20ms)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_exposed_10ms_rolling_20ms)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 // The yardstick: an empty picture of the same size, cleared, multisampled and read back.
 void empty_images(benchmark::State& state, int width_px, int height_px) {

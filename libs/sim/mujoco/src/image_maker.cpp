@@ -42,7 +42,7 @@ uav::CameraSample ImageMaker::make(const CameraModel& camera, const Request& r) 
   uav::CameraSample sample{r.key.at, r.key.index, camera.intrinsics.width_px,
                            camera.intrinsics.height_px,
                            std::vector<std::uint8_t>(width * height * 3)};
-  draw(camera, r, 0.0, sample.rgb);
+  draw(camera, r, 0.0, {0, camera.intrinsics.height_px}, sample.rgb);
   if (Shutter(camera).window_s() > 0.0) {
     const int instants = count_instants(motion_px(camera, r));
     if (instants > 1) mix(camera, r, instants, sample.rgb);
@@ -52,19 +52,26 @@ uav::CameraSample ImageMaker::make(const CameraModel& camera, const Request& r) 
   return sample;
 }
 
-// The image of one instant, through the lens.
-void ImageMaker::draw(const CameraModel& camera, const Request& r, double steps_ago, Bytes rgb) {
+// Rows of the image of one instant, through the lens, to where they are in `rgb`. @pre all rows for
+// a camera with a warp.
+void ImageMaker::draw(const CameraModel& camera, const Request& r, double steps_ago,
+                      const Rows& rows, Bytes rgb) {
   const Plan& plan = plan_of(r.sensor, camera);
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     poses_[i] = dynamics_.past_pose_of(r.state, i, steps_ago);
   }
-  const RawImage& raw = renderer().render(
-      {plan.rendered, camera.near_m, camera.far_m, poses_[r.uav] * r.sensor.X_BS, poses_, r.uav});
+  Renderer::View view{plan.rendered, camera.near_m, camera.far_m, poses_[r.uav] * r.sensor.X_BS,
+                      poses_,        r.uav};
   if (plan.warp) {
-    plan.warp->apply(raw, rgb);
-  } else {
-    convert_to_rgb(raw, rgb);
+    plan.warp->apply(renderer().render(view), rgb);
+    return;
   }
+  view.camera.height_px = rows.count;
+  view.camera.cy_px -= rows.first;
+  const std::size_t stride = 3 * static_cast<std::size_t>(camera.intrinsics.width_px);
+  convert_to_rgb(renderer().render(view),
+                 rgb.subspan(stride * static_cast<std::size_t>(rows.first),
+                             stride * static_cast<std::size_t>(rows.count)));
 }
 
 // How far things move in the picture within the shutter's window, were they as fast throughout as
@@ -107,11 +114,25 @@ void ImageMaker::mix(const CameraModel& camera, const Request& r, int instants, 
   light_.clear(rgb.size());
   instant_rgb_.resize(rgb.size());
   for (int i = 0; i + 1 < instants; ++i) {
-    draw(camera, r, steps * (instants - 1 - i) / (instants - 1), instant_rgb_);
+    draw(camera, r, steps * (instants - 1 - i) / (instants - 1),
+         exposed_rows(camera, r, i, instants), instant_rgb_);
     add_rows(shutter, i, instants, instant_rgb_);
   }
   add_rows(shutter, instants - 1, instants, rgb);
   light_.encode(rgb);
+}
+
+// The rows that an instant's light reaches: what else need not be drawn. Any row of a warped image
+// may come from any row of what is drawn.
+ImageMaker::Rows ImageMaker::exposed_rows(const CameraModel& camera, const Request& r, int instant,
+                                          int instants) {
+  const Shutter shutter(camera);
+  Rows rows{0, shutter.rows};
+  if (plan_of(r.sensor, camera).warp) return rows;
+  const auto is_dark = [&](int row) { return row_weight(shutter, row, instant, instants) == 0.0; };
+  while (rows.count > 1 && is_dark(rows.first)) ++rows.first, --rows.count;
+  while (rows.count > 1 && is_dark(rows.first + rows.count - 1)) --rows.count;
+  return rows;
 }
 
 void ImageMaker::add_rows(const Shutter& shutter, int instant, int instants, Bytes rgb) {

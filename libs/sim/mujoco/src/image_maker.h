@@ -49,14 +49,21 @@ class ImageMaker {
     explicit Plan(const uav::CameraModel& camera);
   };
   using Bytes = std::span<std::uint8_t>;
+  // Some rows of an image that lie one below the other.
+  struct Rows {
+    int first;
+    int count;
+  };
 
   const Plan& plan_of(const Sensor& sensor, const CameraModel& camera);
   Renderer& renderer();
-  void draw(const CameraModel& camera, const Request& r, double steps_ago, Bytes rgb);
+  void draw(const CameraModel& camera, const Request& r, double steps_ago, const Rows& rows,
+            Bytes rgb);
   double motion_px(const CameraModel& camera, const Request& r);
   double step_motion_px(const CameraModel& camera, const Request& r, double steps_ago,
                         double nearest_m);
   void mix(const CameraModel& camera, const Request& r, int instants, Bytes rgb);
+  Rows exposed_rows(const CameraModel& camera, const Request& r, int instant, int instants);
   void add_rows(const Shutter& shutter, int instant, int instants, Bytes rgb);
   double steps_of(double seconds) const { return seconds / to_seconds(world_.step); }
   Movement movement_of(const Request& r, std::size_t body, double steps_ago) const;
