@@ -99,6 +99,20 @@ PlayedVideo::PlayedVideo(const Timeline& time, std::string label,
                          std::unique_ptr<FrameSource> source)
     : CameraDevice(time, std::move(label), std::move(source)), rate_hz_(format().rate_hz) {}
 
+Result<std::unique_ptr<PlayedVideo>> PlayedVideo::create(const Timeline& time, std::string label,
+                                                         std::unique_ptr<FrameSource> source,
+                                                         const std::string& path) {
+  if (source->format().rate_hz <= 0.0) {
+    return Failure{Failure::Kind::kInvalid,
+                   label +
+                       ": the file does not say at which rate to play it; convert it, for "
+                       "instance by `ffmpeg -i " +
+                       path + " -r 30 video.avi`"};
+  }
+  // make_unique cannot reach the constructor.
+  return std::unique_ptr<PlayedVideo>(new PlayedVideo(time, std::move(label), std::move(source)));
+}
+
 Duration PlayedVideo::due(std::uint64_t image) const {
   return *start_ + duration_from_seconds(static_cast<double>(image) / rate_hz_);
 }

@@ -82,10 +82,14 @@ class LiveCamera final : public CameraDevice {
 /// on, and gone when the next one is.
 class PlayedVideo final : public CameraDevice {
  public:
-  /// @pre the source says a rate
-  PlayedVideo(const Timeline& time, std::string label, std::unique_ptr<FrameSource> source);
+  /// Fails with kInvalid if the source does not say its rate. `path` is for the message.
+  static Result<std::unique_ptr<PlayedVideo>> create(const Timeline& time, std::string label,
+                                                     std::unique_ptr<FrameSource> source,
+                                                     const std::string& path);
 
  private:
+  PlayedVideo(const Timeline& time, std::string label, std::unique_ptr<FrameSource> source);
+
   std::optional<Duration> next() override;
   bool is_newest() const override;
   std::string why_stopped() const override { return "end of the file"; }

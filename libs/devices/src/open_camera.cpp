@@ -85,18 +85,15 @@ Result<Camera> open_url(const Request& request, const std::string& url) {
 
 Result<Camera> open_file(const Request& request, const std::string& path) {
   auto source = open_video_file(path);
-  const std::string convert = "; convert it, for instance by `ffmpeg -i " + path;
   if (!source) {
-    return request.refuse("not a video file that OpenCV can read" + convert +
-                          " -c:v mjpeg video.avi`");
+    return request.refuse(
+        "not a video file that OpenCV can read; convert it, for instance by `ffmpeg -i " + path +
+        " -c:v mjpeg video.avi`");
   }
   const ImageFormat format = source->format();
-  if (format.rate_hz <= 0.0) {
-    return request.refuse("the file does not say at which rate to play it" + convert +
-                          " -r 30 video.avi`");
-  }
-  return Camera{std::make_unique<PlayedVideo>(request.time, request.label, std::move(source)),
-                format};
+  auto video = PlayedVideo::create(request.time, request.label, std::move(source), path);
+  if (!video) return video.failure();
+  return Camera{std::move(*video), format};
 }
 
 Result<Camera> open_path(const Request& request, const std::string& path) {

@@ -1,0 +1,331 @@
+#include "camera_device.h"
+
+#include "manual_clock.h"
+
+#include <deque>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tether::devices {
+namespace {
+
+using client::Read;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr Duration kPeriod = milliseconds(40);
+
+/// Image k is taken at k periods after the start, and arrives `latency` later, in one of `buffers`;
+/// where all are full it is lost. An image's first byte is its number.
+class FakeCamera final : public FrameSource {
+ public:
+  ManualClock* clock;
+  Duration start = clock->now();
+  Duration latency = milliseconds(25);
+  std::size_t buffers = 2;
+  int last_image = 200;
+  double rate_hz = 25.0;
+  bool is_on_epoch = false;  // timestamps of another clock
+  int* decoded = nullptr;
+  bool breaks_images = false;
+
+  explicit FakeCamera(ManualClock& manual) : clock(&manual) {}
+
+  ImageFormat format() const override { return {1, 1, rate_hz}; }
+  bool grab() override {
+    fill();
+    if (queue_.empty()) {
+      clock->sleep_until(arrival(next_));
+      fill();
+    }
+    if (queue_.empty() || queue_.front() > last_image) return false;
+    grabbed_ = queue_.front();
+    queue_.pop_front();
+    return true;
+  }
+  bool retrieve(uav::CameraSample& into) override {
+    if (decoded != nullptr) ++*decoded;
+    into.width_px = into.height_px = 1;
+    into.rgb.assign(3, static_cast<std::uint8_t>(grabbed_));
+    return !breaks_images;
+  }
+  double position_ms() const override {
+    const double ms = to_seconds(taken(grabbed_)) * 1e3;
+    return is_on_epoch ? ms + 1.7e12 : ms;
+  }
+  Duration taken(int image) const { return start + image * kPeriod; }
+
+ private:
+  Duration arrival(int image) const { return taken(image) + latency; }
+  void fill() {
+    for (; arrival(next_) <= clock->now(); ++next_) {
+      if (queue_.size() < buffers) queue_.push_back(next_);
+    }
+  }
+
+  std::deque<int> queue_;
+  int next_ = 0;
+  int grabbed_ = 0;
+};
+
+class LiveCameraTest : public testing::Test {
+ protected:
+  LiveCamera make(bool has_timestamps = true) {
+    return {time_, "camera /dev/video3", std::move(source_), has_timestamps,
+            [] { return std::string("the device is gone"); }};
+  }
+  Duration age(const uav::CameraSample& sample) const {
+    return time_.now().time_since_epoch() - sample.sampled_at.time_since_epoch();
+  }
+
+  ManualClock clock_;
+  Timeline time_{clock_};
+  std::unique_ptr<FakeCamera> source_ = std::make_unique<FakeCamera>(clock_);
+};
+
+TEST_F(LiveCameraTest, DatesAnImageByTheDevicesTimestampOnTheEtAxis) {
+  clock_.advance(nanoseconds(1'234'567));
+  source_->start = clock_.now();
+  LiveCamera camera = make();
+  const auto image = camera.read(Read::kNext);
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->sampled_at, SimTime(nanoseconds(1'234'567)));
+  EXPECT_EQ(time_.now(), ExecTime(nanoseconds(1'234'567) + milliseconds(25)));
+  EXPECT_EQ(image->index, 0u);
+}
+
+TEST_F(LiveCameraTest, DatesAnImageByItsArrivalWhereTheTimestampIsNotPlausible) {
+  source_->is_on_epoch = true;
+  LiveCamera camera = make();
+  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime(milliseconds(25)));
+}
+
+TEST_F(LiveCameraTest, DoesNotBelieveAnOldTimestamp) {
+  source_->latency = std::chrono::seconds(6);
+  LiveCamera camera = make();
+  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime(std::chrono::seconds(6)));
+}
+
+TEST_F(LiveCameraTest, DatesAStreamsImageByItsArrival) {
+  LiveCamera camera = make(false);
+  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime(milliseconds(25)));
+}
+
+TEST_F(LiveCameraTest, AFastReaderGetsEveryImage) {
+  LiveCamera camera = make();
+  for (int i = 0; i < 20; ++i) {
+    const auto image = camera.read(Read::kNext);
+    ASSERT_TRUE(image);
+    EXPECT_EQ(image->rgb[0], i);
+    EXPECT_EQ(image->index, static_cast<std::uint64_t>(i));
+    clock_.advance(milliseconds(3));
+  }
+}
+
+/// Whatever the reader does meanwhile, and however many images wait in the driver: what it gets is
+/// newer than what it had, and no older than two periods and the transfer.
+void expect_fresh_images(ManualClock& clock, LiveCamera& camera, const Timeline& time) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> pause_ms(0, 300);
+  SimTime last(-std::chrono::hours(1));
+  for (int i = 0; i < 40; ++i) {
+    const auto image = camera.read(Read::kNext);
+    ASSERT_TRUE(image);
+    EXPECT_GT(image->sampled_at, last);
+    EXPECT_EQ(image->sampled_at, SimTime(image->rgb[0] * kPeriod));
+    EXPECT_LT(same_instant(time.now()) - image->sampled_at, 2 * kPeriod);
+    last = image->sampled_at;
+    clock.advance(milliseconds(pause_ms(random)));
+  }
+}
+
+TEST_F(LiveCameraTest, ASlowReaderGetsFreshImages) {
+  source_->last_image = 400;
+  LiveCamera camera = make();
+  expect_fresh_images(clock_, camera, time_);
+}
+
+TEST_F(LiveCameraTest, ASlowReaderGetsFreshImagesHoweverManyTheDriverBuffers) {
+  source_->buffers = 9;
+  source_->last_image = 400;
+  LiveCamera camera = make();
+  expect_fresh_images(clock_, camera, time_);
+}
+
+TEST_F(LiveCameraTest, ASlowReaderGetsFreshImagesWithoutTimestampsToo) {
+  source_->is_on_epoch = true;
+  source_->buffers = 4;
+  LiveCamera camera = make();
+  ASSERT_TRUE(camera.read(Read::kNext));
+  clock_.advance(milliseconds(1000));
+  const auto image = camera.read(Read::kNext);
+  ASSERT_TRUE(image);
+  // Images 1 to 4 were waiting; the next that came was taken after the read began.
+  EXPECT_EQ(image->rgb[0], 26);
+  EXPECT_EQ(image->index, 5u);
+}
+
+TEST_F(LiveCameraTest, WithoutARateNothingIsSkipped) {
+  source_->rate_hz = 0.0;
+  LiveCamera camera = make();
+  ASSERT_TRUE(camera.read(Read::kNext));
+  clock_.advance(milliseconds(1000));
+  EXPECT_EQ(camera.read(Read::kNext)->rgb[0], 1);
+}
+
+TEST_F(LiveCameraTest, LatestGivesTheSameImageUntilANewerOneIsDue) {
+  LiveCamera camera = make();
+  const auto first = camera.read(Read::kLatest);
+  ASSERT_TRUE(first);
+  clock_.advance(milliseconds(10));
+  const auto again = camera.read(Read::kLatest);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->sampled_at, first->sampled_at);
+  EXPECT_EQ(again->index, first->index);
+  EXPECT_EQ(again->rgb, first->rgb);
+  clock_.advance(milliseconds(6));  // 41 ms after it was taken
+  EXPECT_GT(camera.read(Read::kLatest)->sampled_at, first->sampled_at);
+}
+
+TEST_F(LiveCameraTest, SaysForGoodThatItStopped) {
+  source_->last_image = 1;
+  LiveCamera camera = make();
+  EXPECT_TRUE(camera.read(Read::kNext));
+  EXPECT_TRUE(camera.read(Read::kNext));
+  for (const Read read : {Read::kNext, Read::kLatest}) {
+    const auto none = camera.read(read);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.failure().kind, Failure::Kind::kDisconnected);
+    EXPECT_EQ(none.failure().message,
+              "camera /dev/video3 stopped after 2 images (the device is gone)");
+  }
+}
+
+TEST_F(LiveCameraTest, StopsAtAnImageThatCannotBeDecoded) {
+  source_->breaks_images = true;
+  LiveCamera camera = make();
+  EXPECT_THAT(camera.read(Read::kNext).failure().message, HasSubstr("cannot be decoded"));
+}
+
+// ---- played video
+// ----------------------------------------------------------------------------------------------
+
+/// Images that are all there at once.
+class FakeVideo final : public FrameSource {
+ public:
+  FakeVideo(int images, double rate_hz) : images_(images), rate_hz_(rate_hz) {}
+  ImageFormat format() const override { return {1, 1, rate_hz_}; }
+  bool grab() override { return ++image_ < images_; }
+  bool retrieve(uav::CameraSample& into) override {
+    ++decoded;
+    into.rgb.assign(3, static_cast<std::uint8_t>(image_));
+    return true;
+  }
+  double position_ms() const override { return 0.0; }
+  int decoded = 0;
+
+ private:
+  int images_;
+  double rate_hz_;
+  int image_ = -1;
+};
+
+class PlayedVideoTest : public testing::Test {
+ protected:
+  void open(int images, double rate_hz) {
+    auto source = std::make_unique<FakeVideo>(images, rate_hz);
+    source_ = source.get();
+    auto video = PlayedVideo::create(time_, "camera a.avi", std::move(source), "a.avi");
+    ASSERT_TRUE(video);
+    video_ = std::move(*video);
+    clock_.advance(milliseconds(500));  // between opening and the first read
+  }
+  void expect_image(Read read, std::uint64_t index, Duration sampled_at, Duration had_at) {
+    const auto image = video_->read(read);
+    ASSERT_TRUE(image) << image.failure().message;
+    EXPECT_EQ(image->index, index);
+    EXPECT_EQ(image->rgb[0], index);
+    EXPECT_EQ(image->sampled_at, SimTime(sampled_at));
+    EXPECT_EQ(time_.now(), ExecTime(had_at));
+  }
+
+  ManualClock clock_;
+  Timeline time_{clock_};
+  FakeVideo* source_ = nullptr;
+  std::unique_ptr<PlayedVideo> video_;
+};
+
+TEST_F(PlayedVideoTest, PlaysAtItsRateFromTheFirstReadOn) {
+  open(100, 25.0);
+  expect_image(Read::kNext, 0, milliseconds(500), milliseconds(500));
+  expect_image(Read::kNext, 1, milliseconds(540), milliseconds(540));
+  clock_.advance(milliseconds(15));
+  expect_image(Read::kNext, 2, milliseconds(580), milliseconds(580));
+}
+
+TEST_F(PlayedVideoTest, ASlowReaderMissesImagesWithoutDecodingThem) {
+  open(100, 25.0);
+  expect_image(Read::kNext, 0, milliseconds(500), milliseconds(500));
+  clock_.advance(milliseconds(210));
+  expect_image(Read::kNext, 5, milliseconds(700), milliseconds(710));
+  clock_.advance(milliseconds(10));
+  expect_image(Read::kNext, 6, milliseconds(740), milliseconds(740));
+  EXPECT_EQ(source_->decoded, 3);
+}
+
+TEST_F(PlayedVideoTest, LatestGivesTheImageThatIsOn) {
+  open(100, 25.0);
+  expect_image(Read::kLatest, 0, milliseconds(500), milliseconds(500));
+  clock_.advance(milliseconds(39));
+  expect_image(Read::kLatest, 0, milliseconds(500), milliseconds(539));
+  clock_.advance(milliseconds(1));
+  expect_image(Read::kLatest, 1, milliseconds(540), milliseconds(540));
+  clock_.advance(milliseconds(90));
+  expect_image(Read::kLatest, 3, milliseconds(620), milliseconds(630));
+}
+
+TEST_F(PlayedVideoTest, ARateThatIsNoWholeNumberDoesNotDrift) {
+  open(4000, 30000.0 / 1001.0);
+  ASSERT_TRUE(video_->read(Read::kNext));
+  for (std::uint64_t k = 1; k < 3000; ++k) {
+    const auto image = video_->read(Read::kNext);
+    ASSERT_TRUE(image);
+    ASSERT_EQ(image->index, k);
+    const Duration exact = milliseconds(500) + nanoseconds(k * 1'001'000'000'000ULL / 30'000);
+    ASSERT_LE(std::chrono::abs(image->sampled_at.time_since_epoch() - exact), nanoseconds(1));
+  }
+}
+
+TEST_F(PlayedVideoTest, ItsEndIsADeviceThatStopped) {
+  open(3, 25.0);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(video_->read(Read::kNext));
+  for (int i = 0; i < 2; ++i) {
+    const auto none = video_->read(Read::kNext);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.failure().kind, Failure::Kind::kDisconnected);
+    EXPECT_EQ(none.failure().message, "camera a.avi stopped after 3 images (end of the file)");
+  }
+}
+
+TEST_F(PlayedVideoTest, IsOverForWhoeverReadsTooLate) {
+  open(3, 25.0);
+  EXPECT_TRUE(video_->read(Read::kNext));
+  clock_.advance(std::chrono::seconds(1));
+  EXPECT_FALSE(video_->read(Read::kNext));
+}
+
+TEST_F(PlayedVideoTest, RefusesAFileThatSaysNoRate) {
+  const auto none =
+      PlayedVideo::create(time_, "camera a.avi", std::make_unique<FakeVideo>(3, 0.0), "a.avi");
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.failure().kind, Failure::Kind::kInvalid);
+  EXPECT_THAT(none.failure().message,
+              AllOf(HasSubstr("camera a.avi: "), HasSubstr("rate"), HasSubstr("ffmpeg -i a.avi")));
+}
+
+}  // namespace
+}  // namespace tether::devices

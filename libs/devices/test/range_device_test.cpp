@@ -1,0 +1,164 @@
+#include "range_device.h"
+
+#include "fake_system.h"
+#include "manual_clock.h"
+#include "scratch_folder.h"
+
+#include <cerrno>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tether::devices {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+class RangeDeviceTest : public testing::Test {
+ protected:
+  RangeDeviceTest() {
+    measure("731");
+    scratch_.write("in_distance_scale", "0.001000\n");
+  }
+  void measure(const std::string& raw) { scratch_.write("in_distance_raw", raw + "\n"); }
+  void fail_with(int error) { system_.read_errors[scratch_.path("in_distance_raw")] = {error}; }
+  Result<std::unique_ptr<RangeDevice>> open() {
+    return RangeDevice::open(system_, time_, "rangefinder iio:x", scratch_.path(), limits_);
+  }
+  std::unique_ptr<RangeDevice> opened() {
+    auto device = open();
+    EXPECT_TRUE(device) << device.failure().message;
+    return std::move(*device);
+  }
+  std::string refusal() {
+    const auto device = open();
+    if (device) return "opened";
+    EXPECT_EQ(device.failure().kind, Failure::Kind::kInvalid);
+    EXPECT_THAT(device.failure().message, StartsWith("rangefinder iio:x: "));
+    return device.failure().message;
+  }
+
+  ScratchFolder scratch_;
+  ManualClock clock_;
+  Timeline time_{clock_};
+  FakeSystem system_;
+  uav::RangeProperties limits_{0.05, 2.0};
+};
+
+TEST_F(RangeDeviceTest, MeasuresWheneverItIsRead) {
+  const auto device = opened();
+  clock_.advance(std::chrono::milliseconds(70));
+  const auto first = device->read();
+  ASSERT_TRUE(first);
+  EXPECT_DOUBLE_EQ(first->range_m, 0.731);
+  EXPECT_EQ(first->index, 0u);
+  EXPECT_EQ(first->sampled_at, SimTime(std::chrono::milliseconds(70)));
+  measure("1200");
+  clock_.advance(std::chrono::milliseconds(5));
+  const auto second = device->read();
+  ASSERT_TRUE(second);
+  EXPECT_DOUBLE_EQ(second->range_m, 1.2);
+  EXPECT_EQ(second->index, 1u);
+  EXPECT_EQ(second->sampled_at, SimTime(std::chrono::milliseconds(75)));
+}
+
+TEST_F(RangeDeviceTest, ASampleIsFromWhenTheReadReturned) {
+  const auto device = opened();
+  // The driver is not ready twice, which takes two milliseconds.
+  system_.read_errors[scratch_.path("in_distance_raw")] = {EAGAIN, EAGAIN, 0};
+  EXPECT_EQ(device->read()->sampled_at, SimTime(std::chrono::milliseconds(2)));
+}
+
+TEST_F(RangeDeviceTest, OutOfItsLimitsItReadsInfinity) {
+  const auto device = opened();
+  measure("2001");
+  EXPECT_EQ(device->read()->range_m, kInfinity);
+  measure("2000");
+  EXPECT_EQ(device->read()->range_m, 2.0);
+  measure("49");
+  EXPECT_EQ(device->read()->range_m, -kInfinity);
+  measure("50");
+  EXPECT_DOUBLE_EQ(device->read()->range_m, 0.05);
+}
+
+TEST_F(RangeDeviceTest, AMaximumOfZeroIsNone) {
+  limits_ = {};
+  const auto device = opened();
+  measure("9000");
+  EXPECT_DOUBLE_EQ(device->read()->range_m, 9.0);
+}
+
+TEST_F(RangeDeviceTest, TheVl53l0xGives8190WhereNothingIsThere) {
+  limits_ = {};
+  scratch_.write("name", "vl53l0x\n");
+  const auto device = opened();
+  for (const char* raw : {"8190", "8191"}) {
+    measure(raw);
+    EXPECT_EQ(device->read()->range_m, kInfinity);
+  }
+  measure("1999");
+  EXPECT_DOUBLE_EQ(device->read()->range_m, 1.999);
+}
+
+TEST_F(RangeDeviceTest, SomeDriversFailWithEioWhereNothingIsThere) {
+  for (const char* name : {"vl53l1x", "srf04"}) {
+    system_.read_errors.clear();
+    scratch_.write("name", std::string(name) + "\n");
+    const auto device = opened();
+    fail_with(EIO);
+    EXPECT_EQ(device->read()->range_m, kInfinity);
+    system_.read_errors.clear();
+    EXPECT_DOUBLE_EQ(device->read()->range_m, 0.731);
+    fail_with(ENODEV);
+    EXPECT_FALSE(device->read());
+  }
+}
+
+TEST_F(RangeDeviceTest, SaysForGoodThatItStopped) {
+  for (const int error : {EIO, ENODEV, ETIMEDOUT, EREMOTEIO, EBUSY}) {
+    const auto device = opened();
+    ASSERT_TRUE(device->read());
+    ASSERT_TRUE(device->read());
+    fail_with(error);
+    const auto none = device->read();
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.failure().kind, Failure::Kind::kDisconnected);
+    EXPECT_THAT(none.failure().message,
+                AllOf(StartsWith("rangefinder iio:x stopped after 2 measurements ("),
+                      HasSubstr(scratch_.path("in_distance_raw")), HasSubstr(error_text(error))));
+    system_.read_errors.clear();
+    EXPECT_EQ(device->read().failure().message, none.failure().message);
+  }
+}
+
+TEST_F(RangeDeviceTest, StopsAtWhatIsNoNumber) {
+  const auto device = opened();
+  measure("far");
+  EXPECT_THAT(device->read().failure().message, HasSubstr("holds 'far', which is no number"));
+}
+
+TEST_F(RangeDeviceTest, IsRefusedWhereItCannotMeasure) {
+  for (const int error : {EBUSY, ENODEV, ETIMEDOUT}) {
+    fail_with(error);
+    EXPECT_THAT(refusal(), HasSubstr(error_text(error)));
+  }
+  EXPECT_EQ(system_.open_descriptors, 0);
+}
+
+TEST_F(RangeDeviceTest, IsRefusedWhereItMayNotBeRead) {
+  system_.open_errors[scratch_.path("in_distance_raw")] = EACCES;
+  EXPECT_THAT(refusal(), HasSubstr("Permission denied"));
+}
+
+TEST_F(RangeDeviceTest, IsRefusedWhereItIsNoRangefinder) {
+  scratch_.remove("in_distance_raw");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("no rangefinder"), HasSubstr("in_distance_raw")));
+}
+
+}  // namespace
+}  // namespace tether::devices
