@@ -1,16 +1,23 @@
 #pragma once
 
+#include "characterize.h"
 #include "mission.h"
+#include "real_row.h"
 
 #include <optional>
 #include <string>
 #include <variant>
 
+#include <tether/devices/rig.h>
+
 namespace tether::sut {
 
 /// What was asked for on the command line. `address`, `uav` and `clock` override the environment.
 struct CommandLine {
-  Mission mission;
+  Mission mission;                                  ///< without tasks, if to characterize
+  std::optional<CharacterizeOptions> characterize;  ///< instead of a mission
+  RealRowOptions real_row;                          ///< of a lone relative_position with a rig
+  std::optional<devices::Rig> rig;                  ///< real devices instead of a coordinator
   std::optional<std::string> address;
   std::optional<std::string> uav;
   std::optional<std::string> clock;

@@ -65,7 +65,8 @@ void add_vision_options(CLI::App& app, TaskSpec& spec) {
   vision::TrackerOptions& tracker = spec.vision.tracker;
   const CLI::Validator share = within(0.0, 1.0);
   app.add_option("--anchor", spec.anchor, "Name of the anchor")->required();
-  app.add_option("--camera", spec.vision.camera, "Name of the camera")->capture_default_str();
+  app.add_option("--camera", spec.vision.camera, "Name of the camera, or a real one's device")
+      ->capture_default_str();
   app.add_option("--prefilter", tracker.prefilter,
                  "Smoothing of each image: none, gaussian (default) or median")
       ->transform(CLI::Transformer(kPrefilters))

@@ -2,12 +2,12 @@
 
 #include "common_arguments.h"
 #include "task_arguments.h"
+#include "toml_input.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,24 +19,12 @@
 namespace tether::sut {
 namespace {
 
-constexpr std::size_t kLargestFile = std::size_t{1} << 20;
-
-/// What is wrong, on its way out of this file.
-struct BadMission {
-  int line;
-  std::string what;
-};
-
 /// One key of the file: an option's value, as the command line would have it.
 struct Entry {
   std::string value;
   int line = 0;
 };
 using Entries = std::map<std::string, Entry, std::less<>>;
-
-int line_of(const toml::node& node) {
-  return static_cast<int>(node.source().begin.line);
-}
 
 std::string option_name(std::string_view key) {
   std::string name = "--" + std::string(key);
@@ -76,14 +64,14 @@ std::string text_of(std::string_view key, const toml::node& node) {
   if (const auto* truth = node.as_boolean()) {
     return truth->get() ? "true" : "false";
   }
-  throw BadMission{line_of(node), std::string(key) + " must be a string, a number, true or false"};
+  throw BadInput{line_of(node), std::string(key) + " must be a string, a number, true or false"};
 }
 
 /// Takes what is not there yet, so that whoever comes first is heard.
 void take(const toml::table& table, const std::vector<std::string_view>& but, Entries& entries) {
   for (const auto& [key, node] : table) {
     if (std::find(but.begin(), but.end(), key.str()) == but.end()) {
-      const int line = static_cast<int>(key.source().begin.line);
+      const int line = line_of(key);
       entries.emplace(key.str(), Entry{text_of(key.str(), node), line});
     }
   }
@@ -135,7 +123,7 @@ void check_each(std::string_view task, const Entries& entries) {
     TaskParser parser(task);
     const auto wrong = parser.parse({{key, entry}});
     if (wrong && !parser.is_incomplete()) {
-      throw BadMission{entry.line, *wrong};
+      throw BadInput{entry.line, *wrong};
     }
   }
 }
@@ -151,13 +139,13 @@ std::string names_of_tasks() {
 std::string name_of_task(const toml::table& table) {
   const toml::node* node = table.get("task");
   if (node == nullptr || !node->is_string()) {
-    throw BadMission{node != nullptr ? line_of(*node) : line_of(table),
-                     "a [[task]] needs task = \"NAME\"; there are " + names_of_tasks()};
+    throw BadInput{node != nullptr ? line_of(*node) : line_of(table),
+                   "a [[task]] needs task = \"NAME\"; there are " + names_of_tasks()};
   }
   const std::string name = node->as_string()->get();
   if (!TaskParser(name).exists()) {
-    throw BadMission{line_of(*node),
-                     "there is no task \"" + name + "\"; there are " + names_of_tasks()};
+    throw BadInput{line_of(*node),
+                   "there is no task \"" + name + "\"; there are " + names_of_tasks()};
   }
   return name;
 }
@@ -165,7 +153,7 @@ std::string name_of_task(const toml::table& table) {
 bool is_required(const toml::table& table) {
   const toml::node* node = table.get("required");
   if (node != nullptr && !node->is_boolean()) {
-    throw BadMission{line_of(*node), "required must be true or false"};
+    throw BadInput{line_of(*node), "required must be true or false"};
   }
   return node == nullptr || node->as_boolean()->get();
 }
@@ -177,8 +165,8 @@ TaskSpec read_task(const toml::table& table, const Entries& common) {
   take(table, {"task", "required"}, entries);
   for (const auto& [key, entry] : entries) {
     if (!parser.knows(key)) {
-      throw BadMission{entry.line, name + " has no parameter '" + key + "' (tether-sut " + name +
-                                       " --help lists them)"};
+      throw BadInput{entry.line, name + " has no parameter '" + key + "' (tether-sut " + name +
+                                     " --help lists them)"};
     }
   }
   for (const auto& [key, entry] : common) {
@@ -188,7 +176,7 @@ TaskSpec read_task(const toml::table& table, const Entries& common) {
   }
   check_each(name, entries);
   if (const auto wrong = parser.parse(entries)) {
-    throw BadMission{line_of(table), name + ": " + *wrong};
+    throw BadInput{line_of(table), name + ": " + *wrong};
   }
   TaskSpec spec = parser.spec();
   spec.required = is_required(table);
@@ -207,7 +195,7 @@ Entries read_common(const toml::table& file) {
   Entries common;
   if (const toml::node* node = file.get("vision")) {
     if (!node->is_table()) {
-      throw BadMission{line_of(*node), "vision must be a table: [vision]"};
+      throw BadInput{line_of(*node), "vision must be a table: [vision]"};
     }
     take(*node->as_table(), {}, common);
     TaskSpec spec;
@@ -216,14 +204,14 @@ Entries read_common(const toml::table& file) {
     add_vision_options(vision, spec);
     for (const auto& [key, entry] : common) {
       if (vision.get_option_no_throw(option_name(key)) == nullptr) {
-        throw BadMission{entry.line, "[vision] has no parameter '" + key + "'"};
+        throw BadInput{entry.line, "[vision] has no parameter '" + key + "'"};
       }
     }
   }
   take(file, {"vision", "task"}, common);
   for (const auto& [key, entry] : common) {
     if (!any_task_knows(key)) {
-      throw BadMission{entry.line, "no task has a parameter '" + key + "'"};
+      throw BadInput{entry.line, "no task has a parameter '" + key + "'"};
     }
   }
   return common;
@@ -232,7 +220,7 @@ Entries read_common(const toml::table& file) {
 Mission read_mission(const toml::table& file) {
   const toml::node* node = file.get("task");
   if (node == nullptr || !node->is_array_of_tables()) {
-    throw BadMission{node != nullptr ? line_of(*node) : 1, "a mission needs a [[task]] or more"};
+    throw BadInput{node != nullptr ? line_of(*node) : 1, "a mission needs a [[task]] or more"};
   }
   const Entries common = read_common(file);
   Mission mission;
@@ -243,32 +231,18 @@ Mission read_mission(const toml::table& file) {
   return mission;
 }
 
-Failure invalid(const std::string& path, int line, const std::string& what) {
-  return {Failure::Kind::kInvalid, path + ":" + std::to_string(line) + ": " + what};
-}
-
 }  // namespace
 
 Result<Mission> parse_mission(const std::string& text, const std::string& path) {
-  try {
-    return read_mission(toml::parse(text, path));
-  } catch (const toml::parse_error& error) {
-    return invalid(path, static_cast<int>(error.source().begin.line),
-                   "no valid TOML: " + std::string(error.description()));
-  } catch (const BadMission& bad) {
-    return invalid(path, bad.line, bad.what);
-  }
+  return read_toml<Mission>(text, path, read_mission);
 }
 
 Result<Mission> load_mission(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text(kLargestFile + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (file.bad() || !file.eof()) {
-    return Failure{Failure::Kind::kInvalid, path + ": cannot be read, or is no mission file"};
+  const Result<std::string> text = read_text(path, "mission file");
+  if (!text) {
+    return text.failure();
   }
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  return parse_mission(text, path);
+  return parse_mission(*text, path);
 }
 
 }  // namespace tether::sut

@@ -94,7 +94,8 @@ class MoveForwardArguments : public ArgumentsFor<tasks::MoveForwardOptions> {
                    "true or false: stop while turning towards the anchor")
         ->capture_default_str();
     add_turning_options(app, options_.face);
-    app.add_option("--imu", options_.face.imu, "Name of the IMU that tells the heading")
+    app.add_option("--imu", options_.face.imu,
+                   "Name of the IMU that tells the heading, or a real one's device")
         ->capture_default_str();
     add_settling(app, options_.settle_readings);
     add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
@@ -122,7 +123,8 @@ class ClosedPathArguments : public ArgumentsFor<tasks::ClosedPathOptions> {
     app.add_option("--speed-m-s", options_.speed_m_s, "Of moving")
         ->check(within(0.001, 5.0))
         ->capture_default_str();
-    app.add_option("--imu", options_.imu, "Name of the IMU")->capture_default_str();
+    app.add_option("--imu", options_.imu, "Name of the IMU, or a real one's device")
+        ->capture_default_str();
     app.add_option("--rest-readings", options_.rest_readings,
                    "Readings of the IMU before the start, from which its bias is taken")
         ->check(CLI::Range(0, 100000))

@@ -1,6 +1,7 @@
 #include "command_line.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -194,6 +195,83 @@ TEST(CommandLine, MissionTakesItsFileByPlaceOrByName) {
   }
 }
 
+TEST(CommandLine, ADeviceNeedsNoCoordinator) {
+  const char* rig = TETHER_SOURCE_DIR "/rigs/bench.toml";
+  const CommandLine line =
+      parsed({"relative_position", "--anchor", "blue_box", "--rig", rig, "--camera", "/dev/video0",
+              "--true-roi-px", "10,20,30,40", "--keep-image", "i.png"});
+  ASSERT_TRUE(line.rig);
+  ASSERT_EQ(line.rig->sensors.size(), 1u) << "the rangefinder was not given";
+  EXPECT_EQ(line.rig->sensors[0].device, "/dev/video0");
+  EXPECT_EQ(line.rig->uav, "bench");
+  EXPECT_EQ(only(line).vision.camera, "camera");
+  ASSERT_TRUE(line.real_row.true_roi);
+  EXPECT_EQ(line.real_row.true_roi->left_px, 10);
+  EXPECT_EQ(line.real_row.true_roi->top_px, 20);
+  EXPECT_EQ(line.real_row.true_roi->width_px, 30);
+  EXPECT_EQ(line.real_row.true_roi->height_px, 40);
+  EXPECT_EQ(line.real_row.keep_image, "i.png");
+  EXPECT_FALSE(parsed({"relative_position", "--anchor", "b", "--camera", "eye"}).rig);
+}
+
+TEST(CommandLine, EveryCommandTakesDevices) {
+  const char* rig = TETHER_SOURCE_DIR "/rigs/bench.toml";
+  const char* file = TETHER_SOURCE_DIR "/missions/look_around.toml";
+  const std::vector<std::vector<const char*>> commands = {
+      {"sensor_characterization", "--sensor", "camera"},
+      {"relative_position", "--anchor", "b"},
+      {"face_anchor", "--anchor", "b"},
+      {"move_forward", "--anchor", "b"},
+      {"closed_path", "--anchor", "b"},
+      {"mission", file},
+      {"characterize"}};
+  for (std::vector<const char*> command : commands) {
+    command.insert(command.end(), {"--rig", rig, "--camera", "0", "--range", "iio:vl53l0x"});
+    const CommandLine line = parsed(command);
+    ASSERT_TRUE(line.rig) << command.front();
+    EXPECT_EQ(line.rig->sensors.size(), 2u);
+  }
+}
+
+TEST(CommandLine, Characterize) {
+  const CommandLine line = parsed({"characterize", "--sensors", "camera,range", "--acquisitions",
+                                   "50", "--experiments", "10", "--timing", "periodic", "--name",
+                                   "pi", "--out", "p.toml", "--time-limit-s", "30", "--uav", "u"});
+  ASSERT_TRUE(line.characterize);
+  EXPECT_THAT(line.characterize->sensors, ::testing::ElementsAre("camera", "range"));
+  EXPECT_EQ(line.characterize->acquisitions, 50);
+  EXPECT_EQ(line.characterize->experiments, 10);
+  EXPECT_EQ(line.characterize->timing, Timing::kPeriodic);
+  EXPECT_EQ(line.characterize->name, "pi");
+  EXPECT_EQ(line.characterize->out, "p.toml");
+  EXPECT_EQ(line.characterize->time_limit, std::chrono::seconds(30));
+  EXPECT_EQ(line.uav, "u");
+  EXPECT_FALSE(line.rig);
+  const CommandLine plain = parsed({"characterize"});
+  EXPECT_TRUE(plain.characterize->sensors.empty());
+  EXPECT_EQ(plain.characterize->acquisitions, 100);
+  EXPECT_EQ(plain.characterize->experiments, 1);
+  EXPECT_EQ(plain.characterize->timing, Timing::kOnDemand);
+}
+
+TEST(CommandLine, WhatDoesNotGoTogetherGetsOneLine) {
+  const std::vector<std::pair<std::vector<const char*>, const char*>> mistakes = {
+      {{"characterize", "--camera", "0", "--address", "h:1"}, "are about a coordinator"},
+      {{"characterize", "--camera", "0", "--clock", "cpu"}, "are about a coordinator"},
+      {{"characterize", "--acquisitions", "20000", "--experiments", "2"}, "at most 20000"},
+      {{"characterize", "--rig", "/nowhere/r.toml"}, "cannot be read"},
+      {{"face_anchor", "--anchor", "b", "--camera", "0"}, "needs --rig FILE"},
+      {{"relative_position", "--anchor", "b", "--keep-image", "i.png"}, "for real devices"},
+      {{"relative_position", "--anchor", "b", "--true-roi-px", "1,2,3,4"}, "for real devices"},
+  };
+  for (const auto& [arguments, says] : mistakes) {
+    const auto refused = std::get<Refusal>(parse(arguments));
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.text, HasSubstr(says));
+    EXPECT_EQ(std::count(refused.text.begin(), refused.text.end(), '\n'), 1) << refused.text;
+  }
+}
+
 TEST(CommandLine, ABadMissionFileIsWrongUse) {
   const auto refused = std::get<Refusal>(parse({"mission", "/nowhere/m.toml"}));
   EXPECT_EQ(refused.exit_code, 2);
@@ -228,6 +306,16 @@ TEST(CommandLine, MistakesGetOneLineAndExitCode2) {
       {"move_forward", "--anchor", "b", "--prefilter-size-px", "33"},
       {"closed_path", "--anchor", "b", "--distance-m", "nan"},
       {"mission"},
+      {"characterize", "--camera", "camera"},
+      {"characterize", "--range", "range"},
+      {"characterize", "--acquisitions", "0"},
+      {"characterize", "--timing", "sometimes"},
+      {"characterize", "--name", "my pi"},
+      {"face_anchor", "--anchor", "b", "--range", "range"},
+      {"face_anchor", "--anchor", "b", "--keep-image", "i.png"},
+      {"relative_position", "--anchor", "b", "--true-roi-px", "1,2,3"},
+      {"relative_position", "--anchor", "b", "--true-roi-px", "1,2,0,4"},
+      {"relative_position", "--anchor", "b", "--true-roi-px", "1,2,nan,4"},
       {"relative_position", "--anchor", "b", "--prefilter", "sharpen"},
       {"face_anchor", "--anchor", "b", "relative_position"}};
   for (const auto& arguments : mistakes) {

@@ -1,0 +1,167 @@
+#include "characterize.h"
+
+#include "sensor_table.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <tether/tasks/task_context.h>
+
+namespace tether::sut {
+namespace {
+
+using tasks::TaskOutcome;
+
+std::vector<std::string> names_of(const uav::Catalogue& catalogue) {
+  std::vector<std::string> names;
+  for (const uav::SensorDescription& sensor : catalogue.sensors) {
+    names.push_back(sensor.name);
+  }
+  return names;
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
+Failure invalid(const std::string& what) {
+  return {Failure::Kind::kInvalid, what};
+}
+
+/// The sensors that are asked for, if they are there and have what is to be measured.
+Result<std::vector<const uav::SensorDescription*>> choose_sensors(
+    const uav::Catalogue& catalogue, const CharacterizeOptions& options) {
+  const std::vector<std::string> all = names_of(catalogue);
+  std::vector<const uav::SensorDescription*> chosen;
+  for (const std::string& name : options.sensors.empty() ? all : options.sensors) {
+    const uav::SensorDescription* sensor = catalogue.find_sensor(name);
+    if (sensor == nullptr) {
+      return invalid("there is no sensor \"" + name + "\"; there are " + listed(all));
+    }
+    if (options.timing == Timing::kPeriodic && sensor->rate_hz <= 0.0) {
+      return invalid("sensor \"" + name +
+                     "\" tells no rate, as one that measures when asked; leave it out with "
+                     "--sensors, or use --timing on_demand");
+    }
+    chosen.push_back(sensor);
+  }
+  if (chosen.empty()) {
+    return invalid("there is no sensor to characterize");
+  }
+  return chosen;
+}
+
+/// What is left of a sensor's time for one more experiment.
+tasks::SensorCharacterizationOptions options_for(const CharacterizeOptions& options,
+                                                 Duration elapsed) {
+  tasks::SensorCharacterizationOptions experiment;
+  experiment.acquisitions = options.acquisitions;
+  experiment.time_limit = std::max(options.time_limit - elapsed, Duration(1));
+  return experiment;
+}
+
+class Measurement {
+ public:
+  Measurement(tasks::TaskContext& context, const CharacterizeOptions& options,
+              const TellProgress& tell)
+      : context_(context), options_(options), tell_(tell) {}
+
+  /// Says how it ended, if not well.
+  tasks::Progress measure(SensorTimes& times) {
+    const ExecTime start = context_.vehicle().now();
+    for (int number = 1; number <= options_.experiments; ++number) {
+      if (tell_) {
+        tell_(times.sensor + ": experiment " + std::to_string(number) + " of " +
+              std::to_string(options_.experiments));
+      }
+      const Duration elapsed = context_.vehicle().now() - start;
+      tasks::SensorCharacterizationTask task(times.sensor, options_for(options_, elapsed));
+      const TaskOutcome outcome = tasks::run(task, context_);
+      times.experiments.push_back(task.acquisitions());
+      if (!outcome.reached()) {
+        return ended(outcome, times, number);
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static TaskOutcome ended(TaskOutcome outcome, const SensorTimes& times, int number) {
+    if (!outcome.failure) {
+      outcome.reason += " after " + std::to_string(times.experiments.back().size()) +
+                        " acquisitions of sensor \"" + times.sensor + "\" in experiment " +
+                        std::to_string(number);
+    }
+    outcome.results.clear();
+    return outcome;
+  }
+
+  tasks::TaskContext& context_;
+  const CharacterizeOptions& options_;
+  const TellProgress& tell_;
+};
+
+void add_results(const SensorTimes& times, std::map<std::string, double>& results) {
+  const TimeSummary of = summarize(times.taken());
+  const std::string prefix = times.sensor + "_";
+  results[prefix + "n"] = static_cast<double>(of.n);
+  results[prefix + "mean_s"] = of.mean_s;
+  results[prefix + "min_s"] = of.min_s;
+  results[prefix + "median_s"] = of.median_s;
+  results[prefix + "p95_s"] = of.p95_s;
+  results[prefix + "p99_s"] = of.p99_s;
+  results[prefix + "max_s"] = of.max_s;
+  if (of.stddev_s) {
+    results[prefix + "stddev_s"] = *of.stddev_s;
+  }
+  if (const auto between_s = stddev_between_experiments_s(times)) {
+    results[prefix + "stddev_between_experiments_s"] = *between_s;
+  }
+}
+
+TaskOutcome measure_all(tasks::TaskContext& context, const CharacterizeOptions& options,
+                        const TellProgress& tell, std::vector<SensorTimes>& all) {
+  const auto chosen = choose_sensors(context.vehicle().catalogue(), options);
+  if (!chosen) {
+    return TaskOutcome::failed(chosen.failure());
+  }
+  Measurement measurement(context, options, tell);
+  TaskOutcome whole = TaskOutcome::goal_reached();
+  for (const uav::SensorDescription* sensor : *chosen) {
+    all.push_back({sensor->name, sensor->kind(), {}});
+    if (tasks::Progress end = measurement.measure(all.back())) {
+      return *std::move(end);
+    }
+    add_results(all.back(), whole.results);
+  }
+  return whole;
+}
+
+}  // namespace
+
+std::vector<Duration> SensorTimes::taken() const {
+  std::vector<Duration> all;
+  for (const auto& experiment : experiments) {
+    for (const tasks::Acquisition& acquisition : experiment) {
+      all.push_back(acquisition.had_at - acquisition.asked_at);
+    }
+  }
+  return all;
+}
+
+Characterization characterize(client::Vehicle& vehicle, const CharacterizeOptions& options,
+                              const TellProgress& tell) {
+  const ExecTime start = vehicle.now();
+  tasks::TaskContext context(vehicle);
+  Characterization result;
+  result.outcome = measure_all(context, options, tell, result.sensors);
+  result.outcome.task = "characterize";
+  result.outcome.results["duration_s"] = to_seconds(vehicle.now() - start);
+  return result;
+}
+
+}  // namespace tether::sut

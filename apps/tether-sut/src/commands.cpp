@@ -1,0 +1,201 @@
+#include "commands.h"
+
+#include "image_file.h"
+#include "profile_text.h"
+#include "progress_line.h"
+#include "whole_file.h"
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <ostream>
+#include <utility>
+
+namespace tether::sut {
+namespace {
+
+using tasks::TaskOutcome;
+
+constexpr int kSetUpFailed = 3;
+
+int say(const Failure& failure, int code, const Streams& streams) {
+  streams.err << "tether-sut: " << failure.message << '\n';
+  return code;
+}
+
+/// The JSON line, or the one line of a failure.
+int report(const TaskOutcome& outcome, const Streams& streams) {
+  if (outcome.status == tasks::TaskStatus::kFailed) {
+    streams.err << "tether-sut: " << outcome.reason << '\n';
+  } else {
+    streams.out << tasks::details_json(outcome) << '\n';
+  }
+  return exit_code(outcome);
+}
+
+/// Tells the coordinator, except of what is no result.
+TaskOutcome finished(TaskOutcome outcome, client::Vehicle& vehicle) {
+  if (outcome.failure) {
+    return outcome;
+  }
+  const Status told =
+      vehicle.finish(outcome.reached(), outcome.reason, tasks::details_json(outcome));
+  return told ? outcome : TaskOutcome::failed(told.failure());
+}
+
+// The real row ------------------------------------------------------------------------------------
+
+Status keep_image(const std::string& path, const RealRow& row, const Streams& streams) {
+  if (path.empty()) {
+    return ok_status();
+  }
+  if (!row.sighting) {
+    streams.err << "tether-sut: " << path << " is not written: there is no image with the anchor\n";
+    return ok_status();
+  }
+  if (Status written = write_png(path, row.sighting->image); !written) {
+    return written;
+  }
+  streams.out << path << ": image " << row.sighting->image.index
+              << "; the tracked ROI, as --true-roi-px takes it: " << to_pixel_box(row.sighting->roi)
+              << '\n';
+  return ok_status();
+}
+
+// Characterization --------------------------------------------------------------------------------
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
+}
+
+std::string source_of(const CommandLine& line, const std::string& sensor) {
+  if (!line.rig) {
+    return "virtual";
+  }
+  const auto& sensors = line.rig->sensors;
+  const auto found = std::find_if(sensors.begin(), sensors.end(), [&](const auto& candidate) {
+    return candidate.description.name == sensor;
+  });
+  return found == sensors.end() ? "real sensor" : found->device;
+}
+
+Result<TimingModel> timing_of(const SensorTimes& times, Timing timing, bool is_real) {
+  if (timing == Timing::kPeriodic) {
+    return periodic_timing(times, is_real);
+  }
+  return on_demand_timing(times);
+}
+
+Result<MeasuredProfile> make_profile(const CommandLine& line, const Connection& connection,
+                                     const std::vector<SensorTimes>& all) {
+  const CharacterizeOptions& options = *line.characterize;
+  MeasuredProfile profile;
+  profile.name = options.name.empty() ? profile_name_from(host_name()) : options.name;
+  profile.when = utc_now();
+  profile.where = connection.origin.location;
+  profile.acquisitions = options.acquisitions;
+  profile.experiments = options.experiments;
+  for (const SensorTimes& times : all) {
+    Result<TimingModel> timing = timing_of(times, options.timing, connection.is_real);
+    if (!timing) {
+      return timing.failure();
+    }
+    profile.sensors.push_back(
+        {times.sensor, times.kind, source_of(line, times.sensor), std::move(timing).value()});
+  }
+  return profile;
+}
+
+/// What was acquired, and of a periodic sensor the delay that its profile has.
+std::vector<NamedTimes> rows_of(const std::vector<SensorTimes>& all,
+                                const MeasuredProfile& profile) {
+  std::vector<NamedTimes> rows;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    rows.push_back({all[i].sensor, all[i].taken(), stddev_between_experiments_s(all[i])});
+    const TimingModel& timing = profile.sensors[i].timing;
+    if (timing.period) {
+      rows.push_back({all[i].sensor + " period", {*timing.period}, std::nullopt});
+      rows.push_back({all[i].sensor + " delay", timing.delays, std::nullopt});
+    }
+  }
+  return rows;
+}
+
+Characterization measure(const CommandLine& line, const Connection& connection) {
+  ProgressLine progress;
+  return characterize(*connection.vehicle, *line.characterize,
+                      [&progress](const std::string& what) { progress.show(what); });
+}
+
+}  // namespace
+
+int fly_command(const CommandLine& line, client::Vehicle& vehicle, const Streams& streams) {
+  return report(fly(line.mission, vehicle), streams);
+}
+
+int real_row_command(const CommandLine& line, const Connection& connection,
+                     const Streams& streams) {
+  const RealRow row =
+      measure_real_row(line.mission.tasks.front(), line.real_row.true_roi, *connection.vehicle);
+  if (row.outcome.failure) {
+    return report(row.outcome, streams);
+  }
+  for (const std::string& note : row.notes) {
+    streams.err << "tether-sut: " << note << '\n';
+  }
+  if (const Status kept = keep_image(line.real_row.keep_image, row, streams); !kept) {
+    return say(kept.failure(), kSetUpFailed, streams);
+  }
+  streams.out << table_2(row, connection.origin.location);
+  return report(finished(row.outcome, *connection.vehicle), streams);
+}
+
+int characterize_command(const CommandLine& line, const Connection& connection,
+                         const Streams& streams) {
+  const Characterization measured = measure(line, connection);
+  if (!measured.outcome.reached()) {
+    return report(finished(measured.outcome, *connection.vehicle), streams);
+  }
+  const Result<MeasuredProfile> profile = make_profile(line, connection, measured.sensors);
+  if (!profile) {
+    return say(profile.failure(), exit_code(profile.failure()), streams);
+  }
+  const std::string& out = line.characterize->out;
+  if (!out.empty()) {
+    if (const Status written = write_whole(out, profile_text(*profile)); !written) {
+      return say(written.failure(), kSetUpFailed, streams);
+    }
+  }
+  streams.out << table_1(connection.origin, measured.sensors) << '\n'
+              << distribution_table(rows_of(measured.sensors, *profile));
+  return report(finished(measured.outcome, *connection.vehicle), streams);
+}
+
+int run_command(const CommandLine& line, const Streams& streams) {
+  const std::string& file = line.characterize ? line.characterize->out : line.real_row.keep_image;
+  if (!file.empty()) {
+    if (const Status writable = check_writable(file); !writable) {
+      return say(writable.failure(), exit_code(writable.failure()), streams);
+    }
+  }
+  const Result<Connection> connection = connect_as(line);
+  if (!connection) {
+    return say(connection.failure(), exit_code(connection.failure()), streams);
+  }
+  if (line.characterize) {
+    return characterize_command(line, *connection, streams);
+  }
+  const std::vector<TaskSpec>& specs = line.mission.tasks;
+  const bool is_real_row =
+      connection->is_real && !line.mission.is_sequence &&
+      std::holds_alternative<tasks::RelativePositionOptions>(specs.front().options);
+  return is_real_row ? real_row_command(line, *connection, streams)
+                     : fly_command(line, *connection->vehicle, streams);
+}
+
+}  // namespace tether::sut

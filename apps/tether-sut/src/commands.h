@@ -1,0 +1,34 @@
+#pragma once
+
+#include "command_line.h"
+#include "connection.h"
+
+#include <iosfwd>
+
+/// What the program does once its words are understood: results to `out`, words about what went
+/// wrong to `err`; each returns the exit code.
+namespace tether::sut {
+
+struct Streams {
+  std::ostream& out;
+  std::ostream& err;
+};
+
+/// Flies the mission and prints its details as one line of JSON.
+int fly_command(const CommandLine& line, client::Vehicle& vehicle, const Streams& streams);
+
+/// Measures the row "Real sensor" of Table II and prints it before the JSON line. The image is
+/// written, if asked for, also of a task that did not reach its goal.
+/// @pre line.mission is one relative_position task
+int real_row_command(const CommandLine& line, const Connection& connection, const Streams& streams);
+
+/// Characterizes, writes the profile, tells the coordinator, and prints Table I, the distributions
+/// and the JSON line. Where anything fails no profile is written.
+/// @pre line.characterize
+int characterize_command(const CommandLine& line, const Connection& connection,
+                         const Streams& streams);
+
+/// The whole: checks that the files can be written, connects, and runs the command.
+int run_command(const CommandLine& line, const Streams& streams);
+
+}  // namespace tether::sut

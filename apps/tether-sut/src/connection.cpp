@@ -1,0 +1,101 @@
+#include "connection.h"
+
+#include "interruptible_vehicle.h"
+#include "text_table.h"
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include <tether/base/version.h>
+#include <tether/client/simulated_vehicle.h>
+#include <tether/vision/runtime.h>
+
+namespace tether::sut {
+namespace {
+
+/// Before the SUT's time begins: all that is slow only once. One thread, because the SUT's time may
+/// be the CPU time of this process; freed images stay with the allocator, because fetching fresh
+/// memory for each would be most of what handling one costs.
+void prepare() {
+#ifdef M_MMAP_THRESHOLD
+  mallopt(M_MMAP_THRESHOLD, 64 << 20);
+  mallopt(M_TRIM_THRESHOLD, 256 << 20);
+#endif
+  vision::set_threads(1);
+  vision::warm_up(640, 480);
+}
+
+/// The command line's word counts for more than the environment's.
+void override_environment(const CommandLine& line) {
+  const auto set = [](const char* name, const std::optional<std::string>& value) {
+    if (value) {
+      setenv(name, value->c_str(), 1);
+    }
+  };
+  set("TETHER_ADDRESS", line.address);
+  set("TETHER_UAV", line.uav);
+  set("TETHER_CLOCK", line.clock);
+}
+
+/// "6", "0.5".
+std::string shown(double factor) {
+  const bool is_whole = factor == std::floor(factor);
+  return fixed(factor, is_whole ? 0 : 3);
+}
+
+std::string clock_text(const client::TimeSource& time) {
+  switch (time.kind()) {
+    case link::ClockKind::kWall:
+      return "wall";
+    case link::ClockKind::kScripted:
+      return "scripted";
+    default:
+      return "cpu × " + shown(time.factor());
+  }
+}
+
+Result<Connection> open_devices(const devices::Rig& rig) {
+  Result<std::unique_ptr<client::Vehicle>> vehicle = devices::open_rig(rig);
+  if (!vehicle) {
+    return Failure{Failure::Kind::kRefused, vehicle.failure().message};
+  }
+  catch_interrupts();
+  return Connection{make_interruptible(std::move(vehicle).value(), interrupted),
+                    {"real sensor", host_name()},
+                    true};
+}
+
+}  // namespace
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  const bool is_known = gethostname(name.data(), name.size() - 1) == 0 && name.front() != '\0';
+  return is_known ? name.data() : "unknown host";
+}
+
+Result<Connection> connect_as(const CommandLine& line) {
+  if (line.rig) {
+    prepare();
+    return open_devices(*line.rig);
+  }
+  override_environment(line);
+  Result<client::ConnectOptions> options = client::options_from_environment();
+  if (!options) {
+    return options.failure();
+  }
+  options->sut_name = "tether-sut " + std::string(tether::version());
+  const std::string location = host_name() + ", " + clock_text(*options->time);
+  prepare();
+  Result<std::unique_ptr<client::Vehicle>> vehicle = client::connect(std::move(options).value());
+  if (!vehicle) {
+    return vehicle.failure();
+  }
+  return Connection{std::move(vehicle).value(), {"virtual", location}, false};
+}
+
+}  // namespace tether::sut

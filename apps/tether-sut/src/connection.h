@@ -1,0 +1,27 @@
+#pragma once
+
+#include "command_line.h"
+#include "sensor_table.h"
+
+#include <memory>
+
+#include <tether/base/result.h>
+#include <tether/client/vehicle.h>
+
+namespace tether::sut {
+
+/// What the SUT works with, and how the paper's tables name it.
+struct Connection {
+  std::unique_ptr<client::Vehicle> vehicle;
+  Origin origin;
+  bool is_real = false;
+};
+
+/// Opens the rig's devices, or connects to the coordinator that the command line or the environment
+/// names. With real devices an interrupt then ends the vehicle's calls (`make_interruptible`). A
+/// device that cannot be opened is kRefused: the set-up failed.
+Result<Connection> connect_as(const CommandLine& line);
+
+std::string host_name();
+
+}  // namespace tether::sut

@@ -1,0 +1,27 @@
+#include "image_file.h"
+
+#include "whole_file.h"
+
+#include <string_view>
+#include <vector>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace tether::sut {
+
+Status write_png(const std::string& path, const uav::CameraSample& image) {
+  // OpenCV has no view of constant data; this one is only read.
+  const cv::Mat rgb(image.height_px, image.width_px, CV_8UC3,
+                    const_cast<std::uint8_t*>(image.rgb.data()));  // NOLINT
+  cv::Mat bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  std::vector<unsigned char> png;
+  if (!cv::imencode(".png", bgr, png)) {
+    return Failure{Failure::Kind::kInvalid, path + ": the image cannot be made a PNG"};
+  }
+  return write_whole(path, {reinterpret_cast<const char*>(png.data()), png.size()});  // NOLINT
+}
+
+}  // namespace tether::sut

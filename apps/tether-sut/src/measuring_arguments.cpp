@@ -1,0 +1,96 @@
+#include "measuring_arguments.h"
+
+#include "common_arguments.h"
+#include "profile_text.h"
+
+#include <map>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace tether::sut {
+namespace {
+
+/// So that the profile stays within what a scenario's reader takes.
+constexpr int kMostOfASensor = 20'000;
+
+CLI::Validator profile_name() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return is_profile_name(text) ? std::string()
+                                     : "\"" + text +
+                                           "\" is no name: 1 to 64 letters, digits, '_', '-' and "
+                                           "'.', not starting with '.'";
+      },
+      "NAME");
+}
+
+/// "12,40,80,60" in whole pixels.
+void add_pixel_box(CLI::App& app, const std::string& name, std::optional<PixelBox>& box,
+                   const std::string& description) {
+  app.add_option_function<std::vector<double>>(
+         name,
+         [&box](const std::vector<double>& v) {
+           box = PixelBox{v[0], v[1], v[2], v[3]};
+           if (box->width_px < 1.0 || box->height_px < 1.0) {
+             throw CLI::ValidationError("--true-roi-px", "W and H must be at least 1");
+           }
+         },
+         description)
+      ->delimiter(',')
+      ->expected(4)
+      ->check(within(-1e5, 1e5))
+      ->type_name("X,Y,W,H");
+}
+
+}  // namespace
+
+void add_characterize_options(CLI::App& app, CharacterizeOptions& options) {
+  static const std::map<std::string, Timing> kTimings = {{"on_demand", Timing::kOnDemand},
+                                                         {"periodic", Timing::kPeriodic}};
+  app.add_option("--sensors", options.sensors,
+                 "Names of sensors, separated by commas; all that there are, if not given")
+      ->delimiter(',')
+      ->type_name("NAME,NAME");
+  app.add_option("--acquisitions", options.acquisitions, "Of each experiment")
+      ->check(CLI::Range(1, kMostOfASensor))
+      ->capture_default_str();
+  app.add_option("--experiments", options.experiments, "Of each sensor; the paper made ten")
+      ->check(CLI::Range(1, kMostOfASensor))
+      ->capture_default_str();
+  app.add_option("--timing", options.timing,
+                 "What the profile says: on_demand (default: from asking to having) or periodic "
+                 "(the sensor's own period and delay)")
+      ->transform(CLI::Transformer(kTimings))
+      ->type_name("NAME");
+  app.add_option("--name", options.name, "The profile's name; usually the host's")
+      ->check(profile_name())
+      ->type_name("NAME");
+  app.add_option("--out", options.out, "Writes the profile (TOML) to this file")->type_name("FILE");
+  add_seconds(app, "--time-limit-s", options.time_limit, "Gives up a sensor after this time");
+}
+
+Status check(const CharacterizeOptions& options) {
+  const std::int64_t of_a_sensor = std::int64_t{options.acquisitions} * options.experiments;
+  if (of_a_sensor > kMostOfASensor) {
+    return Failure{Failure::Kind::kInvalid, "--acquisitions times --experiments is " +
+                                                std::to_string(of_a_sensor) + "; at most " +
+                                                std::to_string(kMostOfASensor) + " fit a profile"};
+  }
+  return ok_status();
+}
+
+void add_real_row_options(CLI::App& app, RealRowOptions& options) {
+  add_pixel_box(app, "--true-roi-px", options.true_roi,
+                "With real devices: the anchor in the image as you annotated it, in whole pixels "
+                "from the top left; gives the angle error");
+  app.add_option("--keep-image", options.keep_image,
+                 "With real devices: writes the last estimate's image, to annotate it (PNG)")
+      ->type_name("FILE");
+}
+
+bool is_given(const RealRowOptions& options) {
+  return options.true_roi || !options.keep_image.empty();
+}
+
+}  // namespace tether::sut

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "timing_model.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tether/uav/catalogue.h>
+
+/// What was measured, as a profile that a scenario can name (docs/guide/sensors.md).
+namespace tether::sut {
+
+struct ProfiledSensor {
+  std::string name;
+  uav::SensorKind kind = uav::SensorKind::kCamera;
+  std::string source;  ///< its device, or "virtual"
+  TimingModel timing;
+};
+
+struct MeasuredProfile {
+  std::string name;      ///< @pre is_profile_name
+  std::string when;      ///< "2025-03-01T12:00:00Z"
+  std::string where;     ///< "bench-pi"
+  int acquisitions = 0;  ///< of each experiment
+  int experiments = 0;   ///< of each sensor
+  std::vector<ProfiledSensor> sensors;
+};
+
+/// 1 to 64 letters, digits, '_', '-' and '.', not starting with '.'.
+bool is_profile_name(std::string_view name);
+/// The nearest profile name to any text.
+std::string profile_name_from(std::string text);
+
+/// The profile's file, TOML: every delay in milliseconds, exact to the nanosecond.
+std::string profile_text(const MeasuredProfile& profile);
+
+}  // namespace tether::sut

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "characterize.h"
+
+#include <optional>
+#include <vector>
+
+#include <tether/base/result.h>
+#include <tether/base/time.h>
+
+/// From acquisitions to what a profile says of a sensor's time.
+namespace tether::sut {
+
+struct TimingModel {
+  std::optional<Duration> period;  ///< none: measures on demand
+  std::vector<Duration> delays;    ///< in the order in which they were measured; not empty
+};
+
+/// Each acquisition's time from asking to having. @pre there is an acquisition
+TimingModel on_demand_timing(const SensorTimes& times);
+
+/// The period is the median step of the samples' instants per index; a delay is the time from a
+/// sample's instant to having it. An experiment's first sample is left out: it may have been there
+/// for a while.
+///
+/// Fails (kInvalid) where the period cannot be told (fewer than three steps, or fewer than three in
+/// four of them within a fifth of the median), and where the instants cannot be the sensor's own: a
+/// sample from the future, or, with `is_real`, a median delay below a millisecond, which no camera
+/// has; such a device stamps the arrival.
+Result<TimingModel> periodic_timing(const SensorTimes& times, bool is_real);
+
+}  // namespace tether::sut

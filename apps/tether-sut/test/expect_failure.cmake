@@ -1,0 +1,28 @@
+# cmake -DEXPECTED_CODE=N -DEXPECTED_WORDS=TEXT -DWORK_DIR=DIR -P expect_failure.cmake -- COMMAND...
+# The command must end with this exit code and one line that has these words, and leave no file.
+set(command)
+set(is_command FALSE)
+math(EXPR last "${CMAKE_ARGC} - 1")
+foreach(i RANGE ${last})
+  if(is_command)
+    list(APPEND command "${CMAKE_ARGV${i}}")
+  elseif(CMAKE_ARGV${i} STREQUAL "--")
+    set(is_command TRUE)
+  endif()
+endforeach()
+
+file(REMOVE_RECURSE "${WORK_DIR}")
+file(MAKE_DIRECTORY "${WORK_DIR}")
+execute_process(COMMAND ${command} WORKING_DIRECTORY "${WORK_DIR}"
+  RESULT_VARIABLE code OUTPUT_VARIABLE out ERROR_VARIABLE err TIMEOUT 60)
+if(NOT code STREQUAL EXPECTED_CODE)
+  message(FATAL_ERROR "exit code ${code}, not ${EXPECTED_CODE}:\n${out}${err}")
+endif()
+string(FIND "${err}" "${EXPECTED_WORDS}" at)
+if(at EQUAL -1 OR NOT err MATCHES "^tether-sut: [^\n]*\n$")
+  message(FATAL_ERROR "expected one line with '${EXPECTED_WORDS}':\n${err}")
+endif()
+file(GLOB left "${WORK_DIR}/*")
+if(left)
+  message(FATAL_ERROR "left behind: ${left}")
+endif()

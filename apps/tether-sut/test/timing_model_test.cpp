@@ -1,0 +1,82 @@
+#include "timing_model.h"
+
+#include <gmock/gmock.h>
+
+namespace tether::sut {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+
+/// Samples of a camera at 40 Hz that arrive so long after their instants.
+struct Camera {
+  Duration period = milliseconds(25);
+  Duration delay = milliseconds(8);
+  int samples = 6;
+  int index_step = 1;
+};
+
+SensorTimes watch(const Camera& camera, int experiments = 1) {
+  SensorTimes times{"camera", uav::SensorKind::kCamera, {}};
+  std::uint64_t index = 0;
+  ExecTime now;
+  for (int e = 0; e < experiments; ++e) {
+    times.experiments.emplace_back();
+    for (int i = 0; i < camera.samples; ++i) {
+      const ExecTime sampled(static_cast<std::int64_t>(index) * camera.period);
+      const ExecTime had = sampled + camera.delay + microseconds(i % 2);
+      times.experiments.back().push_back({now, had, same_instant(sampled), index});
+      now = had;
+      index += static_cast<std::uint64_t>(camera.index_step);
+    }
+  }
+  return times;
+}
+
+TEST(OnDemandTiming, IsFromAskingToHaving) {
+  const TimingModel model = on_demand_timing(watch({.samples = 3}));
+  EXPECT_FALSE(model.period);
+  EXPECT_THAT(model.delays,
+              ::testing::ElementsAre(milliseconds(8), milliseconds(25) + microseconds(1),
+                                     milliseconds(25) - microseconds(1)));
+}
+
+TEST(PeriodicTiming, HasPeriodAndDelays) {
+  for (const int index_step : {1, 3}) {
+    const auto model = periodic_timing(watch({.index_step = index_step}, 2), true);
+    ASSERT_TRUE(model) << model.failure().message;
+    EXPECT_EQ(model->period, milliseconds(25)) << "missed samples are no longer period";
+    ASSERT_EQ(model->delays.size(), 10u) << "without the first of each experiment";
+    EXPECT_EQ(model->delays[0], milliseconds(8) + microseconds(1));
+    EXPECT_EQ(model->delays[1], milliseconds(8));
+  }
+}
+
+TEST(PeriodicTiming, RefusesArrivalsStampedAsInstants) {
+  const auto stamped = periodic_timing(watch({.delay = microseconds(300)}), true);
+  ASSERT_FALSE(stamped);
+  EXPECT_EQ(stamped.failure().kind, Failure::Kind::kInvalid);
+  EXPECT_THAT(stamped.failure().message, HasSubstr("no instants of its own"));
+  // A virtual camera may have no delay at all, and its instants are its own.
+  EXPECT_TRUE(periodic_timing(watch({.delay = Duration(0)}), false));
+  EXPECT_FALSE(periodic_timing(watch({.delay = milliseconds(-5)}), false));
+}
+
+TEST(PeriodicTiming, RefusesWhatHasNoPeriod) {
+  EXPECT_THAT(periodic_timing(watch({.samples = 3}), true).failure().message,
+              HasSubstr("sensor \"camera\": too few samples"));
+  SensorTimes erratic = watch({.samples = 7});
+  for (std::size_t i : {2u, 3u, 5u}) {
+    erratic.experiments[0][i].sampled_at -= milliseconds(7);
+  }
+  EXPECT_THAT(periodic_timing(erratic, true).failure().message, HasSubstr("irregularly"));
+  SensorTimes still = watch({.samples = 7});
+  for (auto& acquisition : still.experiments[0]) {
+    acquisition.sampled_at = SimTime();
+  }
+  EXPECT_THAT(periodic_timing(still, true).failure().message, HasSubstr("irregularly"));
+}
+
+}  // namespace
+}  // namespace tether::sut
