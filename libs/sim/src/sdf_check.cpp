@@ -8,6 +8,8 @@
 #include <set>
 #include <string_view>
 
+#include <ignition/math/Vector2.hh>
+
 namespace tether::sim {
 
 namespace {
@@ -53,7 +55,7 @@ const ElementTable kElements = {
     {"camera", {"pose", "horizontal_fov", "image", "clip", "noise", "distortion", "lens"}},
     {"image", {"width", "height", "format"}},
     {"clip", {"near", "far"}},
-    {"distortion", {"k1", "k2", "k3", "p1", "p2"}},
+    {"distortion", {"k1", "k2", "k3", "p1", "p2", "center"}},
     {"lens", {"intrinsics"}},
     {"intrinsics", {"fx", "fy", "cx", "cy"}},
     {"noise",
@@ -160,6 +162,18 @@ void check_light_shape(const SdfSource& source, const std::string& parent,
   }
 }
 
+/// The lens is taken to be centred where the optical axis meets the image.
+void check_distortion_center(const SdfSource& source, const std::string& parent,
+                             const sdf::ElementPtr& element, const WarningSink& warn) {
+  if (parent != "distortion" || element->GetName() != "center") return;
+  const auto center = element->Get<ignition::math::Vector2d>();
+  if (center.X() == 0.5 && center.Y() == 0.5) return;
+  warn_at(source, element,
+          "is not represented: the distortion is about the optical axis; give 0.5 0.5, and <cx> "
+          "and <cy> of <lens> for a principal point that is not in the middle",
+          warn);
+}
+
 class Walk {
  public:
   Walk(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn)
@@ -182,12 +196,13 @@ class Walk {
     if (name == "sensor" && !kSensorTypes.contains(attribute(element, "type"))) {
       warn_at(source_, element,
               "is of type '" + attribute(element, "type") +
-                  "', which is not simulated (camera, imu and single-ray sensors are); left out",
+                  "', which is not simulated (camera, imu and ray sensors are); left out",
               warn_);
       return;
     }
     check_value(source_, element);
     check_light_shape(source_, parent, element, warn_);
+    check_distortion_center(source_, parent, element, warn_);
     // These two are read, and warned of, where a UAV is put together.
     if (name != "tether:multirotor" && name != "joint") visit_children(element);
   }

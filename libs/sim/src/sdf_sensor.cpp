@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace tether::sim {
 
@@ -64,21 +66,57 @@ ImuModel read_imu(const SdfSource& source, const sdf::Imu& imu, const WarningSin
            noise(imu.LinearAccelerationZNoise())}};
 }
 
-/// A rangefinder: the middle ray of the scan.
+/// One axis of a scan: its angles, evenly spaced from the first to the last; a single one lies in
+/// the middle.
+std::vector<double> scan_angles(unsigned samples, double min_rad, double max_rad) {
+  if (samples == 1) return {0.5 * (min_rad + max_rad)};
+  std::vector<double> angles(samples);
+  for (unsigned i = 0; i < samples; ++i) {
+    angles[i] = min_rad + (max_rad - min_rad) * i / (samples - 1);
+  }
+  return angles;
+}
+
+bool is_single_ray(const sdf::Lidar& lidar) {
+  return lidar.HorizontalScanSamples() <= 1 && lidar.VerticalScanSamples() <= 1;
+}
+
+constexpr std::uint64_t kMaxRays = 1024;
+
+/// The rays of a scan. A single one is the sensor's x axis, which `middle_ray` turns.
+std::vector<uav::Vec3> read_rays(const SdfSource& source, const sdf::Lidar& lidar) {
+  if (is_single_ray(lidar)) return {{1.0, 0.0, 0.0}};
+  const std::uint64_t count =
+      std::uint64_t{lidar.HorizontalScanSamples()} * lidar.VerticalScanSamples();
+  if (count > kMaxRays) {
+    refuse(source, lidar.Element(),
+           "has " + std::to_string(count) + " rays; at most " + std::to_string(kMaxRays) +
+               " are simulated: give it fewer <samples>");
+  }
+  std::vector<uav::Vec3> rays;
+  for (const double elevation_rad :
+       scan_angles(lidar.VerticalScanSamples(), lidar.VerticalScanMinAngle().Radian(),
+                   lidar.VerticalScanMaxAngle().Radian())) {
+    for (const double azimuth_rad :
+         scan_angles(lidar.HorizontalScanSamples(), lidar.HorizontalScanMinAngle().Radian(),
+                     lidar.HorizontalScanMaxAngle().Radian())) {
+      rays.push_back(uav::rotate(uav::from_rpy(0.0, -elevation_rad, azimuth_rad), {1.0, 0.0, 0.0}));
+    }
+  }
+  return rays;
+}
+
+/// A rangefinder: the nearest hit of all the rays of the scan.
 RangeModel read_range(const SdfSource& source, const sdf::Lidar& lidar, const WarningSink& warn) {
   if (lidar.RangeMin() >= lidar.RangeMax()) {
     refuse(source, lidar.Element()->FindElement("range"),
            "has a minimum that is not below its maximum");
   }
-  if (lidar.HorizontalScanSamples() > 1 || lidar.VerticalScanSamples() > 1) {
-    warn_at(source, lidar.Element(),
-            "has several rays; only the middle one is simulated, as a rangefinder", warn);
-  }
   return {lidar.RangeMin(), lidar.RangeMax(), lidar.RangeResolution(),
-          read_noise(source, lidar.LidarNoise(), warn)};
+          read_noise(source, lidar.LidarNoise(), warn), read_rays(source, lidar)};
 }
 
-/// Where the middle ray points, in the sensor's frame.
+/// Where a single ray points, in the sensor's frame.
 uav::Quat middle_ray(const sdf::Lidar& lidar) {
   const double azimuth_rad =
       0.5 * (lidar.HorizontalScanMinAngle().Radian() + lidar.HorizontalScanMaxAngle().Radian());
@@ -103,7 +141,7 @@ std::optional<Sensor> read_sensor(const SdfSource& source, const sdf::Sensor& se
     return result;
   }
   if (const sdf::Lidar* lidar = sensor.LidarSensor()) {
-    result.X_BS.q = result.X_BS.q * middle_ray(*lidar);
+    if (is_single_ray(*lidar)) result.X_BS.q = result.X_BS.q * middle_ray(*lidar);
     result.model = read_range(source, *lidar, warn);
     return result;
   }

@@ -11,6 +11,7 @@ TEST(Catalogue, ListsSensorsWithMountingRateAndProperties) {
   Sensor& camera = world.uavs[1].sensors[0];
   camera.X_BS = {{0.1, 0.0, 0.2}, uav::from_rpy(0.0, 0.3, 0.0)};
   std::get<CameraModel>(camera.model).intrinsics.k1 = -0.1;
+  std::get<RangeModel>(world.uavs[1].sensors[2].model).min_m = 0.25;
 
   const uav::Catalogue catalogue = make_catalogue(world, world.uavs[1]);
   EXPECT_EQ(catalogue.uav, "uav1");
@@ -25,7 +26,9 @@ TEST(Catalogue, ListsSensorsWithMountingRateAndProperties) {
   EXPECT_EQ(model.k1, -0.1);
   EXPECT_EQ(catalogue.sensors[1].kind(), uav::SensorKind::kImu);
   EXPECT_EQ(catalogue.sensors[2].kind(), uav::SensorKind::kRange);
-  EXPECT_EQ(std::get<uav::RangeProperties>(catalogue.sensors[2].properties).max_m, 20.0);
+  const auto& range = std::get<uav::RangeProperties>(catalogue.sensors[2].properties);
+  EXPECT_EQ(range.min_m, 0.25);
+  EXPECT_EQ(range.max_m, 20.0);
 }
 
 TEST(Catalogue, TellsWhatAnchorsLookLike) {

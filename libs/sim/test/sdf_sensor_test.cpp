@@ -11,6 +11,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using uav::Vec3;
 
 using SdfSensor = UavModel;
@@ -68,14 +69,135 @@ TEST_F(SdfSensor, ReadsImuNoiseOfEachAxis) {
   EXPECT_EQ(imu.linear_acceleration[0].bias_stddev, 2.0);
 }
 
-TEST_F(SdfSensor, SeveralRaysBecomeTheMiddleOneWithAWarning) {
-  const std::string model = with(with(kUav, "<samples>1</samples>", "<samples>3</samples>"),
-                                 "<min_angle>0</min_angle><max_angle>0</max_angle>",
-                                 "<min_angle>0</min_angle><max_angle>1</max_angle>");
-  EXPECT_THAT(warnings(model), ElementsAre(AllOf(HasSubstr("uav.sdf:28: <ray> of sensor 'nose'"),
-                                                 HasSubstr("only the middle one"))));
-  const Vec3 ray = uav::rotate(read(model).sensors.at(1).X_BS.q, {1, 0, 0});
-  EXPECT_NEAR(std::atan2(ray.y, ray.x), 0.5, 1e-9);
+// Azimuth and elevation of a ray.
+std::pair<double, double> angles_of(const Vec3& ray) {
+  return {std::atan2(ray.y, ray.x), std::atan2(ray.z, std::hypot(ray.x, ray.y))};
+}
+
+std::string with_scan(const std::string& horizontal, const std::string& vertical) {
+  return with(kUav,
+              "<horizontal><samples>1</samples><resolution>1</resolution><min_angle>0</min_angle>"
+              "<max_angle>0</max_angle></horizontal>",
+              "<horizontal>" + horizontal + "</horizontal><vertical>" + vertical + "</vertical>");
+}
+std::string axis(int samples, const std::string& min_rad, const std::string& max_rad) {
+  return "<samples>" + std::to_string(samples) + "</samples><resolution>1</resolution><min_angle>" +
+         min_rad + "</min_angle><max_angle>" + max_rad + "</max_angle>";
+}
+
+TEST_F(SdfSensor, ASingleRayTurnsTheSensor) {
+  const std::string model = with_scan(axis(1, "0", "1"), axis(1, "-0.2", "-0.2"));
+  EXPECT_THAT(warnings(model), IsEmpty());
+  const Sensor sensor = read(model).sensors.at(1);
+  EXPECT_EQ(std::get<RangeModel>(sensor.model).rays_S, (std::vector<Vec3>{{1.0, 0.0, 0.0}}));
+  const auto [azimuth, elevation] = angles_of(uav::rotate(sensor.X_BS.q, {1, 0, 0}));
+  EXPECT_NEAR(azimuth, 0.5, 1e-9);
+  EXPECT_NEAR(elevation, -0.2, 1e-9);
+}
+
+TEST_F(SdfSensor, SeveralRaysAreAllOfTheScan) {
+  const std::string model = with_scan(axis(3, "-0.2", "0.4"), axis(2, "-0.1", "0.3"));
+  EXPECT_THAT(warnings(model), IsEmpty());
+  const Sensor sensor = read(model).sensors.at(1);
+  EXPECT_EQ(sensor.X_BS.q, uav::Quat{}) << "the scan is about the sensor's own x";
+  const auto rays = std::get<RangeModel>(sensor.model).rays_S;
+  ASSERT_EQ(rays.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_NEAR(uav::norm(rays[i]), 1.0, 1e-12);
+    EXPECT_NEAR(angles_of(rays[i]).first, -0.2 + 0.3 * static_cast<double>(i % 3), 1e-9);
+    EXPECT_NEAR(angles_of(rays[i]).second, i < 3 ? -0.1 : 0.3, 1e-9);
+  }
+}
+
+TEST_F(SdfSensor, AnAxisOfOneSampleLiesInTheMiddle) {
+  const auto rays =
+      std::get<RangeModel>(
+          read(with_scan(axis(2, "-0.2", "0.2"), axis(1, "0", "0.4"))).sensors.at(1).model)
+          .rays_S;
+  ASSERT_EQ(rays.size(), 2u);
+  EXPECT_NEAR(angles_of(rays[0]).second, 0.2, 1e-9);
+  EXPECT_NEAR(angles_of(rays[1]).first, 0.2, 1e-9);
+}
+
+TEST_F(SdfSensor, TooManyRaysAreRefused) {
+  EXPECT_EQ(std::get<RangeModel>(
+                read(with_scan(axis(32, "-1", "1"), axis(32, "-1", "1"))).sensors.at(1).model)
+                .rays_S.size(),
+            1024u);
+  const auto message = refusal(request(with_scan(axis(33, "-1", "1"), axis(32, "-1", "1"))));
+  EXPECT_THAT(message, HasSubstr("uav.sdf:28: <ray> of sensor 'nose' has 1056 rays; at most 1024"));
+}
+
+TEST_F(SdfSensor, ReadsTheWholeDistortion) {
+  const auto uav = read(with(kUav, "<k1>-0.2</k1><p2>0.01</p2>",
+                             "<k1>0.1</k1><k2>0.2</k2><k3>0.3</k3><p1>0.4</p1><p2>0.5</p2>"));
+  const auto& model = std::get<CameraModel>(uav.sensors.at(0).model).intrinsics;
+  EXPECT_THAT((std::vector{model.k1, model.k2, model.k3, model.p1, model.p2}),
+              ElementsAre(0.1, 0.2, 0.3, 0.4, 0.5));
+}
+
+TEST_F(SdfSensor, ADistortionAboutAnotherCentreIsNamed) {
+  EXPECT_THAT(warnings(with(kUav, "<p2>", "<center>0.5 0.5</center><p2>")), IsEmpty());
+  EXPECT_THAT(warnings(with(kUav, "<p2>", "<center>0.5 0.4</center><p2>")),
+              ElementsAre(AllOf(HasSubstr("uav.sdf:25: <center> of sensor 'eye'"),
+                                HasSubstr("is not represented"))));
+}
+
+std::string with_imu_noise(const std::string& noise) {
+  return with(kUav, "</link>",
+              "<sensor name='imu' type='imu'><imu><angular_velocity><x>\n" + noise +
+                  "</x></angular_velocity></imu></sensor></link>");
+}
+
+// SDF says a noise's type in an element for cameras and rangefinders, in an attribute for IMUs.
+TEST_F(SdfSensor, NoiseOfTypeNoneIsNone) {
+  const std::string model =
+      with(with(with_imu_noise("<noise type='none'><mean>1</mean><stddev>2</stddev></noise>"),
+                "<type>gaussian</type>", "<type>none</type>"),
+           "<distortion>",
+           "<noise><type>none</type><mean>1</mean><stddev>2</stddev></noise><distortion>");
+  EXPECT_THAT(warnings(model), IsEmpty());
+  const Uav uav = read(model);
+  const auto expect_none = [](const Noise& noise) {
+    EXPECT_EQ(noise.mean, 0.0);
+    EXPECT_EQ(noise.stddev, 0.0);
+  };
+  expect_none(std::get<CameraModel>(uav.sensors.at(0).model).pixel_noise);
+  expect_none(std::get<RangeModel>(uav.sensors.at(1).model).noise);
+  expect_none(std::get<ImuModel>(uav.sensors.at(2).model).angular_velocity[0]);
+}
+
+TEST_F(SdfSensor, ReadsTheNoiseOfPixels) {
+  const auto uav = read(with(kUav, "<distortion>",
+                             "<noise><type>gaussian</type><mean>0.01</mean><stddev>0.02</stddev>"
+                             "</noise><distortion>"));
+  const Noise& noise = std::get<CameraModel>(uav.sensors.at(0).model).pixel_noise;
+  EXPECT_EQ(noise.mean, 0.01);
+  EXPECT_EQ(noise.stddev, 0.02);
+}
+
+TEST_F(SdfSensor, AnImuNoiseWithoutTypeIsRefused) {
+  EXPECT_THAT(refusal(request(with_imu_noise("<noise><stddev>0.1</stddev></noise>"))),
+              AllOf(HasSubstr("uav.sdf:32: "), HasSubstr("attribute[type] in element[noise]")));
+}
+
+TEST_F(SdfSensor, ReadsEachAxisOfTheImu) {
+  std::string axes[2];
+  const char* names[] = {"x", "y", "z"};
+  for (int i = 0; i < 6; ++i) {
+    const std::string n = names[i % 3];
+    axes[i / 3] += "<" + n + "><noise type='gaussian'><mean>0</mean><stddev>0." +
+                   std::to_string(i + 1) + "</stddev></noise></" + n + ">";
+  }
+  const auto uav = read(with(kUav, "</link>",
+                             "<sensor name='imu' type='imu'><imu><angular_velocity>" + axes[0] +
+                                 "</angular_velocity><linear_acceleration>" + axes[1] +
+                                 "</linear_acceleration></imu></sensor></link>"));
+  const auto& imu = std::get<ImuModel>(uav.sensors.at(2).model);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(imu.angular_velocity[i].stddev, 0.1 * static_cast<double>(i + 1), 1e-12);
+    EXPECT_NEAR(imu.linear_acceleration[i].stddev, 0.1 * static_cast<double>(i + 4), 1e-12);
+  }
 }
 
 TEST_F(SdfSensor, OtherSensorsAreLeftOutWithAWarning) {
