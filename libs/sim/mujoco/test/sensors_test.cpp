@@ -2,11 +2,14 @@
 
 #include "test_worlds.h"
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include <gtest/gtest.h>
+
+#include <tether/sim/range_rays.h>
 
 namespace tether::sim {
 namespace {
@@ -71,6 +74,139 @@ TEST(ImuTest, HoversInTheSimulator) {
   }
 }
 
+// At rest under an attitude of its own, and mounted any way: gravity upward, in its own frame.
+TEST(ImuTest, TiltedAndTurnedAtRestInTheSimulator) {
+  for (const uav::Quat& q_WB : {uav::from_rpy(0.4, 0.0, 0.0), uav::from_rpy(0.0, -0.3, 2.0),
+                                uav::from_rpy(1.2, 0.7, -2.5)}) {
+    for (const uav::Quat& q_BS : {uav::Quat{}, uav::from_rpy(std::numbers::pi, 0.2, 1.0)}) {
+      World world = test_world();
+      world.uavs[0].X_WB.q = q_WB;
+      world.uavs[0].sensors[kImu].X_BS = {{0.1, 0.2, -0.3}, q_BS};
+      const auto sample = measure_now<uav::ImuSample>(*make_simulator(world), kImu);
+      const Vec3 up_S = rotate(inverse(q_WB * q_BS), {0.0, 0.0, 1.0});
+      EXPECT_LT(norm(sample.specific_force_m_s2 - kGravity * up_S), 1e-9);
+      EXPECT_LT(norm(sample.angular_velocity_rad_s), 1e-12);
+      EXPECT_LT(norm(rotate(sample.q_WS, sample.specific_force_m_s2) - Vec3{0.0, 0.0, kGravity}),
+                1e-9);
+    }
+  }
+}
+
+// A turn at a constant rate about the UAV's centre: an IMU off the centre is drawn towards it.
+TEST(ImuTest, TurningAtAConstantRateInTheSimulator) {
+  World world = test_world();
+  const Pose X_BS{{0.3, 0.1, 0.0}, uav::from_rpy(0.5, -0.4, 0.8)};
+  world.uavs[0].sensors[kImu].X_BS = X_BS;
+  const auto simulator = make_simulator(world);
+  simulator->apply(0, {{}, 1.5});
+  simulator->advance_to(SimTime(5s));
+  const auto sample = measure_now<uav::ImuSample>(*simulator, kImu);
+  const double rate_rad_s = simulator->ground_truth(0).body.w_WB_B.z;
+  EXPECT_NEAR(rate_rad_s, 1.5, 0.02);
+  const Vec3 rate_B = rotate(X_BS.q, sample.angular_velocity_rad_s);
+  const Vec3 force_B = rotate(X_BS.q, sample.specific_force_m_s2);
+  EXPECT_LT(norm(rate_B - Vec3{0.0, 0.0, rate_rad_s}), 1e-3);
+  const Vec3 centripetal = -rate_rad_s * rate_rad_s * X_BS.p;
+  EXPECT_LT(norm(force_B - centripetal - Vec3{0.0, 0.0, kGravity}), 5e-3);
+}
+
+// Integrating the rates must give the attitude, whatever the mounting.
+TEST(ImuTest, RatesIntegrateToTheAttitude) {
+  World world = test_world();
+  world.uavs[0].sensors[kImu].X_BS = {{0.1, -0.05, 0.02}, uav::from_rpy(0.3, -0.2, 1.0)};
+  const auto simulator = make_simulator(world);
+  simulator->apply(0, {{1.5, -1.0, 0.3}, 1.0});
+  uav::Quat q_WS = measure_now<uav::ImuSample>(*simulator, kImu).q_WS;
+  uav::Quat truth = q_WS;
+  for (int i = 1; i <= 1000; ++i) {
+    simulator->advance_to(SimTime(i * 1ms));
+    const auto sample = measure_now<uav::ImuSample>(*simulator, kImu);
+    const Vec3 w = sample.angular_velocity_rad_s;
+    if (norm(w) > 0.0) {
+      q_WS = q_WS * uav::from_axis_angle((1.0 / norm(w)) * w, 1e-3 * norm(w));
+    }
+    truth = sample.q_WS;
+  }
+  const uav::Quat error = inverse(truth) * q_WS;
+  EXPECT_LT(2.0 * uav::norm({error.x, error.y, error.z}), 1e-6);
+}
+
+// The six channels of an IMU at rest, less what it truly measures.
+std::array<double, 6> imu_errors(Simulator& simulator, const Snapshot& snapshot,
+                                 std::uint64_t index) {
+  const auto sample = std::get<uav::ImuSample>(simulator.measure(snapshot, 0, kImu, index));
+  const Vec3& rate = sample.angular_velocity_rad_s;
+  const Vec3& force = sample.specific_force_m_s2;
+  return {rate.x, rate.y, rate.z, force.x, force.y, force.z - kGravity};
+}
+
+World world_with_imu_noise(const Noise& noise) {
+  World world = test_world();
+  auto& imu = std::get<ImuModel>(world.uavs[0].sensors[kImu].model);
+  imu.angular_velocity.fill(noise);
+  imu.linear_acceleration.fill(noise);
+  return world;
+}
+
+// Means of products: the variance on the diagonal, no correlation off it.
+TEST(ImuTest, NoiseIsIndependentBetweenAxesAndSamples) {
+  const auto simulator = make_simulator(world_with_imu_noise({0.0, 0.5, 0.0, 0.0, 0.0, 0.0}));
+  Snapshot snapshot;
+  simulator->capture(snapshot);
+  constexpr int kCount = 20'000;
+  double products[6][6] = {};
+  double with_last[6] = {};
+  std::array<double, 6> last{};
+  for (int n = 0; n < kCount; ++n) {
+    const auto errors = imu_errors(*simulator, snapshot, static_cast<std::uint64_t>(n));
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t j = 0; j < 6; ++j) products[i][j] += errors[i] * errors[j] / kCount;
+      with_last[i] += errors[i] * last[i] / kCount;
+    }
+    last = errors;
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t j = 0; j < 6; ++j) EXPECT_NEAR(products[i][j], i == j ? 0.25 : 0.0, 0.012);
+    EXPECT_NEAR(with_last[i], 0.0, 0.012);
+  }
+}
+
+// Over many runs: each channel's constant bias, and the walking bias with the variance
+// stddev²·τ/2·(1 − exp(−2t/τ)) at each time, independent of the other channels'.
+TEST(ImuTest, BiasesOfManyRunsHaveTheirVariances) {
+  constexpr double kTau_s = 0.2;
+  constexpr double kStddev = 2.0;
+  const auto simulator =
+      make_simulator(world_with_imu_noise({0.0, 0.0, 0.7, 0.3, kStddev, kTau_s}));
+  const std::array<Duration, 3> times{0ms, 60ms, 400ms};
+  constexpr int kRuns = 600;
+  double mean = 0.0;
+  std::array<double, 3> variance{};
+  double between_channels = 0.0;
+  for (std::uint64_t run = 0; run < kRuns; ++run) {
+    simulator->reset(run);
+    for (std::size_t t = 0; t < times.size(); ++t) {
+      simulator->advance_to(SimTime(times[t]));
+      Snapshot snapshot;
+      simulator->capture(snapshot);
+      const auto errors = imu_errors(*simulator, snapshot, 0);
+      EXPECT_EQ(errors, imu_errors(*simulator, snapshot, 1)) << "a bias is not drawn per sample";
+      for (std::size_t i = 0; i < 6; ++i) {
+        if (t == 0) mean += errors[i] / (6 * kRuns);
+        variance[t] += (errors[i] - 0.7) * (errors[i] - 0.7) / (6 * kRuns);
+        between_channels += (errors[i] - 0.7) * (errors[(i + 1) % 6] - 0.7) / (18 * kRuns);
+      }
+    }
+  }
+  EXPECT_NEAR(mean, 0.7, 0.02);
+  for (std::size_t t = 0; t < times.size(); ++t) {
+    const double walked =
+        0.5 * kStddev * kStddev * kTau_s * (1.0 - std::exp(-2.0 * to_seconds(times[t]) / kTau_s));
+    EXPECT_NEAR(variance[t], 0.09 + walked, 0.1 * (0.09 + walked)) << t;
+  }
+  EXPECT_NEAR(between_channels, 0.0, 0.015);
+}
+
 // Integrating what the IMU measured must give the motion that the truth shows.
 TEST(ImuTest, IntegratesToTheTrueMotion) {
   World world = test_world();
@@ -96,6 +232,10 @@ RangeModel range_model(double min_m, double max_m, double resolution_m) {
   return {min_m, max_m, resolution_m, {}};
 }
 
+RangeModel& range_of(World& world) {
+  return std::get<RangeModel>(world.uavs[0].sensors[kRange].model);
+}
+
 TEST(RangeTest, LimitsAndResolution) {
   const RangeModel model = range_model(0.2, 4.0, 0.25);
   EXPECT_EQ(measure_range(model, 1.1, {}).range_m, 1.0);
@@ -117,6 +257,96 @@ TEST(RangeTest, MeasuresTheNearestWallAhead) {
   world.uavs[0].sensors[kRange].X_BS.q = uav::from_rpy(0.0, 0.5 * std::numbers::pi, 0.0);
   EXPECT_NEAR(measure_now<uav::RangeSample>(*make_simulator(world), kRange).range_m, 1.0, 1e-12)
       << "the floor, through its own body";
+}
+
+TEST(RangeTest, ACloserHitOfAnyRayCounts) {
+  World world = test_world();
+  world.models.push_back(box_model("wall", {4.1, 0.0, 1.0}, {0.2, 6.0, 3.0}, {1.0, 1.0, 1.0}));
+  // Its near edge is 2 m ahead and 0.25 m aside: 7.1° off the axis.
+  world.models.push_back(box_model("post", {2.1, 0.35, 1.0}, {0.2, 0.2, 0.6}, {1.0, 1.0, 1.0}));
+  const auto read = [&](double field_of_view_rad) {
+    range_of(world).rays_S = cone_of_rays(field_of_view_rad);
+    return measure_now<uav::RangeSample>(*make_simulator(world), kRange).range_m;
+  };
+  EXPECT_NEAR(read(0.0), 4.0, 1e-12) << "a single ray passes beside the post";
+  EXPECT_NEAR(read(0.2), 4.0, 1e-12) << "as does a cone of 5.7° to each side";
+  // The rings of a cone of 0.47 rad (27°): 3.4°, 6.7°, 10.1°, 13.5°; the third is the first to hit.
+  EXPECT_NEAR(read(0.47), 2.0 / std::cos(0.235 * 0.75), 1e-9);
+  range_of(world).rays_S = {{std::cos(0.13), std::sin(0.13), 0.0}};
+  EXPECT_NEAR(measure_now<uav::RangeSample>(*make_simulator(world), kRange).range_m,
+              2.0 / std::cos(0.13), 1e-9)
+      << "a ray of its own: along itself, to the post's near face";
+}
+
+TEST(RangeTest, RaysAreMountedAsTheSensorIs) {
+  World world = test_world();
+  world.uavs[0].sensors[kRange].X_BS = {{0.0, 0.0, 0.2}, uav::from_rpy(0.0, 1.0, 0.0)};
+  range_of(world).rays_S = {{std::cos(0.3), 0.0, std::sin(0.3)},
+                            {std::cos(0.3), 0.0, std::sin(-0.3)}};
+  EXPECT_NEAR(measure_now<uav::RangeSample>(*make_simulator(world), kRange).range_m,
+              1.2 / std::sin(1.3), 1e-9)
+      << "the floor, along the steeper one";
+}
+
+TEST(RangeTest, DropoutsHaveTheirShareAndAreKeyed) {
+  RangeModel model = range_model(0.2, 4.0, 0.0);
+  model.dropout_probability = 0.2;
+  const auto dropped = [&](std::uint64_t seed, std::string_view sensor, std::uint64_t index) {
+    const double range_m = measure_range(model, 1.5, {seed, "alpha", sensor, index, {}}).range_m;
+    EXPECT_TRUE(range_m == 1.5 || range_m == kInfinity);
+    return range_m == kInfinity;
+  };
+  constexpr int kCount = 20'000;
+  int drops = 0;
+  int same_by_seed = 0;
+  int same_by_sensor = 0;
+  for (std::uint64_t i = 0; i < kCount; ++i) {
+    const bool drop = dropped(1, "range", i);
+    EXPECT_EQ(drop, dropped(1, "range", i));
+    drops += drop ? 1 : 0;
+    same_by_seed += drop == dropped(2, "range", i) ? 1 : 0;
+    same_by_sensor += drop == dropped(1, "other", i) ? 1 : 0;
+  }
+  EXPECT_NEAR(drops, 0.2 * kCount, 5.0 * std::sqrt(0.16 * kCount));
+  const double independent = (0.2 * 0.2 + 0.8 * 0.8) * kCount;
+  EXPECT_NEAR(same_by_seed, independent, 5.0 * std::sqrt(0.22 * kCount));
+  EXPECT_NEAR(same_by_sensor, independent, 5.0 * std::sqrt(0.22 * kCount));
+}
+
+TEST(RangeTest, ADropoutIsAsIfNothingWereThereHoweverClose) {
+  RangeModel model = range_model(0.2, 4.0, 0.0);
+  model.dropout_probability = 1.0;
+  for (const double distance_m : {0.0, 0.1, 1.0, 5.0, kInfinity}) {
+    EXPECT_EQ(measure_range(model, distance_m, {}).range_m, kInfinity);
+  }
+  model.dropout_probability = 0.0;
+  EXPECT_EQ(measure_range(model, 0.1, {}).range_m, -kInfinity);
+}
+
+TEST(RangeTest, DropoutsLeaveTheNoiseOfOthersAlone) {
+  RangeModel model = range_model(0.2, 4.0, 0.0);
+  model.noise.stddev = 0.1;
+  RangeModel dropping = model;
+  dropping.dropout_probability = 0.5;
+  int read = 0;
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    const MeasurementKey key{3, "alpha", "range", i, {}};
+    const double range_m = measure_range(dropping, 2.0, key).range_m;
+    if (range_m == kInfinity) continue;
+    EXPECT_EQ(range_m, measure_range(model, 2.0, key).range_m);
+    ++read;
+  }
+  EXPECT_GT(read, 25);
+}
+
+// However wild the noise, a reading is within the limits, or infinite.
+TEST(RangeTest, NeverAnythingButARangeOrInfinity) {
+  RangeModel model = range_model(0.2, 4.0, 0.01);
+  model.noise.stddev = 3.0;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    const double range_m = measure_range(model, 1.0, {1, "alpha", "range", i, {}}).range_m;
+    EXPECT_TRUE((range_m >= 0.2 && range_m <= 4.0) || std::isinf(range_m)) << range_m;
+  }
 }
 
 TEST(RangeTest, SeesOtherUavs) {
