@@ -120,9 +120,8 @@ Duration PlayedVideo::due(std::uint64_t image) const {
 std::uint64_t PlayedVideo::on_now() const {
   const Duration played = clock().now() - *start_;
   auto image = static_cast<std::uint64_t>(std::max(0.0, to_seconds(played) * rate_hz_));
-  // The product of doubles may fall on either side of an image that is due this very nanosecond.
-  while (due(image + 1) <= clock().now()) ++image;
-  while (image > 0 && due(image) > clock().now()) --image;
+  // Due instants are rounded to nanoseconds, so the product may fall short of one that is now.
+  if (due(image + 1) <= clock().now()) ++image;
   return image;
 }
 

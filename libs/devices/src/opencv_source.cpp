@@ -40,11 +40,10 @@ class OpencvSource final : public FrameSource {
 
   ImageFormat format() const override;
   bool grab() override {
+    is_retrieved_ = false;
     return succeeds([this] { return capture_.grab(); });
   }
-  bool retrieve(uav::CameraSample& into) override {
-    return succeeds([&] { return capture_.retrieve(frame_) && convert(into); });
-  }
+  bool retrieve(uav::CameraSample& into) override;
   double position_ms() const override { return capture_.get(cv::CAP_PROP_POS_MSEC); }
 
  private:
@@ -52,6 +51,7 @@ class OpencvSource final : public FrameSource {
 
   cv::VideoCapture capture_;
   cv::Mat frame_;  // kept between images, so that its memory is
+  bool is_retrieved_ = false;
   cv::Size size_;  // of the first image; the others must have it too
 };
 
@@ -63,6 +63,15 @@ ImageFormat OpencvSource::format() const {
   const double rate_hz = capture_.get(cv::CAP_PROP_FPS);
   if (std::isfinite(rate_hz) && rate_hz > 0.0 && rate_hz <= 1000.0) format.rate_hz = rate_hz;
   return format;
+}
+
+bool OpencvSource::retrieve(uav::CameraSample& into) {
+  // Once per image: the first time gives the driver its buffer back, and not every version of
+  // OpenCV survives a second.
+  return succeeds([&] {
+    if (!is_retrieved_) is_retrieved_ = capture_.retrieve(frame_);
+    return is_retrieved_ && convert(into);
+  });
 }
 
 bool OpencvSource::convert(uav::CameraSample& into) {
@@ -91,8 +100,8 @@ std::unique_ptr<FrameSource> open_with(const std::function<bool(cv::VideoCapture
 std::unique_ptr<FrameSource> open_video4linux(const std::string& path, const WantedFormat& wanted) {
   return open_with([&](cv::VideoCapture& capture) {
     if (!capture.open(path, cv::CAP_V4L2)) return false;
-    // One buffer to fill while the other is converted: with a single one, drivers drop the image
-    // that begins meanwhile. Each further one would only hold images that are older.
+    // One buffer to fill while the other is converted: with a single one, uvcvideo drops the
+    // image that begins meanwhile. Each further one would only hold images that are older.
     capture.set(cv::CAP_PROP_BUFFERSIZE, 2);
     if (wanted.width_px > 0) {
       capture.set(cv::CAP_PROP_FRAME_WIDTH, wanted.width_px);

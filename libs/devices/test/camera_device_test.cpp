@@ -29,7 +29,8 @@ class FakeCamera final : public FrameSource {
   std::size_t buffers = 2;
   int last_image = 200;
   double rate_hz = 25.0;
-  bool is_on_epoch = false;  // timestamps of another clock
+  bool is_on_epoch = false;     // timestamps of another clock
+  bool is_stuck_clock = false;  // the first timestamp for ever
   int* decoded = nullptr;
   bool breaks_images = false;
 
@@ -54,7 +55,7 @@ class FakeCamera final : public FrameSource {
     return !breaks_images;
   }
   double position_ms() const override {
-    const double ms = to_seconds(taken(grabbed_)) * 1e3;
+    const double ms = to_seconds(taken(is_stuck_clock ? 0 : grabbed_)) * 1e3;
     return is_on_epoch ? ms + 1.7e12 : ms;
   }
   Duration taken(int image) const { return start + image * kPeriod; }
@@ -77,9 +78,6 @@ class LiveCameraTest : public testing::Test {
   LiveCamera make(bool has_timestamps = true) {
     return {time_, "camera /dev/video3", std::move(source_), has_timestamps,
             [] { return std::string("the device is gone"); }};
-  }
-  Duration age(const uav::CameraSample& sample) const {
-    return time_.now().time_since_epoch() - sample.sampled_at.time_since_epoch();
   }
 
   ManualClock clock_;
@@ -108,6 +106,13 @@ TEST_F(LiveCameraTest, DoesNotBelieveAnOldTimestamp) {
   source_->latency = std::chrono::seconds(6);
   LiveCamera camera = make();
   EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime(std::chrono::seconds(6)));
+}
+
+TEST_F(LiveCameraTest, DoesNotBelieveATimestampThatStandsStill) {
+  source_->is_stuck_clock = true;
+  LiveCamera camera = make();
+  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime{});
+  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime(milliseconds(65)));
 }
 
 TEST_F(LiveCameraTest, DatesAStreamsImageByItsArrival) {
@@ -297,6 +302,22 @@ TEST_F(PlayedVideoTest, ARateThatIsNoWholeNumberDoesNotDrift) {
     ASSERT_EQ(image->index, k);
     const Duration exact = milliseconds(500) + nanoseconds(k * 1'001'000'000'000ULL / 30'000);
     ASSERT_LE(std::chrono::abs(image->sampled_at.time_since_epoch() - exact), nanoseconds(1));
+  }
+}
+
+TEST_F(PlayedVideoTest, AnImageIsOnFromItsVeryNanosecondToThatOfTheNext) {
+  constexpr double kRateHz = 30000.0 / 1001.0;
+  const auto due = [this](std::uint64_t k) {
+    const Duration played = duration_from_seconds(static_cast<double>(k) / kRateHz);
+    return time_.monotonic(ExecTime(milliseconds(500) + played));
+  };
+  open(2000, kRateHz);
+  ASSERT_TRUE(video_->read(Read::kNext));
+  for (std::uint64_t k = 2; k < 2000; k += 2) {
+    clock_.sleep_until(due(k));
+    ASSERT_EQ(video_->read(Read::kNext)->index, k);
+    clock_.sleep_until(due(k + 1) - nanoseconds(1));
+    ASSERT_EQ(video_->read(Read::kLatest)->index, k);
   }
 }
 
