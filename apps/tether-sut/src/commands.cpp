@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <filesystem>
 #include <ostream>
 #include <utility>
 
@@ -84,9 +85,15 @@ std::string source_of(const CommandLine& line, const std::string& sensor) {
   return found == sensors.end() ? "real sensor" : found->device;
 }
 
-Result<TimingModel> timing_of(const SensorTimes& times, Timing timing, bool is_real) {
-  if (timing == Timing::kPeriodic) {
-    return periodic_timing(times, is_real);
+/// Unlike virtual sensors and video files, whose images are from when they were due.
+bool may_stamp_arrival(const CommandLine& line, const std::string& sensor) {
+  std::error_code error;
+  return line.rig && !std::filesystem::is_regular_file(source_of(line, sensor), error);
+}
+
+Result<TimingModel> timing_of(const CommandLine& line, const SensorTimes& times) {
+  if (line.characterize->timing == Timing::kPeriodic) {
+    return periodic_timing(times, may_stamp_arrival(line, times.sensor));
   }
   return on_demand_timing(times);
 }
@@ -101,7 +108,7 @@ Result<MeasuredProfile> make_profile(const CommandLine& line, const Connection& 
   profile.acquisitions = options.acquisitions;
   profile.experiments = options.experiments;
   for (const SensorTimes& times : all) {
-    Result<TimingModel> timing = timing_of(times, options.timing, connection.is_real);
+    Result<TimingModel> timing = timing_of(line, times);
     if (!timing) {
       return timing.failure();
     }
@@ -151,7 +158,9 @@ int real_row_command(const CommandLine& line, const Connection& connection,
   if (const Status kept = keep_image(line.real_row.keep_image, row, streams); !kept) {
     return say(kept.failure(), kSetUpFailed, streams);
   }
-  streams.out << table_2(row, connection.origin.location);
+  if (row.outcome.reached()) {
+    streams.out << table_2(row, connection.origin.location);
+  }
   return report(finished(row.outcome, *connection.vehicle), streams);
 }
 

@@ -17,8 +17,8 @@ struct Streams {
 /// Flies the mission and prints its details as one line of JSON.
 int fly_command(const CommandLine& line, client::Vehicle& vehicle, const Streams& streams);
 
-/// Measures the row "Real sensor" of Table II and prints it before the JSON line. The image is
-/// written, if asked for, also of a task that did not reach its goal.
+/// Measures the row "Real sensor" of Table II and prints it before the JSON line, if the task
+/// reached its goal. The image is written, if asked for, whenever the anchor was seen.
 /// @pre line.mission is one relative_position task
 int real_row_command(const CommandLine& line, const Connection& connection, const Streams& streams);
 

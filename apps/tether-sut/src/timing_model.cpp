@@ -10,7 +10,7 @@ namespace {
 using tasks::Acquisition;
 
 constexpr std::size_t kFewestSteps = 3;
-constexpr Duration kShortestRealDelay = std::chrono::milliseconds(1);
+constexpr Duration kShortestLiveDelay = std::chrono::milliseconds(5);
 
 Duration median(std::vector<Duration> times) {
   const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
@@ -63,7 +63,7 @@ TimingModel on_demand_timing(const SensorTimes& times) {
   return {std::nullopt, times.taken()};
 }
 
-Result<TimingModel> periodic_timing(const SensorTimes& times, bool is_real) {
+Result<TimingModel> periodic_timing(const SensorTimes& times, bool may_stamp_arrival) {
   const std::vector<Duration> all_steps = steps(times);
   if (all_steps.size() < kFewestSteps) {
     return refuse(times, "too few samples to tell its period");
@@ -73,10 +73,11 @@ Result<TimingModel> periodic_timing(const SensorTimes& times, bool is_real) {
     return refuse(times, "its samples come too irregularly to tell a period");
   }
   TimingModel model{period, delays(times)};
-  const Duration shortest = is_real ? kShortestRealDelay : Duration::zero();
+  const Duration shortest = may_stamp_arrival ? kShortestLiveDelay : Duration::zero();
   if (median(model.delays) < shortest ||
       *std::min_element(model.delays.begin(), model.delays.end()) < Duration::zero()) {
-    return refuse(times, "the device gives no instants of its own, only those of arrival");
+    return refuse(times,
+                  "the device gives no instants of its own, it seems, only those of arrival");
   }
   return model;
 }

@@ -25,8 +25,9 @@ TimingModel on_demand_timing(const SensorTimes& times);
 ///
 /// Fails (kInvalid) where the period cannot be told (fewer than three steps, or fewer than three in
 /// four of them within a fifth of the median), and where the instants cannot be the sensor's own: a
-/// sample from the future, or, with `is_real`, a median delay below a millisecond, which no camera
-/// has; such a device stamps the arrival.
-Result<TimingModel> periodic_timing(const SensorTimes& times, bool is_real);
+/// sample from the future, or, of a live device that may stamp what it has no instant for with its
+/// arrival, a median delay below 5 ms: that is what decoding takes, and less than any camera's
+/// exposure and transfer.
+Result<TimingModel> periodic_timing(const SensorTimes& times, bool may_stamp_arrival);
 
 }  // namespace tether::sut
