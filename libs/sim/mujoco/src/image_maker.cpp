@@ -32,6 +32,7 @@ ImageMaker::Plan::Plan(const uav::CameraModel& camera) : rendered(camera) {
 ImageMaker::ImageMaker(const World& world, const Dynamics& dynamics, const WarningSink& warn)
     : world_(world),
       dynamics_(dynamics),
+      warn_(warn),
       scene_(make_scene(world, warn)),
       body_radii_m_(body_radii(scene_, moving_bodies(world).size())),
       poses_(body_radii_m_.size()) {}
@@ -146,7 +147,15 @@ void ImageMaker::add_rows(const Shutter& shutter, int instant, int instants, Byt
 }
 
 const ImageMaker::Plan& ImageMaker::plan_of(const Sensor& sensor, const CameraModel& camera) {
-  return plans_.try_emplace(&sensor, camera.intrinsics).first->second;
+  const auto known = plans_.find(&sensor);
+  if (known != plans_.end()) return known->second;
+  const Plan& plan = plans_.try_emplace(&sensor, camera.intrinsics).first->second;
+  if (const std::size_t blind = plan.warp ? plan.warp->blind_pixels() : 0; blind > 0) {
+    warn_("camera '" + sensor.name + "': " + std::to_string(blind) +
+          " pixels of its image are black, because its distortion maps no direction to them: use "
+          "coefficients that hold for its whole field of view");
+  }
+  return plan;
 }
 
 // Made at the first image, large enough for every camera of the world.

@@ -25,7 +25,8 @@ namespace tether::sim {
 /// needs, mixes the rows, adds the pixels' noise.
 class ImageMaker {
  public:
-  /// `world` and `dynamics` must outlive this object. Names through `warn` what cannot be shown.
+  /// `world` and `dynamics` must outlive this object. Names through `warn` what cannot be shown,
+  /// some of it when the first image is made.
   ImageMaker(const World& world, const Dynamics& dynamics, const WarningSink& warn);
 
   /// What a camera of the world sees, and when.
@@ -70,6 +71,7 @@ class ImageMaker {
 
   const World& world_;
   const Dynamics& dynamics_;
+  WarningSink warn_;
   Scene scene_;  // until the renderer takes it
   std::vector<double> body_radii_m_;
   std::map<const Sensor*, Plan> plans_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace tether::sim {
 namespace {
@@ -23,25 +24,55 @@ struct Extent {
   }
 };
 
-std::vector<uav::Vec3> viewing_directions(const uav::CameraModel& camera) {
-  std::vector<uav::Vec3> directions;
+// How far off the axis, at z = 1, the radial distortion goes on outwards.
+double fold_radius(const uav::CameraModel& c) {
+  constexpr double kStep = 1e-3;
+  for (double r = 0.0; r < 2.0 * kMaxTangent; r += kStep) {
+    const double r2 = r * r;
+    if (1.0 + r2 * (3.0 * c.k1 + r2 * (5.0 * c.k2 + r2 * 7.0 * c.k3)) <= 0.0) return r;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+using Directions = std::vector<std::optional<uav::Vec3>>;
+
+Directions viewing_directions(const uav::CameraModel& camera) {
+  constexpr double kSame_px = 0.01;
+  const double fold = fold_radius(camera);
+  const auto direction = [&](const uav::Pixel& pixel) -> std::optional<uav::Vec3> {
+    uav::Vec3 p = camera.unproject(pixel);
+    const uav::Pixel seen = *camera.project(p);
+    const double error_px = std::hypot(seen.u_px - pixel.u_px, seen.v_px - pixel.v_px);
+    if (!(error_px < kSame_px) || std::hypot(p.x, p.y) > fold) return std::nullopt;
+    p.x = std::clamp(p.x, -kMaxTangent, kMaxTangent);
+    p.y = std::clamp(p.y, -kMaxTangent, kMaxTangent);
+    return p;
+  };
+  Directions directions;
   directions.reserve(static_cast<std::size_t>(camera.width_px) *
                      static_cast<std::size_t>(camera.height_px));
   for (int row = 0; row < camera.height_px; ++row) {
     for (int column = 0; column < camera.width_px; ++column) {
-      uav::Vec3 p = camera.unproject({static_cast<double>(column), static_cast<double>(row)});
-      p.x = std::clamp(p.x, -kMaxTangent, kMaxTangent);
-      p.y = std::clamp(p.y, -kMaxTangent, kMaxTangent);
-      directions.push_back(p);
+      directions.push_back(direction({static_cast<double>(column), static_cast<double>(row)}));
     }
   }
   return directions;
 }
 
+Extent extent_of(const Directions& directions) {
+  Extent extent;
+  for (const auto& p : directions) {
+    if (p) extent.include(*p);
+  }
+  if (extent.min_x > extent.max_x) extent.include({0.0, 0.0, 1.0});
+  return extent;
+}
+
 // One pixel of margin on each side, so that every lookup has four neighbours.
 uav::CameraModel ideal_camera(const Extent& extent, double wanted_focal_px) {
   const double span = std::max(extent.max_x - extent.min_x, extent.max_y - extent.min_y);
-  const double focal_px = std::min(wanted_focal_px, (kMaxSize_px - 3) / span);
+  const double focal_px =
+      span > 0.0 ? std::min(wanted_focal_px, (kMaxSize_px - 3) / span) : wanted_focal_px;
   uav::CameraModel ideal;
   ideal.width_px = static_cast<int>(std::ceil(focal_px * (extent.max_x - extent.min_x))) + 3;
   ideal.height_px = static_cast<int>(std::ceil(focal_px * (extent.max_y - extent.min_y))) + 3;
@@ -64,19 +95,24 @@ bool ImageWarp::is_needed(const uav::CameraModel& camera) {
 }
 
 ImageWarp::ImageWarp(const uav::CameraModel& camera) {
-  const std::vector<uav::Vec3> directions = viewing_directions(camera);
-  Extent extent;
-  for (const uav::Vec3& p : directions) extent.include(p);
-  source_ = ideal_camera(extent, std::max(camera.fx_px, camera.fy_px));
+  const Directions directions = viewing_directions(camera);
+  source_ = ideal_camera(extent_of(directions), std::max(camera.fx_px, camera.fy_px));
   lookup_.reserve(directions.size());
-  for (const uav::Vec3& p : directions) {
-    lookup_.push_back({source_.cx_px + source_.fx_px * p.x, source_.cy_px + source_.fy_px * p.y});
+  for (const auto& p : directions) {
+    if (!p) ++blind_pixels_;
+    lookup_.push_back(
+        p ? uav::Pixel{source_.cx_px + source_.fx_px * p->x, source_.cy_px + source_.fy_px * p->y}
+          : uav::Pixel{-1.0, -1.0});
   }
 }
 
 void ImageWarp::apply(const RawImage& source, std::span<std::uint8_t> rgb) const {
   std::uint8_t* out = rgb.data();
   for (const uav::Pixel& at : lookup_) {
+    if (at.u_px < 0.0) {
+      out = std::fill_n(out, 3, std::uint8_t{0});
+      continue;
+    }
     const int column = static_cast<int>(at.u_px);
     const int row = static_cast<int>(at.v_px);
     const auto a = static_cast<float>(at.u_px - column);

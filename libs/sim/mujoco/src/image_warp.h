@@ -2,6 +2,7 @@
 
 #include "image.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,7 +13,8 @@ namespace tether::sim {
 
 /// Makes the image of a camera with lens distortion or oblong pixels out of one of an ideal camera
 /// with square pixels, which is all that the renderer draws. Looks each pixel's viewing direction
-/// up in the ideal image (bilinear).
+/// up in the ideal image (bilinear). A pixel to which the distortion maps no direction is black:
+/// strong barrel distortion folds back on itself before it reaches the corners.
 class ImageWarp {
  public:
   /// Whether `camera` needs it.
@@ -24,9 +26,13 @@ class ImageWarp {
   const uav::CameraModel& source() const { return source_; }
   /// `rgb` holds height × width × 3 bytes of the camera given at construction.
   void apply(const RawImage& source, std::span<std::uint8_t> rgb) const;
+  /// How many pixels have no viewing direction.
+  std::size_t blind_pixels() const { return blind_pixels_; }
 
  private:
-  std::vector<uav::Pixel> lookup_;  ///< for each pixel, row by row: where it is in the ideal image
+  /// For each pixel, row by row, where it is in the ideal image; negative: nowhere.
+  std::vector<uav::Pixel> lookup_;
+  std::size_t blind_pixels_ = 0;
   uav::CameraModel source_;
 };
 

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <numeric>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/base/error.h>
+#include <tether/sim_mujoco/mujoco_simulator.h>
 
 // What the camera's options do, measured in images of the whole simulator.
 namespace tether::sim {
@@ -345,6 +347,19 @@ TEST(ImageMakerTest, DistortedPointsAreWhereTheModelProjectsThem) {
         most_px, std::hypot(expected.u_px - undistorted.u_px, expected.v_px - undistorted.v_px));
   }
   EXPECT_GT(most_px, 10.0) << "or distortion was not there to be seen";
+}
+
+TEST(ImageMakerTest, NamesACameraWhoseDistortionLeavesPixelsBlack) {
+  World world = edge_world();
+  camera_of(world).intrinsics.k1 = -1.0;
+  std::vector<std::string> warnings;
+  const auto simulator =
+      make_mujoco_simulator(world, [&](const std::string& line) { warnings.push_back(line); });
+  measure_now<uav::CameraSample>(*simulator, kCamera);
+  measure_now<uav::CameraSample>(*simulator, kCamera, 1);
+  EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::AllOf(
+                            ::testing::HasSubstr("camera 'camera'"),
+                            ::testing::HasSubstr("distortion maps no direction"))));
 }
 
 // A grey wall, seen with and without noise.

@@ -25,6 +25,7 @@ RawImage direction_image(const uav::CameraModel& camera) {
 void expect_each_pixel_sees_its_direction(const uav::CameraModel& camera) {
   const ImageWarp warp(camera);
   EXPECT_FALSE(ImageWarp::is_needed(warp.source()));
+  EXPECT_EQ(warp.blind_pixels(), 0U);
   const auto pixels = static_cast<std::size_t>(camera.width_px * camera.height_px);
   std::vector<std::uint8_t> rgb(3 * pixels);
   warp.apply(direction_image(warp.source()), rgb);
@@ -41,9 +42,48 @@ TEST(ImageWarpTest, DistortedCamera) {
   auto camera = uav::CameraModel::from_horizontal_fov(160, 120, 1.2);
   camera.k1 = -0.2;
   camera.k2 = 0.03;
+  camera.k3 = -0.01;
   camera.p1 = 0.002;
+  camera.p2 = -0.003;
   EXPECT_TRUE(ImageWarp::is_needed(camera));
   expect_each_pixel_sees_its_direction(camera);
+}
+
+// Beyond 46° off the axis this lens folds back: the corners' pixels are met by nothing.
+TEST(ImageWarpTest, PixelsWithoutADirectionAreBlack) {
+  auto camera = uav::CameraModel::from_horizontal_fov(160, 120, 1.4);
+  camera.k1 = -0.3;
+  const ImageWarp warp(camera);
+  EXPECT_LE(warp.source().width_px, 2 * camera.width_px);
+  RawImage white{warp.source().width_px, warp.source().height_px, {}};
+  white.rgba.assign(static_cast<std::size_t>(white.width_px * white.height_px), 0xFFFFFFFF);
+  std::vector<std::uint8_t> rgb(std::size_t{3} * 160 * 120);
+  warp.apply(white, rgb);
+  const double fold = std::sqrt(1.0 / 0.9);
+  const double reach_px = camera.fx_px * fold * (1.0 - 0.3 * fold * fold);
+  std::size_t black = 0;
+  for (std::size_t i = 0; i < 160 * 120; ++i) {
+    const double off_px = std::hypot(static_cast<double>(i % 160) - camera.cx_px,
+                                     static_cast<double>(i / 160) - camera.cy_px);
+    if (rgb[3 * i] == 0) ++black;
+    if (std::abs(off_px - reach_px) < 0.5) continue;
+    EXPECT_EQ(rgb[3 * i], off_px < reach_px ? 255 : 0) << i;
+  }
+  EXPECT_EQ(warp.blind_pixels(), black);
+  EXPECT_GT(black, 1000U);
+}
+
+TEST(ImageWarpTest, ALensThatSeesNothingIsBlackAltogether) {
+  auto camera = uav::CameraModel::from_horizontal_fov(16, 12, 1.4);
+  camera.k1 = -1e6;
+  camera.cx_px = 1e4;
+  const ImageWarp warp(camera);
+  EXPECT_EQ(warp.blind_pixels(), std::size_t{16} * 12);
+  RawImage white{warp.source().width_px, warp.source().height_px, {}};
+  white.rgba.assign(static_cast<std::size_t>(white.width_px * white.height_px), 0xFFFFFFFF);
+  std::vector<std::uint8_t> rgb(std::size_t{3} * 16 * 12, 7);
+  warp.apply(white, rgb);
+  EXPECT_EQ(rgb, std::vector<std::uint8_t>(std::size_t{3} * 16 * 12, 0));
 }
 
 TEST(ImageWarpTest, OblongPixels) {
