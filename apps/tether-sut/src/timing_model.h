@@ -19,7 +19,8 @@ struct TimingModel {
 /// Each acquisition's time from asking to having. @pre there is an acquisition
 TimingModel on_demand_timing(const SensorTimes& times);
 
-/// The period is the median step of the samples' instants per index; a delay is the time from a
+/// The period is the mean step of the samples' instants per index, of those within a fifth of the
+/// median; a delay is the time from a
 /// sample's instant to having it. An experiment's first sample is left out: it may have been there
 /// for a while.
 ///

@@ -53,6 +53,25 @@ TEST(PeriodicTiming, HasPeriodAndDelays) {
   }
 }
 
+TEST(PeriodicTiming, ThePeriodIsFinerThanTheGridOfItsInstants) {
+  SensorTimes times = watch({.period = Duration(33'333'333), .samples = 31});
+  for (auto& acquisition : times.experiments[0]) {
+    acquisition.sampled_at = std::chrono::floor<milliseconds>(acquisition.sampled_at);
+  }
+  const auto model = periodic_timing(times, true);
+  ASSERT_TRUE(model) << model.failure().message;
+  EXPECT_NEAR(to_seconds(*model->period), 0.0333333, 0.04e-3);
+}
+
+TEST(PeriodicTiming, AGapIsNoPartOfThePeriod) {
+  SensorTimes times = watch({.samples = 10});
+  for (std::size_t i = 5; i < 10; ++i) {
+    times.experiments[0][i].sampled_at += milliseconds(200);
+    times.experiments[0][i].had_at += milliseconds(200);
+  }
+  EXPECT_EQ(periodic_timing(times, true)->period, milliseconds(25));
+}
+
 TEST(PeriodicTiming, RefusesArrivalsStampedAsInstants) {
   const auto stamped = periodic_timing(watch({.delay = milliseconds(3)}), true);
   ASSERT_FALSE(stamped);
