@@ -58,14 +58,14 @@ MetricOutcome final_bearing_error(const scenario::Metric& metric, const record::
 }
 
 // What the SUT waited for its data: by its own clock, which the barrier holds to ST. Without the
-// barrier in ST, which runs on while the link carries request and reply; how long that was, the SUT
-// tells with its next request.
+// barrier by the wall clock, at whose pace ST runs: the coordinator's part and the link's, which
+// the SUT tells with its next request.
 Duration waited(const record::Interaction& read, const record::Interaction* next,
                 const record::Header& header) {
   if (header.policy != record::kFreeRunning) return read.reply_at - read.request_at;
   const Duration link = next ? next->previous_link_time.value_or(Duration(0)) : Duration(0);
-  return read.st_at_release - read.st_at_arrival +
-         duration_from_seconds(header.real_time_factor * to_seconds(link));
+  const Duration wall = read.wall_at_release - read.wall_at_arrival + link;
+  return duration_from_seconds(header.real_time_factor * to_seconds(wall));
 }
 
 std::vector<const record::Interaction*> interactions_of(const std::string& uav,

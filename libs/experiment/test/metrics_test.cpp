@@ -203,24 +203,19 @@ TEST(AcquisitionTime, IsTheMeanOverTheSensorsReads) {
   EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.03, 1e-12);
 }
 
-TEST(AcquisitionTime, IsOfSimulatedTimeInFreeRunning) {
-  Flight flight;
-  flight.image(0, 0, 30).finish(300);
-  flight.record().interactions[0].message.st_at_release += milliseconds(20);
-  EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.03, 1e-12);
-  flight.record().header.policy = record::kFreeRunning;
-  EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.05, 1e-12);
-}
-
-// ST goes on at its own pace while the link carries an image.
-TEST(AcquisitionTime, CountsTheLinkInFreeRunningOnly) {
+// Where ST runs with the wall clock, at its own pace, also while an image is drawn and sent.
+TEST(AcquisitionTime, CountsDrawingAndTheLinkInFreeRunningOnly) {
   Flight flight;
   flight.image(0, 0, 30).image(100, 1, 30).finish(300);
-  flight.record().interactions[1].message.previous_link_time = milliseconds(40);
+  auto& reads = flight.record().interactions;
+  for (auto& read : reads)
+    read.message.wall_at_release = read.message.wall_at_arrival + milliseconds(12);
+  reads[1].message.previous_link_time = milliseconds(40);
+  reads[2].message.previous_link_time = milliseconds(20);
   flight.record().header.real_time_factor = 0.5;
   EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.03, 1e-12);
   flight.record().header.policy = record::kFreeRunning;
-  EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.03 + 0.5 * 0.02, 1e-12);
+  EXPECT_NEAR(*flight.metric("acquisition_time").value, 0.5 * (0.012 + 0.03), 1e-12);
 }
 
 TEST(AcquisitionTime, IsMissingWhereTheSensorWasNotRead) {
