@@ -87,13 +87,16 @@ void require_sut_programs(const scenario::Scenario& scenario) {
 
 void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
                          const std::filesystem::path& folder) {
+  const std::string out = std::filesystem::absolute(folder).lexically_normal().string();
   for (const scenario::UavSetup& uav : scenario.uavs) {
     const std::string& name = uav.placement.name;
     const std::filesystem::path log = folder / fmt::format("sut-{}.log", name);
+    auto environment = environment_of(name, run);
+    environment.emplace_back("TETHER_OUT", out);
     suts_.push_back(
         {name, log,
          std::make_unique<ChildProcess>(ChildCommand{.arguments = command_line(uav.sut),
-                                                     .environment = environment_of(name, run),
+                                                     .environment = std::move(environment),
                                                      .log = log})});
   }
 }
