@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <functional>
-#include <utility>
 
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
@@ -36,7 +35,8 @@ bool succeeds(const std::function<bool()>& call) {
 
 class OpencvSource final : public FrameSource {
  public:
-  explicit OpencvSource(cv::VideoCapture capture) : capture_(std::move(capture)) {}
+  // Copies of a capture are the same capture; it cannot be moved.
+  explicit OpencvSource(const cv::VideoCapture& capture) : capture_(capture) {}
 
   ImageFormat format() const override;
   bool grab() override {
@@ -92,7 +92,7 @@ std::unique_ptr<FrameSource> open_with(const std::function<bool(cv::VideoCapture
   const Quiet quiet;
   cv::VideoCapture capture;
   if (!succeeds([&] { return open(capture) && capture.isOpened(); })) return nullptr;
-  return std::make_unique<OpencvSource>(std::move(capture));
+  return std::make_unique<OpencvSource>(capture);
 }
 
 }  // namespace

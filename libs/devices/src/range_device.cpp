@@ -5,6 +5,7 @@
 #include <array>
 #include <cerrno>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -13,26 +14,28 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What drivers of the kernel do when there is nothing within range (drivers/iio/proximity).
-struct NoTarget {
+/// The ways of the kernel's drivers (drivers/iio/proximity), where they differ from others'.
+struct Ways {
   std::string_view driver;  ///< what its `name` file says
-  bool eio;                 ///< the read fails with EIO
-  double from_m;            ///< the read gives this or more
+  bool eio_is_no_target;    ///< with nothing within range, the read fails with EIO
+  double no_target_m;       ///< … or gives this or more
+  Duration own_period;      ///< the sensor measures of its own accord, this often; 0: on demand
 };
-constexpr std::array<NoTarget, 3> kNoTarget = {{
+constexpr std::array<Ways, 3> kKnown = {{
     // No look at the sensor's status; the sensor itself gives 8190 or 8191 mm.
-    {"vl53l0x", false, 8.19},
-    // Each range status but "valid".
-    {"vl53l1x", true, kInfinity},
-    // An echo later than from 6.45 m.
-    {"srf04", true, kInfinity},
+    {"vl53l0x", false, 8.19, {}},
+    // EIO for each range status but "valid". Where its interrupt is not wired, a read gives the
+    // measurement that was completed first since the last read, however long ago.
+    {"vl53l1x", true, kInfinity, std::chrono::milliseconds(50)},
+    // EIO for an echo later than from 6.45 m.
+    {"srf04", true, kInfinity, {}},
 }};
 
-NoTarget no_target_of(std::string_view driver) {
-  for (const NoTarget& known : kNoTarget) {
+Ways ways_of(std::string_view driver) {
+  for (const Ways& known : kKnown) {
     if (known.driver == driver) return known;
   }
-  return {driver, false, kInfinity};
+  return {driver, false, kInfinity, {}};
 }
 
 Failure invalid(const std::string& message) {
@@ -61,10 +64,11 @@ Result<std::unique_ptr<RangeDevice>> RangeDevice::open(System& system, const Tim
   // make_unique cannot reach the constructor.
   std::unique_ptr<RangeDevice> device(
       new RangeDevice(time, std::move(label), std::move(*channel), limits));
-  const NoTarget no_target = no_target_of(iio_name(system, time.clock(), folder));
-  device->eio_is_no_target_ = no_target.eio;
-  device->no_target_m_ = no_target.from_m;
-  const Reading first = device->measure();
+  const Ways ways = ways_of(iio_name(system, time.clock(), folder));
+  device->eio_is_no_target_ = ways.eio_is_no_target;
+  device->no_target_m_ = ways.no_target_m;
+  device->own_period_ = ways.own_period;
+  const Reading first = device->measure_anew();
   if (!first.ok()) return invalid(device->label_ + ": " + first.fault);
   return device;
 }
@@ -75,9 +79,19 @@ Reading RangeDevice::measure() const {
   return reading;
 }
 
+Reading RangeDevice::measure_anew() {
+  const Duration asked = time_.clock().now();
+  Reading reading = measure();
+  // The transfer alone takes a millisecond or two; what took longer was waited for.
+  const bool was_there = time_.clock().now() - asked < own_period_ / 10;
+  if (reading.ok() && was_there && asked - last_read_ > own_period_) reading = measure();
+  last_read_ = time_.clock().now();
+  return reading;
+}
+
 Result<uav::RangeSample> RangeDevice::read() {
   if (stopped_) return *stopped_;
-  const Reading reading = measure();
+  const Reading reading = measure_anew();
   uav::RangeSample sample;
   sample.sampled_at = time_.at(time_.clock().now());
   if (!reading.ok()) {

@@ -19,7 +19,8 @@ namespace tether::devices {
 ///
 /// A sample is from the instant at which the read returned: the sensor gathers light for some time
 /// before, the kernel does not say when, and what is known for certain is that nothing later is in
-/// the value (DESIGN section 2, rule 1).
+/// the value (DESIGN section 2, rule 1). A driver whose sensor measures of its own accord may have
+/// a measurement waiting since shortly after the last read; such a one is dropped for the next.
 class RangeDevice {
  public:
   /// Opens the channel in `folder`, and measures once, so that a sensor that does not answer is
@@ -37,13 +38,17 @@ class RangeDevice {
               const uav::RangeProperties& limits);
   /// The range, with what the driver gives where it has none; no reading at all has a fault.
   Reading measure() const;
+  /// The same, not of something that was measured long before.
+  Reading measure_anew();
 
   Timeline time_;
   std::string label_;
   Channel channel_;
   uav::RangeProperties limits_;
   bool eio_is_no_target_ = false;
-  double no_target_m_;  ///< the driver's value for "nothing there", and all above it
+  double no_target_m_;      ///< the driver's value for "nothing there", and all above it
+  Duration own_period_{0};  ///< of a sensor that measures of its own accord; 0: on demand
+  Duration last_read_{0};   ///< when the last read returned
   std::uint64_t measured_ = 0;
   std::optional<Failure> stopped_;
 };

@@ -19,6 +19,7 @@ class FakeSystem final : public System {
   /// What the next reads of a file give; 0: its real text. The last one stays.
   std::map<std::string, std::deque<int>> read_errors;
   std::function<int(unsigned long, void*)> on_ioctl = [](unsigned long, void*) { return -25; };
+  std::function<void()> before_read = [] {};
   int open_descriptors = 0;
   int reads = 0;
 
@@ -46,6 +47,7 @@ class FakeSystem final : public System {
   }
   long read_again(int descriptor, char* buffer, std::size_t size) override {
     ++reads;
+    before_read();
     std::deque<int>& errors = read_errors[paths_[descriptor]];
     const int error = errors.empty() ? 0 : errors.front();
     if (errors.size() > 1) errors.pop_front();

@@ -5,6 +5,7 @@
 #include "scratch_folder.h"
 
 #include <cerrno>
+#include <cmath>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -117,6 +118,56 @@ TEST_F(RangeDeviceTest, SomeDriversFailWithEioWhereNothingIsThere) {
     fail_with(ENODEV);
     EXPECT_FALSE(device->read());
   }
+}
+
+/// A VL53L1X without its interrupt wired, as its driver reads it: measures each 50 ms, and keeps
+/// the first measurement since the last read. The range is that at which it was completed, in ms.
+class Vl53l1xTest : public RangeDeviceTest {
+ protected:
+  Vl53l1xTest() {
+    scratch_.write("name", "vl53l1x\n");
+    limits_ = {};
+    system_.before_read = [this] {
+      if (!is_running_) return;
+      clock_.sleep_until(time_.monotonic(ExecTime(next_)));
+      measure(std::to_string(next_ / kMs));
+      const Duration now = time_.now().time_since_epoch();
+      next_ = (now / kPeriod + 1) * kPeriod;
+    };
+    device_ = opened();
+    is_running_ = true;
+    system_.reads = 0;
+  }
+  double read_ms() { return std::round(device_->read()->range_m * 1e3); }
+
+  static constexpr Duration kMs = std::chrono::milliseconds(1);
+  static constexpr Duration kPeriod = 50 * kMs;
+  bool is_running_ = false;
+  Duration next_ = kPeriod;
+  std::unique_ptr<RangeDevice> device_;
+};
+
+TEST_F(Vl53l1xTest, GivesEachMeasurementToAFastReader) {
+  for (const int completed_ms : {50, 100, 150, 200}) {
+    EXPECT_EQ(read_ms(), completed_ms);
+    clock_.advance(48 * kMs);  // so that the next is there almost at once
+  }
+  EXPECT_EQ(system_.reads, 4);
+}
+
+TEST_F(Vl53l1xTest, GivesNoMeasurementFromLongBefore) {
+  EXPECT_EQ(read_ms(), 50);
+  clock_.advance(1020 * kMs);  // the one of 100 ms is waiting all the while
+  EXPECT_EQ(read_ms(), 1100);
+  EXPECT_EQ(system_.reads, 3);
+}
+
+TEST_F(Vl53l1xTest, AMeasurementThatHadToBeWaitedForIsNew) {
+  EXPECT_EQ(read_ms(), 50);
+  clock_.advance(1020 * kMs);
+  next_ = 1100 * kMs;  // as with its interrupt wired
+  EXPECT_EQ(read_ms(), 1100);
+  EXPECT_EQ(system_.reads, 2);
 }
 
 TEST_F(RangeDeviceTest, SaysForGoodThatItStopped) {

@@ -43,22 +43,25 @@ struct Rig {
 /// Of the vehicle returned:
 /// - `now()` is the wall clock's ET since this call; sleeps are real; `annotate` drops what it is
 ///   given, `finish` succeeds, and `command_velocity` fails with kInvalid: a rig cannot fly.
-/// - A camera's sample is from when the device says that the frame was taken (Video4Linux's
-///   timestamp, where it is plausible), else from its arrival. `Read::kNext` waits for a frame that
-///   was not yet read; `Read::kLatest` returns the last one read again unless a newer one has been
-///   there for the taking. Missed frames are counted in the index where they are known.
+/// - A camera's sample is from when the device says that the image was taken (Video4Linux's
+///   timestamp, where it is plausible), else from its arrival; a stream's from its arrival.
+///   `Read::kNext` gives the newest image that was not yet read, and waits for it if need be.
+///   `Read::kLatest` gives the one read last again while it is younger than a period, so that there
+///   can be no newer one; else it is as `kNext`. The index counts the images that the device gave;
+///   the opening of a live camera takes number 0, to see that there are any.
 /// - A video file plays at its own rate from the first read on, like a live camera: whoever reads
 ///   slowly misses frames. A frame is from the instant at which it was due. The file's end is a
 ///   device that stopped.
 /// - Rangefinder and IMU measure when asked; their sample is from the instant at which the read
-///   returned. A range beyond the description's `max_m` reads +inf, one below its `min_m` −inf.
-///   The four components of an IMU's `q_WS` are NaN: such sensors know no attitude.
+///   returned. A range beyond the description's `max_m` (0: none known) reads +inf, as does what
+///   the driver says when nothing is within range; one below its `min_m` reads −inf. The four
+///   components of an IMU's `q_WS` are NaN: such sensors know no attitude.
 ///
 /// Fails with kInvalid (a device that is missing, not allowed, of another kind or size, or busy; a
 /// sensor named twice). Reads fail with kInvalid for a sensor that the rig does not have, and with
 /// kDisconnected when a device stopped, and then again on every later read of that sensor. Each
-/// failure is one line that names the device and says what to do. Throws nothing. Not thread-safe,
-/// as any Vehicle.
+/// failure is one line that names the device and says what to do. No read waits for more than about
+/// ten seconds. Throws nothing. Not thread-safe, as any Vehicle.
 Result<std::unique_ptr<client::Vehicle>> open_rig(Rig rig);
 
 /// Whether an option's value means a device rather than a sensor's name: it has a '/' (a path or a
