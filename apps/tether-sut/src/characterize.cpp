@@ -42,6 +42,9 @@ Result<std::vector<const uav::SensorDescription*>> choose_sensors(
     if (sensor == nullptr) {
       return invalid("there is no sensor \"" + name + "\"; there are " + listed(all));
     }
+    if (std::find(chosen.begin(), chosen.end(), sensor) != chosen.end()) {
+      return invalid("sensor \"" + name + "\" is named twice");
+    }
     if (options.timing == Timing::kPeriodic && sensor->rate_hz <= 0.0) {
       return invalid("sensor \"" + name +
                      "\" tells no rate, as one that measures when asked; leave it out with "

@@ -55,6 +55,8 @@ TEST(Characterize, KnowsItsSensorsBeforeItMeasures) {
   const Characterization unknown = characterize(vehicle, few({"camera", "gps"}));
   EXPECT_EQ(unknown.outcome.failure, Failure::Kind::kInvalid);
   EXPECT_EQ(unknown.outcome.reason, "there is no sensor \"gps\"; there are camera, imu, range");
+  EXPECT_EQ(characterize(vehicle, few({"imu", "imu"})).outcome.reason,
+            "sensor \"imu\" is named twice");
   CharacterizeOptions periodic = few({"camera", "range"});
   periodic.timing = Timing::kPeriodic;
   const Characterization on_demand = characterize(vehicle, periodic);
