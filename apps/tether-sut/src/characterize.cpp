@@ -58,15 +58,6 @@ Result<std::vector<const uav::SensorDescription*>> choose_sensors(
   return chosen;
 }
 
-/// What is left of a sensor's time for one more experiment.
-tasks::SensorCharacterizationOptions options_for(const CharacterizeOptions& options,
-                                                 Duration elapsed) {
-  tasks::SensorCharacterizationOptions experiment;
-  experiment.acquisitions = options.acquisitions;
-  experiment.time_limit = std::max(options.time_limit - elapsed, Duration(1));
-  return experiment;
-}
-
 class Measurement {
  public:
   Measurement(tasks::TaskContext& context, const CharacterizeOptions& options,
@@ -75,16 +66,16 @@ class Measurement {
 
   /// Says how it ended, if not well.
   tasks::Progress measure(SensorTimes& times) {
-    const ExecTime start = context_.vehicle().now();
+    end_ = context_.vehicle().now() + options_.time_limit;
+    if (tasks::Progress failed = turn_on(times)) {
+      return failed;
+    }
     for (int number = 1; number <= options_.experiments; ++number) {
       if (tell_) {
         tell_(times.sensor + ": experiment " + std::to_string(number) + " of " +
               std::to_string(options_.experiments));
       }
-      const Duration elapsed = context_.vehicle().now() - start;
-      tasks::SensorCharacterizationTask task(times.sensor, options_for(options_, elapsed));
-      const TaskOutcome outcome = tasks::run(task, context_);
-      times.experiments.push_back(task.acquisitions());
+      const TaskOutcome outcome = acquire(times, options_.acquisitions);
       if (!outcome.reached()) {
         return ended(outcome, times, number);
       }
@@ -93,11 +84,35 @@ class Measurement {
   }
 
  private:
+  /// Adds an experiment of so many acquisitions, within what is left of the sensor's time.
+  TaskOutcome acquire(SensorTimes& times, int acquisitions) {
+    tasks::SensorCharacterizationOptions options;
+    options.acquisitions = acquisitions;
+    options.time_limit = std::max(end_ - context_.vehicle().now(), Duration(1));
+    tasks::SensorCharacterizationTask task(times.sensor, options);
+    TaskOutcome outcome = tasks::run(task, context_);
+    times.experiments.push_back(task.acquisitions());
+    return outcome;
+  }
+
+  /// The listing turns sensors on before it takes the time: a sensor is on when it has given one
+  /// measurement, which is not counted.
+  tasks::Progress turn_on(SensorTimes& times) {
+    const TaskOutcome outcome = acquire(times, 1);
+    if (!outcome.reached()) {
+      return ended(outcome, times, 0);
+    }
+    times.experiments.clear();
+    return std::nullopt;
+  }
+
   static TaskOutcome ended(TaskOutcome outcome, const SensorTimes& times, int number) {
-    if (!outcome.failure) {
+    const std::string sensor = "sensor \"" + times.sensor + "\"";
+    if (!outcome.failure && number == 0) {
+      outcome.reason += " while turning on " + sensor;
+    } else if (!outcome.failure) {
       outcome.reason += " after " + std::to_string(times.experiments.back().size()) +
-                        " acquisitions of sensor \"" + times.sensor + "\" in experiment " +
-                        std::to_string(number);
+                        " acquisitions of " + sensor + " in experiment " + std::to_string(number);
     }
     outcome.results.clear();
     return outcome;
@@ -106,6 +121,7 @@ class Measurement {
   tasks::TaskContext& context_;
   const CharacterizeOptions& options_;
   const TellProgress& tell_;
+  ExecTime end_;  ///< of the current sensor's time
 };
 
 void add_results(const SensorTimes& times, std::map<std::string, double>& results) {

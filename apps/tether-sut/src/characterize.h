@@ -48,8 +48,8 @@ struct Characterization {
 /// Told what begins: "camera: experiment 2 of 10".
 using TellProgress = std::function<void(const std::string&)>;
 
-/// Runs Algorithm 1 over each sensor in turn, and ends with the first one that fails or does not
-/// reach its number of acquisitions.
+/// Runs Algorithm 1 over each sensor in turn, after one reading of it that is not counted, and ends
+/// with the first one that fails or does not reach its number of acquisitions.
 ///
 /// The outcome's results: "duration_s"; of each sensor SENSOR_n, SENSOR_mean_s, _stddev_s, _min_s,
 /// _median_s, _p95_s, _p99_s, _max_s, and from two experiments on _stddev_between_experiments_s.

@@ -38,6 +38,7 @@ Environment (set by `tether run` for the SUT that it starts):
   TETHER_TOKEN    the run's token, as the coordinator prints it
   TETHER_UAV      which UAV to fly; may be empty if there is only one
   TETHER_CLOCK    wall, cpu, or cpu*FACTOR for a virtual target FACTOR times slower
+  TETHER_OUT      the run's folder; files to write are relative to it
 
 Exit codes: 0 the goal was reached; 1 it was not; 2 wrong use; 3 set-up or link failed.)";
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <utility>
 
 #include <malloc.h>
@@ -76,6 +77,14 @@ std::string host_name() {
   std::array<char, 256> name{};
   const bool is_known = gethostname(name.data(), name.size() - 1) == 0 && name.front() != '\0';
   return is_known ? name.data() : "unknown host";
+}
+
+std::string in_run_folder(const std::string& path) {
+  const char* folder = std::getenv("TETHER_OUT");
+  if (path.empty() || folder == nullptr || *folder == '\0') {
+    return path;
+  }
+  return (std::filesystem::path(folder) / path).string();
 }
 
 Result<Connection> connect_as(const CommandLine& line) {

@@ -24,4 +24,8 @@ Result<Connection> connect_as(const CommandLine& line);
 
 std::string host_name();
 
+/// Where a file is to be written: a relative path is below the folder of the run that started this
+/// program (TETHER_OUT), if one did.
+std::string in_run_folder(const std::string& path);
+
 }  // namespace tether::sut

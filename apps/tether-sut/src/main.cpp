@@ -1,5 +1,6 @@
 #include "command_line.h"
 #include "commands.h"
+#include "connection.h"
 
 #include <exception>
 #include <iostream>
@@ -8,12 +9,17 @@ namespace tether::sut {
 namespace {
 
 int run(int argc, char** argv) {
-  const auto parsed = parse_command_line(argc, argv);
+  auto parsed = parse_command_line(argc, argv);
   if (const auto* refused = std::get_if<Refusal>(&parsed)) {
     (refused->exit_code == 0 ? std::cout : std::cerr) << refused->text;
     return refused->exit_code;
   }
-  return run_command(std::get<CommandLine>(parsed), {std::cout, std::cerr});
+  auto& line = std::get<CommandLine>(parsed);
+  line.real_row.keep_image = in_run_folder(line.real_row.keep_image);
+  if (line.characterize) {
+    line.characterize->out = in_run_folder(line.characterize->out);
+  }
+  return run_command(line, {std::cout, std::cerr});
 }
 
 }  // namespace
