@@ -18,16 +18,8 @@ std::filesystem::path source(const std::string& file) {
 
 /// The shipped scenario under a scripted clock, with few images.
 std::filesystem::path write_characterization(const std::filesystem::path& folder) {
-  const std::string shipped = read_text(source("scenarios/sensor_characterization.toml"));
-  const std::string up = "\"../", here = "\"" + source("").string();
-  const auto file = folder / "sensor_characterization.toml";
-  write_text(file, substituted(shipped, {{up + "worlds", here + "worlds"},
-                                         {up + "models", here + "models"},
-                                         {up + "profiles", here + "profiles"},
-                                         {"acquisitions = 100", "acquisitions = 5"},
-                                         {"clock = \"cpu\"\ncpu_factor = 1.0",
-                                          "clock = \"scripted\"\ncomputing_ms = 1"}}));
-  return file;
+  return write_shipped_scenario(folder, "sensor_characterization",
+                                {scripted_host(1), {"acquisitions = 100", "acquisitions = 5"}});
 }
 
 /// The mean time of an acquisition under that profile [s].
@@ -44,7 +36,7 @@ double acquisition_time_s(const std::string& profile) {
   EXPECT_THAT(result["profiles"],
               ElementsAre("paper_table_1", std::filesystem::path(profile).stem().string()));
   for (const auto& metric : result["metrics"])
-    if (metric["kind"] == "acquisition_time") return metric["value"].get<double>();
+    if (metric["name"] == "camera_acquisition_time") return metric["value"].get<double>();
   return -1.0;
 }
 

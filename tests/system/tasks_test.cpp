@@ -7,30 +7,11 @@
 namespace tether::system_test {
 namespace {
 
-/// The shipped scenario in `folder`, its host condition charged so much for each phase of
-/// computing.
-std::filesystem::path scripted(const TempFolder& folder, const std::string& scenario,
-                               int computing_ms) {
-  const std::string sources = std::filesystem::path(TETHER_SOURCE_DIR).string();
-  std::string text = read_text(sources + "/scenarios/" + scenario + ".toml");
-  text =
-      substituted(text, {{"clock = \"cpu\"\ncpu_factor = 1.0",
-                          "clock = \"scripted\"\ncomputing_ms = " + std::to_string(computing_ms)}});
-  for (const std::string data : {"worlds", "models", "missions", "profiles"}) {
-    const std::string relative = "\"../" + data;
-    if (text.find(relative) != std::string::npos)
-      text = substituted(text, {{relative, "\"" + sources + "/" + data}});
-  }
-  const auto file = folder / (scenario + ".toml");
-  write_text(file, text);
-  return file;
-}
-
 nlohmann::json fly(const TempFolder& folder, const std::string& scenario, int computing_ms,
                    int expected_code) {
+  const auto file = write_shipped_scenario(folder.path(), scenario, {scripted_host(computing_ms)});
   const auto out = folder / "out";
-  const Output output = run(tether({"run", scripted(folder, scenario, computing_ms), "--quiet",
-                                    "--condition", "host", "--out", out.string()}),
+  const Output output = run(tether({"run", file, "--quiet", "--condition", "host", "--out", out}),
                             std::chrono::seconds(100));
   EXPECT_EQ(output.code, expected_code) << output.err;
   return read_result(out);

@@ -65,6 +65,23 @@ std::filesystem::path write_hover_scenario(const std::filesystem::path& folder,
       substitutions);
 }
 
+std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder,
+                                             const std::string& name,
+                                             const std::vector<Substitution>& substitutions) {
+  const std::filesystem::path sources = TETHER_SOURCE_DIR;
+  for (const char* data : {"worlds", "models", "profiles", "missions"})
+    std::filesystem::create_directory_symlink(sources / data, folder / data);
+  const auto file = folder / "scenarios" / (name + ".toml");
+  std::filesystem::create_directory(file.parent_path());
+  write_text(file, substituted(read_text(sources / "scenarios" / (name + ".toml")), substitutions));
+  return file;
+}
+
+Substitution scripted_host(int computing_ms) {
+  return {"clock = \"cpu\"\ncpu_factor = 1.0",
+          "clock = \"scripted\"\ncomputing_ms = " + std::to_string(computing_ms)};
+}
+
 Command tether(const std::vector<std::string>& arguments, const std::string& mark) {
   Command command{.arguments = {tether_program()},
                   .environment = {{"TETHER_TEST_MARK", mark}},

@@ -25,6 +25,15 @@ std::filesystem::path write_hover_scenario(const std::filesystem::path& folder,
                                            const std::string& mode,
                                            const std::vector<Substitution>& substitutions = {});
 
+/// scenarios/NAME.toml as it is shipped, with the substitutions made, in a tree of its own below
+/// `folder`, so that the paths in it hold.
+std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder,
+                                             const std::string& name,
+                                             const std::vector<Substitution>& substitutions = {});
+/// Charges the shipped scenarios' condition "host" so much for each phase of computing, whatever it
+/// took.
+Substitution scripted_host(int computing_ms);
+
 /// `tether` with these arguments. A mark makes its processes findable.
 Command tether(const std::vector<std::string>& arguments, const std::string& mark = "none");
 
