@@ -1,0 +1,170 @@
+#include "support/trials.h"
+
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include <tether/base/units.h>
+
+/// Where the drift of dead reckoning comes from: with a noiseless IMU the closed-path task reckons
+/// what integrating the true accelerations at the IMU's rate gives, and nothing else; what the
+/// shipped IMU adds is what its noise and the calibration at rest predict.
+namespace tether::system_test {
+namespace {
+
+const std::filesystem::path kSources = TETHER_SOURCE_DIR;
+
+struct Planar {
+  double x_m = 0.0;
+  double y_m = 0.0;
+};
+Planar operator-(const Planar& a, const Planar& b) {
+  return {a.x_m - b.x_m, a.y_m - b.y_m};
+}
+double norm(const Planar& p) {
+  return std::hypot(p.x_m, p.y_m);
+}
+
+/// The closed path on a scripted clock, with ground truth at every step.
+record::Record fly(int seed, const std::string& profile) {
+  const TempFolder folder;
+  const auto file = write_shipped_scenario(
+      folder.path(), "closed_path",
+      {scripted_host(2), {"ground_truth_period_ms = 10", "ground_truth_period_ms = 1"}});
+  const auto out = folder / "out";
+  std::vector<std::string> arguments{
+      "run", file, "--quiet", "--seed", std::to_string(seed), "--out", out.string()};
+  if (!profile.empty()) arguments.insert(arguments.end(), {"--profile", kSources / profile});
+  const Output output = run(tether(arguments), std::chrono::seconds(60));
+  EXPECT_EQ(output.code, 0) << output.err;
+  return read_record(out);
+}
+
+/// What the SUT reckoned after its last reading, the instant of that reading, and that of its
+/// first.
+struct Reckoning {
+  Planar p_H0B;
+  SimTime first;
+  SimTime last;
+};
+
+std::vector<const record::Interaction*> imu_reads(const record::Record& record) {
+  std::vector<const record::Interaction*> reads;
+  for (const auto& logged : record.interactions)
+    if (logged.message.sensor == "imu") reads.push_back(&logged.message);
+  return reads;
+}
+
+Reckoning reckoning(const record::Record& record) {
+  const auto reads = imu_reads(record);
+  const auto read_before = [&](ExecTime at) {
+    SimTime sampled;
+    for (const auto* read : reads)
+      if (read->reply_at <= at) sampled = *read->sample_state_at;
+    return sampled;
+  };
+  Reckoning result;
+  bool is_first = true;
+  for (const auto& logged : record.annotations) {
+    if (logged.message.topic != "odometry") continue;
+    const auto note = nlohmann::json::parse(logged.message.json);
+    result.p_H0B = {note["x_m"], note["y_m"]};
+    result.last = read_before(logged.message.at);
+    if (is_first) result.first = result.last;
+    is_first = false;
+  }
+  return result;
+}
+
+double yaw_rad(const record::GroundTruth& truth) {
+  const auto& q = truth.q_WB;
+  return std::atan2(2.0 * (q[0] * q[3] + q[1] * q[2]), 1.0 - 2.0 * (q[2] * q[2] + q[3] * q[3]));
+}
+
+/// Ground truth by instant, in the start-heading frame of a reckoning.
+class Truth {
+ public:
+  Truth(const record::Record& record, SimTime start) {
+    for (const auto& logged : record.ground_truth) at_[logged.message.at] = &logged.message;
+    start_ = at_.at(start);
+  }
+
+  Planar position(SimTime at) const {
+    const auto& p = at_.at(at)->p_WB_m;
+    return turned({p[0] - start_->p_WB_m[0], p[1] - start_->p_WB_m[1]});
+  }
+  /// Over the step that ended at this instant, which is what an IMU measures.
+  Planar acceleration(SimTime at) const {
+    constexpr Duration kStep = std::chrono::milliseconds(1);
+    const auto& after = at_.at(at)->v_WB_m_s;
+    const auto& before = at_.at(at - kStep)->v_WB_m_s;
+    const double dt_s = to_seconds(kStep);
+    return turned({(after[0] - before[0]) / dt_s, (after[1] - before[1]) / dt_s});
+  }
+
+ private:
+  Planar turned(const Planar& p_W) const {
+    const double c = std::cos(yaw_rad(*start_));
+    const double s = std::sin(yaw_rad(*start_));
+    return {c * p_W.x_m + s * p_W.y_m, -s * p_W.x_m + c * p_W.y_m};
+  }
+
+  std::map<SimTime, const record::GroundTruth*> at_;
+  const record::GroundTruth* start_ = nullptr;
+};
+
+/// The trapezoidal rule over the true accelerations at the IMU's instants.
+Planar integrated(const Truth& truth, const Reckoning& reckoning) {
+  constexpr Duration kPeriod = std::chrono::milliseconds(50);
+  constexpr double kHalf_s = 0.025;
+  Planar v;
+  Planar p;
+  for (SimTime at = reckoning.first; at < reckoning.last; at += kPeriod) {
+    const Planar a0 = truth.acceleration(at);
+    const Planar a1 = truth.acceleration(at + kPeriod);
+    const Planar v1{v.x_m + kHalf_s * (a0.x_m + a1.x_m), v.y_m + kHalf_s * (a0.y_m + a1.y_m)};
+    p = {p.x_m + kHalf_s * (v.x_m + v1.x_m), p.y_m + kHalf_s * (v.y_m + v1.y_m)};
+    v = v1;
+  }
+  return p;
+}
+
+TEST(ImuDrift, ANoiselessImuLeavesTheIntegrationErrorAlone) {
+  const auto record = fly(1, "profiles/ideal.toml");
+  const Reckoning reckoned = reckoning(record);
+  const Truth truth(record, reckoned.first);
+  ASSERT_GT(reckoned.last - reckoned.first, std::chrono::seconds(8));
+  EXPECT_LT(norm(reckoned.p_H0B - integrated(truth, reckoned)), 0.002);
+  EXPECT_LT(norm(reckoned.p_H0B - truth.position(reckoned.last)), 0.05);
+}
+
+// The standard deviation of one axis after T: what is left of the bias when it was taken from N
+// readings of white noise, sigma/sqrt(N), integrated twice; and the white noise itself, a random
+// walk of velocity, integrated once more.
+double predicted_drift_m(double sigma_m_s2, int rest_readings, double period_s, double t_s) {
+  const double bias_m_s2 = sigma_m_s2 / std::sqrt(rest_readings);
+  const double of_bias_m = 0.5 * bias_m_s2 * t_s * t_s;
+  const double of_noise_m = sigma_m_s2 * std::sqrt(period_s * t_s * t_s * t_s / 3.0);
+  return std::hypot(of_bias_m, of_noise_m);
+}
+
+TEST(ImuDrift, TheShippedImuDriftsAsItsNoisePredicts) {
+  constexpr int kFlights = 10;
+  double squares_m2 = 0.0;
+  double t_s = 0.0;
+  for (int seed = 1; seed <= kFlights; ++seed) {
+    const auto record = fly(seed, "");
+    const Reckoning reckoned = reckoning(record);
+    const Planar error = reckoned.p_H0B - Truth(record, reckoned.first).position(reckoned.last);
+    squares_m2 += error.x_m * error.x_m + error.y_m * error.y_m;
+    t_s = to_seconds(reckoned.last - reckoned.first);
+  }
+  const double drift_m = std::sqrt(squares_m2 / (2 * kFlights));
+  const double predicted_m = predicted_drift_m(0.0124, 20, 0.05, t_s);
+  // Twenty values: within 35 % but for one case in thirty.
+  EXPECT_NEAR(drift_m, predicted_m, 0.35 * predicted_m) << "over " << t_s << " s";
+}
+
+}  // namespace
+}  // namespace tether::system_test

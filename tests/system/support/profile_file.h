@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tether::system_test {
+
+/// The measured delays that a profile says of a sensor [ms]; empty where it says none.
+std::vector<double> samples_ms(const std::filesystem::path& profile, const std::string& sensor);
+/// The profile's own name.
+std::string profile_name(const std::filesystem::path& profile);
+
+}  // namespace tether::system_test
