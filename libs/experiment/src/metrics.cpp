@@ -86,7 +86,7 @@ MetricOutcome acquisition_time(const scenario::Metric& metric, const record::Rec
     sum += waited(*own[i], i + 1 < own.size() ? own[i + 1] : nullptr, record.header);
     ++reads;
   }
-  if (reads > 0) return {to_seconds(sum) / reads, ""};
+  if (reads > 0) return {1e3 * to_seconds(sum) / reads, ""};
   return missing(fmt::format("the SUT of '{}' never read '{}'", metric.uav, metric.sensor));
 }
 

@@ -18,12 +18,12 @@ constexpr std::string_view kCamera = "camera_acquisition_time";
 // The paper's virtual sensors had neither a model nor a barrier yet: what they took is what the
 // link took. Its real ones are what a target with a profile of them comes to.
 constexpr std::array kTableI = {
-    PaperFigure{kTarget, "acquisition_time", 0.0977, std::nullopt, kRange},
-    PaperFigure{kTarget, "acquisition_time", 0.0374, std::nullopt, kCamera},
-    PaperFigure{kNoSync, "acquisition_time", 0.0492, std::nullopt, kRange},
-    PaperFigure{kNoSync, "acquisition_time", 0.2510, std::nullopt, kCamera},
-    PaperFigure{kHostNoSync, "acquisition_time", 0.0441, std::nullopt, kRange},
-    PaperFigure{kHostNoSync, "acquisition_time", 0.0561, std::nullopt, kCamera},
+    PaperFigure{kTarget, "acquisition_time", 97.7, std::nullopt, kRange},
+    PaperFigure{kTarget, "acquisition_time", 37.4, std::nullopt, kCamera},
+    PaperFigure{kNoSync, "acquisition_time", 49.2, std::nullopt, kRange},
+    PaperFigure{kNoSync, "acquisition_time", 251.0, std::nullopt, kCamera},
+    PaperFigure{kHostNoSync, "acquisition_time", 44.1, std::nullopt, kRange},
+    PaperFigure{kHostNoSync, "acquisition_time", 56.1, std::nullopt, kCamera},
 };
 
 constexpr std::array kTableII = {

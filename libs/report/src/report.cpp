@@ -159,7 +159,8 @@ bool is_synchronised_twin(const experiment::ConditionResults& a,
   const experiment::TrialResult &first_a = a.trials.front(), &first_b = b.trials.front();
   return first_a.policy == scenario::name(scenario::Policy::kConservativeBarrier) &&
          first_b.policy == scenario::name(scenario::Policy::kFreeRunning) &&
-         first_a.clock == first_b.clock && first_a.cpu_factor == first_b.cpu_factor;
+         first_a.clock == first_b.clock && first_a.cpu_factor == first_b.cpu_factor &&
+         first_a.profiles == first_b.profiles;
 }
 
 Table table_of(const experiment::ScenarioResults& scenario,

@@ -44,6 +44,7 @@ std::string tie_text(const experiment::TrialResult& trial) {
   if (trial.real_time_factor > 0.0) {
     text += fmt::format(", simulator at most {} × real time", trial.real_time_factor);
   }
+  for (const std::string& profile : trial.profiles) text += fmt::format(", profile {}", profile);
   return text;
 }
 

@@ -177,7 +177,7 @@ std::string optimism_sentence(const Comparison& comparison, const experiment::Me
   const std::string size = amount(std::abs(hidden), places, metric.unit);
   const std::string range = interval_text(comparison.means.ci95, places, !better);
   const std::string start = fmt::format("Without synchronisation the {} ", comparison.a);
-  if (metric.unit == "s") {
+  if (metric.unit == "s" || metric.unit == "ms") {
     return start + fmt::format("looks {} {} than it is ({}; {}).", size,
                                better ? "faster" : "slower", in_a_sentence(metric.label), range);
   }

@@ -131,6 +131,17 @@ TEST_F(Report, StatesTheOptimismOfNoSync) {
   EXPECT_THAT(to_text(comparisons_table(results())), uncorrected);
 }
 
+// Sensors that cost something against sensors that cost nothing are no optimism of the
+// synchronisation.
+TEST_F(Report, ComparesForOptimismOnlyWhatHasTheSameSensors) {
+  ScenarioResults one = results();
+  for (auto& condition : one.conditions)
+    for (TrialResult& trial : condition.trials) trial.profiles = {"paper_table_1"};
+  EXPECT_EQ(optimism(one).size(), 2u);
+  for (TrialResult& trial : one.conditions[1].trials) trial.profiles.push_back("ideal");
+  EXPECT_TRUE(optimism(one).empty());
+}
+
 TEST_F(Report, SaysWhatItRestsOn) {
   TrialResult bad = make_trial(scenario(), "target", 2, 0, 3);
   bad.audit = AuditVerdict{false, "a command in the past"};

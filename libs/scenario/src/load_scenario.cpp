@@ -318,9 +318,9 @@ Metric read_metric(const TomlTable& table, const Scenario& scenario) {
 
 void read_metrics(const TomlTable& root, Scenario& scenario) {
   std::set<std::string> names;
-  for (const TomlTable& table :
-       root.tables_or_none("metric", {"name", "kind", "label", "uav", "anchor", "sensor",
-                                      "threshold_deg", "max", "max_s", "max_m", "max_deg"})) {
+  for (const TomlTable& table : root.tables_or_none(
+           "metric", {"name", "kind", "label", "uav", "anchor", "sensor", "threshold_deg", "max",
+                      "max_s", "max_ms", "max_m", "max_deg"})) {
     scenario.metrics.push_back(read_metric(table, scenario));
     const std::string& name = scenario.metrics.back().name;
     if (!names.insert(name).second) {

@@ -50,7 +50,7 @@ constexpr std::array kKinds = {
                .help = "the SUT's own estimate of end minus start against the true one"},
     MetricKind{.name = "acquisition_time",
                .label = "Acquisition time",
-               .unit = "s",
+               .unit = "ms",
                .needs_sensor = true,
                .help = "mean time from asking for the sensor's data to having it"},
 };
