@@ -49,6 +49,9 @@ TEST(Arrows, FakesAreForTestsOnly) {
   EXPECT_THAT(check_arrows({file_of("libs/coordinator/src/a.cpp", text)}),
               ElementsAre(HasSubstr("fake")));
   EXPECT_THAT(check_arrows({file_of("libs/coordinator/test/a_test.cpp", text)}), IsEmpty());
+  EXPECT_THAT(check_arrows({file_of("apps/tether/src/a.cpp", text)}),
+              ElementsAre(HasSubstr("fake")));
+  EXPECT_THAT(check_arrows({file_of("apps/tether/test/a_test.cpp", text)}), IsEmpty());
 }
 
 TEST(Cycles, APlantedCycleIsFound) {
