@@ -1,13 +1,13 @@
 #include "commands.h"
 
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <utility>
 
 #include <gmock/gmock.h>
 #include <toml++/toml.h>
 
+#include <tether/base_testing/scratch_folder.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::sut {
@@ -21,24 +21,18 @@ using ::testing::Not;
 
 class Commands : public ::testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// What a command is given; the fake stays to be asked.
   Connection connection(const PlanarVehicle::Options& options, bool is_real) {
     auto vehicle = std::make_unique<PlanarVehicle>(options);
     vehicle_ = vehicle.get();
     return {std::move(vehicle), {is_real ? "real sensor" : "virtual", "bench"}, is_real};
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_.path(name).string(); }
   std::string out() const { return out_.str(); }
   std::string err() const { return err_.str(); }
-  bool is_empty() const { return fs::is_empty(folder_); }
+  bool is_empty() const { return fs::is_empty(folder_.path()); }
 
-  fs::path folder_ = fs::path(::testing::TempDir()) / "commands_test";
+  ScratchFolder folder_;
   PlanarVehicle* vehicle_ = nullptr;
   std::ostringstream out_, err_;
   Streams streams_{out_, err_};

@@ -1,8 +1,10 @@
 #include "device_arguments.h"
 
-#include <fstream>
+#include <string>
 
 #include <gmock/gmock.h>
+
+#include <tether/base_testing/scratch_folder.h>
 
 namespace tether::sut {
 namespace {
@@ -10,12 +12,6 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr const char* kLens = "size_px = [640, 480]\nhorizontal_fov_deg = 60\n";
-
-std::string rig_file(const std::string& text) {
-  const std::string path = ::testing::TempDir() + "device_arguments_test.toml";
-  std::ofstream(path) << text;
-  return path;
-}
 
 Mission mission_of(TaskOptions options) {
   TaskSpec spec;
@@ -42,6 +38,13 @@ std::string refused(const DeviceArguments& arguments, Mission mission) {
   return rig.failure().message;
 }
 
+class MakeRig : public ::testing::Test {
+ protected:
+  std::string rig_file(const std::string& text) const { return folder_.write("rig.toml", text); }
+
+  ScratchFolder folder_;
+};
+
 TEST(TakeDevices, LeavesNamesWhereTheyAre) {
   Mission mission = mission_of(tasks::ClosedPathOptions{});
   DeviceArguments arguments;
@@ -51,7 +54,7 @@ TEST(TakeDevices, LeavesNamesWhereTheyAre) {
   EXPECT_FALSE(*make_rig(arguments, mission)) << "a coordinator is meant";
 }
 
-TEST(MakeRig, WithoutAFileOnlyTheDevicesAreKnown) {
+TEST_F(MakeRig, WithoutAFileOnlyTheDevicesAreKnown) {
   Mission mission = mission_of(tasks::SensorCharacterizationOptions{});
   const devices::Rig rig =
       made({.rig = "", .camera = "/dev/video0", .imu = "", .range = "iio:vl53l0x"}, mission);
@@ -62,7 +65,7 @@ TEST(MakeRig, WithoutAFileOnlyTheDevicesAreKnown) {
   EXPECT_EQ(rig.sensors[1].device, "iio:vl53l0x");
 }
 
-TEST(MakeRig, ADeviceOfTheCommandLineCountsForMoreThanTheFiles) {
+TEST_F(MakeRig, ADeviceOfTheCommandLineCountsForMoreThanTheFiles) {
   Mission mission = mission_of(tasks::ClosedPathOptions{});
   mission.tasks[0].vision.camera = "/dev/video7";
   std::get<tasks::ClosedPathOptions>(mission.tasks[0].options).imu = "iio:bmi160";
@@ -79,7 +82,7 @@ TEST(MakeRig, ADeviceOfTheCommandLineCountsForMoreThanTheFiles) {
   EXPECT_EQ(std::get<tasks::ClosedPathOptions>(mission.tasks[0].options).imu, "gyro");
 }
 
-TEST(MakeRig, OfSeveralTheOneThatIsNamedLikeItsKind) {
+TEST_F(MakeRig, OfSeveralTheOneThatIsNamedLikeItsKind) {
   const std::string two = "[sensors.a]\nkind = \"imu\"\n[sensors.b]\nkind = \"imu\"\n";
   Mission mission = mission_of(tasks::SensorCharacterizationOptions{});
   mission.tasks[0].sensor = "imu";
@@ -93,7 +96,7 @@ TEST(MakeRig, OfSeveralTheOneThatIsNamedLikeItsKind) {
   EXPECT_EQ(rig.sensors[0].description.name, "imu");
 }
 
-TEST(MakeRig, ATaskWithAnAnchorNeedsAFile) {
+TEST_F(MakeRig, ATaskWithAnAnchorNeedsAFile) {
   const DeviceArguments camera{.rig = "", .camera = "/dev/video0", .imu = "", .range = ""};
   EXPECT_THAT(refused(camera, mission_of(tasks::RelativePositionOptions{})),
               HasSubstr("needs --rig FILE"));
@@ -107,7 +110,7 @@ TEST(MakeRig, ATaskWithAnAnchorNeedsAFile) {
   EXPECT_EQ(made(file, mission).sensors.size(), 1u) << "to time it no lens is needed";
 }
 
-TEST(MakeRig, WhatATaskUsesNeedsADevice) {
+TEST_F(MakeRig, WhatATaskUsesNeedsADevice) {
   const std::string path = rig_file(std::string("[sensors.camera]\nkind = \"camera\"\n") + kLens +
                                     "[sensors.imu]\nkind = \"imu\"\n");
   const DeviceArguments none{.rig = path, .camera = "", .imu = "", .range = ""};
@@ -119,7 +122,7 @@ TEST(MakeRig, WhatATaskUsesNeedsADevice) {
               HasSubstr("sensor \"imu\" has no device; give --imu DEVICE"));
 }
 
-TEST(MakeRig, ABadFileIsNamed) {
+TEST_F(MakeRig, ABadFileIsNamed) {
   const DeviceArguments nowhere{.rig = "/nowhere/r.toml", .camera = "", .imu = "", .range = ""};
   EXPECT_THAT(refused(nowhere, {}), HasSubstr("/nowhere/r.toml: cannot be read"));
 }

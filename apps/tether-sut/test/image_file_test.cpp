@@ -1,10 +1,11 @@
 #include "image_file.h"
 
-#include <filesystem>
-#include <fstream>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
+
+#include <tether/base_testing/scratch_folder.h>
 
 namespace tether::sut {
 namespace {
@@ -14,10 +15,10 @@ TEST(WritePng, KeepsEveryPixel) {
   image.width_px = 3;
   image.height_px = 2;
   image.rgb = {255, 0, 0, 0, 255, 0, 0, 0, 255, 1, 2, 3, 4, 5, 6, 7, 8, 9};
-  const std::string path = ::testing::TempDir() + "image_file_test.png";
+  const ScratchFolder folder;
+  const std::string path = folder.path("image.png");
   ASSERT_TRUE(write_png(path, image));
   const cv::Mat read = cv::imread(path);
-  std::filesystem::remove(path);
   ASSERT_EQ(read.size(), cv::Size(3, 2));
   EXPECT_EQ(read.at<cv::Vec3b>(0, 0), cv::Vec3b(0, 0, 255)) << "red";
   EXPECT_EQ(read.at<cv::Vec3b>(1, 2), cv::Vec3b(9, 8, 7));

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <tether/base/units.h>
+#include <tether/base_testing/scratch_folder.h>
 
 namespace tether::sut {
 namespace {
@@ -132,7 +133,8 @@ TEST(MissionFile, WrongValuesNameTheirOwnLine) {
 }
 
 TEST(MissionFile, WhatCannotBeReadIsNamed) {
-  for (const std::string& path : {std::string("/nowhere/m.toml"), ::testing::TempDir()}) {
+  const ScratchFolder folder;
+  for (const std::string& path : {std::string("/nowhere/m.toml"), folder.path().string()}) {
     const Result<Mission> mission = load_mission(path);
     ASSERT_FALSE(mission);
     EXPECT_THAT(mission.failure().message, StartsWith(path + ": cannot be read"));

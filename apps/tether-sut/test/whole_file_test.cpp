@@ -6,6 +6,8 @@
 
 #include <gmock/gmock.h>
 
+#include <tether/base_testing/scratch_folder.h>
+
 namespace tether::sut {
 namespace {
 
@@ -15,18 +17,12 @@ using ::testing::StartsWith;
 
 class WholeFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_.path(name).string(); }
   std::ptrdiff_t files() const {
-    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+    return std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator());
   }
 
-  fs::path folder_ = fs::path(::testing::TempDir()) / "whole_file_test";
+  ScratchFolder folder_;
 };
 
 std::string text_of(const std::string& path) {
@@ -60,7 +56,8 @@ TEST_F(WholeFile, WhatCannotBeWrittenIsNamed) {
       EXPECT_THAT(status.failure().message, StartsWith(bad + ": cannot be written: "));
     }
   }
-  EXPECT_THAT(check_writable(folder_.string()).failure().message, HasSubstr("no regular file"));
+  EXPECT_THAT(check_writable(folder_.path().string()).failure().message,
+              HasSubstr("no regular file"));
   EXPECT_THAT(write_whole("/dev/null", "x").failure().message, HasSubstr("no regular file"));
   EXPECT_EQ(files(), 1);
 }

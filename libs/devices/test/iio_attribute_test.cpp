@@ -2,12 +2,13 @@
 
 #include "fake_system.h"
 #include "manual_clock.h"
-#include "scratch_folder.h"
 
 #include <cerrno>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <tether/base_testing/scratch_folder.h>
 
 namespace tether::devices {
 namespace {

@@ -1,10 +1,11 @@
 #include "iio_folder.h"
 
 #include "manual_clock.h"
-#include "scratch_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <tether/base_testing/scratch_folder.h>
 
 namespace tether::devices {
 namespace {

@@ -2,13 +2,14 @@
 
 #include "fake_system.h"
 #include "manual_clock.h"
-#include "scratch_folder.h"
 
 #include <cerrno>
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <tether/base_testing/scratch_folder.h>
 
 namespace tether::devices {
 namespace {
@@ -107,7 +108,7 @@ TEST_F(ImuDeviceTest, AQuantitysOwnMountingMatrixGoesFirst) {
 
 TEST_F(ImuDeviceTest, AccelerometerAndGyroscopeMayBeTwoDevices) {
   for (const char* axis : {"x", "y", "z"}) {
-    scratch_.remove(std::string("in_anglvel_") + axis + "_raw");
+    std::filesystem::remove(scratch_.path(std::string("in_anglvel_") + axis + "_raw"));
   }
   EXPECT_THAT(refusal(), AllOf(HasSubstr("no gyroscope"), HasSubstr("ONE,OTHER")));
   write("in_anglvel", "1", "2", "3", "0.5", "gyro/");
@@ -131,14 +132,14 @@ TEST_F(ImuDeviceTest, SaysForGoodThatItStopped) {
 }
 
 TEST_F(ImuDeviceTest, IsRefusedWhereAnAxisIsMissing) {
-  scratch_.remove("in_accel_z_raw");
+  std::filesystem::remove(scratch_.path("in_accel_z_raw"));
   EXPECT_THAT(refusal(), HasSubstr("no accelerometer"));
 }
 
 TEST_F(ImuDeviceTest, IsRefusedWhereItCannotBeRead) {
   scratch_.write("in_mount_matrix", "upside down\n");
   EXPECT_THAT(refusal(), HasSubstr("in_mount_matrix: holds 'upside down'"));
-  scratch_.remove("in_mount_matrix");
+  std::filesystem::remove(scratch_.path("in_mount_matrix"));
   scratch_.write("in_accel_x_raw", "x\n");
   EXPECT_THAT(refusal(), HasSubstr("in_accel_x_raw: holds 'x'"));
   system_.read_errors[scratch_.path("in_accel_x_raw")] = {EBUSY};

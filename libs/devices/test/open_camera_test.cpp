@@ -2,7 +2,6 @@
 
 #include "fake_system.h"
 #include "manual_clock.h"
-#include "scratch_folder.h"
 #include "video_file.h"
 
 #include <cerrno>
@@ -13,6 +12,7 @@
 #include <sys/stat.h>
 
 #include <tether/base/units.h>
+#include <tether/base_testing/scratch_folder.h>
 
 namespace tether::devices {
 namespace {

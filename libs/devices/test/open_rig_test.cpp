@@ -1,9 +1,9 @@
-#include "scratch_folder.h"
 #include "video_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/base_testing/scratch_folder.h>
 #include <tether/devices/rig.h>
 
 namespace tether::devices {
@@ -32,7 +32,7 @@ class OpenRigTest : public testing::Test {
   }
   RigSensor imu() const {
     return {{"imu", {}, 0.0, uav::ImuProperties{}},
-            scratch_.path("accel") + "," + scratch_.path("gyro")};
+            scratch_.path("accel").string() + "," + scratch_.path("gyro").string()};
   }
 
   ScratchFolder scratch_;

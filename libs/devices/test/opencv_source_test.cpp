@@ -1,9 +1,10 @@
 #include "opencv_source.h"
 
-#include "scratch_folder.h"
 #include "video_file.h"
 
 #include <gtest/gtest.h>
+
+#include <tether/base_testing/scratch_folder.h>
 
 namespace tether::devices {
 namespace {
@@ -67,12 +68,12 @@ TEST_F(OpencvSourceTest, GivesNoneForWhatItCannotOpen) {
 
 TEST_F(OpencvSourceTest, AStreamMayBeAFileToo) {
   write_video(scratch_.path("a.avi"), {kRed, kBlue});
-  const auto source = open_stream("file://" + scratch_.path("a.avi"), 1000);
+  const auto source = open_stream("file://" + scratch_.path("a.avi").string(), 1000);
   ASSERT_NE(source, nullptr);
   EXPECT_TRUE(source->grab());
   EXPECT_TRUE(source->grab());
   EXPECT_FALSE(source->grab());
-  EXPECT_EQ(open_stream("file://" + scratch_.path("missing.avi"), 1000), nullptr);
+  EXPECT_EQ(open_stream("file://" + scratch_.path("missing.avi").string(), 1000), nullptr);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include "fake_system.h"
 #include "manual_clock.h"
-#include "scratch_folder.h"
 
 #include <cerrno>
 #include <cmath>
@@ -10,6 +9,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <tether/base_testing/scratch_folder.h>
 
 namespace tether::devices {
 namespace {
@@ -207,7 +208,7 @@ TEST_F(RangeDeviceTest, IsRefusedWhereItMayNotBeRead) {
 }
 
 TEST_F(RangeDeviceTest, IsRefusedWhereItIsNoRangefinder) {
-  scratch_.remove("in_distance_raw");
+  std::filesystem::remove(scratch_.path("in_distance_raw"));
   EXPECT_THAT(refusal(), AllOf(HasSubstr("no rangefinder"), HasSubstr("in_distance_raw")));
 }
 

@@ -1,11 +1,12 @@
 #include "rig_vehicle.h"
 
 #include "manual_clock.h"
-#include "scratch_folder.h"
 #include "system.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <tether/base_testing/scratch_folder.h>
 
 namespace tether::devices {
 namespace {

@@ -1,13 +1,13 @@
 #include "system.h"
 
-#include "scratch_folder.h"
-
 #include <array>
 #include <cerrno>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+
+#include <tether/base_testing/scratch_folder.h>
 
 namespace tether::devices {
 namespace {

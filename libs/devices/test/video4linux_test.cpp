@@ -1,7 +1,6 @@
 #include "video4linux.h"
 
 #include "fake_system.h"
-#include "scratch_folder.h"
 
 #include <cerrno>
 

@@ -3,7 +3,7 @@
 
 #include <tether/experiment/campaign_folder.h>
 #include <tether/experiment/text_file.h>
-#include <tether/experiment_testing/scratch.h>
+#include <tether/experiment_testing/sample_campaign.h>
 
 namespace tether::experiment {
 namespace {
@@ -28,7 +28,7 @@ class Folder : public testing::Test {
     return plan.folder / kResultFile;
   }
 
-  Scratch scratch_;
+  ScratchFolder scratch_;
   std::filesystem::path out_ = scratch_.path("out");
   scenario::Campaign campaign_ = make_campaign(scratch_);
   Settings settings_ = {{"file room.sdf", "abc"}, {"tether", "0.1.0"}};

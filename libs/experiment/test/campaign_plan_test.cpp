@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/experiment/campaign_plan.h>
-#include <tether/experiment_testing/scratch.h>
+#include <tether/experiment_testing/sample_campaign.h>
 
 namespace tether::experiment {
 namespace {
@@ -14,7 +14,7 @@ using testing::Pair;
 
 class CampaignPlan : public testing::Test {
  protected:
-  Scratch scratch_;
+  ScratchFolder scratch_;
   scenario::Campaign campaign_ = make_campaign(scratch_);
 };
 

@@ -3,7 +3,7 @@
 
 #include <tether/experiment/result.h>
 #include <tether/experiment/text_file.h>
-#include <tether/experiment_testing/scratch.h>
+#include <tether/experiment_testing/sample_campaign.h>
 
 namespace tether::experiment {
 namespace {
@@ -14,23 +14,23 @@ using testing::HasSubstr;
 
 class Result : public testing::Test {
  protected:
-  Scratch scratch_;
+  ScratchFolder scratch_;
   scenario::Campaign campaign_ = make_campaign(scratch_);
   const scenario::Scenario& scenario_ = campaign_.scenarios[0].scenario;
   TrialResult trial_ = make_trial(scenario_, "target", 2, 1.0, 9.242);
 };
 
 TEST_F(Result, ReadsBackAsItWasWritten) {
-  write_result(scratch_.path(""), trial_);
-  EXPECT_EQ(read_result(scratch_.path("")), trial_);
+  write_result(scratch_.path(), trial_);
+  EXPECT_EQ(read_result(scratch_.path()), trial_);
 }
 
 TEST_F(Result, ReadsBackWithEverythingMissing) {
   TrialResult failed = make_setup_failure(scenario_, scenario_.conditions[0], 7, "no port");
   failed.this_run.attempts = 2;
   failed.this_run.first_failure = "no port either";
-  write_result(scratch_.path(""), failed);
-  EXPECT_EQ(read_result(scratch_.path("")), failed);
+  write_result(scratch_.path(), failed);
+  EXPECT_EQ(read_result(scratch_.path()), failed);
   EXPECT_EQ(failed.outcome, Outcome::kFailed);
   EXPECT_EQ(failed.reason, "no port");
 }

@@ -9,7 +9,7 @@
 
 #include <tether/experiment/run_campaign.h>
 #include <tether/experiment/text_file.h>
-#include <tether/experiment_testing/scratch.h>
+#include <tether/experiment_testing/sample_campaign.h>
 
 namespace tether::experiment {
 namespace {
@@ -39,7 +39,7 @@ class RunCampaign : public testing::Test {
     return read_result(plan_trials(campaign_, out_)[trial].folder);
   }
 
-  Scratch scratch_;
+  ScratchFolder scratch_;
   std::filesystem::path out_ = scratch_.path("out");
   scenario::Campaign campaign_ = make_campaign(scratch_);
   CampaignOptions options_;

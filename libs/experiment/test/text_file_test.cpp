@@ -5,7 +5,7 @@
 #include <unistd.h>
 
 #include <tether/experiment/text_file.h>
-#include <tether/experiment_testing/scratch.h>
+#include <tether/experiment_testing/sample_campaign.h>
 
 namespace tether::experiment {
 namespace {
@@ -13,17 +13,17 @@ namespace {
 using testing::HasSubstr;
 
 TEST(WriteFileAtomically, ReplacesTheWholeFileAndLeavesNothingElse) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   const auto file = scratch.path("a.json");
   write_file_atomically(file, "a longer first text");
   write_file_atomically(file, "second");
   EXPECT_EQ(read_file(file), "second");
-  const auto entries = std::filesystem::directory_iterator(scratch.path(""));
+  const auto entries = std::filesystem::directory_iterator(scratch.path());
   EXPECT_EQ(std::distance(begin(entries), end(entries)), 1);
 }
 
 TEST(WriteFileAtomically, ReplacesAPartThatACrashLeft) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   scratch.write("a.json.part", "torn and longer than the new one");
   write_file_atomically(scratch.path("a.json"), "whole");
   EXPECT_EQ(read_file(scratch.path("a.json")), "whole");
@@ -31,7 +31,7 @@ TEST(WriteFileAtomically, ReplacesAPartThatACrashLeft) {
 }
 
 TEST(WriteFileAtomically, NamesTheFileThatCannotBeWritten) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   const std::string message = error_message(
       ErrorCode::kSetup, [&] { write_file_atomically(scratch.path("none/a.json"), "text"); });
   EXPECT_THAT(message, HasSubstr("none/a.json"));
@@ -39,7 +39,7 @@ TEST(WriteFileAtomically, NamesTheFileThatCannotBeWritten) {
 }
 
 TEST(WriteFileAtomically, KeepsTheOldContentWhenItFails) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   const auto file = scratch.write("a.json", "old");
   std::filesystem::create_directories(scratch.path("a.json.part"));
   error_message(ErrorCode::kSetup, [&] { write_file_atomically(file, "new"); });
@@ -47,7 +47,7 @@ TEST(WriteFileAtomically, KeepsTheOldContentWhenItFails) {
 }
 
 TEST(WriteFileAtomically, ReplacesTheFileBehindALinkAndNotTheLink) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   const auto file = scratch.write("there/a.json", "old");
   const auto link = scratch.path("link.json"), link_to_link = scratch.path("second.json");
   std::filesystem::create_symlink("there/a.json", link);
@@ -62,7 +62,7 @@ TEST(WriteFileAtomically, ReplacesTheFileBehindALinkAndNotTheLink) {
 }
 
 TEST(WriteFileAtomically, EndsALoopOfLinks) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   std::filesystem::create_symlink("b", scratch.path("a"));
   std::filesystem::create_symlink("a", scratch.path("b"));
   EXPECT_THAT(
@@ -71,7 +71,7 @@ TEST(WriteFileAtomically, EndsALoopOfLinks) {
 }
 
 TEST(WriteFileAtomically, WritesIntoAPipeAlsoThroughALink) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   const auto pipe = scratch.path("pipe"), link = scratch.path("link");
   std::filesystem::create_symlink(pipe, link);
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -87,14 +87,14 @@ TEST(WriteFileAtomically, WritesIntoAPipeAlsoThroughALink) {
 }
 
 TEST(ReadFile, NamesAMissingFile) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   EXPECT_THAT(error_message(ErrorCode::kBadFile, [&] { (void)read_file(scratch.path("none")); }),
               HasSubstr("no such file"));
 }
 
 // Values of the FNV reference (Fowler, Noll, Vo): fnv1a_64 of "" and of "foobar".
 TEST(DigestOfFile, IsFnv1a) {
-  const Scratch scratch;
+  const ScratchFolder scratch;
   EXPECT_EQ(digest_of_file(scratch.write("a", "")), "cbf29ce484222325");
   EXPECT_EQ(digest_of_file(scratch.write("b", "foobar")), "85944171f73967e8");
 }

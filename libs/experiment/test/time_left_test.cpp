@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/experiment_testing/scratch.h>
+#include <tether/experiment_testing/sample_campaign.h>
 
 namespace tether::experiment {
 namespace {
@@ -16,7 +16,7 @@ class TimeLeft : public testing::Test {
     for (const TrialPlan& plan : plans_) plans.push_back(&plan);
     return make_batches(plans, jobs);
   }
-  Scratch scratch_;
+  ScratchFolder scratch_;
   scenario::Campaign campaign_ = make_campaign(scratch_);
   std::vector<TrialPlan> plans_ = plan_trials(campaign_, "out");
 };

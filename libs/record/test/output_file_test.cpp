@@ -9,6 +9,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <tether/base_testing/scratch_folder.h>
+
 namespace {
 
 int flushes = 0;
@@ -25,8 +27,8 @@ namespace tether::record {
 namespace {
 
 TEST(OutputFile, IsOnTheDiskOnceClosedAndIsFlushedNoMoreThanThat) {
-  const std::filesystem::path path =
-      std::filesystem::path(testing::TempDir()) / ("output-file-" + std::to_string(getpid()));
+  const ScratchFolder folder;
+  const std::filesystem::path path = folder.path("file");
   flushes = 0;
   OutputFile file(path);
   file.write("first, ");
@@ -38,7 +40,6 @@ TEST(OutputFile, IsOnTheDiskOnceClosedAndIsFlushedNoMoreThanThat) {
   EXPECT_EQ(flushes, 1);
   std::ifstream stream(path);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "first, second");
-  std::filesystem::remove(path);
 }
 
 TEST(OutputFile, MayBeADeviceThatHasNothingToFlush) {

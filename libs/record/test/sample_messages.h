@@ -6,8 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include <gtest/gtest.h>
-
+#include <tether/base_testing/scratch_folder.h>
 #include <tether/record/reader.h>
 #include <tether/record/writer.h>
 
@@ -142,19 +141,6 @@ inline Footer footer() {
 /// A file that goes away with the test.
 class TemporaryFile {
  public:
-  TemporaryFile() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(::testing::TempDir()) /
-            ("tether_record_" + std::string(test->test_suite_name()) + "." + test->name() + "." +
-             std::to_string(++count_) + ".mcap");
-  }
-  ~TemporaryFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-
   const std::filesystem::path& path() const { return path_; }
   std::string bytes() const {
     std::ifstream stream(path_, std::ios::binary);
@@ -170,8 +156,8 @@ class TemporaryFile {
   }
 
  private:
-  static inline int count_ = 0;
-  std::filesystem::path path_;
+  ScratchFolder folder_;
+  std::filesystem::path path_ = folder_.path("record.mcap");
 };
 
 /// One message of each kind but the footer.

@@ -6,7 +6,7 @@
 #include <tinyxml2.h>
 
 #include <tether/experiment/campaign_folder.h>
-#include <tether/experiment_testing/scratch.h>
+#include <tether/experiment_testing/sample_campaign.h>
 #include <tether/record/png.h>
 #include <tether/record/writer.h>
 #include <tether/report/page.h>
@@ -65,7 +65,7 @@ class CampaignPage : public testing::Test {
   }
   std::string page() const { return campaign_page(experiment::read_campaign_results(out_), out_); }
 
-  experiment::Scratch scratch_;
+  ScratchFolder scratch_;
   std::filesystem::path out_ = scratch_.path("out");
   scenario::Campaign campaign_ = experiment::make_campaign(scratch_);
 };

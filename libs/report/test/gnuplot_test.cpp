@@ -5,7 +5,7 @@
 #include <tinyxml2.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment_testing/scratch.h>
+#include <tether/experiment_testing/sample_campaign.h>
 #include <tether/report/gnuplot.h>
 
 namespace tether::report {

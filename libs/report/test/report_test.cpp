@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/experiment_testing/scratch.h>
+#include <tether/experiment_testing/sample_campaign.h>
 #include <tether/report/report.h>
 
 namespace tether::report {
@@ -36,7 +36,7 @@ class Report : public testing::Test {
   const scenario::Scenario& scenario() const { return campaign_.scenarios[0].scenario; }
   ScenarioResults results() const { return read_campaign_results(out_).scenarios[0]; }
 
-  Scratch scratch_;
+  ScratchFolder scratch_;
   std::filesystem::path out_ = scratch_.path("out");
   scenario::Campaign campaign_ = make_campaign(scratch_);
 };

@@ -5,7 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/scenario_testing/scratch.h>
+#include <tether/base_testing/scratch_folder.h>
+#include <tether/scenario_testing/error_message.h>
 
 namespace tether::scenario {
 
@@ -133,7 +134,8 @@ delay = { kind = "empirical", file_ms = "fog.txt" }
 )";
 
 /// Writes the scenario and the files that it names; returns the scenario's file.
-inline std::filesystem::path write_project(const Scratch& scratch, const std::string& scenario) {
+inline std::filesystem::path write_project(const ScratchFolder& scratch,
+                                           const std::string& scenario) {
   scratch.write("worlds/room.sdf", "<sdf/>");
   scratch.write("models/uav.sdf", "<sdf/>");
   scratch.write("delays.txt", "10\n20\n30.5\n");

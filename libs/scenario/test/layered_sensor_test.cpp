@@ -16,7 +16,8 @@ using std::chrono::milliseconds;
 using testing::HasSubstr;
 
 /// The entry [sensors.<name>] of a profile.
-SensorProfile entry(const Scratch& scratch, const std::string& name, const std::string& text) {
+SensorProfile entry(const ScratchFolder& scratch, const std::string& name,
+                    const std::string& text) {
   return load_profile(scratch.write(name + ".toml", text)).sensors.at(name);
 }
 
@@ -37,7 +38,7 @@ class Layered : public testing::Test {
     return std::get<sim::CameraModel>(camera_.model).intrinsics;
   }
 
-  Scratch scratch_;
+  ScratchFolder scratch_;
   sim::Sensor camera_ = make_camera("camera");
   sim::Sensor imu_ = make_imu("imu");
   sim::Sensor range_ = make_range("range");

@@ -31,7 +31,7 @@ class LoadCampaign : public testing::Test {
   std::string error_with(const std::string& from, const std::string& to) const {
     return bad_file_message([&] { load(replaced(kCampaign, from, to)); });
   }
-  Scratch scratch_;
+  ScratchFolder scratch_;
 };
 
 TEST_F(LoadCampaign, ReadsAll) {

@@ -21,7 +21,7 @@ class LoadProfile : public testing::Test {
   std::string error_of(const std::string& text) const {
     return bad_file_message([&] { load(text); });
   }
-  Scratch scratch_;
+  ScratchFolder scratch_;
 };
 
 TEST_F(LoadProfile, ReadsTheTop) {

@@ -28,7 +28,7 @@ class LoadScenario : public testing::Test {
   std::string error_with(const std::string& from, const std::string& to) const {
     return bad_file_message([&] { load_with(from, to); });
   }
-  Scratch scratch_;
+  ScratchFolder scratch_;
   const std::string mission_ = scratch_.path("missions/around.toml");
 };
 
@@ -244,8 +244,7 @@ TEST_F(LoadScenario, NamesTheLineOfASyntaxError) {
 TEST_F(LoadScenario, RefusesWhatIsNoFile) {
   EXPECT_THAT(bad_file_message([&] { load_scenario(scratch_.path("none.toml")); }),
               HasSubstr("no such file"));
-  EXPECT_THAT(bad_file_message([&] { load_scenario(scratch_.path("")); }),
-              HasSubstr("no such file"));
+  EXPECT_THAT(bad_file_message([&] { load_scenario(scratch_.path()); }), HasSubstr("no such file"));
   EXPECT_THAT(bad_file_message([&] { load(std::string((1 << 20) + 1, '#')); }),
               HasSubstr("at most 1048576 are read"));
 }

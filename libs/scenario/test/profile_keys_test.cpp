@@ -28,7 +28,7 @@ class ProfileKeys : public testing::Test {
     const std::string file = scratch_.path("p.toml").string();
     return line == 0 ? file + ": " : file + ":" + std::to_string(line) + ": ";
   }
-  Scratch scratch_;
+  ScratchFolder scratch_;
   const std::vector<KeyLine> keys_ = key_lines(kFullProfile);
 };
 

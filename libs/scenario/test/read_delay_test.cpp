@@ -17,7 +17,7 @@ class DelaySamples : public testing::Test {
     const auto file = scratch_.write("d.txt", text);
     return bad_file_message([&] { (void)read_delay_samples(file, 1e-3); });
   }
-  Scratch scratch_;
+  ScratchFolder scratch_;
 };
 
 TEST_F(DelaySamples, SkipsBlankLinesAndComments) {
@@ -51,7 +51,7 @@ class InlineSamples : public testing::Test {
   std::string error_of(const std::string& text) {
     return bad_file_message([&] { (void)read(text); });
   }
-  Scratch scratch_;
+  ScratchFolder scratch_;
   std::vector<std::filesystem::path> files_;
 };
 

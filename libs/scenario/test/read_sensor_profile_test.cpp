@@ -23,7 +23,7 @@ class ReadSensorProfile : public testing::Test {
   std::string error_with(const std::string& from, const std::string& to) const {
     return bad_file_message([&] { sensor("camera", replaced(kFullProfile, from, to)); });
   }
-  Scratch scratch_;
+  ScratchFolder scratch_;
 };
 
 TEST_F(ReadSensorProfile, ReadsACamera) {

@@ -46,7 +46,7 @@ class ResolveSensors : public testing::Test {
   double max_m(std::size_t uav, std::size_t index) const {
     return std::get<sim::RangeModel>(sensor(uav, index).model).max_m;
   }
-  Scratch scratch_;
+  ScratchFolder scratch_;
   Scenario scenario_ = load_scenario(write_project(scratch_, kFullScenario));
   sim::World world_ = world_of_two();
   std::vector<std::string> warnings_;

@@ -23,7 +23,7 @@ class ScenarioKeys : public testing::Test {
     const std::string file = scratch_.path("scenario.toml").string();
     return line == 0 ? file + ": " : file + ":" + std::to_string(line) + ": ";
   }
-  Scratch scratch_;
+  ScratchFolder scratch_;
 };
 
 bool is_parameter(const KeyLine& key) {

@@ -13,7 +13,7 @@ namespace {
 
 class WorldRequest : public testing::Test {
  protected:
-  Scratch scratch_;
+  ScratchFolder scratch_;
   Scenario scenario_ = load_scenario(write_project(scratch_, kFullScenario));
 };
 

@@ -28,7 +28,7 @@ const char* const kAnchors = R"(
       <material><pbr><metal><albedo_map>t.png</albedo_map></metal></pbr></material></visual></link></model>)";
 
 TEST(Anchor, ReadsAnchors) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   folder.write("t.png", "png");
   const auto file = folder.write("w.sdf", world_sdf(kAnchors));
   const auto anchors = load({file, {}, {"cylinder", "box", "sphere"}}).world.anchors;
@@ -43,7 +43,7 @@ TEST(Anchor, ReadsAnchors) {
 }
 
 TEST(Anchor, RefusesWhatCannotBeAnAnchor) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   folder.write("t.png", "png");
   const auto file = folder.write("w.sdf", world_sdf(kAnchors));
   const auto refused = [&](const std::string& anchor) { return refusal({file, {}, {anchor}}); };

@@ -30,7 +30,7 @@ std::string visual(const std::string& geometry, const std::string& material = ""
 class BadWorlds : public ::testing::TestWithParam<BadWorld> {};
 
 TEST_P(BadWorlds, IsRefusedWithFileAndLine) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto file = folder.write("w.sdf", GetParam().text);
   folder.write("t.jpg", "jpg");
   folder.write("m.ply", "ply");

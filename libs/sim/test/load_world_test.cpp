@@ -24,7 +24,7 @@ void expect_near(const Vec3& actual, const Vec3& expected, double tolerance = 1e
 }
 
 TEST(LoadWorld, PutsAModelWhereItsFrameSays) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto world = load({folder.write("w.sdf", world_sdf(R"(
       <frame name='table'><pose>1 2 3 0 0 1.5707963267948966</pose></frame>
       <model name='m'>
@@ -48,7 +48,7 @@ TEST(LoadWorld, PutsAModelWhereItsFrameSays) {
 }
 
 TEST(LoadWorld, ReadsPhysicsSceneAndLights) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto loaded = load({folder.write("w.sdf", world_sdf(R"(
       <physics name='p' type='ode'><max_step_size>0.002</max_step_size>
         <real_time_factor>1</real_time_factor></physics>
@@ -81,14 +81,14 @@ TEST(LoadWorld, ReadsPhysicsSceneAndLights) {
 }
 
 TEST(LoadWorld, SceneWithoutShadowsTakesThemFromEveryLight) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto file = folder.write("w.sdf", world_sdf(R"(<scene><shadows>false</shadows></scene>
       <light name='sun' type='directional'><cast_shadows>true</cast_shadows></light>)"));
   EXPECT_FALSE(load({file, {}, {}}).world.lights.at(0).cast_shadows);
 }
 
 TEST(LoadWorld, NestedModelsBecomeModelsOfTheirOwn) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto world = load({folder.write("w.sdf", world_sdf(R"(
       <model name='outer'><static>true</static><pose>1 0 0 0 0 0</pose><link name='l'/>
         <model name='inner'><pose>0 2 0 0 0 0</pose><link name='l'/></model></model>)")),

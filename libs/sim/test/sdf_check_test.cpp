@@ -29,7 +29,7 @@ std::ostream& operator<<(std::ostream& out, const Unrepresented& given) {
 class SdfWarnings : public ::testing::TestWithParam<Unrepresented> {};
 
 TEST_P(SdfWarnings, NamesTheElement) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto warnings = load({folder.write("w.sdf", GetParam().text), {}, {}}).warnings;
   EXPECT_THAT(warnings,
               ElementsAre(AllOf(HasSubstr(GetParam().where), HasSubstr(GetParam().message))));
@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, SdfWarnings, ::testing::ValuesIn(kUnrepresented
                          [](const auto& given) { return given.param.name; });
 
 TEST(SdfWarning, ElementsWithoutEffectAreSilent) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto file = folder.write("w.sdf", world_sdf(R"(
       <gui><camera name='c'/></gui>
       <plugin name='tether' filename='libtether_gazebo.so'/>
@@ -110,7 +110,7 @@ TEST(SdfWarning, ElementsWithoutEffectAreSilent) {
 }
 
 TEST(SdfWarning, LightsThatLookAlikeEverywhereAreSilent) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto file = folder.write("w.sdf", world_sdf(R"(
       <light name='endless' type='point'><attenuation><range>1000</range></attenuation></light>
       <light name='sun' type='directional'><attenuation><range>20</range></attenuation></light>
@@ -124,7 +124,7 @@ TEST(SdfWarning, LightsThatLookAlikeEverywhereAreSilent) {
 }
 
 TEST(SdfWarning, EveryElementIsNamedAndTheRestLoads) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto file = folder.write("w.sdf", link_sdf(R"(
       <visual name='a'><geometry><heightmap><uri>h.png</uri></heightmap></geometry></visual>
       <visual name='b'><geometry><sphere><radius>1</radius></sphere></geometry>
@@ -138,7 +138,7 @@ TEST(SdfWarning, EveryElementIsNamedAndTheRestLoads) {
 }
 
 TEST(SdfWarning, NoSinkIsNoError) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   EXPECT_EQ(refusal({folder.write("w.sdf", world_sdf("<bogus/>")), {}, {}}), "");
 }
 

@@ -1,44 +1,16 @@
 #pragma once
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/base_testing/scratch_folder.h>
 #include <tether/sim/world.h>
 
-/// SDF files in a folder of their own, and what `load_world` says of them.
+/// SDF files for a scratch folder, and what `load_world` says of them.
 namespace tether::sim {
-
-class SdfFolder {
- public:
-  SdfFolder() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string(test->test_suite_name()) + "_" + test->name();
-    for (char& c : name) c = c == '/' ? '_' : c;
-    path_ = std::filesystem::temp_directory_path() /
-            ("tether_sim_" + std::to_string(::getpid()) + "_" + name);
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~SdfFolder() { std::filesystem::remove_all(path_); }
-  SdfFolder(const SdfFolder&) = delete;
-  SdfFolder& operator=(const SdfFolder&) = delete;
-
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    const std::filesystem::path file = path_ / name;
-    std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file) << text;
-    return file;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A world file: `content` begins on line 3.
 inline std::string world_sdf(const std::string& content) {

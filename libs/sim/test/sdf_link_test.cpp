@@ -14,7 +14,7 @@ using ::testing::IsEmpty;
 using uav::Vec3;
 
 TEST(SdfLink, ReadsShapesAndMaterials) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   folder.write("t.png", "png");
   const auto loaded = load({folder.write("w.sdf", link_sdf(R"(
       <visual name='box'><transparency>0.5</transparency><cast_shadows>false</cast_shadows>
@@ -59,7 +59,7 @@ TEST(SdfLink, ReadsShapesAndMaterials) {
 }
 
 TEST(SdfLink, ReadsInertiaAboutPrincipalAxes) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto world = load({folder.write("w.sdf", world_sdf(R"(
       <model name='m'><link name='l'><inertial><mass>2</mass><pose>0 0 0.5 0 0 0</pose>
         <inertia><ixx>2</ixx><iyy>2</iyy><izz>3</izz><ixy>0.5</ixy><ixz>0</ixz><iyz>0</iyz></inertia>

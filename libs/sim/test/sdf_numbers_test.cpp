@@ -20,7 +20,7 @@ TEST(ParseNumbers, TakesTheWholeTextOrNothing) {
 }
 
 TEST(CheckNumbers, AcceptsEveryWayOfWritingANumber) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto file = folder.write("w.sdf", world_sdf(R"(
       <model name='m'>
         <pose relative_to='world'/>
@@ -42,7 +42,7 @@ TEST(CheckNumbers, AcceptsEveryWayOfWritingANumber) {
 }
 
 TEST(CheckNumbers, LeavesPluginsAndCustomElementsAlone) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto file = folder.write("w.sdf", world_sdf(R"(
       <plugin name='p' filename='libp.so'><mass>1 kg</mass><pose>here</pose></plugin>
       <other:thing xmlns:other='o'><mass>1 kg</mass></other:thing>)"));

@@ -11,7 +11,7 @@ using ::testing::IsEmpty;
 using uav::Vec3;
 
 TEST(SdfSource, FindsIncludesByModelUriAndRelativeToTheFile) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   folder.write("models/thing/model.config",
                "<model><name>thing</name><sdf version='1.7'>model.sdf</sdf></model>");
   folder.write("models/thing/mesh.stl", "solid");
@@ -35,7 +35,7 @@ TEST(SdfSource, FindsIncludesByModelUriAndRelativeToTheFile) {
 }
 
 TEST(SdfSource, LeavesTheConsoleAlone) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto bad = folder.write("w.sdf", link_sdf("<inertial><mass>heavy</mass></inertial>"));
   ::testing::internal::CaptureStderr();
   ::testing::internal::CaptureStdout();
@@ -49,7 +49,7 @@ TEST(SdfSource, MissingFileIsNamed) {
 }
 
 TEST(SdfSource, DirectoryIsCalledOne) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   const auto world = folder.write("w.sdf", world_sdf(""));
   const std::string message =
       world.parent_path().string() + ": is a directory; name the SDF file in it, such as model.sdf";
@@ -58,7 +58,7 @@ TEST(SdfSource, DirectoryIsCalledOne) {
 }
 
 TEST(SdfSource, UnitInAnIncludedFileNamesThatFile) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   folder.write("models/thing/model.config",
                "<model><name>thing</name><sdf version='1.7'>model.sdf</sdf></model>");
   const auto inner = folder.write("models/thing/model.sdf",
@@ -70,7 +70,7 @@ TEST(SdfSource, UnitInAnIncludedFileNamesThatFile) {
 }
 
 TEST(SdfSource, ErrorInAnIncludedFileNamesThatFile) {
-  const SdfFolder folder;
+  const ScratchFolder folder;
   folder.write("models/thing/model.config",
                "<model><name>thing</name><sdf version='1.7'>model.sdf</sdf></model>");
   const auto inner = folder.write("models/thing/model.sdf",

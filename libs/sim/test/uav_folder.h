@@ -61,7 +61,7 @@ class UavModel : public ::testing::Test {
     return load(request(model)).warnings;
   }
 
-  SdfFolder folder_;
+  ScratchFolder folder_;
 };
 
 /// A change of kUav that makes it one that cannot be used: where the error points, what it says.

@@ -1,32 +1,11 @@
 #include "files.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <fstream>
-#include <iostream>
 #include <sstream>
 #include <stdexcept>
 
-#include <gtest/gtest.h>
-
 namespace tether::system_test {
-
-std::filesystem::path make_temp_folder(const std::string& purpose) {
-  std::string name = std::filesystem::temp_directory_path() / ("tether-" + purpose + "-XXXXXX");
-  if (!mkdtemp(name.data())) throw std::runtime_error("cannot make " + name);
-  return name;
-}
-
-TempFolder::TempFolder() : path_(make_temp_folder("test")) {}
-
-TempFolder::~TempFolder() {
-  if (testing::Test::HasFailure()) {
-    std::cerr << "kept: " << path_ << '\n';
-    return;
-  }
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
 
 std::string read_text(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);

@@ -5,25 +5,14 @@
 #include <utility>
 #include <vector>
 
+#include <tether/base_testing/scratch_folder.h>
+
 namespace tether::system_test {
 
-/// A new, empty folder of its own below the system's folder for temporary files.
-std::filesystem::path make_temp_folder(const std::string& purpose);
-
-/// A folder that goes with its object; kept when the running test has failed, so that one can look
-/// at what it left.
-class TempFolder {
+/// A scratch folder that names what is in it as a path does: `folder / "out"`.
+class TempFolder : public ScratchFolder {
  public:
-  TempFolder();
-  ~TempFolder();
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
+  std::filesystem::path operator/(const std::string& name) const { return path(name); }
 };
 
 /// Whole content; empty where there is no such file, or it may not be read.

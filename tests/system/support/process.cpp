@@ -65,8 +65,7 @@ int open_new(const std::filesystem::path& file) {
 
 }  // namespace
 
-Process::Process(const Command& command)
-    : folder_(make_temp_folder("process")), started_(Clock::now()) {
+Process::Process(const Command& command) : started_(Clock::now()) {
   std::vector<std::string> arguments = command.arguments;
   std::vector<std::string> environment = merged_environment(command);
   const std::vector<char*> argv = pointers(arguments);
@@ -74,7 +73,7 @@ Process::Process(const Command& command)
   int in[2];
   if (pipe2(in, O_CLOEXEC) != 0) throw std::runtime_error("pipe2 failed");
   stdin_ = in[1];
-  const Streams streams{in[0], open_new(folder_ / "out"), open_new(folder_ / "err")};
+  const Streams streams{in[0], open_new(folder_.path("out")), open_new(folder_.path("err"))};
   pid_ = fork();
   if (pid_ == 0) become(argv.data(), envp.data(), command.working_folder.c_str(), streams);
   for (const int fd : {streams.in, streams.out, streams.err}) close(fd);
@@ -86,15 +85,13 @@ Process::~Process() {
   kill(-pid_, SIGKILL);
   if (!status_) waitpid(pid_, nullptr, 0);
   close(stdin_);
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
 }
 
 std::string Process::out() const {
-  return read_text(folder_ / "out");
+  return read_text(folder_.path("out"));
 }
 std::string Process::err() const {
-  return read_text(folder_ / "err");
+  return read_text(folder_.path("err"));
 }
 void Process::signal(int number) const {
   kill(pid_, number);
@@ -135,10 +132,10 @@ bool Process::wait_for(const std::filesystem::path& file, const std::string& tex
   }
 }
 bool Process::wait_for_err(const std::string& text, std::chrono::duration<double> limit) {
-  return wait_for(folder_ / "err", text, limit);
+  return wait_for(folder_.path("err"), text, limit);
 }
 bool Process::wait_for_out(const std::string& text, std::chrono::duration<double> limit) {
-  return wait_for(folder_ / "out", text, limit);
+  return wait_for(folder_.path("out"), text, limit);
 }
 
 Output run(const Command& command, std::chrono::duration<double> limit) {

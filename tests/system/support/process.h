@@ -10,6 +10,8 @@
 
 #include <sys/types.h>
 
+#include <tether/base_testing/scratch_folder.h>
+
 namespace tether::system_test {
 
 /// A program to start. Standard input is empty and stays open until the process is destroyed.
@@ -53,7 +55,7 @@ class Process {
   bool wait_for(const std::filesystem::path& file, const std::string& text,
                 std::chrono::duration<double> limit);
 
-  std::filesystem::path folder_;
+  ScratchFolder folder_;
   std::chrono::steady_clock::time_point started_;
   pid_t pid_ = -1;
   int stdin_ = -1;

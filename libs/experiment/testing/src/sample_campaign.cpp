@@ -1,8 +1,8 @@
-#include <tether/experiment_testing/scratch.h>
+#include <tether/experiment_testing/sample_campaign.h>
 
 namespace tether::experiment {
 
-scenario::Campaign make_campaign(const Scratch& scratch) {
+scenario::Campaign make_campaign(const ScratchFolder& scratch) {
   using scenario::Clock;
   using scenario::Policy;
   scenario::Scenario s;
