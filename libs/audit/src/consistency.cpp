@@ -101,14 +101,16 @@ class ConsistencyCheck {
   }
 
   // Whether a read was released just when the measurement that it says it got was due, and no
-  // earlier one after its arrival.
+  // earlier one after its arrival. A measurement is there at the boundary of its instant: whoever
+  // read it may ask for the next one from there on.
   bool has_waited_for_next(const Interaction& message) const {
     const record::SensorInfo* sensor = find_sensor(message.uav, message.sensor);
     if (sensor == nullptr || !sensor->periodic || sensor->period <= Duration(0)) return false;
     const Wide due =
         wide(sensor->phase) + static_cast<Wide>(message.sample_index) * wide(sensor->period);
     const bool is_next =
-        due - wide(sensor->period) <= wide(message.st_at_arrival) || message.sample_index == 0;
+        grid_.at_or_before(due - wide(sensor->period)) <= wide(message.st_at_arrival) ||
+        message.sample_index == 0;
     return wide(*message.sampled_at) == due && is_next &&
            grid_.at_or_before(due) == wide(message.st_at_release);
   }

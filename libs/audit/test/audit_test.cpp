@@ -237,6 +237,20 @@ TEST(Audit, FreeRunningReadsMayWaitForTheNextMeasurement) {
   EXPECT_TRUE(verdict.passed()) << to_text(verdict);
 }
 
+// At 30 Hz the measurements lie between the boundaries. The read after one that was released at its
+// boundary comes before its instant.
+TEST(Audit, FreeRunningReadsMayFollowAMeasurementBetweenBoundaries) {
+  const auto between = [](Duration wait) {
+    Record record = waiting_for_next(wait);
+    constexpr Duration kBehind = 2 * kStep / 3;
+    record.header.sensors[0].phase += kBehind;
+    *first_reading(record).sampled_at += kBehind;
+    return record;
+  };
+  EXPECT_TRUE(audit(between(10 * kStep)).passed()) << to_text(audit(between(10 * kStep)));
+  EXPECT_EQ(rules_of(audit(between(11 * kStep))), Rules{8}) << "missed a measurement";
+}
+
 TEST(Audit, FreeRunningReadsMayNotWaitForAnythingElse) {
   const auto altered = [](const std::function<void(Record&)>& alter) {
     Record record = waiting_for_next(9 * kStep);
