@@ -57,15 +57,23 @@ MetricOutcome final_bearing_error(const scenario::Metric& metric, const record::
                        });
 }
 
+// ST per second of wall time, as achieved: at most the limit, less where the simulator was too
+// slow.
+double pace(const record::Record& record) {
+  const bool is_known = record.footer && record.footer->wall > Duration(0);
+  if (!is_known) return record.header.real_time_factor;
+  return to_seconds(record.footer->st_at_end) / to_seconds(record.footer->wall);
+}
+
 // What the SUT waited for its data: by its own clock, which the barrier holds to ST. Without the
-// barrier by the wall clock, at whose pace ST runs: the coordinator's part and the link's, which
-// the SUT tells with its next request.
+// barrier by the wall clock, at the pace of ST: the coordinator's part and the link's, which the
+// SUT tells with its next request.
 Duration waited(const record::Interaction& read, const record::Interaction* next,
-                const record::Header& header) {
-  if (header.policy != record::kFreeRunning) return read.reply_at - read.request_at;
+                const record::Record& record) {
+  if (record.header.policy != record::kFreeRunning) return read.reply_at - read.request_at;
   const Duration link = next ? next->previous_link_time.value_or(Duration(0)) : Duration(0);
   const Duration wall = read.wall_at_release - read.wall_at_arrival + link;
-  return duration_from_seconds(header.real_time_factor * to_seconds(wall));
+  return duration_from_seconds(pace(record) * to_seconds(wall));
 }
 
 std::vector<const record::Interaction*> interactions_of(const std::string& uav,
@@ -77,17 +85,18 @@ std::vector<const record::Interaction*> interactions_of(const std::string& uav,
   return own;
 }
 
+// The first read turns the sensor on, which Algorithm 1 does before it takes the time.
 MetricOutcome acquisition_time(const scenario::Metric& metric, const record::Record& record) {
   const auto own = interactions_of(metric.uav, record);
   Duration sum{0};
-  int reads = 0;
+  int reads = -1;
   for (std::size_t i = 0; i < own.size(); ++i) {
     if (own[i]->kind != record::kSensor || own[i]->sensor != metric.sensor) continue;
-    sum += waited(*own[i], i + 1 < own.size() ? own[i + 1] : nullptr, record.header);
-    ++reads;
+    if (++reads > 0) sum += waited(*own[i], i + 1 < own.size() ? own[i + 1] : nullptr, record);
   }
   if (reads > 0) return {1e3 * to_seconds(sum) / reads, ""};
-  return missing(fmt::format("the SUT of '{}' never read '{}'", metric.uav, metric.sensor));
+  return missing(
+      fmt::format("the SUT of '{}' did not read '{}' more than once", metric.uav, metric.sensor));
 }
 
 struct Kind {
