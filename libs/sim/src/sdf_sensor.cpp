@@ -81,9 +81,22 @@ bool is_single_ray(const sdf::Lidar& lidar) {
   return lidar.HorizontalScanSamples() <= 1 && lidar.VerticalScanSamples() <= 1;
 }
 
+/// Where a ray of these angles points.
+uav::Quat ray_attitude(double azimuth_rad, double elevation_rad) {
+  return uav::from_rpy(0.0, -elevation_rad, azimuth_rad);
+}
+
+/// Where the middle of a scan points. The sensor's x axis is turned there, so that what a profile
+/// puts in place of the scan (a cone, another mounting) looks where the scan did.
+uav::Quat scan_middle(const sdf::Lidar& lidar) {
+  return ray_attitude(
+      0.5 * (lidar.HorizontalScanMinAngle().Radian() + lidar.HorizontalScanMaxAngle().Radian()),
+      0.5 * (lidar.VerticalScanMinAngle().Radian() + lidar.VerticalScanMaxAngle().Radian()));
+}
+
 constexpr std::uint64_t kMaxRays = 1024;
 
-/// The rays of a scan. A single one is the sensor's x axis, which `middle_ray` turns.
+/// The rays of a scan, in the frame that `scan_middle` turned.
 std::vector<uav::Vec3> read_rays(const SdfSource& source, const sdf::Lidar& lidar) {
   if (is_single_ray(lidar)) return {{1.0, 0.0, 0.0}};
   const std::uint64_t count =
@@ -93,6 +106,7 @@ std::vector<uav::Vec3> read_rays(const SdfSource& source, const sdf::Lidar& lida
            "has " + std::to_string(count) + " rays; at most " + std::to_string(kMaxRays) +
                " are simulated: give it fewer <samples>");
   }
+  const uav::Quat to_middle = uav::inverse(scan_middle(lidar));
   std::vector<uav::Vec3> rays;
   for (const double elevation_rad :
        scan_angles(lidar.VerticalScanSamples(), lidar.VerticalScanMinAngle().Radian(),
@@ -100,7 +114,8 @@ std::vector<uav::Vec3> read_rays(const SdfSource& source, const sdf::Lidar& lida
     for (const double azimuth_rad :
          scan_angles(lidar.HorizontalScanSamples(), lidar.HorizontalScanMinAngle().Radian(),
                      lidar.HorizontalScanMaxAngle().Radian())) {
-      rays.push_back(uav::rotate(uav::from_rpy(0.0, -elevation_rad, azimuth_rad), {1.0, 0.0, 0.0}));
+      const uav::Quat attitude = to_middle * ray_attitude(azimuth_rad, elevation_rad);
+      rays.push_back(uav::rotate(attitude, {1.0, 0.0, 0.0}));
     }
   }
   return rays;
@@ -114,15 +129,6 @@ RangeModel read_range(const SdfSource& source, const sdf::Lidar& lidar, const Wa
   }
   return {lidar.RangeMin(), lidar.RangeMax(), lidar.RangeResolution(),
           read_noise(source, lidar.LidarNoise(), warn), read_rays(source, lidar)};
-}
-
-/// Where a single ray points, in the sensor's frame.
-uav::Quat middle_ray(const sdf::Lidar& lidar) {
-  const double azimuth_rad =
-      0.5 * (lidar.HorizontalScanMinAngle().Radian() + lidar.HorizontalScanMaxAngle().Radian());
-  const double elevation_rad =
-      0.5 * (lidar.VerticalScanMinAngle().Radian() + lidar.VerticalScanMaxAngle().Radian());
-  return uav::from_rpy(0.0, -elevation_rad, azimuth_rad);
 }
 
 }  // namespace
@@ -141,7 +147,7 @@ std::optional<Sensor> read_sensor(const SdfSource& source, const sdf::Sensor& se
     return result;
   }
   if (const sdf::Lidar* lidar = sensor.LidarSensor()) {
-    if (is_single_ray(*lidar)) result.X_BS.q = result.X_BS.q * middle_ray(*lidar);
+    result.X_BS.q = result.X_BS.q * scan_middle(*lidar);
     result.model = read_range(source, *lidar, warn);
     return result;
   }

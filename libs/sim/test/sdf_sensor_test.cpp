@@ -95,12 +95,19 @@ TEST_F(SdfSensor, ASingleRayTurnsTheSensor) {
   EXPECT_NEAR(elevation, -0.2, 1e-9);
 }
 
+/// The rays of the rangefinder, in the frame of its mounting.
+std::vector<Vec3> rays_of(const Sensor& sensor) {
+  std::vector<Vec3> rays;
+  for (const Vec3& ray_S : std::get<RangeModel>(sensor.model).rays_S) {
+    rays.push_back(uav::rotate(sensor.X_BS.q, ray_S));
+  }
+  return rays;
+}
+
 TEST_F(SdfSensor, SeveralRaysAreAllOfTheScan) {
   const std::string model = with_scan(axis(3, "-0.2", "0.4"), axis(2, "-0.1", "0.3"));
   EXPECT_THAT(warnings(model), IsEmpty());
-  const Sensor sensor = read(model).sensors.at(1);
-  EXPECT_EQ(sensor.X_BS.q, uav::Quat{}) << "the scan is about the sensor's own x";
-  const auto rays = std::get<RangeModel>(sensor.model).rays_S;
+  const auto rays = rays_of(read(model).sensors.at(1));
   ASSERT_EQ(rays.size(), 6u);
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_NEAR(uav::norm(rays[i]), 1.0, 1e-12);
@@ -109,11 +116,26 @@ TEST_F(SdfSensor, SeveralRaysAreAllOfTheScan) {
   }
 }
 
+// Else a profile's cone, which is about x, would look elsewhere than the scan that it replaces.
+TEST_F(SdfSensor, TheMiddleOfAScanIsTheSensorsX) {
+  const Sensor sensor =
+      read(with_scan(axis(3, "-0.2", "0.4"), axis(3, "-0.1", "0.3"))).sensors.at(1);
+  const auto [azimuth, elevation] = angles_of(uav::rotate(sensor.X_BS.q, {1, 0, 0}));
+  EXPECT_NEAR(azimuth, 0.1, 1e-9);
+  EXPECT_NEAR(elevation, 0.1, 1e-9);
+  const Vec3 middle_S = std::get<RangeModel>(sensor.model).rays_S.at(4);
+  EXPECT_NEAR(uav::norm(middle_S - Vec3{1, 0, 0}), 0.0, 1e-12);
+}
+
+TEST_F(SdfSensor, ACentredScanTurnsNothing) {
+  const Sensor sensor =
+      read(with_scan(axis(2, "-0.2", "0.2"), axis(2, "-0.1", "0.1"))).sensors.at(1);
+  EXPECT_EQ(sensor.X_BS.q, uav::Quat{});
+}
+
 TEST_F(SdfSensor, AnAxisOfOneSampleLiesInTheMiddle) {
   const auto rays =
-      std::get<RangeModel>(
-          read(with_scan(axis(2, "-0.2", "0.2"), axis(1, "0", "0.4"))).sensors.at(1).model)
-          .rays_S;
+      rays_of(read(with_scan(axis(2, "-0.2", "0.2"), axis(1, "0", "0.4"))).sensors.at(1));
   ASSERT_EQ(rays.size(), 2u);
   EXPECT_NEAR(angles_of(rays[0]).second, 0.2, 1e-9);
   EXPECT_NEAR(angles_of(rays[1]).first, 0.2, 1e-9);
