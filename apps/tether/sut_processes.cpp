@@ -53,6 +53,14 @@ std::vector<std::pair<std::string, std::string>> environment_of(const std::strin
           {"TETHER_CLOCK", clock_of(run.condition)}};
 }
 
+/// Where a SUT may leave files of its own: the whole path.
+std::string files_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw Error(ErrorCode::kSetup, folder.string() + ": " + error.message());
+  return std::filesystem::absolute(folder).lexically_normal().string();
+}
+
 /// As a shell takes it for one word and nothing more.
 std::string shell_word(const std::string& text) {
   const bool is_plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
@@ -87,12 +95,12 @@ void require_sut_programs(const scenario::Scenario& scenario) {
 
 void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
                          const std::filesystem::path& folder) {
-  const std::string out = std::filesystem::absolute(folder).lexically_normal().string();
   for (const scenario::UavSetup& uav : scenario.uavs) {
     const std::string& name = uav.placement.name;
     const std::filesystem::path log = folder / fmt::format("sut-{}.log", name);
     auto environment = environment_of(name, run);
-    environment.emplace_back("TETHER_OUT", out);
+    environment.emplace_back("TETHER_OUT",
+                             files_folder(scenario.uavs.size() > 1 ? folder / name : folder));
     suts_.push_back(
         {name, log,
          std::make_unique<ChildProcess>(ChildCommand{.arguments = command_line(uav.sut),

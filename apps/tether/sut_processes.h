@@ -30,7 +30,8 @@ class SutProcesses {
  public:
   /// None yet.
   SutProcesses() = default;
-  /// Starts them all, each with its output in `folder`/sut-UAV.log. @throws Error(kSetup).
+  /// Starts them all, each with its output in `folder`/sut-UAV.log. TETHER_OUT tells each where to
+  /// leave files: `folder`, or `folder`/UAV where there are several. @throws Error(kSetup).
   void start(const scenario::Scenario& scenario, const SutRun& run,
              const std::filesystem::path& folder);
 
