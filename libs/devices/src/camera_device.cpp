@@ -20,7 +20,6 @@ std::optional<Duration> from_ms(double ms) {
 }  // namespace
 
 // ---- any camera
-// ----------------------------------------------------------------------------------------------
 
 Failure CameraDevice::stop(const std::string& why) {
   stopped_ =
@@ -49,7 +48,6 @@ Result<uav::CameraSample> CameraDevice::read(client::Read read) {
 }
 
 // ---- live
-// ----------------------------------------------------------------------------------------------
 
 LiveCamera::LiveCamera(const Timeline& time, std::string label, std::unique_ptr<FrameSource> source,
                        bool has_timestamps, std::function<std::string()> why_stopped)
@@ -93,7 +91,6 @@ bool LiveCamera::is_newest() const {
 }
 
 // ---- played
-// ----------------------------------------------------------------------------------------------
 
 PlayedVideo::PlayedVideo(const Timeline& time, std::string label,
                          std::unique_ptr<FrameSource> source)

@@ -52,7 +52,6 @@ std::optional<double> parse_number(std::string_view text) {
 }
 
 // ---- one file
-// ----------------------------------------------------------------------------------------------
 
 Attribute::Attribute(System& system, std::string path) : path_(std::move(path)) {
   const int opened = system.open(path_, false);
@@ -90,7 +89,6 @@ Reading Attribute::read(Clock& clock) const {
 }
 
 // ---- a quantity
-// ----------------------------------------------------------------------------------------------
 
 Channel::Channel(Attribute value) : value_(std::move(value)) {
   if (value_.error() != 0) fault_ = iio_fault(value_.path(), value_.error());

@@ -55,7 +55,6 @@ std::optional<std::array<uav::Vec3, 3>> parse_mount_matrix(const std::string& te
 }
 
 // ---- three axes
-// ----------------------------------------------------------------------------------------------
 
 std::optional<Triad> Triad::open(System& system, Clock& clock, const std::string& folder,
                                  const std::string& base) {
@@ -100,7 +99,6 @@ uav::Vec3 Triad::read(Clock& clock, std::string& fault) const {
 }
 
 // ---- the device
-// ----------------------------------------------------------------------------------------------
 
 ImuDevice::ImuDevice(const Timeline& time, std::string label, Triad accelerometer, Triad gyroscope)
     : time_(time),

@@ -83,12 +83,22 @@ Result<Camera> open_url(const Request& request, const std::string& url) {
   return camera;
 }
 
+/// Looks through a source of its own, so that playing begins with the first image.
+bool holds_image(const std::string& path) {
+  const auto source = open_video_file(path);
+  uav::CameraSample first;
+  return source && source->grab() && source->retrieve(first);
+}
+
 Result<Camera> open_file(const Request& request, const std::string& path) {
   auto source = open_video_file(path);
   if (!source) {
     return request.refuse(
         "not a video file that OpenCV can read; convert it, for instance by `ffmpeg -i " + path +
         " -c:v mjpeg video.avi`");
+  }
+  if (!holds_image(path)) {
+    return request.refuse("holds no image that can be read; was it cut short? Record it anew");
   }
   const ImageFormat format = source->format();
   auto video = PlayedVideo::create(request.time, request.label, std::move(source), path);

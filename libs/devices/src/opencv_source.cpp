@@ -1,37 +1,52 @@
 #include "opencv_source.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
+#include <opencv2/videoio/registry.hpp>
 
 namespace tether::devices {
 namespace {
 
 namespace logging = cv::utils::logging;
 
-/// OpenCV writes warnings to the standard error when it cannot open something; we say it better.
-class Quiet {
+// ---- silence: these libraries write to the standard error, where we say it better in one line
+
+/// OpenCV's own log.
+class QuietLog {
  public:
-  Quiet() : before_(logging::setLogLevel(logging::LOG_LEVEL_SILENT)) {}
-  ~Quiet() { logging::setLogLevel(before_); }
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
+  QuietLog() : before_(logging::setLogLevel(logging::LOG_LEVEL_SILENT)) {}
+  ~QuietLog() { logging::setLogLevel(before_); }
+  QuietLog(const QuietLog&) = delete;
+  QuietLog& operator=(const QuietLog&) = delete;
 
  private:
   logging::LogLevel before_;
 };
 
+/// FFmpeg's log: OpenCV asks the environment for its level once per process, when it first uses it.
+/// Whoever sets one of these variables wants to see something, and does.
+void quiet_ffmpeg() {
+  constexpr const char* kLevel = "OPENCV_FFMPEG_LOGLEVEL";
+  constexpr const char* kQuiet = "-8";  // AV_LOG_QUIET
+  if (std::getenv("OPENCV_FFMPEG_DEBUG") == nullptr) ::setenv(kLevel, kQuiet, /*overwrite=*/0);
+}
+
 /// False as well where OpenCV throws.
-bool succeeds(const std::function<bool()>& call) {
+bool succeeds_quietly(const std::function<bool()>& call) {
+  const QuietLog quiet;
   try {
     return call();
   } catch (const cv::Exception&) {
     return false;
   }
 }
+
+// ---- any source
 
 class OpencvSource final : public FrameSource {
  public:
@@ -41,7 +56,7 @@ class OpencvSource final : public FrameSource {
   ImageFormat format() const override;
   bool grab() override {
     is_retrieved_ = false;
-    return succeeds([this] { return capture_.grab(); });
+    return succeeds_quietly([this] { return capture_.grab(); });
   }
   bool retrieve(uav::CameraSample& into) override;
   double position_ms() const override { return capture_.get(cv::CAP_PROP_POS_MSEC); }
@@ -68,7 +83,7 @@ ImageFormat OpencvSource::format() const {
 bool OpencvSource::retrieve(uav::CameraSample& into) {
   // Once per image: the first time gives the driver its buffer back, and not every version of
   // OpenCV survives a second.
-  return succeeds([&] {
+  return succeeds_quietly([&] {
     if (!is_retrieved_) is_retrieved_ = capture_.retrieve(frame_);
     return is_retrieved_ && convert(into);
   });
@@ -89,13 +104,20 @@ bool OpencvSource::convert(uav::CameraSample& into) {
 }
 
 std::unique_ptr<FrameSource> open_with(const std::function<bool(cv::VideoCapture&)>& open) {
-  const Quiet quiet;
+  quiet_ffmpeg();
   cv::VideoCapture capture;
-  if (!succeeds([&] { return open(capture) && capture.isOpened(); })) return nullptr;
+  if (!succeeds_quietly([&] { return open(capture) && capture.isOpened(); })) return nullptr;
   return std::make_unique<OpencvSource>(capture);
 }
 
+/// The others write to the standard error with nothing to stop them, and read nothing more.
+int best_for_files() {
+  return cv::videoio_registry::hasBackend(cv::CAP_FFMPEG) ? cv::CAP_FFMPEG : cv::CAP_ANY;
+}
+
 }  // namespace
+
+// ---- each kind of source
 
 std::unique_ptr<FrameSource> open_video4linux(const std::string& path, const WantedFormat& wanted) {
   return open_with([&](cv::VideoCapture& capture) {
@@ -113,7 +135,7 @@ std::unique_ptr<FrameSource> open_video4linux(const std::string& path, const Wan
 }
 
 std::unique_ptr<FrameSource> open_video_file(const std::string& path) {
-  return open_with([&](cv::VideoCapture& capture) { return capture.open(path, cv::CAP_ANY); });
+  return open_with([&](cv::VideoCapture& capture) { return capture.open(path, best_for_files()); });
 }
 
 std::unique_ptr<FrameSource> open_stream(const std::string& url, int timeout_ms) {

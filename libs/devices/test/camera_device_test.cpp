@@ -217,7 +217,6 @@ TEST_F(LiveCameraTest, StopsAtAnImageThatCannotBeDecoded) {
 }
 
 // ---- played video
-// ----------------------------------------------------------------------------------------------
 
 /// Images that are all there at once.
 class FakeVideo final : public FrameSource {

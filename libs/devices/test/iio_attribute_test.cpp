@@ -105,7 +105,6 @@ TEST_F(AttributeTest, GivesUpAfterASecond) {
 }
 
 // ---- quantities
-// ----------------------------------------------------------------------------------------------
 
 TEST_F(AttributeTest, AProcessedQuantityIsTakenAsItIs) {
   scratch_.write("in_distance_input", "0.731\n");

@@ -5,6 +5,7 @@
 #include "video_file.h"
 
 #include <cerrno>
+#include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -128,6 +129,12 @@ TEST_F(OpenCameraTest, WhatIsNoVideo) {
   EXPECT_THAT(refusal("/dev/null"), HasSubstr("not a video device"));
   EXPECT_THAT(refusal(scratch_.write("a.txt", "text")), HasSubstr("not a video file"));
   EXPECT_THAT(refusal(scratch_.path()), HasSubstr("neither a video device nor a video file"));
+}
+
+TEST_F(OpenCameraTest, AVideoThatIsCutBeforeItsFirstImage) {
+  const std::string path = video();
+  std::filesystem::resize_file(path, 4200);  // the first image begins at 4104
+  EXPECT_THAT(refusal(path), HasSubstr("holds no image that can be read"));
 }
 
 TEST_F(OpenCameraTest, APipeIsRefusedWithoutWaitingForItsOtherEnd) {
