@@ -1,6 +1,7 @@
 #include "support/trials.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,8 +23,13 @@ std::filesystem::path write_characterization(const std::filesystem::path& folder
                                 {scripted_host(1), {"acquisitions = 100", "acquisitions = 5"}});
 }
 
-/// The mean time of an acquisition under that profile [ms].
-double acquisition_time_ms(const std::string& profile) {
+/// The mean time of an acquisition under that profile [ms], and the profiles that were in use.
+struct Characterized {
+  double acquisition_time_ms = -1.0;
+  std::vector<std::string> profiles;
+};
+
+Characterized characterize(const std::string& profile) {
   const TempFolder folder;
   const auto out = folder / "out";
   const Output output =
@@ -33,19 +39,25 @@ double acquisition_time_ms(const std::string& profile) {
   EXPECT_EQ(output.err, "");
   const auto result = read_result(out);
   EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
-  EXPECT_THAT(result["profiles"],
-              ElementsAre("paper_table_1", std::filesystem::path(profile).stem().string()));
-  for (const auto& metric : result["metrics"])
-    if (metric["name"] == "camera_acquisition_time") return metric["value"].get<double>();
-  return -1.0;
+  Characterized characterized{.profiles = result["profiles"]};
+  for (const auto& metric : result["metrics"]) {
+    if (metric["name"] == "camera_acquisition_time") {
+      characterized.acquisition_time_ms = metric["value"];
+    }
+  }
+  return characterized;
 }
 
 TEST(Profile, IdealSensorsCostNothing) {
-  EXPECT_EQ(acquisition_time_ms("profiles/ideal.toml"), 0.0);
+  const Characterized found = characterize("profiles/ideal.toml");
+  EXPECT_EQ(found.acquisition_time_ms, 0.0);
+  EXPECT_THAT(found.profiles, ElementsAre("paper_table_1", "ideal"));
 }
 
 TEST(Profile, SensorsOfThePapersTableICostItsMean) {
-  EXPECT_NEAR(acquisition_time_ms("profiles/paper_table_1.toml"), 37.4, 1e-6);
+  const Characterized found = characterize("profiles/paper_table_1.toml");
+  EXPECT_NEAR(found.acquisition_time_ms, 37.4, 1e-6);
+  EXPECT_THAT(found.profiles, ElementsAre("paper_table_1")) << "the scenario's own, laid on top";
 }
 
 TEST(Profile, ThatIsWrongIsRefusedAndLeavesNothing) {
@@ -82,10 +94,36 @@ TEST(Profile, ThatMeansNothingToTheUavIsWarnedOf) {
   const Output output = run(tether(
       {"run", scenario, "--quiet", "--profile", folder / "second.toml", "--out", folder / "out"}));
   EXPECT_EQ(output.code, 0) << output.err;
-  EXPECT_THAT(output.err, HasSubstr("warning: " + (folder / "second.toml").string() +
-                                    ":4: the UAV "
-                                    "'uav1' has no sensor of the kind \"camera\" for "
-                                    "[sensors.camera2]"));
+  EXPECT_THAT(output.err,
+              HasSubstr("warning: " + (folder / "second.toml").string() +
+                        ":4: the UAV "
+                        "'uav1' has one sensor of the kind \"camera\" only, and that is "
+                        "[sensors.camera] (line 2); it has none for [sensors.camera2]"));
+}
+
+// What judges a run (the true ROI of metrics and reports) is made of the record's camera, so that
+// must be the one that gave the images.
+TEST(Profile, TheRecordHoldsTheCameraAsTheProfileMadeIt) {
+  const TempFolder folder;
+  const auto scenario = write_hover_scenario(folder.path(), "good");
+  write_text(folder / "lens.toml",
+             "name = \"lens\"\n[sensors.camera]\nkind = \"camera\"\nposition_m = [0.5, 0, 0.25]\n"
+             "rpy_deg = [0, 0, 90]\nsize_px = [320, 200]\nhorizontal_fov_deg = 90\n"
+             "distortion = { k1 = -0.125 }\n");
+  const Output output = run(tether(
+      {"run", scenario, "--quiet", "--profile", folder / "lens.toml", "--out", folder / "out"}));
+  ASSERT_EQ(output.code, 0) << output.err;
+  const auto sensors = read_record(folder / "out").header.sensors;
+  const auto found = std::find_if(sensors.begin(), sensors.end(),
+                                  [](const auto& sensor) { return sensor.name == "camera"; });
+  ASSERT_NE(found, sensors.end());
+  ASSERT_TRUE(found->camera);
+  EXPECT_THAT(found->camera->p_BS_m, ElementsAre(0.5, 0.0, 0.25));
+  EXPECT_NEAR(found->camera->q_BS[3], std::sqrt(0.5), 1e-12);
+  EXPECT_EQ(found->camera->width_px, 320);
+  EXPECT_EQ(found->camera->height_px, 200);
+  EXPECT_NEAR(found->camera->fx_px, 160.0, 1e-9);
+  EXPECT_EQ(found->camera->k1, -0.125);
 }
 
 /// A campaign whose scenario has a profile laid on top.
@@ -128,10 +166,11 @@ TEST_F(ProfileOfACampaign, IsInUseInEachTrial) {
   ASSERT_EQ(output.code, 0) << output.err;
   const auto trial = folder_ / "out" / "hover/host/seed-0001";
   EXPECT_THAT(read_result(trial)["profiles"], ElementsAre("late"));
-  for (const auto& sensor : read_record(trial).header.sensors) {
-    if (sensor.name != "range") continue;
-    EXPECT_EQ(sensor.delay_max, std::chrono::milliseconds(1));
-  }
+  const auto sensors = read_record(trial).header.sensors;
+  const auto range = std::find_if(sensors.begin(), sensors.end(),
+                                  [](const auto& sensor) { return sensor.name == "range"; });
+  ASSERT_NE(range, sensors.end());
+  EXPECT_EQ(range->delay_max, std::chrono::milliseconds(1));
 }
 
 TEST_F(ProfileOfACampaign, MustBeTheSameToResume) {

@@ -420,7 +420,10 @@ std::vector<std::string> profile_names(const Scenario& scenario, const Condition
         uav.profile && std::find(names.begin(), names.end(), uav.profile->name) == names.end();
     if (is_new) names.push_back(uav.profile->name);
   }
-  for (const Profile& profile : condition.profiles) names.push_back(profile.name);
+  for (const Profile& profile : condition.profiles) {
+    std::erase(names, profile.name);
+    names.push_back(profile.name);
+  }
   return names;
 }
 

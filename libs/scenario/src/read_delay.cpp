@@ -19,12 +19,31 @@ std::string_view trimmed(std::string_view line) {
   return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
 }
 
+/// What editors on Windows put before the first character (TOML's parser skips it as well).
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
+/// The beginning of the text with everything but printable ASCII as \xHH, so that it stays on one
+/// line and cannot command a terminal.
+std::string printable(std::string_view text) {
+  constexpr std::size_t kMost = 40;
+  std::string result;
+  for (const char c : text.substr(0, kMost)) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_plain = byte >= 0x20 && byte < 0x7F;
+    result += is_plain ? std::string(1, c) : fmt::format("\\x{:02X}", byte);
+  }
+  return text.size() > kMost ? result + "…" : result;
+}
+
 Duration parse_sample(std::string_view text, double seconds_per_unit, const FileLocation& at) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) {
     throw Error(ErrorCode::kBadFile, at,
-                fmt::format("expected one number on the line, found \"{}\"", text.substr(0, 40)));
+                fmt::format("expected one number on the line, found \"{}\"", printable(text)));
   }
   const Range range{.min = 0.0, .max = kLongestDelay_ms * 1e-3 / seconds_per_unit};
   if (!range.contains(value)) {
@@ -80,12 +99,13 @@ uav::Delay read_delay(const TomlTable& sensor, std::vector<std::filesystem::path
 std::vector<Duration> read_delay_samples(const std::filesystem::path& file,
                                          double seconds_per_unit) {
   constexpr std::size_t kLargestFile = std::size_t{64} << 20;
-  const std::string text = read_text_file(file, kLargestFile);
+  const std::string whole = read_text_file(file, kLargestFile);
+  const std::string_view text = without_byte_order_mark(whole);
   std::vector<Duration> samples;
   int line_number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = trimmed(std::string_view(text).substr(begin, end - begin));
+    const std::string_view line = trimmed(text.substr(begin, end - begin));
     const FileLocation at{file.string(), ++line_number};
     if (!line.empty() && line.front() != '#') {
       samples.push_back(parse_sample(line, seconds_per_unit, at));

@@ -62,8 +62,9 @@ class ProfileLayer {
     if (candidates.size() > 1) refuse_choice(name, entry, {candidates.begin(), candidates.end()});
     LayeredSensor* only = candidates.empty() ? nullptr : candidates.front();
     const std::string* other = entry_of(only);
-    if (only == nullptr || (other != nullptr && *other == only->sensor().name)) {
-      return warn(no_sensor(name, entry));
+    if (only == nullptr) return warn(no_sensor(name, entry));
+    if (other != nullptr && *other == only->sensor().name) {
+      return warn(taken_sensor(name, entry, *other));
     }
     if (other != nullptr) refuse_second(name, entry, *other, only->sensor().name);
     sensor_of_[name] = only;
@@ -77,10 +78,21 @@ class ProfileLayer {
   }
 
   std::string no_sensor(const std::string& name, const SensorProfile& entry) const {
-    return fmt::format(
-        "{}:{}: the UAV '{}' has no sensor of the kind \"{}\" for [sensors.{}] of "
-        "the profile '{}'",
-        entry.where.file, entry.where.line, uav_.name, uav::name(*entry.kind), name, profile_.name);
+    return warning(entry, fmt::format("has no sensor of the kind \"{}\" for [sensors.{}]",
+                                      uav::name(*entry.kind), name));
+  }
+
+  std::string taken_sensor(const std::string& name, const SensorProfile& entry,
+                           const std::string& other) const {
+    return warning(entry, fmt::format("has one sensor of the kind \"{}\" only, and that is "
+                                      "[sensors.{}] (line {}); it has none for [sensors.{}]",
+                                      uav::name(*entry.kind), other,
+                                      profile_.sensors.at(other).where.line, name));
+  }
+
+  std::string warning(const SensorProfile& entry, const std::string& text) const {
+    return fmt::format("{}:{}: the UAV '{}' {} of the profile '{}'", entry.where.file,
+                       entry.where.line, uav_.name, text, profile_.name);
   }
 
   [[noreturn]] void refuse_choice(const std::string& name, const SensorProfile& entry,

@@ -42,6 +42,14 @@ double seconds_per_unit(std::string_view key) {
   return key.ends_with("ms") ? 1e-3 : 1.0;
 }
 
+/// Folders, devices and pipes are not read: a read of some of them would never end.
+/// @pre it is no regular file
+std::string_view why_no_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored) ? "that is no regular file"
+                                                : "there is no such file";
+}
+
 }  // namespace
 
 bool Range::contains(double value) const {
@@ -222,7 +230,7 @@ std::filesystem::path TomlTable::existing_file(std::string_view key) const {
   std::error_code ignored;
   const fs::path path = (fs::path(file_).parent_path() / written).lexically_normal();
   if (!fs::is_regular_file(path, ignored)) {
-    fail(key, fmt::format("names \"{}\", but there is no such file ({})", written, path.string()));
+    fail(key, fmt::format("names \"{}\", but {} ({})", written, why_no_file(path), path.string()));
   }
   return path;
 }
@@ -328,7 +336,7 @@ std::vector<TomlTable> TomlTable::tables_or_none(std::string_view key, Keys allo
 std::string read_text_file(const std::filesystem::path& file, std::size_t limit) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(file, failed)) {
-    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "there is no such file");
+    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, std::string(why_no_file(file)));
   }
   const auto size = std::filesystem::file_size(file, failed);
   if (!failed && size > limit) {

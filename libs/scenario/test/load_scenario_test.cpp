@@ -103,6 +103,9 @@ TEST_F(LoadScenario, LaysAProfileOnTopUnderEachCondition) {
   EXPECT_TRUE(std::is_sorted(s.files.begin(), s.files.end()));
   s.uavs[1].profile = s.uavs[0].profile;
   EXPECT_THAT(profile_names(s, s.conditions[0]), ElementsAre("rig", "top"));
+  lay_profile(s, *s.uavs[0].profile);
+  EXPECT_THAT(profile_names(s, s.conditions[2]), ElementsAre("fog", "top", "rig"))
+      << "once, where it is topmost";
 }
 
 TEST_F(LoadScenario, GivesEachUavItsSut) {
@@ -139,7 +142,7 @@ TEST_F(LoadScenario, RefusesFilesThatASutCannotBeGiven) {
   EXPECT_THAT(error_with(mission, "mission = \"missions/none.toml\""),
               HasSubstr("scenario.toml:54: 'mission' of [sut.files] names \"missions/none.toml\", "
                         "but there is no such file"));
-  EXPECT_THAT(error_with(mission, "mission = \"missions\""), HasSubstr("no such file"));
+  EXPECT_THAT(error_with(mission, "mission = \"missions\""), HasSubstr("no regular file"));
   EXPECT_THAT(error_with(mission, "Mission = \"missions/around.toml\""),
               HasSubstr("option of the SUT's command"));
   EXPECT_THAT(error_with(mission, "anchor = \"missions/around.toml\""),
@@ -244,7 +247,8 @@ TEST_F(LoadScenario, NamesTheLineOfASyntaxError) {
 TEST_F(LoadScenario, RefusesWhatIsNoFile) {
   EXPECT_THAT(bad_file_message([&] { load_scenario(scratch_.path("none.toml")); }),
               HasSubstr("no such file"));
-  EXPECT_THAT(bad_file_message([&] { load_scenario(scratch_.path()); }), HasSubstr("no such file"));
+  EXPECT_THAT(bad_file_message([&] { load_scenario(scratch_.path()); }),
+              HasSubstr("no regular file"));
   EXPECT_THAT(bad_file_message([&] { load(std::string((1 << 20) + 1, '#')); }),
               HasSubstr("at most 1048576 are read"));
 }

@@ -4,11 +4,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 namespace tether::scenario {
 namespace {
 
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 
 class DelaySamples : public testing::Test {
@@ -33,6 +35,33 @@ TEST_F(DelaySamples, NamesTheLineOfWhatIsNoDelay) {
   EXPECT_THAT(error_of("nan\n"), HasSubstr("d.txt:1: "));
   EXPECT_THAT(error_of("1e9\n"), HasSubstr("at most 60000"));
   EXPECT_THAT(error_of("0x10\n"), HasSubstr("expected one number"));
+}
+
+TEST_F(DelaySamples, MayBeginWithAByteOrderMark) {
+  const auto file = scratch_.write("d.txt", "\xEF\xBB\xBF# of Windows\r\n2\r\n");
+  EXPECT_THAT(read_delay_samples(file, 1e-3), ElementsAre(Duration(2'000'000)));
+  EXPECT_THAT(error_of("1\n\xEF\xBB\xBF"
+                       "2\n"),
+              HasSubstr("d.txt:2: "));
+  EXPECT_THAT(error_of("\xEF\xBB\xBF"), HasSubstr("holds no delay"));
+}
+
+TEST_F(DelaySamples, ShowsBytesThatCannotBePrinted) {
+  EXPECT_THAT(error_of(std::string("1\0\r2\x1B[31m\t\xE9\x7F\n", 14)),
+              EndsWith("found \"1\\x00\\x0D2\\x1B[31m\\x09\\xE9\\x7F\""));
+  EXPECT_THAT(error_of(std::string(41, 'a')), EndsWith('"' + std::string(40, 'a') + "…\""));
+  EXPECT_THAT(error_of(std::string(40, 'a')), EndsWith('"' + std::string(40, 'a') + "\""));
+}
+
+TEST_F(DelaySamples, RefusesWhatIsNoFile) {
+  const auto error_at = [](const std::filesystem::path& path) {
+    return bad_file_message([&] { (void)read_delay_samples(path, 1e-3); });
+  };
+  EXPECT_THAT(error_at(scratch_.path("missing")), HasSubstr("there is no such file"));
+  ASSERT_EQ(::mkfifo(scratch_.path("pipe").c_str(), 0600), 0);
+  for (const auto& path :
+       {scratch_.path(), scratch_.path("pipe"), std::filesystem::path("/dev/zero")})
+    EXPECT_THAT(error_at(path), HasSubstr("that is no regular file"));
 }
 
 TEST_F(DelaySamples, RefusesAFileWithoutAny) {
@@ -80,6 +109,14 @@ TEST_F(InlineSamples, RefuseToBeEmptyOrTwice) {
   EXPECT_THAT(error_of("{ kind = \"empirical\", samples_ms = [1], file_s = \"p.toml\" }"),
               HasSubstr("p.toml:2: [camera.delay] needs one of 'samples_ms'"));
   EXPECT_THAT(error_of("{ kind = \"empirical\" }"), HasSubstr("needs one of 'samples_ms'"));
+}
+
+TEST_F(InlineSamples, AFileOfThemMustBeOne) {
+  EXPECT_THAT(error_of("{ kind = \"empirical\", file_ms = \"missing\" }"),
+              HasSubstr("p.toml:2: 'file_ms' of [camera.delay] names \"missing\", but there is no "
+                        "such file ("));
+  EXPECT_THAT(error_of("{ kind = \"empirical\", file_ms = \".\" }"),
+              HasSubstr("names \".\", but that is no regular file ("));
 }
 
 }  // namespace

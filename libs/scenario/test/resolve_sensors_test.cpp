@@ -149,8 +149,11 @@ TEST_F(ResolveSensors, ASensorThatIsNamedIsNotTakenForAnother) {
   resolve();
   EXPECT_EQ(max_m(0, 0), 2.0);
   EXPECT_EQ(max_m(1, 1), 2.0);
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("'uav1' has no sensor of the kind"),
-                                     HasSubstr("'uav2' has no sensor of the kind")));
+  EXPECT_THAT(warnings_, ElementsAre(scratch_.path("p.toml").string() +
+                                         ":2: the UAV 'uav1' has one sensor of the kind \"range\" "
+                                         "only, and that is [sensors.range] (line 5); it has none "
+                                         "for [sensors.down] of the profile 'p.toml'",
+                                     HasSubstr("'uav2' has one sensor of the kind")));
 }
 
 TEST_F(ResolveSensors, RefusesTwoEntriesOfOneSensor) {

@@ -98,8 +98,8 @@ sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
 /// Lays the profile on top of all that the scenario says of its sensors, under each condition.
 void lay_profile(Scenario& scenario, const Profile& profile);
 
-/// The names of the profiles in use, in the order of their layers: the UAVs' (each once), then the
-/// condition's.
+/// The names of the profiles in use, each once, in the order of their layers: the UAVs', then the
+/// condition's. One that is in several layers stands where the topmost of them is.
 std::vector<std::string> profile_names(const Scenario& scenario, const Condition& condition);
 
 /// Lays over the sensors of `world` what profiles and scenario say of them, the later over the
