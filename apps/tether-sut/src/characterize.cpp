@@ -151,7 +151,7 @@ TaskOutcome measure_all(tasks::TaskContext& context, const CharacterizeOptions& 
   Measurement measurement(context, options, tell);
   TaskOutcome whole = TaskOutcome::goal_reached();
   for (const uav::SensorDescription* sensor : *chosen) {
-    all.push_back({sensor->name, sensor->kind(), {}});
+    all.push_back({sensor->name, sensor->kind(), {}, sensor->rate_hz});
     if (tasks::Progress end = measurement.measure(all.back())) {
       return *std::move(end);
     }

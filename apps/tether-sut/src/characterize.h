@@ -16,6 +16,7 @@ namespace tether::sut {
 
 /// What a profile is to say of a sensor's time.
 enum class Timing {
+  kAuto,      ///< periodic where a sensor tells a rate and can be modelled so, else on demand
   kOnDemand,  ///< the time from asking to having: what Algorithm 1 measures
   kPeriodic,  ///< the sensor's own period, and how long after its instant a sample arrives
 };
@@ -24,7 +25,7 @@ struct CharacterizeOptions {
   std::vector<std::string> sensors;  ///< names; empty: all of the catalogue
   int acquisitions = 100;            ///< of each experiment; > 0
   int experiments = 1;               ///< of each sensor; > 0; the paper made ten
-  Timing timing = Timing::kOnDemand;
+  Timing timing = Timing::kAuto;
   Duration time_limit = std::chrono::minutes(10);  ///< of each sensor, on the SUT's clock
   std::string name;                                ///< of the profile
   std::string out;                                 ///< the profile's file; empty: none
@@ -35,6 +36,7 @@ struct SensorTimes {
   std::string sensor;
   uav::SensorKind kind = uav::SensorKind::kCamera;
   std::vector<std::vector<tasks::Acquisition>> experiments;
+  double rate_hz = 0.0;  ///< as the catalogue tells it; 0: none
 
   /// Asking to having, of all experiments, in the order in which they were made.
   std::vector<Duration> taken() const;

@@ -91,15 +91,10 @@ bool may_stamp_arrival(const CommandLine& line, const std::string& sensor) {
   return line.rig && !std::filesystem::is_regular_file(source_of(line, sensor), error);
 }
 
-Result<TimingModel> timing_of(const CommandLine& line, const SensorTimes& times) {
-  if (line.characterize->timing == Timing::kPeriodic) {
-    return periodic_timing(times, may_stamp_arrival(line, times.sensor));
-  }
-  return on_demand_timing(times);
-}
-
+/// `notes` get a line for each sensor whose model is not the one that was hoped for.
 Result<MeasuredProfile> make_profile(const CommandLine& line, const Connection& connection,
-                                     const std::vector<SensorTimes>& all) {
+                                     const std::vector<SensorTimes>& all,
+                                     std::vector<std::string>& notes) {
   const CharacterizeOptions& options = *line.characterize;
   MeasuredProfile profile;
   profile.name = options.name.empty() ? profile_name_from(host_name()) : options.name;
@@ -108,14 +103,28 @@ Result<MeasuredProfile> make_profile(const CommandLine& line, const Connection& 
   profile.acquisitions = options.acquisitions;
   profile.experiments = options.experiments;
   for (const SensorTimes& times : all) {
-    Result<TimingModel> timing = timing_of(line, times);
+    Result<ChosenTiming> timing =
+        choose_timing(times, options.timing, may_stamp_arrival(line, times.sensor));
     if (!timing) {
       return timing.failure();
     }
+    if (!timing->note.empty()) {
+      notes.push_back(timing->note);
+    }
     profile.sensors.push_back(
-        {times.sensor, times.kind, source_of(line, times.sensor), std::move(timing).value()});
+        {times.sensor, times.kind, source_of(line, times.sensor), std::move(timing->model)});
   }
   return profile;
+}
+
+/// "Timing models: camera periodic, range on_demand".
+std::string models_text(const MeasuredProfile& profile) {
+  std::string text;
+  for (const ProfiledSensor& sensor : profile.sensors) {
+    text += (text.empty() ? "Timing models: " : ", ") + sensor.name +
+            (sensor.timing.period ? " periodic" : " on_demand");
+  }
+  return text;
 }
 
 /// What was acquired, and of a periodic sensor the delay that its profile has.
@@ -170,7 +179,8 @@ int characterize_command(const CommandLine& line, const Connection& connection,
   if (!measured.outcome.reached()) {
     return report(finished(measured.outcome, *connection.vehicle), streams);
   }
-  const Result<MeasuredProfile> profile = make_profile(line, connection, measured.sensors);
+  std::vector<std::string> notes;
+  const Result<MeasuredProfile> profile = make_profile(line, connection, measured.sensors, notes);
   if (!profile) {
     return say(profile.failure(), exit_code(profile.failure()), streams);
   }
@@ -180,8 +190,12 @@ int characterize_command(const CommandLine& line, const Connection& connection,
       return say(written.failure(), kSetUpFailed, streams);
     }
   }
+  for (const std::string& note : notes) {
+    streams.err << "tether-sut: " << note << '\n';
+  }
   streams.out << table_1(connection.origin, measured.sensors) << '\n'
-              << distribution_table(rows_of(measured.sensors, *profile));
+              << distribution_table(rows_of(measured.sensors, *profile)) << models_text(*profile)
+              << '\n';
   return report(finished(measured.outcome, *connection.vehicle), streams);
 }
 

@@ -22,8 +22,9 @@ int fly_command(const CommandLine& line, client::Vehicle& vehicle, const Streams
 /// @pre line.mission is one relative_position task
 int real_row_command(const CommandLine& line, const Connection& connection, const Streams& streams);
 
-/// Characterizes, writes the profile, tells the coordinator, and prints Table I, the distributions
-/// and the JSON line. Where anything fails no profile is written.
+/// Characterizes, writes the profile, tells the coordinator, and prints Table I, the distributions,
+/// which timing model each sensor got, and the JSON line. Where anything fails no profile is
+/// written.
 /// @pre line.characterize
 int characterize_command(const CommandLine& line, const Connection& connection,
                          const Streams& streams);

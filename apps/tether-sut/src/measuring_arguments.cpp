@@ -46,8 +46,8 @@ void add_pixel_box(CLI::App& app, const std::string& name, std::optional<PixelBo
 }  // namespace
 
 void add_characterize_options(CLI::App& app, CharacterizeOptions& options) {
-  static const std::map<std::string, Timing> kTimings = {{"on_demand", Timing::kOnDemand},
-                                                         {"periodic", Timing::kPeriodic}};
+  static const std::map<std::string, Timing> kTimings = {
+      {"auto", Timing::kAuto}, {"on_demand", Timing::kOnDemand}, {"periodic", Timing::kPeriodic}};
   app.add_option("--sensors", options.sensors,
                  "Names of sensors, separated by commas; all that there are, if not given")
       ->delimiter(',')
@@ -58,9 +58,11 @@ void add_characterize_options(CLI::App& app, CharacterizeOptions& options) {
   app.add_option("--experiments", options.experiments, "Of each sensor; the paper made ten")
       ->check(CLI::Range(1, kMostOfASensor))
       ->capture_default_str();
-  app.add_option("--timing", options.timing,
-                 "What the profile says: on_demand (default: from asking to having) or periodic "
-                 "(the sensor's own period and delay)")
+  app.add_option(
+         "--timing", options.timing,
+         "What the profile says: on_demand (from asking to having), periodic (the sensor's "
+         "own period and delay), or auto (default: periodic where a sensor tells a rate and "
+         "can be modelled so, else on_demand)")
       ->transform(CLI::Transformer(kTimings))
       ->type_name("NAME");
   app.add_option("--name", options.name, "The profile's name; usually the host's")

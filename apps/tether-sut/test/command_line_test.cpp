@@ -251,7 +251,9 @@ TEST(CommandLine, Characterize) {
   EXPECT_TRUE(plain.characterize->sensors.empty());
   EXPECT_EQ(plain.characterize->acquisitions, 100);
   EXPECT_EQ(plain.characterize->experiments, 1);
-  EXPECT_EQ(plain.characterize->timing, Timing::kOnDemand);
+  EXPECT_EQ(plain.characterize->timing, Timing::kAuto);
+  EXPECT_EQ(parsed({"characterize", "--timing", "on_demand"}).characterize->timing,
+            Timing::kOnDemand);
 }
 
 TEST(CommandLine, WhatDoesNotGoTogetherGetsOneLine) {

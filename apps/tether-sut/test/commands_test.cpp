@@ -59,7 +59,7 @@ TEST_F(Commands, CharacterizeWritesAProfileAndPrintsTheTables) {
   const Connection virtual_uav = connection({}, false);
   EXPECT_EQ(characterize_command(characterize_line(path("p.toml")), virtual_uav, streams_), 0);
   EXPECT_THAT(out(), AllOf(HasSubstr("Table I"), HasSubstr("\nvirtual        bench"),
-                           HasSubstr("[ms]    n"), HasSubstr("\"range_mean_s\":0.03")));
+                           HasSubstr("[ms]           n"), HasSubstr("\"range_mean_s\":0.03")));
   EXPECT_EQ(err(), "");
   ASSERT_TRUE(vehicle_->finished());
   EXPECT_TRUE(vehicle_->finished()->reached_goal);
@@ -69,6 +69,54 @@ TEST_F(Commands, CharacterizeWritesAProfileAndPrintsTheTables) {
   ASSERT_NE(samples, nullptr);
   EXPECT_EQ(samples->size(), 5u);
   EXPECT_EQ(samples->at(0).value<double>(), 30.0);
+}
+
+// One board, one command, one profile.
+TEST_F(Commands, EachSensorGetsTheModelThatItAllows) {
+  const Connection virtual_uav = connection({}, false);
+  EXPECT_EQ(characterize_command(characterize_line(path("p.toml")), virtual_uav, streams_), 0);
+  toml::table profile = toml::parse_file(path("p.toml"));
+  const auto timing = [&](const char* sensor) {
+    return profile["sensors"][sensor]["timing"].value<std::string>();
+  };
+  EXPECT_EQ(timing("camera"), "periodic");
+  EXPECT_EQ(timing("imu"), "periodic");
+  EXPECT_EQ(timing("range"), "on_demand");
+  EXPECT_THAT(out(),
+              HasSubstr("\nTiming models: camera periodic, imu periodic, range on_demand\n"));
+}
+
+TEST_F(Commands, ASensorThatIsNotPeriodicFallsBackAndSaysWhy) {
+  const Connection real = connection({.image_delay = Duration(0)}, true);
+  CommandLine line = characterize_line(path("p.toml"));
+  line.characterize->sensors = {"camera"};
+  line.rig = devices::Rig{"rig", {}, {}};
+  EXPECT_EQ(characterize_command(line, real, streams_), 0);
+  EXPECT_THAT(out(), HasSubstr("\nTiming models: camera on_demand\n"));
+  EXPECT_THAT(err(), AllOf(HasSubstr("tether-sut: sensor \"camera\": "),
+                           HasSubstr("no instants of its own"),
+                           ::testing::EndsWith("; its model is on_demand\n")));
+  EXPECT_EQ(toml::parse_file(path("p.toml"))["sensors"]["camera"]["timing"].value<std::string>(),
+            "on_demand");
+}
+
+// Its images' instants pass at a third of its clock's pace.
+TEST_F(Commands, WithoutSynchronisationThereIsNoPeriodicProfile) {
+  const auto run = [&](Timing timing) {
+    const Connection untied = connection({.clock_factor = 3.0}, false);
+    CommandLine line = characterize_line(path("p.toml"));
+    line.characterize->sensors = {"camera"};
+    line.characterize->acquisitions = 30;
+    line.characterize->timing = timing;
+    return characterize_command(line, untied, streams_);
+  };
+  EXPECT_EQ(run(Timing::kPeriodic), 2);
+  EXPECT_TRUE(is_empty());
+  EXPECT_EQ(out(), "");
+  EXPECT_THAT(err(), HasSubstr("do not run at one pace"));
+  EXPECT_EQ(run(Timing::kAuto), 0);
+  EXPECT_EQ(toml::parse_file(path("p.toml"))["sensors"]["camera"]["timing"].value<std::string>(),
+            "on_demand");
 }
 
 TEST_F(Commands, CharacterizePeriodicSensors) {

@@ -1,5 +1,8 @@
 #include "timing_model.h"
 
+#include <utility>
+#include <vector>
+
 #include <gmock/gmock.h>
 
 namespace tether::sut {
@@ -81,6 +84,79 @@ TEST(PeriodicTiming, RefusesArrivalsStampedAsInstants) {
   // A virtual camera may have no delay at all, and its instants are its own.
   EXPECT_TRUE(periodic_timing(watch({.delay = Duration(0)}), false));
   EXPECT_FALSE(periodic_timing(watch({.delay = milliseconds(-5)}), false));
+}
+
+/// The simulation runs at its own pace, as in a run without synchronisation.
+SensorTimes watch_untied(double real_time_factor, const Camera& camera) {
+  SensorTimes times = watch(camera);
+  for (auto& acquisition : times.experiments[0]) {
+    const double instant_s = to_seconds(acquisition.sampled_at) / real_time_factor;
+    const Duration late = acquisition.had_at - same_instant(acquisition.sampled_at);
+    acquisition.had_at = ExecTime(duration_from_seconds(instant_s)) + late;
+    acquisition.sampled_at = std::chrono::floor<milliseconds>(acquisition.sampled_at);
+  }
+  return times;
+}
+
+TEST(PeriodicTiming, RefusesInstantsOfAnotherPace) {
+  const std::vector<std::pair<double, int>> factors_and_samples = {
+      {0.3, 5}, {0.3, 100}, {0.8, 20}, {0.8, 100}, {0.95, 100}, {1.05, 100}, {3.0, 20}};
+  for (const auto& [factor, samples] : factors_and_samples) {
+    const auto model = periodic_timing(watch_untied(factor, {.samples = samples}), false);
+    ASSERT_FALSE(model) << factor << " with " << samples;
+    EXPECT_EQ(model.failure().kind, Failure::Kind::kInvalid);
+    EXPECT_EQ(model.failure().message,
+              "sensor \"camera\": its instants and this program's clock do not run at one pace, as "
+              "in a run without synchronisation");
+  }
+  EXPECT_TRUE(periodic_timing(watch_untied(1.0, {.samples = 100}), false));
+}
+
+// A delay that jitters by more than a period is no other pace, however short the span.
+TEST(PeriodicTiming, JitterIsNoOtherPace) {
+  for (const int samples : {4, 10, 100}) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+      SensorTimes times = watch({.delay = milliseconds(60), .samples = samples});
+      unsigned state = seed;
+      for (auto& acquisition : times.experiments[0]) {
+        state = state * 1'664'525u + 1'013'904'223u;
+        acquisition.had_at += milliseconds(state >> 27);  // 0 to 31
+      }
+      EXPECT_TRUE(periodic_timing(times, true)) << samples << " samples, seed " << seed;
+    }
+  }
+}
+
+TEST(PeriodicTiming, RefusesAPeriodThatNoProfileCanHave) {
+  for (const Duration period : {Duration(microseconds(9)), Duration(std::chrono::seconds(1001))}) {
+    EXPECT_THAT(periodic_timing(watch({.period = period}), false).failure().message,
+                HasSubstr("its period is not between"));
+  }
+}
+
+TEST(ChooseTiming, IsPeriodicWhereASensorTellsARateAndAllowsIt) {
+  SensorTimes times = watch({});
+  EXPECT_FALSE(choose_timing(times, Timing::kAuto, true)->model.period) << "it tells no rate";
+  EXPECT_TRUE(choose_timing(times, Timing::kPeriodic, true)->model.period);
+  times.rate_hz = 40.0;
+  const auto chosen = choose_timing(times, Timing::kAuto, true);
+  EXPECT_EQ(chosen->model.period, milliseconds(25));
+  EXPECT_EQ(chosen->note, "");
+  EXPECT_FALSE(choose_timing(times, Timing::kOnDemand, true)->model.period);
+}
+
+TEST(ChooseTiming, SaysWhyItFallsBack) {
+  SensorTimes stamped = watch({.delay = milliseconds(3)});
+  stamped.rate_hz = 40.0;
+  const auto chosen = choose_timing(stamped, Timing::kAuto, true);
+  ASSERT_TRUE(chosen);
+  EXPECT_EQ(chosen->model.delays, stamped.taken());
+  EXPECT_EQ(chosen->note,
+            "sensor \"camera\": the device gives no instants of its own, it seems, only those of "
+            "arrival; its model is on_demand");
+  const auto refused = choose_timing(stamped, Timing::kPeriodic, true);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.failure().message, ::testing::EndsWith("; use --timing on_demand"));
 }
 
 TEST(PeriodicTiming, RefusesWhatHasNoPeriod) {

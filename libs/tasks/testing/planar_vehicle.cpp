@@ -10,7 +10,6 @@ using uav::Vec3;
 
 constexpr Duration kStep = std::chrono::milliseconds(1);
 constexpr double kStep_s = 1e-3;
-constexpr Duration kImuPeriod = std::chrono::milliseconds(5);
 constexpr double kGravity_m_s2 = 9.81;
 constexpr double kWall_m = 10.0;
 
@@ -22,7 +21,8 @@ uav::Catalogue make_catalogue(const PlanarVehicle::Options& options) {
        {{options.camera_ahead_m, 0, 0}, {}},
        30.0,
        uav::CameraProperties{uav::CameraModel::from_horizontal_fov(160, 120, rad_from_deg(80))}});
-  catalogue.sensors.push_back({"imu", {{}, options.q_BS_imu}, 200.0, uav::ImuProperties{}});
+  catalogue.sensors.push_back(
+      {"imu", {{}, options.q_BS_imu}, 1.0 / to_seconds(options.imu_period), uav::ImuProperties{}});
   catalogue.sensors.push_back({"range", {}, 0.0, uav::RangeProperties{0.0, 20.0}});
   const Vec3 size{0.5, 0.5, options.anchor_height_m};
   catalogue.anchors.push_back({"blue_box", uav::AnchorShape::kBox, size, {0.1, 0.2, 0.9}});
@@ -53,6 +53,14 @@ PlanarVehicle::PlanarVehicle(const Options& options)
   with_anchor_.boxes = {{rotate(about_z(direction), {options.anchor_distance_m, 0, 0}), direction,
                          anchor.size_m, anchor.color_rgb}};
   states_.push_back({{}, {}, {}, options.start_yaw_rad, 0.0});
+}
+
+ExecTime PlanarVehicle::now() const {
+  if (options_.clock_stands_still) {
+    return ExecTime();
+  }
+  return ExecTime(
+      duration_from_seconds(options_.clock_factor * to_seconds(now_.time_since_epoch())));
 }
 
 double PlanarVehicle::bearing() const {
@@ -129,17 +137,17 @@ Result<uav::ImuSample> PlanarVehicle::read_imu(std::string_view sensor, client::
   if (const Status status = begin_interaction(sensor, "imu"); !status) {
     return status.failure();
   }
-  auto index = static_cast<std::uint64_t>(now_.time_since_epoch() / kImuPeriod);
+  auto index = static_cast<std::uint64_t>(now_.time_since_epoch() / options_.imu_period);
   if (read == client::Read::kNext && last_imu_ && index <= *last_imu_) {
     index = *last_imu_ + 1;
   }
   last_imu_ = index;
-  const Duration sampled = static_cast<std::int64_t>(index) * kImuPeriod;
+  const Duration sampled = static_cast<std::int64_t>(index) * options_.imu_period;
   simulate_until(std::max(now_, ExecTime(sampled)));
 
   const State& state = options_.imu_is_stuck ? states_.front() : at(sampled);
   uav::ImuSample reading;
-  reading.sampled_at = SimTime(sampled);
+  reading.sampled_at = options_.imu_instants_stand_still ? SimTime() : SimTime(sampled);
   reading.index = index;
   reading.q_WS = about_z(state.yaw_rad) * options_.q_BS_imu;
   const uav::Quat q_SW = inverse(reading.q_WS);

@@ -15,8 +15,8 @@ namespace tether::tasks::testing {
 /// only by waiting and by `compute_per_image` for each image. Yaw rate and velocity follow the
 /// command with limited acceleration. Deterministic; needs no network and no simulator.
 ///
-/// Starts at the world's origin. Sensors: "camera" (30 Hz), "imu" (200 Hz), "range" (on demand: the
-/// distance to a wall at x = 10 m).
+/// Starts at the world's origin. Sensors: "camera" (30 Hz), "imu" (200 Hz unless said otherwise),
+/// "range" (on demand: the distance to a wall at x = 10 m).
 class PlanarVehicle : public client::Vehicle {
  public:
   struct Options {
@@ -38,6 +38,10 @@ class PlanarVehicle : public client::Vehicle {
     double max_acceleration_m_s2 = 3.0;
     double max_yaw_acceleration_rad_s2 = 6.0;
     bool clock_stands_still = false;  ///< `now` always says 0, whatever happens
+    /// `now` passes so many times as fast as the samples' instants, as without synchronisation.
+    double clock_factor = 1.0;
+    Duration imu_period = std::chrono::milliseconds(5);
+    bool imu_instants_stand_still = false;  ///< its readings go on, their `sampled_at` does not
     /// The connection ends with this interaction (counted from 0).
     std::optional<int> disconnect_at = std::nullopt;
   };
@@ -54,7 +58,7 @@ class PlanarVehicle : public client::Vehicle {
 
   explicit PlanarVehicle(const Options& options);
 
-  ExecTime now() const override { return options_.clock_stands_still ? ExecTime() : now_; }
+  ExecTime now() const override;
   const uav::Catalogue& catalogue() const override { return catalogue_; }
   Result<uav::CameraSample> read_camera(std::string_view sensor, client::Read read) override;
   Result<uav::ImuSample> read_imu(std::string_view sensor, client::Read read) override;
