@@ -21,20 +21,86 @@ std::string in_ms(Duration time) {
   return std::to_string(ns / 1'000'000) + "." + digits;
 }
 
-/// In a comment, where control characters must not stand.
-std::string plain(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
-  return text;
+/// How many bytes the character at the beginning has; 0: that is no UTF-8.
+std::size_t utf8_length(std::string_view text) {
+  const auto at = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const unsigned lead = at(0);
+  const std::size_t length = lead < 0x80   ? 1
+                             : lead < 0xC2 ? 0
+                             : lead < 0xE0 ? 2
+                             : lead < 0xF0 ? 3
+                                           : 4;
+  if (length < 2) {
+    return length;
+  }
+  // Neither longer than needed, nor a surrogate, nor beyond U+10FFFF.
+  const unsigned least = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80;
+  const unsigned most = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
+  if (lead > 0xF4 || at(1) < least || at(1) > most) {
+    return 0;
+  }
+  for (std::size_t i = 2; i < length; ++i) {
+    if (at(i) < 0x80 || at(i) > 0xBF) {
+      return 0;
+    }
+  }
+  return length;
 }
 
-/// A basic string, also where a key must be quoted.
-std::string quoted(const std::string& text) {
+/// In UTF-8: '?' for each byte that is none.
+std::string in_utf8(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    result += length == 0 ? "?" : text.substr(0, length);
+    text.remove_prefix(std::max(length, std::size_t{1}));
+  }
+  return result;
+}
+
+bool is_control(char c) {
+  const auto code = static_cast<unsigned char>(c);
+  return code < 0x20 || code == 0x7F;
+}
+
+/// In one line, as in a comment: UTF-8 without control characters.
+std::string plain(std::string_view text) {
+  std::string result = in_utf8(text);
+  std::replace_if(result.begin(), result.end(), is_control, '?');
+  return result;
+}
+
+/// A basic string, also where a key must be quoted. Control characters are escaped, so that no two
+/// keys become one.
+std::string quoted(std::string_view text) {
+  static constexpr std::string_view kHex = "0123456789ABCDEF";
   std::string result = "\"";
-  for (const char c : plain(text)) {
-    result += (c == '"' || c == '\\') ? std::string("\\") + c : std::string(1, c);
+  for (const char c : in_utf8(text)) {
+    if (is_control(c)) {
+      const auto code = static_cast<unsigned char>(c);
+      result += std::string("\\u00") + kHex[code / 16] + kHex[code % 16];
+    } else {
+      result += (c == '"' || c == '\\') ? std::string("\\") + c : std::string(1, c);
+    }
   }
   return result + "\"";
+}
+
+/// A URL's "user:password@" is for the device alone.
+std::string without_user(std::string url) {
+  const std::size_t scheme = url.find("://");
+  if (scheme == std::string::npos) {
+    return url;
+  }
+  const std::size_t begin = scheme + 3;
+  const std::size_t end = std::min(url.find_first_of("/?#", begin), url.size());
+  const std::size_t at = std::string_view(url).substr(0, end).rfind('@');
+  if (at != std::string::npos && at >= begin) {
+    url.erase(begin, at + 1 - begin);
+  }
+  return url;
 }
 
 std::string key(const std::string& name) {
@@ -54,7 +120,7 @@ std::string samples_text(const std::vector<Duration>& samples) {
 
 std::string sensor_text(const ProfiledSensor& sensor) {
   const std::string table = "sensors." + key(sensor.name);
-  std::string text = "\n# " + plain(sensor.source) + ", " +
+  std::string text = "\n# " + plain(without_user(sensor.source)) + ", " +
                      std::to_string(sensor.timing.delays.size()) + " measured\n[" + table + "]\n";
   text += "kind = " + quoted(std::string(uav::name(sensor.kind))) + "\n";
   if (sensor.timing.period) {
@@ -94,7 +160,7 @@ std::string profile_text(const MeasuredProfile& profile) {
                      plain(profile.where) + ", " + plain(profile.when) + ".\n";
   text += "# The paper's Algorithm 1: " + extent + ".\n";
   text += "name = " + quoted(profile.name) + "\n";
-  text += "description = " + quoted(names + " as measured on " + profile.where) + "\n";
+  text += "description = " + quoted(plain(names + " as measured on " + profile.where)) + "\n";
   for (const ProfiledSensor& sensor : profile.sensors) {
     text += sensor_text(sensor);
   }

@@ -14,7 +14,7 @@ namespace tether::sut {
 struct ProfiledSensor {
   std::string name;
   uav::SensorKind kind = uav::SensorKind::kCamera;
-  std::string source;  ///< its device, or "virtual"
+  std::string source;  ///< its device, or "virtual"; a URL's user and password are not written
   TimingModel timing;
 };
 
@@ -32,7 +32,8 @@ bool is_profile_name(std::string_view name);
 /// The nearest profile name to any text.
 std::string profile_name_from(std::string text);
 
-/// The profile's file, TOML: every delay in milliseconds, exact to the nanosecond.
+/// The profile's file, TOML, whatever bytes the texts have: every delay in milliseconds, exact to
+/// the nanosecond.
 std::string profile_text(const MeasuredProfile& profile);
 
 }  // namespace tether::sut

@@ -72,6 +72,56 @@ TEST(ProfileText, NamesCannotBreakIt) {
   EXPECT_TRUE(file["sensors"]["my \"eye\"\\ 2.0"].is_table());
 }
 
+// Paths may have any bytes, and a text of TOML must be UTF-8 without control characters.
+TEST(ProfileText, NoBytesCanBreakIt) {
+  const std::vector<std::string> texts = {
+      "\xFF/video0",      "a\xC3",        "\xC0\xAF",         "\xE0\x80\x80",      "\xED\xA0\x80",
+      "\xF4\x90\x80\x80", "\xF0\x9F\x98", "\x80\x80",         "a\tb\r\nc",         "\x7F\x1B[0m",
+      "\xC2\x85",         "\xE2\x80\xA8", "\xEF\xBB\xBF\xFE", std::string("\0", 1)};
+  for (const std::string& text : texts) {
+    MeasuredProfile profile =
+        profile_of({{text, uav::SensorKind::kCamera, text, {std::nullopt, {Duration(5)}}}});
+    profile.where = text;
+    toml::table file = toml::parse(profile_text(profile));
+    EXPECT_EQ(file["sensors"].as_table()->size(), 1u) << ::testing::PrintToString(text);
+  }
+  for (int lead = 0x80; lead < 0x100; ++lead) {
+    for (int next = 0x70; next < 0x100; ++next) {
+      std::string text{static_cast<char>(lead), static_cast<char>(next)};
+      text += "\x80\x80";
+      const auto source = profile_text(
+          profile_of({{"c", uav::SensorKind::kCamera, text, {std::nullopt, {Duration(5)}}}}));
+      ASSERT_NO_THROW((void)toml::parse(source)) << ::testing::PrintToString(text);
+    }
+  }
+}
+
+TEST(ProfileText, GoodTextStaysAsItIs) {
+  const std::string name = "\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80";  // é, €, a smiley
+  const std::string text = profile_text(
+      profile_of({{name, uav::SensorKind::kCamera, name, {std::nullopt, {Duration(5)}}},
+                  {"a\x01", uav::SensorKind::kImu, "x", {std::nullopt, {Duration(5)}}},
+                  {"a\x02", uav::SensorKind::kImu, "x", {std::nullopt, {Duration(5)}}}}));
+  EXPECT_THAT(text, HasSubstr("# " + name + ", 1 measured\n"));
+  toml::table file = toml::parse(text);
+  EXPECT_TRUE(file["sensors"][name].is_table());
+  EXPECT_TRUE(file["sensors"]["a\x01"].is_table() && file["sensors"]["a\x02"].is_table());
+}
+
+TEST(ProfileText, KeepsNoPassword) {
+  const auto source_line = [](const std::string& device) {
+    const std::string text = profile_text(
+        profile_of({{"c", uav::SensorKind::kCamera, device, {std::nullopt, {Duration(5)}}}}));
+    const std::size_t begin = text.find("\n# ", text.find("description")) + 3;
+    return text.substr(begin, text.find(", 1 measured") - begin);
+  };
+  EXPECT_EQ(source_line("rtsp://me:secret@eye:554/0"), "rtsp://eye:554/0");
+  EXPECT_EQ(source_line("rtsp://me:se@cret@eye"), "rtsp://eye");
+  EXPECT_EQ(source_line("http://me@eye?at=a@b"), "http://eye?at=a@b");
+  EXPECT_EQ(source_line("rtsp://eye/stream@2"), "rtsp://eye/stream@2");
+  EXPECT_EQ(source_line("/dev/video@0"), "/dev/video@0");
+}
+
 TEST(ProfileName, IsAnIdentifier) {
   for (const char* good : {"pi", "pi-4_b.1", "0"}) {
     EXPECT_TRUE(is_profile_name(good)) << good;
