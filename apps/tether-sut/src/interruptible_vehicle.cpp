@@ -44,8 +44,7 @@ class InterruptibleVehicle : public client::Vehicle {
   }
   Status finish(bool reached_goal, std::string_view outcome,
                 std::string_view details_json) override {
-    return unless_interrupted(
-        [&] { return vehicle_->finish(reached_goal, outcome, details_json); });
+    return vehicle_->finish(reached_goal, outcome, details_json);
   }
 
  private:

@@ -9,7 +9,8 @@ namespace tether::sut {
 
 /// The same vehicle, whose interactions fail with kRunEnded, "interrupted", as soon as
 /// `is_interrupted` says so: so a task ends as on any other failure, and its devices are closed. A
-/// failure that an interrupt brought about is named as one.
+/// failure that an interrupt brought about is named as one. `finish` goes through: what is done
+/// when the interrupt comes stays done.
 std::unique_ptr<client::Vehicle> make_interruptible(std::unique_ptr<client::Vehicle> vehicle,
                                                     std::function<bool()> is_interrupted);
 

@@ -1,5 +1,7 @@
 #include "commands.h"
 
+#include "interruptible_vehicle.h"
+
 #include <filesystem>
 #include <sstream>
 #include <utility>
@@ -139,6 +141,24 @@ TEST_F(Commands, ADeviceThatStopsLeavesNoProfile) {
   EXPECT_EQ(out(), "");
   EXPECT_EQ(err(), "tether-sut: the connection to the coordinator ended\n");
   EXPECT_FALSE(vehicle_->finished());
+}
+
+// Six measurements are made, the first of which is not counted.
+TEST_F(Commands, AnInterruptLeavesEitherAProfileOrNone) {
+  for (const int readings_before : {0, 5, 6}) {
+    Connection real = connection({}, true);
+    real.vehicle =
+        make_interruptible(std::move(real.vehicle), [this, readings_before, asked = 0]() mutable {
+          (void)this;
+          return asked++ >= 2 * readings_before;  // before and after each
+        });
+    CommandLine line = characterize_line(path("p.toml"));
+    line.characterize->sensors = {"range"};
+    const bool is_done = readings_before == 6;
+    EXPECT_EQ(characterize_command(line, real, streams_), is_done ? 0 : 1);
+    EXPECT_EQ(fs::exists(path("p.toml")), is_done);
+    EXPECT_EQ(vehicle_->finished().has_value(), is_done);
+  }
 }
 
 TEST_F(Commands, TooFewAcquisitionsAreNoProfileButAnOutcome) {

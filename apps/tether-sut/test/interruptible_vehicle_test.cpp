@@ -28,9 +28,17 @@ TEST(InterruptibleVehicle, EndsEveryInteractionOnceInterrupted) {
   EXPECT_FALSE(vehicle->command_velocity({}));
   EXPECT_FALSE(vehicle->sleep_for(Duration(1)));
   EXPECT_FALSE(vehicle->sleep_until(ExecTime()));
-  EXPECT_FALSE(vehicle->finish(true, "", "{}"));
   EXPECT_TRUE(vehicle->annotate("task", "{}"));
   EXPECT_EQ(vehicle->now(), at) << "nothing reached the vehicle";
+}
+
+TEST(InterruptibleVehicle, WhatIsDoneStaysDone) {
+  auto inner = std::make_unique<PlanarVehicle>(PlanarVehicle::Options{});
+  const PlanarVehicle& told = *inner;
+  const auto vehicle = make_interruptible(std::move(inner), [] { return true; });
+  EXPECT_TRUE(vehicle->finish(true, "goal reached", "{}"));
+  ASSERT_TRUE(told.finished());
+  EXPECT_TRUE(told.finished()->reached_goal);
 }
 
 TEST(InterruptibleVehicle, NamesAFailureThatTheInterruptBroughtAbout) {
