@@ -14,7 +14,7 @@ namespace tether::sut {
 /// Like CLI::Range, which lets NaN through.
 CLI::Validator within(double least, double most);
 
-/// An option in seconds, at least a millisecond, for a limit that the tasks keep as a Duration.
+/// An option in seconds, usually at least a millisecond, for what the tasks keep as a Duration.
 CLI::Option* add_seconds(CLI::App& app, const std::string& name, Duration& duration,
                          const std::string& description, double least_s = 0.001);
 /// An option in degrees, for an angle or a rate that the tasks keep in radians.

@@ -9,11 +9,9 @@ namespace {
 
 constexpr const char* kTimeLimit = "Gives up after this time of its own clock";
 
-void add_settling(CLI::App& app, int& readings) {
-  app.add_option("--settle-readings", readings,
-                 "Readings of the IMU after the final stop, while the UAV comes to rest")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
+void add_settling(CLI::App& app, Duration& time) {
+  add_seconds(app, "--settle-s", time,
+              "By the IMU's readings, after the final stop, while the UAV comes to rest", 0.0);
 }
 
 template <class Options>
@@ -97,7 +95,7 @@ class MoveForwardArguments : public ArgumentsFor<tasks::MoveForwardOptions> {
     app.add_option("--imu", options_.face.imu,
                    "Name of the IMU that tells the heading, or a real one's device")
         ->capture_default_str();
-    add_settling(app, options_.settle_readings);
+    add_settling(app, options_.settle_time);
     add_seconds(app, "--time-limit-s", options_.time_limit, kTimeLimit);
   }
 };
@@ -125,15 +123,13 @@ class ClosedPathArguments : public ArgumentsFor<tasks::ClosedPathOptions> {
         ->capture_default_str();
     app.add_option("--imu", options_.imu, "Name of the IMU, or a real one's device")
         ->capture_default_str();
-    app.add_option("--rest-readings", options_.rest_readings,
-                   "Readings of the IMU before the start, from which its bias is taken")
-        ->check(CLI::Range(0, 100000))
-        ->capture_default_str();
+    add_seconds(app, "--rest-s", options_.rest_time,
+                "By the IMU's readings, before the start; its bias is taken from them", 0.0);
     add_degrees(app, "--turn-rate-deg-s", options_.turn_rate_rad_s,
                 "Turning back to the start heading: at most this fast", 0.01, 720.0);
     add_degrees(app, "--turn-tolerance-deg", options_.turn_tolerance_rad,
                 "... until the heading is off by at most this", 0.01, 90.0);
-    add_settling(app, options_.settle_readings);
+    add_settling(app, options_.settle_time);
   }
   void add_limits(CLI::App& app) {
     add_seconds(app, "--turn-limit-s", options_.turn_limit, "Gives up turning back after this");

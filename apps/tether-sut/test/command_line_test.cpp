@@ -125,7 +125,7 @@ TEST(CommandLine, MoveForward) {
                                    "11",
                                    "--imu",
                                    "gyro",
-                                   "--settle-readings",
+                                   "--settle-s",
                                    "0",
                                    "--time-limit-s",
                                    "90",
@@ -141,7 +141,7 @@ TEST(CommandLine, MoveForward) {
   EXPECT_EQ(options.face.time_limit, std::chrono::seconds(11));
   EXPECT_EQ(options.face.convergence.stable_frames, 3);
   EXPECT_EQ(options.face.imu, "gyro");
-  EXPECT_EQ(options.settle_readings, 0);
+  EXPECT_EQ(options.settle_time, Duration(0));
   EXPECT_EQ(options.time_limit, std::chrono::seconds(90));
 }
 
@@ -155,14 +155,14 @@ TEST(CommandLine, ClosedPath) {
                                    "0.4",
                                    "--imu",
                                    "gyro",
-                                   "--rest-readings",
-                                   "40",
+                                   "--rest-s",
+                                   "0.25",
                                    "--turn-rate-deg-s",
                                    "10",
                                    "--turn-tolerance-deg",
                                    "2",
-                                   "--settle-readings",
-                                   "40",
+                                   "--settle-s",
+                                   "2.5",
                                    "--turn-limit-s",
                                    "7",
                                    "--leg-slack-s",
@@ -175,10 +175,10 @@ TEST(CommandLine, ClosedPath) {
   EXPECT_EQ(options.distance_m, 1.5);
   EXPECT_EQ(options.speed_m_s, 0.4);
   EXPECT_EQ(options.imu, "gyro");
-  EXPECT_EQ(options.rest_readings, 40);
+  EXPECT_EQ(options.rest_time, std::chrono::milliseconds(250));
   EXPECT_DOUBLE_EQ(options.turn_rate_rad_s, rad_from_deg(10));
   EXPECT_DOUBLE_EQ(options.turn_tolerance_rad, rad_from_deg(2));
-  EXPECT_EQ(options.settle_readings, 40);
+  EXPECT_EQ(options.settle_time, std::chrono::milliseconds(2500));
   EXPECT_EQ(options.turn_limit, std::chrono::seconds(7));
   EXPECT_EQ(options.leg_slack, std::chrono::seconds(3));
   EXPECT_EQ(options.time_limit, std::chrono::seconds(99));
@@ -303,7 +303,7 @@ TEST(CommandLine, MistakesGetOneLineAndExitCode2) {
       {"sensor_characterization"},
       {"sensor_characterization", "--sensor", "imu", "--acquisitions", "0"},
       {"move_forward", "--anchor", "b", "--speed-m-s", "-1"},
-      {"move_forward", "--anchor", "b", "--settle-readings", "-1"},
+      {"move_forward", "--anchor", "b", "--settle-s", "-1"},
       {"move_forward", "--anchor", "b", "--prefilter-size-px", "4"},
       {"move_forward", "--anchor", "b", "--prefilter-size-px", "33"},
       {"closed_path", "--anchor", "b", "--distance-m", "nan"},

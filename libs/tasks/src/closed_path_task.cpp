@@ -39,7 +39,8 @@ struct ClosedPathTask::Flight {
   Phase phase = Phase::kLegs;
   ExecTime phase_started_at;                ///< of the leg, in kLegs
   int leg = 0;                              ///< as many are flown to their end
-  int settled = 0;                          ///< readings since the stop
+  SimTime read_at;                          ///< the instant of the last reading
+  SimTime stopped_at;                       ///< that of the last one before the stop
   uav::Vec3 leg_start_m;                    ///< in H0
   uav::Vec3 p_H0A;                          ///< the anchor, seen from the start
   std::optional<uav::Vec3> displacement_m;  ///< in H0
@@ -88,14 +89,22 @@ Progress ClosedPathTask::see_anchor(TaskContext& context, std::string_view when,
 
 /// Reads the IMU before anything moves: its bias, and the start of dead reckoning.
 Progress ClosedPathTask::rest(TaskContext& context) {
-  for (int i = 0; i < options_.rest_readings; ++i) {
+  std::optional<SimTime> began_at;
+  while (true) {
+    if (const Progress end = limit_.next_round(context.vehicle().now())) {
+      return TaskOutcome::not_reached(end->reason + " at rest before the start");
+    }
     const auto reading = context.vehicle().read_imu(options_.imu);
     if (!reading) {
       return TaskOutcome::failed(reading.failure());
     }
+    began_at = began_at.value_or(reading->sampled_at);
+    if (reading->sampled_at - *began_at >= options_.rest_time) {
+      reckon(context, *reading);
+      return std::nullopt;
+    }
     flight_->reckoning.calibrate(*reading);
   }
-  return read_imu(context);
 }
 
 Progress ClosedPathTask::read_imu(TaskContext& context) {
@@ -103,9 +112,14 @@ Progress ClosedPathTask::read_imu(TaskContext& context) {
   if (!reading) {
     return TaskOutcome::failed(reading.failure());
   }
-  flight_->reckoning.update(*reading);
-  context.note_odometry(flight_->reckoning.position_m(), flight_->reckoning.yaw_rad());
+  reckon(context, *reading);
   return std::nullopt;
+}
+
+void ClosedPathTask::reckon(TaskContext& context, const uav::ImuSample& reading) {
+  flight_->read_at = reading.sampled_at;
+  flight_->reckoning.update(reading);
+  context.note_odometry(flight_->reckoning.position_m(), flight_->reckoning.yaw_rad());
 }
 
 void ClosedPathTask::enter(TaskContext& context, Phase phase) {
@@ -188,13 +202,14 @@ Progress ClosedPathTask::turn_back(TaskContext& context) {
     return TaskOutcome::failed(turning.failure());
   }
   if (is_back) {
+    flight_->stopped_at = flight_->read_at;
     enter(context, Phase::kSettle);
   }
   return std::nullopt;
 }
 
 Progress ClosedPathTask::settle(TaskContext& context) {
-  if (flight_->settled++ >= options_.settle_readings) {
+  if (flight_->read_at - flight_->stopped_at >= options_.settle_time) {
     return measure(context);
   }
   return read_imu(context);

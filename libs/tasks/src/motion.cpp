@@ -3,6 +3,11 @@
 #include <cmath>
 
 namespace tether::tasks {
+namespace {
+
+constexpr int kMostWithoutProgress = 1000;
+
+}  // namespace
 
 uav::Vec3 level(double direction_rad) {
   return {std::cos(direction_rad), std::sin(direction_rad), 0.0};
@@ -44,6 +49,30 @@ Result<double> get_yaw(TaskContext& context, std::string_view imu) {
     return reading.failure();
   }
   return uav::yaw_rad(attitude(**sensor, *reading));
+}
+
+Status pause(TaskContext& context, const std::string& imu, Duration time) {
+  Result<uav::ImuSample> reading = context.vehicle().read_imu(imu, client::Read::kLatest);
+  if (!reading) {
+    return reading.failure();
+  }
+  const SimTime began_at = reading->sampled_at;
+  SimTime latest = began_at;
+  for (int without_progress = 0; latest - began_at < time; ++without_progress) {
+    if (without_progress == kMostWithoutProgress) {
+      return Failure{Failure::Kind::kInvalid,
+                     "the readings of IMU \"" + imu + "\" are all from the same instant"};
+    }
+    reading = context.vehicle().read_imu(imu);
+    if (!reading) {
+      return reading.failure();
+    }
+    if (reading->sampled_at > latest) {
+      latest = reading->sampled_at;
+      without_progress = -1;
+    }
+  }
+  return ok_status();
 }
 
 void fail_on(const Status& status, TaskOutcome& outcome) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include <tether/base/result.h>
+#include <tether/base/time.h>
 #include <tether/client/vehicle.h>
 #include <tether/tasks/face_anchor_task.h>
 #include <tether/tasks/task.h>
@@ -31,6 +33,10 @@ uav::Quat attitude(const uav::SensorDescription& imu, const uav::ImuSample& read
 /// get_yaw(): heading from the newest reading of the IMU, counter-clockwise from east [rad]. Fails
 /// (kInvalid) if the UAV has no IMU of that name.
 Result<double> get_yaw(TaskContext& context, std::string_view imu);
+
+/// Waits, by the instants of the IMU's readings, until one is `time` younger than the newest of
+/// now. Fails (kInvalid) when a thousand readings in a row bring no later instant.
+Status pause(TaskContext& context, const std::string& imu, Duration time);
 
 /// Makes a failure of what had not failed before; does nothing if `status` is success.
 void fail_on(const Status& status, TaskOutcome& outcome);

@@ -121,15 +121,12 @@ Progress MoveForwardTask::update_yaw(TaskContext& context) {
   return std::nullopt;
 }
 
-/// Comes to rest: in readings of the IMU, which are simulated time under every policy.
+/// Comes to rest: by the instants of the IMU's readings, which are simulated time under every
+/// policy. Fails (kInvalid) where they stand still.
 Status MoveForwardTask::settle(TaskContext& context, const TaskOutcome& outcome) {
-  const int readings = outcome.status == TaskStatus::kFailed ? 0 : options_.settle_readings;
-  for (int i = 0; i < readings; ++i) {
-    if (const auto reading = context.vehicle().read_imu(options_.face.imu); !reading) {
-      return reading.failure();
-    }
-  }
-  return ok_status();
+  const bool is_needed =
+      outcome.status != TaskStatus::kFailed && options_.settle_time > Duration::zero();
+  return is_needed ? pause(context, options_.face.imu, options_.settle_time) : ok_status();
 }
 
 void MoveForwardTask::finalise(TaskContext& context, TaskOutcome& outcome) {

@@ -63,7 +63,7 @@ TEST(ClosedPathTask, ReckonsWhereItIs) {
 /// A bias that the task was not told of takes it elsewhere; its estimate by vision says where.
 TEST(ClosedPathTask, SeesHowFarFromItsStartItEnded) {
   ClosedPathOptions options;
-  options.rest_readings = 0;
+  options.rest_time = Duration(0);
   const PlanarVehicle::Options world{.anchor_bearing_rad = rad_from_deg(-10),
                                      .start_yaw_rad = rad_from_deg(70),
                                      .camera_ahead_m = 0.1,
@@ -133,6 +133,59 @@ TEST(ClosedPathTask, KnowsWhereItsCameraIs) {
   EXPECT_NEAR(outcome.results.at("displacement_y_m"), vehicle.position().y, 0.15);
 }
 
+// The notes of the odometry are the readings after the rest: of how many the settling is, and when
+// the first came.
+TEST(ClosedPathTask, PausesForATimeWhateverTheImusRate) {
+  for (const auto period : {milliseconds(5), milliseconds(50)}) {
+    const auto flown = [period](Duration rest_time, Duration settle_time) {
+      ClosedPathOptions options;
+      options.rest_time = rest_time;
+      options.settle_time = settle_time;
+      return fly({.anchor_bearing_rad = 0.0, .imu_period = period}, options);
+    };
+    const Flight at_once = flown(Duration(0), Duration(0));
+    const Flight settled = flown(Duration(0), seconds(1));
+    EXPECT_EQ(settled.notes("odometry").size(),
+              at_once.notes("odometry").size() + static_cast<std::size_t>(seconds(1) / period));
+    const Flight rested = flown(seconds(1), Duration(0));
+    EXPECT_EQ(rested.notes("odometry").size(), at_once.notes("odometry").size());
+    EXPECT_NEAR(rested.result("duration_s") - at_once.result("duration_s"), 1.0, 0.04)
+        << "but for the next image";
+  }
+}
+
+TEST(ClosedPathTask, RestsForTwentyReadingsOfAnImuAt20Hz) {
+  struct CountingVehicle : PlanarVehicle {
+    using PlanarVehicle::PlanarVehicle;
+    Result<uav::ImuSample> read_imu(std::string_view sensor, client::Read read) override {
+      auto reading = PlanarVehicle::read_imu(sensor, read);
+      at_rest += commands().empty() ? 1 : 0;
+      return reading;
+    }
+    int at_rest = 0;
+  };
+  CountingVehicle vehicle({.anchor_bearing_rad = 0.0, .imu_period = milliseconds(50)});
+  TaskContext context(vehicle);
+  ClosedPathOptions options;
+  options.convergence.tolerance_px = kTolerance_px;
+  ClosedPathTask task("blue_box", options);
+  EXPECT_TRUE(run(task, context).reached());
+  EXPECT_EQ(vehicle.at_rest, 21) << "the last one is the start of dead reckoning";
+}
+
+TEST(ClosedPathTask, APauseEndsWhereTheImusInstantsStandStill) {
+  ClosedPathOptions options;
+  options.max_readings = 50;
+  const Flight rest = fly({.anchor_bearing_rad = 0.0, .imu_instants_stand_still = true}, options);
+  EXPECT_EQ(rest.outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(rest.outcome.reason, "round limit at rest before the start");
+  options.max_readings = 200'000;
+  options.time_limit = seconds(3);
+  EXPECT_EQ(
+      fly({.anchor_bearing_rad = 0.0, .imu_instants_stand_still = true}, options).outcome.reason,
+      "time limit at rest before the start");
+}
+
 TEST(ClosedPathTask, NeverSeenIsAnOutcome) {
   const Flight flight = fly({.anchor_is_there = false});
   EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
@@ -158,6 +211,7 @@ TEST(ClosedPathTask, AnAnchorCutOffHasNoDistance) {
 
 TEST(ClosedPathTask, EndsWhileTheImuSaysThatNothingMoves) {
   ClosedPathOptions options;
+  options.rest_time = Duration(0);
   options.distance_m = 0.3;
   options.leg_slack = seconds(2);
   const Flight flight = fly({.anchor_bearing_rad = 0, .imu_is_stuck = true}, options);
@@ -176,6 +230,7 @@ TEST(ClosedPathTask, EndsAtItsTimeLimit) {
 
 TEST(ClosedPathTask, EndsWhileTheClockStandsStill) {
   ClosedPathOptions options;
+  options.rest_time = Duration(0);
   options.max_readings = 50;
   const Flight flight =
       fly({.anchor_bearing_rad = 0, .imu_is_stuck = true, .clock_stands_still = true}, options);

@@ -53,6 +53,21 @@ TEST(Motion, YawNeedsAnImu) {
   }
 }
 
+TEST(Motion, APauseIsOfTheInstantsOfTheImusReadings) {
+  // Of several seconds at 1 kHz: more readings than those after which standing still is told.
+  for (const auto period : {std::chrono::milliseconds(1), std::chrono::milliseconds(50)}) {
+    Fixture f({.clock_stands_still = true, .imu_period = period});
+    ASSERT_TRUE(pause(f.context, "imu", std::chrono::seconds(2)));
+    EXPECT_EQ(f.vehicle.read_imu("imu", client::Read::kLatest)->sampled_at,
+              SimTime(std::chrono::seconds(2)));
+  }
+  Fixture still({.imu_instants_stand_still = true});
+  EXPECT_EQ(pause(still.context, "imu", Duration(1)).failure().kind, Failure::Kind::kInvalid);
+  Fixture cut({.disconnect_at = 3});
+  EXPECT_EQ(pause(cut.context, "imu", std::chrono::seconds(1)).failure().kind,
+            Failure::Kind::kDisconnected);
+}
+
 TEST(Motion, AFailureOverrulesAnyOtherEnd) {
   TaskOutcome outcome = TaskOutcome::goal_reached();
   fail_on(ok_status(), outcome);

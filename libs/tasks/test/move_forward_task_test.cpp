@@ -90,16 +90,28 @@ TEST(MoveForwardTask, ASlowComputerOvershootsTheAnchorAndIsFurtherOff) {
   EXPECT_GT(error(target), error(host));
 }
 
-TEST(MoveForwardTask, ComesToRestBeforeItEnds) {
-  MoveForwardOptions options;
-  options.settle_readings = 30;
-  const Flight settled = fly(wall_on_the_left(), options);
-  options.settle_readings = 0;
-  const Flight at_once = fly(wall_on_the_left(), options);
-  const Duration waited = settled.vehicle.now() - at_once.vehicle.now();
-  EXPECT_GT(waited, milliseconds(145));  // at 200 Hz
-  EXPECT_LE(waited, milliseconds(150));
-  EXPECT_EQ(settled.result("duration_s"), at_once.result("duration_s"));
+TEST(MoveForwardTask, ComesToRestForATimeWhateverTheImusRate) {
+  for (const auto period : {milliseconds(5), milliseconds(50)}) {
+    PlanarVehicle::Options world = wall_on_the_left();
+    world.imu_period = period;
+    MoveForwardOptions options;
+    options.settle_time = milliseconds(700);
+    const Flight settled = fly(world, options);
+    options.settle_time = Duration(0);
+    const Flight at_once = fly(world, options);
+    const Duration waited = settled.vehicle.now() - at_once.vehicle.now();
+    EXPECT_GT(waited, milliseconds(700) - period);
+    EXPECT_LE(waited, milliseconds(700));
+    EXPECT_EQ(settled.result("duration_s"), at_once.result("duration_s"));
+  }
+}
+
+TEST(MoveForwardTask, FailsWhereTheImusInstantsStandStill) {
+  PlanarVehicle::Options world = wall_on_the_left();
+  world.imu_instants_stand_still = true;
+  const Flight flight = fly(world, {});
+  EXPECT_EQ(flight.outcome.failure, Failure::Kind::kInvalid);
+  EXPECT_EQ(flight.outcome.reason, "the readings of IMU \"imu\" are all from the same instant");
 }
 
 TEST(MoveForwardTask, NeverSeenIsAnOutcome) {

@@ -10,6 +10,7 @@
 #include <tether/tasks/relative_position_task.h>
 #include <tether/tasks/task.h>
 #include <tether/uav/math.h>
+#include <tether/uav/samples.h>
 
 namespace tether::tasks {
 
@@ -17,12 +18,14 @@ struct ClosedPathOptions {
   double distance_m = 1.0;  ///< of each leg; > 0
   double speed_m_s = 0.3;   ///< > 0
   std::string imu = "imu";
-  int rest_readings = 20;  ///< of the IMU at rest before the start, from which its bias is; ≥ 0
+  /// At rest before the start, by the instants of the IMU's readings, from which its bias is; ≥ 0.
+  Duration rest_time = std::chrono::seconds(1);
   ConvergenceOptions convergence;                  ///< of the estimates at the start and at the end
   double turn_rate_rad_s = rad_from_deg(25.0);     ///< back to the start heading: at most this; > 0
   double turn_tolerance_rad = rad_from_deg(1.0);   ///< > 0
   Duration turn_limit = std::chrono::seconds(15);  ///< then "time limit turning back"
-  int settle_readings = 20;  ///< of the IMU after the stop, while the UAV comes to rest; ≥ 0
+  /// After the stop, likewise, while the UAV comes to rest; ≥ 0.
+  Duration settle_time = std::chrono::seconds(1);
   Duration leg_slack = std::chrono::seconds(5);     ///< a leg's limit: five times its time and this
   Duration time_limit = std::chrono::seconds(180);  ///< of the SUT's clock
   int max_readings = 200'000;                       ///< of the IMU, should that clock stand still
@@ -35,7 +38,11 @@ struct ClosedPathOptions {
 /// listing's fifth direction, 2π, would leave the closed path by one more leg; instead of flying
 /// it, the UAV stops and turns back to the start heading.
 ///
-/// Not reached: "time limit in leg 2", "time limit turning back", "round limit …"; "anchor not seen
+/// Both pauses are of simulated time: until a reading is so much younger than the first of them, or
+/// than the last before the stop. 1 s is 20 readings of an IMU at 20 Hz.
+///
+/// Not reached: "time limit in leg 2", "time limit turning back", "time limit at rest before the
+/// start", "time limit coming to rest", "round limit …"; "anchor not seen
 /// at the start", "no distance to the anchor at the end", ….
 ///
 /// Results: "duration_s" (ET), "legs" (flown to their end), "path_length_m" and "end_x_m",
@@ -58,6 +65,7 @@ class ClosedPathTask : public Task {
   Progress see_anchor(TaskContext& context, std::string_view when, uav::Vec3& p_HA);
   Progress rest(TaskContext& context);
   Progress read_imu(TaskContext& context);
+  void reckon(TaskContext& context, const uav::ImuSample& reading);
   Progress start_leg(TaskContext& context);
   Progress follow_leg(TaskContext& context);
   Progress turn_back(TaskContext& context);

@@ -24,7 +24,9 @@ struct MoveForwardOptions {
   bool stop_to_face = false;  ///< the lower-level task stands still, as Algorithm 3 alone does
   /// Of the lower-level task; its convergence and IMU are also this task's.
   FaceAnchorOptions face = facing_under_way();
-  int settle_readings = 20;  ///< of the IMU after the final stop, to come to rest; ≥ 0
+  /// After the final stop, to come to rest, by the instants of the IMU's readings: until one is so
+  /// much younger than the newest at the stop; ≥ 0. 1 s is 20 readings at 20 Hz.
+  Duration settle_time = std::chrono::seconds(1);
   Duration time_limit = std::chrono::seconds(180);  ///< of the SUT's clock; then "time limit"
   int max_rounds = 10'000;  ///< of the loop, should that clock stand still; then "round limit"
 };
