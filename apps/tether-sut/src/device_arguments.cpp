@@ -155,9 +155,9 @@ Status check_lens(devices::Rig& rig, const std::string& camera, const std::strin
   const auto* properties = found != nullptr
                                ? std::get_if<uav::CameraProperties>(&found->description.properties)
                                : nullptr;
-  if (properties != nullptr && properties->model.fx_px == 0.0) {
+  if (properties != nullptr && properties->model.fx_px == 0.0 && found->horizontal_fov_rad == 0.0) {
     return invalid(file + ": camera \"" + camera +
-                   "\" needs size_px and horizontal_fov_deg (or intrinsics), because a task with "
+                   "\" needs horizontal_fov_deg (or size_px and intrinsics), because a task with "
                    "an anchor turns pixels into angles");
   }
   return ok_status();

@@ -138,6 +138,9 @@ void read_distortion(const Section& section, uav::CameraModel& model) {
 }
 
 void read_intrinsics(const Section& section, uav::CameraModel& model) {
+  if (!section.has("size_px")) {
+    section.fail("intrinsics", "needs size_px beside it");
+  }
   const Section intrinsics = section.section("intrinsics", {"fx_px", "fy_px", "cx_px", "cy_px"});
   const Bounds focal_px{1e-3, 1e6};
   const Bounds place_px{-1e5, 1e5};
@@ -156,10 +159,18 @@ void read_size(const Section& section, uav::CameraModel& model) {
   model.height_px = static_cast<int>(size[1]);
 }
 
-/// A lens only means something together with the size of the image that it makes.
-void read_lens(const Section& section, uav::CameraModel& model) {
+void read_fov(const Section& section, uav::CameraModel& model, double& horizontal_fov_rad) {
+  horizontal_fov_rad = rad_from_deg(section.number("horizontal_fov_deg", {1.0, 179.0}));
+  if (section.has("size_px")) {
+    model =
+        uav::CameraModel::from_horizontal_fov(model.width_px, model.height_px, horizontal_fov_rad);
+  }
+}
+
+/// Focal lengths only mean something together with the size of the image that the lens makes; a
+/// field of view does with any size.
+void read_lens(const Section& section, uav::CameraModel& model, double& horizontal_fov_rad) {
   const bool has_fov = section.has("horizontal_fov_deg");
-  const char* const key = has_fov ? "horizontal_fov_deg" : "intrinsics";
   if (has_fov && section.has("intrinsics")) {
     section.fail("intrinsics", "and horizontal_fov_deg say the same; give one of them");
   }
@@ -169,12 +180,8 @@ void read_lens(const Section& section, uav::CameraModel& model) {
     }
     return;
   }
-  if (!section.has("size_px")) {
-    section.fail(key, "needs size_px beside it");
-  }
   if (has_fov) {
-    const double fov_rad = rad_from_deg(section.number(key, {1.0, 179.0}));
-    model = uav::CameraModel::from_horizontal_fov(model.width_px, model.height_px, fov_rad);
+    read_fov(section, model, horizontal_fov_rad);
   } else {
     read_intrinsics(section, model);
   }
@@ -183,13 +190,13 @@ void read_lens(const Section& section, uav::CameraModel& model) {
   }
 }
 
-uav::CameraProperties read_camera(const Section& section) {
+void read_camera(const Section& section, devices::RigSensor& camera) {
   uav::CameraModel model;
   if (section.has("size_px")) {
     read_size(section, model);
   }
-  read_lens(section, model);
-  return {model};
+  read_lens(section, model, camera.horizontal_fov_rad);
+  camera.description.properties = uav::CameraProperties{model};
 }
 
 uav::RangeProperties read_range(const Section& section) {
@@ -256,7 +263,7 @@ devices::RigSensor read_sensor(const toml::table& table, const std::string& name
   devices::RigSensor sensor = plain_sensor(kind, name);
   sensor.description.X_BS = read_mounting(section);
   if (kind == uav::SensorKind::kCamera) {
-    sensor.description.properties = read_camera(section);
+    read_camera(section, sensor);
   } else if (kind == uav::SensorKind::kRange) {
     sensor.description.properties = read_range(section);
   }

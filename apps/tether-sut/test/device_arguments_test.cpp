@@ -105,9 +105,20 @@ TEST_F(MakeRig, ATaskWithAnAnchorNeedsAFile) {
                              .imu = "",
                              .range = ""};
   EXPECT_THAT(refused(file, mission_of(tasks::RelativePositionOptions{})),
-              HasSubstr("camera \"camera\" needs size_px and horizontal_fov_deg"));
+              HasSubstr("camera \"camera\" needs horizontal_fov_deg"));
   Mission mission = mission_of(tasks::SensorCharacterizationOptions{});
   EXPECT_EQ(made(file, mission).sensors.size(), 1u) << "to time it no lens is needed";
+}
+
+TEST_F(MakeRig, AFieldOfViewIsALensWithoutASize) {
+  Mission mission = mission_of(tasks::RelativePositionOptions{});
+  const devices::Rig rig =
+      made({.rig = rig_file("[sensors.camera]\nkind = \"camera\"\nhorizontal_fov_deg = 60\n"),
+            .camera = "/dev/video0",
+            .imu = "",
+            .range = ""},
+           mission);
+  EXPECT_GT(rig.sensors.at(0).horizontal_fov_rad, 1.0);
 }
 
 TEST_F(MakeRig, WhatATaskUsesNeedsADevice) {

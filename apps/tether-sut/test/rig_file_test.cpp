@@ -111,6 +111,16 @@ TEST(RigFile, AFieldOfViewIsALens) {
   EXPECT_EQ(model.k1, 0.1);
 }
 
+TEST(RigFile, AFieldOfViewIsOfAnySize) {
+  const devices::Rig rig = parsed(
+      "[sensors.eye]\nkind = \"camera\"\nhorizontal_fov_deg = 80\ndistortion = { k1 = 0.1 }\n");
+  EXPECT_DOUBLE_EQ(rig.sensors[0].horizontal_fov_rad, rad_from_deg(80));
+  const uav::CameraModel& model = camera_of(rig.sensors[0]);
+  EXPECT_EQ(model.width_px, 0) << "the device's";
+  EXPECT_EQ(model.fx_px, 0.0);
+  EXPECT_EQ(model.k1, 0.1);
+}
+
 TEST(RigFile, ARelativeDeviceIsBesideTheFile) {
   const auto device = [](const std::string& text) {
     return parsed("[sensors.eye]\nkind = \"camera\"\ndevice = \"" + text + "\"\n")
@@ -147,7 +157,6 @@ TEST(RigFile, MistakesNameFileAndLine) {
       {"[sensors.c]\nkind = \"imu\"\nrpy_deg = [0, 0, 400]\n", 3, "out of bounds"},
       {"[sensors.c]\nkind = \"camera\"\nsize_px = [0, 480]\n", 3, "out of bounds"},
       {"[sensors.c]\nkind = \"camera\"\nsize_px = [1.5, 480]\n", 3, "whole numbers"},
-      {"[sensors.c]\nkind = \"camera\"\nhorizontal_fov_deg = 60\n", 3, "needs size_px"},
       {"[sensors.c]\nkind = \"camera\"\nintrinsics = { fx_px = 1, fy_px = 1 }\n", 3,
        "needs size_px"},
       {"[sensors.c]\nkind = \"camera\"\nsize_px = [4, 4]\nhorizontal_fov_deg = 180\n", 4,
