@@ -55,6 +55,9 @@ Result<std::vector<const uav::SensorDescription*>> choose_sensors(
   if (chosen.empty()) {
     return invalid("there is no sensor to characterize");
   }
+  if (const Status fits = check_extent(options, chosen.size()); !fits) {
+    return fits.failure();
+  }
   return chosen;
 }
 
@@ -170,6 +173,17 @@ std::vector<Duration> SensorTimes::taken() const {
     }
   }
   return all;
+}
+
+Status check_extent(const CharacterizeOptions& options, std::size_t sensors) {
+  const std::int64_t all =
+      std::int64_t{options.acquisitions} * options.experiments * static_cast<std::int64_t>(sensors);
+  if (all <= kMostAcquisitions) {
+    return ok_status();
+  }
+  return invalid("--acquisitions times --experiments of " + std::to_string(sensors) +
+                 (sensors == 1 ? " sensor is " : " sensors is ") + std::to_string(all) +
+                 "; at most " + std::to_string(kMostAcquisitions) + " fit a profile");
 }
 
 Characterization characterize(client::Vehicle& vehicle, const CharacterizeOptions& options,

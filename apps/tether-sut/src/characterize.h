@@ -23,8 +23,8 @@ enum class Timing {
 
 struct CharacterizeOptions {
   std::vector<std::string> sensors;  ///< names; empty: all of the catalogue
-  int acquisitions = 100;            ///< of each experiment; > 0
-  int experiments = 1;               ///< of each sensor; > 0; the paper made ten
+  int acquisitions = 100;            ///< of each experiment; 1 to kMostAcquisitions
+  int experiments = 1;               ///< of each sensor; likewise; the paper made ten
   Timing timing = Timing::kAuto;
   Duration time_limit = std::chrono::minutes(10);  ///< of each sensor, on the SUT's clock
   std::string name;                                ///< of the profile
@@ -47,6 +47,12 @@ struct Characterization {
   std::vector<SensorTimes> sensors;
 };
 
+/// Of all sensors together: so many fit a profile of the size that a scenario's reader takes (1
+/// MiB), whatever they took.
+inline constexpr int kMostAcquisitions = 60'000;
+/// Whether those of so many sensors fit one profile: kInvalid, one line.
+Status check_extent(const CharacterizeOptions& options, std::size_t sensors);
+
 /// Told what begins: "camera: experiment 2 of 10".
 using TellProgress = std::function<void(const std::string&)>;
 
@@ -55,9 +61,9 @@ using TellProgress = std::function<void(const std::string&)>;
 ///
 /// The outcome's results: "duration_s"; of each sensor SENSOR_n, SENSOR_mean_s, _stddev_s, _min_s,
 /// _median_s, _p95_s, _p99_s, _max_s, and from two experiments on _stddev_between_experiments_s.
-/// Fails (kInvalid) before it measures anything for a sensor that is not there, and for one that
-/// tells no rate where a period is asked for (a rangefinder or an IMU of a rig; a virtual sensor
-/// that measures on demand).
+/// Fails (kInvalid) before it measures anything for a sensor that is not there, for one that tells
+/// no rate where a period is asked for (a rangefinder or an IMU of a rig; a virtual sensor that
+/// measures on demand), and for more acquisitions than fit a profile.
 Characterization characterize(client::Vehicle& vehicle, const CharacterizeOptions& options,
                               const TellProgress& tell = {});
 

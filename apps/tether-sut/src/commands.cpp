@@ -186,6 +186,9 @@ int characterize_command(const CommandLine& line, const Connection& connection,
   }
   const std::string& out = line.characterize->out;
   if (!out.empty()) {
+    if (const Status good = check_delays(*profile); !good) {
+      return say(good.failure(), exit_code(good.failure()), streams);
+    }
     if (const Status written = write_whole(out, profile_text(*profile)); !written) {
       return say(written.failure(), kSetUpFailed, streams);
     }

@@ -3,6 +3,7 @@
 #include "common_arguments.h"
 #include "profile_text.h"
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -10,9 +11,6 @@
 
 namespace tether::sut {
 namespace {
-
-/// So that the profile stays within what a scenario's reader takes.
-constexpr int kMostOfASensor = 20'000;
 
 CLI::Validator profile_name() {
   return CLI::Validator(
@@ -23,6 +21,12 @@ CLI::Validator profile_name() {
                                            "'.', not starting with '.'";
       },
       "NAME");
+}
+
+CLI::Validator file_name() {
+  return CLI::Validator(
+      [](std::string& text) { return text.empty() ? std::string("needs a name") : std::string(); },
+      "FILE");
 }
 
 /// "12,40,80,60" in whole pixels.
@@ -53,10 +57,10 @@ void add_characterize_options(CLI::App& app, CharacterizeOptions& options) {
       ->delimiter(',')
       ->type_name("NAME,NAME");
   app.add_option("--acquisitions", options.acquisitions, "Of each experiment")
-      ->check(CLI::Range(1, kMostOfASensor))
+      ->check(CLI::Range(1, kMostAcquisitions))
       ->capture_default_str();
   app.add_option("--experiments", options.experiments, "Of each sensor; the paper made ten")
-      ->check(CLI::Range(1, kMostOfASensor))
+      ->check(CLI::Range(1, kMostAcquisitions))
       ->capture_default_str();
   app.add_option(
          "--timing", options.timing,
@@ -68,18 +72,14 @@ void add_characterize_options(CLI::App& app, CharacterizeOptions& options) {
   app.add_option("--name", options.name, "The profile's name; usually the host's")
       ->check(profile_name())
       ->type_name("NAME");
-  app.add_option("--out", options.out, "Writes the profile (TOML) to this file")->type_name("FILE");
+  app.add_option("--out", options.out, "Writes the profile (TOML) to this file")
+      ->check(file_name())
+      ->type_name("FILE");
   add_seconds(app, "--time-limit-s", options.time_limit, "Gives up a sensor after this time");
 }
 
 Status check(const CharacterizeOptions& options) {
-  const std::int64_t of_a_sensor = std::int64_t{options.acquisitions} * options.experiments;
-  if (of_a_sensor > kMostOfASensor) {
-    return Failure{Failure::Kind::kInvalid, "--acquisitions times --experiments is " +
-                                                std::to_string(of_a_sensor) + "; at most " +
-                                                std::to_string(kMostOfASensor) + " fit a profile"};
-  }
-  return ok_status();
+  return check_extent(options, std::max<std::size_t>(options.sensors.size(), 1));
 }
 
 void add_real_row_options(CLI::App& app, RealRowOptions& options) {
@@ -88,6 +88,7 @@ void add_real_row_options(CLI::App& app, RealRowOptions& options) {
                 "from the top left; gives the angle error");
   app.add_option("--keep-image", options.keep_image,
                  "With real devices: writes the last estimate's image, to annotate it (PNG)")
+      ->check(file_name())
       ->type_name("FILE");
 }
 

@@ -11,6 +11,7 @@ constexpr std::size_t kSamplesPerLine = 8;
 constexpr std::string_view kNameCharacters =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
 constexpr std::size_t kLongestName = 64;
+constexpr Duration kLongestDelay = std::chrono::seconds(60);
 
 /// Milliseconds with as many digits as the nanoseconds need: "33.1", "0.000001".
 std::string in_ms(Duration time) {
@@ -146,6 +147,20 @@ std::string profile_name_from(std::string text) {
   text.erase(0, text.find_first_not_of('.'));
   text.resize(std::min(text.size(), kLongestName));
   return text.empty() ? "measured" : text;
+}
+
+Status check_delays(const MeasuredProfile& profile) {
+  for (const ProfiledSensor& sensor : profile.sensors) {
+    const auto& delays = sensor.timing.delays;
+    const auto longest = std::max_element(delays.begin(), delays.end());
+    if (longest != delays.end() && *longest > kLongestDelay) {
+      return Failure{Failure::Kind::kInvalid, "sensor \"" + sensor.name + "\": a delay of " +
+                                                  in_ms(*longest) +
+                                                  " ms was measured; a profile takes at most "
+                                                  "60000 ms, so none is written"};
+    }
+  }
+  return ok_status();
 }
 
 std::string profile_text(const MeasuredProfile& profile) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <tether/base/result.h>
 #include <tether/uav/catalogue.h>
 
 /// What was measured, as a profile that a scenario can name (docs/guide/sensors.md).
@@ -31,6 +32,10 @@ struct MeasuredProfile {
 bool is_profile_name(std::string_view name);
 /// The nearest profile name to any text.
 std::string profile_name_from(std::string text);
+
+/// Whether a scenario's reader takes every delay: at most 60 s. Fails (kInvalid) with one line that
+/// names the sensor.
+Status check_delays(const MeasuredProfile& profile);
 
 /// The profile's file, TOML, whatever bytes the texts have: every delay in milliseconds, exact to
 /// the nanosecond.

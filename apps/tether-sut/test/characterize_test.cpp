@@ -66,6 +66,23 @@ TEST(Characterize, KnowsItsSensorsBeforeItMeasures) {
   EXPECT_EQ(vehicle.now(), ExecTime());
 }
 
+// 1 MiB of TOML, with 14 bytes for the longest delay: "59999.999999, ".
+TEST(Characterize, AllItsAcquisitionsFitAProfile) {
+  EXPECT_LT(kMostAcquisitions * 14, 1 << 20);
+  PlanarVehicle vehicle({});
+  CharacterizeOptions options;
+  options.acquisitions = kMostAcquisitions / 2;
+  const Characterization result = characterize(vehicle, options);
+  EXPECT_EQ(result.outcome.failure, Failure::Kind::kInvalid);
+  EXPECT_EQ(
+      result.outcome.reason,
+      "--acquisitions times --experiments of 3 sensors is 90000; at most 60000 fit a profile");
+  EXPECT_EQ(vehicle.now(), ExecTime());
+  EXPECT_TRUE(check_extent(options, 2));
+  options.acquisitions = options.experiments = kMostAcquisitions;
+  EXPECT_FALSE(check_extent(options, 1));
+}
+
 TEST(Characterize, OneSensorThatFailsFailsTheWhole) {
   PlanarVehicle vehicle({.disconnect_at = 6});
   const Characterization result = characterize(vehicle, few());

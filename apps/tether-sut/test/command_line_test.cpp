@@ -260,7 +260,7 @@ TEST(CommandLine, WhatDoesNotGoTogetherGetsOneLine) {
   const std::vector<std::pair<std::vector<const char*>, const char*>> mistakes = {
       {{"characterize", "--camera", "0", "--address", "h:1"}, "are about a coordinator"},
       {{"characterize", "--camera", "0", "--clock", "cpu"}, "are about a coordinator"},
-      {{"characterize", "--acquisitions", "20000", "--experiments", "2"}, "at most 20000"},
+      {{"characterize", "--acquisitions", "20000", "--experiments", "4"}, "at most 60000"},
       {{"characterize", "--rig", "/nowhere/r.toml"}, "cannot be read"},
       {{"face_anchor", "--anchor", "b", "--camera", "0"}, "needs --rig FILE"},
       {{"relative_position", "--anchor", "b", "--keep-image", "i.png"}, "for real devices"},
@@ -313,6 +313,8 @@ TEST(CommandLine, MistakesGetOneLineAndExitCode2) {
       {"characterize", "--acquisitions", "0"},
       {"characterize", "--timing", "sometimes"},
       {"characterize", "--name", "my pi"},
+      {"characterize", "--out", ""},
+      {"relative_position", "--anchor", "b", "--keep-image", ""},
       {"face_anchor", "--anchor", "b", "--range", "range"},
       {"face_anchor", "--anchor", "b", "--keep-image", "i.png"},
       {"relative_position", "--anchor", "b", "--true-roi-px", "1,2,3"},

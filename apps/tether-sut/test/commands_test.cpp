@@ -147,11 +147,9 @@ TEST_F(Commands, ADeviceThatStopsLeavesNoProfile) {
 TEST_F(Commands, AnInterruptLeavesEitherAProfileOrNone) {
   for (const int readings_before : {0, 5, 6}) {
     Connection real = connection({}, true);
-    real.vehicle =
-        make_interruptible(std::move(real.vehicle), [this, readings_before, asked = 0]() mutable {
-          (void)this;
-          return asked++ >= 2 * readings_before;  // before and after each
-        });
+    real.vehicle = make_interruptible(
+        std::move(real.vehicle),
+        [readings_before, asked = 0]() mutable { return asked++ >= readings_before; });
     CommandLine line = characterize_line(path("p.toml"));
     line.characterize->sensors = {"range"};
     const bool is_done = readings_before == 6;
@@ -180,6 +178,19 @@ TEST_F(Commands, ArrivalsAreNoPeriodicProfile) {
   EXPECT_EQ(characterize_command(line, real, streams_), 2);
   EXPECT_TRUE(is_empty());
   EXPECT_THAT(err(), HasSubstr("no instants of its own"));
+}
+
+TEST_F(Commands, ADelayThatNoReaderTakesIsNoProfile) {
+  const auto run = [&](const std::string& out) {
+    const Connection slow = connection({.range_delays = {std::chrono::seconds(61)}}, false);
+    CommandLine line = characterize_line(out);
+    line.characterize->sensors = {"range"};
+    return characterize_command(line, slow, streams_);
+  };
+  EXPECT_EQ(run(path("p.toml")), 2);
+  EXPECT_TRUE(is_empty());
+  EXPECT_THAT(err(), HasSubstr("a delay of 61000.0 ms was measured"));
+  EXPECT_EQ(run(""), 0) << "it can be looked at";
 }
 
 TEST_F(Commands, AProfileThatCannotBeWrittenFails) {

@@ -122,6 +122,18 @@ TEST(ProfileText, KeepsNoPassword) {
   EXPECT_EQ(source_line("/dev/video@0"), "/dev/video@0");
 }
 
+TEST(ProfileText, ADelayThatNoReaderTakesIsTold) {
+  const auto checked = [](Duration delay) {
+    return check_delays(profile_of(
+        {{"c", uav::SensorKind::kCamera, "x", {std::nullopt, {Duration(5), delay, Duration(6)}}}}));
+  };
+  EXPECT_TRUE(checked(std::chrono::seconds(60)));
+  EXPECT_EQ(
+      checked(std::chrono::milliseconds(60'001)).failure().message,
+      "sensor \"c\": a delay of 60001.0 ms was measured; a profile takes at most 60000 ms, so "
+      "none is written");
+}
+
 TEST(ProfileName, IsAnIdentifier) {
   for (const char* good : {"pi", "pi-4_b.1", "0"}) {
     EXPECT_TRUE(is_profile_name(good)) << good;
