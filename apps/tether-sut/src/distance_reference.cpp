@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include <tether/tasks/sample_statistics.h>
+
 namespace tether::sut {
 namespace {
 
@@ -33,9 +35,7 @@ std::optional<double> median_of_finite_m(std::vector<double> readings_m) {
     return std::nullopt;
   }
   std::sort(readings_m.begin(), readings_m.end());
-  const std::size_t half = readings_m.size() / 2;
-  return readings_m.size() % 2 == 1 ? readings_m[half]
-                                    : 0.5 * (readings_m[half - 1] + readings_m[half]);
+  return tasks::quantile(readings_m, 0.5);
 }
 
 DistanceReference reference_from(double range_m, const uav::SensorDescription& range,

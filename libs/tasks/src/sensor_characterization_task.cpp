@@ -1,8 +1,7 @@
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <utility>
 
+#include <tether/tasks/sample_statistics.h>
 #include <tether/tasks/sensor_characterization_task.h>
 #include <tether/tasks/task_context.h>
 
@@ -43,26 +42,6 @@ std::vector<double> sorted_times_s(const std::vector<Acquisition>& acquisitions)
   }
   std::sort(taken_s.begin(), taken_s.end());
   return taken_s;
-}
-
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/// @pre two values or more
-double sample_stddev(const std::vector<double>& values) {
-  const double middle = mean(values);
-  double squares = 0.0;
-  for (const double value : values) {
-    squares += (value - middle) * (value - middle);
-  }
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
-}
-
-/// @pre sorted, not empty
-double median(const std::vector<double>& sorted) {
-  const std::size_t half = sorted.size() / 2;
-  return sorted.size() % 2 == 1 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]);
 }
 
 }  // namespace
@@ -107,10 +86,10 @@ void SensorCharacterizationTask::finalise(TaskContext& context, TaskOutcome& out
   const std::vector<double> taken_s = sorted_times_s(acquisitions_);
   outcome.results["mean_s"] = mean(taken_s);
   outcome.results["min_s"] = taken_s.front();
-  outcome.results["median_s"] = median(taken_s);
+  outcome.results["median_s"] = quantile(taken_s, 0.5);
   outcome.results["max_s"] = taken_s.back();
-  if (taken_s.size() > 1) {
-    outcome.results["stddev_s"] = sample_stddev(taken_s);
+  if (const auto stddev_s = sample_stddev(taken_s)) {
+    outcome.results["stddev_s"] = *stddev_s;
   }
 }
 
