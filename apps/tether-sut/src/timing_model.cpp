@@ -174,9 +174,12 @@ Result<TimingModel> periodic_timing(const SensorTimes& times, bool may_stamp_arr
                   "its instants and this program's clock do not run at one pace, as in a run "
                   "without synchronisation");
   }
-  const Duration shortest = may_stamp_arrival ? kShortestLiveDelay : Duration::zero();
-  if (median(model.delays) < shortest ||
-      *std::min_element(model.delays.begin(), model.delays.end()) < Duration::zero()) {
+  if (*std::min_element(model.delays.begin(), model.delays.end()) < Duration::zero()) {
+    return refuse(times,
+                  "some samples are from the future of this program's clock, so that it is not the "
+                  "one of their instants");
+  }
+  if (may_stamp_arrival && median(model.delays) < kShortestLiveDelay) {
     return refuse(times,
                   "the device gives no instants of its own, it seems, only those of arrival");
   }

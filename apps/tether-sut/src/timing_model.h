@@ -30,9 +30,11 @@ TimingModel on_demand_timing(const SensorTimes& times);
 /// - the instants and this program's clock do not run at one pace, so that their difference is no
 ///   delay: the delays drift by more than 2 % of the measured span and a period, and by more than
 ///   jitter alone explains (four standard errors of the drift, and more of few samples);
-/// - the instants cannot be the sensor's own: a sample from the future, or, of a live device that
-///   may stamp what it has no instant for with its arrival, a median delay below 5 ms: that is what
-///   decoding takes, and less than any camera's exposure and transfer.
+/// - a sample is from the future;
+/// - the instants cannot be the sensor's own: of a live device that may stamp what it has no
+/// instant
+///   for with its arrival, a median delay below 5 ms: that is what decoding takes, and less than
+///   any camera's exposure and transfer.
 Result<TimingModel> periodic_timing(const SensorTimes& times, bool may_stamp_arrival);
 
 /// The model that is asked for, and why it is not the one that was hoped for.

@@ -83,7 +83,12 @@ TEST(PeriodicTiming, RefusesArrivalsStampedAsInstants) {
   EXPECT_TRUE(periodic_timing(watch({.delay = milliseconds(6)}), true));
   // A virtual camera may have no delay at all, and its instants are its own.
   EXPECT_TRUE(periodic_timing(watch({.delay = Duration(0)}), false));
-  EXPECT_FALSE(periodic_timing(watch({.delay = milliseconds(-5)}), false));
+}
+
+TEST(PeriodicTiming, RefusesSamplesFromTheFuture) {
+  const auto early = periodic_timing(watch({.delay = milliseconds(-5)}), false);
+  ASSERT_FALSE(early);
+  EXPECT_THAT(early.failure().message, HasSubstr("from the future"));
 }
 
 /// The simulation runs at its own pace, as in a run without synchronisation.
