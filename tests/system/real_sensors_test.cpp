@@ -2,8 +2,12 @@
 #include "support/profile_file.h"
 #include "support/trials.h"
 
+#include <csignal>
+#include <thread>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
 /// tether-sut on real input: a video of the project's own renderer in place of a camera, and a
 /// folder laid out like the kernel's IIO tree in place of a rangefinder.
 namespace tether::system_test {
@@ -64,8 +68,9 @@ TEST_F(RealSensors, LeaveOutWhatNothingWasComparedWith) {
 
 TEST_F(RealSensors, AreCharacterizedIntoAProfileThatPlugsIn) {
   const auto profile = folder_ / "bench.toml";
-  const Output output = sut({"characterize", "--camera", bench_.video, "--range", bench_.range,
-                             "--acquisitions", "15", "--experiments", "2", "--out", profile});
+  const Output output =
+      sut({"characterize", "--camera", bench_.video, "--range", bench_.range, "--acquisitions",
+           "15", "--experiments", "2", "--timing", "on_demand", "--out", profile});
   ASSERT_EQ(output.code, 0) << output.err;
   EXPECT_THAT(output.out, HasSubstr("0.0977"));
   const auto camera_ms = samples_ms(profile, "camera");
@@ -87,14 +92,31 @@ TEST_F(RealSensors, AreCharacterizedIntoAProfileThatPlugsIn) {
   }
 }
 
-// The images are there when they are due, and not before: thirty a second.
-TEST_F(RealSensors, AVideoPlaysLikeALiveCamera) {
-  const auto profile = folder_ / "periodic.toml";
-  const Output output = sut({"characterize", "--camera", bench_.video, "--acquisitions", "30",
-                             "--timing", "periodic", "--out", profile});
+// A video plays like a live camera: an image is there when it is due, and not before. A rangefinder
+// measures when asked. Both go into one profile.
+TEST_F(RealSensors, GetTheTimingThatTheyHave) {
+  const auto profile = folder_ / "board.toml";
+  const Output output = sut({"characterize", "--camera", bench_.video, "--range", bench_.range,
+                             "--acquisitions", "30", "--out", profile});
   ASSERT_EQ(output.code, 0) << output.err;
-  EXPECT_THAT(read_text(profile), HasSubstr("period_ms = 33.333"));
   EXPECT_GT(output.wall.count(), 29 / 30.0);
+  const std::string text = read_text(profile);
+  EXPECT_THAT(text, HasSubstr("period_ms = 33.333"));
+  EXPECT_THAT(text, HasSubstr("timing = \"on_demand\""));
+}
+
+TEST_F(RealSensors, AnInterruptLeavesNoProfile) {
+  const auto profile = folder_ / "half.toml";
+  Process process({.arguments = {sut_program(), "characterize", "--camera", bench_.video,
+                                 "--acquisitions", "70", "--out", profile},
+                   .environment = {},
+                   .working_folder = {}});
+  std::this_thread::sleep_for(1s);  // of the video's 2.5
+  process.signal(SIGINT);
+  const Output output = process.wait(10s);
+  EXPECT_EQ(output.code, 1) << output.err;
+  EXPECT_THAT(output.err + output.out, HasSubstr("interrupted"));
+  EXPECT_FALSE(std::filesystem::exists(profile));
 }
 
 TEST_F(RealSensors, ACameraThatStopsLeavesNoProfile) {
