@@ -38,8 +38,8 @@ struct TrialObserver {
 
 /// Runs one trial and leaves its result in the folder, whatever it was. An earlier trial's files
 /// there are replaced.
-/// @throws Error(kBadFile) before anything is written, when world, models or profiles cannot be used;
-/// Error(kSetup) when the folder
+/// @throws Error(kBadFile) before anything is written, when world, models or profiles cannot be
+/// used; Error(kSetup) when the folder
 ///   cannot be written.
 experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer);
 
