@@ -92,6 +92,9 @@ TEST(RelativePosition, UndoesTheLens) {
   auto& model = std::get<uav::CameraProperties>(wide.properties).model;
   model.k1 = -0.2;
   model.k2 = 0.05;
+  model.k3 = -0.01;
+  model.p1 = 0.002;
+  model.p2 = -0.003;
   for (const double bearing : {-35.0, -15.0, 25.0}) {
     const auto p = look(wide, {bearing, 4.0, 0, 0.4});
     ASSERT_TRUE(p && p->distance_m);
