@@ -34,16 +34,6 @@ int report(const TaskOutcome& outcome, const Streams& streams) {
   return exit_code(outcome);
 }
 
-/// Tells the coordinator, except of what is no result.
-TaskOutcome finished(TaskOutcome outcome, client::Vehicle& vehicle) {
-  if (outcome.failure) {
-    return outcome;
-  }
-  const Status told =
-      vehicle.finish(outcome.reached(), outcome.reason, tasks::details_json(outcome));
-  return told ? outcome : TaskOutcome::failed(told.failure());
-}
-
 // The real row ------------------------------------------------------------------------------------
 
 Status keep_image(const std::string& path, const RealRow& row, const Streams& streams) {
@@ -170,14 +160,14 @@ int real_row_command(const CommandLine& line, const Connection& connection,
   if (row.outcome.reached()) {
     streams.out << table_2(row, connection.origin.location);
   }
-  return report(finished(row.outcome, *connection.vehicle), streams);
+  return report(finish(row.outcome, *connection.vehicle), streams);
 }
 
 int characterize_command(const CommandLine& line, const Connection& connection,
                          const Streams& streams) {
   const Characterization measured = measure(line, connection);
   if (!measured.outcome.reached()) {
-    return report(finished(measured.outcome, *connection.vehicle), streams);
+    return report(finish(measured.outcome, *connection.vehicle), streams);
   }
   std::vector<std::string> notes;
   const Result<MeasuredProfile> profile = make_profile(line, connection, measured.sensors, notes);
@@ -199,7 +189,7 @@ int characterize_command(const CommandLine& line, const Connection& connection,
   streams.out << table_1(connection.origin, measured.sensors) << '\n'
               << distribution_table(rows_of(measured.sensors, *profile)) << models_text(*profile)
               << '\n';
-  return report(finished(measured.outcome, *connection.vehicle), streams);
+  return report(finish(measured.outcome, *connection.vehicle), streams);
 }
 
 int run_command(const CommandLine& line, const Streams& streams) {

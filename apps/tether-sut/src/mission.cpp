@@ -48,16 +48,19 @@ TaskPointer make_task(const Mission& mission) {
 
 }  // namespace
 
-tasks::TaskOutcome fly(const Mission& mission, client::Vehicle& vehicle) {
-  tasks::TaskContext context(vehicle, mission.tasks.front().vision);
-  const TaskPointer task = make_task(mission);
-  tasks::TaskOutcome outcome = tasks::run(*task, context);
+tasks::TaskOutcome finish(const tasks::TaskOutcome& outcome, client::Vehicle& vehicle) {
   if (outcome.failure) {
     return outcome;
   }
   const Status finished =
       vehicle.finish(outcome.reached(), outcome.reason, tasks::details_json(outcome));
   return finished ? outcome : tasks::TaskOutcome::failed(finished.failure());
+}
+
+tasks::TaskOutcome fly(const Mission& mission, client::Vehicle& vehicle) {
+  tasks::TaskContext context(vehicle, mission.tasks.front().vision);
+  const TaskPointer task = make_task(mission);
+  return finish(tasks::run(*task, context), vehicle);
 }
 
 int exit_code(const tasks::TaskOutcome& outcome) {

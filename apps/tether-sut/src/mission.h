@@ -33,8 +33,11 @@ struct Mission {
   bool is_sequence = false;  ///< from a mission file; else one task, whose outcome is the mission's
 };
 
-/// Runs the tasks and tells the coordinator how it ended. Of tasks that could not run it tells
-/// nothing: that is no result, and the trial fails with the program's own words.
+/// Tells the coordinator how it ended; returns that, or that it could not be told. Of what could
+/// not run it tells nothing: that is no result, and the trial fails with the program's own words.
+tasks::TaskOutcome finish(const tasks::TaskOutcome& outcome, client::Vehicle& vehicle);
+
+/// Runs the tasks and finishes.
 tasks::TaskOutcome fly(const Mission& mission, client::Vehicle& vehicle);
 
 /// Exit code of the program (DESIGN section 5): 0 reached, 1 not reached, 2 the mission cannot be
