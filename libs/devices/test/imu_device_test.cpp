@@ -2,6 +2,7 @@
 
 #include "fake_system.h"
 #include "manual_clock.h"
+#include "opening.h"
 
 #include <cerrno>
 #include <cmath>
@@ -47,18 +48,8 @@ class ImuDeviceTest : public testing::Test {
   Result<std::unique_ptr<ImuDevice>> open() {
     return ImuDevice::open(system_, time_, "IMU iio:x", folders_);
   }
-  std::unique_ptr<ImuDevice> opened() {
-    auto device = open();
-    EXPECT_TRUE(device) << device.failure().message;
-    return std::move(*device);
-  }
-  std::string refusal() {
-    const auto device = open();
-    if (device) return "opened";
-    EXPECT_EQ(device.failure().kind, Failure::Kind::kInvalid);
-    EXPECT_THAT(device.failure().message, StartsWith("IMU iio:x: "));
-    return device.failure().message;
-  }
+  std::unique_ptr<ImuDevice> opened() { return devices::opened(open()); }
+  std::string refusal() { return devices::refusal(open(), "IMU iio:x"); }
   static void expect_near(const uav::Vec3& actual, const uav::Vec3& expected) {
     EXPECT_NEAR(actual.x, expected.x, 1e-9);
     EXPECT_NEAR(actual.y, expected.y, 1e-9);

@@ -2,6 +2,7 @@
 
 #include "fake_system.h"
 #include "manual_clock.h"
+#include "opening.h"
 
 #include <cerrno>
 #include <cmath>
@@ -32,18 +33,8 @@ class RangeDeviceTest : public testing::Test {
   Result<std::unique_ptr<RangeDevice>> open() {
     return RangeDevice::open(system_, time_, "rangefinder iio:x", scratch_.path(), limits_);
   }
-  std::unique_ptr<RangeDevice> opened() {
-    auto device = open();
-    EXPECT_TRUE(device) << device.failure().message;
-    return std::move(*device);
-  }
-  std::string refusal() {
-    const auto device = open();
-    if (device) return "opened";
-    EXPECT_EQ(device.failure().kind, Failure::Kind::kInvalid);
-    EXPECT_THAT(device.failure().message, StartsWith("rangefinder iio:x: "));
-    return device.failure().message;
-  }
+  std::unique_ptr<RangeDevice> opened() { return devices::opened(open()); }
+  std::string refusal() { return devices::refusal(open(), "rangefinder iio:x"); }
 
   ScratchFolder scratch_;
   ManualClock clock_;
