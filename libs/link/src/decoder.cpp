@@ -96,7 +96,7 @@ Result<Message> read(const wire::Request& request) {
   out.issued_at = from_ns<ExecTime>(request.issued_at_et_ns());
   out.previous_round_trip = Duration(request.previous_round_trip_ns());
   if (const auto* sensor = request.body_as_ReadSensor()) {
-    out.body = ReadSensor{sensor->sensor(), sensor->latest()};
+    out.body = ReadSensor{sensor->sensor(), sensor->latest(), sensor->only_if_available()};
   } else if (const auto* set = request.body_as_SetVelocity()) {
     out.body = SetVelocity{{from_wire(*set->velocity_h_m_s()), set->yaw_rate_rad_s()}};
   } else if (const auto* sleep = request.body_as_Sleep()) {
@@ -149,13 +149,16 @@ Result<Message> read(const wire::Reply& reply) {
 Result<Message> read(const wire::Hello& hello) {
   return Message(Hello{hello.protocol_version(), hello.sut()->str(), hello.uav()->str(),
                        static_cast<ClockKind>(hello.clock()), hello.cpu_factor(),
-                       hello.token()->str()});
+                       hello.token()->str(), hello.concurrent()});
 }
 Result<Message> read(const wire::Refusal& refusal) {
   return Message(Refusal{static_cast<Refusal::Reason>(refusal.reason()), refusal.message()->str()});
 }
 Result<Message> read(const wire::Progress& progress) {
-  return Message(Progress{from_ns<ExecTime>(progress.reached_et_ns())});
+  return Message(Progress{from_ns<ExecTime>(progress.reached_et_ns()), progress.stopped()});
+}
+Result<Message> read(const wire::Due& due) {
+  return Message(Due{due.sequence(), from_ns<ExecTime>(due.reply_at_et_ns())});
 }
 Result<Message> read(const wire::Annotation& annotation) {
   return Message(Annotation{from_ns<ExecTime>(annotation.at_et_ns()), annotation.topic()->str(),
@@ -178,6 +181,8 @@ Result<Message> read(const wire::Envelope& envelope) {
       return read(*envelope.content_as_Progress());
     case wire::Content::Annotation:
       return read(*envelope.content_as_Annotation());
+    case wire::Content::Due:
+      return read(*envelope.content_as_Due());
     case wire::Content::NONE:
       break;
   }

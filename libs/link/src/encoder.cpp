@@ -80,7 +80,7 @@ using Body = Member<wire::RequestBody>;
 
 Body write(FlatBufferBuilder& b, const ReadSensor& read) {
   return {wire::RequestBody::ReadSensor,
-          wire::CreateReadSensor(b, read.sensor, read.latest).Union()};
+          wire::CreateReadSensor(b, read.sensor, read.latest, read.only_if_available).Union()};
 }
 Body write(FlatBufferBuilder& b, const SetVelocity& set) {
   const wire::Vec3 velocity = to_wire(set.command.velocity_H_m_s);
@@ -142,10 +142,10 @@ Content write(FlatBufferBuilder& b, const Hello& hello, ImageSlot&) {
   const auto sut = b.CreateString(hello.sut);
   const auto uav = b.CreateString(hello.uav);
   const auto token = b.CreateString(hello.token);
-  return {wire::Content::Hello,
-          wire::CreateHello(b, hello.protocol_version, sut, uav,
-                            static_cast<wire::ClockKind>(hello.clock), hello.cpu_factor, token)
-              .Union()};
+  return {wire::Content::Hello, wire::CreateHello(b, hello.protocol_version, sut, uav,
+                                                  static_cast<wire::ClockKind>(hello.clock),
+                                                  hello.cpu_factor, token, hello.concurrent)
+                                    .Union()};
 }
 Content write(FlatBufferBuilder& b, const Welcome& welcome, ImageSlot&) {
   const auto catalogue = write(b, welcome.catalogue);
@@ -175,7 +175,11 @@ Content write(FlatBufferBuilder& b, const Reply& reply, ImageSlot& slot) {
       wire::CreateReply(b, reply.sequence, to_ns(reply.resume_at), sample.kind, sample.at).Union()};
 }
 Content write(FlatBufferBuilder& b, const Progress& progress, ImageSlot&) {
-  return {wire::Content::Progress, wire::CreateProgress(b, to_ns(progress.reached)).Union()};
+  return {wire::Content::Progress,
+          wire::CreateProgress(b, to_ns(progress.reached), progress.stopped).Union()};
+}
+Content write(FlatBufferBuilder& b, const Due& due, ImageSlot&) {
+  return {wire::Content::Due, wire::CreateDue(b, due.sequence, to_ns(due.reply_at)).Union()};
 }
 Content write(FlatBufferBuilder& b, const Annotation& annotation, ImageSlot&) {
   const auto topic = b.CreateString(annotation.topic);

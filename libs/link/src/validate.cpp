@@ -190,6 +190,12 @@ void check(Checker& c, const Progress& progress) {
   c.timestamp(progress.reached, "reached");
 }
 
+void check(Checker& c, const Due& due) {
+  c.in("Due: ");
+  c.require(due.sequence > 0, "sequence", "is 0");
+  c.timestamp(due.reply_at, "reply_at");
+}
+
 void check(Checker& c, const Annotation& annotation) {
   c.in("Annotation: ");
   c.timestamp(annotation.at, "at");

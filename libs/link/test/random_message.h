@@ -14,13 +14,13 @@ class RandomMessage {
  public:
   explicit RandomMessage(std::uint64_t index) : random_({7, 1, index}) {}
 
-  Message draw() { return draw(random_.bits() % 7); }
+  Message draw() { return draw(random_.bits() % 8); }
 
   Message draw(std::uint32_t kind) {
     switch (kind) {
       case 0:
         return Hello{random_.bits(),  text(), text(), static_cast<ClockKind>(random_.bits() % 4),
-                     0.01 + number(), text()};
+                     0.01 + number(), text(), coin()};
       case 1:
         return welcome();
       case 2:
@@ -30,7 +30,9 @@ class RandomMessage {
       case 4:
         return reply();
       case 5:
-        return Progress{time<ExecTime>()};
+        return Progress{time<ExecTime>(), coin()};
+      case 6:
+        return Due{1 + word() % 1000, time<ExecTime>()};
       default:
         return Annotation{time<ExecTime>(), "t" + text(), json()};
     }
@@ -93,7 +95,7 @@ class RandomMessage {
     out.previous_round_trip = time<ExecTime>().time_since_epoch();
     switch (random_.bits() % 4) {
       case 0:
-        out.body = ReadSensor{random_.bits() % 1000, coin()};
+        out.body = ReadSensor{random_.bits() % 1000, coin(), coin()};
         break;
       case 1:
         out.body = SetVelocity{{vec3(), number()}};

@@ -16,6 +16,7 @@ struct Failure {
     kTimeout,       ///< no answer within the limit
     kRunEnded,      ///< the coordinator ended the run
     kInvalid,       ///< the caller's argument cannot be used
+    kNothingYet,    ///< a read that was not to wait found nothing; not an error
   };
   Kind kind = Kind::kInvalid;
   std::string message;  ///< one line for a person

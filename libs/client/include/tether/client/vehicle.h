@@ -15,6 +15,9 @@ namespace tether::client {
 enum class Read {
   kNext,    ///< the newest measurement that was not yet read; waits for the next if there is none
   kLatest,  ///< the newest one, again if need be
+  /// The newest measurement that was not yet read, at once; Failure::Kind::kNothingYet if there is
+  /// none. Of a sensor that measures on demand: kInvalid.
+  kIfAvailable,
 };
 
 /// The UAV as its own program sees it, simulated or real. Every call that talks to the UAV is an

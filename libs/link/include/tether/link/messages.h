@@ -14,10 +14,12 @@
 /// What SUT and coordinator say to each other, in our own types. The wire format (FlatBuffers,
 /// `schema/link.fbs`) and this header say the same; `codec.h` converts. Every conversation: Hello →
 /// Welcome or Refusal; then Requests, each answered by one Reply (or by Refusal, which ends it),
-/// with Progress and Annotation one-way in between; Finish ends.
+/// with Progress and Annotation one-way in between; Finish ends. A SUT that
+/// said in its Hello that it is concurrent may have several Requests open; of each it is told at
+/// once when its reply is due (Due).
 namespace tether::link {
 
-inline constexpr std::uint32_t kProtocolVersion = 1;
+inline constexpr std::uint32_t kProtocolVersion = 2;
 
 /// How the SUT's execution time is measured (DESIGN section 2).
 enum class ClockKind : std::uint8_t { kWall = 0, kCpu = 1, kScripted = 2, kUnstamped = 3 };
@@ -29,8 +31,13 @@ struct Hello {
   std::string sut;  ///< the program's name and version
   std::string uav;  ///< which UAV it flies; empty: the only one
   ClockKind clock = ClockKind::kWall;
-  double cpu_factor = 1.0;  ///< of ClockKind::kCpu: seconds of ET per second of CPU time
+  /// Of a virtual target: seconds of ET per second of what the clock measures. 1 where it is the
+  /// target itself that computes.
+  double cpu_factor = 1.0;
   std::string token;
+  /// Several threads or processes call, each waiting for its own reply only. Under the barrier all
+  /// of them stand still while a reply that is due is not there (Progress::stopped).
+  bool concurrent = false;
 };
 
 /// Coordinator → SUT: accepted.
@@ -53,6 +60,8 @@ struct ReadSensor {
   std::uint32_t sensor = 0;
   bool latest =
       false;  ///< periodic sensors: take the last measurement again rather than wait for a new one
+  /// Periodic sensors: reply at once, without a sample where none is available that would do.
+  bool only_if_available = false;
 };
 struct SetVelocity {
   uav::VelocityCommand command;
@@ -70,8 +79,10 @@ struct Finish {
 
 /// SUT → coordinator: an interaction begins.
 struct Request {
-  std::uint64_t sequence = 0;       ///< 1, 2, 3, …
-  ExecTime issued_at;               ///< t_req; ignored from an unstamped client
+  std::uint64_t sequence = 0;  ///< 1, 2, 3, …
+  /// t_req; ignored from an unstamped client. Of a concurrent SUT not before that of an earlier
+  /// request, nor before any Progress.
+  ExecTime issued_at;
   Duration previous_round_trip{0};  ///< WT on the SUT's side from issuing the previous request to
                                     ///< having its reply; 0: not measured
   std::variant<ReadSensor, SetVelocity, Sleep, Finish> body;
@@ -81,12 +92,23 @@ struct Request {
 struct Reply {
   std::uint64_t sequence = 0;
   ExecTime resume_at;                 ///< t_rep: the SUT goes on with ET = this
-  std::optional<uav::Sample> sample;  ///< of ReadSensor
+  std::optional<uav::Sample> sample;  ///< of ReadSensor; none where nothing was available
+};
+
+/// Coordinator → concurrent SUT under the barrier, as soon as a request has arrived: when its reply
+/// is due. The SUT may run until its ET reaches `reply_at`, and stands still from there until the
+/// reply comes.
+struct Due {
+  std::uint64_t sequence = 0;
+  ExecTime reply_at;  ///< t_rep, ≥ the request's stamp
 };
 
 /// SUT → coordinator while it computes: ET has reached at least this.
 struct Progress {
   ExecTime reached;
+  /// Of a concurrent SUT under the barrier: all of its threads stand still, and did so from
+  /// `reached` on.
+  bool stopped = false;
 };
 
 /// SUT → coordinator: something for the record (ROI, estimate, task phase). Costs no ET; not
@@ -97,6 +119,6 @@ struct Annotation {
   std::string json;   ///< one JSON object
 };
 
-using Message = std::variant<Hello, Welcome, Refusal, Request, Reply, Progress, Annotation>;
+using Message = std::variant<Hello, Welcome, Refusal, Request, Reply, Progress, Annotation, Due>;
 
 }  // namespace tether::link

@@ -10,8 +10,10 @@
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/scenario/clock.h>
 #include <tether/scenario/metric.h>
 #include <tether/scenario/profile.h>
+#include <tether/scenario/target.h>
 #include <tether/sim/world.h>
 #include <tether/uav/sensor_timing.h>
 
@@ -20,11 +22,8 @@
 namespace tether::scenario {
 
 enum class Policy { kConservativeBarrier, kFreeRunning };
-enum class Clock { kWall, kCpu, kScripted };
 /// As written in files: "conservative_barrier", "free_running".
 std::string_view name(Policy policy);
-/// As written in files: "wall", "cpu", "scripted".
-std::string_view name(Clock clock);
 
 /// Where the SUT runs and how it is tied: "host", "target", "target, no sync" (paper, Section V).
 struct Condition {
@@ -40,6 +39,8 @@ struct Condition {
   /// Laid over every UAV's sensors in this order: its own, then what a campaign or the command line
   /// lays on top.
   std::vector<Profile> profiles{};
+  /// Where the SUT runs; its clock and factor are those above. None: on this host.
+  std::optional<Target> target{};
 };
 
 /// The SUT's command; its parameters become `--key value` arguments (underscores as dashes). Those

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string_view>
+
+namespace tether::scenario {
+
+/// How a SUT's time is measured (DESIGN section 2).
+enum class Clock { kWall, kCpu, kScripted };
+/// As written in files: "wall", "cpu", "scripted".
+std::string_view name(Clock clock);
+
+}  // namespace tether::scenario

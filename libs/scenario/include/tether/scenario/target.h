@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tether/scenario/clock.h>
+
+/// Where the SUT runs: this host, a virtual target on it, or a board (profiles/targets/*.toml).
+namespace tether::scenario {
+
+/// A machine that OpenSSH reaches, as its own command line takes it.
+struct SshAddress {
+  std::string destination;  ///< "user@board", or a name from the user's ssh_config
+  int port = 0;             ///< 0: what ssh_config says
+};
+
+struct Target {
+  std::filesystem::path file;     ///< absolute; empty: made on the command line
+  std::string name;               ///< letters, digits, '_', '-', '.', '@'
+  std::string description;        ///< one line; may be empty
+  std::optional<SshAddress> ssh;  ///< none: this host
+  Clock clock = Clock::kWall;
+  /// Of a virtual target: seconds of ET per second of what the clock measures.
+  double cpu_factor = 1.0;
+  int cores = 0;                      ///< the SUT may use so many; 0: all
+  std::vector<std::string> launcher;  ///< before the SUT's command, e.g. {"qemu-aarch64", …}
+  /// Where SUT programs named without '/' are: on the board, or on this host (absolute). Empty:
+  /// in the PATH there; on this host, beside `tether` first.
+  std::string program_folder;
+};
+
+/// "ssh://[user@]host[:port]". @throws Error(kUsage) saying what is expected.
+SshAddress parse_ssh_address(std::string_view text);
+/// As parse_ssh_address takes it.
+std::string to_string(const SshAddress& address);
+
+/// Reads and checks a target file (docs/guide/target.md).
+/// @throws Error(kBadFile) with file and line, saying what is wrong and what is allowed.
+Target load_target(const std::filesystem::path& file);
+
+}  // namespace tether::scenario
