@@ -26,6 +26,8 @@ packages_build=(
   gnuplot-nox
 )
 packages_test=(git libgtest-dev libgmock-dev libbenchmark-dev clang-format)
+# Boards in the tests: this machine, over SSH.
+packages_test+=(openssh-server openssh-client)
 packages_tidy=(git clang-tidy)
 
 # True where a package is installed. A name may be satisfied by another package that provides it.
