@@ -29,7 +29,7 @@ struct RunOptions {
   std::filesystem::path out;
   std::string listen = "127.0.0.1:0";
   double real_time_factor = 0.0;
-  bool external_sut = false;
+  std::string target;
   bool record_images = false;
   bool json = false;
   bool quiet = false;
@@ -43,6 +43,12 @@ scenario::Condition pick_condition(const scenario::Scenario& scenario, const std
     names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", condition.name);
   throw Error(ErrorCode::kUsage, fmt::format("{} has no condition \"{}\"; it has {}",
                                              scenario.file.string(), wanted, names));
+}
+
+/// Whether --target has the user start the SUT.
+bool waits_for_sut(const std::string& target) {
+  if (target.empty() || target == "wait") return !target.empty();
+  throw Error(ErrorCode::kUsage, fmt::format("--target \"{}\": expected \"wait\"", target));
 }
 
 TrialSpec make_spec(const RunOptions& options) {
@@ -61,7 +67,7 @@ TrialSpec make_spec(const RunOptions& options) {
   const auto address = link::parse_address(options.listen);
   if (!address) throw Error(ErrorCode::kUsage, "--listen: " + address.failure().message);
   spec.listen = *address;
-  spec.external_sut = options.external_sut;
+  spec.waits_for_sut = waits_for_sut(options.target);
   return spec;
 }
 
@@ -137,8 +143,9 @@ void add_run_command(CLI::App& program, Action& action) {
       ->check(CLI::Range(1e-3, 1e4));
   command->add_option("--listen", options->listen, "Address for the SUT; port 0 takes a free one")
       ->capture_default_str();
-  command->add_flag("--external-sut", options->external_sut,
-                    "Do not start the SUT: print what it needs, and wait for it");
+  command->add_option(
+      "--target", options->target,
+      "\"wait\": do not start the SUT, print what to type where it runs, and wait for it");
   command->add_flag("--images", options->record_images,
                     "Keep the camera images that the SUT consumed in the record");
   command->add_flag("--json", options->json, "Print result.json instead of a summary");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "child_process.h"
+#include "sut_environment.h"
 
 #include <filesystem>
 #include <memory>
@@ -11,19 +12,6 @@
 #include <tether/scenario/scenario.h>
 
 namespace tether::app {
-
-/// What a SUT needs to know of its run.
-struct SutRun {
-  std::string address;  ///< of the coordinator, host:port
-  std::string token;
-  scenario::Condition condition;
-};
-
-/// For a person who starts the SUTs: a command line for each, with its environment.
-std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run);
-
-/// @throws Error(kBadFile) naming the scenario and the UAV where a SUT's program cannot be found.
-void require_sut_programs(const scenario::Scenario& scenario);
 
 /// The scenario's SUTs as processes of this machine; they end with the object. Not thread-safe.
 class SutProcesses {

@@ -1,6 +1,7 @@
 #include "trial.h"
 
 #include "interrupt.h"
+#include "local_sut.h"
 #include "machine.h"
 #include "sut_processes.h"
 #include "trial_folder.h"
@@ -68,7 +69,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
   options.real_time_factor = spec.condition.real_time_factor;
   options.time_limit = spec.scenario.time_limit;
   options.hang_limit = spec.scenario.hang_limit;
-  if (spec.external_sut) options.connect_limit = std::chrono::hours(24);
+  if (spec.waits_for_sut) options.connect_limit = std::chrono::hours(24);
   options.ground_truth_period = spec.scenario.ground_truth_period;
   options.record_images = spec.scenario.record_images;
   options.image_period = spec.scenario.image_period;
@@ -101,9 +102,9 @@ coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
   const auto server = link::listen_tcp(spec.listen, kHelloTimeout, coordinator.events());
   const SutRun sut_run{link::to_string(server->address()), token, spec.condition};
   SutProcesses suts;
-  if (!spec.external_sut) suts.start(spec.scenario, sut_run, spec.folder);
+  if (!spec.waits_for_sut) suts.start(spec.scenario, sut_run, spec.folder);
   warm_up_cameras(simulator);
-  if (spec.external_sut && observer.on_listening)
+  if (spec.waits_for_sut && observer.on_listening)
     observer.on_listening(sut_instructions(spec.scenario, sut_run));
 
   bool joined = false, left_early = false;
@@ -173,7 +174,7 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
   const Timings timings =
       scenario::resolve_sensors(spec.scenario, spec.condition, world, observer.warn);
   world.step = spec.scenario.step;
-  if (!spec.external_sut) require_sut_programs(spec.scenario);
+  if (!spec.waits_for_sut) require_sut_programs(spec.scenario, spec.condition);
   const TrialFolder folder(spec.folder);
 
   const std::string started_at = utc_now();

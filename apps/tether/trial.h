@@ -22,8 +22,8 @@ struct TrialSpec {
   std::uint64_t seed = 1;
   std::filesystem::path folder;  ///< gets result.json, record.mcap and the SUTs' logs
   link::Address listen{"127.0.0.1", 0};
-  bool external_sut =
-      false;  ///< the user starts the SUT; else the scenario's command is started here
+  /// The user starts the SUT; else the scenario's command is started where the condition says.
+  bool waits_for_sut = false;
 };
 
 /// Who is told what while a trial runs.
@@ -32,7 +32,7 @@ struct TrialObserver {
   std::function<void(const coordinator::RunStatus&)> on_status;
   /// Somebody was not let in; one line.
   std::function<void(const std::string&)> on_refused;
-  /// External SUT: where to connect, and the environment that it needs.
+  /// Waiting for the SUT: where to connect, and the environment that it needs.
   std::function<void(const std::string& instructions)> on_listening;
 };
 

@@ -79,7 +79,7 @@ TEST(Token, IsNewForEachRun) {
   const std::string key = "TETHER_TOKEN=";
   std::vector<std::string> tokens;
   for (const char* out : {"a", "b"}) {
-    Command command = tether({"run", scenario, "--external-sut", "--out", folder / out});
+    Command command = tether({"run", scenario, "--target", "wait", "--out", folder / out});
     command.environment.emplace_back("TETHER_TOKEN", "");
     Process process(command);
     ASSERT_TRUE(process.wait_for_err(key, 30s)) << process.err();

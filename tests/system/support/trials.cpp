@@ -126,7 +126,7 @@ void write_record(const std::filesystem::path& file, const record::Record& recor
 
 ExternalRun::ExternalRun(const std::filesystem::path& scenario, const std::filesystem::path& out,
                          const std::vector<std::string>& options) {
-  Command command = tether({"run", scenario, "--out", out, "--external-sut", "--quiet"});
+  Command command = tether({"run", scenario, "--out", out, "--target", "wait", "--quiet"});
   command.arguments.insert(command.arguments.end(), options.begin(), options.end());
   command.environment.emplace_back("TETHER_TOKEN", kToken);
   tether_ = std::make_unique<Process>(command);

@@ -54,7 +54,7 @@ void write_record(const std::filesystem::path& file, const record::Record& recor
 /// their own.
 class ExternalRun {
  public:
-  /// Starts `tether run --external-sut --quiet` and waits until it listens.
+  /// Starts `tether run --target wait --quiet` and waits until it listens.
   /// @throws std::runtime_error with its output if it does not.
   ExternalRun(const std::filesystem::path& scenario, const std::filesystem::path& out,
               const std::vector<std::string>& options = {});

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "child_process.h"
+#include "sut_environment.h"
+
+#include <filesystem>
+
+#include <tether/scenario/scenario.h>
+
+/// SUTs as processes of this machine.
+namespace tether::app {
+
+/// @throws Error(kBadFile) naming the scenario and the UAV where a SUT's program cannot be found
+/// here.
+void require_sut_programs(const scenario::Scenario& scenario, const scenario::Condition& condition);
+
+/// How to start the SUT of `uav` here. It may leave files in `out`; its output goes to `log`.
+/// @throws Error(kSetup) when `out` cannot be made.
+ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run,
+                       const std::filesystem::path& out, const std::filesystem::path& log);
+
+}  // namespace tether::app

@@ -1,0 +1,70 @@
+#include "sut_environment.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tether::app {
+
+namespace {
+
+/// As the client library takes it.
+std::string clock_of(const scenario::Condition& condition) {
+  switch (condition.clock) {
+    case scenario::Clock::kWall:
+      return "wall";
+    case scenario::Clock::kCpu:
+      return fmt::format("cpu*{}", condition.cpu_factor);
+    case scenario::Clock::kScripted:
+      return fmt::format("scripted*{}", static_cast<double>(condition.computing.count()) / 1e6);
+  }
+  return "wall";
+}
+
+}  // namespace
+
+std::vector<std::string> command_line(const scenario::Sut& sut) {
+  std::vector<std::string> words = sut.command;
+  for (const auto& [key, value] : sut.parameters) {
+    std::string option = "--" + key;
+    std::replace(option.begin(), option.end(), '_', '-');
+    words.push_back(option);
+    words.push_back(value);
+  }
+  return words;
+}
+
+Environment environment_of(const std::string& uav, const SutRun& run) {
+  return {{"TETHER_ADDRESS", run.address},
+          {"TETHER_TOKEN", run.token},
+          {"TETHER_UAV", uav},
+          {"TETHER_CLOCK", clock_of(run.condition)}};
+}
+
+std::string shell_word(const std::string& text) {
+  const bool is_plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) ||
+           std::string_view("_.:/-").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (is_plain && !text.empty()) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
+std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run) {
+  std::string text;
+  for (const scenario::UavSetup& uav : scenario.uavs) {
+    for (const auto& [name, value] : environment_of(uav.placement.name, run))
+      text += fmt::format("{}={} ", name, shell_word(value));
+    std::vector<std::string> words = command_line(uav.sut);
+    std::transform(words.begin(), words.end(), words.begin(), shell_word);
+    text += fmt::format("{}\n", fmt::join(words, " "));
+  }
+  return text;
+}
+
+}  // namespace tether::app

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tether/scenario/scenario.h>
+
+/// What a SUT is started with, wherever it runs.
+namespace tether::app {
+
+/// What a SUT needs to know of its run.
+struct SutRun {
+  std::string address;  ///< of the coordinator, host:port
+  std::string token;
+  scenario::Condition condition;
+};
+
+using Environment = std::vector<std::pair<std::string, std::string>>;
+
+/// The SUT's program with its parameters as options: max_frames = 5 becomes --max-frames 5.
+std::vector<std::string> command_line(const scenario::Sut& sut);
+/// What joins the SUT of that UAV to the run, as the client library takes it.
+Environment environment_of(const std::string& uav, const SutRun& run);
+
+/// As a shell takes it for one word and nothing more.
+std::string shell_word(const std::string& text);
+/// For a person who starts the SUTs: a command line for each, with its environment.
+std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run);
+
+}  // namespace tether::app
