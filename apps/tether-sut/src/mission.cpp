@@ -80,6 +80,7 @@ int exit_code(const Failure& failure) {
     case Failure::Kind::kDisconnected:
     case Failure::Kind::kProtocol:
     case Failure::Kind::kTimeout:
+    case Failure::Kind::kNothingYet:
       break;
   }
   return 3;
