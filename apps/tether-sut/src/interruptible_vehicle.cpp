@@ -20,6 +20,7 @@ class InterruptibleVehicle : public client::Vehicle {
 
   ExecTime now() const override { return vehicle_->now(); }
   const uav::Catalogue& catalogue() const override { return vehicle_->catalogue(); }
+  bool is_concurrent() const override { return vehicle_->is_concurrent(); }
 
   Result<uav::CameraSample> read_camera(std::string_view sensor, client::Read read) override {
     return unless_interrupted([&] { return vehicle_->read_camera(sensor, read); });

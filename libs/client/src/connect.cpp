@@ -31,6 +31,20 @@ Result<link::Welcome> shake_hands(link::Channel& channel, const ConnectOptions& 
                  "Welcome nor Refusal"};
 }
 
+/// In free running a virtual target is imitated by stalling.
+Status check_free_running(const link::Welcome& welcome, const TimeSource& time) {
+  if (!welcome.free_running) return ok_status();
+  if (time.kind() == link::ClockKind::kWall && time.factor() != 1.0) {
+    return Failure{Failure::Kind::kInvalid,
+                   "wall*FACTOR cannot be used in free running, where the wall clock is ST's too; "
+                   "use cpu*FACTOR"};
+  }
+  if (time.factor() >= 1.0) return ok_status();
+  return Failure{Failure::Kind::kInvalid,
+                 "a CPU clock factor below 1 cannot be used in free running: a machine faster "
+                 "than this one cannot be imitated by stalling"};
+}
+
 /// How often to send Progress; 0: never. In free running a scripted SUT sends it too: nothing there
 /// repeats to the byte.
 Duration progress_period(const ConnectOptions& options, const link::Welcome& welcome) {
@@ -46,11 +60,7 @@ Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,
   if (!options.time) options.time = make_wall_source();
   auto welcome = shake_hands(*channel, options);
   if (!welcome) return welcome.failure();
-  if (welcome->free_running && options.time->factor() < 1.0) {
-    return Failure{Failure::Kind::kInvalid,
-                   "a CPU clock factor below 1 cannot be used in free running: a machine faster "
-                   "than this one cannot be imitated by stalling"};
-  }
+  if (const Status good = check_free_running(*welcome, *options.time); !good) return good.failure();
   const Duration period = progress_period(options, *welcome);
   return std::unique_ptr<Vehicle>(std::make_unique<SimulatedVehicle>(
       std::move(channel), std::move(*welcome), std::move(options.time), make_wall_timer(), period));

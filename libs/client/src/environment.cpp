@@ -3,6 +3,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include <tether/client/simulated_vehicle.h>
 
@@ -39,9 +40,13 @@ std::optional<std::string> after(const std::string& text, const std::string& pre
 }
 
 /// Null: not a clock.
-std::unique_ptr<TimeSource> parse_clock(const std::string& text) {
+std::unique_ptr<TimeSource> make_source(const std::string& text) {
   if (text == "wall") return make_wall_source();
   if (text == "cpu") return make_cpu_source(1.0);
+  if (const auto factor = after(text, "wall*")) {
+    const auto value = parse_number(*factor, 1e-6, 1e6);
+    return value ? make_wall_source(*value) : nullptr;
+  }
   if (const auto factor = after(text, "cpu*")) {
     const auto value = parse_number(*factor, 1e-6, 1e6);
     return value ? make_cpu_source(*value) : nullptr;
@@ -54,6 +59,14 @@ std::unique_ptr<TimeSource> parse_clock(const std::string& text) {
 }
 
 }  // namespace
+
+Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text) {
+  if (auto source = make_source(text)) return source;
+  return Failure{Failure::Kind::kInvalid,
+                 "'" + text +
+                     "'; allowed are wall, cpu, wall*FACTOR or cpu*FACTOR (e.g. cpu*4: a target "
+                     "four times slower; 1e-6 to 1e6) and scripted*MILLISECONDS"};
+}
 
 Result<ConnectOptions> options_from_environment() {
   ConnectOptions options;
@@ -72,14 +85,9 @@ Result<ConnectOptions> options_from_environment() {
   options.token = *token;
   options.uav = variable("TETHER_UAV").value_or("");
 
-  const std::string clock = variable("TETHER_CLOCK").value_or("wall");
-  options.time = parse_clock(clock);
-  if (!options.time) {
-    return Failure{Failure::Kind::kInvalid,
-                   "TETHER_CLOCK is '" + clock +
-                       "'; allowed are wall, cpu, cpu*FACTOR (e.g. cpu*4: a target four times "
-                       "slower; 1e-6 to 1e6) and scripted*MILLISECONDS"};
-  }
+  auto time = parse_time_source(variable("TETHER_CLOCK").value_or("wall"));
+  if (!time) return Failure{Failure::Kind::kInvalid, "TETHER_CLOCK is " + time.failure().message};
+  options.time = std::move(*time);
   return options;
 }
 

@@ -1,30 +1,10 @@
 #include "progress_reporter.h"
 
+#include "signals_blocked.h"
+
 #include <utility>
 
-#include <pthread.h>
-#include <signal.h>
-
 namespace tether::client {
-namespace {
-
-/// A thread inherits the signal mask of its creator.
-class SignalsBlocked {
- public:
-  SignalsBlocked() {
-    sigset_t all;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  ~SignalsBlocked() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsBlocked(const SignalsBlocked&) = delete;
-  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
-
- private:
-  sigset_t before_{};
-};
-
-}  // namespace
 
 ProgressReporter::ProgressReporter(Duration period, TimeSource& source,
                                    std::function<bool()> report)

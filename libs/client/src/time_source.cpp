@@ -18,10 +18,23 @@ Duration read_clock(clockid_t clock) {
   return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
 }
 
+Duration scaled(Duration measured, double factor) {
+  if (factor == 1.0) return measured;
+  return Duration(std::llround(static_cast<double>(measured.count()) * factor));
+}
+
 class WallSource final : public TimeSource {
  public:
+  explicit WallSource(double factor) : factor_(factor) {}
   link::ClockKind kind() const override { return link::ClockKind::kWall; }
-  Duration elapsed() const override { return read_clock(CLOCK_MONOTONIC); }
+  double factor() const override { return factor_; }
+  Duration elapsed() const override {
+    return scaled(read_clock(CLOCK_MONOTONIC) - origin_, factor_);
+  }
+
+ private:
+  double factor_;
+  Duration origin_ = read_clock(CLOCK_MONOTONIC);  // small numbers lose nothing when scaled
 };
 
 class CpuSource final : public TimeSource {
@@ -46,10 +59,9 @@ class CpuSource final : public TimeSource {
 
 Duration CpuSource::elapsed() const {
   const std::lock_guard lock(mutex_);
-  const double scaled_ns = static_cast<double>(measured().count()) * factor_;
   // The two clocks behind `measured` cannot be read at the same instant; what that may take back is
   // held back.
-  newest_ = std::max(newest_, Duration(std::llround(scaled_ns)));
+  newest_ = std::max(newest_, scaled(measured(), factor_));
   return newest_;
 }
 
@@ -92,8 +104,8 @@ class ScriptedSource final : public TimeSource {
 
 }  // namespace
 
-std::unique_ptr<TimeSource> make_wall_source() {
-  return std::make_unique<WallSource>();
+std::unique_ptr<TimeSource> make_wall_source(double factor) {
+  return std::make_unique<WallSource>(factor);
 }
 std::unique_ptr<TimeSource> make_cpu_source(double factor) {
   return std::make_unique<CpuSource>(factor);

@@ -53,7 +53,7 @@ TEST_F(Environment, UavAndClockMayBeUnset) {
 TEST_F(Environment, Clocks) {
   for (const auto& [text, kind] :
        {std::pair{"wall", link::ClockKind::kWall}, std::pair{"cpu", link::ClockKind::kCpu},
-        std::pair{"cpu*0.5", link::ClockKind::kCpu},
+        std::pair{"cpu*0.5", link::ClockKind::kCpu}, std::pair{"wall*4", link::ClockKind::kWall},
         std::pair{"scripted*12.5", link::ClockKind::kScripted}}) {
     set("TETHER_CLOCK", text);
     const auto options = options_from_environment();
@@ -75,8 +75,9 @@ TEST_F(Environment, SaysWhatIsWrong) {
   set("TETHER_ADDRESS", "nowhere");
   expect_failure("TETHER_ADDRESS", "'nowhere'");
   set("TETHER_ADDRESS", "127.0.0.1:5200");
-  for (const std::string clock : {"", "clock", "cpu*", "cpu*0", "cpu*-1", "cpu*nan", "cpu*2x",
-                                  "cpu*1e9", "cpu*2,5", "scripted", "scripted*0", "Wall"}) {
+  for (const std::string clock :
+       {"", "clock", "cpu*", "cpu*0", "cpu*-1", "cpu*nan", "cpu*2x", "cpu*1e9", "wall*", "wall*0",
+        "wall4", "cpu*2,5", "scripted", "scripted*0", "Wall"}) {
     set("TETHER_CLOCK", clock);
     expect_failure("TETHER_CLOCK", "'" + clock + "'; allowed are wall, cpu");
   }

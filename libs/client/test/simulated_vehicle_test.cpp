@@ -73,6 +73,22 @@ TEST_F(SimulatedVehicleTest, ReadsEachSensorByItsIndex) {
   EXPECT_EQ(requests[2].sequence, 3u);
 }
 
+TEST_F(SimulatedVehicleTest, ReadsWhatIsAvailable) {
+  start([](const Request& r) {
+    const bool first = r.sequence == 1;
+    Reply reply{r.sequence, r.issued_at, std::nullopt};
+    if (!first) reply.sample = uav::RangeSample{SimTime{}, 2, 1.5};
+    return one(reply);
+  });
+  expect_failure(status_of(vehicle_->read_range("down", Read::kIfAvailable)),
+                 Failure::Kind::kNothingYet, "'down' has measured nothing new yet");
+  EXPECT_EQ(vehicle_->read_range("down", Read::kIfAvailable)->range_m, 1.5);
+  EXPECT_TRUE(std::get<link::ReadSensor>(coordinator_->requests()[0].body).only_if_available);
+  expect_failure(status_of(vehicle_->read_imu("imu", Read::kIfAvailable)), Failure::Kind::kInvalid,
+                 "measures on demand");
+  EXPECT_FALSE(vehicle_->is_concurrent());
+}
+
 TEST_F(SimulatedVehicleTest, NamesTheSensorsThatThereAre) {
   start();
   for (const std::string name : {"nose", "imu"}) {

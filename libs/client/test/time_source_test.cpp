@@ -32,6 +32,19 @@ TEST(WallSource, KeepsUpWithTheMonotonicClock) {
   EXPECT_GE(source->elapsed() - begin, kBusy);
 }
 
+TEST(WallSource, PassesFactorTimesAsFast) {
+  const auto wall = make_wall_source();
+  const auto source = make_wall_source(8.0);
+  EXPECT_EQ(source->factor(), 8.0);
+  const Duration wall_begin = wall->elapsed();
+  const Duration begin = source->elapsed();
+  compute(kBusy);
+  const Duration measured = source->elapsed() - begin;
+  const Duration wall_passed = wall->elapsed() - wall_begin;
+  EXPECT_GE(measured, 8 * kBusy);
+  EXPECT_LE(measured, 8 * wall_passed);
+}
+
 TEST(CpuSource, MeasuresComputingTimesItsFactor) {
   const auto source = make_cpu_source(8.0);
   EXPECT_EQ(source->kind(), link::ClockKind::kCpu);

@@ -11,6 +11,12 @@ namespace {
 /// 146 years: what can be added to any instant since the machine was started.
 constexpr Duration kLongest{std::numeric_limits<std::int64_t>::max() / 2};
 
+Status check(client::Read read) {
+  if (read != client::Read::kIfAvailable) return ok_status();
+  return Failure{Failure::Kind::kInvalid,
+                 "the devices of a rig wait for what they measure; read with kNext or kLatest"};
+}
+
 }  // namespace
 
 RigVehicle::RigVehicle(std::unique_ptr<Clock> clock, const Timeline& time, uav::Catalogue catalogue,
@@ -41,20 +47,26 @@ Failure RigVehicle::no_such_sensor(std::string_view sensor, uav::SensorKind kind
 }
 
 Result<uav::CameraSample> RigVehicle::read_camera(std::string_view sensor, client::Read read) {
+  const std::lock_guard lock(calls_);
   CameraDevice* const device = find<CameraDevice>(sensor);
   if (device == nullptr) return no_such_sensor(sensor, uav::SensorKind::kCamera);
+  if (const Status good = check(read); !good) return good.failure();
   return device->read(read);
 }
 
-Result<uav::ImuSample> RigVehicle::read_imu(std::string_view sensor, client::Read) {
+Result<uav::ImuSample> RigVehicle::read_imu(std::string_view sensor, client::Read read) {
+  const std::lock_guard lock(calls_);
   ImuDevice* const device = find<ImuDevice>(sensor);
   if (device == nullptr) return no_such_sensor(sensor, uav::SensorKind::kImu);
+  if (const Status good = check(read); !good) return good.failure();
   return device->read();
 }
 
-Result<uav::RangeSample> RigVehicle::read_range(std::string_view sensor, client::Read) {
+Result<uav::RangeSample> RigVehicle::read_range(std::string_view sensor, client::Read read) {
+  const std::lock_guard lock(calls_);
   RangeDevice* const device = find<RangeDevice>(sensor);
   if (device == nullptr) return no_such_sensor(sensor, uav::SensorKind::kRange);
+  if (const Status good = check(read); !good) return good.failure();
   return device->read();
 }
 
@@ -68,6 +80,7 @@ Status RigVehicle::sleep_for(Duration duration) {
 }
 
 Status RigVehicle::sleep_until(ExecTime until) {
+  const std::lock_guard lock(calls_);
   clock_->sleep_until(time_.monotonic(std::min(until, ExecTime(kLongest))));
   return ok_status();
 }

@@ -6,6 +6,7 @@
 #include "range_device.h"
 
 #include <memory>
+#include <mutex>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -48,6 +49,7 @@ class RigVehicle final : public client::Vehicle {
   Timeline time_;
   uav::Catalogue catalogue_;
   std::vector<Device> devices_;
+  std::mutex calls_;  // a device serves one call at a time
 };
 
 }  // namespace tether::devices

@@ -54,6 +54,13 @@ TEST_F(RigVehicleTest, SaysWhichSensorsItHas) {
   }
 }
 
+TEST_F(RigVehicleTest, AlwaysWaitsForAMeasurement) {
+  const auto read = vehicle_->read_range("down", client::Read::kIfAvailable);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.failure().kind, Failure::Kind::kInvalid);
+  EXPECT_THAT(read.failure().message, HasSubstr("read with kNext or kLatest"));
+}
+
 TEST_F(RigVehicleTest, CannotFly) {
   const Status flown = vehicle_->command_velocity({});
   ASSERT_FALSE(flown);

@@ -30,9 +30,8 @@ struct ConnectOptions {
 };
 
 /// Address, token, UAV and clock from the environment that `tether run` sets for the SUT it starts:
-/// TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV (may be unset: the only one), TETHER_CLOCK ("wall",
-/// which is also meant when it is unset; "cpu"; "cpu*FACTOR", FACTOR within 1e-6..1e6;
-/// "scripted*MILLISECONDS", see make_scripted_source). Fails with kInvalid, naming the variable,
+/// TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV (may be unset: the only one), TETHER_CLOCK (see
+/// parse_time_source; unset: "wall"). Fails with kInvalid, naming the variable,
 /// its value and what is allowed.
 Result<ConnectOptions> options_from_environment();
 
@@ -40,8 +39,8 @@ Result<ConnectOptions> options_from_environment();
 /// coordinator's Welcome.
 ///
 /// Fails with kDisconnected or kTimeout (no coordinator there, or no answer), kRefused (the
-/// coordinator's own words), kInvalid (options that cannot be used, or a clock faster than the CPU
-/// in free running).
+/// coordinator's own words), kInvalid (options that cannot be used, or, in free running, a
+/// clock faster than the CPU or a wall clock with a factor).
 ///
 /// The vehicle's calls fail with kInvalid for wrong arguments, and can then be called again. After
 /// any other failure (kRefused, kRunEnded, kDisconnected, kProtocol) every later call fails with

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
+#include <tether/base/result.h>
 #include <tether/base/time.h>
 #include <tether/link/messages.h>
 
@@ -25,8 +27,11 @@ class TimeSource {
   virtual void release_calling_thread() {}
 };
 
-/// The machine's monotonic clock.
-std::unique_ptr<TimeSource> make_wall_source();
+/// The machine's monotonic clock × factor. Other than 1: a virtual target whose every moment
+/// counts, also those in which its program waits for something; for threads, of which CPU time says
+/// little.
+/// @pre factor > 0.
+std::unique_ptr<TimeSource> make_wall_source(double factor = 1.0);
 /// CPU time of this process (all threads but an excluded one) × factor: a virtual target. @pre
 /// factor > 0.
 std::unique_ptr<TimeSource> make_cpu_source(double factor);
@@ -35,6 +40,10 @@ std::unique_ptr<TimeSource> make_cpu_source(double factor);
 /// one reading. So each call of `now()` costs a step as well, and each annotation one. For tests
 /// and for runs that must repeat to the byte.
 std::unique_ptr<TimeSource> make_scripted_source(Duration step);
+
+/// The source that TETHER_CLOCK names: "wall", "wall*FACTOR", "cpu", "cpu*FACTOR" (FACTOR within
+/// 1e-6..1e6), "scripted*MILLISECONDS". Fails with kInvalid, saying what is allowed.
+Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text);
 
 /// ET of this SUT: runs with its source while the SUT is free, stands still while it is held, and
 /// goes on from exactly the timestamp it is given (paper, Section II: the timer that is paused;

@@ -21,8 +21,12 @@ enum class Read {
 };
 
 /// The UAV as its own program sees it, simulated or real. Every call that talks to the UAV is an
-/// interaction and may block; `now`, `catalogue` and `annotate` are not. Throws nothing. One thread
-/// at a time.
+/// interaction and may block; `now`, `catalogue` and `annotate` are not. Throws nothing.
+///
+/// Several threads may call at once. Calls of a serial vehicle wait for one another; of a
+/// concurrent one (`is_concurrent`) each waits for its own reply only, while the other threads
+/// compute on. A vehicle belongs to the process that made it: after fork() the child makes one of
+/// its own.
 class Vehicle {
  public:
   virtual ~Vehicle() = default;
@@ -30,6 +34,9 @@ class Vehicle {
   /// The SUT's own clock: ET. Differences of it are what computing and waiting took.
   virtual ExecTime now() const = 0;
   virtual const uav::Catalogue& catalogue() const = 0;
+  /// Whether threads that call at once wait each for its own reply only. Such a vehicle comes from
+  /// `connect` in a program that tether-exec has started.
+  virtual bool is_concurrent() const { return false; }
 
   virtual Result<uav::CameraSample> read_camera(std::string_view sensor,
                                                 Read read = Read::kNext) = 0;
@@ -39,15 +46,17 @@ class Vehicle {
   /// Flies with this velocity until told otherwise.
   virtual Status command_velocity(const uav::VelocityCommand& command) = 0;
 
-  /// Waits. A duration or instant in the past returns at once (and is still an interaction).
+  /// Waits; of a concurrent vehicle the calling thread only. A duration or instant in the past
+  /// returns at once (and is still an interaction).
   virtual Status sleep_for(Duration duration) = 0;
   virtual Status sleep_until(ExecTime until) = 0;
 
-  /// Something for the record; free of ET, never blocks on the coordinator. `json` is one JSON
-  /// object.
+  /// Something for the record; never blocks on the coordinator. Free of ET in a serial vehicle,
+  /// where it may wait for another thread's call. `json` is one JSON object.
   virtual Status annotate(std::string_view topic, std::string_view json) = 0;
 
-  /// The mission is over. No call is allowed after it.
+  /// The mission is over. No call is allowed after it; calls that other threads have open in a
+  /// concurrent vehicle fail with kRunEnded.
   virtual Status finish(bool reached_goal, std::string_view outcome,
                         std::string_view details_json) = 0;
 };

@@ -1,0 +1,154 @@
+#include "interacting_vehicle.h"
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include <tether/link/codec.h>
+
+namespace tether::client {
+namespace {
+
+/// The sensor kind that delivers a sample type; samples and sensor kinds are in the same order.
+template <class Sample>
+constexpr uav::SensorKind kind_of() {
+  if constexpr (std::is_same_v<Sample, uav::CameraSample>) return uav::SensorKind::kCamera;
+  if constexpr (std::is_same_v<Sample, uav::ImuSample>) return uav::SensorKind::kImu;
+  return uav::SensorKind::kRange;
+}
+
+/// Of a camera: whether the image has the size that the catalogue promised.
+Status check_size(const uav::Sample& sample, const uav::SensorDescription& sensor) {
+  const auto* image = std::get_if<uav::CameraSample>(&sample);
+  const auto* camera = std::get_if<uav::CameraProperties>(&sensor.properties);
+  if (image == nullptr || camera == nullptr) return ok_status();
+  if (image->width_px == camera->model.width_px && image->height_px == camera->model.height_px) {
+    return ok_status();
+  }
+  return protocol_failure("its image is not of the size that the catalogue gives for '" +
+                          sensor.name + "'");
+}
+
+}  // namespace
+
+Failure to_failure(const link::Refusal& refusal) {
+  const bool ended = refusal.reason == link::Refusal::Reason::kRunEnded;
+  return {ended ? Failure::Kind::kRunEnded : Failure::Kind::kRefused, refusal.message};
+}
+
+Failure protocol_failure(const std::string& what) {
+  return {Failure::Kind::kProtocol, "the coordinator's reply cannot be used: " + what};
+}
+
+Failure mission_finished() {
+  return {Failure::Kind::kInvalid, "the mission is finished; no call is possible"};
+}
+
+Status check(const link::Reply& reply, const link::Request& request, bool free_running) {
+  if (reply.sequence != request.sequence) {
+    return protocol_failure("it answers request " + std::to_string(reply.sequence) + ", not " +
+                            std::to_string(request.sequence));
+  }
+  if (free_running) return ok_status();
+  if (reply.resume_at < request.issued_at) return protocol_failure("it is from before the request");
+  if (reply.sample && uav::sampled_at(*reply.sample) > same_instant(reply.resume_at)) {
+    return protocol_failure("it carries data from the future");
+  }
+  return ok_status();
+}
+
+ExecTime add_within_bounds(ExecTime et, Duration duration) {
+  const ExecTime last = from_ns<ExecTime>(link::kMaxTimestampNs - 1);
+  if (duration <= Duration::zero()) return et;
+  return duration >= last - et ? last : et + duration;
+}
+
+link::Sleep make_sleep(ExecTime until) {
+  const ExecTime last = from_ns<ExecTime>(link::kMaxTimestampNs - 1);
+  return {std::clamp(until, ExecTime{}, last)};
+}
+
+Failure InteractingVehicle::give_up(Failure failure) {
+  const std::lock_guard lock(mutex_);
+  if (!over_) over_ = failure;
+  return failure;
+}
+
+std::optional<Failure> InteractingVehicle::over() const {
+  const std::lock_guard lock(mutex_);
+  return over_;
+}
+
+// --- sensors ------------------------------------------------------------------------------------
+
+template <class Sample>
+Result<Sample> InteractingVehicle::read(std::string_view sensor, Read read) {
+  const uav::SensorDescription* const found = catalogue_.find_sensor(sensor);
+  if (found == nullptr || found->kind() != kind_of<Sample>()) {
+    return no_such_sensor(sensor, kind_of<Sample>());
+  }
+  if (read == Read::kIfAvailable && found->rate_hz <= 0.0) {
+    return Failure{Failure::Kind::kInvalid,
+                   "'" + found->name +
+                       "' measures on demand: nothing is ever available of it before it is asked; "
+                       "read it with kNext"};
+  }
+  const auto index = static_cast<std::uint32_t>(found - catalogue_.sensors.data());
+  auto reply = interact(link::ReadSensor{index, read == Read::kLatest, read == Read::kIfAvailable});
+  if (!reply) return reply.failure();
+  return take_sample<Sample>(std::move(*reply), *found, read);
+}
+
+template <class Sample>
+Result<Sample> InteractingVehicle::take_sample(link::Reply reply,
+                                               const uav::SensorDescription& sensor, Read read) {
+  if (!reply.sample && read == Read::kIfAvailable) {
+    return Failure{Failure::Kind::kNothingYet,
+                   "'" + sensor.name + "' has measured nothing new yet"};
+  }
+  auto* const sample = reply.sample ? std::get_if<Sample>(&*reply.sample) : nullptr;
+  if (sample == nullptr) {
+    return give_up(protocol_failure("it carries no sample of sensor '" + sensor.name + "'"));
+  }
+  if (const Status good = check_size(*reply.sample, sensor); !good) return give_up(good.failure());
+  return std::move(*sample);
+}
+
+Failure InteractingVehicle::no_such_sensor(std::string_view sensor, uav::SensorKind kind) const {
+  std::string available;
+  for (const auto& s : catalogue_.sensors) {
+    available +=
+        (available.empty() ? "" : ", ") + std::string(uav::name(s.kind())) + " '" + s.name + "'";
+  }
+  return {Failure::Kind::kInvalid, "there is no " + std::string(uav::name(kind)) + " '" +
+                                       std::string(sensor) + "'; this UAV has " +
+                                       (available.empty() ? "no sensors" : available)};
+}
+
+Result<uav::CameraSample> InteractingVehicle::read_camera(std::string_view sensor, Read read) {
+  return this->read<uav::CameraSample>(sensor, read);
+}
+Result<uav::ImuSample> InteractingVehicle::read_imu(std::string_view sensor, Read read) {
+  return this->read<uav::ImuSample>(sensor, read);
+}
+Result<uav::RangeSample> InteractingVehicle::read_range(std::string_view sensor, Read read) {
+  return this->read<uav::RangeSample>(sensor, read);
+}
+
+// --- commands and the end -----------------------------------------------------------------------
+
+Status InteractingVehicle::command_velocity(const uav::VelocityCommand& command) {
+  return status_of(interact(link::SetVelocity{command}));
+}
+
+Status InteractingVehicle::finish(bool reached_goal, std::string_view outcome,
+                                  std::string_view details_json) {
+  Status done = status_of(
+      interact(link::Finish{reached_goal, std::string(outcome), std::string(details_json)}));
+  if (done) close();
+  return done;
+}
+
+}  // namespace tether::client

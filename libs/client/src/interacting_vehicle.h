@@ -1,0 +1,71 @@
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <tether/client/vehicle.h>
+#include <tether/link/messages.h>
+
+namespace tether::client {
+
+/// The text and kind of a refusal, for the caller.
+Failure to_failure(const link::Refusal& refusal);
+Failure protocol_failure(const std::string& what);
+/// What calls after the end of the mission come to.
+Failure mission_finished();
+/// What the protocol demands of the reply to a request and, unless ET is only told
+/// (`free_running`), the rules of time.
+Status check(const link::Reply& reply, const link::Request& request, bool free_running);
+/// `et + duration` within what a message may carry.
+ExecTime add_within_bounds(ExecTime et, Duration duration);
+/// The Sleep until then, or until the first or last instant that a message may carry.
+link::Sleep make_sleep(ExecTime until);
+
+/// What vehicles in the simulator have in common: calls become requests, replies results.
+/// Thread-safe as far as `interact` is.
+class InteractingVehicle : public Vehicle {
+ public:
+  const uav::Catalogue& catalogue() const final { return catalogue_; }
+  Result<uav::CameraSample> read_camera(std::string_view sensor, Read read) final;
+  Result<uav::ImuSample> read_imu(std::string_view sensor, Read read) final;
+  Result<uav::RangeSample> read_range(std::string_view sensor, Read read) final;
+  Status command_velocity(const uav::VelocityCommand& command) final;
+  Status finish(bool reached_goal, std::string_view outcome, std::string_view details_json) final;
+
+ protected:
+  using Body = decltype(link::Request::body);
+
+  explicit InteractingVehicle(uav::Catalogue catalogue) : catalogue_(std::move(catalogue)) {}
+
+  /// One interaction, from stamping the request to going on after its reply. After one that
+  /// finishes the mission, `over` is set.
+  virtual Result<link::Reply> interact(Body body) = 0;
+  /// The mission is finished: lets go of the coordinator.
+  virtual void close() = 0;
+
+  /// Remembers a failure after which there is no going on (the first one stays) and returns it.
+  Failure give_up(Failure failure);
+  /// Why no call is possible any more.
+  std::optional<Failure> over() const;
+
+ private:
+  template <class Sample>
+  Result<Sample> read(std::string_view sensor, Read read);
+  template <class Sample>
+  Result<Sample> take_sample(link::Reply reply, const uav::SensorDescription& sensor, Read read);
+  Failure no_such_sensor(std::string_view sensor, uav::SensorKind kind) const;
+
+  uav::Catalogue catalogue_;
+  mutable std::mutex mutex_;
+  std::optional<Failure> over_;  // guarded by mutex_
+};
+
+/// Of an interaction whose reply carries nothing.
+inline Status status_of(const Result<link::Reply>& reply) {
+  return reply ? ok_status() : Status(reply.failure());
+}
+
+}  // namespace tether::client
