@@ -27,7 +27,7 @@ std::vector<std::uint8_t> copy(std::span<const std::uint8_t> bytes) {
 
 Peer::Peer(PeerId id, Tcp::socket socket, std::string remote)
     : id_(id), socket_(std::move(socket)), remote_(std::move(remote)) {
-  tune(socket_);
+  tune(descriptor());
   std::error_code ignored;
   socket_.native_non_blocking(true, ignored);
 }

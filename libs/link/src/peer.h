@@ -11,9 +11,13 @@
 #include <string>
 #include <vector>
 
+#include <asio/ip/tcp.hpp>
+
 #include <tether/link/server.h>
 
 namespace tether::link {
+
+using Tcp = asio::ip::tcp;
 
 /// A frame, or what is left of it, that the socket did not take at once.
 struct QueuedFrame {

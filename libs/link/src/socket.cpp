@@ -12,6 +12,7 @@
 #include <sys/socket.h>
 #include <sys/uio.h>
 #include <time.h>
+#include <unistd.h>
 
 namespace tether::link {
 namespace {
@@ -42,10 +43,29 @@ ssize_t uninterrupted(Call call) {
   return result;
 }
 
+/// Waits for one of the poll events, or an end. False: not within `timeout`.
+bool wait_for(int descriptor, short events, Duration timeout) {
+  using std::chrono::steady_clock;
+  const auto deadline = steady_clock::now() + timeout;
+  pollfd entry{descriptor, events, 0};
+  while (true) {
+    const Duration left = deadline - steady_clock::now();
+    const std::int64_t ns = left.count() > 0 ? left.count() : 0;
+    const timespec wait{ns / 1'000'000'000, ns % 1'000'000'000};
+    const int ready = ::ppoll(&entry, 1, &wait, nullptr);
+    if (ready > 0) return true;
+    if (ready == 0) return false;
+    if (errno != EINTR) return true;  // the next call on the socket will tell what is wrong
+  }
+}
+
 }  // namespace
 
-void tune(Tcp::socket& socket) {
-  const int descriptor = socket.native_handle();
+Descriptor::~Descriptor() {
+  if (is_open()) ::close(value_);
+}
+
+void tune(int descriptor) {
   set_option(descriptor, IPPROTO_TCP, TCP_NODELAY, 1);
   set_option(descriptor, SOL_SOCKET, SO_KEEPALIVE, 1);
   set_option(descriptor, IPPROTO_TCP, TCP_KEEPIDLE, 10);
@@ -89,22 +109,11 @@ bool may_look_out() {
 }
 
 bool wait_readable(int descriptor, Duration timeout) {
-  using std::chrono::steady_clock;
-  const auto deadline = steady_clock::now() + timeout;
-  pollfd entry{descriptor, POLLIN, 0};
-  while (true) {
-    const Duration left = deadline - steady_clock::now();
-    const std::int64_t ns = left.count() > 0 ? left.count() : 0;
-    const timespec wait{ns / 1'000'000'000, ns % 1'000'000'000};
-    const int ready = ::ppoll(&entry, 1, &wait, nullptr);
-    if (ready > 0) return true;
-    if (ready == 0) return false;
-    if (errno != EINTR) return true;  // the receiving call will tell what is wrong
-  }
+  return wait_for(descriptor, POLLIN, timeout);
 }
 
-Address to_address(const Tcp::endpoint& endpoint) {
-  return {endpoint.address().to_string(), endpoint.port()};
+bool wait_writable(int descriptor, Duration timeout) {
+  return wait_for(descriptor, POLLOUT, timeout);
 }
 
 Failure lost(const std::string& peer, const std::error_code& error) {

@@ -6,19 +6,34 @@
 #include <span>
 #include <string>
 #include <system_error>
-
-#include <asio/ip/tcp.hpp>
+#include <utility>
 
 #include <tether/base/result.h>
 #include <tether/base/time.h>
 #include <tether/link/channel.h>
 #include <tether/link/codec.h>
 
-/// What both ends do with a socket. Asio finds addresses, connects, accepts and owns the
-/// descriptors; bytes move through the system calls themselves, one call each way per frame.
+/// What both ends do with a socket: the system calls themselves, one each way per frame.
 namespace tether::link {
 
-using Tcp = asio::ip::tcp;
+/// Owns a file descriptor; -1: none.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int value) : value_(value) {}
+  Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(value_, other.value_);
+    return *this;
+  }
+  ~Descriptor();
+
+  int get() const { return value_; }
+  bool is_open() const { return value_ >= 0; }
+
+ private:
+  int value_ = -1;
+};
 
 /// Longer limits mean this one, so that a point in time can be reckoned.
 inline constexpr Duration kLongestTimeout = std::chrono::hours(24 * 365);
@@ -26,7 +41,7 @@ inline constexpr Duration kLongestTimeout = std::chrono::hours(24 * 365);
 /// No delay; keep-alive probes, so that a peer that vanished is noticed within half a minute; not
 /// inherited by child processes. Buffer sizes are left to the system, which fits them to the
 /// traffic. What the system does not grant is done without.
-void tune(Tcp::socket& socket);
+void tune(int descriptor);
 /// Child processes (the SUT that `tether run` starts) must not hold our connections open.
 void close_on_exec(int descriptor);
 
@@ -51,8 +66,9 @@ bool may_look_out();
 
 /// Waits until the socket can be read (also: has ended). False: not within `timeout`.
 bool wait_readable(int descriptor, Duration timeout);
+/// Waits until the socket can be written to: a connection that was begun is made, or has failed.
+bool wait_writable(int descriptor, Duration timeout);
 
-Address to_address(const Tcp::endpoint& endpoint);
 /// "the connection to HOST:PORT was lost: REASON".
 Failure lost(const std::string& peer, const std::error_code& error);
 

@@ -1,15 +1,17 @@
-#include "frame_buffer.h"
 #include "socket.h"
+#include "socket_channel.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
-#include <mutex>
-#include <optional>
+#include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 
-#include <asio/connect.hpp>
-#include <asio/io_context.hpp>
+#include <fcntl.h>
+#include <netdb.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <tether/link/channel.h>
@@ -17,115 +19,98 @@
 namespace tether::link {
 namespace {
 
-class TcpChannel final : public Channel {
- public:
-  TcpChannel(std::unique_ptr<asio::io_context> context, Tcp::socket socket, std::string peer)
-      : context_(std::move(context)),
-        socket_(std::move(socket)),
-        descriptor_(socket_.native_handle()),
-        peer_(std::move(peer)) {
-    tune(socket_);
-  }
-
-  Status send(const Message& message) override;
-  Result<Message> receive() override { return receive_until(std::nullopt); }
-  Result<Message> receive_within(Duration timeout) override {
-    return receive_until(std::chrono::steady_clock::now() + std::min(timeout, kLongestTimeout));
-  }
-  void close() override { ::shutdown(descriptor(), SHUT_RDWR); }
-
- private:
-  using Deadline = std::optional<std::chrono::steady_clock::time_point>;
-
-  int descriptor() const { return descriptor_; }
-  void look_out() const;
-  Result<Message> receive_until(const Deadline& deadline);
-  Status receive_more(const Deadline& deadline);
-
-  std::unique_ptr<asio::io_context> context_;
-  Tcp::socket socket_;
-  int descriptor_;
-  const bool may_look_out_ = may_look_out();
-  std::string peer_;
-  std::mutex sending_;
-  Encoder encoder_;  // guarded by sending_
-  FrameBuffer input_{kMaxReplyBytes};
-};
-
-Status TcpChannel::send(const Message& message) {
-  if (Status valid = validate(message); !valid) return valid;
-  const std::lock_guard lock(sending_);
-  const FramePieces pieces = encoder_.encode_pieces(message);
-  for (std::size_t done = 0; done < pieces.size();) {
-    const Transfer sent = send_some(descriptor(), pieces, done);
-    if (sent.error) return lost(peer_, sent.error);
-    done += sent.bytes;
-  }
-  return ok_status();
-}
-
-Result<Message> TcpChannel::receive_until(const Deadline& deadline) {
-  while (true) {
-    const auto frame = input_.next();
-    if (!frame) return frame.failure();
-    if (!frame->empty()) return decode(*frame);
-    if (const Status more = receive_more(deadline); !more) return more.failure();
-  }
-}
-
-void TcpChannel::look_out() const {
-  if (!may_look_out_) return;
-  const auto end = std::chrono::steady_clock::now() + kLookOut;
-  while (!wait_readable(descriptor(), Duration(0)) && std::chrono::steady_clock::now() < end) {
-  }
-}
-
-Status TcpChannel::receive_more(const Deadline& deadline) {
-  // Of a frame that has begun to come, the rest is fetched in one go.
-  std::span<std::uint8_t> space = input_.space();
-  const bool rest_of_frame = input_.missing() > 0 && !deadline;
-  if (rest_of_frame) space = space.first(input_.missing());
-  if (deadline && !wait_readable(descriptor(), *deadline - std::chrono::steady_clock::now())) {
-    return Failure{Failure::Kind::kTimeout, "no answer from " + peer_ + " within the limit"};
-  }
-  if (!deadline && !rest_of_frame) look_out();
-  const Transfer received = receive_some(descriptor(), space, rest_of_frame);
-  if (received.error) return lost(peer_, received.error);
-  if (received.ended) {
-    return Failure{Failure::Kind::kDisconnected, peer_ + " closed the connection"};
-  }
-  input_.commit(received.bytes);
-  return ok_status();
-}
+using SteadyClock = std::chrono::steady_clock;
 
 Failure cannot_connect(const Address& address, Failure::Kind kind, const std::string& why) {
   return {kind, "cannot connect to " + to_string(address) + ": " + why +
                     " (is the coordinator running there?)"};
 }
 
+std::string reason(int error) {
+  return std::system_category().message(error);
+}
+
+// ---- finding addresses
+// ---------------------------------------------------------------------------
+
+using FoundAddresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
+
+Result<FoundAddresses> resolve(const Address& address) {
+  addrinfo wanted{};
+  wanted.ai_family = AF_UNSPEC;
+  wanted.ai_socktype = SOCK_STREAM;
+  wanted.ai_protocol = IPPROTO_TCP;
+  const std::string port = std::to_string(address.port);
+  addrinfo* found = nullptr;
+  const int error = ::getaddrinfo(address.host.c_str(), port.c_str(), &wanted, &found);
+  if (error == 0) return FoundAddresses(found, &::freeaddrinfo);
+  const std::string why = error == EAI_SYSTEM ? reason(errno) : ::gai_strerror(error);
+  return cannot_connect(address, Failure::Kind::kDisconnected, why);
+}
+
+// ---- connecting
+// ----------------------------------------------------------------------------------
+
+/// What trying one address came to.
+struct Attempt {
+  Descriptor socket;  // connected, unless `error`
+  int error = 0;      // of errno
+  bool out_of_time = false;
+};
+
+Attempt failed(int error) {
+  Attempt attempt;
+  attempt.error = error;
+  return attempt;
+}
+
+int outcome_of_connecting(int descriptor) {
+  int error = 0;
+  socklen_t size = sizeof error;
+  return ::getsockopt(descriptor, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
+}
+
+void make_blocking(int descriptor) {
+  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
+}
+
+Attempt try_address(const addrinfo& candidate, SteadyClock::time_point deadline) {
+  const int type = candidate.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC;
+  Attempt attempt{Descriptor(::socket(candidate.ai_family, type, candidate.ai_protocol))};
+  if (!attempt.socket.is_open()) return failed(errno);
+  const int descriptor = attempt.socket.get();
+  if (::connect(descriptor, candidate.ai_addr, candidate.ai_addrlen) != 0) {
+    // Interrupted or not, the connection is being made from here on.
+    if (errno != EINPROGRESS && errno != EINTR) return failed(errno);
+    attempt.out_of_time = !wait_writable(descriptor, deadline - SteadyClock::now());
+    attempt.error = attempt.out_of_time ? ETIMEDOUT : outcome_of_connecting(descriptor);
+  }
+  make_blocking(descriptor);
+  return attempt;
+}
+
+/// The first address that answers; else the last one's failure.
+Attempt try_all(const addrinfo* candidate, SteadyClock::time_point deadline) {
+  Attempt attempt = failed(EHOSTUNREACH);
+  for (; candidate != nullptr; candidate = candidate->ai_next) {
+    attempt = try_address(*candidate, deadline);
+    if (attempt.error == 0 || attempt.out_of_time) break;
+  }
+  return attempt;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Channel>> connect_tcp(const Address& address, Duration timeout) {
-  auto context = std::make_unique<asio::io_context>(1);
-  std::error_code error;
-  const auto endpoints =
-      Tcp::resolver(*context).resolve(address.host, std::to_string(address.port), error);
-  if (error) return cannot_connect(address, Failure::Kind::kDisconnected, error.message());
-
-  Tcp::socket socket(*context);
-  std::optional<std::error_code> outcome;
-  asio::async_connect(socket, endpoints,
-                      [&outcome](std::error_code e, const Tcp::endpoint&) { outcome = e; });
-  context->run_for(std::min(timeout, kLongestTimeout));
-  if (!outcome) {
-    socket.close(error);
-    context->run();  // the handler refers to this frame
-    return cannot_connect(address, Failure::Kind::kTimeout, "no answer");
-  }
-  if (*outcome) return cannot_connect(address, Failure::Kind::kDisconnected, outcome->message());
-  socket.native_non_blocking(false, error);
-  return std::unique_ptr<Channel>(
-      std::make_unique<TcpChannel>(std::move(context), std::move(socket), to_string(address)));
+  const auto found = resolve(address);
+  if (!found) return found.failure();
+  const auto deadline = SteadyClock::now() + std::min(timeout, kLongestTimeout);
+  Attempt attempt = try_all(found.value().get(), deadline);
+  if (attempt.out_of_time) return cannot_connect(address, Failure::Kind::kTimeout, "no answer");
+  if (attempt.error != 0)
+    return cannot_connect(address, Failure::Kind::kDisconnected, reason(attempt.error));
+  tune(attempt.socket.get());
+  return make_socket_channel(std::move(attempt.socket), to_string(address));
 }
 
 }  // namespace tether::link

@@ -71,6 +71,10 @@ class TcpServer final : public Server {
   int look_outs_ = 0;
 };
 
+Address to_address(const Tcp::endpoint& endpoint) {
+  return {endpoint.address().to_string(), endpoint.port()};
+}
+
 [[noreturn]] void cannot_listen(const Address& address, const std::error_code& error) {
   throw Error(ErrorCode::kSetup,
               "cannot listen on " + to_string(address) + ": " + error.message() +

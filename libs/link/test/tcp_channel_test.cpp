@@ -64,6 +64,15 @@ TEST(TcpChannel, ConnectingTimesOut) {
   FAIL() << "the backlog never filled";
 }
 
+TEST(TcpChannel, TriesTheAddressesOfAName) {
+  // Where the name has an IPv6 address as well, nobody listens there, and the next one answers.
+  RecordingEvents events;
+  auto server = listen_tcp({"127.0.0.1", 0}, 10s, events);
+  const auto channel = connect_tcp({"localhost", server->address().port}, 10s);
+  ASSERT_TRUE(channel.ok()) << channel.failure().message;
+  EXPECT_TRUE(poll_until(*server, [&] { return events.connected.size() == 1; }));
+}
+
 TEST(TcpChannel, ReceivingTimesOutAndGoesOn) {
   RecordingEvents events;
   auto server = listen_tcp({"127.0.0.1", 0}, 10s, events);
