@@ -168,5 +168,107 @@ TEST(Barrier, NamesWhomEverythingWaitsFor) {
   EXPECT_EQ(barrier.slowest_computing(), SutIndex{0});
 }
 
+BarrierSynchronizer with_concurrent(std::int64_t start = 0) {
+  BarrierSynchronizer barrier{StepGrid(kStep)};
+  barrier.add(et(start), SutKind::kConcurrent);
+  return barrier;
+}
+
+void call(BarrierSynchronizer& barrier, CallId id, std::int64_t at, std::int64_t reply_at,
+          std::int64_t now = 0) {
+  barrier.arrive(0, et(at), st(now));
+  barrier.hold({0, et(reply_at), id});
+}
+
+TEST(ConcurrentSut, BoundsStByItsOwnTimeAndByEachOpenCall) {
+  auto barrier = with_concurrent(1200);
+  EXPECT_EQ(barrier.horizon(), st(1000));
+  call(barrier, 1, 2300, 7000);
+  EXPECT_EQ(barrier.horizon(), st(2000));
+  barrier.progress(0, et(6500));
+  EXPECT_EQ(barrier.horizon(), st(6000));
+  call(barrier, 2, 6600, 6700);
+  barrier.stop(0, et(9000));
+  EXPECT_EQ(barrier.horizon(), st(6000));
+  ASSERT_TRUE(barrier.release(st(6000)));
+  EXPECT_EQ(barrier.horizon(), st(7000));
+  ASSERT_TRUE(barrier.release(st(7000)));
+  EXPECT_EQ(barrier.horizon(), st(9000));
+}
+
+TEST(ConcurrentSut, AReplyWaitsUntilItHasStopped) {
+  auto barrier = with_concurrent();
+  call(barrier, 1, 300, 300);
+  EXPECT_FALSE(barrier.is_held(0));
+  EXPECT_FALSE(barrier.release(st(0)));
+  barrier.progress(0, et(900));
+  EXPECT_FALSE(barrier.release(st(0)));
+  barrier.stop(0, et(950));
+  EXPECT_TRUE(barrier.is_held(0));
+  const auto grant = barrier.release(st(0));
+  ASSERT_TRUE(grant);
+  EXPECT_EQ(grant->call, 1u);
+  EXPECT_EQ(grant->resume_at, et(300));
+  EXPECT_FALSE(barrier.is_held(0));
+  EXPECT_EQ(barrier.bound(0), et(950));
+}
+
+TEST(ConcurrentSut, ACallThatIsNotDueIsNotReleasedByAStop) {
+  auto barrier = with_concurrent();
+  call(barrier, 1, 300, 800);
+  barrier.stop(0, et(400));
+  EXPECT_FALSE(barrier.is_held(0));
+  EXPECT_FALSE(barrier.release(st(0)));
+  barrier.stop(0, et(800));
+  EXPECT_TRUE(barrier.release(st(0)));
+}
+
+TEST(ConcurrentSut, RepliesLeaveInTheOrderOfTimestampsThenCalls) {
+  auto barrier = with_concurrent();
+  call(barrier, 4, 100, 700);
+  call(barrier, 5, 200, 300);
+  call(barrier, 6, 300, 300);
+  barrier.stop(0, et(720));
+  std::vector<CallId> order;
+  while (const auto grant = barrier.release(st(0))) order.push_back(grant->call);
+  EXPECT_EQ(order, (std::vector<CallId>{5, 6, 4}));
+}
+
+TEST(ConcurrentSut, AStampBeforeItsLastStopIsNamed) {
+  auto barrier = with_concurrent();
+  barrier.stop(0, et(1500));
+  const Arrival arrival = barrier.arrive(0, et(1400), st(1000));
+  ASSERT_TRUE(arrival.violation);
+  EXPECT_EQ(arrival.violation->size, Duration(100));
+  EXPECT_EQ(arrival.charged_at, et(1500));
+}
+
+// Its open calls do not make it a held SUT: it may still stamp an earlier command.
+TEST(ConcurrentSut, DelaysOthersWhileItComputesBesideAnOpenCall) {
+  auto barrier = with_concurrent(3000);
+  barrier.add(et(3000));
+  call(barrier, 1, 3000, 9000, 3000);
+  request(barrier, 1, 3000, 3400, 3000);
+  EXPECT_FALSE(barrier.release(st(3000)));
+  barrier.progress(0, et(3001));
+  EXPECT_TRUE(barrier.release(st(3000)));
+}
+
+TEST(ConcurrentSut, IsWaitedForUntilItStopsWhereAReplyIsDue) {
+  auto barrier = with_concurrent();
+  call(barrier, 1, 300, 800);
+  EXPECT_EQ(barrier.slowest_computing(), SutIndex{0});
+  barrier.stop(0, et(800));
+  EXPECT_FALSE(barrier.slowest_computing());
+}
+
+TEST(ConcurrentSut, LeavesWithItsOpenCalls) {
+  auto barrier = with_concurrent();
+  call(barrier, 1, 300, 800);
+  barrier.remove(0);
+  EXPECT_EQ(barrier.horizon(), SimTime::max());
+  EXPECT_FALSE(barrier.release(st(0)));
+}
+
 }  // namespace
 }  // namespace tether::sync
