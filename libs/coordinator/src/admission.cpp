@@ -45,6 +45,8 @@ namespace {
 /// As TETHER_CLOCK has it.
 std::string text_of(const ClockSetting& setting) {
   if (setting.kind == link::ClockKind::kCpu) return fmt::format("cpu*{}", setting.cpu_factor);
+  if (setting.kind == link::ClockKind::kWall && setting.cpu_factor != 1.0)
+    return fmt::format("wall*{}", setting.cpu_factor);
   if (setting.kind == link::ClockKind::kScripted)
     return fmt::format("scripted*{}", static_cast<double>(setting.computing.count()) / 1e6);
   return std::string(link::name(setting.kind));
@@ -53,6 +55,12 @@ std::string text_of(const ClockSetting& setting) {
 
 std::optional<std::string> clock_fault(const link::Hello& hello,
                                        const std::optional<ClockSetting>& wanted) {
+  if (hello.concurrent &&
+      (hello.clock == link::ClockKind::kCpu || hello.clock == link::ClockKind::kUnstamped))
+    return fmt::format(
+        "a SUT of several threads cannot measure its time by \"{}\", which is no time line of all "
+        "of them; start it with TETHER_CLOCK='wall'",
+        link::name(hello.clock));
   const bool is_measured =
       hello.clock == link::ClockKind::kWall || hello.clock == link::ClockKind::kCpu;
   if (!wanted || !is_measured) return std::nullopt;

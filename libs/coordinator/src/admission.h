@@ -18,8 +18,8 @@ std::variant<std::size_t, link::Refusal> admit(const link::Hello& hello, const s
                                                const std::vector<std::string>& uavs,
                                                const std::vector<bool>& taken);
 
-/// Why a SUT's clock is not the one that its condition asks for; none if it is, or is scripted or
-/// unstamped.
+/// Why a SUT's clock is not the one that its condition asks for, or none that a concurrent SUT can
+/// have; none if it is, or is scripted or (of a serial SUT) unstamped.
 std::optional<std::string> clock_fault(const link::Hello& hello,
                                        const std::optional<ClockSetting>& wanted);
 

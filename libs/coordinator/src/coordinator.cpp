@@ -1,7 +1,6 @@
 #include "coordinator_impl.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,59 +39,6 @@ Session make_session(std::size_t index, const sim::Uav& uav, const UavOptions& o
   for (std::size_t i = 0; i < uav.sensors.size(); ++i)
     session.sensors.push_back(make_sensor(uav, uav.sensors[i], options.timings[i], seed));
   return session;
-}
-
-/// The least and the greatest delay that the model can draw.
-std::pair<Duration, Duration> bounds(const uav::Delay& delay) {
-  if (const auto* constant = std::get_if<uav::ConstantDelay>(&delay))
-    return {constant->value, constant->value};
-  if (const auto* empirical = std::get_if<uav::EmpiricalDelay>(&delay)) {
-    const auto [least, greatest] =
-        std::minmax_element(empirical->samples.begin(), empirical->samples.end());
-    return {*least, *greatest};
-  }
-  return {Duration(0), Duration::max()};
-}
-
-record::CameraInfo describe(const uav::Pose& X_BS, const uav::CameraModel& model) {
-  return {.p_BS_m = {X_BS.p.x, X_BS.p.y, X_BS.p.z},
-          .q_BS = {X_BS.q.w, X_BS.q.x, X_BS.q.y, X_BS.q.z},
-          .width_px = model.width_px,
-          .height_px = model.height_px,
-          .fx_px = model.fx_px,
-          .fy_px = model.fy_px,
-          .cx_px = model.cx_px,
-          .cy_px = model.cy_px,
-          .k1 = model.k1,
-          .k2 = model.k2,
-          .k3 = model.k3,
-          .p1 = model.p1,
-          .p2 = model.p2};
-}
-
-record::SensorInfo describe(const std::string& uav, const sim::Sensor& sensor,
-                            const uav::SensorTiming& timing) {
-  record::SensorInfo info{
-      .uav = uav, .name = sensor.name, .kind = std::string(uav::name(sensor.kind()))};
-  std::tie(info.delay_min, info.delay_max) =
-      bounds(std::visit([](const auto& t) { return t.delay; }, timing));
-  if (const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing)) {
-    info.periodic = true;
-    info.period = periodic->period;
-    info.phase = periodic->phase;
-  }
-  if (const auto* camera = std::get_if<sim::CameraModel>(&sensor.model))
-    info.camera = describe(sensor.X_BS, camera->intrinsics);
-  return info;
-}
-
-record::Anchor describe(const sim::PlacedAnchor& placed) {
-  const auto& [anchor, X_WA] = placed;
-  return {.name = anchor.name,
-          .shape = std::string(uav::name(anchor.shape)),
-          .size_m = {anchor.size_m.x, anchor.size_m.y, anchor.size_m.z},
-          .p_WA_m = {X_WA.p.x, X_WA.p.y, X_WA.p.z},
-          .q_WA = {X_WA.q.w, X_WA.q.x, X_WA.q.y, X_WA.q.z}};
 }
 
 void check_options(const RunOptions& options, const sim::World& world) {
@@ -187,7 +133,8 @@ void Coordinator::Impl::start() {
   if (options_.real_time_factor > 0.0)
     pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid_.dt()), started_);
   for (Session& session : sessions_) {
-    barrier_.add(ExecTime{});
+    barrier_.add(ExecTime{},
+                 session.is_concurrent() ? sync::SutKind::kConcurrent : sync::SutKind::kSerial);
     session.last_word = started_;
     if (session.hello.clock == link::ClockKind::kUnstamped)
       session.timer.emplace(ExecTime{}, started_);
@@ -200,35 +147,11 @@ void Coordinator::Impl::start() {
                                               .start = ExecTime{}});
 }
 
-record::Header Coordinator::Impl::make_header() const {
-  record::Header header = options_.header;
-  header.seed = options_.seed;
-  header.policy = std::string(sync::name(options_.policy));
-  header.simulator = simulator_->description();
-  header.step = grid_.dt();
-  header.ground_truth_period = options_.ground_truth_period;
-  header.real_time_factor = options_.real_time_factor;
-  for (const Session& session : sessions_) {
-    header.suts.push_back({.uav = session.uav_name,
-                           .sut = session.hello.sut,
-                           .clock = std::string(link::name(session.hello.clock)),
-                           .cpu_factor = session.hello.cpu_factor,
-                           .command_latency = session.command_latency});
-    const sim::Uav& uav = world().uavs[session.uav];
-    for (std::size_t i = 0; i < uav.sensors.size(); ++i)
-      header.sensors.push_back(
-          describe(uav.name, uav.sensors[i], options_.uavs[session.uav].timings[i]));
-  }
-  for (const sim::PlacedAnchor& anchor : world().anchors)
-    header.anchors.push_back(describe(anchor));
-  return header;
-}
-
 // One turn of stepping; false if ST may not move now.
 bool Coordinator::Impl::advance() {
   const WallTime now = host_clock_();
   for (Session& session : sessions_)
-    if (session.timer && session.computing())
+    if (session.timer && is_computing(session))
       barrier_.progress(session.uav, session.timer->read(now));
 
   // An unstamped client's clock may just have let another SUT go on.
@@ -264,8 +187,9 @@ SimTime Coordinator::Impl::next_stop() const {
   SimTime stop = std::min(horizon(), commands_.next_effect());
   stop = std::min(stop, grid_.ceil(SimTime(ground_truths_ * options_.ground_truth_period)));
   for (const Session& session : sessions_) {
-    if (session.pending && session.pending->on_demand && !session.pending->captured)
-      stop = std::min(stop, grid_.floor(session.pending->measurement->sampled_at));
+    for (const PendingInteraction& pending : session.open)
+      if (pending.on_demand && !pending.captured)
+        stop = std::min(stop, grid_.floor(pending.measurement->sampled_at));
     if (!tied() || session.left) continue;
     for (const SensorState& sensor : session.sensors)
       if (const auto instant = sensor.schedule.sampling_instant(sensor.next_capture))
@@ -285,10 +209,11 @@ void Coordinator::Impl::at_boundary() {
 
 void Coordinator::Impl::capture_due() {
   for (Session& session : sessions_) {
-    if (session.pending && session.pending->on_demand && !session.pending->captured &&
-        grid_.floor(session.pending->measurement->sampled_at) <= st_) {
-      ask_simulator([&](sim::Simulator& s) { s.capture(session.on_demand_state); });
-      session.pending->captured = true;
+    for (PendingInteraction& pending : session.open) {
+      if (!pending.on_demand || pending.captured) continue;
+      if (grid_.floor(pending.measurement->sampled_at) > st_) continue;
+      ask_simulator([&](sim::Simulator& s) { s.capture(pending.state); });
+      pending.captured = true;
     }
     if (!tied() || session.left) continue;
     for (std::size_t i = 0; i < session.sensors.size(); ++i) capture_periodic(session, i);
@@ -303,19 +228,22 @@ void Coordinator::Impl::capture_periodic(Session& session, std::size_t sensor_in
   while (instant && grid_.floor(*instant) <= st_) {
     ask_simulator([&](sim::Simulator& s) { s.capture(sensor.captures.add(sensor.next_capture)); });
     instant = sensor.schedule.sampling_instant(++sensor.next_capture);
-    sensor.captures.drop_before(
-        sensor.schedule.first_readable(same_instant(earliest_read(session, sensor_index))));
+    sensor.captures.drop_before(first_needed(session, sensor_index));
   }
 }
 
-// The least timestamp of a read of this sensor that is still to be answered: of one that is held,
-// its own; else no read can come before the SUT goes on.
-ExecTime Coordinator::Impl::earliest_read(const Session& session, std::size_t sensor_index) const {
-  if (session.pending)
-    if (const auto* read = std::get_if<link::ReadSensor>(&session.pending->request.body);
-        read && read->sensor == sensor_index)
-      return session.pending->entry.request_at;
-  return barrier_.bound(session.uav);
+// The first measurement of this sensor whose state may still be asked for: by a read that is open
+// and has its measurement, or by one still to come, which cannot be stamped before the SUT's bound.
+std::uint64_t Coordinator::Impl::first_needed(const Session& session,
+                                              std::size_t sensor_index) const {
+  std::uint64_t first = session.sensors[sensor_index].schedule.first_readable(
+      same_instant(barrier_.bound(session.uav)));
+  for (const PendingInteraction& pending : session.open) {
+    const auto* read = std::get_if<link::ReadSensor>(&pending.request.body);
+    if (read && read->sensor == sensor_index && pending.measurement)
+      first = std::min(first, pending.measurement->index);
+  }
+  return first;
 }
 
 void Coordinator::Impl::apply_due() {
@@ -353,13 +281,19 @@ void Coordinator::Impl::watch() {
   if (hooks_.on_status) hooks_.on_status(status());
 }
 
+// It owes us the next word; a SUT that waits for a reply of ours does not.
+bool Coordinator::Impl::is_computing(const Session& session) const {
+  if (!session.joined() || session.left) return false;
+  return tied() ? !barrier_.is_held(session.uav) : session.open.empty();
+}
+
 void Coordinator::Impl::check_words(WallTime now) {
   for (const Session& session : sessions_) {
     if (!running_ && !session.joined() && now - started_ > options_.connect_limit)
       return end(RunEnd::kSutLost,
                  fmt::format("no SUT joined for UAV \"{}\" within {} s", session.uav_name,
                              to_seconds(options_.connect_limit)));
-    if (running_ && session.computing() && now - session.last_word > options_.hang_limit)
+    if (running_ && is_computing(session) && now - session.last_word > options_.hang_limit)
       return end(
           RunEnd::kSutHung,
           fmt::format("SUT \"{}\" of UAV \"{}\" gave no word for {} s (limit), last at ET {:.6f} s",

@@ -47,10 +47,11 @@ class Coordinator::Impl final : public link::ServerEvents {
   void at_boundary();
   void capture_due();
   void capture_periodic(Session& session, std::size_t sensor_index);
-  ExecTime earliest_read(const Session& session, std::size_t sensor_index) const;
+  std::uint64_t first_needed(const Session& session, std::size_t sensor_index) const;
   void apply_due();
   void log_ground_truth();
   void watch();
+  bool is_computing(const Session& session) const;
   void check_words(WallTime now);
   void end(RunEnd how, const std::string& reason);
   RunReport close_run();
@@ -75,11 +76,20 @@ class Coordinator::Impl final : public link::ServerEvents {
   void on_request(Session& session, const link::Request& request, WallTime now);
   bool is_word(const Session& session, const link::Message& message) const;
   void on_progress(Session& session, const link::Progress& progress);
+  void on_stop(Session& session, ExecTime at);
+  void break_off(Session& session, link::Refusal::Reason reason, const std::string& sent);
   std::optional<std::string> fault_of(const Session& session, const link::Request& request) const;
+  std::optional<std::string> order_fault(const Session& session,
+                                         const link::Request& request) const;
+  std::optional<std::string> read_fault(const Session& session, const link::ReadSensor& read) const;
   void begin(Session& session, const link::Request& request, WallTime now);
+  record::Interaction make_entry(const Session& session, const link::Request& request,
+                                 WallTime now) const;
   ExecTime charge(Session& session, const link::Request& request, record::Interaction& entry);
   ExecTime accept(Session& session, PendingInteraction& pending);
   ExecTime accept_read(Session& session, PendingInteraction& pending, const link::ReadSensor& read);
+  std::optional<Measurement> choose(const SensorSchedule& schedule, SimTime t,
+                                    const link::ReadSensor& read) const;
   ExecTime accept_command(Session& session, PendingInteraction& pending,
                           const link::SetVelocity& set);
   Session* find(link::PeerId peer);
@@ -88,11 +98,11 @@ class Coordinator::Impl final : public link::ServerEvents {
   // Outgoing.
   void release_ready();
   void answer_untied();
-  void reply(Session& session, SimTime st);
+  void reply(Session& session, std::size_t open_index, SimTime st);
   void leave(Session& session);
   std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
                                                    const link::Reply& reply) const;
-  std::optional<uav::Sample> take_sample(Session& session, PendingInteraction& pending);
+  std::optional<uav::Sample> take_sample(const Session& session, PendingInteraction& pending);
 
   bool tied() const { return options_.policy == sync::SyncPolicy::kConservativeBarrier; }
   const sim::World& world() const { return simulator_->world(); }

@@ -58,12 +58,17 @@ void Coordinator::Impl::on_message(link::PeerId peer, link::Message message) {
       return on_progress(*session, *progress);
     if (const auto* note = std::get_if<link::Annotation>(&message))
       return log_.annotation(st_, {session->uav_name, note->at, note->topic, note->json});
-    refuse(peer, link::Refusal::Reason::kBadMessage, "a SUT may not send this kind of message");
-    session->left = true;
-    end(RunEnd::kSutLost,
-        fmt::format("the SUT of UAV \"{}\" sent a message that only coordinators send",
-                    session->uav_name));
+    break_off(*session, link::Refusal::Reason::kBadMessage,
+              "a message that only coordinators send");
   });
+}
+
+// It broke the protocol: it is told, and the run cannot go on without it.
+void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason,
+                                  const std::string& sent) {
+  refuse(session.peer, reason, sent);
+  session.left = true;
+  end(RunEnd::kSutLost, fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, sent));
 }
 
 void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
@@ -106,22 +111,30 @@ bool Coordinator::Impl::is_word(const Session& session, const link::Message& mes
 
 void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress) {
   if (!running_ || !tied() || !is_stamp(progress.reached)) return;
+  if (progress.stopped) return on_stop(session, progress.reached);
   barrier_.progress(session.uav, progress.reached);
+  release_ready();
+}
+
+// All of a concurrent SUT stands still: replies that are due by then may leave.
+void Coordinator::Impl::on_stop(Session& session, ExecTime at) {
+  const auto reason = link::Refusal::Reason::kBadMessage;
+  if (!session.is_concurrent())
+    return break_off(session, reason, "a stop, which is for concurrent SUTs");
+  if (const ExecTime reached = barrier_.bound(session.uav); at < reached)
+    return break_off(session, reason,
+                     fmt::format("a stop at ET {} ns, although it had reached {} ns", to_ns(at),
+                                 to_ns(reached)));
+  barrier_.stop(session.uav, at);
   release_ready();
 }
 
 std::optional<std::string> Coordinator::Impl::fault_of(const Session& session,
                                                        const link::Request& request) const {
-  if (!running_) return "a request before the Welcome";
-  if (session.pending) return "a request while another one is held";
-  if (session.finish) return "a request after Finish";
-  if (request.sequence != session.next_sequence)
-    return fmt::format("request number {}, expected {}", request.sequence, session.next_sequence);
+  if (const auto fault = order_fault(session, request)) return fault;
   if (!is_stamp(request.issued_at)) return "a time stamp out of range";
-  if (const auto* read = std::get_if<link::ReadSensor>(&request.body);
-      read && read->sensor >= session.sensors.size())
-    return fmt::format("sensor number {}, but the UAV has {}", read->sensor,
-                       session.sensors.size());
+  if (const auto* read = std::get_if<link::ReadSensor>(&request.body))
+    return read_fault(session, *read);
   if (const auto* set = std::get_if<link::SetVelocity>(&request.body);
       set && !uav::is_valid(set->command))
     return "a velocity command that is not finite or beyond any multirotor";
@@ -132,13 +145,39 @@ std::optional<std::string> Coordinator::Impl::fault_of(const Session& session,
   return std::nullopt;
 }
 
-void Coordinator::Impl::on_request(Session& session, const link::Request& request, WallTime now) {
-  if (const auto fault = fault_of(session, request)) {
-    refuse(session.peer, link::Refusal::Reason::kBadRequest, *fault);
-    session.left = true;
-    return end(RunEnd::kSutLost,
-               fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, *fault));
+std::optional<std::string> Coordinator::Impl::order_fault(const Session& session,
+                                                          const link::Request& request) const {
+  if (!running_) return "a request before the Welcome";
+  if (session.is_concurrent()) {
+    if (session.open.size() >= sync::kMaxOpenCalls)
+      return fmt::format("a request while {} others are open", session.open.size());
+    if (tied() && barrier_.is_held(session.uav) && request.issued_at > barrier_.bound(session.uav))
+      return fmt::format("a request stamped {} ns while it stood still for a reply at {} ns",
+                         to_ns(request.issued_at), to_ns(barrier_.bound(session.uav)));
+  } else {
+    if (!session.open.empty()) return "a request while another one is held";
+    if (session.finish) return "a request after Finish";
   }
+  if (request.sequence != session.next_sequence)
+    return fmt::format("request number {}, expected {}", request.sequence, session.next_sequence);
+  return std::nullopt;
+}
+
+std::optional<std::string> Coordinator::Impl::read_fault(const Session& session,
+                                                         const link::ReadSensor& read) const {
+  if (read.sensor >= session.sensors.size())
+    return fmt::format("sensor number {}, but the UAV has {}", read.sensor, session.sensors.size());
+  const SensorState& sensor = session.sensors[read.sensor];
+  if (read.only_if_available && !sensor.schedule.is_periodic())
+    return fmt::format("a read of what sensor \"{}\" has, which measures on demand", sensor.name);
+  return std::nullopt;
+}
+
+void Coordinator::Impl::on_request(Session& session, const link::Request& request, WallTime now) {
+  // One thread of a concurrent SUT ends it for all; what the others still ask is dropped.
+  if (session.is_concurrent() && session.finish) return;
+  if (const auto fault = fault_of(session, request))
+    return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
   ++session.next_sequence;
   begin(session, request, now);
   capture_due();
@@ -146,23 +185,40 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   release_ready();
 }
 
-// From arrival to being held.
+// From arrival to being held. A concurrent SUT is told at once when its reply is due, so that it
+// can run on until then.
 void Coordinator::Impl::begin(Session& session, const link::Request& request, WallTime now) {
-  PendingInteraction& pending = session.pending.emplace();
-  pending.request = request;
+  PendingInteraction pending{.request = request, .entry = make_entry(session, request, now)};
+  if (!session.spare_states.empty()) {
+    pending.state = std::move(session.spare_states.back());
+    session.spare_states.pop_back();
+  }
   record::Interaction& entry = pending.entry;
+  entry.request_at = charge(session, request, entry);
+  entry.reply_at = accept(session, pending);
+  if (tied()) {
+    barrier_.hold({session.uav, entry.reply_at, entry.sequence});
+    if (session.is_concurrent())
+      server_->send(session.peer, link::Due{entry.sequence, entry.reply_at});
+  }
+  session.open.push_back(std::move(pending));
+}
+
+record::Interaction Coordinator::Impl::make_entry(const Session& session,
+                                                  const link::Request& request,
+                                                  WallTime now) const {
+  record::Interaction entry;
   entry.uav = session.uav_name;
   entry.sequence = request.sequence;
   entry.kind = kind_of(request);
   entry.st_at_arrival = st_;
   entry.wall_at_arrival = now;
   entry.stamped = !session.timer && tied();
-  if (request.previous_round_trip > Duration(0) && session.last_hold > Duration(0))
+  // Calls of several threads overlap: a round trip less another call's hold says nothing.
+  if (!session.is_concurrent() && request.previous_round_trip > Duration(0) &&
+      session.last_hold > Duration(0))
     entry.previous_link_time = request.previous_round_trip - session.last_hold;
-
-  entry.request_at = charge(session, request, entry);
-  entry.reply_at = accept(session, pending);
-  if (tied()) barrier_.hold({session.uav, entry.reply_at});
+  return entry;
 }
 
 // The timestamp of a request: the SUT's own; of an unstamped client the coordinator's timer; in
@@ -195,23 +251,30 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
   return pending.entry.request_at;
 }
 
+// A read that finds nothing marks nothing as read, and its reply is due at once.
 ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pending,
                                         const link::ReadSensor& read) {
   SensorState& sensor = session.sensors[read.sensor];
   record::Interaction& entry = pending.entry;
-  const SimTime t = same_instant(entry.request_at);
-
-  pending.measurement = tied() ? sensor.schedule.choose(t, read.latest)
-                               : sensor.schedule.choose_untied(t, read.latest);
-  sensor.schedule.mark_read(*pending.measurement);
-  pending.on_demand = !tied() || !sensor.schedule.sampling_instant(0);
-
   entry.sensor = sensor.name;
   entry.latest = read.latest;
+  pending.measurement = choose(sensor.schedule, same_instant(entry.request_at), read);
+  if (!pending.measurement) return entry.request_at;
+
+  sensor.schedule.mark_read(*pending.measurement);
+  pending.on_demand = !tied() || !sensor.schedule.is_periodic();
   entry.sample_index = pending.measurement->index;
   entry.sampled_at = pending.measurement->sampled_at;
   entry.available_at = pending.measurement->available_at;
   return std::max(entry.request_at, same_instant(pending.measurement->available_at));
+}
+
+std::optional<Measurement> Coordinator::Impl::choose(const SensorSchedule& schedule, SimTime t,
+                                                     const link::ReadSensor& read) const {
+  if (read.only_if_available)
+    return tied() ? schedule.choose_available(t, read.latest)
+                  : schedule.choose_available_untied(t, read.latest);
+  return tied() ? schedule.choose(t, read.latest) : schedule.choose_untied(t, read.latest);
 }
 
 ExecTime Coordinator::Impl::accept_command(Session& session, PendingInteraction& pending,

@@ -7,24 +7,35 @@ namespace tether::coordinator {
 
 void Coordinator::Impl::release_ready() {
   if (!tied()) return answer_untied();
-  while (const auto grant = barrier_.release(st_)) reply(sessions_[grant->sut], grant->released_at);
+  while (const auto grant = barrier_.release(st_)) {
+    Session& session = sessions_[grant->sut];
+    std::size_t i = 0;
+    while (session.open[i].entry.sequence != grant->call) ++i;
+    reply(session, i, grant->released_at);
+  }
 }
 
 // In free running nothing is held but a read that waits for its sensor's next measurement.
 void Coordinator::Impl::answer_untied() {
   for (Session& session : sessions_) {
-    if (!session.pending) continue;
-    if (session.pending->measurement && !session.pending->captured) continue;
-    session.pending->entry.reply_at = same_instant(st_);
-    reply(session, st_);
+    for (std::size_t i = 0; i < session.open.size();) {
+      PendingInteraction& pending = session.open[i];
+      if (pending.measurement && !pending.captured) {
+        ++i;
+        continue;
+      }
+      pending.entry.reply_at = same_instant(st_);
+      reply(session, i, st_);
+    }
   }
 }
 
 // The reply goes out first and is recorded afterwards, so that the record costs the SUT no wall
 // time.
-void Coordinator::Impl::reply(Session& session, SimTime st) {
-  PendingInteraction pending = std::move(*session.pending);
-  session.pending.reset();
+void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime st) {
+  const auto place = session.open.begin() + static_cast<std::ptrdiff_t>(open_index);
+  PendingInteraction pending = std::move(*place);
+  session.open.erase(place);
   record::Interaction& entry = pending.entry;
 
   link::Reply message{.sequence = entry.sequence,
@@ -39,9 +50,10 @@ void Coordinator::Impl::reply(Session& session, SimTime st) {
   session.last_hold = entry.wall_at_release - entry.wall_at_arrival;
   session.last_word = entry.wall_at_release;
   if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
+  session.spare_states.push_back(std::move(pending.state));
   log_.interaction(st, entry);
   if (image) log_.image(st, session.uav_name, entry.sensor, *image);
-  if (session.finish) leave(session);
+  if (entry.kind == record::kFinish) leave(session);
 }
 
 std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
@@ -55,21 +67,23 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
   return *image;
 }
 
+// What else a concurrent SUT has open ends with it.
 void Coordinator::Impl::leave(Session& session) {
   session.left = true;
+  session.open.clear();
   barrier_.remove(session.uav);
   server_->close(session.peer);
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.left; }))
     end(RunEnd::kFinished, "every SUT has finished");
 }
 
-std::optional<uav::Sample> Coordinator::Impl::take_sample(Session& session,
+std::optional<uav::Sample> Coordinator::Impl::take_sample(const Session& session,
                                                           PendingInteraction& pending) {
   if (!pending.measurement) return std::nullopt;
   const auto& read = std::get<link::ReadSensor>(pending.request.body);
   const Measurement& measurement = *pending.measurement;
   const sim::Snapshot* state = pending.on_demand
-                                   ? &session.on_demand_state
+                                   ? &pending.state
                                    : session.sensors[read.sensor].captures.find(measurement.index);
   if (!state)
     throw Error(ErrorCode::kInternal, "the state of a measurement was dropped before it was read");

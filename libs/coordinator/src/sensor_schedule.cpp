@@ -47,7 +47,7 @@ Measurement SensorSchedule::next_available(const uav::PeriodicTiming& timing,
 
 Measurement SensorSchedule::choose(SimTime t, bool latest) const {
   if (const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_)) {
-    if (const auto newest = newest_available(*timing, t, latest ? 0 : unread_)) return *newest;
+    if (const auto there = choose_available(t, latest)) return *there;
     return next_available(*timing, unread_);
   }
   const auto& timing = std::get<uav::OnDemandTiming>(timing_);
@@ -57,10 +57,19 @@ Measurement SensorSchedule::choose(SimTime t, bool latest) const {
 Measurement SensorSchedule::choose_untied(SimTime t, bool latest) const {
   const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_);
   if (!timing) return {unread_, t, t};
-  if (const auto newest = newest_sampled(*timing, t); newest && (latest || *newest >= unread_))
-    return {*newest, t, t};
+  if (const auto there = choose_available_untied(t, latest)) return *there;
   const SimTime next = uav::sampling_instant(*timing, unread_);
   return {unread_, next, next};
+}
+
+std::optional<Measurement> SensorSchedule::choose_available(SimTime t, bool latest) const {
+  return newest_available(std::get<uav::PeriodicTiming>(timing_), t, latest ? 0 : unread_);
+}
+
+std::optional<Measurement> SensorSchedule::choose_available_untied(SimTime t, bool latest) const {
+  const auto newest = newest_sampled(std::get<uav::PeriodicTiming>(timing_), t);
+  if (!newest || !(latest || *newest >= unread_)) return std::nullopt;
+  return Measurement{*newest, t, t};
 }
 
 void SensorSchedule::mark_read(const Measurement& measurement) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <variant>
 
 #include <tether/base/time.h>
 #include <tether/uav/sensor_timing.h>
@@ -31,9 +32,14 @@ class SensorSchedule {
   /// Periodic: one reading per period, so that a read whose period's measurement was already read
   /// (and is not asked for again with `latest`) waits for the next sampling instant.
   Measurement choose_untied(SimTime t, bool latest) const;
+  /// What a read at `t` gets that does not wait; none where nothing is there. @pre periodic.
+  std::optional<Measurement> choose_available(SimTime t, bool latest) const;
+  /// The same in free running.
+  std::optional<Measurement> choose_available_untied(SimTime t, bool latest) const;
   /// It was read.
   void mark_read(const Measurement& measurement);
 
+  bool is_periodic() const { return std::holds_alternative<uav::PeriodicTiming>(timing_); }
   /// Periodic: when measurement `index` is sampled. None for a sensor on demand.
   std::optional<SimTime> sampling_instant(std::uint64_t index) const;
   /// Periodic: no read at `t` or later gets a measurement before this one.

@@ -29,10 +29,11 @@ struct SensorState {
 /// A request between its arrival and its reply.
 struct PendingInteraction {
   link::Request request;
-  record::Interaction entry;               ///< filled in as things happen
-  std::optional<Measurement> measurement;  ///< of ReadSensor
-  bool on_demand = false;                  ///< its state is captured for it alone …
-  bool captured = false;                   ///< … and has been, into Session::on_demand_state
+  record::Interaction entry;                 ///< filled in as things happen
+  std::optional<Measurement> measurement{};  ///< of ReadSensor; none if none was there
+  bool on_demand = false;                    ///< its state is captured for it alone …
+  bool captured = false;                     ///< … and has been, into `state`
+  sim::Snapshot state{};
 };
 
 /// One SUT and the UAV that it flies. Plain state; `Coordinator` acts on it.
@@ -51,13 +52,13 @@ struct Session {
   std::optional<link::Finish> finish;
   bool left = false;  ///< finished or sent away: nothing more is expected or told
 
-  // From one request to the next.
-  std::optional<PendingInteraction> pending;
-  sim::Snapshot on_demand_state;
+  /// Requests without their reply, in the order of their sequence: of a serial SUT one at most.
+  std::vector<PendingInteraction> open;
+  std::vector<sim::Snapshot> spare_states;  ///< storage for the next ones
   Duration last_hold{0};  ///< WT between the last request's arrival and its reply; 0: none yet
 
   bool joined() const { return peer != 0; }
-  bool computing() const { return joined() && !left && !pending; }
+  bool is_concurrent() const { return hello.concurrent; }
 };
 
 }  // namespace tether::coordinator

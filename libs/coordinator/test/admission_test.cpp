@@ -60,6 +60,27 @@ TEST(Admission, RefusesWithAReason) {
   }
 }
 
+TEST(Admission, AConcurrentSutNeedsOneTimeLine) {
+  for (const auto clock : {link::ClockKind::kCpu, link::ClockKind::kUnstamped}) {
+    link::Hello threads = hello("alpha");
+    threads.clock = clock;
+    EXPECT_FALSE(clock_fault(threads, std::nullopt));
+    threads.concurrent = true;
+    EXPECT_THAT(clock_fault(threads, std::nullopt).value_or(""), HasSubstr("no time line"));
+  }
+}
+
+TEST(Admission, AScaledWallClockIsAnotherOne) {
+  link::Hello sut = hello("alpha");
+  sut.clock = link::ClockKind::kWall;
+  sut.cpu_factor = 4.0;
+  const ClockSetting scaled{.kind = link::ClockKind::kWall, .cpu_factor = 4.0};
+  EXPECT_FALSE(clock_fault(sut, scaled));
+  EXPECT_THAT(clock_fault(sut, ClockSetting{}).value_or(""), HasSubstr("TETHER_CLOCK='wall'"));
+  sut.cpu_factor = 1.0;
+  EXPECT_THAT(clock_fault(sut, scaled).value_or(""), HasSubstr("TETHER_CLOCK='wall*4'"));
+}
+
 TEST(Admission, AStrangerLearnsNothingOfTheRun) {
   link::Hello stranger = hello("gamma");
   stranger.token = "guess";

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "scripted_threads.h"
+
 #include <deque>
 #include <functional>
 #include <map>
@@ -12,17 +14,11 @@
 
 namespace tether::coordinator {
 
-/// What a scripted SUT does next: computes for so long, then asks.
-struct Act {
-  Duration compute{0};
-  std::variant<link::ReadSensor, link::SetVelocity, Duration /* sleep */, link::Finish> what;
-};
-
 /// A server whose peers are scripts: everything happens inside `poll`, in a fixed order, with no
 /// thread, socket or clock.
 class ScriptedServer final : public link::Server {
  public:
-  using Script = std::vector<Act>;
+  using Script = coordinator::Script;
 
   explicit ScriptedServer(link::ServerEvents& events) : events_(&events) {}
 
@@ -30,6 +26,16 @@ class ScriptedServer final : public link::Server {
   link::PeerId add_sut(link::Hello hello, Script script) {
     const link::PeerId peer = ++last_peer_;
     suts_[peer] = {std::move(script), 0, ExecTime{}, 0};
+    deliver(peer, std::move(hello));
+    return peer;
+  }
+  /// A peer of several threads, one per script.
+  link::PeerId add_threads(link::Hello hello, std::vector<Script> scripts,
+                           Duration overshoot = Duration(0)) {
+    const link::PeerId peer = ++last_peer_;
+    hello.concurrent = true;
+    threads_.emplace(peer, ScriptedThreads(std::move(scripts), overshoot,
+                                           [this, peer](link::Message m) { deliver(peer, m); }));
     deliver(peer, std::move(hello));
     return peer;
   }
@@ -55,6 +61,8 @@ class ScriptedServer final : public link::Server {
   }
   void send(link::PeerId peer, link::Message message) override {
     sent[peer].push_back(message);
+    if (const auto threads = threads_.find(peer); threads != threads_.end())
+      return threads->second.on_message(message);
     if (const auto* welcome = std::get_if<link::Welcome>(&message)) proceed(peer, welcome->start);
     if (const auto* reply = std::get_if<link::Reply>(&message)) proceed(peer, reply->resume_at);
   }
@@ -78,21 +86,13 @@ class ScriptedServer final : public link::Server {
     if (sut.next == sut.script.size()) return;
     const Act& act = sut.script[sut.next++];
     sut.et += act.compute;
-    link::Request request{.sequence = ++sut.sequence, .issued_at = sut.et, .body = {}};
-    std::visit(
-        [&](const auto& what) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(what)>, Duration>)
-            request.body = link::Sleep{sut.et + what};
-          else
-            request.body = what;
-        },
-        act.what);
-    deliver(peer, request);
+    deliver(peer, make_request(act, ++sut.sequence, sut.et));
   }
 
   link::ServerEvents* events_;
   link::PeerId last_peer_ = 0;
   std::map<link::PeerId, Sut> suts_;
+  std::map<link::PeerId, ScriptedThreads> threads_;
   std::deque<std::function<void()>> queue_;
 };
 

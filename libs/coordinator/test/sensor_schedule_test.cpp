@@ -76,6 +76,19 @@ TEST(SensorSchedule, UntiedReadsAreOfTheMomentOncePerPeriod) {
   EXPECT_EQ(on_demand.choose_untied(ms(7), false), (Measurement{0, ms(7), ms(7)}));
 }
 
+// Both by the barrier and in free running: measurement 1 (of 33 ms, there at 43 ms) has been read.
+TEST(SensorSchedule, WhatIsAvailableWithoutWaiting) {
+  SensorSchedule schedule = camera(milliseconds(10));
+  schedule.mark_read({1, ms(33), ms(43)});
+  EXPECT_FALSE(schedule.choose_available(ms(75), false));
+  EXPECT_EQ(schedule.choose_available(ms(75), true), (Measurement{1, ms(33), ms(43)}));
+  EXPECT_EQ(schedule.choose_available(ms(76), false), (Measurement{2, ms(66), ms(76)}));
+  EXPECT_FALSE(schedule.choose_available_untied(ms(65), false));
+  EXPECT_EQ(schedule.choose_available_untied(ms(65), true), (Measurement{1, ms(65), ms(65)}));
+  EXPECT_EQ(schedule.choose_available_untied(ms(66), false), (Measurement{2, ms(66), ms(66)}));
+  EXPECT_FALSE(camera(Duration(0), milliseconds(5)).choose_available(ms(4), true));
+}
+
 // Against the definition, by trying every measurement: random delays up to several periods reorder
 // what becomes available.
 TEST(SensorSchedule, AgreesWithTheDefinitionUnderRandomDelays) {

@@ -22,7 +22,7 @@ namespace tether::coordinator {
 
 struct ClockSetting {
   link::ClockKind kind = link::ClockKind::kWall;
-  double cpu_factor = 1.0;  ///< of link::ClockKind::kCpu
+  double cpu_factor = 1.0;  ///< of link::ClockKind::kCpu and kWall: seconds of ET per second of it
   Duration computing{0};    ///< of link::ClockKind::kScripted: for each phase of computing
 };
 

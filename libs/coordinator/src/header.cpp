@@ -1,0 +1,92 @@
+#include "coordinator_impl.h"
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+#include <utility>
+
+/// What rests under every number of a run's record.
+namespace tether::coordinator {
+
+namespace {
+
+/// The least and the greatest delay that the model can draw.
+std::pair<Duration, Duration> bounds(const uav::Delay& delay) {
+  if (const auto* constant = std::get_if<uav::ConstantDelay>(&delay))
+    return {constant->value, constant->value};
+  if (const auto* empirical = std::get_if<uav::EmpiricalDelay>(&delay)) {
+    const auto [least, greatest] =
+        std::minmax_element(empirical->samples.begin(), empirical->samples.end());
+    return {*least, *greatest};
+  }
+  return {Duration(0), Duration::max()};
+}
+
+record::CameraInfo describe(const uav::Pose& X_BS, const uav::CameraModel& model) {
+  return {.p_BS_m = {X_BS.p.x, X_BS.p.y, X_BS.p.z},
+          .q_BS = {X_BS.q.w, X_BS.q.x, X_BS.q.y, X_BS.q.z},
+          .width_px = model.width_px,
+          .height_px = model.height_px,
+          .fx_px = model.fx_px,
+          .fy_px = model.fy_px,
+          .cx_px = model.cx_px,
+          .cy_px = model.cy_px,
+          .k1 = model.k1,
+          .k2 = model.k2,
+          .k3 = model.k3,
+          .p1 = model.p1,
+          .p2 = model.p2};
+}
+
+record::SensorInfo describe(const std::string& uav, const sim::Sensor& sensor,
+                            const uav::SensorTiming& timing) {
+  record::SensorInfo info{
+      .uav = uav, .name = sensor.name, .kind = std::string(uav::name(sensor.kind()))};
+  std::tie(info.delay_min, info.delay_max) =
+      bounds(std::visit([](const auto& t) { return t.delay; }, timing));
+  if (const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing)) {
+    info.periodic = true;
+    info.period = periodic->period;
+    info.phase = periodic->phase;
+  }
+  if (const auto* camera = std::get_if<sim::CameraModel>(&sensor.model))
+    info.camera = describe(sensor.X_BS, camera->intrinsics);
+  return info;
+}
+
+record::Anchor describe(const sim::PlacedAnchor& placed) {
+  const auto& [anchor, X_WA] = placed;
+  return {.name = anchor.name,
+          .shape = std::string(uav::name(anchor.shape)),
+          .size_m = {anchor.size_m.x, anchor.size_m.y, anchor.size_m.z},
+          .p_WA_m = {X_WA.p.x, X_WA.p.y, X_WA.p.z},
+          .q_WA = {X_WA.q.w, X_WA.q.x, X_WA.q.y, X_WA.q.z}};
+}
+
+}  // namespace
+
+record::Header Coordinator::Impl::make_header() const {
+  record::Header header = options_.header;
+  header.seed = options_.seed;
+  header.policy = std::string(sync::name(options_.policy));
+  header.simulator = simulator_->description();
+  header.step = grid_.dt();
+  header.ground_truth_period = options_.ground_truth_period;
+  header.real_time_factor = options_.real_time_factor;
+  for (const Session& session : sessions_) {
+    header.suts.push_back({.uav = session.uav_name,
+                           .sut = session.hello.sut,
+                           .clock = std::string(link::name(session.hello.clock)),
+                           .cpu_factor = session.hello.cpu_factor,
+                           .command_latency = session.command_latency});
+    const sim::Uav& uav = world().uavs[session.uav];
+    for (std::size_t i = 0; i < uav.sensors.size(); ++i)
+      header.sensors.push_back(
+          describe(uav.name, uav.sensors[i], options_.uavs[session.uav].timings[i]));
+  }
+  for (const sim::PlacedAnchor& anchor : world().anchors)
+    header.anchors.push_back(describe(anchor));
+  return header;
+}
+
+}  // namespace tether::coordinator
