@@ -40,6 +40,8 @@ TEST(Arrows, PlantedBreachesAreFound) {
   EXPECT_THAT(check_arrows({file_of("libs/tasks/test/a_test.cpp",
                                     "#include <tether/coordinator/session.h>\n")}),
               ElementsAre(HasSubstr("'tasks' may not include 'coordinator'")));
+  EXPECT_THAT(check_arrows({file_of("libs/client/src/a.cpp", "#include <tether/client.hpp>\n")}),
+              ElementsAre(HasSubstr("'client' may not include 'client_c_api'")));
   EXPECT_THAT(check_arrows({file_of("libs/novel/src/a.cpp", "#include <tether/base/time.h>\n")}),
               ElementsAre(HasSubstr("no line in the table")));
 }

@@ -33,8 +33,8 @@ bool is_skipped_folder(const std::string& name) {
 
 bool is_text(const fs::path& file) {
   static const std::set<std::string> kExtensions = {
-      "",     ".h",   ".cpp", ".cmake", ".txt", ".md",   ".toml", ".sdf",
-      ".fbs", ".mjs", ".js",  ".json",  ".yml", ".yaml", ".in",   ".supp"};
+      "",     ".h",  ".hpp",  ".c",   ".cpp",  ".cmake", ".txt", ".md",   ".toml", ".sdf", ".fbs",
+      ".mjs", ".js", ".json", ".yml", ".yaml", ".in",    ".map", ".supp", ".1",    ".3"};
   return kExtensions.contains(file.extension().string());
 }
 
@@ -79,7 +79,7 @@ std::vector<SourceFile> read_sources(const fs::path& root) {
   std::vector<SourceFile> sources;
   for (const char* top : {"apps", "bench", "libs", "tests"}) {
     const auto keep = [](const fs::path& file) {
-      return file.extension() == ".h" || file.extension() == ".cpp";
+      return file.extension() == ".h" || file.extension() == ".hpp" || file.extension() == ".cpp";
     };
     if (!fs::exists(root / top)) continue;
     for (const fs::path& file : walk(root / top, keep)) {

@@ -28,7 +28,7 @@ struct SourceFile {
   bool is_product() const {
     return role == Role::kPublicHeader || role == Role::kSource || role == Role::kProgram;
   }
-  bool is_header() const { return path.ends_with(".h"); }
+  bool is_header() const { return path.ends_with(".h") || path.ends_with(".hpp"); }
 };
 
 /// Library and role of a path, with the nested library of libs/sim/mujoco told apart from libs/sim.

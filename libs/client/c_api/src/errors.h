@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string_view>
+
+#include <tether/base/result.h>
+#include <tether/client.h>
+
+namespace tether::c_api {
+
+/// Keeps `message` as the calling thread's last error and returns `status`.
+tether_status fail(tether_status status, std::string_view message) noexcept;
+tether_status fail(const Failure& failure) noexcept;
+tether_status to_c(Failure::Kind kind) noexcept;
+
+/// TETHER_OK, or what `result` failed with.
+template <class T>
+tether_status status_of(const Result<T>& result) noexcept {
+  return result ? TETHER_OK : fail(result.failure());
+}
+
+/// Whether each of the pointers is one; says so as the last error otherwise.
+template <class... Pointers>
+bool are_given(Pointers... pointers) noexcept {
+  if ((... && (pointers != nullptr))) return true;
+  fail(TETHER_INVALID, "an argument is NULL that may not be");
+  return false;
+}
+
+/// Runs `body`, which returns a status: no exception leaves the library.
+template <class Body>
+tether_status guarded(Body&& body) noexcept {
+  try {
+    return body();
+  } catch (const std::bad_alloc&) {
+    return fail(TETHER_NO_MEMORY, "memory ran out");
+  } catch (const std::exception& e) {
+    return fail(TETHER_INTERNAL, e.what());
+  }
+}
+
+/// Size of a struct when it was first published: no caller knows less of it.
+template <class T>
+inline constexpr std::size_t kFirstSize = 0;
+template <>
+inline constexpr std::size_t kFirstSize<tether_camera_model> = 80;
+template <>
+inline constexpr std::size_t kFirstSize<tether_image_info> = 32;
+template <>
+inline constexpr std::size_t kFirstSize<tether_imu_sample> = 96;
+template <>
+inline constexpr std::size_t kFirstSize<tether_range_sample> = 24;
+
+/// Whether `out` can take a T of a caller who knows `size` bytes of it; clears it then.
+template <class T>
+bool can_take(T* out, std::size_t size) noexcept {
+  if (!are_given(out)) return false;
+  if (size < kFirstSize<T>) {
+    fail(TETHER_INVALID, "the size of the struct is wrong; hand over sizeof *out");
+    return false;
+  }
+  std::memset(out, 0, size);
+  return true;
+}
+
+/// What the caller knows of `value`. @pre can_take()
+template <class T>
+void put(const T& value, T* out, std::size_t size) noexcept {
+  std::memcpy(out, &value, size < sizeof value ? size : sizeof value);
+}
+
+}  // namespace tether::c_api

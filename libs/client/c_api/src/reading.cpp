@@ -1,0 +1,144 @@
+#include "errors.h"
+#include "handles.h"
+
+#include <cstring>
+#include <new>
+#include <string>
+
+using tether::client::Read;
+
+namespace tether::c_api {
+namespace {
+
+std::optional<Read> from_c(tether_read_mode mode) {
+  switch (mode) {
+    case TETHER_READ_NEXT:
+      return Read::kNext;
+    case TETHER_READ_LATEST:
+      return Read::kLatest;
+    case TETHER_READ_IF_AVAILABLE:
+      return Read::kIfAvailable;
+    default:
+      return std::nullopt;
+  }
+}
+
+tether_vec3 to_c(const uav::Vec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+tether_image_info to_c(const uav::CameraSample& sample) {
+  return {to_ns(sample.sampled_at), sample.index, sample.width_px, sample.height_px,
+          sample.rgb.size()};
+}
+tether_imu_sample to_c(const uav::ImuSample& sample) {
+  return {to_ns(sample.sampled_at),
+          sample.index,
+          to_c(sample.angular_velocity_rad_s),
+          to_c(sample.specific_force_m_s2),
+          {sample.q_WS.w, sample.q_WS.x, sample.q_WS.y, sample.q_WS.z}};
+}
+tether_range_sample to_c(const uav::RangeSample& sample) {
+  return {to_ns(sample.sampled_at), sample.index, sample.range_m};
+}
+
+/// Reads by `method` of the vehicle and gives the sample to `take`, which returns a status.
+template <class Method, class Take>
+tether_status read(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                   Method method, Take take) {
+  const auto wanted = from_c(mode);
+  if (!wanted) return fail(TETHER_INVALID, "the mode of reading is none of TETHER_READ_...");
+  return guarded([&] {
+    auto sample = (vehicle->vehicle.get()->*method)(sensor, *wanted);
+    return sample ? take(std::move(*sample)) : fail(sample.failure());
+  });
+}
+
+/// For samples that are a plain struct.
+template <class CStruct, class Method>
+tether_status read_struct(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                          Method method, CStruct* out, std::size_t size) {
+  if (!can_take(out, size) || !are_given(vehicle, sensor)) return TETHER_INVALID;
+  return read(vehicle, sensor, mode, method, [&](const auto& sample) {
+    put(to_c(sample), out, size);
+    return TETHER_OK;
+  });
+}
+
+/// Whether an image of that camera fits. A sensor that is none is told by the read.
+tether_status check_capacity(const tether_vehicle& vehicle, const char* sensor,
+                             std::size_t capacity) {
+  const auto* found = vehicle.vehicle->catalogue().find_sensor(sensor);
+  const auto* camera =
+      found == nullptr ? nullptr : std::get_if<uav::CameraProperties>(&found->properties);
+  if (camera == nullptr) return TETHER_OK;
+  const std::size_t needed = std::size_t{3} * static_cast<std::size_t>(camera->model.width_px) *
+                             static_cast<std::size_t>(camera->model.height_px);
+  if (capacity >= needed) return TETHER_OK;
+  return guarded([&] {
+    return fail(TETHER_INVALID, "an image of '" + found->name + "' has " + std::to_string(needed) +
+                                    " bytes; the buffer has " + std::to_string(capacity));
+  });
+}
+
+}  // namespace
+}  // namespace tether::c_api
+
+using namespace tether::c_api;
+
+extern "C" {
+
+tether_status tether_read_camera(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                                 tether_image** out) noexcept {
+  if (!are_given(out)) return TETHER_INVALID;
+  *out = nullptr;
+  if (!are_given(vehicle, sensor)) return TETHER_INVALID;
+  return read(vehicle, sensor, mode, &tether::client::Vehicle::read_camera, [&](auto&& sample) {
+    *out = new tether_image{std::move(sample)};
+    return TETHER_OK;
+  });
+}
+
+void tether_image_free(tether_image* image) noexcept {
+  delete image;
+}
+
+tether_status tether_image_get_info(const tether_image* image, tether_image_info* out,
+                                    size_t size) noexcept {
+  if (!can_take(out, size) || !are_given(image)) return TETHER_INVALID;
+  put(to_c(image->sample), out, size);
+  return TETHER_OK;
+}
+
+const uint8_t* tether_image_rgb(const tether_image* image) noexcept {
+  return are_given(image) ? image->sample.rgb.data() : nullptr;
+}
+
+tether_status tether_read_camera_into(tether_vehicle* vehicle, const char* sensor,
+                                      tether_read_mode mode, uint8_t* rgb, size_t capacity,
+                                      tether_image_info* info, size_t info_size) noexcept {
+  if (info != nullptr && !can_take(info, info_size)) return TETHER_INVALID;
+  if (!are_given(vehicle, sensor, rgb)) return TETHER_INVALID;
+  if (const tether_status fits = check_capacity(*vehicle, sensor, capacity); fits != TETHER_OK)
+    return fits;
+  return read(vehicle, sensor, mode, &tether::client::Vehicle::read_camera,
+              [&](const auto& sample) {
+                if (sample.rgb.size() > capacity)
+                  return fail(TETHER_PROTOCOL, "the image is larger than the camera's");
+                std::memcpy(rgb, sample.rgb.data(), sample.rgb.size());
+                if (info != nullptr) put(to_c(sample), info, info_size);
+                return tether_status{TETHER_OK};
+              });
+}
+
+tether_status tether_read_imu(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                              tether_imu_sample* out, size_t size) noexcept {
+  return read_struct(vehicle, sensor, mode, &tether::client::Vehicle::read_imu, out, size);
+}
+
+tether_status tether_read_range(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
+                                tether_range_sample* out, size_t size) noexcept {
+  return read_struct(vehicle, sensor, mode, &tether::client::Vehicle::read_range, out, size);
+}
+
+}  // extern "C"

@@ -1,0 +1,128 @@
+#include "fake_vehicle.h"
+
+#include <array>
+#include <chrono>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/client.hpp>
+
+/// The C++17 API over a fake; that it compiles as a user's compiler wants it is header_cpp17.cpp's.
+namespace tether::c_api {
+namespace {
+
+using namespace std::chrono_literals;
+
+class CppApi : public testing::Test {
+ protected:
+  CppApi() : vehicle_(make()) {}
+
+  FakeVehicle* fake_ = nullptr;
+  api::Vehicle vehicle_;
+
+ private:
+  api::Vehicle make() {
+    auto fake = std::make_unique<FakeVehicle>();
+    fake_ = fake.get();
+    return api::Vehicle(new tether_vehicle(std::move(fake)));
+  }
+};
+
+TEST_F(CppApi, KnowsTheCatalogue) {
+  EXPECT_STREQ(vehicle_.uav_name(), "uav1");
+  ASSERT_EQ(vehicle_.sensor_count(), 3u);
+  const auto camera = vehicle_.find_sensor("camera");
+  ASSERT_TRUE(camera.has_value());
+  EXPECT_EQ(camera->kind(), api::SensorKind::kCamera);
+  EXPECT_STREQ(camera->name(), "camera");
+  EXPECT_EQ(camera->rate_hz(), 30.0);
+  EXPECT_EQ(camera->mounting().position_m.x, 0.1);
+  EXPECT_EQ(camera->camera_model()->width_px, 4);
+  const auto limits = camera->range_limits();
+  ASSERT_FALSE(limits.ok());
+  EXPECT_EQ(limits.failure().code(), api::Code::kInvalid);
+  EXPECT_STREQ(limits.failure().message(), "the sensor is no rangefinder");
+  EXPECT_EQ(vehicle_.sensor_at(2)->range_limits()->max_m, 8.0);
+  EXPECT_FALSE(vehicle_.find_sensor("nose").has_value());
+
+  ASSERT_EQ(vehicle_.anchor_count(), 2u);
+  EXPECT_STREQ(vehicle_.anchor_at(1)->name(), "ball");
+  const auto box = vehicle_.find_anchor("blue_box");
+  EXPECT_EQ(box->shape(), api::AnchorShape::kBox);
+  EXPECT_EQ(box->size_m().x, 0.4);
+  EXPECT_EQ(box->color().z, 0.85);
+}
+
+TEST_F(CppApi, ReadsSensors) {
+  auto image = vehicle_.read_camera("camera");
+  ASSERT_TRUE(image.ok());
+  const api::Image kept = *std::move(image);
+  EXPECT_EQ(kept.width_px(), 4);
+  EXPECT_EQ(kept.height_px(), 2);
+  EXPECT_EQ(kept.index(), 3u);
+  EXPECT_EQ(kept.sampled_at(), api::SimTime(11ns));
+  EXPECT_EQ(kept.size_bytes(), 24u);
+  EXPECT_EQ(kept.pixel(3, 1)[2], 9);
+
+  std::array<std::uint8_t, 24> rgb{};
+  EXPECT_EQ(vehicle_.read_camera_into("camera", rgb.data(), rgb.size(), api::Read::kLatest)->index,
+            3u);
+  EXPECT_EQ(rgb[23], 9);
+  EXPECT_EQ(fake_->reads.back().second, client::Read::kLatest);
+  EXPECT_EQ(api::sampled_at(*vehicle_.read_imu("imu")), api::SimTime(12ns));
+  EXPECT_EQ(vehicle_.read_range("down", api::Read::kIfAvailable)->range_m, 1.5);
+  EXPECT_EQ(fake_->reads.back().second, client::Read::kIfAvailable);
+}
+
+TEST_F(CppApi, FliesWaitsAndTells) {
+  EXPECT_TRUE(vehicle_.command_velocity({1, 2, 3}, 0.5));
+  EXPECT_EQ(fake_->commands.at(0), (uav::VelocityCommand{{1, 2, 3}, 0.5}));
+  EXPECT_TRUE(vehicle_.sleep_until(api::ExecTime(2s)));
+  EXPECT_TRUE(vehicle_.sleep_for(5ms));
+  EXPECT_EQ(vehicle_.now(), api::ExecTime(2005ms));
+  EXPECT_TRUE(vehicle_.annotate("a", "{}"));
+  EXPECT_TRUE(vehicle_.finish(true, "there"));
+  EXPECT_THAT(fake_->said, testing::ElementsAre("a {}", "reached there "));
+  EXPECT_FALSE(vehicle_.is_concurrent());
+  fake_->concurrent = true;
+  EXPECT_TRUE(vehicle_.is_concurrent());
+}
+
+TEST_F(CppApi, FailuresKeepTheirWordsBeyondTheNextCall) {
+  fake_->failure = Failure{Failure::Kind::kRunEnded, "time limit"};
+  const api::Status ended = vehicle_.sleep_for(1ms);
+  const auto image = vehicle_.read_camera("camera");
+  fake_->failure = Failure{Failure::Kind::kProtocol, "later"};
+  EXPECT_FALSE(vehicle_.finish(true, ""));
+  ASSERT_FALSE(ended);
+  EXPECT_EQ(ended.failure().code(), api::Code::kRunEnded);
+  EXPECT_STREQ(ended.failure().message(), "time limit");
+  EXPECT_STREQ(image.failure().message(), "time limit");
+}
+
+TEST(CppFailure, CutsWhatIsTooLong) {
+  const api::Failure failure(api::Code::kInternal, std::string(600, 'a').c_str());
+  EXPECT_EQ(failure.message(), std::string(511, 'a'));
+}
+
+TEST(CppOptions, AreCheckedOneByOne) {
+  auto options = api::Options::make();
+  ASSERT_TRUE(options.ok());
+  EXPECT_TRUE(options->set_address("127.0.0.1:1"));
+  EXPECT_TRUE(options->set_token("word"));
+  EXPECT_TRUE(options->set_uav("uav1"));
+  EXPECT_TRUE(options->set_sut_name("pilot"));
+  EXPECT_TRUE(options->set_timeouts(1s, 1s));
+  const api::Status clock = options->set_clock("sundial");
+  ASSERT_FALSE(clock);
+  EXPECT_EQ(clock.failure().code(), api::Code::kInvalid);
+  // Nobody listens on port 1.
+  const auto vehicle = api::connect(*options);
+  ASSERT_FALSE(vehicle.ok());
+  EXPECT_EQ(vehicle.failure().code(), api::Code::kDisconnected) << vehicle.failure().message();
+}
+
+}  // namespace
+}  // namespace tether::c_api

@@ -1,0 +1,114 @@
+#pragma once
+
+#include "handles.h"
+
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tether/client.h>
+#include <tether/client/vehicle.h>
+
+namespace tether::c_api {
+
+/// A UAV without a simulator: gives what the test put in, and keeps what it was told.
+class FakeVehicle final : public client::Vehicle {
+ public:
+  explicit FakeVehicle() {
+    catalogue_.uav = "uav1";
+    uav::CameraModel model = uav::CameraModel::from_horizontal_fov(4, 2, 1.0);
+    model.k1 = 0.1;
+    model.k2 = 0.2;
+    model.k3 = 0.3;
+    model.p1 = 0.4;
+    model.p2 = 0.5;
+    const uav::Pose X_BS{{0.1, 0.2, 0.3}, {0.5, 0.5, -0.5, 0.5}};
+    catalogue_.sensors = {{"camera", X_BS, 30.0, uav::CameraProperties{model}},
+                          {"imu", {}, 20.0, uav::ImuProperties{}},
+                          {"down", {}, 0.0, uav::RangeProperties{0.1, 8.0}}};
+    catalogue_.anchors = {{"blue_box", uav::AnchorShape::kBox, {0.4, 0.5, 0.6}, {0.05, 0.15, 0.85}},
+                          {"ball", uav::AnchorShape::kSphere, {0.2, 0.2, 0.2}, {1.0, 0.0, 0.0}}};
+    image.rgb.assign(24, 7);
+    image.rgb.back() = 9;
+  }
+
+  ExecTime now() const override { return et; }
+  const uav::Catalogue& catalogue() const override { return catalogue_; }
+  bool is_concurrent() const override { return concurrent; }
+
+  Result<uav::CameraSample> read_camera(std::string_view sensor, client::Read read) override {
+    return answer(sensor, read, image);
+  }
+  Result<uav::ImuSample> read_imu(std::string_view sensor, client::Read read) override {
+    return answer(sensor, read, imu);
+  }
+  Result<uav::RangeSample> read_range(std::string_view sensor, client::Read read) override {
+    return answer(sensor, read, range);
+  }
+  Status command_velocity(const uav::VelocityCommand& command) override {
+    commands.push_back(command);
+    return status();
+  }
+  Status sleep_for(Duration duration) override {
+    et += duration;
+    return status();
+  }
+  Status sleep_until(ExecTime until) override {
+    et = until;
+    return status();
+  }
+  Status annotate(std::string_view topic, std::string_view json) override {
+    return say(std::string(topic) + " " + std::string(json));
+  }
+  Status finish(bool reached_goal, std::string_view outcome, std::string_view details) override {
+    return say(std::string(reached_goal ? "reached " : "missed ") + std::string(outcome) + " " +
+               std::string(details));
+  }
+
+  ExecTime et{};
+  bool concurrent = false;
+  bool out_of_memory = false;
+  std::optional<Failure> failure;  ///< of every call
+  uav::CameraSample image{from_ns<SimTime>(11), 3, 4, 2, {}};
+  uav::ImuSample imu{from_ns<SimTime>(12), 4, {1, 2, 3}, {4, 5, 6}, {0.5, -0.5, 0.5, -0.5}};
+  uav::RangeSample range{from_ns<SimTime>(13), 5, 1.5};
+  std::vector<std::pair<std::string, client::Read>> reads;
+  std::vector<uav::VelocityCommand> commands;
+  std::vector<std::string> said;
+
+ private:
+  template <class Sample>
+  Result<Sample> answer(std::string_view sensor, client::Read read, const Sample& sample) {
+    if (out_of_memory) throw std::bad_alloc();
+    reads.emplace_back(sensor, read);
+    if (failure) return *failure;
+    return sample;
+  }
+  Status say(std::string text) {
+    said.push_back(std::move(text));
+    return status();
+  }
+  Status status() const { return failure ? Status(*failure) : ok_status(); }
+
+  uav::Catalogue catalogue_;
+};
+
+/// A vehicle of the C API, and the fake behind it.
+struct Flown {
+  Flown() {
+    auto made = std::make_unique<FakeVehicle>();
+    fake = made.get();
+    vehicle = new tether_vehicle(std::move(made));
+  }
+  ~Flown() { tether_disconnect(vehicle); }
+  Flown(const Flown&) = delete;
+  Flown& operator=(const Flown&) = delete;
+
+  FakeVehicle* fake;
+  tether_vehicle* vehicle;
+};
+
+}  // namespace tether::c_api

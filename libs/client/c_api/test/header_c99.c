@@ -1,0 +1,58 @@
+/* The C API as a C99 compiler sees it, and the layout that programs were compiled with: nothing here may change while
+   TETHER_CLIENT_ABI_VERSION stays. Structs may grow at their end, so their sizes are at least these. */
+#include <tether/client.h>
+
+#define HOLDS(name, condition) typedef char holds_##name[(condition) ? 1 : -1]
+#define LIES_AT(type, member, offset) HOLDS(type##_##member, offsetof(type, member) == (offset))
+
+HOLDS(abi_version, TETHER_CLIENT_ABI_VERSION == 1);
+
+HOLDS(vec3, sizeof(tether_vec3) == 24);
+HOLDS(quat, sizeof(tether_quat) == 32);
+HOLDS(pose, sizeof(tether_pose) == 56);
+LIES_AT(tether_vec3, x, 0);
+LIES_AT(tether_vec3, z, 16);
+LIES_AT(tether_quat, w, 0);
+LIES_AT(tether_quat, z, 24);
+LIES_AT(tether_pose, position_m, 0);
+LIES_AT(tether_pose, attitude, 24);
+
+HOLDS(camera_model, sizeof(tether_camera_model) >= 80);
+LIES_AT(tether_camera_model, width_px, 0);
+LIES_AT(tether_camera_model, height_px, 4);
+LIES_AT(tether_camera_model, fx_px, 8);
+LIES_AT(tether_camera_model, fy_px, 16);
+LIES_AT(tether_camera_model, cx_px, 24);
+LIES_AT(tether_camera_model, cy_px, 32);
+LIES_AT(tether_camera_model, k1, 40);
+LIES_AT(tether_camera_model, k2, 48);
+LIES_AT(tether_camera_model, p1, 56);
+LIES_AT(tether_camera_model, p2, 64);
+LIES_AT(tether_camera_model, k3, 72);
+
+HOLDS(image_info, sizeof(tether_image_info) >= 32);
+LIES_AT(tether_image_info, sampled_at_ns, 0);
+LIES_AT(tether_image_info, index, 8);
+LIES_AT(tether_image_info, width_px, 16);
+LIES_AT(tether_image_info, height_px, 20);
+LIES_AT(tether_image_info, size_bytes, 24);
+
+HOLDS(imu_sample, sizeof(tether_imu_sample) >= 96);
+LIES_AT(tether_imu_sample, sampled_at_ns, 0);
+LIES_AT(tether_imu_sample, index, 8);
+LIES_AT(tether_imu_sample, angular_velocity_rad_s, 16);
+LIES_AT(tether_imu_sample, specific_force_m_s2, 40);
+LIES_AT(tether_imu_sample, q_WS, 64);
+
+HOLDS(range_sample, sizeof(tether_range_sample) >= 24);
+LIES_AT(tether_range_sample, sampled_at_ns, 0);
+LIES_AT(tether_range_sample, index, 8);
+LIES_AT(tether_range_sample, range_m, 16);
+
+HOLDS(status, sizeof(tether_status) == 4);
+HOLDS(statuses, TETHER_OK == 0 && TETHER_INVALID == 1 && TETHER_NOTHING_YET == 2 && TETHER_REFUSED == 3 &&
+                    TETHER_DISCONNECTED == 4 && TETHER_PROTOCOL == 5 && TETHER_TIMEOUT == 6 &&
+                    TETHER_RUN_ENDED == 7 && TETHER_NO_MEMORY == 8 && TETHER_INTERNAL == 9);
+HOLDS(sensor_kinds, TETHER_CAMERA == 0 && TETHER_IMU == 1 && TETHER_RANGE == 2);
+HOLDS(anchor_shapes, TETHER_BOX == 0 && TETHER_CYLINDER == 1 && TETHER_SPHERE == 2);
+HOLDS(read_modes, TETHER_READ_NEXT == 0 && TETHER_READ_LATEST == 1 && TETHER_READ_IF_AVAILABLE == 2);

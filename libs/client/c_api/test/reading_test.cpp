@@ -1,0 +1,121 @@
+#include "fake_vehicle.h"
+
+#include <array>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tether::c_api {
+namespace {
+
+using client::Read;
+using testing::HasSubstr;
+
+TEST(ReadCamera, HandsOverTheImageWithoutACopy) {
+  auto flown = std::make_unique<Flown>();
+  tether_image* image = nullptr;
+  ASSERT_EQ(tether_read_camera(flown->vehicle, "camera", TETHER_READ_NEXT, &image), TETHER_OK);
+  flown.reset();  // an image outlives its vehicle
+  tether_image_info info;
+  ASSERT_EQ(tether_image_get_info(image, &info, sizeof info), TETHER_OK);
+  EXPECT_EQ(info.sampled_at_ns, 11);
+  EXPECT_EQ(info.index, 3u);
+  EXPECT_EQ(info.width_px, 4);
+  EXPECT_EQ(info.height_px, 2);
+  EXPECT_EQ(info.size_bytes, 24u);
+  EXPECT_EQ(tether_image_rgb(image)[23], 9);
+  EXPECT_EQ(tether_image_rgb(image), image->sample.rgb.data());
+  tether_image_free(image);
+  tether_image_free(nullptr);
+}
+
+TEST(ReadCamera, FillsTheCallersMemory) {
+  const Flown flown;
+  std::array<std::uint8_t, 30> rgb{};
+  tether_image_info info;
+  ASSERT_EQ(tether_read_camera_into(flown.vehicle, "camera", TETHER_READ_LATEST, rgb.data(),
+                                    rgb.size(), &info, sizeof info),
+            TETHER_OK);
+  EXPECT_EQ(info.index, 3u);
+  EXPECT_EQ(rgb[0], 7);
+  EXPECT_EQ(rgb[23], 9);
+  EXPECT_EQ(rgb[24], 0);
+  EXPECT_EQ(flown.fake->reads.at(0).second, Read::kLatest);
+  EXPECT_EQ(tether_read_camera_into(flown.vehicle, "camera", TETHER_READ_NEXT, rgb.data(), 24,
+                                    nullptr, 0),
+            TETHER_OK);
+}
+
+TEST(ReadCamera, TooSmallABufferIsToldBeforeAnythingIsRead) {
+  const Flown flown;
+  std::array<std::uint8_t, 23> rgb{};
+  EXPECT_EQ(tether_read_camera_into(flown.vehicle, "camera", TETHER_READ_NEXT, rgb.data(),
+                                    rgb.size(), nullptr, 0),
+            TETHER_INVALID);
+  EXPECT_THAT(tether_last_error(), HasSubstr("24 bytes; the buffer has 23"));
+  EXPECT_TRUE(flown.fake->reads.empty());
+}
+
+TEST(ReadCamera, NothingYetIsAStatusOfItsOwn) {
+  const Flown flown;
+  flown.fake->failure = Failure{Failure::Kind::kNothingYet, "no new image"};
+  tether_image* image = nullptr;
+  EXPECT_EQ(tether_read_camera(flown.vehicle, "camera", TETHER_READ_IF_AVAILABLE, &image),
+            TETHER_NOTHING_YET);
+  EXPECT_EQ(image, nullptr);
+  EXPECT_EQ(flown.fake->reads.at(0).second, Read::kIfAvailable);
+}
+
+TEST(ReadImu, GivesEveryField) {
+  const Flown flown;
+  tether_imu_sample sample;
+  ASSERT_EQ(tether_read_imu(flown.vehicle, "imu", TETHER_READ_NEXT, &sample, sizeof sample),
+            TETHER_OK);
+  EXPECT_EQ(sample.sampled_at_ns, 12);
+  EXPECT_EQ(sample.index, 4u);
+  EXPECT_EQ(sample.angular_velocity_rad_s.y, 2.0);
+  EXPECT_EQ(sample.specific_force_m_s2.z, 6.0);
+  EXPECT_EQ(sample.q_WS.w, 0.5);
+  EXPECT_EQ(sample.q_WS.z, -0.5);
+  EXPECT_EQ(flown.fake->reads.at(0), (std::pair<std::string, Read>("imu", Read::kNext)));
+}
+
+TEST(ReadRange, GivesEveryFieldAndClearsThemOnFailure) {
+  const Flown flown;
+  tether_range_sample sample;
+  ASSERT_EQ(tether_read_range(flown.vehicle, "down", TETHER_READ_NEXT, &sample, sizeof sample),
+            TETHER_OK);
+  EXPECT_EQ(sample.sampled_at_ns, 13);
+  EXPECT_EQ(sample.index, 5u);
+  EXPECT_EQ(sample.range_m, 1.5);
+  flown.fake->failure = Failure{Failure::Kind::kRunEnded, "time limit"};
+  EXPECT_EQ(tether_read_range(flown.vehicle, "down", TETHER_READ_NEXT, &sample, sizeof sample),
+            TETHER_RUN_ENDED);
+  EXPECT_STREQ(tether_last_error(), "time limit");
+  EXPECT_EQ(sample.range_m, 0.0);
+}
+
+TEST(Reading, WrongArgumentsReachNoVehicle) {
+  const Flown flown;
+  tether_range_sample sample;
+  tether_image* image = nullptr;
+  EXPECT_EQ(tether_read_range(flown.vehicle, "down", 3, &sample, sizeof sample), TETHER_INVALID);
+  EXPECT_THAT(tether_last_error(), HasSubstr("TETHER_READ_"));
+  EXPECT_EQ(tether_read_range(flown.vehicle, nullptr, 0, &sample, sizeof sample), TETHER_INVALID);
+  EXPECT_EQ(tether_read_range(flown.vehicle, "down", 0, &sample, 8), TETHER_INVALID);
+  EXPECT_EQ(tether_read_camera(nullptr, "camera", 0, &image), TETHER_INVALID);
+  EXPECT_EQ(tether_read_camera(flown.vehicle, "camera", 0, nullptr), TETHER_INVALID);
+  EXPECT_EQ(tether_image_rgb(nullptr), nullptr);
+  EXPECT_TRUE(flown.fake->reads.empty());
+}
+
+TEST(Reading, OutOfMemoryIsAStatus) {
+  const Flown flown;
+  flown.fake->out_of_memory = true;
+  tether_image* image = nullptr;
+  EXPECT_EQ(tether_read_camera(flown.vehicle, "camera", 0, &image), TETHER_NO_MEMORY);
+  EXPECT_EQ(image, nullptr);
+}
+
+}  // namespace
+}  // namespace tether::c_api
