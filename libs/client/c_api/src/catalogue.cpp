@@ -1,10 +1,12 @@
 #include "errors.h"
 #include "handles.h"
+#include "samples.h"
 
 #include <variant>
 
 using tether::c_api::are_given;
 using tether::c_api::fail;
+using tether::c_api::to_c;
 using tether::uav::Anchor;
 using tether::uav::SensorDescription;
 
@@ -25,12 +27,6 @@ const tether_anchor* to_c(const Anchor* anchor) {
   return reinterpret_cast<const tether_anchor*>(anchor);
 }
 
-tether_vec3 to_c(const tether::uav::Vec3& v) {
-  return {v.x, v.y, v.z};
-}
-tether_quat to_c(const tether::uav::Quat& q) {
-  return {q.w, q.x, q.y, q.z};
-}
 tether_camera_model to_c(const tether::uav::CameraModel& m) {
   return {m.width_px, m.height_px, m.fx_px, m.fy_px, m.cx_px, m.cy_px,
           m.k1,       m.k2,        m.p1,    m.p2,    m.k3};

@@ -29,6 +29,13 @@ struct tether_options {
   tether::Duration welcome_timeout = std::chrono::seconds(60);
 };
 
+/// Pixels of its own, or those that a subscription shows for as long as its callback runs.
 struct tether_image {
-  tether::uav::CameraSample sample;
+  explicit tether_image(tether::uav::CameraSample&& kept) : own(std::move(kept)), sample(&own) {}
+  explicit tether_image(const tether::uav::CameraSample* shown) : sample(shown) {}
+  tether_image(const tether_image&) = delete;
+  tether_image& operator=(const tether_image&) = delete;
+
+  tether::uav::CameraSample own;
+  const tether::uav::CameraSample* sample;
 };

@@ -1,5 +1,6 @@
 #include "errors.h"
 #include "handles.h"
+#include "samples.h"
 
 #include <cstring>
 #include <new>
@@ -21,25 +22,6 @@ std::optional<Read> from_c(tether_read_mode mode) {
     default:
       return std::nullopt;
   }
-}
-
-tether_vec3 to_c(const uav::Vec3& v) {
-  return {v.x, v.y, v.z};
-}
-
-tether_image_info to_c(const uav::CameraSample& sample) {
-  return {to_ns(sample.sampled_at), sample.index, sample.width_px, sample.height_px,
-          sample.rgb.size()};
-}
-tether_imu_sample to_c(const uav::ImuSample& sample) {
-  return {to_ns(sample.sampled_at),
-          sample.index,
-          to_c(sample.angular_velocity_rad_s),
-          to_c(sample.specific_force_m_s2),
-          {sample.q_WS.w, sample.q_WS.x, sample.q_WS.y, sample.q_WS.z}};
-}
-tether_range_sample to_c(const uav::RangeSample& sample) {
-  return {to_ns(sample.sampled_at), sample.index, sample.range_m};
 }
 
 /// Reads by `method` of the vehicle and gives the sample to `take`, which returns a status.
@@ -94,8 +76,18 @@ tether_status tether_read_camera(tether_vehicle* vehicle, const char* sensor, te
   *out = nullptr;
   if (!are_given(vehicle, sensor)) return TETHER_INVALID;
   return read(vehicle, sensor, mode, &tether::client::Vehicle::read_camera, [&](auto&& sample) {
-    *out = new tether_image{std::move(sample)};
+    *out = new tether_image(std::move(sample));
     return TETHER_OK;
+  });
+}
+
+tether_status tether_image_copy(const tether_image* image, tether_image** out) noexcept {
+  if (!are_given(out)) return TETHER_INVALID;
+  *out = nullptr;
+  if (!are_given(image)) return TETHER_INVALID;
+  return guarded([&] {
+    *out = new tether_image(tether::uav::CameraSample(*image->sample));
+    return tether_status{TETHER_OK};
   });
 }
 
@@ -106,12 +98,12 @@ void tether_image_free(tether_image* image) noexcept {
 tether_status tether_image_get_info(const tether_image* image, tether_image_info* out,
                                     size_t size) noexcept {
   if (!can_take(out, size) || !are_given(image)) return TETHER_INVALID;
-  put(to_c(image->sample), out, size);
+  put(to_c(*image->sample), out, size);
   return TETHER_OK;
 }
 
 const uint8_t* tether_image_rgb(const tether_image* image) noexcept {
-  return are_given(image) ? image->sample.rgb.data() : nullptr;
+  return are_given(image) ? image->sample->rgb.data() : nullptr;
 }
 
 tether_status tether_read_camera_into(tether_vehicle* vehicle, const char* sensor,

@@ -11,7 +11,7 @@ using testing::HasSubstr;
 TEST(Sensors, AreFoundByIndexAndByName) {
   const Flown flown;
   EXPECT_STREQ(tether_uav_name(flown.vehicle), "uav1");
-  ASSERT_EQ(tether_sensor_count(flown.vehicle), 3u);
+  ASSERT_EQ(tether_sensor_count(flown.vehicle), 4u);
   const auto* camera = tether_sensor_at(flown.vehicle, 0);
   EXPECT_EQ(camera, tether_find_sensor(flown.vehicle, "camera"));
   EXPECT_STREQ(tether_sensor_name(camera), "camera");
@@ -19,7 +19,7 @@ TEST(Sensors, AreFoundByIndexAndByName) {
   EXPECT_EQ(tether_sensor_rate_hz(camera), 30.0);
   EXPECT_EQ(tether_sensor_get_kind(tether_sensor_at(flown.vehicle, 1)), TETHER_IMU);
   EXPECT_EQ(tether_sensor_get_kind(tether_sensor_at(flown.vehicle, 2)), TETHER_RANGE);
-  EXPECT_EQ(tether_sensor_at(flown.vehicle, 3), nullptr);
+  EXPECT_EQ(tether_sensor_at(flown.vehicle, 4), nullptr);
   EXPECT_EQ(tether_find_sensor(flown.vehicle, "nose"), nullptr);
 }
 

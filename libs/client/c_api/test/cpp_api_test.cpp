@@ -2,7 +2,10 @@
 
 #include <array>
 #include <chrono>
+#include <optional>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,7 +35,7 @@ class CppApi : public testing::Test {
 
 TEST_F(CppApi, KnowsTheCatalogue) {
   EXPECT_STREQ(vehicle_.uav_name(), "uav1");
-  ASSERT_EQ(vehicle_.sensor_count(), 3u);
+  ASSERT_EQ(vehicle_.sensor_count(), 4u);
   const auto camera = vehicle_.find_sensor("camera");
   ASSERT_TRUE(camera.has_value());
   EXPECT_EQ(camera->kind(), api::SensorKind::kCamera);
@@ -88,6 +91,37 @@ TEST_F(CppApi, FliesWaitsAndTells) {
   EXPECT_FALSE(vehicle_.is_concurrent());
   fake_->concurrent = true;
   EXPECT_TRUE(vehicle_.is_concurrent());
+}
+
+TEST_F(CppApi, SubscribesWithAnyCallable) {
+  fake_->concurrent = true;
+  fake_->reads_left = 3;
+  std::vector<std::optional<api::Image>> kept;
+  auto subscription = vehicle_.subscribe_camera("camera", [&](api::ImageView image) {
+    auto copy = image.copy();
+    ASSERT_TRUE(copy.ok());
+    kept.emplace_back(*std::move(copy));
+  });
+  ASSERT_TRUE(subscription.ok());
+  while (subscription->status().ok()) std::this_thread::yield();
+  EXPECT_EQ(subscription->status().failure().code(), api::Code::kRunEnded);
+  ASSERT_EQ(kept.size(), 3u);
+  EXPECT_EQ(kept[2]->pixel(3, 1)[2], 9);
+
+  double sum = 0.0;
+  fake_->reads_left = 2;
+  {
+    const auto ranges = vehicle_.subscribe_range(
+        "ahead", [&sum](const api::RangeSample& sample) { sum += sample.range_m; });
+    ASSERT_TRUE(ranges.ok());
+    while (ranges->status().ok()) std::this_thread::yield();
+  }
+  EXPECT_EQ(sum, 3.0);
+
+  fake_->concurrent = false;
+  const auto refused = vehicle_.subscribe_imu("imu", [](const api::ImuSample&) {});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.failure().code(), api::Code::kInvalid);
 }
 
 TEST_F(CppApi, FailuresKeepTheirWordsBeyondTheNextCall) {

@@ -28,7 +28,8 @@ class FakeVehicle final : public client::Vehicle {
     const uav::Pose X_BS{{0.1, 0.2, 0.3}, {0.5, 0.5, -0.5, 0.5}};
     catalogue_.sensors = {{"camera", X_BS, 30.0, uav::CameraProperties{model}},
                           {"imu", {}, 20.0, uav::ImuProperties{}},
-                          {"down", {}, 0.0, uav::RangeProperties{0.1, 8.0}}};
+                          {"down", {}, 0.0, uav::RangeProperties{0.1, 8.0}},
+                          {"ahead", {}, 10.0, uav::RangeProperties{0.1, 8.0}}};
     catalogue_.anchors = {{"blue_box", uav::AnchorShape::kBox, {0.4, 0.5, 0.6}, {0.05, 0.15, 0.85}},
                           {"ball", uav::AnchorShape::kSphere, {0.2, 0.2, 0.2}, {1.0, 0.0, 0.0}}};
     image.rgb.assign(24, 7);
@@ -72,6 +73,7 @@ class FakeVehicle final : public client::Vehicle {
   bool concurrent = false;
   bool out_of_memory = false;
   std::optional<Failure> failure;  ///< of every call
+  std::optional<int> reads_left;   ///< the run ends after them
   uav::CameraSample image{from_ns<SimTime>(11), 3, 4, 2, {}};
   uav::ImuSample imu{from_ns<SimTime>(12), 4, {1, 2, 3}, {4, 5, 6}, {0.5, -0.5, 0.5, -0.5}};
   uav::RangeSample range{from_ns<SimTime>(13), 5, 1.5};
@@ -85,6 +87,7 @@ class FakeVehicle final : public client::Vehicle {
     if (out_of_memory) throw std::bad_alloc();
     reads.emplace_back(sensor, read);
     if (failure) return *failure;
+    if (reads_left && (*reads_left)-- == 0) return Failure{Failure::Kind::kRunEnded, "time limit"};
     return sample;
   }
   Status say(std::string text) {

@@ -16,5 +16,7 @@ tether::api::Status look(tether::api::Vehicle& vehicle) {
   if (!image) return image.failure();
   if (const auto imu = vehicle.read_imu("imu", tether::api::Read::kLatest); !imu)
     return imu.failure();
+  const auto images = vehicle.subscribe_camera("camera", [](tether::api::ImageView) {});
+  if (!images) return images.failure();
   return vehicle.sleep_for(std::chrono::milliseconds(1));
 }

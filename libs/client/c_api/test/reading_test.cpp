@@ -24,9 +24,17 @@ TEST(ReadCamera, HandsOverTheImageWithoutACopy) {
   EXPECT_EQ(info.height_px, 2);
   EXPECT_EQ(info.size_bytes, 24u);
   EXPECT_EQ(tether_image_rgb(image)[23], 9);
-  EXPECT_EQ(tether_image_rgb(image), image->sample.rgb.data());
+  EXPECT_EQ(tether_image_rgb(image), image->own.rgb.data());
+
+  tether_image* copy = nullptr;
+  ASSERT_EQ(tether_image_copy(image, &copy), TETHER_OK);
+  EXPECT_NE(tether_image_rgb(copy), tether_image_rgb(image));
   tether_image_free(image);
   tether_image_free(nullptr);
+  EXPECT_EQ(tether_image_rgb(copy)[23], 9);
+  tether_image_free(copy);
+  EXPECT_EQ(tether_image_copy(nullptr, &copy), TETHER_INVALID);
+  EXPECT_EQ(copy, nullptr);
 }
 
 TEST(ReadCamera, FillsTheCallersMemory) {

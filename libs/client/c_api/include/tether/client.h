@@ -24,7 +24,8 @@
 /// Threads: every function may be called from any thread, and several at once, of one vehicle
 /// too, except that nothing may still use what a function frees. Where time is measured per
 /// process (tether_is_concurrent() is 0), calls of one vehicle that talk to the coordinator wait
-/// for each other; under tether-exec each thread waits for its own reply only.
+/// for each other; under tether-exec each thread waits for its own reply only. A vehicle is of the
+/// process that connected: after fork() the child connects for itself.
 ///
 /// Stability: within TETHER_CLIENT_ABI_VERSION functions and constants are only added. A struct
 /// that may grow at its end is handed over with its size (`sizeof *out`), the library fills what
@@ -236,6 +237,9 @@ typedef struct tether_image tether_image;
 /// tether_image_free().
 tether_status tether_read_camera(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                  tether_image** out) TETHER_NOEXCEPT;
+/// The same image once more, pixels copied: to keep one that a subscription shows. Free *out with
+/// tether_image_free().
+tether_status tether_image_copy(const tether_image* image, tether_image** out) TETHER_NOEXCEPT;
 /// NULL is allowed.
 void tether_image_free(tether_image* image) TETHER_NOEXCEPT;
 /// `size` is sizeof *out.
@@ -275,6 +279,38 @@ typedef struct tether_range_sample {
 /// `size` is sizeof *out.
 tether_status tether_read_range(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                 tether_range_sample* out, size_t size) TETHER_NOEXCEPT;
+
+// ---- Data that comes by itself ------------------------------------------------------------------
+//
+// A thread of the library's reads a periodic sensor again and again, as TETHER_READ_NEXT does, and
+// calls `on_...` with each measurement at the ET at which it is available; `user` is handed
+// through. The callback runs in that thread with every signal blocked, may call the vehicle, and
+// may not throw; what it is given is valid until it returns. A measurement that comes meanwhile is
+// delivered after it; of several only the newest. What other threads read of the same sensor does
+// not come here.
+//
+// Only under tether-exec: TETHER_INVALID where tether_is_concurrent() is 0, where the UAV has no
+// such sensor, or where it measures on demand.
+
+typedef struct tether_subscription tether_subscription;
+typedef void (*tether_on_image)(const tether_image* image, void* user);
+typedef void (*tether_on_imu)(const tether_imu_sample* sample, void* user);
+typedef void (*tether_on_range)(const tether_range_sample* sample, void* user);
+
+tether_status tether_subscribe_camera(tether_vehicle* vehicle, const char* sensor,
+                                      tether_on_image on_image, void* user,
+                                      tether_subscription** out) TETHER_NOEXCEPT;
+tether_status tether_subscribe_imu(tether_vehicle* vehicle, const char* sensor,
+                                   tether_on_imu on_sample, void* user,
+                                   tether_subscription** out) TETHER_NOEXCEPT;
+tether_status tether_subscribe_range(tether_vehicle* vehicle, const char* sensor,
+                                     tether_on_range on_sample, void* user,
+                                     tether_subscription** out) TETHER_NOEXCEPT;
+/// TETHER_OK as long as measurements come; else why none will any more, e.g. TETHER_RUN_ENDED.
+tether_status tether_subscription_status(const tether_subscription* subscription) TETHER_NOEXCEPT;
+/// Ends it: after the return no callback runs, except one that calls this itself. To be called
+/// before tether_disconnect(). NULL is allowed.
+void tether_unsubscribe(tether_subscription* subscription) TETHER_NOEXCEPT;
 
 // ---- Flying, waiting, telling -------------------------------------------------------------------
 

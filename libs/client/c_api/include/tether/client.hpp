@@ -205,11 +205,13 @@ enum class Read : std::int32_t {
   kIfAvailable = TETHER_READ_IF_AVAILABLE,
 };
 
-/// An image; owns its pixels, of no vehicle.
-class Image {
+class Image;
+
+/// An image to look at; valid for as long as what shows it.
+class ImageView {
  public:
-  /// Takes ownership. @pre not NULL
-  explicit Image(tether_image* image) noexcept : image_(image) {
+  /// @pre not NULL
+  explicit ImageView(const tether_image* image) noexcept : image_(image) {
     (void)tether_image_get_info(image, &info_, sizeof info_);  // fails for NULL only
   }
   int width_px() const noexcept { return info_.width_px; }
@@ -217,20 +219,39 @@ class Image {
   std::uint64_t index() const noexcept { return info_.index; }
   SimTime sampled_at() const noexcept { return SimTime(Duration(info_.sampled_at_ns)); }
   /// height x width x 3 bytes R, G, B, row by row from the top left.
-  const std::uint8_t* rgb() const noexcept { return tether_image_rgb(image_.get()); }
+  const std::uint8_t* rgb() const noexcept { return tether_image_rgb(image_); }
   std::size_t size_bytes() const noexcept { return static_cast<std::size_t>(info_.size_bytes); }
   /// The three bytes of one pixel. @pre it is within the image
   const std::uint8_t* pixel(int u_px, int v_px) const noexcept {
     return rgb() + 3 * (static_cast<std::ptrdiff_t>(v_px) * width_px() + u_px);
   }
+  /// The same image with pixels of its own.
+  inline Result<Image> copy() const noexcept;
+
+ private:
+  const tether_image* image_;
+  tether_image_info info_{};
+};
+
+/// An image that owns its pixels; of no vehicle.
+class Image : public ImageView {
+ public:
+  /// Takes ownership. @pre not NULL
+  explicit Image(tether_image* image) noexcept : ImageView(image), owned_(image) {}
 
  private:
   struct Free {
     void operator()(tether_image* image) const noexcept { tether_image_free(image); }
   };
-  std::unique_ptr<tether_image, Free> image_;
-  tether_image_info info_{};
+  std::unique_ptr<tether_image, Free> owned_;
 };
+
+inline Result<Image> ImageView::copy() const noexcept {
+  tether_image* image = nullptr;
+  const tether_status copied = tether_image_copy(image_, &image);
+  if (copied != TETHER_OK) return Failure::last(copied);
+  return Image(image);
+}
 
 using ImageInfo = tether_image_info;
 using ImuSample = tether_imu_sample;
@@ -287,6 +308,32 @@ class Options {
   std::unique_ptr<tether_options, Free> options_;
 };
 
+/// Data that comes by itself, until destruction. Not to be destroyed from within its own callback,
+/// nor after its vehicle.
+class Subscription {
+ public:
+  /// OK as long as measurements come; else why none will any more.
+  Status status() const noexcept { return Status::of(tether_subscription_status(c_.get())); }
+
+ private:
+  friend class Vehicle;
+  /// The program's own callback, behind a type that all have in common.
+  struct Callback {
+    Callback() noexcept = default;
+    Callback(const Callback&) = delete;
+    Callback& operator=(const Callback&) = delete;
+    virtual ~Callback() = default;
+  };
+  struct Unsubscribe {
+    void operator()(tether_subscription* c) const noexcept { tether_unsubscribe(c); }
+  };
+  Subscription(std::unique_ptr<Callback> callback, tether_subscription* c) noexcept
+      : callback_(std::move(callback)), c_(c) {}
+
+  std::unique_ptr<Callback> callback_;
+  std::unique_ptr<tether_subscription, Unsubscribe> c_;  // last: ends before the callback goes
+};
+
 /// The UAV as its own program sees it. Several threads may call at once.
 class Vehicle {
  public:
@@ -336,6 +383,26 @@ class Vehicle {
     return read_struct<RangeSample>(tether_read_range, sensor, read);
   }
 
+  /// Calls `on_image(ImageView)` with each image, in a thread of the library's. Under tether-exec
+  /// only.
+  template <class OnImage>
+  Result<Subscription> subscribe_camera(const char* sensor, OnImage on_image) noexcept {
+    return subscribe_by<ImageView, tether_image>(tether_subscribe_camera, sensor,
+                                                 std::move(on_image));
+  }
+  /// Likewise `on_sample(const ImuSample&)`.
+  template <class OnSample>
+  Result<Subscription> subscribe_imu(const char* sensor, OnSample on_sample) noexcept {
+    return subscribe_by<const ImuSample&, ImuSample>(tether_subscribe_imu, sensor,
+                                                     std::move(on_sample));
+  }
+  /// Likewise `on_sample(const RangeSample&)`.
+  template <class OnSample>
+  Result<Subscription> subscribe_range(const char* sensor, OnSample on_sample) noexcept {
+    return subscribe_by<const RangeSample&, RangeSample>(tether_subscribe_range, sensor,
+                                                         std::move(on_sample));
+  }
+
   /// In the heading frame: ahead, left, up; yaw counter-clockwise.
   Status command_velocity(const Vec3& velocity_H_m_s, double yaw_rate_rad_s) noexcept {
     return Status::of(tether_command_velocity(get(), velocity_H_m_s.x, velocity_H_m_s.y,
@@ -370,6 +437,33 @@ class Vehicle {
     const tether_status got = function(get(), sensor, to_c(read), &sample, sizeof sample);
     if (got != TETHER_OK) return Failure::last(got);
     return sample;
+  }
+
+  template <class Function>
+  struct Held final : Subscription::Callback {
+    explicit Held(Function&& given) noexcept : function(std::move(given)) {}
+    Function function;
+  };
+  static ImageView shown(const tether_image* image) noexcept { return ImageView(image); }
+  template <class Sample>
+  static const Sample& shown(const Sample* sample) noexcept {
+    return *sample;
+  }
+
+  template <class Shown, class C, class Subscribe, class Function>
+  Result<Subscription> subscribe_by(Subscribe subscribe, const char* sensor,
+                                    Function&& function) noexcept {
+    using HeldFunction = Held<std::decay_t<Function>>;
+    static_assert(std::is_invocable_v<std::decay_t<Function>&, Shown>);
+    std::unique_ptr<HeldFunction> held(new (std::nothrow) HeldFunction(std::move(function)));
+    if (held == nullptr) return Failure(Code::kNoMemory, "memory ran out");
+    const auto call = [](const C* measurement, void* user) {
+      static_cast<HeldFunction*>(user)->function(shown(measurement));
+    };
+    tether_subscription* subscription = nullptr;
+    const tether_status subscribed = subscribe(get(), sensor, call, held.get(), &subscription);
+    if (subscribed != TETHER_OK) return Failure::last(subscribed);
+    return Subscription(std::move(held), subscription);
   }
 
   std::unique_ptr<tether_vehicle, Disconnect> vehicle_;

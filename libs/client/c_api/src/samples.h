@@ -1,0 +1,29 @@
+#pragma once
+
+#include <tether/base/time.h>
+#include <tether/client.h>
+#include <tether/uav/samples.h>
+
+/// Measurements as <tether/client.h> has them.
+namespace tether::c_api {
+
+inline tether_vec3 to_c(const uav::Vec3& v) {
+  return {v.x, v.y, v.z};
+}
+inline tether_quat to_c(const uav::Quat& q) {
+  return {q.w, q.x, q.y, q.z};
+}
+
+inline tether_image_info to_c(const uav::CameraSample& sample) {
+  return {to_ns(sample.sampled_at), sample.index, sample.width_px, sample.height_px,
+          sample.rgb.size()};
+}
+inline tether_imu_sample to_c(const uav::ImuSample& sample) {
+  return {to_ns(sample.sampled_at), sample.index, to_c(sample.angular_velocity_rad_s),
+          to_c(sample.specific_force_m_s2), to_c(sample.q_WS)};
+}
+inline tether_range_sample to_c(const uav::RangeSample& sample) {
+  return {to_ns(sample.sampled_at), sample.index, sample.range_m};
+}
+
+}  // namespace tether::c_api
