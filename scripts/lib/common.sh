@@ -26,6 +26,8 @@ packages_build=(
   gnuplot-nox
 )
 packages_test=(git libgtest-dev libgmock-dev libbenchmark-dev clang-format)
+# The library as a user builds against it, and the manual pages.
+packages_test+=(make pkgconf mandoc)
 # Boards in the tests: this machine, over SSH.
 packages_test+=(openssh-server openssh-client)
 packages_tidy=(git clang-tidy)

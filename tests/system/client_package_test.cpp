@@ -99,8 +99,8 @@ TEST_F(ClientPackage, IsRightWhereverItIsMoved) {
   }
   for (const auto& entry : std::filesystem::recursive_directory_iterator(moved)) {
     const auto extension = entry.path().extension();
-    if (extension == ".cmake" || extension == ".pc")
-      EXPECT_THAT(read_text(entry.path()), Not(HasSubstr(prefix_.string()))) << entry.path();
+    if (extension != ".cmake" && extension != ".pc") continue;
+    EXPECT_THAT(read_text(entry.path()), Not(HasSubstr(prefix_.string()))) << entry.path();
   }
 }
 

@@ -30,7 +30,7 @@ class OwnSut : public testing::TestWithParam<const char*> {
     ASSERT_EQ(output.code, 0) << output.err << read_text(out / "sut-uav1.log");
     const auto result = read_result(out);
     EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
-    EXPECT_EQ(result["reason"], "faces the anchor");
+    EXPECT_EQ(result["suts"][0]["outcome"], "faces the anchor");
     for (const auto& metric : result["metrics"]) EXPECT_TRUE(metric["value"].is_number()) << metric;
     expect_estimates(read_record(out));
   }
