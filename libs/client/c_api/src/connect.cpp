@@ -1,6 +1,8 @@
 #include "errors.h"
 #include "handles.h"
 
+#include <cerrno>
+#include <string>
 #include <utility>
 
 using tether::c_api::are_given;
@@ -9,20 +11,39 @@ using tether::c_api::guarded;
 
 namespace {
 
-tether::Result<tether::client::ConnectOptions> to_connect_options(const tether_options& options) {
-  using tether::Failure;
-  if (!options.address) return Failure{Failure::Kind::kInvalid, "the options have no address"};
-  if (options.token.empty()) return Failure{Failure::Kind::kInvalid, "the options have no token"};
-  auto time = tether::client::parse_time_source(options.clock);
+using tether::Failure;
+using tether::Result;
+using tether::client::ConnectOptions;
+
+/// What the options start from.
+Result<ConnectOptions> base_of(const tether_options& options) {
+  if (options.of_environment) return tether::client::options_from_environment();
+  const auto missing = [](const char* what) {
+    return Failure{Failure::Kind::kInvalid, std::string("the options have no ") + what};
+  };
+  if (!options.address) return missing("address");
+  if (!options.token || options.token->empty()) return missing("token");
+  return ConnectOptions{};
+}
+
+template <class T>
+void take(const std::optional<T>& set, T& value) {
+  if (set) value = *set;
+}
+
+Result<ConnectOptions> to_connect_options(const tether_options& options) {
+  auto result = base_of(options);
+  if (!result) return result;
+  take(options.address, result->address);
+  take(options.token, result->token);
+  take(options.uav, result->uav);
+  result->sut_name = options.sut_name.value_or(program_invocation_short_name);
+  take(options.connect_timeout, result->connect_timeout);
+  take(options.welcome_timeout, result->welcome_timeout);
+  if (!options.clock) return result;
+  auto time = tether::client::parse_time_source(*options.clock);
   if (!time) return time.failure();
-  tether::client::ConnectOptions result;
-  result.address = *options.address;
-  result.token = options.token;
-  result.sut_name = options.sut_name;
-  result.uav = options.uav;
-  result.time = std::move(*time);
-  result.connect_timeout = options.connect_timeout;
-  result.welcome_timeout = options.welcome_timeout;
+  result->time = std::move(*time);
   return result;
 }
 
@@ -44,13 +65,8 @@ extern "C" {
 tether_status tether_connect(const tether_options* options, tether_vehicle** out) noexcept {
   if (!are_given(out)) return TETHER_INVALID;
   *out = nullptr;
-  if (options != nullptr) return connect_with(*options, out);
-  tether_options* found = nullptr;
-  if (const tether_status status = tether_options_from_environment(&found); status != TETHER_OK)
-    return status;
-  const tether_status status = connect_with(*found, out);
-  tether_options_free(found);
-  return status;
+  const tether_options environment(true);
+  return connect_with(options == nullptr ? environment : *options, out);
 }
 
 void tether_disconnect(tether_vehicle* vehicle) noexcept {

@@ -18,15 +18,19 @@ struct tether_vehicle {
   std::unique_ptr<tether::client::Vehicle> vehicle;
 };
 
-/// Kept as the words that were given, so that one can connect with them more than once.
+/// What was set; the rest is what the environment says when connecting, or the default. Kept as
+/// words and numbers, so that one can connect with them more than once.
 struct tether_options {
+  explicit tether_options(bool by_environment) noexcept : of_environment(by_environment) {}
+
+  bool of_environment;
   std::optional<tether::link::Address> address;
-  std::string token;
-  std::string uav;
-  std::string sut_name;
-  std::string clock = "wall";
-  tether::Duration connect_timeout = std::chrono::seconds(10);
-  tether::Duration welcome_timeout = std::chrono::seconds(60);
+  std::optional<std::string> token;
+  std::optional<std::string> uav;
+  std::optional<std::string> sut_name;
+  std::optional<std::string> clock;
+  std::optional<tether::Duration> connect_timeout;
+  std::optional<tether::Duration> welcome_timeout;
 };
 
 /// Pixels of its own, or those that a subscription shows for as long as its callback runs.

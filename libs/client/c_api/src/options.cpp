@@ -1,8 +1,6 @@
 #include "errors.h"
 #include "handles.h"
 
-#include <cerrno>
-#include <cstdlib>
 #include <string>
 
 using tether::c_api::are_given;
@@ -18,7 +16,7 @@ tether_status set(tether_options* options, const char* text, Change change) {
   return guarded([&] { return change(std::string(text)); });
 }
 
-tether_status set_text(tether_options* options, std::string tether_options::*field,
+tether_status set_text(tether_options* options, std::optional<std::string> tether_options::*field,
                        const char* text) {
   return set(options, text, [&](std::string value) {
     options->*field = std::move(value);
@@ -34,28 +32,20 @@ tether_status tether_options_new(tether_options** out) noexcept {
   if (!are_given(out)) return TETHER_INVALID;
   *out = nullptr;
   return guarded([&] {
-    auto options = std::make_unique<tether_options>();
-    options->sut_name = program_invocation_short_name;
-    *out = options.release();
+    *out = new tether_options(false);
     return tether_status{TETHER_OK};
   });
 }
 
 tether_status tether_options_from_environment(tether_options** out) noexcept {
-  if (const tether_status made = tether_options_new(out); made != TETHER_OK) return made;
-  const tether_status read = guarded([&] {
-    const auto found = tether::client::options_from_environment();
-    if (!found) return fail(found.failure());
-    (*out)->address = found->address;
-    (*out)->token = found->token;
-    (*out)->uav = found->uav;
-    if (const char* clock = std::getenv("TETHER_CLOCK")) (*out)->clock = clock;
+  if (!are_given(out)) return TETHER_INVALID;
+  *out = nullptr;
+  return guarded([&] {
+    const auto usable = tether::client::options_from_environment();
+    if (!usable) return fail(usable.failure());
+    *out = new tether_options(true);
     return tether_status{TETHER_OK};
   });
-  if (read == TETHER_OK) return TETHER_OK;
-  tether_options_free(*out);
-  *out = nullptr;
-  return read;
 }
 
 void tether_options_free(tether_options* options) noexcept {

@@ -1,8 +1,10 @@
 #include "handles.h"
 
 #include <atomic>
+#include <cstdlib>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -78,6 +80,33 @@ TEST_F(Connect, FliesMoreThanOnceWithTheSameOptions) {
   }
 }
 
+/// All calls but those that free may be made by any thread at any time.
+TEST_F(Connect, ServesSeveralThreadsAtOnce) {
+  const Coordinator coordinator;
+  ASSERT_EQ(tether_options_set_address(options_, coordinator.address().c_str()), TETHER_OK);
+  ASSERT_EQ(tether_options_set_token(options_, "word"), TETHER_OK);
+  ASSERT_EQ(tether_connect(options_, &vehicle_), TETHER_OK) << tether_last_error();
+  const auto fly = [this](int thread) {
+    const std::string topic = "thread " + std::to_string(thread);
+    for (int i = 0; i < 50; ++i) {
+      const int64_t before_ns = tether_now(vehicle_);
+      EXPECT_EQ(tether_sleep_for(vehicle_, 1000), TETHER_OK) << tether_last_error();
+      EXPECT_GT(tether_now(vehicle_), before_ns);
+      EXPECT_EQ(tether_annotate(vehicle_, topic.c_str(), "{}"), TETHER_OK);
+      EXPECT_EQ(tether_find_sensor(vehicle_, topic.c_str()), nullptr);
+      tether_image* image = nullptr;
+      EXPECT_EQ(tether_read_camera(vehicle_, topic.c_str(), TETHER_READ_NEXT, &image),
+                TETHER_INVALID);
+      EXPECT_THAT(tether_last_error(), HasSubstr(topic));
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int thread = 0; thread < 4; ++thread) threads.emplace_back(fly, thread);
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(tether_finish(vehicle_, 1, "there", ""), TETHER_OK);
+  tether_disconnect(vehicle_);
+}
+
 TEST_F(Connect, PassesOnTheCoordinatorsWords) {
   const Coordinator coordinator;
   ASSERT_EQ(tether_options_set_address(options_, coordinator.address().c_str()), TETHER_OK);
@@ -101,6 +130,50 @@ TEST_F(Connect, SaysWhereNobodyListens) {
   ASSERT_EQ(tether_options_set_token(options_, "word"), TETHER_OK);
   EXPECT_EQ(tether_connect(options_, &vehicle_), TETHER_DISCONNECTED);
   EXPECT_THAT(tether_last_error(), HasSubstr("127.0.0.1:1"));
+}
+
+class Environment : public testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* name :
+         {"TETHER_ADDRESS", "TETHER_TOKEN", "TETHER_UAV", "TETHER_CLOCK", "TETHER_EXEC"})
+      unsetenv(name);
+  }
+  void TearDown() override { SetUp(); }
+  static void set(const char* name, const char* value) { setenv(name, value, 1); }
+};
+
+TEST_F(Environment, IsWhatIsFlownByUnlessSetOtherwise) {
+  const Coordinator coordinator;
+  set("TETHER_ADDRESS", coordinator.address().c_str());
+  set("TETHER_TOKEN", "word");
+  set("TETHER_UAV", "uav2");
+  set("TETHER_CLOCK", "scripted*2");
+  tether_vehicle* vehicle = nullptr;
+  ASSERT_EQ(tether_connect(nullptr, &vehicle), TETHER_OK) << tether_last_error();
+  EXPECT_THAT(tether_uav_name(vehicle), HasSubstr("uav2 of tether_client_c_api_test"));
+  EXPECT_EQ(tether_now(vehicle), 2'000'000);
+  tether_disconnect(vehicle);
+
+  tether_options* options = nullptr;
+  ASSERT_EQ(tether_options_from_environment(&options), TETHER_OK) << tether_last_error();
+  ASSERT_EQ(tether_options_set_uav(options, "uav3"), TETHER_OK);
+  ASSERT_EQ(tether_options_set_clock(options, "scripted*3"), TETHER_OK);
+  ASSERT_EQ(tether_connect(options, &vehicle), TETHER_OK) << tether_last_error();
+  EXPECT_THAT(tether_uav_name(vehicle), HasSubstr("uav3"));
+  EXPECT_EQ(tether_now(vehicle), 3'000'000);
+  tether_disconnect(vehicle);
+  tether_options_free(options);
+}
+
+TEST_F(Environment, NamesTheVariableThatIsWrong) {
+  tether_options* options = nullptr;
+  EXPECT_EQ(tether_options_from_environment(&options), TETHER_INVALID);
+  EXPECT_THAT(tether_last_error(), HasSubstr("TETHER_ADDRESS is not set"));
+  EXPECT_EQ(options, nullptr);
+  tether_vehicle* vehicle = nullptr;
+  EXPECT_EQ(tether_connect(nullptr, &vehicle), TETHER_INVALID);
+  EXPECT_THAT(tether_last_error(), HasSubstr("TETHER_ADDRESS is not set"));
 }
 
 TEST(Disconnect, TakesNull) {

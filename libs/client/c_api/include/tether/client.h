@@ -97,9 +97,9 @@ typedef struct tether_options tether_options;
 /// Options without address and token: the only UAV, the wall clock, this program's file name.
 tether_status tether_options_new(tether_options** out) TETHER_NOEXCEPT;
 /// What `tether run` and tether-exec tell the SUT that they start: TETHER_ADDRESS, TETHER_TOKEN,
-/// TETHER_UAV, TETHER_CLOCK, TETHER_EXEC (the manual page tether-client(3) describes them). Fails
-/// with TETHER_INVALID, naming the variable. Reads the environment: no other thread may change it
-/// meanwhile.
+/// TETHER_UAV, TETHER_CLOCK, TETHER_EXEC (the manual page tether-client(3) describes them). What is
+/// set besides goes over it. Fails with TETHER_INVALID, naming the variable. The environment is
+/// read here and by tether_connect(): no other thread may change it meanwhile.
 tether_status tether_options_from_environment(tether_options** out) TETHER_NOEXCEPT;
 /// NULL is allowed.
 void tether_options_free(tether_options* options) TETHER_NOEXCEPT;
@@ -330,7 +330,8 @@ int64_t tether_now(const tether_vehicle* vehicle) TETHER_NOEXCEPT;
 tether_status tether_sleep_for(tether_vehicle* vehicle, int64_t duration_ns) TETHER_NOEXCEPT;
 tether_status tether_sleep_until(tether_vehicle* vehicle, int64_t et_ns) TETHER_NOEXCEPT;
 
-/// Something for the record: `json` is one JSON object. Costs no ET and waits for nobody.
+/// Something for the record: `json` is one JSON object. Never waits for the coordinator, and costs
+/// no ET but under tether-exec.
 /// TETHER_INVALID if it is no JSON object. Topics "roi", "estimate" and "displacement" are read by
 /// metrics (docs/guide/tasks.md has their fields).
 tether_status tether_annotate(tether_vehicle* vehicle, const char* topic,
