@@ -24,12 +24,12 @@ class SocketChannel final : public Channel {
   Result<Message> receive_within(Duration timeout) override {
     return receive_until(std::chrono::steady_clock::now() + std::min(timeout, kLongestTimeout));
   }
+  int descriptor() const override { return socket_.get(); }
   void close() override { ::shutdown(descriptor(), SHUT_RDWR); }
 
  private:
   using Deadline = std::optional<std::chrono::steady_clock::time_point>;
 
-  int descriptor() const { return socket_.get(); }
   void look_out() const;
   Result<Message> receive_until(const Deadline& deadline);
   Status receive_more(const Deadline& deadline);

@@ -24,6 +24,9 @@ class Channel {
   /// The same, but fails with kTimeout if no whole message is there after `timeout`; a message that
   /// had begun to come is not lost.
   virtual Result<Message> receive_within(Duration timeout) = 0;
+  /// What a loop with other things to do may poll for input; then receives with a `timeout` of 0
+  /// until that fails with kTimeout. −1: a channel without a descriptor.
+  virtual int descriptor() const { return -1; }
   /// Ends the connection; unblocks `receive` on this and the other end.
   virtual void close() = 0;
 };
