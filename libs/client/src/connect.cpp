@@ -1,3 +1,4 @@
+#include "concurrent_vehicle.h"
 #include "simulated_vehicle_impl.h"
 
 #include <utility>
@@ -45,6 +46,16 @@ Status check_free_running(const link::Welcome& welcome, const TimeSource& time) 
                  "than this one cannot be imitated by stalling"};
 }
 
+Result<std::unique_ptr<Vehicle>> connect_to_exec(const ConnectOptions& options) {
+  const TimeSource* const time = options.time.get();
+  if (time != nullptr && (time->kind() != link::ClockKind::kWall || time->factor() != 1.0)) {
+    return Failure{Failure::Kind::kInvalid,
+                   "a program under tether-exec has no clock of its own; set TETHER_CLOCK for "
+                   "tether-exec"};
+  }
+  return ConcurrentVehicle::make(options);
+}
+
 /// How often to send Progress; 0: never. In free running a scripted SUT sends it too: nothing there
 /// repeats to the byte.
 Duration progress_period(const ConnectOptions& options, const link::Welcome& welcome) {
@@ -67,6 +78,7 @@ Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,
 }
 
 Result<std::unique_ptr<Vehicle>> connect(ConnectOptions options) {
+  if (!options.exec_socket.empty()) return connect_to_exec(options);
   auto channel = link::connect_tcp(options.address, options.connect_timeout);
   if (!channel) return channel.failure();
   return connect(std::move(*channel), std::move(options));

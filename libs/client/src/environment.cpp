@@ -70,6 +70,10 @@ Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text) {
 
 Result<ConnectOptions> options_from_environment() {
   ConnectOptions options;
+  if (const auto exec_socket = variable("TETHER_EXEC"); exec_socket && !exec_socket->empty()) {
+    options.exec_socket = *exec_socket;
+    return options;
+  }
   const auto address_text = variable("TETHER_ADDRESS");
   if (!address_text) return not_set("TETHER_ADDRESS", "the coordinator's host:port");
   const auto address = link::parse_address(*address_text);

@@ -62,6 +62,16 @@ TEST_F(Environment, Clocks) {
   }
 }
 
+TEST_F(Environment, TetherExecStandsBefore) {
+  set("TETHER_EXEC", "/tmp/tether-exec-1/socket");
+  set("TETHER_CLOCK", "wall*4");
+  const auto options = options_from_environment();
+  ::unsetenv("TETHER_EXEC");
+  ASSERT_TRUE(options.ok());
+  EXPECT_EQ(options->exec_socket, "/tmp/tether-exec-1/socket");
+  EXPECT_EQ(options->time, nullptr);
+}
+
 TEST_F(Environment, SaysWhatIsMissing) {
   ::unsetenv("TETHER_TOKEN");
   expect_failure("TETHER_TOKEN", "is not set");

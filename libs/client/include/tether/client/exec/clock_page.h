@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include <tether/base/result.h>
+#include <tether/base/time.h>
+#include <tether/client/exec/file_descriptor.h>
+
+namespace tether::client {
+
+/// How ET goes at present: from `base_et` at `base_mono`, `factor` as fast; or it stands still.
+struct ClockState {
+  ExecTime base_et;
+  Duration base_mono{0};  ///< of CLOCK_MONOTONIC
+  double factor = 1.0;    ///< > 0
+  bool running = false;
+
+  ExecTime at(Duration mono) const;
+  /// When ET will be, or was, `et` (rounded up). @pre running
+  Duration mono_at(ExecTime et) const;
+  friend bool operator==(const ClockState&, const ClockState&) = default;
+};
+
+/// The ET of a group of processes, in memory that they share: one process writes it, any number
+/// read it, without locks, and no reader ever waits for the writer.
+///
+/// The writer fills the slot that is not in use and then publishes it. A reader takes the slot in
+/// use, reads the machine's clock, and starts again if another slot has been published meanwhile.
+/// So a reader that is frozen between the two readings does not take the freeze for ET.
+class ClockPage {
+ public:
+  ClockPage() = default;
+  ClockPage(const ClockPage&) = delete;
+  ClockPage& operator=(const ClockPage&) = delete;
+
+  /// One writer at a time.
+  void publish(const ClockState& state);
+  /// Of the last state published. For the writer, and for tests.
+  ClockState state() const;
+  /// ET now, if `monotonic` reads the clock that the states refer to.
+  template <class Monotonic>
+  ExecTime now(Monotonic monotonic) const {
+    while (true) {
+      const std::uint32_t published = published_.load(std::memory_order_acquire);
+      const ClockState state = load(slots_[published % 2]);
+      const Duration mono = monotonic();
+      if (published_.load(std::memory_order_relaxed) == published) return state.at(mono);
+    }
+  }
+  ExecTime now() const;
+
+ private:
+  // Of a slot, stores release and loads acquire: whoever sees part of a later state also sees that
+  // the one before it was published.
+  struct Slot {
+    std::atomic<std::int64_t> base_et_ns{0};
+    std::atomic<std::int64_t> base_mono_ns{0};
+    std::atomic<double> factor{1.0};
+    std::atomic<bool> running{false};
+  };
+  static ClockState load(const Slot& slot);
+
+  std::atomic<std::uint32_t> published_{0};
+  std::array<Slot, 2> slots_;
+
+  static_assert(std::atomic<std::int64_t>::is_always_lock_free &&
+                std::atomic<double>::is_always_lock_free);
+};
+
+/// This machine's CLOCK_MONOTONIC.
+Duration read_monotonic();
+
+/// A page in memory of its own, which `descriptor` shares with other processes: they can read it
+/// and cannot change it. Fails with kInvalid, saying what the system refused.
+struct SharedClockPage {
+  struct Unmap {
+    void operator()(ClockPage* page) const;
+  };
+  std::unique_ptr<ClockPage, Unmap> page;
+  FileDescriptor descriptor;
+};
+Result<SharedClockPage> make_clock_page();
+
+/// The same page in another process. Fails with kProtocol if it cannot be one.
+struct MappedClockPage {
+  struct Unmap {
+    void operator()(const ClockPage* page) const;
+  };
+  std::unique_ptr<const ClockPage, Unmap> page;
+};
+Result<MappedClockPage> map_clock_page(const FileDescriptor& descriptor);
+
+}  // namespace tether::client

@@ -1,0 +1,226 @@
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <tether/client/exec/local_socket.h>
+
+namespace tether::client {
+namespace {
+
+/// Frames up to this size fit a packet, and several of them the socket's buffer.
+constexpr std::size_t kLongestInline = 16 * 1024;
+
+// A packet with a descriptor says by these what that is; no frame begins like them.
+constexpr std::array<std::uint8_t, 4> kFrameInMemory{0, 0, 0, 0};
+constexpr std::array<std::uint8_t, 4> kClockPage{0xff, 0xff, 0xff, 0xff};
+
+Failure lost(const std::string& why) {
+  return {Failure::Kind::kDisconnected, "the connection to tether-exec was lost: " + why};
+}
+Failure lost() {
+  return lost(std::strerror(errno));
+}
+Failure broken(const std::string& why) {
+  return {Failure::Kind::kProtocol, "a packet between the program and tether-exec: " + why};
+}
+
+template <class Call>
+ssize_t uninterrupted(Call call) {
+  ssize_t result = 0;
+  do {
+    result = call();
+  } while (result < 0 && errno == EINTR);
+  return result;
+}
+
+/// Room for one descriptor.
+struct alignas(cmsghdr) Control {
+  std::array<char, CMSG_SPACE(sizeof(int))> bytes{};
+};
+
+FileDescriptor take_descriptor(msghdr& header) {
+  const cmsghdr* const control = CMSG_FIRSTHDR(&header);
+  if (control == nullptr || control->cmsg_type != SCM_RIGHTS) return FileDescriptor();
+  int descriptor = -1;
+  std::memcpy(&descriptor, CMSG_DATA(control), sizeof descriptor);
+  return FileDescriptor(descriptor);
+}
+
+bool wait_readable(int descriptor, Duration timeout) {
+  const Duration::rep ms = std::chrono::ceil<std::chrono::milliseconds>(timeout).count();
+  pollfd entry{descriptor, POLLIN, 0};
+  return uninterrupted([&] {
+           return ::poll(&entry, 1, static_cast<int>(std::min<Duration::rep>(ms, 1'000'000'000)));
+         }) != 0;
+}
+
+/// Decodes the frame in a sealed piece of memory, in place.
+Result<link::Message> decode_memory(const FileDescriptor& memory) {
+  struct stat status {};
+  const int seals = ::fcntl(memory.get(), F_GET_SEALS);
+  if (seals < 0 || (seals & F_SEAL_SHRINK) == 0 || ::fstat(memory.get(), &status) != 0) {
+    return broken("its memory is not sealed");
+  }
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size < link::kFrameHeaderBytes || size > link::kMaxReplyBytes) return broken("its length");
+  void* const data = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, memory.get(), 0);
+  if (data == MAP_FAILED) return broken("its memory cannot be mapped");
+  auto message = link::decode({static_cast<const std::uint8_t*>(data), size});
+  ::munmap(data, size);
+  return message;
+}
+
+Result<LocalSocket::Packet> understand(std::span<const std::uint8_t> bytes,
+                                       FileDescriptor descriptor) {
+  if (descriptor && std::equal(bytes.begin(), bytes.end(), kClockPage.begin(), kClockPage.end())) {
+    return LocalSocket::Packet{std::nullopt, std::move(descriptor)};
+  }
+  auto message = descriptor ? decode_memory(descriptor) : link::decode(bytes);
+  if (!message) return message.failure();
+  return LocalSocket::Packet{std::move(*message), FileDescriptor()};
+}
+
+Result<sockaddr_un> address_of(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) {
+    return Failure{Failure::Kind::kInvalid, "the path of the socket is too long: " + path};
+  }
+  std::memcpy(address.sun_path, path.data(), path.size());
+  return address;
+}
+
+FileDescriptor make_socket(int more_flags) {
+  return FileDescriptor(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | more_flags, 0));
+}
+
+/// Any socket address goes by this type through the system's calls.
+const sockaddr* generic(const sockaddr_un& address) {
+  return reinterpret_cast<const sockaddr*>(&address);
+}
+
+}  // namespace
+
+Status LocalSocket::send(const link::Message& message) {
+  if (Status valid = link::validate(message); !valid) return valid;
+  const link::FramePieces pieces = encoder_.encode_pieces(message);
+  if (pieces.size() > kLongestInline) return send_as_memory(pieces);
+  packet_.clear();
+  for (const auto piece : {pieces.head, pieces.image, pieces.tail}) {
+    packet_.insert(packet_.end(), piece.begin(), piece.end());
+  }
+  return send_packet(packet_.data(), packet_.size(), -1);
+}
+
+Status LocalSocket::send_clock(const FileDescriptor& clock_page) {
+  return send_packet(kClockPage.data(), kClockPage.size(), clock_page.get());
+}
+
+Status LocalSocket::send_as_memory(const link::FramePieces& pieces) {
+  const FileDescriptor memory(::memfd_create("tether-frame", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (!memory) return lost();
+  for (const auto piece : {pieces.head, pieces.image, pieces.tail}) {
+    for (std::size_t done = 0; done < piece.size();) {
+      const ssize_t written = uninterrupted(
+          [&] { return ::write(memory.get(), piece.data() + done, piece.size() - done); });
+      if (written <= 0) return lost();
+      done += static_cast<std::size_t>(written);
+    }
+  }
+  if (::fcntl(memory.get(), F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE) != 0) {
+    return lost();
+  }
+  return send_packet(kFrameInMemory.data(), kFrameInMemory.size(), memory.get());
+}
+
+Status LocalSocket::send_packet(const std::uint8_t* data, std::size_t bytes, int descriptor) {
+  // iovec serves reading too and so points to non-const.
+  iovec part{const_cast<std::uint8_t*>(data), bytes};
+  msghdr header{};
+  header.msg_iov = &part;
+  header.msg_iovlen = 1;
+  Control control;
+  if (descriptor >= 0) {
+    header.msg_control = control.bytes.data();
+    header.msg_controllen = control.bytes.size();
+    cmsghdr* const rights = CMSG_FIRSTHDR(&header);
+    rights->cmsg_level = SOL_SOCKET;
+    rights->cmsg_type = SCM_RIGHTS;
+    rights->cmsg_len = CMSG_LEN(sizeof descriptor);
+    std::memcpy(CMSG_DATA(rights), &descriptor, sizeof descriptor);
+  }
+  const ssize_t sent =
+      uninterrupted([&] { return ::sendmsg(socket_.get(), &header, MSG_NOSIGNAL); });
+  return sent < 0 ? Status(lost()) : ok_status();
+}
+
+Result<LocalSocket::Packet> LocalSocket::receive(std::optional<Duration> timeout) {
+  if (timeout && !wait_readable(descriptor(), *timeout)) {
+    return Failure{Failure::Kind::kTimeout, "no answer from tether-exec within the limit"};
+  }
+  input_.resize(kLongestInline);
+  iovec part{input_.data(), input_.size()};
+  Control control;
+  msghdr header{};
+  header.msg_iov = &part;
+  header.msg_iovlen = 1;
+  header.msg_control = control.bytes.data();
+  header.msg_controllen = control.bytes.size();
+  const ssize_t received =
+      uninterrupted([&] { return ::recvmsg(socket_.get(), &header, MSG_CMSG_CLOEXEC); });
+  if (received < 0 && errno == EAGAIN) {
+    return Failure{Failure::Kind::kTimeout, "nothing has come"};
+  }
+  if (received < 0) return lost();
+  FileDescriptor descriptor = take_descriptor(header);
+  if (received == 0) return lost("it was closed");
+  if ((header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) != 0) return broken("it is too long");
+  return understand({input_.data(), static_cast<std::size_t>(received)}, std::move(descriptor));
+}
+
+void LocalSocket::shut_down() {
+  ::shutdown(descriptor(), SHUT_RDWR);
+}
+
+Result<LocalSocket> connect_local(const std::string& path) {
+  const auto address = address_of(path);
+  if (!address) return address.failure();
+  FileDescriptor socket = make_socket(0);
+  if (!socket || ::connect(socket.get(), generic(*address), sizeof *address) != 0) {
+    return Failure{Failure::Kind::kDisconnected, "cannot connect to tether-exec at " + path + ": " +
+                                                     std::strerror(errno) +
+                                                     " (has it ended, or has TETHER_EXEC been kept "
+                                                     "from an earlier run?)"};
+  }
+  return LocalSocket(std::move(socket));
+}
+
+Result<FileDescriptor> listen_local(const std::string& path) {
+  const auto address = address_of(path);
+  if (!address) return address.failure();
+  FileDescriptor socket = make_socket(SOCK_NONBLOCK);
+  if (!socket || ::bind(socket.get(), generic(*address), sizeof *address) != 0 ||
+      ::listen(socket.get(), SOMAXCONN) != 0) {
+    return Failure{Failure::Kind::kInvalid,
+                   "cannot listen at " + path + ": " + std::strerror(errno)};
+  }
+  return socket;
+}
+
+FileDescriptor accept_local(const FileDescriptor& listener) {
+  return FileDescriptor(static_cast<int>(uninterrupted(
+      [&] { return ::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK); })));
+}
+
+}  // namespace tether::client
