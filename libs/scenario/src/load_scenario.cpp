@@ -194,6 +194,9 @@ void read_uavs(const TomlTable& root, Scenario& scenario) {
 void read_clock(const TomlTable& table, Condition& condition) {
   constexpr Range kFactor{.min = 1e-3, .max = 1e4};
   constexpr Range kComputing_ms{.min = 1e-3, .max = 60'000.0};
+  if (!table.has("clock")) {
+    table.fail("lacks the key 'clock', or a 'target' whose file says how time is measured there");
+  }
   condition.clock = static_cast<Clock>(table.choice("clock", kClocks));
   condition.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
   if (condition.clock != Clock::kCpu && table.has("cpu_factor")) {
@@ -213,7 +216,20 @@ void read_clock(const TomlTable& table, Condition& condition) {
   }
 }
 
-Condition read_condition(const TomlTable& table) {
+// A target says how its SUTs' time is measured.
+void read_target(const TomlTable& table, Condition& condition, Scenario& scenario) {
+  for (const char* key : {"clock", "cpu_factor", "computing_ms"}) {
+    if (table.has(key)) table.fail(key, "is the target's to say; leave it out, or 'target'");
+  }
+  Target target = load_target(table.existing_file("target"));
+  if (const std::string why = why_not_on(condition, target); !why.empty()) {
+    table.fail("target", fmt::format("cannot be used here: {}", why));
+  }
+  scenario.files.push_back(target.file);
+  place_on(condition, std::move(target));
+}
+
+Condition read_condition(const TomlTable& table, Scenario& scenario) {
   constexpr Range kFactor{.min = 1e-3, .max = 1e4};
   Condition condition;
   condition.name = table.text("name");
@@ -222,7 +238,11 @@ Condition read_condition(const TomlTable& table) {
   }
   condition.description = table.text_or("description", "");
   condition.policy = static_cast<Policy>(table.choice("policy", kPolicies));
-  read_clock(table, condition);
+  if (table.has("target")) {
+    read_target(table, condition, scenario);
+  } else {
+    read_clock(table, condition);
+  }
   condition.real_time_factor = table.number_or("real_time_factor", kFactor, 0.0);
   if (condition.policy == Policy::kFreeRunning && condition.real_time_factor == 0.0) {
     table.fail(
@@ -236,8 +256,8 @@ void read_conditions(const TomlTable& root, Scenario& scenario) {
   std::map<std::string, std::string> slugs;
   for (const TomlTable& table :
        root.tables("condition", {"name", "description", "policy", "clock", "cpu_factor",
-                                 "computing_ms", "real_time_factor", "profile"})) {
-    scenario.conditions.push_back(read_condition(table));
+                                 "computing_ms", "real_time_factor", "profile", "target"})) {
+    scenario.conditions.push_back(read_condition(table, scenario));
     if (auto profile = read_profile(table, scenario)) {
       scenario.conditions.back().profiles.push_back(std::move(*profile));
     }

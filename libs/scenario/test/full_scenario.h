@@ -92,6 +92,11 @@ clock = "scripted"
 computing_ms = 2.5
 profile = "profiles/fog.toml"
 
+[[condition]]
+name = "slow machine"
+policy = "conservative_barrier"
+target = "profiles/targets/slow.toml"
+
 [[metric]]
 kind = "time_required"
 uav = "uav1"
@@ -133,6 +138,11 @@ max_m = 3
 delay = { kind = "empirical", file_ms = "fog.txt" }
 )";
 
+inline const std::string kSlowTarget = R"(name = "slow"
+clock = "cpu"
+cpu_factor = 6
+)";
+
 /// Writes the scenario and the files that it names; returns the scenario's file.
 inline std::filesystem::path write_project(const ScratchFolder& scratch,
                                            const std::string& scenario) {
@@ -143,6 +153,7 @@ inline std::filesystem::path write_project(const ScratchFolder& scratch,
   scratch.write("profiles/rig.toml", kRigProfile);
   scratch.write("profiles/fog.toml", kFogProfile);
   scratch.write("profiles/fog.txt", "90\n110\n");
+  scratch.write("profiles/targets/slow.toml", kSlowTarget);
   return scratch.write("scenario.toml", scenario);
 }
 

@@ -52,7 +52,8 @@ TEST_F(LoadCampaign, TakesSeedsAndAllConditions) {
   const Campaign campaign =
       load("name = \"c\"\nseeds = [5, 2]\n[[scenario]]\nfile = \"scenario.toml\"\n");
   EXPECT_THAT(campaign.seeds, ElementsAre(5u, 2u));
-  EXPECT_THAT(campaign.scenarios[0].conditions, ElementsAre("host", "target, no sync", "scripted"));
+  EXPECT_THAT(campaign.scenarios[0].conditions,
+              ElementsAre("host", "target, no sync", "scripted", "slow machine"));
   EXPECT_EQ(campaign.scenarios[0].paper_table, "");
 }
 

@@ -151,7 +151,7 @@ TEST_F(LoadScenario, RefusesFilesThatASutCannotBeGiven) {
 
 TEST_F(LoadScenario, ReadsConditions) {
   const Scenario s = load(kFullScenario);
-  ASSERT_EQ(s.conditions.size(), 3u);
+  ASSERT_EQ(s.conditions.size(), 4u);
   EXPECT_EQ(s.conditions[0].policy, Policy::kConservativeBarrier);
   EXPECT_EQ(s.conditions[0].clock, Clock::kCpu);
   EXPECT_EQ(s.conditions[0].cpu_factor, 1.5);
@@ -165,6 +165,44 @@ TEST_F(LoadScenario, ReadsConditions) {
   EXPECT_EQ(s.conditions[2].clock, Clock::kScripted);
   EXPECT_EQ(s.conditions[2].computing, Duration(2'500'000));
   EXPECT_EQ(s.find_condition("nowhere"), nullptr);
+}
+
+TEST_F(LoadScenario, ReadsTheTargetOfACondition) {
+  const Scenario s = load(kFullScenario);
+  EXPECT_FALSE(s.conditions[0].target);
+  ASSERT_TRUE(s.conditions[3].target);
+  EXPECT_EQ(s.conditions[3].target->name, "slow");
+  EXPECT_EQ(s.conditions[3].clock, Clock::kCpu);
+  EXPECT_EQ(s.conditions[3].cpu_factor, 6.0);
+}
+
+TEST_F(LoadScenario, LeavesTheClockToTheTarget) {
+  const std::string target = "target = \"profiles/targets/slow.toml\"";
+  for (const std::string key : {"clock = \"cpu\"", "cpu_factor = 2", "computing_ms = 2"}) {
+    const std::string name = key.substr(0, key.find(' '));
+    EXPECT_THAT(
+        error_with(target, target + "\n" + key),
+        HasSubstr("scenario.toml:80: '" + name + "' of [condition] is the target's to say"));
+  }
+  EXPECT_THAT(error_with("clock = \"wall\"", target + "\nclock = \"wall\""),
+              HasSubstr("is the target's to say"));
+  EXPECT_THAT(error_with(target, ""),
+              HasSubstr("[condition] lacks the key 'clock', or a 'target'"));
+}
+
+TEST_F(LoadScenario, NamesTheTargetThatIsWrong) {
+  EXPECT_THAT(error_with("targets/slow.toml", "targets/slaw.toml"),
+              HasSubstr("scenario.toml:79: 'target' of [condition] names "
+                        "\"profiles/targets/slaw.toml\", but there is no such file"));
+  EXPECT_THAT(error_with("targets/slow.toml", "fog.toml"),
+              HasSubstr("fog.toml:3: unknown key 'sensors' in the file"));
+}
+
+TEST_F(LoadScenario, RefusesATargetThatItsPolicyCannotHave) {
+  scratch_.write("scaled.toml", "name = \"scaled\"\nclock = \"wall\"\ncpu_factor = 2\n");
+  EXPECT_THAT(error_with("clock = \"wall\"", "target = \"scaled.toml\""),
+              HasSubstr("scenario.toml:66: 'target' of [condition] cannot be used here: the target "
+                        "\"scaled\" scales the wall clock"));
 }
 
 TEST_F(LoadScenario, ReadsMetrics) {
@@ -188,11 +226,12 @@ TEST_F(LoadScenario, ReadsMetrics) {
 }
 
 TEST_F(LoadScenario, ListsEveryFileItRestsOn) {
-  EXPECT_THAT(load(kFullScenario).files,
-              ElementsAre(scratch_.path("delays.txt"), mission_, scratch_.path("models/uav.sdf"),
-                          scratch_.path("profiles/fog.toml"), scratch_.path("profiles/fog.txt"),
-                          scratch_.path("profiles/rig.toml"), scratch_.path("scenario.toml"),
-                          scratch_.path("worlds/room.sdf")));
+  EXPECT_THAT(
+      load(kFullScenario).files,
+      ElementsAre(scratch_.path("delays.txt"), mission_, scratch_.path("models/uav.sdf"),
+                  scratch_.path("profiles/fog.toml"), scratch_.path("profiles/fog.txt"),
+                  scratch_.path("profiles/rig.toml"), scratch_.path("profiles/targets/slow.toml"),
+                  scratch_.path("scenario.toml"), scratch_.path("worlds/room.sdf")));
 }
 
 TEST_F(LoadScenario, ResolvesAProgramInAFolderAgainstTheScenario) {

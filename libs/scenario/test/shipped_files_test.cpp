@@ -1,4 +1,4 @@
-// Every scenario, campaign and profile in the repository loads, and comes to what it says.
+// Every scenario, campaign, profile and target in the repository loads, and comes to what it says.
 #include <algorithm>
 #include <map>
 
@@ -44,6 +44,15 @@ TEST(ShippedFiles, EveryProfileLoadsAndIsNamedAsItsFile) {
   for (const auto& file : files) {
     SCOPED_TRACE(file.string());
     EXPECT_EQ(load_profile(file).name, file.stem());
+  }
+}
+
+TEST(ShippedFiles, EveryTargetLoadsAndIsNamedAsItsFile) {
+  const auto files = toml_files("profiles/targets");
+  EXPECT_FALSE(files.empty());
+  for (const auto& file : files) {
+    SCOPED_TRACE(file.string());
+    EXPECT_EQ(load_target(file).name, file.stem());
   }
 }
 

@@ -99,6 +99,13 @@ sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
 /// Lays the profile on top of all that the scenario says of its sensors, under each condition.
 void lay_profile(Scenario& scenario, const Profile& profile);
 
+/// Why the condition's SUTs cannot run on that target; empty: they can.
+std::string why_not_on(const Condition& condition, const Target& target);
+
+/// Has the condition's SUTs run there: what it said of their clock is replaced.
+/// @throws Error(kUsage) with the reason of `why_not_on`.
+void place_on(Condition& condition, Target target);
+
 /// The names of the profiles in use, each once, in the order of their layers: the UAVs', then the
 /// condition's. One that is in several layers stands where the topmost of them is.
 std::vector<std::string> profile_names(const Scenario& scenario, const Condition& condition);

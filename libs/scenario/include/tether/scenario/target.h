@@ -37,7 +37,9 @@ SshAddress parse_ssh_address(std::string_view text);
 /// As parse_ssh_address takes it.
 std::string to_string(const SshAddress& address);
 
-/// Reads and checks a target file (docs/guide/target.md).
+/// Reads and checks a target file (docs/guide/target.md). Paths in it that are of this host are
+/// relative to its own folder; words of `launcher` count as such when they begin with "./" or
+/// "../".
 /// @throws Error(kBadFile) with file and line, saying what is wrong and what is allowed.
 Target load_target(const std::filesystem::path& file);
 

@@ -1,0 +1,28 @@
+#include <fmt/format.h>
+
+#include <tether/scenario/scenario.h>
+
+namespace tether::scenario {
+
+std::string why_not_on(const Condition& condition, const Target& target) {
+  const bool is_scaled_wall = target.clock == Clock::kWall && target.cpu_factor != 1.0;
+  if (condition.policy == Policy::kFreeRunning && is_scaled_wall) {
+    return fmt::format(
+        "the target \"{}\" scales the wall clock, which needs policy = \"conservative_barrier\": "
+        "free running goes by the wall clock as it is",
+        target.name);
+  }
+  return "";
+}
+
+void place_on(Condition& condition, Target target) {
+  if (const std::string why = why_not_on(condition, target); !why.empty()) {
+    throw Error(ErrorCode::kUsage, fmt::format("condition \"{}\": {}", condition.name, why));
+  }
+  condition.clock = target.clock;
+  condition.cpu_factor = target.cpu_factor;
+  condition.computing = Duration{0};
+  condition.target = std::move(target);
+}
+
+}  // namespace tether::scenario
