@@ -1,10 +1,12 @@
 #include "child_process.h"
 #include "commands.h"
 #include "interrupt.h"
+#include "local_program.h"
 #include "machine.h"
 #include "print_report.h"
 #include "progress_bar.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -45,6 +47,18 @@ void try_profiles(const scenario::CampaignScenario& entry, const sim::World& wor
   }
 }
 
+/// What starts the SUTs here, under each condition.
+void add_programs(const scenario::CampaignScenario& entry,
+                  std::vector<std::filesystem::path>& files) {
+  for (const std::string& name : entry.conditions) {
+    const auto& target = entry.scenario.find_condition(name)->target;
+    if (target && target->ssh) continue;
+    for (const auto& uav : entry.scenario.uavs)
+      for (const auto& program : local_sut_command(uav.sut, target).programs)
+        if (std::find(files.begin(), files.end(), program) == files.end()) files.push_back(program);
+  }
+}
+
 /// Everything that a trial's result rests on, as far as files go. Each is looked into.
 std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign) {
   std::set<std::string> warnings;
@@ -52,8 +66,7 @@ std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign)
   files.push_back(own_file());
   const auto every_trial_says_it = [](const std::string&) {};
   for (const auto& entry : campaign.scenarios) {
-    for (const auto& uav : entry.scenario.uavs)
-      files.push_back(find_program(uav.sut.command.front()));
+    add_programs(entry, files);
     const sim::World world = sim::load_world(
         scenario::world_request(entry.scenario, campaign.seeds.front()), every_trial_says_it);
     files.insert(files.end(), world.files.begin(), world.files.end());

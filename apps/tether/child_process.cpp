@@ -10,6 +10,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -61,10 +62,17 @@ int open_log(const std::filesystem::path& log) {
   return fd;
 }
 
+cpu_set_t to_set(const std::vector<int>& cpus) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (const int cpu : cpus) CPU_SET(static_cast<std::size_t>(cpu), &set);
+  return set;
+}
+
 // Between fork and exec only calls that are safe after a fork of a program with threads. Tells
 // `report` why it failed.
 [[noreturn]] void become(const char* program, char* const* arguments, char* const* environment,
-                         int log, int report, pid_t parent) {
+                         int log, const cpu_set_t* cpus, int report, pid_t parent) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
@@ -76,13 +84,24 @@ int open_log(const std::filesystem::path& log) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  execve(program, arguments, environment);
+  if (!cpus || sched_setaffinity(0, sizeof *cpus, cpus) == 0)
+    execve(program, arguments, environment);
   const int why = errno;
   const auto written = write(report, &why, sizeof why);
   _exit(written == sizeof why ? 127 : 126);
 }
 
 }  // namespace
+
+std::vector<int> allowed_cpus() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  std::vector<int> cpus;
+  if (sched_getaffinity(0, sizeof set, &set) != 0) return cpus;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu)
+    if (CPU_ISSET(static_cast<std::size_t>(cpu), &set)) cpus.push_back(cpu);
+  return cpus;
+}
 
 std::filesystem::path own_file() {
   return std::filesystem::read_symlink("/proc/self/exe");
@@ -109,6 +128,7 @@ ChildProcess::ChildProcess(const ChildCommand& command)
   std::vector<std::string> arguments = command.arguments;
   std::vector<std::string> environment = merged_environment(command.environment);
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
+  const cpu_set_t cpus = to_set(command.cpus);
   const int log = open_log(command.log);
   int report[2];
   if (pipe2(report, O_CLOEXEC) != 0)
@@ -116,7 +136,9 @@ ChildProcess::ChildProcess(const ChildCommand& command)
 
   const pid_t parent = getpid();
   pid_ = fork();
-  if (pid_ == 0) become(program_.c_str(), argv.data(), envp.data(), log, report[1], parent);
+  if (pid_ == 0)
+    become(program_.c_str(), argv.data(), envp.data(), log, command.cpus.empty() ? nullptr : &cpus,
+           report[1], parent);
   close(log);
   close(report[1]);
   int why = pid_ < 0 ? errno : 0;

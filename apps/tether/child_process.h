@@ -17,6 +17,7 @@ struct ChildCommand {
   std::vector<std::string> arguments;                            ///< program first
   std::vector<std::pair<std::string, std::string>> environment;  ///< over this process' own
   std::filesystem::path log;  ///< gets stdout and stderr; empty: /dev/null
+  std::vector<int> cpus{};    ///< it and its children run on these only; empty: on all
 };
 
 /// How a child ended.
@@ -55,6 +56,9 @@ class ChildProcess {
   pid_t pid_ = -1;
   std::optional<ChildExit> exit_;
 };
+
+/// The CPUs that this process may run on, ascending.
+std::vector<int> allowed_cpus();
 
 /// This program's own file.
 std::filesystem::path own_file();

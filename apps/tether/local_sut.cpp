@@ -1,5 +1,7 @@
 #include "local_sut.h"
 
+#include "local_program.h"
+
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
@@ -16,22 +18,37 @@ std::string files_folder(const std::filesystem::path& folder) {
   return std::filesystem::absolute(folder).lexically_normal().string();
 }
 
+void require_cores(const scenario::Scenario& scenario, const scenario::Condition& condition) {
+  const std::size_t allowed = allowed_cpus().size(), suts = scenario.uavs.size();
+  const int cores = condition.target ? condition.target->cores : 0;
+  if (static_cast<std::size_t>(cores) * suts <= allowed) return;
+  throw Error(ErrorCode::kBadFile, {condition.target->file.string()},
+              fmt::format("'cores' is {}, {}and this process may use {} of this machine's", cores,
+                          suts > 1 ? fmt::format("for each of {} SUTs, ", suts) : "", allowed));
+}
+
 }  // namespace
 
-void require_sut_programs(const scenario::Scenario& scenario, const scenario::Condition&) {
+void require_sut_programs(const scenario::Scenario& scenario,
+                          const scenario::Condition& condition) {
   for (const scenario::UavSetup& uav : scenario.uavs) try {
-      find_program(uav.sut.command.front());
+      local_sut_command(uav.sut, condition.target);
     } catch (const Error& e) {
       throw Error(ErrorCode::kBadFile, {scenario.file.string()},
                   fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()));
     }
+  require_cores(scenario, condition);
 }
 
-ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run,
+ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
                        const std::filesystem::path& out, const std::filesystem::path& log) {
+  const auto& target = run.condition.target;
   auto environment = environment_of(uav.placement.name, run);
   environment.emplace_back("TETHER_OUT", files_folder(out));
-  return {.arguments = command_line(uav.sut), .environment = std::move(environment), .log = log};
+  return {.arguments = local_sut_command(uav.sut, target).words,
+          .environment = std::move(environment),
+          .log = log,
+          .cpus = cpus_for(allowed_cpus(), target ? target->cores : 0, index)};
 }
 
 }  // namespace tether::app

@@ -14,9 +14,10 @@ namespace tether::app {
 /// here.
 void require_sut_programs(const scenario::Scenario& scenario, const scenario::Condition& condition);
 
-/// How to start the SUT of `uav` here. It may leave files in `out`; its output goes to `log`.
+/// How to start the SUT of `uav` here, the run's SUT of that index. It may leave files in `out`;
+/// its output goes to `log`.
 /// @throws Error(kSetup) when `out` cannot be made.
-ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run,
+ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
                        const std::filesystem::path& out, const std::filesystem::path& log);
 
 }  // namespace tether::app

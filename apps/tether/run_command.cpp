@@ -1,5 +1,6 @@
 #include "commands.h"
 #include "status_line.h"
+#include "target_option.h"
 #include "trial.h"
 #include "trial_folder.h"
 
@@ -24,12 +25,12 @@ namespace {
 struct RunOptions {
   std::filesystem::path scenario;
   std::string condition;
+  std::string target;
   std::filesystem::path profile;
   std::uint64_t seed = 1;
   std::filesystem::path out;
   std::string listen = "127.0.0.1:0";
   double real_time_factor = 0.0;
-  std::string target;
   bool record_images = false;
   bool json = false;
   bool quiet = false;
@@ -45,10 +46,28 @@ scenario::Condition pick_condition(const scenario::Scenario& scenario, const std
                                              scenario.file.string(), wanted, names));
 }
 
-/// Whether --target has the user start the SUT.
-bool waits_for_sut(const std::string& target) {
-  if (target.empty() || target == "wait") return !target.empty();
-  throw Error(ErrorCode::kUsage, fmt::format("--target \"{}\": expected \"wait\"", target));
+/// Has the condition's SUTs run on that target. A condition that was asked for by name keeps it, so
+/// that results show both.
+void move_to(scenario::Condition& condition, scenario::Target target, bool keep_name) {
+  const std::string name = target.name, description = target.description;
+  scenario::place_on(condition, std::move(target));
+  condition.name = keep_name ? fmt::format("{} on {}", condition.name, name) : name;
+  if (!keep_name) condition.description = description;
+}
+
+/// The condition that is asked for, on the target that is asked for.
+scenario::Condition make_condition(const scenario::Scenario& scenario, const RunOptions& options) {
+  scenario::Condition condition = pick_condition(scenario, options.condition);
+  if (options.real_time_factor > 0.0) condition.real_time_factor = options.real_time_factor;
+  const TargetOption target = parse_target_option(options.target);
+  if (const auto* file = std::get_if<std::filesystem::path>(&target))
+    move_to(condition, scenario::load_target(*file), !options.condition.empty());
+  if (std::holds_alternative<scenario::SshAddress>(target) ||
+      (condition.target && condition.target->ssh))
+    throw Error(ErrorCode::kUsage,
+                "a SUT can be started on this host only; for a board, use "
+                "--target wait");
+  return condition;
 }
 
 TrialSpec make_spec(const RunOptions& options) {
@@ -57,8 +76,7 @@ TrialSpec make_spec(const RunOptions& options) {
   spec.scenario.record_images |= options.record_images;
   if (!options.profile.empty())
     scenario::lay_profile(spec.scenario, scenario::load_profile(options.profile));
-  spec.condition = pick_condition(spec.scenario, options.condition);
-  if (options.real_time_factor > 0.0) spec.condition.real_time_factor = options.real_time_factor;
+  spec.condition = make_condition(spec.scenario, options);
   spec.seed = options.seed;
   spec.folder =
       options.out.empty()
@@ -67,7 +85,7 @@ TrialSpec make_spec(const RunOptions& options) {
   const auto address = link::parse_address(options.listen);
   if (!address) throw Error(ErrorCode::kUsage, "--listen: " + address.failure().message);
   spec.listen = *address;
-  spec.waits_for_sut = waits_for_sut(options.target);
+  spec.waits_for_sut = std::holds_alternative<WaitForSut>(parse_target_option(options.target));
   return spec;
 }
 
@@ -86,6 +104,7 @@ void print_result(const TrialSpec& spec, const experiment::TrialResult& result) 
   fmt::print("  {:<24} {:.3f} s in {:.3f} s of wall time, {} interactions\n", "simulated",
              to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
              result.sync.interactions);
+  if (!result.target.empty()) fmt::print("  {:<24} {}\n", "target", result.target);
   if (!result.profiles.empty())
     fmt::print("  {:<24} {}\n", "profiles", fmt::join(result.profiles, ", "));
   if (result.audit) fmt::print("  {:<24} {}\n", "audit", result.audit->summary);
@@ -145,7 +164,8 @@ void add_run_command(CLI::App& program, Action& action) {
       ->capture_default_str();
   command->add_option(
       "--target", options->target,
-      "\"wait\": do not start the SUT, print what to type where it runs, and wait for it");
+      "Where the SUT runs: a target file (TOML); or \"wait\": do not start the SUT, "
+      "print what to type where it runs, and wait for it");
   command->add_flag("--images", options->record_images,
                     "Keep the camera images that the SUT consumed in the record");
   command->add_flag("--json", options->json, "Print result.json instead of a summary");
@@ -153,6 +173,7 @@ void add_run_command(CLI::App& program, Action& action) {
   command->footer(R"(Examples:
   tether run scenarios/face_anchor.toml
   tether run scenarios/face_anchor.toml --condition "target, no sync" --seed 7
+  tether run scenarios/face_anchor.toml --target profiles/targets/six_times_slower.toml
   tether run scenarios/face_anchor.toml --profile profiles/ideal.toml
   tether run scenarios/face_anchor.toml --images --out out/one)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });

@@ -15,7 +15,7 @@ namespace {
 std::string clock_of(const scenario::Condition& condition) {
   switch (condition.clock) {
     case scenario::Clock::kWall:
-      return "wall";
+      return condition.cpu_factor == 1.0 ? "wall" : fmt::format("wall*{}", condition.cpu_factor);
     case scenario::Clock::kCpu:
       return fmt::format("cpu*{}", condition.cpu_factor);
     case scenario::Clock::kScripted:
@@ -34,6 +34,17 @@ std::vector<std::string> command_line(const scenario::Sut& sut) {
     words.push_back(option);
     words.push_back(value);
   }
+  return words;
+}
+
+std::vector<std::string> sut_command(const scenario::Sut& sut,
+                                     const std::optional<scenario::Target>& target) {
+  std::vector<std::string> words = command_line(sut);
+  if (!target) return words;
+  std::string& program = words.front();
+  if (!target->program_folder.empty() && program.find('/') == std::string::npos)
+    program = (std::filesystem::path(target->program_folder) / program).string();
+  words.insert(words.begin(), target->launcher.begin(), target->launcher.end());
   return words;
 }
 
@@ -60,7 +71,7 @@ std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& r
   for (const scenario::UavSetup& uav : scenario.uavs) {
     for (const auto& [name, value] : environment_of(uav.placement.name, run))
       text += fmt::format("{}={} ", name, shell_word(value));
-    std::vector<std::string> words = command_line(uav.sut);
+    std::vector<std::string> words = sut_command(uav.sut, run.condition.target);
     std::transform(words.begin(), words.end(), words.begin(), shell_word);
     text += fmt::format("{}\n", fmt::join(words, " "));
   }

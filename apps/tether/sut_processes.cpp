@@ -23,7 +23,8 @@ void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
     const std::string& name = uav.placement.name;
     const std::filesystem::path log = folder / fmt::format("sut-{}.log", name);
     const std::filesystem::path out = scenario.uavs.size() > 1 ? folder / name : folder;
-    suts_.push_back({name, log, std::make_unique<ChildProcess>(local_sut(uav, run, out, log))});
+    suts_.push_back(
+        {name, log, std::make_unique<ChildProcess>(local_sut(uav, run, suts_.size(), out, log))});
   }
 }
 

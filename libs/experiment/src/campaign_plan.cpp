@@ -54,7 +54,9 @@ std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
 
 int trials_side_by_side(const TrialPlan& plan, int jobs) {
   const scenario::Condition& condition = *plan.condition;
-  if (condition.clock == scenario::Clock::kWall || jobs == 1) return 1;
+  // SUTs that are bound to so many cores would be bound to the same ones.
+  const bool is_bound = condition.target && condition.target->cores > 0;
+  if (condition.clock == scenario::Clock::kWall || is_bound || jobs == 1) return 1;
   if (condition.policy == scenario::Policy::kConservativeBarrier) return jobs;
   // A stalling SUT computes for one part in `cpu_factor` of the time; the simulator with its camera
   // took up to half a core at real time.

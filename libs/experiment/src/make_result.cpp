@@ -18,6 +18,7 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
   result.cpu_factor = condition.cpu_factor;
   result.computing = condition.computing;
   result.real_time_factor = condition.real_time_factor;
+  if (condition.target) result.target = condition.target->name;
   result.profiles = scenario::profile_names(scenario, condition);
   return result;
 }

@@ -166,6 +166,7 @@ void read_trial(const JsonReader& json, TrialResult& result) {
   result.cpu_factor = json.number("cpu_factor");
   if (result.clock == kScripted) result.computing = json.seconds("computing_s");
   result.real_time_factor = json.number("real_time_factor");
+  if (json.has("target")) result.target = json.text("target");
   if (json.has("profiles")) result.profiles = json.texts("profiles");
   result.outcome = read_outcome(json);
   result.end = json.text("end");
@@ -196,6 +197,7 @@ std::string to_json(const TrialResult& result) {
             {"policy", result.policy},        {"clock", result.clock},
             {"cpu_factor", result.cpu_factor}};
   if (result.clock == kScripted) json["computing_s"] = exact_seconds(result.computing);
+  if (!result.target.empty()) json["target"] = result.target;
   json.update(Json{{"real_time_factor", result.real_time_factor},
                    {"profiles", result.profiles},
                    {"outcome", name(result.outcome)},

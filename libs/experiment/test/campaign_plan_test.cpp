@@ -71,6 +71,17 @@ TEST(TrialsSideBySide, AreAsManyAsDisturbNothing) {
   }
 }
 
+TEST(TrialsSideBySide, AreOneOnATargetThatBindsItsSutsToCores) {
+  scenario::Scenario scenario;
+  scenario.uavs.resize(1);
+  scenario::Condition condition;
+  condition.target.emplace();
+  const TrialPlan plan{&scenario, &condition, 1, "out", false};
+  EXPECT_EQ(trials_side_by_side(plan, 4), 4);
+  condition.target->cores = 1;
+  EXPECT_EQ(trials_side_by_side(plan, 4), 1);
+}
+
 TEST_F(CampaignPlan, RecordsTheImagesOfTheFirstSeedWhereAsked) {
   for (const TrialPlan& plan : plan_trials(campaign_, "out")) EXPECT_FALSE(plan.record_images);
   campaign_.images_of_first_seed = true;

@@ -70,6 +70,12 @@ TEST_F(Result, SaysWhatAScriptedSutWasCharged) {
   EXPECT_EQ(result_from_json(text, "f").computing, trial_.computing);
 }
 
+TEST_F(Result, NamesItsTarget) {
+  EXPECT_EQ(to_json(trial_).find("\"target\":"), std::string::npos);
+  trial_.target = "slow_board";
+  EXPECT_EQ(result_from_json(to_json(trial_), "f").target, "slow_board");
+}
+
 TEST_F(Result, NamesItsProfiles) {
   trial_.profiles = {"rig", "top"};
   EXPECT_EQ(result_from_json(to_json(trial_), "f").profiles, trial_.profiles);
@@ -188,6 +194,13 @@ TEST_F(MakeResult, TakesWhatAScriptedSutIsChargedFromTheCondition) {
   const TrialResult result = make(finished_record(), kReached);
   EXPECT_EQ(result.clock, "scripted");
   EXPECT_EQ(result.computing, milliseconds(3));
+}
+
+TEST_F(MakeResult, TakesTheTargetFromTheCondition) {
+  scenario::Condition& condition = campaign_.scenarios[0].scenario.conditions[1];
+  EXPECT_EQ(make(finished_record(), kReached).target, "");
+  condition.target.emplace().name = "slow_board";
+  EXPECT_EQ(make(finished_record(), kReached).target, "slow_board");
 }
 
 TEST_F(MakeResult, TakesTheProfilesFromScenarioAndCondition) {

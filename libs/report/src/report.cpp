@@ -160,7 +160,7 @@ bool is_synchronised_twin(const experiment::ConditionResults& a,
   return first_a.policy == scenario::name(scenario::Policy::kConservativeBarrier) &&
          first_b.policy == scenario::name(scenario::Policy::kFreeRunning) &&
          first_a.clock == first_b.clock && first_a.cpu_factor == first_b.cpu_factor &&
-         first_a.profiles == first_b.profiles;
+         first_a.target == first_b.target && first_a.profiles == first_b.profiles;
 }
 
 Table table_of(const experiment::ScenarioResults& scenario,

@@ -38,12 +38,14 @@ void for_each_trial(const experiment::CampaignResults& results, const Visit& vis
 
 std::string tie_text(const experiment::TrialResult& trial) {
   std::string text = fmt::format("{}: {}, {} clock", trial.condition, trial.policy, trial.clock);
-  if (trial.clock == "cpu") text += fmt::format(" × {}", trial.cpu_factor);
+  if (trial.clock == "cpu" || trial.cpu_factor != 1.0)
+    text += fmt::format(" × {}", trial.cpu_factor);
   if (trial.computing > Duration{0})
     text += fmt::format(", {} ms for each phase of computing", 1e3 * to_seconds(trial.computing));
   if (trial.real_time_factor > 0.0) {
     text += fmt::format(", simulator at most {} × real time", trial.real_time_factor);
   }
+  if (!trial.target.empty()) text += fmt::format(", target {}", trial.target);
   for (const std::string& profile : trial.profiles) text += fmt::format(", profile {}", profile);
   return text;
 }

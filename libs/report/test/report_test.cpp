@@ -142,6 +142,22 @@ TEST_F(Report, ComparesForOptimismOnlyWhatHasTheSameSensors) {
   EXPECT_TRUE(optimism(one).empty());
 }
 
+TEST_F(Report, ComparesForOptimismOnlyWhatRanOnTheSameTarget) {
+  ScenarioResults one = results();
+  for (TrialResult& trial : one.conditions[1].trials) trial.target = "another_board";
+  EXPECT_TRUE(optimism(one).empty());
+}
+
+TEST_F(Report, SaysWhichTargetATrialRanOn) {
+  TrialResult trial = make_trial(scenario(), "target", 2, 0, 3);
+  trial.clock = "wall";
+  trial.cpu_factor = 4.0;
+  trial.target = "slow_board";
+  write(trial);
+  EXPECT_THAT(to_text(basis_table(read_campaign_results(out_))),
+              HasSubstr("target: conservative_barrier, wall clock × 4, target slow_board"));
+}
+
 TEST_F(Report, SaysWhatItRestsOn) {
   TrialResult bad = make_trial(scenario(), "target", 2, 0, 3);
   bad.audit = AuditVerdict{false, "a command in the past"};

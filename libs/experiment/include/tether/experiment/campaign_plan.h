@@ -41,8 +41,8 @@ struct Batch {
 /// How many trials like `plan` may run side by side on `jobs` cores. Under the barrier on a clock
 /// that other load leaves alone: as many as there are cores. Free running, where the wall clock
 /// moves the simulation: as many as leave half of the cores idle, each UAV of the scenario having a
-/// SUT and a camera of its own (ADR 0015). On a wall clock, or on one core: one. @pre jobs ≥ 1; the
-/// scenario has a UAV.
+/// SUT and a camera of its own (ADR 0015). On a wall clock, on a target of so many cores, or on one
+/// core: one. @pre jobs ≥ 1; the scenario has a UAV.
 int trials_side_by_side(const TrialPlan& plan, int jobs);
 
 /// The plans in the order of running: those under the barrier, then those that run free. Nothing

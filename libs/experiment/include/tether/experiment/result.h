@@ -91,6 +91,7 @@ struct TrialResult {
   double cpu_factor = 1.0;
   Duration computing{0};  ///< of clock "scripted": charged for each phase of computing
   double real_time_factor = 0.0;
+  std::string target{};  ///< its name; empty: the host as it is
   /// Names of the profiles in use, in the order of their layers: the later goes over the earlier.
   std::vector<std::string> profiles;
   Outcome outcome = Outcome::kFailed;

@@ -134,7 +134,7 @@ struct SutInfo {
   std::string uav;
   std::string sut;              ///< name and version it gave
   std::string clock;            ///< "wall", "cpu", "scripted", "unstamped"
-  double cpu_factor = 1.0;      ///< seconds of ET per second of CPU time, of clock "cpu"
+  double cpu_factor = 1.0;      ///< seconds of ET per second of what the clock measures
   Duration command_latency{0};  ///< from a command's stamp to its effect, before the grid rounds up
 };
 /// What rests under every number: written first (metadata record "tether"), as names and values.

@@ -33,8 +33,8 @@ std::vector<Comparison> compare_conditions(const experiment::ScenarioResults& sc
 Table comparisons_table(const experiment::ScenarioResults& scenario);
 
 /// The optimism of an unsynchronised test: per metric, the mean under the barrier minus the mean
-/// in free running, for conditions that are alike in clock, factor and profiles. All of our metrics
-/// are better when smaller, so a positive difference is what the unsynchronised test hides.
+/// in free running, for conditions that are alike in clock, factor, target and profiles. All of our
+/// metrics are better when smaller, so a positive difference is what the unsynchronised test hides.
 std::vector<Comparison> optimism(const experiment::ScenarioResults& scenario);
 Table optimism_table(const experiment::ScenarioResults& scenario);
 
