@@ -19,8 +19,8 @@ const scenario::Sut kSut{{"fly", "task"}, {{"max_frames", "5"}, {"to", "box"}}};
 
 scenario::Target target(const std::vector<std::string>& launcher, const std::string& folder) {
   scenario::Target target;
-  target.file = "/targets/t.toml";
-  target.name = "t";
+  target.file = std::filesystem::path("/targets/t.toml");
+  target.name = std::string("t");
   target.launcher = launcher;
   target.program_folder = folder;
   return target;
