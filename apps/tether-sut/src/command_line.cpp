@@ -32,6 +32,8 @@ Examples:
   tether-sut mission missions/look_around.toml
   tether-sut relative_position --anchor blue_box --rig rigs/bench.toml --camera /dev/video0
   tether-sut characterize --camera /dev/video0 --range iio:vl53l0x --out bench.toml
+  tether-sut calibrate --out board.toml
+  tether-sut calibrate --against board.toml --write-target my_board.toml
 
 Environment (set by `tether run` for the SUT that it starts):
   TETHER_ADDRESS  the coordinator, host:port
@@ -54,6 +56,7 @@ struct Words {
   CommandLine line;
   DeviceArguments devices;
   CharacterizeOptions characterize;
+  CalibrateOptions calibrate;
   std::string mission_file;
 };
 
@@ -101,10 +104,18 @@ void define_subcommands(CLI::App& app, const Tasks& tasks, Words& words) {
                  });
   add_subcommand(app, "characterize", "Time each sensor's data, and write it as a profile", words,
                  [&](CLI::App& command) { add_characterize_options(command, words.characterize); });
+  CLI::App* calibrate = app.add_subcommand(
+      "calibrate", "Measure how fast this machine is; with --against, how much slower another");
+  add_calibrate_options(*calibrate, words.calibrate);
+  calibrate->footer(kExamples);
 }
 
 /// What is to be flown, of what was parsed.
 Status take_mission(const CLI::App& app, const Tasks& tasks, Words& words) {
+  if (app.got_subcommand("calibrate")) {
+    words.line.calibrate = words.calibrate;
+    return check(words.calibrate);
+  }
   if (app.got_subcommand("characterize")) {
     words.line.characterize = words.characterize;
     return check(words.characterize);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "calibrate.h"
 #include "characterize.h"
 #include "mission.h"
 #include "real_row.h"
@@ -16,6 +17,7 @@ namespace tether::sut {
 struct CommandLine {
   Mission mission;                                  ///< without tasks, if to characterize
   std::optional<CharacterizeOptions> characterize;  ///< instead of a mission
+  std::optional<CalibrateOptions> calibrate;        ///< instead of all else
   RealRowOptions real_row;                          ///< of a lone relative_position with a rig
   std::optional<devices::Rig> rig;                  ///< real devices instead of a coordinator
   std::optional<std::string> address;

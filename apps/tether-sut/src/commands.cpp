@@ -9,6 +9,7 @@
 #include <array>
 #include <ctime>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <utility>
 
@@ -192,7 +193,23 @@ int characterize_command(const CommandLine& line, const Connection& connection,
   return report(finish(measured.outcome, *connection.vehicle), streams);
 }
 
+int calibrate_command(const CalibrateOptions& options, const Streams& streams) {
+  std::optional<Result<std::string>> made;
+  {
+    ProgressLine progress;
+    made = calibrate(options, [&progress](const std::string& what) { progress.show(what); });
+  }
+  if (!*made) {
+    return say(made->failure(), exit_code(made->failure()), streams);
+  }
+  streams.out << **made;
+  return 0;
+}
+
 int run_command(const CommandLine& line, const Streams& streams) {
+  if (line.calibrate) {
+    return calibrate_command(*line.calibrate, streams);
+  }
   const std::string& file = line.characterize ? line.characterize->out : line.real_row.keep_image;
   if (!file.empty()) {
     if (const Status writable = check_writable(file); !writable) {

@@ -29,6 +29,9 @@ int real_row_command(const CommandLine& line, const Connection& connection, cons
 int characterize_command(const CommandLine& line, const Connection& connection,
                          const Streams& streams);
 
+/// Calibrates and prints the tables.
+int calibrate_command(const CalibrateOptions& options, const Streams& streams);
+
 /// The whole: checks that the files can be written, connects, and runs the command.
 int run_command(const CommandLine& line, const Streams& streams);
 

@@ -1,5 +1,6 @@
 #include "measuring_arguments.h"
 
+#include "calibration_statistics.h"
 #include "common_arguments.h"
 #include "profile_text.h"
 
@@ -80,6 +81,29 @@ void add_characterize_options(CLI::App& app, CharacterizeOptions& options) {
 
 Status check(const CharacterizeOptions& options) {
   return check_extent(options, std::max<std::size_t>(options.sensors.size(), 1));
+}
+
+void add_calibrate_options(CLI::App& app, CalibrateOptions& options) {
+  const auto add_file = [&app](const char* name, std::string& file, const char* description) {
+    app.add_option(name, file, description)->check(file_name())->type_name("FILE");
+  };
+  app.add_option("--rounds", options.rounds, "Rounds that count, after three of warming up")
+      ->check(CLI::Range(kLeastRounds, 100'000))
+      ->capture_default_str();
+  app.add_option("--cpu", options.cpu_index,
+                 "The core to measure on, from 0; the last that may be used, if not given")
+      ->check(CLI::Range(0, 100'000))
+      ->type_name("N");
+  add_file("--out", options.out, "Writes what was measured (TOML)");
+  add_file("--against", options.against,
+           "What was measured on another machine: says how many times longer it takes");
+  add_file("--measured", options.measured,
+           "What was measured on this machine before, instead of measuring now");
+  add_file("--write-target", options.target,
+           "With --against: writes that machine as a virtual target on this one (TOML)");
+  app.add_option("--name", options.name, "The target's name; usually that machine's")
+      ->check(profile_name())
+      ->type_name("NAME");
 }
 
 void add_real_row_options(CLI::App& app, RealRowOptions& options) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "calibrate.h"
 #include "characterize.h"
 #include "real_row.h"
 
@@ -18,6 +19,9 @@ namespace tether::sut {
 void add_characterize_options(CLI::App& app, CharacterizeOptions& options);
 /// What holds for several options together: kInvalid, one line.
 Status check(const CharacterizeOptions& options);
+
+/// Of `calibrate`.
+void add_calibrate_options(CLI::App& app, CalibrateOptions& options);
 
 /// Of `relative_position` with real devices.
 void add_real_row_options(CLI::App& app, RealRowOptions& options);

@@ -66,13 +66,6 @@ bool is_control(char c) {
   return code < 0x20 || code == 0x7F;
 }
 
-/// In one line, as in a comment: UTF-8 without control characters.
-std::string plain(std::string_view text) {
-  std::string result = in_utf8(text);
-  std::replace_if(result.begin(), result.end(), is_control, '?');
-  return result;
-}
-
 /// A basic string, also where a key must be quoted. Control characters are escaped, so that no two
 /// keys become one.
 std::string quoted(std::string_view text) {
@@ -134,6 +127,16 @@ std::string sensor_text(const ProfiledSensor& sensor) {
 }
 
 }  // namespace
+
+std::string plain(std::string_view text) {
+  std::string result = in_utf8(text);
+  std::replace_if(result.begin(), result.end(), is_control, '?');
+  return result;
+}
+
+std::string toml_string(std::string_view text) {
+  return quoted(text);
+}
 
 bool is_profile_name(std::string_view name) {
   return !name.empty() && name.size() <= kLongestName && name.front() != '.' &&

@@ -33,6 +33,11 @@ bool is_profile_name(std::string_view name);
 /// The nearest profile name to any text.
 std::string profile_name_from(std::string text);
 
+/// As a TOML string, whatever bytes it has.
+std::string toml_string(std::string_view text);
+/// In one line, as in a comment: UTF-8 without control characters.
+std::string plain(std::string_view text);
+
 /// Whether a scenario's reader takes every delay: at most 60 s. Fails (kInvalid) with one line that
 /// names the sensor.
 Status check_delays(const MeasuredProfile& profile);

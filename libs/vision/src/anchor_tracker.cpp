@@ -59,34 +59,33 @@ struct AnchorTracker::Impl {
   std::optional<cv::Rect> window;  // where the anchor was in the last image; none: lost
   // Kept between images, so that their memory is.
   cv::Mat filtered, hsv, probability;
+  cv::Mat smooth;  // `filtered`, or a view of the last image
 
-  void look_at(const uav::CameraSample& image);
+  void filter(const uav::CameraSample& image);
   std::optional<Roi> follow_window();
   std::optional<Roi> search();
   bool is_plausible(const Roi& roi) const;
   bool has_jumped(const Roi& roi, const cv::Rect& from) const;
 };
 
-/// The whole image: filter, colours, back-projection.
-void AnchorTracker::Impl::look_at(const uav::CameraSample& image) {
+/// The whole image. Afterwards `smooth` is the image itself if there is no filter.
+void AnchorTracker::Impl::filter(const uav::CameraSample& image) {
   // OpenCV has no view of constant data; this one is only read.
   const cv::Mat rgb(image.height_px, image.width_px, CV_8UC3,
                     const_cast<std::uint8_t*>(image.rgb.data()));  // NOLINT
   const int size = options.prefilter_size_px;
   switch (options.prefilter) {
     case Prefilter::kNone:
-      cv::cvtColor(rgb, hsv, cv::COLOR_RGB2HSV);
-      break;
+      smooth = rgb;
+      return;
     case Prefilter::kGaussian:
       cv::GaussianBlur(rgb, filtered, {size, size}, 0);
-      cv::cvtColor(filtered, hsv, cv::COLOR_RGB2HSV);
       break;
     case Prefilter::kMedian:
       cv::medianBlur(rgb, filtered, size);
-      cv::cvtColor(filtered, hsv, cv::COLOR_RGB2HSV);
       break;
   }
-  color.back_project(hsv, probability);
+  smooth = filtered;
 }
 
 bool AnchorTracker::Impl::is_plausible(const Roi& roi) const {
@@ -175,7 +174,21 @@ std::optional<Roi> AnchorTracker::track(const uav::CameraSample& image) {
     reset();
     return std::nullopt;
   }
-  impl_->look_at(image);
+  prefilter(image);
+  back_project();
+  return locate();
+}
+
+void AnchorTracker::prefilter(const uav::CameraSample& image) {
+  impl_->filter(image);
+}
+
+void AnchorTracker::back_project() {
+  cv::cvtColor(impl_->smooth, impl_->hsv, cv::COLOR_RGB2HSV);
+  impl_->color.back_project(impl_->hsv, impl_->probability);
+}
+
+std::optional<Roi> AnchorTracker::locate() {
   std::optional<Roi> roi;
   if (impl_->window) {
     roi = impl_->follow_window();

@@ -66,6 +66,13 @@ class AnchorTracker {
   /// Nothing, if the anchor is not seen. @pre image.rgb holds width × height × 3 bytes (else:
   /// nothing).
   std::optional<Roi> track(const uav::CameraSample& image);
+
+  // What `track` does, step by step, so that the time of each can be measured. In this order; the
+  // image must outlive them. @pre image.rgb holds width × height × 3 bytes
+  void prefilter(const uav::CameraSample& image);
+  void back_project();
+  std::optional<Roi> locate();
+
   /// Forgets the window: the next image is searched whole.
   void reset();
 
