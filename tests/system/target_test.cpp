@@ -51,6 +51,22 @@ TEST_F(TargetFile, KeepsTheNameOfAConditionThatWasAskedFor) {
   EXPECT_EQ(result()["cpu_factor"], 1.0) << "the target's, not the condition's";
 }
 
+TEST_F(TargetFile, StretchesTheWallClockUnderTheBarrierOnly) {
+  const Output output = fly("clock = \"wall\"\ncpu_factor = 3\n");
+  ASSERT_EQ(output.code, 0) << output.err;
+  EXPECT_EQ(result()["clock"], "wall");
+  EXPECT_EQ(result()["suts"][0]["clock"], "wall");
+  EXPECT_EQ(result()["suts"][0]["cpu_factor"], 3.0) << "as the SUT was told";
+  EXPECT_TRUE(result()["audit"]["passed"]);
+
+  scenario_ = write_hover_scenario(
+      folder_.path(), "good",
+      {{"\"conservative_barrier\"", "\"free_running\"\nreal_time_factor = 1"}});
+  const Output free = fly("clock = \"wall\"\ncpu_factor = 3\n");
+  EXPECT_EQ(free.code, 2);
+  EXPECT_THAT(free.err, HasSubstr("condition \"host\": the target \"t\" scales the wall clock"));
+}
+
 TEST_F(TargetFile, StartsTheProgramOfItsFolderThroughItsLauncher) {
   std::filesystem::create_directory(folder_ / "bin");
   std::filesystem::copy(bad_sut_program(), folder_ / "bin/own_sut");

@@ -54,10 +54,11 @@ std::string core_line(const Machine& machine) {
   return text;
 }
 
-std::string doubts_text(const Calibration& calibration) {
+/// Each in a line of its own, after `begin`.
+std::string doubts_text(const Calibration& calibration, const std::string& begin = "") {
   std::string text;
   for (const std::string& doubt : doubts(calibration)) {
-    text += "Doubtful on " + plain(calibration.machine.name) + ": " + doubt + ".\n";
+    text += begin + "Doubtful on " + machine_line(calibration.machine) + ": " + doubt + ".\n";
   }
   return text;
 }
@@ -108,9 +109,9 @@ std::string comparison_table(const Calibration& here, const Calibration& there,
 
 std::string target_text(const std::string& name, const Calibration& here, const Calibration& there,
                         const Comparison& comparison) {
-  const std::string what = plain(there.machine.name) + " as measured on " + plain(there.when) +
+  const std::string what = machine_line(there.machine) + " as measured on " + plain(there.when) +
                            ": vision takes " + with_interval(comparison.whole) +
-                           " times the CPU time of " + plain(here.machine.name);
+                           " times the CPU time of " + machine_line(here.machine);
   std::string text = "# Calibrated by " + plain(here.program) + ", " + plain(here.when) + ".\n#\n";
   text += "# " + machine_line(there.machine) + ",\n#   " + plain(there.program) + ", OpenCV " +
           plain(there.opencv) + ", " + core_line(there.machine) + ";\n";
@@ -121,6 +122,7 @@ std::string target_text(const std::string& name, const Calibration& here, const 
     text += "#   " + factor.block + " " + with_interval(factor) + "\n";
   }
   text += "#   geometric mean " + with_interval(comparison.overall) + "\n";
+  text += doubts_text(there, "# ") + doubts_text(here, "# ");
   text += "# It stands in for that machine on this host only, and for other work than " +
           std::string(kWholeStep) + "\n# no better than the blocks agree.\n";
   return text + "name = " + toml_string(name) + "\ndescription = " + toml_string(what) +
