@@ -30,6 +30,10 @@ packages_test=(git libgtest-dev libgmock-dev libbenchmark-dev clang-format)
 packages_test+=(make pkgconf mandoc)
 # Boards in the tests: this machine, over SSH.
 packages_test+=(openssh-server openssh-client)
+# Debian packages of our own, for this machine.
+packages_pack=(dpkg-dev file gzip)
+# The target's programs for 64-bit ARM, and what runs them here.
+packages_arm64=(cmake ninja-build flatbuffers-compiler g++-aarch64-linux-gnu mmdebstrap qemu-user "${packages_pack[@]}")
 packages_tidy=(git clang-tidy)
 
 # True where a package is installed. A name may be satisfied by another package that provides it.
@@ -64,13 +68,15 @@ install_packages() {
 command -v node >/dev/null || packages_test+=(nodejs)
 command -v npm >/dev/null || packages_test+=(npm)
 
-# install_for build|test|tidy
+# install_for build|test|tidy|package|arm64
 install_for() {
   case "$1" in
     build) install_packages "${packages_build[@]}" ;;
     test) install_packages "${packages_build[@]}" "${packages_test[@]}" ;;
     tidy) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_tidy[@]}" ;;
-    *) fail "'$1': build, test or tidy" ;;
+    package) install_packages "${packages_build[@]}" "${packages_pack[@]}" ;;
+    arm64) install_packages "${packages_arm64[@]}" ;;
+    *) fail "'$1': build, test, tidy, package or arm64" ;;
   esac
 }
 
@@ -94,6 +100,16 @@ build() {
     cmake --preset "$preset" --log-level=WARNING
     without_aslr cmake --build --preset "$preset" --parallel "$JOBS" ${1:+--target "$@"}
   )
+}
+
+# pack PRESET ARCHITECTURE: packs what the preset has built, for that architecture of Debian, into
+# build/PRESET/packages.
+pack() {
+  local folder="$ROOT/build/$1"
+  rm -rf "$folder/packages"
+  (cd "$folder" && DEB_HOST_ARCH="$2" cpack -G DEB >cpack.log 2>&1) || fail "packing failed; see $folder/cpack.log"
+  rm -rf "$folder/packages/_CPack_Packages"
+  ls "$folder"/packages/*.deb
 }
 
 # Files that clang-format and clang-tidy look at: tracked and new ones, or all where this is no git checkout.

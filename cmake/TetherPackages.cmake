@@ -1,0 +1,107 @@
+# What `cpack -G DEB` packs (scripts/package, scripts/build-arm64): the parts that install() names as
+# components, each as a Debian package.
+#
+#   tether       tether                 the host: the program, and its data in /usr/share/tether
+#   tether-sut   tether-sut             the target: the paper's tasks, and what supervises other programs
+#   client       libtether-client1      the shared library of other people's programs
+#   client-dev   libtether-client-dev   what it takes to build them
+
+set(components tether-sut)
+if(NOT TETHER_TARGET_ONLY)
+  list(APPEND components tether)
+  install(DIRECTORY campaigns missions models profiles rigs scenarios worlds
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/tether" COMPONENT tether)
+endif()
+set(package_of_tether tether)
+set(package_of_tether-sut tether-sut)
+if(TARGET tether-client)
+  list(APPEND components client client-dev)
+  set(package_of_client libtether-client1)
+  set(package_of_client-dev libtether-client-dev)
+endif()
+
+# ---- The documents that every Debian package has -------------------------------------------------
+
+find_program(TETHER_GZIP gzip)
+mark_as_advanced(TETHER_GZIP)
+execute_process(COMMAND git log -1 --format=%cD WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
+  OUTPUT_VARIABLE changed OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(NOT changed)
+  string(TIMESTAMP changed "%a, %d %b %Y %H:%M:%S +0000" UTC)
+endif()
+set(maintainer "Tether developers <developers@tether.example>")
+set(documents "${PROJECT_BINARY_DIR}/package")
+configure_file(packaging/changelog.in "${documents}/changelog" @ONLY)
+if(TETHER_GZIP)
+  execute_process(COMMAND ${TETHER_GZIP} -9nf "${documents}/changelog")
+endif()
+foreach(component IN LISTS components)
+  set(destination "${CMAKE_INSTALL_DATADIR}/doc/${package_of_${component}}")
+  install(FILES packaging/copyright DESTINATION "${destination}" COMPONENT ${component})
+  install(FILES "${documents}/changelog.gz" DESTINATION "${destination}" COMPONENT ${component} OPTIONAL)
+endforeach()
+
+# ---- CPack ---------------------------------------------------------------------------------------
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_COMPONENTS_ALL ${components})
+set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}")
+set(CPACK_PACKAGE_CONTACT "${maintainer}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_PACKAGE_DIRECTORY "${PROJECT_BINARY_DIR}/packages")
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+if(CMAKE_CROSSCOMPILING)
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
+  # The packages in the sysroot know what each library of theirs provides; the host's know nothing of
+  # these. A list, so that CPack passes the option on.
+  set(SHLIBDEPS_EXECUTABLE dpkg-shlibdeps "--admindir=${CMAKE_SYSROOT}/var/lib/dpkg")
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS
+    "${CMAKE_SYSROOT}/lib/aarch64-linux-gnu" "${CMAKE_SYSROOT}/usr/lib/aarch64-linux-gnu")
+  file(CONFIGURE OUTPUT "${documents}/cpack.cmake" @ONLY CONTENT [[
+set(SHLIBDEPS_EXECUTABLE "@SHLIBDEPS_EXECUTABLE@")
+]])
+  set(CPACK_PROJECT_CONFIG_FILE "${documents}/cpack.cmake")
+endif()
+
+# The first line of every description; CPack has one for all.
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "whether a UAV's computer is fast enough for its task")
+
+# describe(<component> <section> <text>...): one argument per line, as dpkg wants it.
+function(describe component section)
+  string(TOUPPER "${component}" key)
+  list(JOIN ARGN "\n " text)
+  set(CPACK_DEBIAN_${key}_PACKAGE_NAME "${package_of_${component}}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${key}_PACKAGE_SECTION ${section} PARENT_SCOPE)
+  set(CPACK_DEBIAN_${key}_DESCRIPTION "${text}" PARENT_SCOPE)
+endfunction()
+
+describe(tether science
+  "The host's half of Tether. The software under test runs on the board that it is"
+  "meant for, or on a stand-in; this program plays the UAV, its sensors and the"
+  "world, and ties simulated time to the time that the board spent computing.")
+# Drawing asks for its driver when it runs, so that no program's header names it.
+set(CPACK_DEBIAN_TETHER_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri")
+set(CPACK_DEBIAN_TETHER_PACKAGE_RECOMMENDS "tether-sut, gnuplot-nox")
+
+describe(tether-sut science
+  "The target's half of Tether: vision tasks of a UAV as one program, which Tether"
+  "flies on a simulated UAV, and which can also read real sensors.")
+
+describe(client libs
+  "The client library of Tether: what a UAV's own program links to, to be flown by"
+  "Tether. It reads sensors and sends commands, and measures the time between.")
+
+describe(client-dev libdevel
+  "The client library of Tether, development files: headers for C and C++17, files"
+  "for CMake and pkg-config, and examples.")
+set(CPACK_DEBIAN_CLIENT-DEV_PACKAGE_DEPENDS "libtether-client1 (= ${PROJECT_VERSION})")
+
+include(CPack)
