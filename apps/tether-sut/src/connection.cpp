@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <malloc.h>
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <tether/base/version.h>
@@ -87,6 +88,13 @@ std::string in_run_folder(const std::string& path) {
   return (std::filesystem::path(folder) / path).string();
 }
 
+/// With the kind of machine, which is part of what a run rests on: "tether-sut 0.1.0 (aarch64)".
+std::string name_of_this_program() {
+  utsname system{};
+  ::uname(&system);
+  return "tether-sut " + std::string(tether::version()) + " (" + system.machine + ")";
+}
+
 Result<Connection> connect_as(const CommandLine& line) {
   if (line.rig) {
     prepare();
@@ -97,7 +105,7 @@ Result<Connection> connect_as(const CommandLine& line) {
   if (!options) {
     return options.failure();
   }
-  options->sut_name = "tether-sut " + std::string(tether::version());
+  options->sut_name = name_of_this_program();
   const std::string location = host_name() + ", " + clock_text(*options->time);
   prepare();
   Result<std::unique_ptr<client::Vehicle>> vehicle = client::connect(std::move(options).value());

@@ -1,0 +1,68 @@
+#include "support/trials.h"
+
+#include <regex>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+/// The target's programs for 64-bit ARM (scripts/build-arm64), under an emulator: a machine of
+/// another architecture, slow, and slow in another way than a factor.
+namespace tether::system_test {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+const std::filesystem::path kSources = TETHER_SOURCE_DIR;
+
+/// The arguments of a program of this build, for the same one of the other architecture.
+std::vector<std::string> emulated(std::vector<std::string> arguments) {
+  const auto program =
+      kSources / "build/arm64/bin" / std::filesystem::path(arguments.front()).filename();
+  arguments.front() = program;
+  arguments.insert(arguments.begin(), {"qemu-aarch64", "-L", kSources / "build/sysroot-arm64"});
+  return arguments;
+}
+
+/// Without what the SUT's program calls itself: its version and its kind of machine.
+std::string nameless(const std::string& text) {
+  return std::regex_replace(text, std::regex("tether-sut [^\"]*"), "tether-sut");
+}
+
+class Arm64 : public testing::Test {
+ protected:
+  /// One run whose SUT is started so, with a scripted clock unless `clock` says otherwise.
+  Output fly(const std::string& out, const std::vector<std::string>& sut,
+             const std::string& clock = "scripted*2") const {
+    ExternalRun run(scenario_, folder_ / out);
+    const auto process = run.start_sut(sut, {{"TETHER_CLOCK", clock}});
+    const Output output = run.wait();
+    EXPECT_EQ(output.code, 0) << output.err << process->err();
+    return output;
+  }
+
+  TempFolder folder_;
+  std::filesystem::path scenario_ = write_face_scenario(folder_.path());
+};
+
+TEST_F(Arm64, FliesAsTheTargetOfASynchronisedRun) {
+  fly("out", emulated(face_sut()), "cpu");
+  const auto result = read_result(folder_ / "out");
+  EXPECT_TRUE(result["audit"]["passed"]);
+  EXPECT_EQ(result["sync"]["causality_violations"], 0);
+  EXPECT_THAT(result["suts"][0]["sut"].get<std::string>(), HasSubstr("(aarch64)"));
+}
+
+// Every image is tracked, every command given, as on this machine, to the last bit.
+TEST_F(Arm64, ComputesWhatThisMachineComputes) {
+  fly("here", face_sut());
+  fly("there", emulated(face_sut()));
+  EXPECT_EQ(nameless(timeless_result(folder_ / "here")),
+            nameless(timeless_result(folder_ / "there")));
+  const std::string record = nameless(timeless_record(folder_ / "here"));
+  EXPECT_GT(record.size(), 10'000u);
+  EXPECT_TRUE(record == nameless(timeless_record(folder_ / "there"))) << "the records differ";
+}
+
+}  // namespace
+}  // namespace tether::system_test
