@@ -38,7 +38,7 @@ void for_each_trial(const experiment::CampaignResults& results, const Visit& vis
 
 std::string tie_text(const experiment::TrialResult& trial) {
   std::string text = fmt::format("{}: {}, {} clock", trial.condition, trial.policy, trial.clock);
-  if (trial.clock == "cpu" || trial.cpu_factor != 1.0)
+  if (trial.clock == "cpu" || (trial.clock == "wall" && trial.cpu_factor != 1.0))
     text += fmt::format(" × {}", trial.cpu_factor);
   if (trial.computing > Duration{0})
     text += fmt::format(", {} ms for each phase of computing", 1e3 * to_seconds(trial.computing));
