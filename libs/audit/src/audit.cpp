@@ -24,6 +24,9 @@ Verdict audit(const record::Record& record) {
   check_consistency(record, grid, report);
   if (verdict.synchronised) {
     check_interactions(record, grid, report);
+    check_rows(record, report);
+    check_stops(record, grid, report);
+    check_newness(record, report);
     check_commands(record, grid, report);
     check_order(record, grid, report);
   }

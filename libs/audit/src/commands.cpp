@@ -17,6 +17,7 @@ struct Row {
   std::vector<const Logged<Interaction>*> commands;
   std::vector<const Logged<CommandEffect>*> effects;
   std::uint64_t last_sequence = 0;  // of any interaction
+  bool concurrent = false;
 };
 
 // A command that should act, and where in the file it did.
@@ -73,13 +74,16 @@ std::vector<Due> match(Row& row, Report& report) {
 }
 
 // Rule 2: no effect without its command. The one exception is a command whose reply was still held
-// when the record ended.
-void check_orphans(const Row& row, bool finished, Report& report) {
+// when the record ended: of a serial SUT the one that follows its last; of a concurrent one any,
+// but only at the last ST, which goes no further while a reply is held.
+void check_orphans(const Row& row, bool finished, Wide end, Report& report) {
   for (const Logged<CommandEffect>* effect : row.effects) {
     const bool has_command = std::ranges::binary_search(
         row.commands, effect->message.sequence, {},
         [](const Logged<Interaction>* command) { return command->message.sequence; });
-    const bool held_at_end = !finished && effect->message.sequence == row.last_sequence + 1;
+    const bool held_at_end =
+        !finished && (row.concurrent ? wide(effect->message.applied_at) >= end
+                                     : effect->message.sequence == row.last_sequence + 1);
     if (!has_command && !held_at_end) {
       report.add(2, *effect, "took effect without a command of that number");
     }
@@ -142,6 +146,9 @@ Wide end_of(const record::Record& record) {
 
 void check_commands(const record::Record& record, const Boundaries& grid, Report& report) {
   std::map<std::string, Row> rows;
+  for (const record::SutInfo& sut : record.header.suts) {
+    rows[sut.uav].concurrent = sut.concurrent;
+  }
   for (const Logged<Interaction>& entry : record.interactions) {
     Row& row = rows[entry.message.uav];
     row.last_sequence = std::max(row.last_sequence, entry.message.sequence);
@@ -166,7 +173,7 @@ void check_commands(const record::Record& record, const Boundaries& grid, Report
     });
     const std::vector<Due> matched = match(row, report);
     due.insert(due.end(), matched.begin(), matched.end());
-    check_orphans(row, finished, report);
+    check_orphans(row, finished, end_of(record), report);
   }
   check_releases(record, due, report);
   check_missing(due, end_of(record), report);

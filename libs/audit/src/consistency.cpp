@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string>
+#include <utility>
 
 namespace tether::audit {
 namespace {
@@ -22,20 +24,32 @@ bool is_known_kind(std::string_view kind) {
 // How far from 1 the length of a rotation may be.
 constexpr double kRotationTolerance = 1e-6;
 
+// Calls of one SUT that may be open at once (DESIGN section 2).
+constexpr std::uint64_t kMostOpenCalls = 64;
+
+struct SutSequences {
+  bool concurrent = false;
+  std::uint64_t last = 0;
+  std::set<std::uint64_t> seen;
+};
+
 class ConsistencyCheck {
  public:
   ConsistencyCheck(const record::Record& record, const Boundaries& grid, Report& report)
       : record_(record), grid_(grid), report_(report) {
     for (const record::SutInfo& sut : record.header.suts) {
-      last_sequence_[sut.uav] = 0;
+      suts_[sut.uav].concurrent = sut.concurrent;
     }
   }
 
   void run() {
-    if (last_sequence_.size() != record_.header.suts.size()) {
+    if (suts_.size() != record_.header.suts.size()) {
       report_.add("two SUTs fly one UAV");
     }
     for_each_in_file_order(record_, [&](const auto& entry) { visit(entry); });
+    for (const auto& [uav, sut] : suts_) {
+      check_missing(uav, sut);
+    }
   }
 
  private:
@@ -52,17 +66,41 @@ class ConsistencyCheck {
     if (record_.header.policy == record::kFreeRunning) {
       check_free_running(entry);
     }
-    const auto last = last_sequence_.find(message.uav);
-    if (last == last_sequence_.end()) {
+    const auto sut = suts_.find(message.uav);
+    if (sut == suts_.end()) {
       return report_.add(0, entry, "no UAV \"" + message.uav + "\" in the record's header");
     }
-    if (message.sequence != last->second + 1) {
-      report_.add(5, entry,
-                  "interaction " + std::to_string(message.sequence) + " follows interaction " +
-                      std::to_string(last->second));
-    }
-    last->second = message.sequence;
+    check_sequence(entry, sut->second);
     reached_ = std::max(reached_, wide(entry.at));
+  }
+
+  // Rule 5: a serial SUT's interactions follow each other; those of a concurrent one end in another
+  // order than they begin, each once.
+  void check_sequence(const Logged<Interaction>& entry, SutSequences& sut) {
+    const std::uint64_t sequence = entry.message.sequence;
+    const bool is_new = sut.seen.insert(sequence).second;
+    if (!sut.concurrent && sequence != sut.last + 1) {
+      report_.add(5, entry,
+                  "interaction " + std::to_string(sequence) + " follows interaction " +
+                      std::to_string(sut.last));
+    } else if (sut.concurrent && !is_new) {
+      report_.add(5, entry, "interaction " + std::to_string(sequence) + " is there twice");
+    }
+    sut.last = sequence;
+  }
+
+  // Rule 5: of a concurrent SUT only calls that were open at its end are missing.
+  void check_missing(const std::string& uav, const SutSequences& sut) {
+    if (!sut.concurrent || sut.seen.empty()) return;
+    const std::uint64_t missing = *sut.seen.rbegin() - sut.seen.size();
+    if (missing > kMostOpenCalls) {
+      report_.add(
+          {5,
+           uav,
+           0,
+           {},
+           std::to_string(missing) + " interactions are missing, more than can be open at once"});
+    }
   }
 
   // Rule 8: nothing is held but a read that waits for its sensor's next measurement, and readings
@@ -83,11 +121,19 @@ class ConsistencyCheck {
 
   void check_free_reading(const Logged<Interaction>& entry) {
     const Interaction& message = entry.message;
+    const Wide released = wide(message.st_at_release);
+    const Wide arrived = wide(message.st_at_arrival);
+    if (message.only_if_available && released != arrived) {
+      return report_.add(8, entry,
+                         "held from ST " + ns(arrived) + " to " + ns(released) +
+                             ", although it asked only for what was there");
+    }
+    if (message.only_if_available && !message.sampled_at) {
+      return;
+    }
     if (!message.sample_state_at || !message.sampled_at) {
       return report_.add(0, entry, "a sensor reading without its times");
     }
-    const Wide released = wide(message.st_at_release);
-    const Wide arrived = wide(message.st_at_arrival);
     if (wide(*message.sample_state_at) != grid_.at_or_before(released)) {
       report_.add(8, entry,
                   "released at ST " + ns(released) + " with the state of ST " +
@@ -145,7 +191,7 @@ class ConsistencyCheck {
       report_.add(entry,
                   "logged at ST " + ns(wide(entry.at)) + ", true at " + ns(wide(message.at)));
     }
-    if (!last_sequence_.contains(message.uav)) {
+    if (!suts_.contains(message.uav)) {
       return report_.add(entry, "no UAV \"" + message.uav + "\" in the record's header");
     }
     if (wide(entry.at) < reached_) {
@@ -160,6 +206,23 @@ class ConsistencyCheck {
     if (wide(entry.at) < reached_) {
       report_.add({0, entry.message.uav, 0, entry.at,
                    "annotation logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_)});
+    }
+    reached_ = std::max(reached_, wide(entry.at));
+  }
+
+  void visit(const Logged<record::Stop>& entry) {
+    const auto sut = suts_.find(entry.message.uav);
+    const auto finding = [&](std::string what) {
+      report_.add({0, entry.message.uav, 0, entry.at, std::move(what)});
+    };
+    if (sut == suts_.end() || !sut->second.concurrent) {
+      finding("a stop of a SUT that is not concurrent");
+    }
+    if (record_.header.policy == record::kFreeRunning) {
+      finding("a stop in a free-running record");
+    }
+    if (wide(entry.at) < reached_) {
+      finding("stop logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_));
     }
     reached_ = std::max(reached_, wide(entry.at));
   }
@@ -206,7 +269,7 @@ class ConsistencyCheck {
   const record::Record& record_;
   const Boundaries& grid_;
   Report& report_;
-  std::map<std::string, std::uint64_t> last_sequence_;
+  std::map<std::string, SutSequences> suts_;
   std::map<std::string, TruthRow> truth_;
   Wide reached_ = 0;
 };

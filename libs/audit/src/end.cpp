@@ -33,6 +33,13 @@ void check_figures(const record::Record& record, const Footer& footer, Report& r
     lag = std::max(lag, entry.message.lag);
     grid_error = std::max(grid_error, entry.message.grid_error);
   }
+  Duration overshoot{0};
+  for (const auto& entry : record.stops) {
+    const record::Stop& stop = entry.message;
+    if (stop.reply_at) overshoot = std::max(overshoot, stop.at - *stop.reply_at);
+  }
+  compare("stops", footer.stops, std::uint64_t{record.stops.size()}, count, report);
+  compare("a largest overshoot of", footer.largest_overshoot, overshoot, span, report);
   compare("interactions", footer.interactions, std::uint64_t{record.interactions.size()}, count,
           report);
   compare("causality violations", footer.causality_violations, violations, count, report);
@@ -54,6 +61,7 @@ void check_st(const record::Record& record, const Boundaries& grid, const Footer
   see(record.commands);
   see(record.ground_truth);
   see(record.annotations);
+  see(record.stops);
   if (last > end) {
     report.add("the run ended at ST " + ns(end) + ", but a message was logged at " + ns(last));
   }
@@ -85,6 +93,11 @@ void check_et(const record::Record& record, const Boundaries& grid, const Footer
   std::map<std::string, LastWord> last;
   for (const auto& entry : record.interactions) {
     last[entry.message.uav] = {wide(entry.message.reply_at), entry.message.kind == record::kFinish};
+  }
+  // A concurrent SUT goes on, and ends, with the ET at which it stood still.
+  for (const auto& entry : record.stops) {
+    LastWord& word = last[entry.message.uav];
+    word.reply_at = std::max(word.reply_at, wide(entry.message.at));
   }
   for (std::size_t i = 0; i < footer.et_at_end.size(); ++i) {
     const std::string& uav = record.header.suts[i].uav;

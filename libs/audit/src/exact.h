@@ -17,6 +17,14 @@ inline Wide wide(Duration d) {
   return d.count();
 }
 
+/// What a clock that runs `factor` times as fast makes of a duration, rounded up.
+inline Wide scaled(Wide duration, double factor) {
+  return factor == 1.0 ? duration
+                       : static_cast<Wide>(static_cast<long double>(duration) *
+                                           static_cast<long double>(factor)) +
+                             1;
+}
+
 /// Decimal digits and the unit.
 inline std::string ns(Wide value) {
   std::string digits;

@@ -13,13 +13,14 @@ namespace tether::audit {
 /// file.
 template <class Visit>
 void for_each_in_file_order(const record::Record& record, Visit visit) {
-  std::size_t i = 0, c = 0, g = 0, a = 0;
+  std::size_t i = 0, c = 0, g = 0, a = 0, s = 0;
   const auto order = [](const auto& messages, std::size_t at) {
     return at < messages.size() ? messages[at].order : std::numeric_limits<std::uint64_t>::max();
   };
   while (true) {
     const std::uint64_t orders[] = {order(record.interactions, i), order(record.commands, c),
-                                    order(record.ground_truth, g), order(record.annotations, a)};
+                                    order(record.ground_truth, g), order(record.annotations, a),
+                                    order(record.stops, s)};
     const auto* first = std::ranges::min_element(orders);
     if (*first == std::numeric_limits<std::uint64_t>::max()) {
       return;
@@ -34,8 +35,11 @@ void for_each_in_file_order(const record::Record& record, Visit visit) {
       case 2:
         visit(record.ground_truth[g++]);
         break;
-      default:
+      case 3:
         visit(record.annotations[a++]);
+        break;
+      default:
+        visit(record.stops[s++]);
     }
   }
 }

@@ -11,25 +11,9 @@ namespace {
 using record::Interaction;
 using Entry = record::Logged<Interaction>;
 
-// How far the clocks of target and host may differ: one part in a thousand, and 1 ms.
-constexpr Wide kClockDrift = 1000;
-constexpr Wide kClockJitter = 1'000'000;
-
-struct SensorHistory {
-  const record::SensorInfo* info = nullptr;
-  std::optional<std::uint64_t> newest;  // greatest index read
-  std::uint64_t last_index = 0;
-  Wide last_sampled_at = 0;
-  Wide last_available_at = 0;
-};
-
-struct SutHistory {
+struct Sut {
   const record::SutInfo* info = nullptr;
-  WallTime last_wall_at_release;
-  Wide last_reply_at = 0;    // a SUT begins with ET 0 …
-  Wide last_release_at = 0;  // … at ST 0
-  bool finished = false;
-  std::map<std::string, SensorHistory> sensors;
+  std::map<std::string, const record::SensorInfo*> sensors;
 };
 
 class InteractionCheck {
@@ -40,7 +24,7 @@ class InteractionCheck {
       suts_[sut.uav].info = &sut;
     }
     for (const record::SensorInfo& sensor : record.header.sensors) {
-      suts_[sensor.uav].sensors[sensor.name].info = &sensor;
+      suts_[sensor.uav].sensors[sensor.name] = &sensor;
     }
   }
 
@@ -61,10 +45,9 @@ class InteractionCheck {
   }
 
  private:
-  void check(const Entry& entry, SutHistory& sut) {
-    check_row(entry, sut);
-    check_growth(entry, sut);
-    check_arrival(entry, sut);
+  void check(const Entry& entry, const Sut& sut) {
+    check_times(entry);
+    check_arrival(entry);
     check_release(entry);
     check_stamp(entry, sut);
     if (entry.message.kind == record::kSensor) {
@@ -80,23 +63,11 @@ class InteractionCheck {
     if (entry.message.violation) {
       report_.add(5, entry, "recorded as a causality violation: " + *entry.message.violation);
     }
-    sut.last_wall_at_release = entry.message.wall_at_release;
-    sut.last_reply_at = wide(entry.message.reply_at);
-    sut.last_release_at = wide(entry.message.st_at_release);
-    sut.finished = sut.finished || entry.message.kind == record::kFinish;
   }
 
-  // Rule 5: between two interactions ET only grows.
-  void check_row(const Entry& entry, const SutHistory& sut) {
+  // Rule 5: no reply before its request.
+  void check_times(const Entry& entry) {
     const Wide request = wide(entry.message.request_at);
-    if (sut.finished) {
-      report_.add(5, entry, "a request after the SUT had finished");
-    }
-    if (request < sut.last_reply_at) {
-      report_.add(5, entry,
-                  "requested at ET " + ns(request) + ", before its previous reply at ET " +
-                      ns(sut.last_reply_at));
-    }
     if (wide(entry.message.reply_at) < request) {
       report_.add(5, entry,
                   "replied at ET " + ns(wide(entry.message.reply_at)) + ", before its request at " +
@@ -109,35 +80,14 @@ class InteractionCheck {
     }
   }
 
-  // Rule 5: ET by a wall clock grows no faster than the host's, within what two clocks may differ.
-  // The host sees a SUT compute for longer than it did, as the link adds to it, never for less.
-  void check_growth(const Entry& entry, const SutHistory& sut) {
-    if (sut.info->clock != "wall" || sut.last_wall_at_release == WallTime{} ||
-        entry.message.wall_at_arrival == WallTime{}) {
-      return;
-    }
-    const Wide grown = wide(entry.message.request_at) - sut.last_reply_at;
-    const Wide elapsed = wide(entry.message.wall_at_arrival) - wide(sut.last_wall_at_release);
-    if (grown > elapsed + elapsed / kClockDrift + kClockJitter) {
-      report_.add(5, entry,
-                  "ET grew by " + ns(grown) + " since its previous reply, while " + ns(elapsed) +
-                      " went by on the host");
-    }
-  }
-
-  // Rule 4: ST on arrival lies between the SUT's last release and its request.
-  void check_arrival(const Entry& entry, const SutHistory& sut) {
+  // Rule 4: ST on arrival is not beyond the request.
+  void check_arrival(const Entry& entry) {
     const Wide arrival = wide(entry.message.st_at_arrival);
     const Wide bound = grid_.at_or_before(wide(entry.message.request_at));
     if (arrival > bound) {
       report_.add(4, entry,
                   "ST had reached " + ns(arrival) + " when a request stamped " +
                       ns(wide(entry.message.request_at)) + " arrived");
-    }
-    if (arrival < sut.last_release_at) {
-      report_.add(4, entry,
-                  "arrived at ST " + ns(arrival) + ", before the SUT's previous reply left at ST " +
-                      ns(sut.last_release_at));
     }
     if (!grid_.contain(arrival)) {
       report_.add(0, entry, "ST on arrival, " + ns(arrival) + ", is no step boundary");
@@ -156,7 +106,7 @@ class InteractionCheck {
   }
 
   // Rule 6: a SUT that claims to stamp does.
-  void check_stamp(const Entry& entry, const SutHistory& sut) {
+  void check_stamp(const Entry& entry, const Sut& sut) {
     const bool claims_to_stamp = sut.info->clock != "unstamped";
     if (entry.message.stamped != claims_to_stamp) {
       report_.add(6, entry,
@@ -165,19 +115,31 @@ class InteractionCheck {
     }
   }
 
-  void check_sensor(const Entry& entry, SutHistory& sut) {
+  void check_sensor(const Entry& entry, const Sut& sut) {
     const Interaction& read = entry.message;
     const auto found = sut.sensors.find(read.sensor);
     if (found == sut.sensors.end()) {
       return report_.add(0, entry, "no sensor \"" + read.sensor + "\" in the record's header");
     }
+    if (read.only_if_available) {
+      check_immediate(entry);
+      if (!read.sampled_at && !read.sample_state_at && !read.available_at) {
+        return check_in_vain(entry, *found->second);
+      }
+    }
     if (!read.sampled_at || !read.sample_state_at || !read.available_at) {
       return report_.add(0, entry, "a sensor reading without its times");
     }
     check_sample(entry);
-    check_delay(entry, *found->second.info);
-    check_timing(entry, *found->second.info);
-    check_newness(entry, found->second);
+    check_delay(entry, *found->second);
+    check_timing(entry, *found->second);
+  }
+
+  // What it missed: check_newness.
+  void check_in_vain(const Entry& entry, const record::SensorInfo& sensor) {
+    if (!sensor.periodic) {
+      report_.add(0, entry, "found nothing on a sensor that measures on demand");
+    }
   }
 
   // Rule 1: nothing in a reply is from its future.
@@ -229,31 +191,8 @@ class InteractionCheck {
     }
   }
 
-  // Rule 1: a measurement is read once, in order, unless the last one was asked for again.
-  void check_newness(const Entry& entry, SensorHistory& sensor) {
-    const Interaction& read = entry.message;
-    const Wide sampled = wide(*read.sampled_at);
-    const Wide available = wide(*read.available_at);
-    const bool may_repeat = read.latest && sensor.info->periodic;
-    if (!may_repeat && sensor.newest && read.sample_index <= *sensor.newest) {
-      report_.add(1, entry,
-                  "measurement " + std::to_string(read.sample_index) + " of \"" + read.sensor +
-                      "\" after measurement " + std::to_string(*sensor.newest) + " had been read");
-    }
-    if (sensor.newest && read.sample_index == sensor.last_index &&
-        (sampled != sensor.last_sampled_at || available != sensor.last_available_at)) {
-      report_.add(0, entry,
-                  "measurement " + std::to_string(read.sample_index) +
-                      " has other times than when it was read before");
-    }
-    sensor.newest = std::max(sensor.newest.value_or(0), read.sample_index);
-    sensor.last_index = read.sample_index;
-    sensor.last_sampled_at = sampled;
-    sensor.last_available_at = available;
-  }
-
   // Rule 2: a command acts from the first boundary that is not before its time.
-  void check_command(const Entry& entry, const SutHistory& sut) {
+  void check_command(const Entry& entry, const Sut& sut) {
     check_immediate(entry);
     if (!entry.message.effect_at) {
       return report_.add(0, entry, "a command without the time of its effect");
@@ -289,7 +228,7 @@ class InteractionCheck {
   }
 
   // What the grid moved, worked out anew: always less than a step.
-  void check_grid_error(const Entry& entry, const SutHistory& sut) {
+  void check_grid_error(const Entry& entry, const Sut& sut) {
     const Interaction& message = entry.message;
     Wide error = wide(message.reply_at) - wide(message.st_at_release);
     if (message.sampled_at && message.sample_state_at) {
@@ -314,7 +253,7 @@ class InteractionCheck {
   const record::Record& record_;
   const Boundaries& grid_;
   Report& report_;
-  std::map<std::string, SutHistory> suts_;
+  std::map<std::string, Sut> suts_;
 };
 
 }  // namespace

@@ -333,6 +333,8 @@ RunReport Coordinator::Impl::close_run() {
                    .causality_violations = figures.causality_violations,
                    .largest_lag = figures.largest_lag,
                    .largest_grid_error = figures.largest_grid_error,
+                   .stops = figures.stops,
+                   .largest_overshoot = figures.largest_overshoot,
                    .suts = {}};
   for (const Session& session : sessions_) {
     if (session.joined() && !session.left)

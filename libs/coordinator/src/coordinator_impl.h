@@ -77,6 +77,7 @@ class Coordinator::Impl final : public link::ServerEvents {
   bool is_word(const Session& session, const link::Message& message) const;
   void on_progress(Session& session, const link::Progress& progress);
   void on_stop(Session& session, ExecTime at);
+  static std::optional<ExecTime> earliest_due(const Session& session, ExecTime at);
   void break_off(Session& session, link::Refusal::Reason reason, const std::string& sent);
   std::optional<std::string> fault_of(const Session& session, const link::Request& request) const;
   std::optional<std::string> order_fault(const Session& session,

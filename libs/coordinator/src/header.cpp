@@ -78,7 +78,8 @@ record::Header Coordinator::Impl::make_header() const {
                            .sut = session.hello.sut,
                            .clock = std::string(link::name(session.hello.clock)),
                            .cpu_factor = session.hello.cpu_factor,
-                           .command_latency = session.command_latency});
+                           .command_latency = session.command_latency,
+                           .concurrent = session.is_concurrent()});
     const sim::Uav& uav = world().uavs[session.uav];
     for (std::size_t i = 0; i < uav.sensors.size(); ++i)
       header.sensors.push_back(

@@ -116,6 +116,17 @@ void Coordinator::Impl::on_progress(Session& session, const link::Progress& prog
   release_ready();
 }
 
+// No reply leaves before the SUT has stopped for it, so what is open and due by now is what this
+// stop is for.
+std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session, ExecTime at) {
+  std::optional<ExecTime> earliest;
+  for (const PendingInteraction& pending : session.open) {
+    const ExecTime reply_at = pending.entry.reply_at;
+    if (reply_at <= at) earliest = std::min(earliest.value_or(reply_at), reply_at);
+  }
+  return earliest;
+}
+
 // All of a concurrent SUT stands still: replies that are due by then may leave.
 void Coordinator::Impl::on_stop(Session& session, ExecTime at) {
   const auto reason = link::Refusal::Reason::kBadMessage;
@@ -125,6 +136,7 @@ void Coordinator::Impl::on_stop(Session& session, ExecTime at) {
     return break_off(session, reason,
                      fmt::format("a stop at ET {} ns, although it had reached {} ns", to_ns(at),
                                  to_ns(reached)));
+  log_.stop(st_, {session.uav_name, at, earliest_due(session, at), host_clock_()});
   barrier_.stop(session.uav, at);
   release_ready();
 }
@@ -258,6 +270,7 @@ ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pe
   record::Interaction& entry = pending.entry;
   entry.sensor = sensor.name;
   entry.latest = read.latest;
+  entry.only_if_available = read.only_if_available;
   pending.measurement = choose(sensor.schedule, same_instant(entry.request_at), read);
   if (!pending.measurement) return entry.request_at;
 

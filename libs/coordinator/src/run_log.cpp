@@ -33,6 +33,13 @@ void RunLog::ground_truth(const std::string& uav, const sim::GroundTruth& truth)
                                                  .w_WB_B_rad_s = {w.x, w.y, w.z}});
 }
 
+void RunLog::stop(SimTime st, const record::Stop& stop) {
+  ++figures_.stops;
+  if (stop.reply_at)
+    figures_.largest_overshoot = std::max(figures_.largest_overshoot, stop.at - *stop.reply_at);
+  recorder_->write(st, stop);
+}
+
 void RunLog::image(SimTime st, const std::string& uav, const std::string& sensor,
                    const uav::CameraSample& sample) {
   recorder_->write(
@@ -48,6 +55,8 @@ void RunLog::end(record::Footer footer) {
   footer.causality_violations = figures_.causality_violations;
   footer.largest_lag = figures_.largest_lag;
   footer.largest_grid_error = figures_.largest_grid_error;
+  footer.stops = figures_.stops;
+  footer.largest_overshoot = figures_.largest_overshoot;
   recorder_->write(footer);
 }
 

@@ -19,6 +19,8 @@ struct SyncFigures {
   std::uint64_t causality_violations = 0;
   Duration largest_lag{0};
   Duration largest_grid_error{0};
+  std::uint64_t stops = 0;        ///< of concurrent SUTs
+  Duration largest_overshoot{0};  ///< by how much one of them came after the reply for which it was
 };
 
 /// Writes what happens to the record and keeps the figures.
@@ -33,6 +35,7 @@ class RunLog {
   void annotation(SimTime st, const record::Annotation& annotation) {
     recorder_->write(st, annotation);
   }
+  void stop(SimTime st, const record::Stop& stop);
   void image(SimTime st, const std::string& uav, const std::string& sensor,
              const uav::CameraSample& sample);
   void flush() { recorder_->flush(); }

@@ -79,6 +79,27 @@ TEST_F(ConcurrentTest, OneThreadCommandsWhileAnotherWaitsForItsData) {
   EXPECT_EQ(recorder_.interactions.at(4).sample_state_at, st_ms(2));
 }
 
+// One stop for each call, and one where a reply is due that was asked for earlier.
+TEST_F(ConcurrentTest, StopsAreRecordedWithWhatTheyAreFor) {
+  const RunReport report = run_threads(
+      {{read(microseconds(2'300), kRange), finish(Duration(0))}, {turn(milliseconds(20), 0.1)}},
+      microseconds(70));
+  const auto& stops = recorder_.stops;
+  ASSERT_EQ(stops.size(), 4u);
+  EXPECT_EQ(stops[0].at, us(2'370));
+  EXPECT_EQ(stops[0].reply_at, std::nullopt);
+  EXPECT_EQ(stops[1].at, us(20'070));
+  EXPECT_EQ(stops[1].reply_at, us(20'000));
+  EXPECT_EQ(stops[2].at, us(100'070));
+  EXPECT_EQ(stops[2].reply_at, us(100'000));
+  EXPECT_EQ(stops[3].reply_at, us(100'070));
+  EXPECT_EQ(report.stops, 4u);
+  EXPECT_EQ(report.largest_overshoot, microseconds(70));
+  EXPECT_EQ(recorder_.footer->stops, 4u);
+  EXPECT_EQ(recorder_.footer->largest_overshoot, microseconds(70));
+  EXPECT_TRUE(recorder_.header.suts.at(0).concurrent);
+}
+
 std::string without_wall(const MemoryRecorder& recorder) {
   std::string text;
   for (const auto& i : recorder.interactions) {
@@ -90,6 +111,9 @@ std::string without_wall(const MemoryRecorder& recorder) {
       text += " " + std::to_string(v);
     text += "\n";
   }
+  for (const auto& stop : recorder.stops)
+    text += std::to_string(to_ns(stop.at)) + " " +
+            std::to_string(to_ns(stop.reply_at.value_or(ExecTime::min()))) + "\n";
   for (const auto& g : recorder.ground_truth) text += std::to_string(g.p_WB_m[0]) + "\n";
   return text;
 }
@@ -247,6 +271,7 @@ TEST_F(ConcurrentTest, LooksForWhatIsThereAndNeverWaits) {
       SCOPED_TRACE(cases[i].what);
       const record::Interaction& entry = recorder_.interactions.at(i);
       EXPECT_EQ(entry.reply_at, us(cases[i].at_us));
+      EXPECT_TRUE(entry.only_if_available);
       EXPECT_EQ(entry.sampled_at.has_value(), cases[i].index.has_value());
       EXPECT_EQ(entry.sample_index, cases[i].index.value_or(0));
       EXPECT_EQ(sent_to<link::Reply>(1).at(i).sample.has_value(), cases[i].index.has_value());

@@ -63,6 +63,10 @@ void append_footer(std::string& out, const Footer& footer, const CanonicalOption
   object.integer("interactions", footer.interactions);
   object.integer("causality_violations", footer.causality_violations);
   object.integer("largest_grid_error_ns", to_ns(footer.largest_grid_error));
+  if (footer.stops > 0) {
+    object.integer("stops", footer.stops);
+    object.integer("largest_overshoot_ns", to_ns(footer.largest_overshoot));
+  }
   if (options.arrivals) {
     object.integer("largest_lag_ns", to_ns(footer.largest_lag));
   }
@@ -91,6 +95,12 @@ std::string canonical(const Record& record, const CanonicalOptions& options) {
       append_log_time(out, logged.at);
     }
     append_json(out, logged.message);
+  });
+  append_lines(out, "stop", record.stops, [&](const Logged<Stop>& logged) {
+    if (options.arrivals) {
+      append_log_time(out, logged.at);
+    }
+    append_json(out, logged.message, {.wall = false});
   });
   append_lines(out, "image", record.images,
                [&](const Logged<Image>& logged) { append_image(out, logged.message); });

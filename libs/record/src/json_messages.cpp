@@ -35,11 +35,20 @@ SimTime timestamp_member(const Json& object) {
                           static_cast<std::int64_t>(nanoseconds));
 }
 
+bool found_nothing(const Interaction& read) {
+  return read.only_if_available && !read.sampled_at;
+}
+
 void append_sensor_fields(JsonObject& object, const Interaction& message) {
   if (message.kind == kSensor) {
     object.text("sensor", message.sensor);
-    object.integer("sample_index", message.sample_index);
+    if (!found_nothing(message)) {
+      object.integer("sample_index", message.sample_index);
+    }
     object.boolean("latest", message.latest);
+    if (message.only_if_available) {
+      object.boolean("only_if_available", true);
+    }
   }
   optional_time(object, "sampled_at_ns", message.sampled_at);
   optional_time(object, "sample_state_at_ns", message.sample_state_at);
@@ -55,12 +64,16 @@ void append_wall(JsonObject& object, const Interaction& message) {
 }
 
 void read_sensor_fields(const Json& json, Interaction& message) {
+  message.sampled_at = optional_time_member<SimTime>(json, "sampled_at_ns");
   if (message.kind == kSensor) {
     message.sensor = text_member(json, "sensor");
-    message.sample_index = unsigned_member(json, "sample_index");
     message.latest = boolean_member(json, "latest");
+    message.only_if_available =
+        json.contains("only_if_available") && boolean_member(json, "only_if_available");
+    if (!found_nothing(message)) {
+      message.sample_index = unsigned_member(json, "sample_index");
+    }
   }
-  message.sampled_at = optional_time_member<SimTime>(json, "sampled_at_ns");
   message.sample_state_at = optional_time_member<SimTime>(json, "sample_state_at_ns");
   message.available_at = optional_time_member<SimTime>(json, "available_at_ns");
 }
@@ -219,6 +232,29 @@ Annotation annotation_from_json(std::string_view text) {
   message.at = time_member<ExecTime>(json, "at_ns");
   message.topic = text_member(json, "topic");
   message.json = member(json, "data").dump();
+  return message;
+}
+
+void append_json(std::string& out, const Stop& message, JsonParts parts) {
+  JsonObject object(out);
+  object.text("uav", message.uav);
+  object.integer("at_ns", to_ns(message.at));
+  optional_time(object, "reply_at_ns", message.reply_at);
+  if (parts.wall) {
+    JsonObject wall = object.object("wall");
+    wall.integer("arrival_ns", to_ns(message.wall));
+    wall.close();
+  }
+  object.close();
+}
+
+Stop stop_from_json(std::string_view text) {
+  const Json json = parse_object(text);
+  Stop message;
+  message.uav = text_member(json, "uav");
+  message.at = time_member<ExecTime>(json, "at_ns");
+  message.reply_at = optional_time_member<ExecTime>(json, "reply_at_ns");
+  message.wall = time_member<WallTime>(member(json, "wall"), "arrival_ns");
   return message;
 }
 

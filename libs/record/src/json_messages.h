@@ -19,6 +19,7 @@ void append_json(std::string& out, const Interaction& message, JsonParts parts =
 void append_json(std::string& out, const CommandEffect& message);
 void append_json(std::string& out, const GroundTruth& message);
 void append_json(std::string& out, const Annotation& message);
+void append_json(std::string& out, const Stop& message, JsonParts parts = {});
 /// As foxglove.CompressedImage, with members of our own.
 void append_json(std::string& out, const Image& message);
 /// The pose of a ground truth message as foxglove.FrameTransform: "world" to the UAV's name.
@@ -29,6 +30,7 @@ Interaction interaction_from_json(std::string_view json);
 CommandEffect command_effect_from_json(std::string_view json);
 GroundTruth ground_truth_from_json(std::string_view json);
 Annotation annotation_from_json(std::string_view json);
+Stop stop_from_json(std::string_view json);
 Image image_from_json(std::string_view json);
 
 }  // namespace tether::record

@@ -81,12 +81,19 @@ void append_sut(std::string& out, const SutInfo& sut) {
   object.text("clock", sut.clock);
   object.number("cpu_factor", sut.cpu_factor);
   object.integer("command_latency_ns", to_ns(sut.command_latency));
+  if (sut.concurrent) {
+    object.boolean("concurrent", true);
+  }
   object.close();
 }
 
 SutInfo read_sut(const Json& json) {
-  return {text_member(json, "uav"), text_member(json, "sut"), text_member(json, "clock"),
-          number_member(json, "cpu_factor"), time_member<Duration>(json, "command_latency_ns")};
+  return {.uav = text_member(json, "uav"),
+          .sut = text_member(json, "sut"),
+          .clock = text_member(json, "clock"),
+          .cpu_factor = number_member(json, "cpu_factor"),
+          .command_latency = time_member<Duration>(json, "command_latency_ns"),
+          .concurrent = json.contains("concurrent") && boolean_member(json, "concurrent")};
 }
 
 void append_camera(JsonObject& sensor, const CameraInfo& camera) {
@@ -228,7 +235,7 @@ Header header_from_metadata(const StringMap& values) {
 }
 
 StringMap to_metadata(const Footer& footer) {
-  return {
+  StringMap values{
       {"end", to_utf8(footer.end)},
       {"reason", to_utf8(footer.reason)},
       {"st_at_end_ns", std::to_string(to_ns(footer.st_at_end))},
@@ -241,6 +248,11 @@ StringMap to_metadata(const Footer& footer) {
       {"largest_lag_ns", std::to_string(to_ns(footer.largest_lag))},
       {"largest_grid_error_ns", std::to_string(to_ns(footer.largest_grid_error))},
   };
+  if (footer.stops > 0) {
+    values["stops"] = std::to_string(footer.stops);
+    values["largest_overshoot_ns"] = std::to_string(to_ns(footer.largest_overshoot));
+  }
+  return values;
 }
 
 Footer footer_from_metadata(const StringMap& values) {
@@ -254,6 +266,10 @@ Footer footer_from_metadata(const StringMap& values) {
   footer.causality_violations = number<std::uint64_t>(values, "causality_violations");
   footer.largest_lag = time<Duration>(values, "largest_lag_ns");
   footer.largest_grid_error = time<Duration>(values, "largest_grid_error_ns");
+  if (values.contains("stops")) {
+    footer.stops = number<std::uint64_t>(values, "stops");
+    footer.largest_overshoot = time<Duration>(values, "largest_overshoot_ns");
+  }
   return footer;
 }
 

@@ -86,6 +86,9 @@ class McapRecorder final : public Recorder {
   void write(SimTime at, const Annotation& message) override {
     write_json(annotations_.of("/task", message.uav), at, message);
   }
+  void write(SimTime at, const Stop& message) override {
+    write_json(stops_.of("/stops", message.uav), at, message);
+  }
   void write(SimTime at, const Image& message) override {
     write_json(images_.of("/images", message.uav, message.sensor), at, message);
   }
@@ -114,6 +117,7 @@ class McapRecorder final : public Recorder {
   Channels ground_truth_{mcap_, kGroundTruthSchema};
   Channels transforms_{mcap_, kFrameTransformSchema};
   Channels annotations_{mcap_, kAnnotationSchema};
+  Channels stops_{mcap_, kStopSchema};
   Channels images_{mcap_, kCompressedImageSchema};
   bool finished_ = false;
 };
@@ -125,6 +129,7 @@ class NullRecorder final : public Recorder {
   void write(SimTime, const CommandEffect&) override {}
   void write(SimTime, const GroundTruth&) override {}
   void write(SimTime, const Annotation&) override {}
+  void write(SimTime, const Stop&) override {}
   void write(SimTime, const Image&) override {}
   void flush() override {}
   void write(const Footer&) override {}

@@ -15,6 +15,7 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
     "sensor": {"type": "string"},
     "sample_index": {"type": "integer", "minimum": 0},
     "latest": {"type": "boolean", "description": "the last measurement was asked for, new or not"},
+    "only_if_available": {"type": "boolean", "description": "what was there was asked for, at once"},
     "sampled_at_ns": {"type": "integer", "description": "ST that the timing model asked for"},
     "sample_state_at_ns": {"type": "integer", "description": "ST of the state that was measured"},
     "available_at_ns": {"type": "integer", "description": "sampled_at + delay"},
@@ -85,6 +86,26 @@ const Schema kAnnotationSchema{"tether.Annotation", R"json({
     "data": {"type": "object"}
   },
   "required": ["uav", "at_ns", "topic", "data"]
+})json"};
+
+const Schema kStopSchema{"tether.Stop", R"json({
+  "title": "tether.Stop",
+  "description": "All of a concurrent SUT stood still. Log time: ST when it was known.",
+  "type": "object",
+  "properties": {
+    "uav": {"type": "string"},
+    "at_ns": {"type": "integer", "description": "ET from which on, and with which it goes on"},
+    "reply_at_ns": {"type": "integer", "description": "ET of the earliest reply due by then"},
+    "wall": {
+      "type": "object",
+      "description": "host clock; differs from run to run",
+      "properties": {
+        "arrival_ns": {"type": "integer"}
+      },
+      "required": ["arrival_ns"]
+    }
+  },
+  "required": ["uav", "at_ns", "wall"]
 })json"};
 
 const Schema kCompressedImageSchema{"foxglove.CompressedImage", R"json({

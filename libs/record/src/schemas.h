@@ -14,6 +14,7 @@ extern const Schema kInteractionSchema;
 extern const Schema kCommandEffectSchema;
 extern const Schema kGroundTruthSchema;
 extern const Schema kAnnotationSchema;
+extern const Schema kStopSchema;
 /// Well-known schemas of Foxglove, by their names.
 extern const Schema kCompressedImageSchema;
 extern const Schema kFrameTransformSchema;

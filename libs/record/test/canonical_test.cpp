@@ -19,6 +19,7 @@ Record sample() {
   record.commands = {{st_ms(41), 4, command_effect()}};
   record.ground_truth = {{st_ms(40), 3, ground_truth()}};
   record.annotations = {{st_ms(38), 1, annotation()}};
+  record.stops = {{st_ms(50), 6, stop()}};
   record.images = {{st_ms(41), 5, image()}};
   record.footer = footer();
   return record;
@@ -35,6 +36,7 @@ TEST(Canonical, WallTimeAndHeaderDoNotShow) {
   changed.interactions[0].message.wall_at_arrival += Duration(1);
   changed.interactions[0].message.wall_at_release += Duration(1);
   changed.interactions[0].message.previous_link_time.reset();
+  changed.stops[0].message.wall += Duration(1);
   changed.footer->wall += Duration(1);
   EXPECT_EQ(canonical(changed), canonical(sample()));
   EXPECT_EQ(canonical(changed, {.arrivals = true}), canonical(sample(), {.arrivals = true}));
@@ -45,6 +47,7 @@ TEST(Canonical, ArrivalsShowOnlyWhenAskedFor) {
       {"arrival", [](Record& r) { r.interactions[0].message.st_at_arrival += Duration(1); }},
       {"lag", [](Record& r) { r.interactions[0].message.lag += Duration(1); }},
       {"annotation", [](Record& r) { r.annotations[0].at += Duration(1); }},
+      {"stop", [](Record& r) { r.stops[0].at += Duration(1); }},
       {"largest lag", [](Record& r) { r.footer->largest_lag += Duration(1); }},
   };
   for (const Change& change : changes) {
@@ -67,7 +70,9 @@ TEST(Canonical, EverythingElseShows) {
       {"last bit",
        [](Record& r) { r.ground_truth[0].message.p_WB_m[0] = std::nextafter(1.0 / 3.0, 1); }},
       {"annotation", [](Record& r) { r.annotations[0].message.json = "{}"; }},
+      {"stop", [](Record& r) { r.stops[0].message.at += Duration(1); }},
       {"image", [](Record& r) { r.images[0].message.png[4] ^= 1; }},
+      {"overshoot", [](Record& r) { r.footer->largest_overshoot += Duration(1); }},
       {"end", [](Record& r) { r.footer->end = "time_limit"; }},
       {"no end", [](Record& r) { r.footer.reset(); }},
   };

@@ -36,7 +36,9 @@ TEST(JsonMessages, RoundTrip) {
   expect_round_trip(sleep_interaction(), interaction_from_json);
   expect_round_trip(command_effect(), command_effect_from_json);
   expect_round_trip(ground_truth(), ground_truth_from_json);
+  expect_round_trip(vain_interaction(), interaction_from_json);
   expect_round_trip(annotation(), annotation_from_json);
+  expect_round_trip(stop(), stop_from_json);
   expect_round_trip(image(), image_from_json);
 }
 
@@ -65,6 +67,26 @@ TEST(JsonMessages, InteractionKeepsEveryMember) {
   EXPECT_EQ(out.wall_at_arrival, in.wall_at_arrival);
   EXPECT_EQ(out.wall_at_release, in.wall_at_release);
   EXPECT_EQ(out.previous_link_time, in.previous_link_time);
+}
+
+TEST(JsonMessages, AReadThatFoundNothingHasNoIndex) {
+  const auto json = nlohmann::json::parse(json_of(vain_interaction()));
+  EXPECT_FALSE(json.contains("sample_index"));
+  EXPECT_TRUE(interaction_from_json(json.dump()).only_if_available);
+  auto other = json;
+  other.erase("only_if_available");
+  EXPECT_THROW(interaction_from_json(other.dump()), Damage);
+}
+
+TEST(JsonMessages, StopKeepsEveryMember) {
+  const Stop out = stop_from_json(json_of(stop()));
+  EXPECT_EQ(out.uav, stop().uav);
+  EXPECT_EQ(out.at, stop().at);
+  EXPECT_EQ(out.reply_at, stop().reply_at);
+  EXPECT_EQ(out.wall, stop().wall);
+  Stop without = stop();
+  without.reply_at.reset();
+  EXPECT_EQ(stop_from_json(json_of(without)).reply_at, std::nullopt);
 }
 
 TEST(JsonMessages, SignOfZeroSurvives) {
@@ -146,6 +168,8 @@ TEST(JsonMessages, SchemasAreJsonAndListWhatIsWritten) {
       {kCommandEffectSchema, json_of(command_effect())},
       {kGroundTruthSchema, json_of(ground_truth())},
       {kAnnotationSchema, json_of(annotation())},
+      {kInteractionSchema, json_of(vain_interaction())},
+      {kStopSchema, json_of(stop())},
       {kCompressedImageSchema, json_of(image())},
   };
   for (const auto& [schema, text] : cases) {
@@ -245,6 +269,19 @@ TEST(JsonMetadata, WithoutBoundsTheDelayOfASensorIsNotBounded) {
   EXPECT_EQ(out.sensors[0].phase, Duration(5));
   EXPECT_EQ(out.sensors[0].delay_min, Duration(0));
   EXPECT_EQ(out.sensors[0].delay_max, Duration::max());
+}
+
+// Records of Tether 0.1.0 know no concurrent SUTs.
+TEST(JsonMetadata, ARecordNeedNotKnowOfConcurrentSuts) {
+  Header serial = header();
+  serial.suts[1].concurrent = false;
+  EXPECT_EQ(to_metadata(serial).at("suts").find("concurrent"), std::string::npos);
+  EXPECT_FALSE(header_from_metadata(to_metadata(serial)).suts[1].concurrent);
+  EXPECT_TRUE(header_from_metadata(to_metadata(header())).suts[1].concurrent);
+  Footer without = footer();
+  without.stops = 0;
+  EXPECT_FALSE(to_metadata(without).contains("stops"));
+  EXPECT_EQ(footer_from_metadata(to_metadata(without)).stops, 0U);
 }
 
 TEST(JsonMetadata, FooterRoundTrip) {

@@ -21,7 +21,7 @@ TEST(Recorder, WholeRecordReadsBack) {
   const Record record = read_record(file.path(), {.images = true});
   EXPECT_EQ(record.damage, "");
   EXPECT_EQ(record.header.condition, "target, no sync");
-  ASSERT_EQ(record.interactions.size(), 3U);
+  ASSERT_EQ(record.interactions.size(), 4U);
   EXPECT_EQ(record.interactions[0].at, st_ms(37));
   EXPECT_EQ(record.interactions[0].message.uav, sensor_interaction().uav);
   EXPECT_EQ(record.interactions[2].message.sleep_until, et_ns(50'000'000));
@@ -31,11 +31,18 @@ TEST(Recorder, WholeRecordReadsBack) {
   EXPECT_EQ(record.ground_truth[0].message.w_WB_B_rad_s[2], -1.7976931348623157e308);
   ASSERT_EQ(record.annotations.size(), 1U);
   EXPECT_EQ(record.annotations[0].message.json, annotation().json);
+  ASSERT_EQ(record.stops.size(), 1U);
+  EXPECT_EQ(record.stops[0].at, st_ms(50));
+  EXPECT_EQ(record.stops[0].message.reply_at, et_ns(50'000'000));
+  EXPECT_FALSE(record.header.suts[0].concurrent);
+  EXPECT_TRUE(record.header.suts[1].concurrent);
   ASSERT_EQ(record.images.size(), 1U);
   EXPECT_EQ(record.images[0].message.png, image().png);
   EXPECT_EQ(record.images[0].message.at, image().at);
   ASSERT_TRUE(record.footer.has_value());
   EXPECT_EQ(record.footer->et_at_end, footer().et_at_end);
+  EXPECT_EQ(record.footer->stops, 1U);
+  EXPECT_EQ(record.footer->largest_overshoot, Duration(321));
 }
 
 TEST(Recorder, OrderIsTheFilesWhateverIsLoaded) {
@@ -65,7 +72,7 @@ TEST(Recorder, WithoutFooterEverythingIsThereAndTheEndIsMissing) {
   const TemporaryFile file;
   write_messages(*make_mcap_recorder(file.path()));
   const Record record = read_record(file.path());
-  EXPECT_EQ(record.interactions.size(), 3U);
+  EXPECT_EQ(record.interactions.size(), 4U);
   EXPECT_FALSE(record.footer.has_value());
   EXPECT_NE(record.damage.find("ends too early"), std::string::npos) << record.damage;
 }
@@ -96,7 +103,7 @@ TEST(Recorder, WhatWasFlushedIsInTheFile) {
   recorder->write(st_ms(51), command_interaction(4));
 
   const Record record = read_record(killed.path(), {.images = true});
-  EXPECT_EQ(record.interactions.size(), 3U);
+  EXPECT_EQ(record.interactions.size(), 4U);
   EXPECT_EQ(record.interactions.back().at, st_ms(50));
   EXPECT_EQ(record.images.size(), 1U);
   EXPECT_FALSE(record.footer.has_value());
@@ -106,7 +113,7 @@ TEST(Recorder, WhatWasFlushedIsInTheFile) {
   recorder->flush();
   const Record whole = read_record(file.path());
   EXPECT_EQ(whole.damage, "");
-  EXPECT_EQ(whole.interactions.size(), 4U);
+  EXPECT_EQ(whole.interactions.size(), 5U);
   EXPECT_TRUE(whole.footer.has_value());
 }
 

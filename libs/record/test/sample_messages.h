@@ -65,6 +65,22 @@ inline Interaction sleep_interaction(std::uint64_t sequence = 3) {
   return message;
 }
 
+inline Interaction vain_interaction(std::uint64_t sequence = 4) {
+  Interaction message;
+  message.uav = "a";
+  message.sequence = sequence;
+  message.kind = kSensor;
+  message.sensor = "camera";
+  message.only_if_available = true;
+  message.request_at = message.reply_at = et_ns(50'000'000);
+  message.st_at_release = st_ms(50);
+  return message;
+}
+
+inline Stop stop() {
+  return {"a", et_ns(50'000'321), et_ns(50'000'000), from_ns<WallTime>(323'456'789)};
+}
+
 inline CommandEffect command_effect() {
   return {"a", 2, st_ms(41), 0.1, -0.0, 1e-300, 1.0 / 3.0};
 }
@@ -103,7 +119,7 @@ inline Header header() {
   header.ground_truth_period = Duration(10'000'000);
   header.real_time_factor = 0.3;
   header.suts = {{"a", "tether-sut 0.1.0", "cpu", 6.5, Duration(2'000'000)},
-                 {"b", "other", "wall", 1.0, {}}};
+                 {"b", "other", "wall", 1.0, {}, true}};
   header.sensors = {
       {"a", "camera", "camera", true, Duration(33'333'333), Duration(5), Duration(7), Duration(8)},
       {"a", "range", "range", false, {}, {}}};
@@ -131,10 +147,12 @@ inline Footer footer() {
   footer.st_at_end = st_ms(50);
   footer.et_at_end = {et_ns(50'000'000), et_ns(-1)};
   footer.wall = Duration(77);
-  footer.interactions = 3;
+  footer.interactions = 4;
   footer.causality_violations = 1;
   footer.largest_lag = Duration(2'500'001);
   footer.largest_grid_error = Duration(500'001);
+  footer.stops = 1;
+  footer.largest_overshoot = Duration(321);
   return footer;
 }
 
@@ -170,6 +188,8 @@ inline void write_messages(Recorder& recorder) {
   recorder.write(st_ms(41), command_effect());
   recorder.write(st_ms(41), image());
   recorder.write(st_ms(50), sleep_interaction());
+  recorder.write(st_ms(50), stop());
+  recorder.write(st_ms(50), vain_interaction());
 }
 
 inline void write_whole_record(const std::filesystem::path& file) {

@@ -82,7 +82,9 @@ struct RunReport {
   std::uint64_t causality_violations = 0;
   Duration largest_lag{0};
   Duration largest_grid_error{0};
-  std::vector<SutReport> suts;  ///< in the world's order of UAVs
+  std::uint64_t stops = 0;        ///< of concurrent SUTs, in which all of one stood still
+  Duration largest_overshoot{0};  ///< by how much one of them came after the reply for which it was
+  std::vector<SutReport> suts;    ///< in the world's order of UAVs
 };
 
 /// What is going on, for a person who watches.

@@ -29,15 +29,18 @@ inline constexpr std::string_view kFinish = "finish";
 /// One request of a SUT and its reply. Topic /interactions; log time = ST at release.
 struct Interaction {
   std::string uav;
-  std::uint64_t sequence = 0;  ///< 1, 2, 3, … of this SUT
-  std::string kind;            ///< kSensor, kCommand, kSleep or kFinish
-  ExecTime request_at;         ///< t_req as charged
-  ExecTime reply_at;           ///< t_rep
+  /// 1, 2, 3, … of this SUT. Those of a concurrent SUT are in the order of their replies; a call
+  /// that was open when it finished has none.
+  std::uint64_t sequence = 0;
+  std::string kind;     ///< kSensor, kCommand, kSleep or kFinish
+  ExecTime request_at;  ///< t_req as charged
+  ExecTime reply_at;    ///< t_rep
 
-  // Of kind "sensor".
+  // Of kind "sensor". A read that found nothing has no times and no index.
   std::string sensor;
   std::uint64_t sample_index = 0;
   bool latest = false;                     ///< asked for the last measurement, had before or not
+  bool only_if_available = false;          ///< asked for what was there, without waiting
   std::optional<SimTime> sampled_at;       ///< instant that the timing model asked for
   std::optional<SimTime> sample_state_at;  ///< step boundary whose state was measured (its floor)
   std::optional<SimTime> available_at;     ///< sampled_at + delay
@@ -60,6 +63,17 @@ struct Interaction {
   WallTime wall_at_release;  ///< just before the reply was handed to the link
   /// Round trip of the previous interaction, less the time for which it was held.
   std::optional<Duration> previous_link_time;
+};
+
+/// All of a concurrent SUT stood still, under the barrier. Topic /stops/<uav>; log time = ST when
+/// it was known.
+struct Stop {
+  std::string uav;
+  ExecTime at;  ///< ET from which on it did, and with which it goes on
+  /// t_rep of the earliest reply that it had not had by then, of those due by `at`; none where it
+  /// stopped for requests whose replies are due later.
+  std::optional<ExecTime> reply_at;
+  WallTime wall;  ///< host clock, when it was known; 0: not taken
 };
 
 /// A command taking effect: written when the simulator was told. Topic /commands/<uav>; log time =
@@ -136,6 +150,7 @@ struct SutInfo {
   std::string clock;            ///< "wall", "cpu", "scripted", "unstamped"
   double cpu_factor = 1.0;      ///< seconds of ET per second of what the clock measures
   Duration command_latency{0};  ///< from a command's stamp to its effect, before the grid rounds up
+  bool concurrent = false;      ///< several threads, each with calls of its own
 };
 /// What rests under every number: written first (metadata record "tether"), as names and values.
 struct Header {
@@ -168,6 +183,9 @@ struct Footer {
   std::uint64_t causality_violations = 0;
   Duration largest_lag{0};  ///< 0 when none was positive
   Duration largest_grid_error{0};
+  // Of concurrent SUTs.
+  std::uint64_t stops = 0;        ///< in the record
+  Duration largest_overshoot{0};  ///< Stop::at − Stop::reply_at: by how much a freeze came late
 };
 
 }  // namespace tether::record

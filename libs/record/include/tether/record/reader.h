@@ -24,6 +24,7 @@ struct Record {
   std::vector<Logged<CommandEffect>> commands;
   std::vector<Logged<GroundTruth>> ground_truth;
   std::vector<Logged<Annotation>> annotations;
+  std::vector<Logged<Stop>> stops;
   std::vector<Logged<Image>> images;
   std::optional<Footer> footer;
   /// Where and why reading stopped early (torn or damaged file); empty: read to the end.

@@ -17,6 +17,7 @@ class Recorder {
   virtual void write(SimTime at, const CommandEffect& message) = 0;
   virtual void write(SimTime at, const GroundTruth& message) = 0;
   virtual void write(SimTime at, const Annotation& message) = 0;
+  virtual void write(SimTime at, const Stop& message) = 0;
   virtual void write(SimTime at, const Image& message) = 0;
   /// Everything written so far reaches the file (the system; not necessarily the disk).
   virtual void flush() = 0;

@@ -1,0 +1,99 @@
+#include "checks.h"
+#include "suts.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace tether::audit {
+namespace {
+
+using record::Interaction;
+using Entry = record::Logged<Interaction>;
+
+struct SensorHistory {
+  const record::SensorInfo* info = nullptr;
+  std::optional<std::uint64_t> newest;  // greatest index read
+  std::uint64_t last_index = 0;
+  Wide last_sampled_at = 0;
+  Wide last_available_at = 0;
+};
+
+// A measurement is read once, in order, unless the last one was asked for again.
+void check_index(const Entry& entry, SensorHistory& sensor, Report& report) {
+  const Interaction& read = entry.message;
+  const Wide sampled = wide(*read.sampled_at);
+  const Wide available = wide(*read.available_at);
+  const bool may_repeat = read.latest && sensor.info->periodic;
+  if (!may_repeat && sensor.newest && read.sample_index <= *sensor.newest) {
+    report.add(1, entry,
+               "measurement " + std::to_string(read.sample_index) + " of \"" + read.sensor +
+                   "\" after measurement " + std::to_string(*sensor.newest) + " had been read");
+  }
+  if (sensor.newest && read.sample_index == sensor.last_index &&
+      (sampled != sensor.last_sampled_at || available != sensor.last_available_at)) {
+    report.add(0, entry,
+               "measurement " + std::to_string(read.sample_index) +
+                   " has other times than when it was read before");
+  }
+  sensor.newest = std::max(sensor.newest.value_or(0), read.sample_index);
+  sensor.last_index = read.sample_index;
+  sensor.last_sampled_at = sampled;
+  sensor.last_available_at = available;
+}
+
+// A read that found nothing missed nothing: by the greatest delay that the sensor can have, no
+// measurement was there for certain that would have done.
+void check_missed(const Entry& entry, const SensorHistory& sensor, Report& report) {
+  const record::SensorInfo& info = *sensor.info;
+  const Wide period = wide(info.period);
+  if (!info.periodic || period <= 0 || info.delay_max == Duration::max()) {
+    return;
+  }
+  const Wide since_first = wide(entry.message.request_at) - wide(info.phase) - wide(info.delay_max);
+  if (since_first < 0) {
+    return;
+  }
+  const Wide newest_there = since_first / period;
+  const Wide wanted = !entry.message.latest && sensor.newest ? Wide{*sensor.newest} + 1 : Wide{0};
+  if (newest_there >= wanted) {
+    report.add(1, entry,
+               "found nothing at " + ns(wide(entry.message.request_at)) + ", when measurement " +
+                   std::to_string(static_cast<std::uint64_t>(newest_there)) + " of \"" + info.name +
+                   "\" was there");
+  }
+}
+
+}  // namespace
+
+// A measurement counts as read from the request on that got it. So of a concurrent SUT the order is
+// that of its requests.
+void check_newness(const record::Record& record, Report& report) {
+  auto rows = rows_of(record);
+  for (auto& [uav, row] : rows) {
+    if (row.info->concurrent) {
+      std::ranges::stable_sort(row.interactions, {},
+                               [](const Entry* entry) { return entry->message.sequence; });
+    }
+    std::map<std::string, SensorHistory> sensors;
+    for (const record::SensorInfo& sensor : record.header.sensors) {
+      if (sensor.uav == uav) sensors[sensor.name].info = &sensor;
+    }
+    for (const Entry* entry : row.interactions) {
+      const auto sensor = sensors.find(entry->message.sensor);
+      if (entry->message.kind != record::kSensor || sensor == sensors.end()) {
+        continue;
+      }
+      const bool has_times = entry->message.sampled_at && entry->message.available_at &&
+                             entry->message.sample_state_at;
+      if (has_times) {
+        check_index(*entry, sensor->second, report);
+      } else if (entry->message.only_if_available) {
+        check_missed(*entry, sensor->second, report);
+      }
+    }
+  }
+}
+
+}  // namespace tether::audit
