@@ -105,6 +105,9 @@ void print_result(const TrialSpec& spec, const experiment::TrialResult& result) 
              to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
              result.sync.interactions);
   if (!result.target.empty()) fmt::print("  {:<24} {}\n", "target", result.target);
+  if (const auto& stops = result.sync.stops)
+    fmt::print("  {:<24} {}, at most {:.3f} ms late\n", "stops of all threads", stops->count,
+               1e3 * to_seconds(stops->largest_overshoot));
   if (!result.profiles.empty())
     fmt::print("  {:<24} {}\n", "profiles", fmt::join(result.profiles, ", "));
   if (result.audit) fmt::print("  {:<24} {}\n", "audit", result.audit->summary);

@@ -86,6 +86,13 @@ std::string why_missed(const TrialResult& result) {
   return "";
 }
 
+std::optional<StopFigures> stop_figures(const record::Record& record) {
+  const auto& suts = record.header.suts;
+  const bool tied = record.header.policy == record::kConservativeBarrier;
+  if (!tied || std::ranges::none_of(suts, &record::SutInfo::concurrent)) return std::nullopt;
+  return StopFigures{record.footer->stops, record.footer->largest_overshoot};
+}
+
 // A SUT that was lost before it did anything never came to be: a matter of the set-up.
 std::string end_of(const record::Footer& footer) {
   const bool nothing_happened = footer.interactions == 0 && footer.end == "sut_lost";
@@ -125,7 +132,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   const record::Footer& footer = *record.footer;
   result.end = end_of(footer);
   result.sync = {footer.interactions, footer.causality_violations, footer.largest_grid_error,
-                 footer.st_at_end};
+                 footer.st_at_end, stop_figures(record)};
   result.this_run.wall = footer.wall;
   result.this_run.largest_lag = footer.largest_lag;
   settle(result, footer.reason);

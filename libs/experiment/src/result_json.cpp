@@ -70,10 +70,15 @@ Json json_of(const std::vector<T>& elements) {
 }
 
 Json json_of(const SyncFigures& sync) {
-  return Json{{"interactions", sync.interactions},
-              {"causality_violations", sync.causality_violations},
-              {"largest_grid_error_s", exact_seconds(sync.largest_grid_error)},
-              {"st_at_end_s", exact_seconds(sync.st_at_end)}};
+  Json json{{"interactions", sync.interactions},
+            {"causality_violations", sync.causality_violations},
+            {"largest_grid_error_s", exact_seconds(sync.largest_grid_error)},
+            {"st_at_end_s", exact_seconds(sync.st_at_end)}};
+  if (sync.stops) {
+    json["stops"] = sync.stops->count;
+    json["largest_overshoot_s"] = exact_seconds(sync.stops->largest_overshoot);
+  }
+  return json;
 }
 
 Json json_of(const std::optional<AuditVerdict>& audit) {
@@ -132,8 +137,11 @@ SutResult read_sut(const JsonReader& json) {
 }
 
 SyncFigures read_sync(const JsonReader& json) {
-  return {json.count("interactions"), json.count("causality_violations"),
-          json.seconds("largest_grid_error_s"), SimTime(json.seconds("st_at_end_s"))};
+  SyncFigures sync{json.count("interactions"), json.count("causality_violations"),
+                   json.seconds("largest_grid_error_s"), SimTime(json.seconds("st_at_end_s"))};
+  if (json.has("stops"))
+    sync.stops = StopFigures{json.count("stops"), json.seconds("largest_overshoot_s")};
+  return sync;
 }
 
 ThisRun read_this_run(const JsonReader& json) {

@@ -76,6 +76,15 @@ TEST_F(Result, NamesItsTarget) {
   EXPECT_EQ(result_from_json(to_json(trial_), "f").target, "slow_board");
 }
 
+TEST_F(Result, SaysWhereConcurrentSutsStoodStill) {
+  EXPECT_THAT(to_json(trial_), testing::Not(HasSubstr("overshoot")));
+  trial_.sync.stops = StopFigures{1200, Duration(73'000)};
+  const std::string text = to_json(trial_);
+  EXPECT_THAT(text, HasSubstr("\"stops\": 1200"));
+  EXPECT_THAT(text, HasSubstr("\"largest_overshoot_s\": 7.3e-05"));
+  EXPECT_EQ(result_from_json(text, "f").sync, trial_.sync);
+}
+
 TEST_F(Result, NamesItsProfiles) {
   trial_.profiles = {"rig", "top"};
   EXPECT_EQ(result_from_json(to_json(trial_), "f").profiles, trial_.profiles);
@@ -229,6 +238,17 @@ TEST_F(MakeResult, TakesEverythingFromTheRecord) {
   EXPECT_EQ(result.this_run.largest_lag, milliseconds(40));
   EXPECT_EQ(result.this_run.wall, seconds(2));
   EXPECT_EQ(result.versions.at("sut of uav1"), "tether-sut 0.1.0");
+}
+
+TEST_F(MakeResult, TellsOfStopsOnlyWhereASutIsConcurrent) {
+  record::Record record = finished_record();
+  EXPECT_FALSE(make(record, kReached).sync.stops);
+  record.header.suts[0].concurrent = true;
+  record.footer->stops = 7;
+  record.footer->largest_overshoot = milliseconds(2);
+  EXPECT_EQ(make(record, kReached).sync.stops, (StopFigures{7, milliseconds(2)}));
+  record.header.policy = record::kFreeRunning;
+  EXPECT_FALSE(make(record, kReached).sync.stops);
 }
 
 TEST_F(MakeResult, MissesTheGoalWithAReason) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -80,6 +81,7 @@ struct Basis {
   std::set<std::string> ties, machines, suts;
   std::size_t audited = 0, passed = 0, synchronised = 0;
   std::uint64_t violations = 0, interactions = 0;
+  std::optional<experiment::StopFigures> stops;
 
   void add(const experiment::TrialResult& trial) {
     ties.insert(tie_text(trial));
@@ -89,10 +91,17 @@ struct Basis {
     for (const experiment::SutResult& sut : trial.suts) suts.insert(sut.sut);
     violations += trial.sync.causality_violations;
     interactions += trial.sync.interactions;
+    if (trial.sync.stops) add(*trial.sync.stops);
     if (trial.policy == scenario::name(scenario::Policy::kConservativeBarrier)) ++synchronised;
     if (!trial.audit) return;
     ++audited;
     if (trial.audit->passed) ++passed;
+  }
+
+  void add(const experiment::StopFigures& trial) {
+    if (!stops) stops.emplace();
+    stops->count += trial.count;
+    stops->largest_overshoot = std::max(stops->largest_overshoot, trial.largest_overshoot);
   }
 };
 
@@ -118,6 +127,10 @@ Table basis_table(const experiment::CampaignResults& results) {
                 {"Causality violations", std::to_string(basis.violations)},
                 {"Audits passed", fmt::format("{} of {} ({} synchronised trials)", basis.passed,
                                               basis.audited, basis.synchronised)}};
+  if (basis.stops)
+    table.rows.push_back(
+        {"Stops of all threads", fmt::format("{}, at most {:.3f} ms late", basis.stops->count,
+                                             1e3 * to_seconds(basis.stops->largest_overshoot))});
   for (const std::string& tie : basis.ties) table.rows.push_back({"Condition", tie});
   for (const auto& [name, value] : results.manifest.settings) table.rows.push_back({name, value});
   table.notes = results.damaged;

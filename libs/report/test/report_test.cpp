@@ -184,6 +184,17 @@ TEST_F(Report, SaysWhatAScriptedClockCharges) {
               HasSubstr("scripted clock, 2.5 ms for each phase of computing"));
 }
 
+TEST_F(Report, SaysHowLateConcurrentSutsStoodStill) {
+  const auto text = [&] { return to_text(basis_table(read_campaign_results(out_))); };
+  EXPECT_THAT(text(), testing::Not(HasSubstr("Stops of all threads")));
+  for (const std::uint64_t seed : {1u, 2u}) {
+    TrialResult trial = make_trial(scenario(), "target", seed, 0, 3);
+    trial.sync.stops = experiment::StopFigures{100 * seed, Duration(70'000 / seed)};
+    write(trial);
+  }
+  EXPECT_THAT(text(), HasSubstr("300, at most 0.070 ms late"));
+}
+
 TEST_F(Report, OfOneRunHasItsLimits) {
   TrialResult trial = make_trial(scenario(), "target", 2, 3, 12.5);
   trial.metrics[0].value.reset();

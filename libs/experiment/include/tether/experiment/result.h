@@ -53,12 +53,21 @@ struct SutResult {
   friend bool operator==(const SutResult&, const SutResult&) = default;
 };
 
+/// Where concurrent SUTs stood still.
+struct StopFigures {
+  std::uint64_t count = 0;
+  Duration largest_overshoot{0};  ///< by how much one came after the reply for which it was
+
+  friend bool operator==(const StopFigures&, const StopFigures&) = default;
+};
+
 /// What the barrier did; the same in every run with the same execution times.
 struct SyncFigures {
   std::uint64_t interactions = 0;
   std::uint64_t causality_violations = 0;
   Duration largest_grid_error{0};
   SimTime st_at_end;
+  std::optional<StopFigures> stops{};  ///< none without a concurrent SUT
 
   friend bool operator==(const SyncFigures&, const SyncFigures&) = default;
 };

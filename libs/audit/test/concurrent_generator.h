@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+#include <tether/record/reader.h>
+
+namespace tether::audit {
+
+struct ConcurrentOptions {
+  std::uint64_t seed = 1;
+  int threads = 4;
+  int interactions = 300;
+  double wall_factor = 1.0;  ///< seconds of ET per second of the host's clock
+};
+
+/// A record of one concurrent SUT, on a wall clock, that keeps every rule by construction: its
+/// threads ask, all of them stand still, the simulation catches up, and they go on. Steps of 1 ms.
+record::Record generate_concurrent(const ConcurrentOptions& options);
+
+}  // namespace tether::audit
