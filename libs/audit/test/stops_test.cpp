@@ -250,19 +250,6 @@ const Planted kPlanted[] = {
        while (r.interactions[last - 1].at != r.interactions[last].at) --last;
        r.interactions[last - 1].message.kind = record::kFinish;
      }},
-    {"missed_what_was_there",
-     {1},
-     [](Record& r) {
-       Interaction& m =
-           find(
-               r, [](const Interaction& i) { return is_look(i) && i.sampled_at && !i.latest; }, 0)
-               .message;
-       m.sampled_at.reset();
-       m.sample_state_at.reset();
-       m.available_at.reset();
-       m.sample_index = 0;
-       m.grid_error = same_instant(m.reply_at) - m.st_at_release;
-     }},
     {"found_nothing_without_being_asked_to",
      {0},
      [](Record& r) {
@@ -297,6 +284,30 @@ TEST_P(PlantedStop, IsFound) {
 
 INSTANTIATE_TEST_SUITE_P(All, PlantedStop, testing::ValuesIn(kPlanted),
                          [](const auto& planted) { return std::string(planted.param.what); });
+
+// A look that found a measurement is made to say that it found none: found out whether it asked for
+// a new one or for the newest.
+TEST(MissedMeasurement, IsFound) {
+  int of_new = 0, of_latest = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Record sound = generate_concurrent({.seed = seed, .threads = 2});
+    for (std::size_t i = 0; i < sound.interactions.size(); ++i) {
+      if (!is_look(sound.interactions[i].message) || !sound.interactions[i].message.sampled_at)
+        continue;
+      Record record = sound;
+      Interaction& m = record.interactions[i].message;
+      ++(m.latest ? of_latest : of_new);
+      m.sampled_at.reset();
+      m.sample_state_at.reset();
+      m.available_at.reset();
+      m.sample_index = 0;
+      m.grid_error = same_instant(m.reply_at) - m.st_at_release;
+      EXPECT_TRUE(rules_of(audit(record)).contains(1)) << seed << " " << m.sequence;
+    }
+  }
+  EXPECT_GT(of_new, 0);
+  EXPECT_GT(of_latest, 0);
+}
 
 TEST(FreeRunningConcurrent, HasNoStops) {
   Record record = generate_concurrent({.seed = 2});
