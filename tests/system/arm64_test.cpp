@@ -31,14 +31,13 @@ std::string nameless(const std::string& text) {
 
 class Arm64 : public testing::Test {
  protected:
-  /// One run whose SUT is started so, with a scripted clock unless `clock` says otherwise.
-  Output fly(const std::string& out, const std::vector<std::string>& sut,
-             const std::string& clock = "scripted*2") const {
+  /// One run whose SUT is started so, with a scripted clock.
+  void fly(const std::string& out, const std::vector<std::string>& sut) const {
     ExternalRun run(scenario_, folder_ / out);
-    const auto process = run.start_sut(sut, {{"TETHER_CLOCK", clock}});
-    const Output output = run.wait();
-    EXPECT_EQ(output.code, 0) << output.err << process->err();
-    return output;
+    const Output flown = run.start_sut(sut)->wait(90s);
+    ASSERT_EQ(flown.code, 0) << flown.err;
+    const Output output = run.wait(20s);
+    ASSERT_EQ(output.code, 0) << output.err;
   }
 
   TempFolder folder_;
@@ -46,11 +45,16 @@ class Arm64 : public testing::Test {
 };
 
 TEST_F(Arm64, FliesAsTheTargetOfASynchronisedRun) {
-  fly("out", emulated(face_sut()), "cpu");
+  const auto target = kSources / "profiles/targets/qemu_aarch64.toml";
+  const Output output = run(
+      tether({"run", scenario_, "--target", target, "--out", folder_ / "out", "--quiet"}), 100s);
+  ASSERT_EQ(output.code, 0) << output.err;
   const auto result = read_result(folder_ / "out");
+  EXPECT_EQ(result["condition"], "qemu_aarch64");
   EXPECT_TRUE(result["audit"]["passed"]);
   EXPECT_EQ(result["sync"]["causality_violations"], 0);
   EXPECT_THAT(result["suts"][0]["sut"].get<std::string>(), HasSubstr("(aarch64)"));
+  EXPECT_THAT(read_record(folder_ / "out").header.suts.at(0).sut, HasSubstr("(aarch64)"));
 }
 
 // Every image is tracked, every command given, as on this machine, to the last bit.
