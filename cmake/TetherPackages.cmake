@@ -35,6 +35,22 @@ configure_file(packaging/changelog.in "${documents}/changelog" @ONLY)
 if(TETHER_GZIP)
   execute_process(COMMAND ${TETHER_GZIP} -9nf "${documents}/changelog")
 endif()
+
+# Manual pages go with what they are about, packed as Debian has them.
+foreach(page IN ITEMS tether.1:tether tether-sut.1:tether-sut tether-exec.1:tether-sut tether-client.3:client-dev)
+  string(REGEX MATCH "^(.*([0-9])):(.*)$" match "${page}")
+  set(source "${PROJECT_SOURCE_DIR}/docs/man/${CMAKE_MATCH_1}")
+  set(section "${CMAKE_INSTALL_MANDIR}/man${CMAKE_MATCH_2}")
+  set(component "${CMAKE_MATCH_3}")
+  if(TETHER_GZIP)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${source}")
+    set(packed "${documents}/${CMAKE_MATCH_1}.gz")
+    execute_process(COMMAND ${TETHER_GZIP} -9nc "${source}" OUTPUT_FILE "${packed}")
+    set(source "${packed}")
+  endif()
+  install(FILES "${source}" DESTINATION "${section}" COMPONENT ${component})
+endforeach()
+
 foreach(component IN LISTS components)
   set(destination "${CMAKE_INSTALL_DATADIR}/doc/${package_of_${component}}")
   install(FILES packaging/copyright DESTINATION "${destination}" COMPONENT ${component})
@@ -56,7 +72,6 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 if(CMAKE_CROSSCOMPILING)
   set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
@@ -98,6 +113,10 @@ describe(tether-sut science
 describe(client libs
   "The client library of Tether: what a UAV's own program links to, to be flown by"
   "Tether. It reads sensors and sends commands, and measures the time between.")
+
+file(WRITE "${documents}/triggers" "activate-noawait ldconfig\n")
+file(WRITE "${documents}/shlibs" "libtether-client 1 libtether-client1 (>= ${PROJECT_VERSION})\n")
+set(CPACK_DEBIAN_CLIENT_PACKAGE_CONTROL_EXTRA "${documents}/triggers" "${documents}/shlibs")
 
 describe(client-dev libdevel
   "The client library of Tether, development files: headers for C and C++17, files"
