@@ -1,0 +1,187 @@
+#include "support/trials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <signal.h>
+
+/// Programs of several threads and processes under tether-exec, with the coordinator and the
+/// simulator.
+namespace tether::system_test {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+/// Both ways to stop a program.
+class Threads : public testing::TestWithParam<std::string> {
+ protected:
+  /// threads_sut in that mode, as one run; returns the details of its end.
+  nlohmann::json fly(const std::string& mode, const std::string& seconds,
+                     const std::vector<std::string>& options = {}) {
+    const auto out = folder_ / ("run" + std::to_string(++runs_));
+    std::vector<std::string> arguments{"run", scenario(mode, seconds), "--out", out, "--quiet"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Output ended = run(tether(arguments), 60s);
+    const std::string said = read_text(out / "sut-uav1.log");
+    EXPECT_EQ(ended.code, 0) << ended.err << said;  // so the audit has passed
+    return nlohmann::json::parse(said.substr(said.find('{')));
+  }
+
+  std::filesystem::path scenario(const std::string& mode, const std::string& seconds) {
+    const std::string core = std::thread::hardware_concurrency() > 1 ? R"(, "0")" : "";
+    return write_hover_scenario(folder_.path(), mode,
+                                {{"[\"" + bad_sut_program().string() + "\", \"" + mode + "\"]",
+                                  "[\"" TETHER_EXEC_PROGRAM "\", \"--freezer\", \"" + GetParam() +
+                                      "\", \"" THREADS_SUT_PROGRAM "\", \"" + mode + "\", \"" +
+                                      seconds + "\"" + core + "]"},
+                                 {"clock = \"cpu\"", "clock = \"wall\""},
+                                 {"hang_limit_s = 2", "hang_limit_s = 20"}});
+  }
+
+  TempFolder folder_;
+  int runs_ = 0;
+};
+
+/// Keeps simulator and coordinator off the first core, which is the program's.
+class OffTheFirstCore {
+ public:
+  OffTheFirstCore() {
+    sched_getaffinity(0, sizeof before_, &before_);
+    cpu_set_t cores = before_;
+    CPU_CLR(0, &cores);
+    if (CPU_COUNT(&cores) > 0) sched_setaffinity(0, sizeof cores, &cores);
+  }
+  ~OffTheFirstCore() { sched_setaffinity(0, sizeof before_, &before_); }
+
+ private:
+  cpu_set_t before_{};
+};
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+/// Work per second of ET. What others on its core take from the program is not its doing, so each
+/// second that it could have run counts as one in which it did.
+double work_per_s(const nlohmann::json& details) {
+  const double ran_s = details["ran_s"];
+  const double could_have_run_s = ran_s + details["delayed_s"].get<double>();
+  return details["iterations"].get<double>() / ran_s * could_have_run_s /
+         details["et_s"].get<double>();
+}
+
+// A simulator at a tenth of real time holds the program nine tenths of the time. Would its threads
+// go on computing meanwhile, they would do ten times the work in the same ET.
+TEST_P(Threads, DoTheSameWorkHoweverSlowTheSimulatorIs) {
+  const OffTheFirstCore elsewhere;
+  std::vector<double> ratios;
+  for (int i = 0; i < 5; ++i) {
+    const double unhindered = work_per_s(fly("count", "0.3"));
+    const double held = work_per_s(fly("count", "0.3", {"--real-time-factor", "0.1"}));
+    ratios.push_back(held / unhindered);
+  }
+  EXPECT_NEAR(median(ratios), 1.0, 0.03) << testing::PrintToString(ratios);
+}
+
+TEST_P(Threads, ReadFromAChildProcessToo) {
+  EXPECT_GE(fly("child", "0.3")["images"].get<int>(), 1);
+}
+
+TEST_P(Threads, ArePushedEveryMeasurement) {
+  const auto details = fly("push", "1");
+  for (const char* sensor : {"camera", "imu"}) {
+    EXPECT_GE(details[sensor]["count"].get<int>(), 5) << sensor;
+    EXPECT_EQ(details[sensor]["lost"], 0) << sensor;
+    EXPECT_EQ(details[sensor]["from_the_future"], 0) << sensor;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Freezers, Threads, testing::Values("cgroup", "signal"),
+                         [](const auto& freezer) { return freezer.param; });
+
+// ---- How it ends, without a coordinator
+
+class Ends : public testing::Test {
+ protected:
+  Command exec(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> all{TETHER_EXEC_PROGRAM};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return {all,
+            {{"TETHER_ADDRESS", "127.0.0.1:1"},
+             {"TETHER_TOKEN", "token"},
+             {"TETHER_TEST_MARK", mark_},
+             {"TMPDIR", folder_.path().string()}},
+            {}};
+  }
+  void expect_nothing_left() {
+    EXPECT_TRUE(wait_until_gone(mark_));
+    for (int i = 0; i < 500 && !std::filesystem::is_empty(folder_.path()); ++i) {
+      std::this_thread::sleep_for(10ms);
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+  }
+
+  TempFolder folder_;
+  std::string mark_ = "tether-exec-" + folder_.path().filename().string();
+};
+
+TEST_F(Ends, WithTheCodeOfItsCommand) {
+  for (const std::string freezer : {"auto", "signal"}) {
+    EXPECT_EQ(run(exec({"--freezer", freezer, "sh", "-c", "exit 5"})).code, 5);
+    EXPECT_EQ(run(exec({"--freezer", freezer, "sh", "-c", "kill -SEGV $$"})).code, 128 + SIGSEGV);
+    EXPECT_EQ(run(exec({"--freezer", freezer, "sh", "-c", "sleep 1000 & exit 0"})).code, 0);
+    expect_nothing_left();
+  }
+}
+
+TEST_F(Ends, WithWhatIsWrong) {
+  const Output missing = run(exec({"/nowhere/program"}));
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_THAT(missing.err, HasSubstr("cannot start '/nowhere/program': No such file"));
+  const Output not_executable = run(exec({"/etc/passwd"}));
+  EXPECT_EQ(not_executable.code, 2);
+  EXPECT_THAT(not_executable.err, HasSubstr("Permission denied"));
+  Command unset = exec({"true"});
+  unset.environment[0].second = "";
+  EXPECT_EQ(run(unset).code, 2);
+  expect_nothing_left();
+}
+
+TEST_F(Ends, PassingOnWhatInterruptsIt) {
+  Process process(
+      exec({"sh", "-c", "trap 'exit 9' TERM; echo ready; while :; do sleep 0.1; done"}));
+  ASSERT_TRUE(process.wait_for_out("ready", 20s));
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(10s).code, 9);
+  expect_nothing_left();
+}
+
+TEST_F(Ends, KillingWhoDoesNotListen) {
+  Process process(exec({"sh", "-c", "trap '' TERM; echo ready; while :; do sleep 0.1; done"}));
+  ASSERT_TRUE(process.wait_for_out("ready", 20s));
+  process.signal(SIGTERM);
+  EXPECT_EQ(process.wait(20s).code, 128 + SIGKILL);
+  expect_nothing_left();
+}
+
+TEST_F(Ends, KilledItselfItLeavesNothing) {
+  for (const std::string freezer : {"auto", "signal"}) {
+    Process process(exec(
+        {"--freezer", freezer, "sh", "-c", "sleep 1000 & echo ready; kill -STOP $$; sleep 1000"}));
+    ASSERT_TRUE(process.wait_for_out("ready", 20s));
+    process.signal(SIGKILL);
+    process.wait(10s);
+    expect_nothing_left();
+  }
+}
+
+}  // namespace
+}  // namespace tether::system_test
