@@ -102,8 +102,8 @@ describe(tether science
   "The host's half of Tether. The software under test runs on the board that it is"
   "meant for, or on a stand-in; this program plays the UAV, its sensors and the"
   "world, and ties simulated time to the time that the board spent computing.")
-# Drawing asks for its driver when it runs, so that no program's header names it.
-set(CPACK_DEBIAN_TETHER_PACKAGE_DEPENDS "libegl1, libgl1-mesa-dri")
+# The driver that draws is looked for at run time, so that no program names it.
+set(CPACK_DEBIAN_TETHER_PACKAGE_DEPENDS "libgl1-mesa-dri")
 set(CPACK_DEBIAN_TETHER_PACKAGE_RECOMMENDS "tether-sut, gnuplot-nox")
 
 describe(tether-sut science
