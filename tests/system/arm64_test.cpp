@@ -79,5 +79,27 @@ TEST_F(Arm64, ComputesWhatThisMachineComputes) {
   EXPECT_TRUE(record == comparable(timeless_record(folder_ / "there"))) << "the records differ";
 }
 
+/// The names in a package's Depends; each has to come with a least version.
+std::vector<std::string> needs_of(const std::string& package) {
+  const auto file = kSources / "build/arm64/packages" / (package + "_" TETHER_VERSION "_arm64.deb");
+  const Output told = run({{"dpkg-deb", "-f", file, "Depends"}, {}, {}});
+  EXPECT_EQ(told.code, 0) << told.err << "scripts/build-arm64 makes it";
+  std::vector<std::string> names;
+  const std::regex need("([a-z0-9.+-]+) \\(>= [^)]+\\)");
+  for (std::sregex_iterator it(told.out.begin(), told.out.end(), need), end; it != end; ++it)
+    names.push_back((*it)[1]);
+  return names;
+}
+
+TEST(Arm64Packages, NeedWhatDebianHas) {
+  const auto of_sut = needs_of("tether-sut");
+  EXPECT_THAT(of_sut, testing::IsSupersetOf({"libc6", "libstdc++6", "libopencv-core406"}));
+  EXPECT_THAT(needs_of("libtether-client1"),
+              testing::UnorderedElementsAre("libc6", "libgcc-s1", "libstdc++6"));
+  const std::string installed = read_text(kSources / "build/sysroot-arm64/var/lib/dpkg/status");
+  for (const std::string& name : of_sut)
+    EXPECT_THAT(installed, HasSubstr("Package: " + name + "\n"));
+}
+
 }  // namespace
 }  // namespace tether::system_test
