@@ -352,6 +352,7 @@ RunReport Coordinator::Impl::close_run() {
   footer.st_at_end = st_;
   footer.wall = report.wall;
   for (const SutReport& sut : report.suts) footer.et_at_end.push_back(sut.et);
+  if (hooks_.read_target) footer.target_after = hooks_.read_target();
   log_.end(footer);
   return report;
 }

@@ -288,6 +288,18 @@ TEST_F(CoordinatorTest, ALostSimulatorEndsTheRun) {
   EXPECT_TRUE(recorder_.footer);
 }
 
+TEST_F(CoordinatorTest, TheTargetIsReadOnceWhenTheRunHasEnded) {
+  int reads = 0;
+  hooks_.read_target = [&] {
+    EXPECT_FALSE(recorder_.footer);
+    ++reads;
+    return record::Readings{{"governor", "performance"}};
+  };
+  run({sleep(Duration(0), milliseconds(50))});
+  EXPECT_EQ(reads, 1);
+  EXPECT_EQ(recorder_.footer->target_after, (record::Readings{{"governor", "performance"}}));
+}
+
 TEST_F(CoordinatorTest, TheCallerMayInterrupt) {
   hooks_.should_stop = [] {
     return std::optional(std::pair(RunEnd::kInterrupted, std::string("Ctrl-C")));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <tether/experiment/result.h>
+#include <tether/experiment/target_readings.h>
 
 namespace tether::experiment {
 namespace {
@@ -109,6 +110,22 @@ void settle(TrialResult& result, const std::string& reason_of_end) {
                           : (missed.empty() ? "the time limit was reached" : missed);
 }
 
+// A board that was slowed down is part of why the trial came out as it did.
+void take_target(TrialResult& result, const record::Record& record) {
+  if (!record.header.target) return;
+  const record::TargetInfo& info = *record.header.target;
+  TargetReport target{.name = info.name, .address = info.address, .before = info.before};
+  if (record.footer) target.after = record.footer->target_after;
+  const bool is_board = !info.address.empty();
+  for (const RunWarning& warning : run_warnings(target.before, target.after, is_board)) {
+    target.warnings.push_back(warning.text);
+    if (!warning.spoils || !is_board) continue;
+    target.is_spoiled = true;
+    result.reason += "; but " + warning.text;
+  }
+  result.this_run.target = std::move(target);
+}
+
 }  // namespace
 
 TrialResult make_result(const scenario::Scenario& scenario, const scenario::Condition& condition,
@@ -136,6 +153,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   result.this_run.wall = footer.wall;
   result.this_run.largest_lag = footer.largest_lag;
   settle(result, footer.reason);
+  take_target(result, record);
   return result;
 }
 

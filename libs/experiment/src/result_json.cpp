@@ -86,6 +86,21 @@ Json json_of(const std::optional<AuditVerdict>& audit) {
   return Json{{"passed", audit->passed}, {"summary", audit->summary}};
 }
 
+Json json_of(const std::map<std::string, std::string>& texts) {
+  Json json = Json::object();
+  for (const auto& [key, text] : texts) json[key] = text;
+  return json;
+}
+
+Json json_of(const TargetReport& target) {
+  return Json{{"name", target.name},
+              {"address", target.address},
+              {"before", json_of(target.before)},
+              {"after", json_of(target.after)},
+              {"warnings", target.warnings},
+              {"is_spoiled", target.is_spoiled}};
+}
+
 Json json_of(const ThisRun& run) {
   Json json{{"started_at", run.started_at},
             {"machine", run.machine},
@@ -93,12 +108,7 @@ Json json_of(const ThisRun& run) {
             {"largest_lag_s", exact_seconds(run.largest_lag)},
             {"attempts", run.attempts}};
   if (!run.first_failure.empty()) json["first_failure"] = run.first_failure;
-  return json;
-}
-
-Json json_of(const std::map<std::string, std::string>& texts) {
-  Json json = Json::object();
-  for (const auto& [key, text] : texts) json[key] = text;
+  if (run.target) json["target"] = json_of(*run.target);
   return json;
 }
 
@@ -144,6 +154,15 @@ SyncFigures read_sync(const JsonReader& json) {
   return sync;
 }
 
+TargetReport read_target(const JsonReader& json) {
+  return {.name = json.text("name"),
+          .address = json.text("address"),
+          .before = json.object("before").all_texts(),
+          .after = json.object("after").all_texts(),
+          .warnings = json.texts("warnings"),
+          .is_spoiled = json.boolean("is_spoiled")};
+}
+
 ThisRun read_this_run(const JsonReader& json) {
   ThisRun run;
   run.started_at = json.text("started_at");
@@ -154,6 +173,7 @@ ThisRun read_this_run(const JsonReader& json) {
   if (attempts < 1 || attempts > 1000) json.fail("'attempts' is out of range");
   run.attempts = static_cast<int>(attempts);
   if (json.has("first_failure")) run.first_failure = json.text("first_failure");
+  if (json.has("target")) run.target = read_target(json.object("target"));
   return run;
 }
 

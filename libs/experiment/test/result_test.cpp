@@ -53,6 +53,17 @@ TEST_F(Result, TextIsTheSameApartFromThisRun) {
   EXPECT_EQ(a.substr(0, part), b.substr(0, part));
 }
 
+TEST_F(Result, KeepsWhatWasReadOfTheTarget) {
+  trial_.this_run.target =
+      TargetReport{.name = "board",
+                   .address = "ssh://pi@board",
+                   .before = {{"governor", "performance"}},
+                   .after = {{"governor", "performance"}, {"throttled", "0x4"}},
+                   .warnings = {"the target was throttled"},
+                   .is_spoiled = true};
+  EXPECT_EQ(result_from_json(to_json(trial_), "f").this_run.target, trial_.this_run.target);
+}
+
 TEST_F(Result, IsReadableForPeople) {
   const std::string text = to_json(trial_);
   EXPECT_THAT(text, HasSubstr("\"outcome\": \"goal_reached\""));
@@ -195,6 +206,26 @@ class MakeResult : public Result {
     return make_result(scenario_, scenario_.conditions[1], record, ends);
   }
 };
+
+TEST_F(MakeResult, NamesAThrottledBoardInItsReason) {
+  record::Record record = finished_record();
+  record.header.target = {"board", "ssh://pi@board", {{"throttled", "0x0"}}};
+  EXPECT_EQ(make(record, kReached).reason, "every SUT reached its goal within the limits");
+  EXPECT_FALSE(make(record, kReached).this_run.target->is_spoiled);
+
+  record.footer->target_after = {{"throttled", "0x50005"}};
+  const TrialResult result = make(record, kReached);
+  EXPECT_THAT(result.reason, HasSubstr("within the limits; but the target was throttled"));
+  ASSERT_TRUE(result.this_run.target);
+  EXPECT_TRUE(result.this_run.target->is_spoiled);
+  EXPECT_EQ(result.this_run.target->after.at("throttled"), "0x50005");
+  EXPECT_EQ(result.outcome, Outcome::kGoalReached);
+
+  // Of the host, where times need not be its own, it is a warning.
+  record.header.target->address.clear();
+  EXPECT_EQ(make(record, kReached).reason, "every SUT reached its goal within the limits");
+  EXPECT_EQ(make(record, kReached).this_run.target->warnings.size(), 1u);
+}
 
 TEST_F(MakeResult, TakesWhatAScriptedSutIsChargedFromTheCondition) {
   scenario::Condition& condition = campaign_.scenarios[0].scenario.conditions[1];

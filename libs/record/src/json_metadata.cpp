@@ -190,10 +190,25 @@ ExecTime read_exec_time(const Json& json) {
   return from_ns<ExecTime>(json.get<std::int64_t>());
 }
 
+constexpr std::string_view kReading = "target/";
+
+void add_readings(StringMap& values, const Readings& readings) {
+  for (const auto& [name, reading] : readings)
+    values[std::string(kReading) + to_utf8(name)] = to_utf8(reading);
+}
+
+Readings readings(const StringMap& values) {
+  Readings readings;
+  for (const auto& [name, reading] : values) {
+    if (name.starts_with(kReading)) readings[name.substr(kReading.size())] = reading;
+  }
+  return readings;
+}
+
 }  // namespace
 
 StringMap to_metadata(const Header& header) {
-  return {
+  StringMap values = {
       {"schema_version", std::to_string(header.schema_version)},
       {"tether_version", to_utf8(header.tether_version)},
       {"scenario", to_utf8(header.scenario)},
@@ -209,6 +224,12 @@ StringMap to_metadata(const Header& header) {
       {"sensors", list_text(header.sensors, append_sensor)},
       {"anchors", list_text(header.anchors, append_anchor)},
   };
+  if (header.target) {
+    values["target_name"] = to_utf8(header.target->name);
+    values["target_address"] = to_utf8(header.target->address);
+    add_readings(values, header.target->before);
+  }
+  return values;
 }
 
 int schema_version(const StringMap& values) {
@@ -231,6 +252,10 @@ Header header_from_metadata(const StringMap& values) {
   header.suts = list(values, "suts", read_sut);
   header.sensors = list(values, "sensors", read_sensor);
   header.anchors = list(values, "anchors", read_anchor);
+  if (values.contains("target_name")) {
+    header.target = {value(values, "target_name"), value(values, "target_address"),
+                     readings(values)};
+  }
   return header;
 }
 
@@ -252,6 +277,7 @@ StringMap to_metadata(const Footer& footer) {
     values["stops"] = std::to_string(footer.stops);
     values["largest_overshoot_ns"] = std::to_string(to_ns(footer.largest_overshoot));
   }
+  add_readings(values, footer.target_after);
   return values;
 }
 
@@ -270,6 +296,7 @@ Footer footer_from_metadata(const StringMap& values) {
     footer.stops = number<std::uint64_t>(values, "stops");
     footer.largest_overshoot = time<Duration>(values, "largest_overshoot_ns");
   }
+  footer.target_after = readings(values);
   return footer;
 }
 

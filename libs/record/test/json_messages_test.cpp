@@ -207,6 +207,19 @@ TEST(JsonMetadata, HeaderRoundTrip) {
   EXPECT_EQ(out.anchors[0].q_WA[2], -0.5);
 }
 
+TEST(JsonMetadata, TheTargetsReadingsComeBack) {
+  const Header out = header_from_metadata(to_metadata(header()));
+  ASSERT_TRUE(out.target);
+  EXPECT_EQ(out.target->name, "my board");
+  EXPECT_EQ(out.target->address, "ssh://pi@board");
+  EXPECT_EQ(out.target->before, header().target->before);
+  EXPECT_EQ(footer_from_metadata(to_metadata(footer())).target_after, footer().target_after);
+
+  Header unread = header();
+  unread.target.reset();
+  EXPECT_FALSE(header_from_metadata(to_metadata(unread)).target);
+}
+
 TEST(JsonMetadata, ACameraIsDescribedAndNothingElse) {
   const Header out = header_from_metadata(to_metadata(header()));
   EXPECT_FALSE(out.sensors[1].camera);
@@ -293,8 +306,11 @@ TEST(JsonMetadata, FooterRoundTrip) {
 }
 
 TEST(JsonMetadata, MissingAndWrongValuesAreNamed) {
-  for (const auto& [name, unused] : to_metadata(header())) {
-    StringMap values = to_metadata(header());
+  // A record need not say anything of its target.
+  Header required = header();
+  required.target.reset();
+  for (const auto& [name, unused] : to_metadata(required)) {
+    StringMap values = to_metadata(required);
     values.erase(name);
     try {
       header_from_metadata(values);

@@ -137,6 +137,8 @@ inline Header header() {
                                         -0.4,
                                         0.5};
   header.anchors = {{"box", "box", {0.4, 0.5, 0.6}, {8, 0, 1.5}, {0.5, 0.5, -0.5, 0.5}}};
+  header.target = TargetInfo{
+      "my board", "ssh://pi@board", {{"governor", "ondemand"}, {"throttled", "0x50005"}}};
   return header;
 }
 
@@ -153,6 +155,7 @@ inline Footer footer() {
   footer.largest_grid_error = Duration(500'001);
   footer.stops = 1;
   footer.largest_overshoot = Duration(321);
+  footer.target_after = {{"temperature_mc", "82500"}};
   return footer;
 }
 

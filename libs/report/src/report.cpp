@@ -120,6 +120,15 @@ void add_second_attempt_notes(Table& table, const experiment::ConditionResults& 
   }
 }
 
+void add_target_notes(Table& table, const experiment::ConditionResults& results) {
+  for (const experiment::TrialResult& trial : results.trials) {
+    if (!trial.this_run.target) continue;
+    for (const std::string& warning : trial.this_run.target->warnings)
+      table.notes.push_back(
+          fmt::format("{}, seed {}: {}.", results.condition, trial.seed, warning));
+  }
+}
+
 // Comparisons.
 
 std::optional<Comparison> compare(const std::string& metric, const std::string& unit,
@@ -206,6 +215,7 @@ Table paper_form_table(const experiment::ScenarioResults& scenario) {
   for (const experiment::ConditionResults& results : scenario.conditions) {
     add_missing_notes(table, results, columns);
     add_second_attempt_notes(table, results);
+    add_target_notes(table, results);
   }
   return table;
 }

@@ -111,6 +111,22 @@ std::string comparison_sentence(const experiment::ScenarioResults& scenario,
   return start + with_and(differences) + (alike.empty() ? "." : "; " + not_apart + ".");
 }
 
+/// Boards that were slowed down; empty: none.
+std::string spoiled_sentence(const experiment::ScenarioResults& scenario) {
+  std::vector<std::string> parts;
+  for (const experiment::ConditionResults& condition : scenario.conditions) {
+    const auto spoiled = std::ranges::count_if(condition.trials, [](const auto& trial) {
+      return trial.this_run.target && trial.this_run.target->is_spoiled;
+    });
+    if (spoiled > 0)
+      parts.push_back(fmt::format("{} of {} trials on {}", spoiled, condition.trials.size(),
+                                  in_quotes(condition.condition)));
+  }
+  if (parts.empty()) return "";
+  return fmt::format(" The target was throttled in {}: their times are not those of the board.",
+                     with_and(parts));
+}
+
 // Problems.
 
 std::string place(const experiment::ScenarioResults& scenario,
@@ -135,6 +151,9 @@ void add_trial_problems(std::vector<std::string>& lines, const std::string& wher
   if (trial.sync.causality_violations > 0)
     lines.push_back(
         fmt::format("{}: {} causality violations", which, trial.sync.causality_violations));
+  if (trial.this_run.target)
+    for (const std::string& warning : trial.this_run.target->warnings)
+      lines.push_back(fmt::format("{}: {}", which, warning));
 }
 
 void add_missing_seeds(std::vector<std::string>& lines, const std::string& where,
@@ -160,7 +179,7 @@ std::string verdict(const experiment::ScenarioResults& scenario) {
   const std::string& first = scenario.conditions.front().condition;
   for (const experiment::ConditionResults& other : scenario.conditions)
     text += comparison_sentence(scenario, comparisons, first, other.condition);
-  return text;
+  return text + spoiled_sentence(scenario);
 }
 
 std::string optimism_sentence(const Comparison& comparison, const experiment::MetricValue& metric) {

@@ -104,6 +104,24 @@ TEST(Optimism, ThatTheIntervalDoesNotShowIsNotClaimed) {
               HasSubstr("too few trials for an interval"));
 }
 
+TEST(Verdict, NamesThrottledBoards) {
+  auto results = scenario({1, 2, 3}, {1, 2, 3});
+  EXPECT_THAT(verdict(results), Not(HasSubstr("throttled")));
+  auto& target = results.conditions[1].trials[2].this_run.target.emplace();
+  target.warnings = {"the target was throttled (under-voltage)"};
+  EXPECT_THAT(verdict(results), Not(HasSubstr("throttled")));
+  target.is_spoiled = true;
+  EXPECT_THAT(verdict(results), HasSubstr("throttled in 1 of 3 trials on “target”"));
+}
+
+TEST(Problems, NameWhatTheTargetSuffered) {
+  experiment::CampaignResults results;
+  results.manifest.seeds = {1, 2};
+  results.scenarios = {scenario({1, 2}, {1, 2})};
+  results.scenarios[0].conditions[1].trials[0].this_run.target.emplace().warnings = {"it was hot"};
+  EXPECT_THAT(problems(results), ElementsAre("turn, target, seed 1: it was hot"));
+}
+
 TEST(Problems, AreEachNamed) {
   experiment::CampaignResults results;
   results.manifest.seeds = {1, 2, 3, 4};

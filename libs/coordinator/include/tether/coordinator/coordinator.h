@@ -106,6 +106,9 @@ struct RunHooks {
   std::function<void(const RunStatus&)> on_status;
   /// Somebody was not let in, or sent what no SUT sends: whence, and why. One line.
   std::function<void(const std::string&)> on_refused;
+  /// Once, when a run that had begun has ended and its SUTs have been told: how the machine that
+  /// they ran on is doing, for the record.
+  std::function<record::Readings()> read_target;
 };
 
 /// One run. Construct, let `events()` hear a server, call `run` once.

@@ -79,14 +79,26 @@ struct AuditVerdict {
   friend bool operator==(const AuditVerdict&, const AuditVerdict&) = default;
 };
 
+/// The machine that the SUTs ran on, as it was around the run.
+struct TargetReport {
+  std::string name;
+  std::string address;  ///< "ssh://user@board"; empty: the host
+  record::Readings before, after;
+  std::vector<std::string> warnings;  ///< one line each
+  bool is_spoiled = false;            ///< one of them says that its times are not to be trusted
+
+  friend bool operator==(const TargetReport&, const TargetReport&) = default;
+};
+
 /// Whatever may differ between two runs of the same trial with the same execution times.
 struct ThisRun {
   std::string started_at;  ///< ISO 8601, UTC
   std::string machine;
   Duration wall{0};
-  Duration largest_lag{0};    ///< depends on how far the simulator had come on its own
-  int attempts = 1;           ///< 2: the first one failed to set up
-  std::string first_failure;  ///< its reason
+  Duration largest_lag{0};               ///< depends on how far the simulator had come on its own
+  int attempts = 1;                      ///< 2: the first one failed to set up
+  std::string first_failure;             ///< its reason
+  std::optional<TargetReport> target{};  ///< none where nobody read it
 
   friend bool operator==(const ThisRun&, const ThisRun&) = default;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -152,6 +153,15 @@ struct SutInfo {
   Duration command_latency{0};  ///< from a command's stamp to its effect, before the grid rounds up
   bool concurrent = false;      ///< several threads, each with calls of its own
 };
+/// What a machine told of itself, by name, as apps/tether/board/target_probe.sh has it: "governor",
+/// "temperature_mc", … What it could not tell is not there.
+using Readings = std::map<std::string, std::string>;
+/// The machine that the SUTs ran on.
+struct TargetInfo {
+  std::string name;
+  std::string address;  ///< "ssh://user@board"; empty: the host
+  Readings before;      ///< before a SUT was started
+};
 /// What rests under every number: written first (metadata record "tether"), as names and values.
 struct Header {
   int schema_version = kSchemaVersion;
@@ -168,6 +178,7 @@ struct Header {
   std::vector<SutInfo> suts;
   std::vector<SensorInfo> sensors;
   std::vector<Anchor> anchors;
+  std::optional<TargetInfo> target{};  ///< none in records of Tether 0.1.0
 };
 
 /// How the run ended: written last (metadata record "tether.end"). A record without it was cut
@@ -183,6 +194,7 @@ struct Footer {
   std::uint64_t causality_violations = 0;
   Duration largest_lag{0};  ///< 0 when none was positive
   Duration largest_grid_error{0};
+  Readings target_after{};  ///< of the machine that the SUTs ran on, once the run had ended
   // Of concurrent SUTs.
   std::uint64_t stops = 0;        ///< in the record
   Duration largest_overshoot{0};  ///< Stop::at − Stop::reply_at: by how much a freeze came late
