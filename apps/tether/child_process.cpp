@@ -69,17 +69,36 @@ cpu_set_t to_set(const std::vector<int>& cpus) {
   return set;
 }
 
+/// A child's standard streams; those of -1 are /dev/null.
+struct Streams {
+  int in = -1, out = -1, err = -1;
+  bool owns_in = true;
+};
+
+void close_all(const Streams& streams) {
+  if (streams.owns_in && streams.in >= 0) close(streams.in);
+  close(streams.out);
+  if (streams.err != streams.out) close(streams.err);
+}
+
+Streams open_streams(const ChildCommand& command) {
+  Streams streams{.in = command.input_pipe, .owns_in = command.input_pipe < 0};
+  if (!command.input.empty()) streams.in = open(command.input.c_str(), O_RDONLY | O_CLOEXEC);
+  streams.out = open_log(command.log);
+  streams.err = command.errors.empty() ? streams.out : open_log(command.errors);
+  return streams;
+}
+
 // Between fork and exec only calls that are safe after a fork of a program with threads. Tells
 // `report` why it failed.
 [[noreturn]] void become(const char* program, char* const* arguments, char* const* environment,
-                         int log, const cpu_set_t* cpus, int report, pid_t parent) {
+                         const Streams& streams, const cpu_set_t* cpus, int report, pid_t parent) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
-  const int null = open("/dev/null", O_RDONLY);
-  dup2(null, STDIN_FILENO);
-  dup2(log, STDOUT_FILENO);
-  dup2(log, STDERR_FILENO);
+  dup2(streams.in < 0 ? open("/dev/null", O_RDONLY) : streams.in, STDIN_FILENO);
+  dup2(streams.out, STDOUT_FILENO);
+  dup2(streams.err, STDERR_FILENO);
   signal(SIGPIPE, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
@@ -129,7 +148,7 @@ ChildProcess::ChildProcess(const ChildCommand& command)
   std::vector<std::string> environment = merged_environment(command.environment);
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
   const cpu_set_t cpus = to_set(command.cpus);
-  const int log = open_log(command.log);
+  const Streams streams = open_streams(command);
   int report[2];
   if (pipe2(report, O_CLOEXEC) != 0)
     throw Error(ErrorCode::kSetup, std::string("pipe: ") + std::strerror(errno));
@@ -137,9 +156,9 @@ ChildProcess::ChildProcess(const ChildCommand& command)
   const pid_t parent = getpid();
   pid_ = fork();
   if (pid_ == 0)
-    become(program_.c_str(), argv.data(), envp.data(), log, command.cpus.empty() ? nullptr : &cpus,
-           report[1], parent);
-  close(log);
+    become(program_.c_str(), argv.data(), envp.data(), streams,
+           command.cpus.empty() ? nullptr : &cpus, report[1], parent);
+  close_all(streams);
   close(report[1]);
   int why = pid_ < 0 ? errno : 0;
   // Ends with nothing read once the exec has succeeded.

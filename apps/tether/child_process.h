@@ -16,8 +16,11 @@ namespace tether::app {
 struct ChildCommand {
   std::vector<std::string> arguments;                            ///< program first
   std::vector<std::pair<std::string, std::string>> environment;  ///< over this process' own
-  std::filesystem::path log;  ///< gets stdout and stderr; empty: /dev/null
-  std::vector<int> cpus{};    ///< it and its children run on these only; empty: on all
+  std::filesystem::path log;       ///< gets stdout and stderr; empty: /dev/null
+  std::vector<int> cpus{};         ///< it and its children run on these only; empty: on all
+  std::filesystem::path errors{};  ///< gets stderr instead; empty: `log` does
+  std::filesystem::path input{};   ///< read as stdin; empty: `input_pipe`, or /dev/null
+  int input_pipe = -1;             ///< the caller's end to read from, as stdin; stays the caller's
 };
 
 /// How a child ended.

@@ -17,5 +17,6 @@ void add_report_command(CLI::App& program, Action& action);
 void add_frames_command(CLI::App& program, Action& action);
 void add_plot_command(CLI::App& program, Action& action);
 void add_audit_command(CLI::App& program, Action& action);
+void add_target_command(CLI::App& program, Action& action);
 
 }  // namespace tether::app

@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   tether::app::add_audit_command(program, action);
   tether::app::add_frames_command(program, action);
   tether::app::add_plot_command(program, action);
+  tether::app::add_target_command(program, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -29,8 +29,9 @@ struct RunOptions {
   std::filesystem::path profile;
   std::uint64_t seed = 1;
   std::filesystem::path out;
-  std::string listen = "127.0.0.1:0";
+  std::string listen;
   double real_time_factor = 0.0;
+  bool tunnel = false;
   bool record_images = false;
   bool json = false;
   bool quiet = false;
@@ -55,18 +56,24 @@ void move_to(scenario::Condition& condition, scenario::Target target, bool keep_
   if (!keep_name) condition.description = description;
 }
 
+/// A board of which nothing but its address is known: its own clock counts.
+scenario::Target board_at(const scenario::SshAddress& address) {
+  scenario::Target target;
+  target.name = address.destination;
+  target.ssh = address;
+  return target;
+}
+
 /// The condition that is asked for, on the target that is asked for.
 scenario::Condition make_condition(const scenario::Scenario& scenario, const RunOptions& options) {
   scenario::Condition condition = pick_condition(scenario, options.condition);
   if (options.real_time_factor > 0.0) condition.real_time_factor = options.real_time_factor;
+  const bool keep_name = !options.condition.empty();
   const TargetOption target = parse_target_option(options.target);
   if (const auto* file = std::get_if<std::filesystem::path>(&target))
-    move_to(condition, scenario::load_target(*file), !options.condition.empty());
-  if (std::holds_alternative<scenario::SshAddress>(target) ||
-      (condition.target && condition.target->ssh))
-    throw Error(ErrorCode::kUsage,
-                "a SUT can be started on this host only; for a board, use "
-                "--target wait");
+    move_to(condition, scenario::load_target(*file), keep_name);
+  if (const auto* address = std::get_if<scenario::SshAddress>(&target))
+    move_to(condition, board_at(*address), keep_name);
   return condition;
 }
 
@@ -82,10 +89,13 @@ TrialSpec make_spec(const RunOptions& options) {
       options.out.empty()
           ? "out" / experiment::trial_folder(spec.scenario.name, spec.condition.name, spec.seed)
           : options.out;
-  const auto address = link::parse_address(options.listen);
-  if (!address) throw Error(ErrorCode::kUsage, "--listen: " + address.failure().message);
-  spec.listen = *address;
+  if (!options.listen.empty()) {
+    const auto address = link::parse_address(options.listen);
+    if (!address) throw Error(ErrorCode::kUsage, "--listen: " + address.failure().message);
+    spec.listen = *address;
+  }
   spec.waits_for_sut = std::holds_alternative<WaitForSut>(parse_target_option(options.target));
+  spec.uses_tunnel = options.tunnel;
   return spec;
 }
 
@@ -167,8 +177,12 @@ void add_run_command(CLI::App& program, Action& action) {
       ->capture_default_str();
   command->add_option(
       "--target", options->target,
-      "Where the SUT runs: a target file (TOML); or \"wait\": do not start the SUT, "
-      "print what to type where it runs, and wait for it");
+      "Where the SUT runs, over what the condition says: a target file (TOML); "
+      "ssh://[user@]board[:port]; or \"wait\": do not start the SUT, print what to type where it "
+      "runs, and wait for it");
+  command->add_flag("--tunnel", options->tunnel,
+                    "The board's SUT comes through the SSH connection, where it cannot reach this "
+                    "machine; costs the board the encryption of every image");
   command->add_flag("--images", options->record_images,
                     "Keep the camera images that the SUT consumed in the record");
   command->add_flag("--json", options->json, "Print result.json instead of a summary");
@@ -177,6 +191,7 @@ void add_run_command(CLI::App& program, Action& action) {
   tether run scenarios/face_anchor.toml
   tether run scenarios/face_anchor.toml --condition "target, no sync" --seed 7
   tether run scenarios/face_anchor.toml --target profiles/targets/six_times_slower.toml
+  tether run scenarios/face_anchor.toml --target ssh://pi@board.local
   tether run scenarios/face_anchor.toml --profile profiles/ideal.toml
   tether run scenarios/face_anchor.toml --images --out out/one)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });

@@ -2,6 +2,7 @@
 
 #include "local_sut.h"
 
+#include <algorithm>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -9,6 +10,21 @@
 namespace tether::app {
 
 namespace {
+
+/// The SUT as the board takes it. A parameter that names a file of the scenario is a file there.
+BoardSut board_sut(Board& board, const scenario::Scenario& scenario, const scenario::UavSetup& uav,
+                   const SutRun& run, const std::filesystem::path& log) {
+  scenario::Sut sut = uav.sut;
+  for (auto& [key, value] : sut.parameters)
+    if (std::binary_search(scenario.files.begin(), scenario.files.end(),
+                           std::filesystem::path(value)))
+      value = board.copy(value);
+  return {.uav = uav.placement.name,
+          .words = sut_command(sut, run.condition.target),
+          .program = run.condition.target ? run.condition.target->launcher.size() : 0,
+          .environment = environment_of(uav.placement.name, run),
+          .log = log};
+}
 
 // How long a SUT that has finished may take to leave.
 constexpr Duration kLeaveLimit = std::chrono::seconds(2);
@@ -23,8 +39,23 @@ void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
     const std::string& name = uav.placement.name;
     const std::filesystem::path log = folder / fmt::format("sut-{}.log", name);
     const std::filesystem::path out = scenario.uavs.size() > 1 ? folder / name : folder;
-    suts_.push_back(
-        {name, log, std::make_unique<ChildProcess>(local_sut(uav, run, suts_.size(), out, log))});
+    auto process = std::make_unique<ChildProcess>(local_sut(uav, run, suts_.size(), out, log));
+    const std::string program = process->program();
+    suts_.push_back({name, log, out, program, std::move(process)});
+  }
+}
+
+void SutProcesses::start_on(Board& board, const scenario::Scenario& scenario, const SutRun& run,
+                            const std::filesystem::path& folder) {
+  board_ = &board;
+  for (const scenario::UavSetup& uav : scenario.uavs) {
+    const std::string& name = uav.placement.name;
+    const std::filesystem::path log = folder / fmt::format("sut-{}.log", name);
+    const BoardSut sut = board_sut(board, scenario, uav, run, log);
+    suts_.push_back({name, log, scenario.uavs.size() > 1 ? folder / name : folder,
+                     fmt::format("{} on {}", sut.words[sut.program],
+                                 scenario::to_string(board.connection().address())),
+                     board.start(sut)});
   }
 }
 
@@ -41,19 +72,35 @@ std::string SutProcesses::post_mortem() {
   return text;
 }
 
+std::optional<std::string> SutProcesses::lost() {
+  return board_ ? board_->lost() : std::nullopt;
+}
+
 void SutProcesses::let_leave() {
   for (Sut& sut : suts_) sut.process->wait(kLeaveLimit);
 }
 
-std::string SutProcesses::describe_end(Sut& sut) {
+std::vector<std::string> SutProcesses::bring_back() {
+  std::vector<std::string> warnings;
+  if (!board_ || !board_->end_suts()) return warnings;
+  for (const Sut& sut : suts_) {
+    std::filesystem::create_directories(sut.files);
+    if (auto warning = board_->bring_back(sut.uav, sut.files)) warnings.push_back(*warning);
+  }
+  return warnings;
+}
+
+std::string SutProcesses::describe_end(Sut& sut) const {
   std::ifstream log(sut.log);
   std::string last;
   for (std::string line; std::getline(log, line);)
     if (!line.empty()) last = line;
+  const ChildExit& exit = *sut.process->poll();
+  const std::string end = board_ ? board_->end_of(exit, last) : exit.description;
+  const bool is_told = last.empty() || end.find("could not be started") == 0;
   return fmt::format(
-      "the SUT of UAV \"{}\" ({}) {}{}", sut.uav, sut.process->program(),
-      sut.process->poll()->description,
-      last.empty() ? "" : fmt::format("; its last words in {}: {}", sut.log.string(), last));
+      "the SUT of UAV \"{}\" ({}) {}{}", sut.uav, sut.program, end,
+      is_told ? "" : fmt::format("; its last words in {}: {}", sut.log.string(), last));
 }
 
 }  // namespace tether::app

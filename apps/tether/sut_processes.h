@@ -1,5 +1,6 @@
 #pragma once
 
+#include "board.h"
 #include "child_process.h"
 #include "sut_environment.h"
 
@@ -13,7 +14,7 @@
 
 namespace tether::app {
 
-/// The scenario's SUTs as processes of this machine; they end with the object. Not thread-safe.
+/// The scenario's SUTs, here or on a board; they end with the object. Not thread-safe.
 class SutProcesses {
  public:
   /// None yet.
@@ -22,22 +23,34 @@ class SutProcesses {
   /// leave files: `folder`, or `folder`/UAV where there are several. @throws Error(kSetup).
   void start(const scenario::Scenario& scenario, const SutRun& run,
              const std::filesystem::path& folder);
+  /// The same on the board, which must outlive them. The scenario's files that their parameters
+  /// name are copied there.
+  void start_on(Board& board, const scenario::Scenario& scenario, const SutRun& run,
+                const std::filesystem::path& folder);
 
   /// Before every SUT has joined: how the first one ended that did; none while all run.
   std::optional<std::string> early_end();
+  /// Why the board with the SUTs is out of reach; none where there is none, or it is not.
+  std::optional<std::string> lost();
   /// After a SUT was lost: how those that ended did so, "; " before each; empty: nothing is known.
   std::string post_mortem();
   /// Gives those that have finished the time to leave by themselves.
   void let_leave();
+  /// Ends those on a board, and brings their files into the run's folder; a warning for each whose
+  /// files stay there.
+  std::vector<std::string> bring_back();
 
  private:
   struct Sut {
     std::string uav;
     std::filesystem::path log;
+    std::filesystem::path files;  // of TETHER_OUT, here
+    std::string program;
     std::unique_ptr<ChildProcess> process;
   };
-  static std::string describe_end(Sut& sut);
+  std::string describe_end(Sut& sut) const;
 
+  Board* board_ = nullptr;
   std::vector<Sut> suts_;
 };
 

@@ -1,9 +1,11 @@
 #include "trial.h"
 
+#include "board.h"
 #include "interrupt.h"
 #include "local_sut.h"
 #include "machine.h"
 #include "sut_processes.h"
+#include "target_probe.h"
 #include "trial_folder.h"
 
 #include <chrono>
@@ -92,30 +94,102 @@ void warm_up_cameras(sim::Simulator& simulator) {
   }
 }
 
+/// The board that the condition names, connected and held; none where the SUTs run here.
+std::unique_ptr<Board> hold_board(const TrialSpec& spec) {
+  const auto& target = spec.condition.target;
+  if (spec.waits_for_sut || !target || !target->ssh) return nullptr;
+  return std::make_unique<Board>(*target->ssh);
+}
+
+/// Where the SUTs' machine is read; who starts SUTs on another one by hand has to look himself.
+record::Readings read_target(const TrialSpec& spec, Board* board) {
+  if (spec.waits_for_sut) return {};
+  return board ? probe_board(board->connection(), ProbeDepth::kBrief)
+               : probe_here(ProbeDepth::kBrief);
+}
+
+std::optional<record::TargetInfo> target_info(const TrialSpec& spec, Board* board) {
+  if (spec.waits_for_sut) return std::nullopt;
+  const auto& target = spec.condition.target;
+  return record::TargetInfo{
+      .name = target ? target->name : "host",
+      .address = board ? scenario::to_string(board->connection().address()) : "",
+      .before = read_target(spec, board)};
+}
+
+/// Where to listen: a board that may not come through its SSH connection has to reach us.
+link::Address listen_address(const TrialSpec& spec, const Board* board) {
+  if (spec.listen) return *spec.listen;
+  return {board && !spec.uses_tunnel ? board->host_address() : "127.0.0.1", 0};
+}
+
+std::unique_ptr<link::Server> listen(const TrialSpec& spec, const Board* board,
+                                     link::ServerEvents& events) try {
+  return link::listen_tcp(listen_address(spec, board), kHelloTimeout, events);
+} catch (const Error& e) {
+  if (!board || spec.listen || spec.uses_tunnel) throw;
+  throw Error(e.code(), fmt::format("{}; the board sees this machine as {}, which is none of its "
+                                    "addresses: give --tunnel, or --listen ADDRESS:PORT",
+                                    e.what(), board->host_address()));
+}
+
+/// The server as the SUTs reach it.
+std::string sut_address(const TrialSpec& spec, Board* board, const link::Server& server) {
+  link::Address address = server.address();
+  if (!board) return link::to_string(address);
+  if (spec.uses_tunnel)
+    return fmt::format("127.0.0.1:{}", board->connection().forward_back(address.port));
+  const bool is_any = address.host == "0.0.0.0" || address.host == "::";
+  if (is_any) address.host = board->host_address();
+  return link::to_string(address);
+}
+
+/// What to try when a board's SUT could not reach us.
+std::string reach_hint(const TrialSpec& spec, const std::string& address,
+                       const std::string& reason) {
+  const bool is_unreached = reason.find("cannot connect to " + address) != std::string::npos ||
+                            reason.find("no SUT joined") != std::string::npos;
+  if (spec.uses_tunnel || !is_unreached) return "";
+  return fmt::format(
+      "; if the board cannot reach {} (a firewall on this machine?), open that port "
+      "and name it with --listen, or give --tunnel",
+      address);
+}
+
 /// The coordinator's run with its SUTs, up to the closed record.
-coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
+coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator, Board* board,
                                const Timings& timings, const TrialObserver& observer) {
   const std::string token = token_of_run();
   const auto recorder = record::make_mcap_recorder(spec.folder / kRecordFile);
-  coordinator::Coordinator coordinator(simulator, *recorder, run_options(spec, timings, token),
-                                       host_now);
-  const auto server = link::listen_tcp(spec.listen, kHelloTimeout, coordinator.events());
-  const SutRun sut_run{link::to_string(server->address()), token, spec.condition};
+  auto options = run_options(spec, timings, token);
+  options.header.target = target_info(spec, board);
+  coordinator::Coordinator coordinator(simulator, *recorder, std::move(options), host_now);
+  const auto server = listen(spec, board, coordinator.events());
+  const SutRun sut_run{sut_address(spec, board, *server), token, spec.condition};
   SutProcesses suts;
-  if (!spec.waits_for_sut) suts.start(spec.scenario, sut_run, spec.folder);
+  if (board) {
+    suts.start_on(*board, spec.scenario, sut_run, spec.folder);
+  } else if (!spec.waits_for_sut) {
+    suts.start(spec.scenario, sut_run, spec.folder);
+  }
   warm_up_cameras(simulator);
   if (spec.waits_for_sut && observer.on_listening)
     observer.on_listening(sut_instructions(spec.scenario, sut_run));
 
   bool joined = false, left_early = false;
+  std::string refused;
   coordinator::RunHooks hooks;
   hooks.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
     if (interrupted())
       return std::pair(RunEnd::kInterrupted, std::string("interrupted by the user"));
+    if (const auto why = suts.lost()) {
+      left_early = true;
+      return std::pair(RunEnd::kSutLost, *why);
+    }
     if (!joined)
       if (const auto end = suts.early_end()) {
         left_early = true;
-        return std::pair(RunEnd::kSutLost, *end);
+        return std::pair(RunEnd::kSutLost, *end + (refused.empty() ? "" : "; " + refused));
       }
     return std::nullopt;
   };
@@ -123,10 +197,17 @@ coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
     joined = status.joined == spec.scenario.uavs.size();
     if (observer.on_status) observer.on_status(status);
   };
-  hooks.on_refused = observer.on_refused;
+  hooks.on_refused = [&](const std::string& text) {
+    refused = text;
+    if (observer.on_refused) observer.on_refused(text);
+  };
+  hooks.read_target = [&] { return read_target(spec, board); };
   auto report = coordinator.run(*server, hooks);
   if (report.end == RunEnd::kSutLost && !left_early) report.reason += suts.post_mortem();
   if (report.end == RunEnd::kFinished) suts.let_leave();
+  if (board && !report.began) report.reason += reach_hint(spec, sut_run.address, report.reason);
+  for (const std::string& warning : suts.bring_back())
+    if (observer.warn) observer.warn(warning);
   return report;
 }
 
@@ -174,17 +255,21 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
   const Timings timings =
       scenario::resolve_sensors(spec.scenario, spec.condition, world, observer.warn);
   world.step = spec.scenario.step;
-  if (!spec.waits_for_sut) require_sut_programs(spec.scenario, spec.condition);
+  const bool is_local =
+      !spec.waits_for_sut && !(spec.condition.target && spec.condition.target->ssh);
+  if (is_local) require_sut_programs(spec.scenario, spec.condition);
   const TrialFolder folder(spec.folder);
 
   const std::string started_at = utc_now();
   experiment::TrialResult result;
   try {
+    const auto board = hold_board(spec);
     const auto simulator = sim::make_mujoco_simulator(std::move(world), observer.warn);
-    result = judge(spec, conduct(spec, *simulator, timings, observer));
+    result = judge(spec, conduct(spec, *simulator, board.get(), timings, observer));
     result.versions["simulator"] = simulator->description();
   } catch (const Error& e) {
     result = experiment::make_setup_failure(spec.scenario, spec.condition, spec.seed, e.what());
+    if (interrupted()) result.end = experiment::kEndInterrupted;
   }
   result.versions["tether"] = version();
   result.this_run.started_at = started_at;

@@ -21,7 +21,10 @@ struct TrialSpec {
   scenario::Condition condition;
   std::uint64_t seed = 1;
   std::filesystem::path folder;  ///< gets result.json, record.mcap and the SUTs' logs
-  link::Address listen{"127.0.0.1", 0};
+  /// None: a free port of loopback, or of the address at which the condition's board sees us.
+  std::optional<link::Address> listen{};
+  /// The board's SUTs come through its SSH connection.
+  bool uses_tunnel = false;
   /// The user starts the SUT; else the scenario's command is started where the condition says.
   bool waits_for_sut = false;
 };

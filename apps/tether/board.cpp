@@ -1,0 +1,249 @@
+#include "board.h"
+
+#include "board_scripts.h"
+#include "interrupt.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+
+#include <fcntl.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+
+namespace tether::app {
+
+namespace {
+
+using Steady = std::chrono::steady_clock;
+
+constexpr Duration kHoldLimit = std::chrono::seconds(20);
+constexpr Duration kCopyLimit = std::chrono::minutes(5);
+// Ending is a second of asking, a second of making, and the way there.
+constexpr Duration kEndLimit = std::chrono::seconds(8);
+constexpr Duration kLook = std::chrono::milliseconds(5);
+// How long a connection that has ended may take to show it.
+constexpr Duration kShowLimit = std::chrono::milliseconds(300);
+constexpr int kLargestReturn_KiB = 256 * 1024;
+constexpr int kNotStarted = 120, kSshFailed = 255, kSignals = 128;
+
+constexpr std::string_view kCopyScript = R"script(umask 077
+mkdir -p "$folder/files/$number" && cat >"$folder/files/$number/$name" &&
+  [ "$(wc -c <"$folder/files/$number/$name")" -eq "$size" ] || exit 1
+)script";
+constexpr std::string_view kReturnScript = R"script(cd "$folder/out.$uav" 2>/dev/null || exit 0
+[ -n "$(ls -A)" ] || exit 0
+[ "$(du -sk . | cut -f 1)" -le "$largest" ] || { echo "more than $largest KiB" >&2; exit 1; }
+exec tar -cf - .
+)script";
+
+std::string assign(const std::string& name, const std::string& value) {
+  return fmt::format("{}={}\n", name, shell_word(value));
+}
+
+std::string who_runs() {
+  const char* user = std::getenv("USER");
+  char host[256] = "";
+  gethostname(host, sizeof host - 1);
+  return fmt::format(
+      "{}@{} (tether, pid {}), since {:%Y-%m-%d %H:%M:%S} UTC", user && *user ? user : "somebody",
+      host, getpid(),
+      fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
+}
+
+void write_all(int fd, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t written = write(fd, text.data(), text.size());
+    if (written <= 0) return;  // who reads is gone, which shows elsewhere
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+std::string joined(std::vector<std::string>::const_iterator begin,
+                   std::vector<std::string>::const_iterator end) {
+  std::string text;
+  for (; begin != end; ++begin) text += " " + shell_word(*begin);
+  return text;
+}
+
+/// What board_sut.sh is given.
+std::string sut_prologue(const BoardSut& sut) {
+  const auto program = sut.words.begin() + static_cast<std::ptrdiff_t>(sut.program);
+  std::string text = assign("uav", sut.uav) + assign("program", *program) +
+                     assign("launcher", sut.program > 0 ? sut.words.front() : "");
+  text += "join() {\n";
+  for (const auto& [name, value] : sut.environment)
+    text += fmt::format("{}={}\nexport {}\n", name, shell_word(value), name);
+  text += fmt::format(
+      "}}\nrun_sut() {{\n"
+      "sh -c 'echo $$ >\"$0\" && exec setsid \"$@\"' \"$folder/pid.$uav\"{} \"$program\"{}\n}}\n",
+      joined(sut.words.begin(), program), joined(program + 1, sut.words.end()));
+  return text;
+}
+
+}  // namespace
+
+Board::Board(const scenario::SshAddress& address) : connection_(address) {
+  try {
+    hold();
+  } catch (...) {
+    keeper_.reset();
+    if (to_keeper_ >= 0) close(to_keeper_);
+    throw;
+  }
+  heart_ = std::jthread([this](const std::stop_token& stop) {
+    for (int looks = 0; !stop.stop_requested(); ++looks) {
+      if (looks % 20 == 0) write_all(to_keeper_, "\n");
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  });
+}
+
+Board::~Board() {
+  heart_.request_stop();
+  heart_.join();
+  close(to_keeper_);
+  keeper_->wait(kEndLimit);
+}
+
+std::string Board::keeper_said() const {
+  return read_whole(connection_.folder() / "keeper.out");
+}
+
+bool Board::wait_for_keeper(const std::string& word, Duration limit) {
+  const auto started = Steady::now();
+  while (Steady::now() - started < limit) {
+    const bool last_look = keeper_->poll().has_value();
+    const std::string said = keeper_said();
+    const auto at = said.find(word);
+    if (at != std::string::npos && said.find('\n', at) != std::string::npos) return true;
+    if (last_look) return false;
+    std::this_thread::sleep_for(kLook);
+  }
+  return false;
+}
+
+void Board::hold() {
+  const std::string script = assign("who", who_runs()) + std::string(kBoardKeeper);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw Error(ErrorCode::kSetup, std::string("pipe: ") + std::strerror(errno));
+  to_keeper_ = ends[1];
+  write_all(to_keeper_, script);
+  const auto& folder = connection_.folder();
+  keeper_ =
+      std::make_unique<ChildProcess>(ChildCommand{.arguments = connection_.shell(script.size()),
+                                                  .environment = {},
+                                                  .log = folder / "keeper.out",
+                                                  .errors = folder / "keeper.err",
+                                                  .input_pipe = ends[0]});
+  close(ends[0]);
+
+  const bool answered = wait_for_keeper("held ", kHoldLimit);
+  const std::string where = scenario::to_string(connection_.address());
+  const std::string said = last_line(keeper_said());
+  if (said.starts_with("busy "))
+    throw Error(ErrorCode::kSetup,
+                fmt::format("{} is in use by {}; wait for that run to end, or end it", where,
+                            said.substr(5)));
+  if (!answered)
+    throw Error(ErrorCode::kSetup,
+                fmt::format("{} cannot be held: {}", where,
+                            said.empty() ? last_line(read_whole(folder / "keeper.err")) : said));
+  std::istringstream words(said);
+  std::string held;
+  words >> held >> host_address_ >> std::ws;
+  std::getline(words, folder_);
+}
+
+std::string Board::prologue() const {
+  return assign("folder", folder_);
+}
+
+std::string Board::copy(const std::filesystem::path& file) {
+  const std::string bytes = read_whole(file);
+  const std::string number = std::to_string(++copies_), name = file.filename().string();
+  const std::string script = prologue() + assign("number", number) + assign("name", name) +
+                             assign("size", std::to_string(bytes.size())) +
+                             std::string(kCopyScript);
+  const Captured copied = connection_.run(script, kCopyLimit, bytes);
+  if (copied.code != 0)
+    throw Error(ErrorCode::kSetup,
+                fmt::format("{} cannot be copied to {}: {}", file.string(),
+                            scenario::to_string(connection_.address()), last_line(copied.err)));
+  return fmt::format("{}/files/{}/{}", folder_, number, name);
+}
+
+std::unique_ptr<ChildProcess> Board::start(const BoardSut& sut) {
+  const std::string script = prologue() + sut_prologue(sut) + std::string(kBoardSut);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0)
+    throw Error(ErrorCode::kSetup, std::string("pipe: ") + std::strerror(errno));
+  // As large as any command line; a file would leave the token on the disk.
+  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);
+  write_all(ends[1], script);
+  close(ends[1]);
+  auto process =
+      std::make_unique<ChildProcess>(ChildCommand{.arguments = connection_.shell(script.size()),
+                                                  .environment = {},
+                                                  .log = sut.log,
+                                                  .input_pipe = ends[0]});
+  close(ends[0]);
+  return process;
+}
+
+std::string Board::end_of(const ChildExit& exit, const std::string& last_words) {
+  constexpr std::string_view kOwn = "tether: ";
+  if (exit.code == kSshFailed)
+    if (const auto why = connection_.lost(kShowLimit)) return "was cut off: " + *why;
+  if (exit.code == kNotStarted && last_words.starts_with(kOwn))
+    return "could not be started: " + last_words.substr(kOwn.size());
+  const int signal = exit.code - kSignals;
+  if (signal > 0 && signal < NSIG)
+    return fmt::format("was ended by signal {} ({})", signal, strsignal(signal));
+  return exit.description;
+}
+
+std::optional<std::string> Board::lost() {
+  const bool is_held = !keeper_->poll();
+  if (const auto why = connection_.lost(is_held ? Duration(0) : kShowLimit)) return why;
+  if (is_held) return std::nullopt;
+  return fmt::format("{} is no longer held for this run: {}",
+                     scenario::to_string(connection_.address()),
+                     last_line(read_whole(connection_.folder() / "keeper.err")));
+}
+
+bool Board::end_suts() {
+  if (lost()) return false;
+  write_all(to_keeper_, "stop\n");
+  return wait_for_keeper("stopped", kEndLimit);
+}
+
+std::optional<std::string> Board::bring_back(const std::string& uav,
+                                             const std::filesystem::path& folder) {
+  const std::string script = prologue() + assign("uav", uav) +
+                             assign("largest", std::to_string(kLargestReturn_KiB)) +
+                             std::string(kReturnScript);
+  const Captured files = connection_.run(script, kCopyLimit, {}, true);
+  const auto failed = [&](const std::string& why) {
+    return fmt::format("what the SUT of UAV \"{}\" wrote into TETHER_OUT stays behind on {}: {}",
+                       uav, scenario::to_string(connection_.address()), why);
+  };
+  if (files.code != 0) return failed(last_line(files.err));
+  if (files.out.empty()) return std::nullopt;
+  // What this machine writes into the folder is not the SUT's to replace.
+  const Captured unpacked =
+      run_captured({"tar", "-x", "-f", "-", "--no-same-owner", "--exclude=./record.mcap",
+                    "--exclude=./result.json", "--exclude=./sut-*.log", "-C", folder.string()},
+                   files.out, kCopyLimit, connection_.folder(), true);
+  if (unpacked.code != 0) return failed(last_line(unpacked.err));
+  return std::nullopt;
+}
+
+}  // namespace tether::app

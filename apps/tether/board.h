@@ -1,0 +1,75 @@
+#pragma once
+
+#include "child_process.h"
+#include "ssh_connection.h"
+#include "sut_environment.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <tether/scenario/scenario.h>
+
+namespace tether::app {
+
+/// A SUT to start on a board.
+struct BoardSut {
+  std::string uav;
+  std::vector<std::string> words;  ///< launcher, program, arguments; as the board takes them
+  std::size_t program = 0;         ///< which of the words is the program
+  Environment environment;
+  std::filesystem::path log;  ///< on this machine; gets the SUT's stdout and stderr
+};
+
+/// A board that SSH reaches, held for one run: no other run of Tether uses it meanwhile. Whatever
+/// was started there ends with the object, and within seconds when this process or the connection
+/// is gone, however that came. Nothing of the run stays on the board. Not thread-safe.
+class Board {
+ public:
+  /// Connects and holds it. @throws Error(kSetup) when it cannot be reached, or another run, which
+  /// is named, holds it.
+  explicit Board(const scenario::SshAddress& address);
+  ~Board();
+  Board(const Board&) = delete;
+  Board& operator=(const Board&) = delete;
+
+  SshConnection& connection() { return connection_; }
+  /// This machine's address as the board sees it.
+  const std::string& host_address() const { return host_address_; }
+
+  /// Copies a file of this machine there; returns its path there. @throws Error(kSetup).
+  std::string copy(const std::filesystem::path& file);
+  /// Starts a SUT. The process is this machine's end of it, and ends when it does; `end_of` says
+  /// how it ended.
+  std::unique_ptr<ChildProcess> start(const BoardSut& sut);
+  /// What came of a SUT whose process has ended.
+  std::string end_of(const ChildExit& exit, const std::string& last_words);
+
+  /// Why the board is out of reach; none while it is not.
+  std::optional<std::string> lost();
+  /// Ends the SUTs. @return whether the board said so in time.
+  bool end_suts();
+  /// Copies what the SUT left in its TETHER_OUT into `folder`; a warning if that was not possible.
+  std::optional<std::string> bring_back(const std::string& uav,
+                                        const std::filesystem::path& folder);
+
+ private:
+  void hold();
+  std::string keeper_said() const;
+  bool wait_for_keeper(const std::string& word, Duration limit);
+  std::string prologue() const;
+
+  SshConnection connection_;
+  std::string host_address_;
+  std::string folder_;  // of the run, on the board
+  int to_keeper_ = -1;  // a pipe
+  std::unique_ptr<ChildProcess> keeper_;
+  std::jthread heart_;
+  int copies_ = 0;
+};
+
+}  // namespace tether::app

@@ -1,0 +1,68 @@
+#include "captured_run.h"
+
+#include "child_process.h"
+#include "interrupt.h"
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include <tether/base/error.h>
+
+namespace tether::app {
+
+namespace {
+
+using Steady = std::chrono::steady_clock;
+constexpr Duration kLook = std::chrono::milliseconds(20);
+
+void write_whole(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream.write(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!stream.flush()) throw Error(ErrorCode::kSetup, file.string() + ": cannot be written");
+}
+
+std::string stripped(const std::string& line) {
+  const auto begin = line.find_first_not_of(" \t\r");
+  const auto end = line.find_last_not_of(" \t\r");
+  return begin == std::string::npos ? "" : line.substr(begin, end - begin + 1);
+}
+
+}  // namespace
+
+std::string read_whole(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::string last_line(const std::string& text) {
+  std::istringstream lines(text);
+  std::string last;
+  for (std::string line; std::getline(lines, line);)
+    if (const std::string words = stripped(line); !words.empty()) last = words;
+  return last;
+}
+
+Captured run_captured(const std::vector<std::string>& arguments, const std::string& input,
+                      Duration limit, const std::filesystem::path& folder, bool is_leaving) {
+  const auto in = folder / "input", out = folder / "output", err = folder / "errors";
+  write_whole(in, input);
+  const auto started = Steady::now();
+  Captured captured;
+  {
+    ChildProcess process(
+        {.arguments = arguments, .environment = {}, .log = out, .errors = err, .input = in});
+    while (!process.wait(kLook) && (is_leaving || !interrupted()) &&
+           Steady::now() - started < limit)
+      continue;
+    captured.wall = std::chrono::duration_cast<Duration>(Steady::now() - started);
+    captured.timed_out = !process.poll();
+    if (process.poll()) captured.code = process.poll()->code;
+  }
+  captured.out = read_whole(out);
+  captured.err = read_whole(err);
+  return captured;
+}
+
+}  // namespace tether::app

@@ -1,0 +1,137 @@
+#include "commands.h"
+#include "link_trial.h"
+#include "target_probe.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <tether/base/error.h>
+#include <tether/base/version.h>
+#include <tether/experiment/target_readings.h>
+#include <tether/scenario/target.h>
+
+namespace tether::app {
+
+namespace {
+
+using experiment::Finding;
+using experiment::Health;
+
+struct CheckOptions {
+  std::string address;
+  bool json = false;
+};
+
+struct Check {
+  std::string target;
+  record::Readings readings;
+  std::vector<Finding> findings;
+};
+
+// An uncompressed 640 × 480 image in a few milliseconds, and a round trip that progress messages
+// do not pile up in.
+constexpr double kSlowRoundTrip_s = 0.02, kThinBandwidth_MB_s = 5.0;
+
+Finding judge_round_trip(double median_s) {
+  const bool is_slow = median_s > kSlowRoundTrip_s;
+  return {"round trip over SSH", fmt::format("{:.1f} ms (median)", median_s * 1e3),
+          is_slow ? Health::kWarn : Health::kOk,
+          is_slow ? "never charged to the software, but runs take longer; use a cable" : ""};
+}
+
+Finding judge_bandwidth(double MB_s) {
+  const bool is_thin = MB_s < kThinBandwidth_MB_s;
+  return {"to the board over SSH", fmt::format("{:.1f} MB/s, encrypted", MB_s),
+          is_thin ? Health::kWarn : Health::kOk,
+          is_thin ? "never charged to the software, but each image takes long; use a cable" : ""};
+}
+
+Check check_here() {
+  Check check{"this machine", probe_here(ProbeDepth::kFull), {}};
+  if (check.readings.empty())
+    throw Error(ErrorCode::kSetup, "this machine's shell (sh) does not run the probe");
+  check.findings = experiment::judge(check.readings, version());
+  return check;
+}
+
+Check check_board(const scenario::SshAddress& address) {
+  SshConnection connection(address);
+  Check check{scenario::to_string(address), probe_board(connection, ProbeDepth::kFull), {}};
+  if (check.readings.empty())
+    throw Error(
+        ErrorCode::kSetup,
+        fmt::format("{} is there, but its shell (sh) does not run the probe", check.target));
+  check.findings = experiment::judge(check.readings, version());
+  if (const auto link = try_link(connection)) {
+    check.findings.push_back(judge_round_trip(link->round_trip_s));
+    check.findings.push_back(judge_bandwidth(link->to_board_MB_s));
+  } else {
+    check.findings.push_back({"the way over SSH", "could not be measured", Health::kWarn,
+                              "the board answers too slowly; try again when it is idle"});
+  }
+  return check;
+}
+
+bool has_bad(const Check& check) {
+  return std::ranges::any_of(check.findings,
+                             [](const Finding& f) { return f.health == Health::kBad; });
+}
+
+std::string to_text(const Check& check) {
+  std::string text = check.target + "\n";
+  for (const Finding& finding : check.findings)
+    text += fmt::format("  {:<5}{:<22} {}{}\n",
+                        finding.health == Health::kOk ? "" : experiment::name(finding.health),
+                        finding.subject, finding.value,
+                        finding.advice.empty() ? "" : fmt::format("  ({})", finding.advice));
+  return text + (has_bad(check) ? "What is marked \"bad\" would spoil a measurement.\n"
+                                : "Nothing here would spoil a measurement.\n");
+}
+
+std::string to_json(const Check& check) {
+  nlohmann::ordered_json json{{"target", check.target}, {"fine", !has_bad(check)}};
+  for (const Finding& finding : check.findings)
+    json["findings"].push_back({{"subject", finding.subject},
+                                {"value", finding.value},
+                                {"health", experiment::name(finding.health)},
+                                {"advice", finding.advice}});
+  json["readings"] = check.readings;
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+int run(const CheckOptions& options) {
+  const Check check = options.address.empty()
+                          ? check_here()
+                          : check_board(scenario::parse_ssh_address(options.address));
+  fmt::print("{}", options.json ? to_json(check) : to_text(check));
+  return has_bad(check) ? 1 : 0;
+}
+
+}  // namespace
+
+void add_target_command(CLI::App& program, Action& action) {
+  auto options = std::make_shared<CheckOptions>();
+  CLI::App* target = program.add_subcommand("target", "Machines that a SUT may run on");
+  target->require_subcommand(1);
+  target->footer("Examples:\n  tether target check ssh://pi@board.local");
+  CLI::App* check =
+      target->add_subcommand("check", "Say what of a machine would spoil a measurement");
+  check->add_option("address", options->address,
+                    "ssh://[user@]board[:port]; this machine if not given");
+  check->add_flag("--json", options->json, "Print findings and readings as JSON");
+  check->footer(
+      R"(Exit codes: 0 fine, 1 something would spoil a measurement, 2 wrong use, 3 not reachable.
+
+Examples:
+  tether target check
+  tether target check ssh://pi@board.local)");
+  check->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace tether::app
