@@ -92,12 +92,16 @@ void drain(int fd) {
   }
 }
 
-void send_hello(int fd) {
+tether::link::Hello hello_of_this_run() {
   tether::link::Hello hello;
   hello.sut = "bad_sut";
   hello.clock = tether::link::ClockKind::kCpu;
   hello.token = std::getenv("TETHER_TOKEN");
   hello.uav = std::getenv("TETHER_UAV");
+  return hello;
+}
+
+void send_hello(int fd, const tether::link::Hello& hello) {
   tether::link::Encoder encoder;
   const auto frame = encoder.encode(hello);
   send_all(fd, frame.data(), frame.size());
@@ -174,7 +178,13 @@ int fail_at_start(const std::string& mode) {
     return 7;
   }
   const int fd = connect_socket();
-  if (mode == "garbage_after_hello") send_hello(fd);
+  if (mode == "old_version") {
+    auto hello = hello_of_this_run();
+    hello.protocol_version = 1;
+    send_hello(fd, hello);
+    return 3;
+  }
+  if (mode == "garbage_after_hello") send_hello(fd, hello_of_this_run());
   send_garbage(fd);
   drain(fd);
   return 0;

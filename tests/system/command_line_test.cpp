@@ -49,7 +49,7 @@ TEST_P(Examples, StandInTheHelpOfEachCommand) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Commands, Examples,
-                         testing::Values("run", "campaign", "report", "audit", "frames"),
+                         testing::Values("run", "campaign", "report", "audit", "frames", "target"),
                          [](const auto& command) { return command.param; });
 
 TEST(Version, IsOneLineOfEachProgram) {
