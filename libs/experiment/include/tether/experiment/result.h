@@ -83,9 +83,9 @@ struct AuditVerdict {
 struct TargetReport {
   std::string name;
   std::string address;  ///< "ssh://user@board"; empty: the host
-  record::Readings before, after;
-  std::vector<std::string> warnings;  ///< one line each
-  bool is_spoiled = false;            ///< one of them says that its times are not to be trusted
+  record::Readings before{}, after{};
+  std::vector<std::string> warnings{};  ///< one line each
+  bool is_spoiled = false;              ///< one of them says that its times are not to be trusted
 
   friend bool operator==(const TargetReport&, const TargetReport&) = default;
 };
