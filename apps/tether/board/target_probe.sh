@@ -101,14 +101,15 @@ for program in tether-sut tether-exec; do
   fi
 done
 
-# What tether-exec may freeze with: a cgroup of this user's, or of root's.
+# What tether-exec may stop a program with: a cgroup v2 below its own, else signals.
 freezer=signals
-if [ -e /sys/fs/cgroup/cgroup.controllers ]; then
+while read -r device folder type rest; do
+  [ "$type" = cgroup2 ] || continue
   while IFS=: read -r number names path; do
-    [ "$number" = 0 ] && [ -w "/sys/fs/cgroup$path/cgroup.procs" ] && [ -w "/sys/fs/cgroup$path" ] &&
-      freezer=cgroup
+    [ "$number" = 0 ] && [ -w "$folder$path/cgroup.procs" ] && freezer=cgroup
   done </proc/self/cgroup
-fi
+  break
+done </proc/mounts 2>/dev/null
 tell freezer "$freezer"
 
 if [ -r "${TETHER_BOARD_LOCK:-/tmp/tether-board.lock}" ]; then
