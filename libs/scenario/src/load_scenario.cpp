@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -98,10 +99,19 @@ std::vector<std::string> read_command(const TomlTable& sut, const std::filesyste
   return command;
 }
 
+constexpr std::array<std::string_view, 4> kSutKeys = {"command", "concurrent", "parameters",
+                                                              "files"};
+
+Sut read_program(const TomlTable& sut, const std::filesystem::path& folder) {
+  return {read_command(sut, folder), {}, sut.boolean_or("concurrent", false)};
+}
+
 std::optional<Sut> read_default_sut(const TomlTable& root, Scenario& scenario) {
   if (!root.has("sut")) return std::nullopt;
-  const TomlTable sut = root.table("sut", {"command", "parameters", "files"});
-  return Sut{read_command(sut, scenario.file.parent_path()), read_parameters(sut, scenario.files)};
+  const TomlTable table = root.table("sut", kSutKeys);
+  Sut sut = read_program(table, scenario.file.parent_path());
+  sut.parameters = read_parameters(table, scenario.files);
+  return sut;
 }
 
 Parameters merged(const Parameters& defaults, const Parameters& own) {
@@ -116,9 +126,10 @@ Sut read_sut(const TomlTable& uav, const std::optional<Sut>& fallback, Scenario&
       uav.fail("has no SUT: add a table [sut] for all UAVs, or [uav.sut] for this one");
     return *fallback;
   }
-  const TomlTable own = uav.table("sut", {"command", "parameters", "files"});
+  const TomlTable own = uav.table("sut", kSutKeys);
   const bool inherits = fallback && !own.has("command");
-  Sut sut = inherits ? *fallback : Sut{read_command(own, scenario.file.parent_path()), {}};
+  Sut sut = inherits ? *fallback : read_program(own, scenario.file.parent_path());
+  sut.concurrent = own.boolean_or("concurrent", sut.concurrent);
   sut.parameters = merged(sut.parameters, read_parameters(own, scenario.files));
   return sut;
 }
@@ -252,12 +263,24 @@ Condition read_condition(const TomlTable& table, Scenario& scenario) {
   return condition;
 }
 
+void require_clock_for_suts(const TomlTable& table, const Scenario& scenario,
+                            const Condition& condition) {
+  for (const UavSetup& uav : scenario.uavs) {
+    if (!uav.sut.concurrent || condition.clock == Clock::kWall) continue;
+    table.fail(table.has("clock") ? "clock" : "target",
+               fmt::format("measures by \"{}\", but the SUT of UAV \"{}\" is concurrent, and several "
+                           "threads have one time line by clock = \"wall\" only",
+                           name(condition.clock), uav.placement.name));
+  }
+}
+
 void read_conditions(const TomlTable& root, Scenario& scenario) {
   std::map<std::string, std::string> slugs;
   for (const TomlTable& table :
        root.tables("condition", {"name", "description", "policy", "clock", "cpu_factor",
                                  "computing_ms", "real_time_factor", "profile", "target"})) {
     scenario.conditions.push_back(read_condition(table, scenario));
+    require_clock_for_suts(table, scenario, scenario.conditions.back());
     if (auto profile = read_profile(table, scenario)) {
       scenario.conditions.back().profiles.push_back(std::move(*profile));
     }

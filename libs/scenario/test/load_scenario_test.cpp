@@ -119,6 +119,13 @@ TEST_F(LoadScenario, GivesEachUavItsSut) {
                   Pair("precision_deg", "2.5"), Pair("retries", "3"), Pair("verbose", "true")));
 }
 
+TEST_F(LoadScenario, TellsAProgramOfSeveralThreadsFromASerialOne) {
+  const std::string common = "command = [\"tether-sut\", \"face-anchor\"]\n";
+  EXPECT_FALSE(load(kFullScenario).uavs[1].sut.concurrent);
+  EXPECT_THAT(error_with(common, common + "concurrent = true\n"),
+              AllOf(HasSubstr("is concurrent"), HasSubstr("clock = \"wall\" only")));
+}
+
 TEST_F(LoadScenario, LaysOwnParametersOverTheCommonOnesWhenTheCommandIsCommon) {
   const Scenario s = load_with("command = [\"own-sut\", \"--fast\"]\n", "");
   EXPECT_THAT(s.uavs[0].sut.command, ElementsAre("tether-sut", "face-anchor"));

@@ -49,6 +49,9 @@ struct Condition {
 struct Sut {
   std::vector<std::string> command;  ///< program and fixed arguments; not empty
   std::vector<std::pair<std::string, std::string>> parameters;  ///< sorted by key
+  /// Several threads or processes of it talk to the UAV, or compute while another waits: it runs
+  /// under tether-exec. Needs Clock::kWall.
+  bool concurrent = false;
 };
 
 struct UavSetup {
