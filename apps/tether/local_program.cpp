@@ -3,6 +3,8 @@
 #include "child_process.h"
 #include "sut_environment.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
@@ -29,14 +31,19 @@ std::filesystem::path find_launched(const std::string& program, const scenario::
 
 LocalSutCommand local_sut_command(const scenario::Sut& sut,
                                   const std::optional<scenario::Target>& target) {
-  LocalSutCommand command{sut_command(sut, target), {}};
-  const std::size_t launcher_words = target ? target->launcher.size() : 0;
-  if (launcher_words > 0) {
-    std::string& program = command.words[launcher_words];
-    program = find_launched(program, *target).string();
-    command.programs.emplace_back(program);
+  auto [words, program_at] = sut_command(sut, target);
+  const bool is_launched = target && !target->launcher.empty();
+  std::string& program = words[program_at];
+  const auto file = is_launched ? find_launched(program, *target) : find_program(program);
+  LocalSutCommand command{{}, {}};
+  if (program_at > 0) {
+    // Whoever starts it looks for it in PATH only.
+    program = file.string();
+    command.programs.push_back(find_program(words.front()));
+    if (sut.concurrent && is_launched) command.programs.push_back(find_program(words[1]));
   }
-  command.programs.insert(command.programs.begin(), find_program(command.words.front()));
+  command.programs.push_back(file);
+  command.words = std::move(words);
   return command;
 }
 

@@ -37,15 +37,19 @@ std::vector<std::string> command_line(const scenario::Sut& sut) {
   return words;
 }
 
-std::vector<std::string> sut_command(const scenario::Sut& sut,
-                                     const std::optional<scenario::Target>& target) {
+SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::Target>& target) {
+  SutCommand command{{}, 0};
+  if (sut.concurrent) command.words.emplace_back("tether-exec");
   std::vector<std::string> words = command_line(sut);
-  if (!target) return words;
-  std::string& program = words.front();
-  if (!target->program_folder.empty() && program.find('/') == std::string::npos)
-    program = (std::filesystem::path(target->program_folder) / program).string();
-  words.insert(words.begin(), target->launcher.begin(), target->launcher.end());
-  return words;
+  if (target) {
+    std::string& program = words.front();
+    if (!target->program_folder.empty() && program.find('/') == std::string::npos)
+      program = (std::filesystem::path(target->program_folder) / program).string();
+    command.words.insert(command.words.end(), target->launcher.begin(), target->launcher.end());
+  }
+  command.program = command.words.size();
+  command.words.insert(command.words.end(), words.begin(), words.end());
+  return command;
 }
 
 Environment environment_of(const std::string& uav, const SutRun& run) {
@@ -71,7 +75,7 @@ std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& r
   for (const scenario::UavSetup& uav : scenario.uavs) {
     for (const auto& [name, value] : environment_of(uav.placement.name, run))
       text += fmt::format("{}={} ", name, shell_word(value));
-    std::vector<std::string> words = sut_command(uav.sut, run.condition.target);
+    std::vector<std::string> words = sut_command(uav.sut, run.condition.target).words;
     std::transform(words.begin(), words.end(), words.begin(), shell_word);
     text += fmt::format("{}\n", fmt::join(words, " "));
   }

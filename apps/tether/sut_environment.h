@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,9 +22,14 @@ using Environment = std::vector<std::pair<std::string, std::string>>;
 
 /// The SUT's program with its parameters as options: max_frames = 5 becomes --max-frames 5.
 std::vector<std::string> command_line(const scenario::Sut& sut);
-/// The same where that target is: after its launcher, the program in its folder. Looks at no file.
-std::vector<std::string> sut_command(const scenario::Sut& sut,
-                                     const std::optional<scenario::Target>& target);
+/// A SUT's command line, and which of its words is its program.
+struct SutCommand {
+  std::vector<std::string> words;
+  std::size_t program = 0;
+};
+/// The same where that target is: after its launcher, the program in its folder; all of it under
+/// tether-exec where the SUT is concurrent. Looks at no file.
+SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::Target>& target);
 /// What joins the SUT of that UAV to the run, as the client library takes it.
 Environment environment_of(const std::string& uav, const SutRun& run);
 

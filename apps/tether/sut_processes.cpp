@@ -19,9 +19,10 @@ BoardSut board_sut(Board& board, const scenario::Scenario& scenario, const scena
     if (std::binary_search(scenario.files.begin(), scenario.files.end(),
                            std::filesystem::path(value)))
       value = board.copy(value);
+  SutCommand command = sut_command(sut, run.condition.target);
   return {.uav = uav.placement.name,
-          .words = sut_command(sut, run.condition.target),
-          .program = run.condition.target ? run.condition.target->launcher.size() : 0,
+          .words = std::move(command.words),
+          .program = command.program,
           .environment = environment_of(uav.placement.name, run),
           .log = log};
 }

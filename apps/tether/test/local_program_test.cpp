@@ -27,14 +27,22 @@ scenario::Target target(const std::vector<std::string>& launcher, const std::str
 }
 
 TEST(ProgramOnTarget, MakesParametersOptions) {
-  EXPECT_THAT(sut_command(kSut, {}),
+  EXPECT_THAT(sut_command(kSut, {}).words,
               ElementsAre("fly", "task", "--max-frames", "5", "--to", "box"));
 }
 
 TEST(ProgramOnTarget, BeginsWithTheLauncherAndFindsTheProgramInTheTargetsFolder) {
-  EXPECT_THAT(sut_command({{"fly", "task"}, {}}, target({"emulate", "-L", "/root"}, "/arm/bin")),
+  EXPECT_THAT(sut_command({{"fly", "task"}, {}}, target({"emulate", "-L", "/root"}, "/arm/bin")).words,
               ElementsAre("emulate", "-L", "/root", "/arm/bin/fly", "task"));
-  EXPECT_THAT(sut_command({{"/own/fly"}, {}}, target({}, "/arm/bin")), ElementsAre("/own/fly"));
+  EXPECT_THAT(sut_command({{"/own/fly"}, {}}, target({}, "/arm/bin")).words, ElementsAre("/own/fly"));
+}
+
+TEST(ProgramOnTarget, StartsAConcurrentProgramUnderTetherExecBeforeAnythingElse) {
+  const scenario::Sut concurrent{{"fly", "task"}, {}, true};
+  EXPECT_THAT(sut_command(concurrent, {}).words, ElementsAre("tether-exec", "fly", "task"));
+  const auto command = sut_command(concurrent, target({"emulate"}, "/arm/bin"));
+  EXPECT_THAT(command.words, ElementsAre("tether-exec", "emulate", "/arm/bin/fly", "task"));
+  EXPECT_EQ(command.words[command.program], "/arm/bin/fly");
 }
 
 TEST(LocalProgram, TakesProgramsThatAreNoneOfThisMachine) {
