@@ -51,7 +51,9 @@ void try_profiles(const scenario::CampaignScenario& entry, const sim::World& wor
 void add_programs(const scenario::CampaignScenario& entry,
                   std::vector<std::filesystem::path>& files) {
   for (const std::string& name : entry.conditions) {
-    const auto& target = entry.scenario.find_condition(name)->target;
+    const scenario::Condition& condition = *entry.scenario.find_condition(name);
+    scenario::require_clock(entry.scenario, condition);
+    const auto& target = condition.target;
     if (target && target->ssh) continue;
     for (const auto& uav : entry.scenario.uavs)
       for (const auto& program : local_sut_command(uav.sut, target).programs)

@@ -250,6 +250,7 @@ std::string utc_now() {
 
 experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer) {
   // Whatever is wrong with the user's files shows before anything is written.
+  scenario::require_clock(spec.scenario, spec.condition);
   sim::World world =
       sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
   const Timings timings =

@@ -22,10 +22,10 @@ class OwnSut : public testing::TestWithParam<const char*> {
                                   {"\"../../profiles", data + "profiles"},
                                   {"build/face_anchor_cpp\"", std::string(GetParam()) + "\""}}));
   }
-  void expect_goal() const {
+  void expect_goal(const std::string& condition = "scripted") const {
     const auto out = folder_ / "out";
     const Output output = run(tether({"run", example_ / "face_anchor.toml", "--condition",
-                                      "scripted", "--quiet", "--out", out}),
+                                      condition, "--quiet", "--out", out}),
                               std::chrono::seconds(100));
     ASSERT_EQ(output.code, 0) << output.err << read_text(out / "sut-uav1.log");
     const auto result = read_result(out);
@@ -64,12 +64,25 @@ TEST_P(OwnSutByMake, FliesToItsGoal) {
   expect_goal();
 }
 
+/// The library finds tether-exec by itself; the program is the same.
+class OwnSutUnderTetherExec : public OwnSut {};
+
+TEST_P(OwnSutUnderTetherExec, FliesToItsGoal) {
+  output_of({"make", "CC=gcc", "CXX=g++", GetParam()},
+            {{"PKG_CONFIG_PATH", folder_of(prefix_, "tether-client.pc")}}, example_);
+  const auto file = example_ / "face_anchor.toml";
+  write_text(file, substituted(read_text(file),
+                               {{"\"blue_box\"]\n\n", "\"blue_box\"]\nconcurrent = true\n\n"}}));
+  expect_goal("board");
+}
+
 const auto kPrograms = testing::Values("build/face_anchor_cpp", "build/face_anchor_c");
 const auto name_of = [](const auto& program) {
   return std::string(program.param).substr(std::string("build/face_anchor_").size());
 };
 INSTANTIATE_TEST_SUITE_P(Programs, OwnSutByCMake, kPrograms, name_of);
 INSTANTIATE_TEST_SUITE_P(Programs, OwnSutByMake, kPrograms, name_of);
+INSTANTIATE_TEST_SUITE_P(Programs, OwnSutUnderTetherExec, kPrograms, name_of);
 
 }  // namespace
 }  // namespace tether::system_test

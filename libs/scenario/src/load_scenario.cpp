@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <array>
 #include <cmath>
 #include <set>
 
@@ -100,7 +99,7 @@ std::vector<std::string> read_command(const TomlTable& sut, const std::filesyste
 }
 
 constexpr std::array<std::string_view, 4> kSutKeys = {"command", "concurrent", "parameters",
-                                                              "files"};
+                                                      "files"};
 
 Sut read_program(const TomlTable& sut, const std::filesystem::path& folder) {
   return {read_command(sut, folder), {}, sut.boolean_or("concurrent", false)};
@@ -263,24 +262,12 @@ Condition read_condition(const TomlTable& table, Scenario& scenario) {
   return condition;
 }
 
-void require_clock_for_suts(const TomlTable& table, const Scenario& scenario,
-                            const Condition& condition) {
-  for (const UavSetup& uav : scenario.uavs) {
-    if (!uav.sut.concurrent || condition.clock == Clock::kWall) continue;
-    table.fail(table.has("clock") ? "clock" : "target",
-               fmt::format("measures by \"{}\", but the SUT of UAV \"{}\" is concurrent, and several "
-                           "threads have one time line by clock = \"wall\" only",
-                           name(condition.clock), uav.placement.name));
-  }
-}
-
 void read_conditions(const TomlTable& root, Scenario& scenario) {
   std::map<std::string, std::string> slugs;
   for (const TomlTable& table :
        root.tables("condition", {"name", "description", "policy", "clock", "cpu_factor",
                                  "computing_ms", "real_time_factor", "profile", "target"})) {
     scenario.conditions.push_back(read_condition(table, scenario));
-    require_clock_for_suts(table, scenario, scenario.conditions.back());
     if (auto profile = read_profile(table, scenario)) {
       scenario.conditions.back().profiles.push_back(std::move(*profile));
     }

@@ -122,8 +122,9 @@ TEST_F(LoadScenario, GivesEachUavItsSut) {
 TEST_F(LoadScenario, TellsAProgramOfSeveralThreadsFromASerialOne) {
   const std::string common = "command = [\"tether-sut\", \"face-anchor\"]\n";
   EXPECT_FALSE(load(kFullScenario).uavs[1].sut.concurrent);
-  EXPECT_THAT(error_with(common, common + "concurrent = true\n"),
-              AllOf(HasSubstr("is concurrent"), HasSubstr("clock = \"wall\" only")));
+  const Scenario s = load_with(common, common + "concurrent = true\n");
+  EXPECT_TRUE(s.uavs[1].sut.concurrent);
+  EXPECT_FALSE(s.uavs[0].sut.concurrent) << "it has a command of its own";
 }
 
 TEST_F(LoadScenario, LaysOwnParametersOverTheCommonOnesWhenTheCommandIsCommon) {
