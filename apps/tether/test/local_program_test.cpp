@@ -32,9 +32,11 @@ TEST(ProgramOnTarget, MakesParametersOptions) {
 }
 
 TEST(ProgramOnTarget, BeginsWithTheLauncherAndFindsTheProgramInTheTargetsFolder) {
-  EXPECT_THAT(sut_command({{"fly", "task"}, {}}, target({"emulate", "-L", "/root"}, "/arm/bin")).words,
-              ElementsAre("emulate", "-L", "/root", "/arm/bin/fly", "task"));
-  EXPECT_THAT(sut_command({{"/own/fly"}, {}}, target({}, "/arm/bin")).words, ElementsAre("/own/fly"));
+  EXPECT_THAT(
+      sut_command({{"fly", "task"}, {}}, target({"emulate", "-L", "/root"}, "/arm/bin")).words,
+      ElementsAre("emulate", "-L", "/root", "/arm/bin/fly", "task"));
+  EXPECT_THAT(sut_command({{"/own/fly"}, {}}, target({}, "/arm/bin")).words,
+              ElementsAre("/own/fly"));
 }
 
 TEST(ProgramOnTarget, StartsAConcurrentProgramUnderTetherExecBeforeAnythingElse) {

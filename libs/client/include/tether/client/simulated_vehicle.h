@@ -11,8 +11,8 @@
 namespace tether::client {
 
 struct ConnectOptions {
-  /// Path of tether-exec's socket. Not empty: the vehicle is a concurrent one, and tether-exec knows
-  /// address, token and clock.
+  /// Path of tether-exec's socket. Not empty: the vehicle is a concurrent one, and tether-exec
+  /// knows address, token and clock.
   std::string exec_socket;
   link::Address address;
   std::string token;
@@ -32,21 +32,20 @@ struct ConnectOptions {
   Duration heartbeat_period = std::chrono::milliseconds(500);
 };
 
-/// From the environment that tether-exec sets for the command it starts: TETHER_EXEC, the path of its
-/// socket. Where that is not set: address, token, UAV and clock from what `tether run` sets for the
-/// SUT it starts:
-/// TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV (may be unset: the only one), TETHER_CLOCK (see
-/// parse_time_source; unset: "wall"). Fails with kInvalid, naming the variable,
+/// From the environment that tether-exec sets for the command it starts: TETHER_EXEC, the path of
+/// its socket. Where that is not set: address, token, UAV and clock from what `tether run` sets for
+/// the SUT it starts: TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV (may be unset: the only one),
+/// TETHER_CLOCK (see parse_time_source; unset: "wall"). Fails with kInvalid, naming the variable,
 /// its value and what is allowed.
 Result<ConnectOptions> options_from_environment();
 
-/// Connects to a coordinator, or to the tether-exec that stands between, and shakes hands. The returned vehicle's ET starts with the
-/// coordinator's Welcome.
+/// Connects to a coordinator, or to the tether-exec that stands between, and shakes hands. The
+/// returned vehicle's ET starts with the coordinator's Welcome.
 ///
 /// Fails with kDisconnected or kTimeout (no coordinator there, or no answer), kRefused (the
 /// coordinator's own words), kInvalid (options that cannot be used, or, in free running, a
-/// clock faster than the CPU or a wall clock with a factor; with tether-exec, any clock other than the
-/// plain wall clock).
+/// clock faster than the CPU or a wall clock with a factor; with tether-exec, any clock other than
+/// the plain wall clock).
 ///
 /// The vehicle's calls fail with kInvalid for wrong arguments, and can then be called again. After
 /// any other failure (kRefused, kRunEnded, kDisconnected, kProtocol) every later call fails with

@@ -109,8 +109,8 @@ std::string why_not_on(const Condition& condition, const Target& target);
 /// @throws Error(kUsage) with the reason of `why_not_on`.
 void place_on(Condition& condition, Target target);
 
-/// @throws Error(kBadFile) naming the UAV, if the condition measures by a clock that is no time line
-/// for its SUT: of a concurrent one, any but Clock::kWall.
+/// @throws Error(kBadFile) naming the UAV, if the condition measures by a clock that is no time
+/// line for its SUT: of a concurrent one, any but Clock::kWall.
 void require_clock(const Scenario& scenario, const Condition& condition);
 
 /// The names of the profiles in use, each once, in the order of their layers: the UAVs', then the
