@@ -78,9 +78,15 @@ Check check_board(const scenario::SshAddress& address) {
   return check;
 }
 
-bool has_bad(const Check& check) {
+bool has(const Check& check, Health health) {
   return std::ranges::any_of(check.findings,
-                             [](const Finding& f) { return f.health == Health::kBad; });
+                             [health](const Finding& f) { return f.health == health; });
+}
+
+std::string conclusion(const Check& check) {
+  if (has(check, Health::kBad)) return "What is marked \"bad\" would spoil a measurement.";
+  if (has(check, Health::kWarn)) return "What is marked \"warn\" may spoil a measurement.";
+  return "Nothing here would spoil a measurement.";
 }
 
 std::string to_text(const Check& check) {
@@ -90,12 +96,11 @@ std::string to_text(const Check& check) {
                         finding.health == Health::kOk ? "" : experiment::name(finding.health),
                         finding.subject, finding.value,
                         finding.advice.empty() ? "" : fmt::format("  ({})", finding.advice));
-  return text + (has_bad(check) ? "What is marked \"bad\" would spoil a measurement.\n"
-                                : "Nothing here would spoil a measurement.\n");
+  return text + conclusion(check) + "\n";
 }
 
 std::string to_json(const Check& check) {
-  nlohmann::ordered_json json{{"target", check.target}, {"fine", !has_bad(check)}};
+  nlohmann::ordered_json json{{"target", check.target}, {"fine", !has(check, Health::kBad)}};
   for (const Finding& finding : check.findings)
     json["findings"].push_back({{"subject", finding.subject},
                                 {"value", finding.value},
@@ -110,7 +115,7 @@ int run(const CheckOptions& options) {
                           ? check_here()
                           : check_board(scenario::parse_ssh_address(options.address));
   fmt::print("{}", options.json ? to_json(check) : to_text(check));
-  return has_bad(check) ? 1 : 0;
+  return has(check, Health::kBad) ? 1 : 0;
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST_P(OwnSutUnderTetherExec, FliesToItsGoal) {
             {{"PKG_CONFIG_PATH", folder_of(prefix_, "tether-client.pc")}}, example_);
   const auto file = example_ / "face_anchor.toml";
   write_text(file, substituted(read_text(file),
-                               {{"\"blue_box\"]\n\n", "\"blue_box\"]\nconcurrent = true\n\n"}}));
+                               {{"\", \"blue_box\"]", "\", \"blue_box\"]\nconcurrent = true"}}));
   expect_goal("board");
 }
 

@@ -35,7 +35,8 @@ constexpr const char* kHelp =
     "  tether-exec ./my-uav-program --config flight.yaml\n"
     "  tether-exec --freezer signal --verbose python3 fly.py\n"
     "In a scenario:\n"
-    "  command = [\"tether-exec\", \"./my-uav-program\"]\n";
+    "  command = [\"./my-uav-program\"]\n"
+    "  concurrent = true\n";
 
 /// What is wrong with it; empty: nothing.
 std::string set(Settings& settings, const std::string& freezer) {
