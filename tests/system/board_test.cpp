@@ -281,10 +281,12 @@ TEST_F(OnABoard, ASutThatCrashesIsNamedWithItsSignal) {
 }
 
 TEST_F(OnABoard, ASutThatHangsIsNamed) {
-  const auto result =
-      expect_failure(tether_run(scenario("stop"), "out"), "out", {"bad_sut", "no word for 2 s"});
-  EXPECT_EQ(result["end"], "sut_hung");
-  expect_nothing_left();
+  for (const std::string mode : {"stop", "idle"}) {  // halted; waiting for what never comes
+    const auto result =
+        expect_failure(tether_run(scenario(mode), mode), mode, {"bad_sut", "no word for 2 s"});
+    EXPECT_EQ(result["end"], "sut_hung") << mode;
+    expect_nothing_left();
+  }
 }
 
 TEST_F(OnABoard, AStubbornSutAndAChildOfItsOwnGoToo) {

@@ -102,11 +102,15 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
     start();
 }
 
-/// Whether a message tells that the SUT lives. Under the barrier a progress that goes nowhere does
-/// not: its sender is a helper thread, and the SUT itself may be stuck.
+/// Whether a message tells that the SUT lives. Under the barrier a progress may not: its sender is
+/// a helper, and the SUT itself may be stuck. That it has computed shows in CPU time, which then
+/// goes on; the wall clock goes on whatever the SUT does, so there only its calls tell, as long as
+/// none of them is open.
 bool Coordinator::Impl::is_word(const Session& session, const link::Message& message) const {
   const auto* progress = std::get_if<link::Progress>(&message);
-  return !progress || !running_ || !tied() || progress->reached > barrier_.bound(session.uav);
+  if (!progress || !running_ || !tied()) return true;
+  if (session.hello.clock == link::ClockKind::kWall && session.open.empty()) return false;
+  return progress->reached > barrier_.bound(session.uav);
 }
 
 void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress) {
