@@ -90,8 +90,24 @@ void Supervision::end(std::optional<link::Refusal> why) {
   if (over_) return;
   over_ = true;
   why_over_ = std::move(why);
+  hand_out_what_is_there();
   for (const auto& [sequence, open] : std::exchange(open_, {})) refuse(open.caller);
   for (const Asked& asked : std::exchange(asked_, {})) refuse(asked.caller);
+}
+
+// The coordinator closes right after it has answered a finish, so the end may be heard in one go
+// with replies.
+void Supervision::hand_out_what_is_there() {
+  for (auto it = open_.begin(); it != open_.end();) {
+    const Open& open = it->second;
+    if (!open.reply || (!open.finishes && open.reply->resume_at > last_sent_)) {
+      ++it;
+      continue;
+    }
+    Open done = std::move(it->second);
+    it = open_.erase(it);
+    hand_out(std::move(done));
+  }
 }
 
 void Supervision::refuse(CallerId caller) {
@@ -106,8 +122,14 @@ void Supervision::refuse(CallerId caller) {
 void Supervision::hand_out(Open open) {
   if (open.caller != 0) answers_.push_back({open.caller, std::move(*open.reply)});
   if (!open.finishes) return;
-  end(link::Refusal{link::Refusal::Reason::kRunEnded,
-                    "another thread of the program has finished the mission"});
+  finished_ = true;
+  link::Refusal why{link::Refusal::Reason::kRunEnded,
+                    "another thread of the program has finished the mission"};
+  if (over_) {
+    why_over_ = std::move(why);
+  } else {
+    end(std::move(why));
+  }
 }
 
 // --- stopping and going on ----------------------------------------------------------------------

@@ -47,12 +47,15 @@ class Supervision {
   /// that cannot be; nothing has changed then.
   Status heard(const link::Due& due);
   Status heard(link::Reply reply);
-  /// There is no coordinator any more: all open calls and all later ones get its refusal or,
-  /// without one, are hung up on. The group runs.
+  /// There is no coordinator any more. Calls whose reply is there and due get it. All other open
+  /// calls and all later ones get the refusal or, without one, are hung up on; if a finish was
+  /// among the replies, they hear that the run has ended. The group runs.
   void end(std::optional<link::Refusal> why);
 
   bool is_running() const { return running_; }
   bool is_over() const { return over_; }
+  /// A thread has finished the mission, and the coordinator has confirmed it.
+  bool is_finished() const { return finished_; }
   /// @pre is_running()
   bool must_stop(ExecTime now) const;
   /// The next instant at which the group must stand still, as far as is known.
@@ -88,11 +91,13 @@ class Supervision {
 
   void forward(Asked asked, ExecTime latest);
   void hand_out(Open open);
+  void hand_out_what_is_there();
   void refuse(CallerId caller);
 
   bool free_running_;
   bool running_ = true;
   bool over_ = false;
+  bool finished_ = false;
   std::optional<link::Refusal> why_over_;
   ExecTime stopped_at_;
   ExecTime last_sent_;                  // no later stamp or Progress is before it

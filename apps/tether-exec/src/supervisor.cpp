@@ -258,9 +258,10 @@ void Supervisor::send_outgoing() {
 }
 
 void Supervisor::lose_coordinator(const Failure& failure) {
-  if (!supervision_ || !supervision_->is_over()) say(failure.message);
   channel_.reset();
-  if (supervision_) return supervision_->end(std::nullopt);
+  const bool was_over = supervision_ && supervision_->is_over();
+  if (supervision_) supervision_->end(std::nullopt);
+  if (!was_over && !(supervision_ && supervision_->is_finished())) say(failure.message);
   for (const CallerId caller : std::exchange(waiting_, {})) callers_.drop(caller);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -123,6 +124,45 @@ TEST_F(SupervisionTest, FinishEndsEveryOtherCall) {
   }
 }
 
+// The coordinator closes once it has answered a finish: both may be heard in one go.
+TEST_F(SupervisionTest, FinishSucceedsThoughTheCoordinatorHasGoneAtOnce) {
+  group_.asked(1, request(10ms));
+  group_.asked(2, request(11ms, link::Finish{true, "done", ""}));
+  group_.asked(3, request(12ms));
+  group_.asked(4, request(12ms));
+  group_.stopped(et(12ms));
+  const Duration dues[] = {11ms, 11ms, 40ms, 12ms};
+  for (std::uint64_t i = 1; i <= 4; ++i) ASSERT_TRUE(group_.heard(Due{i, et(dues[i - 1])}).ok());
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    ASSERT_TRUE(group_.heard(Reply{i, et(dues[i - 1]), std::nullopt}).ok());
+  }
+  group_.end(std::nullopt);
+  EXPECT_TRUE(group_.is_finished());
+  std::map<CallerId, Message> got;
+  for (const Answer& answer : group_.take_answers()) {
+    ASSERT_TRUE(answer.message);
+    got.emplace(answer.caller, *answer.message);
+  }
+  ASSERT_EQ(got.size(), 4u);
+  EXPECT_TRUE(std::holds_alternative<Reply>(got.at(1)));
+  EXPECT_TRUE(std::holds_alternative<Reply>(got.at(2)));
+  // One is from the future, one is not there.
+  for (const CallerId other : {3u, 4u}) {
+    EXPECT_EQ(std::get<Refusal>(got.at(other)).reason, Refusal::Reason::kRunEnded);
+  }
+}
+
+TEST_F(SupervisionTest, AFinishThatIsNotConfirmedIsNone) {
+  group_.asked(1, request(10ms, link::Finish{true, "done", ""}));
+  group_.stopped(et(12ms));
+  ASSERT_TRUE(group_.heard(Due{1, et(10ms)}).ok());
+  group_.end(std::nullopt);
+  EXPECT_FALSE(group_.is_finished());
+  const auto answers = group_.take_answers();
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_FALSE(answers[0].message);
+}
+
 TEST_F(SupervisionTest, WithoutACoordinatorItRunsAndHangsUp) {
   group_.asked(1, request(10ms));
   group_.stopped(et(12ms));
@@ -201,8 +241,42 @@ class World {
     }
     EXPECT_TRUE(open_calls_.empty()) << open_calls_.size() << " calls were never answered";
   }
+  /// The coordinator goes, with a thread's finish answered or not. Every open call is answered:
+  /// with its reply exactly if that is there and due.
+  void lose_coordinator() {
+    const bool finishes = random_.bits() % 2 == 0 && group_.is_running() && finish();
+    take_outgoing();
+    group_.end(std::nullopt);
+    EXPECT_EQ(group_.is_finished(), finishes);
+    for (const Answer& answer : group_.take_answers()) {
+      const bool got_reply = answer.message && std::holds_alternative<Reply>(*answer.message);
+      EXPECT_EQ(got_reply, replied_.count(answer.caller) == 1);
+      EXPECT_EQ(answer.message.has_value(), got_reply || finishes);
+      EXPECT_EQ(open_calls_.erase(answer.caller), 1u);
+    }
+    EXPECT_TRUE(open_calls_.empty());
+    EXPECT_TRUE(group_.is_running() || group_.may_go_on());
+  }
 
  private:
+  // Asks, is stopped and answered.
+  bool finish() {
+    const CallerId caller = ++last_caller_;
+    open_calls_[caller] = now_;
+    Request r = request({}, link::Finish{true, "done", ""});
+    r.issued_at = now_;
+    group_.asked(caller, r);
+    group_.stopped(now_);
+    take_outgoing();
+    const auto asked = std::find_if(undated_.begin(), undated_.end(), [](const Request& u) {
+      return std::holds_alternative<link::Finish>(u.body);
+    });
+    EXPECT_TRUE(group_.heard(Due{asked->sequence, asked->issued_at}).ok());
+    EXPECT_TRUE(group_.heard(Reply{asked->sequence, asked->issued_at, std::nullopt}).ok());
+    replied_.insert(caller);
+    return true;
+  }
+
   void let_time_pass() {
     if (group_.is_running()) now_ += Duration(random_.bits() % 3'000'000);
   }
@@ -213,7 +287,7 @@ class World {
     const Duration late(random_.bits() % 4 == 0 ? random_.bits() % 100'000 : 0);
     const CallerId caller = ++last_caller_;
     open_calls_[caller] = std::max(now_ - late, ExecTime{});
-    Request r = request({});
+    Request r = request({}, link::ReadSensor{static_cast<std::uint32_t>(caller)});
     r.issued_at = open_calls_[caller];
     group_.asked(caller, r);
   }
@@ -239,6 +313,7 @@ class World {
       ASSERT_LE(reply.resume_at, at);
       ASSERT_GE(reply.resume_at, open_calls_[answer.caller]);
       open_calls_.erase(answer.caller);
+      replied_.erase(answer.caller);
     }
     // Nobody runs who should have had a reply.
     ASSERT_TRUE(undated_.empty());
@@ -252,6 +327,8 @@ class World {
         ASSERT_EQ(r->sequence, ++sequence_);
         said_ = r->issued_at;
         undated_.push_back(*r);
+        const auto* read = std::get_if<link::ReadSensor>(&r->body);
+        if (read != nullptr) caller_of_[r->sequence] = read->sensor;
       }
       if (const auto* p = std::get_if<Progress>(&message)) {
         ASSERT_GE(p->reached, said_);
@@ -278,13 +355,16 @@ class World {
                                     [this](const auto& u) { return u.second <= said_; });
     if (ready == unanswered_.end() || random_.bits() % 2 == 0) return;
     ASSERT_TRUE(group_.heard(Reply{ready->first, ready->second, std::nullopt}).ok());
+    replied_.insert(caller_of_[ready->first]);
     unanswered_.erase(ready);
   }
 
   KeyedRandom random_;
   Supervision group_{false, ExecTime{}};
   ExecTime now_{};
-  ExecTime said_{};  // the latest that the coordinator heard
+  std::map<std::uint64_t, CallerId> caller_of_;
+  std::set<CallerId> replied_;  // with replies that they have not been given
+  ExecTime said_{};             // the latest that the coordinator heard
   std::uint64_t sequence_ = 0;
   CallerId last_caller_ = 0;
   std::map<CallerId, ExecTime> open_calls_;  // and their stamps
@@ -298,6 +378,16 @@ TEST(SupervisionProperty, HoldsTheRulesHoweverEverythingInterleaves) {
     World world(seed);
     for (int i = 0; i < 500; ++i) world.move();
     world.settle();
+    if (testing::Test::HasFailure()) return;
+  }
+}
+
+TEST(SupervisionProperty, AnswersEveryCallWhenTheCoordinatorGoes) {
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    SCOPED_TRACE(seed);
+    World world(seed);
+    for (std::uint64_t i = 0; i < 20 + seed % 50; ++i) world.move();
+    world.lose_coordinator();
     if (testing::Test::HasFailure()) return;
   }
 }
