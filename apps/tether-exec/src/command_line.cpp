@@ -72,8 +72,9 @@ Parsed parse_command_line(const std::vector<std::string>& arguments) {
       return {{}, Notice{"tether-exec " + std::string(version()) + "\n", 0}};
     if (option == "--verbose") {
       parsed.settings.verbose = true;
-    } else if (option == "--freezer" && i + 1 < arguments.size()) {
-      error = set(parsed.settings, arguments[++i]);
+    } else if (option == "--freezer") {
+      error = i + 1 < arguments.size() ? set(parsed.settings, arguments[++i])
+                                       : "--freezer needs a value: auto, cgroup or signal";
     } else if (option.rfind("--freezer=", 0) == 0) {
       error = set(parsed.settings, option.substr(std::string("--freezer=").size()));
     } else {

@@ -48,7 +48,7 @@ TEST(CommandLine, SaysWhatIsWrong) {
   expect({"--"}, "no command");
   expect({"--loud", "fly"}, "no option --loud");
   expect({"--freezer", "ice", "fly"}, "'ice'; allowed are auto, cgroup and signal");
-  expect({"--freezer"}, "--freezer");
+  expect({"--freezer"}, "--freezer needs a value: auto, cgroup or signal");
 }
 
 class ExecEnvironment : public testing::Test {
