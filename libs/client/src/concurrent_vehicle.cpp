@@ -90,16 +90,6 @@ void ConcurrentVehicle::give_back(std::unique_ptr<Connection> connection) {
 
 // --- calls --------------------------------------------------------------------------------------
 
-Status ConcurrentVehicle::usable() const {
-  if (::getpid() != process_) {
-    return Failure{Failure::Kind::kInvalid, "this vehicle belongs to process " +
-                                                std::to_string(process_) +
-                                                "; a child that was forked connects by itself"};
-  }
-  if (const auto why = over()) return *why;
-  return ok_status();
-}
-
 Result<link::Reply> ConcurrentVehicle::interact(Body body) {
   if (const Status good = usable(); !good) return good.failure();
   Cancellation* const cancellation = Cancellation::of_this_thread();

@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <unistd.h>
-
 #include <tether/client/exec/clock_page.h>
 #include <tether/client/exec/local_socket.h>
 #include <tether/client/simulated_vehicle.h>
@@ -56,13 +54,10 @@ class ConcurrentVehicle final : public InteractingVehicle {
   Result<link::Reply> ask(Connection& connection, Body body);
   Result<std::unique_ptr<Connection>> take_connection();
   void give_back(std::unique_ptr<Connection> connection);
-  /// Fails in a process other than the one that made this, and after the end.
-  Status usable() const;
 
   Caller caller_;
   MappedClockPage clock_;
   bool free_running_;
-  pid_t process_ = ::getpid();
   std::mutex mutex_;
   std::vector<std::unique_ptr<Connection>> idle_;  // guarded by mutex_
 };

@@ -76,9 +76,14 @@ Failure InteractingVehicle::give_up(Failure failure) {
   return failure;
 }
 
-std::optional<Failure> InteractingVehicle::over() const {
+Status InteractingVehicle::usable() const {
+  if (!is_of_this_process()) {
+    return Failure{Failure::Kind::kInvalid, "this vehicle belongs to process " +
+                                                std::to_string(process_) +
+                                                "; a child that was forked connects by itself"};
+  }
   const std::lock_guard lock(mutex_);
-  return over_;
+  return over_ ? Status(*over_) : ok_status();
 }
 
 // --- sensors ------------------------------------------------------------------------------------
@@ -93,7 +98,7 @@ Result<Sample> InteractingVehicle::read(std::string_view sensor, Read read) {
     return Failure{Failure::Kind::kInvalid,
                    "'" + found->name +
                        "' measures on demand: nothing is ever available of it before it is asked; "
-                       "read it with kNext"};
+                       "use a read that waits"};
   }
   const auto index = static_cast<std::uint32_t>(found - catalogue_.sensors.data());
   auto reply = interact(link::ReadSensor{index, read == Read::kLatest, read == Read::kIfAvailable});

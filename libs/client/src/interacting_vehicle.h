@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include <unistd.h>
+
 #include <tether/client/vehicle.h>
 #include <tether/link/messages.h>
 
@@ -48,8 +50,12 @@ class InteractingVehicle : public Vehicle {
 
   /// Remembers a failure after which there is no going on (the first one stays) and returns it.
   Failure give_up(Failure failure);
-  /// Why no call is possible any more.
-  std::optional<Failure> over() const;
+  /// False: in a child that was forked.
+  bool is_of_this_process() const { return ::getpid() == process_; }
+  /// Fails in a process other than the one that made this (a child that was forked has this one's
+  /// connections, and both would speak on them), and after the end. To be asked before any lock is
+  /// taken: in the child a thread that does not exist there may hold it.
+  Status usable() const;
 
  private:
   template <class Sample>
@@ -59,6 +65,7 @@ class InteractingVehicle : public Vehicle {
   Failure no_such_sensor(std::string_view sensor, uav::SensorKind kind) const;
 
   uav::Catalogue catalogue_;
+  pid_t process_ = ::getpid();
   mutable std::mutex mutex_;
   std::optional<Failure> over_;  // guarded by mutex_
 };

@@ -28,6 +28,11 @@ SimulatedVehicle::SimulatedVehicle(std::unique_ptr<link::Channel> channel, link:
 }
 
 SimulatedVehicle::~SimulatedVehicle() {
+  if (!is_of_this_process()) {
+    // The connection is still the parent's, and the reporter's thread was never here to be joined.
+    static_cast<void>(progress_.release());
+    return;
+  }
   channel_->close();  // a reporter that is sending must not wait for the coordinator
   progress_.reset();
 }
@@ -35,12 +40,13 @@ SimulatedVehicle::~SimulatedVehicle() {
 // --- interactions -------------------------------------------------------------------------------
 
 Result<link::Reply> SimulatedVehicle::interact(Body body) {
+  if (const Status good = usable(); !good) return good.failure();
   const std::lock_guard lock(calls_);
   return interact_alone(std::move(body));
 }
 
 Result<link::Reply> SimulatedVehicle::interact_alone(Body body) {
-  if (const auto why = over()) return *why;
+  if (const Status good = usable(); !good) return good.failure();  // others were first
   const ExecTime stamp = clock_->begin();
   const Duration issued = wall_->now();
   const link::Request request{sequence_ + 1, stamp, previous_round_trip_, std::move(body)};
@@ -91,14 +97,16 @@ void SimulatedVehicle::close() {
 // --- waiting, words for the record --------------------------------------------------------------
 
 Status SimulatedVehicle::sleep_for(Duration duration) {
+  if (const Status good = usable(); !good) return good;
   const std::lock_guard lock(calls_);
-  if (const auto why = over()) return *why;
+  if (const Status good = usable(); !good) return good;  // others were first
   return sleep_alone(add_within_bounds(clock_->begin(), duration));
 }
 
 Status SimulatedVehicle::sleep_until(ExecTime until) {
+  if (const Status good = usable(); !good) return good;
   const std::lock_guard lock(calls_);
-  if (const auto why = over()) return *why;
+  if (const Status good = usable(); !good) return good;  // others were first
   return sleep_alone(until);
 }
 
@@ -109,8 +117,9 @@ Status SimulatedVehicle::sleep_alone(ExecTime until) {
 }
 
 Status SimulatedVehicle::annotate(std::string_view topic, std::string_view json) {
+  if (const Status good = usable(); !good) return good;
   const std::lock_guard lock(calls_);
-  if (const auto why = over()) return *why;
+  if (const Status good = usable(); !good) return good;  // others were first
   // The clock stands still meanwhile. In free running it does not; nothing is charged there.
   const ExecTime at = free_running_ == nullptr ? clock_->begin() : clock_->now();
   Status sent = ok_status();

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <tether/client_testing/manual_time_source.h>
 
@@ -63,6 +65,32 @@ TEST(SerialVehicle, CallsOfSeveralThreadsWaitForOneAnother) {
     // Every reply moves ET by 1 ms, so a request from within another's interaction would show.
     ASSERT_GE(requests[i].issued_at, requests[i - 1].issued_at + 1ms);
   }
+}
+
+// Both would speak on one connection, and the parent's sequence would be broken.
+TEST(SerialVehicle, IsItsOwnProcessesAlone) {
+  const link::Welcome welcome = welcome_with_sensors();
+  ScriptedCoordinator coordinator(welcome, answer);
+  auto vehicle = std::make_unique<SimulatedVehicle>(
+      coordinator.connect(), welcome, std::make_unique<ManualTimeSource>(link::ClockKind::kCpu),
+      std::make_unique<FakeWallTimer>(), 1ms);
+  EXPECT_TRUE(vehicle->command_velocity({}).ok());
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const auto is_refused = [](const Status& status) {
+      return !status && status.failure().kind == Failure::Kind::kInvalid;
+    };
+    const bool refused =
+        is_refused(vehicle->command_velocity({})) && is_refused(vehicle->sleep_for(1ms)) &&
+        is_refused(vehicle->annotate("task", "{}")) && is_refused(vehicle->finish(true, "", ""));
+    vehicle.reset();
+    ::_exit(refused ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  EXPECT_TRUE(vehicle->command_velocity({}).ok());
+  EXPECT_EQ(coordinator.requests().size(), 2u);
 }
 
 TEST(SerialVehicle, AThreadFinishesWhileOthersCall) {
