@@ -3,11 +3,15 @@
 //   count  one thread reads the camera, three count iterations of a fixed kernel, until ET has
 //          reached SECONDS; the details of its end say how many per second of ET
 //   child  the same with a child process that reads the rangefinder
+//   apart  the same with a child process that has left the process group and computes; it must not
+//          get more CPU time than ET passes
+//   spawn  the same while a thread starts one program after another
 //   push   subscribes to camera and rangefinder; the details say what came, and whether in time
 //
 // CORE: run on that core only, before everything else there if that is allowed, so that little of
 // what the machine does otherwise is felt.
 #include <atomic>
+#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -18,8 +22,10 @@
 #include <vector>
 
 #include <sched.h>
+#include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <tether/client/simulated_vehicle.h>
@@ -149,6 +155,67 @@ std::string run_with_child(Vehicle& vehicle, ExecTime end) {
   return details;
 }
 
+// ---- apart
+
+Duration own_cpu_time() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+/// The child's life: half as much again would be more than any stop takes.
+[[noreturn]] void compute_apart(ExecTime end) {
+  setsid();
+  const auto own = join();
+  const ExecTime begin = own->now();
+  const Duration before = own_cpu_time();
+  std::uint64_t state = 1;
+  while (own->now() < end) work(state);
+  const Duration charged = own->now() - begin;
+  if (2 * (own_cpu_time() - before) > 3 * charged) fail("computed while it should stand still");
+  std::_Exit(0);
+}
+
+std::string run_beside_one_apart(Vehicle& vehicle, ExecTime end) {
+  const pid_t child = fork();
+  if (child == 0) compute_apart(end);
+  while (vehicle.now() < end) require(vehicle.command_velocity({}));
+  int status = 0;
+  if (waitpid(child, &status, 0) != child || status != 0) fail("the child failed");
+  return "{}";
+}
+
+// ---- spawn
+
+/// Starts `true` again and again; returns how often.
+int spawn_until(const std::atomic<bool>& over) {
+  char name[] = "true";
+  char* const arguments[] = {name, nullptr};
+  int count = 0;
+  for (; !over; ++count) {
+    pid_t child = 0;
+    int status = 0;
+    if (posix_spawnp(&child, name, nullptr, nullptr, arguments, environ) != 0) fail("no child");
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (status != 0) fail("the child failed");
+  }
+  return count;
+}
+
+std::string run_with_spawning(Vehicle& vehicle, ExecTime end) {
+  std::atomic<bool> over = false;
+  int count = 0;
+  std::thread spawning([&] { count = spawn_until(over); });
+  while (vehicle.now() < end) {
+    require(vehicle.read_range("range"));
+    require(vehicle.sleep_for(2ms));
+  }
+  over = true;
+  spawning.join();
+  return "{\"started\": " + std::to_string(count) + "}";
+}
+
 // ---- push
 
 template <class Sample>
@@ -185,7 +252,11 @@ std::string run_push(Vehicle& vehicle, ExecTime end) {
 }
 
 const std::map<std::string, std::function<std::string(Vehicle&, ExecTime)>> kModes = {
-    {"count", run_count}, {"child", run_with_child}, {"push", run_push}};
+    {"count", run_count},
+    {"child", run_with_child},
+    {"apart", run_beside_one_apart},
+    {"spawn", run_with_spawning},
+    {"push", run_push}};
 
 }  // namespace
 

@@ -101,6 +101,16 @@ TEST_P(Threads, ReadFromAChildProcessToo) {
   EXPECT_GE(fly("child", "0.3")["images"].get<int>(), 1);
 }
 
+TEST_P(Threads, StandStillInAProcessThatLeftTheGroupToo) {
+  fly("apart", "0.3", {"--real-time-factor", "0.1"});
+}
+
+// The thread that starts a program waits in the kernel until the new process runs it, and that may
+// stand still first.
+TEST_P(Threads, StartProgramsMeanwhile) {
+  EXPECT_GE(fly("spawn", "2")["started"].get<int>(), 20);
+}
+
 TEST_P(Threads, ArePushedEveryMeasurement) {
   const auto details = fly("push", "1");
   for (const char* sensor : {"camera", "imu"}) {
@@ -148,6 +158,18 @@ TEST_F(Ends, WithTheCodeOfItsCommand) {
   }
 }
 
+// A child that has left the process group, and one that has also lost its parent.
+TEST_F(Ends, WithThoseWhoLeftTheGroup) {
+  for (const std::string freezer : {"auto", "signal"}) {
+    EXPECT_EQ(
+        run(exec({"--freezer", freezer, "sh", "-c",
+                  "setsid sleep 1000 & (setsid sh -c 'sleep 1000 & sleep 1000' &) ; sleep 0.2"}))
+            .code,
+        0);
+    expect_nothing_left();
+  }
+}
+
 TEST_F(Ends, WithWhatIsWrong) {
   const Output missing = run(exec({"/nowhere/program"}));
   EXPECT_EQ(missing.code, 2);
@@ -175,6 +197,15 @@ TEST_F(Ends, KillingWhoDoesNotListen) {
   ASSERT_TRUE(process.wait_for_out("ready", 20s));
   process.signal(SIGTERM);
   EXPECT_EQ(process.wait(20s).code, 128 + SIGKILL);
+  expect_nothing_left();
+}
+
+TEST_F(Ends, KilledItselfItLeavesNobodyWhoLeftTheGroup) {
+  Process process(exec({"--freezer", "signal", "sh", "-c",
+                        "setsid sh -c 'echo ready; sleep 1000; exit' & sleep 1000"}));
+  ASSERT_TRUE(process.wait_for_out("ready", 20s));
+  process.signal(SIGKILL);
+  process.wait(10s);
   expect_nothing_left();
 }
 

@@ -42,9 +42,10 @@ class Cgroup {
 void remove_cgroup(const std::string& path);
 
 Result<std::unique_ptr<Freezer>> make_cgroup_freezer(const Cgroup& cgroup);
-/// SIGSTOP and SIGCONT for the process group `group`, whose first process is a child of this one.
-/// This process must be the reaper of its descendants. Fails with kInvalid on kernels that do not
-/// list a process's children.
-Result<std::unique_ptr<Freezer>> make_signal_freezer(pid_t group);
+/// SIGSTOP and SIGCONT for the process group `group`, whose first process is a child of this one,
+/// and for descendants that have left it, but not for `guardian`. This process must be the reaper
+/// of its descendants and have one thread. Fails with kInvalid on kernels that do not list a
+/// process's children.
+Result<std::unique_ptr<Freezer>> make_signal_freezer(pid_t group, pid_t guardian);
 
 }  // namespace tether::exec

@@ -1,6 +1,7 @@
 #include "guardian.h"
 
 #include "freezer.h"
+#include "process_tree.h"
 
 #include <cerrno>
 
@@ -37,6 +38,7 @@ void guard(int pipe, const std::string& folder, const std::string& cgroup) {
   }
   const pid_t group = read_until_end(pipe);
   if (group > 0) ::kill(-group, SIGKILL);
+  kill_all_with("TETHER_EXEC=" + folder + "/socket");
   if (!cgroup.empty()) remove_cgroup(cgroup);
   ::unlink((folder + "/socket").c_str());
   ::rmdir(folder.c_str());

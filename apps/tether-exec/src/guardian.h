@@ -21,6 +21,7 @@ class Guardian {
   Guardian& operator=(const Guardian&) = delete;
 
   bool is_there() const { return process_ > 0; }
+  pid_t process() const { return process_; }
   /// The command's process group, once there is one.
   void watch(pid_t group);
 

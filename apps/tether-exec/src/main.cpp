@@ -1,6 +1,7 @@
 #include "command.h"
 #include "command_line.h"
 #include "guardian.h"
+#include "process_tree.h"
 #include "supervisor.h"
 
 #include <algorithm>
@@ -65,8 +66,9 @@ Result<std::optional<Cgroup>> choose_cgroup(FreezerChoice choice) {
   return std::optional<Cgroup>();
 }
 
-Result<std::unique_ptr<Freezer>> make_freezer(const std::optional<Cgroup>& cgroup, pid_t command) {
-  return cgroup ? make_cgroup_freezer(*cgroup) : make_signal_freezer(command);
+Result<std::unique_ptr<Freezer>> make_freezer(const std::optional<Cgroup>& cgroup, pid_t command,
+                                              pid_t guardian) {
+  return cgroup ? make_cgroup_freezer(*cgroup) : make_signal_freezer(command, guardian);
 }
 
 int supervise(const Settings& settings, const std::string& folder,
@@ -80,7 +82,7 @@ int supervise(const Settings& settings, const std::string& folder,
   const auto command = start_command(settings.command, path, cgroup);
   if (!command) return fail(2, command.failure().message);
   guardian.watch(*command);
-  auto freezer = make_freezer(cgroup, *command);
+  auto freezer = make_freezer(cgroup, *command, guardian.process());
   if (!freezer) return fail(3, freezer.failure().message);
   std::fprintf(stderr, "tether-exec: stops the command by %s\n", (*freezer)->name().c_str());
   const char* const priority = raise_priority();
@@ -88,6 +90,7 @@ int supervise(const Settings& settings, const std::string& folder,
   Supervisor supervisor(settings, *command, std::move(*clock), std::move(*listener),
                         std::move(signals), std::move(*freezer));
   const int exit_code = supervisor.run();
+  ProcessTree(guardian.process()).kill_all();
   if (settings.verbose) {
     std::fprintf(stderr, "%s  with %s\n", supervisor.statistics().c_str(), priority);
   }

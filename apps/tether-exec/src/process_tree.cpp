@@ -1,6 +1,11 @@
 #include "process_tree.h"
 
+#include "freezer.h"
+#include "waiting.h"
+
+#include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cstdlib>
 #include <memory>
@@ -9,6 +14,10 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <linux/kcmp.h>
+#include <signal.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 namespace tether::exec {
@@ -68,7 +77,7 @@ ThreadState thread_state(pid_t process, pid_t thread) {
   return {text[name_end + 2], ids.size() > 1 ? ids[1] : 0};
 }
 
-bool is_at_rest(char state) {
+bool has_stopped_or_ended(char state) {
   constexpr std::string_view kStoppedTracedOrEnded = "TtZXx";
   return kStoppedTracedOrEnded.find(state) != std::string_view::npos;
 }
@@ -77,27 +86,121 @@ std::string children_file(pid_t process, pid_t thread) {
   return folder_of(process) + std::to_string(thread) + "/children";
 }
 
+ProcessState process_state(pid_t process, pid_t parent) {
+  ProcessState found{process, parent};
+  for (const pid_t thread : threads_of(process)) {
+    const ThreadState state = thread_state(process, thread);
+    if (state.group != 0) found.group = state.group;
+    if (state.state == 'D') {
+      ++found.uninterruptible_threads;
+    } else if (!has_stopped_or_ended(state.state)) {
+      ++found.running_threads;
+    }
+  }
+  return found;
+}
+
+std::string program_of(pid_t process) {
+  std::array<char, 4096> path{};
+  const std::string link = "/proc/" + std::to_string(process) + "/exe";
+  const ssize_t size = ::readlink(link.c_str(), path.data(), path.size());
+  return {path.data(), size > 0 ? static_cast<std::size_t>(size) : 0};
+}
+
+/// How many children of `process` are at rest with memory that is its own too.
+int children_at_rest(const std::vector<ProcessState>& processes, const std::vector<bool>& rest,
+                     pid_t process, const std::function<bool(pid_t, pid_t)>& share_memory) {
+  int count = 0;
+  for (std::size_t i = 0; i < processes.size(); ++i) {
+    if (processes[i].parent == process && rest[i] && share_memory(process, processes[i].id)) {
+      ++count;
+    }
+  }
+  return count;
+}
+
+/// Kills what has the variable; false: nothing has.
+bool kill_some_with(const std::string& variable) {
+  bool found = false;
+  const std::unique_ptr<DIR, int (*)(DIR*)> folder(::opendir("/proc"), &::closedir);
+  while (const dirent* entry = folder ? ::readdir(folder.get()) : nullptr) {
+    const pid_t process = std::atoi(entry->d_name);
+    if (process <= 0) continue;
+    const std::string text = '\0' + read_text("/proc/" + std::string(entry->d_name) + "/environ");
+    if (text.find('\0' + variable + '\0') == std::string::npos) continue;
+    found = ::kill(process, SIGKILL) == 0 || found;
+  }
+  return found;
+}
+
 }  // namespace
+
+// A thread in vfork waits uninterruptibly. There are at most as many of them as children that share
+// its memory; any other that waits so beside them is only within a system call, and stops at its
+// end, before it computes.
+std::vector<bool> at_rest(const std::vector<ProcessState>& processes,
+                          const std::function<bool(pid_t, pid_t)>& share_memory) {
+  std::vector<bool> rest(processes.size(), false);
+  for (std::size_t i = processes.size(); i-- > 0;) {
+    const ProcessState& process = processes[i];
+    rest[i] = process.running_threads == 0 &&
+              (process.uninterruptible_threads == 0 ||
+               process.uninterruptible_threads <=
+                   children_at_rest(processes, rest, process.id, share_memory));
+  }
+  return rest;
+}
+
+// Where the kernel may not be asked, the program says it nearly as well: one that has begun is
+// another.
+bool share_memory(pid_t parent, pid_t child) {
+  const long order = ::syscall(SYS_kcmp, parent, child, KCMP_VM, 0, 0);
+  if (order >= 0) return order == 0;
+  const std::string program = program_of(parent);
+  return !program.empty() && program == program_of(child);
+}
 
 bool ProcessTree::is_listed() {
   return ::access(children_file(::getpid(), ::getpid()).c_str(), R_OK) == 0;
 }
 
-bool ProcessTree::all_stopped(pid_t group) {
-  return stopped_below(::getpid(), group);
+std::vector<ProcessState> ProcessTree::look() const {
+  std::vector<ProcessState> found;
+  look_below(::getpid(), found);
+  return found;
 }
 
-bool ProcessTree::stopped_below(pid_t process, pid_t group) {
+std::vector<pid_t> ProcessTree::own_children() const {
+  std::vector<pid_t> found = numbers(read_text(children_file(::getpid(), ::getpid())));
+  found.erase(std::remove(found.begin(), found.end(), except_), found.end());
+  return found;
+}
+
+// A process's state before its children: one that is stopped starts no more.
+void ProcessTree::look_below(pid_t process, std::vector<ProcessState>& found) const {
   for (const pid_t thread : threads_of(process)) {
     for (const pid_t child : numbers(read_text(children_file(process, thread)))) {
-      for (const pid_t its_thread : threads_of(child)) {
-        const ThreadState state = thread_state(child, its_thread);
-        if (state.group == group && !is_at_rest(state.state)) return false;
-      }
-      if (!stopped_below(child, group)) return false;
+      if (child == except_) continue;
+      found.push_back(process_state(child, process));
+      look_below(child, found);
     }
   }
-  return true;
+}
+
+void ProcessTree::kill_all() const {
+  wait_until(
+      [this] {
+        while (::waitpid(-1, nullptr, WNOHANG) > 0) {
+        }
+        const auto left = look();
+        for (const ProcessState& process : left) ::kill(process.id, SIGKILL);
+        return left.empty();
+      },
+      kLongestFreeze);
+}
+
+void kill_all_with(const std::string& variable) {
+  wait_until([&variable] { return !kill_some_with(variable); }, kLongestFreeze);
 }
 
 }  // namespace tether::exec

@@ -47,6 +47,7 @@ int Supervisor::run() {
     hear_coordinator();
     hear_callers();
     stop_if_due();
+    if (failed_) break;
     report_progress();
     send_outgoing();
     go_on();
@@ -282,11 +283,7 @@ void Supervisor::stop_if_due() {
 void Supervisor::stop() {
   const auto due = supervision_->stop_at();
   const Duration began = read_monotonic();
-  if (const Status frozen = freezer_->freeze(); !frozen) {
-    say(frozen.failure().message + "; it is killed");
-    failed_ = true;
-    ::kill(-command_, SIGKILL);
-  }
+  if (const Status frozen = freezer_->freeze(); !frozen) return give_up(frozen.failure());
   const Duration mono = read_monotonic();
   ClockState state = clock_.page->state();
   const ExecTime at = state.at(mono);
@@ -295,6 +292,15 @@ void Supervisor::stop() {
   if (due && at >= *due) statistics_.overshot(at - *due);
   callers_.receive_all(caller_events());
   supervision_->stopped(at);
+}
+
+// The coordinator hears nothing more: from how far ET has come meanwhile it would conclude that the
+// program was slow, not that it is lost.
+void Supervisor::give_up(const Failure& failure) {
+  say(failure.message + "; it is killed");
+  failed_ = true;
+  ::kill(-command_, SIGKILL);
+  channel_.reset();
 }
 
 void Supervisor::go_on() {

@@ -60,6 +60,7 @@ class Supervisor {
   // Stopping and going on.
   void stop_if_due();
   void stop();
+  void give_up(const Failure& failure);
   void go_on();
   void report_progress();
   bool group_runs() const { return !supervision_ || supervision_->is_running(); }
