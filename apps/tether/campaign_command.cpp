@@ -1,7 +1,7 @@
 #include "child_process.h"
 #include "commands.h"
 #include "interrupt.h"
-#include "local_program.h"
+#include "local_sut.h"
 #include "machine.h"
 #include "print_report.h"
 #include "progress_bar.h"
@@ -53,11 +53,9 @@ void add_programs(const scenario::CampaignScenario& entry,
   for (const std::string& name : entry.conditions) {
     const scenario::Condition& condition = *entry.scenario.find_condition(name);
     scenario::require_clock(entry.scenario, condition);
-    const auto& target = condition.target;
-    if (target && target->ssh) continue;
-    for (const auto& uav : entry.scenario.uavs)
-      for (const auto& program : local_sut_command(uav.sut, target).programs)
-        if (std::find(files.begin(), files.end(), program) == files.end()) files.push_back(program);
+    if (condition.target && condition.target->ssh) continue;
+    for (const auto& program : sut_programs(entry.scenario, condition))
+      if (std::find(files.begin(), files.end(), program) == files.end()) files.push_back(program);
   }
 }
 

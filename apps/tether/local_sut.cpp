@@ -2,6 +2,8 @@
 
 #include "local_program.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
@@ -29,14 +31,23 @@ void require_cores(const scenario::Scenario& scenario, const scenario::Condition
 
 }  // namespace
 
-void require_sut_programs(const scenario::Scenario& scenario,
-                          const scenario::Condition& condition) {
+std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenario,
+                                                const scenario::Condition& condition) {
+  std::vector<std::filesystem::path> programs;
   for (const scenario::UavSetup& uav : scenario.uavs) try {
-      local_sut_command(uav.sut, condition.target);
+      for (const auto& program : local_sut_command(uav.sut, condition.target).programs)
+        if (std::find(programs.begin(), programs.end(), program) == programs.end())
+          programs.push_back(program);
     } catch (const Error& e) {
       throw Error(ErrorCode::kBadFile, {scenario.file.string()},
                   fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()));
     }
+  return programs;
+}
+
+void require_sut_programs(const scenario::Scenario& scenario,
+                          const scenario::Condition& condition) {
+  sut_programs(scenario, condition);
   require_cores(scenario, condition);
 }
 

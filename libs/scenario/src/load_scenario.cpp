@@ -81,20 +81,13 @@ Parameters read_parameters(const TomlTable& sut, std::vector<std::filesystem::pa
   return parameters;
 }
 
-// A program with a folder in its name is a file of the project; a bare one is found when the run
-// starts.
+// Whether the program is there shows when the run starts: it may be one of a board only.
 std::vector<std::string> read_command(const TomlTable& sut, const std::filesystem::path& folder) {
   std::vector<std::string> command = sut.texts("command");
   if (command.empty()) sut.fail("command", "must name a program, but is empty");
   std::string& program = command.front();
   if (program.find('/') == std::string::npos) return command;
-  std::error_code ignored;
-  const auto path = (folder / program).lexically_normal();
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    sut.fail("command", fmt::format("names the program \"{}\", but there is no such file ({})",
-                                    program, path.string()));
-  }
-  program = path.string();
+  program = (folder / program).lexically_normal().string();
   return command;
 }
 
@@ -105,10 +98,20 @@ Sut read_program(const TomlTable& sut, const std::filesystem::path& folder) {
   return {read_command(sut, folder), {}, sut.boolean_or("concurrent", false)};
 }
 
+// Two supervisors, one in the other, would wait for each other.
+void require_one_supervisor(const TomlTable& table, const Sut& sut) {
+  const std::filesystem::path program = sut.command.front();
+  if (!sut.concurrent || program.filename() != "tether-exec") return;
+  table.fail(table.has("concurrent") ? "concurrent" : "command",
+             "has the command started under tether-exec already; leave the word \"tether-exec\" "
+             "and its options out of 'command'");
+}
+
 std::optional<Sut> read_default_sut(const TomlTable& root, Scenario& scenario) {
   if (!root.has("sut")) return std::nullopt;
   const TomlTable table = root.table("sut", kSutKeys);
   Sut sut = read_program(table, scenario.file.parent_path());
+  require_one_supervisor(table, sut);
   sut.parameters = read_parameters(table, scenario.files);
   return sut;
 }
@@ -129,6 +132,7 @@ Sut read_sut(const TomlTable& uav, const std::optional<Sut>& fallback, Scenario&
   const bool inherits = fallback && !own.has("command");
   Sut sut = inherits ? *fallback : read_program(own, scenario.file.parent_path());
   sut.concurrent = own.boolean_or("concurrent", sut.concurrent);
+  require_one_supervisor(own, sut);
   sut.parameters = merged(sut.parameters, read_parameters(own, scenario.files));
   return sut;
 }

@@ -243,10 +243,24 @@ TEST_F(LoadScenario, ListsEveryFileItRestsOn) {
 }
 
 TEST_F(LoadScenario, ResolvesAProgramInAFolderAgainstTheScenario) {
-  scratch_.write("bin/sut", "");
-  const Scenario s = load_with("[\"tether-sut\", ", "[\"bin/sut\", ");
+  const Scenario s = load_with("[\"tether-sut\", ", "[\"./bin/sut\", ");
   EXPECT_EQ(s.uavs[1].sut.command.front(), scratch_.path("bin/sut"));
-  EXPECT_THAT(error_with("[\"tether-sut\", ", "[\"bin/none\", "), HasSubstr("no such file"));
+}
+
+TEST_F(LoadScenario, TakesAProgramThatIsOnABoardOnly) {
+  const Scenario s = load_with("[\"tether-sut\", ", "[\"/opt/onboard/none\", ");
+  EXPECT_EQ(s.uavs[1].sut.command.front(), "/opt/onboard/none");
+}
+
+TEST_F(LoadScenario, RefusesTetherExecUnderTetherExec) {
+  const auto error = [&](const std::string& program) {
+    return error_with("command = [\"tether-sut\", ",
+                      "concurrent = true\ncommand = [\"" + program + "\", ");
+  };
+  for (const std::string program : {"tether-exec", "/usr/bin/tether-exec"})
+    EXPECT_THAT(error(program),
+                HasSubstr("'concurrent' of [sut] has the command started under tether-exec "
+                          "already; leave the word \"tether-exec\""));
 }
 
 TEST_F(LoadScenario, SuggestsTheKeyThatWasMeant) {
