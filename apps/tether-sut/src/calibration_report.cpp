@@ -4,6 +4,7 @@
 #include "text_table.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace tether::sut {
 namespace {
@@ -54,11 +55,16 @@ std::string core_line(const Machine& machine) {
   return text;
 }
 
-/// Each in a line of its own, after `begin`.
-std::string doubts_text(const Calibration& calibration, const std::string& begin = "") {
+/// Each in a line of its own, after `begin`; without those that `told` has.
+std::string doubts_text(const Calibration& calibration, const std::string& begin = "",
+                        const std::string& told = "") {
   std::string text;
   for (const std::string& doubt : doubts(calibration)) {
-    text += begin + "Doubtful on " + machine_line(calibration.machine) + ": " + doubt + ".\n";
+    const std::string line =
+        begin + "Doubtful on " + machine_line(calibration.machine) + ": " + doubt + ".\n";
+    if (told.find(line) == std::string::npos) {
+      text += line;
+    }
   }
   return text;
 }
@@ -68,6 +74,29 @@ double worst_miss(const Comparison& comparison, double factor) {
   const double above = comparison.greatest().value / factor,
                below = factor / comparison.least().value;
   return std::max(above, below) - 1.0;
+}
+
+/// Whether one factor lies within the intervals of all blocks, the whole step's as well.
+bool do_agree(const Comparison& comparison) {
+  double low = 0.0, high = std::numeric_limits<double>::infinity();
+  for (const Factor& factor : comparison.blocks) {
+    low = std::max(low, factor.interval.low);
+    high = std::min(high, factor.interval.high);
+  }
+  return low <= high;
+}
+
+std::string agreement_text(const Comparison& comparison) {
+  const std::string single = in_words(comparison.whole.value);
+  if (do_agree(comparison)) {
+    return "Blocks agree within their intervals: a single factor of " + single +
+           " is right for each.\n";
+  }
+  const Factor &least = comparison.least(), &greatest = comparison.greatest();
+  return "Blocks disagree: from " + in_words(least.value) + " (" + least.block + ") to " +
+         in_words(greatest.value) + " (" + greatest.block + "). A single factor of " + single +
+         " is right for " + kWholeStep + ", and off by up to " +
+         percent(worst_miss(comparison, comparison.whole.value)) + " for one of its blocks.\n";
 }
 
 }  // namespace
@@ -97,14 +126,10 @@ std::string comparison_table(const Calibration& here, const Calibration& there,
   }
   rows.push_back({"geometric mean", "", in_words(comparison.overall.value),
                   in_words(comparison.overall.interval)});
-  const Factor &least = comparison.least(), &greatest = comparison.greatest();
   return "CPU time on " + machine_line(there.machine) + "\nagainst " + machine_line(here.machine) +
          "\n\n" + text_table(rows) + "The mean is of the blocks without " + kWholeStep +
-         ", which is all of them in one.\n" + doubts_text(there) + "Blocks disagree: from " +
-         in_words(least.value) + " (" + least.block + ") to " + in_words(greatest.value) + " (" +
-         greatest.block + "). A single factor of " + in_words(comparison.whole.value) +
-         " is right for " + kWholeStep + ", and off by up to " +
-         percent(worst_miss(comparison, comparison.whole.value)) + " for one of its blocks.\n";
+         ", which is all of them in one.\n" + doubts_text(there, "", doubts_text(here)) +
+         agreement_text(comparison);
 }
 
 std::string target_text(const std::string& name, const Calibration& here, const Calibration& there,
@@ -122,7 +147,7 @@ std::string target_text(const std::string& name, const Calibration& here, const 
     text += "#   " + factor.block + " " + with_interval(factor) + "\n";
   }
   text += "#   geometric mean " + with_interval(comparison.overall) + "\n";
-  text += doubts_text(there, "# ") + doubts_text(here, "# ");
+  text += doubts_text(there, "# ") + doubts_text(here, "# ", doubts_text(there, "# "));
   text += "# It stands in for that machine on this host only, and for other work than " +
           std::string(kWholeStep) + "\n# no better than the blocks agree.\n";
   return text + "name = " + toml_string(name) + "\ndescription = " + toml_string(what) +

@@ -14,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 Calibration machine(const std::string& name, double prefilter_ms, double tracking_ms) {
   Calibration calibration;
@@ -59,6 +60,19 @@ TEST_F(Calibrate, ComparesBlockByBlockAndSaysHowGoodOneFactorIs) {
                     HasSubstr("\ngeometric mean            7.07    7.07 to 7.07\n"),
                     HasSubstr("from 5.00 (prefilter) to 10.00 (tracking). A single factor of 6.00"),
                     HasSubstr("off by up to 67 % for one of its blocks")));
+}
+
+TEST_F(Calibrate, SaysThatBlocksAgreeAndEachDoubtOnceWhenAMachineIsComparedWithItself) {
+  Calibration doubtful = machine("desk", 8.0, 2.0);
+  doubtful.machine.mhz_before = 1000.0;
+  doubtful.machine.mhz_after = 2000.0;
+  options_.measured = options_.against = folder_.write("same.toml", calibration_text(doubtful));
+  const std::string said = text();
+  EXPECT_THAT(said, AllOf(HasSubstr("Blocks agree within their intervals: a single factor of 1.00"),
+                          Not(HasSubstr("disagree"))));
+  const auto first = said.find("Doubtful on desk");
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(said.find("Doubtful on desk", first + 1), std::string::npos) << said;
 }
 
 TEST_F(Calibrate, WritesATargetThatSaysWhereItComesFrom) {
