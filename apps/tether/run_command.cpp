@@ -77,6 +77,16 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
   return condition;
 }
 
+/// Options that would do nothing are refused.
+void require_use_of_tunnel(const TrialSpec& spec) {
+  const auto& target = spec.condition.target;
+  if (!spec.uses_tunnel || (!spec.waits_for_sut && target && target->ssh)) return;
+  throw Error(ErrorCode::kUsage,
+              "--tunnel is for a SUT that is started on a board over SSH; name the board with "
+              "--target ssh://[user@]board[:port] or a target file that has its address, or leave "
+              "--tunnel out");
+}
+
 TrialSpec make_spec(const RunOptions& options) {
   TrialSpec spec;
   spec.scenario = scenario::load_scenario(options.scenario);
@@ -96,6 +106,7 @@ TrialSpec make_spec(const RunOptions& options) {
   }
   spec.waits_for_sut = std::holds_alternative<WaitForSut>(parse_target_option(options.target));
   spec.uses_tunnel = options.tunnel;
+  require_use_of_tunnel(spec);
   return spec;
 }
 

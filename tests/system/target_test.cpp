@@ -104,6 +104,32 @@ TEST_F(TargetFile, IsRefusedBeforeAnythingIsWritten) {
   EXPECT_THAT(output.err, HasSubstr("none.toml: there is no such file"));
 }
 
+TEST_F(TargetFile, AProgramThatIsNotThereIsNamedByRunAndCampaign) {
+  scenario_ =
+      write_hover_scenario(folder_.path(), "good", {{bad_sut_program().string(), "./none"}});
+  write_text(folder_ / "campaign.toml",
+             "name = \"small\"\ntrials = 1\n\n[[scenario]]\nfile = \"hover.toml\"\n");
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"run", scenario_, "--out", folder_ / "out"},
+        {"campaign", folder_ / "campaign.toml", "--out", folder_ / "out"}}) {
+    const Output output = run(tether(words));
+    EXPECT_EQ(output.code, 2);
+    EXPECT_THAT(output.err, HasSubstr("hover.toml: the SUT of UAV \"uav1\": cannot start \"" +
+                                      (folder_ / "none").string() + "\": no such program"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  }
+}
+
+TEST_F(TargetFile, ATunnelNeedsABoard) {
+  for (const char* target : {"", "wait"}) {
+    std::vector<std::string> words{"run", scenario_, "--tunnel", "--out", folder_ / "out"};
+    if (*target) words.insert(words.end(), {"--target", target});
+    const Output output = run(tether(words));
+    EXPECT_EQ(output.code, 2);
+    EXPECT_THAT(output.err, HasSubstr("--tunnel is for a SUT that is started on a board"));
+  }
+}
+
 TEST_F(TargetFile, OfAConditionIsAmongWhatACampaignRestsOn) {
   write_target("clock = \"cpu\"\ncpu_factor = 3\n");
   write_hover_scenario(folder_.path(), "good",
