@@ -30,6 +30,8 @@ constexpr Duration kEndLimit = std::chrono::seconds(8);
 constexpr Duration kLook = std::chrono::milliseconds(5);
 // How long a connection that has ended may take to show it.
 constexpr Duration kShowLimit = std::chrono::milliseconds(300);
+// The keeper ends the SUTs before it ends itself, which takes it up to two seconds.
+constexpr Duration kKeeperLimit = std::chrono::milliseconds(2500);
 constexpr int kLargestReturn_KiB = 256 * 1024;
 constexpr int kNotStarted = 120, kSshFailed = 255, kSignals = 128;
 
@@ -75,8 +77,10 @@ std::string joined(std::vector<std::string>::const_iterator begin,
 /// What board_sut.sh is given.
 std::string sut_prologue(const BoardSut& sut) {
   const auto program = sut.words.begin() + static_cast<std::ptrdiff_t>(sut.program);
+  const std::size_t launcher = sut.concurrent ? 1 : 0;
   std::string text = assign("uav", sut.uav) + assign("program", *program) +
-                     assign("launcher", sut.program > 0 ? sut.words.front() : "");
+                     assign("supervisor", sut.concurrent ? sut.words.front() : "") +
+                     assign("launcher", sut.program > launcher ? sut.words[launcher] : "");
   text += "join() {\n";
   for (const auto& [name, value] : sut.environment)
     text += fmt::format("{}={}\nexport {}\n", name, shell_word(value), name);
@@ -205,18 +209,26 @@ std::string Board::end_of(const ChildExit& exit, const std::string& last_words) 
   if (exit.code == kNotStarted && last_words.starts_with(kOwn))
     return "could not be started: " + last_words.substr(kOwn.size());
   const int signal = exit.code - kSignals;
+  const bool may_be_keepers = signal == SIGTERM || signal == SIGKILL;
+  if ((may_be_keepers || signal <= 0) && keeper_->wait(may_be_keepers ? kKeeperLimit : kShowLimit))
+    return "was ended because " + let_go();
   if (signal > 0 && signal < NSIG)
     return fmt::format("was ended by signal {} ({})", signal, strsignal(signal));
   return exit.description;
+}
+
+std::string Board::let_go() const {
+  const std::string said = last_line(read_whole(connection_.folder() / "keeper.err"));
+  return fmt::format("{} is no longer held for this run: {}",
+                     scenario::to_string(connection_.address()),
+                     said.empty() ? "the shell that held it there was ended" : said);
 }
 
 std::optional<std::string> Board::lost() {
   const bool is_held = !keeper_->poll();
   if (const auto why = connection_.lost(is_held ? Duration(0) : kShowLimit)) return why;
   if (is_held) return std::nullopt;
-  return fmt::format("{} is no longer held for this run: {}",
-                     scenario::to_string(connection_.address()),
-                     last_line(read_whole(connection_.folder() / "keeper.err")));
+  return let_go();
 }
 
 bool Board::end_suts() {
@@ -241,7 +253,7 @@ std::optional<std::string> Board::bring_back(const std::string& uav,
   const Captured unpacked =
       run_captured({"tar", "-x", "-f", "-", "--no-same-owner", "--exclude=./record.mcap",
                     "--exclude=./result.json", "--exclude=./sut-*.log", "-C", folder.string()},
-                   files.out, kCopyLimit, connection_.folder(), true);
+                   files.out, kCopyLimit, true);
   if (unpacked.code != 0) return failed(last_line(unpacked.err));
   return std::nullopt;
 }

@@ -19,8 +19,9 @@ namespace tether::app {
 /// A SUT to start on a board.
 struct BoardSut {
   std::string uav;
-  std::vector<std::string> words;  ///< launcher, program, arguments; as the board takes them
+  std::vector<std::string> words;  ///< as the board takes them
   std::size_t program = 0;         ///< which of the words is the program
+  bool concurrent = false;         ///< the first of the words is tether-exec
   Environment environment;
   std::filesystem::path log;  ///< on this machine; gets the SUT's stdout and stderr
 };
@@ -60,6 +61,7 @@ class Board {
  private:
   void hold();
   std::string keeper_said() const;
+  std::string let_go() const;  // once the keeper has ended
   bool wait_for_keeper(const std::string& word, Duration limit);
   std::string prologue() const;
 

@@ -3,10 +3,17 @@
 #include "child_process.h"
 #include "interrupt.h"
 
+#include <cerrno>
 #include <chrono>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <tether/base/error.h>
 
@@ -17,10 +24,27 @@ namespace {
 using Steady = std::chrono::steady_clock;
 constexpr Duration kLook = std::chrono::milliseconds(20);
 
+/// A file in memory: a killed run leaves nothing of it, whatever it holds.
+class MemoryFile {
+ public:
+  MemoryFile() : fd_(memfd_create("tether", MFD_CLOEXEC)) {
+    if (fd_ < 0)
+      throw Error(ErrorCode::kSetup, std::string("memfd_create: ") + std::strerror(errno));
+  }
+  ~MemoryFile() { close(fd_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  /// For whoever is in this process.
+  std::filesystem::path path() const { return fmt::format("/proc/self/fd/{}", fd_); }
+
+ private:
+  int fd_;
+};
+
 void write_whole(const std::filesystem::path& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.flush()) throw Error(ErrorCode::kSetup, file.string() + ": cannot be written");
+  if (!stream.flush()) throw Error(ErrorCode::kSetup, "there is too little memory for a copy");
 }
 
 std::string stripped(const std::string& line) {
@@ -45,14 +69,17 @@ std::string last_line(const std::string& text) {
 }
 
 Captured run_captured(const std::vector<std::string>& arguments, const std::string& input,
-                      Duration limit, const std::filesystem::path& folder, bool is_leaving) {
-  const auto in = folder / "input", out = folder / "output", err = folder / "errors";
-  write_whole(in, input);
+                      Duration limit, bool is_leaving) {
+  const MemoryFile in, out, err;
+  write_whole(in.path(), input);
   const auto started = Steady::now();
   Captured captured;
   {
-    ChildProcess process(
-        {.arguments = arguments, .environment = {}, .log = out, .errors = err, .input = in});
+    ChildProcess process({.arguments = arguments,
+                          .environment = {},
+                          .log = out.path(),
+                          .errors = err.path(),
+                          .input = in.path()});
     while (!process.wait(kLook) && (is_leaving || !interrupted()) &&
            Steady::now() - started < limit)
       continue;
@@ -60,8 +87,8 @@ Captured run_captured(const std::vector<std::string>& arguments, const std::stri
     captured.timed_out = !process.poll();
     if (process.poll()) captured.code = process.poll()->code;
   }
-  captured.out = read_whole(out);
-  captured.err = read_whole(err);
+  captured.out = read_whole(out.path());
+  captured.err = read_whole(err.path());
   return captured;
 }
 

@@ -17,11 +17,11 @@ struct Captured {
   Duration wall{0};  ///< from its start to its end
 };
 
-/// Runs a program to its end with `input` as its standard input. Its streams are files in `folder`
-/// meanwhile. Ends it when the user interrupts, unless it is part of leaving.
+/// Runs a program to its end with `input` as its standard input. Its streams are in memory
+/// only. Ends it when the user interrupts, unless it is part of leaving.
 /// @throws Error(kSetup) when it cannot be started.
 Captured run_captured(const std::vector<std::string>& arguments, const std::string& input,
-                      Duration limit, const std::filesystem::path& folder, bool is_leaving = false);
+                      Duration limit, bool is_leaving = false);
 
 /// The whole file; empty where there is none.
 std::string read_whole(const std::filesystem::path& file);

@@ -140,7 +140,7 @@ std::vector<std::string> SshConnection::shell(std::size_t script_bytes) const {
 Captured SshConnection::run(std::string_view script, Duration limit, std::string_view input,
                             bool is_leaving) const {
   return run_captured(shell(script.size()), std::string(script) + std::string(input), limit,
-                      folder_, is_leaving);
+                      is_leaving);
 }
 
 std::optional<std::string> SshConnection::lost(Duration limit) {
@@ -154,7 +154,7 @@ std::uint16_t SshConnection::forward_back(std::uint16_t local_port) const {
   std::vector<std::string> command = words();
   append(command, {"-O", "forward", "-R", fmt::format("127.0.0.1:0:127.0.0.1:{}", local_port), "--",
                    address_.destination});
-  const Captured said = run_captured(command, "", kForwardLimit, folder_);
+  const Captured said = run_captured(command, "", kForwardLimit);
   // "Allocated port 40123 for remote forward to …", or the number alone.
   const auto digits = said.out.find_first_of("0123456789");
   std::uint16_t port = 0;

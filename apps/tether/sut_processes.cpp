@@ -23,6 +23,7 @@ BoardSut board_sut(Board& board, const scenario::Scenario& scenario, const scena
   return {.uav = uav.placement.name,
           .words = std::move(command.words),
           .program = command.program,
+          .concurrent = sut.concurrent,
           .environment = environment_of(uav.placement.name, run),
           .log = log};
 }

@@ -14,6 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using testing::AnyOf;
+using testing::Each;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -98,6 +99,20 @@ class OnABoard : public testing::Test {
     }
   }
 
+  /// The lock names it.
+  pid_t keeper() const { return std::stoi(read_text(board_.folder() / "lock")); }
+  /// That of the run's ssh on the host.
+  std::filesystem::path connection_folder() const {
+    const std::string option = "ControlPath=";
+    for (const pid_t pid : processes_with_mark(mark_)) {
+      const std::string line = read_text("/proc/" + std::to_string(pid) + "/cmdline");
+      const auto at = line.find(option);
+      if (at == std::string::npos) continue;
+      return std::filesystem::path(line.c_str() + at + option.size()).parent_path();
+    }
+    throw std::runtime_error("no ssh of this run");
+  }
+
   const std::string mark_ = mark_of_test();
   TempFolder folder_;
   SshBoard board_{mark_};
@@ -134,6 +149,21 @@ TEST_F(OnABoard, AThrottledOneIsNamedInTheVerdict) {
   EXPECT_EQ(output.code, 0) << output.err;
   EXPECT_THAT(output.out, HasSubstr("but the target was throttled (under-voltage, throttled"));
   EXPECT_THAT(run(tether({"report", folder_ / "out"})).out, HasSubstr("throttled"));
+}
+
+TEST_F(OnABoard, AProgramThatTheHostLacksIsFoundThere) {
+  // By its path there; and a build's, of which the last part is in the PATH there.
+  std::filesystem::create_directory(board_.folder() / "opt");
+  std::filesystem::create_symlink(bad_sut_program(), board_.folder() / "opt/onboard");
+  board_.install("my_sut", bad_sut_program());
+  for (const std::string& program :
+       {(board_.folder() / "opt/onboard").string(), std::string("./build/my_sut")}) {
+    const auto file =
+        write_hover_scenario(folder_.path(), "good", {{bad_sut_program().string(), program}});
+    const Output output = run(tether_run(file, "out"));
+    EXPECT_EQ(output.code, 0) << program << ": " << output.err;
+  }
+  expect_nothing_left();
 }
 
 TEST_F(OnABoard, TetherSutFaces) {
@@ -191,6 +221,15 @@ TEST_F(OnABoard, AMissingProgramIsNamed) {
                                                  {{bad_sut_program().string(), "no_such_sut"}}),
                             "out"),
                  "out", {"\"uav1\"", "has no program \"no_such_sut\"", "install it"});
+  expect_nothing_left();
+}
+
+TEST_F(OnABoard, AMissingSupervisorIsNamed) {
+  const auto file = scenario(
+      "good", {{"[sut]", "[sut]\nconcurrent = true"}, {"clock = \"cpu\"", "clock = \"wall\""}});
+  expect_failure(tether_run(file, "out"), "out",
+                 {"has no program \"tether-exec\", under which a concurrent SUT runs",
+                  "in the package tether-sut"});
   expect_nothing_left();
 }
 
@@ -314,11 +353,30 @@ TEST_F(OnABoard, CtrlCEndsBothSides) {
   expect_nothing_left();
 }
 
+TEST_F(OnABoard, AKeeperThatEndsIsNotTheSutsFault) {
+  for (const int signal : {SIGTERM, SIGKILL}) {
+    const auto process = start_long_run();
+    kill(keeper(), signal);
+    const Output output = process->wait(30s);
+    EXPECT_EQ(output.code, 3);
+    EXPECT_THAT(output.err, HasSubstr("no longer held for this run: the shell that held it"));
+    EXPECT_THAT(output.err, Not(HasSubstr("by signal")));
+    EXPECT_TRUE(wait_until_gone(mark_, 30s));
+    EXPECT_THAT(entries(board_.temporary_folder()), IsEmpty());
+    std::filesystem::remove_all(folder_ / "out");
+  }
+}
+
 TEST_F(OnABoard, AHostThatIsKilledLeavesNothingThere) {
   const auto process = start_long_run();
+  const auto on_the_host = connection_folder();
   process->signal(SIGKILL);
   EXPECT_EQ(process->wait(10s).code, 128 + SIGKILL);
   expect_nothing_left();
+  // Here the connection's own folder, without a word of what was sent through it.
+  EXPECT_THAT(entries(on_the_host),
+              Each(AnyOf("socket", "master.out", "master.err", "keeper.out", "keeper.err")));
+  std::filesystem::remove_all(on_the_host);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out/result.json"));
 }
 

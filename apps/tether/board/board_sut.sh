@@ -1,8 +1,8 @@
 # Runs one SUT on a board. POSIX sh, busybox will do; sent over SSH, nothing is installed.
 #
-# Given: folder (of the run), uav, program, launcher (the word before it; may be empty); the functions
-# join, which exports the SUT's environment, and run_sut, which starts "$program" in a session of
-# its own. Exits as the SUT does: with its code, or with 128 + the signal that ended it; with 120
+# Given: folder (of the run), uav, program, supervisor (tether-exec, for a concurrent SUT; else empty),
+# launcher (the target's; may be empty); the functions join, which exports the SUT's environment, and
+# run_sut, which starts "$program" in a session of its own. Exits as the SUT does: with its code, or with 128 + the signal that ended it; with 120
 # and a line "tether: WHY" where it could not be started.
 set -u
 
@@ -61,6 +61,8 @@ wanted=$program
 program=$(found "$wanted") ||
   fail "the board has no program \"$wanted\" (nor ${wanted##*/} in PATH=$PATH); install it there, or name its folder as program_folder in a target file"
 [ -x "$program" ] || fail "$program may not be executed; on the board: chmod +x $program"
+[ -z "$supervisor" ] || command -v "$supervisor" >/dev/null ||
+  fail "the board has no program \"$supervisor\", under which a concurrent SUT runs (PATH=$PATH); install it there: it is in the package tether-sut"
 if [ -z "$launcher" ]; then
   require_machine "$program"
 else
