@@ -224,12 +224,19 @@ TEST_F(OnABoard, AMissingProgramIsNamed) {
   expect_nothing_left();
 }
 
-TEST_F(OnABoard, AMissingSupervisorIsNamed) {
+TEST_F(OnABoard, AMissingSupervisorOrLauncherIsNamed) {
   const auto file = scenario(
       "good", {{"[sut]", "[sut]\nconcurrent = true"}, {"clock = \"cpu\"", "clock = \"wall\""}});
   expect_failure(tether_run(file, "out"), "out",
                  {"has no program \"tether-exec\", under which a concurrent SUT runs",
                   "in the package tether-sut"});
+  // With it the target's launcher comes after it.
+  board_.install_text("tether-exec", "#!/bin/sh\nexec \"$@\"\n");
+  write_text(folder_ / "board.toml",
+             "name = \"b\"\nclock = \"wall\"\nlauncher = [\"no-such\"]\naddress = \"" +
+                 board_.address() + "\"\n");
+  expect_failure(tether_to(folder_ / "board.toml", file, "out"), "out",
+                 {"has no program \"no-such\", which the target names as launcher"});
   expect_nothing_left();
 }
 
