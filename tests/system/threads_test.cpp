@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 /// Programs of several threads and processes under tether-exec, with the coordinator and the
 /// simulator.
@@ -218,6 +222,78 @@ TEST_F(Ends, KilledItselfItLeavesNothing) {
     process.wait(10s);
     expect_nothing_left();
   }
+}
+
+/// A coordinator that takes what is said and does not answer, as one that waits for another SUT.
+class SilentCoordinator {
+ public:
+  SilentCoordinator() : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    auto* const any = reinterpret_cast<sockaddr*>(&address);
+    EXPECT_EQ(::bind(listener_, any, size), 0);
+    EXPECT_EQ(::listen(listener_, 1), 0);
+    EXPECT_EQ(::getsockname(listener_, any, &size), 0);
+    port_ = ntohs(address.sin_port);
+  }
+  ~SilentCoordinator() {
+    hang_up();
+    ::close(listener_);
+  }
+  std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
+  void accept() { connection_ = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC); }
+  void hang_up() {
+    if (connection_ >= 0) ::close(connection_);
+    connection_ = -1;
+  }
+
+ private:
+  int listener_;
+  int connection_ = -1;
+  int port_ = 0;
+};
+
+class Joining : public Ends {
+ protected:
+  std::unique_ptr<Process> start(const std::string& freezer) {
+    Command command = exec({"--freezer", freezer, THREADS_SUT_PROGRAM, "count", "1"});
+    command.environment[0].second = coordinator_.address();
+    auto process = std::make_unique<Process>(command);
+    coordinator_.accept();
+    return process;
+  }
+  /// Whether the program under tether-exec comes to be stopped by a signal.
+  bool is_stopped() {
+    for (int i = 0; i < 2000; ++i) {
+      for (const pid_t process : processes_with_mark(mark_)) {
+        const std::string state = read_text("/proc/" + std::to_string(process) + "/stat");
+        if (state.find("(threads_sut) T") != std::string::npos) return true;
+      }
+      std::this_thread::sleep_for(10ms);
+    }
+    return false;
+  }
+
+  SilentCoordinator coordinator_;
+};
+
+// What it computed before it is let in would be charged to nobody.
+TEST_F(Joining, HoldsTheProgramUntilItIsLost) {
+  const auto process = start("signal");
+  EXPECT_TRUE(is_stopped());
+  coordinator_.hang_up();
+  EXPECT_EQ(process->wait(20s).code, 3);
+  expect_nothing_left();
+}
+
+TEST_F(Joining, HoldsTheProgramUntilItIsInterrupted) {
+  const auto process = start("signal");
+  EXPECT_TRUE(is_stopped());
+  process->signal(SIGTERM);
+  EXPECT_EQ(process->wait(20s).code, 128 + SIGTERM);
+  expect_nothing_left();
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <sys/signalfd.h>
 #include <sys/wait.h>
 
+#include <tether/client/simulated_vehicle.h>
+
 namespace tether::exec {
 namespace {
 
@@ -38,7 +40,8 @@ Supervisor::Supervisor(const Settings& settings, pid_t command, client::SharedCl
       clock_(std::move(clock)),
       signals_(std::move(signals)),
       freezer_(std::move(freezer)),
-      callers_(std::move(listener), clock_.descriptor) {}
+      callers_(std::move(listener), clock_.descriptor),
+      joining_(client::ConnectOptions().welcome_timeout) {}
 
 int Supervisor::run() {
   while (!exit_code_) {
@@ -46,6 +49,7 @@ int Supervisor::run() {
     take_signals();
     hear_coordinator();
     hear_callers();
+    hold_while_joining();
     stop_if_due();
     if (failed_) break;
     report_progress();
@@ -91,6 +95,7 @@ std::optional<Duration> Supervisor::next_wake() const {
     const bool half_over = read_monotonic() >= *interrupted_at_ + kGrace / 2;
     consider(*interrupted_at_ + (half_over ? kGrace : kGrace / 2));
   }
+  if (const auto until = joining_.until(); held_ && until) consider(*until);
   if (!supervision_ || !supervision_->is_running() || supervision_->is_over()) return wake;
   consider(next_progress_);
   if (const auto stop = supervision_->stop_at()) consider(clock_.page->state().mono_at(*stop));
@@ -121,6 +126,7 @@ void Supervisor::interrupt(int signal) {
     return;
   }
   interrupted_at_ = read_monotonic();
+  joining_.over();
   ::kill(-command_, signal);
 }
 
@@ -201,6 +207,7 @@ void Supervisor::connect(const link::Hello& hello) {
   own.concurrent = true;
   // If it does not go out, the coordinator may have said why before it closed.
   static_cast<void>(channel_->send(own));
+  joining_.asked(read_monotonic());
 }
 
 void Supervisor::hear_coordinator() {
@@ -246,6 +253,7 @@ void Supervisor::on_welcome(link::Welcome welcome) {
   next_progress_ = read_monotonic() + progress_period_;
   supervision_.emplace(welcome.free_running, welcome.start);
   clock_.page->publish({welcome.start, read_monotonic(), settings_.factor, true});
+  joining_.over();
   welcome_ = std::move(welcome);
   for (const CallerId caller : std::exchange(waiting_, {})) callers_.send(caller, *welcome_);
 }
@@ -260,6 +268,7 @@ void Supervisor::send_outgoing() {
 
 void Supervisor::lose_coordinator(const Failure& failure) {
   channel_.reset();
+  joining_.over();
   const bool was_over = supervision_ && supervision_->is_over();
   if (supervision_) supervision_->end(std::nullopt);
   if (!was_over && !(supervision_ && supervision_->is_finished())) say(failure.message);
@@ -268,12 +277,22 @@ void Supervisor::lose_coordinator(const Failure& failure) {
 
 void Supervisor::refuse_all(link::Refusal refusal) {
   channel_.reset();
+  joining_.over();
   if (supervision_) return supervision_->end(std::move(refusal));
   refusal_ = std::move(refusal);
   for (const CallerId caller : std::exchange(waiting_, {})) callers_.send(caller, *refusal_);
 }
 
 // --- stopping and going on ----------------------------------------------------------------------
+
+void Supervisor::hold_while_joining() {
+  const bool must_hold = joining_.must_stand_still(read_monotonic());
+  if (must_hold == held_) return;
+  held_ = must_hold;
+  if (!held_) return freezer_->thaw();
+  if (const Status frozen = freezer_->freeze(); !frozen) return give_up(frozen.failure());
+  callers_.receive_all(caller_events());
+}
 
 void Supervisor::stop_if_due() {
   if (!supervision_ || !supervision_->is_running()) return;
@@ -304,7 +323,7 @@ void Supervisor::give_up(const Failure& failure) {
 }
 
 void Supervisor::go_on() {
-  if (group_runs() || !supervision_->may_go_on()) return;
+  if (!supervision_ || group_runs() || !supervision_->may_go_on()) return;
   supervision_->go_on();
   hand_out_answers();
   // ET goes on before the threads do: the time that a thaw takes is charged, not given away.

@@ -2,6 +2,7 @@
 
 #include "callers.h"
 #include "freezer.h"
+#include "joining.h"
 #include "settings.h"
 #include "statistics.h"
 #include "supervision.h"
@@ -58,12 +59,13 @@ class Supervisor {
   void refuse_all(link::Refusal refusal);
 
   // Stopping and going on.
+  void hold_while_joining();
   void stop_if_due();
   void stop();
   void give_up(const Failure& failure);
   void go_on();
   void report_progress();
-  bool group_runs() const { return !supervision_ || supervision_->is_running(); }
+  bool group_runs() const { return !held_ && (!supervision_ || supervision_->is_running()); }
 
   void say(const std::string& text) const;
 
@@ -76,6 +78,8 @@ class Supervisor {
 
   std::unique_ptr<link::Channel> channel_;  // to the coordinator, from the first Hello on
   std::vector<CallerId> waiting_;           // for the Welcome
+  Joining joining_;
+  bool held_ = false;  // stands still for that
   std::optional<link::Welcome> welcome_;
   std::optional<link::Refusal> refusal_;    // no Welcome will come any more
   std::optional<Supervision> supervision_;  // from the Welcome on
