@@ -97,12 +97,15 @@ Result<link::Reply> ConcurrentVehicle::interact(Body body) {
   auto connection = take_connection();
   if (!connection) return give_up(connection.failure());
   auto reply = ask(**connection, std::move(body));
+  if (reply && finishes) give_up(mission_finished());
+  // If the reply came first, it counts; but the connection may have been shut down since.
+  if (cancellation != nullptr && cancellation->is_cancelled()) {
+    return reply ? std::move(reply) : kCancelled;
+  }
   if (reply) {
-    if (finishes) give_up(mission_finished());
     give_back(std::move(*connection));
     return reply;
   }
-  if (cancellation != nullptr && cancellation->is_cancelled()) return kCancelled;
   if (reply.failure().kind == Failure::Kind::kInvalid) {
     give_back(std::move(*connection));
     return reply;

@@ -195,6 +195,21 @@ TEST(ConcurrentVehicle, ASubscriptionEndsWithItsOpenRead) {
   EXPECT_TRUE(vehicle->read_imu("imu").ok());
 }
 
+// The end may come together with a reply: the call has succeeded then, on a connection that has
+// just been shut down.
+TEST(ConcurrentVehicle, ASubscriptionThatEndsSpoilsNoOtherCall) {
+  FakeExec exec(grant);
+  const auto vehicle = exec.connect();
+  for (int i = 0; i < 100; ++i) {
+    std::atomic<int> count = 0;
+    auto subscription = subscribe_imu(*vehicle, "imu", [&](const uav::ImuSample&) { ++count; });
+    ASSERT_TRUE(subscription.ok());
+    wait_for([&] { return count > 0; });
+    subscription->reset();
+    ASSERT_TRUE(vehicle->command_velocity({}).ok()) << i;
+  }
+}
+
 TEST(ConcurrentVehicle, AForkedChildConnectsByItself) {
   FakeExec exec(grant);
   const auto vehicle = exec.connect();
