@@ -7,8 +7,6 @@
 #include "sensor_table.h"
 #include "whole_file.h"
 
-#include <array>
-#include <ctime>
 #include <utility>
 
 #include <opencv2/core/version.hpp>
@@ -23,15 +21,6 @@ constexpr double kLeastFactor = 1e-3, kGreatestFactor = 1e4;
 
 Failure invalid(const std::string& what) {
   return {Failure::Kind::kInvalid, what};
-}
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text.data();
 }
 
 Status check_files(const CalibrateOptions& options) {

@@ -1,13 +1,12 @@
 #include "commands.h"
 
 #include "image_file.h"
+#include "machine.h"
 #include "profile_text.h"
 #include "progress_line.h"
 #include "whole_file.h"
 
 #include <algorithm>
-#include <array>
-#include <ctime>
 #include <filesystem>
 #include <optional>
 #include <ostream>
@@ -55,15 +54,6 @@ Status keep_image(const std::string& path, const RealRow& row, const Streams& st
 }
 
 // Characterization --------------------------------------------------------------------------------
-
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text.data();
-}
 
 std::string source_of(const CommandLine& line, const std::string& sensor) {
   if (!line.rig) {

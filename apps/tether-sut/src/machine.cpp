@@ -3,7 +3,9 @@
 #include "connection.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <ctime>
 #include <fstream>
 
 #include <sched.h>
@@ -105,6 +107,15 @@ Result<int> bind_to_core(std::optional<int> cpu_index) {
                    "core " + std::to_string(cpu) + " cannot be used by this program"};
   }
   return cpu;
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
 }
 
 }  // namespace tether::sut

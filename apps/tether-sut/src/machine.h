@@ -7,7 +7,8 @@
 
 #include <tether/base/result.h>
 
-/// What /proc and /sys say of the machine, where they do.
+/// The machine that this program runs on, as /proc and /sys tell of it where they do, and its
+/// clock.
 namespace tether::sut {
 
 /// `root` is "" but for tests, which put /proc and /sys below another folder. Frequencies are left
@@ -23,5 +24,8 @@ Result<int> bind_to_core(std::optional<int> cpu_index);
 
 /// Reads the governor of that core into `machine`.
 void read_governor(int cpu_index, Machine& machine, const std::string& root = "");
+
+/// Now, as files say when they were made: "2026-01-31T12:00:00Z".
+std::string utc_now();
 
 }  // namespace tether::sut
