@@ -1,6 +1,5 @@
 #pragma once
 
-#include "bodies.h"
 #include "engine.h"
 #include "pose_history.h"
 
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/sim/bodies.h>
 #include <tether/sim/world.h>
 #include <tether/uav/multirotor.h>
 

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "bodies.h"
 #include "engine.h"
+
+#include <tether/sim/bodies.h>
 
 namespace tether::sim {
 

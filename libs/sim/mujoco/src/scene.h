@@ -1,6 +1,5 @@
 #pragma once
 
-#include "bodies.h"
 #include "engine.h"
 #include "triangle_mesh.h"
 
@@ -9,6 +8,8 @@
 #include <vector>
 
 #include <mujoco/mujoco.h>
+
+#include <tether/sim/bodies.h>
 
 namespace tether::sim {
 

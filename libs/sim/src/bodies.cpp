@@ -1,4 +1,4 @@
-#include "bodies.h"
+#include <tether/sim/bodies.h>
 
 namespace tether::sim {
 

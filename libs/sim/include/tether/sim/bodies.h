@@ -8,7 +8,7 @@
 namespace tether::sim {
 
 /// A body that moves: a UAV, or a link of a dynamic model. Its index in `moving_bodies` is its
-/// index in the engine's state and in the renderer.
+/// number in every back end.
 struct MovingBody {
   const Link* link = nullptr;
   const Uav* uav = nullptr;  ///< nullptr: not a UAV

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <tether/sim/world.h>
+#include <tether/uav/math.h>
+
+namespace tether::sim {
+
+/// What an IMU needs of one UAV beside its pose: the motion of the body origin over the last step,
+/// constant within it.
+struct BodyMotion {
+  uav::Vec3 w_WB_B;      ///< angular velocity now [rad/s]
+  uav::Vec3 a_WB_W;      ///< acceleration of B's origin over the last step [m/s²]
+  uav::Vec3 alpha_WB_B;  ///< angular acceleration over the last step [rad/s²]
+};
+
+/// How many steps the shutter of any camera reaches back: that many past poses of each moving body
+/// are in a captured state.
+/// @throws Error(kBadFile) for a shutter that is negative or longer than 1 s.
+std::size_t shutter_steps(const World& world);
+
+/// The layout of `Snapshot::state` of every back end whose sensors are made by the sensing library:
+/// position and quaternion of each of `moving_bodies` (7 numbers each), then the BodyMotion of each
+/// UAV (9 numbers each), then the positions and quaternions again at each of the `shutter_steps`
+/// past steps, oldest first.
+///
+/// Reads such states, as StateRecorder captures them. A value; safe from any thread.
+class StateLayout {
+ public:
+  /// @throws Error(kBadFile) as `shutter_steps` does.
+  explicit StateLayout(const World& world);
+
+  std::size_t bodies() const { return bodies_; }  ///< `moving_bodies`, the UAVs first
+  std::size_t uavs() const { return uavs_; }
+  std::size_t past_steps() const { return past_steps_; }
+  /// How many numbers a state has.
+  std::size_t size() const;
+  /// Where in a state the motion of UAV `uav` begins, and the first of the past poses.
+  std::size_t motion_at(std::size_t uav) const;
+  std::size_t past_at() const { return motion_at(uavs_); }
+
+  uav::Pose pose_of(const std::vector<double>& state, std::size_t body) const;
+  BodyMotion motion_of(const std::vector<double>& state, std::size_t uav) const;
+  /// Where a body was `steps_ago` steps before the capture, a whole number or between two. @pre not
+  /// negative, and within the longest shutter.
+  uav::Pose past_pose_of(const std::vector<double>& state, std::size_t body,
+                         double steps_ago) const;
+
+ private:
+  std::size_t bodies_;
+  std::size_t uavs_;
+  std::size_t past_steps_;
+};
+
+}  // namespace tether::sim

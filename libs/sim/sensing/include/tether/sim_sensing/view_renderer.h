@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <tether/uav/camera_model.h>
+#include <tether/uav/math.h>
+
+namespace tether::sim {
+
+/// What to draw: the world with its moving bodies where they are told to be, as an ideal camera
+/// sees it.
+struct View {
+  /// A pinhole without distortion and with square pixels (fx = fy). The principal point may be
+  /// anywhere, outside of the image as well, and the size may change from view to view.
+  uav::CameraModel camera;
+  double near_m = 0.05;  ///< nothing nearer or farther is drawn, along the camera's axis
+  double far_m = 100.0;
+  uav::Pose X_WS;                     ///< of the camera: x ahead, y left, z up
+  std::span<const uav::Pose> X_WB;    ///< of each of `moving_bodies`, in its order
+  std::optional<std::size_t> hidden;  ///< one of `moving_bodies` that is not drawn
+  /// Whether `nearest_depth_m()` is going to be asked for.
+  bool with_depth = false;
+};
+
+/// Draws pictures of the world: what a back end provides for cameras. Lens, shutter and noise are
+/// made from these by the sensing library. The same view gives the same bytes, whatever was drawn
+/// before. Used from one thread at a time.
+class ViewRenderer {
+ public:
+  virtual ~ViewRenderer() = default;
+  ViewRenderer(const ViewRenderer&) = delete;
+  ViewRenderer& operator=(const ViewRenderer&) = delete;
+
+  /// `rgb` holds height × width × 3 bytes: rows from the top down, pixels R, G, B in sRGB.
+  /// @throws Error(kSetup) when the back end is lost.
+  virtual void render(const View& view, std::span<std::uint8_t> rgb) = 0;
+
+  /// How far ahead the nearest thing is that the last picture shows, along the camera's axis,
+  /// between the near plane and the far one [m]. Rather too near than too far: from it follows how
+  /// many pictures a moving camera's image is mixed of. @pre the last view was `with_depth`.
+  virtual double nearest_depth_m() = 0;
+
+  /// What draws, for the record: "llvmpipe (LLVM 15.0.6, 256 bits)".
+  virtual std::string name() const = 0;
+
+ protected:
+  ViewRenderer() = default;
+};
+
+/// Makes a renderer for views of at most this size. Called once, for the first image: a run without
+/// a camera needs no renderer.
+/// @throws Error(kSetup) without a renderer, Error(kBadFile) for something that cannot be shown.
+using ViewRendererFactory =
+    std::function<std::unique_ptr<ViewRenderer>(int max_width_px, int max_height_px)>;
+
+}  // namespace tether::sim

@@ -1,0 +1,56 @@
+#include <gtest/gtest.h>
+
+#include <tether/sim/bodies.h>
+#include <tether/sim_testing/fake_simulator.h>
+
+namespace tether::sim {
+namespace {
+
+Model model_of(const std::string& name, bool is_static, const uav::Vec3& p_WM) {
+  Model model;
+  model.name = name;
+  model.is_static = is_static;
+  model.X_WM.p = p_WM;
+  model.links.resize(2);
+  model.links[1].X_ML.p = {0.0, 0.0, 1.0};
+  return model;
+}
+
+World mixed_world() {
+  World world = make_fake_world(2);
+  world.models = {model_of("wall", true, {5.0, 0.0, 0.0}), model_of("ball", false, {6.0, 0.0, 0.0}),
+                  model_of("house", true, {7.0, 0.0, 0.0}),
+                  model_of("cart", false, {8.0, 0.0, 0.0})};
+  return world;
+}
+
+TEST(BodiesTest, MovingOnesAreTheUavsThenTheLinksOfDynamicModels) {
+  const World world = mixed_world();
+  const std::vector<MovingBody> bodies = moving_bodies(world);
+  ASSERT_EQ(bodies.size(), 6U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(bodies[i].uav, &world.uavs[i]);
+    EXPECT_EQ(bodies[i].link, &world.uavs[i].body);
+    EXPECT_EQ(bodies[i].X_WB, world.uavs[i].X_WB);
+  }
+  for (std::size_t i = 2; i < 6; ++i) {
+    const Model& model = world.models[i < 4 ? 1 : 3];
+    EXPECT_EQ(bodies[i].uav, nullptr);
+    EXPECT_EQ(bodies[i].link, &model.links[i % 2]);
+    EXPECT_EQ(bodies[i].X_WB, model.X_WM * model.links[i % 2].X_ML);
+  }
+}
+
+TEST(BodiesTest, FixedOnesAreTheLinksOfStaticModels) {
+  const World world = mixed_world();
+  const std::vector<FixedBody> bodies = fixed_bodies(world);
+  ASSERT_EQ(bodies.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Model& model = world.models[i < 2 ? 0 : 2];
+    EXPECT_EQ(bodies[i].link, &model.links[i % 2]);
+    EXPECT_EQ(bodies[i].X_WB, model.X_WM * model.links[i % 2].X_ML);
+  }
+}
+
+}  // namespace
+}  // namespace tether::sim
