@@ -2,62 +2,20 @@
 
 #include "conversions.h"
 #include "physics_model.h"
-#include "shutter.h"
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 
 #include <tether/base/error.h>
 
 namespace tether::sim {
-namespace {
-
-constexpr std::size_t kPoseSize = 7;
-constexpr std::size_t kMotionSize = 9;
-
-constexpr double kLongestWindow_s = 1.0;
-
-double checked_window_s(const Uav& uav, const Sensor& sensor, const CameraModel& camera) {
-  const double window_s = Shutter(camera).window_s();
-  if (camera.exposure_s >= 0.0 && camera.readout_s >= 0.0 && window_s <= kLongestWindow_s) {
-    return window_s;
-  }
-  throw Error(ErrorCode::kBadFile, "camera '" + sensor.name + "' of UAV '" + uav.name +
-                                       "': exposure and readout must not be negative, and take at "
-                                       "most 1 s together");
-}
-
-// How many steps the shutter of any camera reaches back.
-std::size_t shutter_steps(const World& world) {
-  double longest_s = 0.0;
-  for (const Uav& uav : world.uavs) {
-    for (const Sensor& sensor : uav.sensors) {
-      const auto* camera = std::get_if<CameraModel>(&sensor.model);
-      if (camera) longest_s = std::max(longest_s, checked_window_s(uav, sensor, *camera));
-    }
-  }
-  return static_cast<std::size_t>(std::ceil(longest_s / to_seconds(world.step)));
-}
-
-// Between two poses that are near each other, `share` of the way.
-uav::Pose between(const uav::Pose& a, const uav::Pose& b, double share) {
-  const auto mix = [&](double x, double y) { return x + share * (y - x); };
-  // A quaternion and its opposite are the same rotation.
-  const double sign = a.q.w * b.q.w + a.q.x * b.q.x + a.q.y * b.q.y + a.q.z * b.q.z < 0 ? -1 : 1;
-  return {a.p + share * (b.p - a.p),
-          uav::normalized({mix(a.q.w, sign * b.q.w), mix(a.q.x, sign * b.q.x),
-                           mix(a.q.y, sign * b.q.y), mix(a.q.z, sign * b.q.z)})};
-}
-
-}  // namespace
 
 Dynamics::Dynamics(const World& world, const WarningSink& warn)
     : world_(world),
-      bodies_(moving_bodies(world).size()),
       model_(make_physics_model(world, warn)),
       data_(make_data(*model_)),
-      past_(shutter_steps(world), bodies_ * kPoseSize) {
+      recorder_(world),
+      X_WB_(recorder_.layout().bodies()),
+      motions_(recorder_.layout().uavs()) {
   for (const Uav& uav : world.uavs) flights_.push_back({&uav.airframe, {}, {}});
   reset();
 }
@@ -70,7 +28,8 @@ void Dynamics::reset() {
     flight.state =
         uav::hover_state(*flight.airframe, world_.gravity_m_s2, yaw_rad(world_.uavs[i].X_WB.q));
   }
-  past_.fill(poses());
+  read_engine();
+  recorder_.reset(X_WB_);
 }
 
 void Dynamics::set_command(std::size_t uav, const uav::VelocityCommand& command) {
@@ -78,10 +37,11 @@ void Dynamics::set_command(std::size_t uav, const uav::VelocityCommand& command)
 }
 
 void Dynamics::step() {
-  past_.push(poses());
+  recorder_.begin_step(X_WB_);
   for (std::size_t i = 0; i < flights_.size(); ++i) apply_rotors(i);
   mj_step(model_.get(), data_.get());
   check_engine();
+  read_engine();
 }
 
 void Dynamics::apply_rotors(std::size_t uav) {
@@ -116,43 +76,20 @@ uav::BodyState Dynamics::body_state(std::size_t uav) const {
   return {vec3_from(qpos), quat_from(qpos + 3), vec3_from(qvel), vec3_from(qvel + 3)};
 }
 
-std::span<const double> Dynamics::poses() const {
-  return {data_->qpos, bodies_ * kPoseSize};
-}
-
 // A free joint's velocities are linear in W, angular in B; so are its accelerations.
-void Dynamics::capture(std::vector<double>& state) const {
-  const std::size_t now = bodies_ * kPoseSize + flights_.size() * kMotionSize;
-  state.resize(now + past_.size());
-  auto out = std::copy_n(data_->qpos, bodies_ * kPoseSize, state.begin());
-  for (std::size_t i = 0; i < flights_.size(); ++i) {
-    out = std::copy_n(data_->qvel + qvel_address(i) + 3, 3, out);
-    out = std::copy_n(data_->qacc + qvel_address(i), 6, out);
+void Dynamics::read_engine() {
+  for (std::size_t i = 0; i < X_WB_.size(); ++i) {
+    X_WB_[i] = pose_from(data_->qpos + qpos_address(i));
   }
-  past_.write(state.data() + now);
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const mjtNum* qacc = data_->qacc + qvel_address(i);
+    motions_[i] = {vec3_from(data_->qvel + qvel_address(i) + 3), vec3_from(qacc),
+                   vec3_from(qacc + 3)};
+  }
 }
 
-uav::Pose Dynamics::pose_of(const std::vector<double>& state, std::size_t body) {
-  return pose_from(state.data() + body * kPoseSize);
-}
-
-BodyMotion Dynamics::motion_of(const std::vector<double>& state, std::size_t uav) const {
-  const double* motion = state.data() + bodies_ * kPoseSize + uav * kMotionSize;
-  return {vec3_from(motion), vec3_from(motion + 3), vec3_from(motion + 6)};
-}
-
-uav::Pose Dynamics::past_pose_of(const std::vector<double>& state, std::size_t body,
-                                 double steps_ago) const {
-  // The pose at a whole number of steps before the capture.
-  const auto pose = [&](std::size_t steps) {
-    if (steps == 0) return pose_of(state, body);
-    const std::size_t row = past_.instants() - std::min(steps, past_.instants());
-    const double* rows = state.data() + state.size() - past_.size();
-    return pose_from(rows + (row * bodies_ + body) * kPoseSize);
-  };
-  const auto whole = static_cast<std::size_t>(steps_ago);
-  const double share = steps_ago - static_cast<double>(whole);
-  return share == 0.0 ? pose(whole) : between(pose(whole), pose(whole + 1), share);
+void Dynamics::capture(std::vector<double>& state) const {
+  recorder_.capture(X_WB_, motions_, state);
 }
 
 }  // namespace tether::sim

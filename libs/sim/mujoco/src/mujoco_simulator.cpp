@@ -1,14 +1,25 @@
+#include "collision_rays.h"
 #include "dynamics.h"
-#include "image_maker.h"
-#include "sensors.h"
+#include "renderer.h"
 
 #include <utility>
 
 #include <tether/base/error.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
+#include <tether/sim_sensing/sensor_suite.h>
 
 namespace tether::sim {
 namespace {
+
+// What the sensors need of the embedded back end. The renderer takes the scene when it is made.
+SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, const WarningSink& warn) {
+  Scene scene = make_scene(world, warn);
+  std::vector<double> radii_m = body_radii_m(scene, moving_bodies(world).size());
+  auto make_renderer = [scene = std::move(scene)](int max_width_px, int max_height_px) mutable {
+    return std::make_unique<Renderer>(std::move(scene), max_width_px, max_height_px);
+  };
+  return {rays, std::move(make_renderer), std::move(radii_m)};
+}
 
 class MujocoSimulator final : public Simulator {
  public:
@@ -17,15 +28,15 @@ class MujocoSimulator final : public Simulator {
         warn_(std::move(warn)),
         grid_(world_.step),
         dynamics_(world_, warn_),
-        rays_(dynamics_),
-        images_(world_, dynamics_, warn_) {}
+        rays_(dynamics_.model()),
+        sensors_(world_, back_end(world_, rays_, warn_), warn_) {}
 
   const World& world() const override { return world_; }
   StepGrid grid() const override { return grid_; }
   SimTime now() const override { return now_; }
 
   void reset(std::uint64_t seed) override {
-    seed_ = seed;
+    sensors_.reset(seed);
     now_ = SimTime{};
     dynamics_.reset();
   }
@@ -51,16 +62,7 @@ class MujocoSimulator final : public Simulator {
 
   uav::Sample measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
                       std::uint64_t index) override {
-    check_uav(uav);
-    const Uav& carrier = world_.uavs[uav];
-    if (sensor >= carrier.sensors.size()) {
-      throw Error(ErrorCode::kInternal, "simulator: no sensor " + std::to_string(sensor));
-    }
-    const Sensor& description = carrier.sensors[sensor];
-    const Request request{
-        snapshot, uav, description, {seed_, carrier.name, description.name, index, snapshot.at}};
-    return std::visit([&](const auto& model) { return measure(model, request); },
-                      description.model);
+    return sensors_.measure(snapshot, uav, sensor, index);
   }
 
   GroundTruth ground_truth(std::size_t uav) const override {
@@ -70,32 +72,11 @@ class MujocoSimulator final : public Simulator {
 
   std::string description() const override {
     const std::string name = "MuJoCo " + engine_version();
-    const std::string renderer = images_.renderer_name();
+    const std::string renderer = sensors_.renderer_name();
     return renderer.empty() ? name : name + ", " + renderer;
   }
 
  private:
-  struct Request {
-    const Snapshot& snapshot;
-    std::size_t uav;
-    const Sensor& sensor;
-    MeasurementKey key;
-  };
-
-  uav::Sample measure(const ImuModel& imu, const Request& r) {
-    return measure_imu(imu, r.sensor.X_BS, Dynamics::pose_of(r.snapshot.state, r.uav),
-                       dynamics_.motion_of(r.snapshot.state, r.uav), world_.gravity_m_s2, r.key);
-  }
-
-  uav::Sample measure(const RangeModel& range, const Request& r) {
-    const uav::Pose X_WS = Dynamics::pose_of(r.snapshot.state, r.uav) * r.sensor.X_BS;
-    return measure_range(range, rays_.cast(r.snapshot.state, X_WS, range.rays_S, r.uav), r.key);
-  }
-
-  uav::Sample measure(const CameraModel& camera, const Request& r) {
-    return images_.make(camera, {r.snapshot.state, r.uav, r.sensor, r.key});
-  }
-
   void check_target(SimTime t) const {
     if (t < now_ || !grid_.contains(t)) {
       throw Error(ErrorCode::kInternal, "simulator: cannot advance from " +
@@ -120,10 +101,9 @@ class MujocoSimulator final : public Simulator {
   WarningSink warn_;
   StepGrid grid_;
   Dynamics dynamics_;
-  RayCaster rays_;
-  ImageMaker images_;
+  CollisionRays rays_;
+  SensorSuite sensors_;
   SimTime now_{};
-  std::uint64_t seed_ = 0;
   bool warned_ = false;
 };
 

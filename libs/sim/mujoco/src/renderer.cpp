@@ -114,7 +114,7 @@ void Renderer::fill_mesh_lists() {
   }
 }
 
-const RawImage& Renderer::render(const View& view) {
+void Renderer::render(const View& view, std::span<std::uint8_t> rgb) {
   const EglBinding binding(egl_);
   image_.width_px = view.camera.width_px;
   image_.height_px = view.camera.height_px;
@@ -124,7 +124,7 @@ const RawImage& Renderer::render(const View& view) {
   place_items(view);
   mjr_render({0, 0, image_.width_px, image_.height_px}, engine_scene_.get(), &context_);
   read_back();
-  return image_;
+  convert_to_rgb(image_, rgb);
 }
 
 void Renderer::set_camera(const View& view) {

@@ -6,14 +6,13 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <mujoco/mujoco.h>
 
-#include <tether/sim/world.h>
+#include <tether/sim_sensing/view_renderer.h>
 
 namespace tether::sim {
 
@@ -36,32 +35,17 @@ class EngineScene {
 /// MuJoCo's renderer sets up lights, materials and textures; the triangles are ours, because it has
 /// no texture coordinates for primitives and lights each vertex only. Same input, same bytes on one
 /// machine: in software whatever the number of threads.
-class Renderer {
+class Renderer final : public ViewRenderer {
  public:
   /// Images of at most this size. @throws Error(kSetup) without OpenGL, Error(kBadFile) for a bad
   /// texture.
   Renderer(Scene scene, int max_width_px, int max_height_px);
-  ~Renderer();
-  Renderer(const Renderer&) = delete;
-  Renderer& operator=(const Renderer&) = delete;
+  ~Renderer() override;
 
-  /// What to draw.
-  struct View {
-    uav::CameraModel camera;  ///< without distortion, fx = fy
-    double near_m = 0.05;
-    double far_m = 100.0;
-    uav::Pose X_WS;                     ///< of the camera: x ahead, z up
-    std::span<const uav::Pose> X_WB;    ///< of each moving body
-    std::optional<std::size_t> hidden;  ///< a moving body that is not drawn
-  };
-  /// The image is valid until the next call.
-  const RawImage& render(const View& view);
-  /// How far ahead the nearest thing is that the last image shows, along the camera's axis; no
-  /// farther than the far plane [m].
-  double nearest_depth_m();
-
+  void render(const View& view, std::span<std::uint8_t> rgb) override;
+  double nearest_depth_m() override;
   /// OpenGL's name of the renderer.
-  const std::string& name() const { return egl_.renderer_name(); }
+  std::string name() const override { return egl_.renderer_name(); }
 
  private:
   void fill_mesh_lists();

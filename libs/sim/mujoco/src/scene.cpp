@@ -207,6 +207,17 @@ Scene make_scene(const World& world, const WarningSink& warn) {
   return scene;
 }
 
+std::vector<double> body_radii_m(const Scene& scene, std::size_t bodies) {
+  std::vector<double> radii_m(bodies, 0.0);
+  for (const SceneItem& item : scene.items) {
+    if (!item.body) continue;
+    double& radius_m = radii_m[*item.body];
+    const double reach_m = norm(transform(item.X_BV, item.bounds.centre)) + item.bounds.radius_m;
+    radius_m = std::max(radius_m, reach_m);
+  }
+  return radii_m;
+}
+
 ModelPtr make_scene_model(const Scene& scene, int width_px, int height_px) {
   std::string assets;
   std::vector<ModelFile> files;

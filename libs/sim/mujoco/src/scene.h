@@ -43,6 +43,9 @@ struct Scene {
 /// @throws Error(kBadFile) for a mesh or texture that cannot be read.
 Scene make_scene(const World& world, const WarningSink& warn);
 
+/// How far each of `bodies` moving bodies reaches from its origin [m].
+std::vector<double> body_radii_m(const Scene& scene, std::size_t bodies);
+
 /// The renderer's assets (textures, and one list per mesh to be filled by the renderer) as an
 /// engine model.
 ModelPtr make_scene_model(const Scene& scene, int width_px, int height_px);

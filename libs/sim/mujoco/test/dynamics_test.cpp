@@ -1,6 +1,6 @@
 #include "dynamics.h"
 
-#include "test_worlds.h"
+#include "test_simulator.h"
 
 #include <cmath>
 #include <numbers>
@@ -72,13 +72,14 @@ TEST(DynamicsTest, LooseBodiesFallAndRest) {
   loose.links[0].inertia_kg_m2 = {0.0067, 0.0067, 0.0067};
   world.models.push_back(loose);
   Dynamics dynamics(world, no_warnings());
+  const StateLayout layout(world);
   std::vector<double> state;
   run(dynamics, 200);
   dynamics.capture(state);
-  EXPECT_NEAR(Dynamics::pose_of(state, 1).p.z, 1.0 - 0.5 * 9.81 * 0.04, 1.5e-3) << "free fall";
+  EXPECT_NEAR(layout.pose_of(state, 1).p.z, 1.0 - 0.5 * 9.81 * 0.04, 1.5e-3) << "free fall";
   run(dynamics, 3'000);
   dynamics.capture(state);
-  EXPECT_NEAR(Dynamics::pose_of(state, 1).p.z, 0.1, 5e-3) << "on the floor";
+  EXPECT_NEAR(layout.pose_of(state, 1).p.z, 0.1, 5e-3) << "on the floor";
 }
 
 TEST(DynamicsTest, ResetRestoresEverything) {
@@ -106,7 +107,7 @@ TEST(DynamicsTest, MotionIsTheChangeOfVelocity) {
   const uav::BodyState after = dynamics.body_state(0);
   std::vector<double> state;
   dynamics.capture(state);
-  const BodyMotion motion = dynamics.motion_of(state, 0);
+  const BodyMotion motion = StateLayout(world).motion_of(state, 0);
   EXPECT_EQ(motion.w_WB_B, after.w_WB_B);
   EXPECT_LT(norm(motion.a_WB_W - 1000.0 * (after.v_WB - before.v_WB)), 1e-9);
   EXPECT_LT(norm(motion.alpha_WB_B - 1000.0 * (after.w_WB_B - before.w_WB_B)), 1e-9);

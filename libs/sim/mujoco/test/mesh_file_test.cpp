@@ -1,6 +1,6 @@
 #include "mesh_file.h"
 
-#include "test_worlds.h"
+#include "test_simulator.h"
 
 #include <filesystem>
 

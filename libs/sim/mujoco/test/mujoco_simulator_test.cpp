@@ -1,4 +1,4 @@
-#include "test_worlds.h"
+#include "test_simulator.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

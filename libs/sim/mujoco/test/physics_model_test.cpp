@@ -1,6 +1,6 @@
 #include "physics_model.h"
 
-#include "test_worlds.h"
+#include "test_simulator.h"
 
 #include <filesystem>
 

@@ -1,6 +1,6 @@
 #include "scene.h"
 
-#include "test_worlds.h"
+#include "test_simulator.h"
 
 #include <filesystem>
 
@@ -36,6 +36,18 @@ TEST(SceneTest, FixedThingsAreInTheWorldFrameMovingOnesInTheirBodys) {
   EXPECT_EQ(scene.items[0].X_BV.p, (uav::Vec3{0.0, 0.0, -0.05}));
   EXPECT_EQ(scene.items[1].body, 0U);
   EXPECT_EQ(scene.items[1].X_BV.p, (uav::Vec3{0.0, 0.0, 0.02}));
+}
+
+TEST(SceneTest, BodiesReachAsFarAsTheirFarthestVisual) {
+  World world = test_world();
+  world.uavs.push_back(testing::test_uav("beta", {3.0, 0.0, 1.0}));
+  Visual mast = testing::box_visual({0.2, 0.2, 0.2}, {1.0, 1.0, 1.0});
+  mast.X_LV.p = {0.0, 0.0, 2.0};
+  world.uavs[1].body.visuals.push_back(mast);
+  const std::vector<double> radii_m = body_radii_m(make_scene(world, no_warnings()), 2);
+  ASSERT_EQ(radii_m.size(), 2U);
+  EXPECT_NEAR(radii_m[0], norm(uav::Vec3{0.2, 0.2, 0.05}), 1e-6);
+  EXPECT_NEAR(radii_m[1], 2.0 + norm(uav::Vec3{0.1, 0.1, 0.1}), 1e-6);
 }
 
 TEST(SceneTest, MaterialColoursThatCannotBeShownAreNamed) {

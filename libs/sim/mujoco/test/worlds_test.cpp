@@ -1,4 +1,4 @@
-#include "test_worlds.h"
+#include "test_simulator.h"
 
 #include <filesystem>
 #include <set>

@@ -3,22 +3,15 @@
 #include "sensor_noise.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cassert>
 #include <utility>
 
 namespace tether::sim {
 namespace {
 
-// How far each moving body reaches from its origin.
-std::vector<double> body_radii(const Scene& scene, std::size_t bodies) {
-  std::vector<double> radii_m(bodies, 0.0);
-  for (const SceneItem& item : scene.items) {
-    if (!item.body) continue;
-    double& radius_m = radii_m[*item.body];
-    const double reach_m = norm(transform(item.X_BV, item.bounds.centre)) + item.bounds.radius_m;
-    radius_m = std::max(radius_m, reach_m);
-  }
-  return radii_m;
+std::size_t bytes_of(const uav::CameraModel& camera) {
+  return std::size_t{3} * static_cast<std::size_t>(camera.width_px) *
+         static_cast<std::size_t>(camera.height_px);
 }
 
 }  // namespace
@@ -29,20 +22,21 @@ ImageMaker::Plan::Plan(const uav::CameraModel& camera) : rendered(camera) {
   rendered = warp->source();
 }
 
-ImageMaker::ImageMaker(const World& world, const Dynamics& dynamics, const WarningSink& warn)
+ImageMaker::ImageMaker(const World& world, std::vector<double> body_radii_m,
+                       ViewRendererFactory make_renderer, const WarningSink& warn)
     : world_(world),
-      dynamics_(dynamics),
+      layout_(world),
+      body_radii_m_(std::move(body_radii_m)),
+      make_renderer_(std::move(make_renderer)),
       warn_(warn),
-      scene_(make_scene(world, warn)),
-      body_radii_m_(body_radii(scene_, moving_bodies(world).size())),
-      poses_(body_radii_m_.size()) {}
+      poses_(layout_.bodies()) {
+  assert(body_radii_m_.size() == layout_.bodies());
+}
 
 uav::CameraSample ImageMaker::make(const CameraModel& camera, const Request& r) {
-  const auto width = static_cast<std::size_t>(camera.intrinsics.width_px);
-  const auto height = static_cast<std::size_t>(camera.intrinsics.height_px);
   uav::CameraSample sample{r.key.at, r.key.index, camera.intrinsics.width_px,
                            camera.intrinsics.height_px,
-                           std::vector<std::uint8_t>(width * height * 3)};
+                           std::vector<std::uint8_t>(bytes_of(camera.intrinsics))};
   draw(camera, r, 0.0, {0, camera.intrinsics.height_px}, sample.rgb);
   if (Shutter(camera).window_s() > 0.0) {
     const int instants = count_instants(motion_px(camera, r));
@@ -59,20 +53,22 @@ void ImageMaker::draw(const CameraModel& camera, const Request& r, double steps_
                       const Rows& rows, Bytes rgb) {
   const Plan& plan = plan_of(r.sensor, camera);
   for (std::size_t i = 0; i < poses_.size(); ++i) {
-    poses_[i] = dynamics_.past_pose_of(r.state, i, steps_ago);
+    poses_[i] = layout_.past_pose_of(r.state, i, steps_ago);
   }
-  Renderer::View view{plan.rendered, camera.near_m, camera.far_m, poses_[r.uav] * r.sensor.X_BS,
-                      poses_,        r.uav};
+  View view{plan.rendered, camera.near_m, camera.far_m, poses_[r.uav] * r.sensor.X_BS,
+            poses_,        r.uav};
+  view.with_depth = steps_ago == 0.0 && Shutter(camera).window_s() > 0.0;
   if (plan.warp) {
-    plan.warp->apply(renderer().render(view), rgb);
+    ideal_rgb_.resize(bytes_of(plan.rendered));
+    renderer().render(view, ideal_rgb_);
+    plan.warp->apply(ideal_rgb_, rgb);
     return;
   }
   view.camera.height_px = rows.count;
   view.camera.cy_px -= rows.first;
   const std::size_t stride = 3 * static_cast<std::size_t>(camera.intrinsics.width_px);
-  convert_to_rgb(renderer().render(view),
-                 rgb.subspan(stride * static_cast<std::size_t>(rows.first),
-                             stride * static_cast<std::size_t>(rows.count)));
+  renderer().render(
+      view, rgb.subspan(stride * static_cast<std::size_t>(rows.first), bytes_of(view.camera)));
 }
 
 // How far things move in the picture within the shutter's window, were they as fast throughout as
@@ -104,8 +100,8 @@ double ImageMaker::step_motion_px(const CameraModel& camera, const Request& r, d
 }
 
 Movement ImageMaker::movement_of(const Request& r, std::size_t body, double steps_ago) const {
-  return {dynamics_.past_pose_of(r.state, body, steps_ago + 1.0),
-          dynamics_.past_pose_of(r.state, body, steps_ago)};
+  return {layout_.past_pose_of(r.state, body, steps_ago + 1.0),
+          layout_.past_pose_of(r.state, body, steps_ago)};
 }
 
 // `rgb` is the image of the last instant, and becomes the mix.
@@ -159,7 +155,7 @@ const ImageMaker::Plan& ImageMaker::plan_of(const Sensor& sensor, const CameraMo
 }
 
 // Made at the first image, large enough for every camera of the world.
-Renderer& ImageMaker::renderer() {
+ViewRenderer& ImageMaker::renderer() {
   if (renderer_) return *renderer_;
   int width_px = 1;
   int height_px = 1;
@@ -172,7 +168,7 @@ Renderer& ImageMaker::renderer() {
       height_px = std::max(height_px, plan.rendered.height_px);
     }
   }
-  renderer_.emplace(std::move(scene_), width_px, height_px);
+  renderer_ = make_renderer_(width_px, height_px);
   return *renderer_;
 }
 

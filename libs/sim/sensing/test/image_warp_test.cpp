@@ -9,17 +9,22 @@ namespace {
 
 // An ideal image whose colour says where it was looked at: red and green are the direction's x and
 // y at z = 1, from −2 to 2.
-RawImage direction_image(const uav::CameraModel& camera) {
-  RawImage image{camera.width_px, camera.height_px, {}};
-  for (int row = camera.height_px - 1; row >= 0; --row) {
+std::vector<std::uint8_t> direction_image(const uav::CameraModel& camera) {
+  std::vector<std::uint8_t> rgb;
+  for (int row = 0; row < camera.height_px; ++row) {
     for (int column = 0; column < camera.width_px; ++column) {
       const uav::Vec3 p = camera.unproject({static_cast<double>(column), static_cast<double>(row)});
-      const auto red = static_cast<std::uint32_t>(std::lround((p.x + 2.0) * 63.75));
-      const auto green = static_cast<std::uint32_t>(std::lround((p.y + 2.0) * 63.75));
-      image.rgba.push_back(red | (green << 8));
+      rgb.push_back(static_cast<std::uint8_t>(std::lround((p.x + 2.0) * 63.75)));
+      rgb.push_back(static_cast<std::uint8_t>(std::lround((p.y + 2.0) * 63.75)));
+      rgb.push_back(0);
     }
   }
-  return image;
+  return rgb;
+}
+
+std::vector<std::uint8_t> white_image(const uav::CameraModel& camera) {
+  return std::vector<std::uint8_t>(static_cast<std::size_t>(3 * camera.width_px * camera.height_px),
+                                   255);
 }
 
 void expect_each_pixel_sees_its_direction(const uav::CameraModel& camera) {
@@ -55,10 +60,8 @@ TEST(ImageWarpTest, PixelsWithoutADirectionAreBlack) {
   camera.k1 = -0.3;
   const ImageWarp warp(camera);
   EXPECT_LE(warp.source().width_px, 2 * camera.width_px);
-  RawImage white{warp.source().width_px, warp.source().height_px, {}};
-  white.rgba.assign(static_cast<std::size_t>(white.width_px * white.height_px), 0xFFFFFFFF);
   std::vector<std::uint8_t> rgb(std::size_t{3} * 160 * 120);
-  warp.apply(white, rgb);
+  warp.apply(white_image(warp.source()), rgb);
   const double fold = std::sqrt(1.0 / 0.9);
   const double reach_px = camera.fx_px * fold * (1.0 - 0.3 * fold * fold);
   std::size_t black = 0;
@@ -79,10 +82,8 @@ TEST(ImageWarpTest, ALensThatSeesNothingIsBlackAltogether) {
   camera.cx_px = 1e4;
   const ImageWarp warp(camera);
   EXPECT_EQ(warp.blind_pixels(), std::size_t{16} * 12);
-  RawImage white{warp.source().width_px, warp.source().height_px, {}};
-  white.rgba.assign(static_cast<std::size_t>(white.width_px * white.height_px), 0xFFFFFFFF);
   std::vector<std::uint8_t> rgb(std::size_t{3} * 16 * 12, 7);
-  warp.apply(white, rgb);
+  warp.apply(white_image(warp.source()), rgb);
   EXPECT_EQ(rgb, std::vector<std::uint8_t>(std::size_t{3} * 16 * 12, 0));
 }
 

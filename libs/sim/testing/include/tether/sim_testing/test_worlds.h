@@ -1,10 +1,8 @@
 #pragma once
 
-#include <memory>
+#include <cstddef>
 #include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
+#include <variant>
 
 #include <tether/sim/simulator.h>
 #include <tether/sim/world.h>
@@ -29,11 +27,6 @@ Uav test_uav(const std::string& name, const uav::Vec3& p_WB);
 
 /// A lit floor at z = 0 with "alpha" hovering at (0, 0, 1).
 World test_world();
-
-/// Fails the test on any warning.
-WarningSink no_warnings();
-
-std::unique_ptr<Simulator> make_simulator(World world);
 
 /// Measures a sensor of UAV 0 now; `S` is its sample type.
 template <class S>

@@ -1,6 +1,5 @@
-#include "image_maker.h"
-
-#include "test_worlds.h"
+#include "renderer.h"
+#include "test_simulator.h"
 
 #include <cmath>
 #include <numeric>
@@ -200,22 +199,21 @@ void expect_the_edge_as_the_shutter_has_it(World world, const Slack& slack = {})
   }
 }
 
-TEST(ImageMakerTest, WithoutAShutterTheImageIsWhatTheRendererDraws) {
+TEST(CamerasTest, WithoutAShutterTheImageIsWhatTheRendererDraws) {
   World world = edge_world();
   Flight flight = turning(world);
   const uav::CameraSample image = flight.image();
   Renderer renderer(make_scene(world, no_warnings()), kWidth, kHeight);
   const std::vector<uav::Pose> poses{flight.X_WB(0.0)};
   const CameraModel& camera = camera_of(world);
-  const RawImage& raw =
-      renderer.render({camera.intrinsics, camera.near_m, camera.far_m,
-                       poses[0] * world.uavs[0].sensors[kCamera].X_BS, poses, std::size_t{0}});
   std::vector<std::uint8_t> expected(image.rgb.size());
-  convert_to_rgb(raw, expected);
+  renderer.render({camera.intrinsics, camera.near_m, camera.far_m,
+                   poses[0] * world.uavs[0].sensors[kCamera].X_BS, poses, std::size_t{0}},
+                  expected);
   EXPECT_EQ(image.rgb, expected);
 }
 
-TEST(ImageMakerTest, ExposureBlursByRateTimesFocalLength) {
+TEST(CamerasTest, ExposureBlursByRateTimesFocalLength) {
   const double focal_px = testing::camera_intrinsics(kWidth, kHeight).fx_px;
   for (const double exposure_s : {0.0, 0.01, 0.03, 0.06}) {
     SCOPED_TRACE(exposure_s);
@@ -227,7 +225,7 @@ TEST(ImageMakerTest, ExposureBlursByRateTimesFocalLength) {
   }
 }
 
-TEST(ImageMakerTest, RollingShutterLeansAnUprightEdge) {
+TEST(CamerasTest, RollingShutterLeansAnUprightEdge) {
   constexpr double kReadout_s = 0.03;
   const World world = with_shutter(edge_world(), 0.0, kReadout_s);
   expect_the_edge_as_the_shutter_has_it(world, kMixedRows);
@@ -241,7 +239,7 @@ TEST(ImageMakerTest, RollingShutterLeansAnUprightEdge) {
   EXPECT_NEAR(lean_px, rate_px_s * kReadout_s * last_band / (kHeight - 1), 0.1 * lean_px);
 }
 
-TEST(ImageMakerTest, TheLastRowIsThatOfAGlobalShutter) {
+TEST(CamerasTest, TheLastRowIsThatOfAGlobalShutter) {
   const uav::CameraSample rolling = turning(with_shutter(edge_world(), 0.0, 0.03)).image();
   const uav::CameraSample global = turning(edge_world()).image();
   const auto last_row = static_cast<std::ptrdiff_t>(byte_of(0, kHeight - 1));
@@ -250,13 +248,13 @@ TEST(ImageMakerTest, TheLastRowIsThatOfAGlobalShutter) {
   EXPECT_NE(rolling.rgb, global.rgb);
 }
 
-TEST(ImageMakerTest, ExposureAndReadoutTogether) {
+TEST(CamerasTest, ExposureAndReadoutTogether) {
   expect_the_edge_as_the_shutter_has_it(with_shutter(edge_world(), 0.02, 0.03));
   expect_the_edge_as_the_shutter_has_it(with_shutter(edge_world(), 0.05, 0.01));
 }
 
 // Rows are those of the image that comes out, not of the ideal one that it is made of.
-TEST(ImageMakerTest, RowsOfADistortedImageHaveTheirOwnTimes) {
+TEST(CamerasTest, RowsOfADistortedImageHaveTheirOwnTimes) {
   World world = with_shutter(edge_world(), 0.005, 0.03);
   uav::CameraModel& camera = camera_of(world).intrinsics;
   camera.k1 = -0.25;
@@ -268,7 +266,7 @@ TEST(ImageMakerTest, RowsOfADistortedImageHaveTheirOwnTimes) {
 }
 
 // Falling past a camera at rest, in front of a dark background.
-TEST(ImageMakerTest, WhatMovesIsBlurredBeforeWhatRests) {
+TEST(CamerasTest, WhatMovesIsBlurredBeforeWhatRests) {
   constexpr double kExposure_s = 0.02;
   World world = with_shutter(flat_world(), kExposure_s, 0.0);
   world.models.push_back(
@@ -285,7 +283,7 @@ TEST(ImageMakerTest, WhatMovesIsBlurredBeforeWhatRests) {
   EXPECT_NEAR(std::sqrt(measure_edge(upper_half).width_px2), px_per_m * fallen_m, 0.5);
 }
 
-TEST(ImageMakerTest, AtRestAShutterChangesNoByte) {
+TEST(CamerasTest, AtRestAShutterChangesNoByte) {
   World world = edge_world();
   world.models.push_back(box_model("box", {2.0, 0.3, 1.0}, {0.3, 0.3, 0.3}, {0.7, 0.4, 0.1}));
   Flight with(with_shutter(world, 0.02, 0.03));
@@ -296,14 +294,14 @@ TEST(ImageMakerTest, AtRestAShutterChangesNoByte) {
   EXPECT_EQ(with.image().rgb, without.image().rgb);
 }
 
-TEST(ImageMakerTest, AResetForgetsWhatWasBefore) {
+TEST(CamerasTest, AResetForgetsWhatWasBefore) {
   Flight flight = turning(with_shutter(edge_world(), 0.02, 0.03));
   Flight fresh(flight.simulator->world());
   flight.simulator->reset(0);
   EXPECT_EQ(flight.image().rgb, fresh.image().rgb);
 }
 
-TEST(ImageMakerTest, RefusesAnImpossibleShutter) {
+TEST(CamerasTest, RefusesAnImpossibleShutter) {
   for (const auto& [exposure_s, readout_s] :
        {std::pair{-0.01, 0.02}, {0.02, -0.01}, {0.6, 0.6}, {std::nan(""), 0.0}}) {
     EXPECT_THROW(make_simulator(with_shutter(flat_world(), exposure_s, readout_s)), Error);
@@ -311,7 +309,7 @@ TEST(ImageMakerTest, RefusesAnImpossibleShutter) {
 }
 
 // Small bright cards here and there, each alone in the picture.
-TEST(ImageMakerTest, DistortedPointsAreWhereTheModelProjectsThem) {
+TEST(CamerasTest, DistortedPointsAreWhereTheModelProjectsThem) {
   World world = flat_world();
   uav::CameraModel& camera = camera_of(world).intrinsics;
   camera.k1 = -0.2;
@@ -349,7 +347,7 @@ TEST(ImageMakerTest, DistortedPointsAreWhereTheModelProjectsThem) {
   EXPECT_GT(most_px, 10.0) << "or distortion was not there to be seen";
 }
 
-TEST(ImageMakerTest, NamesACameraWhoseDistortionLeavesPixelsBlack) {
+TEST(CamerasTest, NamesACameraWhoseDistortionLeavesPixelsBlack) {
   World world = edge_world();
   camera_of(world).intrinsics.k1 = -1.0;
   std::vector<std::string> warnings;
@@ -376,7 +374,7 @@ struct NoisyWall {
   }
 };
 
-TEST(ImageMakerTest, PixelNoiseHasItsMeanAndDeviation) {
+TEST(CamerasTest, PixelNoiseHasItsMeanAndDeviation) {
   const auto clean = NoisyWall({}).image(1, 0);
   const NoisyWall noisy({0.02, 0.03, 0.0, 0.0, 0.0, 0.0});
   const auto image = noisy.image(1, 0);
@@ -393,7 +391,7 @@ TEST(ImageMakerTest, PixelNoiseHasItsMeanAndDeviation) {
               0.06);
 }
 
-TEST(ImageMakerTest, PixelNoiseDiffersByImageAndSeed) {
+TEST(CamerasTest, PixelNoiseDiffersByImageAndSeed) {
   const NoisyWall noisy({0.0, 0.03, 0.0, 0.0, 0.0, 0.0});
   EXPECT_EQ(noisy.image(1, 0), noisy.image(1, 0));
   EXPECT_NE(noisy.image(1, 0), noisy.image(1, 1));

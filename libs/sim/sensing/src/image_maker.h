@@ -1,22 +1,23 @@
 #pragma once
 
-#include "dynamics.h"
 #include "image_motion.h"
 #include "image_warp.h"
 #include "light_mix.h"
-#include "renderer.h"
 #include "sensors.h"
 #include "shutter.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <tether/sim/world.h>
+#include <tether/sim_sensing/state_layout.h>
+#include <tether/sim_sensing/view_renderer.h>
 #include <tether/uav/samples.h>
 
 namespace tether::sim {
@@ -25,20 +26,21 @@ namespace tether::sim {
 /// needs, mixes the rows, adds the pixels' noise.
 class ImageMaker {
  public:
-  /// `world` and `dynamics` must outlive this object. Names through `warn` what cannot be shown,
-  /// some of it when the first image is made.
-  ImageMaker(const World& world, const Dynamics& dynamics, const WarningSink& warn);
+  /// `world` must outlive this object. `body_radii_m` and `make_renderer` as SensorSuite::BackEnd
+  /// has them. Names through `warn` what cannot be shown, when an image is made.
+  ImageMaker(const World& world, std::vector<double> body_radii_m,
+             ViewRendererFactory make_renderer, const WarningSink& warn);
 
   /// What a camera of the world sees, and when.
   struct Request {
-    const std::vector<double>& state;  ///< as Dynamics captured it
+    const std::vector<double>& state;  ///< as StateRecorder captured it
     std::size_t uav;
     const Sensor& sensor;
     const MeasurementKey& key;
   };
   uav::CameraSample make(const CameraModel& camera, const Request& request);
 
-  /// OpenGL's name of the renderer; empty before the first image.
+  /// The renderer's name; empty before the first image.
   std::string renderer_name() const { return renderer_ ? renderer_->name() : std::string(); }
 
  private:
@@ -57,7 +59,7 @@ class ImageMaker {
   };
 
   const Plan& plan_of(const Sensor& sensor, const CameraModel& camera);
-  Renderer& renderer();
+  ViewRenderer& renderer();
   void draw(const CameraModel& camera, const Request& r, double steps_ago, const Rows& rows,
             Bytes rgb);
   double motion_px(const CameraModel& camera, const Request& r);
@@ -70,13 +72,14 @@ class ImageMaker {
   Movement movement_of(const Request& r, std::size_t body, double steps_ago) const;
 
   const World& world_;
-  const Dynamics& dynamics_;
-  WarningSink warn_;
-  Scene scene_;  // until the renderer takes it
+  StateLayout layout_;
   std::vector<double> body_radii_m_;
+  ViewRendererFactory make_renderer_;
+  WarningSink warn_;
   std::map<const Sensor*, Plan> plans_;
-  std::optional<Renderer> renderer_;
+  std::unique_ptr<ViewRenderer> renderer_;
   std::vector<uav::Pose> poses_;
+  std::vector<std::uint8_t> ideal_rgb_;
   LightMix light_;
   std::vector<std::uint8_t> instant_rgb_;
 };

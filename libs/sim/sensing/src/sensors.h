@@ -1,16 +1,15 @@
 #pragma once
 
-#include "dynamics.h"
-#include "engine.h"
-
 #include <cstdint>
+#include <span>
 #include <string_view>
-#include <vector>
 
 #include <tether/base/time.h>
 #include <tether/sim/world.h>
+#include <tether/sim_sensing/state_layout.h>
 #include <tether/uav/samples.h>
 
+/// What sensors make of what is true, as pure functions.
 namespace tether::sim {
 
 /// Which measurement is made.
@@ -28,25 +27,9 @@ uav::ImuSample measure_imu(const ImuModel& imu, const uav::Pose& X_BS, const uav
                            const BodyMotion& motion, double gravity_m_s2,
                            const MeasurementKey& key);
 
-/// What a rangefinder reports for the true distance [m] (infinite: nothing there): dropouts, noise,
-/// resolution, limits.
-uav::RangeSample measure_range(const RangeModel& range, double distance_m,
+/// What a rangefinder reports for the true distances along its rays [m] (infinite: nothing there):
+/// the nearest of them, dropouts, noise, resolution, limits.
+uav::RangeSample measure_range(const RangeModel& range, std::span<const double> distances_m,
                                const MeasurementKey& key);
-
-/// Casts rays at the collision shapes of a captured state.
-class RayCaster {
- public:
-  /// `dynamics` must outlive this object.
-  explicit RayCaster(const Dynamics& dynamics);
-
-  /// Distance from the origin of `X_WS` to the nearest point that any of the rays meets of a shape
-  /// that is not of UAV `uav`; infinite where there is none [m].
-  double cast(const std::vector<double>& state, const uav::Pose& X_WS,
-              const std::vector<uav::Vec3>& rays_S, std::size_t uav);
-
- private:
-  const Dynamics& dynamics_;
-  DataPtr data_;
-};
 
 }  // namespace tether::sim

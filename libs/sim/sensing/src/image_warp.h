@@ -1,7 +1,5 @@
 #pragma once
 
-#include "image.h"
-
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -12,7 +10,7 @@
 namespace tether::sim {
 
 /// Makes the image of a camera with lens distortion or oblong pixels out of one of an ideal camera
-/// with square pixels, which is all that the renderer draws. Looks each pixel's viewing direction
+/// with square pixels, which is all that renderers draw. Looks each pixel's viewing direction
 /// up in the ideal image (bilinear). A pixel to which the distortion maps no direction is black:
 /// strong barrel distortion folds back on itself before it reaches the corners.
 class ImageWarp {
@@ -24,8 +22,9 @@ class ImageWarp {
 
   /// The ideal camera to render: wide enough for every pixel, at most 4096 pixels each way.
   const uav::CameraModel& source() const { return source_; }
-  /// `rgb` holds height × width × 3 bytes of the camera given at construction.
-  void apply(const RawImage& source, std::span<std::uint8_t> rgb) const;
+  /// `ideal_rgb` is the picture of `source()`, `rgb` that of the camera given at construction:
+  /// height × width × 3 bytes each, rows from the top down.
+  void apply(std::span<const std::uint8_t> ideal_rgb, std::span<std::uint8_t> rgb) const;
   /// How many pixels have no viewing direction.
   std::size_t blind_pixels() const { return blind_pixels_; }
 

@@ -106,7 +106,8 @@ ImageWarp::ImageWarp(const uav::CameraModel& camera) {
   }
 }
 
-void ImageWarp::apply(const RawImage& source, std::span<std::uint8_t> rgb) const {
+void ImageWarp::apply(std::span<const std::uint8_t> ideal_rgb, std::span<std::uint8_t> rgb) const {
+  const auto stride = 3 * static_cast<std::ptrdiff_t>(source_.width_px);
   std::uint8_t* out = rgb.data();
   for (const uav::Pixel& at : lookup_) {
     if (at.u_px < 0.0) {
@@ -117,9 +118,9 @@ void ImageWarp::apply(const RawImage& source, std::span<std::uint8_t> rgb) const
     const int row = static_cast<int>(at.v_px);
     const auto a = static_cast<float>(at.u_px - column);
     const auto b = static_cast<float>(at.v_px - row);
-    const std::uint8_t* const corners[4] = {
-        source.pixel(column, row), source.pixel(column + 1, row), source.pixel(column, row + 1),
-        source.pixel(column + 1, row + 1)};
+    const std::uint8_t* const corner = ideal_rgb.data() + row * stride + std::ptrdiff_t{3} * column;
+    const std::uint8_t* const corners[4] = {corner, corner + 3, corner + stride,
+                                            corner + stride + 3};
     const float weights[4] = {(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b};
     for (int channel = 0; channel < 3; ++channel) *out++ = mix(corners, weights, channel);
   }

@@ -1,8 +1,4 @@
-#include "test_worlds.h"
-
-#include <cmath>
-
-#include <tether/sim_mujoco/mujoco_simulator.h>
+#include <tether/sim_testing/test_worlds.h>
 
 namespace tether::sim::testing {
 
@@ -80,14 +76,6 @@ World test_world() {
   world.models.push_back(box_model("floor", {0.0, 0.0, -0.05}, {20.0, 20.0, 0.1}, {0.5, 0.5, 0.5}));
   world.uavs.push_back(test_uav("alpha", {0.0, 0.0, 1.0}));
   return world;
-}
-
-WarningSink no_warnings() {
-  return [](const std::string& line) { ADD_FAILURE() << "unexpected warning: " << line; };
-}
-
-std::unique_ptr<Simulator> make_simulator(World world) {
-  return make_mujoco_simulator(std::move(world), no_warnings());
 }
 
 }  // namespace tether::sim::testing

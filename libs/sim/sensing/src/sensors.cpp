@@ -1,13 +1,12 @@
 #include "sensors.h"
 
-#include "conversions.h"
-#include "physics_model.h"
 #include "sensor_noise.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace tether::sim {
 namespace {
@@ -35,6 +34,11 @@ Vec3 specific_force_B(const Vec3& p_BS, const uav::Quat& q_WB, const BodyMotion&
          cross(motion.w_WB_B, cross(motion.w_WB_B, p_BS));
 }
 
+double nearest_of(std::span<const double> distances_m) {
+  return std::accumulate(distances_m.begin(), distances_m.end(), kInfinity,
+                         [](double a, double b) { return std::min(a, b); });
+}
+
 bool is_dropped(const RangeModel& range, const MeasurementKey& key) {
   if (range.dropout_probability == 0.0) return false;
   const std::uint64_t stream = random_stream(key.uav, key.sensor, "dropout");
@@ -60,8 +64,9 @@ uav::ImuSample measure_imu(const ImuModel& imu, const uav::Pose& X_BS, const uav
   return sample;
 }
 
-uav::RangeSample measure_range(const RangeModel& range, double distance_m,
+uav::RangeSample measure_range(const RangeModel& range, std::span<const double> distances_m,
                                const MeasurementKey& key) {
+  const double distance_m = nearest_of(distances_m);
   uav::RangeSample sample{key.at, key.index, kInfinity};
   if (distance_m == kInfinity || is_dropped(range, key)) return sample;
   double measured_m = distance_m + noise_value(range.noise, noise_key(key, "range"));
@@ -71,28 +76,6 @@ uav::RangeSample measure_range(const RangeModel& range, double distance_m,
   if (measured_m <= range.max_m) sample.range_m = measured_m;
   if (measured_m < range.min_m) sample.range_m = -kInfinity;
   return sample;
-}
-
-RayCaster::RayCaster(const Dynamics& dynamics)
-    : dynamics_(dynamics), data_(make_data(dynamics.model())) {}
-
-double RayCaster::cast(const std::vector<double>& state, const uav::Pose& X_WS,
-                       const std::vector<uav::Vec3>& rays_S, std::size_t uav) {
-  const mjModel& model = dynamics_.model();
-  std::copy_n(state.begin(), model.nq, data_->qpos);
-  mj_kinematics(&model, data_.get());
-  std::array<mjtNum, 3> origin{};
-  copy_to(X_WS.p, origin.data());
-  double nearest_m = kInfinity;
-  for (const Vec3& ray_S : rays_S) {
-    std::array<mjtNum, 3> direction{};
-    copy_to(rotate(X_WS.q, ray_S), direction.data());
-    int geom = -1;
-    const double distance_m = mj_ray(&model, data_.get(), origin.data(), direction.data(), nullptr,
-                                     1, engine_body(uav), &geom);
-    if (geom >= 0) nearest_m = std::min(nearest_m, distance_m);
-  }
-  return nearest_m;
 }
 
 }  // namespace tether::sim

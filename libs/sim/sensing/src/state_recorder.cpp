@@ -1,0 +1,39 @@
+#include "state_numbers.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include <tether/sim_sensing/state_recorder.h>
+
+namespace tether::sim {
+
+StateRecorder::StateRecorder(const World& world)
+    : layout_(world), past_(layout_.size() - layout_.past_at()) {}
+
+void StateRecorder::reset(std::span<const uav::Pose> X_WB) {
+  for (std::size_t i = 0; i < layout_.past_steps(); ++i) begin_step(X_WB);
+}
+
+void StateRecorder::begin_step(std::span<const uav::Pose> X_WB) {
+  assert(X_WB.size() == layout_.bodies());
+  if (layout_.past_steps() == 0) return;
+  double* out = past_.data() + oldest_ * X_WB.size() * kPoseSize;
+  for (const uav::Pose& X : X_WB) out = write(X, out);
+  oldest_ = (oldest_ + 1) % layout_.past_steps();
+}
+
+void StateRecorder::capture(std::span<const uav::Pose> X_WB, std::span<const BodyMotion> motions,
+                            std::vector<double>& state) const {
+  assert(X_WB.size() == layout_.bodies() && motions.size() == layout_.uavs());
+  state.resize(layout_.size());
+  double* out = state.data();
+  for (const uav::Pose& X : X_WB) out = write(X, out);
+  for (const BodyMotion& motion : motions) {
+    out = write(motion.alpha_WB_B, write(motion.a_WB_W, write(motion.w_WB_B, out)));
+  }
+  const double* const seam = past_.data() + oldest_ * X_WB.size() * kPoseSize;
+  const double* const end = past_.data() + past_.size();
+  std::copy(past_.data(), seam, std::copy(seam, end, out));
+}
+
+}  // namespace tether::sim

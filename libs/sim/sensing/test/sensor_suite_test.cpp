@@ -1,0 +1,134 @@
+#include "fake_back_end.h"
+#include "sensors.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/base/error.h>
+#include <tether/sim_sensing/sensor_suite.h>
+#include <tether/sim_sensing/state_recorder.h>
+#include <tether/sim_testing/test_worlds.h>
+
+namespace tether::sim {
+namespace {
+
+using testing::kCamera;
+using testing::kImu;
+using testing::kRange;
+using uav::Pose;
+using uav::Vec3;
+
+// Two UAVs with noisy sensors mounted askew, and a loose box.
+World noisy_world() {
+  World world = testing::test_world();
+  world.uavs.push_back(testing::test_uav("beta", {2.0, 0.0, 1.0}));
+  world.models.push_back(testing::box_model("loose", {}, {1.0, 1.0, 1.0}, {}, false));
+  for (Uav& uav : world.uavs) {
+    const Pose X_BS{{0.1, 0.2, 0.3}, uav::from_rpy(0.4, 0.5, 0.6)};
+    for (Sensor& sensor : uav.sensors) sensor.X_BS = X_BS;
+    std::get<ImuModel>(uav.sensors[kImu].model).angular_velocity[0].stddev = 0.1;
+    auto& range = std::get<RangeModel>(uav.sensors[kRange].model);
+    range.rays_S = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    range.noise.stddev = 0.1;
+  }
+  return world;
+}
+
+const std::vector<Pose> kPoses{{{1.0, 2.0, 3.0}, uav::from_rpy(0.1, 0.2, 0.3)},
+                               {{4.0, 5.0, 6.0}, uav::from_rpy(0.3, 0.1, 2.0)},
+                               {{7.0, 8.0, 9.0}, {}}};
+const std::vector<BodyMotion> kMotions{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}},
+                                       {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, {0.7, 0.8, 0.9}}};
+const SimTime kAt{std::chrono::milliseconds(70)};
+
+class SensorSuiteTest : public ::testing::Test {
+ protected:
+  SensorSuiteTest() {
+    StateRecorder recorder(world_);
+    recorder.reset(kPoses);
+    recorder.capture(kPoses, kMotions, snapshot_.state);
+    snapshot_.at = kAt;
+  }
+
+  template <class S>
+  S measure(std::size_t uav, std::size_t sensor, std::uint64_t index) {
+    return std::get<S>(suite_.measure(snapshot_, uav, sensor, index));
+  }
+  Pose X_BS() const { return world_.uavs[0].sensors[kImu].X_BS; }
+
+  const World world_ = noisy_world();
+  testing::RenderLog log_;
+  testing::FakeRays rays_{{3.0, 2.0, 5.0}};
+  SensorSuite suite_{world_,
+                     {rays_, testing::fake_renderers(log_), {0.3, 0.3, 0.9}},
+                     [](const std::string& line) { ADD_FAILURE() << line; }};
+  Snapshot snapshot_;
+};
+
+TEST_F(SensorSuiteTest, AnImuMeasuresItsCarriersMotion) {
+  suite_.reset(9);
+  const auto sample = measure<uav::ImuSample>(1, kImu, 4);
+  const auto expected =
+      measure_imu(std::get<ImuModel>(world_.uavs[1].sensors[kImu].model), X_BS(), kPoses[1],
+                  kMotions[1], world_.gravity_m_s2, {9, "beta", "imu", 4, kAt});
+  EXPECT_EQ(sample.sampled_at, kAt);
+  EXPECT_EQ(sample.index, 4U);
+  EXPECT_EQ(sample.angular_velocity_rad_s, expected.angular_velocity_rad_s);
+  EXPECT_EQ(sample.specific_force_m_s2, expected.specific_force_m_s2);
+  EXPECT_EQ(sample.q_WS, expected.q_WS);
+}
+
+TEST_F(SensorSuiteTest, ARangefinderReadsTheNearestOfItsRays) {
+  const auto& model = std::get<RangeModel>(world_.uavs[1].sensors[kRange].model);
+  const auto sample = measure<uav::RangeSample>(1, kRange, 4);
+  ASSERT_EQ(rays_.seen.size(), 1U);
+  const testing::FakeRays::Seen& seen = rays_.seen[0];
+  EXPECT_EQ(seen.bundle.X_WS, kPoses[1] * X_BS());
+  EXPECT_EQ(seen.bundle.ignored, 1U);
+  EXPECT_EQ(seen.rays_S, model.rays_S);
+  EXPECT_EQ(seen.X_WB, kPoses);
+  const std::vector<double> nearest{2.0};
+  EXPECT_EQ(sample.range_m, measure_range(model, nearest, {0, "beta", "range", 4, kAt}).range_m);
+  EXPECT_EQ(sample.sampled_at, kAt);
+  EXPECT_EQ(sample.index, 4U);
+}
+
+TEST_F(SensorSuiteTest, ACameraSeesFromItsCarrier) {
+  const auto sample = measure<uav::CameraSample>(1, kCamera, 4);
+  EXPECT_EQ(sample.rgb.size(), std::size_t{3} * 160 * 120);
+  EXPECT_EQ(sample.sampled_at, kAt);
+  EXPECT_EQ(sample.index, 4U);
+  ASSERT_EQ(log_.views.size(), 1U);
+  EXPECT_EQ(log_.views[0].view.X_WS, kPoses[1] * X_BS());
+  EXPECT_EQ(log_.views[0].view.hidden, 1U);
+  EXPECT_EQ(log_.views[0].X_WB, kPoses);
+}
+
+TEST_F(SensorSuiteTest, TheSeedKeysTheNoise) {
+  const auto read = [&](std::uint64_t index) {
+    return measure<uav::RangeSample>(0, kRange, index).range_m;
+  };
+  const double at_first = read(1);
+  EXPECT_NE(at_first, read(2));
+  suite_.reset(5);
+  EXPECT_NE(at_first, read(1));
+  suite_.reset(0);
+  EXPECT_EQ(at_first, read(1));
+}
+
+TEST_F(SensorSuiteTest, NeedsNoRendererWithoutAnImage) {
+  measure<uav::ImuSample>(0, kImu, 0);
+  measure<uav::RangeSample>(0, kRange, 0);
+  EXPECT_EQ(log_.made, 0);
+  EXPECT_EQ(suite_.renderer_name(), "");
+  measure<uav::CameraSample>(0, kCamera, 0);
+  EXPECT_EQ(suite_.renderer_name(), "fake");
+}
+
+TEST_F(SensorSuiteTest, RefusesWhatTheWorldDoesNotHave) {
+  EXPECT_THROW(suite_.measure(snapshot_, 2, kImu, 0), Error);
+  EXPECT_THROW(suite_.measure(snapshot_, 0, 3, 0), Error);
+}
+
+}  // namespace
+}  // namespace tether::sim

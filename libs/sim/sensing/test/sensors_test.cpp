@@ -1,0 +1,141 @@
+#include "sensors.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+namespace tether::sim {
+namespace {
+
+using uav::Pose;
+using uav::Vec3;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kGravity = 9.81;
+
+Pose turned(const Vec3& axis, double angle_rad) {
+  return {{}, uav::from_axis_angle(axis, angle_rad)};
+}
+
+uav::ImuSample imu_of(const Pose& X_BS, const Pose& X_WB, const BodyMotion& motion) {
+  return measure_imu({}, X_BS, X_WB, motion, kGravity, {});
+}
+
+TEST(ImuTest, AtRestMeasuresGravityUpward) {
+  const Pose X_BS = turned({1.0, 0.0, 0.0}, std::numbers::pi);
+  EXPECT_LT(norm(imu_of({}, {}, {}).specific_force_m_s2 - Vec3{0.0, 0.0, kGravity}), 1e-12);
+  EXPECT_LT(norm(imu_of(X_BS, {}, {}).specific_force_m_s2 - Vec3{0.0, 0.0, -kGravity}), 1e-9);
+  const Pose pitched = turned({0.0, 1.0, 0.0}, 0.5 * std::numbers::pi);
+  EXPECT_LT(norm(imu_of({}, pitched, {}).specific_force_m_s2 - Vec3{-kGravity, 0.0, 0.0}), 1e-9);
+}
+
+TEST(ImuTest, FreeFallMeasuresNothing) {
+  const BodyMotion falling{{}, {0.0, 0.0, -kGravity}, {}};
+  EXPECT_LT(norm(imu_of({}, turned({1.0, 0.0, 0.0}, 0.7), falling).specific_force_m_s2), 1e-12);
+}
+
+TEST(ImuTest, LeverArmAddsRotationalAcceleration) {
+  const BodyMotion motion{{0.0, 0.0, 3.0}, {0.0, 0.0, -kGravity}, {0.0, 0.0, 5.0}};
+  const uav::ImuSample sample = imu_of({{0.2, 0.0, 0.0}, {}}, {}, motion);
+  EXPECT_LT(norm(sample.specific_force_m_s2 - Vec3{-9.0 * 0.2, 5.0 * 0.2, 0.0}), 1e-12);
+  EXPECT_EQ(sample.angular_velocity_rad_s, motion.w_WB_B);
+}
+
+TEST(ImuTest, ReportsAttitudeOfTheSensor) {
+  const Pose X_BS = turned({1.0, 0.0, 0.0}, 0.3);
+  const Pose X_WB = turned({0.0, 0.0, 1.0}, 1.1);
+  const uav::Quat expected = X_WB.q * X_BS.q;
+  EXPECT_EQ(imu_of(X_BS, X_WB, {}).q_WS, expected);
+}
+
+RangeModel range_model(double min_m, double max_m, double resolution_m) {
+  return {min_m, max_m, resolution_m, {}};
+}
+
+// What a rangefinder reads of something at one distance.
+double reading(const RangeModel& model, double distance_m, const MeasurementKey& key = {}) {
+  return measure_range(model, {&distance_m, 1}, key).range_m;
+}
+
+TEST(RangeTest, ReadsTheNearestOfAllRays) {
+  const RangeModel model = range_model(0.2, 4.0, 0.0);
+  EXPECT_EQ(measure_range(model, std::array{kInfinity, 2.0, 1.5, 3.0}, {}).range_m, 1.5);
+  EXPECT_EQ(measure_range(model, std::array{kInfinity, kInfinity}, {}).range_m, kInfinity);
+}
+
+TEST(RangeTest, LimitsAndResolution) {
+  const RangeModel model = range_model(0.2, 4.0, 0.25);
+  EXPECT_EQ(reading(model, 1.1), 1.0);
+  EXPECT_EQ(reading(model, 3.9), 4.0);
+  EXPECT_EQ(reading(model, 4.2), kInfinity);
+  EXPECT_EQ(reading(model, 0.1), -kInfinity);
+  EXPECT_EQ(reading(model, kInfinity), kInfinity);
+  EXPECT_EQ(reading(range_model(0.2, 4.0, 0.0), 1.1), 1.1);
+}
+
+TEST(RangeTest, DropoutsHaveTheirShareAndAreKeyed) {
+  RangeModel model = range_model(0.2, 4.0, 0.0);
+  model.dropout_probability = 0.2;
+  const auto dropped = [&](std::uint64_t seed, std::string_view sensor, std::uint64_t index) {
+    const double range_m = reading(model, 1.5, {seed, "alpha", sensor, index, {}});
+    EXPECT_TRUE(range_m == 1.5 || range_m == kInfinity);
+    return range_m == kInfinity;
+  };
+  constexpr int kCount = 20'000;
+  int drops = 0;
+  int same_by_seed = 0;
+  int same_by_sensor = 0;
+  for (std::uint64_t i = 0; i < kCount; ++i) {
+    const bool drop = dropped(1, "range", i);
+    EXPECT_EQ(drop, dropped(1, "range", i));
+    drops += drop ? 1 : 0;
+    same_by_seed += drop == dropped(2, "range", i) ? 1 : 0;
+    same_by_sensor += drop == dropped(1, "other", i) ? 1 : 0;
+  }
+  EXPECT_NEAR(drops, 0.2 * kCount, 5.0 * std::sqrt(0.16 * kCount));
+  const double independent = (0.2 * 0.2 + 0.8 * 0.8) * kCount;
+  EXPECT_NEAR(same_by_seed, independent, 5.0 * std::sqrt(0.22 * kCount));
+  EXPECT_NEAR(same_by_sensor, independent, 5.0 * std::sqrt(0.22 * kCount));
+}
+
+TEST(RangeTest, ADropoutIsAsIfNothingWereThereHoweverClose) {
+  RangeModel model = range_model(0.2, 4.0, 0.0);
+  model.dropout_probability = 1.0;
+  for (const double distance_m : {0.0, 0.1, 1.0, 5.0, kInfinity}) {
+    EXPECT_EQ(reading(model, distance_m), kInfinity);
+  }
+  model.dropout_probability = 0.0;
+  EXPECT_EQ(reading(model, 0.1), -kInfinity);
+}
+
+TEST(RangeTest, DropoutsLeaveTheNoiseOfOthersAlone) {
+  RangeModel model = range_model(0.2, 4.0, 0.0);
+  model.noise.stddev = 0.1;
+  RangeModel dropping = model;
+  dropping.dropout_probability = 0.5;
+  int read = 0;
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    const MeasurementKey key{3, "alpha", "range", i, {}};
+    const double range_m = reading(dropping, 2.0, key);
+    if (range_m == kInfinity) continue;
+    EXPECT_EQ(range_m, reading(model, 2.0, key));
+    ++read;
+  }
+  EXPECT_GT(read, 25);
+}
+
+// However wild the noise, a reading is within the limits, or infinite.
+TEST(RangeTest, NeverAnythingButARangeOrInfinity) {
+  RangeModel model = range_model(0.2, 4.0, 0.01);
+  model.noise.stddev = 3.0;
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    const double range_m = reading(model, 1.0, {1, "alpha", "range", i, {}});
+    EXPECT_TRUE((range_m >= 0.2 && range_m <= 4.0) || std::isinf(range_m)) << range_m;
+  }
+}
+
+}  // namespace
+}  // namespace tether::sim
