@@ -34,6 +34,8 @@ packages_test+=(openssh-server openssh-client)
 packages_pack=(dpkg-dev file gzip)
 # The target's programs for 64-bit ARM, and what runs them here.
 packages_arm64=(cmake ninja-build flatbuffers-compiler g++-aarch64-linux-gnu mmdebstrap qemu-user "${packages_pack[@]}")
+# Gazebo's plugin against Debian 11's packages, and the screen that Gazebo's cameras need.
+packages_gazebo=(cmake ninja-build g++ pkgconf flatbuffers-compiler libflatbuffers-dev mmdebstrap xvfb xauth)
 packages_tidy=(git clang-tidy)
 
 # True where a package is installed. A name may be satisfied by another package that provides it.
@@ -68,7 +70,7 @@ install_packages() {
 command -v node >/dev/null || packages_test+=(nodejs)
 command -v npm >/dev/null || packages_test+=(npm)
 
-# install_for build|test|tidy|package|arm64
+# install_for build|test|tidy|package|arm64|gazebo
 install_for() {
   case "$1" in
     build) install_packages "${packages_build[@]}" ;;
@@ -76,7 +78,8 @@ install_for() {
     tidy) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_tidy[@]}" ;;
     package) install_packages "${packages_build[@]}" "${packages_pack[@]}" ;;
     arm64) install_packages "${packages_arm64[@]}" ;;
-    *) fail "'$1': build, test, tidy, package or arm64" ;;
+    gazebo) install_packages "${packages_gazebo[@]}" ;;
+    *) fail "'$1': build, test, tidy, package, arm64 or gazebo" ;;
   esac
 }
 
