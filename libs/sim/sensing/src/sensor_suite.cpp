@@ -54,7 +54,8 @@ uav::Sample SensorSuite::measure(const ImuModel& imu, const Request& r) {
 uav::Sample SensorSuite::measure(const RangeModel& range, const Request& r) {
   for (std::size_t i = 0; i < X_WB_.size(); ++i) X_WB_[i] = layout_.pose_of(r.snapshot.state, i);
   distances_m_.resize(range.rays_S.size());
-  rays_.cast({X_WB_[r.uav] * r.sensor.X_BS, range.rays_S, X_WB_, r.uav}, distances_m_);
+  const uav::Pose X_WS = X_WB_[r.uav] * r.sensor.X_BS;
+  rays_.cast({X_WS, range.rays_S, X_WB_, r.uav, farthest_read_m(range)}, distances_m_);
   return measure_range(range, distances_m_, r.key);
 }
 

@@ -14,6 +14,8 @@ namespace {
 using uav::Vec3;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// In standard deviations: KeyedRandom's normal distribution ends at 8.6.
+constexpr double kNoDrawBeyond = 9.0;
 
 NoiseKey noise_key(const MeasurementKey& key, std::string_view channel) {
   return {key.seed, random_stream(key.uav, key.sensor, channel), key.index, key.at};
@@ -62,6 +64,14 @@ uav::ImuSample measure_imu(const ImuModel& imu, const uav::Pose& X_BS, const uav
                                                                 {"force_x", "force_y", "force_z"});
   sample.q_WS = X_WB.q * X_BS.q;
   return sample;
+}
+
+double farthest_read_m(const RangeModel& range) {
+  const Noise& n = range.noise;
+  const double walk_stddev =
+      n.dynamic_bias_stddev * std::sqrt(0.5 * std::max(0.0, n.dynamic_bias_correlation_time_s));
+  return range.max_m + 0.5 * range.resolution_m + std::abs(n.mean) + std::abs(n.bias_mean) +
+         kNoDrawBeyond * (n.stddev + n.bias_stddev + walk_stddev);
 }
 
 uav::RangeSample measure_range(const RangeModel& range, std::span<const double> distances_m,

@@ -27,6 +27,9 @@ uav::ImuSample measure_imu(const ImuModel& imu, const uav::Pose& X_BS, const uav
                            const BodyMotion& motion, double gravity_m_s2,
                            const MeasurementKey& key);
 
+/// How far away a thing may be and still be read as within the limits, whatever the noise [m].
+double farthest_read_m(const RangeModel& range);
+
 /// What a rangefinder reports for the true distances along its rays [m] (infinite: nothing there):
 /// the nearest of them, dropouts, noise, resolution, limits.
 uav::RangeSample measure_range(const RangeModel& range, std::span<const double> distances_m,

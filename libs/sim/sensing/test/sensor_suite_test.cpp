@@ -85,6 +85,7 @@ TEST_F(SensorSuiteTest, ARangefinderReadsTheNearestOfItsRays) {
   const testing::FakeRays::Seen& seen = rays_.seen[0];
   EXPECT_EQ(seen.bundle.X_WS, kPoses[1] * X_BS());
   EXPECT_EQ(seen.bundle.ignored, 1U);
+  EXPECT_EQ(seen.bundle.max_m, farthest_read_m(model));
   EXPECT_EQ(seen.rays_S, model.rays_S);
   EXPECT_EQ(seen.X_WB, kPoses);
   const std::vector<double> nearest{2.0};

@@ -76,6 +76,20 @@ TEST(RangeTest, LimitsAndResolution) {
   EXPECT_EQ(reading(range_model(0.2, 4.0, 0.0), 1.1), 1.1);
 }
 
+TEST(RangeTest, WhatIsFartherThanTheFarthestIsNeverRead) {
+  RangeModel model = range_model(0.2, 4.0, 0.5);
+  EXPECT_EQ(farthest_read_m(model), 4.25);
+  model.noise = {-0.3, 0.2, -0.1, 0.15, 0.4, 0.5};
+  const double farthest_m = farthest_read_m(model);
+  int read_near = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    const MeasurementKey key{seed, "alpha", "range", seed, SimTime(std::chrono::seconds(7))};
+    EXPECT_EQ(reading(model, farthest_m, key), kInfinity);
+    if (reading(model, 4.4, key) < kInfinity) ++read_near;
+  }
+  EXPECT_GT(read_near, 1000) << "beyond the limit, read as nearer";
+}
+
 TEST(RangeTest, DropoutsHaveTheirShareAndAreKeyed) {
   RangeModel model = range_model(0.2, 4.0, 0.0);
   model.dropout_probability = 0.2;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 
 #include <tether/uav/math.h>
@@ -13,6 +14,7 @@ struct RayBundle {
   std::span<const uav::Vec3> rays_S;  ///< unit vectors
   std::span<const uav::Pose> X_WB;    ///< of each of `moving_bodies`, in its order
   std::size_t ignored = 0;            ///< one of `moving_bodies` that no ray meets: the carrier
+  double max_m = std::numeric_limits<double>::infinity();  ///< what is farther need not be found
 };
 
 /// Measures distances to collision shapes: what a back end provides for rangefinders. A function of
