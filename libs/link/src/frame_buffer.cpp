@@ -1,7 +1,8 @@
-#include "frame_buffer.h"
 
 #include <algorithm>
 #include <cstring>
+
+#include <tether/link/frame_buffer.h>
 
 namespace tether::link {
 namespace {

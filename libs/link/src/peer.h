@@ -1,8 +1,5 @@
 #pragma once
 
-#include "frame_buffer.h"
-#include "socket.h"
-
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +10,9 @@
 
 #include <asio/ip/tcp.hpp>
 
+#include <tether/link/frame_buffer.h>
 #include <tether/link/server.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 

@@ -1,4 +1,3 @@
-#include "socket.h"
 
 #include <array>
 #include <cerrno>
@@ -13,6 +12,8 @@
 #include <sys/uio.h>
 #include <time.h>
 #include <unistd.h>
+
+#include <tether/link/socket.h>
 
 namespace tether::link {
 namespace {

@@ -1,11 +1,10 @@
 #pragma once
 
-#include "socket.h"
-
 #include <memory>
 #include <string>
 
 #include <tether/link/channel.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 

@@ -1,116 +1,20 @@
-#include "socket.h"
 #include "socket_channel.h"
 
-#include <algorithm>
-#include <cerrno>
-#include <chrono>
 #include <memory>
-#include <string>
-#include <system_error>
 #include <utility>
 
-#include <fcntl.h>
-#include <netdb.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-
 #include <tether/link/channel.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
-namespace {
-
-using SteadyClock = std::chrono::steady_clock;
-
-Failure cannot_connect(const Address& address, Failure::Kind kind, const std::string& why) {
-  return {kind, "cannot connect to " + to_string(address) + ": " + why +
-                    " (is the coordinator running there?)"};
-}
-
-std::string reason(int error) {
-  return std::system_category().message(error);
-}
-
-// ---- finding addresses
-// ---------------------------------------------------------------------------
-
-using FoundAddresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
-
-Result<FoundAddresses> resolve(const Address& address) {
-  addrinfo wanted{};
-  wanted.ai_family = AF_UNSPEC;
-  wanted.ai_socktype = SOCK_STREAM;
-  wanted.ai_protocol = IPPROTO_TCP;
-  const std::string port = std::to_string(address.port);
-  addrinfo* found = nullptr;
-  const int error = ::getaddrinfo(address.host.c_str(), port.c_str(), &wanted, &found);
-  if (error == 0) return FoundAddresses(found, &::freeaddrinfo);
-  const std::string why = error == EAI_SYSTEM ? reason(errno) : ::gai_strerror(error);
-  return cannot_connect(address, Failure::Kind::kDisconnected, why);
-}
-
-// ---- connecting
-// ----------------------------------------------------------------------------------
-
-/// What trying one address came to.
-struct Attempt {
-  Descriptor socket;  // connected, unless `error`
-  int error = 0;      // of errno
-  bool out_of_time = false;
-};
-
-Attempt failed(int error) {
-  Attempt attempt;
-  attempt.error = error;
-  return attempt;
-}
-
-int outcome_of_connecting(int descriptor) {
-  int error = 0;
-  socklen_t size = sizeof error;
-  return ::getsockopt(descriptor, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
-}
-
-void make_blocking(int descriptor) {
-  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
-}
-
-Attempt try_address(const addrinfo& candidate, SteadyClock::time_point deadline) {
-  const int type = candidate.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC;
-  Attempt attempt{Descriptor(::socket(candidate.ai_family, type, candidate.ai_protocol))};
-  if (!attempt.socket.is_open()) return failed(errno);
-  const int descriptor = attempt.socket.get();
-  if (::connect(descriptor, candidate.ai_addr, candidate.ai_addrlen) != 0) {
-    // Interrupted or not, the connection is being made from here on.
-    if (errno != EINPROGRESS && errno != EINTR) return failed(errno);
-    attempt.out_of_time = !wait_writable(descriptor, deadline - SteadyClock::now());
-    attempt.error = attempt.out_of_time ? ETIMEDOUT : outcome_of_connecting(descriptor);
-  }
-  make_blocking(descriptor);
-  return attempt;
-}
-
-/// The first address that answers; else the last one's failure.
-Attempt try_all(const addrinfo* candidate, SteadyClock::time_point deadline) {
-  Attempt attempt = failed(EHOSTUNREACH);
-  for (; candidate != nullptr; candidate = candidate->ai_next) {
-    attempt = try_address(*candidate, deadline);
-    if (attempt.error == 0 || attempt.out_of_time) break;
-  }
-  return attempt;
-}
-
-}  // namespace
 
 Result<std::unique_ptr<Channel>> connect_tcp(const Address& address, Duration timeout) {
-  const auto found = resolve(address);
-  if (!found) return found.failure();
-  const auto deadline = SteadyClock::now() + std::min(timeout, kLongestTimeout);
-  Attempt attempt = try_all(found.value().get(), deadline);
-  if (attempt.out_of_time) return cannot_connect(address, Failure::Kind::kTimeout, "no answer");
-  if (attempt.error != 0)
-    return cannot_connect(address, Failure::Kind::kDisconnected, reason(attempt.error));
-  tune(attempt.socket.get());
-  return make_socket_channel(std::move(attempt.socket), to_string(address));
+  auto socket = open_tcp(address, timeout);
+  if (!socket) {
+    const Failure& failure = socket.failure();
+    return Failure{failure.kind, failure.message + " (is the coordinator running there?)"};
+  }
+  return make_socket_channel(std::move(*socket), to_string(address));
 }
 
 }  // namespace tether::link

@@ -1,5 +1,4 @@
 #include "peer.h"
-#include "socket.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -15,6 +14,7 @@
 
 #include <tether/base/error.h>
 #include <tether/link/server.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 namespace {

@@ -4,54 +4,18 @@
 #include <string_view>
 
 #include <tether/link/codec.h>
+#include <tether/link/field_checker.h>
 
 namespace tether::link {
 namespace {
 
-/// The first complaint about a message; later ones are dropped. Checks read as one line per field.
-class Checker {
- public:
-  void require(bool holds, std::string_view field, std::string_view rule) {
-    if (holds || !complaint_.empty()) return;
-    complaint_ = where_ + std::string(field) + " " + std::string(rule);
-  }
-  void in(std::string where) { where_ = std::move(where); }
-  void text(const std::string& value, std::size_t limit, std::string_view field) {
-    require(value.size() <= limit, field, "is longer than " + std::to_string(limit) + " bytes");
-    require(value.find('\0') == std::string::npos, field, "contains a zero byte");
-  }
-  void json_object(const std::string& value, std::string_view field) {
-    text(value, kMaxJsonBytes, field);
-    require(value.size() >= 2 && value.front() == '{' && value.back() == '}', field,
+using Checker = FieldChecker;
+
+void json_object(Checker& c, const std::string& value, std::string_view field) {
+  c.text(value, kMaxJsonBytes, field);
+  c.require(value.size() >= 2 && value.front() == '{' && value.back() == '}', field,
             "is not a JSON object in braces");
-  }
-  void finite(double value, std::string_view field) {
-    require(std::isfinite(value), field, "is not a finite number");
-  }
-  void finite(const uav::Vec3& v, std::string_view field) {
-    require(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z), field, "is not finite");
-  }
-  void unit(const uav::Quat& q, std::string_view field) {
-    const double squared_norm = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-    require(std::abs(squared_norm - 1.0) < 1e-3, field, "is not a unit quaternion");
-  }
-  void timestamp(std::int64_t ns, std::string_view field) {
-    require(ns >= 0 && ns < kMaxTimestampNs, field, "is negative or beyond 146 years");
-  }
-  template <class Clock>
-  void timestamp(std::chrono::time_point<Clock, Duration> t, std::string_view field) {
-    timestamp(to_ns(t), field);
-  }
-
-  Status status() const {
-    if (complaint_.empty()) return ok_status();
-    return Failure{Failure::Kind::kInvalid, complaint_};
-  }
-
- private:
-  std::string where_;
-  std::string complaint_;
-};
+}
 
 // --- catalogue ----------------------------------------------------------------------------------
 
@@ -145,7 +109,7 @@ void check(Checker& c, const Sleep& sleep) {
 }
 void check(Checker& c, const Finish& finish) {
   c.text(finish.outcome, kMaxTextBytes, "outcome");
-  if (!finish.details.empty()) c.json_object(finish.details, "details");
+  if (!finish.details.empty()) json_object(c, finish.details, "details");
 }
 
 void check(Checker& c, const Request& request) {
@@ -201,7 +165,7 @@ void check(Checker& c, const Annotation& annotation) {
   c.timestamp(annotation.at, "at");
   c.text(annotation.topic, kMaxNameBytes, "topic");
   c.require(!annotation.topic.empty(), "topic", "is empty");
-  c.json_object(annotation.json, "json");
+  json_object(c, annotation.json, "json");
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-#include "frame_buffer.h"
 
 #include <algorithm>
 #include <vector>
@@ -6,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base/random.h>
+#include <tether/link/frame_buffer.h>
 
 namespace tether::link {
 namespace {

@@ -69,6 +69,10 @@ bool wait_readable(int descriptor, Duration timeout);
 /// Waits until the socket can be written to: a connection that was begun is made, or has failed.
 bool wait_writable(int descriptor, Duration timeout);
 
+/// A socket connected over TCP, tuned, trying every address of the host in turn. Fails with
+/// kDisconnected (name unknown, refused, unreachable) or kTimeout; the text names the address.
+Result<Descriptor> open_tcp(const Address& address, Duration timeout);
+
 /// "the connection to HOST:PORT was lost: REASON".
 Failure lost(const std::string& peer, const std::error_code& error);
 

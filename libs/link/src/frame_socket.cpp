@@ -1,0 +1,67 @@
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include <sys/socket.h>
+
+#include <tether/link/frame_socket.h>
+
+namespace tether::link {
+
+using Clock = std::chrono::steady_clock;
+
+FrameSocket::FrameSocket(Descriptor socket, std::string peer, std::uint32_t limit)
+    : socket_(std::move(socket)), peer_(std::move(peer)), input_(limit) {}
+
+void FrameSocket::close() {
+  ::shutdown(descriptor(), SHUT_RDWR);
+}
+
+Status FrameSocket::send(const FramePieces& frame) {
+  for (std::size_t done = 0; done < frame.size();) {
+    const Transfer sent = send_some(descriptor(), frame, done);
+    if (sent.error) return lost(peer_, sent.error);
+    done += sent.bytes;
+  }
+  return ok_status();
+}
+
+Result<std::span<const std::uint8_t>> FrameSocket::receive_within(Duration timeout) {
+  return receive_until(Clock::now() + std::min(timeout, kLongestTimeout));
+}
+
+Result<std::span<const std::uint8_t>> FrameSocket::receive_until(const Deadline& deadline) {
+  while (true) {
+    const auto frame = input_.next();
+    if (!frame || !frame->empty()) return frame;
+    if (const Status more = receive_more(deadline); !more) return more.failure();
+  }
+}
+
+void FrameSocket::look_out() const {
+  if (!may_look_out_) return;
+  const auto end = Clock::now() + kLookOut;
+  while (!wait_readable(descriptor(), Duration(0)) && Clock::now() < end) {
+  }
+}
+
+Status FrameSocket::receive_more(const Deadline& deadline) {
+  // Of a frame that has begun to come, the rest is fetched in one go.
+  std::span<std::uint8_t> space = input_.space();
+  const bool rest_of_frame = input_.missing() > 0 && !deadline;
+  if (rest_of_frame) space = space.first(input_.missing());
+  if (!rest_of_frame && (!deadline || *deadline - Clock::now() > kLookOut)) look_out();
+  if (deadline && !wait_readable(descriptor(), *deadline - Clock::now())) {
+    return Failure{Failure::Kind::kTimeout, "no answer from " + peer_ + " within the limit"};
+  }
+  const Transfer received = receive_some(descriptor(), space, rest_of_frame);
+  if (received.error) return lost(peer_, received.error);
+  if (received.ended) {
+    return Failure{Failure::Kind::kDisconnected, peer_ + " closed the connection"};
+  }
+  input_.commit(received.bytes);
+  return ok_status();
+}
+
+}  // namespace tether::link
