@@ -19,8 +19,15 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
+Failure cannot(const std::string& what, const Address& address, Failure::Kind kind,
+               const std::string& why) {
+  return {kind, "cannot " + what + " " + to_string(address) + ": " + why};
+}
 Failure cannot_connect(const Address& address, Failure::Kind kind, const std::string& why) {
-  return {kind, "cannot connect to " + to_string(address) + ": " + why};
+  return cannot("connect to", address, kind, why);
+}
+Failure cannot_listen(const Address& address, const std::string& why) {
+  return cannot("listen on", address, Failure::Kind::kInvalid, why);
 }
 
 std::string reason(int error) {
@@ -32,7 +39,13 @@ std::string reason(int error) {
 
 using FoundAddresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
-Result<FoundAddresses> resolve(const Address& address) {
+/// Addresses, or why there are none.
+struct Resolved {
+  FoundAddresses addresses{nullptr, &::freeaddrinfo};
+  std::string failure;
+};
+
+Resolved resolve(const Address& address) {
   addrinfo wanted{};
   wanted.ai_family = AF_UNSPEC;
   wanted.ai_socktype = SOCK_STREAM;
@@ -40,9 +53,13 @@ Result<FoundAddresses> resolve(const Address& address) {
   const std::string port = std::to_string(address.port);
   addrinfo* found = nullptr;
   const int error = ::getaddrinfo(address.host.c_str(), port.c_str(), &wanted, &found);
-  if (error == 0) return FoundAddresses(found, &::freeaddrinfo);
-  const std::string why = error == EAI_SYSTEM ? reason(errno) : ::gai_strerror(error);
-  return cannot_connect(address, Failure::Kind::kDisconnected, why);
+  Resolved resolved;
+  if (error == 0) {
+    resolved.addresses.reset(found);
+  } else {
+    resolved.failure = error == EAI_SYSTEM ? reason(errno) : ::gai_strerror(error);
+  }
+  return resolved;
 }
 
 // ---- connecting
@@ -96,13 +113,54 @@ Attempt try_all(const addrinfo* candidate, SteadyClock::time_point deadline) {
   return attempt;
 }
 
+// ---- listening
+// ---------------------------------------------------------------------------------
+
+Attempt try_to_listen(const addrinfo& candidate) {
+  const int type = candidate.ai_socktype | SOCK_CLOEXEC;
+  Attempt attempt{Descriptor(::socket(candidate.ai_family, type, candidate.ai_protocol))};
+  if (!attempt.socket.is_open()) return failed(errno);
+  const int descriptor = attempt.socket.get();
+  // A server that was ended a moment ago must not keep its port from the next one.
+  const int yes = 1;
+  ::setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (::bind(descriptor, candidate.ai_addr, candidate.ai_addrlen) != 0 ||
+      ::listen(descriptor, SOMAXCONN) != 0) {
+    return failed(errno);
+  }
+  return attempt;
+}
+
 }  // namespace
 
+Result<Descriptor> listen_on_tcp(const Address& address) {
+  const Resolved found = resolve(address);
+  if (!found.addresses) return cannot_listen(address, found.failure);
+  Attempt attempt = failed(EADDRNOTAVAIL);
+  for (const addrinfo* a = found.addresses.get(); a != nullptr; a = a->ai_next) {
+    attempt = try_to_listen(*a);
+    if (attempt.error == 0) return std::move(attempt.socket);
+  }
+  return cannot_listen(address, reason(attempt.error));
+}
+
+std::uint16_t local_port(int descriptor) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) != 0) return 0;
+  if (address.ss_family == AF_INET6) {
+    return ntohs(reinterpret_cast<const sockaddr_in6&>(address).sin6_port);
+  }
+  return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
+}
+
 Result<Descriptor> open_tcp(const Address& address, Duration timeout) {
-  const auto found = resolve(address);
-  if (!found) return found.failure();
+  const Resolved found = resolve(address);
+  if (!found.addresses) {
+    return cannot_connect(address, Failure::Kind::kDisconnected, found.failure);
+  }
   const auto deadline = SteadyClock::now() + std::min(timeout, kLongestTimeout);
-  Attempt attempt = try_all(found.value().get(), deadline);
+  Attempt attempt = try_all(found.addresses.get(), deadline);
   if (attempt.out_of_time) return cannot_connect(address, Failure::Kind::kTimeout, "no answer");
   if (attempt.error != 0)
     return cannot_connect(address, Failure::Kind::kDisconnected, reason(attempt.error));

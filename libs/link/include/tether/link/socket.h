@@ -73,6 +73,11 @@ bool wait_writable(int descriptor, Duration timeout);
 /// kDisconnected (name unknown, refused, unreachable) or kTimeout; the text names the address.
 Result<Descriptor> open_tcp(const Address& address, Duration timeout);
 
+/// A socket that listens there; port 0 takes a free one. Fails with kInvalid, naming the address.
+Result<Descriptor> listen_on_tcp(const Address& address);
+/// The port of this end of a TCP socket; 0: it has none.
+std::uint16_t local_port(int descriptor);
+
 /// "the connection to HOST:PORT was lost: REASON".
 Failure lost(const std::string& peer, const std::error_code& error);
 

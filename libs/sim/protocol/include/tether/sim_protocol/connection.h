@@ -24,8 +24,9 @@ std::string to_string(const Endpoint& endpoint);
 /// `close`, which any thread may call at any time.
 ///
 /// Failures: kDisconnected (the other end is gone, or `close` was called), kProtocol (what came is
-/// no message that may come here: unknown, malformed, too large, not finite, sizes that do not fit
-/// each other), kTimeout.
+/// no message that may come here: unknown, malformed, too large, not finite, an answer to something
+/// else, sizes or times that do not fit what was asked), kTimeout, kInvalid (what is to be sent
+/// breaks `validate`; nothing was sent).
 class Connection {
  public:
   virtual ~Connection() = default;
@@ -34,6 +35,9 @@ class Connection {
 
   virtual Status send(const Request& request) = 0;
   virtual Status send(const Reply& reply) = 0;
+  /// A request that cannot be served (kProtocol), another version's Open among them, is answered
+  /// with Failed before this fails. A request that comes fits Open: as many poses as bodies, UAVs
+  /// that there are, step boundaries not before now, pictures no larger than announced.
   virtual Result<Request> receive_request() = 0;
   /// kTimeout: none is there within `limit`; one that has begun to come is not lost.
   virtual Result<Reply> receive_reply(Duration limit) = 0;

@@ -1,0 +1,161 @@
+#include "conversation.h"
+
+#include <algorithm>
+#include <string>
+#include <variant>
+
+namespace tether::sim::protocol {
+namespace {
+
+std::string number(std::size_t n) {
+  return std::to_string(n);
+}
+std::string in_ns(SimTime t) {
+  return std::to_string(to_ns(t)) + " ns";
+}
+std::string size(std::int32_t width_px, std::int32_t height_px) {
+  return std::to_string(width_px) + "x" + std::to_string(height_px);
+}
+
+/// "State.bodies are 2, not 3": empty if they are as many as expected.
+std::string unlike(const std::string& field, std::size_t is, std::size_t expected) {
+  if (is == expected) return {};
+  return field + " has " + number(is) + " entries instead of " + number(expected);
+}
+
+template <class Message, class Complain>
+Status status_of(const Message& message, Complain complain) {
+  const std::string complaint = std::visit(complain, message);
+  if (complaint.empty()) return ok_status();
+  return Failure{Failure::Kind::kProtocol, complaint};
+}
+
+}  // namespace
+
+// --- requests -----------------------------------------------------------------------------------
+
+Status Conversation::check(const Request& request) const {
+  if (!is_open_ && !std::holds_alternative<Open>(request)) {
+    return Failure{Failure::Kind::kProtocol, "the first request is not Open"};
+  }
+  return status_of(request, [this](const auto& r) { return complaint(r); });
+}
+
+std::string Conversation::complaint(const Open& open) const {
+  if (is_open_) return "Open came a second time";
+  if (open.version == kVersion) return {};
+  return "the host speaks version " + std::to_string(open.version) +
+         " of the simulator protocol, the simulator version " + std::to_string(kVersion) +
+         "; build both from the same release";
+}
+
+std::string Conversation::complaint(const Reset&) const {
+  return {};
+}
+
+std::string Conversation::complaint(const Advance& advance) const {
+  if (advance.to < now_) return "Advance.to is " + in_ns(advance.to) + ", before " + in_ns(now_);
+  if (to_ns(advance.to) % step_.count() != 0) {
+    return "Advance.to is " + in_ns(advance.to) + ", which is no step boundary";
+  }
+  for (const Command& command : advance.commands) {
+    if (command.uav >= uavs_) return "Advance.commands have a UAV that is none";
+  }
+  return {};
+}
+
+std::string Conversation::complaint(const CastRays& cast) const {
+  return unlike("CastRays.X_WB", cast.X_WB.size(), bodies_);
+}
+
+std::string Conversation::complaint(const Render& render) const {
+  const uav::CameraModel& camera = render.camera;
+  if (camera.width_px > max_width_px_ || camera.height_px > max_height_px_) {
+    return "Render asks for " + size(camera.width_px, camera.height_px) +
+           " pixels, where Open said at most " + size(max_width_px_, max_height_px_);
+  }
+  return unlike("Render.X_WB", render.X_WB.size(), bodies_);
+}
+
+void Conversation::ask(const Request& request) {
+  opening_ = false;
+  std::visit([this](const auto& r) { note(r); }, request);
+}
+
+void Conversation::note(const Open& open) {
+  is_open_ = opening_ = true;
+  step_ = std::max(open.step, Duration(1));
+  uavs_ = open.uavs.size();
+  bodies_ = uavs_ + open.bodies.size();
+  past_steps_ = open.past_steps;
+  max_width_px_ = open.max_width_px;
+  max_height_px_ = open.max_height_px;
+  now_ = SimTime{};
+  asked_ = ForState{"Open", now_, 0};
+}
+void Conversation::note(const Reset&) {
+  now_ = SimTime{};
+  asked_ = ForState{"Reset", now_, 0};
+}
+void Conversation::note(const Advance& advance) {
+  const auto steps = static_cast<std::size_t>((advance.to - now_) / step_);
+  now_ = advance.to;
+  asked_ = ForState{"Advance", now_, std::min(steps, past_steps_) * bodies_};
+}
+void Conversation::note(const CastRays& cast) {
+  asked_ = ForRays{cast.rays_S.size()};
+}
+void Conversation::note(const Render& render) {
+  asked_ = ForPicture{render.camera.width_px, render.camera.height_px, render.with_depth};
+}
+
+// --- replies ------------------------------------------------------------------------------------
+
+Status Conversation::check(const Reply& reply) const {
+  return status_of(reply, [this](const auto& r) { return complaint(r); });
+}
+
+std::string Conversation::complaint(const Opened& opened) const {
+  if (!opening_) return "Opened answers no Open";
+  return complaint_of_state(opened.state, *asked<ForState>());
+}
+
+std::string Conversation::complaint(const State& state) const {
+  const auto* request = asked<ForState>();
+  if (request == nullptr || opening_) return "State answers neither Reset nor Advance";
+  return complaint_of_state(state, *request);
+}
+
+std::string Conversation::complaint_of_state(const State& state, const ForState& asked) const {
+  if (state.now != asked.to) {
+    return "State.now is " + in_ns(state.now) + ", where " + asked.request + " asked for " +
+           in_ns(asked.to);
+  }
+  for (const std::string& wrong : {unlike("State.bodies", state.bodies.size(), bodies_),
+                                   unlike("State.motions", state.motions.size(), uavs_),
+                                   unlike("State.past", state.past.size(), asked.past)}) {
+    if (!wrong.empty()) return wrong;
+  }
+  return {};
+}
+
+std::string Conversation::complaint(const Distances& distances) const {
+  const auto* request = asked<ForRays>();
+  if (request == nullptr) return "Distances answers no CastRays";
+  return unlike("Distances.distance_m", distances.distance_m.size(), request->count);
+}
+
+std::string Conversation::complaint(const Picture& picture) const {
+  const auto* request = asked<ForPicture>();
+  if (request == nullptr) return "Picture answers no Render";
+  if (picture.width_px != request->width_px || picture.height_px != request->height_px) {
+    return "Picture has " + size(picture.width_px, picture.height_px) + " pixels instead of " +
+           size(request->width_px, request->height_px);
+  }
+  if (request->with_depth && picture.nearest_depth_m <= 0.0) {
+    return "Picture.nearest_depth_m is not told";
+  }
+  return {};
+}
+
+}  // namespace tether::sim::protocol

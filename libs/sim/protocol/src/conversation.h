@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <tether/base/result.h>
+#include <tether/base/time.h>
+#include <tether/sim_protocol/messages.h>
+
+namespace tether::sim::protocol {
+
+/// What has been said so far on one connection, and so what may come next: order, and sizes and
+/// times that follow from what was asked. Either end keeps one, and checks what it receives. A
+/// message must have passed `validate` before.
+class Conversation {
+ public:
+  /// On the simulator's end. Fail with kProtocol, naming the field.
+  Status check(const Request& request) const;
+  /// On the host's end.
+  Status check(const Reply& reply) const;
+
+  /// The request has been sent, or has come and been checked.
+  void ask(const Request& request);
+
+ private:
+  template <class Member>
+  const Member* asked() const {
+    return asked_ ? std::get_if<Member>(&*asked_) : nullptr;
+  }
+  /// Of what was asked for; only what matters to its answer.
+  struct ForState {
+    const char* request;
+    SimTime to;
+    std::size_t past;
+  };
+  struct ForRays {
+    std::size_t count;
+  };
+  struct ForPicture {
+    std::int32_t width_px, height_px;
+    bool with_depth;
+  };
+
+  void note(const Open& open);
+  void note(const Reset& reset);
+  void note(const Advance& advance);
+  void note(const CastRays& cast);
+  void note(const Render& render);
+
+  std::string complaint(const Open& open) const;
+  std::string complaint(const Reset& reset) const;
+  std::string complaint(const Advance& advance) const;
+  std::string complaint(const CastRays& cast) const;
+  std::string complaint(const Render& render) const;
+
+  std::string complaint(const Opened& opened) const;
+  std::string complaint(const State& state) const;
+  std::string complaint(const Distances& distances) const;
+  std::string complaint(const Picture& picture) const;
+  std::string complaint(const Failed&) const { return {}; }
+  std::string complaint_of_state(const State& state, const ForState& asked) const;
+
+  bool is_open_ = false;
+  bool opening_ = false;  ///< the last request was Open
+  Duration step_{1};
+  std::size_t uavs_ = 0;
+  std::size_t bodies_ = 0;
+  std::size_t past_steps_ = 0;
+  std::int32_t max_width_px_ = 0;
+  std::int32_t max_height_px_ = 0;
+  SimTime now_;
+  std::optional<std::variant<ForState, ForRays, ForPicture>> asked_;
+};
+
+}  // namespace tether::sim::protocol

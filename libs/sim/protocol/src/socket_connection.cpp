@@ -1,0 +1,92 @@
+#include "socket_connection.h"
+
+#include "conversation.h"
+
+#include <string>
+#include <utility>
+
+#include <tether/link/frame_socket.h>
+#include <tether/sim_protocol/codec.h>
+
+namespace tether::sim::protocol {
+namespace {
+
+class SocketConnection final : public Connection {
+ public:
+  SocketConnection(link::Descriptor socket, std::string peer)
+      : socket_(std::move(socket), std::move(peer), kMaxFrameBytes) {}
+
+  Status send(const Request& request) override;
+  Status send(const Reply& reply) override;
+  Result<Request> receive_request() override;
+  Result<Reply> receive_reply(Duration limit) override;
+  void close() override { socket_.close(); }
+
+ private:
+  Result<Request> next_request();
+
+  link::FrameSocket socket_;
+  Encoder encoder_;
+  Conversation conversation_;
+};
+
+Status SocketConnection::send(const Request& request) {
+  if (Status valid = validate(request); !valid) return valid;
+  conversation_.ask(request);
+  return socket_.send(encoder_.encode(request));
+}
+
+Status SocketConnection::send(const Reply& reply) {
+  if (Status valid = validate(reply); !valid) return valid;
+  return socket_.send(encoder_.encode(reply));
+}
+
+Result<Request> SocketConnection::next_request() {
+  const auto frame = socket_.receive();
+  if (!frame) return frame.failure();
+  auto request = decode_request(*frame);
+  if (!request) return request;
+  if (const Status fits = conversation_.check(*request); !fits) return fits.failure();
+  return request;
+}
+
+Result<Request> SocketConnection::receive_request() {
+  auto request = next_request();
+  if (request) {
+    conversation_.ask(*request);
+  } else if (request.failure().kind == Failure::Kind::kProtocol) {
+    // Whether it still arrives or not, there is no way on.
+    (void)socket_.send(encoder_.encode(Reply(Failed{request.failure().message})));
+  }
+  return request;
+}
+
+Result<Reply> SocketConnection::receive_reply(Duration limit) {
+  const auto frame = socket_.receive_within(limit);
+  if (!frame) return frame.failure();
+  auto reply = decode_reply(*frame);
+  if (!reply) return reply;
+  if (const Status fits = conversation_.check(*reply); !fits) return fits.failure();
+  return reply;
+}
+
+}  // namespace
+
+std::unique_ptr<Connection> make_connection(link::Descriptor socket, std::string peer) {
+  return std::make_unique<SocketConnection>(std::move(socket), std::move(peer));
+}
+
+Result<std::unique_ptr<Connection>> connect(const Endpoint& endpoint, Duration timeout) {
+  const std::string peer = to_string(endpoint);
+  if (const auto* path = std::get_if<std::filesystem::path>(&endpoint)) {
+    auto socket = open_unix(*path);
+    if (socket) return make_connection(std::move(*socket), peer);
+    return Failure{socket.failure().kind,
+                   "cannot connect to " + peer + ": " + socket.failure().message};
+  }
+  auto socket = link::open_tcp(std::get<link::Address>(endpoint), timeout);
+  if (!socket) return socket.failure();
+  return make_connection(std::move(*socket), peer);
+}
+
+}  // namespace tether::sim::protocol
