@@ -1,0 +1,85 @@
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include <unistd.h>
+
+#include <gazebo/common/Events.hh>
+#include <gazebo/common/Plugin.hh>
+#include <gazebo/physics/PhysicsEngine.hh>
+#include <gazebo/physics/PhysicsIface.hh>
+#include <gazebo/physics/World.hh>
+#include <gazebo/rendering/Camera.hh>
+#include <gazebo/sensors/CameraSensor.hh>
+#include <gazebo/sensors/SensorManager.hh>
+
+/// The yardstick of bench/gazebo: lets gzserver run as fast as it can, alone, and prints how much it
+/// simulated in how much wall time, and how many images its cameras made. Then ends it.
+namespace tether::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_of(const char* variable, double otherwise) {
+  const char* text = std::getenv(variable);
+  return text ? std::atof(text) : otherwise;
+}
+
+}  // namespace
+
+class GazeboAlone final : public gazebo::SystemPlugin {
+ public:
+  void Load(int, char**) override {
+    created_ = gazebo::event::Events::ConnectWorldCreated([](const std::string& name) {
+      gazebo::physics::get_world(name)->Physics()->SetRealTimeUpdateRate(0.0);
+    });
+    step_ = gazebo::event::Events::ConnectWorldUpdateBegin(
+        [this](const gazebo::common::UpdateInfo& info) { on_step(info.simTime.Double()); });
+  }
+
+ private:
+  // The first second is left out: what is loaded, compiled and touched for the first time.
+  void on_step(double simulated_s) {
+    if (frames_.empty()) count_frames();
+    if (!is_measuring_ && simulated_s >= begin_s_) {
+      is_measuring_ = true;
+      images_ = 0;
+      began_ = Clock::now();
+    }
+    if (is_measuring_ && simulated_s >= begin_s_ + length_s_) finish();
+  }
+
+  void count_frames() {
+    for (const auto& sensor : gazebo::sensors::SensorManager::Instance()->GetSensors()) {
+      const auto camera = std::dynamic_pointer_cast<gazebo::sensors::CameraSensor>(sensor);
+      if (!camera || !camera->Camera()) continue;
+      frames_.push_back(camera->Camera()->ConnectNewImageFrame(
+          [this](const unsigned char*, unsigned, unsigned, unsigned, const std::string&) {
+            ++images_;
+          }));
+    }
+  }
+
+  void finish() {
+    const std::chrono::duration<double> wall = Clock::now() - began_;
+    std::printf("simulated_s %.3f wall_s %.4f images %d\n", length_s_, wall.count(),
+                images_.load());
+    std::fflush(stdout);
+    step_.reset();
+    kill(getpid(), SIGINT);
+  }
+
+  const double begin_s_ = 1.0;
+  const double length_s_ = seconds_of("TETHER_BENCH_SECONDS", 10.0);
+  bool is_measuring_ = false;
+  std::atomic<int> images_{0};
+  Clock::time_point began_;
+  gazebo::event::ConnectionPtr created_, step_;
+  std::vector<gazebo::event::ConnectionPtr> frames_;
+};
+
+GZ_REGISTER_SYSTEM_PLUGIN(GazeboAlone)
+
+}  // namespace tether::bench
