@@ -156,6 +156,8 @@ World load_world(const WorldRequest& request, const WarningSink& warn) {
   check_elements(source, SdfPurpose::kWorld, warn);
   source.throw_on_errors();
   World world = read_world(source, warn);
+  world.file = source.file();
+  world.sdf_files = source.sdf_files();
   add_uavs(request, warn, world);
   for (const std::string& name : request.anchors) {
     world.anchors.push_back(find_anchor(source, world, name));

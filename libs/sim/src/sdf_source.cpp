@@ -262,8 +262,13 @@ tinyxml2::XMLDocument* SdfSource::xml_of(const std::string& file) const {
 }
 
 std::set<fs::path> SdfSource::files() const {
-  std::set<fs::path> files = resources_;
-  files.insert(file_);
+  std::set<fs::path> files = sdf_files();
+  files.insert(resources_.begin(), resources_.end());
+  return files;
+}
+
+std::set<fs::path> SdfSource::sdf_files() const {
+  std::set<fs::path> files{file_};
   const std::function<void(const sdf::ElementPtr&)> visit = [&](const sdf::ElementPtr& element) {
     const fs::path file = element->FilePath();
     if (fs::is_regular_file(file)) files.insert(fs::absolute(file).lexically_normal());

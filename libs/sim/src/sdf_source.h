@@ -49,6 +49,8 @@ class SdfSource {
   /// Every file that this one was made of so far: itself, what it includes, and the resources
   /// found. Absolute.
   std::set<std::filesystem::path> files() const;
+  /// Of these, the SDF files: itself and what it includes.
+  std::set<std::filesystem::path> sdf_files() const;
 
  private:
   int line_in_xml(const sdf::ElementPtr& element) const;

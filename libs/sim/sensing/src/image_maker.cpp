@@ -6,6 +6,8 @@
 #include <cassert>
 #include <utility>
 
+#include <tether/sim_sensing/sensor_suite.h>
+
 namespace tether::sim {
 namespace {
 
@@ -15,6 +17,24 @@ std::size_t bytes_of(const uav::CameraModel& camera) {
 }
 
 }  // namespace
+
+ViewSize largest_view(const World& world) {
+  ViewSize size;
+  for (const Uav& uav : world.uavs) {
+    for (const Sensor& sensor : uav.sensors) {
+      const auto* camera = std::get_if<CameraModel>(&sensor.model);
+      if (!camera) continue;
+      const uav::CameraModel rendered = ImageMaker::rendered_camera(camera->intrinsics);
+      size.width_px = std::max(size.width_px, rendered.width_px);
+      size.height_px = std::max(size.height_px, rendered.height_px);
+    }
+  }
+  return size;
+}
+
+uav::CameraModel ImageMaker::rendered_camera(const uav::CameraModel& camera) {
+  return Plan(camera).rendered;
+}
 
 ImageMaker::Plan::Plan(const uav::CameraModel& camera) : rendered(camera) {
   if (!ImageWarp::is_needed(camera)) return;
@@ -157,18 +177,8 @@ const ImageMaker::Plan& ImageMaker::plan_of(const Sensor& sensor, const CameraMo
 // Made at the first image, large enough for every camera of the world.
 ViewRenderer& ImageMaker::renderer() {
   if (renderer_) return *renderer_;
-  int width_px = 1;
-  int height_px = 1;
-  for (const Uav& uav : world_.uavs) {
-    for (const Sensor& sensor : uav.sensors) {
-      const auto* camera = std::get_if<CameraModel>(&sensor.model);
-      if (!camera) continue;
-      const Plan& plan = plan_of(sensor, *camera);
-      width_px = std::max(width_px, plan.rendered.width_px);
-      height_px = std::max(height_px, plan.rendered.height_px);
-    }
-  }
-  renderer_ = make_renderer_(width_px, height_px);
+  const ViewSize size = largest_view(world_);
+  renderer_ = make_renderer_(size.width_px, size.height_px);
   return *renderer_;
 }
 

@@ -31,6 +31,9 @@ class ImageMaker {
   ImageMaker(const World& world, std::vector<double> body_radii_m,
              ViewRendererFactory make_renderer, const WarningSink& warn);
 
+  /// The ideal camera whose view is drawn for `camera`.
+  static uav::CameraModel rendered_camera(const uav::CameraModel& camera);
+
   /// What a camera of the world sees, and when.
   struct Request {
     const std::vector<double>& state;  ///< as StateRecorder captured it

@@ -176,6 +176,7 @@ struct PlacedAnchor {
 
 struct World {
   std::string name;
+  std::filesystem::path file;  ///< its own SDF file, absolute; empty: none
   double gravity_m_s2 = 9.81;  ///< along −z of W
   Duration step = std::chrono::milliseconds(1);
   uav::Vec3 ambient_rgb{0.4, 0.4, 0.4};
@@ -186,6 +187,8 @@ struct World {
   std::vector<PlacedAnchor> anchors;
   std::set<std::filesystem::path>
       files;  ///< everything that it was read from: SDF, meshes, textures; absolute
+  /// Of these, `file` and the SDF files that it includes: not those of the UAVs.
+  std::set<std::filesystem::path> sdf_files;
 };
 
 /// Which UAV to put where.

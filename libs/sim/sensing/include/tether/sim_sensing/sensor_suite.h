@@ -17,6 +17,13 @@ namespace tether::sim {
 
 class ImageMaker;
 
+/// Of the largest views that the world's cameras need: what ViewRendererFactory is called with.
+struct ViewSize {
+  int width_px = 0;  ///< 0: no camera
+  int height_px = 0;
+};
+ViewSize largest_view(const World& world);
+
 /// All sensors of a world: makes the samples of `Simulator::measure` out of captured states and
 /// what a back end provides. Mounting, lever arms, lens, shutter, noise, limits and dropouts are
 /// the same for every back end. Used from one thread at a time.

@@ -1,0 +1,77 @@
+#include <compare>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include <tinyxml2.h>
+
+#include <tether/base/error.h>
+#include <tether/sim/sdf_version.h>
+
+namespace tether::sim {
+namespace {
+
+struct Version {
+  int major = 0;
+  int minor = 0;
+  friend auto operator<=>(const Version&, const Version&) = default;
+};
+
+std::string to_string(const Version& version) {
+  return std::to_string(version.major) + "." + std::to_string(version.minor);
+}
+
+/// What one file is read for.
+struct Reading {
+  std::string file;
+  std::string reader;
+  Version newest;
+};
+
+[[noreturn]] void refuse(const Reading& reading, int line, const std::string& what,
+                         const std::string& remedy) {
+  throw Error(ErrorCode::kBadFile, {reading.file, line},
+              what + ", of which " + reading.reader + " reads up to " + to_string(reading.newest) +
+                  "; " + remedy + ", or fly in another simulator");
+}
+
+void check_version(const Reading& reading, const tinyxml2::XMLElement& root) {
+  Version version;
+  const char* text = root.Attribute("version");
+  if (text == nullptr || std::sscanf(text, "%d.%d", &version.major, &version.minor) != 2) return;
+  if (version <= reading.newest) return;
+  refuse(reading, root.GetLineNum(), "is SDF " + to_string(version),
+         "write it as SDF " + to_string(reading.newest) +
+             " (often the version's number is all that has to change)");
+}
+
+/// A later libsdformat reads these whatever version the file says; an older one skips them.
+void check_shapes(const Reading& reading, const tinyxml2::XMLElement& element) {
+  const std::string name = element.Name();
+  if (name == "capsule" || name == "ellipsoid") {
+    refuse(reading, element.GetLineNum(), "<" + name + "> came with SDF 1.8",
+           "use another shape or a mesh");
+  }
+  for (const auto* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    check_shapes(reading, *child);
+  }
+}
+
+}  // namespace
+
+void check_sdf_version(const World& world, const SdfReader& reader) {
+  constexpr Version kRoundShapes{1, 8};
+  const Version newest{reader.major, reader.minor};
+  for (const std::filesystem::path& file : world.sdf_files) {
+    tinyxml2::XMLDocument xml;
+    if (xml.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS || xml.RootElement() == nullptr) {
+      throw Error(ErrorCode::kBadFile, {file.string(), 0}, "cannot be read any more");
+    }
+    const Reading reading{file.string(), reader.name, newest};
+    check_version(reading, *xml.RootElement());
+    if (newest < kRoundShapes) check_shapes(reading, *xml.RootElement());
+  }
+}
+
+}  // namespace tether::sim
