@@ -1,0 +1,80 @@
+#include "remote_session.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace tether::sim {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Kind = Failure::Kind;
+
+/// How long an answer is waited for before asking whether there is any use in it.
+constexpr Duration kPatience = std::chrono::milliseconds(100);
+/// Longer limits mean this one, so that a point in time can be reckoned.
+constexpr Duration kLongestLimit = std::chrono::hours(24 * 365);
+
+std::string in_s(Duration limit) {
+  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(limit).count();
+  const std::string fraction = std::to_string(1000 + ms % 1000).substr(1);
+  return std::to_string(ms / 1000) + (ms % 1000 == 0 ? "" : "." + fraction) + " s";
+}
+
+}  // namespace
+
+RemoteSession::RemoteSession(std::unique_ptr<protocol::Connection> connection,
+                             RemoteOptions options)
+    : connection_(std::move(connection)), options_(std::move(options)) {}
+
+RemoteSession::~RemoteSession() {
+  connection_->close();
+}
+
+protocol::Opened RemoteSession::open(const protocol::Open& request) {
+  return take<protocol::Opened>(answer_to(request, options_.open_limit));
+}
+
+protocol::Reply RemoteSession::answer_to(const protocol::Request& request, Duration limit) {
+  if (const Status sent = connection_->send(request); !sent) throw_lost(sent.failure(), limit);
+  auto reply = await(limit);
+  if (!reply) throw_lost(reply.failure(), limit);
+  if (const auto* failed = std::get_if<protocol::Failed>(&*reply)) {
+    throw Error(ErrorCode::kSetup, name() + " failed: " + failed->message);
+  }
+  return std::move(*reply);
+}
+
+Result<protocol::Reply> RemoteSession::await(Duration limit) {
+  const auto deadline = Clock::now() + std::min(limit, kLongestLimit);
+  while (true) {
+    const Duration left = std::max<Duration>(deadline - Clock::now(), Duration(0));
+    auto reply = connection_->receive_reply(std::min(left, kPatience));
+    const bool silent = !reply && reply.failure().kind == Kind::kTimeout;
+    if (!silent || left == Duration(0)) return reply;
+    give_up_if_told();
+  }
+}
+
+void RemoteSession::give_up_if_told() {
+  if (!options_.why_give_up) return;
+  if (const auto why = options_.why_give_up()) throw Error(ErrorCode::kSetup, *why);
+}
+
+void RemoteSession::throw_lost(const Failure& failure, Duration limit) {
+  // Who started the simulator knows better why it is gone.
+  if (failure.kind == Kind::kDisconnected) give_up_if_told();
+  switch (failure.kind) {
+    case Kind::kInvalid:
+      throw Error(ErrorCode::kBadFile,
+                  name() + " cannot be told of this world: " + failure.message);
+    case Kind::kTimeout:
+      throw Error(ErrorCode::kSetup, name() + " has not answered for " + in_s(limit) +
+                                         "; see whether it still runs, and what it prints");
+    case Kind::kProtocol:
+      throw Error(ErrorCode::kSetup, name() + " answered what it must not: " + failure.message);
+    default:
+      throw Error(ErrorCode::kSetup, name() + " is lost: " + failure.message);
+  }
+}
+
+}  // namespace tether::sim

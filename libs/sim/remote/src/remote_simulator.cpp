@@ -1,0 +1,159 @@
+#include "open_request.h"
+#include "remote_sensing.h"
+#include "remote_session.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tether/base/error.h>
+#include <tether/sim/bodies.h>
+#include <tether/sim_remote/remote_simulator.h>
+#include <tether/sim_sensing/sensor_suite.h>
+#include <tether/sim_sensing/state_recorder.h>
+
+namespace tether::sim {
+namespace {
+
+/// Of a longer advance an answer comes each time so much ST has passed, so that a simulator that is
+/// slow can be told from one that hangs.
+constexpr Duration kLongestAdvance = std::chrono::milliseconds(50);
+
+class RemoteSimulator final : public Simulator {
+ public:
+  RemoteSimulator(World world, std::unique_ptr<protocol::Connection> connection,
+                  RemoteOptions options, const WarningSink& warn)
+      : world_(std::move(world)),
+        grid_(world_.step),
+        session_(std::move(connection), std::move(options)),
+        rays_(session_),
+        recorder_(world_),
+        sensors_(world_, back_end(), warn),
+        commands_(world_.uavs.size()) {
+    protocol::Opened opened = session_.open(make_open(world_, warn));
+    description_ = std::move(opened.description);
+    session_.call_it(description_);
+    start_at(std::move(opened.state));
+  }
+
+  const World& world() const override { return world_; }
+  StepGrid grid() const override { return grid_; }
+  SimTime now() const override { return state_.now; }
+
+  void reset(std::uint64_t seed) override {
+    start_at(session_.ask(protocol::Reset{seed}));
+    sensors_.reset(seed);
+    std::fill(commands_.begin(), commands_.end(), std::nullopt);
+  }
+
+  void advance_to(SimTime t) override {
+    check_target(t);
+    while (now() < t) advance_piece(std::min(t, now() + longest_advance()));
+  }
+
+  void apply(std::size_t uav, const uav::VelocityCommand& command) override {
+    check_uav(uav);
+    commands_[uav] = command;
+  }
+
+  void capture(Snapshot& snapshot) const override {
+    snapshot.at = now();
+    recorder_.capture(X_WB_, motions_, snapshot.state);
+  }
+
+  uav::Sample measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
+                      std::uint64_t index) override {
+    return sensors_.measure(snapshot, uav, sensor, index);
+  }
+
+  GroundTruth ground_truth(std::size_t uav) const override {
+    check_uav(uav);
+    return {now(), state_.bodies[uav]};
+  }
+
+  std::string description() const override {
+    const std::string renderer = sensors_.renderer_name();
+    return renderer.empty() ? description_ : description_ + ", " + renderer;
+  }
+
+ private:
+  SensorSuite::BackEnd back_end() {
+    auto make_renderer = [this](int, int) { return std::make_unique<RemoteRenderer>(session_); };
+    return {rays_, std::move(make_renderer), drawn_radii_m(world_)};
+  }
+
+  // At least one step; else as many as fit.
+  Duration longest_advance() const {
+    return std::max<std::int64_t>(kLongestAdvance / grid_.dt(), 1) * grid_.dt();
+  }
+
+  void advance_piece(SimTime t) {
+    protocol::Advance request{t, {}};
+    for (std::size_t i = 0; i < commands_.size(); ++i) {
+      if (commands_[i]) request.commands.push_back({static_cast<std::uint32_t>(i), *commands_[i]});
+      commands_[i].reset();
+    }
+    take(session_.ask(request));
+    const std::size_t bodies = X_WB_.size();
+    for (std::size_t i = 0; i < state_.past.size(); i += bodies) {
+      recorder_.begin_step(std::span(state_.past).subspan(i, bodies));
+    }
+  }
+
+  void start_at(protocol::State state) {
+    take(std::move(state));
+    recorder_.reset(X_WB_);
+  }
+
+  void take(protocol::State state) {
+    state_ = std::move(state);
+    X_WB_.clear();
+    motions_.clear();
+    for (const uav::BodyState& body : state_.bodies) X_WB_.push_back({body.p_WB, body.q_WB});
+    for (std::size_t i = 0; i < state_.motions.size(); ++i) {
+      const protocol::Motion& motion = state_.motions[i];
+      motions_.push_back({state_.bodies[i].w_WB_B, motion.a_WB_W, motion.alpha_WB_B});
+    }
+  }
+
+  void check_target(SimTime t) const {
+    if (t < now() || !grid_.contains(t)) {
+      throw Error(ErrorCode::kInternal, "simulator: cannot advance from " +
+                                            std::to_string(to_ns(now())) + " ns to " +
+                                            std::to_string(to_ns(t)) + " ns");
+    }
+  }
+
+  void check_uav(std::size_t uav) const {
+    if (uav >= world_.uavs.size()) {
+      throw Error(ErrorCode::kInternal, "simulator: no UAV " + std::to_string(uav));
+    }
+  }
+
+  World world_;
+  StepGrid grid_;
+  RemoteSession session_;
+  RemoteRays rays_;
+  StateRecorder recorder_;
+  SensorSuite sensors_;
+  std::string description_;
+  /// Not told yet.
+  std::vector<std::optional<uav::VelocityCommand>> commands_;
+  protocol::State state_;
+  std::vector<uav::Pose> X_WB_;
+  std::vector<BodyMotion> motions_;
+};
+
+}  // namespace
+
+std::unique_ptr<Simulator> make_remote_simulator(World world,
+                                                 std::unique_ptr<protocol::Connection> connection,
+                                                 RemoteOptions options, const WarningSink& warn) {
+  return std::make_unique<RemoteSimulator>(std::move(world), std::move(connection),
+                                           std::move(options), warn);
+}
+
+}  // namespace tether::sim

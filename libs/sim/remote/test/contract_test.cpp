@@ -1,0 +1,25 @@
+#include <memory>
+
+#include <tether/sim_remote/remote_simulator.h>
+#include <tether/sim_remote_testing/fake_outside.h>
+#include <tether/sim_testing/simulator_contract.h>
+
+namespace tether::sim::testing {
+namespace {
+
+std::unique_ptr<Simulator> make_served(World world) {
+  world.file = "/worlds/test.sdf";
+  auto outside = std::make_shared<FakeOutside>(world);
+  auto connection = outside->take_connection();
+  RemoteOptions options;
+  // Lives as long as the simulator that it serves.
+  options.why_give_up = [outside] { return std::nullopt; };
+  return make_remote_simulator(std::move(world), std::move(connection), std::move(options),
+                               [](const std::string& line) { ADD_FAILURE() << line; });
+}
+
+}  // namespace
+
+INSTANTIATE_TEST_SUITE_P(Remote, SimulatorContract, ::testing::Values(SimulatorMaker(make_served)));
+
+}  // namespace tether::sim::testing

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/base/error.h>
+#include <tether/sim/simulator.h>
+#include <tether/sim_testing/busy_flight.h>
+#include <tether/sim_testing/test_worlds.h>
+
+/// What every back end promises (tether/sim/simulator.h), as tests to be instantiated for each:
+///
+///   INSTANTIATE_TEST_SUITE_P(Name, SimulatorContract, ::testing::Values(SimulatorMaker(…)));
+namespace tether::sim::testing {
+
+/// Makes a back end for a world of boxes.
+using SimulatorMaker = std::function<std::unique_ptr<Simulator>(World world)>;
+
+class SimulatorContract : public ::testing::TestWithParam<SimulatorMaker> {
+ protected:
+  static SimTime at(Duration d) { return SimTime(d); }
+  static std::unique_ptr<Simulator> make(World world) { return GetParam()(std::move(world)); }
+};
+
+TEST_P(SimulatorContract, SameSeedSameBytesHoweverTheRunWasCut) {
+  const auto a = make(busy_world());
+  const auto b = make(busy_world());
+  const Observation whole = fly_in_one_piece(*a, 5);
+  EXPECT_EQ(whole, fly_in_pieces(*b, 5));
+  EXPECT_EQ(whole, fly_in_one_piece(*a, 5)) << "after a reset";
+  EXPECT_NE(whole.numbers, fly_in_one_piece(*a, 6).numbers);
+}
+
+TEST_P(SimulatorContract, StartsHoveringAtStZero) {
+  const auto simulator = make(test_world());
+  EXPECT_EQ(simulator->now(), SimTime{});
+  EXPECT_EQ(simulator->ground_truth(0).body.p_WB, (uav::Vec3{0.0, 0.0, 1.0}));
+  EXPECT_EQ(simulator->ground_truth(0).body.v_WB, uav::Vec3{});
+  simulator->advance_to(at(std::chrono::milliseconds(50)));
+  EXPECT_EQ(simulator->now(), at(std::chrono::milliseconds(50)));
+  EXPECT_EQ(simulator->ground_truth(0).at, at(std::chrono::milliseconds(50)));
+  EXPECT_NEAR(simulator->ground_truth(0).body.p_WB.z, 1.0, 1e-3);
+}
+
+TEST_P(SimulatorContract, FollowsTheCommandFromNowOn) {
+  const auto simulator = make(test_world());
+  simulator->advance_to(at(std::chrono::milliseconds(100)));
+  simulator->apply(0, {{9.0, 0.0, 0.0}, 0.0});
+  simulator->apply(0, {{1.0, 0.0, 0.0}, 0.0});
+  EXPECT_NEAR(simulator->ground_truth(0).body.v_WB.x, 0.0, 1e-6);
+  simulator->advance_to(at(std::chrono::seconds(3)));
+  EXPECT_NEAR(simulator->ground_truth(0).body.v_WB.x, 1.0, 0.1);
+  simulator->reset(1);
+  simulator->advance_to(at(std::chrono::seconds(1)));
+  EXPECT_NEAR(simulator->ground_truth(0).body.v_WB.x, 0.0, 1e-3) << "commands end with a reset";
+}
+
+TEST_P(SimulatorContract, SamplesCarryInstantAndIndex) {
+  const auto simulator = make(test_world());
+  simulator->advance_to(at(std::chrono::milliseconds(20)));
+  Snapshot snapshot;
+  simulator->capture(snapshot);
+  simulator->advance_to(at(std::chrono::milliseconds(30)));
+  const auto camera = std::get<uav::CameraSample>(simulator->measure(snapshot, 0, kCamera, 4));
+  EXPECT_EQ(camera.sampled_at, at(std::chrono::milliseconds(20)));
+  EXPECT_EQ(camera.index, 4U);
+  EXPECT_EQ(camera.width_px, 160);
+  EXPECT_EQ(camera.height_px, 120);
+  EXPECT_EQ(camera.rgb.size(), 160U * 120U * 3U);
+}
+
+TEST_P(SimulatorContract, RaysEndAtTheNextThing) {
+  World world = test_world();
+  world.models.push_back(box_model("wall", {5.0, 0.0, 1.0}, {0.2, 6.0, 2.0}, {0.8, 0.2, 0.2}));
+  const auto simulator = make(std::move(world));
+  EXPECT_NEAR(measure_now<uav::RangeSample>(*simulator, kRange).range_m, 4.9, 1e-6);
+}
+
+TEST_P(SimulatorContract, RefusesWhatBreaksTheContract) {
+  const auto simulator = make(test_world());
+  simulator->advance_to(at(std::chrono::milliseconds(10)));
+  EXPECT_THROW(simulator->advance_to(at(std::chrono::milliseconds(9))), Error);
+  EXPECT_THROW(simulator->advance_to(at(std::chrono::microseconds(10500))), Error);
+  EXPECT_THROW(simulator->apply(1, {}), Error);
+  EXPECT_THROW(simulator->ground_truth(1), Error);
+  Snapshot snapshot;
+  simulator->capture(snapshot);
+  EXPECT_THROW(simulator->measure(snapshot, 0, 3, 0), Error);
+}
+
+TEST_P(SimulatorContract, NamesItsRendererAfterTheFirstImage) {
+  const auto simulator = make(test_world());
+  const std::string before = simulator->description();
+  EXPECT_FALSE(before.empty());
+  measure_now<uav::CameraSample>(*simulator, kCamera);
+  EXPECT_THAT(simulator->description(), ::testing::StartsWith(before + ", "));
+}
+
+}  // namespace tether::sim::testing
