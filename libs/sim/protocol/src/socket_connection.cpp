@@ -2,6 +2,7 @@
 
 #include "conversation.h"
 
+#include <mutex>
 #include <string>
 #include <utility>
 
@@ -24,21 +25,30 @@ class SocketConnection final : public Connection {
 
  private:
   Result<Request> next_request();
+  template <class Message>
+  Status send_encoded(const Message& message);
 
   link::FrameSocket socket_;
+  std::mutex sending_;  // the receiving thread, too, sends: what is wrong with a request
   Encoder encoder_;
   Conversation conversation_;
 };
 
+template <class Message>
+Status SocketConnection::send_encoded(const Message& message) {
+  const std::lock_guard<std::mutex> lock(sending_);
+  return socket_.send(encoder_.encode(message));
+}
+
 Status SocketConnection::send(const Request& request) {
   if (Status valid = validate(request); !valid) return valid;
   conversation_.ask(request);
-  return socket_.send(encoder_.encode(request));
+  return send_encoded(request);
 }
 
 Status SocketConnection::send(const Reply& reply) {
   if (Status valid = validate(reply); !valid) return valid;
-  return socket_.send(encoder_.encode(reply));
+  return send_encoded(reply);
 }
 
 Result<Request> SocketConnection::next_request() {
@@ -56,7 +66,7 @@ Result<Request> SocketConnection::receive_request() {
     conversation_.ask(*request);
   } else if (request.failure().kind == Failure::Kind::kProtocol) {
     // Whether it still arrives or not, there is no way on.
-    (void)socket_.send(encoder_.encode(Reply(Failed{request.failure().message})));
+    (void)send_encoded(Reply(Failed{request.failure().message}));
   }
   return request;
 }

@@ -20,8 +20,8 @@ using Endpoint = std::variant<std::filesystem::path, link::Address>;
 Result<Endpoint> parse_endpoint(const std::string& text);
 std::string to_string(const Endpoint& endpoint);
 
-/// One end of a connection between host and simulator. Blocking; one thread at a time, but for
-/// `close`, which any thread may call at any time.
+/// One end of a connection between host and simulator. Blocking; one thread sends and one receives
+/// at a time, but `close` may be called from any thread at any time.
 ///
 /// Failures: kDisconnected (the other end is gone, or `close` was called), kProtocol (what came is
 /// no message that may come here: unknown, malformed, too large, not finite, an answer to something
