@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <tether/uav/math.h>
+
+namespace tether::gazebo_plugin {
+
+struct BoxVertex {
+  uav::Vec3 position;  ///< of a box with edges of length 1 around the origin
+  uav::Vec3 normal;
+  double u = 0.0, v = 0.0;
+};
+
+struct BoxMesh {
+  std::vector<BoxVertex> vertices;
+  /// Counter-clockwise, seen from outside.
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// A box that is going to be scaled to `size_m`, with a texture that begins in the upper left
+/// corner of each face, seen from outside (of top and bottom: at the ends of −x and of +y), and
+/// repeats so often per metre.
+BoxMesh textured_box(const uav::Vec3& size_m, double repeat_x_per_m, double repeat_y_per_m);
+
+}  // namespace tether::gazebo_plugin

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <tether/sim_protocol/messages.h>
+#include <tether/uav/multirotor.h>
+
+namespace tether::gazebo_plugin {
+
+/// Rotors and controllers of the UAVs: the same multirotor as in every other simulator.
+class Flights {
+ public:
+  Flights() = default;
+  explicit Flights(const sim::protocol::Open& open);
+
+  std::size_t size() const { return flights_.size(); }
+  /// Hovering at the start poses, without a command.
+  void reset();
+  void set_command(std::size_t uav, const uav::VelocityCommand& command);
+  /// One step of a UAV whose body is so at the step's beginning.
+  uav::Wrench step(std::size_t uav, const uav::BodyState& body);
+
+ private:
+  struct Flight {
+    uav::MultirotorParameters airframe;
+    double start_yaw_rad = 0.0;
+    uav::VelocityCommand command;
+    uav::MultirotorState state;
+  };
+
+  double gravity_m_s2_ = 0.0;
+  Duration step_{0};
+  std::vector<Flight> flights_;
+};
+
+}  // namespace tether::gazebo_plugin

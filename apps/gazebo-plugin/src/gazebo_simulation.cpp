@@ -1,0 +1,169 @@
+#include "gazebo_simulation.h"
+
+#include "insertion.h"
+#include "scene.h"
+
+#include <thread>
+
+#include <gazebo/gazebo_config.h>
+#include <gazebo/physics/ode/ODEPhysics.hh>
+#include <gazebo/physics/physics.hh>
+#include <gazebo/rendering/rendering.hh>
+#include <ignition/math/Rand.hh>
+
+#include <tether/base/error.h>
+
+namespace tether::gazebo_plugin {
+namespace {
+
+// For models and visuals to appear.
+constexpr std::chrono::seconds kWarmUpLimit{40};
+constexpr std::chrono::milliseconds kWarmUpPause{1};
+
+[[noreturn]] void fail(const std::string& what) {
+  throw Error(ErrorCode::kSetup, what);
+}
+
+bool can_draw() {
+  using ::gazebo::rendering::RenderEngine;
+  return RenderEngine::Instance()->GetRenderPathType() != RenderEngine::NONE;
+}
+
+}  // namespace
+
+GazeboSimulation::GazeboSimulation(::gazebo::physics::WorldPtr world, MainThread& main_thread,
+                                   std::function<bool()> give_up)
+    : world_(std::move(world)), main_thread_(main_thread), give_up_(std::move(give_up)) {}
+
+GazeboSimulation::~GazeboSimulation() = default;
+
+void GazeboSimulation::check(const protocol::Open& open) const {
+  if (open.world_name != world_->Name()) {
+    fail("Gazebo has the world '" + world_->Name() + "', the scenario '" + open.world_name +
+         "': start gzserver with " + open.world_file);
+  }
+  if (world_->Physics()->GetType() != "ode") {
+    fail(open.world_file + ": Gazebo moves it with '" + world_->Physics()->GetType() +
+         "', Tether's plugin only with ODE: write <physics type=\"ode\">");
+  }
+  for (const protocol::UavDescription& uav : open.uavs) {
+    if (!world_->ModelByName(uav.name)) continue;
+    fail("the world has a model '" + uav.name + "' already: give the UAV another name");
+  }
+  if (open.max_width_px > 0 && !can_draw()) {
+    fail(
+        "no OpenGL: Gazebo cannot draw what cameras see; set DISPLAY to an X server with OpenGL, "
+        "such "
+        "as Xvfb");
+  }
+}
+
+void GazeboSimulation::open(const protocol::Open& open) {
+  check(open);
+  open_ = open;
+  world_->Physics()->SetMaxStepSize(to_seconds(open.step));
+  world_->Physics()->SetRealTimeUpdateRate(0.0);
+  world_->SetGravity({0.0, 0.0, -open.gravity_m_s2});
+  // Nothing moves before ST 0.
+  world_->SetPhysicsEnabled(false);
+  bool draws = open.max_width_px > 0;
+  for (const protocol::UavDescription& uav : open.uavs) {
+    world_->InsertModelString(draws ? with_idle_camera(uav.sdf) : uav.sdf);
+    draws = false;
+  }
+  deadline_ = Clock::now() + kWarmUpLimit;
+}
+
+bool GazeboSimulation::is_ready() {
+  std::this_thread::sleep_for(kWarmUpPause);
+  if (must_wait_for(missing_models())) return false;
+  if (open_.max_width_px > 0 && !pictures_) {
+    if (must_wait_for(missing_visuals())) return false;
+    prepare_pictures();
+  }
+  bodies_ = OdeBodies(world_, open_);
+  rays_.emplace(world_, bodies_);
+  const auto ode = boost::dynamic_pointer_cast<::gazebo::physics::ODEPhysics>(world_->Physics());
+  order_ = SpaceOrder(ode->GetSpaceId());
+  world_->SetPhysicsEnabled(true);
+  return true;
+}
+
+bool GazeboSimulation::must_wait_for(const std::vector<std::string>& missing) const {
+  if (missing.empty()) return false;
+  if (Clock::now() < deadline_) return true;
+  fail("Gazebo has not made '" + missing.front() + "' and " + std::to_string(missing.size() - 1) +
+       " more within " + std::to_string(kWarmUpLimit.count()) +
+       " s: see what gzserver says of them");
+}
+
+std::vector<std::string> GazeboSimulation::missing_models() const {
+  std::vector<std::string> missing;
+  for (const protocol::UavDescription& uav : open_.uavs) {
+    if (!world_->ModelByName(uav.name)) missing.push_back(uav.name);
+  }
+  return missing;
+}
+
+std::vector<std::string> GazeboSimulation::missing_visuals() {
+  const std::vector<std::string> expected = expected_visuals(world_);
+  std::vector<std::string> missing = {"the scene"};
+  in_main_thread([&] {
+    const auto scene = complete_scene(world_->Name());
+    if (scene) missing = gazebo_plugin::missing_visuals(scene, expected);
+    if (scene && scene->LightCount() < world_->LightCount()) missing.emplace_back("a light");
+  });
+  return missing;
+}
+
+void GazeboSimulation::prepare_pictures() {
+  std::vector<std::string> names;
+  for (const auto& uav : open_.uavs) names.push_back(uav.name + "::base_link");
+  for (const auto& body : open_.bodies) names.push_back(body.model + "::" + body.link);
+  in_main_thread([&] {
+    const auto scene = complete_scene(world_->Name());
+    apply_looks(scene, open_.looks);
+    pictures_ = std::make_unique<Pictures>(scene, names);
+  });
+}
+
+std::string GazeboSimulation::description() const {
+  return std::string("Gazebo ") + GAZEBO_VERSION_FULL + ", ODE";
+}
+
+void GazeboSimulation::reset(std::uint64_t seed) {
+  const auto short_seed = static_cast<std::uint32_t>(seed ^ (seed >> 32U));
+  ignition::math::Rand::Seed(short_seed);
+  world_->Reset();
+  // Gazebo counts a step when it begins, and this one has.
+  world_->SetSimTime(::gazebo::common::Time(to_seconds(open_.step)));
+  world_->Physics()->SetSeed(short_seed);
+  bodies_.reset();
+  order_.restore();
+}
+
+std::vector<uav::BodyState> GazeboSimulation::bodies() const {
+  std::vector<uav::BodyState> states;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) states.push_back(bodies_.state(i));
+  return states;
+}
+
+void GazeboSimulation::push(std::size_t uav, const uav::Vec3& force_W, const uav::Vec3& torque_W) {
+  bodies_.push(uav, force_W, torque_W);
+}
+
+protocol::Distances GazeboSimulation::cast(const protocol::CastRays& rays) {
+  return rays_->cast(rays);
+}
+
+protocol::Picture GazeboSimulation::render(const protocol::Render& view) {
+  protocol::Picture picture;
+  if (!in_main_thread([&] { picture = pictures_->draw(view); })) fail("Gazebo has been stopped");
+  return picture;
+}
+
+bool GazeboSimulation::in_main_thread(const std::function<void()>& job) {
+  return main_thread_.run(job, give_up_);
+}
+
+}  // namespace tether::gazebo_plugin

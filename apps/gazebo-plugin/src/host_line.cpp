@@ -1,0 +1,81 @@
+#include "host_line.h"
+
+#include <chrono>
+#include <utility>
+
+namespace tether::gazebo_plugin {
+namespace {
+
+// How often a waiting thread looks whether a signal has stopped the line: handlers wake nobody.
+constexpr std::chrono::milliseconds kLook{50};
+
+}  // namespace
+
+HostLine::HostLine(std::unique_ptr<protocol::Listener> listener,
+                   std::function<void(const End&)> on_end)
+    : listener_(std::move(listener)), on_end_(std::move(on_end)), thread_([this] { listen(); }) {}
+
+HostLine::~HostLine() {
+  stop();
+  closing_ = true;
+  listener_->close();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (connection_) connection_->close();
+  }
+  thread_.join();
+}
+
+void HostLine::listen() {
+  Result<std::unique_ptr<protocol::Connection>> accepted = listener_->accept();
+  std::string wrong;
+  if (accepted) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      connection_ = std::move(*accepted);
+    }
+    wrong = converse(*connection_);
+  } else {
+    wrong = accepted.failure().message;
+  }
+  stop();
+  if (!closing_) on_end_({wrong});
+}
+
+std::string HostLine::converse(protocol::Connection& connection) {
+  for (;;) {
+    Result<protocol::Request> request = connection.receive_request();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!failure_.empty()) return failure_;
+    if (!request) {
+      const bool left = request.failure().kind == Failure::Kind::kDisconnected;
+      if (left && answered_) return {};
+      return left ? "the host left while it was waiting for an answer" : request.failure().message;
+    }
+    if (!answered_) return "the host asked again before it was answered";
+    request_ = std::move(*request);
+    answered_ = false;
+    changed_.notify_all();
+  }
+}
+
+std::optional<protocol::Request> HostLine::next() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!stopped_ && !request_) changed_.wait_for(lock, kLook);
+  if (stopped_) return std::nullopt;
+  return std::exchange(request_, std::nullopt);
+}
+
+// A reply that does not reach the host needs no care here: the other thread finds that it has left.
+void HostLine::answer(const protocol::Reply& reply) {
+  std::shared_ptr<protocol::Connection> connection;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    answered_ = true;
+    if (const auto* failed = std::get_if<protocol::Failed>(&reply)) failure_ = failed->message;
+    connection = connection_;
+  }
+  if (connection) (void)connection->send(reply);
+}
+
+}  // namespace tether::gazebo_plugin

@@ -1,0 +1,127 @@
+#include "box_mesh.h"
+#include "scene.h"
+#include "texture_repeat.h"
+
+#include <fstream>
+
+#include <gazebo/rendering/RTShaderSystem.hh>
+#include <gazebo/rendering/ogre_gazebo.h>
+#include <gazebo/rendering/rendering.hh>
+
+#include <tether/base/error.h>
+
+namespace tether::gazebo_plugin {
+namespace {
+
+using sim::protocol::Look;
+
+constexpr const char* kGroup = "General";
+constexpr float kShininess = 32.0F;
+
+Ogre::ColourValue colour(const uav::Vec3& rgb) {
+  return Ogre::ColourValue(static_cast<float>(rgb.x), static_cast<float>(rgb.y),
+                           static_cast<float>(rgb.z));
+}
+
+std::string name_of(const Look& look) {
+  return look.model + "::" + look.link + "::" + look.visual;
+}
+
+void load_texture(const std::string& file) {
+  if (Ogre::TextureManager::getSingleton().resourceExists(file)) return;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw Error(ErrorCode::kSetup, file + ": texture cannot be read");
+  Ogre::DataStreamPtr stream(OGRE_NEW Ogre::FileStreamDataStream(file, &in, false));
+  Ogre::Image image;
+  image.load(stream, "png");
+  Ogre::TextureManager::getSingleton().loadImage(file, kGroup, image);
+}
+
+// The texture darkens what light and colours have made, which is never lighter than white: so in
+// two passes, the second of which multiplies. In one, Gazebo's shaders would wash out what is well
+// lit.
+std::string make_material(const Look& look, const TextureRepeat& repeat) {
+  const std::string name = "tether/" + name_of(look);
+  Ogre::MaterialPtr material = Ogre::MaterialManager::getSingleton().create(name, kGroup);
+  Ogre::Pass* lit = material->getTechnique(0)->getPass(0);
+  lit->setAmbient(colour(look.ambient_rgb));
+  lit->setDiffuse(colour(look.diffuse_rgb));
+  lit->setSpecular(colour(look.specular_rgb));
+  lit->setSelfIllumination(colour(look.emissive_rgb));
+  lit->setShininess(kShininess);
+  load_texture(look.texture);
+  Ogre::Pass* textured = material->getTechnique(0)->createPass();
+  textured->setLightingEnabled(false);
+  textured->setSceneBlending(Ogre::SBT_MODULATE);
+  textured->setDepthWriteEnabled(false);
+  textured->setDepthBias(1.0F);
+  Ogre::TextureUnitState* unit = textured->createTextureUnitState(look.texture);
+  unit->setTextureFiltering(Ogre::TFO_TRILINEAR);
+  unit->setTextureScale(static_cast<float>(1.0 / repeat.x), static_cast<float>(1.0 / repeat.y));
+  return name;
+}
+
+void make_mesh(const std::string& name, const BoxMesh& box) {
+  Ogre::ManualObject object(name);
+  object.begin("", Ogre::RenderOperation::OT_TRIANGLE_LIST);
+  const auto f = [](double x) { return static_cast<float>(x); };
+  for (const BoxVertex& vertex : box.vertices) {
+    object.position(f(vertex.position.x), f(vertex.position.y), f(vertex.position.z));
+    object.normal(f(vertex.normal.x), f(vertex.normal.y), f(vertex.normal.z));
+    object.textureCoord(f(vertex.u), f(vertex.v));
+  }
+  for (const auto& t : box.triangles) object.triangle(t[0], t[1], t[2]);
+  object.end();
+  object.convertToMesh(name, kGroup);
+}
+
+Ogre::Entity* entity_of(Ogre::SceneNode& node) {
+  for (unsigned short i = 0; i < node.numAttachedObjects(); ++i) {
+    if (auto* entity = dynamic_cast<Ogre::Entity*>(node.getAttachedObject(i))) return entity;
+  }
+  return nullptr;
+}
+
+// Gazebo's own box has the texture once on each face. The node keeps scaling it.
+Ogre::Entity* replace_box(Ogre::SceneNode& node, Ogre::Entity& old, const Look& look,
+                          const uav::Vec3& size_m) {
+  const std::string name = "tether/" + name_of(look);
+  Ogre::SceneManager& manager = *node.getCreator();
+  make_mesh(name, textured_box(size_m, look.texture_repeat_x, look.texture_repeat_y));
+  Ogre::Entity* entity = manager.createEntity(name, name);
+  entity->setVisibilityFlags(old.getVisibilityFlags());
+  entity->setCastShadows(old.getCastShadows());
+  entity->getUserObjectBindings().setUserAny(old.getUserObjectBindings().getUserAny());
+  node.detachObject(&old);
+  manager.destroyEntity(&old);
+  node.attachObject(entity);
+  return entity;
+}
+
+void apply(const ::gazebo::rendering::VisualPtr& visual, const Look& look) {
+  Ogre::SceneNode& node = *visual->GetSceneNode();
+  Ogre::Entity* entity = entity_of(node);
+  if (!entity) return;
+  const Ogre::Vector3& scale = node.getScale();
+  const uav::Vec3 size_m{scale.x, scale.y, scale.z};
+  const std::string mesh = visual->GetMeshName();
+  if (mesh == "unit_box") entity = replace_box(node, *entity, look, size_m);
+  entity->setMaterialName(make_material(
+      look, texture_repeat(mesh, size_m, look.texture_repeat_x, look.texture_repeat_y)));
+}
+
+}  // namespace
+
+void apply_looks(const ::gazebo::rendering::ScenePtr& scene, const std::vector<Look>& looks) {
+  for (const Look& look : looks) {
+    const ::gazebo::rendering::VisualPtr visual = scene->GetVisual(name_of(look));
+    if (!visual) {
+      throw Error(ErrorCode::kSetup, "Gazebo's world has no visual '" + name_of(look) +
+                                         "': let gzserver load the world file of the scenario");
+    }
+    apply(visual, look);
+  }
+  ::gazebo::rendering::RTShaderSystem::Instance()->UpdateShaders();
+}
+
+}  // namespace tether::gazebo_plugin

@@ -1,0 +1,80 @@
+#include "ode_rays.h"
+
+#include "links.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include <gazebo/physics/ode/ODECollision.hh>
+
+namespace tether::gazebo_plugin {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::infinity();
+// A mesh may be met several times.
+constexpr int kMaxHits = 8;
+
+}  // namespace
+
+OdeRays::OdeRays(const ::gazebo::physics::WorldPtr& world, const OdeBodies& bodies)
+    : bodies_(bodies), ray_(dCreateRay(nullptr, 1.0)) {
+  dGeomRaySetClosestHit(ray_, 1);
+  for_each_link(world, [this](const ::gazebo::physics::LinkPtr& link) {
+    for (const auto& collision : link->GetCollisions()) {
+      const auto ode = boost::dynamic_pointer_cast<::gazebo::physics::ODECollision>(collision);
+      if (!ode || !ode->GetCollisionId()) continue;
+      group_of(ode->GetCollisionId()).shapes.push_back(ode->GetCollisionId());
+    }
+  });
+}
+
+OdeRays::~OdeRays() {
+  dGeomDestroy(ray_);
+}
+
+OdeRays::Group& OdeRays::group_of(dGeomID shape) {
+  const std::optional<std::size_t> body = bodies_.find(dGeomGetBody(shape));
+  const auto found = std::find_if(groups_.begin(), groups_.end(),
+                                  [&](const Group& group) { return group.body == body; });
+  if (found != groups_.end()) return *found;
+  groups_.push_back({body, {}});
+  return groups_.back();
+}
+
+sim::protocol::Distances OdeRays::cast(const sim::protocol::CastRays& rays) {
+  sim::protocol::Distances distances;
+  for (const uav::Vec3& direction_S : rays.rays_S) {
+    distances.distance_m.push_back(
+        distance_m(ray_in_world(rays.X_WS, direction_S), rays.max_m, rays));
+  }
+  return distances;
+}
+
+double OdeRays::distance_m(const Ray& ray, double max_m, const sim::protocol::CastRays& rays) {
+  double nearest_m = kNothing;
+  for (const Group& group : groups_) {
+    if (group.body && group.body == rays.carrier) continue;
+    const Ray there =
+        group.body ? ray_to_body_now(ray, rays.X_WB[*group.body], bodies_.pose(*group.body)) : ray;
+    nearest_m = std::min(nearest_m, distance_m(there, max_m, group.shapes));
+  }
+  return nearest_m;
+}
+
+double OdeRays::distance_m(const Ray& ray, double max_m, const std::vector<dGeomID>& shapes) {
+  dGeomRaySetLength(ray_, max_m);
+  dGeomRaySet(ray_, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
+              ray.direction.z);
+  double nearest_m = kNothing;
+  std::array<dContactGeom, kMaxHits> hits;
+  for (const dGeomID shape : shapes) {
+    const int count = dCollide(ray_, shape, kMaxHits, hits.data(), sizeof hits[0]);
+    for (int i = 0; i < count; ++i) {
+      nearest_m = std::min(nearest_m, static_cast<double>(hits[static_cast<std::size_t>(i)].depth));
+    }
+  }
+  return nearest_m;
+}
+
+}  // namespace tether::gazebo_plugin

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <tether/uav/math.h>
+
+namespace tether::gazebo_plugin {
+
+/// A ray in W: `direction` has unit length.
+struct Ray {
+  uav::Vec3 origin;
+  uav::Vec3 direction;
+};
+
+/// The ray, in W, of a sensor's direction in its own frame.
+inline Ray ray_in_world(const uav::Pose& X_WS, const uav::Vec3& direction_S) {
+  return {X_WS.p, rotate(X_WS.q, direction_S)};
+}
+
+/// The ray that meets a body where it is now as `ray` meets it where it is `given`: instead of
+/// moving the body there and back.
+inline Ray ray_to_body_now(const Ray& ray, const uav::Pose& X_WB_given, const uav::Pose& X_WB_now) {
+  const uav::Pose X = X_WB_now * inverse(X_WB_given);
+  return {transform(X, ray.origin), rotate(X.q, ray.direction)};
+}
+
+}  // namespace tether::gazebo_plugin

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tether/sim_protocol/messages.h>
+
+namespace tether::gazebo_plugin {
+
+namespace protocol = sim::protocol;
+
+/// What a session needs of the simulator around it. Everything may throw Error, one line that goes
+/// to the host; after that nothing more is asked.
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
+
+  /// Begins to put the UAVs into the world.
+  virtual void open(const protocol::Open& open) = 0;
+  /// Whether the world is ready for `reset`. Asked before each of the steps that pass meanwhile.
+  virtual bool is_ready() = 0;
+  /// Name and version, for the record.
+  virtual std::string description() const = 0;
+
+  /// Everything as it was before the first step.
+  virtual void reset(std::uint64_t seed) = 0;
+  /// Of the UAVs, then of what else moves.
+  virtual std::vector<uav::BodyState> bodies() const = 0;
+  /// Force and torque on a UAV's centre of mass during the next step [N, N m].
+  virtual void push(std::size_t uav, const uav::Vec3& force_W, const uav::Vec3& torque_W) = 0;
+
+  virtual protocol::Distances cast(const protocol::CastRays& rays) = 0;
+  virtual protocol::Picture render(const protocol::Render& view) = 0;
+
+ protected:
+  Simulation() = default;
+};
+
+}  // namespace tether::gazebo_plugin
