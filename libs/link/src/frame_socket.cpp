@@ -22,6 +22,9 @@ Status FrameSocket::send(const FramePieces& frame) {
   for (std::size_t done = 0; done < frame.size();) {
     const Transfer sent = send_some(descriptor(), frame, done);
     if (sent.error) return lost(peer_, sent.error);
+    if (sent.would_block) {
+      return Failure{Failure::Kind::kTimeout, peer_ + " does not read what it is sent"};
+    }
     done += sent.bytes;
   }
   return ok_status();

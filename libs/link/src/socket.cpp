@@ -1,4 +1,5 @@
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -9,6 +10,7 @@
 #include <poll.h>
 #include <sched.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <sys/uio.h>
 #include <time.h>
 #include <unistd.h>
@@ -77,6 +79,12 @@ void tune(int descriptor) {
 
 void close_on_exec(int descriptor) {
   ::fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+}
+
+void limit_sending(int descriptor, Duration limit) {
+  const std::int64_t us = std::max<std::int64_t>(limit.count() / 1000, 1);
+  const timeval wait{us / 1'000'000, us % 1'000'000};
+  ::setsockopt(descriptor, SOL_SOCKET, SO_SNDTIMEO, &wait, sizeof wait);
 }
 
 Transfer send_some(int descriptor, const FramePieces& pieces, std::size_t done) {

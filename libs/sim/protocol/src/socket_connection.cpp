@@ -80,6 +80,14 @@ Result<Reply> SocketConnection::receive_reply(Duration limit) {
   return reply;
 }
 
+/// A simulator that hangs must not make the host hang as well.
+constexpr Duration kSendLimit = std::chrono::seconds(30);
+
+Result<std::unique_ptr<Connection>> made_by_host(link::Descriptor socket, std::string peer) {
+  link::limit_sending(socket.get(), kSendLimit);
+  return make_connection(std::move(socket), std::move(peer));
+}
+
 }  // namespace
 
 std::unique_ptr<Connection> make_connection(link::Descriptor socket, std::string peer) {
@@ -90,13 +98,13 @@ Result<std::unique_ptr<Connection>> connect(const Endpoint& endpoint, Duration t
   const std::string peer = to_string(endpoint);
   if (const auto* path = std::get_if<std::filesystem::path>(&endpoint)) {
     auto socket = open_unix(*path);
-    if (socket) return make_connection(std::move(*socket), peer);
+    if (socket) return made_by_host(std::move(*socket), peer);
     return Failure{socket.failure().kind,
                    "cannot connect to " + peer + ": " + socket.failure().message};
   }
   auto socket = link::open_tcp(std::get<link::Address>(endpoint), timeout);
   if (!socket) return socket.failure();
-  return make_connection(std::move(*socket), peer);
+  return made_by_host(std::move(*socket), peer);
 }
 
 }  // namespace tether::sim::protocol

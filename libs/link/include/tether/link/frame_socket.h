@@ -22,7 +22,8 @@ class FrameSocket {
   /// `limit`: the largest frame that the peer may announce [bytes].
   FrameSocket(Descriptor socket, std::string peer, std::uint32_t limit);
 
-  /// Blocks until the whole frame is on its way. Fails with kDisconnected.
+  /// Blocks until the whole frame is on its way. Fails with kDisconnected, or kTimeout where
+  /// sending is limited (limit_sending) and the peer does not read; there is no way on after that.
   Status send(const FramePieces& frame);
   /// Blocks until a whole frame is there, length included; valid until the next call. Fails with
   /// kDisconnected, or kProtocol for a length that is not allowed; what arrived before the

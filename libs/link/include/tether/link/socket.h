@@ -45,6 +45,9 @@ void tune(int descriptor);
 /// Child processes (the SUT that `tether run` starts) must not hold our connections open.
 void close_on_exec(int descriptor);
 
+/// Calls that send give up (`would_block`) when the peer has read nothing for so long.
+void limit_sending(int descriptor, Duration limit);
+
 /// What one call did. `bytes` is 0 when the call would have blocked, failed, or found the end.
 struct Transfer {
   std::size_t bytes = 0;

@@ -33,6 +33,7 @@ class Connection {
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
+  /// kTimeout: the simulator has read nothing for 30 s.
   virtual Status send(const Request& request) = 0;
   virtual Status send(const Reply& reply) = 0;
   /// A request that cannot be served (kProtocol), another version's Open among them, is answered
