@@ -103,6 +103,8 @@ class Simulator {
   FlatBufferBuilder answer(const wire::Envelope& request) {
     FlatBufferBuilder b;
     try {
+      const bool opens = request.content_type() == wire::Content::Open;
+      if (opens == is_open_) throw std::runtime_error("Open comes first, and once");
       switch (request.content_type()) {
         case wire::Content::Open:
           return open(b, *request.content_as_Open());
@@ -137,12 +139,14 @@ class Simulator {
     if (open.uavs()->size() != 1 || open.bodies()->size() != 0) {
       throw std::runtime_error("own_simulator flies one UAV, and nothing else moves");
     }
+    if (open.step_ns() < 1) throw std::runtime_error("a step takes time");
     dt_ns_ = open.step_ns();
     past_steps_ = open.past_steps();
     const wire::Pose& start = *open.uavs()->Get(0)->x_wb();
     start_p_ = from(start.p());
     start_yaw_ = 2 * std::atan2(start.q().z(), start.q().w());
     back_to_start();
+    is_open_ = true;
     const auto name = b.CreateString("own_simulator 1.0");
     return reply(b, wire::Content::Opened, wire::CreateOpened(b, name, state(b)).Union());
   }
@@ -179,6 +183,9 @@ class Simulator {
   }
 
   FlatBufferBuilder render(FlatBufferBuilder& b, const wire::Render& r) {
+    if (std::min(r.width_px(), r.height_px()) < 1 || std::max(r.width_px(), r.height_px()) > 4096) {
+      throw std::runtime_error("not the size of a picture");
+    }
     std::uint8_t* rgb = nullptr;
     const auto pixels = b.CreateUninitializedVector<std::uint8_t>(
         static_cast<std::size_t>(3) * static_cast<std::size_t>(r.width_px() * r.height_px()), &rgb);
@@ -230,6 +237,7 @@ class Simulator {
     return wire::CreateState(b, now_ns_, body_list, motion_list, b.CreateVectorOfStructs(past_));
   }
 
+  bool is_open_ = false;
   std::int64_t now_ns_ = 0, dt_ns_ = 1, past_steps_ = 0;
   Vec start_p_, p_, v_, a_, command_;
   double start_yaw_ = 0, yaw_ = 0, yaw_rate_ = 0, yaw_acceleration_ = 0, yaw_command_ = 0;
