@@ -97,7 +97,7 @@ std::unique_ptr<Connection> make_connection(link::Descriptor socket, std::string
 Result<std::unique_ptr<Connection>> connect(const Endpoint& endpoint, Duration timeout) {
   const std::string peer = to_string(endpoint);
   if (const auto* path = std::get_if<std::filesystem::path>(&endpoint)) {
-    auto socket = open_unix(*path);
+    auto socket = open_unix(*path, timeout);
     if (socket) return made_by_host(std::move(*socket), peer);
     return Failure{socket.failure().kind,
                    "cannot connect to " + peer + ": " + socket.failure().message};

@@ -12,9 +12,10 @@ namespace tether::sim::protocol {
 /// A connection over a connected, blocking stream socket. Failures call the other end `peer`.
 std::unique_ptr<Connection> make_connection(link::Descriptor socket, std::string peer);
 
-/// A socket connected to the one at `path`. Fails with kDisconnected or, where the path cannot be
-/// that of a socket, kInvalid; without saying what of.
-Result<link::Descriptor> open_unix(const std::filesystem::path& path);
+/// A socket connected to the one at `path`. Fails with kDisconnected, kTimeout (so many wait there
+/// already that it cannot even wait) or, where the path cannot be that of a socket, kInvalid;
+/// without saying what of.
+Result<link::Descriptor> open_unix(const std::filesystem::path& path, Duration timeout);
 /// A socket that listens there, the owner's only. Fails with kInvalid; without saying what of.
 Result<link::Descriptor> listen_on_unix(const std::filesystem::path& path);
 

@@ -54,14 +54,14 @@ bool is_abandoned(const sockaddr_un& address) {
 
 }  // namespace
 
-Result<Descriptor> open_unix(const std::filesystem::path& path) {
+Result<Descriptor> open_unix(const std::filesystem::path& path, Duration timeout) {
   const auto address = address_of(path);
   if (!address) return too_long();
   Descriptor socket = stream_socket();
-  if (!socket.is_open() || call_with(socket, *address, ::connect) != 0) {
-    return failure(Failure::Kind::kDisconnected, errno);
-  }
-  return socket;
+  link::limit_sending(socket.get(), timeout);  // connecting as well
+  if (call_with(socket, *address, ::connect) == 0) return socket;
+  if (errno == EAGAIN) return Failure{Failure::Kind::kTimeout, "too many wait there already"};
+  return failure(Failure::Kind::kDisconnected, errno);
 }
 
 Result<Descriptor> listen_on_unix(const std::filesystem::path& path) {

@@ -208,6 +208,16 @@ TEST(RawPeer, ThatSaysSomethingElseIsRefused) {
 // ---- where to listen
 // ---------------------------------------------------------------------------
 
+/// A Unix socket of a simulator that does nothing with it.
+link::Descriptor bound_to(const std::filesystem::path& path) {
+  link::Descriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path.string().copy(address.sun_path, sizeof address.sun_path - 1);
+  EXPECT_EQ(::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  return socket;
+}
+
 TEST(UnixListener, IsTheOwnersOnlyAndTakesItsFileAway) {
   const auto path = socket_path();
   auto listener = listen(Endpoint(path)).value();
@@ -220,13 +230,7 @@ TEST(UnixListener, IsTheOwnersOnlyAndTakesItsFileAway) {
 
 TEST(UnixListener, TakesThePlaceOfOneThatIsGone) {
   const auto path = socket_path();
-  {
-    const link::Descriptor crashed(::socket(AF_UNIX, SOCK_STREAM, 0));
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    path.string().copy(address.sun_path, sizeof address.sun_path - 1);
-    ASSERT_EQ(::bind(crashed.get(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  }
+  bound_to(path);  // and closed
   ASSERT_TRUE(std::filesystem::exists(path));
   const auto listener = listen(Endpoint(path)).value();
   EXPECT_TRUE(connect(Endpoint(path), seconds(10)).ok());
@@ -264,6 +268,16 @@ TEST(Connect, SaysWhereNobodyListens) {
   const auto tcp_failure = connect(closed, seconds(10)).failure();
   EXPECT_EQ(tcp_failure.kind, Kind::kDisconnected);
   EXPECT_THAT(tcp_failure.message, HasSubstr("127.0.0.1:"));
+}
+
+TEST(Connect, TimesOutWhereTooManyWait) {
+  const auto path = socket_path();
+  const link::Descriptor busy = bound_to(path);
+  ASSERT_EQ(::listen(busy.get(), 0), 0);
+  const auto waiting = connect(Endpoint(path), seconds(10));
+  EXPECT_TRUE(waiting.ok());
+  EXPECT_EQ(connect(Endpoint(path), milliseconds(1)).failure().kind, Kind::kTimeout);
+  std::filesystem::remove(path);
 }
 
 TEST(TcpListener, SaysThatAPortIsTaken) {

@@ -69,7 +69,7 @@ void RemoteSession::throw_lost(const Failure& failure, Duration limit) {
                   name() + " cannot be told of this world: " + failure.message);
     case Kind::kTimeout:
       throw Error(ErrorCode::kSetup, name() + " has not answered for " + in_s(limit) +
-                                         "; see whether it still runs, and what it prints");
+                                         "; see whether it still runs, and flies no other run");
     case Kind::kProtocol:
       throw Error(ErrorCode::kSetup, name() + " answered what it must not: " + failure.message);
     default:

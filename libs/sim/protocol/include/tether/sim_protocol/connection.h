@@ -49,7 +49,8 @@ class Connection {
   Connection() = default;
 };
 
-/// The host's end. Fails with kDisconnected where nobody listens.
+/// The host's end. Fails with kDisconnected where nobody listens, kTimeout where nobody answers.
+/// A simulator that serves another host lets this one wait: it will not answer Open before.
 Result<std::unique_ptr<Connection>> connect(const Endpoint& endpoint, Duration timeout);
 
 /// The simulator's side: waits for hosts, one after the other.
