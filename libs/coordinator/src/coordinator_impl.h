@@ -59,14 +59,17 @@ class Coordinator::Impl final : public link::ServerEvents {
 
   // Incoming.
 
-  /// Runs what may meet a lost simulator, which ends the run; anything else that is thrown is kept
-  /// for run(), because the server's callbacks must not throw.
+  /// Runs what may meet a lost simulator, which ends the run, unless the caller knows of a reason
+  /// behind that; anything else that is thrown is kept for run(), because the server's callbacks
+  /// must not throw.
   template <class F>
   void guarded(F&& f) {
     try {
       f();
     } catch (const SimulatorFailure& e) {
-      end(RunEnd::kSimulatorLost, e.what());
+      const auto behind = hooks_.should_stop ? hooks_.should_stop() : std::nullopt;
+      const auto& [why, reason] = behind.value_or(std::pair(RunEnd::kSimulatorLost, e.what()));
+      end(why, reason);
     } catch (...) {
       failure_ = std::current_exception();
       end(RunEnd::kInterrupted, "internal failure");

@@ -288,6 +288,24 @@ TEST_F(CoordinatorTest, ALostSimulatorEndsTheRun) {
   EXPECT_TRUE(recorder_.footer);
 }
 
+// A simulator that was told to give up fails, too.
+TEST_F(CoordinatorTest, WhatTheCallerKnowsOfALostSimulatorIsTheReason) {
+  bool is_interrupted = false;
+  make();
+  simulator_->on_advance([&](SimTime, SimTime to) {
+    if (to < st_ms(50)) return;
+    is_interrupted = true;
+    throw Error(ErrorCode::kSetup, "given up");
+  });
+  hooks_.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
+    if (!is_interrupted) return std::nullopt;
+    return std::pair(RunEnd::kInterrupted, std::string("by the user"));
+  };
+  const RunReport report = run({sleep(Duration(0), seconds(1))});
+  EXPECT_EQ(report.end, RunEnd::kInterrupted);
+  EXPECT_EQ(report.reason, "by the user");
+}
+
 TEST_F(CoordinatorTest, TheTargetIsReadOnceWhenTheRunHasEnded) {
   int reads = 0;
   hooks_.read_target = [&] {

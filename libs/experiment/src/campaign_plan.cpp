@@ -24,6 +24,15 @@ std::string name_in(const scenario::Campaign& campaign, const std::filesystem::p
   return file.lexically_proximate(campaign.file.parent_path()).string();
 }
 
+// One that this program neither brings nor starts: it listens somewhere, and has one run at a time.
+bool is_attached(const std::string& simulator) {
+  return simulator != "mujoco" && simulator != "gazebo";
+}
+
+[[noreturn]] void refuse_jobs(int jobs, const std::string& why) {
+  throw Error(ErrorCode::kUsage, fmt::format("--jobs {}: {}", jobs, why));
+}
+
 std::string setting_name(const scenario::Campaign& campaign, const std::filesystem::path& file) {
   return "file " + name_in(campaign, file);
 }
@@ -58,8 +67,9 @@ int trials_side_by_side(const TrialPlan& plan, int jobs) {
   const bool is_bound = condition.target && condition.target->cores > 0;
   if (condition.clock == scenario::Clock::kWall || is_bound || jobs == 1) return 1;
   if (condition.policy == scenario::Policy::kConservativeBarrier) return jobs;
-  // A stalling SUT computes for one part in `cpu_factor` of the time; the simulator with its camera
-  // took up to half a core at real time.
+  if (condition.simulator != "mujoco") return 1;
+  // A stalling SUT computes for one part in `cpu_factor` of the time; the embedded simulator with
+  // its camera took up to half a core at real time.
   constexpr double kSimulatorLoad = 0.5, kShareInUse = 0.5;
   const double load_of_one =
       1.0 / condition.cpu_factor + kSimulatorLoad * condition.real_time_factor;
@@ -82,16 +92,22 @@ std::vector<Batch> make_batches(const std::vector<const TrialPlan*>& plans, int 
 }
 
 void require_jobs_allowed(const scenario::Campaign& campaign, int jobs) {
-  if (jobs < 1) throw Error(ErrorCode::kUsage, fmt::format("--jobs {}: must be at least 1", jobs));
+  if (jobs < 1) refuse_jobs(jobs, "must be at least 1");
   if (jobs == 1) return;
   for (const scenario::CampaignScenario& entry : campaign.scenarios) {
     for (const std::string& name : entry.conditions) {
-      if (entry.scenario.find_condition(name)->clock != scenario::Clock::kWall) continue;
-      throw Error(ErrorCode::kUsage,
-                  fmt::format("--jobs {}: condition '{}' of {} measures its SUT by the wall clock, "
-                              "which trials side by side would disturb; use --jobs 1, or "
-                              "clock = \"cpu\" or \"scripted\"",
-                              jobs, name, entry.scenario.file.string()));
+      const scenario::Condition& condition = *entry.scenario.find_condition(name);
+      const std::string where =
+          fmt::format("condition '{}' of {}", name, entry.scenario.file.string());
+      if (is_attached(condition.simulator))
+        refuse_jobs(jobs, fmt::format("{} flies in the simulator at {}, which has one run at a "
+                                      "time; use --jobs 1",
+                                      where, condition.simulator));
+      if (condition.clock == scenario::Clock::kWall)
+        refuse_jobs(jobs, fmt::format("{} measures its SUT by the wall clock, which trials side by "
+                                      "side would disturb; use --jobs 1, or clock = \"cpu\" or "
+                                      "\"scripted\"",
+                                      where));
     }
   }
 }

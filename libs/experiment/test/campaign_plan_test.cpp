@@ -82,6 +82,21 @@ TEST(TrialsSideBySide, AreOneOnATargetThatBindsItsSutsToCores) {
   EXPECT_EQ(trials_side_by_side(plan, 4), 1);
 }
 
+TEST(TrialsSideBySide, RunFreeAloneWhereTheSimulatorsLoadIsUnknown) {
+  scenario::Scenario scenario;
+  scenario.uavs.resize(1);
+  scenario::Condition condition;
+  condition.policy = scenario::Policy::kFreeRunning;
+  condition.cpu_factor = 6.0;
+  condition.real_time_factor = 0.3;
+  const TrialPlan plan{&scenario, &condition, 1, "out", false};
+  EXPECT_GT(trials_side_by_side(plan, 4), 1);
+  condition.simulator = "gazebo";
+  EXPECT_EQ(trials_side_by_side(plan, 4), 1);
+  condition.policy = scenario::Policy::kConservativeBarrier;
+  EXPECT_EQ(trials_side_by_side(plan, 4), 4);
+}
+
 TEST_F(CampaignPlan, RecordsTheImagesOfTheFirstSeedWhereAsked) {
   for (const TrialPlan& plan : plan_trials(campaign_, "out")) EXPECT_FALSE(plan.record_images);
   campaign_.images_of_first_seed = true;
@@ -113,6 +128,15 @@ TEST_F(CampaignPlan, RefusesJobsThatWouldDisturbAWallClock) {
   EXPECT_NO_THROW(require_jobs_allowed(campaign_, 1));
   EXPECT_THAT(error_message(ErrorCode::kUsage, [&] { require_jobs_allowed(campaign_, 2); }),
               HasSubstr("condition 'target' of"));
+}
+
+TEST_F(CampaignPlan, RefusesJobsWhereOneSimulatorHasAllRuns) {
+  for (auto& condition : campaign_.scenarios[0].scenario.conditions) condition.simulator = "gazebo";
+  EXPECT_NO_THROW(require_jobs_allowed(campaign_, 2));
+  campaign_.scenarios[0].scenario.conditions[1].simulator = "tcp://lab:4500";
+  EXPECT_NO_THROW(require_jobs_allowed(campaign_, 1));
+  EXPECT_THAT(error_message(ErrorCode::kUsage, [&] { require_jobs_allowed(campaign_, 2); }),
+              HasSubstr("flies in the simulator at tcp://lab:4500"));
 }
 
 TEST_F(CampaignPlan, SettingsAreVersionsAndDigestsOfFiles) {

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kPolicies = {"conservative_barrier", "free_running"};
 constexpr std::array<std::string_view, 3> kClocks = {"wall", "cpu", "scripted"};
+constexpr std::array<std::string_view, 2> kSimulators = {"mujoco", "gazebo"};
 
 constexpr double kLongestRun_s = 7 * 24 * 3600.0;
 
@@ -263,14 +264,16 @@ Condition read_condition(const TomlTable& table, Scenario& scenario) {
         "lacks the key 'real_time_factor': with policy = \"free_running\" the simulator "
         "runs at that many seconds of ST per second of wall time");
   }
+  if (table.has("simulator"))
+    condition.simulator = kSimulators[table.choice("simulator", kSimulators)];
   return condition;
 }
 
 void read_conditions(const TomlTable& root, Scenario& scenario) {
   std::map<std::string, std::string> slugs;
-  for (const TomlTable& table :
-       root.tables("condition", {"name", "description", "policy", "clock", "cpu_factor",
-                                 "computing_ms", "real_time_factor", "profile", "target"})) {
+  for (const TomlTable& table : root.tables(
+           "condition", {"name", "description", "policy", "clock", "cpu_factor", "computing_ms",
+                         "real_time_factor", "profile", "target", "simulator"})) {
     scenario.conditions.push_back(read_condition(table, scenario));
     if (auto profile = read_profile(table, scenario)) {
       scenario.conditions.back().profiles.push_back(std::move(*profile));

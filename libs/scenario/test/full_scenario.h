@@ -96,6 +96,7 @@ profile = "profiles/fog.toml"
 name = "slow machine"
 policy = "conservative_barrier"
 target = "profiles/targets/slow.toml"
+simulator = "gazebo"
 
 [[metric]]
 kind = "time_required"

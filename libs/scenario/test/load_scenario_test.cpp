@@ -184,6 +184,14 @@ TEST_F(LoadScenario, ReadsTheTargetOfACondition) {
   EXPECT_EQ(s.conditions[3].cpu_factor, 6.0);
 }
 
+TEST_F(LoadScenario, ReadsTheSimulatorOfACondition) {
+  const Scenario s = load(kFullScenario);
+  EXPECT_EQ(s.conditions[0].simulator, "mujoco");
+  EXPECT_EQ(s.conditions[3].simulator, "gazebo");
+  EXPECT_THAT(error_with("simulator = \"gazebo\"", "simulator = \"gazeebo\""),
+              HasSubstr("'simulator' of [condition] is \"gazeebo\"; did you mean 'gazebo'?"));
+}
+
 TEST_F(LoadScenario, LeavesTheClockToTheTarget) {
   const std::string target = "target = \"profiles/targets/slow.toml\"";
   for (const std::string key : {"clock = \"cpu\"", "cpu_factor = 2", "computing_ms = 2"}) {

@@ -182,7 +182,7 @@ TEST_F(ResolveSensors, ASensorThatTheUavLacksIsAnErrorAtItsLine) {
 TEST_F(ResolveSensors, AMetricOfASensorThatTheUavLacksIsAnErrorAtItsLine) {
   scenario_.metrics.back().sensor = "rang";
   const std::string message = error();
-  EXPECT_THAT(message, HasSubstr("scenario.toml:98: the UAV 'uav1' has no sensor 'rang'"));
+  EXPECT_THAT(message, HasSubstr("scenario.toml:99: the UAV 'uav1' has no sensor 'rang'"));
   EXPECT_THAT(message, HasSubstr("did you mean 'range'?"));
 }
 

@@ -83,7 +83,7 @@ TEST_F(ScenarioKeys, AMissingKeyIsNamedAtItsTable) {
       EXPECT_THAT(error.what(), HasSubstr("'" + key.key + "'"));
     }
   }
-  EXPECT_EQ(optional_keys, 30);
+  EXPECT_EQ(optional_keys, 31);
 }
 
 // Whatever the bytes, it is loaded or refused with a reason.

@@ -41,8 +41,9 @@ struct Batch {
 /// How many trials like `plan` may run side by side on `jobs` cores. Under the barrier on a clock
 /// that other load leaves alone: as many as there are cores. Free running, where the wall clock
 /// moves the simulation: as many as leave half of the cores idle, each UAV of the scenario having a
-/// SUT and a camera of its own (ADR 0015). On a wall clock, on a target of so many cores, or on one
-/// core: one. @pre jobs ≥ 1; the scenario has a UAV.
+/// SUT and a camera of its own (ADR 0015), in the embedded simulator; in another one, whose load
+/// nobody measured, one. On a wall clock, on a target of so many cores, or on one core: one. @pre
+/// jobs ≥ 1; the scenario has a UAV.
 int trials_side_by_side(const TrialPlan& plan, int jobs);
 
 /// The plans in the order of running: those under the barrier, then those that run free. Nothing
@@ -50,7 +51,7 @@ int trials_side_by_side(const TrialPlan& plan, int jobs);
 std::vector<Batch> make_batches(const std::vector<const TrialPlan*>& plans, int jobs);
 
 /// @throws Error(kUsage) with the reason when `jobs` is less than 1, or more than 1 although a
-///   condition measures its SUT by the wall clock.
+///   condition measures its SUT by the wall clock, or flies in a simulator that somebody else runs.
 void require_jobs_allowed(const scenario::Campaign& campaign, int jobs);
 
 /// What must be the same for results to be compared: name → value. "tether" → "0.1.0", "file

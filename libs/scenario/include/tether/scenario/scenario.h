@@ -41,6 +41,9 @@ struct Condition {
   std::vector<Profile> profiles{};
   /// Where the SUT runs; its clock and factor are those above. None: on this host.
   std::optional<Target> target{};
+  /// What plays the world: "mujoco" or "gazebo"; a program may lay the address of another one over
+  /// that.
+  std::string simulator = "mujoco";
 };
 
 /// The SUT's command; its parameters become `--key value` arguments (underscores as dashes). Those
