@@ -1,12 +1,16 @@
 #include "child_process.h"
 #include "commands.h"
+#include "gazebo/gazebo_install.h"
 #include "interrupt.h"
 #include "local_sut.h"
 #include "machine.h"
 #include "print_report.h"
 #include "progress_bar.h"
+#include "simulator_option.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -16,6 +20,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tether/base/error.h>
 #include <tether/base/version.h>
@@ -32,6 +37,7 @@ constexpr Duration kLook = std::chrono::milliseconds(50);
 struct CampaignOptions {
   std::filesystem::path campaign;
   std::filesystem::path out;
+  std::string simulator;
   int jobs = 1;
   bool resume = false;
 };
@@ -45,6 +51,36 @@ void try_profiles(const scenario::CampaignScenario& entry, const sim::World& wor
     scenario::resolve_sensors(entry.scenario, *entry.scenario.find_condition(name), copy,
                               [&](const std::string& text) { warnings.insert(text); });
   }
+}
+
+/// The campaign as it is flown: in the simulator that is asked for, whatever its conditions say.
+scenario::Campaign load(const CampaignOptions& options) {
+  scenario::Campaign campaign = scenario::load_campaign(options.campaign);
+  if (options.simulator.empty()) return campaign;
+  parse_simulator_option(options.simulator);
+  for (auto& entry : campaign.scenarios)
+    for (auto& condition : entry.scenario.conditions) condition.simulator = options.simulator;
+  return campaign;
+}
+
+/// Of the conditions that are flown.
+std::set<std::string> simulators(const scenario::Campaign& campaign) {
+  std::set<std::string> names;
+  for (const auto& entry : campaign.scenarios)
+    for (const std::string& name : entry.conditions)
+      names.insert(entry.scenario.find_condition(name)->simulator);
+  return names;
+}
+
+/// Trials side by side have a Gazebo each, and so a port each.
+void require_ports(const scenario::Campaign& campaign, int jobs) {
+  const char* master = std::getenv("GAZEBO_MASTER_URI");
+  if (jobs == 1 || !master || !*master || !simulators(campaign).contains("gazebo")) return;
+  throw Error(
+      ErrorCode::kUsage,
+      fmt::format("--jobs {}: GAZEBO_MASTER_URI names one port, {}, and trials side by side "
+                  "need one each; unset it, or use --jobs 1",
+                  jobs, master));
 }
 
 /// What starts the SUTs here, under each condition.
@@ -72,6 +108,10 @@ std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign)
     files.insert(files.end(), world.files.begin(), world.files.end());
     try_profiles(entry, world, warnings);
   }
+  if (simulators(campaign).contains("gazebo")) {
+    const auto gazebo = find_gazebo().files();
+    files.insert(files.end(), gazebo.begin(), gazebo.end());
+  }
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
   return files;
 }
@@ -86,13 +126,17 @@ std::filesystem::path log_file(const experiment::TrialPlan& plan) {
 experiment::TrialResult execute(const experiment::TrialPlan& plan, std::stop_source& stop) {
   const std::filesystem::path log = log_file(plan);
   std::vector<std::string> arguments = {
-      own_file().string(),  "run",    plan.scenario->file.string(), "--condition",
-      plan.condition->name, "--seed", std::to_string(plan.seed),    "--out",
-      plan.folder.string(), "--quiet"};
+      own_file().string(),  "run",         plan.scenario->file.string(), "--condition",
+      plan.condition->name, "--seed",      std::to_string(plan.seed),    "--out",
+      plan.folder.string(), "--simulator", plan.condition->simulator,    "--quiet"};
   if (!plan.profile.empty())
     arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
   if (plan.record_images) arguments.push_back("--images");
-  ChildProcess process({.arguments = std::move(arguments), .environment = {}, .log = log});
+  // It has processes of its own to end.
+  ChildProcess process({.arguments = std::move(arguments),
+                        .environment = {},
+                        .log = log,
+                        .grace = std::chrono::seconds(10)});
   while (!process.wait(kLook)) {
     if (!interrupted()) continue;
     stop.request_stop();
@@ -129,13 +173,18 @@ experiment::CampaignOutcome fly(const experiment::CampaignFolder& folder,
 }
 
 int run(const CampaignOptions& options) {
-  const scenario::Campaign campaign = scenario::load_campaign(options.campaign);
+  const scenario::Campaign campaign = load(options);
   experiment::require_jobs_allowed(campaign, options.jobs);
+  require_ports(campaign, options.jobs);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out") / campaign.name : options.out;
   const std::vector<std::filesystem::path> files = all_files(campaign);
   const experiment::Settings settings = experiment::campaign_settings(
-      campaign, {{"tether", std::string(version())}, {"machine", describe_machine()}}, files);
+      campaign,
+      {{"tether", std::string(version())},
+       {"machine", describe_machine()},
+       {"simulator", fmt::format("{}", fmt::join(simulators(campaign), ", "))}},
+      files);
   const experiment::CampaignFolder folder(
       out, campaign, settings,
       options.resume ? experiment::OpenMode::kResume : experiment::OpenMode::kFresh);
@@ -165,10 +214,12 @@ void add_campaign_command(CLI::App& program, Action& action) {
           "--jobs", options->jobs,
           "Cores for trials side by side; refused where that would disturb the measured time")
       ->capture_default_str();
+  add_simulator_option(*command, options->simulator);
   command->add_flag("--resume", options->resume, "Go on with a folder: run only what is missing");
   command->footer(R"(Examples:
   tether campaign campaigns/face_anchor.toml --out out/face_anchor
-  tether campaign campaigns/face_anchor.toml --out out/face_anchor --resume)");
+  tether campaign campaigns/face_anchor.toml --out out/face_anchor --resume
+  tether campaign campaigns/face_anchor.toml --simulator gazebo --out out/face_anchor_gazebo)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

@@ -24,7 +24,6 @@ namespace tether::app {
 
 namespace {
 
-constexpr auto kGrace = std::chrono::seconds(1);
 constexpr auto kPollPeriod = std::chrono::milliseconds(5);
 
 bool is_program(const std::filesystem::path& file) {
@@ -53,9 +52,10 @@ std::vector<char*> pointers(std::vector<std::string>& strings) {
   return list;
 }
 
-int open_log(const std::filesystem::path& log) {
+int open_log(const std::filesystem::path& log, bool appends) {
   const std::filesystem::path file = log.empty() ? "/dev/null" : log;
-  const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const int how = appends ? O_APPEND : O_TRUNC;
+  const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | how, 0644);
   if (fd < 0)
     throw Error(ErrorCode::kSetup,
                 fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
@@ -84,17 +84,26 @@ void close_all(const Streams& streams) {
 Streams open_streams(const ChildCommand& command) {
   Streams streams{.in = command.input_pipe, .owns_in = command.input_pipe < 0};
   if (!command.input.empty()) streams.in = open(command.input.c_str(), O_RDONLY | O_CLOEXEC);
-  streams.out = open_log(command.log);
-  streams.err = command.errors.empty() ? streams.out : open_log(command.errors);
+  streams.out = open_log(command.log, command.appends);
+  streams.err = command.errors.empty() ? streams.out : open_log(command.errors, command.appends);
   return streams;
 }
 
+/// What a child becomes; made before the fork.
+struct Image {
+  const char* program;
+  char* const* arguments;
+  char* const* environment;
+  const char* working_folder;  // nullptr: as it is
+  const cpu_set_t* cpus;       // nullptr: all
+  int death_signal;
+};
+
 // Between fork and exec only calls that are safe after a fork of a program with threads. Tells
 // `report` why it failed.
-[[noreturn]] void become(const char* program, char* const* arguments, char* const* environment,
-                         const Streams& streams, const cpu_set_t* cpus, int report, pid_t parent) {
+[[noreturn]] void become(const Image& image, const Streams& streams, int report, pid_t parent) {
   setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  prctl(PR_SET_PDEATHSIG, image.death_signal);
   if (getppid() != parent) _exit(127);
   dup2(streams.in < 0 ? open("/dev/null", O_RDONLY) : streams.in, STDIN_FILENO);
   dup2(streams.out, STDOUT_FILENO);
@@ -103,8 +112,10 @@ Streams open_streams(const ChildCommand& command) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  if (!cpus || sched_setaffinity(0, sizeof *cpus, cpus) == 0)
-    execve(program, arguments, environment);
+  const bool is_placed =
+      (!image.cpus || sched_setaffinity(0, sizeof *image.cpus, image.cpus) == 0) &&
+      (!image.working_folder || chdir(image.working_folder) == 0);
+  if (is_placed) execve(image.program, image.arguments, image.environment);
   const int why = errno;
   const auto written = write(report, &why, sizeof why);
   _exit(written == sizeof why ? 127 : 126);
@@ -143,7 +154,9 @@ std::filesystem::path find_program(const std::string& name) {
 }
 
 ChildProcess::ChildProcess(const ChildCommand& command)
-    : program_(find_program(command.arguments.at(0)).string()) {
+    : program_(find_program(command.arguments.at(0)).string()),
+      end_signal_(command.end_signal),
+      grace_(command.grace) {
   std::vector<std::string> arguments = command.arguments;
   std::vector<std::string> environment = merged_environment(command.environment);
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
@@ -153,11 +166,15 @@ ChildProcess::ChildProcess(const ChildCommand& command)
   if (pipe2(report, O_CLOEXEC) != 0)
     throw Error(ErrorCode::kSetup, std::string("pipe: ") + std::strerror(errno));
 
+  const Image image{program_.c_str(),
+                    argv.data(),
+                    envp.data(),
+                    command.working_folder.empty() ? nullptr : command.working_folder.c_str(),
+                    command.cpus.empty() ? nullptr : &cpus,
+                    command.death_signal};
   const pid_t parent = getpid();
   pid_ = fork();
-  if (pid_ == 0)
-    become(program_.c_str(), argv.data(), envp.data(), streams,
-           command.cpus.empty() ? nullptr : &cpus, report[1], parent);
+  if (pid_ == 0) become(image, streams, report[1], parent);
   close_all(streams);
   close(report[1]);
   int why = pid_ < 0 ? errno : 0;
@@ -200,9 +217,9 @@ bool ChildProcess::wait(Duration limit) {
 void ChildProcess::terminate() {
   if (pid_ < 0) return;
   if (!poll()) {
-    kill(-pid_, SIGTERM);
+    kill(-pid_, end_signal_);
     kill(-pid_, SIGCONT);
-    wait(kGrace);
+    wait(grace_);
   }
   kill(-pid_, SIGKILL);  // what is left of its group
   int status = 0;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <signal.h>
 #include <sys/types.h>
 
 #include <tether/base/time.h>
@@ -21,6 +22,11 @@ struct ChildCommand {
   std::filesystem::path errors{};  ///< gets stderr instead; empty: `log` does
   std::filesystem::path input{};   ///< read as stdin; empty: `input_pipe`, or /dev/null
   int input_pipe = -1;             ///< the caller's end to read from, as stdin; stays the caller's
+  bool appends = false;            ///< to its logs, which several processes may then share
+  std::filesystem::path working_folder{};    ///< empty: this process' own
+  int end_signal = SIGTERM;                  ///< what asks it to end
+  int death_signal = SIGKILL;                ///< what it gets when this process is gone
+  Duration grace = std::chrono::seconds(1);  ///< from being asked to end to being made to
 };
 
 /// How a child ended.
@@ -46,7 +52,7 @@ class ChildProcess {
   const std::optional<ChildExit>& poll();
   /// Waits at most `limit` for it to end; whether it has.
   bool wait(Duration limit);
-  /// Asks it and its children to end (SIGTERM), and makes them after a second (SIGKILL).
+  /// Asks it and its children to end (`end_signal`), and makes them after its grace (SIGKILL).
   void terminate();
 
   pid_t pid() const { return pid_; }
@@ -56,6 +62,8 @@ class ChildProcess {
   void reap(int status);
 
   std::string program_;
+  int end_signal_;
+  Duration grace_;
   pid_t pid_ = -1;
   std::optional<ChildExit> exit_;
 };

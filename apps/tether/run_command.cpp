@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "simulator_option.h"
 #include "status_line.h"
 #include "target_option.h"
 #include "trial.h"
@@ -26,6 +27,7 @@ struct RunOptions {
   std::filesystem::path scenario;
   std::string condition;
   std::string target;
+  std::string simulator;
   std::filesystem::path profile;
   std::uint64_t seed = 1;
   std::filesystem::path out;
@@ -74,6 +76,7 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
     move_to(condition, scenario::load_target(*file), keep_name);
   if (const auto* address = std::get_if<scenario::SshAddress>(&target))
     move_to(condition, board_at(*address), keep_name);
+  if (!options.simulator.empty()) condition.simulator = options.simulator;
   return condition;
 }
 
@@ -131,6 +134,8 @@ void print_result(const TrialSpec& spec, const experiment::TrialResult& result) 
                1e3 * to_seconds(stops->largest_overshoot));
   if (!result.profiles.empty())
     fmt::print("  {:<24} {}\n", "profiles", fmt::join(result.profiles, ", "));
+  if (const auto simulator = result.versions.find("simulator"); simulator != result.versions.end())
+    fmt::print("  {:<24} {}\n", "simulator", simulator->second);
   if (result.audit) fmt::print("  {:<24} {}\n", "audit", result.audit->summary);
   if (std::filesystem::exists(spec.folder / kRecordFile))
     fmt::print("  {:<24} {}\n", "record", (spec.folder / kRecordFile).string());
@@ -191,6 +196,7 @@ void add_run_command(CLI::App& program, Action& action) {
       "Where the SUT runs, over what the condition says: a target file (TOML); "
       "ssh://[user@]board[:port]; or \"wait\": do not start the SUT, print what to type where it "
       "runs, and wait for it");
+  add_simulator_option(*command, options->simulator);
   command->add_flag("--tunnel", options->tunnel,
                     "The board's SUT comes through the SSH connection, where it cannot reach this "
                     "machine; costs the board the encryption of every image");
@@ -204,6 +210,7 @@ void add_run_command(CLI::App& program, Action& action) {
   tether run scenarios/face_anchor.toml --target profiles/targets/six_times_slower.toml
   tether run scenarios/face_anchor.toml --target ssh://pi@board.local
   tether run scenarios/face_anchor.toml --profile profiles/ideal.toml
+  tether run scenarios/face_anchor.toml --simulator gazebo
   tether run scenarios/face_anchor.toml --images --out out/one)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

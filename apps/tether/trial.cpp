@@ -4,6 +4,7 @@
 #include "interrupt.h"
 #include "local_sut.h"
 #include "machine.h"
+#include "running_simulator.h"
 #include "sut_processes.h"
 #include "target_probe.h"
 #include "trial_folder.h"
@@ -21,7 +22,6 @@
 #include <tether/base/version.h>
 #include <tether/record/reader.h>
 #include <tether/record/writer.h>
-#include <tether/sim_mujoco/mujoco_simulator.h>
 
 namespace tether::app {
 
@@ -157,13 +157,13 @@ std::string reach_hint(const TrialSpec& spec, const std::string& address,
 }
 
 /// The coordinator's run with its SUTs, up to the closed record.
-coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator, Board* board,
+coordinator::RunReport conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* board,
                                const Timings& timings, const TrialObserver& observer) {
   const std::string token = token_of_run();
   const auto recorder = record::make_mcap_recorder(spec.folder / kRecordFile);
   auto options = run_options(spec, timings, token);
   options.header.target = target_info(spec, board);
-  coordinator::Coordinator coordinator(simulator, *recorder, std::move(options), host_now);
+  coordinator::Coordinator coordinator(simulator.get(), *recorder, std::move(options), host_now);
   const auto server = listen(spec, board, coordinator.events());
   const SutRun sut_run{sut_address(spec, board, *server), token, spec.condition};
   SutProcesses suts;
@@ -172,7 +172,7 @@ coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
   } else if (!spec.waits_for_sut) {
     suts.start(spec.scenario, sut_run, spec.folder);
   }
-  warm_up_cameras(simulator);
+  warm_up_cameras(simulator.get());
   if (spec.waits_for_sut && observer.on_listening)
     observer.on_listening(sut_instructions(spec.scenario, sut_run));
 
@@ -182,6 +182,7 @@ coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
   hooks.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
     if (interrupted())
       return std::pair(RunEnd::kInterrupted, std::string("interrupted by the user"));
+    if (const auto why = simulator.lost()) return std::pair(RunEnd::kSimulatorLost, *why);
     if (const auto why = suts.lost()) {
       left_early = true;
       return std::pair(RunEnd::kSutLost, *why);
@@ -204,6 +205,7 @@ coordinator::RunReport conduct(const TrialSpec& spec, sim::Simulator& simulator,
   hooks.read_target = [&] { return read_target(spec, board); };
   auto report = coordinator.run(*server, hooks);
   if (report.end == RunEnd::kSutLost && !left_early) report.reason += suts.post_mortem();
+  if (report.end == RunEnd::kSimulatorLost) report.reason += simulator.post_mortem(report.reason);
   if (report.end == RunEnd::kFinished) suts.let_leave();
   if (board && !report.began) report.reason += reach_hint(spec, sut_run.address, report.reason);
   for (const std::string& warning : suts.bring_back())
@@ -240,6 +242,37 @@ experiment::TrialResult judge(const TrialSpec& spec, const coordinator::RunRepor
   return result;
 }
 
+SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& observer) {
+  return {.world = spec.scenario.world,
+          .answer_limit = spec.scenario.hang_limit,
+          .log = spec.folder / kSimulatorLog,
+          .warn = observer.warn};
+}
+
+/// A trial whose parts did not come together leaves no record.
+experiment::TrialResult setup_failure(const TrialSpec& spec, const std::string& reason) {
+  std::error_code ignored;
+  std::filesystem::remove(spec.folder / kRecordFile, ignored);
+  auto result = experiment::make_setup_failure(spec.scenario, spec.condition, spec.seed, reason);
+  if (interrupted()) result.end = experiment::kEndInterrupted;
+  return result;
+}
+
+/// @throws Error(kSetup) when simulator, board or SUTs cannot be had, or the simulator is lost
+/// before the run.
+experiment::TrialResult fly(const TrialSpec& spec, const SimulatorOption& option, sim::World world,
+                            const Timings& timings, const TrialObserver& observer) {
+  const auto board = hold_board(spec);
+  RunningSimulator simulator(option, std::move(world), simulator_setup(spec, observer));
+  try {
+    auto result = judge(spec, conduct(spec, simulator, board.get(), timings, observer));
+    result.versions["simulator"] = simulator.get().description();
+    return result;
+  } catch (const Error& e) {
+    throw Error(e.code(), e.what() + simulator.post_mortem(e.what()));
+  }
+}
+
 std::string utc_now() {
   return fmt::format(
       "{:%Y-%m-%dT%H:%M:%SZ}",
@@ -249,7 +282,8 @@ std::string utc_now() {
 }  // namespace
 
 experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer) {
-  // Whatever is wrong with the user's files shows before anything is written.
+  // Whatever is wrong with the user's words and files shows before anything is written.
+  const SimulatorOption simulator = parse_simulator_option(spec.condition.simulator);
   scenario::require_clock(spec.scenario, spec.condition);
   sim::World world =
       sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
@@ -264,13 +298,9 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
   const std::string started_at = utc_now();
   experiment::TrialResult result;
   try {
-    const auto board = hold_board(spec);
-    const auto simulator = sim::make_mujoco_simulator(std::move(world), observer.warn);
-    result = judge(spec, conduct(spec, *simulator, board.get(), timings, observer));
-    result.versions["simulator"] = simulator->description();
+    result = fly(spec, simulator, std::move(world), timings, observer);
   } catch (const Error& e) {
-    result = experiment::make_setup_failure(spec.scenario, spec.condition, spec.seed, e.what());
-    if (interrupted()) result.end = experiment::kEndInterrupted;
+    result = setup_failure(spec, e.what());
   }
   result.versions["tether"] = version();
   result.this_run.started_at = started_at;

@@ -51,6 +51,7 @@ TrialFolder::TrialFolder(const std::filesystem::path& folder) {
   descriptor_ = lock(folder);
   drop(folder / experiment::kResultFile);
   drop(folder / kRecordFile);
+  drop(folder / kSimulatorLog);
 }
 
 TrialFolder::~TrialFolder() {

@@ -6,6 +6,8 @@ namespace tether::app {
 
 /// The record's file in a trial's folder.
 inline constexpr const char* kRecordFile = "record.mcap";
+/// What the simulator's own processes print.
+inline constexpr const char* kSimulatorLog = "simulator.log";
 
 /// A trial's folder, made if need be, into which only this process writes results while the object
 /// lives. Nothing of an earlier trial is left in it that could be taken for this one's.

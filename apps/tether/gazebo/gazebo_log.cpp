@@ -1,0 +1,69 @@
+#include "gazebo_log.h"
+
+#include <algorithm>
+#include <regex>
+#include <sstream>
+
+namespace tether::app {
+
+namespace {
+
+/// Lines without colours and blanks at their ends; none that is empty.
+std::vector<std::string> plain_lines(const std::string& log) {
+  static const std::regex colour("\x1b\\[[0-9;]*m");
+  std::vector<std::string> lines;
+  std::istringstream text(log);
+  for (std::string line; std::getline(text, line);) {
+    line = std::regex_replace(line, colour, "");
+    const auto begin = line.find_first_not_of(" \t\r"), end = line.find_last_not_of(" \t\r");
+    if (begin != std::string::npos) lines.push_back(line.substr(begin, end - begin + 1));
+  }
+  return lines;
+}
+
+bool starts_with_any(const std::string& line, std::initializer_list<const char*> beginnings) {
+  return std::any_of(beginnings.begin(), beginnings.end(),
+                     [&](const char* beginning) { return line.starts_with(beginning); });
+}
+
+/// Each once, in their order.
+void add(std::vector<std::string>& list, const std::string& text) {
+  if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+}
+
+}  // namespace
+
+std::string last_words_of_gazebo(const std::string& log) {
+  const auto lines = plain_lines(log);
+  const auto last = std::find_if(lines.rbegin(), lines.rend(), [](const std::string& line) {
+    return !starts_with_any(line, {"[Msg]", "[Wrn]", "[Dbg]", "ALSA lib", "AL lib", "Warning ["});
+  });
+  return last == lines.rend() ? "" : *last;
+}
+
+// libsdformat 9 writes "Error [Converter.cc:113] what" and "Error Code 12 Msg: what"; Gazebo itself
+// writes "[Err] [Server.cc:392] what".
+std::vector<std::string> reading_errors(const std::string& log) {
+  static const std::regex error(R"(Error (?:\[[^\]]*\]|Code \d+ Msg:)\s*(.*))");
+  std::vector<std::string> errors;
+  for (const std::string& line : plain_lines(log)) {
+    std::smatch match;
+    if (std::regex_match(line, match, error)) add(errors, match[1]);
+  }
+  return errors;
+}
+
+std::vector<std::string> reading_warnings(const std::string& log) {
+  static const std::regex unknown(
+      R"(Warning \[[^\]]*\]\s*XML (Element|Attribute)\[([^\]]*)\].*element\[([^\]]*)\].*not defined in SDF.*)");
+  std::vector<std::string> warnings;
+  for (const std::string& line : plain_lines(log)) {
+    std::smatch match;
+    if (!std::regex_match(line, match, unknown)) continue;
+    const std::string what = match[1] == "Element" ? "<" + match[2].str() + ">" : match[2].str();
+    add(warnings, what + " in <" + match[3].str() + ">");
+  }
+  return warnings;
+}
+
+}  // namespace tether::app

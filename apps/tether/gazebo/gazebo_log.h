@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// What gzserver says, on one line each, without colours.
+namespace tether::app {
+
+/// The last line that may say why it ended: neither a message, nor a warning, nor what is said
+/// where there is no sound card. Empty: none.
+std::string last_words_of_gazebo(const std::string& log);
+
+/// What libsdformat of Gazebo could not read, of the world and what it includes.
+std::vector<std::string> reading_errors(const std::string& log);
+/// What it passed over, because it does not know it.
+std::vector<std::string> reading_warnings(const std::string& log);
+
+}  // namespace tether::app

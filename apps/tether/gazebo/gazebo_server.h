@@ -1,0 +1,72 @@
+#pragma once
+
+#include "child_process.h"
+#include "gazebo_install.h"
+#include "private_folder.h"
+#include "x_server.h"
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <tether/base/time.h>
+#include <tether/sim/world.h>
+#include <tether/sim_protocol/connection.h>
+
+namespace tether::app {
+
+/// What to start.
+struct GazeboRun {
+  GazeboInstall install;
+  std::filesystem::path world;  ///< absolute
+  bool draws = false;           ///< somebody may ask for a picture
+  std::filesystem::path log;    ///< gets what gzserver and the X server print
+};
+
+/// A gzserver with Tether's plugin in it, and an X server where it draws, for one run. Several at
+/// once do not meet. They end with the object, and with this process however that ends. Their
+/// files are in a folder of /tmp; if this process is killed, the next run removes it. Not
+/// thread-safe.
+class GazeboServer {
+ public:
+  /// Starts them. @throws Error(kSetup) saying what is missing, or what happened.
+  explicit GazeboServer(GazeboRun run);
+  ~GazeboServer();
+  GazeboServer(const GazeboServer&) = delete;
+  GazeboServer& operator=(const GazeboServer&) = delete;
+
+  /// Waits for the plugin. @throws Error(kSetup) when one of them ends, nobody answers in time
+  /// (TETHER_GAZEBO_START_LIMIT_S), or the user interrupts.
+  std::unique_ptr<sim::protocol::Connection> connect();
+  /// How long the plugin may still take to open the world.
+  Duration start_limit() const;
+
+  /// How one of them ended; none while all run.
+  std::optional<std::string> lost();
+  /// After it failed: what came of them that `said` does not say yet, with "; " before; empty:
+  /// nothing is known.
+  std::string post_mortem(const std::string& said);
+  /// What this Gazebo's libsdformat passed over in the world, one line each.
+  /// @throws Error(kSetup) when there was something that it could not read.
+  void check_world(const sim::WarningSink& warn) const;
+
+ private:
+  void start_gzserver();
+  void wait_for_display();
+  bool has_port_in_use();
+  void look() const;
+  [[noreturn]] void fail(const std::string& what) const;
+
+  GazeboRun run_;
+  Duration limit_;
+  std::chrono::steady_clock::time_point started_;
+  PrivateFolder folder_;
+  std::unique_ptr<XServer> x_server_;
+  std::unique_ptr<ChildProcess> gzserver_;
+  std::string master_;           // its URI
+  std::size_t said_before_ = 0;  // size of the log when gzserver was started
+};
+
+}  // namespace tether::app

@@ -1,0 +1,83 @@
+#include "running_simulator.h"
+
+#include "interrupt.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/sim_mujoco/mujoco_simulator.h>
+#include <tether/sim_remote/remote_simulator.h>
+
+namespace tether::app {
+
+namespace {
+
+constexpr Duration kAttachLimit = std::chrono::seconds(5);
+
+bool has_camera(const sim::World& world) {
+  return std::ranges::any_of(world.uavs, [](const sim::Uav& uav) {
+    return std::ranges::any_of(uav.sensors, [](const sim::Sensor& sensor) {
+      return sensor.kind() == uav::SensorKind::kCamera;
+    });
+  });
+}
+
+}  // namespace
+
+RunningSimulator::RunningSimulator(const SimulatorOption& option, sim::World world,
+                                   SimulatorSetup setup) {
+  if (std::holds_alternative<GazeboSimulator>(option))
+    start_gazebo(std::move(world), setup);
+  else if (const auto* endpoint = std::get_if<sim::protocol::Endpoint>(&option))
+    attach(*endpoint, std::move(world), setup);
+  else
+    simulator_ = sim::make_mujoco_simulator(std::move(world), setup.warn);
+}
+
+void RunningSimulator::start_gazebo(sim::World world, const SimulatorSetup& setup) {
+  gazebo_ = std::make_unique<GazeboServer>(GazeboRun{.install = find_gazebo(),
+                                                     .world = setup.world,
+                                                     .draws = has_camera(world),
+                                                     .log = setup.log});
+  auto connection = gazebo_->connect();
+  try {
+    simulator_ = sim::make_remote_simulator(std::move(world), std::move(connection),
+                                            {.open_limit = gazebo_->start_limit(),
+                                             .answer_limit = setup.answer_limit,
+                                             .why_give_up = [this] { return why_give_up(); }},
+                                            setup.warn);
+  } catch (const Error& e) {
+    throw Error(e.code(), e.what() + post_mortem(e.what()));
+  }
+  gazebo_->check_world(setup.warn);
+}
+
+void RunningSimulator::attach(const sim::protocol::Endpoint& endpoint, sim::World world,
+                              const SimulatorSetup& setup) {
+  auto connection = sim::protocol::connect(endpoint, kAttachLimit);
+  if (!connection)
+    throw Error(ErrorCode::kSetup,
+                fmt::format("no simulator listens at {}: {}", sim::protocol::to_string(endpoint),
+                            connection.failure().message));
+  simulator_ = sim::make_remote_simulator(
+      std::move(world), std::move(*connection),
+      {.answer_limit = setup.answer_limit, .why_give_up = [this] { return why_give_up(); }},
+      setup.warn);
+}
+
+std::optional<std::string> RunningSimulator::lost() {
+  return gazebo_ ? gazebo_->lost() : std::nullopt;
+}
+
+std::optional<std::string> RunningSimulator::why_give_up() {
+  return interrupted() ? "interrupted by the user" : lost();
+}
+
+std::string RunningSimulator::post_mortem(const std::string& said) {
+  return gazebo_ && !interrupted() ? gazebo_->post_mortem(said) : "";
+}
+
+}  // namespace tether::app

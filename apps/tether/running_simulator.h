@@ -1,0 +1,47 @@
+#pragma once
+
+#include "gazebo/gazebo_server.h"
+#include "simulator_option.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <tether/base/time.h>
+#include <tether/sim/simulator.h>
+
+namespace tether::app {
+
+/// What a simulator is started with.
+struct SimulatorSetup {
+  std::filesystem::path world;  ///< the SDF file, absolute
+  Duration answer_limit{0};     ///< how long one outside of this process may take for an answer
+  std::filesystem::path log;    ///< gets what processes of its own print
+  sim::WarningSink warn;
+};
+
+/// The simulator of one run, with the processes that it takes; they end with the object. Not
+/// thread-safe.
+class RunningSimulator {
+ public:
+  /// Starts it, or connects to it. @throws Error(kSetup) with the reason why it is not to be had.
+  RunningSimulator(const SimulatorOption& option, sim::World world, SimulatorSetup setup);
+
+  sim::Simulator& get() { return *simulator_; }
+  /// Why it is lost, as far as its processes show it; none: it is not.
+  std::optional<std::string> lost();
+  /// After it failed with `said`: what else is known of its end, with "; " before.
+  std::string post_mortem(const std::string& said);
+
+ private:
+  std::optional<std::string> why_give_up();
+  void start_gazebo(sim::World world, const SimulatorSetup& setup);
+  void attach(const sim::protocol::Endpoint& endpoint, sim::World world,
+              const SimulatorSetup& setup);
+
+  std::unique_ptr<GazeboServer> gazebo_;  // outlives the simulator, which is connected to it
+  std::unique_ptr<sim::Simulator> simulator_;
+};
+
+}  // namespace tether::app

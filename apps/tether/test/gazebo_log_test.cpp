@@ -1,0 +1,58 @@
+#include "gazebo/gazebo_log.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tether::app {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+// As Gazebo 11.1 writes it, colours and all.
+const std::string kStart =
+    "Gazebo multi-robot simulator, version 11.1.0\n"
+    "http://gazebosim.org\n\n"
+    "\x1b[1;32m[Msg] \x1b[0m\x1b[1;32mWaiting for master.\x1b[0m\x1b[1;32m\n"
+    "\x1b[0m\x1b[1;33m[Wrn] [Publisher.cc:136] \x1b[0m\x1b[1;33mQueue limit reached\x1b[0m\n";
+const std::string kPort =
+    "\x1b[1;31m[Err] [Master.cc:95] \x1b[0m\x1b[1;31mEXCEPTION: \x1b[0m\x1b[1;31mUnable to start "
+    "server[bind: Address already in use]. \n\x1b[1;31m\n";
+const std::string kTooNew =
+    "\x1b[1;31mError [Converter.cc:113]\x1b[0m Unable to convert from SDF version 1.9 to 1.7\n";
+
+TEST(LastWordsOfGazebo, AreNeitherMessagesNorWarnings) {
+  EXPECT_EQ(last_words_of_gazebo(kStart), "http://gazebosim.org");
+  EXPECT_EQ(
+      last_words_of_gazebo(kStart + kPort + kStart.substr(kStart.find("\x1b"))),
+      "[Err] [Master.cc:95] EXCEPTION: Unable to start server[bind: Address already in use].");
+  EXPECT_EQ(last_words_of_gazebo(""), "");
+  EXPECT_EQ(last_words_of_gazebo("the last one, cut sho"), "the last one, cut sho");
+}
+
+TEST(LastWordsOfGazebo, LeaveOutWhatIsSaidWithoutASoundCard) {
+  EXPECT_EQ(last_words_of_gazebo("gzserver: terminated\n"
+                                 "ALSA lib confmisc.c:767:(parse_card) cannot find card '0'\n"
+                                 "AL lib: (EE) ALCplaybackAlsa_open: Could not open playback\n"),
+            "gzserver: terminated");
+}
+
+TEST(ReadingErrors, AreThoseOfLibsdformatEachOnce) {
+  EXPECT_THAT(reading_errors(kStart + kPort), IsEmpty());
+  EXPECT_THAT(reading_errors(kStart + kTooNew + kTooNew +
+                             "Error Code 12 Msg: Unable to find uri[model://sun]\n"),
+              ElementsAre("Unable to convert from SDF version 1.9 to 1.7",
+                          "Unable to find uri[model://sun]"));
+}
+
+TEST(ReadingWarnings, NameWhatIsPassedOver) {
+  EXPECT_THAT(reading_warnings(kStart + kTooNew), IsEmpty());
+  const std::string unknown =
+      "\x1b[1;33mWarning [parser.cc:950]\x1b[0m XML Element[capsule], child of element[geometry] "
+      "not "
+      "defined in SDF. Ignoring[capsule]. [geometry]\n";
+  EXPECT_THAT(reading_warnings(unknown + unknown), ElementsAre("<capsule> in <geometry>"));
+}
+
+}  // namespace
+}  // namespace tether::app
