@@ -41,6 +41,14 @@ std::string last_words_of_gazebo(const std::string& log) {
   return last == lines.rend() ? "" : *last;
 }
 
+std::string plugin_error(const std::string& log, const std::string& plugin) {
+  for (const std::string& line : plain_lines(log)) {
+    const auto what = line.find("Failed to load plugin " + plugin);
+    if (what != std::string::npos) return line.substr(what);
+  }
+  return "";
+}
+
 // libsdformat 9 writes "Error [Converter.cc:113] what" and "Error Code 12 Msg: what"; Gazebo itself
 // writes "[Err] [Server.cc:392] what".
 std::vector<std::string> reading_errors(const std::string& log) {

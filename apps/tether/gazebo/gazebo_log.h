@@ -10,6 +10,9 @@ namespace tether::app {
 /// where there is no sound card. Empty: none.
 std::string last_words_of_gazebo(const std::string& log);
 
+/// Why it goes on without that plugin; empty: it does not.
+std::string plugin_error(const std::string& log, const std::string& plugin);
+
 /// What libsdformat of Gazebo could not read, of the world and what it includes.
 std::vector<std::string> reading_errors(const std::string& log);
 /// What it passed over, because it does not know it.

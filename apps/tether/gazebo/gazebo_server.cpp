@@ -151,6 +151,8 @@ std::unique_ptr<sim::protocol::Connection> GazeboServer::connect() {
     if (auto connection = sim::protocol::connect(endpoint, start_limit()))
       return std::move(*connection);
     look();
+    const std::string why = plugin_error(read_whole(run_.log), run_.install.plugin);
+    if (!why.empty()) fail(fmt::format("{} (see {})", why, run_.log.string()));
     const auto end = lost();
     if (!end) continue;
     // Somebody took the port between our look at it and gzserver's.

@@ -37,6 +37,17 @@ TEST(LastWordsOfGazebo, LeaveOutWhatIsSaidWithoutASoundCard) {
             "gzserver: terminated");
 }
 
+TEST(PluginError, IsThatOfTheOnePlugin) {
+  const std::string log =
+      kStart +
+      "\x1b[1;31m[Err] [Plugin.hh:178] \x1b[0m\x1b[1;31mFailed to load plugin "
+      "\x1b[0m\x1b[1;31m/lib/a.so\x1b[0m\x1b[1;31m: \x1b[0m\x1b[1;31m/lib/a.so: file "
+      "too short\x1b[0m\n";
+  EXPECT_EQ(plugin_error(log, "/lib/a.so"),
+            "Failed to load plugin /lib/a.so: /lib/a.so: file too short");
+  EXPECT_EQ(plugin_error(log, "/lib/b.so"), "");
+}
+
 TEST(ReadingErrors, AreThoseOfLibsdformatEachOnce) {
   EXPECT_THAT(reading_errors(kStart + kPort), IsEmpty());
   EXPECT_THAT(reading_errors(kStart + kTooNew + kTooNew +

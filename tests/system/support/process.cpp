@@ -174,6 +174,10 @@ std::filesystem::path sut_program() {
 std::filesystem::path bad_sut_program() {
   return BAD_SUT_PROGRAM;
 }
+
+std::filesystem::path stand_in_program() {
+  return STAND_IN_PROGRAM;
+}
 std::filesystem::path proxy_program() {
   return LINK_PROXY_PROGRAM;
 }

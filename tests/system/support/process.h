@@ -76,6 +76,7 @@ bool wait_until_gone(const std::string& mark,
 std::filesystem::path tether_program();
 std::filesystem::path sut_program();
 std::filesystem::path bad_sut_program();
+std::filesystem::path stand_in_program();
 std::filesystem::path proxy_program();
 
 }  // namespace tether::system_test

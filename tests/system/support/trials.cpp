@@ -59,10 +59,13 @@ std::filesystem::path write_hover_scenario(const std::filesystem::path& folder,
                                            const std::vector<Substitution>& substitutions) {
   return write_scenario(
       folder / "hover.toml",
-      substituted(read_text(data_file("hover.toml")), {{"@WORLD@", data_file("hover.sdf")},
-                                                       {"@BAD_SUT@", bad_sut_program()},
-                                                       {"@MODE@", mode}}),
+      substituted(read_text(data_file("hover.toml")),
+                  {{"@WORLD@", hover_world()}, {"@BAD_SUT@", bad_sut_program()}, {"@MODE@", mode}}),
       substitutions);
+}
+
+std::filesystem::path hover_world() {
+  return data_file("hover.sdf");
 }
 
 std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder,

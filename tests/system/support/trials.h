@@ -25,6 +25,9 @@ std::filesystem::path write_hover_scenario(const std::filesystem::path& folder,
                                            const std::string& mode,
                                            const std::vector<Substitution>& substitutions = {});
 
+/// The hover scenario's world.
+std::filesystem::path hover_world();
+
 /// scenarios/NAME.toml as it is shipped, with the substitutions made, in a tree of its own below
 /// `folder`, so that the paths in it hold.
 std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder,

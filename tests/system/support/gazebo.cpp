@@ -1,0 +1,91 @@
+#include "gazebo.h"
+
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace tether::system_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string command_line_of(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/cmdline", std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::size_t recorded_so_far(const fs::path& folder) try {
+  return read_record(folder).interactions.size();
+} catch (const std::exception&) {
+  return 0;
+}
+
+}  // namespace
+
+Variables stand_in_gazebo(const fs::path& folder, const std::string& mode) {
+  const fs::path root = folder / "root", machine = root / "lib/x86_64-linux-gnu";
+  fs::create_directories(machine);
+  fs::create_symlink(stand_in_program(), machine / "ld-linux-x86-64.so.2");
+  fs::create_directories(root / "usr/bin");
+  write_text(root / "usr/bin/gzserver", "");
+  write_text(root / "libtether_gazebo.so", "");
+  return {{"TETHER_GAZEBO_ROOT", root},
+          {"TETHER_GAZEBO_PLUGIN", root / "libtether_gazebo.so"},
+          {"STAND_IN_MODE", mode}};
+}
+
+Command gazebo_run(const fs::path& scenario, const fs::path& out, const Variables& environment,
+                   const std::string& mark) {
+  Command command =
+      tether({"run", scenario, "--simulator", "gazebo", "--out", out, "--quiet"}, mark);
+  command.environment.insert(command.environment.end(), environment.begin(), environment.end());
+  return command;
+}
+
+EndlessFlight::EndlessFlight(const fs::path& folder, const Variables& environment,
+                             const std::string& mark)
+    : out_(folder / "out") {
+  const auto scenario =
+      write_hover_scenario(folder, "fly_on", {{"time_limit_s = 5", "time_limit_s = 600"}});
+  Command command = gazebo_run(scenario, out_, environment, mark);
+  command.arguments.insert(command.arguments.end(), {"--real-time-factor", "1"});
+  process_ = std::make_unique<Process>(command);
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (recorded_so_far(out_) < 100) {
+    if (process_->has_ended() || std::chrono::steady_clock::now() > deadline)
+      throw std::runtime_error("the run does not fly: " + process_->err());
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+}
+
+std::optional<pid_t> find_process(const std::string& mark, const std::string& word) {
+  for (const pid_t pid : processes_with_mark(mark))
+    if (command_line_of(pid).find(word) != std::string::npos) return pid;
+  return std::nullopt;
+}
+
+fs::path private_folder(const fs::path& out) {
+  static const std::regex where("listening on unix:(/tmp/tether-gazebo-[^/]+)/");
+  const std::string log = read_text(out / "simulator.log");
+  std::smatch match;
+  if (!std::regex_search(log, match, where))
+    throw std::runtime_error("no folder is named in simulator.log: " + log);
+  return match[1].str();
+}
+
+bool has_x_lock(pid_t server) {
+  for (const auto& entry : fs::directory_iterator("/tmp")) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with(".X") || !name.ends_with("-lock")) continue;
+    std::istringstream text(read_text(entry.path()));
+    pid_t pid = 0;
+    if (text >> pid && pid == server) return true;
+  }
+  return false;
+}
+
+}  // namespace tether::system_test

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "trials.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sys/types.h>
+
+/// Runs in Gazebo, real or not.
+namespace tether::system_test {
+
+using Variables = std::vector<std::pair<std::string, std::string>>;
+
+/// What has `tether` take stand_in_simulator, which fails as its mode says, for gzserver; the root
+/// for that is made in `folder`.
+Variables stand_in_gazebo(const std::filesystem::path& folder, const std::string& mode);
+
+/// `tether run` of the hover scenario, whose SUT has that mode, in Gazebo, into `folder`/out.
+Command gazebo_run(const std::filesystem::path& scenario, const std::filesystem::path& out,
+                   const Variables& environment, const std::string& mark);
+
+/// A run in Gazebo whose SUT flies on and on, at real time.
+class EndlessFlight {
+ public:
+  /// Starts it in `folder`, and waits until some interactions are in its record.
+  /// @throws std::runtime_error with what it said when it does not come that far.
+  EndlessFlight(const std::filesystem::path& folder, const Variables& environment,
+                const std::string& mark);
+
+  Process& process() { return *process_; }
+  const std::filesystem::path& out() const { return out_; }
+
+ private:
+  std::filesystem::path out_;
+  std::unique_ptr<Process> process_;
+};
+
+/// Of the living processes with the mark, the one whose command line has that word in it.
+std::optional<pid_t> find_process(const std::string& mark, const std::string& word);
+
+/// The private folder of a run with Gazebo, as its simulator.log in `out` names it.
+/// @throws std::runtime_error when it does not.
+std::filesystem::path private_folder(const std::filesystem::path& out);
+
+/// Whether an X server with that pid has left its lock in /tmp.
+bool has_x_lock(pid_t server);
+
+}  // namespace tether::system_test
