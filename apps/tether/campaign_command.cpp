@@ -6,7 +6,7 @@
 #include "machine.h"
 #include "print_report.h"
 #include "progress_bar.h"
-#include "simulator_option.h"
+#include "running_simulator.h"
 
 #include <algorithm>
 #include <chrono>
@@ -106,6 +106,9 @@ std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign)
     const sim::World world = sim::load_world(
         scenario::world_request(entry.scenario, campaign.seeds.front()), every_trial_says_it);
     files.insert(files.end(), world.files.begin(), world.files.end());
+    for (const std::string& name : entry.conditions)
+      require_readable(world,
+                       parse_simulator_option(entry.scenario.find_condition(name)->simulator));
     try_profiles(entry, world, warnings);
   }
   if (simulators(campaign).contains("gazebo")) {

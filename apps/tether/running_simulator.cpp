@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/sim/sdf_version.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
 #include <tether/sim_remote/remote_simulator.h>
 
@@ -27,6 +28,11 @@ bool has_camera(const sim::World& world) {
 
 }  // namespace
 
+void require_readable(const sim::World& world, const SimulatorOption& option) {
+  if (std::holds_alternative<GazeboSimulator>(option))
+    sim::check_sdf_version(world, {.name = "Gazebo 11"});
+}
+
 RunningSimulator::RunningSimulator(const SimulatorOption& option, sim::World world,
                                    SimulatorSetup setup) {
   if (std::holds_alternative<GazeboSimulator>(option))
@@ -38,10 +44,8 @@ RunningSimulator::RunningSimulator(const SimulatorOption& option, sim::World wor
 }
 
 void RunningSimulator::start_gazebo(sim::World world, const SimulatorSetup& setup) {
-  gazebo_ = std::make_unique<GazeboServer>(GazeboRun{.install = find_gazebo(),
-                                                     .world = setup.world,
-                                                     .draws = has_camera(world),
-                                                     .log = setup.log});
+  gazebo_ = std::make_unique<GazeboServer>(GazeboRun{
+      .install = find_gazebo(), .world = world.file, .draws = has_camera(world), .log = setup.log});
   auto connection = gazebo_->connect();
   try {
     simulator_ = sim::make_remote_simulator(std::move(world), std::move(connection),
@@ -73,7 +77,8 @@ std::optional<std::string> RunningSimulator::lost() {
 }
 
 std::optional<std::string> RunningSimulator::why_give_up() {
-  return interrupted() ? "interrupted by the user" : lost();
+  if (interrupted()) return "interrupted by the user";
+  return gazebo_ && !simulator_ ? gazebo_->why_not_up() : lost();
 }
 
 std::string RunningSimulator::post_mortem(const std::string& said) {

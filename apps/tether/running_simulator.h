@@ -15,11 +15,13 @@ namespace tether::app {
 
 /// What a simulator is started with.
 struct SimulatorSetup {
-  std::filesystem::path world;  ///< the SDF file, absolute
-  Duration answer_limit{0};     ///< how long one outside of this process may take for an answer
-  std::filesystem::path log;    ///< gets what processes of its own print
+  Duration answer_limit{0};   ///< how long one outside of this process may take for an answer
+  std::filesystem::path log;  ///< gets what processes of its own print
   sim::WarningSink warn;
 };
+
+/// @throws Error(kBadFile) with file and line for what that simulator cannot read.
+void require_readable(const sim::World& world, const SimulatorOption& option);
 
 /// The simulator of one run, with the processes that it takes; they end with the object. Not
 /// thread-safe.

@@ -243,8 +243,7 @@ experiment::TrialResult judge(const TrialSpec& spec, const coordinator::RunRepor
 }
 
 SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& observer) {
-  return {.world = spec.scenario.world,
-          .answer_limit = spec.scenario.hang_limit,
+  return {.answer_limit = spec.scenario.hang_limit,
           .log = spec.folder / kSimulatorLog,
           .warn = observer.warn};
 }
@@ -287,6 +286,7 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
   scenario::require_clock(spec.scenario, spec.condition);
   sim::World world =
       sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
+  require_readable(world, simulator);
   const Timings timings =
       scenario::resolve_sensors(spec.scenario, spec.condition, world, observer.warn);
   world.step = spec.scenario.step;

@@ -104,7 +104,7 @@ TEST_P(FailingGazebo, EndsTheRunWithItsReason) {
   EXPECT_LT(output.wall.count(), 30);
   if (fault.end != "simulator_lost") return;
   EXPECT_EQ(read_record(folder_ / "out").damage, "");
-  EXPECT_EQ(read_result(folder_ / "out")["versions"]["simulator"], "a stand-in");
+  EXPECT_EQ(read_result(folder_ / "out")["versions"]["simulator"], "a stand-in, grey");
   EXPECT_FALSE(std::filesystem::exists(private_folder(folder_ / "out")));
 }
 

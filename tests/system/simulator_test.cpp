@@ -36,8 +36,8 @@ class AttachedSimulator : public testing::Test {
 TEST_F(AttachedSimulator, FliesTheRunAndIsNamedInItsResult) {
   const Output output = fly();
   EXPECT_EQ(output.code, 0) << output.err;
-  EXPECT_EQ(read_result(folder_ / "out")["versions"]["simulator"], "a stand-in");
-  EXPECT_EQ(read_record(folder_ / "out").header.simulator, "a stand-in");
+  EXPECT_EQ(read_result(folder_ / "out")["versions"]["simulator"], "a stand-in, grey");
+  EXPECT_EQ(read_record(folder_ / "out").header.simulator, "a stand-in, grey");
   EXPECT_EQ(run(tether({"audit", folder_ / "out/record.mcap"})).code, 0);
 }
 
@@ -75,7 +75,7 @@ TEST(SimulatorOfACondition, GivesWayToTheCommandLine) {
   for (const auto& variable : stand_in_gazebo(folder.path(), ""))
     in_gazebo.environment.push_back(variable);
   EXPECT_EQ(run(in_gazebo).code, 0);
-  EXPECT_EQ(read_result(folder / "one")["versions"]["simulator"], "a stand-in");
+  EXPECT_EQ(read_result(folder / "one")["versions"]["simulator"], "a stand-in, grey");
 
   EXPECT_EQ(run(tether({"run", scenario, "--simulator", "mujoco", "--out", folder / "two"})).code,
             0);
@@ -112,7 +112,7 @@ TEST_F(CampaignInGazebo, GivesEachTrialAGazeboOfItsOwn) {
   for (const char* trial :
        {"host/seed-0001", "host/seed-0002", "slow/seed-0001", "slow/seed-0002"}) {
     const auto folder = folder_ / "out/hover" / trial;
-    EXPECT_EQ(read_result(folder)["versions"]["simulator"], "a stand-in");
+    EXPECT_EQ(read_result(folder)["versions"]["simulator"], "a stand-in, grey");
     EXPECT_FALSE(std::filesystem::exists(private_folder(folder)));
   }
   EXPECT_TRUE(wait_until_gone(mark_));

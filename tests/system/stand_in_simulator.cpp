@@ -79,6 +79,7 @@ protocol::State state(std::int64_t steps) {
 
 protocol::Reply answer(const protocol::Open& open) {
   g_open = open;
+  g_now = {};
   return protocol::Opened{"a stand-in", state(0)};
 }
 

@@ -49,6 +49,16 @@ std::string plugin_error(const std::string& log, const std::string& plugin) {
   return "";
 }
 
+std::string drawing_error(const std::string& log) {
+  std::string gl;
+  for (const std::string& line : plain_lines(log)) {
+    if (line.starts_with("libGL error:")) gl = line + "; ";
+    if (line.starts_with("X Error of failed request:")) return gl + line;
+    if (line.find("Rendering will be disabled") != std::string::npos) return gl + line;
+  }
+  return "";
+}
+
 // libsdformat 9 writes "Error [Converter.cc:113] what" and "Error Code 12 Msg: what"; Gazebo itself
 // writes "[Err] [Server.cc:392] what".
 std::vector<std::string> reading_errors(const std::string& log) {

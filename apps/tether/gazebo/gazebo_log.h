@@ -13,6 +13,10 @@ std::string last_words_of_gazebo(const std::string& log);
 /// Why it goes on without that plugin; empty: it does not.
 std::string plugin_error(const std::string& log, const std::string& plugin);
 
+/// Why it cannot draw; empty: it has not said so. Xlib ends a program from within after an error,
+/// and Gazebo may hang in that.
+std::string drawing_error(const std::string& log);
+
 /// What libsdformat of Gazebo could not read, of the world and what it includes.
 std::vector<std::string> reading_errors(const std::string& log);
 /// What it passed over, because it does not know it.

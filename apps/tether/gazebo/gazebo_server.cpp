@@ -151,12 +151,10 @@ std::unique_ptr<sim::protocol::Connection> GazeboServer::connect() {
     if (auto connection = sim::protocol::connect(endpoint, start_limit()))
       return std::move(*connection);
     look();
-    const std::string why = plugin_error(read_whole(run_.log), run_.install.plugin);
-    if (!why.empty()) fail(fmt::format("{} (see {})", why, run_.log.string()));
-    const auto end = lost();
-    if (!end) continue;
+    const auto why = why_not_up();
+    if (!why) continue;
     // Somebody took the port between our look at it and gzserver's.
-    if (!has_port_in_use() || !master_of_user().empty() || ++attempt > kPortAttempts) fail(*end);
+    if (!has_port_in_use() || !master_of_user().empty() || ++attempt > kPortAttempts) fail(*why);
     start_gzserver();
   }
 }
@@ -178,6 +176,15 @@ void GazeboServer::look() const {
 
 bool GazeboServer::has_port_in_use() {
   return holds(read_whole(run_.log).substr(said_before_), "Address already in use");
+}
+
+std::optional<std::string> GazeboServer::why_not_up() {
+  const std::string log = read_whole(run_.log);
+  if (const std::string why = plugin_error(log, run_.install.plugin); !why.empty())
+    return fmt::format("{} (see {})", why, run_.log.string());
+  if (const std::string why = drawing_error(log); x_server_ && !why.empty())
+    return fmt::format("it cannot draw for the cameras: {} (see {})", why, run_.log.string());
+  return lost();
 }
 
 std::optional<std::string> GazeboServer::lost() {

@@ -43,6 +43,9 @@ class GazeboServer {
   /// How long the plugin may still take to open the world.
   Duration start_limit() const;
 
+  /// Why the world will not come up, as far as one can see that; none: it may.
+  std::optional<std::string> why_not_up();
+
   /// How one of them ended; none while all run.
   std::optional<std::string> lost();
   /// After it failed: what came of them that `said` does not say yet, with "; " before; empty:

@@ -48,6 +48,19 @@ TEST(PluginError, IsThatOfTheOnePlugin) {
   EXPECT_EQ(plugin_error(log, "/lib/b.so"), "");
 }
 
+TEST(DrawingError, IsWhatXlibEndsAProgramWith) {
+  const std::string gl =
+      "libGL error: MESA-LOADER: failed to open swrast\nlibGL error: failed to load driver: "
+      "swrast\n";
+  EXPECT_EQ(drawing_error(kStart + gl), "");
+  EXPECT_EQ(
+      drawing_error(kStart + gl + "X Error of failed request:  GLXBadContext\n  Major opcode\n"),
+      "libGL error: failed to load driver: swrast; X Error of failed request:  GLXBadContext");
+  EXPECT_EQ(drawing_error("\x1b[1;33m[Wrn] [RenderEngine.cc:87] \x1b[0mUnable to create X window. "
+                          "Rendering will be disabled\n"),
+            "[Wrn] [RenderEngine.cc:87] Unable to create X window. Rendering will be disabled");
+}
+
 TEST(ReadingErrors, AreThoseOfLibsdformatEachOnce) {
   EXPECT_THAT(reading_errors(kStart + kPort), IsEmpty());
   EXPECT_THAT(reading_errors(kStart + kTooNew + kTooNew +
