@@ -105,6 +105,8 @@ describe(tether science
 # The driver that draws is looked for at run time, so that no program names it.
 set(CPACK_DEBIAN_TETHER_PACKAGE_DEPENDS "libgl1-mesa-dri")
 set(CPACK_DEBIAN_TETHER_PACKAGE_RECOMMENDS "tether-sut, gnuplot-nox")
+# Cameras in Gazebo draw on it.
+set(CPACK_DEBIAN_TETHER_PACKAGE_SUGGESTS "xvfb")
 
 describe(tether-sut science
   "The target's half of Tether: vision tasks of a UAV as one program, which Tether"

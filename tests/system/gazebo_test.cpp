@@ -49,7 +49,7 @@ class Gazebo : public testing::Test {
 // ---- Flights
 
 TEST_F(Gazebo, FliesAndLeavesNothing) {
-  const Output output = fly(hover());
+  const Output output = fly(hover(), {{"USER", mark_}});
   ASSERT_EQ(output.code, 0) << output.err << log();
   EXPECT_EQ(output.err, "");
   EXPECT_THAT(read_result(folder_ / "out")["versions"]["simulator"].get<std::string>(),
@@ -58,6 +58,8 @@ TEST_F(Gazebo, FliesAndLeavesNothing) {
   EXPECT_EQ(audit.code, 0) << audit.out;
   EXPECT_TRUE(wait_until_gone(mark_));
   EXPECT_FALSE(std::filesystem::exists(private_folder(folder_ / "out")));
+  // Where Gazebo would keep its shaders.
+  EXPECT_FALSE(std::filesystem::exists("/tmp/gazebo-" + mark_ + "-rtshaderlibcache"));
 }
 
 TEST_F(Gazebo, ShowsTheAnchorToATask) {

@@ -136,6 +136,7 @@ void GazeboServer::start_gzserver() {
                            {"GAZEBO_MODEL_DATABASE_URI", ""},
                            {"GAZEBO_LOG_PATH", home + "/log"},
                            {"HOME", home},
+                           {"TMPDIR", home},
                            {"ALSOFT_DRIVERS", "null"},
                            {"DISPLAY", ""},
                            {"TETHER_SIMULATOR_ENDPOINT", "unix:" + home + "/simulator"}};
