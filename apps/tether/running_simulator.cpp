@@ -56,7 +56,7 @@ void RunningSimulator::start_gazebo(sim::World world, const SimulatorSetup& setu
   } catch (const Error& e) {
     throw Error(e.code(), e.what() + post_mortem(e.what()));
   }
-  gazebo_->check_world(setup.warn);
+  gazebo_->check_world();
 }
 
 void RunningSimulator::attach(const sim::protocol::Endpoint& endpoint, sim::World world,

@@ -144,6 +144,9 @@ const std::map<std::string, std::function<void()>> kModesAtStart = {
            "[Err] [Master.cc:95] EXCEPTION: Unable to start server[bind: Address already in use].",
            255);
      }},
+    // As libsdformat says it, of a world that Gazebo then goes on without.
+    {"misread",
+     [] { std::fputs("Error Code 12 Msg: Unable to find uri[model://wheels]\n", stderr); }},
     {"stubborn", [] { std::signal(SIGINT, SIG_IGN); }},
     {"child",
      [] {

@@ -71,17 +71,4 @@ std::vector<std::string> reading_errors(const std::string& log) {
   return errors;
 }
 
-std::vector<std::string> reading_warnings(const std::string& log) {
-  static const std::regex unknown(
-      R"(Warning \[[^\]]*\]\s*XML (Element|Attribute)\[([^\]]*)\].*element\[([^\]]*)\].*not defined in SDF.*)");
-  std::vector<std::string> warnings;
-  for (const std::string& line : plain_lines(log)) {
-    std::smatch match;
-    if (!std::regex_match(line, match, unknown)) continue;
-    const std::string what = match[1] == "Element" ? "<" + match[2].str() + ">" : match[2].str();
-    add(warnings, what + " in <" + match[3].str() + ">");
-  }
-  return warnings;
-}
-
 }  // namespace tether::app

@@ -19,7 +19,5 @@ std::string drawing_error(const std::string& log);
 
 /// What libsdformat of Gazebo could not read, of the world and what it includes.
 std::vector<std::string> reading_errors(const std::string& log);
-/// What it passed over, because it does not know it.
-std::vector<std::string> reading_warnings(const std::string& log);
 
 }  // namespace tether::app

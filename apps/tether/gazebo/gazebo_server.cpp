@@ -215,17 +215,12 @@ std::string GazeboServer::post_mortem(const std::string& said) {
   return end && !holds(said, *end) ? "; " + *end : "";
 }
 
-void GazeboServer::check_world(const sim::WarningSink& warn) const {
-  const std::string log = read_whole(run_.log);
-  if (const auto errors = reading_errors(log); !errors.empty())
-    throw Error(ErrorCode::kSetup,
-                fmt::format("Gazebo cannot read all of {}: {}; what is too new for Gazebo 11 (SDF "
-                            "1.7) only the simulator \"mujoco\" can fly",
-                            run_.world.string(), errors.front()));
-  for (const std::string& passed_over : reading_warnings(log))
-    if (warn)
-      warn(fmt::format("{}: Gazebo does not know {}, and passes over it", run_.world.string(),
-                       passed_over));
+void GazeboServer::check_world() const {
+  const auto errors = reading_errors(read_whole(run_.log));
+  if (errors.empty()) return;
+  throw Error(ErrorCode::kSetup,
+              fmt::format("Gazebo cannot read all of {}: {} (see {})", run_.world.string(),
+                          errors.front(), run_.log.string()));
 }
 
 void GazeboServer::fail(const std::string& what) const {

@@ -12,7 +12,6 @@
 #include <string>
 
 #include <tether/base/time.h>
-#include <tether/sim/world.h>
 #include <tether/sim_protocol/connection.h>
 
 namespace tether::app {
@@ -51,9 +50,8 @@ class GazeboServer {
   /// After it failed: what came of them that `said` does not say yet, with "; " before; empty:
   /// nothing is known.
   std::string post_mortem(const std::string& said);
-  /// What this Gazebo's libsdformat passed over in the world, one line each.
-  /// @throws Error(kSetup) when there was something that it could not read.
-  void check_world(const sim::WarningSink& warn) const;
+  /// @throws Error(kSetup) when there was something in the world that it could not read.
+  void check_world() const;
 
  private:
   void start_gzserver();

@@ -69,14 +69,5 @@ TEST(ReadingErrors, AreThoseOfLibsdformatEachOnce) {
                           "Unable to find uri[model://sun]"));
 }
 
-TEST(ReadingWarnings, NameWhatIsPassedOver) {
-  EXPECT_THAT(reading_warnings(kStart + kTooNew), IsEmpty());
-  const std::string unknown =
-      "\x1b[1;33mWarning [parser.cc:950]\x1b[0m XML Element[capsule], child of element[geometry] "
-      "not "
-      "defined in SDF. Ignoring[capsule]. [geometry]\n";
-  EXPECT_THAT(reading_warnings(unknown + unknown), ElementsAre("<capsule> in <geometry>"));
-}
-
 }  // namespace
 }  // namespace tether::app

@@ -47,10 +47,12 @@ Command gazebo_run(const fs::path& scenario, const fs::path& out, const Variable
 }
 
 EndlessFlight::EndlessFlight(const fs::path& folder, const Variables& environment,
-                             const std::string& mark)
+                             const std::string& mark, int hang_limit_s)
     : out_(folder / "out") {
-  const auto scenario =
-      write_hover_scenario(folder, "fly_on", {{"time_limit_s = 5", "time_limit_s = 600"}});
+  const auto scenario = write_hover_scenario(
+      folder, "fly_on",
+      {{"time_limit_s = 5", "time_limit_s = 600"},
+       {"hang_limit_s = 2", "hang_limit_s = " + std::to_string(hang_limit_s)}});
   Command command = gazebo_run(scenario, out_, environment, mark);
   command.arguments.insert(command.arguments.end(), {"--real-time-factor", "1"});
   process_ = std::make_unique<Process>(command);

@@ -20,17 +20,18 @@ using Variables = std::vector<std::pair<std::string, std::string>>;
 /// for that is made in `folder`.
 Variables stand_in_gazebo(const std::filesystem::path& folder, const std::string& mode);
 
-/// `tether run` of the hover scenario, whose SUT has that mode, in Gazebo, into `folder`/out.
+/// `tether run` of the scenario in Gazebo.
 Command gazebo_run(const std::filesystem::path& scenario, const std::filesystem::path& out,
                    const Variables& environment, const std::string& mark);
 
 /// A run in Gazebo whose SUT flies on and on, at real time.
 class EndlessFlight {
  public:
-  /// Starts it in `folder`, and waits until some interactions are in its record.
+  /// Starts it in `folder`, with that limit for answers, and waits until some interactions are in
+  /// its record.
   /// @throws std::runtime_error with what it said when it does not come that far.
   EndlessFlight(const std::filesystem::path& folder, const Variables& environment,
-                const std::string& mark);
+                const std::string& mark, int hang_limit_s = 30);
 
   Process& process() { return *process_; }
   const std::filesystem::path& out() const { return out_; }
