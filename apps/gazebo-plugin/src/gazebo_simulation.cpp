@@ -92,9 +92,10 @@ bool GazeboSimulation::is_ready() {
 bool GazeboSimulation::must_wait_for(const std::vector<std::string>& missing) const {
   if (missing.empty()) return false;
   if (Clock::now() < deadline_) return true;
-  fail("Gazebo has not made '" + missing.front() + "' and " + std::to_string(missing.size() - 1) +
-       " more within " + std::to_string(kWarmUpLimit.count()) +
-       " s: see what gzserver says of them");
+  const std::size_t others = missing.size() - 1;
+  fail("Gazebo has not made '" + missing.front() + "'" +
+       (others > 0 ? " and " + std::to_string(others) + " more" : "") + " within " +
+       std::to_string(kWarmUpLimit.count()) + " s: see what gzserver says of it");
 }
 
 std::vector<std::string> GazeboSimulation::missing_models() const {

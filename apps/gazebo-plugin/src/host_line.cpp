@@ -18,9 +18,9 @@ HostLine::HostLine(std::unique_ptr<protocol::Listener> listener,
 HostLine::~HostLine() {
   stop();
   closing_ = true;
-  listener_->close();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (listener_) listener_->close();
     if (connection_) connection_->close();
   }
   thread_.join();
@@ -39,6 +39,11 @@ void HostLine::listen() {
     wrong = accepted.failure().message;
   }
   stop();
+  {
+    // The process may end before this object does; the listener's file must not stay.
+    const std::lock_guard<std::mutex> lock(mutex_);
+    listener_.reset();
+  }
   if (!closing_) on_end_({wrong});
 }
 
