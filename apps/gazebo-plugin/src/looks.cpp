@@ -33,7 +33,11 @@ void load_texture(const std::string& file) {
   if (!in) throw Error(ErrorCode::kSetup, file + ": texture cannot be read");
   Ogre::DataStreamPtr stream(OGRE_NEW Ogre::FileStreamDataStream(file, &in, false));
   Ogre::Image image;
-  image.load(stream, "png");
+  try {
+    image.load(stream, "png");
+  } catch (const Ogre::Exception&) {
+    throw Error(ErrorCode::kSetup, file + ": texture is no PNG file");
+  }
   Ogre::TextureManager::getSingleton().loadImage(file, kGroup, image);
 }
 

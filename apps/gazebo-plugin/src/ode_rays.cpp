@@ -1,6 +1,7 @@
 #include "ode_rays.h"
 
 #include "links.h"
+#include "shape_rays.h"
 
 #include <algorithm>
 #include <array>
@@ -14,6 +15,31 @@ namespace {
 constexpr double kNothing = std::numeric_limits<double>::infinity();
 // A mesh may be met several times.
 constexpr int kMaxHits = 8;
+
+uav::Vec3 in_frame_of(dGeomID shape, const uav::Vec3& v_W) {
+  const dReal* R = dGeomGetRotation(shape);
+  return {R[0] * v_W.x + R[4] * v_W.y + R[8] * v_W.z, R[1] * v_W.x + R[5] * v_W.y + R[9] * v_W.z,
+          R[2] * v_W.x + R[6] * v_W.y + R[10] * v_W.z};
+}
+
+Ray in_frame_of(dGeomID shape, const Ray& ray) {
+  const dReal* p = dGeomGetPosition(shape);
+  return {in_frame_of(shape, ray.origin - uav::Vec3{p[0], p[1], p[2]}),
+          in_frame_of(shape, ray.direction)};
+}
+
+double distance_to_box_m(const Ray& ray, dGeomID box) {
+  dVector3 size;
+  dGeomBoxGetLengths(box, size);
+  return distance_to_box_m(in_frame_of(box, ray), {size[0], size[1], size[2]});
+}
+
+double distance_to_cylinder_m(const Ray& ray, dGeomID cylinder) {
+  dReal radius = 0.0;
+  dReal length = 0.0;
+  dGeomCylinderGetParams(cylinder, &radius, &length);
+  return distance_to_cylinder_m(in_frame_of(cylinder, ray), radius, length);
+}
 
 }  // namespace
 
@@ -63,16 +89,34 @@ double OdeRays::distance_m(const Ray& ray, double max_m, const sim::protocol::Ca
 }
 
 double OdeRays::distance_m(const Ray& ray, double max_m, const std::vector<dGeomID>& shapes) {
+  double nearest_m = kNothing;
+  for (const dGeomID shape : shapes) nearest_m = std::min(nearest_m, distance_m(ray, max_m, shape));
+  return nearest_m <= max_m ? nearest_m : kNothing;
+}
+
+// ODE's own rays meet cylinders where there are none.
+double OdeRays::distance_m(const Ray& ray, double max_m, dGeomID shape) {
+  switch (dGeomGetClass(shape)) {
+    case dBoxClass:
+      return distance_to_box_m(ray, shape);
+    case dCylinderClass:
+      return distance_to_cylinder_m(ray, shape);
+    case dSphereClass:
+      return distance_to_sphere_m(in_frame_of(shape, ray), dGeomSphereGetRadius(shape));
+    default:
+      return distance_by_ode_m(ray, max_m, shape);
+  }
+}
+
+double OdeRays::distance_by_ode_m(const Ray& ray, double max_m, dGeomID shape) {
   dGeomRaySetLength(ray_, max_m);
   dGeomRaySet(ray_, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y,
               ray.direction.z);
-  double nearest_m = kNothing;
   std::array<dContactGeom, kMaxHits> hits;
-  for (const dGeomID shape : shapes) {
-    const int count = dCollide(ray_, shape, kMaxHits, hits.data(), sizeof hits[0]);
-    for (int i = 0; i < count; ++i) {
-      nearest_m = std::min(nearest_m, static_cast<double>(hits[static_cast<std::size_t>(i)].depth));
-    }
+  const int count = dCollide(ray_, shape, kMaxHits, hits.data(), sizeof hits[0]);
+  double nearest_m = kNothing;
+  for (int i = 0; i < count; ++i) {
+    nearest_m = std::min(nearest_m, static_cast<double>(hits[static_cast<std::size_t>(i)].depth));
   }
   return nearest_m;
 }

@@ -34,6 +34,8 @@ class OdeRays {
   Group& group_of(dGeomID shape);
   double distance_m(const Ray& ray, double max_m, const sim::protocol::CastRays& rays);
   double distance_m(const Ray& ray, double max_m, const std::vector<dGeomID>& shapes);
+  double distance_m(const Ray& ray, double max_m, dGeomID shape);
+  double distance_by_ode_m(const Ray& ray, double max_m, dGeomID shape);
 
   const OdeBodies& bodies_;
   std::vector<Group> groups_;
