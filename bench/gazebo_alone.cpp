@@ -1,10 +1,11 @@
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <string>
-
-#include <unistd.h>
+#include <vector>
 
 #include <gazebo/common/Events.hh>
 #include <gazebo/common/Plugin.hh>
@@ -14,9 +15,10 @@
 #include <gazebo/rendering/Camera.hh>
 #include <gazebo/sensors/CameraSensor.hh>
 #include <gazebo/sensors/SensorManager.hh>
+#include <unistd.h>
 
-/// The yardstick of bench/gazebo: lets gzserver run as fast as it can, alone, and prints how much it
-/// simulated in how much wall time, and how many images its cameras made. Then ends it.
+/// The yardstick of bench/gazebo: lets gzserver run as fast as it can, alone, and prints how much
+/// it simulated in how much wall time, and how many images its cameras made. Then ends it.
 namespace tether::bench {
 namespace {
 

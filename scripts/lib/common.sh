@@ -35,7 +35,7 @@ packages_pack=(dpkg-dev file gzip)
 # The target's programs for 64-bit ARM, and what runs them here.
 packages_arm64=(cmake ninja-build flatbuffers-compiler g++-aarch64-linux-gnu mmdebstrap qemu-user "${packages_pack[@]}")
 # Gazebo's plugin against Debian 11's packages, and the screen that Gazebo's cameras need.
-packages_gazebo=(cmake ninja-build g++ pkgconf flatbuffers-compiler libflatbuffers-dev mmdebstrap xvfb xauth)
+packages_gazebo=(cmake ninja-build g++ pkgconf mmdebstrap xvfb xauth)
 packages_tidy=(git clang-tidy)
 
 # True where a package is installed. A name may be satisfied by another package that provides it.
