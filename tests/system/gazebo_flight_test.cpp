@@ -76,13 +76,6 @@ class Spinner {
 
 class GazeboFlight : public testing::Test {
  protected:
-  void SetUp() override {
-    if (const std::string missing = missing_gazebo(); !missing.empty()) {
-      if (std::getenv("CI")) FAIL() << missing;
-      GTEST_SKIP() << missing;
-    }
-  }
-
   TempFolder folder_;
 };
 
@@ -90,8 +83,7 @@ class ShippedScenario : public GazeboFlight, public testing::WithParamInterface<
 
 // The start pose: the first image that the SUT has.
 TEST_P(ShippedScenario, ShowsTheAnchorAtTheSamePlace) {
-  const auto scenario = write_shipped_scenario(folder_.path(), GetParam(),
-                                               {scripted_host(20), {"image_period_ms", "#"}});
+  const auto scenario = write_shipped_scenario(folder_.path(), GetParam(), {scripted_host(10)});
   for (const char* simulator : {"mujoco", "gazebo"})
     fly(scenario, folder_ / simulator, {"--simulator", simulator, "--images"});
   const auto embedded = read_record(folder_ / "mujoco"), gazebo = read_record(folder_ / "gazebo");
@@ -103,8 +95,7 @@ TEST_P(ShippedScenario, ShowsTheAnchorAtTheSamePlace) {
 }
 
 TEST_P(ShippedScenario, TakesAsLongAsInTheEmbeddedSimulator) {
-  const auto scenario =
-      write_shipped_scenario(folder_.path(), GetParam(), {scripted_host(20)});
+  const auto scenario = write_shipped_scenario(folder_.path(), GetParam(), {scripted_host(10)});
   for (const char* simulator : {"mujoco", "gazebo"})
     fly(scenario, folder_ / simulator, {"--simulator", simulator});
   const double embedded_s = metric(folder_ / "mujoco", "time_required");
@@ -119,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedScenario, testing::Values("face_anchor", "m
 
 // Gazebo gets a quarter of each core, and simulates slowly; nothing else changes by it.
 TEST_F(GazeboFlight, DoesNotFeelALoadThatSlowsGazebo) {
-  const auto scenario = write_shipped_scenario(folder_.path(), "face_anchor", {scripted_host(20)});
+  const auto scenario = write_shipped_scenario(folder_.path(), "face_anchor", {scripted_host(10)});
   const std::vector<std::string> options = {"--simulator", "gazebo", "--images"};
   fly(scenario, folder_ / "alone", options);
   {
