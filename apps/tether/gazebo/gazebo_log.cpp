@@ -60,13 +60,20 @@ std::string drawing_error(const std::string& log) {
 }
 
 // libsdformat 9 writes "Error [Converter.cc:113] what" and "Error Code 12 Msg: what"; Gazebo itself
-// writes "[Err] [Server.cc:392] what".
+// writes "[Err] [Server.cc:392] what". It looks for a mesh with a relative path in its own folders
+// only, says so in two lines, and goes on without.
 std::vector<std::string> reading_errors(const std::string& log) {
   static const std::regex error(R"(Error (?:\[[^\]]*\]|Code \d+ Msg:)\s*(.*))");
+  static const std::regex no_file(R"(.*does not exist \[[^\]]*\] \[(.*)\])");
   std::vector<std::string> errors;
+  std::string file;
   for (const std::string& line : plain_lines(log)) {
     std::smatch match;
     if (std::regex_match(line, match, error)) add(errors, match[1]);
+    if (std::regex_match(line, match, no_file)) file = match[1];
+    if (line.ends_with("No mesh specified"))
+      add(errors, "it does not find the mesh \"" + file +
+                      "\", and would leave it out: name it by a model:// URI");
   }
   return errors;
 }

@@ -17,7 +17,7 @@ std::string plugin_error(const std::string& log, const std::string& plugin);
 /// and Gazebo may hang in that.
 std::string drawing_error(const std::string& log);
 
-/// What libsdformat of Gazebo could not read, of the world and what it includes.
+/// What Gazebo could not read, of the world and what it includes: SDF and meshes.
 std::vector<std::string> reading_errors(const std::string& log);
 
 }  // namespace tether::app

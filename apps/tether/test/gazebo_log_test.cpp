@@ -69,5 +69,18 @@ TEST(ReadingErrors, AreThoseOfLibsdformatEachOnce) {
                           "Unable to find uri[model://sun]"));
 }
 
+TEST(ReadingErrors, AreMeshesThatGazeboDoesNotFind) {
+  EXPECT_THAT(
+      reading_errors(kStart +
+                     "\x1b[1;33m[Wrn] [SystemPaths.cc:459] \x1b[0mFile or path does not exist "
+                     "[\"\"] [\x1b[0mmeshes/chair.obj\x1b[0m]\x1b[0m\n"
+                     "\x1b[1;31m[Err] [Visual.cc:2951] \x1b[0mNo mesh specified\n"),
+      ElementsAre("it does not find the mesh \"meshes/chair.obj\", and would leave it out: name it "
+                  "by a model:// URI"));
+  EXPECT_THAT(reading_errors(kStart + "[Wrn] [SystemPaths.cc:459] File or path does not exist "
+                                      "[\"\"] [media/fog.material]\n"),
+              IsEmpty());
+}
+
 }  // namespace
 }  // namespace tether::app
