@@ -71,8 +71,21 @@ std::optional<protocol::Request> HostLine::next() {
   return std::exchange(request_, std::nullopt);
 }
 
-// A reply that does not reach the host needs no care here: the other thread finds that it has left.
 void HostLine::answer(const protocol::Reply& reply) {
+  const Status sent = send(reply);
+  if (sent) return;
+  if (sent.failure().kind == Failure::Kind::kInvalid) {
+    // Physics that has come apart gives numbers that are none.
+    const protocol::Failed failed{"Gazebo's answer is not fit to be sent: " +
+                                  sent.failure().message};
+    if (!send(failed)) lose_host();
+    stop();
+  } else {
+    lose_host();
+  }
+}
+
+Status HostLine::send(const protocol::Reply& reply) {
   std::shared_ptr<protocol::Connection> connection;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -80,7 +93,16 @@ void HostLine::answer(const protocol::Reply& reply) {
     if (const auto* failed = std::get_if<protocol::Failed>(&reply)) failure_ = failed->message;
     connection = connection_;
   }
-  if (connection) (void)connection->send(reply);
+  if (!connection) return ok_status();
+  return connection->send(reply);
+}
+
+// The other thread, which receives, ends the line.
+void HostLine::lose_host() {
+  stop();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  answered_ = false;
+  connection_->close();
 }
 
 }  // namespace tether::gazebo_plugin

@@ -29,12 +29,15 @@ class HostLine : public Host {
   ~HostLine() override;
 
   std::optional<protocol::Request> next() override;
+  /// A reply that `validate` refuses becomes a Failed that says why, and ends the conversation.
   void answer(const protocol::Reply& reply) override;
   /// From now on there is no `next`. Any thread, signal handlers too.
   void stop() { stopped_ = true; }
   bool is_stopped() const { return stopped_; }
 
  private:
+  Status send(const protocol::Reply& reply);
+  void lose_host();
   void listen();
   std::string converse(protocol::Connection& connection);
 

@@ -1,5 +1,6 @@
 #include "host_line.h"
 
+#include <cmath>
 #include <future>
 
 #include <gtest/gtest.h>
@@ -68,6 +69,33 @@ TEST_F(HostLineTest, EndsWithWhatTheHostWasTold) {
   ASSERT_TRUE(host_->receive_reply(10s));
   host_->close();
   EXPECT_EQ(how_it_ended(), "another world");
+}
+
+TEST_F(HostLineTest, SaysWhatOfAnAnswerIsNotFinite) {
+  ASSERT_TRUE(host_->send(protocol::Request(open())));
+  ASSERT_TRUE(line_->next());
+  protocol::Opened opened{"me", {}};
+  opened.state.bodies.resize(1);
+  opened.state.bodies[0].v_WB.x = std::nan("");
+  line_->answer(opened);
+  EXPECT_FALSE(line_->next());
+  const auto reply = host_->receive_reply(10s);
+  ASSERT_TRUE(reply);
+  const auto* failed = std::get_if<protocol::Failed>(&*reply);
+  ASSERT_TRUE(failed);
+  EXPECT_NE(failed->message.find("State.bodies is not finite"), std::string::npos)
+      << failed->message;
+  host_->close();
+  EXPECT_EQ(how_it_ended(), failed->message);
+}
+
+TEST_F(HostLineTest, EndsWhenAnAnswerDoesNotReachTheHost) {
+  ASSERT_TRUE(host_->send(protocol::Request(open())));
+  ASSERT_TRUE(line_->next());
+  host_->close();
+  line_->answer(protocol::Opened{"me", {}});
+  (void)how_it_ended();
+  EXPECT_FALSE(line_->next());
 }
 
 TEST_F(HostLineTest, EndsAtWhatMayNotCome) {
