@@ -79,7 +79,7 @@ bool GazeboSimulation::is_ready() {
   if (must_wait_for(missing_models())) return false;
   if (open_.max_width_px > 0 && !pictures_) {
     if (must_wait_for(missing_visuals())) return false;
-    prepare_pictures();
+    if (!prepare_pictures() && must_wait_for({"the pictures"})) return false;
   }
   bodies_ = OdeBodies(world_, open_);
   rays_.emplace(world_, bodies_);
@@ -109,7 +109,7 @@ std::vector<std::string> GazeboSimulation::missing_models() const {
 std::vector<std::string> GazeboSimulation::missing_visuals() {
   const std::vector<std::string> expected = expected_visuals(world_);
   std::vector<std::string> missing = {"the scene"};
-  in_main_thread([&] {
+  warm_up_in_main_thread([&] {
     const auto scene = complete_scene(world_->Name());
     if (scene) missing = gazebo_plugin::missing_visuals(scene, expected);
     if (scene && scene->LightCount() < world_->LightCount()) missing.emplace_back("a light");
@@ -117,11 +117,11 @@ std::vector<std::string> GazeboSimulation::missing_visuals() {
   return missing;
 }
 
-void GazeboSimulation::prepare_pictures() {
+bool GazeboSimulation::prepare_pictures() {
   std::vector<std::string> names;
   for (const auto& uav : open_.uavs) names.push_back(uav.name + "::base_link");
   for (const auto& body : open_.bodies) names.push_back(body.model + "::" + body.link);
-  in_main_thread([&] {
+  return warm_up_in_main_thread([&] {
     const auto scene = complete_scene(world_->Name());
     apply_looks(scene, open_.looks);
     pictures_ = std::make_unique<Pictures>(scene, names);
@@ -161,6 +161,11 @@ protocol::Picture GazeboSimulation::render(const protocol::Render& view) {
   protocol::Picture picture;
   if (!in_main_thread([&] { picture = pictures_->draw(view); })) fail("Gazebo has been stopped");
   return picture;
+}
+
+// A rendering thread that is stuck must not keep the limit from ending the wait.
+bool GazeboSimulation::warm_up_in_main_thread(const std::function<void()>& job) {
+  return main_thread_.run(job, [this] { return give_up_() || Clock::now() >= deadline_; });
 }
 
 bool GazeboSimulation::in_main_thread(const std::function<void()>& job) {

@@ -42,7 +42,9 @@ class GazeboSimulation : public Simulation {
   std::vector<std::string> missing_models() const;
   std::vector<std::string> missing_visuals();
   bool must_wait_for(const std::vector<std::string>& missing) const;
-  void prepare_pictures();
+  /// False: the main thread has not come to it.
+  bool prepare_pictures();
+  bool warm_up_in_main_thread(const std::function<void()>& job);
   bool in_main_thread(const std::function<void()>& job);
 
   ::gazebo::physics::WorldPtr world_;

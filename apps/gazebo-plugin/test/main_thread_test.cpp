@@ -67,5 +67,14 @@ TEST(MainThread, GivesUpAJobThatNobodyBegins) {
   EXPECT_FALSE(done);
 }
 
+TEST(MainThread, AsksAgainAndAgainWhetherToGiveUp) {
+  int woken = 0;
+  MainThread main([&] { ++woken; });
+  int asked = 0;
+  EXPECT_FALSE(main.run([] {}, [&] { return ++asked == 3; }));
+  EXPECT_EQ(asked, 3);
+  EXPECT_EQ(woken, 3);
+}
+
 }  // namespace
 }  // namespace tether::gazebo_plugin
