@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/sim/gazebo_world.h>
 #include <tether/sim/sdf_version.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
 #include <tether/sim_remote/remote_simulator.h>
@@ -29,8 +30,9 @@ bool has_camera(const sim::World& world) {
 }  // namespace
 
 void require_readable(const sim::World& world, const SimulatorOption& option) {
-  if (std::holds_alternative<GazeboSimulator>(option))
-    sim::check_sdf_version(world, {.name = "Gazebo 11"});
+  if (!std::holds_alternative<GazeboSimulator>(option)) return;
+  sim::check_sdf_version(world, {.name = "Gazebo 11"});
+  sim::check_gazebo_world(world);
 }
 
 RunningSimulator::RunningSimulator(const SimulatorOption& option, sim::World world,
