@@ -153,11 +153,16 @@ void check_light_shape(const SdfSource& source, const std::string& parent,
   if (!element->LineNumber()) return;
   const sdf::ElementPtr light = element->GetParent()->GetParent();
   if (parent == "attenuation" && element->GetName() == "range" && shows_range(light, element)) {
-    warn_at(source, element, "is not represented: lights do not end; give at least 1000 m", warn);
+    warn_at(source, element,
+            "is not represented in the embedded simulator, whose lights do not end; give at least "
+            "1000 m",
+            warn);
   }
   if (parent == "spot" && element->GetName() == "inner_angle" &&
       shows_inner_angle(light, element)) {
-    warn_at(source, element, "is not represented: lights fall off from their axis on; give 0",
+    warn_at(source, element,
+            "is not represented in the embedded simulator, whose lights fall off from their axis "
+            "on; give 0",
             warn);
   }
 }
@@ -220,8 +225,11 @@ class Walk {
     if (name.starts_with("tether:"))
       return "is no element of Tether's in a <" + parent + ">; ignored";
     if (name == "sensor") return "belongs to no UAV; left out";
-    if (parent == "geometry") return "is a shape that is not represented; left out";
-    return "is not represented; ignored";
+    // Another simulator reads the world itself, but has its UAVs from here.
+    const bool is_for_all = purpose_ == SdfPurpose::kUav;
+    const std::string where = is_for_all ? "" : " in the embedded simulator";
+    if (parent == "geometry") return "is a shape that is not represented" + where + "; left out";
+    return "is not represented" + where + "; ignored";
   }
 
   const SdfSource& source_;
