@@ -1,5 +1,7 @@
 #include "remote_sensing.h"
 
+#include "printable.h"
+
 #include <algorithm>
 #include <cassert>
 #include <optional>
@@ -43,7 +45,7 @@ void RemoteRenderer::render(const View& view, std::span<std::uint8_t> rgb) {
   assert(picture.rgb.size() == rgb.size());
   std::copy(picture.rgb.begin(), picture.rgb.end(), rgb.begin());
   nearest_depth_m_ = std::clamp(picture.nearest_depth_m, view.near_m, view.far_m);
-  name_ = std::move(picture.renderer);
+  name_ = printable(picture.renderer);
 }
 
 }  // namespace tether::sim

@@ -1,5 +1,7 @@
 #include "remote_session.h"
 
+#include "printable.h"
+
 #include <algorithm>
 #include <chrono>
 
@@ -39,7 +41,9 @@ protocol::Reply RemoteSession::answer_to(const protocol::Request& request, Durat
   auto reply = await(limit);
   if (!reply) throw_lost(reply.failure(), limit);
   if (const auto* failed = std::get_if<protocol::Failed>(&*reply)) {
-    throw Error(ErrorCode::kSetup, name() + " failed: " + failed->message);
+    const std::string why = printable(failed->message);
+    throw Error(ErrorCode::kSetup,
+                name() + " failed" + (why.empty() ? " without a reason" : ": " + why));
   }
   return std::move(*reply);
 }

@@ -22,6 +22,7 @@ class RemoteSession {
 
   /// What the simulator calls itself, for messages.
   void call_it(std::string name) { name_ = " " + std::move(name); }
+  std::string name() const { return "the simulator" + name_; }
 
   /// @throws Error(kSetup) naming the simulator and what it did, where it gave no answer.
   protocol::Opened open(const protocol::Open& request);
@@ -47,7 +48,6 @@ class RemoteSession {
   Result<protocol::Reply> await(Duration limit);
   void give_up_if_told();
   [[noreturn]] void throw_lost(const Failure& failure, Duration limit);
-  std::string name() const { return "the simulator" + name_; }
 
   std::unique_ptr<protocol::Connection> connection_;
   RemoteOptions options_;

@@ -1,4 +1,6 @@
+#include "checked_state.h"
 #include "open_request.h"
+#include "printable.h"
 #include "remote_sensing.h"
 #include "remote_session.h"
 
@@ -34,7 +36,7 @@ class RemoteSimulator final : public Simulator {
         sensors_(world_, back_end(), warn),
         commands_(world_.uavs.size()) {
     protocol::Opened opened = session_.open(make_open(world_, warn));
-    description_ = std::move(opened.description);
+    description_ = printable(opened.description);
     session_.call_it(description_);
     start_at(std::move(opened.state));
   }
@@ -105,11 +107,13 @@ class RemoteSimulator final : public Simulator {
 
   void start_at(protocol::State state) {
     take(std::move(state));
+    check_start(world_, state_, session_.name());
     recorder_.reset(X_WB_);
   }
 
   void take(protocol::State state) {
     state_ = std::move(state);
+    check_reach(world_, state_, session_.name());
     X_WB_.clear();
     motions_.clear();
     for (const uav::BodyState& body : state_.bodies) X_WB_.push_back({body.p_WB, body.q_WB});

@@ -206,6 +206,37 @@ TEST(RemoteFaults, Failure) {
   EXPECT_EQ(error_of(fault, advance), "the simulator Fake 1.0 failed: the joints came loose");
 }
 
+TEST(RemoteFaults, FailureWithoutAReason) {
+  const auto fault = [](const Request& request, Reply reply) -> std::optional<Reply> {
+    if (std::holds_alternative<Advance>(request)) return Failed{" "};
+    return reply;
+  };
+  EXPECT_EQ(error_of(fault, advance), "the simulator Fake 1.0 failed without a reason");
+}
+
+TEST(RemoteFaults, TextsThatSteerATerminal) {
+  const auto fault = [](const Request& request, Reply reply) -> std::optional<Reply> {
+    if (auto* opened = std::get_if<Opened>(&reply)) opened->description = "Fake\n\x1b[2J";
+    if (std::holds_alternative<Advance>(request)) return Failed{"one\ntwo"};
+    return reply;
+  };
+  EXPECT_EQ(error_of(fault, advance), "the simulator Fake??[2J failed: one?two");
+}
+
+TEST(RemoteFaults, AnotherStartThanTheWorldHas) {
+  const auto move = [](State& state) { state.bodies[0].p_WB.x += 0.1; };
+  const auto nothing = [](Simulator&) {};
+  EXPECT_THAT(error_of(spoil<Open, Opened>([&](Opened& opened) { move(opened.state); }), nothing),
+              AllOf(HasSubstr("Fake 1.0"), HasSubstr("begins at")));
+  EXPECT_THAT(error_of(spoil<Reset, State>(move), [](Simulator& s) { s.reset(1); }),
+              HasSubstr("begins at"));
+}
+
+TEST(RemoteFaults, AStateThatIsOutOfReach) {
+  const auto fault = spoil<Advance, State>([](State& state) { state.bodies[0].p_WB.x = 2e5; });
+  EXPECT_THAT(error_of(fault, advance), AllOf(HasSubstr("Fake 1.0"), HasSubstr("beyond 1e5 m")));
+}
+
 /// Hangs up in the place of its answer to Advance.
 std::optional<Reply> hang_up(const Request& request, Reply reply) {
   if (std::holds_alternative<Advance>(request)) return std::nullopt;

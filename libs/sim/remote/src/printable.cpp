@@ -1,0 +1,25 @@
+#include "printable.h"
+
+namespace tether::sim {
+namespace {
+
+unsigned byte_at(const std::string& text, std::size_t i) {
+  return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+}
+
+}  // namespace
+
+std::string printable(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const unsigned byte = byte_at(text, i), next = byte_at(text, i + 1);
+    // U+0080 to U+009F steer terminals too.
+    const bool is_second_set = byte == 0xC2 && next >= 0x80 && next < 0xA0;
+    if (is_second_set) ++i;
+    out += is_second_set || byte < 0x20 || byte == 0x7F ? '?' : text[i];
+  }
+  const auto begin = out.find_first_not_of(' '), end = out.find_last_not_of(' ');
+  return begin == std::string::npos ? "" : out.substr(begin, end - begin + 1);
+}
+
+}  // namespace tether::sim
