@@ -82,12 +82,24 @@ TEST_F(StandInGazebo, AWorldThatIsTooNewForItIsABadFile) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
 }
 
+TEST_F(StandInGazebo, AWorldThatItReadsOtherwiseIsABadFile) {
+  const auto world = folder_ / "actor.sdf";
+  write_text(world, substituted(read_text(hover_world()),
+                                {{"</world>", "<actor name=\"walker\"/></world>"}}));
+  const auto scenario =
+      write_hover_scenario(folder_.path(), "good", {{hover_world().string(), world.string()}});
+  const Output output = run(gazebo_run(scenario, folder_ / "out", stand_in(""), mark_));
+  EXPECT_EQ(output.code, 2);
+  EXPECT_THAT(output.err, AllOf(HasSubstr(world.string() + ":"), HasSubstr("<actor>")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+}
+
 // ---- What fails by itself
 
 struct Fault {
   std::string mode;  ///< of stand_in_simulator.cpp
   std::string end;
-  std::vector<std::string> reason;  ///< parts of it
+  std::vector<std::string> reason;  ///< parts of it, each once
 };
 
 void PrintTo(const Fault& fault, std::ostream* out) {
@@ -102,7 +114,10 @@ TEST_P(FailingGazebo, EndsTheRunWithItsReason) {
   const Output output =
       run(command(stand_in(fault.mode, fault.mode == "silent" ? limit : Variables())));
   const std::string reason = expect_failure(output, fault.end);
-  for (const std::string& part : fault.reason) EXPECT_THAT(reason, HasSubstr(part));
+  for (const std::string& part : fault.reason) {
+    EXPECT_THAT(reason, HasSubstr(part));
+    EXPECT_EQ(reason.find(part), reason.rfind(part)) << reason;
+  }
   EXPECT_LT(output.wall.count(), 30);
   if (fault.end != "simulator_lost") return;
   EXPECT_EQ(read_record(folder_ / "out").damage, "");
@@ -117,11 +132,13 @@ const Fault kFaults[] = {
     {"crash_at_start", "setup_failed", {"gzserver was ended by signal 11", "the wheels came off"}},
     {"silent", "setup_failed", {"gzserver has not come up in 3 s", "TETHER_GAZEBO_START_LIMIT_S"}},
     {"misread", "setup_failed", {"hover.sdf: Unable to find uri[model://wheels]"}},
+    {"no_plugin", "setup_failed", {"Failed to load plugin libwheels.so: no such file"}},
     {"no_gl", "setup_failed", {"rendering is off"}},
     {"port_in_use", "setup_failed", {"the port of http://127.0.0.1:", "is in use"}},
     {"exit_in_flight", "simulator_lost", {"gzserver exited with code 5", "I have had enough"}},
     {"crash_in_flight", "simulator_lost", {"gzserver was ended by signal 11", "wheels came off"}},
     {"refuse_in_flight", "simulator_lost", {"the world has come to its end"}},
+    {"old_words", "simulator_lost", {"gzserver was ended by signal 6"}},
     // hang_limit_s of the scenario.
     {"stop_in_flight", "simulator_lost", {"has not answered for 2 s"}},
 };
@@ -134,6 +151,17 @@ TEST_F(StandInGazebo, APortOfTheUsersThatIsInUseIsNamed) {
       run(command(stand_in("port_in_use", {{"GAZEBO_MASTER_URI", "http://localhost:11345"}})));
   EXPECT_THAT(expect_failure(output, "setup_failed"),
               AllOf(HasSubstr("http://localhost:11345"), HasSubstr("unset GAZEBO_MASTER_URI")));
+}
+
+TEST_F(StandInGazebo, IsNotStartedForAMasterElsewhere) {
+  const Output output = run(command(stand_in("", {{"GAZEBO_MASTER_URI", "foo"}})));
+  EXPECT_THAT(expect_failure(output, "setup_failed"), HasSubstr("GAZEBO_MASTER_URI is \"foo\""));
+}
+
+TEST_F(StandInGazebo, WordsFromBeforeTheFlightAreNotItsLast) {
+  const Output output = run(command(stand_in("old_words")));
+  EXPECT_THAT(expect_failure(output, "simulator_lost"), Not(HasSubstr("an old line")));
+  EXPECT_THAT(read_text(folder_ / "out/simulator.log"), HasSubstr("an old line"));
 }
 
 // ---- What ends although it does not want to

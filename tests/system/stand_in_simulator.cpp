@@ -37,12 +37,16 @@ constexpr tether::SimTime kFailsAt = tether::from_ns<tether::SimTime>(500'000'00
   std::exit(code);
 }
 
+[[noreturn]] void end_by(int signal) {
+  prctl(PR_SET_DUMPABLE, 0);  // no core file
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+  std::abort();
+}
+
 [[noreturn]] void crash() {
   std::fprintf(stderr, "the wheels came off\n");
-  prctl(PR_SET_DUMPABLE, 0);  // no core file
-  std::signal(SIGSEGV, SIG_DFL);
-  std::raise(SIGSEGV);
-  std::abort();
+  end_by(SIGSEGV);
 }
 
 [[noreturn]] void wait_for_ever() {
@@ -95,7 +99,11 @@ protocol::Reply answer(const protocol::Advance& advance) {
     if (kMode == "crash_in_flight") crash();
     if (kMode == "exit_in_flight") say_and_exit("[Err] [World.cc:1] I have had enough", 5);
     if (kMode == "stop_in_flight") std::raise(SIGSTOP);
-    if (kMode == "refuse_in_flight") return protocol::Failed{"the world has come to its end"};
+    if (kMode == "old_words") end_by(SIGABRT);
+    if (kMode == "refuse_in_flight") {
+      std::fputs("tether: the world has come to its end\n", stderr);
+      return protocol::Failed{"the world has come to its end"};
+    }
   }
   return state(steps);
 }
@@ -119,6 +127,9 @@ void serve(protocol::Connection& host) {
   while (const auto request = host.receive_request()) {
     const auto reply = std::visit([](const auto& r) { return answer(r); }, *request);
     if (!host.send(reply)) return;
+    // As Tether's plugin does.
+    if (std::holds_alternative<protocol::Failed>(reply) && kMode == "refuse_in_flight")
+      std::exit(1);
   }
 }
 
@@ -147,6 +158,13 @@ const std::map<std::string, std::function<void()>> kModesAtStart = {
     // As libsdformat says it, of a world that Gazebo then goes on without.
     {"misread",
      [] { std::fputs("Error Code 12 Msg: Unable to find uri[model://wheels]\n", stderr); }},
+    // As Gazebo says it of a plugin of the world, which it goes on without.
+    {"no_plugin",
+     [] {
+       std::fputs("[Err] [Plugin.hh:178] Failed to load plugin libwheels.so: no such file\n",
+                  stderr);
+     }},
+    {"old_words", [] { std::fputs("[Err] [World.cc:1] an old line\n", stderr); }},
     {"stubborn", [] { std::signal(SIGINT, SIG_IGN); }},
     {"child",
      [] {

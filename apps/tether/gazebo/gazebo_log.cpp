@@ -41,10 +41,13 @@ std::string last_words_of_gazebo(const std::string& log) {
   return last == lines.rend() ? "" : *last;
 }
 
-std::string plugin_error(const std::string& log, const std::string& plugin) {
-  for (const std::string& line : plain_lines(log)) {
-    const auto what = line.find("Failed to load plugin " + plugin);
-    if (what != std::string::npos) return line.substr(what);
+// A line that it still writes is left for later.
+std::string plugin_error(const std::string& log) {
+  static const std::regex error(
+      "(Failed to (load plugin|resolve) .*|.*detected an incorrect plugin type.*)");
+  for (const std::string& line : plain_lines(log.substr(0, log.rfind('\n') + 1))) {
+    std::smatch match;
+    if (std::regex_search(line, match, error)) return match[0];
   }
   return "";
 }

@@ -10,8 +10,8 @@ namespace tether::app {
 /// where there is no sound card. Empty: none.
 std::string last_words_of_gazebo(const std::string& log);
 
-/// Why it goes on without that plugin; empty: it does not.
-std::string plugin_error(const std::string& log, const std::string& plugin);
+/// Why it goes on without a plugin, Tether's or one of the world's; empty: it does not.
+std::string plugin_error(const std::string& log);
 
 /// Why it cannot draw; empty: it has not said so. Xlib ends a program from within after an error,
 /// and Gazebo may hang in that.

@@ -2,10 +2,12 @@
 
 #include "captured_run.h"
 #include "gazebo_log.h"
+#include "gazebo_master.h"
 #include "interrupt.h"
 
 #include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <string_view>
@@ -41,12 +43,6 @@ Duration start_limit_of_user() {
     throw Error(ErrorCode::kSetup,
                 fmt::format("{} is \"{}\": a number of seconds is expected", kStartLimit, text));
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
-}
-
-/// The port of GAZEBO_MASTER_URI is the user's choice, so that his own tools find the server.
-std::string master_of_user() {
-  const char* given = std::getenv("GAZEBO_MASTER_URI");
-  return given ? given : "";
 }
 
 /// A port that nobody listens on, as yet.
@@ -89,6 +85,7 @@ bool holds(const std::string& text, std::string_view part) {
 GazeboServer::GazeboServer(GazeboRun run)
     : run_(std::move(run)),
       limit_(start_limit_of_user()),
+      users_master_(master_of_user()),
       started_(Steady::now()),
       folder_("tether-gazebo-") {
   make_empty(run_.log);
@@ -115,14 +112,15 @@ void GazeboServer::wait_for_display() {
 
 void GazeboServer::start_gzserver() {
   said_before_ = read_whole(run_.log).size();
-  master_ = master_of_user();
+  master_ = users_master_;
   if (master_.empty()) master_ = fmt::format("http://127.0.0.1:{}", free_port());
   const std::string home = folder_.path();
   ChildCommand command{.arguments = run_.install.command,
                        .environment = run_.install.environment,
                        .log = run_.log,
                        .appends = true,
-                       .working_folder = run_.world.parent_path(),
+                       // Gazebo looks there for any relative path: nothing of the user's.
+                       .working_folder = home,
                        .end_signal = SIGINT};
   for (const std::string& word :
        {std::string("--verbose"), std::string("--lockstep"), std::string("-s"),
@@ -155,7 +153,7 @@ std::unique_ptr<sim::protocol::Connection> GazeboServer::connect() {
     const auto why = why_not_up();
     if (!why) continue;
     // Somebody took the port between our look at it and gzserver's.
-    if (!has_port_in_use() || !master_of_user().empty() || ++attempt > kPortAttempts) fail(*why);
+    if (!has_port_in_use() || !users_master_.empty() || ++attempt > kPortAttempts) fail(*why);
     start_gzserver();
   }
 }
@@ -181,7 +179,7 @@ bool GazeboServer::has_port_in_use() {
 
 std::optional<std::string> GazeboServer::why_not_up() {
   const std::string log = read_whole(run_.log);
-  if (const std::string why = plugin_error(log, run_.install.plugin); !why.empty())
+  if (const std::string why = plugin_error(log); !why.empty())
     return fmt::format("{} (see {})", why, run_.log.string());
   if (const std::string why = drawing_error(log); x_server_ && !why.empty())
     return fmt::format("it cannot draw for the cameras: {} (see {})", why, run_.log.string());
@@ -189,6 +187,10 @@ std::optional<std::string> GazeboServer::why_not_up() {
 }
 
 std::optional<std::string> GazeboServer::lost() {
+  return end_beyond("");
+}
+
+std::optional<std::string> GazeboServer::end_beyond(const std::string& said) {
   if (x_server_)
     if (const auto end = x_server_->end())
       return fmt::format("{}; see {}", *end, run_.log.string());
@@ -199,28 +201,42 @@ std::optional<std::string> GazeboServer::lost() {
         "gzserver {}, because the port of {} is in use (by another gzserver?); end "
         "what uses it, or unset GAZEBO_MASTER_URI",
         exit->description, master_);
-  const std::string last = last_words_of_gazebo(read_whole(run_.log));
+  const std::string last = last_words(*exit);
   return fmt::format("gzserver {}; {}", exit->description,
-                     last.empty()
+                     last.empty() || holds(said, last)
                          ? "see " + run_.log.string()
                          : fmt::format("its last words in {}: {}", run_.log.string(), last));
+}
+
+/// Who is killed says nothing of it; nor does what was said before the world was open.
+std::string GazeboServer::last_words(const ChildExit& exit) const {
+  if (exit.code == 128 + SIGKILL) return "";
+  std::string last = last_words_of_gazebo(read_whole(run_.log).substr(said_before_));
+  constexpr std::string_view kOwn = "tether: ";
+  if (last.starts_with(kOwn)) last.erase(0, kOwn.size());
+  return last;
 }
 
 std::string GazeboServer::post_mortem(const std::string& said) {
   gzserver_->wait(kEndLimit);
   const auto errors = reading_errors(read_whole(run_.log));
-  if (!errors.empty())
+  if (!errors.empty() && !holds(said, errors.front()))
     return fmt::format("; Gazebo said, in {}: {}", run_.log.string(), errors.front());
-  const auto end = lost();
+  const auto& exit = gzserver_->poll();
+  if (exit && holds(said, "gzserver " + exit->description)) return "";
+  const auto end = end_beyond(said);
   return end && !holds(said, *end) ? "; " + *end : "";
 }
 
-void GazeboServer::check_world() const {
-  const auto errors = reading_errors(read_whole(run_.log));
-  if (errors.empty()) return;
-  throw Error(ErrorCode::kSetup,
-              fmt::format("Gazebo cannot read all of {}: {} (see {})", run_.world.string(),
-                          errors.front(), run_.log.string()));
+void GazeboServer::check_world() {
+  const std::string log = read_whole(run_.log);
+  auto errors = reading_errors(log);
+  if (const std::string why = plugin_error(log); !why.empty()) errors.push_back(why);
+  if (!errors.empty())
+    throw Error(ErrorCode::kSetup,
+                fmt::format("Gazebo cannot read all of {}: {} (see {})", run_.world.string(),
+                            errors.front(), run_.log.string()));
+  said_before_ = log.size();
 }
 
 void GazeboServer::fail(const std::string& what) const {

@@ -50,24 +50,28 @@ class GazeboServer {
   /// After it failed: what came of them that `said` does not say yet, with "; " before; empty:
   /// nothing is known.
   std::string post_mortem(const std::string& said);
-  /// @throws Error(kSetup) when there was something in the world that it could not read.
-  void check_world() const;
+  /// To be called once the world is open.
+  /// @throws Error(kSetup) when there was something in it that it could not read or load.
+  void check_world();
 
  private:
   void start_gzserver();
   void wait_for_display();
   bool has_port_in_use();
   void look() const;
+  std::optional<std::string> end_beyond(const std::string& said);
+  std::string last_words(const ChildExit& exit) const;
   [[noreturn]] void fail(const std::string& what) const;
 
   GazeboRun run_;
   Duration limit_;
+  std::string users_master_;  // URI, or empty
   std::chrono::steady_clock::time_point started_;
   PrivateFolder folder_;
   std::unique_ptr<XServer> x_server_;
   std::unique_ptr<ChildProcess> gzserver_;
   std::string master_;           // its URI
-  std::size_t said_before_ = 0;  // size of the log when gzserver was started
+  std::size_t said_before_ = 0;  // size of the log when gzserver was started, or the world open
 };
 
 }  // namespace tether::app

@@ -37,15 +37,24 @@ TEST(LastWordsOfGazebo, LeaveOutWhatIsSaidWithoutASoundCard) {
             "gzserver: terminated");
 }
 
-TEST(PluginError, IsThatOfTheOnePlugin) {
-  const std::string log =
-      kStart +
-      "\x1b[1;31m[Err] [Plugin.hh:178] \x1b[0m\x1b[1;31mFailed to load plugin "
-      "\x1b[0m\x1b[1;31m/lib/a.so\x1b[0m\x1b[1;31m: \x1b[0m\x1b[1;31m/lib/a.so: file "
-      "too short\x1b[0m\n";
-  EXPECT_EQ(plugin_error(log, "/lib/a.so"),
+std::string plugin_line(const std::string& plugin) {
+  return "\x1b[1;31m[Err] [Plugin.hh:178] \x1b[0m\x1b[1;31mFailed to load plugin "
+         "\x1b[0m\x1b[1;31m" +
+         plugin + "\x1b[0m\x1b[1;31m: \x1b[0m\x1b[1;31m" + plugin + ": file too short\x1b[0m\n";
+}
+
+TEST(PluginError, IsThatOfAnyPlugin) {
+  EXPECT_EQ(plugin_error(kStart), "");
+  EXPECT_EQ(plugin_error(kStart + plugin_line("/lib/a.so")),
             "Failed to load plugin /lib/a.so: /lib/a.so: file too short");
-  EXPECT_EQ(plugin_error(log, "/lib/b.so"), "");
+  EXPECT_EQ(plugin_error(plugin_line("libworld.so") + plugin_line("/lib/a.so")),
+            "Failed to load plugin libworld.so: libworld.so: file too short");
+  EXPECT_EQ(plugin_error("[Err] [Plugin.hh:195] Failed to resolve RegisterPlugin: no symbol\n"),
+            "Failed to resolve RegisterPlugin: no symbol");
+}
+
+TEST(PluginError, IsAWholeLine) {
+  EXPECT_EQ(plugin_error(kStart + "[Err] [Plugin.hh:178] Failed to load plugin libw"), "");
 }
 
 TEST(DrawingError, IsWhatXlibEndsAProgramWith) {
