@@ -1,4 +1,4 @@
-#include "../src/printable.h"
+#include "printable.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "../src/checked_state.h"
+#include "checked_state.h"
 
 #include <functional>
 #include <string>
