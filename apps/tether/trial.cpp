@@ -233,8 +233,7 @@ experiment::TrialResult judge(const TrialSpec& spec, const coordinator::RunRepor
   const record::Record record = record::read_record(spec.folder / kRecordFile);
   auto result = experiment::make_result(spec.scenario, spec.condition, record, task_ends(report));
   const audit::Verdict verdict = audit::audit(record);
-  const std::string text = audit::to_text(verdict, 0);
-  result.audit = {verdict.passed(), text.substr(0, text.find('\n'))};
+  result.audit = {verdict.passed(), audit::to_line(verdict)};
   if (result.outcome == experiment::Outcome::kFailed)
     experiment::invalidate(result, report.reason);
   else if (!verdict.passed())

@@ -58,7 +58,7 @@ void check_rows(const record::Record& record, Report& report) {
     if (row.info->concurrent) {
       continue;
     }
-    History history;
+    History history{.last_wall_at_release = record.header.wall_at_start};
     for (const Entry* entry : row.interactions) {
       check_et(*entry, history, report);
       check_growth(*entry, *row.info, history, report);

@@ -18,8 +18,14 @@ using Stop = record::Logged<record::Stop>;
 // One concurrent SUT: what it asked, in the order in which it did, and where it stood still.
 class ConcurrentCheck {
  public:
-  ConcurrentCheck(const SutRow& row, bool finished, const Boundaries& grid, Report& report)
-      : row_(row), finished_(finished), grid_(grid), report_(report), requests_(row.interactions) {
+  ConcurrentCheck(const SutRow& row, const record::Record& record, const Boundaries& grid,
+                  Report& report)
+      : row_(row),
+        wall_at_start_(record.header.wall_at_start),
+        finished_(record.footer && record.footer->end == "finished"),
+        grid_(grid),
+        report_(report),
+        requests_(row.interactions) {
     std::ranges::stable_sort(requests_, {},
                              [](const Entry* entry) { return entry->message.sequence; });
   }
@@ -185,16 +191,19 @@ class ConcurrentCheck {
       if (stops > 0)
         goes_on[stops - 1] = std::max(goes_on[stops - 1], entry->message.wall_at_release);
     }
+    if (!row_.stops.empty()) check_growth(ExecTime{}, wall_at_start_, *row_.stops.front());
     for (std::size_t i = 1; i < row_.stops.size(); ++i) {
-      const record::Stop& stop = row_.stops[i]->message;
       const record::Stop& before = row_.stops[i - 1]->message;
-      if (!before.reply_at || stop.wall == WallTime{} || before.wall == WallTime{}) continue;
-      const Wide grown = wide(stop.at) - wide(before.at);
-      const Wide elapsed = wide(stop.wall) - wide(goes_on[i - 1]);
-      if (const auto fault = growth_fault(*row_.info, grown, elapsed)) {
-        add(5, *row_.stops[i], *fault);
-      }
+      if (!before.reply_at || before.wall == WallTime{}) continue;
+      check_growth(before.at, goes_on[i - 1], *row_.stops[i]);
     }
+  }
+
+  void check_growth(ExecTime since, WallTime went_on, const Stop& stop) {
+    if (stop.message.wall == WallTime{} || went_on == WallTime{}) return;
+    const Wide grown = wide(stop.message.at) - wide(since);
+    const Wide elapsed = wide(stop.message.wall) - wide(went_on);
+    if (const auto fault = growth_fault(*row_.info, grown, elapsed)) add(5, stop, *fault);
   }
 
   void add(int rule, const Stop& stop, std::string what) {
@@ -202,6 +211,7 @@ class ConcurrentCheck {
   }
 
   const SutRow& row_;
+  WallTime wall_at_start_;
   bool finished_;
   const Boundaries& grid_;
   Report& report_;
@@ -211,10 +221,9 @@ class ConcurrentCheck {
 }  // namespace
 
 void check_stops(const record::Record& record, const Boundaries& grid, Report& report) {
-  const bool finished = record.footer && record.footer->end == "finished";
   for (const auto& [uav, row] : rows_of(record)) {
     if (row.info->concurrent) {
-      ConcurrentCheck(row, finished, grid, report).run();
+      ConcurrentCheck(row, record, grid, report).run();
     }
   }
 }

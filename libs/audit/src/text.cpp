@@ -23,7 +23,7 @@ std::string headline(const Verdict& verdict) {
                      how, verdict.interactions, to_seconds(verdict.largest_grid_error) * 1e3);
 }
 
-std::string line(const Finding& finding) {
+std::string words(const Finding& finding) {
   std::string where = fmt::format("ST {:.6f} s", to_seconds(finding.at));
   if (!finding.uav.empty()) {
     where += fmt::format(", {}", finding.uav);
@@ -32,10 +32,17 @@ std::string line(const Finding& finding) {
     where += fmt::format(" #{}", finding.sequence);
   }
   const std::string rule = finding.rule == 0 ? "record" : fmt::format("rule {}", finding.rule);
-  return fmt::format("  {} ({}): {}\n", rule, where, finding.what);
+  return fmt::format("{} ({}): {}", rule, where, finding.what);
 }
 
 }  // namespace
+
+std::string to_line(const Verdict& verdict) {
+  std::string text = headline(verdict);
+  text.pop_back();
+  if (!verdict.findings.empty()) text += ": " + words(verdict.findings.front());
+  return text;
+}
 
 std::string to_text(const Verdict& verdict, std::size_t max_findings) {
   std::string text = headline(verdict);
@@ -44,7 +51,7 @@ std::string to_text(const Verdict& verdict, std::size_t max_findings) {
   }
   const std::size_t shown = std::min(max_findings, verdict.findings.size());
   for (std::size_t i = 0; i < shown; ++i) {
-    text += line(verdict.findings[i]);
+    text += fmt::format("  {}\n", words(verdict.findings[i]));
   }
   const std::size_t more = verdict.findings.size() - shown + verdict.further_findings;
   if (more > 0) {

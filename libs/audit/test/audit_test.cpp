@@ -110,6 +110,47 @@ TEST(Audit, EtByAWallClockGrowsNoFasterThanTheHostsWallTime) {
   EXPECT_EQ(growth_findings(wall_clocked(milliseconds(1) + Duration(1), Duration(0))), 2U);
 }
 
+std::size_t too_much(const Record& record) {
+  const Verdict verdict = audit(record);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(verdict.findings, [](const Finding& finding) {
+        return finding.what.find(" ns too much") != std::string::npos;
+      }));
+}
+
+// All SUTs go on when the run starts.
+TEST(Audit, TheFirstRequestIsComparedWithTheStart) {
+  Record record = wall_clocked(Duration(0), Duration(0));
+  for (Entry& entry : record.interactions) {
+    entry.message.request_at += std::chrono::hours(1);
+    entry.message.reply_at += std::chrono::hours(1);
+  }
+  EXPECT_EQ(too_much(record), 0U);
+  record.header.wall_at_start = from_ns<WallTime>(4'999'000'000);
+  EXPECT_EQ(too_much(record), 1U);
+  record.header.wall_at_start = from_ns<WallTime>(5'000'000'000) - std::chrono::hours(1);
+  EXPECT_EQ(too_much(record), 0U);
+}
+
+TEST(Audit, CpuTimeGrowsNoFasterThanOnAllCoresAtOnce) {
+  Record record = wall_clocked(Duration(1'000'000'000), Duration(1'000'000));
+  record.header.suts[0].clock = "cpu";
+  EXPECT_EQ(growth_findings(record), 0U);
+  record = wall_clocked(std::chrono::hours(1), Duration(1'000'000'000));
+  record.header.suts[0].clock = "cpu";
+  EXPECT_EQ(growth_findings(record), 2U);
+}
+
+TEST(Audit, ALineNamesTheFirstFinding) {
+  Verdict verdict{.complete = true, .interactions = 3};
+  verdict.findings = {{5, "uav1", 2, {}, "ET grew by 3 ns too much"}, {4, "uav1", 3, {}, "b"}};
+  EXPECT_EQ(to_line(verdict),
+            "FAILED: 2 findings in 3 interactions: rule 5 (ST 0.000000 s, uav1 #2): ET grew by 3 "
+            "ns too much");
+  verdict.findings.clear();
+  EXPECT_EQ(to_line(verdict) + "\n", to_text(verdict));
+}
+
 TEST(Audit, EtIsComparedWithWallTimeOnlyWhereBothSayTheSame) {
   const Duration s(1'000'000'000);
   const Record fast = wall_clocked(2 * s, s);

@@ -22,6 +22,18 @@ constexpr Duration kWatchPeriod = std::chrono::milliseconds(20);
 constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
 // How often the record goes to its file, so that a killed run leaves what it had.
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
+// How long nothing may move before it is said who waits for whom.
+constexpr Duration kStillPeriod = std::chrono::seconds(1);
+// The CPU time of a process adds up what runs on all its cores; no machine has more.
+constexpr double kMostCores = 1024.0;
+
+/// The most ET per second of WT by the clock that a SUT says it has; none where it is the
+/// coordinator's own, or a script's.
+std::optional<double> fastest_et(const link::Hello& hello) {
+  if (hello.clock == link::ClockKind::kWall) return hello.cpu_factor;
+  if (hello.clock == link::ClockKind::kCpu) return hello.cpu_factor * kMostCores;
+  return std::nullopt;
+}
 
 SensorState make_sensor(const sim::Uav& uav, const sim::Sensor& sensor,
                         const uav::SensorTiming& timing, std::uint64_t seed) {
@@ -102,7 +114,7 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
   options_.ground_truth_period = std::max(options_.ground_truth_period, grid_.dt());
   for (std::size_t i = 0; i < world().uavs.size(); ++i)
     sessions_.push_back(make_session(i, world().uavs[i], options_.uavs[i], options_.seed));
-  started_ = watched_ = flushed_ = host_clock_();
+  started_ = watched_ = flushed_ = moved_ = host_clock_();
 }
 
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
@@ -127,9 +139,9 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
 // Every SUT has joined: ST and every ET begin at 0.
 void Coordinator::Impl::start() {
   ask_simulator([&](sim::Simulator& s) { s.reset(options_.seed); });
+  started_ = moved_ = host_clock_();
   log_.begin(make_header());
   running_ = true;
-  started_ = host_clock_();
   if (options_.real_time_factor > 0.0)
     pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid_.dt()), started_);
   for (Session& session : sessions_) {
@@ -138,6 +150,8 @@ void Coordinator::Impl::start() {
     session.last_word = started_;
     if (session.hello.clock == link::ClockKind::kUnstamped)
       session.timer.emplace(ExecTime{}, started_);
+    if (const auto rate = fastest_et(session.hello))
+      session.witness.emplace(*rate, ExecTime{}, started_);
   }
   at_boundary();
   for (const Session& session : sessions_)
@@ -169,6 +183,7 @@ bool Coordinator::Impl::advance() {
   }
   ask_simulator([&](sim::Simulator& s) { s.advance_to(target); });
   st_ = target;
+  moved_ = now;
   at_boundary();
   release_ready();
   if (st_ >= time_limit_ && !ended_)
@@ -278,7 +293,7 @@ void Coordinator::Impl::watch() {
   if (!ended_) check_words(now);
   if (hooks_.should_stop && !ended_)
     if (const auto stop = hooks_.should_stop()) end(stop->first, stop->second);
-  if (hooks_.on_status) hooks_.on_status(status());
+  if (hooks_.on_status) hooks_.on_status(status(now));
 }
 
 // It owes us the next word; a SUT that waits for a reply of ours does not.
@@ -294,21 +309,45 @@ void Coordinator::Impl::check_words(WallTime now) {
                  fmt::format("no SUT joined for UAV \"{}\" within {} s", session.uav_name,
                              to_seconds(options_.connect_limit)));
     if (running_ && is_computing(session) && now - session.last_word > options_.hang_limit)
-      return end(
-          RunEnd::kSutHung,
-          fmt::format("SUT \"{}\" of UAV \"{}\" gave no word for {} s (limit), last at ET {:.6f} s",
-                      session.hello.sut, session.uav_name, to_seconds(options_.hang_limit),
-                      to_seconds(barrier_.bound(session.uav))));
+      return end(RunEnd::kSutHung,
+                 fmt::format("SUT \"{}\" of UAV \"{}\" gave no word for {} s (limit){}",
+                             session.hello.sut, session.uav_name, to_seconds(options_.hang_limit),
+                             tied() ? ": " + diagnosis(now) : ""));
   }
 }
 
-RunStatus Coordinator::Impl::status() const {
+Party Coordinator::Impl::party(const Session& session, WallTime now) const {
+  Party party{.sut = session.hello.sut,
+              .uav = session.uav_name,
+              .computing = is_computing(session),
+              .bound = barrier_.bound(session.uav),
+              .silence = now - session.last_word};
+  for (const PendingInteraction& pending : session.open)
+    party.reply_at = std::min(party.reply_at.value_or(ExecTime::max()), pending.entry.reply_at);
+  return party;
+}
+
+std::string Coordinator::Impl::diagnosis(WallTime now) const {
+  std::vector<Party> parties;
+  for (const Session& session : sessions_)
+    if (!session.left) parties.push_back(party(session, now));
+  return who_blocks_whom(st_, parties);
+}
+
+// Said only when nothing has moved for a while.
+std::string Coordinator::Impl::blocked(WallTime now) const {
+  if (!running_ || ended_ || !tied() || now - moved_ < kStillPeriod) return "";
+  return diagnosis(now);
+}
+
+RunStatus Coordinator::Impl::status(WallTime now) const {
   RunStatus status{.st = st_,
                    .et = std::nullopt,
-                   .wall = running_ ? host_clock_() - started_ : Duration(0),
+                   .wall = running_ ? now - started_ : Duration(0),
                    .interactions = log_.figures().interactions,
                    .images = log_.figures().images,
-                   .waiting_for = {}};
+                   .waiting_for = {},
+                   .blocked = blocked(now)};
   for (const Session& session : sessions_) {
     if (session.joined()) ++status.joined;
     if (running_ && tied())

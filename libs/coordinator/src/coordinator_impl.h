@@ -1,6 +1,7 @@
 #pragma once
 
 #include "command_queue.h"
+#include "diagnosis.h"
 #include "run_log.h"
 #include "session.h"
 
@@ -53,9 +54,12 @@ class Coordinator::Impl final : public link::ServerEvents {
   void watch();
   bool is_computing(const Session& session) const;
   void check_words(WallTime now);
+  Party party(const Session& session, WallTime now) const;
+  std::string diagnosis(WallTime now) const;
+  std::string blocked(WallTime now) const;
   void end(RunEnd how, const std::string& reason);
   RunReport close_run();
-  RunStatus status() const;
+  RunStatus status(WallTime now) const;
 
   // Incoming.
 
@@ -78,11 +82,14 @@ class Coordinator::Impl final : public link::ServerEvents {
   void join(link::PeerId peer, const link::Hello& hello);
   void on_request(Session& session, const link::Request& request, WallTime now);
   bool is_word(const Session& session, const link::Message& message) const;
-  void on_progress(Session& session, const link::Progress& progress);
-  void on_stop(Session& session, ExecTime at);
+  void on_progress(Session& session, const link::Progress& progress, WallTime now);
+  void on_stop(Session& session, ExecTime at, WallTime now);
   static std::optional<ExecTime> earliest_due(const Session& session, ExecTime at);
   void break_off(Session& session, link::Refusal::Reason reason, const std::string& sent);
-  std::optional<std::string> fault_of(const Session& session, const link::Request& request) const;
+  std::optional<std::string> fault_of(const Session& session, const link::Request& request,
+                                      WallTime now) const;
+  std::optional<std::string> honesty_fault(const Session& session, ExecTime stamp,
+                                           WallTime now) const;
   std::optional<std::string> order_fault(const Session& session,
                                          const link::Request& request) const;
   std::optional<std::string> read_fault(const Session& session, const link::ReadSensor& read) const;
@@ -142,6 +149,7 @@ class Coordinator::Impl final : public link::ServerEvents {
   WallTime started_;      // construction, then the moment when every SUT had joined
   WallTime flushed_;      // when the record last went to its file
   WallTime watched_;      // when the limits of WT were last looked at
+  WallTime moved_;        // when ST last moved, or a reply last left
   std::optional<std::pair<RunEnd, std::string>> ended_;
   std::exception_ptr failure_;  // thrown in a callback, to be thrown again in run()
 };

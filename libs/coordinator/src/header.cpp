@@ -73,6 +73,7 @@ record::Header Coordinator::Impl::make_header() const {
   header.step = grid_.dt();
   header.ground_truth_period = options_.ground_truth_period;
   header.real_time_factor = options_.real_time_factor;
+  header.wall_at_start = started_;
   for (const Session& session : sessions_) {
     header.suts.push_back({.uav = session.uav_name,
                            .sut = session.hello.sut,

@@ -55,7 +55,7 @@ void Coordinator::Impl::on_message(link::PeerId peer, link::Message message) {
     if (const auto* request = std::get_if<link::Request>(&message))
       return on_request(*session, *request, now);
     if (const auto* progress = std::get_if<link::Progress>(&message))
-      return on_progress(*session, *progress);
+      return on_progress(*session, *progress, now);
     if (const auto* note = std::get_if<link::Annotation>(&message))
       return log_.annotation(st_, {session->uav_name, note->at, note->topic, note->json});
     break_off(*session, link::Refusal::Reason::kBadMessage,
@@ -77,8 +77,10 @@ void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
     hooks_.on_refused(fmt::format("refused {}: {}", remote_[peer], failure.message));
   remote_.erase(peer);
   if (!session || session->left) return;
+  const std::string where =
+      running_ && tied() ? "; " + whereabouts(party(*session, host_clock_())) : "";
   end(RunEnd::kSutLost,
-      fmt::format("lost the SUT of UAV \"{}\": {}", session->uav_name, failure.message));
+      fmt::format("lost the SUT of UAV \"{}\": {}{}", session->uav_name, failure.message, where));
 }
 
 void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
@@ -113,9 +115,12 @@ bool Coordinator::Impl::is_word(const Session& session, const link::Message& mes
   return progress->reached > barrier_.bound(session.uav);
 }
 
-void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress) {
+void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress,
+                                    WallTime now) {
   if (!running_ || !tied() || !is_stamp(progress.reached)) return;
-  if (progress.stopped) return on_stop(session, progress.reached);
+  if (const auto fault = honesty_fault(session, progress.reached, now))
+    return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
+  if (progress.stopped) return on_stop(session, progress.reached, now);
   barrier_.progress(session.uav, progress.reached);
   release_ready();
 }
@@ -132,7 +137,7 @@ std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session, 
 }
 
 // All of a concurrent SUT stands still: replies that are due by then may leave.
-void Coordinator::Impl::on_stop(Session& session, ExecTime at) {
+void Coordinator::Impl::on_stop(Session& session, ExecTime at, WallTime now) {
   const auto reason = link::Refusal::Reason::kBadMessage;
   if (!session.is_concurrent())
     return break_off(session, reason, "a stop, which is for concurrent SUTs");
@@ -140,15 +145,29 @@ void Coordinator::Impl::on_stop(Session& session, ExecTime at) {
     return break_off(session, reason,
                      fmt::format("a stop at ET {} ns, although it had reached {} ns", to_ns(at),
                                  to_ns(reached)));
-  log_.stop(st_, {session.uav_name, at, earliest_due(session, at), host_clock_()});
+  log_.stop(st_, {session.uav_name, at, earliest_due(session, at), now});
   barrier_.stop(session.uav, at);
   release_ready();
 }
 
+/// A stamp ahead of all that can have gone by would let the simulation run on unhindered.
+std::optional<std::string> Coordinator::Impl::honesty_fault(const Session& session, ExecTime stamp,
+                                                            WallTime now) const {
+  if (!tied() || !session.witness) return std::nullopt;
+  const Duration excess = session.witness->excess(stamp, now);
+  if (excess == Duration(0)) return std::nullopt;
+  return fmt::format(
+      "a time stamp of ET {:.6f} s, which is {:.6f} s ahead: since it went on at ET {:.6f} s, no "
+      "more can have gone by than this machine's clock shows",
+      to_seconds(stamp), to_seconds(excess), to_seconds(session.witness->went_on_at()));
+}
+
 std::optional<std::string> Coordinator::Impl::fault_of(const Session& session,
-                                                       const link::Request& request) const {
+                                                       const link::Request& request,
+                                                       WallTime now) const {
   if (const auto fault = order_fault(session, request)) return fault;
   if (!is_stamp(request.issued_at)) return "a time stamp out of range";
+  if (const auto fault = honesty_fault(session, request.issued_at, now)) return fault;
   if (const auto* read = std::get_if<link::ReadSensor>(&request.body))
     return read_fault(session, *read);
   if (const auto* set = std::get_if<link::SetVelocity>(&request.body);
@@ -192,7 +211,7 @@ std::optional<std::string> Coordinator::Impl::read_fault(const Session& session,
 void Coordinator::Impl::on_request(Session& session, const link::Request& request, WallTime now) {
   // One thread of a concurrent SUT ends it for all; what the others still ask is dropped.
   if (session.is_concurrent() && session.finish) return;
-  if (const auto fault = fault_of(session, request))
+  if (const auto fault = fault_of(session, request, now))
     return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
   ++session.next_sequence;
   begin(session, request, now);

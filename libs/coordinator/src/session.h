@@ -13,6 +13,7 @@
 #include <tether/record/messages.h>
 #include <tether/sim/simulator.h>
 #include <tether/sync/barrier_synchronizer.h>
+#include <tether/sync/clock_witness.h>
 #include <tether/sync/execution_timer.h>
 
 namespace tether::coordinator {
@@ -47,6 +48,7 @@ struct Session {
   link::PeerId peer = 0;  ///< 0: nobody
   link::Hello hello;
   std::optional<sync::ExecutionTimer> timer;  ///< of an unstamped client
+  std::optional<sync::ClockWitness> witness;  ///< of one that stamps by a clock of its own
   std::uint64_t next_sequence = 1;
   WallTime last_word;  ///< when it was last heard
   std::optional<link::Finish> finish;

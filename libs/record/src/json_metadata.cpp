@@ -224,6 +224,8 @@ StringMap to_metadata(const Header& header) {
       {"sensors", list_text(header.sensors, append_sensor)},
       {"anchors", list_text(header.anchors, append_anchor)},
   };
+  if (header.wall_at_start != WallTime{})
+    values["wall_at_start_ns"] = std::to_string(to_ns(header.wall_at_start));
   if (header.target) {
     values["target_name"] = to_utf8(header.target->name);
     values["target_address"] = to_utf8(header.target->address);
@@ -252,6 +254,8 @@ Header header_from_metadata(const StringMap& values) {
   header.suts = list(values, "suts", read_sut);
   header.sensors = list(values, "sensors", read_sensor);
   header.anchors = list(values, "anchors", read_anchor);
+  if (values.contains("wall_at_start_ns"))
+    header.wall_at_start = time<WallTime>(values, "wall_at_start_ns");
   if (values.contains("target_name")) {
     header.target = {value(values, "target_name"), value(values, "target_address"),
                      readings(values)};

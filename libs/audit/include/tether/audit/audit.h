@@ -36,6 +36,9 @@ inline constexpr std::size_t kMaxFindings = 10'000;
 /// record. Pure; time and memory grow as n·log n.
 Verdict audit(const record::Record& record);
 
+/// The verdict with its first finding, in one line without its end.
+std::string to_line(const Verdict& verdict);
+
 /// For a person: the verdict in a line, then one line per note and per finding (at most
 /// `max_findings`).
 std::string to_text(const Verdict& verdict, std::size_t max_findings = 20);

@@ -179,6 +179,7 @@ struct Header {
   std::vector<SensorInfo> sensors;
   std::vector<Anchor> anchors;
   std::optional<TargetInfo> target{};  ///< none in records of Tether 0.1.0
+  WallTime wall_at_start{};            ///< when the SUTs were let go, all at ET 0; 0: not known
 };
 
 /// How the run ended: written last (metadata record "tether.end"). A record without it was cut

@@ -1,0 +1,134 @@
+#include "coordinator_fixture.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+/// Whoever stamps by a clock of its own is watched by the coordinator's: what is ahead of all that
+/// can have gone by ends the run, and says by how much.
+namespace tether::coordinator {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+class HonestyTest : public CoordinatorTest {
+ protected:
+  /// The fixture's clock moves a millisecond per reading; a script runs through in some tens.
+  RunReport fly(link::ClockKind clock, double factor, ScriptedServer::Script script) {
+    make();
+    link::Hello introduction = hello();
+    introduction.clock = clock;
+    introduction.cpu_factor = factor;
+    peer_ = server_->add_sut(introduction, std::move(script));
+    return coordinator_->run(*server_, hooks_);
+  }
+  link::PeerId peer_ = 0;
+};
+
+TEST_F(HonestyTest, ARequestAheadOfOurClockEndsTheRunWithItsSize) {
+  const RunReport report = fly(link::ClockKind::kWall, 1.0, {sleep(hours(1), seconds(1))});
+  EXPECT_EQ(report.end, RunEnd::kSutLost);
+  EXPECT_THAT(report.reason, testing::MatchesRegex(
+                                 "the SUT of UAV \"uav0\" sent a time stamp of ET 3600.000000 s, "
+                                 "which is 3599.9.* s ahead: since it went on at ET 0.000000 s.*"));
+  EXPECT_EQ(refusal(peer_).reason, link::Refusal::Reason::kBadRequest);
+  EXPECT_LT(report.st, st_ms(100));
+  EXPECT_TRUE(recorder_.interactions.empty());
+  EXPECT_TRUE(recorder_.footer);
+}
+
+TEST_F(HonestyTest, WaitingForAReplyEarnsNothing) {
+  tick_ = milliseconds(10);  // the hold of a second takes longer than that on our clock
+  options_.real_time_factor = 0.5;
+  const RunReport report = fly(link::ClockKind::kWall, 1.0,
+                               {sleep(Duration(0), seconds(1)), sleep(seconds(2), seconds(1))});
+  EXPECT_EQ(report.end, RunEnd::kSutLost);
+  EXPECT_GT(report.wall, seconds(2));
+  EXPECT_THAT(report.reason, HasSubstr("went on at ET 1.000000 s"));
+}
+
+TEST_F(HonestyTest, AnHonestSutIsNotDoubted) {
+  for (const auto clock : {link::ClockKind::kWall, link::ClockKind::kCpu}) {
+    const RunReport report = fly(clock, 6.0,
+                                 {sleep(milliseconds(5), seconds(1)), read(milliseconds(3), kRange),
+                                  finish(milliseconds(4))});
+    EXPECT_EQ(report.end, RunEnd::kFinished) << report.reason;
+  }
+}
+
+// All cores of a machine together make more CPU time than time goes by, but not any amount of it.
+TEST_F(HonestyTest, CpuTimeMayGrowByManyCoresAtOnce) {
+  EXPECT_EQ(fly(link::ClockKind::kCpu, 1.0, {finish(milliseconds(500))}).end, RunEnd::kFinished);
+  EXPECT_EQ(fly(link::ClockKind::kCpu, 1.0, {finish(hours(1))}).end, RunEnd::kSutLost);
+}
+
+// Its times are made up by purpose, and the record names it.
+TEST_F(HonestyTest, AScriptedClockIsNotDoubted) {
+  EXPECT_EQ(fly(link::ClockKind::kScripted, 1.0, {finish(seconds(60))}).end, RunEnd::kFinished);
+}
+
+TEST_F(HonestyTest, ProgressAheadOfOurClockEndsTheRun) {
+  make();
+  link::Hello introduction = hello();
+  introduction.clock = link::ClockKind::kWall;
+  const auto peer = server_->add_sut(introduction, {});
+  server_->deliver(peer, link::Progress{ExecTime(hours(10))});
+  const RunReport report = coordinator_->run(*server_);
+  EXPECT_EQ(report.end, RunEnd::kSutLost);
+  EXPECT_THAT(report.reason, HasSubstr("sent a time stamp of ET 36000.000000 s"));
+  EXPECT_LT(report.st, st_ms(100));
+}
+
+TEST_F(HonestyTest, AStopAheadOfOurClockEndsTheRun) {
+  make();
+  link::Hello introduction = hello();
+  introduction.clock = link::ClockKind::kWall;
+  introduction.concurrent = true;
+  const auto peer = server_->add_sut(introduction, {});
+  server_->deliver(peer, link::Progress{.reached = ExecTime(hours(1)), .stopped = true});
+  EXPECT_THAT(coordinator_->run(*server_).reason,
+              HasSubstr("sent a time stamp of ET 3600.000000 s"));
+}
+
+// Nothing is tied to ET there.
+TEST_F(HonestyTest, InFreeRunningNobodyIsDoubted) {
+  options_.policy = sync::SyncPolicy::kFreeRunning;
+  options_.real_time_factor = 1.0;
+  EXPECT_EQ(fly(link::ClockKind::kWall, 1.0, {finish(hours(1))}).end, RunEnd::kFinished);
+}
+
+TEST_F(HonestyTest, WhenNothingMovesTheStatusSaysWhoBlocksWhom) {
+  options_.hang_limit = seconds(3);
+  make();
+  server_->add_sut(hello(), {sleep(Duration(0), milliseconds(5))});
+  std::string first;
+  SimTime st_before{};
+  hooks_.on_status = [&](const RunStatus& status) {
+    if (first.empty() && !status.blocked.empty()) {
+      first = status.blocked;
+      EXPECT_EQ(status.st, st_before);
+    }
+    st_before = status.st;
+  };
+  const RunReport report = coordinator_->run(*server_, hooks_);
+  EXPECT_THAT(first, testing::StartsWith("ST 0.005000 s waits for SUT \"script\" of UAV \"uav0\", "
+                                         "computing since 1.0 s without a word"));
+  EXPECT_THAT(report.reason,
+              HasSubstr("computing since 3.0 s without a word, last at ET 0.005000 s"));
+}
+
+TEST_F(HonestyTest, ALostSutIsNamedWithWhereItStood) {
+  options_.real_time_factor = 0.5;
+  make();
+  const auto peer = server_->add_sut(hello(), {sleep(Duration(0), seconds(5))});
+  hooks_.on_status = [&](const RunStatus& status) {
+    if (status.st > st_ms(1'000)) server_->disconnect(peer);
+  };
+  EXPECT_THAT(coordinator_->run(*server_, hooks_).reason,
+              HasSubstr("connection closed; it was waiting for its reply of ET 5.000000 s"));
+}
+
+}  // namespace
+}  // namespace tether::coordinator
