@@ -137,6 +137,7 @@ void print_result(const TrialSpec& spec, const experiment::TrialResult& result) 
   if (const auto simulator = result.versions.find("simulator"); simulator != result.versions.end())
     fmt::print("  {:<24} {}\n", "simulator", simulator->second);
   if (result.audit) fmt::print("  {:<24} {}\n", "audit", result.audit->summary);
+  for (const std::string& note : result.this_run.notes) fmt::print("  {:<24} {}\n", "note", note);
   if (std::filesystem::exists(spec.folder / kRecordFile))
     fmt::print("  {:<24} {}\n", "record", (spec.folder / kRecordFile).string());
 }
@@ -148,10 +149,13 @@ int run(const RunOptions& options) {
     StatusLine line;
     TrialObserver observer;
     observer.warn = [&](const std::string& text) { fmt::print(stderr, "warning: {}\n", text); };
-    if (!options.quiet)
+    if (!options.quiet) {
       observer.on_status = [&](const coordinator::RunStatus& status) {
         line.show(to_line(status));
       };
+      observer.on_setup = [&](const std::string& text) { line.show(text); };
+      observer.on_blocked = [&](const std::string& text) { line.leave(text); };
+    }
     observer.on_refused = [](const std::string& text) {
       fmt::print(stderr, "warning: {}\n", text);
     };

@@ -46,6 +46,7 @@ RunningSimulator::RunningSimulator(const SimulatorOption& option, sim::World wor
 }
 
 void RunningSimulator::start_gazebo(sim::World world, const SimulatorSetup& setup) {
+  if (setup.on_setup) setup.on_setup("starting Gazebo");
   gazebo_ = std::make_unique<GazeboServer>(GazeboRun{
       .install = find_gazebo(), .world = world.file, .draws = has_camera(world), .log = setup.log});
   auto connection = gazebo_->connect();
@@ -53,7 +54,8 @@ void RunningSimulator::start_gazebo(sim::World world, const SimulatorSetup& setu
     simulator_ = sim::make_remote_simulator(std::move(world), std::move(connection),
                                             {.open_limit = gazebo_->start_limit(),
                                              .answer_limit = setup.answer_limit,
-                                             .why_give_up = [this] { return why_give_up(); }},
+                                             .why_give_up = [this] { return why_give_up(); },
+                                             .on_silence = setup.on_silence},
                                             setup.warn);
   } catch (const Error& e) {
     throw Error(e.code(), e.what() + post_mortem(e.what()));
@@ -68,10 +70,11 @@ void RunningSimulator::attach(const sim::protocol::Endpoint& endpoint, sim::Worl
     throw Error(ErrorCode::kSetup,
                 fmt::format("no simulator listens at {}: {}", sim::protocol::to_string(endpoint),
                             connection.failure().message));
-  simulator_ = sim::make_remote_simulator(
-      std::move(world), std::move(*connection),
-      {.answer_limit = setup.answer_limit, .why_give_up = [this] { return why_give_up(); }},
-      setup.warn);
+  simulator_ = sim::make_remote_simulator(std::move(world), std::move(*connection),
+                                          {.answer_limit = setup.answer_limit,
+                                           .why_give_up = [this] { return why_give_up(); },
+                                           .on_silence = setup.on_silence},
+                                          setup.warn);
 }
 
 std::optional<std::string> RunningSimulator::lost() {

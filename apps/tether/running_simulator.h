@@ -4,6 +4,7 @@
 #include "simulator_option.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@ struct SimulatorSetup {
   Duration answer_limit{0};   ///< how long one outside of this process may take for an answer
   std::filesystem::path log;  ///< gets what processes of its own print
   sim::WarningSink warn;
+  std::function<void(const std::string&)> on_setup{};    ///< told what is being started
+  std::function<void(const std::string&)> on_silence{};  ///< told when an answer is long in coming
 };
 
 /// @throws Error(kBadFile) with file and line for what that simulator cannot read.

@@ -24,7 +24,17 @@ std::string to_line(const coordinator::RunStatus& status) {
 StatusLine::StatusLine() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
 
 StatusLine::~StatusLine() {
+  clear();
+}
+
+void StatusLine::clear() {
   if (shown_) fmt::print(stderr, "\r\x1b[K");
+  shown_ = false;
+}
+
+void StatusLine::leave(const std::string& line) {
+  clear();
+  fmt::print(stderr, "{}\n", line);
 }
 
 void StatusLine::show(const std::string& line) {

@@ -20,8 +20,12 @@ class StatusLine {
   StatusLine& operator=(const StatusLine&) = delete;
 
   void show(const std::string& line);
+  /// A line that stays, terminal or not.
+  void leave(const std::string& line);
 
  private:
+  void clear();
+
   bool is_terminal_;
   bool shown_ = false;
 };

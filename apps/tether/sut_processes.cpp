@@ -1,6 +1,7 @@
 #include "sut_processes.h"
 
 #include "local_sut.h"
+#include "stall_watch.h"
 
 #include <algorithm>
 #include <fstream>
@@ -76,6 +77,16 @@ std::string SutProcesses::post_mortem() {
 
 std::optional<std::string> SutProcesses::lost() {
   return board_ ? board_->lost() : std::nullopt;
+}
+
+std::optional<std::string> SutProcesses::stopped() const {
+  if (board_) return std::nullopt;
+  for (const Sut& sut : suts_)
+    if (const auto pid = stopped_process(sut.process->pid()))
+      return fmt::format(
+          "process {} of the SUT of UAV \"{}\" was stopped (by a signal or a debugger)", *pid,
+          sut.uav);
+  return std::nullopt;
 }
 
 void SutProcesses::let_leave() {

@@ -30,6 +30,8 @@ class SutProcesses {
 
   /// Before every SUT has joined: how the first one ended that did; none while all run.
   std::optional<std::string> early_end();
+  /// Of those here: whose process a signal or a debugger has stopped; none where none is.
+  std::optional<std::string> stopped() const;
   /// Why the board with the SUTs is out of reach; none where there is none, or it is not.
   std::optional<std::string> lost();
   /// After a SUT was lost: how those that ended did so, "; " before each; empty: nothing is known.

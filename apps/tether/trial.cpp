@@ -5,6 +5,7 @@
 #include "local_sut.h"
 #include "machine.h"
 #include "running_simulator.h"
+#include "stall_watch.h"
 #include "sut_processes.h"
 #include "target_probe.h"
 #include "trial_folder.h"
@@ -156,9 +157,15 @@ std::string reach_hint(const TrialSpec& spec, const std::string& address,
       address);
 }
 
+/// A run's report, and what else is to be known of it.
+struct Conducted {
+  coordinator::RunReport report;
+  std::vector<std::string> notes;
+};
+
 /// The coordinator's run with its SUTs, up to the closed record.
-coordinator::RunReport conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* board,
-                               const Timings& timings, const TrialObserver& observer) {
+Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* board,
+                  const Timings& timings, const TrialObserver& observer) {
   const std::string token = token_of_run();
   const auto recorder = record::make_mcap_recorder(spec.folder / kRecordFile);
   auto options = run_options(spec, timings, token);
@@ -176,6 +183,7 @@ coordinator::RunReport conduct(const TrialSpec& spec, RunningSimulator& simulato
   if (spec.waits_for_sut && observer.on_listening)
     observer.on_listening(sut_instructions(spec.scenario, sut_run));
 
+  StallWatch stalls([&] { return suts.stopped(); }, host_clocks());
   bool joined = false, left_early = false;
   std::string refused;
   coordinator::RunHooks hooks;
@@ -197,6 +205,8 @@ coordinator::RunReport conduct(const TrialSpec& spec, RunningSimulator& simulato
   hooks.on_status = [&](const coordinator::RunStatus& status) {
     joined = status.joined == spec.scenario.uavs.size();
     if (observer.on_status) observer.on_status(status);
+    const std::string stall = stalls.look(status, host_clocks());
+    if (!stall.empty() && observer.on_blocked) observer.on_blocked(stall);
   };
   hooks.on_refused = [&](const std::string& text) {
     refused = text;
@@ -210,7 +220,7 @@ coordinator::RunReport conduct(const TrialSpec& spec, RunningSimulator& simulato
   if (board && !report.began) report.reason += reach_hint(spec, sut_run.address, report.reason);
   for (const std::string& warning : suts.bring_back())
     if (observer.warn) observer.warn(warning);
-  return report;
+  return {std::move(report), stalls.notes(host_clocks())};
 }
 
 std::vector<experiment::TaskEnd> task_ends(const coordinator::RunReport& report) {
@@ -244,7 +254,9 @@ experiment::TrialResult judge(const TrialSpec& spec, const coordinator::RunRepor
 SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& observer) {
   return {.answer_limit = spec.scenario.hang_limit,
           .log = spec.folder / kSimulatorLog,
-          .warn = observer.warn};
+          .warn = observer.warn,
+          .on_setup = observer.on_setup,
+          .on_silence = observer.on_blocked};
 }
 
 /// A trial whose parts did not come together leaves no record.
@@ -263,7 +275,9 @@ experiment::TrialResult fly(const TrialSpec& spec, const SimulatorOption& option
   const auto board = hold_board(spec);
   RunningSimulator simulator(option, std::move(world), simulator_setup(spec, observer));
   try {
-    auto result = judge(spec, conduct(spec, simulator, board.get(), timings, observer));
+    const auto [report, notes] = conduct(spec, simulator, board.get(), timings, observer);
+    auto result = judge(spec, report);
+    result.this_run.notes = notes;
     result.versions["simulator"] = simulator.get().description();
     return result;
   } catch (const Error& e) {

@@ -33,6 +33,10 @@ struct TrialSpec {
 struct TrialObserver {
   std::function<void(const std::string&)> warn;  ///< one line each
   std::function<void(const coordinator::RunStatus&)> on_status;
+  /// Nothing moves: who waits for whom; one line, once each time.
+  std::function<void(const std::string&)> on_blocked;
+  /// What is being set up, before there is a status.
+  std::function<void(const std::string&)> on_setup;
   /// Somebody was not let in; one line.
   std::function<void(const std::string&)> on_refused;
   /// Waiting for the SUT: where to connect, and the environment that it needs.

@@ -142,7 +142,9 @@ TEST(Audit, CpuTimeGrowsNoFasterThanOnAllCoresAtOnce) {
 }
 
 TEST(Audit, ALineNamesTheFirstFinding) {
-  Verdict verdict{.complete = true, .interactions = 3};
+  Verdict verdict;
+  verdict.complete = true;
+  verdict.interactions = 3;
   verdict.findings = {{5, "uav1", 2, {}, "ET grew by 3 ns too much"}, {4, "uav1", 3, {}, "b"}};
   EXPECT_EQ(to_line(verdict),
             "FAILED: 2 findings in 3 interactions: rule 5 (ST 0.000000 s, uav1 #2): ET grew by 3 "

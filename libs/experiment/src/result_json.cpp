@@ -109,6 +109,7 @@ Json json_of(const ThisRun& run) {
             {"attempts", run.attempts}};
   if (!run.first_failure.empty()) json["first_failure"] = run.first_failure;
   if (run.target) json["target"] = json_of(*run.target);
+  if (!run.notes.empty()) json["notes"] = run.notes;
   return json;
 }
 
@@ -174,6 +175,7 @@ ThisRun read_this_run(const JsonReader& json) {
   run.attempts = static_cast<int>(attempts);
   if (json.has("first_failure")) run.first_failure = json.text("first_failure");
   if (json.has("target")) run.target = read_target(json.object("target"));
+  if (json.has("notes")) run.notes = json.texts("notes");
   return run;
 }
 

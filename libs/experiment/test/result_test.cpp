@@ -29,6 +29,7 @@ TEST_F(Result, ReadsBackWithEverythingMissing) {
   TrialResult failed = make_setup_failure(scenario_, scenario_.conditions[0], 7, "no port");
   failed.this_run.attempts = 2;
   failed.this_run.first_failure = "no port either";
+  failed.this_run.notes = {"a SUT was stopped", "this machine was suspended"};
   write_result(scratch_.path(), failed);
   EXPECT_EQ(read_result(scratch_.path()), failed);
   EXPECT_EQ(failed.outcome, Outcome::kFailed);

@@ -154,6 +154,8 @@ void add_trial_problems(std::vector<std::string>& lines, const std::string& wher
   if (trial.this_run.target)
     for (const std::string& warning : trial.this_run.target->warnings)
       lines.push_back(fmt::format("{}: {}", which, warning));
+  for (const std::string& note : trial.this_run.notes)
+    lines.push_back(fmt::format("{}: {}", which, note));
 }
 
 void add_missing_seeds(std::vector<std::string>& lines, const std::string& where,

@@ -13,6 +13,8 @@ using Kind = Failure::Kind;
 
 /// How long an answer is waited for before asking whether there is any use in it.
 constexpr Duration kPatience = std::chrono::milliseconds(100);
+/// How long before the caller is told that one is waited for.
+constexpr Duration kSilence = std::chrono::seconds(1);
 /// Longer limits mean this one, so that a point in time can be reckoned.
 constexpr Duration kLongestLimit = std::chrono::hours(24 * 365);
 
@@ -49,13 +51,19 @@ protocol::Reply RemoteSession::answer_to(const protocol::Request& request, Durat
 }
 
 Result<protocol::Reply> RemoteSession::await(Duration limit) {
-  const auto deadline = Clock::now() + std::min(limit, kLongestLimit);
+  const auto began = Clock::now();
+  const auto deadline = began + std::min(limit, kLongestLimit);
+  bool told = name_.empty() || !options_.on_silence;
   while (true) {
     const Duration left = std::max<Duration>(deadline - Clock::now(), Duration(0));
     auto reply = connection_->receive_reply(std::min(left, kPatience));
     const bool silent = !reply && reply.failure().kind == Kind::kTimeout;
     if (!silent || left == Duration(0)) return reply;
     give_up_if_told();
+    if (told || Clock::now() - began < kSilence) continue;
+    told = true;
+    options_.on_silence("everything waits for " + name() + ", which has not answered for " +
+                        in_s(kSilence));
   }
 }
 

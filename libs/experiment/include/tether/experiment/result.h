@@ -99,6 +99,7 @@ struct ThisRun {
   int attempts = 1;                      ///< 2: the first one failed to set up
   std::string first_failure;             ///< its reason
   std::optional<TargetReport> target{};  ///< none where nobody read it
+  std::vector<std::string> notes{};      ///< where the run stood still and nobody meant it to
 
   friend bool operator==(const ThisRun&, const ThisRun&) = default;
 };

@@ -19,6 +19,8 @@ struct RemoteOptions {
   /// Asked some ten times a second while an answer is awaited. A text: give up, because of it ("the
   /// simulator was ended by signal 9").
   std::function<std::optional<std::string>()> why_give_up;
+  /// Told, once for each answer, when one other than that to Open has not come for a second.
+  std::function<void(const std::string&)> on_silence{};
 };
 
 /// A simulator at the other end of a connection, with the world's UAVs put into it. Dynamics, rays
