@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tether/base_testing/allocation_count.h>
+
 namespace tether::coordinator {
 namespace {
 
@@ -25,6 +27,21 @@ TEST(CaptureStore, ReusesTheStorageOfWhatWasDropped) {
   const double* storage = store.find(0)->state.data();
   store.drop_before(1);
   EXPECT_EQ(store.add(1).state.data(), storage);
+}
+
+TEST(CaptureStore, SteadyUseAllocatesNothing) {
+  if (!AllocationCount::is_possible()) GTEST_SKIP() << "a sanitizer's allocator";
+  CaptureStore store;
+  const auto use = [&](std::uint64_t begin) {
+    for (std::uint64_t i = begin; i < begin + 100; ++i) {
+      store.add(i).state.resize(64);
+      store.drop_before(i < 5 ? 0 : i - 5);
+    }
+  };
+  use(0);
+  AllocationCount count;
+  use(100);
+  EXPECT_EQ(count.stop(), 0);
 }
 
 }  // namespace

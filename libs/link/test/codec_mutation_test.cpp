@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <tether/base_testing/damage.h>
 #include <tether/link/codec.h>
 
 namespace tether::link {
@@ -12,26 +13,6 @@ using Bytes = std::vector<std::uint8_t>;
 /// A heap block of exactly the frame's size, so that the address sanitizer sees any read outside.
 Bytes exact(std::span<const std::uint8_t> bytes) {
   return {bytes.begin(), bytes.end()};
-}
-
-void mutate(Bytes& frame, KeyedRandom& random) {
-  const std::uint32_t changes = 1 + random.bits() % 4;
-  for (std::uint32_t i = 0; i < changes; ++i) {
-    std::uint8_t& byte = frame[random.bits() % frame.size()];
-    switch (random.bits() % 4) {
-      case 0:
-        byte ^= static_cast<std::uint8_t>(1u << random.bits() % 8);
-        break;
-      case 1:
-        byte = 0xff;
-        break;
-      case 2:
-        byte = 0;
-        break;
-      default:
-        byte = static_cast<std::uint8_t>(random.bits());
-    }
-  }
 }
 
 /// Whatever comes out of a damaged frame is refused, or is a message that may be sent.
@@ -49,7 +30,7 @@ TEST(CodecMutation, DamagedFramesAreRefusedOrValid) {
   for (std::uint64_t i = 0; i < 100'000; ++i) {
     KeyedRandom random({11, 1, i});
     Bytes frame = exact(encoder.encode(RandomMessage(i % 200).draw()));
-    mutate(frame, random);
+    damage(frame, random);
     expect_refused_or_valid(frame);
   }
 }

@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <cstdint>
+#include <cstdlib>
 #include <deque>
 #include <functional>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -313,10 +316,18 @@ struct Mixture {
 
 class BarrierProperty : public testing::TestWithParam<Mixture> {};
 
+constexpr std::uint64_t kDecisions = 5'000;  // of each schedule
+
+// Schedules of each mixture; bench/soak asks for more.
+std::uint64_t schedules() {
+  const char* given = std::getenv("TETHER_SCHEDULES");
+  return given ? std::stoull(given) : 20;
+}
+
 TEST_P(BarrierProperty, RulesOneToFiveHoldForAnySchedule) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < schedules(); ++seed) {
     SCOPED_TRACE(seed);
-    Schedule(seed, GetParam().serial, GetParam().concurrent).run(5'000);
+    Schedule(seed, GetParam().serial, GetParam().concurrent).run(kDecisions);
     if (HasFatalFailure()) return;
   }
 }

@@ -2,32 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <tether/base_testing/damage.h>
 #include <tether/sim_protocol/codec.h>
 
 namespace tether::sim::protocol {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-
-void mutate(Bytes& frame, KeyedRandom& random) {
-  const std::uint32_t changes = 1 + random.bits() % 4;
-  for (std::uint32_t i = 0; i < changes; ++i) {
-    std::uint8_t& byte = frame[random.bits() % frame.size()];
-    switch (random.bits() % 4) {
-      case 0:
-        byte ^= static_cast<std::uint8_t>(1u << random.bits() % 8);
-        break;
-      case 1:
-        byte = 0xff;
-        break;
-      case 2:
-        byte = 0;
-        break;
-      default:
-        byte = static_cast<std::uint8_t>(random.bits());
-    }
-  }
-}
 
 template <class Message>
 void expect_refused_or_valid(const Result<Message>& decoded) {
@@ -53,7 +34,7 @@ TEST(CodecMutation, DamagedFramesAreRefusedOrValid) {
   for (std::uint64_t i = 0; i < 50'000; ++i) {
     KeyedRandom random({19, 1, i});
     Bytes frame = random_frame(encoder, i % 400);
-    mutate(frame, random);
+    damage(frame, random);
     expect_refused_or_valid(frame);
   }
 }

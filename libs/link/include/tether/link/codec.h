@@ -46,8 +46,9 @@ struct FramePieces {
   std::size_t size() const { return head.size() + image.size() + tail.size(); }
 };
 
-/// Serialises messages into whole frames (length included). Keeps its buffer, so that steady use
-/// allocates nothing. Not thread-safe. @pre of both calls: validate(message).ok()
+/// Serialises messages into whole frames (length included). Keeps its buffer, so that what flows in
+/// flight (Request, Reply, Progress, Due) allocates nothing in steady use. Not thread-safe. @pre of
+/// both calls: validate(message).ok()
 class Encoder {
  public:
   Encoder();

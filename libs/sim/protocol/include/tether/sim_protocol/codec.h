@@ -40,8 +40,8 @@ inline constexpr std::size_t kMaxSdfBytes = 1u << 20;
 Status validate(const Request& request);
 Status validate(const Reply& reply);
 
-/// Serialises messages into whole frames (length included). Keeps its buffer, so that steady use
-/// allocates nothing. One thread at a time. @pre validate(message).ok()
+/// Serialises messages into whole frames (length included). Keeps its buffer, so that all but Open
+/// and Opened allocates nothing in steady use. One thread at a time. @pre validate(message).ok()
 class Encoder {
  public:
   Encoder();

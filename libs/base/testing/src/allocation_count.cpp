@@ -1,0 +1,74 @@
+#include <atomic>
+#include <cstddef>
+
+#include <malloc.h>
+
+#include <tether/base_testing/allocation_count.h>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define TETHER_COUNTS_ALLOCATIONS 0
+#else
+#define TETHER_COUNTS_ALLOCATIONS 1
+#endif
+
+namespace {
+
+std::atomic<bool> counting = false;
+std::atomic<long> allocations = 0;
+
+}  // namespace
+
+#if TETHER_COUNTS_ALLOCATIONS
+namespace {
+void count() {
+  if (counting) ++allocations;
+}
+}  // namespace
+
+// Everything that a program allocates with goes through these, its libraries included.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* old, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+void* malloc(std::size_t size) {
+  count();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t number, std::size_t size) {
+  count();
+  return __libc_calloc(number, size);
+}
+void* realloc(void* old, std::size_t size) {
+  count();
+  return __libc_realloc(old, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  count();
+  return __libc_memalign(alignment, size);
+}
+}
+#endif
+
+namespace tether {
+
+AllocationCount::AllocationCount() {
+  allocations = 0;
+  counting = true;
+}
+
+AllocationCount::~AllocationCount() {
+  counting = false;
+}
+
+long AllocationCount::stop() {
+  counting = false;
+  return allocations;
+}
+
+bool AllocationCount::is_possible() {
+  return TETHER_COUNTS_ALLOCATIONS == 1;
+}
+
+}  // namespace tether
