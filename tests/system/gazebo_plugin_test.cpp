@@ -28,6 +28,7 @@ struct Start {
 const Start kRoom{(kSource / "worlds/room.sdf").string(), {1.2, 0.0, 1.2}, -29.0};
 const Start kCorridor{(kSource / "worlds/corridor.sdf").string(), {0.0, -0.8, 1.2}, 0.0};
 const Start kBlocks{(kSource / "tests/system/data/blocks.sdf").string(), {0.0, 0.0, 1.0}, 0.0};
+const Start kGlass{(kSource / "tests/system/data/glass.sdf").string(), {0.0, 0.0, 1.0}, 0.0};
 
 // `has_cameras`: otherwise nobody ever asks for a picture.
 sim::World load(const Start& start, bool has_cameras) {
@@ -238,6 +239,31 @@ TEST_F(GazeboPluginTest, ShowsTheRoomAsTheEmbeddedSimulatorDoes) {
 TEST_F(GazeboPluginTest, ShowsTheCorridorAsTheEmbeddedSimulatorDoes) {
   const auto gazebo = this->gazebo(kCorridor, true);
   expect_alike(*gazebo, kCorridor);
+}
+
+// The mean of 60 × 60 pixels about the middle row.
+uav::Vec3 mean_rgb(const uav::CameraSample& image, int left_px) {
+  uav::Vec3 sum;
+  for (int y = image.height_px / 2 - 30; y < image.height_px / 2 + 30; ++y) {
+    for (int x = left_px; x < left_px + 60; ++x) {
+      const std::uint8_t* p = &image.rgb[3 * static_cast<std::size_t>(y * image.width_px + x)];
+      sum = sum + uav::Vec3{double(p[0]), double(p[1]), double(p[2])};
+    }
+  }
+  return (1.0 / 3600.0) * sum;
+}
+
+TEST_F(GazeboPluginTest, BlendsBricksThatAreSeenThroughAsTheEmbeddedSimulatorDoes) {
+  const auto gazebo = this->gazebo(kGlass, true);
+  const auto embedded = sim::make_mujoco_simulator(load(kGlass, true), [](const auto&) {});
+  const uav::CameraSample theirs = first_image(*gazebo);
+  const uav::CameraSample ours = first_image(*embedded);
+  constexpr int kOpaque_px = 90;
+  constexpr int kSeenThrough_px = 290;
+  for (const int left_px : {kOpaque_px, kSeenThrough_px}) {
+    EXPECT_LT(norm(mean_rgb(theirs, left_px) - mean_rgb(ours, left_px)), 5.0) << left_px;
+  }
+  EXPECT_GT(norm(mean_rgb(theirs, kSeenThrough_px) - mean_rgb(theirs, kOpaque_px)), 20.0);
 }
 
 TEST_F(GazeboPluginTest, DrawsAStateToTheByteWhateverItHasDrawnSince) {

@@ -44,21 +44,37 @@ void load_texture(const std::string& file) {
 // The texture darkens what light and colours have made, which is never lighter than white: so in
 // two passes, the second of which multiplies. In one, Gazebo's shaders would wash out what is well
 // lit.
-std::string make_material(const Look& look, const TextureRepeat& repeat) {
-  const std::string name = "tether/" + name_of(look);
-  Ogre::MaterialPtr material = Ogre::MaterialManager::getSingleton().create(name, kGroup);
-  Ogre::Pass* lit = material->getTechnique(0)->getPass(0);
-  lit->setAmbient(colour(look.ambient_rgb));
-  lit->setDiffuse(colour(look.diffuse_rgb));
-  lit->setSpecular(colour(look.specular_rgb));
-  lit->setSelfIllumination(colour(look.emissive_rgb));
-  lit->setShininess(kShininess);
-  load_texture(look.texture);
-  Ogre::Pass* textured = material->getTechnique(0)->createPass();
+Ogre::Pass* opaque_texture_pass(Ogre::Pass& lit) {
+  Ogre::Pass* textured = lit.getParent()->createPass();
   textured->setLightingEnabled(false);
   textured->setSceneBlending(Ogre::SBT_MODULATE);
   textured->setDepthWriteEnabled(false);
   textured->setDepthBias(1.0F);
+  return textured;
+}
+
+// A second pass would multiply what lies behind as well. The embedded simulator, too, blends both
+// sides of what is transparent.
+Ogre::Pass* blended_texture_pass(Ogre::Pass& lit) {
+  lit.setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
+  lit.setDepthWriteEnabled(false);
+  lit.setCullingMode(Ogre::CULL_NONE);
+  return &lit;
+}
+
+std::string make_material(const Look& look, const TextureRepeat& repeat) {
+  const std::string name = "tether/" + name_of(look);
+  Ogre::MaterialPtr material = Ogre::MaterialManager::getSingleton().create(name, kGroup);
+  Ogre::Pass* lit = material->getTechnique(0)->getPass(0);
+  Ogre::ColourValue diffuse = colour(look.diffuse_rgb);
+  diffuse.a = static_cast<float>(look.alpha);
+  lit->setAmbient(colour(look.ambient_rgb));
+  lit->setDiffuse(diffuse);
+  lit->setSpecular(colour(look.specular_rgb));
+  lit->setSelfIllumination(colour(look.emissive_rgb));
+  lit->setShininess(kShininess);
+  load_texture(look.texture);
+  Ogre::Pass* textured = look.alpha < 1.0 ? blended_texture_pass(*lit) : opaque_texture_pass(*lit);
   Ogre::TextureUnitState* unit = textured->createTextureUnitState(look.texture);
   unit->setTextureFiltering(Ogre::TFO_TRILINEAR);
   unit->setTextureScale(static_cast<float>(1.0 / repeat.x), static_cast<float>(1.0 / repeat.y));

@@ -92,6 +92,7 @@ Look from_wire(const wire::Look& look) {
   out.texture = look.texture()->str();
   out.texture_repeat_x = look.texture_repeat_x();
   out.texture_repeat_y = look.texture_repeat_y();
+  out.alpha = look.alpha();
   return out;
 }
 

@@ -96,7 +96,7 @@ Offset<wire::Look> write(FlatBufferBuilder& b, const Look& look) {
   const wire::Vec3 specular = to_wire(look.specular_rgb);
   const wire::Vec3 emissive = to_wire(look.emissive_rgb);
   return wire::CreateLook(b, model, link, visual, &ambient, &diffuse, &specular, &emissive, texture,
-                          look.texture_repeat_x, look.texture_repeat_y);
+                          look.texture_repeat_x, look.texture_repeat_y, look.alpha);
 }
 
 Content write(FlatBufferBuilder& b, const Open& open, PictureSlot&) {

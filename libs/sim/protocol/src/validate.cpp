@@ -33,10 +33,11 @@ void check(Checker& c, const std::vector<uav::Pose>& poses, std::string_view fie
   c.require(poses.size() <= kMaxBodies, field, "has too many bodies");
   for (const uav::Pose& X : poses) check(c, X, field);
 }
+void share(Checker& c, double value, std::string_view field) {
+  c.require(value >= 0.0 && value <= 1.0, field, "is not within 0..1");
+}
 void color(Checker& c, const uav::Vec3& rgb, std::string_view field) {
-  for (const double part : {rgb.x, rgb.y, rgb.z}) {
-    c.require(part >= 0.0 && part <= 1.0, field, "is not within 0..1");
-  }
+  for (const double part : {rgb.x, rgb.y, rgb.z}) share(c, part, field);
 }
 void body(Checker& c, const std::optional<std::uint32_t>& index, std::size_t bodies,
           std::string_view field) {
@@ -98,6 +99,7 @@ void check(Checker& c, const Look& look) {
   text(c, look.texture, "texture");
   positive(c, look.texture_repeat_x, "texture_repeat_x");
   positive(c, look.texture_repeat_y, "texture_repeat_y");
+  share(c, look.alpha, "alpha");
 }
 
 void check(Checker& c, const Open& open) {

@@ -122,7 +122,8 @@ TEST(Codec, LooksArriveAsTheyWereSent) {
                   {1.0, 0.0, 0.05},
                   "/textures/brick.png",
                   1.5,
-                  2.5};
+                  2.5,
+                  0.25};
   open.looks = {look};
   const Look back = there_and_back(open).looks.at(0);
   EXPECT_EQ(back.model, look.model);
@@ -135,6 +136,7 @@ TEST(Codec, LooksArriveAsTheyWereSent) {
   EXPECT_EQ(back.texture, look.texture);
   EXPECT_EQ(back.texture_repeat_x, look.texture_repeat_x);
   EXPECT_EQ(back.texture_repeat_y, look.texture_repeat_y);
+  EXPECT_EQ(back.alpha, look.alpha);
 }
 
 TEST(Codec, ResetAndAdvanceArriveAsTheyWereSent) {

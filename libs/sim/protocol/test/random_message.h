@@ -91,8 +91,8 @@ class RandomMessage {
     });
     out.bodies = many<BodyName>([this] { return BodyName{text(), text()}; });
     out.looks = many<Look>([this] {
-      return Look{text(),  text(),  text(), color(),    color(),
-                  color(), color(), text(), positive(), positive()};
+      return Look{text(),  text(), text(),     color(),    color(),  color(),
+                  color(), text(), positive(), positive(), color().x};
     });
     return out;
   }

@@ -76,7 +76,8 @@ TEST(Validate, OpenIsSane) {
        {"width_px", [](Open& o) { o.max_width_px = o.max_height_px = kMaxSidePx; }},
        {"looks", [](Open& o) { o.looks.resize(kMaxLooks + 1); }},
        {"diffuse_rgb", [](Open& o) { o.looks[0].diffuse_rgb.y = 1.5; }},
-       {"texture_repeat_x", [](Open& o) { o.looks[0].texture_repeat_x = kInf; }}});
+       {"texture_repeat_x", [](Open& o) { o.looks[0].texture_repeat_x = kInf; }},
+       {"alpha", [](Open& o) { o.looks[0].alpha = 1.5; }}});
 }
 
 TEST(Validate, UavsAreSane) {

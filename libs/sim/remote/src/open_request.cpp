@@ -19,7 +19,8 @@ void add_look(const std::string& model, const std::string& link, const Visual& v
   const Material& m = visual.material;
   if (m.albedo_map.empty()) return;
   looks.push_back({model, link, visual.name, m.ambient_rgb, m.diffuse_rgb, m.specular_rgb,
-                   m.emissive_rgb, m.albedo_map.string(), m.texture_repeat_x, m.texture_repeat_y});
+                   m.emissive_rgb, m.albedo_map.string(), m.texture_repeat_x, m.texture_repeat_y,
+                   m.alpha});
 }
 
 /// SDF's own materials every simulator reads by itself; textures it reads as it likes.

@@ -77,6 +77,7 @@ TEST(OpenRequest, HasTheLooksOfTexturedVisuals) {
   painted.diffuse_rgb = {0.1, 0.2, 0.3};
   painted.albedo_map = "/textures/brick.png";
   painted.texture_repeat_x = 2.5;
+  painted.alpha = 0.25;
   world.models[0].links[0].name = "ground";
   world.models[0].links[0].visuals[0].material = painted;
   Visual capsule = world.uavs[0].body.visuals[0];
@@ -98,6 +99,7 @@ TEST(OpenRequest, HasTheLooksOfTexturedVisuals) {
   EXPECT_EQ(floor.visual, "box");
   EXPECT_EQ(floor.texture, "/textures/brick.png");
   EXPECT_EQ(floor.texture_repeat_x, 2.5);
+  EXPECT_EQ(floor.alpha, 0.25);
   EXPECT_EQ(floor.diffuse_rgb, painted.diffuse_rgb);
 }
 

@@ -50,6 +50,7 @@ struct Look {
   std::string texture;                                             ///< absolute path of a PNG
   double texture_repeat_x = 1.0;  ///< repetitions per metre of surface
   double texture_repeat_y = 1.0;
+  double alpha = 1.0;  ///< 0: not to be seen, 1: opaque
 };
 
 /// The first request. The simulator has the world loaded, or loads it now, adds the UAVs, and
