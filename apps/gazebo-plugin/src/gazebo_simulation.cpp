@@ -124,7 +124,7 @@ bool GazeboSimulation::prepare_pictures() {
   return warm_up_in_main_thread([&] {
     const auto scene = complete_scene(world_->Name());
     apply_looks(scene, open_.looks);
-    pictures_ = std::make_unique<Pictures>(scene, names);
+    pictures_ = std::make_unique<Pictures>(scene, names, open_.max_width_px, open_.max_height_px);
   });
 }
 

@@ -4,6 +4,8 @@
 #include "placed_bodies.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 #include <GL/gl.h>
 #include <gazebo/rendering/RTShaderSystem.hh>
@@ -22,28 +24,87 @@ Ogre::Vector3 to_ogre(const uav::Vec3& v) {
   return Ogre::Vector3(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
 }
 
-// Reads how near the nearest thing is, while what was drawn into is still bound.
-class DepthReader : public Ogre::RenderTargetListener {
+// Reads what is drawn into a texture's corner while that is still bound: the upper rows come first.
+class Reader : public Ogre::RenderTargetListener {
  public:
-  DepthReader(int width_px, int height_px)
-      : width_px_(width_px),
-        height_px_(height_px),
-        depth_(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), 1.0F) {}
+  Reader(Ogre::RenderTexture& texture, const Render& view) : texture_(texture), view_(view) {
+    texture_.addListener(this);
+  }
+  ~Reader() override { texture_.removeListener(this); }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
 
   void postViewportUpdate(const Ogre::RenderTargetViewportEvent&) override {
-    glReadPixels(0, 0, width_px_, height_px_, GL_DEPTH_COMPONENT, GL_FLOAT, depth_.data());
+    read_colours();
+    if (view_.with_depth) read_depth();
   }
 
+  std::vector<std::uint8_t> take_rgb() { return std::move(rgb_); }
   // The buffer holds the share of the way from 1/near to 1/far.
-  double nearest_m(double near_m, double far_m) const {
+  double nearest_m() const {
     const double share = *std::min_element(depth_.begin(), depth_.end());
-    return 1.0 / ((1.0 - share) / near_m + share / far_m);
+    return 1.0 / ((1.0 - share) / view_.near_m + share / view_.far_m);
   }
 
  private:
-  int width_px_;
-  int height_px_;
+  // OGRE sets its frame buffers to be read from nowhere.
+  void read_colours() {
+    constexpr int kOgresAlignment = 4;
+    rgb_.resize(3 * pixels());
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    read(GL_RGB, GL_UNSIGNED_BYTE, rgb_.data());
+    glPixelStorei(GL_PACK_ALIGNMENT, kOgresAlignment);
+    glReadBuffer(GL_NONE);
+  }
+  void read_depth() {
+    depth_.resize(pixels());
+    read(GL_DEPTH_COMPONENT, GL_FLOAT, depth_.data());
+  }
+  void read(GLenum what, GLenum type, void* to) const {
+    glReadPixels(0, 0, view_.camera.width_px, view_.camera.height_px, what, type, to);
+  }
+  std::size_t pixels() const {
+    return static_cast<std::size_t>(view_.camera.width_px) *
+           static_cast<std::size_t>(view_.camera.height_px);
+  }
+
+  Ogre::RenderTexture& texture_;
+  const Render& view_;
+  std::vector<std::uint8_t> rgb_;
   std::vector<float> depth_;
+};
+
+// Sees whether transparent things are drawn, and may make them leave their depth: not while colours
+// are wanted, since it hides what is drawn later and lies behind them.
+class TransparentThings : public Ogre::RenderObjectListener {
+ public:
+  TransparentThings(Ogre::SceneManager& manager, bool leave_depth)
+      : manager_(manager), leave_depth_(leave_depth) {
+    manager_.addRenderObjectListener(this);
+  }
+  ~TransparentThings() override { manager_.removeRenderObjectListener(this); }
+  TransparentThings(const TransparentThings&) = delete;
+  TransparentThings& operator=(const TransparentThings&) = delete;
+
+  // The sky is none of the visuals, which leave a mark on what they draw.
+  void notifyRenderSingleObject(Ogre::Renderable* thing, const Ogre::Pass* pass,
+                                const Ogre::AutoParamDataSource*, const Ogre::LightList*,
+                                bool) override {
+    if (!pass->getParent()->isTransparent()) return;
+    const auto* part = dynamic_cast<const Ogre::SubEntity*>(thing);
+    if (!part || part->getParent()->getUserObjectBindings().getUserAny().isEmpty()) return;
+    any_ = true;
+    if (leave_depth_)
+      Ogre::Root::getSingleton().getRenderSystem()->_setDepthBufferWriteEnabled(true);
+  }
+
+  bool any() const { return any_; }
+
+ private:
+  Ogre::SceneManager& manager_;
+  bool leave_depth_;
+  bool any_ = false;
 };
 
 std::vector<::gazebo::rendering::VisualPtr> find_visuals(const ::gazebo::rendering::ScenePtr& scene,
@@ -56,26 +117,33 @@ std::vector<::gazebo::rendering::VisualPtr> find_visuals(const ::gazebo::renderi
 }  // namespace
 
 Pictures::Pictures(::gazebo::rendering::ScenePtr scene,
-                   const std::vector<std::string>& body_visuals)
+                   const std::vector<std::string>& body_visuals, int max_width_px,
+                   int max_height_px)
     : scene_(std::move(scene)),
       bodies_(find_visuals(scene_, body_visuals)),
-      camera_(scene_->OgreSceneManager()->createCamera("tether")) {}
+      camera_(scene_->OgreSceneManager()->createCamera("tether")) {
+  make_canvas(max_width_px, max_height_px);
+}
 
-Pictures::Canvas& Pictures::canvas(int width_px, int height_px) {
-  Canvas& canvas = canvases_[{width_px, height_px}];
-  if (canvas.texture) return canvas;
-  const std::string name = "tether_" + std::to_string(width_px) + "x" + std::to_string(height_px);
+void Pictures::make_canvas(int max_width_px, int max_height_px) {
   const Ogre::TexturePtr texture = Ogre::TextureManager::getSingleton().createManual(
-      name, kGroup, Ogre::TEX_TYPE_2D, static_cast<unsigned>(width_px),
-      static_cast<unsigned>(height_px), 0, Ogre::PF_BYTE_RGB, Ogre::TU_RENDERTARGET);
-  canvas.texture = texture->getBuffer()->getRenderTarget();
-  canvas.texture->setAutoUpdated(false);
-  canvas.viewport = canvas.texture->addViewport(camera_);
-  canvas.viewport->setOverlaysEnabled(false);
-  canvas.viewport->setVisibilityMask(GZ_VISIBILITY_ALL &
-                                     ~(GZ_VISIBILITY_GUI | GZ_VISIBILITY_SELECTABLE));
-  ::gazebo::rendering::RTShaderSystem::AttachViewport(canvas.viewport, scene_);
-  return canvas;
+      "tether", kGroup, Ogre::TEX_TYPE_2D, static_cast<unsigned>(max_width_px),
+      static_cast<unsigned>(max_height_px), 0, Ogre::PF_BYTE_RGB, Ogre::TU_RENDERTARGET);
+  texture_ = texture->getBuffer()->getRenderTarget();
+  texture_->setAutoUpdated(false);
+  viewport_ = texture_->addViewport(camera_);
+  viewport_->setOverlaysEnabled(false);
+  viewport_->setVisibilityMask(GZ_VISIBILITY_ALL & ~(GZ_VISIBILITY_GUI | GZ_VISIBILITY_SELECTABLE));
+  ::gazebo::rendering::RTShaderSystem::AttachViewport(viewport_, scene_);
+}
+
+// OGRE takes shares of the texture's sides and rounds down to pixels.
+void Pictures::choose_size(int width_px, int height_px) {
+  const auto share = [](int part, unsigned all) {
+    return (static_cast<float>(part) + 0.5F) / static_cast<float>(all);
+  };
+  viewport_->setDimensions(0.0F, 0.0F, share(width_px, texture_->getWidth()),
+                           share(height_px, texture_->getHeight()));
 }
 
 // A pixel's coordinates are those of its centre, so the picture begins half a pixel before pixel 0.
@@ -97,27 +165,24 @@ void Pictures::aim(const Render& view) {
                                            to_ogre(rotate(view.X_WS.q, {-1.0, 0.0, 0.0}))));
 }
 
+bool Pictures::update(bool transparent_leaves_depth) {
+  const TransparentThings transparent(*scene_->OgreSceneManager(), transparent_leaves_depth);
+  texture_->update();
+  return transparent.any();
+}
+
 Picture Pictures::draw(const Render& view) {
-  const int width = view.camera.width_px;
-  const int height = view.camera.height_px;
   const PlacedBodies placed(bodies_, view);
-  Canvas& canvas = this->canvas(width, height);
   const auto background = scene_->BackgroundColor();
-  canvas.viewport->setBackgroundColour(
+  viewport_->setBackgroundColour(
       Ogre::ColourValue(background.R(), background.G(), background.B(), background.A()));
+  choose_size(view.camera.width_px, view.camera.height_px);
   aim(view);
-  Picture picture{width, height, {}, 0.0, {}};
-  DepthReader depth(view.with_depth ? width : 0, view.with_depth ? height : 0);
-  if (view.with_depth) canvas.texture->addListener(&depth);
-  canvas.texture->update();
-  if (view.with_depth) {
-    canvas.texture->removeListener(&depth);
-    picture.nearest_depth_m = depth.nearest_m(view.near_m, view.far_m);
-  }
-  picture.rgb.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  const Ogre::PixelBox pixels(static_cast<unsigned>(width), static_cast<unsigned>(height), 1,
-                              Ogre::PF_BYTE_RGB, picture.rgb.data());
-  static_cast<Ogre::RenderTarget*>(canvas.texture)->copyContentsToMemory(pixels);
+  Reader reader(*texture_, view);
+  const bool has_transparent = update(false);
+  Picture picture{view.camera.width_px, view.camera.height_px, reader.take_rgb(), 0.0, {}};
+  if (view.with_depth && has_transparent) update(true);
+  if (view.with_depth) picture.nearest_depth_m = reader.nearest_m();
   picture.renderer =
       Ogre::Root::getSingleton().getRenderSystem()->getCapabilities()->getDeviceName();
   return picture;

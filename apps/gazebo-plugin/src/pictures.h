@@ -1,8 +1,6 @@
 #pragma once
 
-#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <gazebo/rendering/RenderTypes.hh>
@@ -20,25 +18,26 @@ namespace tether::gazebo_plugin {
 /// Draws pictures of a scene whose bodies are where a host says. In the main thread only.
 class Pictures {
  public:
-  /// `body_visuals`: of each body, the visual that moves it.
-  Pictures(::gazebo::rendering::ScenePtr scene, const std::vector<std::string>& body_visuals);
+  /// `body_visuals`: of each body, the visual that moves it. No view is larger than the sides
+  /// given.
+  Pictures(::gazebo::rendering::ScenePtr scene, const std::vector<std::string>& body_visuals,
+           int max_width_px, int max_height_px);
 
   sim::protocol::Picture draw(const sim::protocol::Render& view);
 
  private:
-  /// What pictures of one size are drawn into.
-  struct Canvas {
-    Ogre::RenderTexture* texture = nullptr;
-    Ogre::Viewport* viewport = nullptr;
-  };
-
-  Canvas& canvas(int width_px, int height_px);
+  void make_canvas(int max_width_px, int max_height_px);
+  void choose_size(int width_px, int height_px);
   void aim(const sim::protocol::Render& view);
+  /// Draws what has been aimed at. True: some of it is transparent.
+  bool update(bool transparent_leaves_depth);
 
   ::gazebo::rendering::ScenePtr scene_;
   std::vector<::gazebo::rendering::VisualPtr> bodies_;
   Ogre::Camera* camera_;
-  std::map<std::pair<int, int>, Canvas> canvases_;
+  /// Pictures of all sizes are drawn into its upper left corner.
+  Ogre::RenderTexture* texture_ = nullptr;
+  Ogre::Viewport* viewport_ = nullptr;
 };
 
 }  // namespace tether::gazebo_plugin
