@@ -7,13 +7,15 @@
 namespace tether::link {
 namespace {
 
-constexpr std::size_t kInitialBytes = 64u << 10;
+constexpr std::size_t kUsualBytes = 64u << 10;
 constexpr std::size_t kLeastSpaceBytes = 4u << 10;
 
 }  // namespace
 
 FrameBuffer::FrameBuffer(std::uint32_t limit)
-    : limit_(limit), capacity_(kInitialBytes), data_(new std::uint8_t[kInitialBytes]) {}
+    : limit_(limit),
+      capacity_(std::min(kUsualBytes, kFrameHeaderBytes + limit + kLeastSpaceBytes)),
+      data_(new std::uint8_t[capacity_]) {}
 
 std::span<std::uint8_t> FrameBuffer::space() {
   if (begin_ == end_) begin_ = end_ = 0;
@@ -27,7 +29,8 @@ void FrameBuffer::make_room(std::size_t bytes) {
   if (kept + bytes <= capacity_) {
     std::memmove(data_.get(), data_.get() + begin_, kept);
   } else {
-    const std::size_t capacity = kept + bytes + kLeastSpaceBytes;
+    const std::size_t usual = std::min<std::size_t>(kUsualBytes, limit_);
+    const std::size_t capacity = std::max(kept + bytes + kLeastSpaceBytes, usual);
     std::unique_ptr<std::uint8_t[]> data(new std::uint8_t[capacity]);
     std::memcpy(data.get(), data_.get() + begin_, kept);
     data_ = std::move(data);

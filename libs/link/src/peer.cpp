@@ -11,6 +11,8 @@ namespace {
 
 /// How long a connection that is being closed waits for its peer to close too.
 constexpr std::chrono::seconds kDrainLimit{2};
+/// Reads before a close at the end; a peer that sends on and on does not keep us.
+constexpr int kLastReads = 16;
 
 std::vector<std::uint8_t> take_image(Message& message) {
   auto* reply = std::get_if<Reply>(&message);
@@ -32,12 +34,19 @@ Peer::Peer(PeerId id, Tcp::socket socket, std::string remote)
   socket_.native_non_blocking(true, ignored);
 }
 
+void Peer::greet() {
+  is_stranger_ = false;
+  deadline.reset();
+  input_.set_limit(kMaxRequestBytes);
+}
+
 Status Peer::send(const FramePieces& pieces, Message& message) {
-  if (queued_bytes_ > kMaxQueuedBytes) {
+  if (queued_bytes_ > kMaxQueuedBytes || queue_.size() >= kMaxQueuedFrames) {
+    std::string waiting = std::to_string(queued_bytes_) + " bytes in " +
+                          std::to_string(queue_.size()) + " frames wait for it";
     die();
     return Failure{Failure::Kind::kDisconnected,
-                   remote_ + " does not read what it is sent: " + std::to_string(queued_bytes_) +
-                       " bytes wait for it"};
+                   remote_ + " does not read what it is sent: " + std::move(waiting)};
   }
   std::size_t done = 0;
   if (queue_.empty()) {
@@ -114,8 +123,7 @@ void Peer::die() {
   socket_.close(ignored);
 }
 
-void Peer::finish(Duration limit) {
-  const auto end = std::chrono::steady_clock::now() + limit;
+void Peer::finish(std::chrono::steady_clock::time_point end) {
   while (state_ != State::kDead && wants_to_write()) {
     const auto left =
         std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
@@ -126,7 +134,7 @@ void Peer::finish(Duration limit) {
   if (state_ == State::kDead) return;
   // Reading what is there keeps the close from becoming a reset.
   ::shutdown(descriptor(), SHUT_WR);
-  while (receive_some(descriptor(), input_.space()).bytes > 0) {
+  for (int i = 0; i < kLastReads && receive_some(descriptor(), input_.space()).bytes > 0; ++i) {
   }
   die();
 }

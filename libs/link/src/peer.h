@@ -29,7 +29,7 @@ struct QueuedFrame {
   std::size_t left() const { return head.size() + image.size() + tail.size() - done; }
 };
 
-/// One connection of a TcpServer.
+/// One connection of a TcpServer. A stranger until greeted.
 ///
 ///   kOpen ──drain()──► kDraining ──peer closed or deadline──► kDead
 ///     └──────────────── connection lost ───────────────────────┘
@@ -48,6 +48,10 @@ class Peer {
   State state() const { return state_; }
   int descriptor() { return socket_.native_handle(); }
   bool wants_to_write() const { return !queue_.empty(); }
+  std::chrono::steady_clock::time_point since() const { return since_; }
+  bool is_stranger() const { return is_stranger_; }
+  /// Its first frame was taken: it may take its time from here on, and send larger ones.
+  void greet();
 
   /// Sends what the socket takes and queues the rest, whose image it takes out of `message`.
   /// Fails (and is dead then) if the connection is lost or too much is waiting.
@@ -63,8 +67,8 @@ class Peer {
 
   void drain();
   void die();
-  /// Waits for the queue to empty, blocking up to `limit`, then closes.
-  void finish(Duration limit);
+  /// Waits for the queue to empty, blocking until `end` at the latest, then closes.
+  void finish(std::chrono::steady_clock::time_point end);
 
   Deadline deadline;               ///< of the first frame, or of draining
   std::optional<Failure> closing;  ///< what on_closed still has to tell
@@ -76,7 +80,9 @@ class Peer {
   PeerId id_;
   Tcp::socket socket_;
   std::string remote_;
-  FrameBuffer input_{kMaxRequestBytes};
+  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+  bool is_stranger_ = true;
+  FrameBuffer input_{kMaxHelloBytes};
   std::deque<QueuedFrame> queue_;
   std::size_t queued_bytes_ = 0;
   State state_ = State::kOpen;

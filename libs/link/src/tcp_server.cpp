@@ -40,6 +40,9 @@ class TcpServer final : public Server {
 
  private:
   Peer* find(PeerId id);
+  bool is_full() const;
+  /// The peer's, sooner while others wait to be let in.
+  Peer::Deadline deadline_of(const Peer& peer) const;
   /// The earliest of the deadlines, or none.
   Peer::Deadline next_deadline() const;
 
@@ -66,6 +69,7 @@ class TcpServer final : public Server {
   std::vector<pollfd> watched_;  // the acceptor, then peers_ in order
   PeerId next_id_ = 1;
   Peer::Deadline accept_paused_until_;
+  bool is_crowded_ = false;  // full of strangers, and others wait; the acceptor is not watched then
   const bool may_look_out_ = may_look_out();
   PeerId spoke_last_ = 0;
   int look_outs_ = 0;
@@ -99,7 +103,8 @@ TcpServer::TcpServer(const Address& address, Duration hello_timeout, ServerEvent
 }
 
 TcpServer::~TcpServer() {
-  for (auto& peer : peers_) peer->finish(kFinishLimit);
+  const auto end = steady_clock::now() + kFinishLimit;
+  for (auto& peer : peers_) peer->finish(end);
 }
 
 Peer* TcpServer::find(PeerId id) {
@@ -171,12 +176,14 @@ bool TcpServer::look_out(Duration max_wait) {
 }
 
 bool TcpServer::wait(Duration max_wait) {
+  is_crowded_ = is_crowded_ && is_full();
   Duration limit = max_wait;
   if (const auto deadline = next_deadline()) {
     limit = std::min(limit, std::max<Duration>(*deadline - steady_clock::now(), Duration::zero()));
   }
   watched_.resize(peers_.size() + 1);
-  watched_[0] = {accept_paused_until_ ? -1 : acceptor_.native_handle(), POLLIN, 0};
+  const bool may_accept = !accept_paused_until_ && !is_crowded_;
+  watched_[0] = {may_accept ? acceptor_.native_handle() : -1, POLLIN, 0};
   for (std::size_t i = 0; i < peers_.size(); ++i) {
     const int out = peers_[i]->wants_to_write() ? POLLOUT : 0;
     watched_[i + 1] = {peers_[i]->descriptor(), static_cast<short>(POLLIN | out), 0};
@@ -186,16 +193,29 @@ bool TcpServer::wait(Duration max_wait) {
   return ::ppoll(watched_.data(), watched_.size(), &timeout, nullptr) > 0;
 }
 
+bool TcpServer::is_full() const {
+  const auto is_stranger = [](const auto& peer) { return peer->is_stranger(); };
+  return std::count_if(peers_.begin(), peers_.end(), is_stranger) >=
+         static_cast<std::ptrdiff_t>(kMaxStrangers);
+}
+
+Peer::Deadline TcpServer::deadline_of(const Peer& peer) const {
+  if (!is_crowded_ || !peer.is_stranger() || !peer.deadline) return peer.deadline;
+  return std::min(*peer.deadline, peer.since() + kCrowdedStay);
+}
+
 Peer::Deadline TcpServer::next_deadline() const {
   Peer::Deadline next = accept_paused_until_;
   for (const auto& peer : peers_) {
-    if (peer->deadline && (!next || *peer->deadline < *next)) next = peer->deadline;
+    const auto deadline = deadline_of(*peer);
+    if (deadline && (!next || *deadline < *next)) next = deadline;
   }
   return next;
 }
 
 void TcpServer::accept_all() {
-  while (true) {
+  is_crowded_ = is_full();
+  while (!is_full()) {
     std::error_code error;
     Tcp::socket socket(context_);
     acceptor_.accept(socket, error);
@@ -219,15 +239,7 @@ void TcpServer::accept_one(Tcp::socket socket) {
   peers_.push_back(
       std::make_unique<Peer>(next_id_++, std::move(socket), to_string(to_address(remote))));
   Peer& peer = *peers_.back();
-  if (peers_.size() > kMaxPeers) {
-    send(peer.id(),
-         Refusal{Refusal::Reason::kBadRequest, "the coordinator has " + std::to_string(kMaxPeers) +
-                                                   " connections already and takes no more"});
-    peer.closing.reset();  // the events never heard of it
-    peer.drain();
-    return;
-  }
-  peer.deadline = steady_clock::now() + hello_timeout_;
+  peer.deadline = peer.since() + hello_timeout_;
   events_.on_connected(peer.id(), peer.remote());
 }
 
@@ -261,9 +273,9 @@ void TcpServer::handle_frames(Peer& peer) {
     if (frame->empty()) return;
     auto message = decode(*frame);
     if (!message) return refuse(peer, message.failure());
-    peer.deadline.reset();
     spoke_last_ = peer.id();
     events_.on_message(peer.id(), std::move(message).value());
+    if (peer.is_stranger() && peer.state() == Peer::State::kOpen) peer.greet();
   }
 }
 
@@ -274,12 +286,13 @@ void TcpServer::expire_deadlines() {
   if (accept_paused_until_ && *accept_paused_until_ <= now) accept_paused_until_.reset();
   for (std::size_t i = 0; i < peers_.size(); ++i) {
     Peer& peer = *peers_[i];
-    if (!peer.deadline || *peer.deadline > now) continue;
-    if (peer.state() == Peer::State::kOpen) {
+    const auto its_deadline = deadline_of(peer);
+    if (!its_deadline || *its_deadline > now) continue;
+    const bool is_draining = peer.state() == Peer::State::kDraining;
+    if (!is_draining)
       refuse(peer, {Failure::Kind::kTimeout, "no whole Hello came within the limit"});
-    } else {
-      peer.die();
-    }
+    // Its place is wanted: no time to see whether it takes the Refusal.
+    if (is_draining || is_crowded_) peer.die();
   }
 }
 

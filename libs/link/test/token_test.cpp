@@ -18,6 +18,9 @@ TEST(Token, Is128BitsInHexAndNeverTheSame) {
   EXPECT_EQ(tokens.size(), 100u);
 }
 
+/// Every character counts, the first as much as the last; another length is another token. How long
+/// it takes is not measured here: that would tell of the machine. It has no way out but by length,
+/// which is no secret.
 TEST(Token, ComparesWhole) {
   EXPECT_TRUE(tokens_equal("abcd", "abcd"));
   EXPECT_TRUE(tokens_equal("", ""));

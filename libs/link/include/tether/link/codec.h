@@ -17,6 +17,9 @@ inline constexpr std::size_t kFrameHeaderBytes = 4;
 inline constexpr std::uint32_t kMaxReplyBytes = 64u << 20;
 /// Largest frame towards the coordinator; nothing a SUT says is long.
 inline constexpr std::uint32_t kMaxRequestBytes = 1u << 20;
+/// Largest first frame towards the coordinator: four times the longest Hello of this version. Who
+/// has not said who it is has no more than this kept of what it sends.
+inline constexpr std::uint32_t kMaxHelloBytes = 4u << 10;
 
 /// Longest name, token or topic [bytes].
 inline constexpr std::size_t kMaxNameBytes = 256;

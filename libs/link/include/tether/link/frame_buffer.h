@@ -12,12 +12,15 @@ namespace tether::link {
 
 /// Cuts a byte stream into frames. Bytes go straight from the socket into it, as many as there are,
 /// so that a small frame costs one system call; it grows to the largest frame seen and stays there.
+/// What a header announces is not allocated before its limit has been checked.
 ///
 ///   receive into space(), commit(n), then next() until it gives an empty span.
 class FrameBuffer {
  public:
   /// `limit`: the largest frame that may be announced [bytes].
   explicit FrameBuffer(std::uint32_t limit);
+  /// From the next frame on.
+  void set_limit(std::uint32_t limit) { limit_ = limit; }
 
   /// Where the next bytes go; never empty, and enough for the rest of a frame that has begun.
   /// Invalidates what next() gave.

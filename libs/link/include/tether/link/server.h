@@ -31,8 +31,13 @@ class ServerEvents {
 
 /// Bytes that may wait for a peer that reads slowly; one frame of any size may always wait.
 inline constexpr std::size_t kMaxQueuedBytes = 16u << 20;
-/// Connections at the same time; one more is refused.
-inline constexpr std::size_t kMaxPeers = 64;
+/// Frames that may wait for it, whatever their size. A SUT of 64 threads that reads has fewer.
+inline constexpr std::size_t kMaxQueuedFrames = 1024;
+/// Strangers are connections that have not sent a whole frame yet, or were sent away by what they
+/// sent first. So many are there at the same time; more wait with the system until one goes.
+inline constexpr std::size_t kMaxStrangers = 128;
+/// While others wait, how long a stranger may stay; whoever speaks at once is not hurried by it.
+inline constexpr Duration kCrowdedStay = std::chrono::milliseconds(500);
 
 /// The coordinator's end: many connections, one thread, no locks. Frames go out whole and in order.
 class Server {
@@ -41,12 +46,14 @@ class Server {
   /// Where to connect.
   virtual Address address() const = 0;
   /// Handles what is there, calling the events from within. If nothing is, waits at most `max_wait`
-  /// (0: does not wait) for something to come. Returns whether anything was handled.
+  /// (0: does not wait) for something to come. Returns whether anything was handled. Of each peer,
+  /// no more is handled than one read gives (about kMaxRequestBytes at most), so that none keeps
+  /// the others waiting, or the caller.
   virtual bool poll(Duration max_wait) = 0;
   /// Writes the message to the connection at once as far as it takes it, and keeps the rest for
   /// `poll`. Move the message in: its image is then never copied. A peer that does not read is
   /// closed (`on_closed` comes from the next poll) when something is to be sent while more than
-  /// kMaxQueuedBytes wait for it. Does nothing for a peer that is gone.
+  /// kMaxQueuedBytes or kMaxQueuedFrames wait for it. Does nothing for a peer that is gone.
   /// @throws Error(kInternal) if the message breaks `validate`.
   virtual void send(PeerId peer, Message message) = 0;
   /// Sends what is queued, then closes; no event comes from this peer any more.
@@ -54,14 +61,16 @@ class Server {
 };
 
 /// Listens on TCP with TCP_NODELAY; port 0 takes a free one. A peer that has not sent its first
-/// whole frame within `hello_timeout` is refused. `events` must outlive the server.
+/// whole frame (kMaxHelloBytes at most) within `hello_timeout` of connecting is refused, however
+/// steadily its bytes come. `events` must outlive the server.
 /// @throws Error(kSetup) when the address cannot be bound.
 std::unique_ptr<Server> listen_tcp(const Address& address, Duration hello_timeout,
                                    ServerEvents& events);
 
 /// A new random token: 128 bits of the kernel's generator, in hex. @throws Error(kSetup).
 std::string make_token();
-/// Compares without telling, by its duration, where they differ.
+/// Compares without telling, by its duration, where they differ. Their lengths may show: that of a
+/// run's token is no secret, 32 unless somebody chose another one.
 bool tokens_equal(const std::string& a, const std::string& b);
 
 }  // namespace tether::link
