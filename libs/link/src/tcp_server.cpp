@@ -138,7 +138,7 @@ void TcpServer::refuse(Peer& peer, const Failure& failure) {
   std::string text = failure.message.substr(0, kMaxTextBytes);
   send(peer.id(), Refusal{Refusal::Reason::kBadMessage, std::move(text)});
   peer.drain();
-  if (!peer.closing) peer.closing = Failure{failure.kind, peer.remote() + ": " + failure.message};
+  if (!peer.closing) peer.closing = failure;
 }
 
 // --- polling ------------------------------------------------------------------------------------
