@@ -4,6 +4,7 @@
 #include "interrupt.h"
 #include "local_sut.h"
 #include "machine.h"
+#include "refusals.h"
 #include "running_simulator.h"
 #include "stall_watch.h"
 #include "sut_processes.h"
@@ -39,7 +40,14 @@ WallTime host_now() {
 
 std::string token_of_run() {
   const char* given = std::getenv("TETHER_TOKEN");
-  return given && *given ? given : link::make_token();
+  if (!given || !*given) return link::make_token();
+  std::string token = given;
+  if (token.size() > link::kMaxNameBytes)
+    throw Error(ErrorCode::kSetup,
+                fmt::format("TETHER_TOKEN is longer than {} bytes; leave it unset, and the run "
+                            "makes one of its own",
+                            link::kMaxNameBytes));
+  return token;
 }
 
 /// One list per UAV of the world, in the order of its sensors.
@@ -185,7 +193,7 @@ Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* boa
 
   StallWatch stalls([&] { return suts.stopped(); }, host_clocks());
   bool joined = false, left_early = false;
-  std::string refused;
+  Refusals refusals(observer.on_refused);
   coordinator::RunHooks hooks;
   hooks.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
     if (interrupted())
@@ -198,7 +206,8 @@ Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* boa
     if (!joined)
       if (const auto end = suts.early_end()) {
         left_early = true;
-        return std::pair(RunEnd::kSutLost, *end + (refused.empty() ? "" : "; " + refused));
+        return std::pair(RunEnd::kSutLost,
+                         *end + (refusals.last().empty() ? "" : "; " + refusals.last()));
       }
     return std::nullopt;
   };
@@ -208,12 +217,10 @@ Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* boa
     const std::string stall = stalls.look(status, host_clocks());
     if (!stall.empty() && observer.on_blocked) observer.on_blocked(stall);
   };
-  hooks.on_refused = [&](const std::string& text) {
-    refused = text;
-    if (observer.on_refused) observer.on_refused(text);
-  };
+  hooks.on_refused = [&](const std::string& text) { refusals.add(text); };
   hooks.read_target = [&] { return read_target(spec, board); };
   auto report = coordinator.run(*server, hooks);
+  refusals.close();
   if (report.end == RunEnd::kSutLost && !left_early) report.reason += suts.post_mortem();
   if (report.end == RunEnd::kSimulatorLost) report.reason += simulator.post_mortem(report.reason);
   if (report.end == RunEnd::kFinished) suts.let_leave();

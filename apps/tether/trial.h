@@ -37,7 +37,7 @@ struct TrialObserver {
   std::function<void(const std::string&)> on_blocked;
   /// What is being set up, before there is a status.
   std::function<void(const std::string&)> on_setup;
-  /// Somebody was not let in; one line.
+  /// Somebody was not let in; one line. After twenty of them only their number, at the end.
   std::function<void(const std::string&)> on_refused;
   /// Waiting for the SUT: where to connect, and the environment that it needs.
   std::function<void(const std::string& instructions)> on_listening;
