@@ -142,6 +142,10 @@ ExternalRun::ExternalRun(const std::filesystem::path& scenario, const std::files
   address_ = text.substr(begin, text.find(' ', begin) - begin);
 }
 
+std::string ExternalRun::token() {
+  return kToken;
+}
+
 std::unique_ptr<Process> ExternalRun::start_sut(
     const std::vector<std::string>& arguments,
     const std::vector<std::pair<std::string, std::string>>& environment) const {

@@ -64,6 +64,7 @@ class ExternalRun {
 
   /// host:port.
   const std::string& address() const { return address_; }
+  static std::string token();
   /// Starts a SUT: `arguments` with the environment that joins it to this run. What is given in
   /// `environment` goes over that.
   std::unique_ptr<Process> start_sut(

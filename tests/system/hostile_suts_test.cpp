@@ -1,0 +1,321 @@
+#include "support/raw_peer.h"
+#include "support/trials.h"
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <thread>
+#include <variant>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <tether/link/codec.h>
+
+/// A SUT that has the token and breaks the rules: the run ends with a reason that names it, and
+/// nothing that it did looks like a result.
+namespace tether::system_test {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+// ---- What a SUT says
+
+link::Hello hello_for(const std::string& uav) {
+  link::Hello hello;
+  hello.sut = "hostile 1.0";
+  hello.uav = uav;
+  hello.clock = link::ClockKind::kScripted;
+  hello.token = ExternalRun::token();
+  return hello;
+}
+
+template <class Body>
+link::Request request(std::uint64_t sequence, std::int64_t at_ns, const Body& body) {
+  link::Request request;
+  request.sequence = sequence;
+  request.issued_at = from_ns<ExecTime>(at_ns);
+  request.body = body;
+  return request;
+}
+link::Request sleep_request(std::uint64_t sequence, std::int64_t at_ns, std::int64_t until_ns) {
+  return request(sequence, at_ns, link::Sleep{from_ns<ExecTime>(until_ns)});
+}
+link::Request command(std::uint64_t sequence, std::int64_t at_ns, double yaw_rate_rad_s = 0.0) {
+  return request(sequence, at_ns, link::SetVelocity{{{}, yaw_rate_rad_s}});
+}
+link::Annotation annotation(std::size_t bytes) {
+  return {ExecTime{}, "step", "{\"x\": \"" + std::string(bytes, 'x') + "\"}"};
+}
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
+
+/// A second of honest flying: 100 requests, each with its reply. Returns the next sequence number.
+std::uint64_t fly_honestly(RawPeer& sut) {
+  std::uint64_t sequence = 1;
+  for (; sequence <= 100; ++sequence) {
+    const auto t = static_cast<std::int64_t>(sequence) * 10 * kMs;
+    EXPECT_TRUE(sut.write(sleep_request(sequence, t - 10 * kMs, t)));
+    const auto reply = sut.read(20s);
+    EXPECT_TRUE(reply && std::holds_alternative<link::Reply>(*reply));
+  }
+  return sequence;
+}
+constexpr std::int64_t kFlown = 1000 * kMs;
+
+// ---- Each misdeed, and what is said of it
+
+struct Misdeed {
+  std::string name;
+  /// `next`: the sequence number of the next request, which may be stamped kFlown.
+  std::function<void(RawPeer&, std::uint64_t next)> act;
+  std::string reason;  ///< part of the run's
+};
+
+void PrintTo(const Misdeed& misdeed, std::ostream* out) {
+  *out << misdeed.name;
+}
+
+Misdeed sends(const std::string& name, const std::function<link::Message(std::uint64_t)>& message,
+              const std::string& reason) {
+  return {name, [=](RawPeer& sut, std::uint64_t next) { sut.write(message(next)); }, reason};
+}
+
+const Misdeed kMisdeeds[] = {
+    sends(
+        "LargestStamp", [](auto next) { return command(next, kMax); }, "beyond 146 years"),
+    sends(
+        "NegativeStamp", [](auto next) { return command(next, -1); }, "issued_at is negative"),
+    sends(
+        "SmallestStamp",
+        [](auto next) { return command(next, std::numeric_limits<std::int64_t>::min()); },
+        "issued_at is negative"),
+    sends(
+        "SleepBeyondTime", [](auto next) { return sleep_request(next, kFlown, kMax); },
+        "until is negative or beyond"),
+    sends(
+        "NegativeProgress", [](auto) { return link::Progress{from_ns<ExecTime>(-5)}; },
+        "reached is negative"),
+    sends(
+        "SequenceAgain", [](auto next) { return command(next - 1, kFlown); },
+        "request number 100, expected 101"),
+    sends(
+        "SequenceSkipped", [](auto next) { return command(next + 1, kFlown); },
+        "request number 102, expected 101"),
+    sends(
+        "SequenceZero", [](auto) { return command(0, kFlown); }, "sequence is 0"),
+    sends(
+        "SequenceLargest",
+        [](auto) { return command(std::numeric_limits<std::uint64_t>::max(), kFlown); },
+        "expected 101"),
+    sends(
+        "NoSuchSensor",
+        [](auto next) { return request(next, kFlown, link::ReadSensor{.sensor = 99}); },
+        "sensor number 99"),
+    sends(
+        "SensorBeyondAnyCatalogue",
+        [](auto next) { return request(next, kFlown, link::ReadSensor{.sensor = 0xffffffff}); },
+        "sensor is beyond any catalogue"),
+    sends(
+        "CommandOfNoNumber", [](auto next) { return command(next, kFlown, std::nan("")); },
+        "velocity command is not finite"),
+    sends(
+        "CommandBeyondAnyUav", [](auto next) { return command(next, kFlown, 1e300); },
+        "velocity command is not finite or beyond any UAV"),
+    sends(
+        "HugeAnnotation", [](auto) { return annotation(2u << 20); }, "at most 1048576"),
+    sends(
+        "AnnotationBeyondTheLimit", [](auto) { return annotation(link::kMaxJsonBytes); },
+        "json is longer than"),
+    sends(
+        "AnnotationWithoutTopic",
+        [](auto) {
+          return link::Annotation{ExecTime{}, "", "{}"};
+        },
+        "topic is empty"),
+    sends(
+        "Reply",
+        [](auto) {
+          return link::Reply{1, ExecTime{}, std::nullopt};
+        },
+        "a message that only coordinators send"),
+    sends(
+        "StopOfASerialSut",
+        [](auto) { return link::Progress{.reached = from_ns<ExecTime>(kFlown), .stopped = true}; },
+        "a stop, which is for concurrent SUTs"),
+    {"HelloAgain", [](RawPeer& sut, auto) { sut.write(hello_for("")); }, "sent a message"},
+    {"FourGigabytes", [](RawPeer& sut, auto) { sut.write(std::string(4, '\xff')); },
+     "frame of 4294967295 bytes announced"},
+    {"Garbage",
+     [](RawPeer& sut, auto) { sut.write(std::string("\x20\0\0\0", 4) + std::string(32, 'x')); },
+     "not a Tether message"},
+    {"RequestWhileOneIsHeld",
+     [](RawPeer& sut, std::uint64_t next) {
+       sut.write(sleep_request(next, kFlown, 4 * kFlown));
+       sut.write(command(next + 1, kFlown));
+     },
+     "a request while another one is held"},
+    {"ImagesThatItDoesNotRead",
+     [](RawPeer& sut, std::uint64_t next) {
+       const link::ReadSensor camera{.sensor = 0, .latest = true};
+       while (sut.write(request(next++, kFlown, camera))) std::this_thread::sleep_for(5ms);
+     },
+     "does not read what it is sent"},
+    {"ClosedHalf", [](RawPeer& sut, auto) { sut.shut(SHUT_WR); }, "closed the connection"},
+    {"ClosedHalfInAFrame",
+     [](RawPeer& sut, std::uint64_t next) {
+       const std::string frame = frame_of(command(next, kFlown));
+       sut.write(frame.substr(0, frame.size() / 2));
+       sut.shut(SHUT_WR);
+     },
+     "closed the connection"},
+    {"ClosedHalfWhileHeld",
+     [](RawPeer& sut, std::uint64_t next) {
+       sut.write(sleep_request(next, kFlown, 4 * kFlown));
+       sut.shut(SHUT_WR);
+     },
+     "closed the connection"},
+    {"ClosedTheOtherHalf", [](RawPeer& sut, auto) { sut.shut(SHUT_RD); }, "no word for 2 s"},
+    {"AFrameThatNeverEnds",
+     [](RawPeer& sut, std::uint64_t next) {
+       const std::string frame = frame_of(command(next, kFlown));
+       sut.write(frame.substr(0, frame.size() - 1));
+     },
+     "no word for 2 s"},
+    {"ProgressWithoutEnd",
+     [](RawPeer& sut, auto) {
+       const std::string same = frame_of(link::Progress{from_ns<ExecTime>(kFlown)});
+       while (sut.write(same)) {
+       }
+     },
+     "no word for 2 s"},
+};
+
+Output audit(const std::filesystem::path& folder) {
+  return run(tether({"audit", folder / "record.mcap"}));
+}
+
+class HostileSut : public testing::TestWithParam<Misdeed> {
+ protected:
+  TempFolder folder_;
+};
+
+TEST_P(HostileSut, EndsItsRunByName) {
+  ExternalRun run(write_hover_scenario(folder_.path(), "good"), folder_ / "out");
+  RawPeer sut(run.address());
+  ASSERT_TRUE(sut.write(hello_for("")));
+  ASSERT_TRUE(std::holds_alternative<link::Welcome>(sut.read(30s).value()));
+  const std::uint64_t next = fly_honestly(sut);
+
+  GetParam().act(sut, next);
+  const Output output = run.wait(40s);
+  EXPECT_EQ(output.code, 3);
+  EXPECT_FALSE(output.timed_out);
+  EXPECT_THAT(output.err, HasSubstr(GetParam().reason));
+
+  const auto result = read_result(folder_ / "out");
+  EXPECT_EQ(result["outcome"], "failed");
+  EXPECT_EQ(result["exit_code"], 3);
+  EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr(GetParam().reason));
+  EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("uav1"));
+  // What had been flown before is in the record, and sound.
+  EXPECT_GE(read_record(folder_ / "out").interactions.size(), 100u);
+  EXPECT_EQ(audit(folder_ / "out").code, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Misdeeds, HostileSut, testing::ValuesIn(kMisdeeds),
+                         [](const auto& misdeed) { return misdeed.param.name; });
+
+// ---- Times that cannot be
+
+/// A run in which one request is stamped before what the SUT has reached, and which then ends as if
+/// all was well.
+/// A run in which one request is stamped before what the SUT has reached, and which then ends as if
+/// all was well.
+TEST(HostileStamps, ThatGoBackInvalidateTheResultAndAreNamed) {
+  const TempFolder folder;
+  ExternalRun run(write_hover_scenario(folder.path(), "good"), folder / "out");
+  RawPeer sut(run.address());
+  sut.write(hello_for(""));
+  ASSERT_TRUE(std::holds_alternative<link::Welcome>(sut.read(30s).value()));
+  const std::uint64_t next = fly_honestly(sut);
+  sut.write(command(next, kFlown - 300 * kMs));
+  ASSERT_TRUE(sut.read(20s));
+  sut.write(request(next + 1, kFlown, link::Finish{true, "done", "{}"}));
+  ASSERT_TRUE(sut.read(20s));
+
+  const Output output = run.wait(20s);
+  EXPECT_EQ(output.code, 3);
+  const auto result = read_result(folder / "out");
+  EXPECT_EQ(result["outcome"], "failed");
+  EXPECT_EQ(result["sync"]["causality_violations"], 1);
+  EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("300000000 ns"));
+  EXPECT_EQ(audit(folder / "out").code, 1);
+}
+
+/// Time that this machine's clock cannot have shown is named at once, with its size.
+class HostileClock : public testing::TestWithParam<bool> {};
+
+TEST_P(HostileClock, ThatRunsAheadEndsTheRunByName) {
+  const TempFolder folder;
+  ExternalRun run(
+      write_hover_scenario(folder.path(), "good", {{"clock = \"cpu\"", "clock = \"wall\""}}),
+      folder / "out");
+  RawPeer sut(run.address());
+  link::Hello hello = hello_for("");
+  hello.clock = link::ClockKind::kWall;
+  sut.write(hello);
+  ASSERT_TRUE(std::holds_alternative<link::Welcome>(sut.read(30s).value()));
+  // A minute ahead, more than this test has taken.
+  const auto ahead = from_ns<ExecTime>(60'000 * kMs);
+  const bool by_progress = GetParam();
+  sut.write(by_progress ? link::Message(link::Progress{ahead})
+                        : link::Message(command(1, 60'000 * kMs)));
+  const Output output = run.wait(20s);
+  EXPECT_EQ(output.code, 3);
+  const std::string reason = read_result(folder / "out")["reason"];
+  EXPECT_THAT(reason, HasSubstr("\"uav1\""));
+  EXPECT_THAT(reason, HasSubstr("ET 60.000000 s"));
+  EXPECT_THAT(reason, testing::ContainsRegex("which is [0-9]+\\.[0-9]+ s ahead"));
+}
+
+INSTANTIATE_TEST_SUITE_P(BySayingSo, HostileClock, testing::Bool(), [](const auto& by_progress) {
+  return by_progress.param ? "InProgress" : "InARequest";
+});
+
+// ---- Beside an honest one
+
+/// Who ended the run is told from who only was in it.
+TEST(HostileSutBesideAnHonestOne, EndsTheRunInItsOwnName) {
+  const TempFolder folder;
+  const std::string second =
+      "[[uav]]\nname = \"uav2\"\nmodel = \"" TETHER_SOURCE_DIR
+      "/models/hummingbird/model.sdf\"\nposition_m = [2.0, 0.0, 1.0]\n\n[sut]";
+  ExternalRun run(
+      write_hover_scenario(
+          folder.path(), "fly_on",
+          {{"[sut]", second}, {"\"time_required\"", "\"time_required\"\nuav = \"uav1\""}}),
+      folder / "out");
+  const auto honest = run.start_sut({bad_sut_program(), "fly_on"}, {{"TETHER_UAV", "uav1"}});
+  RawPeer sut(run.address());
+  sut.write(hello_for("uav2"));
+  ASSERT_TRUE(std::holds_alternative<link::Welcome>(sut.read(30s).value()));
+  const std::uint64_t next = fly_honestly(sut);
+  sut.write(command(next + 7, kFlown));
+
+  EXPECT_EQ(run.wait(20s).code, 3);
+  const std::string reason = read_result(folder / "out")["reason"];
+  EXPECT_THAT(reason, HasSubstr("the SUT of UAV \"uav2\" sent request number 108, expected 101"));
+  const Output told = honest->wait(10s);
+  EXPECT_EQ(told.code, 3);
+  EXPECT_THAT(told.err, HasSubstr("uav2"));
+}
+
+}  // namespace
+}  // namespace tether::system_test

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <tether/link/frame_socket.h>
+#include <tether/link/messages.h>
+
+namespace tether::system_test {
+
+/// Whoever connects to a run and says what he likes, in whatever pieces.
+class RawPeer {
+ public:
+  /// @throws std::runtime_error when nothing listens there.
+  explicit RawPeer(const std::string& address);
+
+  /// False: the other end is gone, or has read nothing for five seconds.
+  bool write(std::string_view bytes) const;
+  bool write(const link::Message& message) const;
+  /// The next message; none: the connection has ended, or nothing came within the limit.
+  std::optional<link::Message> read(std::chrono::duration<double> limit);
+  /// Reads on up to a Refusal; its text. Empty: the connection ended without, or the limit passed.
+  std::string read_refusal(std::chrono::duration<double> limit);
+  /// SHUT_RD or SHUT_WR.
+  void shut(int how) const;
+  /// Closing it then resets the connection instead of ending it.
+  void reset_at_close() const;
+
+ private:
+  link::FrameSocket socket_;
+};
+
+/// As it goes over the wire.
+std::string frame_of(const link::Message& message);
+
+}  // namespace tether::system_test
