@@ -65,15 +65,6 @@ void expect_same_roi(const Roi& a, const Roi& b, int tolerance_px) {
   EXPECT_NEAR(a.bottom, b.bottom, tolerance_px);
 }
 
-/// A core that is busy while this lives.
-class Spinner {
- public:
-  Spinner() : process_({{"sh", "-c", "while :; do :; done"}, {}, {}}) {}
-
- private:
-  Process process_;
-};
-
 class GazeboFlight : public testing::Test {
  protected:
   TempFolder folder_;

@@ -1,4 +1,4 @@
-#include "../src/diagnosis.h"
+#include "diagnosis.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -62,6 +62,15 @@ class Process {
   std::optional<int> status_;
 };
 
+/// A core that is busy while this lives.
+class Spinner {
+ public:
+  Spinner() : process_({{"sh", "-c", "while :; do :; done"}, {}, {}}) {}
+
+ private:
+  Process process_;
+};
+
 /// Runs to the end.
 Output run(const Command& command, std::chrono::duration<double> limit = std::chrono::seconds(60));
 

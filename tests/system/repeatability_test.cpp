@@ -1,0 +1,61 @@
+#include "support/trials.h"
+
+#include <cstdlib>
+#include <functional>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+/// A trial with scripted times is one trial, however often, on however busy a machine, with however
+/// many rendering threads, and by whatever build it is flown.
+namespace tether::system_test {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int kRuns = 20;
+
+/// `tether` of the build under the address sanitizer, which scripts/test makes first.
+std::optional<std::filesystem::path> checked_program() {
+  const auto program = std::filesystem::path(TETHER_SOURCE_DIR) / "build/asan/bin/tether";
+  const bool is_there = std::filesystem::exists(program);
+  if (!is_there && std::getenv("CI")) throw std::runtime_error(program.string() + " is missing");
+  return is_there ? std::optional(program) : std::nullopt;
+}
+
+class Repeatability : public testing::Test {
+ protected:
+  /// The hash of everything in the record but wall times, images included.
+  std::size_t fly(int run_number, const std::filesystem::path& program) {
+    const auto out = folder_ / ("run" + std::to_string(run_number));
+    Command command = tether({"run", scenario_, "--images", "--quiet", "--out", out});
+    command.arguments.front() = program.string();
+    command.environment.emplace_back("LP_NUM_THREADS", run_number % 2 == 0 ? "1" : "2");
+    const Output output = run(command, 120s);
+    EXPECT_EQ(output.code, 0) << output.err;
+    EXPECT_FALSE(read_record(out).images.empty());
+    return std::hash<std::string>()(timeless_record(out));
+  }
+
+  TempFolder folder_;
+  std::filesystem::path scenario_ =
+      write_shipped_scenario(folder_.path(), "face_anchor", {scripted_host(10)});
+};
+
+TEST_F(Repeatability, TwentyRunsUnderLoadHaveOneHash) {
+  std::vector<std::unique_ptr<Spinner>> load;
+  for (long core = 0; core <= sysconf(_SC_NPROCESSORS_ONLN); ++core)
+    load.push_back(std::make_unique<Spinner>());
+  const auto checked = checked_program();
+  std::set<std::size_t> hashes;
+  for (int i = 0; i < kRuns; ++i)
+    hashes.insert(fly(i, checked && i >= kRuns - 2 ? *checked : tether_program()));
+  EXPECT_EQ(hashes.size(), 1u);
+  load.clear();
+  hashes.insert(fly(kRuns, tether_program()));
+  EXPECT_EQ(hashes.size(), 1u);
+}
+
+}  // namespace
+}  // namespace tether::system_test
