@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include <GL/gl.h>
@@ -19,6 +20,7 @@ using uav::Pose;
 using uav::Vec3;
 
 constexpr int kFontScale = 50;
+constexpr float kOpaque = 0.995F;  // the engine's bound
 
 // The image's edges at distance 1, in optical axes. A pixel's coordinates are those of its centre,
 // so the image begins half a pixel before pixel 0.
@@ -66,6 +68,13 @@ void rotation_matrix(const uav::Quat& q, float* out) {
   copy_to(Vec3{x.z, y.z, z.z}, out + 6);
 }
 
+// The sky's colour, after all other textures, as a pixel of RawImage.
+std::uint32_t sky_colour(const mjModel& model) {
+  const mjtByte* rgb = model.tex_rgb + model.tex_adr[model.ntex - 1];
+  const std::array<std::uint8_t, 4> rgba{rgb[0], rgb[1], rgb[2], 255};
+  return std::bit_cast<std::uint32_t>(rgba);
+}
+
 }  // namespace
 
 EngineScene::EngineScene(int max_geoms) {
@@ -80,7 +89,8 @@ EngineScene::~EngineScene() {
 Renderer::Renderer(Scene scene, int max_width_px, int max_height_px)
     : scene_(std::move(scene)),
       model_(make_scene_model(scene_, max_width_px, max_height_px)),
-      engine_scene_(static_cast<int>(scene_.items.size()) + 1) {
+      engine_scene_(static_cast<int>(scene_.items.size()) + 1),
+      background_(sky_colour(*model_)) {
   const EglBinding binding(egl_);
   mjr_defaultContext(&context_);
   mjr_makeContext(model_.get(), &context_, kFontScale);
@@ -124,7 +134,7 @@ void Renderer::render(const View& view, std::span<std::uint8_t> rgb) {
   place_items(view);
   mjr_render({0, 0, image_.width_px, image_.height_px}, engine_scene_.get(), &context_);
   read_back();
-  convert_to_rgb(image_, rgb);
+  convert_to_rgb(image_, background_, rgb);
 }
 
 void Renderer::set_camera(const View& view) {
@@ -142,11 +152,14 @@ void Renderer::set_camera(const View& view) {
   engine_scene_->camera[1] = camera;
 }
 
-// Only what may be in the picture, unless its shadow may be.
+// Only what may be in the picture, unless its shadow may be. The engine clears to 0, and what is
+// left so is the background: its sky takes a pass over the whole picture, and is drawn only for
+// transparent things to have it behind them.
 void Renderer::place_items(const View& view) {
   const Frustum frustum(view.camera);
   const Pose X_SW = inverse(view.X_WS);
   int count = 0;
+  bool any_transparent = false;
   for (const SceneItem& item : scene_.items) {
     if (item.body && item.body == view.hidden) continue;
     const Pose X_WV = item.body ? view.X_WB[*item.body] * item.X_BV : item.X_BV;
@@ -154,12 +167,14 @@ void Renderer::place_items(const View& view) {
     if (!scene_.shadows && !frustum.may_contain(-p_S.y, -p_S.z, p_S.x, item.bounds.radius_m)) {
       continue;
     }
+    any_transparent = any_transparent || item.geom.rgba[3] < kOpaque;
     mjvGeom& geom = engine_scene_->geoms[count++];
     geom = item.geom;
     copy_to(X_WV.p, geom.pos);
     rotation_matrix(X_WV.q, geom.mat);
   }
   engine_scene_->ngeom = count;
+  engine_scene_->flags[mjRND_SKYBOX] = any_transparent ? 1 : 0;
 }
 
 // The multisampled picture is resolved first, where there are several samples.

@@ -57,6 +57,7 @@ class Renderer final : public ViewRenderer {
   EglContext egl_;
   ModelPtr model_;
   EngineScene engine_scene_;
+  std::uint32_t background_;  ///< a pixel of it
   mjrContext context_{};
   RawImage image_;
   std::vector<float> depth_;

@@ -150,13 +150,31 @@ TEST(RendererTest, BackgroundFillsWhereNothingIs) {
             (std::array{51, 102, 204}));
 }
 
+// Black things are not the background, and neither are those behind glass.
+TEST(RendererTest, TheBackgroundIsBehindGlassToo) {
+  World world = flat_world();
+  world.background_rgb = {0.2, 0.4, 0.85};
+  const uav::CameraModel camera = camera_intrinsics(65, 49);
+  world.models.push_back(box_model("black", {2.0, 0.0, 0.0}, {0.1, 0.2, 0.2}, {}));
+  const Picture open = render(world, camera, {});
+  world.models.push_back(box_model("glass", {1.0, 0.3, 0.0}, {0.01, 0.2, 0.2}, {1.0, 1.0, 1.0}));
+  world.models.back().links[0].visuals[0].material.alpha = 0.2;
+  const Picture glazed = render(world, camera, {});
+  EXPECT_EQ(colour(open, 32, 24), (std::array{0, 0, 0}));
+  EXPECT_EQ(colour(glazed, 32, 24), (std::array{0, 0, 0}));
+  EXPECT_EQ(colour(glazed, 2, 2), colour(open, 2, 2));
+  const int glass_px = static_cast<int>(camera.cx_px - 0.3 * camera.fx_px);
+  EXPECT_GT(colour(glazed, glass_px, 24)[0], colour(open, glass_px, 24)[0]);
+  EXPECT_GT(colour(glazed, glass_px, 24)[2], colour(glazed, glass_px, 24)[0]) << "bluish";
+}
+
 TEST(RendererTest, TellsHowNearTheNearestThingIs) {
   World world = flat_world();
   const uav::CameraModel camera = camera_intrinsics(64, 48);
   const View view{camera, 0.05, 100.0, {}, {}, {}, true};
   Renderer empty(make_scene(world, no_warnings()), 64, 48);
   draw(empty, view);
-  EXPECT_GT(empty.nearest_depth_m(), 50.0) << "the sky is somewhere before the far plane";
+  EXPECT_GT(empty.nearest_depth_m(), 99.0) << "nothing before the far plane";
   world.models.push_back(box_model("wall", {8.0, 0.0, 0.0}, {1.0, 90.0, 90.0}, {1.0, 1.0, 1.0}));
   world.models.push_back(box_model("hidden", {1.0, 9.0, 0.0}, {1.0, 1.0, 1.0}, {1.0, 1.0, 1.0}));
   Renderer wall(make_scene(world, no_warnings()), 64, 48);
@@ -241,6 +259,12 @@ TEST(RendererTest, MovingBodiesFollowTheirPoseAndTheOwnOneIsHidden) {
   EXPECT_EQ(colour(render(world, camera, {}, ahead), 32, 24)[0], 255);
   EXPECT_EQ(colour(render(world, camera, {}, aside), 32, 24)[0], 0);
   EXPECT_EQ(colour(render(world, camera, {}, ahead, 0), 32, 24)[0], 0);
+}
+
+TEST(RendererTest, ThingsAreSeenAsFarAsTheFarPlane) {
+  World world = flat_world();
+  world.models.push_back(box_model("far", {99.0, 0.0, 0.0}, {0.1, 90.0, 90.0}, {1.0, 0.0, 0.0}));
+  EXPECT_EQ(colour(render(world, camera_intrinsics(64, 48), {}), 30, 20)[0], 255);
 }
 
 // Turning around among many boxes: what may be in the picture must not be left out.
