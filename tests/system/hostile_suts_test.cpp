@@ -149,7 +149,7 @@ const Misdeed kMisdeeds[] = {
         "StopOfASerialSut",
         [](auto) { return link::Progress{.reached = from_ns<ExecTime>(kFlown), .stopped = true}; },
         "a stop, which is for concurrent SUTs"),
-    {"HelloAgain", [](RawPeer& sut, auto) { sut.write(hello_for("")); }, "sent a message"},
+    {"HelloAgain", [](RawPeer& sut, auto) { sut.write(hello_for("")); }, "a second Hello"},
     {"FourGigabytes", [](RawPeer& sut, auto) { sut.write(std::string(4, '\xff')); },
      "frame of 4294967295 bytes announced"},
     {"Garbage",
@@ -186,6 +186,13 @@ const Misdeed kMisdeeds[] = {
      [](RawPeer& sut, std::uint64_t next) {
        const std::string frame = frame_of(command(next, kFlown));
        sut.write(frame.substr(0, frame.size() - 1));
+     },
+     "no word for 2 s"},
+    {"AnnotationsWithoutEnd",
+     [](RawPeer& sut, auto) {
+       const std::string note = frame_of(annotation(10'000));
+       while (sut.write(note)) {
+       }
      },
      "no word for 2 s"},
     {"ProgressWithoutEnd",

@@ -36,6 +36,7 @@ void Coordinator::Impl::refuse(link::PeerId peer, link::Refusal::Reason reason,
     hooks_.on_refused(fmt::format("refused {}: {}", remote_[peer], message));
   server_->send(peer, link::Refusal{reason, message});
   server_->close(peer);
+  remote_.erase(peer);  // no event comes from it any more
 }
 
 void Coordinator::Impl::on_connected(link::PeerId peer, const std::string& remote_address) {
@@ -59,7 +60,9 @@ void Coordinator::Impl::on_message(link::PeerId peer, link::Message message) {
     if (const auto* note = std::get_if<link::Annotation>(&message))
       return log_.annotation(st_, {session->uav_name, note->at, note->topic, note->json});
     break_off(*session, link::Refusal::Reason::kBadMessage,
-              "a message that only coordinators send");
+              std::holds_alternative<link::Hello>(message)
+                  ? "a second Hello"
+                  : "a message that only coordinators send");
   });
 }
 
@@ -107,10 +110,12 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
 /// Whether a message tells that the SUT lives. Under the barrier a progress may not: its sender is
 /// a helper, and the SUT itself may be stuck. That it has computed shows in CPU time, which then
 /// goes on; the wall clock goes on whatever the SUT does, so there only its calls tell, as long as
-/// none of them is open.
+/// none of them is open. Annotations tell nothing: a SUT could go on with them for ever.
 bool Coordinator::Impl::is_word(const Session& session, const link::Message& message) const {
+  if (!running_ || !tied()) return true;
+  if (std::holds_alternative<link::Annotation>(message)) return false;
   const auto* progress = std::get_if<link::Progress>(&message);
-  if (!progress || !running_ || !tied()) return true;
+  if (!progress) return true;
   if (session.hello.clock == link::ClockKind::kWall && session.open.empty()) return false;
   return progress->reached > barrier_.bound(session.uav);
 }
