@@ -20,7 +20,7 @@ target_compile_options(tether_compile_options INTERFACE
 if(TETHER_SANITIZE)
   add_compile_options(-fsanitize=${TETHER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
     # GCC's own instrumentation sets this one off in the standard library.
-    -Wno-maybe-uninitialized)
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   add_link_options(-fsanitize=${TETHER_SANITIZE})
 endif()
 

@@ -77,11 +77,11 @@ Duration read_monotonic() {
   return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
 }
 
-void SharedClockPage::Unmap::operator()(ClockPage* page) const {
-  ::munmap(page, kPageBytes);
+void SharedClockPage::Unmap::operator()(ClockPage* mapped) const {
+  ::munmap(mapped, kPageBytes);
 }
-void MappedClockPage::Unmap::operator()(const ClockPage* page) const {
-  ::munmap(const_cast<ClockPage*>(page), kPageBytes);
+void MappedClockPage::Unmap::operator()(const ClockPage* mapped) const {
+  ::munmap(const_cast<ClockPage*>(mapped), kPageBytes);
 }
 
 Result<SharedClockPage> make_clock_page() {

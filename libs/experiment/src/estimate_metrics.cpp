@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <ranges>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -37,9 +36,10 @@ std::optional<Note> last_note(const record::Record& record, const std::string& u
                               std::optional<Note> (*read)(const Json&, const scenario::Metric&),
                               const scenario::Metric& metric) {
   const auto* finish = find_finish(record, uav);
-  for (const auto& logged : record.annotations | std::views::reverse) {
-    const record::Annotation& message = logged.message;
-    if (message.uav != uav || message.topic != topic || logged.order > finish->order) continue;
+  const auto& notes = record.annotations;
+  for (auto logged = notes.rbegin(); logged != notes.rend(); ++logged) {
+    const record::Annotation& message = logged->message;
+    if (message.uav != uav || message.topic != topic || logged->order > finish->order) continue;
     const Json note = Json::parse(message.json, nullptr, false);
     if (!note.is_object()) continue;
     if (const std::optional<Note> read_note = read(note, metric)) return read_note;
