@@ -11,6 +11,12 @@ TEST(Error, SaysWhere) {
   EXPECT_STREQ(Error(ErrorCode::kBadFile, {"a.toml", 0}, "bad").what(), "a.toml: bad");
 }
 
+// Names in a file or from a peer may hold anything.
+TEST(Error, IsOnePrintableLine) {
+  EXPECT_STREQ(Error(ErrorCode::kBadFile, {"a.toml", 7}, "no key 'a\nb\x1b[2J'").what(),
+               "a.toml:7: no key 'a?b?[2J'");
+}
+
 TEST(Error, ExitCodesFollowTheDesign) {
   EXPECT_EQ(exit_code(ErrorCode::kUsage), 2);
   EXPECT_EQ(exit_code(ErrorCode::kBadFile), 2);
@@ -18,6 +24,11 @@ TEST(Error, ExitCodesFollowTheDesign) {
   EXPECT_EQ(exit_code(ErrorCode::kLinkLost), 3);
   EXPECT_EQ(exit_code(ErrorCode::kHung), 3);
   EXPECT_EQ(exit_code(ErrorCode::kInternal), 3);
+}
+
+TEST(Failure, IsOnePrintableLine) {
+  EXPECT_EQ(Failure(Failure::Kind::kProtocol, "no sensor 'a\nb\x1b[2J'").message,
+            "no sensor 'a?b?[2J'");
 }
 
 TEST(Result, HoldsAValueOrAFailure) {

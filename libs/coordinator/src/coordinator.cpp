@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/printable.h>
 #include <tether/coordinator/coordinator.h>
 
 namespace tether::coordinator {
@@ -281,7 +282,7 @@ void Coordinator::Impl::log_ground_truth() {
 }
 
 void Coordinator::Impl::end(RunEnd how, const std::string& reason) {
-  if (!ended_) ended_.emplace(how, reason);
+  if (!ended_) ended_.emplace(how, printable(reason));
 }
 
 // Limits of WT, the caller's wishes, the status: none of it reaches a decision of the barrier.

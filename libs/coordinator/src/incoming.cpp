@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/printable.h>
+
 /// What SUTs say: joining, requests, progress, annotations, leaving.
 namespace tether::coordinator {
 
@@ -33,8 +35,8 @@ Session* Coordinator::Impl::find(link::PeerId peer) {
 void Coordinator::Impl::refuse(link::PeerId peer, link::Refusal::Reason reason,
                                const std::string& message) {
   if (hooks_.on_refused && reason != link::Refusal::Reason::kRunEnded)
-    hooks_.on_refused(fmt::format("refused {}: {}", remote_[peer], message));
-  server_->send(peer, link::Refusal{reason, message});
+    hooks_.on_refused(printable(fmt::format("refused {}: {}", remote_[peer], message)));
+  server_->send(peer, link::Refusal{reason, printable(message)});
   server_->close(peer);
   remote_.erase(peer);  // no event comes from it any more
 }
@@ -103,6 +105,7 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   session.peer = peer;
   session.hello = hello;
   session.hello.token.clear();
+  session.hello.sut = printable(hello.sut);
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.joined(); }))
     start();
 }
@@ -288,6 +291,7 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
     return std::max(pending.entry.request_at, sleep->until);
   }
   session.finish = std::get<link::Finish>(request.body);
+  session.finish->outcome = printable(session.finish->outcome);
   return pending.entry.request_at;
 }
 

@@ -1,11 +1,11 @@
 #include "remote_sensing.h"
 
-#include "printable.h"
-
 #include <algorithm>
 #include <cassert>
 #include <optional>
 #include <utility>
+
+#include <tether/base/printable.h>
 
 namespace tether::sim {
 namespace {

@@ -1,9 +1,9 @@
 #include "remote_session.h"
 
-#include "printable.h"
-
 #include <algorithm>
 #include <chrono>
+
+#include <tether/base/printable.h>
 
 namespace tether::sim {
 namespace {

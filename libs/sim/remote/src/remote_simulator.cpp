@@ -1,6 +1,5 @@
 #include "checked_state.h"
 #include "open_request.h"
-#include "printable.h"
 #include "remote_sensing.h"
 #include "remote_session.h"
 
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include <tether/base/error.h>
+#include <tether/base/printable.h>
 #include <tether/sim/bodies.h>
 #include <tether/sim_remote/remote_simulator.h>
 #include <tether/sim_sensing/sensor_suite.h>

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include <tether/base/printable.h>
+
 namespace tether {
 
 /// What kind of thing went wrong; decides the exit code of the command line (DESIGN section 5).
@@ -26,11 +28,12 @@ struct FileLocation {
   int line = 0;
 };
 
-/// The one exception of host-side code. `what()` is one line: where (file:line), what is wrong,
-/// what to do.
+/// The one exception of host-side code. `what()` is one printable line, whatever a file or a peer
+/// had in it: where (file:line), what is wrong, what to do.
 class Error : public std::runtime_error {
  public:
-  Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  Error(ErrorCode code, const std::string& message)
+      : std::runtime_error(printable(message)), code_(code) {}
   /// Prefixes the message with "file:line: " (or "file: ").
   Error(ErrorCode code, const FileLocation& where, const std::string& message);
 

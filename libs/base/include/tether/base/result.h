@@ -4,6 +4,8 @@
 #include <utility>
 #include <variant>
 
+#include <tether/base/printable.h>
+
 namespace tether {
 
 /// Why a call that throws nothing failed. Used by the SUT's side of the link (`client`, `link`),
@@ -18,8 +20,11 @@ struct Failure {
     kInvalid,       ///< the caller's argument cannot be used
     kNothingYet,    ///< a read that was not to wait found nothing; not an error
   };
+  Failure() = default;
+  Failure(Kind what_kind, const std::string& why) : kind(what_kind), message(printable(why)) {}
+
   Kind kind = Kind::kInvalid;
-  std::string message;  ///< one line for a person
+  std::string message;  ///< one printable line for a person, whatever a peer had in it
 };
 
 /// A value or the reason why there is none. `T` must not be `Failure`.

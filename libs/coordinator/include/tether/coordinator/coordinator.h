@@ -66,8 +66,8 @@ std::string_view name(RunEnd end);
 /// What one SUT left behind.
 struct SutReport {
   std::string uav;
-  std::string sut;                     ///< the name it gave; empty: never joined
-  std::optional<link::Finish> finish;  ///< what it said at its end
+  std::string sut;                     ///< the name it gave, printable; empty: never joined
+  std::optional<link::Finish> finish;  ///< what it said at its end; the outcome printable
   ExecTime et;                         ///< its ET at the end of the run
 };
 

@@ -2,10 +2,10 @@
 
 #include <string>
 
-namespace tether::sim {
+namespace tether {
 
 /// The UTF-8 text with '?' for each control character, so that it neither breaks lines nor steers a
 /// terminal, and without blanks at its ends.
 std::string printable(const std::string& text);
 
-}  // namespace tether::sim
+}  // namespace tether

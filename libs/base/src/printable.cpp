@@ -1,6 +1,6 @@
-#include "printable.h"
+#include <tether/base/printable.h>
 
-namespace tether::sim {
+namespace tether {
 namespace {
 
 unsigned byte_at(const std::string& text, std::size_t i) {
@@ -22,4 +22,4 @@ std::string printable(const std::string& text) {
   return begin == std::string::npos ? "" : out.substr(begin, end - begin + 1);
 }
 
-}  // namespace tether::sim
+}  // namespace tether

@@ -1,8 +1,8 @@
-#include "printable.h"
-
 #include <gtest/gtest.h>
 
-namespace tether::sim {
+#include <tether/base/printable.h>
+
+namespace tether {
 namespace {
 
 TEST(Printable, KeepsText) {
@@ -26,4 +26,4 @@ TEST(Printable, HasNoBlanksAtItsEnds) {
 }
 
 }  // namespace
-}  // namespace tether::sim
+}  // namespace tether
