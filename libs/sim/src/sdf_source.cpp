@@ -38,6 +38,16 @@ class QuietConsole {
   std::ostringstream text_;
 };
 
+/// What no file system takes as a path, such as too long a name, is nothing either.
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
 void add_folders_of_variable(const char* variable, std::vector<fs::path>& folders) {
   const char* value = std::getenv(variable);
   std::istringstream list(value != nullptr ? value : "");
@@ -56,8 +66,13 @@ std::vector<fs::path> model_folders(const fs::path& file) {
   return folders;
 }
 
+/// Longer words of libsdformat, which may quote a whole file, are cut: no person reads more, and
+/// std::regex needs stack for every character.
+constexpr std::size_t kLongestMessage = 2000;
+
 /// One line, without colour codes, trailing blanks and full stop.
 std::string one_line(std::string text) {
+  if (text.size() > kLongestMessage) text.resize(kLongestMessage);
   static const std::regex colour("\x1b\\[[0-9;]*m");
   static const std::regex blanks("\\s+");
   text = std::regex_replace(std::regex_replace(text, colour, ""), blanks, " ");
@@ -135,11 +150,11 @@ void for_each_child(const sdf::ElementPtr& element,
 SdfSource::~SdfSource() = default;
 
 SdfSource::SdfSource(const fs::path& file) : file_(fs::absolute(file).lexically_normal()) {
-  if (fs::is_directory(file_)) {
+  if (is_folder(file_)) {
     throw Error(ErrorCode::kBadFile, {file_.string(), 0},
                 "is a directory; name the SDF file in it, such as model.sdf");
   }
-  if (!fs::is_regular_file(file_)) {
+  if (!is_file(file_)) {
     throw Error(ErrorCode::kBadFile, {file_.string(), 0}, "there is no such file");
   }
   model_folders_ = model_folders(file_);
@@ -149,6 +164,10 @@ SdfSource::SdfSource(const fs::path& file) : file_(fs::absolute(file).lexically_
   if (xml->Error()) {
     throw Error(ErrorCode::kBadFile, {file_.string(), xml->ErrorLineNum()},
                 "not well-formed XML (" + std::string(xml->ErrorName()) + ")");
+  }
+  if (xml->RootElement() == nullptr) {
+    throw Error(ErrorCode::kBadFile, {file_.string(), 0},
+                "has no element; an SDF file begins with <sdf>");
   }
   if (std::string(xml->RootElement()->Name()) != "sdf") {
     throw Error(ErrorCode::kBadFile, {file_.string(), xml->RootElement()->GetLineNum()},
@@ -219,7 +238,7 @@ FileLocation SdfSource::where(const sdf::Error& error) const {
   }
   // Errors between elements carry names instead of lines: "name[x]", "A link named x".
   static const std::regex naming("name\\[([^\\]]*)\\]|named (\\S+)");
-  const std::string message = error.Message();
+  const std::string message = error.Message().substr(0, kLongestMessage);
   for (std::sregex_iterator it(message.begin(), message.end(), naming), end; it != end; ++it) {
     const std::string name = (*it)[1].matched ? (*it)[1].str() : (*it)[2].str();
     const sdf::ElementPtr element = root_.Element() ? find_named(root_.Element(), name) : nullptr;
@@ -271,7 +290,7 @@ std::set<fs::path> SdfSource::sdf_files() const {
   std::set<fs::path> files{file_};
   const std::function<void(const sdf::ElementPtr&)> visit = [&](const sdf::ElementPtr& element) {
     const fs::path file = element->FilePath();
-    if (fs::is_regular_file(file)) files.insert(fs::absolute(file).lexically_normal());
+    if (is_file(file)) files.insert(fs::absolute(file).lexically_normal());
     for_each_child(element, visit);
   };
   visit(root_.Element());
@@ -287,7 +306,7 @@ fs::path SdfSource::find_resource(const sdf::ElementPtr& element, const std::str
     candidates.push_back(fs::path(element->FilePath()).parent_path() / path);
   }
   for (const fs::path& candidate : candidates) {
-    if (fs::is_regular_file(candidate))
+    if (is_file(candidate))
       return *resources_.insert(fs::absolute(candidate).lexically_normal()).first;
   }
   throw Error(ErrorCode::kBadFile, where(element),

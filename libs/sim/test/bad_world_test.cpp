@@ -43,12 +43,22 @@ TEST_P(BadWorlds, IsRefusedWithFileAndLine) {
 const BadWorld kBadFiles[] = {
     {"not_xml", "<sdf version='1.7'>\n<world></sdf>", "w.sdf:2: ", "not well-formed XML"},
     {"empty", "", "w.sdf: ", "not well-formed XML"},
+    {"no_element", "<?xml version='1.0'?>\n<!-- nothing -->", "w.sdf: ", "has no element"},
     {"other_root", "<html>\n</html>", "w.sdf:1: ", "an SDF file begins with <sdf>"},
     {"no_world", "<sdf version='1.7'>\n</sdf>", "w.sdf: ", "0 <world> elements"},
     {"two_worlds", "<sdf version='1.7'>\n<world name='a'/>\n<world name='b'/>\n</sdf>",
      "w.sdf: ", "2 <world> elements"},
     {"unknown_include", world_sdf("<include>\n<uri>model://nothing</uri></include>"),
      "w.sdf:4: ", "nothing"},
+    {"a_path_that_no_file_can_have",
+     visual("<mesh>\n<uri>" + std::string(300, 'a') + ".obj</uri></mesh>"),
+     "w.sdf:", "does not exist"},
+    // Longer than what std::regex has stack for.
+    {"a_message_as_long_as_the_file",
+     world_sdf("<model name='" + std::string(1'000'000, 'a') +
+               "'><pose relative_to='zz'/>"
+               "<link name='l'/></model>"),
+     "w.sdf:", "aaa"},
     {"two_models_of_one_name",
      world_sdf("<model name='a'><link name='l'/></model>\n"
                "<model name='a'><link name='l'/></model>"),
