@@ -36,6 +36,8 @@ packages_pack=(dpkg-dev file gzip)
 packages_arm64=(cmake ninja-build flatbuffers-compiler g++-aarch64-linux-gnu mmdebstrap qemu-user "${packages_pack[@]}")
 # Gazebo's plugin against Debian 11's packages, and the screen that Gazebo's cameras need.
 packages_gazebo=(cmake ninja-build g++ pkgconf mmdebstrap xvfb xauth)
+# libFuzzer and the sanitizers of clang; llvm has what names functions in their reports.
+packages_fuzz=(clang-14 libclang-rt-14-dev llvm-14)
 packages_tidy=(git clang-tidy)
 
 # True where a package is installed. A name may be satisfied by another package that provides it.
@@ -70,16 +72,17 @@ install_packages() {
 command -v node >/dev/null || packages_test+=(nodejs)
 command -v npm >/dev/null || packages_test+=(npm)
 
-# install_for build|test|tidy|package|arm64|gazebo
+# install_for build|test|fuzz|tidy|package|arm64|gazebo
 install_for() {
   case "$1" in
     build) install_packages "${packages_build[@]}" ;;
     test) install_packages "${packages_build[@]}" "${packages_test[@]}" ;;
+    fuzz) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_fuzz[@]}" ;;
     tidy) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_tidy[@]}" ;;
     package) install_packages "${packages_build[@]}" "${packages_pack[@]}" ;;
     arm64) install_packages "${packages_arm64[@]}" ;;
     gazebo) install_packages "${packages_gazebo[@]}" ;;
-    *) fail "'$1': build, test, tidy, package, arm64 or gazebo" ;;
+    *) fail "'$1': build, test, fuzz, tidy, package, arm64 or gazebo" ;;
   esac
 }
 

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "fuzz_target.h"
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include <tether/link/server.h>
+
+namespace tether::fuzz {
+
+/// A server whose peers do what the input says, honest or not, one thing per poll; then all hang
+/// up. No thread, socket or clock.
+class Peers final : public link::Server {
+ public:
+  Peers(Choices choices, link::ServerEvents& events) : choices_(choices), events_(events) {}
+
+  bool finished() const { return choices_.empty(); }
+
+  link::Address address() const override { return {"fuzz", 0}; }
+  bool poll(Duration max_wait) override;
+  void send(link::PeerId id, link::Message message) override;
+  void close(link::PeerId id) override { peers_.erase(id); }
+
+  /// Host time that has passed because the input said so.
+  Duration passed{0};
+
+ private:
+  struct Peer {
+    ExecTime et;
+    std::uint64_t sequence = 0;
+  };
+  void come();
+  void leave(link::PeerId id);
+  void speak(link::PeerId id, Peer& peer);
+  link::Hello hello();
+  link::Message message(Peer& peer);
+  link::Request request(Peer& peer);
+  ExecTime stamp(ExecTime from);
+
+  Choices choices_;
+  link::ServerEvents& events_;
+  std::map<link::PeerId, Peer> peers_;
+  link::PeerId last_id_ = 0;
+};
+
+}  // namespace tether::fuzz
