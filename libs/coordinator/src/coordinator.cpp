@@ -23,6 +23,9 @@ constexpr Duration kWatchPeriod = std::chrono::milliseconds(20);
 constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
 // How often the record goes to its file, so that a killed run leaves what it had.
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
+// A turn that took longer than this was not spent listening: we were stopped, say, or the whole
+// machine was.
+constexpr Duration kLongestTurn = std::chrono::seconds(1);
 // How long nothing may move before it is said who waits for whom.
 constexpr Duration kStillPeriod = std::chrono::seconds(1);
 // The CPU time of a process adds up what runs on all its cores; no machine has more.
@@ -116,6 +119,7 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
   for (std::size_t i = 0; i < world().uavs.size(); ++i)
     sessions_.push_back(make_session(i, world().uavs[i], options_.uavs[i], options_.seed));
   started_ = watched_ = flushed_ = moved_ = host_clock_();
+  for (Session& session : sessions_) session.last_word = started_;
 }
 
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
@@ -289,15 +293,25 @@ void Coordinator::Impl::end(RunEnd how, const std::string& reason) {
 void Coordinator::Impl::watch() {
   const WallTime now = host_clock_();
   if (now - watched_ < kWatchPeriod) return;
+  pardon(now - watched_ - kLongestTurn, now);
   watched_ = now;
   if (running_ && now - flushed_ >= kFlushPeriod) {
     flushed_ = now;
     log_.flush();
   }
   if (!ended_) check_words(now);
+  if (hooks_.on_status) hooks_.on_status(status(now));
   if (hooks_.should_stop && !ended_)
     if (const auto stop = hooks_.should_stop()) end(stop->first, stop->second);
-  if (hooks_.on_status) hooks_.on_status(status(now));
+}
+
+// Nobody is silent while we do not listen: what was said meanwhile is still to be read, and who was
+// stopped together with us has had no time to say it.
+void Coordinator::Impl::pardon(Duration unheard, WallTime now) {
+  if (unheard <= Duration(0)) return;
+  moved_ = std::min(moved_ + unheard, now);
+  for (Session& session : sessions_)
+    session.last_word = std::min(session.last_word + unheard, now);
 }
 
 // It owes us the next word; a SUT that waits for a reply of ours does not.
@@ -308,7 +322,7 @@ bool Coordinator::Impl::is_computing(const Session& session) const {
 
 void Coordinator::Impl::check_words(WallTime now) {
   for (const Session& session : sessions_) {
-    if (!running_ && !session.joined() && now - started_ > options_.connect_limit)
+    if (!running_ && !session.joined() && now - session.last_word > options_.connect_limit)
       return end(RunEnd::kSutLost,
                  fmt::format("no SUT joined for UAV \"{}\" within {} s", session.uav_name,
                              to_seconds(options_.connect_limit)));

@@ -52,6 +52,7 @@ class Coordinator::Impl final : public link::ServerEvents {
   void apply_due();
   void log_ground_truth();
   void watch();
+  void pardon(Duration unheard, WallTime now);
   bool is_computing(const Session& session) const;
   void check_words(WallTime now);
   Party party(const Session& session, WallTime now) const;

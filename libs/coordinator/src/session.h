@@ -50,7 +50,8 @@ struct Session {
   std::optional<sync::ExecutionTimer> timer;  ///< of an unstamped client
   std::optional<sync::ClockWitness> witness;  ///< of one that stamps by a clock of its own
   std::uint64_t next_sequence = 1;
-  WallTime last_word;  ///< when it was last heard
+  WallTime
+      last_word;  ///< when it was last heard; before it has joined, since when it is waited for
   std::optional<link::Finish> finish;
   bool left = false;  ///< finished or sent away: nothing more is expected or told
 

@@ -1,5 +1,7 @@
 #include "coordinator_fixture.h"
 
+#include <utility>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -117,6 +119,20 @@ TEST_F(HonestyTest, WhenNothingMovesTheStatusSaysWhoBlocksWhom) {
                                          "computing since 1.0 s without a word"));
   EXPECT_THAT(report.reason,
               HasSubstr("computing since 3.0 s without a word, last at ET 0.005000 s"));
+}
+
+TEST_F(HonestyTest, TimeInWhichItDidNotListenIsNobodysSilence) {
+  options_.hang_limit = seconds(3);
+  make();
+  server_->add_sut(hello(), {sleep(Duration(0), milliseconds(5))});
+  bool stopped = false;
+  hooks_.on_status = [&](const RunStatus& status) {
+    if (!std::exchange(stopped, status.wall > seconds(1)) && stopped) now_ += seconds(60);
+  };
+  const RunReport report = coordinator_->run(*server_, hooks_);
+  EXPECT_EQ(report.end, RunEnd::kSutHung);
+  EXPECT_THAT(report.reason, HasSubstr("computing since 3.0 s without a word"));
+  EXPECT_NEAR(to_seconds(report.wall), 62.0, 0.2);  // a second of it may have been spent listening
 }
 
 TEST_F(HonestyTest, ALostSutIsNamedWithWhereItStood) {

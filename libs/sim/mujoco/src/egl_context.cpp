@@ -43,7 +43,7 @@ EglContext::EglContext() {
   }
   throw Error(ErrorCode::kSetup,
               "no OpenGL for camera images: install libegl1 and libgl1-mesa-dri (software) or the "
-              "GPU's driver");
+              "GPU's driver; where they are installed, too little memory is free for them");
 }
 
 EglContext::~EglContext() {

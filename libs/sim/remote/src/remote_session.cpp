@@ -8,15 +8,12 @@
 namespace tether::sim {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Kind = Failure::Kind;
 
 /// How long an answer is waited for before asking whether there is any use in it.
 constexpr Duration kPatience = std::chrono::milliseconds(100);
 /// How long before the caller is told that one is waited for.
 constexpr Duration kSilence = std::chrono::seconds(1);
-/// Longer limits mean this one, so that a point in time can be reckoned.
-constexpr Duration kLongestLimit = std::chrono::hours(24 * 365);
 
 std::string in_s(Duration limit) {
   const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(limit).count();
@@ -50,17 +47,18 @@ protocol::Reply RemoteSession::answer_to(const protocol::Request& request, Durat
   return std::move(*reply);
 }
 
+// Counts the time that was spent listening: who was stopped together with us is not silent.
 Result<protocol::Reply> RemoteSession::await(Duration limit) {
-  const auto began = Clock::now();
-  const auto deadline = began + std::min(limit, kLongestLimit);
+  Duration waited{0};
   bool told = name_.empty() || !options_.on_silence;
   while (true) {
-    const Duration left = std::max<Duration>(deadline - Clock::now(), Duration(0));
-    auto reply = connection_->receive_reply(std::min(left, kPatience));
+    const Duration patience = std::min(limit - waited, kPatience);
+    auto reply = connection_->receive_reply(patience);
     const bool silent = !reply && reply.failure().kind == Kind::kTimeout;
-    if (!silent || left == Duration(0)) return reply;
+    if (!silent || patience == Duration(0)) return reply;
     give_up_if_told();
-    if (told || Clock::now() - began < kSilence) continue;
+    waited += patience;
+    if (told || waited < kSilence) continue;
     told = true;
     options_.on_silence("everything waits for " + name() + ", which has not answered for " +
                         in_s(kSilence));
