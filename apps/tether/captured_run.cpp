@@ -44,7 +44,9 @@ class MemoryFile {
 void write_whole(const std::filesystem::path& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!stream.flush()) throw Error(ErrorCode::kSetup, "there is too little memory for a copy");
+  if (!stream.flush())
+    throw Error(ErrorCode::kSetup,
+                std::string("no copy can be made in memory: ") + std::strerror(errno));
 }
 
 std::string stripped(const std::string& line) {

@@ -109,6 +109,7 @@ struct Image {
   dup2(streams.out, STDOUT_FILENO);
   dup2(streams.err, STDERR_FILENO);
   signal(SIGPIPE, SIG_DFL);
+  signal(SIGXFSZ, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <new>
 
 #include <fmt/format.h>
 
@@ -53,6 +54,9 @@ int main(int argc, char** argv) {
   } catch (const tether::Error& e) {
     fmt::print(stderr, "tether: {}\n", e.what());
     return tether::exit_code(e.code());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "tether: too little memory is free\n");
+    return tether::exit_code(tether::ErrorCode::kSetup);
   } catch (const std::exception& e) {
     fmt::print(stderr, "tether: internal error: {}\n", e.what());
     return tether::exit_code(tether::ErrorCode::kInternal);

@@ -83,18 +83,20 @@ std::string StallWatch::look(const coordinator::RunStatus& status, HostClocks no
         to_seconds(pause), to_seconds(status.st)));
   const bool is_new = !status.blocked.empty() && !stalled_;
   stalled_ = !status.blocked.empty();
+  std::string stopped;
   if (stalled_ && (is_new || now.running - last_asked_ >= kAskPeriod)) {
     last_asked_ = now.running;
-    look_for_stopped_sut(status);
+    stopped = look_for_stopped_sut(status);
   }
-  return is_new ? status.blocked : "";
+  return is_new ? status.blocked + stopped : "";
 }
 
-void StallWatch::look_for_stopped_sut(const coordinator::RunStatus& status) {
+std::string StallWatch::look_for_stopped_sut(const coordinator::RunStatus& status) {
   const auto stopped = stopped_sut_();
-  if (!stopped) return;
+  if (!stopped) return "";
   const std::string note = fmt::format("{} at ST {:.6f} s", *stopped, to_seconds(status.st));
   if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
+  return "; " + *stopped;
 }
 
 std::vector<std::string> StallWatch::notes(HostClocks now) const {

@@ -33,7 +33,7 @@ class StallWatch {
   std::vector<std::string> notes(HostClocks now) const;
 
  private:
-  void look_for_stopped_sut(const coordinator::RunStatus& status);
+  std::string look_for_stopped_sut(const coordinator::RunStatus& status);
 
   std::function<std::optional<std::string>()> stopped_sut_;
   HostClocks began_;

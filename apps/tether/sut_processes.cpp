@@ -31,6 +31,8 @@ BoardSut board_sut(Board& board, const scenario::Scenario& scenario, const scena
 
 // How long a SUT that has finished may take to leave.
 constexpr Duration kLeaveLimit = std::chrono::seconds(2);
+// Exit codes beyond it say which signal it was.
+constexpr int kSignalled = 128;
 // How long a lost SUT's process may take to end once its connection has.
 constexpr Duration kEndLimit = std::chrono::milliseconds(200);
 
@@ -89,8 +91,17 @@ std::optional<std::string> SutProcesses::stopped() const {
   return std::nullopt;
 }
 
-void SutProcesses::let_leave() {
-  for (Sut& sut : suts_) sut.process->wait(kLeaveLimit);
+std::vector<std::string> SutProcesses::let_leave() {
+  std::vector<std::string> notes;
+  for (Sut& sut : suts_)
+    if (!sut.process->wait(kLeaveLimit))
+      notes.push_back(
+          fmt::format("the SUT of UAV \"{}\" ({}) had finished and did not leave for "
+                      "{} s; it was ended",
+                      sut.uav, sut.program, to_seconds(kLeaveLimit)));
+    else if (sut.process->poll()->code > kSignalled)
+      notes.push_back("after it had finished: " + describe_end(sut));
+  return notes;
 }
 
 std::vector<std::string> SutProcesses::bring_back() {

@@ -36,8 +36,9 @@ class SutProcesses {
   std::optional<std::string> lost();
   /// After a SUT was lost: how those that ended did so, "; " before each; empty: nothing is known.
   std::string post_mortem();
-  /// Gives those that have finished the time to leave by themselves.
-  void let_leave();
+  /// Gives those that have finished the time to leave by themselves. A note for each that a signal
+  /// ended, or that did not leave.
+  std::vector<std::string> let_leave();
   /// Ends those on a board, and brings their files into the run's folder; a warning for each whose
   /// files stay there.
   std::vector<std::string> bring_back();

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <memory>
+#include <new>
 #include <vector>
 
 #include <fmt/chrono.h>
@@ -171,6 +172,14 @@ struct Conducted {
   std::vector<std::string> notes;
 };
 
+/// Why a SUT may have been silent; "; " before it, empty: nothing is known.
+std::string who_is_stopped(const coordinator::RunReport& report, const SutProcesses& suts) {
+  const bool is_silent =
+      report.end == RunEnd::kSutHung || (report.end == RunEnd::kSutLost && !report.began);
+  const auto stopped = is_silent ? suts.stopped() : std::nullopt;
+  return stopped ? "; " + *stopped : "";
+}
+
 /// The coordinator's run with its SUTs, up to the closed record.
 Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* board,
                   const Timings& timings, const TrialObserver& observer) {
@@ -221,13 +230,16 @@ Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* boa
   hooks.read_target = [&] { return read_target(spec, board); };
   auto report = coordinator.run(*server, hooks);
   refusals.close();
+  report.reason += who_is_stopped(report, suts);
   if (report.end == RunEnd::kSutLost && !left_early) report.reason += suts.post_mortem();
   if (report.end == RunEnd::kSimulatorLost) report.reason += simulator.post_mortem(report.reason);
-  if (report.end == RunEnd::kFinished) suts.let_leave();
+  std::vector<std::string> notes = stalls.notes(host_clocks());
+  if (report.end == RunEnd::kFinished)
+    for (std::string& note : suts.let_leave()) notes.push_back(std::move(note));
   if (board && !report.began) report.reason += reach_hint(spec, sut_run.address, report.reason);
   for (const std::string& warning : suts.bring_back())
     if (observer.warn) observer.warn(warning);
-  return {std::move(report), stalls.notes(host_clocks())};
+  return {std::move(report), std::move(notes)};
 }
 
 std::vector<experiment::TaskEnd> task_ends(const coordinator::RunReport& report) {
@@ -247,6 +259,8 @@ experiment::TrialResult judge(const TrialSpec& spec, const coordinator::RunRepor
     if (report.end == RunEnd::kInterrupted) result.end = experiment::kEndInterrupted;
     return result;
   }
+  if (!std::filesystem::exists(spec.folder / kRecordFile))
+    throw Error(ErrorCode::kSetup, (spec.folder / kRecordFile).string() + " was removed meanwhile");
   const record::Record record = record::read_record(spec.folder / kRecordFile);
   auto result = experiment::make_result(spec.scenario, spec.condition, record, task_ends(report));
   const audit::Verdict verdict = audit::audit(record);
@@ -292,6 +306,14 @@ experiment::TrialResult fly(const TrialSpec& spec, const SimulatorOption& option
   }
 }
 
+/// @throws Error(kSetup) that tells how the trial ended as well.
+void keep(const TrialSpec& spec, const experiment::TrialResult& result) try {
+  experiment::write_result(spec.folder, result);
+} catch (const Error& e) {
+  throw Error(ErrorCode::kSetup,
+              fmt::format("{}; the run itself ended with: {}", e.what(), result.reason));
+}
+
 std::string utc_now() {
   return fmt::format(
       "{:%Y-%m-%dT%H:%M:%SZ}",
@@ -321,11 +343,15 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
     result = fly(spec, simulator, std::move(world), timings, observer);
   } catch (const Error& e) {
     result = setup_failure(spec, e.what());
+  } catch (const std::bad_alloc&) {
+    result = setup_failure(spec, "too little memory is free for this run");
+  } catch (const std::exception& e) {
+    result = setup_failure(spec, fmt::format("internal error: {}", e.what()));
   }
   result.versions["tether"] = version();
   result.this_run.started_at = started_at;
   result.this_run.machine = describe_machine();
-  experiment::write_result(spec.folder, result);
+  keep(spec, result);
   return result;
 }
 

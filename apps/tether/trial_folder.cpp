@@ -16,7 +16,7 @@ namespace tether::app {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& why) {
-  throw Error(ErrorCode::kSetup, path.string() + ": " + why);
+  throw Error(ErrorCode::kSetup, path.string() + ": " + why + "; choose another folder with --out");
 }
 
 void make(const std::filesystem::path& folder) {
@@ -49,6 +49,8 @@ void drop(const std::filesystem::path& file) {
 TrialFolder::TrialFolder(const std::filesystem::path& folder) {
   make(folder);
   descriptor_ = lock(folder);
+  // Rather now than when there is a result to write.
+  if (access(folder.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
   drop(folder / experiment::kResultFile);
   drop(folder / kRecordFile);
   drop(folder / kSimulatorLog);

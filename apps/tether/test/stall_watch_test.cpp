@@ -49,7 +49,9 @@ TEST(StallWatch, NotesAStoppedSutOnce) {
         return "it was stopped";
       },
       at(seconds(0)));
-  for (int i = 0; i < 150; ++i) watch.look(status("blocked"), at(milliseconds(20 * i)));
+  EXPECT_EQ(watch.look(status("blocked"), at(milliseconds(0))), "blocked; it was stopped");
+  for (int i = 1; i < 150; ++i)
+    EXPECT_EQ(watch.look(status("blocked"), at(milliseconds(20 * i))), "");
   EXPECT_EQ(asked, 3);
   EXPECT_THAT(watch.notes(at(seconds(3))), ElementsAre("it was stopped at ST 3.000000 s"));
 }
