@@ -1,11 +1,16 @@
 // A SUT that behaves as its argument says: bad_sut MODE
 //
 // Every mode but those of the start first flies in small steps for 1.5 s of its time.
+// kill_PHASE and stop_PHASE: SIGKILL or SIGSTOP strikes it there.
+#include <atomic>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -24,6 +29,29 @@ using namespace std::chrono_literals;
 using tether::client::Vehicle;
 constexpr int kSteps = 100;
 
+// ---- A clock that may lie
+
+std::atomic<std::int64_t> g_ahead_ns{0};  // of what it truly measures
+
+class LyingSource final : public tether::client::TimeSource {
+ public:
+  explicit LyingSource(std::unique_ptr<TimeSource> honest) : honest_(std::move(honest)) {}
+  tether::link::ClockKind kind() const override { return honest_->kind(); }
+  double factor() const override { return honest_->factor(); }
+  tether::Duration elapsed() const override {
+    return honest_->elapsed() + tether::Duration(g_ahead_ns.load());
+  }
+  void exclude_calling_thread() override { honest_->exclude_calling_thread(); }
+  void release_calling_thread() override { honest_->release_calling_thread(); }
+
+ private:
+  std::unique_ptr<TimeSource> honest_;
+};
+
+void lie_by(tether::Duration ahead) {
+  g_ahead_ns = ahead.count();
+}
+
 // ---- Well-behaved parts
 
 std::unique_ptr<Vehicle> join() {
@@ -33,6 +61,7 @@ std::unique_ptr<Vehicle> join() {
     std::exit(2);
   }
   options->sut_name = "bad_sut";
+  if (options->time) options->time = std::make_unique<LyingSource>(std::move(options->time));
   auto vehicle = tether::client::connect(std::move(options).value());
   if (vehicle) return std::move(vehicle).value();
   std::fprintf(stderr, "bad_sut: %s\n", vehicle.failure().message.c_str());
@@ -64,7 +93,7 @@ int finish(Vehicle& vehicle, bool reached) {
 
 // ---- A socket of its own, for what the client library would never send
 
-int connect_socket() {
+int connect_socket(int receive_buffer = 0) {
   const std::string address = std::getenv("TETHER_ADDRESS");
   const auto colon = address.rfind(':');
   sockaddr_in to{};
@@ -72,6 +101,8 @@ int connect_socket() {
   to.sin_port = htons(static_cast<std::uint16_t>(std::stoi(address.substr(colon + 1))));
   inet_pton(AF_INET, address.substr(0, colon).c_str(), &to.sin_addr);
   const int fd = socket(AF_INET, SOCK_STREAM, 0);
+  if (receive_buffer > 0)
+    setsockopt(fd, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
   if (connect(fd, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) std::exit(4);
   return fd;
 }
@@ -109,6 +140,75 @@ void send_hello(int fd, const tether::link::Hello& hello) {
   if (read(fd, buffer, sizeof buffer) <= 0) std::exit(4);  // the Welcome
 }
 
+// ---- Struck by a signal
+
+[[noreturn]] void wait_for_ever() {
+  while (true) pause();
+}
+
+struct Strike {
+  int signal;
+  std::string phase;
+};
+
+std::optional<Strike> strike_of(const std::string& mode) {
+  if (mode.rfind("kill_", 0) == 0) return Strike{SIGKILL, mode.substr(5)};
+  if (mode.rfind("stop_", 0) == 0) return Strike{SIGSTOP, mode.substr(5)};
+  return std::nullopt;
+}
+
+// Under the barrier, its reply is long in coming; that of the camera is more than the buffers take.
+tether::link::Request far_request(const std::string& phase) {
+  tether::link::Request request{.sequence = 1, .issued_at = {}, .body = {}};
+  if (phase == "reply_half") {
+    request.body = tether::link::ReadSensor{};
+  } else if (phase == "finishing") {
+    std::this_thread::sleep_for(100ms);  // 40 cores may have come so far meanwhile
+    request.issued_at = tether::ExecTime(4s);
+    request.body = tether::link::Finish{true, "flown", "{}"};
+  } else {
+    request.body = tether::link::Sleep{tether::ExecTime(4s)};
+  }
+  return request;
+}
+
+void send_far_request(int fd, const std::string& phase) {
+  tether::link::Encoder encoder;
+  const auto frame = encoder.encode(far_request(phase));
+  send_all(fd, frame.data(), phase == "request_half" ? frame.size() / 2 : frame.size());
+}
+
+// Before it flies; returns where that phase comes later.
+void strike_on_the_wire(const Strike& strike) {
+  const std::string& phase = strike.phase;
+  if (phase == "connecting") std::raise(strike.signal);
+  if (phase == "joined" || phase == "computing" || phase == "finished") return;
+  const int fd = connect_socket(phase == "reply_half" ? 4096 : 0);
+  if (phase == "connected") std::raise(strike.signal);
+  send_hello(fd, hello_of_this_run());
+  send_far_request(fd, phase);
+  char byte = 0;
+  if (phase == "reply_half")
+    recv(fd, &byte, 1, MSG_PEEK);
+  else
+    std::this_thread::sleep_for(300ms);
+  std::raise(strike.signal);
+  wait_for_ever();
+}
+
+int struck(const Strike& strike) {
+  strike_on_the_wire(strike);
+  const auto vehicle = join();
+  std::puts("joined");
+  std::fflush(stdout);
+  if (strike.phase == "joined") std::raise(strike.signal);
+  fly(*vehicle, kSteps);
+  if (strike.phase == "computing") std::raise(strike.signal);
+  const int code = finish(*vehicle, true);
+  if (strike.phase == "finished") std::raise(strike.signal);
+  return code;
+}
+
 // ---- The modes
 
 [[noreturn]] void crash() {
@@ -125,10 +225,6 @@ void send_hello(int fd, const tether::link::Hello& hello) {
   std::abort();
 }
 
-[[noreturn]] void wait_for_ever() {
-  while (true) pause();
-}
-
 // A helper process that nobody waits for.
 void leave_child() {
   if (fork() == 0) wait_for_ever();
@@ -136,6 +232,9 @@ void leave_child() {
 
 const std::map<std::string, std::function<int(Vehicle&)>> kFlyingModes = {
     {"good", [](Vehicle& v) { return finish(v, true); }},
+    // Joins late; lies from its first request on.
+    {"late", [](Vehicle& v) { return finish(v, true); }},
+    {"lie_first", [](Vehicle& v) { return finish(v, true); }},
     {"latest",
      [](Vehicle& v) {
        for (int i = 0; i < kSteps; ++i) {
@@ -169,6 +268,44 @@ const std::map<std::string, std::function<int(Vehicle&)>> kFlyingModes = {
      [](Vehicle& v) -> int {
        while (true) fly(v, 1);
      }},
+    {"look",
+     [](Vehicle& v) -> int {
+       const auto image = v.read_camera("camera");
+       require(image ? tether::ok_status() : tether::Status(image.failure()));
+       return finish(v, true);
+     }},
+    {"pause",
+     [](Vehicle& v) -> int {
+       std::puts("pausing");
+       std::fflush(stdout);
+       std::this_thread::sleep_for(1s);
+       return finish(v, true);
+     }},
+    {"linger",
+     [](Vehicle& v) -> int {
+       finish(v, true);
+       std::puts("finished");
+       std::fflush(stdout);
+       wait_for_ever();
+     }},
+    {"lie_later",
+     [](Vehicle& v) -> int {
+       lie_by(1h);
+       require(v.sleep_for(10ms));
+       return finish(v, true);
+     }},
+    // Only what it says beside its calls shows it.
+    {"lie_in_progress",
+     [](Vehicle&) -> int {
+       lie_by(1h);
+       compute_for_ever();
+     }},
+    {"lie_back",
+     [](Vehicle& v) -> int {
+       lie_by(-1s);
+       require(v.sleep_for(10ms));
+       return finish(v, true);
+     }},
 };
 
 int fail_at_start(const std::string& mode) {
@@ -194,11 +331,14 @@ int fail_at_start(const std::string& mode) {
 
 int main(int argc, char** argv) {
   const std::string mode = argc > 1 ? argv[1] : "";
+  if (const auto strike = strike_of(mode)) return struck(*strike);
+  if (mode == "late") std::this_thread::sleep_for(1s);
   const auto known = kFlyingModes.find(mode);
   if (known == kFlyingModes.end()) return fail_at_start(mode);
   const auto vehicle = join();
   std::puts("joined");
   std::fflush(stdout);
+  if (mode == "lie_first") lie_by(1h);
   fly(*vehicle, kSteps);
   return known->second(*vehicle);
 }

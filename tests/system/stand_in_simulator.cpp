@@ -4,7 +4,8 @@
 //   stand_in_simulator ENDPOINT
 //   or in the place of Gazebo's loader, with TETHER_SIMULATOR_ENDPOINT
 //
-// STAND_IN_MODE says how it fails; without one it serves until it is ended.
+// STAND_IN_MODE says how it fails; without one it serves until it is ended. kill_PHASE and
+// stop_PHASE: SIGKILL or SIGSTOP strikes it there.
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -53,6 +54,11 @@ constexpr tether::SimTime kFailsAt = tether::from_ns<tether::SimTime>(500'000'00
   while (true) pause();
 }
 
+void strike(const std::string& phase) {
+  if (kMode == "kill_" + phase) std::raise(SIGKILL);
+  if (kMode == "stop_" + phase) std::raise(SIGSTOP);
+}
+
 // ---- A world in which nothing moves
 
 protocol::Open g_open;
@@ -82,6 +88,7 @@ protocol::State state(std::int64_t steps) {
 }
 
 protocol::Reply answer(const protocol::Open& open) {
+  strike("opening");
   g_open = open;
   g_now = {};
   return protocol::Opened{"a stand-in", state(0)};
@@ -96,6 +103,7 @@ protocol::Reply answer(const protocol::Advance& advance) {
   const std::int64_t steps = (advance.to - g_now) / g_open.step;
   g_now = advance.to;
   if (g_now >= kFailsAt) {
+    strike("advancing");
     if (kMode == "crash_in_flight") crash();
     if (kMode == "exit_in_flight") say_and_exit("[Err] [World.cc:1] I have had enough", 5);
     if (kMode == "stop_in_flight") std::raise(SIGSTOP);
@@ -115,6 +123,7 @@ protocol::Reply answer(const protocol::CastRays& rays) {
 
 protocol::Reply answer(const protocol::Render& view) {
   if (kMode == "no_gl") return protocol::Failed{"no camera can be made: rendering is off"};
+  strike(g_now < kFailsAt ? "warming_up" : "rendering");
   const auto width = view.camera.width_px, height = view.camera.height_px;
   protocol::Picture picture{width, height, {}, 1.0, "grey"};
   picture.rgb.resize(static_cast<std::size_t>(width * height) * 3, 127);
@@ -131,6 +140,7 @@ void serve(protocol::Connection& host) {
     if (std::holds_alternative<protocol::Failed>(reply) && kMode == "refuse_in_flight")
       std::exit(1);
   }
+  strike("closing");
 }
 
 int listen(const std::string& text) {

@@ -1,0 +1,143 @@
+#include "support/faults.h"
+#include "support/gazebo.h"
+
+#include <csignal>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+/// `tether campaign` is killed or stopped, or meets another one in its folder: finished trials are
+/// kept, and --resume goes on (docs/guide/faults.md).
+namespace tether::system_test {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+/// In the order in which they are run.
+const std::vector<std::string> kTrials = {"hover/host/seed-0001", "hover/host/seed-0002",
+                                          "hover/host/seed-0003"};
+
+/// Three trials under a scripted clock, whose SUT pauses for a second at its end.
+class Campaign : public testing::Test {
+ protected:
+  Campaign() {
+    write_hover_scenario(folder_.path(), "pause",
+                         {{"clock = \"cpu\"", "clock = \"scripted\"\ncomputing_ms = 2"}});
+    write_text(folder_ / "campaign.toml",
+               "name = \"small\"\ntrials = 3\n\n[[scenario]]\nfile = \"hover.toml\"\n"
+               "conditions = [\"host\"]\n");
+  }
+  Command campaign(const std::string& option = "", const std::string& out = "out") const {
+    std::vector<std::string> words = {"campaign", folder_ / "campaign.toml", "--out",
+                                      folder_ / out};
+    if (!option.empty()) words.push_back(option);
+    return tether(words, mark_);
+  }
+  std::filesystem::path trial(std::size_t i, const std::string& out = "out") const {
+    return folder_ / out / kTrials[i];
+  }
+  bool has_result(std::size_t i) const {
+    return wait_until([&] { return std::filesystem::exists(trial(i) / "result.json"); });
+  }
+  /// Where the SUT of a trial is, by what it has said.
+  bool has_said(std::size_t i, const std::string& words) const {
+    return wait_until(
+        [&] { return read_text(trial(i) / "sut-uav1.log").find(words) != std::string::npos; });
+  }
+  std::string result(std::size_t i) const { return read_text(trial(i) / "result.json"); }
+  void expect_all_finished(const std::string& out = "out") const {
+    for (std::size_t i = 0; i < kTrials.size(); ++i) {
+      EXPECT_EQ(read_result(trial(i, out))["end"], "finished") << i;
+      EXPECT_EQ(run(tether({"audit", trial(i, out) / "record.mcap"})).code, 0) << i;
+    }
+  }
+
+  const std::string mark_ = mark_of_test();
+  TempFolder folder_;
+};
+
+struct Moment {
+  std::string name;
+  std::string said;  ///< by the second trial's SUT; empty: once the first trial is done
+};
+
+void PrintTo(const Moment& moment, std::ostream* out) {
+  *out << moment.name;
+}
+
+class KilledCampaign : public Campaign, public testing::WithParamInterface<Moment> {};
+
+TEST_P(KilledCampaign, KeepsWhatIsFinishedAndGoesOn) {
+  Process process(campaign());
+  ASSERT_TRUE(has_result(0)) << process.err();
+  if (!GetParam().said.empty()) {
+    ASSERT_TRUE(has_said(1, GetParam().said)) << process.err();
+  }
+  process.signal(SIGKILL);
+  process.wait(5s);
+  EXPECT_TRUE(wait_until_gone(mark_));
+  const std::string first = result(0);
+  EXPECT_FALSE(std::filesystem::exists(trial(2) / "result.json"));
+
+  const Output resumed = run(campaign("--resume"));
+  EXPECT_EQ(resumed.code, 0) << resumed.err;
+  EXPECT_EQ(result(0), first);
+  expect_all_finished();
+}
+
+INSTANTIATE_TEST_SUITE_P(Moments, KilledCampaign,
+                         testing::Values(Moment{"between_trials", ""},
+                                         Moment{"in_flight", "joined"},
+                                         Moment{"finishing", "pausing"}),
+                         [](const auto& moment) { return moment.param.name; });
+
+// The trial that is killed alone is tried once more; the campaign goes on.
+TEST_F(Campaign, OutlivesAKilledTrial) {
+  Process process(campaign());
+  ASSERT_TRUE(has_said(1, "joined")) << process.err();
+  const auto run_of_trial = find_process(mark_, "seed-0002");
+  ASSERT_TRUE(run_of_trial);
+  kill(*run_of_trial, SIGKILL);
+  EXPECT_EQ(process.wait(90s).code, 0) << process.err();
+  EXPECT_TRUE(wait_until_gone(mark_));
+  expect_all_finished();
+  const auto again = read_result(trial(1))["this_run"];
+  EXPECT_EQ(again["attempts"], 2);
+  EXPECT_THAT(again["first_failure"].get<std::string>(),
+              HasSubstr("left no result: it was ended by signal 9 (Killed)"));
+}
+
+// All of it stands still longer than hang_limit_s allows a SUT.
+TEST_F(Campaign, ThatWasStoppedIsTheSameAsAnother) {
+  Process process(campaign());
+  ASSERT_TRUE(has_said(1, "pausing")) << process.err();
+  const auto stopped = processes_with_mark(mark_);
+  for (const pid_t pid : stopped) kill(pid, SIGSTOP);
+  std::this_thread::sleep_for(3s);
+  for (const pid_t pid : stopped) kill(pid, SIGCONT);
+  EXPECT_EQ(process.wait(90s).code, 0) << process.err();
+  expect_all_finished();
+
+  EXPECT_EQ(run(campaign("", "alone")).code, 0);
+  for (std::size_t i = 0; i < kTrials.size(); ++i) {
+    EXPECT_EQ(timeless_result(trial(i)), timeless_result(trial(i, "alone"))) << i;
+    EXPECT_EQ(timeless_record(trial(i)), timeless_record(trial(i, "alone"))) << i;
+  }
+}
+
+TEST_F(Campaign, KeepsAnotherOneOutOfItsFolder) {
+  Process process(campaign());
+  ASSERT_TRUE(has_result(0)) << process.err();
+  for (const std::string option : {"", "--resume"}) {
+    const Output other = run(campaign(option));
+    EXPECT_EQ(other.code, 2);
+    EXPECT_THAT(other.err, HasSubstr("another campaign is running in this folder"));
+  }
+  EXPECT_EQ(process.wait(90s).code, 0) << process.err();
+  expect_all_finished();
+}
+
+}  // namespace
+}  // namespace tether::system_test

@@ -1,0 +1,52 @@
+#include "faults.h"
+
+#include <algorithm>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+namespace tether::system_test {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::string mark_of_test() {
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  return std::string(test->test_suite_name()) + test->name() + std::to_string(getpid());
+}
+
+bool wait_until(const std::function<bool()>& holds, std::chrono::duration<double> limit) {
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  while (!holds()) {
+    if (std::chrono::steady_clock::now() >= deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+nlohmann::json expect_failed(const Output& output, const std::filesystem::path& out,
+                             const Failure& failure, const std::string& mark) {
+  EXPECT_EQ(output.code, 3) << output.err;
+  EXPECT_FALSE(output.timed_out);
+  EXPECT_TRUE(wait_until_gone(mark));
+  EXPECT_FALSE(std::filesystem::exists(out / "result.json.part"));
+  const auto result = read_result(out);
+  const std::string reason = result["reason"];
+  EXPECT_EQ(result["outcome"], "failed");
+  EXPECT_EQ(result["end"], failure.end) << reason;
+  for (const std::string& part : failure.reason) EXPECT_THAT(reason, HasSubstr(part));
+  EXPECT_THAT(reason, Not(HasSubstr("\n")));
+  EXPECT_THAT(output.err, HasSubstr("tether: " + reason));
+  return result;
+}
+
+Command limited(const Command& command, const std::string& limits) {
+  Command shell = command;
+  shell.arguments = {"sh", "-c", "ulimit " + limits + "; exec \"$@\"", "sh"};
+  shell.arguments.insert(shell.arguments.end(), command.arguments.begin(), command.arguments.end());
+  return shell;
+}
+
+}  // namespace tether::system_test

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "trials.h"
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+/// Runs in which something breaks.
+namespace tether::system_test {
+
+/// A mark for the processes of the test that runs.
+std::string mark_of_test();
+
+/// Waits until `holds`; false if `limit` passes before.
+bool wait_until(const std::function<bool()>& holds,
+                std::chrono::duration<double> limit = std::chrono::seconds(60));
+
+/// How a run failed.
+struct Failure {
+  std::string end;                  ///< of result.json
+  std::vector<std::string> reason;  ///< parts of it
+};
+
+/// Expects what every failed run must show: exit code 3, a result that says so with a reason of one
+/// line, the same reason on stderr, and no process left. Returns the result.
+nlohmann::json expect_failed(const Output& output, const std::filesystem::path& out,
+                             const Failure& failure, const std::string& mark);
+
+/// The command under limits of its shell's `ulimit` ("-n 12"); its output is the shell's.
+Command limited(const Command& command, const std::string& limits);
+
+}  // namespace tether::system_test
