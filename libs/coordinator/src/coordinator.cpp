@@ -310,8 +310,7 @@ void Coordinator::Impl::watch() {
 void Coordinator::Impl::pardon(Duration unheard, WallTime now) {
   if (unheard <= Duration(0)) return;
   moved_ = std::min(moved_ + unheard, now);
-  for (Session& session : sessions_)
-    session.last_word = std::min(session.last_word + unheard, now);
+  for (Session& session : sessions_) session.last_word = std::min(session.last_word + unheard, now);
 }
 
 // It owes us the next word; a SUT that waits for a reply of ours does not.
