@@ -16,6 +16,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -183,15 +184,16 @@ void strike_on_the_wire(const Strike& strike) {
   const std::string& phase = strike.phase;
   if (phase == "connecting") std::raise(strike.signal);
   if (phase == "joined" || phase == "computing" || phase == "finished") return;
-  const int fd = connect_socket(phase == "reply_half" ? 4096 : 0);
+  const int fd = connect_socket(phase == "reply_half" ? 32'768 : 0);
   if (phase == "connected") std::raise(strike.signal);
   send_hello(fd, hello_of_this_run());
   send_far_request(fd, phase);
-  char byte = 0;
-  if (phase == "reply_half")
-    recv(fd, &byte, 1, MSG_PEEK);
-  else
+  constexpr int kMoreThanAWelcome = 8192;
+  int unread = 0;
+  do {
     std::this_thread::sleep_for(300ms);
+    ioctl(fd, FIONREAD, &unread);
+  } while (phase == "reply_half" && unread < kMoreThanAWelcome);
   std::raise(strike.signal);
   wait_for_ever();
 }

@@ -41,7 +41,7 @@ class Limits : public testing::Test {
 TEST_F(Limits, OfFileHandlesAreAReason) {
   const auto scenario = write_hover_scenario(folder_.path(), "good");
   int refused = 0;
-  for (const int handles : {5, 7, 9, 10, 12, 14, 16, 18})
+  for (const int handles : {6, 7, 9, 10, 12, 14, 16, 18})
     if (!fly(scenario, "-n " + std::to_string(handles), HasSubstr("Too many open files")))
       ++refused;
   EXPECT_GE(refused, 6);

@@ -44,7 +44,8 @@ nlohmann::json expect_failed(const Output& output, const std::filesystem::path& 
 
 Command limited(const Command& command, const std::string& limits) {
   Command shell = command;
-  shell.arguments = {"sh", "-c", "ulimit " + limits + "; exec \"$@\"", "sh"};
+  const std::string close_inherited = "exec 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&-; ";
+  shell.arguments = {"sh", "-c", close_inherited + "ulimit " + limits + "; exec \"$@\"", "sh"};
   shell.arguments.insert(shell.arguments.end(), command.arguments.begin(), command.arguments.end());
   return shell;
 }

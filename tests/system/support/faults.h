@@ -31,7 +31,8 @@ struct Failure {
 nlohmann::json expect_failed(const Output& output, const std::filesystem::path& out,
                              const Failure& failure, const std::string& mark);
 
-/// The command under limits of its shell's `ulimit` ("-n 12"); its output is the shell's.
+/// The command under limits of a shell's `ulimit` ("-n 12"), with no files open but the first
+/// three.
 Command limited(const Command& command, const std::string& limits);
 
 }  // namespace tether::system_test
