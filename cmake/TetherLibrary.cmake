@@ -40,9 +40,9 @@ function(_tether_check_headers target include_dir)
   endif()
 endfunction()
 
-# What each kind of test run has to build: `tether_unit_tests` (asan runs these),
-# `tether_threaded_tests` (tsan) and `tether_checked_tests` (both), so that a sanitizer build compiles
-# nothing that it does not run.
+# What each kind of test run has to build: `tether_unit_tests` and `tether_checked_tests` (asan runs
+# these) and `tether_threaded_tests` (tsan), so that a sanitizer build compiles nothing that it does
+# not run.
 add_custom_target(tether_unit_tests)
 add_custom_target(tether_threaded_tests)
 add_custom_target(tether_checked_tests)
@@ -118,7 +118,7 @@ endfunction()
 #
 # A GoogleTest executable below tests/, target <name>_test. LABELS: "unit" (also run under asan+ubsan),
 # "threaded" (also run under tsan), "system" (whole programs), "checked" (system tests that are run
-# under asan and tsan as well), ...
+# under asan+ubsan as well), ...
 function(tether_add_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
