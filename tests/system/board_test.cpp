@@ -79,8 +79,9 @@ class OnABoard : public testing::Test {
   std::unique_ptr<Process> start_long_run(const std::string& mode = "fly_on",
                                           std::size_t interactions = 100) {
     auto process = std::make_unique<Process>(
-        tether_run(scenario(mode, {{"time_limit_s = 5", "time_limit_s = 600"}}), "out",
-                   {"--real-time-factor", "1"}));
+        tether_run(scenario(mode, {{"time_limit_s = 5", "time_limit_s = 600"},
+                                   {"hang_limit_s = 2", "hang_limit_s = 30"}}),
+                   "out", {"--real-time-factor", "1"}));
     const auto deadline = std::chrono::steady_clock::now() + 60s;
     while (recorded_so_far() < interactions) {
       if (process->has_ended() || std::chrono::steady_clock::now() > deadline) {
