@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <asio/error.hpp>
 #include <asio/io_context.hpp>
 #include <poll.h>
 #include <time.h>
@@ -221,11 +222,10 @@ void TcpServer::accept_all() {
     acceptor_.accept(socket, error);
     if (!error) {
       accept_one(std::move(socket));
-    } else if (error == std::errc::connection_aborted) {
+    } else if (error == asio::error::connection_aborted) {
       continue;
     } else {
-      const bool none_left = error == std::errc::operation_would_block ||
-                             error == std::errc::resource_unavailable_try_again;
+      const bool none_left = error == asio::error::would_block;
       if (!none_left) accept_paused_until_ = steady_clock::now() + kAcceptPause;
       return;
     }
