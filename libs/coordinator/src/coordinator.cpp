@@ -158,7 +158,7 @@ void Coordinator::Impl::start() {
     session.last_word = started_;
     if (session.hello.clock == link::ClockKind::kUnstamped)
       session.timer.emplace(ExecTime{}, started_);
-    if (const auto rate = fastest_et(session.hello))
+    if (const auto rate = fastest_et(session.hello); rate && tied())
       session.witness.emplace(*rate, ExecTime{}, started_);
   }
   at_boundary();

@@ -51,8 +51,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   session.last_word = entry.wall_at_release;
   moved_ = entry.wall_at_release;
   if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
-  if (session.witness && tied())
-    session.witness->go_on(barrier_.bound(session.uav), entry.wall_at_release);
+  if (session.witness) session.witness->go_on(barrier_.bound(session.uav), entry.wall_at_release);
   session.spare_states.push_back(std::move(pending.state));
   log_.interaction(st, entry);
   if (image) log_.image(st, session.uav_name, entry.sensor, *image);

@@ -48,10 +48,10 @@ struct Session {
   link::PeerId peer = 0;  ///< 0: nobody
   link::Hello hello;
   std::optional<sync::ExecutionTimer> timer;  ///< of an unstamped client
-  std::optional<sync::ClockWitness> witness;  ///< of one that stamps by a clock of its own
+  std::optional<sync::ClockWitness> witness;  ///< tied, of one that stamps by its own clock
   std::uint64_t next_sequence = 1;
-  WallTime
-      last_word;  ///< when it was last heard; before it has joined, since when it is waited for
+  /// When it was last heard; before it has joined, since when it is waited for.
+  WallTime last_word;
   std::optional<link::Finish> finish;
   bool left = false;  ///< finished or sent away: nothing more is expected or told
 
