@@ -125,9 +125,6 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
   server_ = &server;
   hooks_ = hooks;
-  guarded([&] {  // while the SUTs are on their way
-    ask_simulator([](sim::Simulator& s) { s.prepare(); });
-  });
   while (!running_ && !ended_) {
     server.poll(kIdleWait);
     watch();

@@ -33,15 +33,6 @@ TEST_F(CoordinatorTest, AFinishedRunIsReportedAndRecorded) {
   EXPECT_EQ(recorder_.header.sensors.size(), 3u);
 }
 
-// What takes time and can be done before ST begins is.
-TEST_F(CoordinatorTest, TheSimulatorIsPreparedBeforeAnySutJoins) {
-  make();
-  hooks_.on_status = [this](const RunStatus&) { EXPECT_EQ(simulator_->calls().prepare, 1u); };
-  EXPECT_EQ(simulator_->calls().prepare, 0u);
-  run({finish(Duration(0))});
-  EXPECT_EQ(simulator_->calls().prepare, 1u);
-}
-
 // What the SUT is told of its camera is what the record holds.
 TEST_F(CoordinatorTest, TheRecordDescribesItsCameras) {
   run({finish(Duration(0))});

@@ -11,12 +11,12 @@
 namespace tether::sim {
 namespace {
 
-// What the sensors need of the embedded back end.
+// What the sensors need of the embedded back end. The renderer takes the scene when it is made.
 SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, const WarningSink& warn) {
   Scene scene = make_scene(world, warn);
   std::vector<double> radii_m = body_radii_m(scene, moving_bodies(world).size());
-  auto make_renderer = [scene = std::move(scene)](int max_width_px, int max_height_px) {
-    return std::make_unique<Renderer>(scene, max_width_px, max_height_px);
+  auto make_renderer = [scene = std::move(scene)](int max_width_px, int max_height_px) mutable {
+    return std::make_unique<Renderer>(std::move(scene), max_width_px, max_height_px);
   };
   return {rays, std::move(make_renderer), std::move(radii_m)};
 }
@@ -34,8 +34,6 @@ class MujocoSimulator final : public Simulator {
   const World& world() const override { return world_; }
   StepGrid grid() const override { return grid_; }
   SimTime now() const override { return now_; }
-
-  void prepare() override { sensors_.prepare(); }
 
   void reset(std::uint64_t seed) override {
     sensors_.reset(seed);

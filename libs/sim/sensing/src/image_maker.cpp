@@ -6,7 +6,6 @@
 #include <cassert>
 #include <utility>
 
-#include <tether/base/error.h>
 #include <tether/sim_sensing/sensor_suite.h>
 
 namespace tether::sim {
@@ -52,15 +51,6 @@ ImageMaker::ImageMaker(const World& world, std::vector<double> body_radii_m,
       warn_(warn),
       poses_(layout_.bodies()) {
   assert(body_radii_m_.size() == layout_.bodies());
-}
-
-void ImageMaker::prepare() {
-  if (largest_view(world_).width_px == 0) return;
-  try {
-    renderer();
-  } catch (const Error&) {
-    // A SUT that reads no image needs no renderer.
-  }
 }
 
 uav::CameraSample ImageMaker::make(const CameraModel& camera, const Request& r) {
@@ -184,7 +174,7 @@ const ImageMaker::Plan& ImageMaker::plan_of(const Sensor& sensor, const CameraMo
   return plan;
 }
 
-// Large enough for every camera of the world.
+// Made at the first image, large enough for every camera of the world.
 ViewRenderer& ImageMaker::renderer() {
   if (renderer_) return *renderer_;
   const ViewSize size = largest_view(world_);

@@ -31,9 +31,6 @@ class ImageMaker {
   ImageMaker(const World& world, std::vector<double> body_radii_m,
              ViewRendererFactory make_renderer, const WarningSink& warn);
 
-  /// Makes the renderer now, if there is a camera. What fails is left for the first image to tell.
-  void prepare();
-
   /// The ideal camera whose view is drawn for `camera`.
   static uav::CameraModel rendered_camera(const uav::CameraModel& camera);
 
@@ -46,7 +43,7 @@ class ImageMaker {
   };
   uav::CameraSample make(const CameraModel& camera, const Request& request);
 
-  /// The renderer's name; empty before it is made.
+  /// The renderer's name; empty before the first image.
   std::string renderer_name() const { return renderer_ ? renderer_->name() : std::string(); }
 
  private:

@@ -27,10 +27,6 @@ SensorSuite::SensorSuite(const World& world, BackEnd back_end, const WarningSink
 
 SensorSuite::~SensorSuite() = default;
 
-void SensorSuite::prepare() {
-  images_->prepare();
-}
-
 uav::Sample SensorSuite::measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
                                  std::uint64_t index) {
   if (uav >= world_.uavs.size()) {

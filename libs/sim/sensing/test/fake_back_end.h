@@ -20,7 +20,6 @@ struct SeenView {
 
 /// What the renderers of `fake_renderers` do.
 struct RenderLog {
-  bool is_broken = false;  ///< no renderer can be made
   int made = 0;
   int max_width_px = 0;
   int max_height_px = 0;

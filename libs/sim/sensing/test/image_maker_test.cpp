@@ -8,7 +8,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/base/error.h>
 #include <tether/sim_sensing/state_recorder.h>
 #include <tether/sim_testing/test_worlds.h>
 
@@ -139,8 +138,6 @@ TEST(ImageMakerTest, TheRendererIsMadeOnceForTheLargestCamera) {
   Studio studio(std::move(world));
   EXPECT_EQ(studio.log.made, 0);
   EXPECT_EQ(studio.maker.renderer_name(), "");
-  studio.maker.prepare();
-  EXPECT_EQ(studio.log.made, 1);
   studio.image(at_rest);
   studio.image(at_rest);
   EXPECT_EQ(studio.log.made, 1);
@@ -148,23 +145,6 @@ TEST(ImageMakerTest, TheRendererIsMadeOnceForTheLargestCamera) {
   const ImageWarp warp(std::get<CameraModel>(large.model).intrinsics);
   EXPECT_EQ(studio.log.max_width_px, std::max(kWidth, warp.source().width_px));
   EXPECT_EQ(studio.log.max_height_px, std::max(kHeight, warp.source().height_px));
-}
-
-TEST(ImageMakerTest, NothingIsPreparedWithoutACamera) {
-  World world = small_world();
-  world.uavs[0].sensors.clear();
-  Studio studio(std::move(world));
-  studio.maker.prepare();
-  EXPECT_EQ(studio.log.made, 0);
-}
-
-TEST(ImageMakerTest, ARendererThatCannotBeMadeIsNoFailureUntilAnImageIsAskedFor) {
-  Studio studio(small_world());
-  studio.log.is_broken = true;
-  studio.maker.prepare();
-  EXPECT_THROW(studio.image(at_rest), Error);
-  studio.log.is_broken = false;
-  EXPECT_EQ(studio.image(at_rest).width_px, kWidth);
 }
 
 TEST(ImageMakerTest, AtRestOnePictureIsEnough) {

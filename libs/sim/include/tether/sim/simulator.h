@@ -49,10 +49,6 @@ class Simulator {
   /// ST: always a step boundary.
   virtual SimTime now() const = 0;
 
-  /// Does beforehand what the first measurement would else have to wait for. May be left out, and
-  /// changes nothing that is measured; what fails here fails again, and tells, when it is needed.
-  virtual void prepare() {}
-
   /// Back to ST 0, UAVs hovering at their start poses; `seed` keys all noise from here on.
   virtual void reset(std::uint64_t seed) = 0;
 

@@ -44,9 +44,6 @@ class SensorSuite {
   SensorSuite(const SensorSuite&) = delete;
   SensorSuite& operator=(const SensorSuite&) = delete;
 
-  /// As `Simulator::prepare`: makes the renderer, if the world has a camera.
-  void prepare();
-
   /// `seed` keys all noise from here on; it is 0 before.
   void reset(std::uint64_t seed) { seed_ = seed; }
 
@@ -56,7 +53,7 @@ class SensorSuite {
   uav::Sample measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
                       std::uint64_t index);
 
-  /// The renderer's name; empty before it is made.
+  /// The renderer's name; empty before the first image.
   std::string renderer_name() const;
 
  private:

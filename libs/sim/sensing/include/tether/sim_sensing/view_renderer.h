@@ -53,8 +53,8 @@ class ViewRenderer {
   ViewRenderer() = default;
 };
 
-/// Makes a renderer for views of at most this size. Called once at the latest for the first image,
-/// again if it failed: a run without images needs no renderer.
+/// Makes a renderer for views of at most this size. Called once, for the first image: a run without
+/// a camera needs no renderer.
 /// @throws Error(kSetup) without a renderer, Error(kBadFile) for something that cannot be shown.
 using ViewRendererFactory =
     std::function<std::unique_ptr<ViewRenderer>(int max_width_px, int max_height_px)>;

@@ -30,7 +30,6 @@ class FakeSimulator final : public Simulator {
 
   /// How often each function was called since construction.
   struct Calls {
-    std::uint64_t prepare = 0;
     std::uint64_t reset = 0;
     std::uint64_t advance_to = 0;
     std::uint64_t steps = 0;  ///< made by all advances
@@ -53,7 +52,6 @@ class FakeSimulator final : public Simulator {
   const World& world() const override { return world_; }
   StepGrid grid() const override { return grid_; }
   SimTime now() const override { return now_; }
-  void prepare() override { ++calls_.prepare; }
   void reset(std::uint64_t seed) override;
   void advance_to(SimTime t) override;
   void apply(std::size_t uav, const uav::VelocityCommand& command) override;
