@@ -69,9 +69,6 @@ const StruckSut kStruckSuts[] = {
      {"setup_failed", {kKilled, "it was computing, last heard of at ET 0.000000 s"}},
      "sut_lost"},
     {"kill_reply_half", {"sut_lost", {kKilled, "it was computing"}}, "sut_lost"},
-    {"kill_finishing",
-     {"setup_failed", {kKilled, "it was waiting for its reply of ET 4.000000 s"}},
-     "sut_lost"},
     // 30 s are allowed for joining.
     {"stop_connected", {"setup_failed", {"no SUT joined", "30 s", kStopped}}, ""},
     {"stop_joined", {"sut_hung", {"no word for 2 s", kComputing, kStopped}}, "sut_hung"},
@@ -87,7 +84,7 @@ const StruckSut kStruckSuts[] = {
 INSTANTIATE_TEST_SUITE_P(Phases, AtEachPhase, testing::ValuesIn(kStruckSuts),
                          [](const auto& struck) { return struck.param.mode; });
 
-// ---- When its task is done
+// ---- When it has sent its finish
 
 struct AfterItsTask {
   std::string mode;
@@ -103,9 +100,9 @@ class OnceItHasFinished : public testing::TestWithParam<AfterItsTask> {};
 TEST_P(OnceItHasFinished, AStruckSutSpoilsNothing) {
   const TempFolder folder;
   const std::string mark = mark_of_test();
-  const Output output = run(
-      tether({"run", write_hover_scenario(folder.path(), GetParam().mode), "--out", folder / "out"},
-             mark));
+  const Output output = run(tether({"run", write_hover_scenario(folder.path(), GetParam().mode),
+                                    "--out", folder / "out", "--real-time-factor", "1"},
+                                   mark));
   EXPECT_EQ(output.code, 0) << output.err;
   EXPECT_TRUE(wait_until_gone(mark));
   const auto result = read_result(folder / "out");
@@ -113,7 +110,10 @@ TEST_P(OnceItHasFinished, AStruckSutSpoilsNothing) {
   EXPECT_THAT(result["this_run"]["notes"].dump(), HasSubstr(GetParam().note));
 }
 
+// While its finish is held at the barrier, and once it was confirmed.
 const AfterItsTask kAfterItsTask[] = {
+    {"kill_finishing", "after it had finished: the SUT of UAV \\\"uav1\\\""},
+    {"stop_finishing", "had finished and did not leave for 2 s; it was ended"},
     {"kill_finished", "after it had finished: the SUT of UAV \\\"uav1\\\""},
     {"stop_finished", "had finished and did not leave for 2 s; it was ended"},
     {"linger", "had finished and did not leave for 2 s; it was ended"},

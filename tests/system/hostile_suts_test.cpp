@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <thread>
@@ -243,8 +244,6 @@ INSTANTIATE_TEST_SUITE_P(Misdeeds, HostileSut, testing::ValuesIn(kMisdeeds),
 
 /// A run in which one request is stamped before what the SUT has reached, and which then ends as if
 /// all was well.
-/// A run in which one request is stamped before what the SUT has reached, and which then ends as if
-/// all was well.
 TEST(HostileStamps, ThatGoBackInvalidateTheResultAndAreNamed) {
   const TempFolder folder;
   ExternalRun run(write_hover_scenario(folder.path(), "good"), folder / "out");
@@ -295,6 +294,69 @@ TEST_P(HostileClock, ThatRunsAheadEndsTheRunByName) {
 INSTANTIATE_TEST_SUITE_P(BySayingSo, HostileClock, testing::Bool(), [](const auto& by_progress) {
   return by_progress.param ? "InProgress" : "InARequest";
 });
+
+// ---- That leave early
+
+struct Leaving {
+  std::string name;
+  std::function<void(std::optional<RawPeer>&)> leave;
+};
+
+void PrintTo(const Leaving& leaving, std::ostream* out) {
+  *out << leaving.name;
+}
+
+/// A SUT that is off as soon as it has sent its Finish, which is held then for 3 s of ST.
+class LeavingSut : public testing::TestWithParam<Leaving> {
+ protected:
+  LeavingSut() : run_(write_hover_scenario(folder_.path(), "good"), folder_ / "out") {
+    sut_.emplace(run_.address());
+    sut_->write(hello_for(""));
+    EXPECT_TRUE(std::holds_alternative<link::Welcome>(sut_->read(30s).value()));
+    const std::uint64_t next = fly_honestly(*sut_);
+    sut_->write(request(next, 4 * kFlown, link::Finish{true, "done", "{}"}));
+  }
+  void expect_finished() {
+    EXPECT_EQ(run_.wait(40s).code, 0);
+    const auto result = read_result(folder_ / "out");
+    EXPECT_EQ(result["end"], "finished");
+    EXPECT_EQ(result["suts"][0]["outcome"], "done");
+    EXPECT_EQ(result["sync"]["st_at_end_s"], 4.0);
+    EXPECT_EQ(audit(folder_ / "out").code, 0);
+  }
+
+  TempFolder folder_;
+  ExternalRun run_;
+  std::optional<RawPeer> sut_;
+};
+
+TEST_P(LeavingSut, HasFinished) {
+  GetParam().leave(sut_);
+  expect_finished();
+}
+
+const Leaving kLeavings[] = {
+    {"Half", [](auto& sut) { sut->shut(SHUT_WR); }},
+    {"Whole", [](auto& sut) { sut.reset(); }},
+    {"ByAReset",
+     [](auto& sut) {
+       sut->reset_at_close();
+       sut.reset();
+     }},
+};
+
+INSTANTIATE_TEST_SUITE_P(Closing, LeavingSut, testing::ValuesIn(kLeavings),
+                         [](const auto& leaving) { return leaving.param.name; });
+
+class HalfClosedSut : public LeavingSut {};
+
+TEST_F(HalfClosedSut, IsToldWhenItHasFinished) {
+  sut_->shut(SHUT_WR);
+  const auto told = sut_->read(30s);
+  ASSERT_TRUE(told && std::holds_alternative<link::Reply>(*told));
+  EXPECT_EQ(to_ns(std::get<link::Reply>(*told).resume_at), 4 * kFlown);
+  expect_finished();
+}
 
 // ---- Beside an honest one
 

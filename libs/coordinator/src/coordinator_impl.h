@@ -36,6 +36,7 @@ class Coordinator::Impl final : public link::ServerEvents {
   // Incoming.
   void on_connected(link::PeerId peer, const std::string& remote_address) override;
   void on_message(link::PeerId peer, link::Message message) override;
+  bool on_half_closed(link::PeerId peer) override;
   void on_closed(link::PeerId peer, const Failure& failure) override;
 
  private:
@@ -54,6 +55,7 @@ class Coordinator::Impl final : public link::ServerEvents {
   void watch();
   void pardon(Duration unheard, WallTime now);
   bool is_computing(const Session& session) const;
+  bool has_only_to_be_told(const Session& session) const;
   void check_words(WallTime now);
   Party party(const Session& session, WallTime now) const;
   std::string diagnosis(WallTime now) const;

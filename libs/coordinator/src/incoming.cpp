@@ -76,12 +76,25 @@ void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason
   end(RunEnd::kSutLost, fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, sent));
 }
 
+// Its Finish is here, and it stands still for it: whatever becomes of it, nothing that it could
+// still do makes a difference. The run does not depend then on whether ST catches up before or
+// after it leaves.
+bool Coordinator::Impl::has_only_to_be_told(const Session& session) const {
+  return session.finish && !is_computing(session);
+}
+
+bool Coordinator::Impl::on_half_closed(link::PeerId peer) {
+  const Session* session = find(peer);
+  return session && !session->left && has_only_to_be_told(*session);
+}
+
 void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
   const Session* session = find(peer);
   if (!session && hooks_.on_refused && failure.kind != Failure::Kind::kDisconnected)
     hooks_.on_refused(fmt::format("refused {}: {}", remote_[peer], failure.message));
   remote_.erase(peer);
   if (!session || session->left) return;
+  if (failure.kind == Failure::Kind::kDisconnected && has_only_to_be_told(*session)) return;
   const std::string where =
       running_ && tied() ? "; " + whereabouts(party(*session, host_clock_())) : "";
   end(RunEnd::kSutLost,

@@ -218,6 +218,17 @@ TEST_F(ConcurrentTest, WhatIsAskedAfterAFinishIsDropped) {
   EXPECT_EQ(sent_to<link::Due>(peer).size(), 1u);
 }
 
+TEST_F(ConcurrentTest, HasFinishedIfItLeavesWhileItStandsStillForIt) {
+  for (const bool has_stopped : {true, false}) {
+    make();
+    const auto peer = add_silent();
+    server_->deliver(peer, request(1, us(1'000'000), link::Finish{true, "", ""}));
+    if (has_stopped) server_->deliver(peer, link::Progress{us(1'000'000), true});
+    server_->disconnect(peer);
+    EXPECT_EQ(coordinator_->run(*server_).end, has_stopped ? RunEnd::kFinished : RunEnd::kSutLost);
+  }
+}
+
 TEST_F(ConcurrentTest, NoReplyLeavesBeforeItHasStopped) {
   options_.hang_limit = seconds(1);
   make();

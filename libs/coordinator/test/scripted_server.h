@@ -49,6 +49,13 @@ class ScriptedServer final : public link::Server {
       events_->on_closed(peer, {Failure::Kind::kDisconnected, "connection closed"});
     });
   }
+  /// It says no more; closed if the coordinator has nothing to tell it.
+  void half_close(link::PeerId peer) {
+    queue_.push_back([this, peer] {
+      if (!events_->on_half_closed(peer))
+        events_->on_closed(peer, {Failure::Kind::kDisconnected, "connection closed"});
+    });
+  }
 
   link::Address address() const override { return {"script", 0}; }
   bool poll(Duration) override {

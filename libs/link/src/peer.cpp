@@ -91,7 +91,7 @@ Result<bool> Peer::receive() {
     return lost(remote_, received.error);
   }
   if (received.ended) {
-    die();
+    input_has_ended_ = true;
     return Failure{Failure::Kind::kDisconnected, remote_ + " closed the connection"};
   }
   input_.commit(received.bytes);
@@ -100,7 +100,10 @@ Result<bool> Peer::receive() {
 
 void Peer::discard_input() {
   const Transfer received = receive_some(descriptor(), input_.space());
-  if (received.ended || received.error) die();
+  if (received.error) die();
+  if (!received.ended) return;
+  input_has_ended_ = true;
+  shut_when_flushed();
 }
 
 void Peer::drain() {
@@ -111,7 +114,9 @@ void Peer::drain() {
 }
 
 void Peer::shut_when_flushed() {
-  if (state_ == State::kDraining && queue_.empty()) ::shutdown(descriptor(), SHUT_WR);
+  if (state_ != State::kDraining || !queue_.empty()) return;
+  ::shutdown(descriptor(), SHUT_WR);
+  if (input_has_ended_) die();
 }
 
 void Peer::die() {

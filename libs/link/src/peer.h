@@ -36,6 +36,7 @@ struct QueuedFrame {
 ///
 /// While draining, what is queued still goes out, then our side is shut; what comes in is dropped.
 /// Closing at once instead could destroy a Refusal on its way: unread input makes TCP reset.
+/// A peer whose input has ended may be open or draining still.
 class Peer {
  public:
   enum class State { kOpen, kDraining, kDead };
@@ -48,6 +49,8 @@ class Peer {
   State state() const { return state_; }
   int descriptor() { return socket_.native_handle(); }
   bool wants_to_write() const { return !queue_.empty(); }
+  /// It has closed its sending side: there is nothing to be received any more.
+  bool input_has_ended() const { return input_has_ended_; }
   std::chrono::steady_clock::time_point since() const { return since_; }
   bool is_stranger() const { return is_stranger_; }
   /// Its first frame was taken: it may take its time from here on, and send larger ones.
@@ -58,11 +61,12 @@ class Peer {
   Status send(const FramePieces& pieces, Message& message);
   /// Sends what is queued as far as the socket takes it.
   Status flush();
-  /// Receives once. True: something came.
+  /// Receives once. True: something came. Fails at the end of its input, and (dead then) if the
+  /// connection is lost.
   Result<bool> receive();
   /// The next whole frame; empty: none.
   Result<std::span<const std::uint8_t>> next_frame() { return input_.next(); }
-  /// Receives once and drops it; dead when the peer has closed.
+  /// Receives once and drops it; dead when the peer has closed and nothing is queued for it.
   void discard_input();
 
   void drain();
@@ -86,6 +90,7 @@ class Peer {
   std::deque<QueuedFrame> queue_;
   std::size_t queued_bytes_ = 0;
   State state_ = State::kOpen;
+  bool input_has_ended_ = false;
 };
 
 }  // namespace tether::link

@@ -53,6 +53,8 @@ class TcpServer final : public Server {
   void accept_all();
   void accept_one(Tcp::socket socket);
   void serve(Peer& peer, int happened);
+  /// Whether a peer that could not be received from is kept to be sent to.
+  bool may_still_listen(const Peer& peer);
   bool receive(Peer& peer);
   void handle_frames(Peer& peer);
   void expire_deadlines();
@@ -186,8 +188,9 @@ bool TcpServer::wait(Duration max_wait) {
   const bool may_accept = !accept_paused_until_ && !is_crowded_;
   watched_[0] = {may_accept ? acceptor_.native_handle() : -1, POLLIN, 0};
   for (std::size_t i = 0; i < peers_.size(); ++i) {
+    const int in = peers_[i]->input_has_ended() ? 0 : POLLIN;
     const int out = peers_[i]->wants_to_write() ? POLLOUT : 0;
-    watched_[i + 1] = {peers_[i]->descriptor(), static_cast<short>(POLLIN | out), 0};
+    watched_[i + 1] = {peers_[i]->descriptor(), static_cast<short>(in | out), 0};
   }
   const std::int64_t ns = limit.count();
   const timespec timeout{ns / 1'000'000'000, ns % 1'000'000'000};
@@ -251,14 +254,21 @@ void TcpServer::serve(Peer& peer, int happened) {
       return;
     }
   }
-  if ((happened & ~POLLOUT) == 0) return;
+  if ((happened & ~POLLOUT) == 0 || peer.state() == Peer::State::kDead) return;
+  if (peer.input_has_ended()) return peer.die();  // it hung up, or was reset
   if (peer.state() == Peer::State::kDraining) return peer.discard_input();
   receive(peer);
+}
+
+bool TcpServer::may_still_listen(const Peer& peer) {
+  return peer.input_has_ended() && !peer.is_stranger() && events_.on_half_closed(peer.id());
 }
 
 bool TcpServer::receive(Peer& peer) {
   const auto received = peer.receive();
   if (!received) {
+    if (may_still_listen(peer)) return true;
+    peer.die();
     peer.closing = received.failure();
   } else if (*received) {
     handle_frames(peer);

@@ -42,6 +42,7 @@ class RawClient {
     }
     return decode(bytes);
   }
+  void close_half() { socket_.shutdown(Tcp::socket::shutdown_send); }
   void close() { socket_.close(); }
 
  private:

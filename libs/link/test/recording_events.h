@@ -22,12 +22,18 @@ struct RecordingEvents final : ServerEvents {
   std::vector<PeerId> connected;
   std::vector<Received> received;
   std::vector<Closed> closed;
+  std::vector<PeerId> half_closed;
   std::function<void(PeerId, const Message&)> react;
+  bool keeps_half_closed = false;
 
   void on_connected(PeerId peer, const std::string&) override { connected.push_back(peer); }
   void on_message(PeerId peer, Message message) override {
     if (react) react(peer, message);
     received.push_back({peer, std::move(message)});
+  }
+  bool on_half_closed(PeerId peer) override {
+    half_closed.push_back(peer);
+    return keeps_half_closed;
   }
   void on_closed(PeerId peer, const Failure& failure) override {
     closed.push_back({peer, failure});

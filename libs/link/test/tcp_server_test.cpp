@@ -53,6 +53,15 @@ class TcpServer : public testing::Test {
     EXPECT_EQ(events_.closed[0].failure.kind, kind);
     EXPECT_NE(events_.closed[0].failure.message.find(text), std::string::npos);
   }
+  /// What the client reads up to the end of the stream.
+  Result<Message> read_while_polling(RawClient& client) {
+    std::atomic<bool> read_all = false;
+    std::thread pump([&] { link::poll_until(*server_, [&] { return read_all.load(); }); });
+    Result<Message> message = client.read_last_message();
+    read_all = true;
+    pump.join();
+    return message;
+  }
 
   RecordingEvents events_;
   std::unique_ptr<Server> server_;
@@ -198,15 +207,73 @@ TEST_F(TcpServer, CloseSendsWhatIsQueuedFirst) {
   expect_served(client);
   server_->send(1, image_reply(2000));
   server_->close(1);
-  std::atomic<bool> read_all = false;
-  std::thread pump([&] { link::poll_until(*server_, [&] { return read_all.load(); }); });
-  const auto message = client.read_last_message();
-  read_all = true;
+  const auto message = read_while_polling(client);
   client.close();
-  pump.join();
   ASSERT_TRUE(message.ok()) << message.failure().message;
   EXPECT_EQ(std::get<uav::CameraSample>(*std::get<Reply>(*message).sample).rgb.size(), 12'000'000u);
   EXPECT_TRUE(events_.closed.empty());
+}
+
+class HalfClosed : public TcpServer {
+ protected:
+  /// Until the server, which keeps it, has seen the end of its input.
+  void half_close(RawClient& client) {
+    events_.keeps_half_closed = true;
+    expect_served(client);
+    client.close_half();
+    EXPECT_TRUE(poll_until([&] { return events_.half_closed == std::vector<PeerId>{1}; }));
+  }
+};
+
+TEST_F(HalfClosed, APeerReadsWhatItIsSentUpToTheClose) {
+  listen();
+  RawClient client = connect();
+  half_close(client);
+  server_->send(1, image_reply(2000));  // more than a socket takes at once
+  server_->close(1);
+  const auto message = read_while_polling(client);
+  ASSERT_TRUE(message.ok()) << message.failure().message;
+  EXPECT_TRUE(std::holds_alternative<Reply>(*message));
+  EXPECT_TRUE(events_.closed.empty());
+}
+
+TEST_F(HalfClosed, APeerCostsNothingWhileItIsKept) {
+  listen();
+  RawClient client = connect();
+  half_close(client);
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(server_->poll(1ms));
+  EXPECT_EQ(events_.half_closed.size(), 1u);
+}
+
+TEST_F(HalfClosed, APeerThatHangsUpIsForgotten) {
+  listen();
+  RawClient client = connect();
+  half_close(client);
+  client.close();
+  server_->send(1, Welcome{});  // is answered by a reset
+  EXPECT_TRUE(server_->poll(10s));
+  server_->send(1, Welcome{});
+  server_->close(1);
+  EXPECT_FALSE(server_->poll(1ms));
+  EXPECT_TRUE(events_.closed.empty());
+}
+
+TEST_F(HalfClosed, APeerThatNobodyKeepsIsClosed) {
+  listen();
+  RawClient client = connect();
+  expect_served(client);
+  client.close_half();
+  ASSERT_TRUE(poll_until([&] { return events_.closed.size() == 1; }));
+  EXPECT_NE(events_.closed[0].failure.message.find("closed the connection"), std::string::npos);
+}
+
+TEST_F(HalfClosed, AStrangerIsNotKept) {
+  listen();
+  events_.keeps_half_closed = true;
+  RawClient client = connect();
+  client.close_half();
+  ASSERT_TRUE(poll_until([&] { return events_.closed.size() == 1; }));
+  EXPECT_TRUE(events_.half_closed.empty());
 }
 
 TEST_F(TcpServer, TheDestructorSendsWhatIsQueued) {

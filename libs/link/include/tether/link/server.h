@@ -23,6 +23,10 @@ class ServerEvents {
   virtual ~ServerEvents() = default;
   virtual void on_connected(PeerId peer, const std::string& remote_address) = 0;
   virtual void on_message(PeerId peer, Message message) = 0;
+  /// It has closed its sending side, or all of it, which looks the same from here: it says no more,
+  /// but may still read. True: it is kept, to be sent to until `close`, and no event comes from it
+  /// any more. Otherwise on_closed follows. Not asked of strangers.
+  virtual bool on_half_closed(PeerId) { return false; }
   /// The connection is gone; the peer's id is not used again. `failure` says why. kDisconnected: it
   /// closed, or did not read what it was sent. kProtocol: it sent what it must not. kTimeout: it
   /// never sent a whole frame. In the latter two cases it was told so with a Refusal.
