@@ -4,8 +4,6 @@
 #include <cstring>
 #include <string>
 
-#include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
@@ -25,17 +23,17 @@ void make(const std::filesystem::path& folder) {
   if (error) fail(folder, error.message());
 }
 
-/// The folder's descriptor, locked until it is closed.
-int lock(const std::filesystem::path& folder) {
-  const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) fail(folder, std::strerror(errno));
-  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
-  const int why = errno;
-  close(descriptor);
-  if (why != EWOULDBLOCK) fail(folder, std::strerror(why));
-  throw Error(
-      ErrorCode::kUsage,
-      folder.string() + ": another run writes there; give this one a folder of its own with --out");
+/// Once it is locked, a campaign that starts now sees it.
+std::unique_ptr<experiment::PathLock> claim(const std::filesystem::path& folder) {
+  experiment::require_no_campaign(folder);
+  make(folder);
+  auto lock = std::make_unique<experiment::PathLock>(folder);
+  if (!lock->is_held())
+    throw Error(ErrorCode::kUsage,
+                folder.string() +
+                    ": another run writes there; give this one a folder of its own with --out");
+  experiment::require_no_campaign(folder);
+  return lock;
 }
 
 void drop(const std::filesystem::path& file) {
@@ -46,18 +44,12 @@ void drop(const std::filesystem::path& file) {
 
 }  // namespace
 
-TrialFolder::TrialFolder(const std::filesystem::path& folder) {
-  make(folder);
-  descriptor_ = lock(folder);
+TrialFolder::TrialFolder(const std::filesystem::path& folder) : lock_(claim(folder)) {
   // Rather now than when there is a result to write.
   if (access(folder.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
   drop(folder / experiment::kResultFile);
   drop(folder / kRecordFile);
   drop(folder / kSimulatorLog);
-}
-
-TrialFolder::~TrialFolder() {
-  close(descriptor_);
 }
 
 }  // namespace tether::app

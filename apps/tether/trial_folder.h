@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+
+#include <tether/experiment/folder_claim.h>
 
 namespace tether::app {
 
@@ -13,15 +16,12 @@ inline constexpr const char* kSimulatorLog = "simulator.log";
 /// lives. Nothing of an earlier trial is left in it that could be taken for this one's.
 class TrialFolder {
  public:
-  /// @throws Error(kUsage) when another run writes there; Error(kSetup) when the file system
-  /// refuses.
+  /// @throws Error(kUsage) when another run writes there, or it is a campaign's; Error(kSetup) when
+  /// the file system refuses.
   explicit TrialFolder(const std::filesystem::path& folder);
-  ~TrialFolder();
-  TrialFolder(const TrialFolder&) = delete;
-  TrialFolder& operator=(const TrialFolder&) = delete;
 
  private:
-  int descriptor_ = -1;  // of the folder, locked
+  std::unique_ptr<experiment::PathLock> lock_;  // of the folder
 };
 
 }  // namespace tether::app

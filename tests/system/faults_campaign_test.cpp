@@ -1,6 +1,7 @@
 #include "support/faults.h"
 #include "support/gazebo.h"
 
+#include <algorithm>
 #include <csignal>
 #include <thread>
 
@@ -14,6 +15,23 @@ namespace {
 
 using namespace std::chrono_literals;
 using testing::HasSubstr;
+using testing::StartsWith;
+
+/// All processes with that mark stand still while this lives.
+class Standstill {
+ public:
+  explicit Standstill(const std::string& mark) : processes_(processes_with_mark(mark)) {
+    for (const pid_t pid : processes_) kill(pid, SIGSTOP);
+  }
+  ~Standstill() {
+    for (const pid_t pid : processes_) kill(pid, SIGCONT);
+  }
+  Standstill(const Standstill&) = delete;
+  Standstill& operator=(const Standstill&) = delete;
+
+ private:
+  std::vector<pid_t> processes_;
+};
 
 /// In the order in which they are run.
 const std::vector<std::string> kTrials = {"hover/host/seed-0001", "hover/host/seed-0002",
@@ -34,6 +52,17 @@ class Campaign : public testing::Test {
                                       folder_ / out};
     if (!option.empty()) words.push_back(option);
     return tether(words, mark_);
+  }
+  Command flight(const std::filesystem::path& out) const {
+    return tether({"run", folder_ / "hover.toml", "--out", out}, mark_);
+  }
+  static void expect_refused(const Output& output, const std::filesystem::path& folder,
+                             const std::string& why) {
+    EXPECT_EQ(output.code, 2);
+    EXPECT_THAT(output.err, StartsWith("tether: " + folder.string() + ": "));
+    EXPECT_THAT(output.err, HasSubstr(why));
+    EXPECT_THAT(output.err, HasSubstr("choose another"));
+    EXPECT_EQ(std::count(output.err.begin(), output.err.end(), '\n'), 1) << output.err;
   }
   std::filesystem::path trial(std::size_t i, const std::string& out = "out") const {
     return folder_ / out / kTrials[i];
@@ -113,10 +142,10 @@ TEST_F(Campaign, OutlivesAKilledTrial) {
 TEST_F(Campaign, ThatWasStoppedIsTheSameAsAnother) {
   Process process(campaign());
   ASSERT_TRUE(has_said(1, "pausing")) << process.err();
-  const auto stopped = processes_with_mark(mark_);
-  for (const pid_t pid : stopped) kill(pid, SIGSTOP);
-  std::this_thread::sleep_for(3s);
-  for (const pid_t pid : stopped) kill(pid, SIGCONT);
+  {
+    const Standstill stopped(mark_);
+    std::this_thread::sleep_for(3s);
+  }
   EXPECT_EQ(process.wait(90s).code, 0) << process.err();
   expect_all_finished();
 
@@ -127,15 +156,69 @@ TEST_F(Campaign, ThatWasStoppedIsTheSameAsAnother) {
   }
 }
 
-TEST_F(Campaign, KeepsAnotherOneOutOfItsFolder) {
+TEST_F(Campaign, KeepsEverybodyElseOutOfItsFolder) {
+  const auto out = folder_ / "out";
   Process process(campaign());
   ASSERT_TRUE(has_result(0)) << process.err();
-  for (const std::string option : {"", "--resume"}) {
-    const Output other = run(campaign(option));
-    EXPECT_EQ(other.code, 2);
-    EXPECT_THAT(other.err, HasSubstr("another campaign is running in this folder"));
+  {
+    const Standstill stopped(mark_);
+    const std::string why = "a campaign is running in this folder";
+    for (const std::string option : {"", "--resume"})
+      expect_refused(run(campaign(option)), out, why);
+    expect_refused(run(flight(out)), out, why);
+    for (const std::string below : {kTrials[0], kTrials[1], kTrials[2], std::string("aside")}) {
+      const std::string where = "a campaign is running in " + out.string();
+      expect_refused(run(flight(out / below)), out / below, where);
+      expect_refused(run(campaign("", "out/" + below)), out / below, where);
+    }
+    EXPECT_FALSE(std::filesystem::exists(out / "aside"));
   }
   EXPECT_EQ(process.wait(90s).code, 0) << process.err();
+  expect_all_finished();
+  for (std::size_t i = 0; i < kTrials.size(); ++i)
+    EXPECT_EQ(read_result(trial(i))["this_run"]["attempts"], 1) << i;
+}
+
+TEST_F(Campaign, StaysOutOfTheFolderOfARun) {
+  ASSERT_EQ(run(campaign()).code, 0);
+  std::filesystem::remove_all(trial(1));
+  for (const auto& folder : {folder_ / "out", folder_ / "out" / "aside", folder_ / "fresh"}) {
+    Process first(flight(folder));
+    ASSERT_TRUE(wait_until([&] {
+      return read_text(folder / "sut-uav1.log").find("joined") != std::string::npos;
+    })) << first.err();
+    const std::string out = folder == folder_ / "fresh" ? "fresh" : "out";
+    {
+      const Standstill stopped(mark_);
+      expect_refused(run(campaign("--resume", out)), folder_ / out,
+                     "another run writes in " + folder.string());
+    }
+    EXPECT_EQ(first.wait(90s).code, 0) << first.err();
+    EXPECT_EQ(run(tether({"audit", folder / "record.mcap"})).code, 0);
+  }
+  EXPECT_EQ(run(campaign("--resume")).code, 0);
+  expect_all_finished();
+}
+
+// What is in a trial's folder would count in the campaign's tables.
+TEST_F(Campaign, KeepsItsTrialsForItself) {
+  ASSERT_EQ(run(campaign()).code, 0);
+  const std::string kept = result(1);
+  expect_refused(run(flight(trial(1))), trial(1),
+                 "is a trial of the campaign in " + (folder_ / "out").string());
+  EXPECT_EQ(result(1), kept);
+  std::filesystem::remove_all(trial(1));
+  EXPECT_EQ(run(campaign("--resume")).code, 0);
+  expect_all_finished();
+}
+
+// At once: while the system still ends the trial that was in flight.
+TEST_F(Campaign, ThatWasKilledHindersNobody) {
+  Process process(campaign());
+  ASSERT_TRUE(has_said(1, "joined")) << process.err();
+  process.signal(SIGKILL);
+  const Output resumed = run(campaign("--resume"), 90s);
+  EXPECT_EQ(resumed.code, 0) << resumed.err;
   expect_all_finished();
 }
 

@@ -1,12 +1,8 @@
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <optional>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <tether/experiment/campaign_folder.h>
@@ -16,8 +12,6 @@ namespace tether::experiment {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kLockFile = ".lock";
 
 void make_folder(const fs::path& folder) {
   std::error_code failed;
@@ -101,34 +95,20 @@ std::string listed(std::vector<std::string> names) {
 
 }  // namespace
 
-// Held until the process ends, however it ends.
-class CampaignFolder::Lock {
- public:
-  explicit Lock(const fs::path& folder) {
-    const fs::path file = folder / kLockFile;
-    fd_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (fd_ < 0) {
-      throw Error(ErrorCode::kSetup, FileLocation{file.string()},
-                  fmt::format("cannot be opened: {}", std::strerror(errno)));
-    }
-    if (::flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
-    ::close(fd_);
-    refuse(folder, "another campaign is running in this folder; wait for it or choose another");
-  }
-  ~Lock() { ::close(fd_); }
-  Lock(const Lock&) = delete;
-  Lock& operator=(const Lock&) = delete;
-
- private:
-  int fd_ = -1;
-};
-
 CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campaign,
                                const Settings& settings, OpenMode mode)
     : folder_(std::move(folder)) {
   const CampaignManifest manifest = manifest_of(campaign, settings);
+  require_no_campaign(folder_);
   make_folder(folder_);
-  lock_ = std::make_unique<Lock>(folder_);
+  require_nobody_in(folder_);
+  lock_ = std::make_unique<PathLock>(folder_ / kLockFile, true);
+  if (!lock_->is_held())
+    refuse(folder_, "a campaign is running in this folder; wait for it, or choose another");
+  lock_->write(std::to_string(::getpid()));
+  // Whoever came meanwhile sees the lock, or is seen now.
+  require_no_campaign(folder_);
+  require_nobody_in(folder_);
   if (holds_anything(folder_)) check_existing(manifest, mode);
   find_missing(campaign);
   if (mode == OpenMode::kFresh && finished_ > 0) {

@@ -178,7 +178,7 @@ TEST_F(Folder, RefusesAnotherCampaign) {
 
 TEST_F(Folder, IsHeldByOneAlone) {
   const CampaignFolder first = open(OpenMode::kFresh);
-  EXPECT_THAT(refusal(OpenMode::kResume), HasSubstr("another campaign is running"));
+  EXPECT_THAT(refusal(OpenMode::kResume), HasSubstr("a campaign is running in this folder"));
 }
 
 TEST_F(Folder, RefusesADamagedManifest) {

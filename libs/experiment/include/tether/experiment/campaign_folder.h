@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <tether/experiment/campaign_plan.h>
+#include <tether/experiment/folder_claim.h>
 #include <tether/experiment/result.h>
 
 /// A campaign's folder on the disk: `campaign.json` says what was planned and under which
@@ -53,8 +54,8 @@ class CampaignFolder {
   /// result, with a torn or damaged one, and those that failed to be set up or were interrupted.
   /// @throws Error(kUsage), changing nothing, when the folder holds something else, results of
   ///   other settings or versions (named), a campaign with more seeds, conditions or scenarios
-  ///   (named: their trials would drop out of every mean), results although `mode` is kFresh, or is
-  ///   held by another process; Error(kSetup) when the file system refuses.
+  ///   (named: their trials would drop out of every mean), results although `mode` is kFresh, or
+  ///   somebody else writes in it; Error(kSetup) when the file system refuses.
   /// @pre `campaign` outlives the object.
   CampaignFolder(std::filesystem::path folder, const scenario::Campaign& campaign,
                  const Settings& settings, OpenMode mode);
@@ -74,9 +75,8 @@ class CampaignFolder {
   void find_missing(const scenario::Campaign& campaign);
   bool has_usable_result(const TrialPlan& plan);
 
-  class Lock;
   std::filesystem::path folder_;
-  std::unique_ptr<Lock> lock_;
+  std::unique_ptr<PathLock> lock_;
   std::vector<TrialPlan> missing_;
   std::size_t finished_ = 0;
   std::vector<std::string> warnings_;

@@ -1,0 +1,164 @@
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstring>
+#include <string>
+#include <thread>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+#include <tether/experiment/campaign_folder.h>
+#include <tether/experiment/folder_claim.h>
+
+namespace tether::experiment {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A killed process is gone by then, however much memory it had.
+constexpr auto kPatience = std::chrono::seconds(2);
+
+[[noreturn]] void fail(const fs::path& path, const char* what) {
+  throw Error(ErrorCode::kSetup,
+              fmt::format("{}: cannot be {}: {}; choose another folder with --out", path.string(),
+                          what, std::strerror(errno)));
+}
+
+/// What is to be known of a lock without taking it.
+struct Holder {
+  bool is_there = false;
+  pid_t process = 0;  ///< as it wrote; 0: it wrote nothing
+};
+
+pid_t written_process(int descriptor) {
+  char text[16] = {};
+  const ssize_t size = ::pread(descriptor, text, sizeof text, 0);
+  pid_t process = 0;
+  if (size > 0) std::from_chars(text, text + size, process);
+  return process;
+}
+
+/// A lock that is shared for a moment disturbs nobody who looks as well. Where there is nothing,
+/// and where nobody may look, nobody of ours is.
+Holder holder_of(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) {
+    if (errno == ENOENT || errno == ENOTDIR || errno == EACCES || errno == EPERM) return {};
+    fail(path, "opened");
+  }
+  Holder holder;
+  if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    holder = {true, written_process(descriptor)};
+  ::close(descriptor);
+  return holder;
+}
+
+bool is_trial_of(const CampaignManifest& campaign, const fs::path& folder) {
+  for (const CampaignManifest::Entry& entry : campaign.scenarios)
+    for (const std::string& condition : entry.conditions)
+      for (const std::uint64_t seed : campaign.seeds)
+        if (folder == trial_folder(entry.scenario, condition, seed)) return true;
+  return false;
+}
+
+bool has_trial(const fs::path& campaign, const fs::path& folder) try {
+  return fs::exists(campaign / kCampaignFile) &&
+         is_trial_of(read_manifest(campaign), folder.lexically_relative(campaign));
+} catch (const std::exception&) {
+  return false;  // no campaign that could be reported on
+}
+
+[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
+  throw Error(ErrorCode::kUsage, folder.string() + ": " + why);
+}
+
+[[noreturn]] void refuse_running(const fs::path& folder, const fs::path& campaign,
+                                 const fs::path& whole) {
+  const std::string where =
+      campaign == whole ? "this folder" : campaign.string() + ", to which this folder belongs";
+  refuse(folder, fmt::format("a campaign is running in {}; wait for it, or choose another folder "
+                             "with --out",
+                             where));
+}
+
+void require_not_in(const fs::path& campaign, const fs::path& folder, const fs::path& whole) {
+  const Holder holder = holder_of(campaign / kLockFile);
+  if (holder.is_there && (holder.process == ::getppid() || holder.process == ::getpid())) return;
+  if (holder.is_there) refuse_running(folder, campaign, whole);
+  if (has_trial(campaign, whole))
+    refuse(folder, fmt::format("is a trial of the campaign in {}, whose results must be of one "
+                               "kind; choose another folder with --out, or remove this one and "
+                               "run the campaign with --resume",
+                               campaign.string()));
+}
+
+/// Whether somebody holds it and is not just being killed.
+bool stays_held(const fs::path& path) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (holder_of(path).is_there) {
+    if (std::chrono::steady_clock::now() >= deadline) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+}  // namespace
+
+PathLock::PathLock(const fs::path& path, bool makes_file)
+    : path_(path),
+      descriptor_(
+          ::open(path.c_str(), O_CLOEXEC | (makes_file ? O_RDWR | O_CREAT : O_RDONLY), 0644)) {
+  if (descriptor_ < 0) fail(path, "opened");
+  is_held_ = ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+  if (is_held_ || errno == EWOULDBLOCK) return;
+  const int why = errno;
+  ::close(descriptor_);
+  errno = why;
+  fail(path, "locked");
+}
+
+PathLock::~PathLock() {
+  ::close(descriptor_);
+}
+
+void PathLock::write(std::string_view text) const {
+  const auto size = static_cast<ssize_t>(text.size());
+  if (::pwrite(descriptor_, text.data(), text.size(), 0) != size ||
+      ::ftruncate(descriptor_, size) != 0)
+    fail(path_, "written");
+}
+
+void require_no_campaign(const fs::path& folder) {
+  std::error_code ignored;
+  const fs::path whole = fs::weakly_canonical(fs::absolute(folder), ignored);
+  for (fs::path above = whole; !above.empty(); above = above.parent_path()) {
+    require_not_in(above, folder, whole);
+    if (above == above.root_path()) return;
+  }
+}
+
+void require_nobody_in(const fs::path& folder) {
+  const auto require_free = [&](const fs::path& path) {
+    if (!stays_held(path)) return;
+    refuse(folder, fmt::format("another run writes in {}; wait for it, or choose another folder "
+                               "with --out",
+                               path.string()));
+  };
+  require_free(folder);
+  std::error_code failed;
+  constexpr auto kHow = fs::directory_options::skip_permission_denied;
+  for (fs::recursive_directory_iterator entry(folder, kHow, failed), end; entry != end && !failed;
+       entry.increment(failed)) {
+    const bool is_lock = entry->path().filename() == kLockFile && entry.depth() > 0;
+    if (is_lock || (entry->is_directory() && !entry->is_symlink())) require_free(entry->path());
+  }
+  if (!failed) return;
+  errno = failed.value();
+  fail(folder, "read");
+}
+
+}  // namespace tether::experiment
