@@ -196,6 +196,13 @@ const Misdeed kMisdeeds[] = {
        }
      },
      "no word for 2 s"},
+    {"CallsThatTakeNoTime",
+     [](RawPeer& sut, std::uint64_t next) {
+       const link::ReadSensor if_there{.sensor = 1, .only_if_available = true};
+       while (sut.write(request(next++, kFlown, if_there)) && sut.read(20s)) {
+       }
+     },
+     "10001 requests in a row at ET 1.000000 s"},
     {"ProgressWithoutEnd",
      [](RawPeer& sut, auto) {
        const std::string same = frame_of(link::Progress{from_ns<ExecTime>(kFlown)});

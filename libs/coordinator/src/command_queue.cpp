@@ -9,6 +9,12 @@ void CommandQueue::push(const PendingCommand& command) {
     return c.effect_at <= command.effect_at;
   });
   commands_.insert(place, command);
+  if (waiting_.size() <= command.uav) waiting_.resize(command.uav + 1);
+  ++waiting_[command.uav];
+}
+
+std::size_t CommandQueue::waiting(std::size_t uav) const {
+  return uav < waiting_.size() ? waiting_[uav] : 0;
 }
 
 SimTime CommandQueue::next_effect() const {
@@ -19,6 +25,7 @@ std::optional<PendingCommand> CommandQueue::pop_due(SimTime st) {
   if (commands_.empty() || commands_.back().effect_at > st) return std::nullopt;
   const PendingCommand command = commands_.back();
   commands_.pop_back();
+  --waiting_[command.uav];
   return command;
 }
 

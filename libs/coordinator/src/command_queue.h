@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -21,6 +22,8 @@ struct PendingCommand {
 class CommandQueue {
  public:
   void push(const PendingCommand& command);
+  /// How many of this UAV have not acted yet.
+  std::size_t waiting(std::size_t uav) const;
   /// The next boundary on which one acts; SimTime::max() if none waits.
   SimTime next_effect() const;
   /// Takes the first command that acts at or before `st`.
@@ -28,6 +31,7 @@ class CommandQueue {
 
  private:
   std::vector<PendingCommand> commands_;  // last acts first
+  std::vector<std::size_t> waiting_;      // of each UAV
 };
 
 }  // namespace tether::coordinator

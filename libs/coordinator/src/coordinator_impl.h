@@ -95,6 +95,9 @@ class Coordinator::Impl final : public link::ServerEvents {
                                            WallTime now) const;
   std::optional<std::string> order_fault(const Session& session,
                                          const link::Request& request) const;
+  std::optional<std::string> standstill_fault(const Session& session, ExecTime stamp) const;
+  std::optional<std::string> command_fault(const Session& session,
+                                           const link::SetVelocity& set) const;
   std::optional<std::string> read_fault(const Session& session, const link::ReadSensor& read) const;
   void begin(Session& session, const link::Request& request, WallTime now);
   record::Interaction make_entry(const Session& session, const link::Request& request,

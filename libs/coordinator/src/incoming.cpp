@@ -2,6 +2,7 @@
 #include "coordinator_impl.h"
 
 #include <algorithm>
+#include <utility>
 #include <variant>
 
 #include <fmt/format.h>
@@ -18,6 +19,12 @@ constexpr ExecTime kLatestStamp = from_ns<ExecTime>(std::int64_t{1} << 62);
 bool is_stamp(ExecTime t) {
   return t >= ExecTime{} && t < kLatestStamp;
 }
+
+/// Calls in a row that take the SUT no time: ST cannot go on meanwhile, so a loop of them that
+/// waits for something would never end.
+constexpr std::size_t kMaxCallsAtOneTime = 10'000;
+/// Of one UAV: a latency of a second at a command every 15 us.
+constexpr std::size_t kMaxWaitingCommands = 65'536;
 
 std::string kind_of(const link::Request& request) {
   constexpr const char* kKinds[] = {"sensor", "command", "sleep", "finish"};
@@ -189,11 +196,11 @@ std::optional<std::string> Coordinator::Impl::fault_of(const Session& session,
   if (const auto fault = order_fault(session, request)) return fault;
   if (!is_stamp(request.issued_at)) return "a time stamp out of range";
   if (const auto fault = honesty_fault(session, request.issued_at, now)) return fault;
+  if (const auto fault = standstill_fault(session, request.issued_at)) return fault;
   if (const auto* read = std::get_if<link::ReadSensor>(&request.body))
     return read_fault(session, *read);
-  if (const auto* set = std::get_if<link::SetVelocity>(&request.body);
-      set && !uav::is_valid(set->command))
-    return "a velocity command that is not finite or beyond any multirotor";
+  if (const auto* set = std::get_if<link::SetVelocity>(&request.body))
+    return command_fault(session, *set);
   if (const auto* sleep = std::get_if<link::Sleep>(&request.body)) {
     if (!is_stamp(sleep->until)) return "a time to sleep until that is out of range";
     if (!tied()) return "a sleep, which in free running is the SUT's own affair";
@@ -229,6 +236,25 @@ std::optional<std::string> Coordinator::Impl::read_fault(const Session& session,
   return std::nullopt;
 }
 
+std::optional<std::string> Coordinator::Impl::standstill_fault(const Session& session,
+                                                               ExecTime stamp) const {
+  if (!tied() || stamp > session.last_called_at || session.calls_at_one_time < kMaxCallsAtOneTime)
+    return std::nullopt;
+  return fmt::format(
+      "{} requests in a row at ET {:.6f} s: a loop that waits must let time go by, with a sleep or "
+      "by its scripted clock",
+      kMaxCallsAtOneTime + 1, to_seconds(session.last_called_at));
+}
+
+std::optional<std::string> Coordinator::Impl::command_fault(const Session& session,
+                                                            const link::SetVelocity& set) const {
+  if (!uav::is_valid(set.command))
+    return "a velocity command that is not finite or beyond any multirotor";
+  if (commands_.waiting(session.uav) >= kMaxWaitingCommands)
+    return fmt::format("a velocity command while {} others wait to act", kMaxWaitingCommands);
+  return std::nullopt;
+}
+
 void Coordinator::Impl::on_request(Session& session, const link::Request& request, WallTime now) {
   // One thread of a concurrent SUT ends it for all; what the others still ask is dropped.
   if (session.is_concurrent() && session.finish) return;
@@ -251,6 +277,8 @@ void Coordinator::Impl::begin(Session& session, const link::Request& request, Wa
   }
   record::Interaction& entry = pending.entry;
   entry.request_at = charge(session, request, entry);
+  const bool stood = entry.request_at == std::exchange(session.last_called_at, entry.request_at);
+  session.calls_at_one_time = stood ? session.calls_at_one_time + 1 : 1;
   entry.reply_at = accept(session, pending);
   if (tied()) {
     barrier_.hold({session.uav, entry.reply_at, entry.sequence});

@@ -26,5 +26,16 @@ TEST(CommandQueue, GivesWhatIsDueInTheOrderOfEffectThenArrival) {
   EXPECT_EQ(queue.next_effect(), SimTime::max());
 }
 
+TEST(CommandQueue, CountsWhatWaitsOfEachUav) {
+  CommandQueue queue;
+  EXPECT_EQ(queue.waiting(3), 0u);
+  for (const std::size_t uav : {3u, 0u, 3u}) queue.push({st(10), uav, 1, {}});
+  EXPECT_EQ(queue.waiting(0), 1u);
+  EXPECT_EQ(queue.waiting(1), 0u);
+  EXPECT_EQ(queue.waiting(3), 2u);
+  while (queue.pop_due(st(10))) continue;
+  EXPECT_EQ(queue.waiting(3), 0u);
+}
+
 }  // namespace
 }  // namespace tether::coordinator
