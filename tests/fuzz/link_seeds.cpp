@@ -63,6 +63,16 @@ void add_in_pieces(SeedFile& seed, std::span<const std::uint8_t> bytes) {
   }
 }
 
+/// More lists within each other than anybody reads, from a SUT that sends what it must not.
+void write_deep_details(const std::filesystem::path& folder) {
+  link::Request request;
+  request.sequence = 1;
+  request.body = link::Finish{true, "done", "{\"a\":" + std::string(2000, '[')};
+  link::Encoder encoder;
+  const auto frame = encoder.encode(request);
+  SeedFile().byte(1).byte(255).add(frame).write(folder, "link_frames", "deep-details");
+}
+
 void write_conversation(const std::filesystem::path& folder, bool free_running) {
   SeedFile to_client;
   add(to_client, welcome(free_running));
@@ -75,6 +85,7 @@ void write_conversation(const std::filesystem::path& folder, bool free_running) 
 void write_link_seeds(const std::filesystem::path& folder) {
   write_conversation(folder, false);
   write_conversation(folder, true);
+  write_deep_details(folder);
   SeedFile refused;
   add(refused, link::Refusal{link::Refusal::Reason::kToken, "wrong token"});
   refused.write(folder, "link_client", "refused");

@@ -54,6 +54,12 @@ link::Annotation annotation(std::size_t bytes) {
   return {ExecTime{}, "step", "{\"x\": \"" + std::string(bytes, 'x') + "\"}"};
 }
 
+/// As many lists within each other as fit.
+std::string deep_json() {
+  const std::size_t levels = (link::kMaxJsonBytes - 6) / 2;
+  return "{\"a\":" + std::string(levels, '[') + std::string(levels, ']') + "}";
+}
+
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
 
@@ -140,6 +146,30 @@ const Misdeed kMisdeeds[] = {
           return link::Annotation{ExecTime{}, "", "{}"};
         },
         "topic is empty"),
+    sends(
+        "AnnotationOfNoJson",
+        [](auto) {
+          return link::Annotation{ExecTime{}, "estimate", "{\"bearing_rad\": nan}"};
+        },
+        "Annotation: json is not a JSON object of at most 60 levels: fault at byte 16, \"nan}\""),
+    sends(
+        "DeepAnnotation",
+        [](auto) {
+          return link::Annotation{ExecTime{}, "step", deep_json()};
+        },
+        "fault at byte 64, \"[[["),
+    sends(
+        "DetailsOfNoJson",
+        [](auto next) {
+          return request(next, kFlown, link::Finish{true, "", "{]}"});
+        },
+        "details is not a JSON object of at most 60 levels: fault at byte 1, \"]}\""),
+    sends(
+        "DeepDetails",
+        [](auto next) {
+          return request(next, kFlown, link::Finish{true, "", deep_json()});
+        },
+        "fault at byte 64, \"[[["),
     sends(
         "Reply",
         [](auto) {

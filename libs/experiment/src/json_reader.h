@@ -16,7 +16,14 @@ namespace tether::experiment {
 
 using Json = nlohmann::ordered_json;
 
-/// @throws Error(kBadFile) when the text is no whole JSON document.
+/// Lists and objects within each other in what is read: whoever copies or writes what is nested
+/// needs stack for each.
+inline constexpr int kMaxJsonDepth = 100;
+
+/// The document, up to so many levels deep; discarded if it is none, or deeper.
+Json parse_shallow(const std::string& text, int most_levels);
+
+/// @throws Error(kBadFile) when the text is no whole JSON document, or deeper than kMaxJsonDepth.
 Json parse_json(const std::string& text, const std::filesystem::path& file);
 
 /// One object of a JSON file that Tether wrote, read with full checking: every function throws

@@ -43,10 +43,14 @@ Json json_of(const MetricValue& metric) {
   return json;
 }
 
-// A SUT's details are an object of its own making; what is none is kept as the text it is.
+// What stands around the details in the file.
+constexpr int kLevelsAroundDetails = 3;
+
+// A SUT's details are an object of its own making; what is none, or too deep to be read again, is
+// kept as the text it is.
 Json json_of_details(const std::string& details) {
   if (details.empty()) return nullptr;
-  Json parsed = Json::parse(details, nullptr, false);
+  Json parsed = parse_shallow(details, kMaxJsonDepth - kLevelsAroundDetails);
   return parsed.is_object() ? parsed : Json(details);
 }
 

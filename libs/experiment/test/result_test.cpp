@@ -118,6 +118,33 @@ TEST_F(Result, TextOfAnyBytesIsKeptReadable) {
   EXPECT_EQ(back.suts[0].details, "{ no JSON");
 }
 
+// As many lists within each other as a megabyte has: whoever copied or wrote them as they are
+// nested would run out of stack.
+TEST_F(Result, OfDetailsThatAreTooDeepKeepsTheText) {
+  const std::string lists(500'000, '['), ends(500'000, ']');
+  const std::string deep = "{\"a\":" + lists + ends + "}";
+  trial_.suts[0].details = deep;
+  const std::string text = to_json(trial_);
+  EXPECT_EQ(result_from_json(text, "f").suts[0].details, deep);
+
+  trial_.suts[0].details = R"({"a":1})";
+  std::string file = to_json(trial_);
+  file.replace(file.find("\"a\": 1"), 6, "\"a\": " + lists + ends);
+  EXPECT_THAT(error_message(ErrorCode::kBadFile, [&] { (void)result_from_json(file, "r.json"); }),
+              HasSubstr("r.json: is nested deeper than 100 levels"));
+}
+
+// The deepest details that are kept as an object can be read again with all that is around them.
+TEST_F(Result, OfTheDeepestDetailsReadsBack) {
+  for (const std::size_t levels : {97u, 98u}) {
+    const std::string lists(levels - 1, '['), ends(levels - 1, ']');
+    trial_.suts[0].details = "{\"a\":" + lists + ends + "}";
+    const std::string text = to_json(trial_);
+    EXPECT_EQ(text.find("\"details\": {") != std::string::npos, levels == 97);
+    EXPECT_EQ(result_from_json(text, "f"), trial_);
+  }
+}
+
 TEST_F(Result, TornAnywhereIsDetected) {
   const std::string text = to_json(trial_);
   for (std::size_t size = 0; size + 2 < text.size(); size += 3) {

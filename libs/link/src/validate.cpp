@@ -1,3 +1,5 @@
+#include "json_text.h"
+
 #include <cmath>
 #include <set>
 #include <string>
@@ -11,10 +13,23 @@ namespace {
 
 using Checker = FieldChecker;
 
+/// What stands at a place of a text, for a person.
+std::string excerpt(const std::string& text, std::size_t at) {
+  constexpr std::size_t kLength = 24;
+  std::string found = text.substr(at, kLength);
+  for (char& c : found)
+    if (c < ' ' || c > '~') c = '?';
+  return found.empty() ? "its end" : "\"" + found + "\"";
+}
+
 void json_object(Checker& c, const std::string& value, std::string_view field) {
   c.text(value, kMaxJsonBytes, field);
-  c.require(value.size() >= 2 && value.front() == '{' && value.back() == '}', field,
-            "is not a JSON object in braces");
+  if (value.size() > kMaxJsonBytes) return;
+  const auto fault = fault_of_json_object(value);
+  if (!fault) return;
+  c.require(false, field,
+            "is not a JSON object of at most " + std::to_string(kMaxJsonDepth) +
+                " levels: fault at byte " + std::to_string(*fault) + ", " + excerpt(value, *fault));
 }
 
 // --- catalogue ----------------------------------------------------------------------------------

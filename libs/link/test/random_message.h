@@ -55,7 +55,11 @@ class RandomMessage {
     for (char& c : out) c = static_cast<char>(1 + random_.bits() % 255);
     return out;
   }
-  std::string json() { return "{\"text\": \"" + text() + "\"}"; }
+  std::string json() {
+    std::string letters = text();
+    for (char& c : letters) c = static_cast<char>('a' + static_cast<unsigned char>(c) % 26);
+    return "{\"text\": \"" + letters + "\"}";
+  }
 
   uav::SensorDescription sensor(std::size_t i) {
     uav::SensorDescription out{"s" + std::to_string(i), {vec3(), quat()}, number(), {}};

@@ -73,6 +73,9 @@ TEST(Validate, Requests) {
   expect({"", request_with(Finish{true, "facing the anchor", ""})});
   expect({"outcome is longer", request_with(Finish{true, std::string(5000, 'x'), ""})});
   expect({"details is not a JSON object", request_with(Finish{true, "", "[1]"})});
+  expect({"fault at byte 1, \"]}\"", request_with(Finish{true, "", "{]}"})});
+  expect({"fault at byte 1, its end", request_with(Finish{true, "", "{"})});
+  expect({"fault at byte 1, \"??[2J\"", request_with(Finish{true, "", "{\xc3\x1b[2J"})});
   Request request = request_with(ReadSensor{});
   request.previous_round_trip = Duration(-1);
   expect({"previous_round_trip", request});

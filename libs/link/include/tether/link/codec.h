@@ -27,6 +27,8 @@ inline constexpr std::size_t kMaxNameBytes = 256;
 inline constexpr std::size_t kMaxTextBytes = 4096;
 /// Longest JSON text: details of an outcome, an annotation [bytes].
 inline constexpr std::size_t kMaxJsonBytes = 1000u << 10;
+/// Objects and lists within each other in it, itself counted; less than a record's reader takes.
+inline constexpr int kMaxJsonDepth = 60;
 /// Most sensors, and most anchors, of a catalogue.
 inline constexpr std::size_t kMaxCatalogueEntries = 1024;
 /// Every timestamp t has 0 ≤ t < this (146 years), so that sums of two cannot overflow [ns].
@@ -34,8 +36,8 @@ inline constexpr std::int64_t kMaxTimestampNs = std::int64_t{1} << 62;
 
 /// Whether the message may go over the wire: enumerations in range, numbers finite (a range may be
 /// ±inf), timestamps within bounds, texts and lists no longer than the limits above, images of as
-/// many bytes as width × height × 3. Fails with Failure::Kind::kInvalid, naming the field. The
-/// protocol version of a Hello may be any.
+/// many bytes as width × height × 3, JSON texts one object. Fails with Failure::Kind::kInvalid,
+/// naming the field. The protocol version of a Hello may be any.
 Status validate(const Message& message);
 
 /// A frame in up to three pieces, to be sent one right after the other. `image` is the message's
