@@ -122,6 +122,42 @@ INSTANTIATE_TEST_SUITE_P(Moments, KilledCampaign,
                                          Moment{"finishing", "pausing"}),
                          [](const auto& moment) { return moment.param.name; });
 
+// Its record is whole then, but nobody has judged it.
+TEST_F(Campaign, KilledBeforeATrialsResultIsKeptRunsItAgain) {
+  Process process(campaign());
+  ASSERT_TRUE(has_said(1, "joined")) << process.err();
+  const HeldResult held(trial(1));
+  ASSERT_TRUE(wait_until([&] { return held.is_waited_for(); })) << process.err();
+  process.signal(SIGKILL);
+  process.wait(5s);
+  EXPECT_TRUE(wait_until_gone(mark_));
+  EXPECT_FALSE(std::filesystem::exists(trial(1) / "result.json"));
+  EXPECT_EQ(run(tether({"audit", trial(1) / "record.mcap"})).code, 0);
+  const std::string first = result(0);
+
+  held.tear();
+  const Output resumed = run(campaign("--resume"));
+  EXPECT_EQ(resumed.code, 0) << resumed.err;
+  EXPECT_EQ(result(0), first);
+  EXPECT_EQ(read_result(trial(1))["this_run"]["attempts"], 1);
+  expect_all_finished();
+}
+
+TEST_F(Campaign, OutlivesATrialKilledBeforeItsResultIsKept) {
+  Process process(campaign());
+  ASSERT_TRUE(has_said(1, "joined")) << process.err();
+  const HeldResult held(trial(1));
+  ASSERT_TRUE(wait_until([&] { return held.is_waited_for(); })) << process.err();
+  const auto run_of_trial = find_process(mark_, "seed-0002");
+  ASSERT_TRUE(run_of_trial);
+  held.tear();
+  kill(*run_of_trial, SIGKILL);
+  EXPECT_EQ(process.wait(90s).code, 0) << process.err();
+  EXPECT_TRUE(wait_until_gone(mark_));
+  expect_all_finished();
+  EXPECT_EQ(read_result(trial(1))["this_run"]["attempts"], 2);
+}
+
 // The trial that is killed alone is tried once more; the campaign goes on.
 TEST_F(Campaign, OutlivesAKilledTrial) {
   Process process(campaign());

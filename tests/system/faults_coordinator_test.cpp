@@ -66,6 +66,29 @@ const Moment kMoments[] = {
 INSTANTIATE_TEST_SUITE_P(Phases, AtEachPhase, testing::ValuesIn(kMoments),
                          [](const auto& moment) { return moment.param.mode; });
 
+TEST(KilledBeforeItHasKeptItsResult, LeavesAWholeRecordAndNoResult) {
+  const TempFolder folder;
+  const std::string mark = mark_of_test();
+  const auto out = folder / "out";
+  const Command command =
+      tether({"run", write_hover_scenario(folder.path(), "good"), "--out", out}, mark);
+  const HeldResult held(out);
+  Process process(command);
+  ASSERT_TRUE(wait_until([&] { return held.is_waited_for(); })) << process.err();
+  process.signal(SIGKILL);
+  EXPECT_EQ(process.wait(10s).code, 128 + SIGKILL);
+  EXPECT_TRUE(wait_until_gone(mark));
+  EXPECT_FALSE(std::filesystem::exists(out / "result.json"));
+  EXPECT_EQ(read_record(out).footer->end, "finished");
+  EXPECT_EQ(run(tether({"audit", out / "record.mcap"})).code, 0);
+
+  held.tear();
+  EXPECT_EQ(run(tether({"report", out})).code, 2);
+  EXPECT_EQ(run(command).code, 0);
+  EXPECT_EQ(read_result(out)["end"], "finished");
+  EXPECT_FALSE(std::filesystem::exists(out / "result.json.part"));
+}
+
 TEST(KilledWhileItsSimulatorStarts, LeavesNoProcess) {
   const TempFolder folder;
   const std::string mark = mark_of_test();

@@ -1,16 +1,24 @@
 #include "faults.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
+
+#include <tether/base/error.h>
 
 namespace tether::system_test {
 
 using testing::HasSubstr;
 using testing::Not;
+
+namespace {
+constexpr const char* kResultPart = "result.json.part";
+}
 
 std::string mark_of_test() {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
@@ -31,7 +39,7 @@ nlohmann::json expect_failed(const Output& output, const std::filesystem::path& 
   EXPECT_EQ(output.code, 3) << output.err;
   EXPECT_FALSE(output.timed_out);
   EXPECT_TRUE(wait_until_gone(mark));
-  EXPECT_FALSE(std::filesystem::exists(out / "result.json.part"));
+  EXPECT_FALSE(std::filesystem::exists(out / kResultPart));
   const auto result = read_result(out);
   const std::string reason = result["reason"];
   EXPECT_EQ(result["outcome"], "failed");
@@ -40,6 +48,25 @@ nlohmann::json expect_failed(const Output& output, const std::filesystem::path& 
   EXPECT_THAT(reason, Not(HasSubstr("\n")));
   EXPECT_THAT(output.err, HasSubstr("tether: " + reason));
   return result;
+}
+
+HeldResult::HeldResult(const std::filesystem::path& out) : out_(out), part_(out / kResultPart) {
+  std::filesystem::create_directories(out);
+  // Opening it for writing waits for a reader, who never comes.
+  if (mkfifo(part_.c_str(), 0600) != 0) throw std::runtime_error(part_.string());
+}
+
+bool HeldResult::is_waited_for() const try {
+  const record::Record record = read_record(out_);
+  return record.footer && record.damage.empty();
+} catch (const Error&) {
+  return false;  // not there yet, or not its header
+}
+
+void HeldResult::tear() const {
+  const auto torn = out_ / "torn";
+  write_text(torn, "{\n  \"schema\": 1,\n  \"outc");
+  std::filesystem::rename(torn, part_);
 }
 
 Command limited(const Command& command, const std::string& limits) {

@@ -31,6 +31,21 @@ struct Failure {
 nlohmann::json expect_failed(const Output& output, const std::filesystem::path& out,
                              const Failure& failure, const std::string& mark);
 
+/// Stands where a run writes its result before the result gets its name: the run comes up to there,
+/// its record closed, and waits.
+class HeldResult {
+ public:
+  /// Makes the run's folder if it is not there.
+  explicit HeldResult(const std::filesystem::path& out);
+  /// The run's record is whole: it waits, or is about to.
+  bool is_waited_for() const;
+  /// Puts into its place what a run leaves that is killed while it writes. Who waits, waits on.
+  void tear() const;
+
+ private:
+  std::filesystem::path out_, part_;
+};
+
 /// The command under limits of a shell's `ulimit` ("-n 12"), with no files open but the first
 /// three.
 Command limited(const Command& command, const std::string& limits);
