@@ -6,12 +6,14 @@
 //
 // STAND_IN_MODE says how it fails; without one it serves until it is ended. kill_PHASE and
 // stop_PHASE: SIGKILL or SIGSTOP strikes it there.
+#include "support/still_world.h"
+
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <limits>
 #include <map>
+#include <optional>
 #include <string>
 
 #include <sys/prctl.h>
@@ -23,6 +25,7 @@ namespace {
 
 using namespace std::chrono_literals;
 namespace protocol = tether::sim::protocol;
+using tether::system_test::StillWorld;
 
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
@@ -59,82 +62,50 @@ void strike(const std::string& phase) {
   if (kMode == "stop_" + phase) std::raise(SIGSTOP);
 }
 
-// ---- A world in which nothing moves
+// ---- What it does in the place of an answer, or before it
 
-protocol::Open g_open;
-tether::SimTime g_now{};
+using Answer = std::optional<protocol::Reply>;
 
-std::vector<tether::uav::Pose> poses() {
-  std::vector<tether::uav::Pose> list;
-  for (const auto& uav : g_open.uavs) list.push_back(uav.X_WB);
-  list.resize(list.size() + g_open.bodies.size());
-  return list;
-}
+StillWorld g_world;
 
-protocol::State state(std::int64_t steps) {
-  protocol::State state;
-  state.now = g_now;
-  const auto bodies = poses();
-  for (const auto& X_WB : bodies) {
-    tether::uav::BodyState body;
-    body.p_WB = X_WB.p;
-    body.q_WB = X_WB.q;
-    state.bodies.push_back(body);
-  }
-  state.motions.resize(g_open.uavs.size());
-  for (std::int64_t i = 0; i < std::min<std::int64_t>(steps, g_open.past_steps); ++i)
-    state.past.insert(state.past.end(), bodies.begin(), bodies.end());
-  return state;
-}
-
-protocol::Reply answer(const protocol::Open& open) {
+Answer fault_at(const protocol::Open&) {
   strike("opening");
-  g_open = open;
-  g_now = {};
-  return protocol::Opened{"a stand-in", state(0)};
+  return std::nullopt;
 }
 
-protocol::Reply answer(const protocol::Reset&) {
-  g_now = {};
-  return state(0);
+Answer fault_at(const protocol::Advance& advance) {
+  if (advance.to < kFailsAt) return std::nullopt;
+  strike("advancing");
+  if (kMode == "crash_in_flight") crash();
+  if (kMode == "exit_in_flight") say_and_exit("[Err] [World.cc:1] I have had enough", 5);
+  if (kMode == "stop_in_flight") std::raise(SIGSTOP);
+  if (kMode == "old_words") end_by(SIGABRT);
+  if (kMode != "refuse_in_flight") return std::nullopt;
+  std::fputs("tether: the world has come to its end\n", stderr);
+  return protocol::Failed{"the world has come to its end"};
 }
 
-protocol::Reply answer(const protocol::Advance& advance) {
-  const std::int64_t steps = (advance.to - g_now) / g_open.step;
-  g_now = advance.to;
-  if (g_now >= kFailsAt) {
-    strike("advancing");
-    if (kMode == "crash_in_flight") crash();
-    if (kMode == "exit_in_flight") say_and_exit("[Err] [World.cc:1] I have had enough", 5);
-    if (kMode == "stop_in_flight") std::raise(SIGSTOP);
-    if (kMode == "old_words") end_by(SIGABRT);
-    if (kMode == "refuse_in_flight") {
-      std::fputs("tether: the world has come to its end\n", stderr);
-      return protocol::Failed{"the world has come to its end"};
-    }
-  }
-  return state(steps);
-}
-
-protocol::Reply answer(const protocol::CastRays& rays) {
-  return protocol::Distances{
-      std::vector<double>(rays.rays_S.size(), std::numeric_limits<double>::infinity())};
-}
-
-protocol::Reply answer(const protocol::Render& view) {
+Answer fault_at(const protocol::Render&) {
   if (kMode == "no_gl") return protocol::Failed{"no camera can be made: rendering is off"};
-  strike(g_now < kFailsAt ? "warming_up" : "rendering");
-  const auto width = view.camera.width_px, height = view.camera.height_px;
-  protocol::Picture picture{width, height, {}, 1.0, "grey"};
-  picture.rgb.resize(static_cast<std::size_t>(width * height) * 3, 127);
-  return picture;
+  strike(g_world.now() < kFailsAt ? "warming_up" : "rendering");
+  return std::nullopt;
+}
+
+template <class Other>
+Answer fault_at(const Other&) {
+  return std::nullopt;
+}
+
+protocol::Reply answer(const protocol::Request& request) {
+  const auto fault = std::visit([](const auto& r) { return fault_at(r); }, request);
+  return fault ? *fault : g_world.answer(request);
 }
 
 // ---- One host after the other
 
 void serve(protocol::Connection& host) {
   while (const auto request = host.receive_request()) {
-    const auto reply = std::visit([](const auto& r) { return answer(r); }, *request);
+    const auto reply = answer(*request);
     if (!host.send(reply)) return;
     // As Tether's plugin does.
     if (std::holds_alternative<protocol::Failed>(reply) && kMode == "refuse_in_flight")

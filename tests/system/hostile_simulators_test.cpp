@@ -1,0 +1,252 @@
+#include "support/still_world.h"
+#include "support/trials.h"
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <thread>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+
+#include <tether/link/frame_socket.h>
+#include <tether/link/socket.h>
+#include <tether/sim_protocol/codec.h>
+
+/// A simulator outside that breaks the protocol: its run ends with a reason in bounded time, and
+/// nothing that it said looks like a result.
+namespace tether::system_test {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+namespace protocol = sim::protocol;
+
+// ---- A simulator that may say what it likes
+
+constexpr SimTime kFailsAt = from_ns<SimTime>(500'000'000);
+
+/// The host's connection, as seen from the simulator.
+class Host {
+ public:
+  explicit Host(link::Descriptor socket)
+      : socket_(std::move(socket), "the host", protocol::kMaxFrameBytes) {}
+
+  std::optional<protocol::Request> receive() {
+    const auto frame = socket_.receive();
+    if (!frame) return std::nullopt;
+    return protocol::decode_request(*frame).value();
+  }
+  /// Whatever is in it. False: the host is gone.
+  bool send(const protocol::Reply& reply) { return socket_.send(encoder_.encode(reply)).ok(); }
+  bool send(const std::string& bytes) const {
+    return ::send(socket_.descriptor(), bytes.data(), bytes.size(), MSG_NOSIGNAL) > 0;
+  }
+  std::string frame_of(const protocol::Reply& reply) {
+    const link::FramePieces pieces = encoder_.encode(reply);
+    std::string bytes;
+    for (const auto piece : {pieces.head, pieces.image, pieces.tail})
+      bytes.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+    return bytes;
+  }
+  void shut(int how) const { ::shutdown(socket_.descriptor(), how); }
+  void wait_until_gone() {
+    while (socket_.receive()) {
+    }
+  }
+
+ private:
+  link::FrameSocket socket_;
+  protocol::Encoder encoder_;
+};
+
+/// What is done in the place of this answer.
+using Act = std::function<void(Host&, protocol::Reply)>;
+
+/// Serves one host; its answer to Open, or to the Advance up to kFailsAt, is the act.
+class HostileSimulator {
+ public:
+  HostileSimulator(bool at_once, Act act)
+      : listener_(link::listen_on_tcp({"127.0.0.1", 0}).value()),
+        thread_([this, at_once, act = std::move(act)] { serve(at_once, act); }) {}
+  ~HostileSimulator() {
+    ::shutdown(listener_.get(), SHUT_RDWR);
+    thread_.join();
+  }
+  std::string address() const {
+    return "tcp://127.0.0.1:" + std::to_string(link::local_port(listener_.get()));
+  }
+
+ private:
+  void serve(bool at_once, const Act& act) const {
+    link::Descriptor socket(::accept(listener_.get(), nullptr, nullptr));
+    if (!socket.is_open()) return;
+    Host host(std::move(socket));
+    StillWorld world;
+    while (const auto request = host.receive()) {
+      const auto* advance = std::get_if<protocol::Advance>(&*request);
+      const protocol::Reply reply = world.answer(*request);
+      if (at_once || (advance != nullptr && advance->to >= kFailsAt)) {
+        act(host, reply);
+        return host.wait_until_gone();
+      }
+      host.send(reply);
+    }
+  }
+
+  link::Descriptor listener_;
+  std::thread thread_;
+};
+
+// ---- Its misdeeds
+
+struct Misdeed {
+  std::string name;
+  Act act;
+  std::string reason;  ///< part of the run's
+};
+
+/// Of Opened or State.
+protocol::State& state_of(protocol::Reply& reply) {
+  auto* opened = std::get_if<protocol::Opened>(&reply);
+  return opened ? opened->state : std::get<protocol::State>(reply);
+}
+
+Misdeed spoils(const std::string& name, const std::function<void(protocol::State&)>& spoil,
+               const std::string& reason) {
+  return {name,
+          [=](Host& host, protocol::Reply reply) {
+            spoil(state_of(reply));
+            host.send(reply);
+          },
+          reason};
+}
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+const std::string kSilent = "has not answered for 2 s";  // hang_limit_s of the scenario
+
+const Misdeed kMisdeeds[] = {
+    {"FourGigabytes", [](Host& host, auto) { host.send(std::string(4, '\xff')); },
+     "frame of 4294967295 bytes announced"},
+    {"TheLargestFrameAndNothingInIt",
+     [](Host& host, auto) { host.send(std::string("\0\0\0\x04", 4)); }, kSilent},
+    {"Nothing", [](Host&, auto) {}, kSilent},
+    {"Garbage",
+     [](Host& host, auto) { host.send(std::string("\x20\0\0\0", 4) + std::string(32, 'x')); },
+     "answered what it must not"},
+    {"GarbageWithoutEnd",
+     [](Host& host, auto) {
+       while (host.send(std::string(10'000, '\x01'))) {
+       }
+     },
+     "answered what it must not"},
+    {"HalfAFrame",
+     [](Host& host, const protocol::Reply& reply) {
+       const std::string frame = host.frame_of(reply);
+       host.send(frame.substr(0, frame.size() / 2));
+     },
+     kSilent},
+    {"HalfAFrameAndTheEnd",
+     [](Host& host, const protocol::Reply& reply) {
+       const std::string frame = host.frame_of(reply);
+       host.send(frame.substr(0, frame.size() / 2));
+       host.shut(SHUT_WR);
+     },
+     "closed the connection"},
+    {"AByteNowAndThen",
+     [](Host& host, const protocol::Reply& reply) {
+       for (const char byte : host.frame_of(reply)) {
+         if (!host.send(std::string(1, byte))) return;
+         std::this_thread::sleep_for(100ms);
+       }
+     },
+     kSilent},
+    {"ClosedHalf", [](Host& host, auto) { host.shut(SHUT_WR); }, "closed the connection"},
+    {"Closed", [](Host& host, auto) { host.shut(SHUT_RDWR); }, "closed the connection"},
+    {"TheSameWithoutEnd",
+     [](Host& host, const protocol::Reply& reply) {
+       while (host.send(reply)) {
+       }
+     },
+     "answered what it must not"},
+    {"AnotherAnswer",
+     [](Host& host, auto) { host.send(protocol::Reply(protocol::Distances{{1.0}})); },
+     "answers no CastRays"},
+    spoils(
+        "NoNumber", [](auto& state) { state.bodies[0].p_WB.x = kNan; }, "State.bodies"),
+    spoils(
+        "InfiniteSpeed", [](auto& state) { state.bodies[0].v_WB.z = -kInf; }, "State.bodies"),
+    spoils(
+        "InfiniteAcceleration", [](auto& state) { state.motions[0].a_WB_W.y = kInf; },
+        "State.motions"),
+    spoils(
+        "NoAttitude",
+        [](auto& state) {
+          state.bodies[0].q_WB = {0, 0, 0, 0};
+        },
+        "State.bodies is not of unit length"),
+    spoils(
+        "TooManyBodies", [](auto& state) { state.bodies.resize(5000); },
+        "State.bodies are too many"),
+    spoils(
+        "NegativeTime", [](auto& state) { state.now = from_ns<SimTime>(-1); }, "State.now"),
+    spoils(
+        "LargestTime", [](auto& state) { state.now = SimTime::max(); }, "State.now"),
+};
+
+struct Case {
+  Misdeed misdeed;
+  bool at_once = false;  ///< in the place of its first answer
+};
+
+void PrintTo(const Case& test, std::ostream* out) {
+  *out << test.misdeed.name << (test.at_once ? "AtOnce" : "InFlight");
+}
+
+/// A simulator may take a minute to open a world, so that silence then is another test's
+/// (faults_simulator).
+std::vector<Case> cases() {
+  std::vector<Case> list;
+  for (const Misdeed& misdeed : kMisdeeds) {
+    list.push_back({misdeed, false});
+    if (misdeed.reason != kSilent) list.push_back({misdeed, true});
+  }
+  return list;
+}
+
+class HostileSimulatorTest : public testing::TestWithParam<Case> {};
+
+TEST_P(HostileSimulatorTest, EndsItsRunByName) {
+  const auto& [misdeed, at_once] = GetParam();
+  const TempFolder folder;
+  const HostileSimulator simulator(at_once, misdeed.act);
+  const Output output = run(tether({"run", write_hover_scenario(folder.path(), "fly_on"),
+                                    "--simulator", simulator.address(), "--out", folder / "out"}),
+                            30s);
+  EXPECT_FALSE(output.timed_out);
+  EXPECT_EQ(output.code, 3);
+  const auto result = read_result(folder / "out");
+  const std::string reason = result["reason"];
+  EXPECT_EQ(result["outcome"], "failed");
+  EXPECT_EQ(result["end"], at_once ? "setup_failed" : "simulator_lost");
+  EXPECT_THAT(reason, HasSubstr(misdeed.reason));
+  EXPECT_THAT(reason, HasSubstr(at_once ? "the simulator" : "the simulator a stand-in"));
+  EXPECT_THAT(output.err, HasSubstr("tether: " + reason));
+  if (at_once) return;
+  EXPECT_EQ(read_record(folder / "out").damage, "");
+  EXPECT_EQ(run(tether({"audit", folder / "out/record.mcap"})).code, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Misdeeds, HostileSimulatorTest, testing::ValuesIn(cases()),
+                         [](const auto& test) { return testing::PrintToString(test.param); });
+
+}  // namespace
+}  // namespace tether::system_test
