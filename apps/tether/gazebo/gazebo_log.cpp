@@ -1,22 +1,50 @@
 #include "gazebo_log.h"
 
 #include <algorithm>
-#include <regex>
+#include <optional>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 namespace tether::app {
 
 namespace {
 
+// Lines may be as long as a world's names: std::regex, which needs stack for every character, is of
+// no use here.
+
+/// No person reads more.
+std::string cut(const std::string& text) {
+  constexpr std::size_t kLongest = 2000;
+  return text.substr(0, kLongest);
+}
+
+std::string without_colours(const std::string& line) {
+  constexpr std::string_view kBegin = "\x1b[";
+  std::string plain;
+  std::size_t done = 0;
+  for (std::size_t at = line.find(kBegin); at != std::string::npos;
+       at = line.find(kBegin, at + 1)) {
+    const std::size_t end = line.find_first_not_of("0123456789;", at + kBegin.size());
+    if (end == std::string::npos || line[end] != 'm') continue;
+    plain.append(line, done, at - done);
+    done = end + 1;
+  }
+  return plain.append(line, done);
+}
+
+std::string trimmed(const std::string& text) {
+  const auto begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
+  return begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
+}
+
 /// Lines without colours and blanks at their ends; none that is empty.
 std::vector<std::string> plain_lines(const std::string& log) {
-  static const std::regex colour("\x1b\\[[0-9;]*m");
   std::vector<std::string> lines;
   std::istringstream text(log);
   for (std::string line; std::getline(text, line);) {
-    line = std::regex_replace(line, colour, "");
-    const auto begin = line.find_first_not_of(" \t\r"), end = line.find_last_not_of(" \t\r");
-    if (begin != std::string::npos) lines.push_back(line.substr(begin, end - begin + 1));
+    line = trimmed(without_colours(line));
+    if (!line.empty()) lines.push_back(std::move(line));
   }
   return lines;
 }
@@ -26,9 +54,34 @@ bool starts_with_any(const std::string& line, std::initializer_list<const char*>
                      [&](const char* beginning) { return line.starts_with(beginning); });
 }
 
+bool holds(const std::string& line, const char* words) {
+  return line.find(words) != std::string::npos;
+}
+
 /// Each once, in their order.
 void add(std::vector<std::string>& list, const std::string& text) {
   if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+}
+
+std::optional<std::string> after(const std::string& line, const char* words, std::size_t from = 0) {
+  const std::size_t at = line.find(words, from);
+  if (at == std::string::npos) return std::nullopt;
+  return trimmed(line.substr(at + std::string_view(words).size()));
+}
+
+std::optional<std::string> error_of_libsdformat(const std::string& line) {
+  if (line.starts_with("Error [")) return after(line, "]");
+  if (line.starts_with("Error Code ")) return after(line, " Msg:");
+  return std::nullopt;
+}
+
+/// Of "File or path does not exist [where] [file]".
+std::optional<std::string> file_not_found(const std::string& line) {
+  const std::size_t begin = line.rfind("does not exist [");
+  if (begin == std::string::npos || line.back() != ']') return std::nullopt;
+  auto file = after(line, "] [", begin);
+  if (file) file->pop_back();
+  return file;
 }
 
 }  // namespace
@@ -38,16 +91,16 @@ std::string last_words_of_gazebo(const std::string& log) {
   const auto last = std::find_if(lines.rbegin(), lines.rend(), [](const std::string& line) {
     return !starts_with_any(line, {"[Msg]", "[Wrn]", "[Dbg]", "ALSA lib", "AL lib", "Warning ["});
   });
-  return last == lines.rend() ? "" : *last;
+  return last == lines.rend() ? "" : cut(*last);
 }
 
 // A line that it still writes is left for later.
 std::string plugin_error(const std::string& log) {
-  static const std::regex error(
-      "(Failed to (load plugin|resolve) .*|.*detected an incorrect plugin type.*)");
   for (const std::string& line : plain_lines(log.substr(0, log.rfind('\n') + 1))) {
-    std::smatch match;
-    if (std::regex_search(line, match, error)) return match[0];
+    if (holds(line, "detected an incorrect plugin type")) return cut(line);
+    const auto failed =
+        std::min(line.find("Failed to load plugin "), line.find("Failed to resolve "));
+    if (failed != std::string::npos) return cut(line.substr(failed));
   }
   return "";
 }
@@ -55,9 +108,9 @@ std::string plugin_error(const std::string& log) {
 std::string drawing_error(const std::string& log) {
   std::string gl;
   for (const std::string& line : plain_lines(log)) {
-    if (line.starts_with("libGL error:")) gl = line + "; ";
-    if (line.starts_with("X Error of failed request:")) return gl + line;
-    if (line.find("Rendering will be disabled") != std::string::npos) return gl + line;
+    if (line.starts_with("libGL error:")) gl = cut(line) + "; ";
+    if (line.starts_with("X Error of failed request:") || holds(line, "Rendering will be disabled"))
+      return gl + cut(line);
   }
   return "";
 }
@@ -66,14 +119,11 @@ std::string drawing_error(const std::string& log) {
 // writes "[Err] [Server.cc:392] what". It looks for a mesh with a relative path in its own folders
 // only, says so in two lines, and goes on without.
 std::vector<std::string> reading_errors(const std::string& log) {
-  static const std::regex error(R"(Error (?:\[[^\]]*\]|Code \d+ Msg:)\s*(.*))");
-  static const std::regex no_file(R"(.*does not exist \[[^\]]*\] \[(.*)\])");
   std::vector<std::string> errors;
   std::string file;
   for (const std::string& line : plain_lines(log)) {
-    std::smatch match;
-    if (std::regex_match(line, match, error)) add(errors, match[1]);
-    if (std::regex_match(line, match, no_file)) file = match[1];
+    if (const auto error = error_of_libsdformat(line)) add(errors, cut(*error));
+    if (const auto missing = file_not_found(line)) file = cut(*missing);
     if (line.ends_with("No mesh specified"))
       add(errors, "it does not find the mesh \"" + file +
                       "\", and would leave it out: name it by a model:// URI");

@@ -91,5 +91,27 @@ TEST(ReadingErrors, AreMeshesThatGazeboDoesNotFind) {
               IsEmpty());
 }
 
+// Names of a world stand in its lines.
+TEST(LinesOfAMegabyte, AreReadAndCut) {
+  const std::string name(1'000'000, 'a');
+  const auto cut = [](const std::string& line) { return line.substr(0, 2000); };
+  for (const std::string& text :
+       {name, "\x1b[" + std::string(1'000'000, '1'), std::string(1'000'000, '[')})
+    EXPECT_EQ(last_words_of_gazebo("[Err] " + text + "\n"), cut("[Err] " + text));
+  std::string colours;
+  for (int i = 0; i < 100'000; ++i) colours += "\x1b[0m\x1b[1;31m";
+  EXPECT_EQ(last_words_of_gazebo(colours + "why" + colours), "why");
+  EXPECT_EQ(plugin_error(name + "Failed to load plugin " + name + "\n"),
+            cut("Failed to load plugin " + name));
+  EXPECT_EQ(plugin_error(name + " detected an incorrect plugin type\n"), cut(name));
+  EXPECT_EQ(drawing_error("X Error of failed request: " + name),
+            cut("X Error of failed request: " + name));
+  EXPECT_THAT(reading_errors("Error [Converter.cc:113] " + name + "\nError [" + name + "\n"),
+              ElementsAre(cut(name)));
+  EXPECT_THAT(reading_errors("File or path does not exist [\"\"] [" + name +
+                             "]\n[Err] [Visual.cc:2951] No mesh specified\n"),
+              ElementsAre(testing::HasSubstr("the mesh \"" + cut(name) + "\",")));
+}
+
 }  // namespace
 }  // namespace tether::app

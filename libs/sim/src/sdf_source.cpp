@@ -3,6 +3,7 @@
 #include "sdf_numbers.h"
 #include "sdf_rules.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <regex>
 #include <sstream>
@@ -85,7 +86,9 @@ std::string one_line(std::string text) {
 std::string allowed_value(const std::string& xml_path) {
   static const std::regex tail("([a-z_]+)(\\[[^/]*\\])?/([a-z_]+)$");
   std::smatch match;
-  if (!std::regex_search(xml_path, match, tail)) return "";
+  const std::string end =
+      xml_path.substr(xml_path.size() - std::min(xml_path.size(), kLongestMessage));
+  if (!std::regex_search(end, match, tail)) return "";
   const ValueRule* rule = find_rule(match[1], match[3]);
   return rule != nullptr ? std::string("; ") + rule->allowed : "";
 }

@@ -59,6 +59,10 @@ const BadWorld kBadFiles[] = {
                "'><pose relative_to='zz'/>"
                "<link name='l'/></model>"),
      "w.sdf:", "aaa"},
+    {"a_value_below_a_name_as_long",
+     world_sdf("<model name='m'><link name='" + std::string(1'000'000, 'a') +
+               "'>\n<gravity>perhaps</gravity></link></model>"),
+     "w.sdf:4: ", "Error reading element <gravity>: Invalid boolean value"},
     {"two_models_of_one_name",
      world_sdf("<model name='a'><link name='l'/></model>\n"
                "<model name='a'><link name='l'/></model>"),
