@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "say.h"
 
 #include <filesystem>
 #include <memory>
@@ -18,8 +19,7 @@ struct AuditOptions {
 
 int run(const AuditOptions& options) {
   const record::Record record = record::read_record(options.record);
-  if (!record.damage.empty())
-    fmt::print(stderr, "warning: {}: {}\n", options.record.string(), record.damage);
+  if (!record.damage.empty()) say("warning: {}: {}\n", options.record.string(), record.damage);
   const audit::Verdict verdict = audit::audit(record);
   fmt::print("{}", audit::to_text(verdict, options.max_findings));
   return verdict.passed() ? 0 : 1;

@@ -7,6 +7,7 @@
 #include "print_report.h"
 #include "progress_bar.h"
 #include "running_simulator.h"
+#include "say.h"
 
 #include <algorithm>
 #include <chrono>
@@ -115,7 +116,7 @@ std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign)
     const auto gazebo = find_gazebo().files();
     files.insert(files.end(), gazebo.begin(), gazebo.end());
   }
-  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : warnings) say("warning: {}\n", warning);
   return files;
 }
 
@@ -191,13 +192,13 @@ int run(const CampaignOptions& options) {
   const experiment::CampaignFolder folder(
       out, campaign, settings,
       options.resume ? experiment::OpenMode::kResume : experiment::OpenMode::kFresh);
-  for (const std::string& warning : folder.warnings()) fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::string& warning : folder.warnings()) say("warning: {}\n", warning);
 
   const auto outcome = fly(folder, campaign, options.jobs,
                            [&] { experiment::require_unchanged(campaign, settings, files); });
   if (outcome.interrupted) {
-    fmt::print(stderr, "tether: interrupted; go on with: tether campaign {} --out {} --resume\n",
-               options.campaign.string(), out.string());
+    say("tether: interrupted; go on with: tether campaign {} --out {} --resume\n",
+        options.campaign.string(), out.string());
     return exit_code(ErrorCode::kSetup);
   }
   print_campaign_summary(out);

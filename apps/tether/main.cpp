@@ -1,16 +1,40 @@
 #include "commands.h"
 #include "interrupt.h"
+#include "say.h"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
+#include <system_error>
 
-#include <fmt/format.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 
 namespace {
+
+using tether::app::say;
+
+/// A file that is opened later must not get the number of a stream that was closed: what is printed
+/// would go into it.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0) _exit(3);
+}
+
+int fail_to_print(int error_number) {
+  say("tether: standard output cannot be written: {}\n", std::strerror(error_number));
+  return tether::exit_code(tether::ErrorCode::kSetup);
+}
+
+/// What was printed has to be all there.
+int end(int code) {
+  return std::fflush(stdout) == 0 && !std::ferror(stdout) ? code : fail_to_print(errno);
+}
 
 constexpr const char* kFooter =
     R"(Exit codes: 0 goal reached, 1 goal missed, 2 wrong use or a bad file, 3 set-up failed.
@@ -49,16 +73,21 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
   try {
-    return run(argc, argv);
+    return end(run(argc, argv));
   } catch (const tether::Error& e) {
-    fmt::print(stderr, "tether: {}\n", e.what());
+    say("tether: {}\n", e.what());
     return tether::exit_code(e.code());
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "tether: too little memory is free\n");
+    say("tether: too little memory is free\n");
     return tether::exit_code(tether::ErrorCode::kSetup);
+  } catch (const std::system_error& e) {
+    if (std::ferror(stdout)) return fail_to_print(e.code().value());
+    say("tether: internal error: {}\n", e.what());
+    return tether::exit_code(tether::ErrorCode::kInternal);
   } catch (const std::exception& e) {
-    fmt::print(stderr, "tether: internal error: {}\n", e.what());
+    say("tether: internal error: {}\n", e.what());
     return tether::exit_code(tether::ErrorCode::kInternal);
   }
 }

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "say.h"
 
 #include <filesystem>
 #include <memory>
@@ -57,8 +58,7 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
 int run(const PlotOptions& options) {
   const record::Record record = record::read_record(options.record);
   if (!record.damage.empty())
-    fmt::print(stderr, "tether: {}: plotted up to where it is torn: {}\n", options.record.string(),
-               record.damage);
+    say("tether: {}: plotted up to where it is torn: {}\n", options.record.string(), record.damage);
   // All are drawn before the first is written.
   std::vector<std::pair<std::string, std::string>> drawings;
   for (const auto& [name, plot] : plots_of(record)) drawings.emplace_back(name, draw_svg(plot));

@@ -1,5 +1,7 @@
 #include "progress_bar.h"
 
+#include "say.h"
+
 #include <cstdio>
 #include <string>
 
@@ -31,21 +33,19 @@ void ProgressBar::show(const experiment::CampaignProgress& progress) {
   if (is_terminal_) {
     const std::size_t filled =
         progress.total == 0 ? kWidth : kWidth * progress.done / progress.total;
-    fmt::print(stderr, "\r\x1b[K[{:#>{}}{:.>{}}] {}/{}{}{}   {}", "", filled, "", kWidth - filled,
-               progress.done, progress.total,
-               progress.failed ? fmt::format("   {} failed", progress.failed) : "",
-               time_left(progress), progress.latest ? trial_name(*progress.latest) : "");
+    say("\r\x1b[K[{:#>{}}{:.>{}}] {}/{}{}{}   {}", "", filled, "", kWidth - filled, progress.done,
+        progress.total, progress.failed ? fmt::format("   {} failed", progress.failed) : "",
+        time_left(progress), progress.latest ? trial_name(*progress.latest) : "");
     std::fflush(stderr);
     shown_ = true;
   } else if (progress.result && progress.latest) {
-    fmt::print(stderr, "{}/{}  {}: {}{}\n", progress.done, progress.total,
-               trial_name(*progress.latest), experiment::name(progress.result->outcome),
-               time_left(progress));
+    say("{}/{}  {}: {}{}\n", progress.done, progress.total, trial_name(*progress.latest),
+        experiment::name(progress.result->outcome), time_left(progress));
   }
 }
 
 void ProgressBar::finish() {
-  if (shown_) fmt::print(stderr, "\n");
+  if (shown_) say("\n");
 }
 
 }  // namespace tether::app

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "say.h"
 #include "simulator_option.h"
 #include "status_line.h"
 #include "target_option.h"
@@ -148,7 +149,7 @@ int run(const RunOptions& options) {
   {
     StatusLine line;
     TrialObserver observer;
-    observer.warn = [&](const std::string& text) { fmt::print(stderr, "warning: {}\n", text); };
+    observer.warn = [&](const std::string& text) { say("warning: {}\n", text); };
     if (!options.quiet) {
       observer.on_status = [&](const coordinator::RunStatus& status) {
         line.show(to_line(status));
@@ -156,11 +157,9 @@ int run(const RunOptions& options) {
       observer.on_setup = [&](const std::string& text) { line.show(text); };
       observer.on_blocked = [&](const std::string& text) { line.leave(text); };
     }
-    observer.on_refused = [](const std::string& text) {
-      fmt::print(stderr, "warning: {}\n", text);
-    };
+    observer.on_refused = [](const std::string& text) { say("warning: {}\n", text); };
     observer.on_listening = [](const std::string& text) {
-      fmt::print(stderr, "Waiting for the SUT. Start it with:\n{}", text);
+      say("Waiting for the SUT. Start it with:\n{}", text);
     };
     result = run_trial(spec, observer);
   }
@@ -168,8 +167,7 @@ int run(const RunOptions& options) {
     fmt::print("{}\n", experiment::to_json(result));
   else if (!options.quiet)
     print_result(spec, result);
-  if (result.outcome == experiment::Outcome::kFailed)
-    fmt::print(stderr, "tether: {}\n", result.reason);
+  if (result.outcome == experiment::Outcome::kFailed) say("tether: {}\n", result.reason);
   return experiment::exit_code(result.outcome);
 }
 

@@ -1,5 +1,7 @@
 #include "status_line.h"
 
+#include "say.h"
+
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -28,18 +30,18 @@ StatusLine::~StatusLine() {
 }
 
 void StatusLine::clear() {
-  if (shown_) fmt::print(stderr, "\r\x1b[K");
+  if (shown_) say("\r\x1b[K");
   shown_ = false;
 }
 
 void StatusLine::leave(const std::string& line) {
   clear();
-  fmt::print(stderr, "{}\n", line);
+  say("{}\n", line);
 }
 
 void StatusLine::show(const std::string& line) {
   if (!is_terminal_) return;
-  fmt::print(stderr, "\r\x1b[K{}", line);
+  say("\r\x1b[K{}", line);
   std::fflush(stderr);
   shown_ = true;
 }

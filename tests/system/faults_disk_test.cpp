@@ -44,6 +44,46 @@ TEST_F(Folder, WhoseFilesMayNotGrowEndsTheRunWithItsReason) {
   EXPECT_EQ(read_result(out)["end"], "finished");
 }
 
+/// The command with its standard streams as a shell sets them.
+Command with_streams(const Command& command, const std::string& redirection) {
+  Command shell = command;
+  shell.arguments = {"sh", "-c", "exec \"$@\" " + redirection, "sh"};
+  shell.arguments.insert(shell.arguments.end(), command.arguments.begin(), command.arguments.end());
+  return shell;
+}
+
+TEST_F(Folder, OfAnOutputThatIsNotAllThereIsNamed) {
+  const auto out = folder_ / "out";
+  ASSERT_EQ(run(flight(out)).code, 0);
+  for (const Command& command :
+       {flight(folder_ / "again"), tether({"audit", out / "record.mcap"}), tether({"report", out}),
+        tether({"report", out, "--format", "csv"})}) {
+    const Output output = run(with_streams(command, "> /dev/full"));
+    EXPECT_EQ(output.code, 3);
+    EXPECT_EQ(output.err, "tether: standard output cannot be written: No space left on device\n");
+  }
+  EXPECT_EQ(read_result(folder_ / "again")["end"], "finished");
+}
+
+TEST_F(Folder, OfMessagesThatCannotBeWrittenEndsNothing) {
+  EXPECT_EQ(run(with_streams(tether({"run", folder_ / "none.toml"}), "2> /dev/full")).code, 2);
+  write_hover_scenario(folder_.path(), "good");
+  write_text(folder_ / "campaign.toml",
+             "name = \"small\"\ntrials = 1\n\n[[scenario]]\nfile = \"hover.toml\"\n"
+             "conditions = [\"host\"]\n");
+  const Command campaign =
+      tether({"campaign", folder_ / "campaign.toml", "--out", folder_ / "out"}, mark_);
+  EXPECT_EQ(run(with_streams(campaign, "2> /dev/full")).code, 0);
+}
+
+// Files that are opened would get their numbers, and what is said of a silent SUT would get there.
+TEST_F(Folder, IsNotPrintedIntoByWhoHasNoStreams) {
+  const auto out = folder_ / "out";
+  EXPECT_EQ(run(with_streams(flight(out, "stop"), "<&- >&- 2>&-")).code, 3);
+  EXPECT_EQ(read_result(out)["end"], "sut_hung");
+  EXPECT_EQ(run(tether({"audit", out / "record.mcap"})).err, "");
+}
+
 /// The command with a file system of that many KiB, all of it full but for `free`, at `folder`,
 /// which is its alone. `then` is run where it can be seen.
 Command on_small_disk(const Command& command, const std::filesystem::path& folder, int size_kib,
