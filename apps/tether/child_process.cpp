@@ -69,25 +69,46 @@ cpu_set_t to_set(const std::vector<int>& cpus) {
   return set;
 }
 
-/// A child's standard streams; those of -1 are /dev/null.
-struct Streams {
-  int in = -1, out = -1, err = -1;
-  bool owns_in = true;
+int open_input(const std::filesystem::path& file) {
+  const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0)
+    throw Error(ErrorCode::kSetup,
+                fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+  return fd;
+}
+
+/// One's own, closed at the end.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  ~Descriptor() {
+    if (fd_ >= 0) close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
 };
 
-void close_all(const Streams& streams) {
-  if (streams.owns_in && streams.in >= 0) close(streams.in);
-  close(streams.out);
-  if (streams.err != streams.out) close(streams.err);
-}
+/// A child's standard streams; an input of -1 is /dev/null.
+class Streams {
+ public:
+  explicit Streams(const ChildCommand& command)
+      : pipe_(command.input_pipe),
+        input_(command.input.empty() ? -1 : open_input(command.input)),
+        log_(open_log(command.log, command.appends)),
+        errors_(command.errors.empty() ? -1 : open_log(command.errors, command.appends)) {}
 
-Streams open_streams(const ChildCommand& command) {
-  Streams streams{.in = command.input_pipe, .owns_in = command.input_pipe < 0};
-  if (!command.input.empty()) streams.in = open(command.input.c_str(), O_RDONLY | O_CLOEXEC);
-  streams.out = open_log(command.log, command.appends);
-  streams.err = command.errors.empty() ? streams.out : open_log(command.errors, command.appends);
-  return streams;
-}
+  int in() const { return input_.get() < 0 ? pipe_ : input_.get(); }
+  int out() const { return log_.get(); }
+  int err() const { return errors_.get() < 0 ? log_.get() : errors_.get(); }
+
+ private:
+  int pipe_;
+  Descriptor input_, log_, errors_;
+};
 
 /// What a child becomes; made before the fork.
 struct Image {
@@ -105,9 +126,9 @@ struct Image {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, image.death_signal);
   if (getppid() != parent) _exit(127);
-  dup2(streams.in < 0 ? open("/dev/null", O_RDONLY) : streams.in, STDIN_FILENO);
-  dup2(streams.out, STDOUT_FILENO);
-  dup2(streams.err, STDERR_FILENO);
+  dup2(streams.in() < 0 ? open("/dev/null", O_RDONLY) : streams.in(), STDIN_FILENO);
+  dup2(streams.out(), STDOUT_FILENO);
+  dup2(streams.err(), STDERR_FILENO);
   signal(SIGPIPE, SIG_DFL);
   signal(SIGXFSZ, SIG_DFL);
   sigset_t none;
@@ -162,10 +183,11 @@ ChildProcess::ChildProcess(const ChildCommand& command)
   std::vector<std::string> environment = merged_environment(command.environment);
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
   const cpu_set_t cpus = to_set(command.cpus);
-  const Streams streams = open_streams(command);
+  const Streams streams(command);
   int report[2];
   if (pipe2(report, O_CLOEXEC) != 0)
-    throw Error(ErrorCode::kSetup, std::string("pipe: ") + std::strerror(errno));
+    throw Error(ErrorCode::kSetup,
+                fmt::format("cannot start \"{}\": {}", program_, std::strerror(errno)));
 
   const Image image{program_.c_str(),
                     argv.data(),
@@ -176,7 +198,6 @@ ChildProcess::ChildProcess(const ChildCommand& command)
   const pid_t parent = getpid();
   pid_ = fork();
   if (pid_ == 0) become(image, streams, report[1], parent);
-  close_all(streams);
   close(report[1]);
   int why = pid_ < 0 ? errno : 0;
   // Ends with nothing read once the exec has succeeded.

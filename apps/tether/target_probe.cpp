@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/error.h>
 #include <tether/experiment/target_readings.h>
 
 namespace tether::app {
@@ -20,8 +21,10 @@ std::string script_of(ProbeDepth depth) {
 
 }  // namespace
 
-record::Readings probe_here(ProbeDepth depth) {
+record::Readings probe_here(ProbeDepth depth) try {
   return experiment::parse_readings(run_captured({"sh"}, script_of(depth), kLimit, true).out);
+} catch (const Error& e) {
+  throw Error(e.code(), fmt::format("the state of this machine cannot be read: {}", e.what()));
 }
 
 record::Readings probe_board(const SshConnection& connection, ProbeDepth depth) {

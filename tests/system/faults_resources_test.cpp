@@ -41,11 +41,31 @@ class Limits : public testing::Test {
 TEST_F(Limits, OfFileHandlesAreAReason) {
   const auto scenario = write_hover_scenario(folder_.path(), "good");
   int refused = 0;
-  for (const int handles : {6, 7, 9, 10, 12, 14, 16, 18})
+  for (const int handles : {4, 5, 6, 9, 10, 12, 14, 16, 18})
     if (!fly(scenario, "-n " + std::to_string(handles), HasSubstr("Too many open files")))
       ++refused;
   EXPECT_GE(refused, 6);
   EXPECT_TRUE(fly(scenario, "-n 64", HasSubstr("")));
+}
+
+TEST_F(Limits, OfFileHandlesAreACampaignsReason) {
+  write_hover_scenario(folder_.path(), "good");
+  write_text(folder_ / "campaign.toml",
+             "name = \"small\"\ntrials = 1\n\n[[scenario]]\nfile = \"hover.toml\"\n"
+             "conditions = [\"host\"]\n");
+  const auto out = folder_ / "out";
+  for (const std::string handles : {"4", "5", "6", "7", "12"}) {
+    std::filesystem::remove_all(out);
+    const Output output = run(limited(
+        tether({"campaign", folder_ / "campaign.toml", "--out", out}, mark_), "-n " + handles));
+    EXPECT_EQ(output.code, 3) << handles << ": " << output.err;
+    EXPECT_TRUE(wait_until_gone(mark_)) << handles;
+    const auto trial = out / "hover/host/seed-0001";
+    const bool is_told = std::filesystem::exists(trial / "result.json");
+    EXPECT_THAT(is_told ? read_result(trial)["reason"].get<std::string>() : output.err,
+                HasSubstr("Too many open files"))
+        << handles;
+  }
 }
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)

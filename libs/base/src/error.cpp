@@ -1,3 +1,9 @@
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <tether/base/error.h>
 
 namespace tether {
@@ -12,6 +18,17 @@ std::string with_location(const FileLocation& where, const std::string& message)
 
 Error::Error(ErrorCode code, const FileLocation& where, const std::string& message)
     : Error(code, with_location(where, message)) {}
+
+void require_a_handle_for(const std::string& file) {
+  const int handle = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (handle >= 0) {
+    ::close(handle);
+  } else if (errno == EMFILE || errno == ENFILE) {
+    throw Error(ErrorCode::kSetup, {file},
+                std::string("cannot be opened: ") + std::strerror(errno) +
+                    "; allow this process more (ulimit -n)");
+  }
+}
 
 int exit_code(ErrorCode code) {
   switch (code) {

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <tether/base/error.h>
 #include <tether/base/result.h>
@@ -24,6 +25,37 @@ TEST(Error, ExitCodesFollowTheDesign) {
   EXPECT_EQ(exit_code(ErrorCode::kLinkLost), 3);
   EXPECT_EQ(exit_code(ErrorCode::kHung), 3);
   EXPECT_EQ(exit_code(ErrorCode::kInternal), 3);
+}
+
+/// This process may open no more files while it lives.
+class NoHandles {
+ public:
+  NoHandles() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    const rlimit none{0, before_.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &none);
+  }
+  ~NoHandles() { setrlimit(RLIMIT_NOFILE, &before_); }
+  NoHandles(const NoHandles&) = delete;
+  NoHandles& operator=(const NoHandles&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(Handles, ThatAreMissingAreNotTheFilesFault) {
+  EXPECT_NO_THROW(require_a_handle_for("/dev/null"));
+  EXPECT_NO_THROW(require_a_handle_for("/no/such/file"));
+  const NoHandles none;
+  try {
+    require_a_handle_for("/dev/null");
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kSetup);
+    EXPECT_STREQ(error.what(),
+                 "/dev/null: cannot be opened: Too many open files; allow this process more "
+                 "(ulimit -n)");
+  }
 }
 
 TEST(Failure, IsOnePrintableLine) {

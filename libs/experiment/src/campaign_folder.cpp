@@ -24,11 +24,14 @@ void make_folder(const fs::path& folder) {
 // A campaign.json that was being written when all ended goes with the next one.
 bool holds_anything(const fs::path& folder) {
   const std::string torn = std::string(kCampaignFile) + std::string(kPartSuffix);
-  for (const auto& entry : fs::directory_iterator(folder)) {
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(folder, failed)) {
     const fs::path name = entry.path().filename();
     if (name != kLockFile && name != torn) return true;
   }
-  return false;
+  if (!failed) return false;
+  throw Error(ErrorCode::kSetup, FileLocation{folder.string()},
+              "the folder cannot be read: " + failed.message());
 }
 
 // The first setting that is not the same; empty: none.

@@ -23,9 +23,11 @@ namespace fs = std::filesystem;
 constexpr auto kPatience = std::chrono::seconds(2);
 
 [[noreturn]] void fail(const fs::path& path, const char* what) {
+  const std::string why = std::strerror(errno);
+  require_a_handle_for(path.string());
   throw Error(ErrorCode::kSetup,
               fmt::format("{}: cannot be {}: {}; choose another folder with --out", path.string(),
-                          what, std::strerror(errno)));
+                          what, why));
 }
 
 /// What is to be known of a lock without taking it.

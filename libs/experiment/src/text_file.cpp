@@ -105,8 +105,10 @@ std::string read_file(const std::filesystem::path& file) {
   while (stream.read(block, sizeof block) || stream.gcount() > 0) {
     text.append(block, static_cast<std::size_t>(stream.gcount()));
   }
-  if (!stream.eof())
+  if (!stream.eof()) {
+    require_a_handle_for(file.string());
     throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "cannot be read");
+  }
   return text;
 }
 

@@ -36,6 +36,7 @@ class InputFile {
     size_ =
         std::filesystem::is_regular_file(path, error) ? std::filesystem::file_size(path, error) : 0;
     if (!stream_ || error || !std::filesystem::is_regular_file(path, error)) {
+      require_a_handle_for(path.string());
       throw Error(ErrorCode::kBadFile, FileLocation{path.string(), 0},
                   "cannot read this record; give the record.mcap of a run");
     }

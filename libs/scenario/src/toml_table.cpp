@@ -347,6 +347,7 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t limit)
   std::ostringstream text;
   if (size > 0) text << stream.rdbuf();
   if (failed || !stream || !text) {
+    require_a_handle_for(file.string());
     throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "cannot be read");
   }
   return std::move(text).str();

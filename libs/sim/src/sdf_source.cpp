@@ -165,6 +165,7 @@ SdfSource::SdfSource(const fs::path& file) : file_(fs::absolute(file).lexically_
   // XML first: libsdformat does not tell the line of an XML error.
   const tinyxml2::XMLDocument* xml = xml_of(file_.string());
   if (xml->Error()) {
+    require_a_handle_for(file_.string());
     throw Error(ErrorCode::kBadFile, {file_.string(), xml->ErrorLineNum()},
                 "not well-formed XML (" + std::string(xml->ErrorName()) + ")");
   }
@@ -217,6 +218,7 @@ void SdfSource::throw_on_errors() const {
 }
 
 void SdfSource::throw_first_error() const {
+  require_a_handle_for(file_.string());
   if (errors_.empty()) throw Error(ErrorCode::kBadFile, {file_.string(), 0}, "not an SDF file");
   const sdf::Error& first = errors_.front();
   std::string reason = one_line(first.Message());

@@ -48,6 +48,7 @@ std::string read_file(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   if (!in || bytes.empty()) {
+    require_a_handle_for(path.string());
     throw Error(ErrorCode::kBadFile, {path.string(), 0}, "cannot be read");
   }
   return bytes;

@@ -43,4 +43,8 @@ class Error : public std::runtime_error {
   ErrorCode code_;
 };
 
+/// For a file that could not be read: that this process may open no more files is not its fault.
+/// @throws Error(kSetup) if so.
+void require_a_handle_for(const std::string& file);
+
 }  // namespace tether
