@@ -118,7 +118,7 @@ TEST_P(FailingGazebo, EndsTheRunWithItsReason) {
     EXPECT_THAT(reason, HasSubstr(part));
     EXPECT_EQ(reason.find(part), reason.rfind(part)) << reason;
   }
-  EXPECT_LT(output.wall.count(), 30);
+  EXPECT_LT(output.wall.count(), 90);
   if (fault.end != "simulator_lost") return;
   EXPECT_EQ(read_record(folder_ / "out").damage, "");
   EXPECT_EQ(read_result(folder_ / "out")["versions"]["simulator"], "a stand-in, grey");
