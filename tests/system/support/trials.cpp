@@ -135,7 +135,7 @@ ExternalRun::ExternalRun(const std::filesystem::path& scenario, const std::files
   tether_ = std::make_unique<Process>(command);
 
   const std::string key = "TETHER_ADDRESS=";
-  const bool listens = tether_->wait_for_err(" TETHER_TOKEN=", std::chrono::seconds(30));
+  const bool listens = tether_->wait_for_err(" TETHER_TOKEN=", std::chrono::seconds(90));
   const std::string text = tether_->err();
   if (!listens) throw std::runtime_error("tether does not listen: " + text);
   const auto begin = text.find(key) + key.size();
