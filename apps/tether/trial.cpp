@@ -272,6 +272,17 @@ experiment::TrialResult judge(const TrialSpec& spec, const coordinator::RunRepor
   return result;
 }
 
+/// The record stays where the run has ended but cannot be judged.
+experiment::TrialResult judged(const TrialSpec& spec, const coordinator::RunReport& report) try {
+  return judge(spec, report);
+} catch (const std::bad_alloc&) {
+  return experiment::make_setup_failure(
+      spec.scenario, spec.condition, spec.seed,
+      fmt::format("too little memory is free to judge the run, which ended with: {}; `tether audit "
+                  "{}` reads its record where there is more",
+                  report.reason, (spec.folder / kRecordFile).string()));
+}
+
 SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& observer) {
   return {.answer_limit = spec.scenario.hang_limit,
           .log = spec.folder / kSimulatorLog,
@@ -297,7 +308,7 @@ experiment::TrialResult fly(const TrialSpec& spec, const SimulatorOption& option
   RunningSimulator simulator(option, std::move(world), simulator_setup(spec, observer));
   try {
     const auto [report, notes] = conduct(spec, simulator, board.get(), timings, observer);
-    auto result = judge(spec, report);
+    auto result = judged(spec, report);
     result.this_run.notes = notes;
     result.versions["simulator"] = simulator.get().description();
     return result;

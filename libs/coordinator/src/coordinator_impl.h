@@ -86,6 +86,7 @@ class Coordinator::Impl final : public link::ServerEvents {
   void on_request(Session& session, const link::Request& request, WallTime now);
   bool is_word(const Session& session, const link::Message& message) const;
   void on_progress(Session& session, const link::Progress& progress, WallTime now);
+  void on_annotation(Session& session, const link::Annotation& note);
   void on_stop(Session& session, ExecTime at, WallTime now);
   static std::optional<ExecTime> earliest_due(const Session& session, ExecTime at);
   void break_off(Session& session, link::Refusal::Reason reason, const std::string& sent);
@@ -95,7 +96,7 @@ class Coordinator::Impl final : public link::ServerEvents {
                                            WallTime now) const;
   std::optional<std::string> order_fault(const Session& session,
                                          const link::Request& request) const;
-  std::optional<std::string> standstill_fault(const Session& session, ExecTime stamp) const;
+  std::optional<std::string> standstill_fault(const Session& session) const;
   std::optional<std::string> command_fault(const Session& session,
                                            const link::SetVelocity& set) const;
   std::optional<std::string> read_fault(const Session& session, const link::ReadSensor& read) const;

@@ -20,11 +20,15 @@ bool is_stamp(ExecTime t) {
   return t >= ExecTime{} && t < kLatestStamp;
 }
 
-/// Calls in a row that take the SUT no time: ST cannot go on meanwhile, so a loop of them that
-/// waits for something would never end.
-constexpr std::size_t kMaxCallsAtOneTime = 10'000;
+/// Calls of a SUT between two steps of ST: a loop that waits for something, and takes no time or
+/// next to none, would never end.
+constexpr std::size_t kMaxCallsInAStep = 10'000;
 /// Of one UAV: a latency of a second at a command every 15 us.
 constexpr std::size_t kMaxWaitingCommands = 65'536;
+/// Of one SUT's annotations in a run: two hours of 1 kB for each of 30 images a second.
+constexpr std::size_t kMaxAnnotatedBytes = std::size_t{256} << 20;
+/// What one takes up besides its text.
+constexpr std::size_t kAnnotationBytes = 128;
 
 std::string kind_of(const link::Request& request) {
   constexpr const char* kKinds[] = {"sensor", "command", "sleep", "finish"};
@@ -67,7 +71,7 @@ void Coordinator::Impl::on_message(link::PeerId peer, link::Message message) {
     if (const auto* progress = std::get_if<link::Progress>(&message))
       return on_progress(*session, *progress, now);
     if (const auto* note = std::get_if<link::Annotation>(&message))
-      return log_.annotation(st_, {session->uav_name, note->at, note->topic, note->json});
+      return on_annotation(*session, *note);
     break_off(*session, link::Refusal::Reason::kBadMessage,
               std::holds_alternative<link::Hello>(message)
                   ? "a second Hello"
@@ -153,6 +157,15 @@ void Coordinator::Impl::on_progress(Session& session, const link::Progress& prog
   release_ready();
 }
 
+// A record is read whole when the run is judged.
+void Coordinator::Impl::on_annotation(Session& session, const link::Annotation& note) {
+  session.annotated_bytes += kAnnotationBytes + note.topic.size() + note.json.size();
+  if (session.annotated_bytes > kMaxAnnotatedBytes)
+    return break_off(session, link::Refusal::Reason::kBadMessage,
+                     fmt::format("annotations of more than {} MiB", kMaxAnnotatedBytes >> 20));
+  log_.annotation(st_, {session.uav_name, note.at, note.topic, note.json});
+}
+
 // No reply leaves before the SUT has stopped for it, so what is open and due by now is what this
 // stop is for.
 std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session, ExecTime at) {
@@ -196,7 +209,7 @@ std::optional<std::string> Coordinator::Impl::fault_of(const Session& session,
   if (const auto fault = order_fault(session, request)) return fault;
   if (!is_stamp(request.issued_at)) return "a time stamp out of range";
   if (const auto fault = honesty_fault(session, request.issued_at, now)) return fault;
-  if (const auto fault = standstill_fault(session, request.issued_at)) return fault;
+  if (const auto fault = standstill_fault(session)) return fault;
   if (const auto* read = std::get_if<link::ReadSensor>(&request.body))
     return read_fault(session, *read);
   if (const auto* set = std::get_if<link::SetVelocity>(&request.body))
@@ -236,14 +249,13 @@ std::optional<std::string> Coordinator::Impl::read_fault(const Session& session,
   return std::nullopt;
 }
 
-std::optional<std::string> Coordinator::Impl::standstill_fault(const Session& session,
-                                                               ExecTime stamp) const {
-  if (!tied() || stamp > session.last_called_at || session.calls_at_one_time < kMaxCallsAtOneTime)
+std::optional<std::string> Coordinator::Impl::standstill_fault(const Session& session) const {
+  if (!tied() || st_ > session.called_at || session.calls_in_step < kMaxCallsInAStep)
     return std::nullopt;
   return fmt::format(
-      "{} requests in a row at ET {:.6f} s: a loop that waits must let time go by, with a sleep or "
-      "by its scripted clock",
-      kMaxCallsAtOneTime + 1, to_seconds(session.last_called_at));
+      "{} requests while ST stood at {:.6f} s: a loop that waits must let time go by, with a sleep "
+      "or by its scripted clock",
+      kMaxCallsInAStep + 1, to_seconds(st_));
 }
 
 std::optional<std::string> Coordinator::Impl::command_fault(const Session& session,
@@ -277,8 +289,8 @@ void Coordinator::Impl::begin(Session& session, const link::Request& request, Wa
   }
   record::Interaction& entry = pending.entry;
   entry.request_at = charge(session, request, entry);
-  const bool stood = entry.request_at == std::exchange(session.last_called_at, entry.request_at);
-  session.calls_at_one_time = stood ? session.calls_at_one_time + 1 : 1;
+  session.calls_in_step = st_ > session.called_at ? 1 : session.calls_in_step + 1;
+  session.called_at = st_;
   entry.reply_at = accept(session, pending);
   if (tied()) {
     barrier_.hold({session.uav, entry.reply_at, entry.sequence});

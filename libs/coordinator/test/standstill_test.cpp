@@ -1,12 +1,14 @@
 #include "coordinator_fixture.h"
 
 #include <cstddef>
+#include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// Calls that take no time hold ST up: as many as a program makes by purpose are served, a loop of
-/// them ends the run.
+/// What a SUT could go on with for ever: as much as a program does by purpose is served, more ends
+/// the run.
 namespace tether::coordinator {
 namespace {
 
@@ -29,16 +31,23 @@ class StandstillTest : public CoordinatorTest {
 TEST_F(StandstillTest, ALoopOfCallsThatTakeNoTimeEndsTheRun) {
   const RunReport report = run(calls(20'000, Duration(0)));
   EXPECT_EQ(report.end, RunEnd::kSutLost);
-  EXPECT_THAT(report.reason, HasSubstr("the SUT of UAV \"uav0\" sent 10001 requests in a row at "
-                                       "ET 0.000000 s: a loop that waits must let time go by"));
+  EXPECT_THAT(report.reason, HasSubstr("the SUT of UAV \"uav0\" sent 10001 requests while ST stood "
+                                       "at 0.000000 s: a loop that waits must let time go by"));
   EXPECT_EQ(recorder_.interactions.size(), 10'000u);
 }
 
-TEST_F(StandstillTest, ANanosecondNowAndThenIsTime) {
+// A nanosecond for each would make a second last for hours.
+TEST_F(StandstillTest, SoDoesOneOfCallsThatTakeNextToNone) {
+  const RunReport report = run(calls(20'000, nanoseconds(1)));
+  EXPECT_EQ(report.end, RunEnd::kSutLost);
+  EXPECT_THAT(report.reason, HasSubstr("sent 10001 requests while ST stood at 0.000000 s"));
+}
+
+TEST_F(StandstillTest, EachStepOfStAllowsAsManyAgain) {
   ScriptedServer::Script script;
   for (int i = 0; i < 3; ++i) {
-    script.push_back(turn(nanoseconds(1), 0.1));
     script.insert(script.end(), 9'000, turn(Duration(0), 0.1));
+    script.push_back(turn(milliseconds(2), 0.1));
   }
   script.push_back(finish(Duration(0)));
   EXPECT_EQ(run(std::move(script)).end, RunEnd::kFinished);
@@ -53,10 +62,22 @@ TEST_F(StandstillTest, AnUnstampedLoopGoesOn) {
 
 TEST_F(StandstillTest, CommandsThatWaitToActAreBounded) {
   latency_ = seconds(10);
-  const RunReport report = run(calls(80'000, nanoseconds(1)));
+  const RunReport report = run(calls(80'000, nanoseconds(150)));
   EXPECT_EQ(report.end, RunEnd::kSutLost);
   EXPECT_THAT(report.reason, HasSubstr("a velocity command while 65536 others wait to act"));
   EXPECT_EQ(recorder_.interactions.size(), 65'536u);
+}
+
+TEST_F(StandstillTest, AnnotationsAreBounded) {
+  make();
+  const auto peer = server_->add_sut(hello(), {});
+  const std::string json = "{\"x\": \"" + std::string(1'000'000, 'x') + "\"}";
+  for (int i = 0; i < 300; ++i) server_->deliver(peer, link::Annotation{ExecTime{}, "step", json});
+  const RunReport report = coordinator_->run(*server_);
+  EXPECT_EQ(report.end, RunEnd::kSutLost);
+  EXPECT_THAT(report.reason,
+              HasSubstr("the SUT of UAV \"uav0\" sent annotations of more than 256 MiB"));
+  EXPECT_EQ(recorder_.annotations.size(), 268u);
 }
 
 }  // namespace
