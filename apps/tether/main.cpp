@@ -20,10 +20,13 @@ namespace {
 using tether::app::say;
 
 /// A file that is opened later must not get the number of a stream that was closed: what is printed
-/// would go into it.
+/// would go into it. Results that are printed nowhere are missed: what stands for the standard
+/// output cannot be written.
 void open_standard_streams() {
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0) _exit(3);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    const int how = stream == STDOUT_FILENO ? O_RDONLY : O_RDWR;
+    if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", how) < 0) _exit(3);
+  }
 }
 
 int fail_to_print(int error_number) {

@@ -84,6 +84,17 @@ TEST_F(Folder, IsNotPrintedIntoByWhoHasNoStreams) {
   EXPECT_EQ(run(tether({"audit", out / "record.mcap"})).err, "");
 }
 
+TEST_F(Folder, OfAnOutputThatGoesNowhereIsNamed) {
+  const auto out = folder_ / "out";
+  for (const Command& command : {flight(out), tether({"report", out})}) {
+    const Output output = run(with_streams(command, ">&-"));
+    EXPECT_EQ(output.code, 3);
+    EXPECT_EQ(output.err, "tether: standard output cannot be written: Bad file descriptor\n");
+  }
+  EXPECT_EQ(read_result(out)["end"], "finished");
+  EXPECT_EQ(run(with_streams(tether({"report", out}), "<&- 2>&-")).code, 0);
+}
+
 /// The command with a file system of that many KiB, all of it full but for `free`, at `folder`,
 /// which is its alone. `then` is run where it can be seen.
 Command on_small_disk(const Command& command, const std::filesystem::path& folder, int size_kib,
