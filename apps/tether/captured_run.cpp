@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <chrono>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -29,7 +28,7 @@ class MemoryFile {
  public:
   MemoryFile() : fd_(memfd_create("tether", MFD_CLOEXEC)) {
     if (fd_ < 0)
-      throw Error(ErrorCode::kSetup, std::string("memfd_create: ") + std::strerror(errno));
+      throw Error(ErrorCode::kSetup, "no file can be made in memory: " + reason_of(errno));
   }
   ~MemoryFile() { close(fd_); }
   MemoryFile(const MemoryFile&) = delete;
@@ -45,8 +44,7 @@ void write_whole(const std::filesystem::path& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   stream.write(text.data(), static_cast<std::streamsize>(text.size()));
   if (!stream.flush())
-    throw Error(ErrorCode::kSetup,
-                std::string("no copy can be made in memory: ") + std::strerror(errno));
+    throw Error(ErrorCode::kSetup, "no copy can be made in memory: " + reason_of(errno));
 }
 
 std::string stripped(const std::string& line) {

@@ -58,7 +58,7 @@ int open_log(const std::filesystem::path& log, bool appends) {
   const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | how, 0644);
   if (fd < 0)
     throw Error(ErrorCode::kSetup,
-                fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+                fmt::format("{}: cannot be opened: {}", file.string(), reason_of(errno)));
   return fd;
 }
 
@@ -73,7 +73,7 @@ int open_input(const std::filesystem::path& file) {
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0)
     throw Error(ErrorCode::kSetup,
-                fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+                fmt::format("{}: cannot be opened: {}", file.string(), reason_of(errno)));
   return fd;
 }
 
@@ -145,6 +145,12 @@ struct Image {
 
 }  // namespace
 
+std::string reason_of(int error_number) {
+  const std::string reason = std::strerror(error_number);
+  const bool has_too_many_files = error_number == EMFILE || error_number == ENFILE;
+  return has_too_many_files ? reason + "; allow this process more (ulimit -n)" : reason;
+}
+
 std::vector<int> allowed_cpus() {
   cpu_set_t set;
   CPU_ZERO(&set);
@@ -187,7 +193,7 @@ ChildProcess::ChildProcess(const ChildCommand& command)
   int report[2];
   if (pipe2(report, O_CLOEXEC) != 0)
     throw Error(ErrorCode::kSetup,
-                fmt::format("cannot start \"{}\": {}", program_, std::strerror(errno)));
+                fmt::format("cannot start \"{}\": {}", program_, reason_of(errno)));
 
   const Image image{program_.c_str(),
                     argv.data(),
