@@ -202,12 +202,14 @@ TEST_F(Campaign, KeepsEverybodyElseOutOfItsFolder) {
     for (const std::string option : {"", "--resume"})
       expect_refused(run(campaign(option)), out, why);
     expect_refused(run(flight(out)), out, why);
-    for (const std::string below : {kTrials[0], kTrials[1], kTrials[2], std::string("aside")}) {
+    for (const std::string& below : {kTrials[0], kTrials[1], kTrials[2], std::string("aside")}) {
       const std::string where = "a campaign is running in " + out.string();
       expect_refused(run(flight(out / below)), out / below, where);
       expect_refused(run(campaign("", "out/" + below)), out / below, where);
     }
     EXPECT_FALSE(std::filesystem::exists(out / "aside"));
+    expect_refused(run(campaign("", "")), folder_ / "",
+                   "a campaign is running in " + out.string() + ";");
   }
   EXPECT_EQ(process.wait(90s).code, 0) << process.err();
   expect_all_finished();
@@ -246,6 +248,27 @@ TEST_F(Campaign, KeepsItsTrialsForItself) {
   std::filesystem::remove_all(trial(1));
   EXPECT_EQ(run(campaign("--resume")).code, 0);
   expect_all_finished();
+}
+
+// As cron jobs are kept apart: `flock .lock tether run ...`.
+TEST_F(Campaign, IsNotWhateverElseIsLocked) {
+  Command job = flight(folder_ / "out");
+  const std::vector<std::string> locked = {"flock", folder_ / ".lock"};
+  job.arguments.insert(job.arguments.begin(), locked.begin(), locked.end());
+  const Output output = run(job);
+  EXPECT_EQ(output.code, 0) << output.err;
+}
+
+TEST_F(Campaign, IsNotLookedForFromNowhere) {
+  Command lost = flight("out");
+  const std::vector<std::string> shell = {"sh", "-c", "mkdir $0; cd $0; rmdir $0; exec \"$@\"",
+                                          folder_ / "gone"};
+  lost.arguments.insert(lost.arguments.begin(), shell.begin(), shell.end());
+  const Output output = run(lost);
+  EXPECT_EQ(output.code, 3);
+  EXPECT_EQ(output.err,
+            "tether: out: the working directory is not there any more; change to one that is, or "
+            "give a whole path with --out\n");
 }
 
 // At once: while the system still ends the trial that was in flight.

@@ -8,13 +8,15 @@
 /// be of one kind. Whoever is killed holds nothing any more.
 namespace tether::experiment {
 
-/// In a campaign's folder, locked by the campaign that runs there, which writes its process id.
-inline constexpr std::string_view kLockFile = ".lock";
+/// In a campaign's folder, locked by the campaign that runs there, which writes its process id. One
+/// that is locked without is not a campaign's.
+inline constexpr std::string_view kLockFile = ".tether-campaign.lock";
 
 /// A file or folder that is locked until the object goes, or the process, however it ends. Not
 /// inherited by programs that are started meanwhile.
 class PathLock {
  public:
+  /// Waits a moment for those who only look.
   /// @param path exists, or with `makes_file` is made
   /// @throws Error(kSetup) when it cannot be opened or locked.
   explicit PathLock(const std::filesystem::path& path, bool makes_file = false);
