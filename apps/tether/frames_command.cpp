@@ -1,7 +1,9 @@
 #include "commands.h"
+#include "say.h"
 
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -19,11 +21,25 @@ struct FramesOptions {
   std::filesystem::path out;
 };
 
-int run(const FramesOptions& options) {
-  const record::Record record = record::read_record(options.record, {.images = true});
+std::string why_no_images(const record::Record& record) {
+  if (record.damage.empty())
+    return "holds no images; record them with: tether run SCENARIO --images";
+  return fmt::format(
+      "holds no images up to where it is torn: {}; the run has to be flown again, with --images",
+      record.damage);
+}
+
+record::Record read_images(const std::filesystem::path& file) {
+  record::Record record = record::read_record(file, {.images = true});
   if (record.images.empty())
-    throw Error(ErrorCode::kBadFile, {options.record.string()},
-                "holds no images; record them with: tether run SCENARIO --images");
+    throw Error(ErrorCode::kBadFile, {file.string()}, why_no_images(record));
+  if (!record.damage.empty())
+    say("tether: {}: drawn up to where it is torn: {}\n", file.string(), record.damage);
+  return record;
+}
+
+int run(const FramesOptions& options) {
+  const record::Record record = read_images(options.record);
   const std::filesystem::path out =
       options.out.empty() ? options.record.parent_path() / "frames" : options.out;
   std::error_code error;

@@ -243,6 +243,21 @@ TEST_F(TornRecord, WithoutItsBeginningIsABadFile) {
     const Output audit = run(tether({"audit", file_}));
     EXPECT_EQ(audit.code, 2) << size;
     EXPECT_THAT(audit.err, StartsWith("tether: " + file_.string() + ": not a"));
+    for (const char* command : {"plot", "frames"}) {
+      const Output output = run(tether({command, file_}));
+      EXPECT_EQ(output.code, 2) << command << ", " << size;
+      EXPECT_EQ(output.err, audit.err);
+    }
+  }
+}
+
+TEST_F(TornRecord, ChangesNoTableOfTheRun) {
+  const Output whole = run(tether({"report", out_}));
+  for (const std::size_t size : {whole_.size() / 2, std::size_t{200}}) {
+    tear_to(size);
+    const Output torn = run(tether({"report", out_}));
+    EXPECT_EQ(torn.code, 0);
+    EXPECT_EQ(torn.out, whole.out);
   }
 }
 
@@ -253,6 +268,28 @@ TEST_F(TornRecord, IsNamedOnTheRunsPage) {
   tear_to(whole_.size() * 6 / 10);
   EXPECT_EQ(run(tether({"report", out_, "--format", "html"})).code, 0);
   EXPECT_THAT(read_text(out_ / "report.html"), HasSubstr("torn: damaged at byte "));
+  tear_to(200);
+  EXPECT_EQ(run(tether({"report", out_, "--format", "html"})).code, 0);
+  EXPECT_THAT(read_text(out_ / "report.html"),
+              HasSubstr("No plots: " + file_.string() + ": not a"));
+}
+
+TEST_F(TornRecord, OfImagesIsDrawnUpToTheTearWhichIsNamed) {
+  const auto scenario = write_face_scenario(
+      folder_.path(), {{"clock = \"cpu\"", "clock = \"scripted\"\ncomputing_ms = 10"}});
+  ASSERT_EQ(run(tether({"run", scenario, "--images", "--quiet", "--out", out_}, mark_)).code, 0);
+  whole_ = read_text(file_);
+  tear_to(whole_.size() / 2);
+  const Output frames = run(tether({"frames", file_}));
+  EXPECT_EQ(frames.code, 0);
+  EXPECT_THAT(frames.out, HasSubstr(" images in "));
+  EXPECT_THAT(frames.err, StartsWith("tether: " + file_.string() +
+                                     ": drawn up to where it is torn: damaged at byte "));
+  tear_to(30'000);
+  const Output none = run(tether({"frames", file_}));
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, StartsWith("tether: " + file_.string() +
+                                   ": holds no images up to where it is torn: damaged at byte "));
 }
 
 }  // namespace
