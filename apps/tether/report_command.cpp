@@ -1,5 +1,6 @@
 #include "commands.h"
 #include "print_report.h"
+#include "trial_folder.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -33,6 +34,19 @@ bool is_run(const std::filesystem::path& folder) {
          std::filesystem::exists(folder / experiment::kResultFile);
 }
 
+/// A run that was killed leaves its record only.
+void refuse_run_without_result(const std::filesystem::path& folder) {
+  const std::filesystem::path record = folder / kRecordFile;
+  if (std::filesystem::exists(folder / experiment::kCampaignFile) ||
+      std::filesystem::exists(folder / experiment::kResultFile) || !std::filesystem::exists(record))
+    return;
+  throw Error(
+      ErrorCode::kBadFile, {folder.string()},
+      fmt::format("this run has no result because it did not end, or has not yet; check what "
+                  "there is of it with: tether audit {}",
+                  record.string()));
+}
+
 std::string joined(const std::vector<report::Table>& tables,
                    std::string (*render)(const report::Table&)) {
   std::string text;
@@ -46,6 +60,7 @@ std::vector<report::Table> run_tables(const experiment::CampaignResults& results
 }
 
 std::string rendered(const ReportOptions& options) {
+  refuse_run_without_result(options.folder);
   const bool run = is_run(options.folder);
   if (options.format == kHtml && run) return report::run_page(options.folder);
   const experiment::CampaignResults results =

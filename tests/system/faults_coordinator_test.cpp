@@ -83,7 +83,9 @@ TEST(KilledBeforeItHasKeptItsResult, LeavesAWholeRecordAndNoResult) {
   EXPECT_EQ(run(tether({"audit", out / "record.mcap"})).code, 0);
 
   held.tear();
-  EXPECT_EQ(run(tether({"report", out})).code, 2);
+  const Output report = run(tether({"report", out}));
+  EXPECT_EQ(report.code, 2);
+  EXPECT_THAT(report.err, HasSubstr("no result because it did not end"));
   EXPECT_EQ(run(command).code, 0);
   EXPECT_EQ(read_result(out)["end"], "finished");
   EXPECT_FALSE(std::filesystem::exists(out / "result.json.part"));

@@ -11,6 +11,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 class ReportCommand : public testing::Test {
  protected:
@@ -126,6 +127,12 @@ TEST_F(ReportCommand, OfBadInputLeavesNothing) {
   EXPECT_EQ(plot.code, 2);
   EXPECT_THAT(plot.err, HasSubstr("record.mcap"));
   EXPECT_FALSE(std::filesystem::exists(empty / "plots"));
+  for (const char* format : {"text", "html"}) {
+    const Output killed = run(tether({"report", empty, "--format", format}));
+    EXPECT_EQ(killed.code, 2);
+    EXPECT_THAT(killed.err, StartsWith("tether: " + empty.string() + ": this run has no result"));
+    EXPECT_THAT(killed.err, HasSubstr("tether audit " + (empty / "record.mcap").string()));
+  }
   const Output nowhere =
       run(tether({"report", out(), "--out", *folder_ / "no/such/folder/report.txt"}));
   EXPECT_EQ(nowhere.code, 3);
