@@ -31,11 +31,14 @@ struct RawRecord {
 // The file as bytes from front to back.
 class InputFile {
  public:
-  explicit InputFile(const std::filesystem::path& path) : stream_(path, std::ios::binary) {
+  explicit InputFile(const std::filesystem::path& path) {
     std::error_code error;
-    size_ =
-        std::filesystem::is_regular_file(path, error) ? std::filesystem::file_size(path, error) : 0;
-    if (!stream_ || error || !std::filesystem::is_regular_file(path, error)) {
+    // Asked first: to open a pipe would wait for somebody to write into it.
+    if (std::filesystem::is_regular_file(path, error)) {
+      stream_.open(path, std::ios::binary);
+      size_ = std::filesystem::file_size(path, error);
+    }
+    if (!stream_.is_open() || error) {
       require_a_handle_for(path.string());
       throw Error(ErrorCode::kBadFile, FileLocation{path.string(), 0},
                   "cannot read this record; give the record.mcap of a run");

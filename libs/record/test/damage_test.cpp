@@ -5,6 +5,8 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <tether/base/error.h>
 #include <tether/base/random.h>
@@ -90,6 +92,22 @@ TEST(Damage, SomethingBehindTheEndIsNoticed) {
   const TemporaryFile file;
   file.set_bytes(small_file() + "x");
   EXPECT_NE(read(file).damage, "");
+}
+
+TEST(Damage, APipeIsRefusedWithoutWaitingForItsWriter) {
+  const ScratchFolder folder;
+  const std::filesystem::path pipe = folder.path("record.mcap");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  ::alarm(60);  // ends the test if it waits
+  try {
+    read_record(pipe);
+    ADD_FAILURE() << "read";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kBadFile);
+    EXPECT_EQ(std::string(error.what()),
+              pipe.string() + ": cannot read this record; give the record.mcap of a run");
+  }
+  ::alarm(0);
 }
 
 TEST(Damage, RandomChangesNeverCrash) {
