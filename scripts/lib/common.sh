@@ -9,8 +9,9 @@ JOBS="${JOBS:-$(nproc)}"
 say() { printf '\n\033[1m== %s\033[0m\n' "$*"; }
 fail() { printf '%s: %s\n' "$(basename "$0")" "$*" >&2; exit 1; }
 
-# Prints the lines of the calling script's own leading comment, without the marks.
-usage() { sed -n '2,/^[^#]/{/^#/s/^# \{0,1\}//p}' "$0"; }
+# Prints the lines of the calling script's own leading comment, without the marks, up to what is meant
+# for shellcheck.
+usage() { sed -n '2,/^[^#]/{/^# shellcheck /q;/^#/s/^# \{0,1\}//p}' "$0"; }
 
 # ---- packages ------------------------------------------------------------------------------------
 # Debian 12's names, by what they are for.

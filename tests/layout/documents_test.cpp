@@ -1,6 +1,9 @@
 #include "code_scanner.h"
 #include "source_tree.h"
 
+#include <array>
+#include <cstdio>
+
 #include <gtest/gtest.h>
 
 namespace tether::layout {
@@ -80,6 +83,32 @@ TEST(Documents, EachDecisionHasItsParts) {
       wanting.push_back(name + ": not in docs/adr/README.md");
   }
   EXPECT_EQ(one_per_line(wanting), "");
+}
+
+std::string printed_by(const std::string& command) {
+  FILE* output = ::popen(command.c_str(), "r");
+  if (output == nullptr) return "";
+  std::string text;
+  std::array<char, 4096> block{};
+  while (const std::size_t size = std::fread(block.data(), 1, block.size(), output))
+    text.append(block.data(), size);
+  ::pclose(output);
+  return text;
+}
+
+TEST(Documents, EachScriptsHelpIsItsCommentAlone) {
+  int scripts = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(TETHER_SOURCE_DIR) / "scripts")) {
+    // What has no help would do its work.
+    const std::string text = entry.is_regular_file() ? read_text(entry.path()) : "";
+    if (text.find("-h | --help) usage; exit 0 ;;") == std::string::npos) continue;
+    const std::string name = entry.path().filename().string();
+    const std::string help = printed_by("'" + entry.path().string() + "' --help 2>&1");
+    EXPECT_NE(help.find("\nusage: scripts/" + name), std::string::npos) << help;
+    EXPECT_EQ(help.find("shellcheck"), std::string::npos) << help;
+    ++scripts;
+  }
+  EXPECT_GT(scripts, 5);
 }
 
 }  // namespace
