@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 #include <functional>
+#include <iostream>
+#include <optional>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -21,7 +23,11 @@ std::optional<std::filesystem::path> checked_program() {
   const auto program = std::filesystem::path(TETHER_SOURCE_DIR) / "build/asan/bin/tether";
   const bool is_there = std::filesystem::exists(program);
   if (!is_there && std::getenv("CI")) throw std::runtime_error(program.string() + " is missing");
-  return is_there ? std::optional(program) : std::nullopt;
+  testing::Test::RecordProperty("by_checked_build", is_there ? "yes" : "no");
+  if (is_there) return program;
+  std::cerr << "No run is flown by the build under the address sanitizer: " << program.string()
+            << " is missing; make it with: scripts/build asan tether tether-sut\n";
+  return std::nullopt;
 }
 
 class Repeatability : public testing::Test {
