@@ -96,6 +96,7 @@ class StoppedProcess : public testing::Test {
 };
 
 TEST_F(StoppedProcess, IsFoundByItsGroup) {
+  ASSERT_EQ(setpgid(0, 0), 0);  // of its own: tests beside this one stop processes, too
   start([] {});
   EXPECT_EQ(stopped_process(child_), child_);
   EXPECT_EQ(stopped_process(getpgrp()), std::nullopt);
