@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/base/system_reason.h>
 
 namespace tether::app {
 
@@ -136,8 +137,7 @@ bool Board::wait_for_keeper(const std::string& word, Duration limit) {
 void Board::hold() {
   const std::string script = assign("who", who_runs()) + std::string(kBoardKeeper);
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0)
-    throw Error(ErrorCode::kSetup, std::string("pipe: ") + std::strerror(errno));
+  if (pipe2(ends, O_CLOEXEC) != 0) throw Error(ErrorCode::kSetup, "pipe: " + reason_of(errno));
   to_keeper_ = ends[1];
   write_all(to_keeper_, script);
   const auto& folder = connection_.folder();
@@ -187,8 +187,7 @@ std::string Board::copy(const std::filesystem::path& file) {
 std::unique_ptr<ChildProcess> Board::start(const BoardSut& sut) {
   const std::string script = prologue() + sut_prologue(sut) + std::string(kBoardSut);
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0)
-    throw Error(ErrorCode::kSetup, std::string("pipe: ") + std::strerror(errno));
+  if (pipe2(ends, O_CLOEXEC) != 0) throw Error(ErrorCode::kSetup, "pipe: " + reason_of(errno));
   // As large as any command line; a file would leave the token on the disk.
   fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);
   write_all(ends[1], script);

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/base/system_reason.h>
 
 namespace tether::app {
 

@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/base/system_reason.h>
 
 extern char** environ;
 
@@ -145,12 +146,6 @@ struct Image {
 
 }  // namespace
 
-std::string reason_of(int error_number) {
-  const std::string reason = std::strerror(error_number);
-  const bool has_too_many_files = error_number == EMFILE || error_number == ENFILE;
-  return has_too_many_files ? reason + "; allow this process more (ulimit -n)" : reason;
-}
-
 std::vector<int> allowed_cpus() {
   cpu_set_t set;
   CPU_ZERO(&set);
@@ -212,7 +207,7 @@ ChildProcess::ChildProcess(const ChildCommand& command)
   if (why != 0) {
     pid_ = -1;
     throw Error(ErrorCode::kSetup,
-                fmt::format("cannot start \"{}\": {}", program_, std::strerror(why)));
+                fmt::format("cannot start \"{}\": {}", program_, reason_of(why)));
   }
 }
 

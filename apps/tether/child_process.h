@@ -68,9 +68,6 @@ class ChildProcess {
   std::optional<ChildExit> exit_;
 };
 
-/// What the system says, and what to do where a process may open no more files.
-std::string reason_of(int error_number);
-
 /// The CPUs that this process may run on, ascending.
 std::vector<int> allowed_cpus();
 

@@ -1,10 +1,10 @@
 #include <cerrno>
-#include <cstring>
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/base/system_reason.h>
 
 namespace tether {
 
@@ -24,9 +24,7 @@ void require_a_handle_for(const std::string& file) {
   if (handle >= 0) {
     ::close(handle);
   } else if (errno == EMFILE || errno == ENFILE) {
-    throw Error(ErrorCode::kSetup, {file},
-                std::string("cannot be opened: ") + std::strerror(errno) +
-                    "; allow this process more (ulimit -n)");
+    throw Error(ErrorCode::kSetup, {file}, "cannot be opened: " + reason_of(errno));
   }
 }
 

@@ -11,9 +11,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
+#include <tether/base_testing/no_more_handles.h>
 #include <tether/link/server.h>
 
 /// Peers that mean harm: what they may take up is bounded, and an honest one beside them is served.
@@ -237,32 +236,13 @@ TEST_F(Attack, TheDestructorWaitsForNoOneThatSendsOn) {
 
 // ---- Out of descriptors
 
-/// Allows this process no new descriptor while it lives.
-class NoMoreDescriptors {
- public:
-  NoMoreDescriptors() {
-    getrlimit(RLIMIT_NOFILE, &before_);
-    const int next = dup(0);
-    close(next);
-    rlimit none = before_;
-    none.rlim_cur = static_cast<rlim_t>(next);
-    setrlimit(RLIMIT_NOFILE, &none);
-  }
-  ~NoMoreDescriptors() { setrlimit(RLIMIT_NOFILE, &before_); }
-  NoMoreDescriptors(const NoMoreDescriptors&) = delete;
-  NoMoreDescriptors& operator=(const NoMoreDescriptors&) = delete;
-
- private:
-  rlimit before_{};
-};
-
 TEST_F(Attack, WithoutDescriptorsThoseInsideAreServedAndOthersLater) {
   listen();
   const auto inside = connect();
   expect_served(*inside);
   const auto outside = connect();
   {
-    const NoMoreDescriptors none;
+    const NoMoreHandles none;
     expect_served(*inside);
     // Nobody can be let in; that must not keep the loop turning.
     int turns = 0;

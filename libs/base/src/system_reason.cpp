@@ -1,0 +1,14 @@
+#include <cerrno>
+#include <system_error>
+
+#include <tether/base/system_reason.h>
+
+namespace tether {
+
+std::string reason_of(int error_number) {
+  const std::string reason = std::generic_category().message(error_number);
+  const bool has_too_many_files = error_number == EMFILE || error_number == ENFILE;
+  return has_too_many_files ? reason + "; allow this process more (ulimit -n)" : reason;
+}
+
+}  // namespace tether
