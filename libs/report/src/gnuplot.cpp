@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/base/system_reason.h>
 #include <tether/report/gnuplot.h>
 
 extern char** environ;
@@ -27,7 +28,7 @@ namespace {
 class MemoryFile {
  public:
   MemoryFile() : fd_(memfd_create("tether-plot", MFD_CLOEXEC)) {
-    if (fd_ < 0) fail(fmt::format("no memory file for a plot: {}", std::strerror(errno)));
+    if (fd_ < 0) fail(fmt::format("no memory file for a plot: {}", reason_of(errno)));
   }
   ~MemoryFile() { close(fd_); }
   MemoryFile(const MemoryFile&) = delete;
@@ -38,7 +39,7 @@ class MemoryFile {
   void fill(const std::string& text) const {
     for (std::size_t done = 0; done < text.size();) {
       const auto written = write(fd_, text.data() + done, text.size() - done);
-      if (written < 0) fail(fmt::format("cannot hold a plot: {}", std::strerror(errno)));
+      if (written < 0) fail(fmt::format("cannot hold a plot: {}", reason_of(errno)));
       done += static_cast<std::size_t>(written);
     }
     lseek(fd_, 0, SEEK_SET);
@@ -74,21 +75,24 @@ pid_t start(const std::string& program, const MemoryFile& in, const MemoryFile& 
         fmt::format("'{}' is not installed, and draws the plots; on Debian: apt-get install "
                     "gnuplot-nox",
                     program));
-  if (error != 0) fail(fmt::format("'{}' cannot be started: {}", program, std::strerror(error)));
+  if (error != 0) fail(fmt::format("'{}' cannot be started: {}", program, reason_of(error)));
   return child;
 }
 
-bool ended_well(pid_t child) {
+// What went wrong with its end; empty where nothing did.
+std::string failure_of(pid_t child) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) return false;
+    if (errno != EINTR) return reason_of(errno);
   }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  if (WIFSIGNALED(status))
+    return fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+  return WEXITSTATUS(status) == 0 ? "" : fmt::format("exit code {}", WEXITSTATUS(status));
 }
 
 std::string first_words(const std::string& text) {
   const auto begin = text.find_first_not_of(" \t\r\n");
-  if (begin == std::string::npos) return "no reason given";
+  if (begin == std::string::npos) return "";
   std::string words = text.substr(begin, 300);
   for (char& c : words) c = c == '\n' || c == '\r' ? ' ' : c;
   return words;
@@ -99,11 +103,14 @@ std::string first_words(const std::string& text) {
 std::string draw_svg(const Plot& plot, const std::string& program) {
   const MemoryFile in, out, err;
   in.fill(plot.script);
-  const bool well = ended_well(start(program, in, out, err));
+  std::string failure = failure_of(start(program, in, out, err));
   const std::string drawn = out.content();
-  if (!well || drawn.find("</svg>") == std::string::npos)
+  if (failure.empty() && drawn.find("</svg>") == std::string::npos) failure = "no whole picture";
+  if (!failure.empty()) {
+    const std::string said = first_words(err.content());
     fail(fmt::format("'{}' could not draw \"{}\": {}", program, plot.title,
-                     first_words(err.content())));
+                     said.empty() ? failure : said));
+  }
   return finished_svg(drawn, plot.title);
 }
 

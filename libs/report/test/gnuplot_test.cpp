@@ -1,10 +1,13 @@
 #include "sample_record.h"
 
+#include <filesystem>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tinyxml2.h>
 
 #include <tether/base/error.h>
+#include <tether/base_testing/scratch_folder.h>
 #include <tether/experiment_testing/sample_campaign.h>
 #include <tether/report/gnuplot.h>
 
@@ -55,6 +58,20 @@ TEST(Gnuplot, ThatRefusesSaysWhy) {
   });
   EXPECT_THAT(message, HasSubstr("could not draw \"a line\""));
   EXPECT_THAT(message, HasSubstr("nothing"));
+}
+
+TEST(Gnuplot, ThatSaysNothingIsToldByItsEnd) {
+  const auto message_with = [](const std::string& program) {
+    return experiment::error_message(ErrorCode::kSetup, [&] {
+      draw_svg({"plot x\n", "a line"}, program);
+    });
+  };
+  const ScratchFolder folder;
+  const std::string killed = folder.write("killed", "#!/bin/sh\nkill -9 $$\n");
+  std::filesystem::permissions(killed, std::filesystem::perms::owner_all);
+  EXPECT_THAT(message_with("true"), HasSubstr("could not draw \"a line\": no whole picture"));
+  EXPECT_THAT(message_with("false"), HasSubstr("exit code 1"));
+  EXPECT_THAT(message_with(killed), HasSubstr("ended by signal 9 (Killed)"));
 }
 
 }  // namespace
