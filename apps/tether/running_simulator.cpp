@@ -73,7 +73,8 @@ void RunningSimulator::attach(const sim::protocol::Endpoint& endpoint, sim::Worl
   simulator_ = sim::make_remote_simulator(std::move(world), std::move(*connection),
                                           {.answer_limit = setup.answer_limit,
                                            .why_give_up = [this] { return why_give_up(); },
-                                           .on_silence = setup.on_silence},
+                                           .on_silence = setup.on_silence,
+                                           .address = sim::protocol::to_string(endpoint)},
                                           setup.warn);
 }
 

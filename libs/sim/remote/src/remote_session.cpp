@@ -25,7 +25,9 @@ std::string in_s(Duration limit) {
 
 RemoteSession::RemoteSession(std::unique_ptr<protocol::Connection> connection,
                              RemoteOptions options)
-    : connection_(std::move(connection)), options_(std::move(options)) {}
+    : connection_(std::move(connection)),
+      options_(std::move(options)),
+      name_(options_.address.empty() ? "" : " at " + options_.address) {}
 
 RemoteSession::~RemoteSession() {
   connection_->close();

@@ -247,6 +247,15 @@ TEST(RemoteFaults, HangingUp) {
   EXPECT_THAT(error_of(hang_up, advance), HasSubstr("the simulator Fake 1.0 is lost: "));
 }
 
+TEST(RemoteFaults, BeforeItHasANameAreOfItsAddress) {
+  RemoteOptions options;
+  options.address = "127.0.0.1:4711";
+  const auto hang_up_at_once = [](const Request&, Reply) { return std::optional<Reply>(); };
+  EXPECT_THAT(error_of(hang_up_at_once, advance, options),
+              HasSubstr("the simulator at 127.0.0.1:4711 is lost: "));
+  EXPECT_THAT(error_of(hang_up, advance, options), HasSubstr("the simulator Fake 1.0 is lost: "));
+}
+
 TEST(RemoteFaults, WhoStartedItKnowsBetterWhyItIsGone) {
   RemoteOptions options;
   options.why_give_up = [] { return "the simulator was ended by signal 9"; };

@@ -19,8 +19,11 @@ struct RemoteOptions {
   /// Asked some ten times a second while an answer is awaited. A text: give up, because of it ("the
   /// simulator was ended by signal 9").
   std::function<std::optional<std::string>()> why_give_up;
-  /// Told, once for each answer, when one other than that to Open has not come for a second.
+  /// Told, once for each answer, when it has not come for a second; of that to Open only where the
+  /// simulator has an address: one that we start ourselves takes its time.
   std::function<void(const std::string&)> on_silence{};
+  /// Where it listens, for messages until it has said what it is called; may be empty.
+  std::string address{};
 };
 
 /// A simulator at the other end of a connection, with the world's UAVs put into it. Dynamics, rays
