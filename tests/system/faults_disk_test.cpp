@@ -63,6 +63,9 @@ TEST_F(Folder, OfAnOutputThatIsNotAllThereIsNamed) {
     EXPECT_EQ(output.err, "tether: standard output cannot be written: No space left on device\n");
   }
   EXPECT_EQ(read_result(folder_ / "again")["end"], "finished");
+  const Output sut = run(with_streams({{sut_program().string(), "--help"}, {}, {}}, "> /dev/full"));
+  EXPECT_EQ(sut.code, 3);
+  EXPECT_EQ(sut.err, "tether-sut: standard output cannot be written\n");
 }
 
 TEST_F(Folder, OfMessagesThatCannotBeWrittenEndsNothing) {

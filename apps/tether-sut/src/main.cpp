@@ -27,7 +27,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return tether::sut::run(argc, argv);
+    const int code = tether::sut::run(argc, argv);
+    if (std::cout.flush()) return code;
+    std::cerr << "tether-sut: standard output cannot be written\n";
+    return 3;
   } catch (const std::exception& error) {
     std::cerr << "tether-sut: " << error.what() << '\n';
     return 3;
