@@ -210,6 +210,19 @@ TEST(Audit, CommandHeldAtTheEndIsNoOrphan) {
   EXPECT_EQ(rules_of(audit(record)), Rules{2});
 }
 
+TEST(Audit, TellsOfForeignNamesInPrintableLines) {
+  Record record = generate({});
+  record.header.policy = "con\nser\x1b[2J";
+  record.interactions.front().message.uav = "a\nb";
+  const Verdict verdict = audit(record);
+  ASSERT_FALSE(verdict.passed());
+  EXPECT_EQ(verdict.findings.front().what, "unknown policy \"con?ser?[2J\"");
+  const std::string text = to_text(verdict);
+  for (std::size_t i = 0; i < text.size(); ++i)
+    EXPECT_TRUE(static_cast<unsigned char>(text[i]) >= 0x20 || text[i] == '\n') << i;
+  EXPECT_EQ(text.find("a\nb"), std::string::npos);
+}
+
 Record free_running() {
   Record record = generate({});
   record.header.policy = record::kFreeRunning;

@@ -12,6 +12,7 @@
 #include <zstd.h>
 
 #include <tether/base/error.h>
+#include <tether/base/printable.h>
 
 namespace tether::record {
 namespace {
@@ -136,7 +137,7 @@ class McapReader {
       read_summary();
       return {};
     } catch (const Damage& damage) {
-      return "damaged at byte " + std::to_string(record_start_) + ": " + damage.what();
+      return printable("damaged at byte " + std::to_string(record_start_) + ": " + damage.what());
     }
   }
 

@@ -193,7 +193,8 @@ TEST(Damage, PlaceIsTheRecordsOffset) {
             std::string::npos);
 }
 
-TEST(Damage, MessageThatIsNoJsonIsNamedWithItsTopic) {
+/// A message of sequence 42 that is no ground truth, under that topic.
+std::string wrong_message(const std::string& topic) {
   std::string content;
   append_u16(content, 1);
   append_string(content, "tether.GroundTruth");
@@ -203,7 +204,7 @@ TEST(Damage, MessageThatIsNoJsonIsNamedWithItsTopic) {
   content.clear();
   append_u16(content, 7);
   append_u16(content, 1);
-  append_string(content, "/ground_truth/a");
+  append_string(content, topic);
   append_string(content, "json");
   append_u32(content, 0);
   records += raw_record(Opcode::kChannel, content);
@@ -212,10 +213,18 @@ TEST(Damage, MessageThatIsNoJsonIsNamedWithItsTopic) {
   append_u32(content, 42);
   append_u64(content, 0);
   append_u64(content, 0);
-  records += raw_record(Opcode::kMessage, content + "{\"uav\":3}");
-  const std::string damage = damage_of(records);
+  return records + raw_record(Opcode::kMessage, content + "{\"uav\":3}");
+}
+
+TEST(Damage, MessageThatIsNoJsonIsNamedWithItsTopic) {
+  const std::string damage = damage_of(wrong_message("/ground_truth/a"));
   EXPECT_NE(damage.find("message 42 of /ground_truth/a"), std::string::npos) << damage;
   EXPECT_NE(damage.find("\"uav\""), std::string::npos) << damage;
+}
+
+TEST(Damage, IsToldInOnePrintableLineWhateverTheFileHolds) {
+  const std::string damage = damage_of(wrong_message("/a\nb\x1b[2J"));
+  EXPECT_NE(damage.find("message 42 of /a?b?[2J"), std::string::npos) << damage;
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ struct Finding {
   std::string uav;
   std::uint64_t sequence = 0;  ///< of the interaction; 0: none
   SimTime at;                  ///< log time
-  std::string what;            ///< one line with the figures
+  std::string what;            ///< one printable line with the figures
 };
 
 struct Verdict {

@@ -27,7 +27,8 @@ struct Record {
   std::vector<Logged<Stop>> stops;
   std::vector<Logged<Image>> images;
   std::optional<Footer> footer;
-  /// Where and why reading stopped early (torn or damaged file); empty: read to the end.
+  /// Where and why reading stopped early (torn or damaged file), in one printable line; empty: read
+  /// to the end.
   std::string damage;
 };
 
