@@ -48,7 +48,8 @@ int run(const FramesOptions& options) {
   for (const auto& logged : record.images) {
     const record::Image& image = logged.message;
     experiment::write_file_atomically(
-        out / fmt::format("{}-{}-{:06}.svg", image.uav, image.sensor, image.index),
+        out / fmt::format("{}-{}-{:06}.svg", experiment::file_name_of(image.uav),
+                          experiment::file_name_of(image.sensor), image.index),
         report::frame_svg(image, report::find_roi(record, image),
                           report::find_true_roi(record, image)));
   }

@@ -46,7 +46,7 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
   };
   const std::vector<report::PlottedRun> runs = runs_of(record);
   for (const report::PlottedRun& run : runs) {
-    const std::string suffix = runs.size() == 1 ? "" : "-" + run.uav;
+    const std::string suffix = runs.size() == 1 ? "" : "-" + experiment::file_name_of(run.uav);
     add("timeline" + suffix, timeline_plot(run, report::Extent::kWhole));
     add("timeline_zoom" + suffix, timeline_plot(run, report::Extent::kFirstInteractions));
     add("lag" + suffix, lag_plot(run));

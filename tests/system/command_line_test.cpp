@@ -265,5 +265,26 @@ TEST(FaceAnchorImages, AreInTheRecordWhenAskedFor) {
   EXPECT_EQ(static_cast<std::size_t>(std::distance(begin(pictures), end(pictures))), reads);
 }
 
+// A record may come from anybody.
+TEST(FaceAnchorImages, OfARecordWithForeignNamesAreDrawnIntoTheFolderAllTheSame) {
+  const TempFolder folder;
+  const Output output = run(tether(
+      {"run", write_face_scenario(folder.path()), "--images", "--out", folder / "out", "--quiet"}));
+  ASSERT_EQ(output.code, 0) << output.err;
+  record::Record record = read_record(folder / "out");
+  for (auto& entry : record.images) entry.message.uav = "../../uav";
+  std::filesystem::create_directory(folder / "foreign");
+  write_record(folder / "foreign/record.mcap", record);
+
+  EXPECT_EQ(run(tether({"frames", folder / "foreign/record.mcap"})).code, 0);
+  std::size_t drawn = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder.path())) {
+    if (entry.path().extension() != ".svg") continue;
+    EXPECT_EQ(entry.path().parent_path(), folder / "foreign/frames");
+    ++drawn;
+  }
+  EXPECT_EQ(drawn, record.images.size());
+}
+
 }  // namespace
 }  // namespace tether::system_test

@@ -77,6 +77,12 @@ void write_and_flush(const std::filesystem::path& file, std::string_view text) {
 
 }  // namespace
 
+std::string file_name_of(std::string_view name) {
+  std::string part(name);
+  for (char& c : part) c = c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '_' : c;
+  return part;
+}
+
 void write_file_atomically(const std::filesystem::path& path, std::string_view text) {
   if (is_special(path)) return write_to_special(path, text);
   const std::filesystem::path file = behind_links(path);

@@ -12,6 +12,12 @@ namespace {
 
 using testing::HasSubstr;
 
+TEST(FileNameOf, LeadsNowhere) {
+  EXPECT_EQ(file_name_of("uav-1_b.c"), "uav-1_b.c");
+  EXPECT_EQ(file_name_of("../../etc/x"), ".._.._etc_x");
+  EXPECT_EQ(file_name_of("a\nb\x1b[2J\x7f"), "a_b_[2J_");
+}
+
 TEST(WriteFileAtomically, ReplacesTheWholeFileAndLeavesNothingElse) {
   const ScratchFolder scratch;
   const auto file = scratch.path("a.json");

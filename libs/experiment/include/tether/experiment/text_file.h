@@ -9,6 +9,10 @@ namespace tether::experiment {
 /// Ends the name of a file that is being written, or was when the machine or the process stopped.
 inline constexpr std::string_view kPartSuffix = ".part";
 
+/// A name that a record or a peer gave as part of a file's name: '_' stands for what would lead out
+/// of the folder or into a terminal ('/', control characters).
+std::string file_name_of(std::string_view name);
+
 /// Replaces `path` by `text`, whole or not at all: written beside it, flushed to the disk, renamed.
 /// A symbolic link stays one, and the file behind it is replaced. What exists and is no regular
 /// file (a pipe, a device) is written to directly.
