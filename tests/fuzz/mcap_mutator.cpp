@@ -1,6 +1,6 @@
 #include "mcap_mutator.h"
 
-#include <cstring>
+#include <algorithm>
 #include <vector>
 
 /// libFuzzer's own mutations of a file, which it calls itself.
@@ -47,7 +47,7 @@ std::size_t mutate_mcap(std::uint8_t* data, std::size_t size, std::size_t max_si
   const std::size_t mutated = LLVMFuzzerMutate(content, length, room);
   if (mutated > room) return size;
   write_u64(record + 1, mutated);
-  std::memcpy(content + mutated, after.data(), after.size());
+  std::copy(after.begin(), after.end(), content + mutated);
   return static_cast<std::size_t>(content - data) + mutated + after.size();
 }
 
