@@ -10,10 +10,18 @@ namespace {
 
 using uav::Vec3;
 
-struct Ray {
-  Vec3 origin;
-  Vec3 direction;
+/// A box as seen from one place, in the box's own frame B.
+struct SeenBox {
+  uav::Quat q_BW;
+  Vec3 eye_B;
+  Vec3 half_m;
+  Vec3 color_rgb;
 };
+
+SeenBox seen_from(const Vec3& p_W, const SceneBox& box) {
+  const uav::Quat q_BW = inverse(uav::from_axis_angle({0, 0, 1}, box.yaw_rad));
+  return {q_BW, rotate(q_BW, p_W - box.p_W), 0.5 * box.size_m, box.color_rgb};
+}
 
 constexpr double kMiss = std::numeric_limits<double>::infinity();
 
@@ -22,14 +30,12 @@ struct Hit {
   int axis = 0;       // of the face that was hit
 };
 
-/// The slab method, in the box's own frame.
-Hit intersect(const Ray& ray, const SceneBox& box) {
-  const uav::Quat q_BW = inverse(uav::from_axis_angle({0, 0, 1}, box.yaw_rad));
-  const Vec3 o = rotate(q_BW, ray.origin - box.p_W);
-  const Vec3 d = rotate(q_BW, ray.direction);
-  const double origins[] = {o.x, o.y, o.z};
+/// The slab method.
+Hit intersect(const Vec3& direction_W, const SeenBox& box) {
+  const Vec3 d = rotate(box.q_BW, direction_W);
+  const double origins[] = {box.eye_B.x, box.eye_B.y, box.eye_B.z};
   const double directions[] = {d.x, d.y, d.z};
-  const double halves[] = {box.size_m.x / 2, box.size_m.y / 2, box.size_m.z / 2};
+  const double halves[] = {box.half_m.x, box.half_m.y, box.half_m.z};
   double enter = 0.0;
   double leave = kMiss;
   Hit hit;
@@ -48,14 +54,14 @@ Hit intersect(const Ray& ray, const SceneBox& box) {
   return hit;
 }
 
-Vec3 color_along(const Ray& ray, const std::vector<SceneBox>& boxes) {
+Vec3 color_along(const Vec3& direction_W, const std::vector<SeenBox>& boxes) {
   constexpr double kShade[] = {0.75, 0.9, 1.0};  // of the faces across x, y and z
   const Vec3 wall{0.62, 0.60, 0.58};
   const Vec3 floor{0.45, 0.36, 0.28};
-  Vec3 color = ray.direction.z < -0.12 ? floor : wall;
+  Vec3 color = direction_W.z < -0.12 ? floor : wall;
   double nearest = kMiss;
-  for (const SceneBox& box : boxes) {
-    const Hit hit = intersect(ray, box);
+  for (const SeenBox& box : boxes) {
+    const Hit hit = intersect(direction_W, box);
     if (hit.at < nearest) {
       nearest = hit.at;
       color = kShade[hit.axis] * box.color_rgb;
@@ -77,6 +83,8 @@ uav::CameraSample SyntheticScene::render(const uav::CameraModel& camera, const u
   image.width_px = camera.width_px;
   image.height_px = camera.height_px;
   image.rgb.reserve(3 * static_cast<std::size_t>(camera.width_px * camera.height_px));
+  std::vector<SeenBox> seen;
+  for (const SceneBox& box : boxes) seen.push_back(seen_from(X_WC.p, box));
   KeyedRandom random({seed, 0, index});
   const auto noise = [&] { return noise_stddev > 0.0 ? noise_stddev * random.normal() : 0.0; };
   for (int v = 0; v < camera.height_px; ++v) {
@@ -85,7 +93,7 @@ uav::CameraSample SyntheticScene::render(const uav::CameraModel& camera, const u
       for (const double dv : {-0.25, 0.25}) {
         for (const double du : {-0.25, 0.25}) {
           const Vec3 d_W = rotate(X_WC.q, camera.unproject({u + du, v + dv}));
-          sum = sum + color_along({X_WC.p, d_W}, boxes);
+          sum = sum + color_along(d_W, seen);
         }
       }
       const Vec3 rgb = (255.0 / 4.0) * sum;
