@@ -186,6 +186,10 @@ void Coordinator::Impl::on_stop(Session& session, ExecTime at, WallTime now) {
     return break_off(session, reason,
                      fmt::format("a stop at ET {} ns, although it had reached {} ns", to_ns(at),
                                  to_ns(reached)));
+  if (barrier_.is_held(session.uav))
+    return break_off(session, reason,
+                     fmt::format("a stop at ET {} ns while it stood still for a reply at {} ns",
+                                 to_ns(at), to_ns(barrier_.bound(session.uav))));
   log_.stop(st_, {session.uav_name, at, earliest_due(session, at), now});
   barrier_.stop(session.uav, at);
   release_ready();

@@ -340,16 +340,23 @@ TEST_F(ConcurrentTest, BreaksOfTheProtocolEndTheRun) {
 
 // The other SUT's silence keeps ST, and so the reply, back.
 TEST_F(ConcurrentTest, GoingOnBeforeItsReplyIsThereEndsTheRun) {
-  make(2);
-  server_->add_sut(hello("uav1"), {});
-  link::Hello threads = hello("uav0");
-  threads.concurrent = true;
-  const auto peer = server_->add_sut(threads, {});
-  server_->deliver(peer, request(1, us(50), link::Sleep{us(2'900)}));
-  server_->deliver(peer, link::Progress{us(2'900), true});
-  server_->deliver(peer, request(2, us(2'950), link::SetVelocity{}));
-  EXPECT_THAT(coordinator_->run(*server_).reason,
-              HasSubstr("stamped 2950000 ns while it stood still for a reply at 2900000 ns"));
+  const std::pair<link::Message, const char*> cases[] = {
+      {request(2, us(2'950), link::SetVelocity{}),
+       "stamped 2950000 ns while it stood still for a reply at 2900000 ns"},
+      {link::Progress{us(2'950), true},
+       "a stop at ET 2950000 ns while it stood still for a reply at 2900000 ns"},
+  };
+  for (const auto& [message, reason] : cases) {
+    make(2);
+    server_->add_sut(hello("uav1"), {});
+    link::Hello threads = hello("uav0");
+    threads.concurrent = true;
+    const auto peer = server_->add_sut(threads, {});
+    server_->deliver(peer, request(1, us(50), link::Sleep{us(2'900)}));
+    server_->deliver(peer, link::Progress{us(2'900), true});
+    server_->deliver(peer, message);
+    EXPECT_THAT(coordinator_->run(*server_).reason, HasSubstr(reason));
+  }
 }
 
 TEST_F(ConcurrentTest, TooManyOpenCallsEndTheRun) {
