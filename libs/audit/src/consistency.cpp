@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 namespace tether::audit {
@@ -144,11 +145,12 @@ class ConsistencyCheck {
                   "held from ST " + ns(arrived) + " to " + ns(released) +
                       ", which is not when its sensor measured next");
     }
+    taken_by_.try_emplace({message.uav, message.sensor, message.sample_index}, message.sequence);
   }
 
   // Whether a read was released just when the measurement that it says it got was due, and no
-  // earlier one after its arrival. A measurement is there at the boundary of its instant: whoever
-  // read it may ask for the next one from there on.
+  // earlier one after its arrival that was not another's. A measurement is there at the boundary of
+  // its instant: whoever read it may ask for the next one from there on.
   bool has_waited_for_next(const Interaction& message) const {
     const record::SensorInfo* sensor = find_sensor(message.uav, message.sensor);
     if (sensor == nullptr || !sensor->periodic || sensor->period <= Duration(0)) return false;
@@ -156,9 +158,15 @@ class ConsistencyCheck {
         wide(sensor->phase) + static_cast<Wide>(message.sample_index) * wide(sensor->period);
     const bool is_next =
         grid_.at_or_before(due - wide(sensor->period)) <= wide(message.st_at_arrival) ||
-        message.sample_index == 0;
+        message.sample_index == 0 || has_earlier_request(message, message.sample_index - 1);
     return wide(*message.sampled_at) == due && is_next &&
            grid_.at_or_before(due) == wide(message.st_at_release);
+  }
+
+  // Of threads that wait for the same sensor, each gets a measurement of its own, in their order.
+  bool has_earlier_request(const Interaction& message, std::uint64_t index) const {
+    const auto taken = taken_by_.find({message.uav, message.sensor, index});
+    return taken != taken_by_.end() && taken->second < message.sequence;
   }
 
   const record::SensorInfo* find_sensor(const std::string& uav, const std::string& name) const {
@@ -271,6 +279,8 @@ class ConsistencyCheck {
   Report& report_;
   std::map<std::string, SutSequences> suts_;
   std::map<std::string, TruthRow> truth_;
+  // Of a free-running record: by whose request a measurement was first read.
+  std::map<std::tuple<std::string, std::string, std::uint64_t>, std::uint64_t> taken_by_;
   Wide reached_ = 0;
 };
 
