@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include <tether/base/printable.h>
 #include <tether/link/codec.h>
 
 namespace tether::client {
@@ -35,7 +36,9 @@ Status check_size(const uav::Sample& sample, const uav::SensorDescription& senso
 
 Failure to_failure(const link::Refusal& refusal) {
   const bool ended = refusal.reason == link::Refusal::Reason::kRunEnded;
-  return {ended ? Failure::Kind::kRunEnded : Failure::Kind::kRefused, refusal.message};
+  const std::string why = printable(refusal.message);
+  return {ended ? Failure::Kind::kRunEnded : Failure::Kind::kRefused,
+          why.empty() ? "the coordinator refused without a reason" : why};
 }
 
 Failure protocol_failure(const std::string& what) {

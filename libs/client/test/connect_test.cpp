@@ -49,6 +49,12 @@ TEST(Connect, ReportsTheCoordinatorsRefusal) {
   EXPECT_EQ(vehicle.failure().message, "wrong token");
 }
 
+TEST(Connect, ARefusalWithoutAReasonIsStillTold) {
+  ScriptedCoordinator coordinator(link::Refusal{link::Refusal::Reason::kToken, " "});
+  EXPECT_EQ(connect(coordinator.connect(), options_with()).failure().message,
+            "the coordinator refused without a reason");
+}
+
 TEST(Connect, RefusesAnotherAnswer) {
   ScriptedCoordinator coordinator(link::Reply{1, ExecTime{}, std::nullopt});
   const auto vehicle = connect(coordinator.connect(), options_with());
