@@ -50,7 +50,9 @@ void judge(const record::Record& record) {
   const audit::Verdict verdict = audit::audit(record);
   require(verdict.findings.size() <= audit::kMaxFindings, "too many findings");
   for (const audit::Finding& finding : verdict.findings) require_one_line(finding.what);
-  std::istringstream lines(audit::to_text(verdict));
+  const std::string text = audit::to_text(verdict);
+  require(!text.empty(), "a verdict without words");
+  std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) require_one_line(line);
 }
 
