@@ -6,7 +6,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <sstream>
 
 #include <fcntl.h>
@@ -211,8 +210,7 @@ std::string Board::end_of(const ChildExit& exit, const std::string& last_words) 
   const bool may_be_keepers = signal == SIGTERM || signal == SIGKILL;
   if ((may_be_keepers || signal <= 0) && keeper_->wait(may_be_keepers ? kKeeperLimit : kShowLimit))
     return "was ended because " + let_go();
-  if (signal > 0 && signal < NSIG)
-    return fmt::format("was ended by signal {} ({})", signal, strsignal(signal));
+  if (signal > 0 && signal < NSIG) return "was ended by " + name_of_signal(signal);
   return exit.description;
 }
 

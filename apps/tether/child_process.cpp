@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
 #include <map>
 #include <sstream>
 #include <thread>
@@ -218,7 +217,7 @@ ChildProcess::~ChildProcess() {
 void ChildProcess::reap(int status) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    exit_ = {128 + signal, fmt::format("was ended by signal {} ({})", signal, strsignal(signal))};
+    exit_ = {128 + signal, "was ended by " + name_of_signal(signal)};
   } else {
     exit_ = {WEXITSTATUS(status), fmt::format("exited with code {}", WEXITSTATUS(status))};
   }

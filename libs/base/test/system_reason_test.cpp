@@ -17,5 +17,9 @@ TEST(ReasonOf, SaysWhatToDoWithoutHandles) {
             "Too many open files in system; allow this process more (ulimit -n)");
 }
 
+TEST(NameOfSignal, HasItsNumberAndWhatTheSystemCallsIt) {
+  EXPECT_EQ(name_of_signal(9), "signal 9 (Killed)");
+}
+
 }  // namespace
 }  // namespace tether

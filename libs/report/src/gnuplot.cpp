@@ -1,7 +1,6 @@
 #include "svg.h"
 
 #include <cerrno>
-#include <cstring>
 #include <utility>
 
 #include <fcntl.h>
@@ -85,8 +84,7 @@ std::string failure_of(pid_t child) {
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) return reason_of(errno);
   }
-  if (WIFSIGNALED(status))
-    return fmt::format("ended by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+  if (WIFSIGNALED(status)) return "ended by " + name_of_signal(WTERMSIG(status));
   return WEXITSTATUS(status) == 0 ? "" : fmt::format("exit code {}", WEXITSTATUS(status));
 }
 

@@ -8,4 +8,7 @@ namespace tether {
 /// more files. Thread-safe.
 std::string reason_of(int error_number);
 
+/// "signal 9 (Killed)". Not thread-safe.
+std::string name_of_signal(int signal);
+
 }  // namespace tether
