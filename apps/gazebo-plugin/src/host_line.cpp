@@ -33,6 +33,8 @@ void HostLine::listen() {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       connection_ = std::move(*accepted);
+      // The destructor closes the connection that it finds; this one may have come after it looked.
+      if (closing_) connection_->close();
     }
     wrong = converse(*connection_);
   } else {

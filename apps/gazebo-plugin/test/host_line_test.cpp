@@ -114,5 +114,34 @@ TEST_F(HostLineTest, CanBeDestroyedWhileTheHostIsThere) {
   EXPECT_FALSE(host_->receive_reply(10s));
 }
 
+// Its host is accepted only when it is closed: `accept` had it in hand by then.
+class LateListener : public protocol::Listener {
+ public:
+  explicit LateListener(std::unique_ptr<protocol::Listener> listener)
+      : listener_(std::move(listener)) {}
+  Result<std::unique_ptr<protocol::Connection>> accept() override {
+    closed_.get_future().wait();
+    return listener_->accept();
+  }
+  protocol::Endpoint endpoint() const override { return listener_->endpoint(); }
+  void close() override { closed_.set_value(); }
+
+ private:
+  std::unique_ptr<protocol::Listener> listener_;
+  std::promise<void> closed_;
+};
+
+TEST(HostLine, CanBeDestroyedWhileTheHostIsBeingAccepted) {
+  const ScratchFolder scratch;
+  auto listener = protocol::listen(scratch.path() / "s");
+  ASSERT_TRUE(listener);
+  auto line = std::make_unique<HostLine>(std::make_unique<LateListener>(std::move(*listener)),
+                                         [](const End&) {});
+  auto host = protocol::connect(scratch.path() / "s", 10s);
+  ASSERT_TRUE(host);
+  line.reset();
+  EXPECT_FALSE((*host)->receive_reply(10s));
+}
+
 }  // namespace
 }  // namespace tether::gazebo_plugin
