@@ -231,7 +231,7 @@ std::optional<std::string> Coordinator::Impl::order_fault(const Session& session
   if (session.is_concurrent()) {
     if (session.open.size() >= sync::kMaxOpenCalls)
       return fmt::format("a request while {} others are open", session.open.size());
-    if (tied() && barrier_.is_held(session.uav) && request.issued_at >= barrier_.bound(session.uav))
+    if (tied() && barrier_.is_held(session.uav))
       return fmt::format("a request stamped {} ns while it stood still for a reply at {} ns",
                          to_ns(request.issued_at), to_ns(barrier_.bound(session.uav)));
   } else {

@@ -345,6 +345,8 @@ TEST_F(ConcurrentTest, GoingOnBeforeItsReplyIsThereEndsTheRun) {
        "stamped 2950000 ns while it stood still for a reply at 2900000 ns"},
       {request(2, us(2'900), link::SetVelocity{}),
        "stamped 2900000 ns while it stood still for a reply at 2900000 ns"},
+      {request(2, us(2'850), link::SetVelocity{}),
+       "stamped 2850000 ns while it stood still for a reply at 2900000 ns"},
       {link::Progress{us(2'950), true},
        "a stop at ET 2950000 ns while it stood still for a reply at 2900000 ns"},
   };
