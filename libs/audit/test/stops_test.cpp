@@ -318,5 +318,48 @@ TEST(FreeRunningConcurrent, HasNoStops) {
   }));
 }
 
+// Two threads wait for one sensor: the second gets the measurement after the first one's.
+Record free_threads(std::uint64_t first, std::uint64_t second) {
+  constexpr Duration kPeriod = std::chrono::milliseconds(10);
+  Record record;
+  record.header.policy = record::kFreeRunning;
+  record.header.step = std::chrono::milliseconds(1);
+  record.header.suts.emplace_back().uav = "u";
+  record.header.suts[0].concurrent = true;
+  record::SensorInfo& imu = record.header.sensors.emplace_back();
+  imu.uav = "u";
+  imu.name = imu.kind = "imu";
+  imu.periodic = true;
+  imu.period = kPeriod;
+  for (const std::uint64_t index : {first, second}) {
+    Entry entry;
+    entry.order = record.interactions.size();
+    Interaction& read = entry.message;
+    read.uav = "u";
+    read.sequence = entry.order + 1;
+    read.kind = record::kSensor;
+    read.sensor = "imu";
+    read.sample_index = index;
+    read.st_at_arrival = SimTime{} + kPeriod / 2;
+    entry.at = read.st_at_release = SimTime{} + index * kPeriod;
+    read.sampled_at = read.sample_state_at = read.available_at = entry.at;
+    record.interactions.push_back(entry);
+  }
+  return record;
+}
+
+TEST(FreeRunningConcurrent, ThreadsGetMeasurementsOfTheirOwn) {
+  EXPECT_TRUE(audit(free_threads(1, 2)).findings.empty()) << to_text(audit(free_threads(1, 2)));
+  EXPECT_EQ(rules_of(audit(free_threads(1, 3))), Rules{8}) << "missed a measurement";
+}
+
+// That a later request took a measurement is no reason not to get it.
+TEST(FreeRunningConcurrent, ThreadsGetThemInTheirOrder) {
+  Record record = free_threads(1, 2);
+  record.interactions[0].message.sequence = 2;
+  record.interactions[1].message.sequence = 1;
+  EXPECT_EQ(rules_of(audit(record)), Rules{8});
+}
+
 }  // namespace
 }  // namespace tether::audit
