@@ -47,9 +47,26 @@ add_custom_target(tether_unit_tests)
 add_custom_target(tether_threaded_tests)
 add_custom_target(tether_checked_tests)
 
+# Tests are half of all that is compiled. What nearly every one includes is compiled once, in a program, whose
+# code is compiled as theirs is; and only what they test is optimised.
+add_library(tether_test_options INTERFACE)
+target_compile_options(tether_test_options INTERFACE $<$<CONFIG:RelWithDebInfo>:-Og>
+  # Optimised that little, the standard library's own code sets this one off.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+target_link_libraries(tether_test_options INTERFACE tether_compile_options)
+if(BUILD_TESTING)
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/test_headers.cpp" CONTENT "int main() {}\n")
+  add_executable(tether_test_headers EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/test_headers.cpp")
+  target_link_libraries(tether_test_headers PRIVATE GTest::gmock tether_test_options)
+  target_precompile_headers(tether_test_headers PRIVATE
+    <algorithm> <chrono> <cmath> <filesystem> <fstream> <functional> <map> <optional> <string> <thread> <variant>
+    <vector> <gmock/gmock.h>)
+endif()
+
 # Registers the cases of a GoogleTest executable with CTest under its labels.
 function(_tether_register_test target prefix)
   cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS" ${ARGN})
+  target_precompile_headers(${target} REUSE_FROM tether_test_headers)
   foreach(label IN ITEMS unit threaded checked)
     if(label IN_LIST ARG_LABELS)
       add_dependencies(tether_${label}_tests ${target})
@@ -114,7 +131,7 @@ function(tether_add_library name)
     add_executable(${target}_test ${ARG_TESTS})
     target_include_directories(${target}_test PRIVATE src)
     target_link_libraries(${target}_test PRIVATE ${target} ${ARG_TEST_LIBS} ${ARG_PRIVATE}
-      GTest::gmock GTest::gtest_main tether_compile_options)
+      GTest::gmock GTest::gtest_main tether_test_options)
     if(ARG_TESTING_SOURCES)
       target_link_libraries(${target}_test PRIVATE ${target}_testing)
     endif()
@@ -135,7 +152,7 @@ function(tether_add_test name)
     set(ARG_TIMEOUT 300)
   endif()
   add_executable(${name}_test ${ARG_SOURCES})
-  target_link_libraries(${name}_test PRIVATE ${ARG_LIBS} GTest::gmock GTest::gtest_main tether_compile_options)
+  target_link_libraries(${name}_test PRIVATE ${ARG_LIBS} GTest::gmock GTest::gtest_main tether_test_options)
   target_compile_definitions(${name}_test PRIVATE
     TETHER_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TETHER_BINARY_DIR="${PROJECT_BINARY_DIR}"
     TETHER_TEST_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
