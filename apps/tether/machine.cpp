@@ -5,6 +5,9 @@
 
 #include <fmt/format.h>
 #include <sys/utsname.h>
+#include <unistd.h>
+
+#include <tether/sync/clock_witness.h>
 
 namespace tether::app {
 
@@ -23,6 +26,11 @@ std::string describe_machine() {
   uname(&system);
   return fmt::format("{}, {} cores, {} {} {}", cpu_model(), std::thread::hardware_concurrency(),
                      system.sysname, system.release, system.machine);
+}
+
+int machine_cores() {
+  const long cores = sysconf(_SC_NPROCESSORS_CONF);
+  return cores > 0 && cores <= sync::kMostCores ? static_cast<int>(cores) : 0;
 }
 
 }  // namespace tether::app

@@ -66,6 +66,11 @@ link::ClockKind kind_of(scenario::Clock clock) {
   return link::ClockKind::kWall;
 }
 
+/// The condition's SUTs are started on this machine.
+bool is_local(const TrialSpec& spec) {
+  return !spec.waits_for_sut && !(spec.condition.target && spec.condition.target->ssh);
+}
+
 coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timings,
                                     const std::string& token) {
   coordinator::RunOptions options;
@@ -75,7 +80,8 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
   const coordinator::ClockSetting clock{kind_of(spec.condition.clock), spec.condition.cpu_factor,
                                         spec.condition.computing};
   for (std::size_t i = 0; i < timings.size(); ++i)
-    options.uavs.push_back({timings[i], spec.scenario.uavs[i].command_latency, clock});
+    options.uavs.push_back({timings[i], spec.scenario.uavs[i].command_latency, clock,
+                            is_local(spec) ? machine_cores() : 0});
   options.token = token;
   options.seed = spec.seed;
   options.real_time_factor = spec.condition.real_time_factor;
@@ -343,9 +349,7 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
   const Timings timings =
       scenario::resolve_sensors(spec.scenario, spec.condition, world, observer.warn);
   world.step = spec.scenario.step;
-  const bool is_local =
-      !spec.waits_for_sut && !(spec.condition.target && spec.condition.target->ssh);
-  if (is_local) require_sut_programs(spec.scenario, spec.condition);
+  if (is_local(spec)) require_sut_programs(spec.scenario, spec.condition);
   const TrialFolder folder(spec.folder);
 
   const std::string started_at = utc_now();

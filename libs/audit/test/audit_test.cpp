@@ -132,13 +132,32 @@ TEST(Audit, TheFirstRequestIsComparedWithTheStart) {
   EXPECT_EQ(too_much(record), 0U);
 }
 
+Record cpu_clocked(Duration grown, Duration elapsed, int cores, double factor = 1.0) {
+  Record record = wall_clocked(grown, elapsed);
+  record.header.suts[0].clock = "cpu";
+  record.header.suts[0].cores = cores;
+  record.header.suts[0].cpu_factor = factor;
+  return record;
+}
+
 TEST(Audit, CpuTimeGrowsNoFasterThanOnAllCoresAtOnce) {
-  Record record = wall_clocked(Duration(1'000'000'000), Duration(1'000'000));
-  record.header.suts[0].clock = "cpu";
-  EXPECT_EQ(growth_findings(record), 0U);
-  record = wall_clocked(std::chrono::hours(1), Duration(1'000'000'000));
-  record.header.suts[0].clock = "cpu";
-  EXPECT_EQ(growth_findings(record), 2U);
+  using std::chrono::milliseconds;
+  const auto s = Duration(1'000'000'000);
+  // A tick of each core and a thousandth are granted, not a nanosecond more.
+  const Duration most = 2 * (s + milliseconds(1)) + milliseconds(20);
+  EXPECT_EQ(growth_findings(cpu_clocked(most, s, 2)), 0U);
+  EXPECT_EQ(growth_findings(cpu_clocked(most + Duration(1), s, 2)), 2U);
+  EXPECT_EQ(growth_findings(cpu_clocked(most + Duration(1), s, 3)), 0U);
+  EXPECT_EQ(growth_findings(cpu_clocked(6 * most, s, 2, 6.0)), 0U);
+  EXPECT_EQ(growth_findings(cpu_clocked(6 * most + Duration(2), s, 2, 6.0)), 2U);
+}
+
+// So it is in records of Tether 0.1.0, and where somebody else starts the SUT.
+TEST(Audit, OfAnUnknownMachineManyCoresAreBelieved) {
+  const auto s = Duration(1'000'000'000);
+  const Duration most = 1024 * (s + Duration(1'000'000)) + s;
+  EXPECT_EQ(growth_findings(cpu_clocked(most, s, 0)), 0U);
+  EXPECT_EQ(growth_findings(cpu_clocked(most + Duration(1), s, 0)), 2U);
 }
 
 TEST(Audit, ALineNamesTheFirstFinding) {

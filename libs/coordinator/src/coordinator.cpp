@@ -28,14 +28,12 @@ constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 constexpr Duration kLongestTurn = std::chrono::seconds(1);
 // How long nothing may move before it is said who waits for whom.
 constexpr Duration kStillPeriod = std::chrono::seconds(1);
-// The CPU time of a process adds up what runs on all its cores; no machine has more.
-constexpr double kMostCores = 1024.0;
 
-/// The most ET per second of WT by the clock that a SUT says it has; none where it is the
-/// coordinator's own, or a script's.
-std::optional<double> fastest_et(const link::Hello& hello) {
-  if (hello.clock == link::ClockKind::kWall) return hello.cpu_factor;
-  if (hello.clock == link::ClockKind::kCpu) return hello.cpu_factor * kMostCores;
+/// How fast the clock can go that a SUT says it has; none where it is the coordinator's own, or a
+/// script's.
+std::optional<sync::ClockBound> bound_of(const link::Hello& hello, int cores) {
+  if (hello.clock == link::ClockKind::kWall) return sync::wall_bound(hello.cpu_factor);
+  if (hello.clock == link::ClockKind::kCpu) return sync::cpu_bound(hello.cpu_factor, cores);
   return std::nullopt;
 }
 
@@ -52,6 +50,7 @@ Session make_session(std::size_t index, const sim::Uav& uav, const UavOptions& o
   session.uav = index;
   session.uav_name = uav.name;
   session.command_latency = options.command_latency;
+  session.cores = options.cores;
   for (std::size_t i = 0; i < uav.sensors.size(); ++i)
     session.sensors.push_back(make_sensor(uav, uav.sensors[i], options.timings[i], seed));
   return session;
@@ -65,6 +64,8 @@ void check_options(const RunOptions& options, const sim::World& world) {
   for (std::size_t i = 0; i < world.uavs.size(); ++i)
     require(options.uavs[i].timings.size() == world.uavs[i].sensors.size(),
             "one timing per sensor is needed");
+  for (const UavOptions& uav : options.uavs)
+    require(uav.cores >= 0 && uav.cores <= sync::kMostCores, "no machine has so many cores");
   require(!options.token.empty(), "a token is needed");
   require(options.time_limit > Duration(0), "the time limit must be positive");
   require(options.ground_truth_period > Duration(0), "the ground truth's period must be positive");
@@ -155,8 +156,8 @@ void Coordinator::Impl::start() {
     session.last_word = started_;
     if (session.hello.clock == link::ClockKind::kUnstamped)
       session.timer.emplace(ExecTime{}, started_);
-    if (const auto rate = fastest_et(session.hello); rate && tied())
-      session.witness.emplace(*rate, ExecTime{}, started_);
+    if (const auto bound = bound_of(session.hello, session.cores); bound && tied())
+      session.witness.emplace(*bound, ExecTime{}, started_);
   }
   at_boundary();
   for (const Session& session : sessions_)

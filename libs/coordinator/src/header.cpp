@@ -75,12 +75,14 @@ record::Header Coordinator::Impl::make_header() const {
   header.real_time_factor = options_.real_time_factor;
   header.wall_at_start = started_;
   for (const Session& session : sessions_) {
-    header.suts.push_back({.uav = session.uav_name,
-                           .sut = session.hello.sut,
-                           .clock = std::string(link::name(session.hello.clock)),
-                           .cpu_factor = session.hello.cpu_factor,
-                           .command_latency = session.command_latency,
-                           .concurrent = session.is_concurrent()});
+    header.suts.push_back(
+        {.uav = session.uav_name,
+         .sut = session.hello.sut,
+         .clock = std::string(link::name(session.hello.clock)),
+         .cpu_factor = session.hello.cpu_factor,
+         .command_latency = session.command_latency,
+         .concurrent = session.is_concurrent(),
+         .cores = session.hello.clock == link::ClockKind::kCpu ? session.cores : 0});
     const sim::Uav& uav = world().uavs[session.uav];
     for (std::size_t i = 0; i < uav.sensors.size(); ++i)
       header.sensors.push_back(

@@ -201,10 +201,13 @@ std::optional<std::string> Coordinator::Impl::honesty_fault(const Session& sessi
   if (!session.witness) return std::nullopt;
   const Duration excess = session.witness->excess(stamp, now);
   if (excess == Duration(0)) return std::nullopt;
+  const bool adds_up_cores = session.hello.clock == link::ClockKind::kCpu;
+  const int cores = session.cores > 0 ? session.cores : sync::kMostCores;
   return fmt::format(
       "a time stamp of ET {:.6f} s, which is {:.6f} s ahead: since it went on at ET {:.6f} s, no "
-      "more can have gone by than this machine's clock shows",
-      to_seconds(stamp), to_seconds(excess), to_seconds(session.witness->went_on_at()));
+      "more can have gone by than this machine's clock shows{}",
+      to_seconds(stamp), to_seconds(excess), to_seconds(session.witness->went_on_at()),
+      adds_up_cores ? fmt::format(" for each of {} cores", cores) : "");
 }
 
 std::optional<std::string> Coordinator::Impl::fault_of(const Session& session,

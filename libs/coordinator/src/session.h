@@ -42,6 +42,7 @@ struct Session {
   std::size_t uav = 0;  ///< index in the world, and of the SUT in the barrier
   std::string uav_name;
   Duration command_latency{0};
+  int cores = 0;  ///< of the SUT's machine; 0: not known
   std::vector<SensorState> sensors;
 
   // From joining to leaving.

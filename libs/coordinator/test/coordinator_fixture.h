@@ -61,7 +61,8 @@ class CoordinatorTest : public testing::Test {
   void make(std::size_t uavs = 1) {
     simulator_ = std::make_unique<sim::FakeSimulator>(sim::make_fake_world(uavs));
     options_.token = "secret";
-    options_.uavs.assign(uavs, {{kCameraTiming, kImuTiming, kRangeTiming}, latency_, clock_});
+    options_.uavs.assign(uavs,
+                         {{kCameraTiming, kImuTiming, kRangeTiming}, latency_, clock_, cores_});
     coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
                                                  [this] { return now_ += tick_; });
     server_ = std::make_unique<ScriptedServer>(coordinator_->events());
@@ -78,6 +79,7 @@ class CoordinatorTest : public testing::Test {
   RunOptions options_;
   Duration latency_{0};
   std::optional<ClockSetting> clock_;
+  int cores_ = 0;
   Duration tick_ = std::chrono::milliseconds(1);
   WallTime now_{};
   RunHooks hooks_;

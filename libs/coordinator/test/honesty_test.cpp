@@ -61,7 +61,28 @@ TEST_F(HonestyTest, AnHonestSutIsNotDoubted) {
 }
 
 // All cores of a machine together make more CPU time than time goes by, but not any amount of it.
-TEST_F(HonestyTest, CpuTimeMayGrowByManyCoresAtOnce) {
+// By the fixture's clock, a script's first request comes after some ten milliseconds.
+TEST_F(HonestyTest, CpuTimeMayGrowOnAllCoresOfTheMachineAtOnce) {
+  cores_ = 2;
+  EXPECT_EQ(fly(link::ClockKind::kCpu, 1.0, {finish(milliseconds(20))}).end, RunEnd::kFinished);
+  EXPECT_EQ(recorder_.header.suts[0].cores, 2);
+  const RunReport report = fly(link::ClockKind::kCpu, 1.0, {finish(milliseconds(500))});
+  EXPECT_EQ(report.end, RunEnd::kSutLost);
+  EXPECT_THAT(report.reason, HasSubstr("0.4"));
+  EXPECT_THAT(report.reason, HasSubstr("than this machine's clock shows for each of 2 cores"));
+  EXPECT_EQ(fly(link::ClockKind::kCpu, 50.0, {finish(milliseconds(500))}).end, RunEnd::kFinished);
+}
+
+// A wall clock goes on as fast on any number of cores.
+TEST_F(HonestyTest, CoresMakeNoWallClockFaster) {
+  cores_ = 64;
+  const RunReport report = fly(link::ClockKind::kWall, 1.0, {finish(milliseconds(500))});
+  EXPECT_EQ(report.end, RunEnd::kSutLost);
+  EXPECT_THAT(report.reason, testing::EndsWith("than this machine's clock shows"));
+  EXPECT_EQ(recorder_.header.suts[0].cores, 0);
+}
+
+TEST_F(HonestyTest, OfAnUnknownMachineManyCoresAreBelieved) {
   EXPECT_EQ(fly(link::ClockKind::kCpu, 1.0, {finish(milliseconds(500))}).end, RunEnd::kFinished);
   EXPECT_EQ(fly(link::ClockKind::kCpu, 1.0, {finish(hours(1))}).end, RunEnd::kSutLost);
 }

@@ -84,7 +84,19 @@ void append_sut(std::string& out, const SutInfo& sut) {
   if (sut.concurrent) {
     object.boolean("concurrent", true);
   }
+  if (sut.cores > 0) {
+    object.integer("cores", sut.cores);
+  }
   object.close();
+}
+
+int cores_member(const Json& json) {
+  constexpr std::int64_t kMost = 1024;
+  const std::int64_t cores = integer_member(json, "cores");
+  if (cores < 1 || cores > kMost) {
+    throw Damage("\"cores\" is " + std::to_string(cores) + ", not from 1 to 1024");
+  }
+  return static_cast<int>(cores);
 }
 
 SutInfo read_sut(const Json& json) {
@@ -93,7 +105,8 @@ SutInfo read_sut(const Json& json) {
           .clock = text_member(json, "clock"),
           .cpu_factor = number_member(json, "cpu_factor"),
           .command_latency = time_member<Duration>(json, "command_latency_ns"),
-          .concurrent = json.contains("concurrent") && boolean_member(json, "concurrent")};
+          .concurrent = json.contains("concurrent") && boolean_member(json, "concurrent"),
+          .cores = json.contains("cores") ? cores_member(json) : 0};
 }
 
 void append_camera(JsonObject& sensor, const CameraInfo& camera) {

@@ -297,6 +297,26 @@ TEST(JsonMetadata, ARecordNeedNotKnowOfConcurrentSuts) {
   EXPECT_EQ(footer_from_metadata(to_metadata(without)).stops, 0U);
 }
 
+StringMap with_cores(const std::string& json) {
+  StringMap values = to_metadata(header());
+  std::string& suts = values["suts"];
+  const std::string known = ",\"cores\":4";
+  const auto at = suts.find(known);
+  EXPECT_NE(at, std::string::npos) << suts;
+  if (at != std::string::npos) suts.replace(at, known.size(), json);
+  return values;
+}
+
+TEST(JsonMetadata, ARecordNeedNotKnowTheCoresOfASutsMachine) {
+  EXPECT_EQ(header_from_metadata(to_metadata(header())).suts[0].cores, 4);
+  EXPECT_EQ(header_from_metadata(to_metadata(header())).suts[1].cores, 0);
+  EXPECT_EQ(header_from_metadata(with_cores("")).suts[0].cores, 0);
+  EXPECT_EQ(header_from_metadata(with_cores(",\"cores\":1024")).suts[0].cores, 1024);
+  for (const char* cores : {"0", "-1", "1025", "4294967298", "2.5", "null", "\"2\""})
+    EXPECT_THROW(header_from_metadata(with_cores(std::string(",\"cores\":") + cores)), Damage)
+        << cores;
+}
+
 TEST(JsonMetadata, FooterRoundTrip) {
   const Footer in = footer();
   const Footer out = footer_from_metadata(to_metadata(in));

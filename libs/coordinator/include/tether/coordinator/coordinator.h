@@ -33,6 +33,8 @@ struct UavOptions {
   /// How the condition measures this SUT's time. One that measures otherwise is refused; scripted
   /// and unstamped ones are let in, and the record names them. None: any.
   std::optional<ClockSetting> clock{};
+  /// Of the machine that its SUT runs on: how far its CPU time is believed. 0: not known.
+  int cores = 0;
 };
 
 struct RunOptions {

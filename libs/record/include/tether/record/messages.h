@@ -152,6 +152,8 @@ struct SutInfo {
   double cpu_factor = 1.0;      ///< seconds of ET per second of what the clock measures
   Duration command_latency{0};  ///< from a command's stamp to its effect, before the grid rounds up
   bool concurrent = false;      ///< several threads, each with calls of its own
+  /// Clock "cpu": cores of the machine that it ran on, whose time may have added up; 0: not known.
+  int cores = 0;
 };
 /// What a machine told of itself, by name, as apps/tether/board/target_probe.sh has it: "governor",
 /// "temperature_mc", … What it could not tell is not there.
