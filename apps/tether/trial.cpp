@@ -230,7 +230,9 @@ Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* boa
     joined = status.joined == spec.scenario.uavs.size();
     if (observer.on_status) observer.on_status(status);
     const std::string stall = stalls.look(status, host_clocks());
-    if (!stall.empty() && observer.on_blocked) observer.on_blocked(stall);
+    // Who starts the SUTs himself has been told that they are waited for.
+    const bool is_told = spec.waits_for_sut && status.joined == 0;
+    if (!stall.empty() && !is_told && observer.on_blocked) observer.on_blocked(stall);
   };
   hooks.on_refused = [&](const std::string& text) { refusals.add(text); };
   hooks.read_target = [&] { return read_target(spec, board); };

@@ -33,7 +33,7 @@ struct TrialSpec {
 struct TrialObserver {
   std::function<void(const std::string&)> warn;  ///< one line each
   std::function<void(const coordinator::RunStatus&)> on_status;
-  /// Nothing moves: who waits for whom; one line, once each time.
+  /// Nothing moves: who waits for whom, or for whose SUT to join; one line, once each time.
   std::function<void(const std::string&)> on_blocked;
   /// What is being set up, before there is a status.
   std::function<void(const std::string&)> on_setup;

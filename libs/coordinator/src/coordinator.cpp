@@ -126,6 +126,7 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
   server_ = &server;
   hooks_ = hooks;
+  moved_ = host_clock_();
   while (!running_ && !ended_) {
     server.poll(kIdleWait);
     watch();
@@ -349,10 +350,23 @@ std::string Coordinator::Impl::diagnosis(WallTime now) const {
   return who_blocks_whom(st_, parties);
 }
 
+// Before the run.
+std::string Coordinator::Impl::missing(WallTime now) const {
+  std::vector<std::string> uavs;
+  WallTime since = now;
+  for (const Session& session : sessions_) {
+    if (session.joined()) continue;
+    uavs.push_back(session.uav_name);
+    since = std::min(since, session.last_word);
+  }
+  return who_has_not_joined(uavs, now - since);
+}
+
 // Said only when nothing has moved for a while.
 std::string Coordinator::Impl::blocked(WallTime now) const {
-  if (!running_ || ended_ || !tied() || now - moved_ < kStillPeriod) return "";
-  return diagnosis(now);
+  if (ended_ || now - moved_ < kStillPeriod) return "";
+  if (!running_) return missing(now);
+  return tied() ? diagnosis(now) : "";
 }
 
 RunStatus Coordinator::Impl::status(WallTime now) const {

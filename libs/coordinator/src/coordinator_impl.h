@@ -59,6 +59,7 @@ class Coordinator::Impl final : public link::ServerEvents {
   void check_words(WallTime now);
   Party party(const Session& session, WallTime now) const;
   std::string diagnosis(WallTime now) const;
+  std::string missing(WallTime now) const;
   std::string blocked(WallTime now) const;
   void end(RunEnd how, const std::string& reason);
   RunReport close_run();

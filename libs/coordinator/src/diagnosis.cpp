@@ -45,4 +45,11 @@ std::string who_blocks_whom(SimTime st, const std::vector<Party>& parties) {
       to_seconds(blocker->bound));
 }
 
+std::string who_has_not_joined(const std::vector<std::string>& uavs, Duration waited) {
+  const bool is_one = uavs.size() == 1;
+  return fmt::format("the start waits for {} \"{}\"; none has joined for {:.1f} s",
+                     is_one ? "a SUT for UAV" : "SUTs for the UAVs", fmt::join(uavs, "\", \""),
+                     to_seconds(waited));
+}
+
 }  // namespace tether::coordinator

@@ -26,4 +26,8 @@ std::string whereabouts(const Party& party);
 /// simulator has the word.
 std::string who_blocks_whom(SimTime st, const std::vector<Party>& parties);
 
+/// Before the run: the UAVs whose SUTs are waited for, and for how long by now: one sentence.
+/// @pre there is one.
+std::string who_has_not_joined(const std::vector<std::string>& uavs, Duration waited);
+
 }  // namespace tether::coordinator

@@ -130,6 +130,7 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   session.hello = hello;
   session.hello.token.clear();
   session.hello.sut = printable(hello.sut);
+  moved_ = host_clock_();
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.joined(); }))
     start();
 }

@@ -44,6 +44,13 @@ TEST(Diagnosis, IsSilentWhereTheSimulatorHasTheWord) {
   EXPECT_EQ(who_blocks_whom(kSt, {}), "");
 }
 
+TEST(Diagnosis, NamesThoseThatHaveNotJoined) {
+  EXPECT_EQ(who_has_not_joined({"a"}, milliseconds(1040)),
+            "the start waits for a SUT for UAV \"a\"; none has joined for 1.0 s");
+  EXPECT_EQ(who_has_not_joined({"a", "b"}, milliseconds(2500)),
+            "the start waits for SUTs for the UAVs \"a\", \"b\"; none has joined for 2.5 s");
+}
+
 TEST(Diagnosis, SaysWhereAPartyStood) {
   EXPECT_EQ(whereabouts(computing("a", 1250, 10)),
             "it was computing, last heard of at ET 1.250000 s");

@@ -1,6 +1,9 @@
 #include "coordinator_fixture.h"
 
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -140,6 +143,48 @@ TEST_F(HonestyTest, WhenNothingMovesTheStatusSaysWhoBlocksWhom) {
                                          "computing since 1.0 s without a word"));
   EXPECT_THAT(report.reason,
               HasSubstr("computing since 3.0 s without a word, last at ET 0.005000 s"));
+}
+
+// As it waits for them in free running too.
+TEST_F(HonestyTest, BeforeTheRunTheStatusSaysWhoseSutHasNotJoined) {
+  options_.policy = sync::SyncPolicy::kFreeRunning;
+  options_.real_time_factor = 1.0;
+  options_.connect_limit = seconds(5);
+  make(2);
+  now_ += seconds(3);  // nobody listened yet
+  std::vector<std::string> said;
+  std::optional<WallTime> began;
+  hooks_.on_status = [&](const RunStatus& status) {
+    if (!began) began = now_;
+    if (status.blocked.empty()) return;
+    if (said.empty()) {
+      EXPECT_NEAR(to_seconds(now_ - *began), 1.0, 0.1);
+      server_->add_sut(hello("uav1"), {});
+    }
+    said.push_back(status.blocked);
+  };
+  EXPECT_EQ(coordinator_->run(*server_, hooks_).end, RunEnd::kSutLost);
+  ASSERT_GE(said.size(), 2u);
+  EXPECT_THAT(said.front(), testing::MatchesRegex("the start waits for SUTs for the UAVs \"uav0\", "
+                                                  "\"uav1\"; none has joined for .* s"));
+  EXPECT_THAT(said.back(), testing::StartsWith("the start waits for a SUT for UAV \"uav0\"; "));
+}
+
+TEST_F(HonestyTest, AJoinIsAMove) {
+  options_.connect_limit = seconds(3);
+  make(2);
+  std::optional<WallTime> came, joined, said;
+  hooks_.on_status = [&](const RunStatus& status) {
+    if (status.joined == 1 && !joined) joined = now_;
+    if (!status.blocked.empty() && !said) said = now_;
+    if (!came && now_ > WallTime(milliseconds(700))) {
+      came = now_;
+      server_->add_sut(hello("uav1"), {});
+    }
+  };
+  coordinator_->run(*server_, hooks_);
+  ASSERT_TRUE(joined && said);
+  EXPECT_NEAR(to_seconds(*said - *joined), 1.0, 0.1);
 }
 
 TEST_F(HonestyTest, TimeInWhichItDidNotListenIsNobodysSilence) {

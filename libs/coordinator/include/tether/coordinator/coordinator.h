@@ -98,7 +98,8 @@ struct RunStatus {
   std::uint64_t interactions = 0;
   std::uint64_t images = 0;
   std::string waiting_for;  ///< the SUT that ST waits for; empty: none
-  std::string blocked;      ///< nothing has moved for a second: who blocks whom; else empty
+  /// Nothing has moved for a second: who blocks whom, or whose SUT has not joined; else empty.
+  std::string blocked;
 };
 
 /// What the caller has a say in while a run goes on. Called from `run`; the first two some tens of
