@@ -1,8 +1,12 @@
 #include "bytes.h"
+#include "json_messages.h"
 #include "mcap_format.h"
 #include "sample_messages.h"
 
+#include <algorithm>
+#include <map>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -15,34 +19,69 @@
 namespace tether::record {
 namespace {
 
-// Four seconds of ground truth in four chunks, so that a tear leaves something before it.
-std::string small_file() {
-  const TemporaryFile file;
-  const auto recorder = make_mcap_recorder(file.path());
-  recorder->write(header());
-  for (std::int64_t ms = 0; ms < 4000; ms += 500) {
-    recorder->write(st_ms(ms), ground_truth(ms));
-    recorder->write(st_ms(ms), annotation());
-  }
-  recorder->write(footer());
-  return file.bytes();
+template <class Message>
+std::string line(SimTime at, const Message& message) {
+  std::string text = std::to_string(to_ns(at)) + " ns: ";
+  append_json(text, message);
+  return text;
 }
 
-constexpr std::size_t kMessages = 8;
+struct Written {
+  std::string bytes;
+  std::vector<SimTime> times;
+  std::vector<std::string> lines;  // of every message, in the order of writing
+};
+
+// Four seconds in four chunks, so that a tear leaves something before it.
+Written small_record() {
+  const TemporaryFile file;
+  Written written;
+  const auto recorder = make_mcap_recorder(file.path());
+  const auto write = [&](SimTime at, const auto& message) {
+    recorder->write(at, message);
+    written.times.push_back(at);
+    written.lines.push_back(line(at, message));
+  };
+  recorder->write(header());
+  for (std::int64_t ms = 0; ms < 4000; ms += 500) {
+    write(st_ms(ms), ground_truth(ms));
+    write(st_ms(ms), command_effect(static_cast<std::uint64_t>(ms)));
+    write(st_ms(ms), annotation());
+  }
+  recorder->write(footer());
+  written.bytes = file.bytes();
+  return written;
+}
+
+std::string small_file() {
+  return small_record().bytes;
+}
+
+constexpr std::size_t kMessages = 8;  // of ground truth
 
 struct Outcome {
   bool refused = false;
-  std::size_t messages = 0;
+  std::size_t messages = 0;  // of ground truth
+  std::map<std::uint64_t, std::string> lines;
   std::string damage;
   bool has_end = false;
 };
 
-// Reads, and requires that what is there is a prefix of the undamaged messages.
+template <class Message>
+void add_lines(Outcome& outcome, const std::vector<Logged<Message>>& topic) {
+  for (const Logged<Message>& logged : topic) {
+    EXPECT_TRUE(outcome.lines.emplace(logged.order, line(logged.at, logged.message)).second);
+  }
+}
+
 Outcome read(const TemporaryFile& file) {
   Outcome outcome;
   try {
     const Record record = read_record(file.path(), {.images = true});
     outcome.messages = record.ground_truth.size();
+    add_lines(outcome, record.ground_truth);
+    add_lines(outcome, record.commands);
+    add_lines(outcome, record.annotations);
     outcome.damage = record.damage;
     outcome.has_end = record.footer.has_value();
   } catch (const Error& error) {
@@ -52,39 +91,133 @@ Outcome read(const TemporaryFile& file) {
   return outcome;
 }
 
-TEST(Damage, EveryTruncationLeavesAPrefixAndANamedTear) {
-  const std::string whole = small_file();
-  const TemporaryFile file;
-  std::size_t previous = 0;
-  std::size_t refused = 0;
-  for (std::size_t length = 0; length < whole.size(); ++length) {
-    file.set_bytes(whole.substr(0, length));
-    const Outcome outcome = read(file);
-    if (outcome.refused) {
-      EXPECT_EQ(length, refused) << "a longer file is refused although a shorter one was not";
-      ++refused;
-      continue;
+// A record of the container (https://mcap.dev/spec), and of a chunk its latest log time.
+struct Span {
+  Opcode opcode{};
+  std::size_t start = 0;
+  std::size_t end = 0;
+  SimTime latest{};
+};
+
+// Walks over opcodes and lengths alone. The magic at the end is the last span.
+std::vector<Span> spans_of(const std::string& file) {
+  std::vector<Span> spans;
+  std::size_t at = kMagic.size();
+  while (at + kMagic.size() < file.size()) {
+    FieldReader fields(std::string_view(file).substr(at));
+    Span span{static_cast<Opcode>(fields.u8()), at};
+    at += kRecordPrefixBytes + fields.u64();
+    span.end = at;
+    if (span.opcode == Opcode::kChunk) {
+      fields.u64();  // earliest log time
+      span.latest = from_ns<SimTime>(static_cast<std::int64_t>(fields.u64()));
     }
-    EXPECT_GE(outcome.messages, previous);
-    EXPECT_NE(outcome.damage.find("damaged at byte "), std::string::npos) << length;
-    previous = outcome.messages;
+    spans.push_back(span);
   }
-  EXPECT_EQ(previous, kMessages);
-  file.set_bytes(whole);
-  EXPECT_EQ(read(file).damage, "");
-  EXPECT_TRUE(read(file).has_end);
+  EXPECT_EQ(at + kMagic.size(), file.size());
+  spans.push_back({Opcode{}, at, file.size()});
+  return spans;
 }
 
-TEST(Damage, EveryFlippedBitIsNoticed) {
-  const std::string whole = small_file();
+// What is whole of a file of which only the first `length` bytes are there.
+struct Whole {
+  std::size_t messages = 0;
+  std::size_t metadata = 0;
+  std::size_t torn_at = 0;  // where the first record begins that is not
+};
+
+Whole whole_before(std::size_t length, const std::vector<Span>& spans, const Written& written) {
+  Whole whole;
+  for (const Span& span : spans) {
+    whole.torn_at = span.start;
+    if (span.end > length) break;
+    whole.metadata += span.opcode == Opcode::kMetadata ? 1 : 0;
+    if (span.opcode != Opcode::kChunk) continue;
+    const auto& times = written.times;
+    const auto behind = std::upper_bound(times.begin(), times.end(), span.latest);
+    whole.messages = static_cast<std::size_t>(behind - times.begin());
+  }
+  return whole;
+}
+
+std::map<std::uint64_t, std::string> first_lines(const Written& written, std::size_t count) {
+  std::map<std::uint64_t, std::string> lines;
+  for (std::size_t i = 0; i < count; ++i) {
+    lines.emplace(i, written.lines[i]);
+  }
+  return lines;
+}
+
+TEST(Damage, TheSmallRecordHasWhatItTakesToTearIt) {
+  const Written written = small_record();
+  std::vector<std::size_t> messages;
+  std::size_t metadata = 0;
+  const std::vector<Span> spans = spans_of(written.bytes);
+  for (const Span& span : spans) {
+    const Whole whole = whole_before(span.end, spans, written);
+    if (span.opcode == Opcode::kChunk) messages.push_back(whole.messages);
+    metadata = whole.metadata;
+  }
+  EXPECT_EQ(messages, (std::vector<std::size_t>{6, 12, 18, 24}));
+  EXPECT_EQ(metadata, 2U);  // header and footer
+}
+
+TEST(Damage, ATornRecordGivesAllThatIsWholeBeforeTheTearAndSaysWhereItIs) {
+  const Written written = small_record();
+  const std::vector<Span> spans = spans_of(written.bytes);
   const TemporaryFile file;
-  for (std::size_t bit = 0; bit < whole.size() * 8; bit += 5) {
-    std::string flipped = whole;
+  for (std::size_t length = 0; length < written.bytes.size(); ++length) {
+    SCOPED_TRACE(length);
+    file.set_bytes(written.bytes.substr(0, length));
+    const Whole whole = whole_before(length, spans, written);
+    const Outcome outcome = read(file);
+    ASSERT_EQ(outcome.refused, whole.metadata == 0) << "it can be read once its header is there";
+    if (outcome.refused) continue;
+    ASSERT_EQ(outcome.lines, first_lines(written, whole.messages));
+    ASSERT_EQ(outcome.has_end, whole.metadata == 2);
+    ASSERT_EQ(outcome.damage.find("damaged at byte " + std::to_string(whole.torn_at) +
+                                  ": the file ends too early"),
+              0U)
+        << outcome.damage;
+  }
+}
+
+TEST(Damage, AWholeRecordGivesAll) {
+  const Written written = small_record();
+  const TemporaryFile file;
+  file.set_bytes(written.bytes);
+  const Outcome outcome = read(file);
+  EXPECT_EQ(outcome.lines, first_lines(written, written.lines.size()));
+  EXPECT_EQ(outcome.damage, "");
+  EXPECT_TRUE(outcome.has_end);
+}
+
+// Whether each message is one that was written, and they come in the order of writing.
+bool are_written(const Outcome& outcome, const Written& written) {
+  auto next = written.lines.begin();
+  return std::all_of(outcome.lines.begin(), outcome.lines.end(), [&](const auto& message) {
+    const auto found = std::find(next, written.lines.end(), message.second);
+    if (found == written.lines.end()) return false;
+    next = found + 1;
+    return true;
+  });
+}
+
+TEST(Damage, EveryFlippedBitIsNoticedAndChangesNoMessage) {
+  const Written whole = small_record();
+  const TemporaryFile file;
+  for (std::size_t bit = 0; bit < whole.bytes.size() * 8; bit += 5) {
+    SCOPED_TRACE(bit);
+    std::string flipped = whole.bytes;
     flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << (bit % 8)));
     file.set_bytes(flipped);
     const Outcome outcome = read(file);
-    EXPECT_TRUE(outcome.refused || !outcome.damage.empty()) << "bit " << bit;
-    EXPECT_LE(outcome.messages, kMessages);
+    ASSERT_TRUE(outcome.refused || !outcome.damage.empty());
+    ASSERT_TRUE(are_written(outcome, whole));
+    // Messages are missing only behind the damage, or the damage says that they may be anywhere.
+    if (outcome.damage.find("CRC mismatch of the data section") == std::string::npos) {
+      ASSERT_EQ(outcome.lines, first_lines(whole, outcome.lines.size()));
+    }
   }
 }
 

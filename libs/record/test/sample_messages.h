@@ -81,8 +81,8 @@ inline Stop stop() {
   return {"a", et_ns(50'000'321), et_ns(50'000'000), from_ns<WallTime>(323'456'789)};
 }
 
-inline CommandEffect command_effect() {
-  return {"a", 2, st_ms(41), 0.1, -0.0, 1e-300, 1.0 / 3.0};
+inline CommandEffect command_effect(std::uint64_t sequence = 2) {
+  return {"a", sequence, st_ms(41), 0.1, -0.0, 1e-300, 1.0 / 3.0};
 }
 
 inline GroundTruth ground_truth(std::int64_t ms = 40) {

@@ -27,8 +27,9 @@ struct Record {
   std::vector<Logged<Stop>> stops;
   std::vector<Logged<Image>> images;
   std::optional<Footer> footer;
-  /// Where and why reading stopped early (torn or damaged file), in one printable line; empty: read
-  /// to the end.
+  /// Where and why reading stopped early (torn or damaged file), in one printable line: "damaged at
+  /// byte N: …", N being where the first record of the container that is not whole begins (a chunk,
+  /// for messages). Empty: read to the end.
   std::string damage;
 };
 
@@ -36,8 +37,12 @@ struct ReadOptions {
   bool images = false;  ///< also load images
 };
 
-/// Reads front to back, so that everything before a tear is had. Checks every length and every CRC
-/// and stops at the first damage. What it allocates is bounded by the file's size, whatever the
+/// Reads front to back, checks every length and every CRC, and stops at the first damage.
+/// Everything before it is had: each message of each chunk that is whole. A torn chunk gives
+/// nothing: its CRC is of the whole, and zstd unpacks by 128 KiB, which is more than most chunks
+/// have. How much a chunk is, `make_mcap_recorder` says. Damage to what lies between chunks may
+/// show only in the CRC at the end of the data section: `damage` then names that, and what is
+/// missing may be anywhere before. What is allocated is bounded by the file's size, whatever the
 /// file says.
 /// @throws Error(kBadFile) when the file does not exist, is no MCAP, is not Tether's, its schema is
 /// newer, or it is torn before its header's end.
