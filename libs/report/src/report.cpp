@@ -129,6 +129,29 @@ void add_target_notes(Table& table, const experiment::ConditionResults& results)
   }
 }
 
+// A machine that is too busy may have something to say of every trial: the first few in full.
+constexpr std::size_t kTrialsNotedInFull = 3;
+
+void add_run_notes(Table& table, const experiment::ConditionResults& results) {
+  std::size_t in_full = 0;
+  std::vector<std::uint64_t> others;
+  for (const experiment::TrialResult& trial : results.trials) {
+    if (trial.this_run.notes.empty()) continue;
+    if (in_full == kTrialsNotedInFull) {
+      others.push_back(trial.seed);
+      continue;
+    }
+    ++in_full;
+    table.notes.push_back(
+        fmt::format("Noted: {}, seed {}: {}.", results.condition, trial.seed, notes_of(trial)));
+  }
+  if (others.empty()) return;
+  table.notes.push_back(
+      fmt::format("Noted: {}, seed{} {} too ({} of {} trials): see their result.json.",
+                  results.condition, others.size() > 1 ? "s" : "", fmt::join(others, ", "),
+                  in_full + others.size(), results.trials.size()));
+}
+
 // Comparisons.
 
 std::optional<Comparison> compare(const std::string& metric, const std::string& unit,
@@ -216,6 +239,7 @@ Table paper_form_table(const experiment::ScenarioResults& scenario) {
     add_missing_notes(table, results, columns);
     add_second_attempt_notes(table, results);
     add_target_notes(table, results);
+    add_run_notes(table, results);
   }
   return table;
 }

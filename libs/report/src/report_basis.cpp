@@ -37,6 +37,12 @@ void for_each_trial(const experiment::CampaignResults& results, const Visit& vis
   }
 }
 
+std::size_t noted_trials(const experiment::ConditionResults& condition) {
+  return static_cast<std::size_t>(
+      std::count_if(condition.trials.begin(), condition.trials.end(),
+                    [](const auto& trial) { return !trial.this_run.notes.empty(); }));
+}
+
 std::string tie_text(const experiment::TrialResult& trial) {
   std::string text = fmt::format("{}: {}, {} clock", trial.condition, trial.policy, trial.clock);
   if (trial.clock == "cpu" || (trial.clock == "wall" && trial.cpu_factor != 1.0))
@@ -149,6 +155,8 @@ Table run_table(const experiment::TrialResult& trial) {
       table.notes.push_back(fmt::format("No {}: {}.", metric.label, metric.missing_because));
   }
   if (!trial.reason.empty()) table.notes.push_back(trial.reason + ".");
+  if (!trial.this_run.notes.empty())
+    table.notes.push_back(fmt::format("Noted: {}.", notes_of(trial)));
   return table;
 }
 
@@ -161,13 +169,14 @@ Table trials_table(const experiment::CampaignResults& results) {
                      {"metric", 1},
                      {"unit", 1},
                      {"value", 1},
-                     {"reason", 1}}};
+                     {"reason", 1},
+                     {"notes", 1}}};
   for_each_trial(results, [&](const experiment::ScenarioResults& scenario,
                               const experiment::TrialResult& trial) {
     for (const experiment::MetricValue& metric : trial.metrics) {
       table.rows.push_back({scenario.scenario, trial.condition, std::to_string(trial.seed),
                             std::string(name(trial.outcome)), metric.name, metric.unit,
-                            exact(metric.value), trial.reason});
+                            exact(metric.value), trial.reason, notes_of(trial)});
     }
   });
   return table;
@@ -187,7 +196,8 @@ Table summaries_table(const experiment::CampaignResults& results) {
                      {"ci95_low", 1},
                      {"ci95_high", 1},
                      {"paper_mean", 1},
-                     {"paper_stddev", 1}}};
+                     {"paper_stddev", 1},
+                     {"noted", 1}}};
   for (const experiment::ScenarioResults& scenario : results.scenarios) {
     const PaperTable* paper = find_paper_table(scenario.paper_table);
     for (const std::string& name : scenario.metrics) {
@@ -203,7 +213,8 @@ Table summaries_table(const experiment::CampaignResults& results) {
                               any ? exact(s.mean) : "", exact(s.stddev), any ? exact(s.median) : "",
                               s.ci95 ? exact(s.ci95->low) : "", s.ci95 ? exact(s.ci95->high) : "",
                               figure != nullptr ? exact(figure->mean) : "",
-                              figure != nullptr ? exact(figure->stddev) : ""});
+                              figure != nullptr ? exact(figure->stddev) : "",
+                              std::to_string(noted_trials(condition))});
       }
     }
   }

@@ -33,4 +33,8 @@ std::string with_unit(const std::string& label, const std::string& unit) {
   return unit == "1" ? label : fmt::format("{} ({})", label, unit);
 }
 
+std::string notes_of(const experiment::TrialResult& trial) {
+  return fmt::format("{}", fmt::join(trial.this_run.notes, "; "));
+}
+
 }  // namespace tether::report

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include <tether/experiment/result.h>
 #include <tether/experiment/statistics.h>
 
 /// How the numbers of a report are written.
@@ -22,5 +23,7 @@ std::string exact(double value);
 std::string exact(const std::optional<double>& value);
 /// "Time required (s)"; counts have no unit.
 std::string with_unit(const std::string& label, const std::string& unit);
+/// What happened to a run and nobody meant to, in one line; empty: nothing.
+std::string notes_of(const experiment::TrialResult& trial);
 
 }  // namespace tether::report

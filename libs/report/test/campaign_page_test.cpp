@@ -126,6 +126,22 @@ TEST_F(CampaignPage, NamesAFailedTrialOnTop) {
   EXPECT_LT(at, html.find("The software reached its goal"));
 }
 
+TEST_F(CampaignPage, NamesWhatWasNotedOfARunOnTopAndBelowTheTable) {
+  experiment::TrialResult noted = experiment::make_trial(scenario(), "target", 2, 2, 7.2);
+  noted.this_run.notes = {"process <7> was stopped"};
+  write(noted);
+  const std::string html = page();
+  const auto verdict = html.find("The software reached its goal");
+  const auto at = html.find("turn, target, seed 2: process &lt;7&gt; was stopped");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_LT(html.find("What is missing or went wrong"), at);
+  EXPECT_LT(at, verdict);
+  EXPECT_NE(html.find("Noted: target, seed 2: process &lt;7&gt; was stopped.", verdict),
+            std::string::npos);
+  EXPECT_THAT(run_page(folder_of("target", 2)),
+              HasSubstr("turn, target, seed 2: process &lt;7&gt; was stopped"));
+}
+
 TEST_F(CampaignPage, WithoutRecordsHasTablesAndDistributions) {
   const std::string html = page();
   EXPECT_THAT(html, HasSubstr("Every trial"));

@@ -13,6 +13,7 @@ using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 class Report : public testing::Test {
  protected:
@@ -32,6 +33,17 @@ class Report : public testing::Test {
     const auto folder = out_ / trial_folder("turn", result.condition, result.seed);
     std::filesystem::create_directories(folder);
     write_result(folder, result);
+  }
+  void write_noted(std::uint64_t seed, std::vector<std::string> notes) {
+    TrialResult trial = make_trial(scenario(), "host", seed, 0, 2.7);
+    trial.this_run.notes = std::move(notes);
+    write(trial);
+  }
+  static std::vector<std::string> noted(const Table& table) {
+    std::vector<std::string> found;
+    for (const std::string& note : table.notes)
+      if (note.starts_with("Noted")) found.push_back(note);
+    return found;
   }
   const scenario::Scenario& scenario() const { return campaign_.scenarios[0].scenario; }
   ScenarioResults results() const { return read_campaign_results(out_).scenarios[0]; }
@@ -89,6 +101,49 @@ TEST_F(Report, NamesEveryTrialThatNeededASecondAttempt) {
     if (note.starts_with("Second attempt")) found.push_back(note);
   EXPECT_THAT(found, ElementsAre("Second attempt: host, seed 3; the first could not be set up: "
                                  "the port was taken."));
+}
+
+// A SUT that a signal stopped is in the mean all the same; under the wall clock with its stop.
+TEST_F(Report, NamesEveryTrialThatHasNotes) {
+  EXPECT_THAT(noted(paper_form_table(results())), IsEmpty());
+  write_noted(3, {"a signal stopped the SUT", "this machine was suspended"});
+  const Table table = paper_form_table(results());
+  const std::string note =
+      "Noted: host, seed 3: a signal stopped the SUT; this machine was suspended.";
+  EXPECT_THAT(noted(table), ElementsAre(note));
+  EXPECT_THAT(to_text(table), HasSubstr("\n" + note + "\n"));
+  EXPECT_THAT(to_markdown(table), HasSubstr("\n" + note + "\n"));
+}
+
+TEST_F(Report, OfManyTrialsWithNotesTellsTheFirstThree) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) write_noted(seed, {"busy"});
+  ScenarioResults many = results();
+  std::vector<TrialResult>& trials = many.conditions[0].trials;
+  std::vector<std::string> expected = {"Noted: host, seed 1: busy.", "Noted: host, seed 2: busy.",
+                                       "Noted: host, seed 3: busy."};
+  EXPECT_EQ(noted(paper_form_table(many)), expected);
+  const auto add = [&](std::uint64_t seed) {
+    trials.push_back(trials.front());
+    trials.back().seed = seed;
+  };
+  add(4);
+  expected.push_back("Noted: host, seed 4 too (4 of 4 trials): see their result.json.");
+  EXPECT_EQ(noted(paper_form_table(many)), expected);
+  add(5);
+  trials.back().this_run.notes.clear();
+  add(6);
+  expected.back() = "Noted: host, seeds 4, 6 too (5 of 6 trials): see their result.json.";
+  EXPECT_EQ(noted(paper_form_table(many)), expected);
+}
+
+TEST_F(Report, GivesProgramsTheNotes) {
+  write_noted(3, {"stopped, then \"continued\"", "suspended"});
+  const CampaignResults all = read_campaign_results(out_);
+  const std::string trials = to_csv(trials_table(all)), summaries = to_csv(summaries_table(all));
+  EXPECT_THAT(trials, HasSubstr(",reason,notes\r\n"));
+  EXPECT_THAT(trials, HasSubstr(",\"stopped, then \"\"continued\"\"; suspended\"\r\n"));
+  EXPECT_THAT(summaries, HasSubstr(",paper_mean,paper_stddev,noted\r\n"));
+  EXPECT_THAT(summaries, HasSubstr(",2.48,0.033,1\r\n"));
 }
 
 TEST_F(Report, ShowsWhatThePaperAloneMeasured) {
@@ -203,6 +258,9 @@ TEST_F(Report, OfOneRunHasItsLimits) {
   EXPECT_THAT(table.rows[0], ElementsAre("Oscillations", "–", "–"));
   EXPECT_THAT(table.rows[1], ElementsAre("Time required (s)", "12.500", "30"));
   EXPECT_THAT(table.notes, Contains("No Oscillations: no ground truth."));
+  EXPECT_THAT(noted(table), IsEmpty());
+  trial.this_run.notes = {"a signal stopped the SUT", "suspended"};
+  EXPECT_THAT(noted(run_table(trial)), ElementsAre("Noted: a signal stopped the SUT; suspended."));
 }
 
 TEST_F(Report, ForProgramsIsComplete) {
@@ -211,7 +269,7 @@ TEST_F(Report, ForProgramsIsComplete) {
   const Table summaries = summaries_table(all);
   EXPECT_EQ(summaries.rows.size(), 6u);
   EXPECT_THAT(to_csv(summaries), HasSubstr("turn,target,time_required,s,3,3,8,4,8,"));
-  EXPECT_THAT(to_csv(summaries), HasSubstr(",9.242,13.767\r\n"));
+  EXPECT_THAT(to_csv(summaries), HasSubstr(",9.242,13.767,0\r\n"));
 }
 
 TEST_F(Report, DetailsHaveAllStatistics) {

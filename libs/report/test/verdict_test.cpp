@@ -122,6 +122,16 @@ TEST(Problems, NameWhatTheTargetSuffered) {
   EXPECT_THAT(problems(results), ElementsAre("turn, target, seed 1: it was hot"));
 }
 
+TEST(Problems, NameWhatWasNotedOfARun) {
+  experiment::CampaignResults results;
+  results.manifest.seeds = {1, 2};
+  results.scenarios = {scenario({1, 2}, {1, 2})};
+  results.scenarios[0].conditions[1].trials[0].this_run.notes = {"a signal stopped the SUT",
+                                                                 "this machine was suspended"};
+  EXPECT_THAT(problems(results), ElementsAre("turn, target, seed 1: a signal stopped the SUT",
+                                             "turn, target, seed 1: this machine was suspended"));
+}
+
 TEST(Problems, AreEachNamed) {
   experiment::CampaignResults results;
   results.manifest.seeds = {1, 2, 3, 4};

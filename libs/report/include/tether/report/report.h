@@ -13,7 +13,8 @@ namespace tether::report {
 
 /// In the paper's form: a row per condition; mean and standard deviation per metric, the paper's
 /// figures beside ours where the scenario names one of its tables. The notes say how many trials
-/// each number rests on and name every trial that is missing from a mean, and why.
+/// each number rests on, name every trial that is missing from a mean, and why, and every trial in
+/// which something happened that nobody meant to.
 Table paper_form_table(const experiment::ScenarioResults& scenario);
 
 /// A row per metric and condition: n, mean, 95 % interval, standard deviation, median, range.
@@ -42,12 +43,13 @@ Table optimism_table(const experiment::ScenarioResults& scenario);
 /// causality violations.
 Table basis_table(const experiment::CampaignResults& results);
 
-/// One row per trial and metric, full precision: for other programs.
+/// One row per trial and metric, full precision, the trial's notes last: for other programs.
 Table trials_table(const experiment::CampaignResults& results);
-/// One row per condition and metric, full precision, the paper's figures beside: for programs.
+/// One row per condition and metric, full precision, the paper's figures beside, and last how many
+/// of the condition's trials have notes: for programs.
 Table summaries_table(const experiment::CampaignResults& results);
 
-/// One run's metrics, each with its limit.
+/// One run's metrics, each with its limit; below it the run's notes.
 Table run_table(const experiment::TrialResult& trial);
 
 /// All tables for people, in reading order.
