@@ -4,6 +4,8 @@
 #include <set>
 #include <utility>
 
+#include <tether/sim/bodies.h>
+
 namespace tether::sim {
 
 using uav::Pose;
@@ -14,6 +16,15 @@ FileLocation whole_file(const SdfSource& source) {
   return {source.file().string(), 0};
 }
 
+/// @param before the world's moving links so far
+void require_few_moving_links(const SdfSource& source, const sdf::Model& model,
+                              std::size_t before) {
+  if (before + model.LinkCount() <= kMaxMovingLinks) return;
+  refuse(source, model.LinkByIndex(kMaxMovingLinks - before)->Element(),
+         "is one too many: a world may have " + std::to_string(kMaxMovingLinks) +
+             " links that move; make the models <static> that need not");
+}
+
 /// Adds a model and, behind it, the models nested in it, each as one of its own.
 void add_model(const SdfSource& source, const sdf::Model& model, const Pose& X_WP,
                const std::string& prefix, bool parent_is_static, World& world) {
@@ -21,6 +32,9 @@ void add_model(const SdfSource& source, const sdf::Model& model, const Pose& X_W
   result.name = prefix + model.Name();
   result.X_WM = X_WP * resolved_pose(source, model);
   result.is_static = parent_is_static || model.Static();
+  if (!result.is_static) {
+    require_few_moving_links(source, model, moving_bodies(world).size());
+  }
   for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
     const sdf::Link& link = *model.LinkByIndex(i);
     result.links.push_back(read_link(source, link));
@@ -151,7 +165,8 @@ Light read_light(const SdfSource& source, const sdf::Light& light, const Pose& X
   return result;
 }
 
-World load_world(const WorldRequest& request, const WarningSink& warn) {
+World load_world(const WorldRequest& request, const WarningSink& any_warn) {
+  const WarningSink warn = with_printable_lines(any_warn);
   const SdfSource source(request.world);
   check_elements(source, SdfPurpose::kWorld, warn);
   source.throw_on_errors();

@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/sim/bodies.h>
+
 namespace tether::sim {
 namespace {
 
@@ -113,6 +115,37 @@ TEST(LoadWorld, PlacesUavs) {
   expect_near(uav::rotate(world.uavs[0].X_WB.q, {1, 0, 0}), {0, 1, 0});
   EXPECT_THAT(refusal({kSource / "worlds/room.sdf", {{"a", model, {}}, {"a", model, {}}}, {}}),
               HasSubstr("two UAVs have the name 'a'"));
+}
+
+/// Models "m0", "m1", …, one a line from line 3 on, each of ten links.
+std::string models_of_ten_links(std::size_t count, const std::string& content = "") {
+  std::string text;
+  for (std::size_t i = 0; i < count; ++i) {
+    text += "<model name='m" + std::to_string(i) + "'>" + content;
+    for (int k = 0; k < 10; ++k) text += "<link name='l" + std::to_string(k) + "'/>";
+    text += "</model>\n";
+  }
+  return world_sdf(text);
+}
+
+TEST(LoadWorld, KeepsAsManyMovingLinksAsAWorldMayHave) {
+  const ScratchFolder folder;
+  const auto file = folder.write("w.sdf", models_of_ten_links(kMaxMovingLinks / 10));
+  EXPECT_EQ(moving_bodies(load({file, {}, {}}).world).size(), kMaxMovingLinks);
+}
+
+TEST(LoadWorld, NamesTheFirstMovingLinkTooMany) {
+  const ScratchFolder folder;
+  const auto file = folder.write("w.sdf", models_of_ten_links(kMaxMovingLinks / 10 + 2));
+  const std::string message = refusal({file, {}, {}});
+  EXPECT_THAT(message, HasSubstr("w.sdf:" + std::to_string(3 + kMaxMovingLinks / 10) +
+                                 ": link 'l0' is one too many"));
+}
+
+TEST(LoadWorld, LinksThatStandStillMayBeMore) {
+  const ScratchFolder folder;
+  const auto text = models_of_ten_links(kMaxMovingLinks / 10 + 2, "<static>true</static>");
+  EXPECT_EQ(refusal({folder.write("w.sdf", text), {}, {}}), "");
 }
 
 }  // namespace

@@ -137,6 +137,13 @@ TEST(SdfWarning, EveryElementIsNamedAndTheRestLoads) {
   EXPECT_EQ(loaded.world.models[0].links[0].visuals[0].name, "b");
 }
 
+TEST(SdfWarning, IsOnePrintableLineWhateverTheName) {
+  const ScratchFolder folder;
+  const auto file = folder.write("w.sdf", link_sdf("<projector name='a&#10;b&#27;[2J'/>"));
+  EXPECT_THAT(load({file, {}, {}}).warnings,
+              ::testing::ElementsAre(HasSubstr("projector 'a?b?[2J'")));
+}
+
 TEST(SdfWarning, NoSinkIsNoError) {
   const ScratchFolder folder;
   EXPECT_EQ(refusal({folder.write("w.sdf", world_sdf("<bogus/>")), {}, {}}), "");

@@ -25,7 +25,7 @@ class MujocoSimulator final : public Simulator {
  public:
   MujocoSimulator(World world, WarningSink warn)
       : world_(std::move(world)),
-        warn_(std::move(warn)),
+        warn_(with_printable_lines(std::move(warn))),
         grid_(world_.step),
         dynamics_(world_, warn_),
         rays_(dynamics_.model()),

@@ -1,5 +1,8 @@
 #include "test_simulator.h"
 
+#include <string>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,6 +27,18 @@ TEST(MujocoSimulatorTest, StopsWhenTheMotionBecomesUnusable) {
   world.gravity_m_s2 = 1e12;
   const auto simulator = make_simulator(world);
   EXPECT_THROW(simulator->advance_to(SimTime(1s)), Error);
+}
+
+// A file may write any character into a name.
+TEST(MujocoSimulatorTest, WarnsInPrintableLines) {
+  World world = test_world();
+  Collision plane;
+  plane.name = "flo\nor";
+  plane.geometry = PlaneGeometry{{0.0, 0.0, 1.0}, 1.0, 1.0};
+  world.uavs[0].body.collisions = {plane};
+  std::vector<std::string> warnings;
+  make_mujoco_simulator(world, [&](const std::string& line) { warnings.push_back(line); });
+  EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::HasSubstr("'flo?or'")));
 }
 
 }  // namespace tether::sim::testing

@@ -205,8 +205,16 @@ struct WorldRequest {
   std::vector<std::string> anchors;  ///< names of models of the world
 };
 
-/// Where a warning goes: one line, with file (and line where known).
+/// Where a warning goes: one printable line, with file (and line where known).
 using WarningSink = std::function<void(const std::string&)>;
+
+/// A sink that makes the line printable, whatever names a file has, and passes it on; empty if
+/// `warn` is.
+WarningSink with_printable_lines(WarningSink warn);
+
+/// Links of dynamic models that one world may have. The engine's memory grows with the square of
+/// their number.
+inline constexpr std::size_t kMaxMovingLinks = 200;
 
 /// Reads world and UAV models (SDFormat up to 1.9), resolves every pose, include, mesh and texture,
 /// and names through `warn`, with file and line, each element that Tether cannot represent.
@@ -220,11 +228,11 @@ using WarningSink = std::function<void(const std::string&)>;
 ///
 /// @throws Error(kBadFile) with file and line for whatever cannot be used: missing file, XML or SDF
 ///   errors, not exactly one <world>, numbers with a unit or other text behind them, impossible
-///   values (negative mass or size, lengths and positions beyond 1e5 m, more than 1e6 kg, zero-size
-///   image, gravity that does not point down, a step outside 10 µs to 20 ms), two UAVs of one name,
-///   an anchor that is no model or not one untextured box, cylinder or sphere, a UAV model without
-///   <tether:multirotor>, with two sensors of one name, a centre of mass off its origin, or less
-///   thrust than weight.
+///   values (negative mass or size, lengths and positions beyond 1e5 m, more than 1e6 kg, more than
+///   `kMaxMovingLinks`, zero-size image, gravity that does not point down, a step outside 10 µs to
+///   20 ms), two UAVs of one name, an anchor that is no model or not one untextured box, cylinder
+///   or sphere, a UAV model without <tether:multirotor>, with two sensors of one name, a centre of
+///   mass off its origin, or less thrust than weight.
 ///
 /// Not thread-safe: libsdformat's console is silenced while this runs.
 World load_world(const WorldRequest& request, const WarningSink& warn);
