@@ -128,6 +128,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                folder.write("models/box/model.sdf", std::string_view(fuzz::kBox)),
                                folder.write("tetra.obj", std::string_view(fuzz::kMesh))};
   (void)written;
+  fuzz::require(sim::kHasMujoco, "a build without the embedded simulator");
   const sim::WorldRequest request = fuzz::request(folder, {data, size});
   const auto warn = [](const std::string& line) { fuzz::require_one_line(line); };
   auto world = fuzz::read_or_refuse([&] { return sim::load_world(request, warn); });

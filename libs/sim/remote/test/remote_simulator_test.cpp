@@ -82,6 +82,20 @@ TEST(RemoteSimulator, SendsTheLastCommandOfEachUavOnce) {
   EXPECT_TRUE(advances[1].commands.empty());
 }
 
+// A file may write any character into a name.
+TEST(RemoteSimulator, WarnsInPrintableLines) {
+  World world = file_world(test_world());
+  Visual egg;
+  egg.name = "eg\ng";
+  egg.geometry = EllipsoidGeometry{{0.1, 0.2, 0.3}};
+  world.uavs[0].body.visuals = {egg};
+  FakeOutside outside(world, {});
+  std::vector<std::string> warnings;
+  make_remote_simulator(world, outside.take_connection(), {},
+                        [&](const std::string& line) { warnings.push_back(line); });
+  EXPECT_THAT(warnings, ::testing::ElementsAre(HasSubstr("'eg?g'")));
+}
+
 TEST(RemoteSimulator, KnowsTheStateWithoutAsking) {
   const Served served(file_world(test_world()));
   served.simulator->advance_to(at(10ms));
