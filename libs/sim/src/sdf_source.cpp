@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <exception>
 #include <regex>
 #include <sstream>
 
@@ -198,7 +199,14 @@ void SdfSource::parse() {
   config.SetFindCallback([](const std::string&) { return std::string(); });
 
   QuietConsole console;
-  errors_ = root_.Load(file_.string(), config);
+  try {
+    errors_ = root_.Load(file_.string(), config);
+  } catch (const std::exception& error) {
+    // Of the file or of one that it includes; libsdformat does not say which.
+    throw Error(ErrorCode::kBadFile, {file_.string(), 0},
+                "libsdformat cannot read it (" + std::string(error.what()) +
+                    "); look at <sdf version='...'> here and in what it includes");
+  }
   collect_console(console.text());
 }
 

@@ -45,6 +45,8 @@ const BadWorld kBadFiles[] = {
     {"empty", "", "w.sdf: ", "not well-formed XML"},
     {"no_element", "<?xml version='1.0'?>\n<!-- nothing -->", "w.sdf: ", "has no element"},
     {"other_root", "<html>\n</html>", "w.sdf:1: ", "an SDF file begins with <sdf>"},
+    {"a_version_that_is_no_number", "<sdf version='1.x'>\n<world name='w'/></sdf>",
+     "w.sdf: ", "libsdformat cannot read it (stoi); look at <sdf version='...'>"},
     {"no_world", "<sdf version='1.7'>\n</sdf>", "w.sdf: ", "0 <world> elements"},
     {"two_worlds", "<sdf version='1.7'>\n<world name='a'/>\n<world name='b'/>\n</sdf>",
      "w.sdf: ", "2 <world> elements"},
