@@ -1,9 +1,9 @@
+#include "support/memory_watch.h"
 #include "support/raw_peer.h"
 #include "support/trials.h"
 
 #include <algorithm>
 #include <atomic>
-#include <fstream>
 #include <functional>
 #include <stdexcept>
 #include <thread>
@@ -26,20 +26,7 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kMemoryIsTethers = false;  // a sanitizer keeps what was freed
-#else
-constexpr bool kMemoryIsTethers = true;
-#endif
 constexpr long kMostExtraMemory_KiB = 16 * 1024;
-
-/// Largest memory that the process has had so far [KiB]; 0: it has ended.
-long peak_memory_KiB(pid_t pid) {
-  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with("VmHWM:")) return std::stol(line.substr(6));
-  return 0;
-}
 
 /// What a run had to bear, and what it came to.
 struct Flight {
@@ -71,17 +58,13 @@ class Strangers : public testing::Test {
       } catch (const std::runtime_error&) {  // it has ended: nobody listens any more
       }
     });
-    Flight flight;
+    const MemoryWatch memory(run.process().pid());
     const auto sut = run.start_sut({bad_sut_program(), "good"});
     EXPECT_TRUE(sut->wait_for_out("joined", 30s)) << sut->err();
-    while (!run.process().has_ended()) {
-      flight.memory_KiB = std::max(flight.memory_KiB, peak_memory_KiB(run.process().pid()));
-      std::this_thread::sleep_for(2ms);
-    }
+    Output tether = run.wait();
     over = true;
-    flight.tether = run.wait();
     EXPECT_EQ(sut->wait(5s).code, 0);
-    return flight;
+    return {std::move(tether), memory.most_KiB()};
   }
 
   /// The run ends as alone, in no more memory.
@@ -100,17 +83,23 @@ class Strangers : public testing::Test {
     return beside.tether;
   }
 
-  /// Sends `bytes` over connection after connection; keeps the last `kept` of them open.
-  Output expect_harmless_sending(const std::function<std::string(int)>& bytes, std::size_t kept) {
-    return expect_harmless([&](const std::string& address, const std::atomic<bool>& over) {
-      std::vector<std::unique_ptr<RawPeer>> peers(kept);
-      for (int i = 0; !over; ++i) {
-        auto& peer = peers[static_cast<std::size_t>(i) % kept];
-        peer = std::make_unique<RawPeer>(address);
-        peer->write(bytes(i));
-        std::this_thread::sleep_for(1ms);
-      }
-    });
+  /// Over connection after connection does `act`, which gets the connection's number; keeps the
+  /// last `kept` of them open.
+  Output expect_harmless_acting(const std::function<void(RawPeer&, std::size_t)>& act,
+                                std::size_t kept) {
+    std::size_t connections = 0;
+    const Output tether =
+        expect_harmless([&](const std::string& address, const std::atomic<bool>& over) {
+          std::vector<std::unique_ptr<RawPeer>> peers(kept);
+          for (; !over; ++connections) {
+            auto& peer = peers[connections % kept];
+            peer = std::make_unique<RawPeer>(address);
+            act(*peer, connections);
+            std::this_thread::sleep_for(1ms);
+          }
+        });
+    EXPECT_GT(connections, kept);
+    return tether;
   }
 
   TempFolder folder_;
@@ -129,14 +118,16 @@ TEST_F(Strangers, ThatConnectInHundredsAndSayNothing) {
 
 TEST_F(Strangers, ThatSendAByteNowAndThen) {
   const std::string frame = frame_of(hello_with(std::string(200, 'x')));
+  int taken = 0;
   expect_harmless([&](const std::string& address, const std::atomic<bool>& over) {
     std::vector<std::unique_ptr<RawPeer>> peers;
     for (int i = 0; i < 100; ++i) peers.push_back(std::make_unique<RawPeer>(address));
     for (std::size_t at = 0; !over && at < frame.size(); ++at) {
-      for (const auto& peer : peers) peer->write(frame.substr(at, 1));
+      for (const auto& peer : peers) taken += peer->write(frame.substr(at, 1)) ? 1 : 0;
       std::this_thread::sleep_for(50ms);
     }
   });
+  EXPECT_GT(taken, 500);
 }
 
 /// The limit for a Hello is for all of it: five seconds from connecting.
@@ -157,15 +148,16 @@ TEST_F(Strangers, ThatSendAByteASecondAreToldAfterFive) {
 }
 
 TEST_F(Strangers, ThatAnnounceGigabytes) {
-  const Output tether = expect_harmless_sending(
-      [](int) { return std::string("\xff\xff\xff\xff", 4) + std::string(60'000, 'x'); }, 50);
+  const std::string bytes = std::string("\xff\xff\xff\xff", 4) + std::string(60'000, 'x');
+  const Output tether =
+      expect_harmless_acting([&](RawPeer& peer, std::size_t) { peer.write(bytes); }, 50);
   EXPECT_THAT(tether.err, HasSubstr("frame of 4294967295 bytes announced"));
 }
 
 /// What is announced is allowed, and never comes whole.
 TEST_F(Strangers, ThatSendAllOfAFrameButItsLastByte) {
-  expect_harmless_sending(
-      [](int) { return std::string("\x00\x10\x00\x00", 4) + std::string(4095, 'x'); }, 200);
+  const std::string bytes = std::string("\x00\x10\x00\x00", 4) + std::string(4095, 'x');
+  expect_harmless_acting([&](RawPeer& peer, std::size_t) { peer.write(bytes); }, 200);
 }
 
 TEST_F(Strangers, ThatSendGarbage) {
@@ -231,42 +223,39 @@ TEST_F(Strangers, ThatHaveTheTokenOfAUavThatIsFlown) {
 }
 
 TEST_F(Strangers, ThatComeAndGo) {
-  const Output tether =
-      expect_harmless([](const std::string& address, const std::atomic<bool>& over) {
-        for (int i = 0; !over; ++i) {
-          const RawPeer passing(address);
-          if (i % 2 == 0) passing.reset_at_close();
-          if (i % 3 == 0) passing.write("\x10");
-        }
-      });
+  const Output tether = expect_harmless_acting(
+      [](RawPeer& passing, std::size_t i) {
+        if (i % 2 == 0) passing.reset_at_close();
+        if (i % 3 == 0) passing.write("\x10");
+      },
+      1);
   EXPECT_EQ(tether.err.find("refused"), std::string::npos) << tether.err;
 }
 
 TEST_F(Strangers, ThatCloseHalf) {
   const std::string frame = frame_of(hello_with("wrong"));
-  expect_harmless([&](const std::string& address, const std::atomic<bool>& over) {
-    std::vector<std::unique_ptr<RawPeer>> peers(60);
-    for (std::size_t i = 0; !over; ++i) {
-      auto& peer = peers[i % peers.size()];
-      peer = std::make_unique<RawPeer>(address);
-      if (i % 3 > 0) peer->write(frame.substr(0, frame.size() - i % 3 + 1));
-      peer->shut(i % 2 == 0 ? SHUT_WR : SHUT_RD);
-      std::this_thread::sleep_for(1ms);
-    }
-  });
+  expect_harmless_acting(
+      [&](RawPeer& peer, std::size_t i) {
+        if (i % 3 > 0) peer.write(frame.substr(0, frame.size() - i % 3 + 1));
+        peer.shut(i % 2 == 0 ? SHUT_WR : SHUT_RD);
+      },
+      60);
 }
 
 /// Sent away by its first frame, and going on nevertheless.
 TEST_F(Strangers, ThatFloodWithoutAHello) {
   std::string flood;
   for (int i = 0; i < 1000; ++i) flood += frame_of(link::Progress{});
-  expect_harmless([&](const std::string& address, const std::atomic<bool>& over) {
-    while (!over) {
-      const RawPeer peer(address);
-      while (!over && peer.write(flood)) {
-      }
-    }
-  });
+  int floods = 0;
+  const Output tether =
+      expect_harmless([&](const std::string& address, const std::atomic<bool>& over) {
+        while (!over) {
+          const RawPeer peer(address);
+          while (!over && peer.write(flood)) ++floods;
+        }
+      });
+  EXPECT_GT(floods, 20);
+  EXPECT_THAT(tether.err, HasSubstr("the first message must be a Hello"));
 }
 
 /// Its own token is worth nothing in the next run.
@@ -294,6 +283,19 @@ TEST_F(Strangers, ThatReplayTheHelloOfAnEarlierRun) {
       EXPECT_FALSE(process.has_ended());
     }
   }
+
+  std::vector<std::string> refusals;
+  expect_harmless([&](const std::string& address, const std::atomic<bool>& over) {
+    while (!over) {
+      RawPeer replayed(address);
+      replayed.write(recorded);
+      const std::string refusal = replayed.read_refusal(5s);
+      if (refusal.empty()) return;  // the run has ended
+      refusals.push_back(refusal);
+    }
+  });
+  EXPECT_THAT(refusals, SizeIs(testing::Gt(10u)));
+  EXPECT_THAT(refusals, Each(HasSubstr("wrong token")));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include "support/memory_watch.h"
 #include "support/raw_peer.h"
 #include "support/trials.h"
 
@@ -83,6 +84,8 @@ struct Misdeed {
   /// `next`: the sequence number of the next request, which may be stamped kFlown.
   std::function<void(RawPeer&, std::uint64_t next)> act;
   std::string reason;  ///< part of the run's
+  std::string end = "sut_lost";
+  long most_extra_MiB = 16;
 };
 
 void PrintTo(const Misdeed& misdeed, std::ostream* out) {
@@ -212,20 +215,35 @@ const Misdeed kMisdeeds[] = {
        sut.shut(SHUT_WR);
      },
      "closed the connection"},
-    {"ClosedTheOtherHalf", [](RawPeer& sut, auto) { sut.shut(SHUT_RD); }, "no word for 2 s"},
+    {"GoneInHalfAFinish",
+     [](RawPeer& sut, std::uint64_t next) {
+       const std::string frame = frame_of(request(next, kFlown, link::Finish{true, "done", "{}"}));
+       sut.write(frame.substr(0, frame.size() / 2));
+       sut.shut(SHUT_RDWR);
+     },
+     "closed the connection"},
+    {"GoneWhileHeld",
+     [](RawPeer& sut, std::uint64_t next) {
+       sut.write(sleep_request(next, kFlown, 4 * kFlown));
+       sut.shut(SHUT_RDWR);
+     },
+     "it was waiting for its reply of ET 4.000000 s"},
+    {"ClosedTheOtherHalf", [](RawPeer& sut, auto) { sut.shut(SHUT_RD); }, "no word for 2 s",
+     "sut_hung"},
     {"AFrameThatNeverEnds",
      [](RawPeer& sut, std::uint64_t next) {
        const std::string frame = frame_of(command(next, kFlown));
        sut.write(frame.substr(0, frame.size() - 1));
      },
-     "no word for 2 s"},
+     "no word for 2 s", "sut_hung"},
+    // A run may have 256 MiB of them, and its record is read whole when it is judged.
     {"AnnotationsWithoutEnd",
      [](RawPeer& sut, auto) {
        const std::string note = frame_of(annotation(10));
        while (sut.write(note)) {
        }
      },
-     "no word for 2 s"},
+     "no word for 2 s", "sut_hung", 512},
     {"CallsThatTakeNoTime",
      [](RawPeer& sut, std::uint64_t next) {
        const link::ReadSensor if_there{.sensor = 1, .only_if_available = true};
@@ -239,7 +257,7 @@ const Misdeed kMisdeeds[] = {
        while (sut.write(same)) {
        }
      },
-     "no word for 2 s"},
+     "no word for 2 s", "sut_hung"},
 };
 
 Output audit(const std::filesystem::path& folder) {
@@ -258,14 +276,20 @@ TEST_P(HostileSut, EndsItsRunByName) {
   ASSERT_TRUE(std::holds_alternative<link::Welcome>(sut.read(30s).value()));
   const std::uint64_t next = fly_honestly(sut);
 
+  const MemoryWatch memory(run.process().pid());
+  const long flown_KiB = memory.most_KiB();
   GetParam().act(sut, next);
   const Output output = run.wait(40s);
   EXPECT_EQ(output.code, 3);
   EXPECT_FALSE(output.timed_out);
   EXPECT_THAT(output.err, HasSubstr(GetParam().reason));
+  if (kMemoryIsTethers) {
+    EXPECT_LT(memory.most_KiB(), flown_KiB + 1024 * GetParam().most_extra_MiB);
+  }
 
   const auto result = read_result(folder_ / "out");
   EXPECT_EQ(result["outcome"], "failed");
+  EXPECT_EQ(result["end"], GetParam().end);
   EXPECT_EQ(result["exit_code"], 3);
   EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr(GetParam().reason));
   EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("uav1"));

@@ -43,7 +43,10 @@ nlohmann::json expect_failed(const Output& output, const std::filesystem::path& 
   const auto result = read_result(out);
   const std::string reason = result["reason"];
   EXPECT_EQ(result["outcome"], "failed");
+  EXPECT_EQ(result["exit_code"], 3);
   EXPECT_EQ(result["end"], failure.end) << reason;
+  for (const auto& [name, metric] : result.at("metrics").items())
+    EXPECT_TRUE(metric.at("value").is_null()) << name << ": " << metric;
   for (const std::string& part : failure.reason) EXPECT_THAT(reason, HasSubstr(part));
   EXPECT_THAT(reason, Not(HasSubstr("\n")));
   EXPECT_THAT(output.err, HasSubstr("tether: " + reason));

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <atomic>
+#include <thread>
+
+#include <sys/types.h>
+
+namespace tether::system_test {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kMemoryIsTethers = false;  // a sanitizer keeps what was freed
+#else
+inline constexpr bool kMemoryIsTethers = true;
+#endif
+
+/// Looks at a process' largest memory until it ends or this is destroyed.
+class MemoryWatch {
+ public:
+  explicit MemoryWatch(pid_t pid);
+  /// [KiB]
+  long most_KiB() const { return most_KiB_; }
+
+ private:
+  std::atomic<long> most_KiB_{0};
+  std::jthread thread_;
+};
+
+}  // namespace tether::system_test
