@@ -33,7 +33,7 @@ constexpr Duration kShowLimit = std::chrono::milliseconds(300);
 // The keeper ends the SUTs before it ends itself, which takes it up to two seconds.
 constexpr Duration kKeeperLimit = std::chrono::milliseconds(2500);
 constexpr int kLargestReturn_KiB = 256 * 1024;
-constexpr int kNotStarted = 120, kSshFailed = 255, kSignals = 128;
+constexpr int kNotStarted = 120, kSshFailed = 255;
 
 constexpr std::string_view kCopyScript = R"script(umask 077
 mkdir -p "$folder/files/$number" && cat >"$folder/files/$number/$name" &&
@@ -206,7 +206,7 @@ std::string Board::end_of(const ChildExit& exit, const std::string& last_words) 
     if (const auto why = connection_.lost(kShowLimit)) return "was cut off: " + *why;
   if (exit.code == kNotStarted && last_words.starts_with(kOwn))
     return "could not be started: " + last_words.substr(kOwn.size());
-  const int signal = exit.code - kSignals;
+  const int signal = exit.code - kSignalled;
   const bool may_be_keepers = signal == SIGTERM || signal == SIGKILL;
   if ((may_be_keepers || signal <= 0) && keeper_->wait(may_be_keepers ? kKeeperLimit : kShowLimit))
     return "was ended because " + let_go();

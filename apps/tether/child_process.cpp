@@ -214,13 +214,18 @@ ChildProcess::~ChildProcess() {
   terminate();
 }
 
+// Shells, launchers and tether-exec tell by such a code that a signal ended their program.
 void ChildProcess::reap(int status) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    exit_ = {128 + signal, "was ended by " + name_of_signal(signal)};
-  } else {
-    exit_ = {WEXITSTATUS(status), fmt::format("exited with code {}", WEXITSTATUS(status))};
+    exit_ = {kSignalled + signal, "was ended by " + name_of_signal(signal)};
+    return;
   }
+  const int code = WEXITSTATUS(status);
+  const int signal = code - kSignalled;
+  const bool tells_of_signal = signal > 0 && signal < NSIG;
+  exit_ = {code, fmt::format("exited with code {}{}", code,
+                             tells_of_signal ? ", as after " + name_of_signal(signal) : "")};
 }
 
 const std::optional<ChildExit>& ChildProcess::poll() {

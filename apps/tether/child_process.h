@@ -29,9 +29,12 @@ struct ChildCommand {
   Duration grace = std::chrono::seconds(1);  ///< from being asked to end to being made to
 };
 
+/// Exit codes beyond it say which signal ended a program; shells have it so, too.
+inline constexpr int kSignalled = 128;
+
 /// How a child ended.
 struct ChildExit {
-  int code = 0;             ///< exit code; 128 + signal where a signal ended it
+  int code = 0;             ///< exit code; kSignalled + signal where a signal ended it
   std::string description;  ///< "exited with code 3", "was ended by signal 11 (Segmentation fault)"
 };
 

@@ -31,8 +31,6 @@ BoardSut board_sut(Board& board, const scenario::Scenario& scenario, const scena
 
 // How long a SUT that has finished may take to leave.
 constexpr Duration kLeaveLimit = std::chrono::seconds(2);
-// Exit codes beyond it say which signal it was.
-constexpr int kSignalled = 128;
 // How long a lost SUT's process may take to end once its connection has.
 constexpr Duration kEndLimit = std::chrono::milliseconds(200);
 

@@ -81,10 +81,18 @@ constexpr bool kTakesAllMemory = false;
 TEST_F(Limits, OfMemoryAreAReason) {
   if (kTakesAllMemory) GTEST_SKIP() << "the sanitizer needs terabytes of address space";
   const auto scenario = write_hover_scenario(folder_.path(), "look");
-  int refused = 0;
+  int refused = 0, told = 0;
   for (const int mib : {60, 120, 240, 360, 480, 600})
-    if (!fly(scenario, "-v " + std::to_string(1024 * mib), HasSubstr("memory"))) ++refused;
+    if (!fly(scenario, "-v " + std::to_string(1024 * mib), HasSubstr("memory"))) {
+      ++refused;
+      if (!std::filesystem::exists(folder_ / "out")) continue;  // it had not come so far
+      ++told;
+      const auto result = read_result(folder_ / "out");
+      EXPECT_EQ(result["outcome"], "failed") << mib;
+      EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("memory")) << mib;
+    }
   EXPECT_GE(refused, 3);
+  EXPECT_GE(told, 1);
 }
 
 // What does not fit into memory shows when the first image is drawn.
@@ -98,6 +106,7 @@ TEST_F(Limits, OfMemoryForALargeImageAreAReason) {
   const auto scenario = write_hover_scenario(folder_.path(), "look", {{model, large.string()}});
   EXPECT_FALSE(fly(scenario, "-v " + std::to_string(1024 * 800),
                    AnyOf(HasSubstr("framebuffer"), HasSubstr("memory"))));
+  EXPECT_EQ(read_result(folder_ / "out")["outcome"], "failed");
 }
 
 TEST_F(Limits, OfAnImagesSizeAreABadFile) {

@@ -50,9 +50,9 @@ const StruckSimulator kStruckSimulators[] = {
     {"kill_rendering", {"simulator_lost", {kKilled}}},
     {"stop_opening", {"setup_failed", {"has not answered for"}}},
     // hang_limit_s of the scenario.
-    {"stop_warming_up", {"setup_failed", {"has not answered for 2 s"}}},
-    {"stop_advancing", {"simulator_lost", {"has not answered for 2 s"}}},
-    {"stop_rendering", {"simulator_lost", {"has not answered for 2 s"}}},
+    {"stop_warming_up", {"setup_failed", {"a stand-in has not answered for 2 s"}}},
+    {"stop_advancing", {"simulator_lost", {"a stand-in has not answered for 2 s"}}},
+    {"stop_rendering", {"simulator_lost", {"a stand-in has not answered for 2 s"}}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Phases, AtEachPhase, testing::ValuesIn(kStruckSimulators),
@@ -88,7 +88,7 @@ TEST(StoppedSimulator, IsWaitedForAndSaid) {
   Process process(command);
   ASSERT_TRUE(process.wait_for_err("everything waits for", std::chrono::seconds(60)))
       << process.err();
-  EXPECT_THAT(process.err(), HasSubstr("has not answered for 1 s"));
+  EXPECT_THAT(process.err(), HasSubstr("a stand-in, which has not answered for 1 s"));
   // The stand-in strikes at each step from there on.
   while (!process.has_ended()) {
     if (const auto simulator = find_process(mark, "gzserver")) kill(*simulator, SIGCONT);
