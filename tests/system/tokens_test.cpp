@@ -118,6 +118,18 @@ TEST_F(Tokens, OfAFailedRunAreSeenByNobody) {
   expect_not_in_record(watched, folder_ / "out");
 }
 
+TEST_F(Tokens, OfARunUnderTetherExecAreSeenByNobody) {
+  const std::string sut = "[\"" + bad_sut_program().string() + "\", \"good\"]";
+  const auto scenario =
+      write_hover_scenario(folder_.path(), "good",
+                           {{sut, "[\"" TETHER_EXEC_PROGRAM "\", " + sut.substr(1)},
+                            {"clock = \"cpu\"", "clock = \"wall\""}});
+  const Watched watched = watch(tether_run(scenario, {"--real-time-factor", "2"}), mark_);
+  EXPECT_EQ(watched.output.code, 0) << watched.output.err;
+  expect_unseen(watched);
+  expect_not_in_record(watched, folder_ / "out");
+}
+
 TEST_F(Tokens, OfACampaignAreNewForEachTrial) {
   write_hover_scenario(folder_.path(), "good");
   write_text(folder_ / "campaign.toml",
