@@ -22,9 +22,9 @@ Failure protocol_failure(const std::string& what) {
   return {Failure::Kind::kProtocol, "bad message: " + what};
 }
 
-/// Negative: none. Too large ones are left to `validate`.
+/// Too large ones are left to `validate`; any negative one but -1 is.
 std::optional<std::uint32_t> index_from_wire(std::int32_t index) {
-  if (index < 0) return std::nullopt;
+  if (index == -1) return std::nullopt;
   return static_cast<std::uint32_t>(index);
 }
 

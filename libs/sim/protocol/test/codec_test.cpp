@@ -162,6 +162,15 @@ TEST(Codec, RaysArriveAsTheyWereSent) {
   EXPECT_FALSE(there_and_back(CastRays{{}, {}, kOther, rays, 1.0}).carrier);
 }
 
+// On the wire -1 is none; this one comes as -2.
+TEST(Codec, OtherNegativeIndicesAreRefused) {
+  Encoder encoder;
+  const CastRays cast{{kPose}, 0xfffffffe, kOther, {{1.0, 0.0, 0.0}}, 12.5};
+  const auto decoded = decode_request(frame_of(encoder, Request(cast)));
+  ASSERT_FALSE(decoded);
+  EXPECT_THAT(decoded.failure().message, testing::HasSubstr("carrier"));
+}
+
 TEST(Codec, RenderArrivesAsItWasSent) {
   Render render;
   render.camera = {320, 200, 250.5, 250.5, -10.25, 1000.5};
