@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <exception>
 #include <regex>
 #include <sstream>
+#include <stdexcept>
 
 #include <console_bridge/console.h>
 #include <tinyxml2.h>
@@ -201,7 +201,7 @@ void SdfSource::parse() {
   QuietConsole console;
   try {
     errors_ = root_.Load(file_.string(), config);
-  } catch (const std::exception& error) {
+  } catch (const std::logic_error& error) {
     // Of the file or of one that it includes; libsdformat does not say which.
     throw Error(ErrorCode::kBadFile, {file_.string(), 0},
                 "libsdformat cannot read it (" + std::string(error.what()) +
