@@ -26,8 +26,6 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-constexpr long kMostExtraMemory_KiB = 16 * 1024;
-
 /// What a run had to bear, and what it came to.
 struct Flight {
   Output tether;
@@ -83,10 +81,10 @@ class Strangers : public testing::Test {
     return beside.tether;
   }
 
-  /// Over connection after connection does `act`, which gets the connection's number; keeps the
-  /// last `kept` of them open.
+  /// Over connection after connection does `act`, which gets the connection's number, and pauses;
+  /// keeps the last `kept` of them open.
   Output expect_harmless_acting(const std::function<void(RawPeer&, std::size_t)>& act,
-                                std::size_t kept) {
+                                std::size_t kept, std::chrono::milliseconds pause = 1ms) {
     std::size_t connections = 0;
     const Output tether =
         expect_harmless([&](const std::string& address, const std::atomic<bool>& over) {
@@ -95,7 +93,7 @@ class Strangers : public testing::Test {
             auto& peer = peers[connections % kept];
             peer = std::make_unique<RawPeer>(address);
             act(*peer, connections);
-            std::this_thread::sleep_for(1ms);
+            std::this_thread::sleep_for(pause);
           }
         });
     EXPECT_GT(connections, 20u);
@@ -228,7 +226,7 @@ TEST_F(Strangers, ThatComeAndGo) {
         if (i % 2 == 0) passing.reset_at_close();
         if (i % 3 == 0) passing.write("\x10");
       },
-      1);
+      1, 0ms);
   EXPECT_EQ(tether.err.find("refused"), std::string::npos) << tether.err;
 }
 

@@ -26,8 +26,6 @@ namespace {
 using namespace std::chrono_literals;
 using testing::HasSubstr;
 
-constexpr long kMostExtraMemory_KiB = 16 * 1024;
-
 // ---- What a SUT says
 
 link::Hello hello_for(const std::string& uav) {
@@ -241,6 +239,7 @@ const Misdeed kMisdeeds[] = {
     {"AnnotationsWithoutEnd",
      [](RawPeer& sut, auto) {
        const std::string note = frame_of(annotation(10));
+       for (int i = 0; i < 40'000; ++i) sut.write(note);
        while (sut.write(note)) std::this_thread::sleep_for(1ms);
      },
      "no word for 2 s", "sut_hung"},

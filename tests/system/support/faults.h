@@ -46,6 +46,9 @@ class HeldResult {
   std::filesystem::path out_, part_;
 };
 
+/// Fails a test that is about to be skipped in CI: what CI skips nobody tests.
+void expect_not_in_ci();
+
 /// The command under limits of a shell's `ulimit` ("-n 12"), with no files open but the first
 /// three.
 Command limited(const Command& command, const std::string& limits);
