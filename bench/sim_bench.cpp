@@ -27,8 +27,8 @@ void print_warning(const std::string& line) {
 World corridor() {
   const std::filesystem::path root = TETHER_SOURCE_DIR;
   WorldRequest request;
-  request.world = root / "worlds/corridor.sdf";
-  request.uavs = {{"alpha", root / "models/hummingbird/model.sdf", {0.0, 0.0, 1.2}, 0.0}};
+  request.world = root / "data/worlds/corridor.sdf";
+  request.uavs = {{"alpha", root / "data/models/hummingbird/model.sdf", {0.0, 0.0, 1.2}, 0.0}};
   return load_world(request, print_warning);
 }
 

@@ -9,7 +9,7 @@
 set(components tether-sut)
 if(NOT TETHER_TARGET_ONLY)
   list(APPEND components tether)
-  install(DIRECTORY campaigns missions models profiles rigs scenarios worlds
+  install(DIRECTORY data/campaigns data/missions data/models data/profiles data/rigs data/scenarios data/worlds
     DESTINATION "${CMAKE_INSTALL_DATADIR}/tether" COMPONENT tether)
 endif()
 set(package_of_tether tether)

@@ -221,9 +221,9 @@ void add_campaign_command(CLI::App& program, Action& action) {
   add_simulator_option(*command, options->simulator);
   command->add_flag("--resume", options->resume, "Go on with a folder: run only what is missing");
   command->footer(R"(Examples:
-  tether campaign campaigns/face_anchor.toml --out out/face_anchor
-  tether campaign campaigns/face_anchor.toml --out out/face_anchor --resume
-  tether campaign campaigns/face_anchor.toml --simulator gazebo --out out/face_anchor_gazebo)");
+  tether campaign data/campaigns/face_anchor.toml --out out/face_anchor
+  tether campaign data/campaigns/face_anchor.toml --out out/face_anchor --resume
+  tether campaign data/campaigns/face_anchor.toml --simulator gazebo --out out/face_anchor_gazebo)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

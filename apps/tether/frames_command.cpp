@@ -67,7 +67,7 @@ void add_frames_command(CLI::App& program, Action& action) {
   command->add_option("--out", options->out,
                       "Folder for the pictures (SVG) [frames, beside the record]");
   command->footer(R"(Example:
-  tether run scenarios/face_anchor.toml --images --out out/one
+  tether run data/scenarios/face_anchor.toml --images --out out/one
   tether frames out/one/record.mcap)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -43,9 +43,9 @@ constexpr const char* kFooter =
     R"(Exit codes: 0 goal reached, 1 goal missed, 2 wrong use or a bad file, 3 set-up failed.
 
 Examples:
-  tether run scenarios/face_anchor.toml
-  tether run scenarios/face_anchor.toml --condition "target, no sync" --seed 7
-  tether campaign campaigns/face_anchor.toml --out out/face_anchor
+  tether run data/scenarios/face_anchor.toml
+  tether run data/scenarios/face_anchor.toml --condition "target, no sync" --seed 7
+  tether campaign data/campaigns/face_anchor.toml --out out/face_anchor
   tether audit out/face_anchor/face_anchor/host/seed-0001/record.mcap)";
 
 int run(int argc, char** argv) {

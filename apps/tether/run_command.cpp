@@ -207,13 +207,13 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_flag("--json", options->json, "Print result.json instead of a summary");
   command->add_flag("--quiet", options->quiet, "Print errors and warnings only");
   command->footer(R"(Examples:
-  tether run scenarios/face_anchor.toml
-  tether run scenarios/face_anchor.toml --condition "target, no sync" --seed 7
-  tether run scenarios/face_anchor.toml --target profiles/targets/six_times_slower.toml
-  tether run scenarios/face_anchor.toml --target ssh://pi@board.local
-  tether run scenarios/face_anchor.toml --profile profiles/ideal.toml
-  tether run scenarios/face_anchor.toml --simulator gazebo
-  tether run scenarios/face_anchor.toml --images --out out/one)");
+  tether run data/scenarios/face_anchor.toml
+  tether run data/scenarios/face_anchor.toml --condition "target, no sync" --seed 7
+  tether run data/scenarios/face_anchor.toml --target data/profiles/targets/six_times_slower.toml
+  tether run data/scenarios/face_anchor.toml --target ssh://pi@board.local
+  tether run data/scenarios/face_anchor.toml --profile data/profiles/ideal.toml
+  tether run data/scenarios/face_anchor.toml --simulator gazebo
+  tether run data/scenarios/face_anchor.toml --images --out out/one)");
   command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 

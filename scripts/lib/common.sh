@@ -127,6 +127,6 @@ source_files() {
       [ ! -e "$file" ] || echo "$file"
     done
   else
-    find apps bench libs tests -type f \( -name '*.h' -o -name '*.hpp' -o -name '*.cpp' \) | sort
+    find apps bench common host target tests -type f \( -name '*.h' -o -name '*.hpp' -o -name '*.cpp' \) | sort
   fi
 }

@@ -1,6 +1,6 @@
 #include "link_seeds.h"
 
-#include "libs/link/test/random_message.h"
+#include "common/link/test/random_message.h"
 #include "seed_file.h"
 
 #include <tether/link/codec.h>

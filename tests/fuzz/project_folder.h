@@ -10,8 +10,8 @@ class ProjectFolder {
  public:
   ProjectFolder() {
     for (const char* name : {"models", "worlds", "profiles", "missions"}) {
-      std::filesystem::create_directory_symlink(std::filesystem::path(TETHER_SOURCE_DIR) / name,
-                                                folder_.path() / name);
+      std::filesystem::create_directory_symlink(
+          std::filesystem::path(TETHER_SOURCE_DIR) / "data" / name, folder_.path() / name);
     }
     folder_.write("scenarios/delays.txt", std::string_view("10\n20\n30.5\n"));
     folder_.write("scenarios/base.toml", std::string_view(kBase));

@@ -1,8 +1,8 @@
 #include "record_seeds.h"
 
-#include "libs/record/src/bytes.h"
-#include "libs/record/src/mcap_format.h"
-#include "libs/record/test/sample_messages.h"
+#include "host/record/src/bytes.h"
+#include "host/record/src/mcap_format.h"
+#include "host/record/test/sample_messages.h"
 #include "seed_file.h"
 
 #include <zstd.h>

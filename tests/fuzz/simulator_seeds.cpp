@@ -1,6 +1,6 @@
 #include "simulator_seeds.h"
 
-#include "libs/sim/protocol/test/random_message.h"
+#include "host/sim/protocol/test/random_message.h"
 #include "seed_file.h"
 #include "simulator_script.h"
 

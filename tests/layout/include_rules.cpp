@@ -178,8 +178,7 @@ Breaches check_private_headers(const std::vector<SourceFile>& files) {
         // of the program.
         for (std::filesystem::path folder = std::filesystem::path(file.path).parent_path();
              folder.has_relative_path(); folder = folder.parent_path()) {
-          const bool top = folder == "libs" || folder == "apps" || folder == "tests";
-          if (top) break;
+          if (!folder.has_parent_path()) break;
           if (paths.contains((folder / include.path).generic_string())) return {};
           if (paths.contains((folder / "src" / include.path).generic_string())) return {};
         }
@@ -232,7 +231,7 @@ Breaches check_randomness(const std::vector<SourceFile>& files) {
       "random_device", "getrandom", "getentropy"};
   Breaches breaches;
   for (const SourceFile& file : files) {
-    const bool token = file.path.starts_with("libs/link/src/token");
+    const bool token = file.path.starts_with("common/link/src/token");
     if (file.is_product() && !token)
       append(breaches, check_words(file, kWords, "draw by key instead (tether/base/random.h)"));
   }

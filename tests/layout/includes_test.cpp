@@ -21,50 +21,50 @@ SourceFile file_of(const std::string& path, const std::string& text) {
 // --------------------------------------------------------------------------
 
 TEST(Classify, KnowsLibraryAndRole) {
-  EXPECT_EQ(classify("libs/sim/mujoco/src/a/b.cpp").library, "sim_mujoco");
-  EXPECT_EQ(classify("libs/sim/include/tether/sim/world.h").library, "sim");
-  EXPECT_EQ(classify("libs/sim/include/tether/sim/world.h").role, Role::kPublicHeader);
-  EXPECT_EQ(classify("libs/base/test/time_test.cpp").role, Role::kTest);
-  EXPECT_EQ(classify("libs/base/testing/include/tether/base_testing/c.h").role, Role::kTesting);
+  EXPECT_EQ(classify("host/sim/mujoco/src/a/b.cpp").library, "sim_mujoco");
+  EXPECT_EQ(classify("host/sim/include/tether/sim/world.h").library, "sim");
+  EXPECT_EQ(classify("host/sim/include/tether/sim/world.h").role, Role::kPublicHeader);
+  EXPECT_EQ(classify("common/base/test/time_test.cpp").role, Role::kTest);
+  EXPECT_EQ(classify("common/base/testing/include/tether/base_testing/c.h").role, Role::kTesting);
   EXPECT_EQ(classify("apps/tether/main.cpp").role, Role::kProgram);
   EXPECT_EQ(classify("apps/tether-sut/test/mission_test.cpp").role, Role::kTest);
   EXPECT_EQ(classify("bench/link_bench.cpp").role, Role::kOther);
 }
 
 TEST(Arrows, PlantedBreachesAreFound) {
-  EXPECT_THAT(check_arrows({file_of("libs/tasks/src/a.cpp", "#include <tether/sim/world.h>\n")}),
-              ElementsAre(HasSubstr("libs/tasks/src/a.cpp:1: 'tasks' may not include 'sim'")));
-  EXPECT_THAT(check_arrows({file_of("libs/audit/src/a.cpp",
+  EXPECT_THAT(check_arrows({file_of("target/tasks/src/a.cpp", "#include <tether/sim/world.h>\n")}),
+              ElementsAre(HasSubstr("target/tasks/src/a.cpp:1: 'tasks' may not include 'sim'")));
+  EXPECT_THAT(check_arrows({file_of("host/audit/src/a.cpp",
                                     "#include <tether/sync/barrier_synchronizer.h>\n")}),
               ElementsAre(HasSubstr("'audit' may not include 'sync'")));
-  EXPECT_THAT(check_arrows({file_of("libs/tasks/test/a_test.cpp",
+  EXPECT_THAT(check_arrows({file_of("target/tasks/test/a_test.cpp",
                                     "#include <tether/coordinator/session.h>\n")}),
               ElementsAre(HasSubstr("'tasks' may not include 'coordinator'")));
-  EXPECT_THAT(check_arrows({file_of("libs/client/src/a.cpp", "#include <tether/client.hpp>\n")}),
+  EXPECT_THAT(check_arrows({file_of("target/client/src/a.cpp", "#include <tether/client.hpp>\n")}),
               ElementsAre(HasSubstr("'client' may not include 'client_c_api'")));
-  EXPECT_THAT(check_arrows({file_of("libs/novel/src/a.cpp", "#include <tether/base/time.h>\n")}),
+  EXPECT_THAT(check_arrows({file_of("host/novel/src/a.cpp", "#include <tether/base/time.h>\n")}),
               ElementsAre(HasSubstr("no line in the table")));
 }
 
 TEST(Arrows, FakesAreForTestsOnly) {
   const std::string text = "#include <tether/sim_testing/fake_simulator.h>\n";
-  EXPECT_THAT(check_arrows({file_of("libs/coordinator/src/a.cpp", text)}),
+  EXPECT_THAT(check_arrows({file_of("host/coordinator/src/a.cpp", text)}),
               ElementsAre(HasSubstr("fake")));
-  EXPECT_THAT(check_arrows({file_of("libs/coordinator/test/a_test.cpp", text)}), IsEmpty());
+  EXPECT_THAT(check_arrows({file_of("host/coordinator/test/a_test.cpp", text)}), IsEmpty());
   EXPECT_THAT(check_arrows({file_of("apps/tether/src/a.cpp", text)}),
               ElementsAre(HasSubstr("fake")));
   EXPECT_THAT(check_arrows({file_of("apps/tether/test/a_test.cpp", text)}), IsEmpty());
 }
 
 TEST(Cycles, APlantedCycleIsFound) {
-  EXPECT_THAT(check_cycles({file_of("libs/base/src/a.cpp", "#include <tether/link/codec.h>\n"),
-                            file_of("libs/link/src/b.cpp", "#include <tether/uav/math.h>\n"),
-                            file_of("libs/uav/src/c.cpp", "#include <tether/base/time.h>\n")}),
+  EXPECT_THAT(check_cycles({file_of("common/base/src/a.cpp", "#include <tether/link/codec.h>\n"),
+                            file_of("common/link/src/b.cpp", "#include <tether/uav/math.h>\n"),
+                            file_of("common/uav/src/c.cpp", "#include <tether/base/time.h>\n")}),
               ElementsAre("cycle: base -> link -> uav -> base"));
 }
 
 TEST(PublicHeaders, PlantedBreachesAreFound) {
-  const std::string path = "libs/link/include/tether/link/a.h";
+  const std::string path = "common/link/include/tether/link/a.h";
   EXPECT_THAT(check_public_headers({file_of(path, "#pragma once\n#include <asio.hpp>\n")}),
               ElementsAre(HasSubstr("third-party")));
   EXPECT_THAT(check_public_headers({file_of(path, "#pragma once\n#include <Eigen/Core>\n")}),
@@ -73,22 +73,22 @@ TEST(PublicHeaders, PlantedBreachesAreFound) {
               ElementsAre(HasSubstr("quotes")));
   EXPECT_THAT(check_public_headers({file_of(path, "#include <vector>\n")}),
               ElementsAre(HasSubstr("#pragma once")));
-  EXPECT_THAT(check_public_headers({file_of("libs/link/src/a.cpp", "#include <asio.hpp>\n")}),
+  EXPECT_THAT(check_public_headers({file_of("common/link/src/a.cpp", "#include <asio.hpp>\n")}),
               IsEmpty());
 }
 
 TEST(PrivateHeaders, PlantedBreachesAreFound) {
-  const SourceFile header = file_of("libs/link/src/frame.h", "#pragma once\n");
+  const SourceFile header = file_of("common/link/src/frame.h", "#pragma once\n");
   EXPECT_THAT(
-      check_private_headers(
-          {header,
-           file_of("libs/link/src/a.cpp", "#include \"frame.h\"\n#include \"link_generated.h\"\n"),
-           file_of("libs/link/test/a_test.cpp", "#include \"frame.h\"\n")}),
+      check_private_headers({header,
+                             file_of("common/link/src/a.cpp",
+                                     "#include \"frame.h\"\n#include \"link_generated.h\"\n"),
+                             file_of("common/link/test/a_test.cpp", "#include \"frame.h\"\n")}),
       IsEmpty());
   EXPECT_THAT(
-      check_private_headers({header, file_of("libs/client/src/a.cpp", "#include \"frame.h\"\n")}),
+      check_private_headers({header, file_of("target/client/src/a.cpp", "#include \"frame.h\"\n")}),
       ElementsAre(HasSubstr("is no file of this folder")));
-  EXPECT_THAT(check_private_headers({header, file_of("libs/client/src/a.cpp",
+  EXPECT_THAT(check_private_headers({header, file_of("target/client/src/a.cpp",
                                                      "#include \"../../link/src/frame.h\"\n")}),
               ElementsAre(HasSubstr("climbs")));
   EXPECT_THAT(check_private_headers({header, file_of("bench/a.cpp", "#include \"frame.h\"\n")}),
@@ -96,7 +96,7 @@ TEST(PrivateHeaders, PlantedBreachesAreFound) {
 }
 
 TEST(Sync, PlantedBreachesAreFound) {
-  const std::string path = "libs/sync/src/a.cpp";
+  const std::string path = "host/sync/src/a.cpp";
   EXPECT_THAT(check_sync_is_pure({file_of(path, "#include <thread>\n")}),
               ElementsAre(HasSubstr("<thread>")));
   EXPECT_THAT(check_sync_is_pure({file_of(path, "#include <spdlog/spdlog.h>\n")}),
@@ -108,15 +108,15 @@ TEST(Sync, PlantedBreachesAreFound) {
 }
 
 TEST(Coordinator, APlantedNameIsFound) {
-  EXPECT_THAT(check_coordinator_is_neutral({file_of("libs/coordinator/src/a.cpp",
+  EXPECT_THAT(check_coordinator_is_neutral({file_of("host/coordinator/src/a.cpp",
                                                     "\n auto s = make_mujoco_simulator();\n")}),
               ElementsAre(HasSubstr("a.cpp:2")));
 }
 
 TEST(Randomness, APlantedGeneratorIsFound) {
-  EXPECT_THAT(check_randomness({file_of("libs/uav/src/a.cpp", "std::mt19937 g;\n")}),
+  EXPECT_THAT(check_randomness({file_of("common/uav/src/a.cpp", "std::mt19937 g;\n")}),
               ElementsAre(HasSubstr("mt19937")));
-  EXPECT_THAT(check_randomness({file_of("libs/uav/test/a_test.cpp", "std::mt19937 g(1);\n")}),
+  EXPECT_THAT(check_randomness({file_of("common/uav/test/a_test.cpp", "std::mt19937 g(1);\n")}),
               IsEmpty());
 }
 

@@ -17,6 +17,11 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
+/// Folders of libraries: those of both sides, of the target's and of the host's.
+bool is_side(const std::string& folder) {
+  return folder == "common" || folder == "target" || folder == "host";
+}
+
 std::optional<Role> library_role(const std::string& folder) {
   if (folder == "include") return Role::kPublicHeader;
   if (folder == "src") return Role::kSource;
@@ -63,8 +68,9 @@ SourceFile classify(const std::string& path) {
     const bool is_test = std::find(parts.begin(), parts.end(), "test") != parts.end();
     file.role = is_test ? Role::kTest : Role::kProgram;
   }
-  if (parts.front() != "libs") return file;
-  // The library's name is the folders between libs/ and the first of include, src, test, testing.
+  if (!is_side(parts.front())) return file;
+  // The library's name is the folders between its side and the first of include, src, test,
+  // testing.
   for (std::size_t i = 1; i < parts.size(); ++i) {
     if (const auto role = library_role(parts[i])) {
       file.role = *role;
@@ -77,7 +83,7 @@ SourceFile classify(const std::string& path) {
 
 std::vector<SourceFile> read_sources(const fs::path& root) {
   std::vector<SourceFile> sources;
-  for (const char* top : {"apps", "bench", "libs", "tests"}) {
+  for (const char* top : {"apps", "bench", "common", "host", "target", "tests"}) {
     const auto keep = [](const fs::path& file) {
       return file.extension() == ".h" || file.extension() == ".hpp" || file.extension() == ".cpp";
     };

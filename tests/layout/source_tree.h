@@ -10,17 +10,18 @@ namespace tether::layout {
 
 /// Where in a library (or beside all of them) a file stands.
 enum class Role {
-  kPublicHeader,  ///< libs/<lib>/include
-  kSource,        ///< libs/<lib>/src, private headers too
-  kTesting,       ///< libs/<lib>/testing: fakes for others' tests
-  kTest,          ///< libs/<lib>/test, apps/<program>/test
+  kPublicHeader,  ///< SIDE/<lib>/include
+  kSource,        ///< SIDE/<lib>/src, private headers too
+  kTesting,       ///< SIDE/<lib>/testing: fakes for others' tests
+  kTest,          ///< SIDE/<lib>/test, apps/<program>/test
   kProgram,       ///< apps
   kOther,         ///< tests, bench
 };
 
 struct SourceFile {
-  std::string path;     ///< relative to the repository, with '/'
-  std::string library;  ///< name as in `#include <tether/NAME/…>`; empty outside libs
+  std::string path;  ///< relative to the repository, with '/'
+  std::string
+      library;  ///< name as in `#include <tether/NAME/…>`; empty outside of common, target and host
   Role role = Role::kOther;
   std::string text;
 
@@ -31,10 +32,10 @@ struct SourceFile {
   bool is_header() const { return path.ends_with(".h") || path.ends_with(".hpp"); }
 };
 
-/// Library and role of a path, with the nested library of libs/sim/mujoco told apart from libs/sim.
+/// Library and role of a path, with the nested library of host/sim/mujoco told apart from host/sim.
 SourceFile classify(const std::string& path);
 
-/// Every .h and .cpp below libs, apps, tests and bench, sorted by path.
+/// Every .h and .cpp below common, target, host, apps, tests and bench, sorted by path.
 std::vector<SourceFile> read_sources(const std::filesystem::path& root);
 
 /// Files below `root` that people read or write (sources, scripts, Markdown, CMake, data), sorted;

@@ -58,7 +58,7 @@ std::set<std::string> symbols_of(const std::filesystem::path& library) {
 
 TEST_F(ClientPackage, ShowsTheCommittedSymbolsAndNoOther) {
   const auto lines = lines_of(
-      read_text(std::filesystem::path(TETHER_SOURCE_DIR) / "libs/client/c_api/abi/symbols.txt"));
+      read_text(std::filesystem::path(TETHER_SOURCE_DIR) / "target/client/c_api/abi/symbols.txt"));
   const std::set<std::string> committed(lines.begin(), lines.end());
   EXPECT_GT(committed.size(), 40u);
   EXPECT_EQ(symbols_of(library()), committed) << "a name that is gone breaks programs; a new one "

@@ -254,7 +254,7 @@ class TornRecord : public Folder {
   std::string whole_;
 };
 
-// The reader alone: every byte of a small record, in libs/record/test/damage_test.cpp.
+// The reader alone: every byte of a small record, in host/record/test/damage_test.cpp.
 TEST_F(TornRecord, IsAuditedUpToTheTearWhichIsNamed) {
   for (const std::size_t part : {30u, 60u, 90u, 99u}) {
     tear_to(whole_.size() * part / 100);

@@ -98,7 +98,7 @@ TEST_F(Limits, OfMemoryAreAReason) {
 // What does not fit into memory shows when the first image is drawn.
 TEST_F(Limits, OfMemoryForALargeImageAreAReason) {
   if (kTakesAllMemory) GTEST_SKIP() << "the sanitizer needs terabytes of address space";
-  const std::string model = std::string(TETHER_SOURCE_DIR) + "/models/hummingbird/model.sdf";
+  const std::string model = std::string(TETHER_SOURCE_DIR) + "/data/models/hummingbird/model.sdf";
   const auto large = folder_ / "large.sdf";
   write_text(large,
              substituted(read_text(model), {{"<width>640</width>", "<width>4096</width>"},
@@ -110,7 +110,7 @@ TEST_F(Limits, OfMemoryForALargeImageAreAReason) {
 }
 
 TEST_F(Limits, OfAnImagesSizeAreABadFile) {
-  const std::string model = std::string(TETHER_SOURCE_DIR) + "/models/hummingbird/model.sdf";
+  const std::string model = std::string(TETHER_SOURCE_DIR) + "/data/models/hummingbird/model.sdf";
   const auto huge = folder_ / "huge.sdf";
   write_text(huge,
              substituted(read_text(model), {{"<width>640</width>", "<width>100000</width>"}}));

@@ -24,7 +24,7 @@ protocol::Look black_look(const std::string& visual, double alpha) {
   look.model = "panes";
   look.link = "link";
   look.visual = visual;
-  look.texture = (kSource / "models/textures/brick.png").string();
+  look.texture = (kSource / "data/models/textures/brick.png").string();
   look.alpha = alpha;
   return look;
 }

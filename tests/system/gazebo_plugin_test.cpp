@@ -25,15 +25,15 @@ struct Start {
   uav::Vec3 p_WB;
   double yaw_deg = 0.0;
 };
-const Start kRoom{(kSource / "worlds/room.sdf").string(), {1.2, 0.0, 1.2}, -29.0};
-const Start kCorridor{(kSource / "worlds/corridor.sdf").string(), {0.0, -0.8, 1.2}, 0.0};
+const Start kRoom{(kSource / "data/worlds/room.sdf").string(), {1.2, 0.0, 1.2}, -29.0};
+const Start kCorridor{(kSource / "data/worlds/corridor.sdf").string(), {0.0, -0.8, 1.2}, 0.0};
 const Start kBlocks{(kSource / "tests/system/data/blocks.sdf").string(), {0.0, 0.0, 1.0}, 0.0};
 const Start kGlass{(kSource / "tests/system/data/glass.sdf").string(), {0.0, 0.0, 1.0}, 0.0};
 
 // `has_cameras`: otherwise nobody ever asks for a picture.
 sim::World load(const Start& start, bool has_cameras) {
   sim::World world = sim::load_world({start.world,
-                                      {{"uav1", kSource / "models/hummingbird/model.sdf",
+                                      {{"uav1", kSource / "data/models/hummingbird/model.sdf",
                                         start.p_WB, start.yaw_deg * std::numbers::pi / 180.0}},
                                       {}},
                                      [](const std::string&) {});

@@ -425,7 +425,7 @@ TEST(HostileSutBesideAnHonestOne, EndsTheRunInItsOwnName) {
   const TempFolder folder;
   const std::string second =
       "[[uav]]\nname = \"uav2\"\nmodel = \"" TETHER_SOURCE_DIR
-      "/models/hummingbird/model.sdf\"\nposition_m = [2.0, 0.0, 1.0]\n\n[sut]";
+      "/data/models/hummingbird/model.sdf\"\nposition_m = [2.0, 0.0, 1.0]\n\n[sut]";
   ExternalRun run(
       write_hover_scenario(
           folder.path(), "fly_on",

@@ -35,7 +35,8 @@ record::Record fly(int seed, const std::string& profile) {
   const auto out = folder / "out";
   std::vector<std::string> arguments{
       "run", file, "--quiet", "--seed", std::to_string(seed), "--out", out.string()};
-  if (!profile.empty()) arguments.insert(arguments.end(), {"--profile", kSources / profile});
+  if (!profile.empty())
+    arguments.insert(arguments.end(), {"--profile", kSources / "data" / profile});
   const Output output = run(tether(arguments), std::chrono::seconds(60));
   EXPECT_EQ(output.code, 0) << output.err;
   return read_record(out);

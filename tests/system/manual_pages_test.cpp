@@ -114,7 +114,7 @@ TEST(ManualPages, AreWellFormed) {
 /// The page of the library names every status.
 TEST(ManualPages, TellEveryStatus) {
   const std::string header = read_text(std::filesystem::path(TETHER_SOURCE_DIR) /
-                                       "libs/client/c_api/include/tether/client.h");
+                                       "target/client/c_api/include/tether/client.h");
   const std::string page = read_text(page_of("tether-client.3"));
   const auto end = header.find("tether_status_name");
   const std::regex status("(TETHER_[A-Z_]+) = [0-9]+");

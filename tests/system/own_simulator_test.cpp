@@ -21,12 +21,12 @@ class OwnSimulator : public testing::Test {
     std::filesystem::copy(source + "/examples/own-simulator", example_);
     const auto build = example_ / "build";
     output_of({TETHER_CMAKE, "-S", example_, "-B", build, "-DCMAKE_CXX_COMPILER=g++",
-               "-DTETHER_SCHEMA=" + source + "/libs/sim/protocol/schema/simulator.fbs"});
+               "-DTETHER_SCHEMA=" + source + "/host/sim/protocol/schema/simulator.fbs"});
     output_of({TETHER_CMAKE, "--build", build});
     const auto file = example_ / "face_anchor.toml";
-    write_text(file,
-               substituted(read_text(file), {{"\"../../models", "\"" + source + "/models"},
-                                             {"\"../../profiles", "\"" + source + "/profiles"}}));
+    write_text(file, substituted(read_text(file),
+                                 {{"\"../../data/models", "\"" + source + "/data/models"},
+                                  {"\"../../data/profiles", "\"" + source + "/data/profiles"}}));
     simulator_ = std::make_unique<Process>(
         Command{{example_ / "build/own_simulator", folder_ / "yard.sock"}, {}, {}});
     EXPECT_TRUE(simulator_->wait_for_out("listening on " + address_, 30s));

@@ -14,12 +14,12 @@ class OwnSut : public testing::TestWithParam<const char*> {
     install_client(prefix_);
     std::filesystem::copy(folder_of(prefix_, "face_anchor.toml"), example_,
                           std::filesystem::copy_options::recursive);
-    const std::string data = "\"" + std::string(TETHER_SOURCE_DIR) + "/";
+    const std::string data = "\"" + std::string(TETHER_SOURCE_DIR) + "/data/";
     const auto file = example_ / "face_anchor.toml";
     write_text(file, substituted(read_text(file),
-                                 {{"\"../../worlds", data + "worlds"},
-                                  {"\"../../models", data + "models"},
-                                  {"\"../../profiles", data + "profiles"},
+                                 {{"\"../../data/worlds", data + "worlds"},
+                                  {"\"../../data/models", data + "models"},
+                                  {"\"../../data/profiles", data + "profiles"},
                                   {"build/face_anchor_cpp\"", std::string(GetParam()) + "\""}}));
   }
   void expect_goal(const std::string& condition = "scripted") const {

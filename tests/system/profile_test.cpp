@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 std::filesystem::path source(const std::string& file) {
-  return std::filesystem::path(TETHER_SOURCE_DIR) / file;
+  return std::filesystem::path(TETHER_SOURCE_DIR) / "data" / file;
 }
 
 /// The shipped scenario under a scripted clock, with few images.

@@ -33,8 +33,8 @@ class RealSensors : public testing::Test {
  protected:
   Output relative_position(const std::vector<std::string>& more) const {
     std::vector<std::string> arguments{
-        "relative_position",          "--anchor", "blue_box",  "--rig",
-        kSources / "rigs/bench.toml", "--camera", bench_.video};
+        "relative_position", "--anchor",  "blue_box", "--rig", kSources / "data/rigs/bench.toml",
+        "--camera",          bench_.video};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return sut(arguments);
   }
@@ -78,8 +78,8 @@ TEST_F(RealSensors, AreCharacterizedIntoAProfileThatPlugsIn) {
   EXPECT_EQ(samples_ms(profile, "range").size(), 30u);
 
   const auto out = folder_ / "out";
-  const Output flown = run(tether({"run", kSources / "scenarios/relative_position.toml", "--quiet",
-                                   "--profile", profile, "--out", out}),
+  const Output flown = run(tether({"run", kSources / "data/scenarios/relative_position.toml",
+                                   "--quiet", "--profile", profile, "--out", out}),
                            60s);
   EXPECT_EQ(flown.code, 0) << flown.err;
   EXPECT_EQ(read_result(out)["profiles"].back(), profile_name(profile));

@@ -29,8 +29,8 @@ Examples:
   tether-sut move_forward --anchor blue_box --speed-m-s 0.3
   TETHER_CLOCK='cpu*20' tether-sut closed_path --anchor blue_box --distance-m 1
   tether-sut sensor_characterization --sensor camera --acquisitions 100
-  tether-sut mission missions/look_around.toml
-  tether-sut relative_position --anchor blue_box --rig rigs/bench.toml --camera /dev/video0
+  tether-sut mission data/missions/look_around.toml
+  tether-sut relative_position --anchor blue_box --rig data/rigs/bench.toml --camera /dev/video0
   tether-sut characterize --camera /dev/video0 --range iio:vl53l0x --out bench.toml
   tether-sut calibrate --out board.toml
   tether-sut calibrate --against board.toml --write-target my_board.toml

@@ -186,7 +186,7 @@ TEST(CommandLine, ClosedPath) {
 }
 
 TEST(CommandLine, MissionTakesItsFileByPlaceOrByName) {
-  const char* file = TETHER_SOURCE_DIR "/missions/look_around.toml";
+  const char* file = TETHER_SOURCE_DIR "/data/missions/look_around.toml";
   for (const auto& arguments :
        {std::vector<const char*>{"mission", file}, {"mission", "--file", file, "--uav", "u"}}) {
     const CommandLine line = parsed(arguments);
@@ -196,7 +196,7 @@ TEST(CommandLine, MissionTakesItsFileByPlaceOrByName) {
 }
 
 TEST(CommandLine, ADeviceNeedsNoCoordinator) {
-  const char* rig = TETHER_SOURCE_DIR "/rigs/bench.toml";
+  const char* rig = TETHER_SOURCE_DIR "/data/rigs/bench.toml";
   const CommandLine line =
       parsed({"relative_position", "--anchor", "blue_box", "--rig", rig, "--camera", "/dev/video0",
               "--true-roi-px", "10,20,30,40", "--keep-image", "i.png"});
@@ -215,8 +215,8 @@ TEST(CommandLine, ADeviceNeedsNoCoordinator) {
 }
 
 TEST(CommandLine, EveryCommandTakesDevices) {
-  const char* rig = TETHER_SOURCE_DIR "/rigs/bench.toml";
-  const char* file = TETHER_SOURCE_DIR "/missions/look_around.toml";
+  const char* rig = TETHER_SOURCE_DIR "/data/rigs/bench.toml";
+  const char* file = TETHER_SOURCE_DIR "/data/missions/look_around.toml";
   const std::vector<std::vector<const char*>> commands = {
       {"sensor_characterization", "--sensor", "camera"},
       {"relative_position", "--anchor", "b"},

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 devices::Rig parsed(const std::string& text) {
-  Result<devices::Rig> rig = parse_rig(text, "rigs/r.toml");
+  Result<devices::Rig> rig = parse_rig(text, "data/rigs/r.toml");
   EXPECT_TRUE(rig) << rig.failure().message;
   return rig ? *rig : devices::Rig{};
 }
@@ -210,11 +210,11 @@ TEST(RigFile, WhatCannotBeReadIsNamed) {
 }
 
 TEST(RigFile, TheShippedBenchHasTheRoomsBlueBox) {
-  const Result<devices::Rig> rig = load_rig(TETHER_SOURCE_DIR "/rigs/bench.toml");
+  const Result<devices::Rig> rig = load_rig(TETHER_SOURCE_DIR "/data/rigs/bench.toml");
   ASSERT_TRUE(rig) << rig.failure().message;
   ASSERT_EQ(rig->anchors.size(), 1u);
   EXPECT_EQ(rig->anchors[0].name, "blue_box");
-  // As in worlds/room.sdf.
+  // As in data/worlds/room.sdf.
   EXPECT_EQ(rig->anchors[0].size_m, (uav::Vec3{0.4, 0.4, 0.4}));
   EXPECT_EQ(rig->anchors[0].color_rgb, (uav::Vec3{0.05, 0.15, 0.85}));
 }

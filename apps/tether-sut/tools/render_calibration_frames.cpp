@@ -25,9 +25,9 @@ using namespace tether;
 constexpr double kYaws_deg[] = {-24.0, -22.0, -20.0, -18.0, -16.0, -14.0};
 
 uav::CameraSample look(const std::filesystem::path& sources, double yaw_deg) {
-  const sim::WorldRequest request{.world = sources / "worlds/room.sdf",
+  const sim::WorldRequest request{.world = sources / "data/worlds/room.sdf",
                                   .uavs = {{"uav1",
-                                            sources / "models/hummingbird/model.sdf",
+                                            sources / "data/models/hummingbird/model.sdf",
                                             {1.2, 0.0, 1.2},
                                             rad_from_deg(yaw_deg)}},
                                   .anchors = {"blue_box"}};

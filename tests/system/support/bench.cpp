@@ -19,8 +19,8 @@ constexpr double kFrameRate_hz = 30.0;
 std::unique_ptr<sim::Simulator> make_simulator() {
   const std::filesystem::path sources = TETHER_SOURCE_DIR;
   const sim::WorldRequest request{
-      .world = sources / "worlds/room.sdf",
-      .uavs = {{"uav1", sources / "models/hummingbird/model.sdf", {2.6, 0.4, 1.2}, 0.0}},
+      .world = sources / "data/worlds/room.sdf",
+      .uavs = {{"uav1", sources / "data/models/hummingbird/model.sdf", {2.6, 0.4, 1.2}, 0.0}},
       .anchors = {"blue_box"}};
   auto simulator = sim::make_mujoco_simulator(sim::load_world(request, {}), {});
   simulator->reset(1);

@@ -5,8 +5,8 @@
 namespace tether::system_test {
 
 /// Real sensors where there are none: what the project's own simulator sees 2.9 m in front of the
-/// blue box of worlds/room.sdf, straight ahead, as files that look like devices. Camera and
-/// rangefinder are those of rigs/bench.toml.
+/// blue box of data/worlds/room.sdf, straight ahead, as files that look like devices. Camera and
+/// rangefinder are those of data/rigs/bench.toml.
 struct Bench {
   std::filesystem::path video;  ///< Motion JPEG, 640 × 480 at 30 Hz
   std::filesystem::path range;  ///< a folder like /sys/bus/iio/devices/iio:device0

@@ -33,7 +33,7 @@ Command command_of(const path& world, const std::string& display, const path& ho
            "--", "--lockstep", "-s", "libtether_gazebo.so", world.string()},
           {{"TETHER_SIMULATOR_ENDPOINT", "unix:" + socket.string()},
            {"GAZEBO_MASTER_URI", master_uri()},
-           {"GAZEBO_MODEL_PATH", (source / "models").string()},
+           {"GAZEBO_MODEL_PATH", (source / "data/models").string()},
            {"HOME", home.string()},
            {"DISPLAY", display}},
           home};

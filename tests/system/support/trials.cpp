@@ -46,7 +46,7 @@ std::filesystem::path write_face_scenario(const std::filesystem::path& folder,
                                           const std::vector<Substitution>& substitutions) {
   const auto model = folder / "small_camera.sdf";
   write_text(model, substituted(read_text(std::filesystem::path(TETHER_SOURCE_DIR) /
-                                          "models/hummingbird/model.sdf"),
+                                          "data/models/hummingbird/model.sdf"),
                                 {{"<width>640</width>", "<width>320</width>"},
                                  {"<height>480</height>", "<height>240</height>"}}));
   return write_scenario(folder / "face.toml",
@@ -71,12 +71,13 @@ std::filesystem::path hover_world() {
 std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder,
                                              const std::string& name,
                                              const std::vector<Substitution>& substitutions) {
-  const std::filesystem::path sources = TETHER_SOURCE_DIR;
+  const std::filesystem::path sources = TETHER_SOURCE_DIR "/data";
   for (const char* data : {"worlds", "models", "profiles", "missions"})
     std::filesystem::create_directory_symlink(sources / data, folder / data);
   const auto file = folder / "scenarios" / (name + ".toml");
   std::filesystem::create_directory(file.parent_path());
-  write_text(file, substituted(read_text(sources / "scenarios" / (name + ".toml")), substitutions));
+  write_text(file,
+             substituted(read_text(sources / "data/scenarios" / (name + ".toml")), substitutions));
   return file;
 }
 

@@ -104,8 +104,8 @@ TEST(LoadWorld, NestedModelsBecomeModelsOfTheirOwn) {
 }
 
 TEST(LoadWorld, PlacesUavs) {
-  const auto model = kSource / "models/hummingbird/model.sdf";
-  const auto world = load({kSource / "worlds/room.sdf",
+  const auto model = kSource / "data/models/hummingbird/model.sdf";
+  const auto world = load({kSource / "data/worlds/room.sdf",
                            {{"a", model, {1, 2, 3}, 0.5 * pi}, {"b", model, {4, 5, 6}, 0.0}},
                            {}})
                          .world;
@@ -113,7 +113,7 @@ TEST(LoadWorld, PlacesUavs) {
   EXPECT_EQ(world.uavs[0].name, "a");
   EXPECT_EQ(world.uavs[0].X_WB.p, (Vec3{1, 2, 3}));
   expect_near(uav::rotate(world.uavs[0].X_WB.q, {1, 0, 0}), {0, 1, 0});
-  EXPECT_THAT(refusal({kSource / "worlds/room.sdf", {{"a", model, {}}, {"a", model, {}}}, {}}),
+  EXPECT_THAT(refusal({kSource / "data/worlds/room.sdf", {{"a", model, {}}, {"a", model, {}}}, {}}),
               HasSubstr("two UAVs have the name 'a'"));
 }
 

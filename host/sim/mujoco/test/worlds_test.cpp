@@ -17,8 +17,8 @@ class WorldsTest : public ::testing::TestWithParam<const char*> {};
 World load(const std::string& name) {
   const std::filesystem::path root = TETHER_SOURCE_DIR;
   WorldRequest request;
-  request.world = root / "worlds" / name;
-  request.uavs = {{"alpha", root / "models/hummingbird/model.sdf", {1.2, 0.0, 1.2}, 0.3}};
+  request.world = root / "data/worlds" / name;
+  request.uavs = {{"alpha", root / "data/models/hummingbird/model.sdf", {1.2, 0.0, 1.2}, 0.3}};
   request.anchors = {"blue_box"};
   return load_world(request, testing::no_warnings());
 }

@@ -19,11 +19,12 @@ using ::testing::IsEmpty;
 using uav::Vec3;
 
 const std::filesystem::path kSource = TETHER_SOURCE_DIR;
-const std::filesystem::path kHummingbird = kSource / "models/hummingbird/model.sdf";
+const std::filesystem::path kHummingbird = kSource / "data/models/hummingbird/model.sdf";
 
 Loaded load_shipped(const std::string& world, const Vec3& start) {
-  return load(
-      {kSource / "worlds" / (world + ".sdf"), {{"uav", kHummingbird, start, 0.0}}, {"blue_box"}});
+  return load({kSource / "data/worlds" / (world + ".sdf"),
+               {{"uav", kHummingbird, start, 0.0}},
+               {"blue_box"}});
 }
 
 struct Shipped {
@@ -170,7 +171,7 @@ TEST(Hummingbird, CarriesCameraImuAndRangefinder) {
 
 TEST(ShippedMeshes, HaveFewTriangles) {
   for (const char* name : {"chair/chair.obj", "plant/leaves.obj"}) {
-    std::ifstream file(kSource / "models" / name);
+    std::ifstream file(kSource / "data/models" / name);
     ASSERT_TRUE(file.is_open()) << name;
     int triangles = 0;
     for (std::string line; std::getline(file, line);) triangles += line.starts_with("f ") ? 1 : 0;
@@ -180,16 +181,17 @@ TEST(ShippedMeshes, HaveFewTriangles) {
 }
 
 TEST(ShippedTextures, AreSmall) {
-  for (const auto& file : std::filesystem::directory_iterator(kSource / "models/textures")) {
+  for (const auto& file : std::filesystem::directory_iterator(kSource / "data/models/textures")) {
     EXPECT_LT(file.file_size(), 100'000u) << file.path();
   }
 }
 
 TEST(ProjectWorlds, NameEveryFileThatTheyWereReadFrom) {
   const std::filesystem::path root = TETHER_SOURCE_DIR;
-  const World world = load_world({.world = root / "worlds/room.sdf", .uavs = {}, .anchors = {}},
-                                 [](const std::string&) {});
-  EXPECT_TRUE(world.files.contains(root / "worlds/room.sdf"));
+  const World world =
+      load_world({.world = root / "data/worlds/room.sdf", .uavs = {}, .anchors = {}},
+                 [](const std::string&) {});
+  EXPECT_TRUE(world.files.contains(root / "data/worlds/room.sdf"));
   bool sdf_model = false, texture = false, mesh = false;
   for (const auto& file : world.files) {
     EXPECT_TRUE(std::filesystem::is_regular_file(file)) << file;

@@ -15,7 +15,7 @@ struct tether_subscription {
 
 namespace {
 
-/// Subscribes by `subscribe`, one function of libs/client, with a callback that it understands.
+/// Subscribes by `subscribe`, one function of target/client, with a callback that it understands.
 template <class Subscribe, class Callback>
 tether_status subscribe_by(Subscribe subscribe, tether_vehicle* vehicle, const char* sensor,
                            Callback callback, tether_subscription** out) {

@@ -12,7 +12,7 @@ namespace {
 
 std::vector<std::filesystem::path> toml_files(const std::string& folder) {
   std::vector<std::filesystem::path> files;
-  const auto path = std::filesystem::path(TETHER_SOURCE_DIR) / folder;
+  const auto path = std::filesystem::path(TETHER_SOURCE_DIR) / "data" / folder;
   for (const auto& entry : std::filesystem::directory_iterator(path)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
@@ -57,7 +57,7 @@ TEST(ShippedFiles, EveryTargetLoadsAndIsNamedAsItsFile) {
 }
 
 std::filesystem::path source(const std::string& file) {
-  return std::filesystem::path(TETHER_SOURCE_DIR) / file;
+  return std::filesystem::path(TETHER_SOURCE_DIR) / "data" / file;
 }
 
 /// A world with one UAV, and its timings, after all layers. No warning is expected.
