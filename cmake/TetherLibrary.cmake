@@ -16,7 +16,9 @@ target_compile_options(tether_compile_options INTERFACE
   -Wold-style-cast -Woverloaded-virtual -Wformat=2
   $<$<BOOL:${TETHER_WARNINGS_AS_ERRORS}>:-Werror>
   # Bit-identical results on every machine: no fused multiply-add behind our back.
-  -ffp-contract=off)
+  -ffp-contract=off
+  # In a unity build sources are included, and their unnamed namespaces look as if a header had them.
+  $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
 if(TETHER_SANITIZE)
   add_compile_options(-fsanitize=${TETHER_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
     # GCC's own instrumentation sets this one off in the standard library.

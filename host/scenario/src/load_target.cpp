@@ -11,7 +11,7 @@
 namespace tether::scenario {
 namespace {
 
-constexpr std::array<std::string_view, 2> kClocks = {"wall", "cpu"};
+constexpr std::array<std::string_view, 2> kTargetClocks = {"wall", "cpu"};
 constexpr std::int64_t kMostCores = 4096;
 
 /// What a name must have to become a folder's.
@@ -84,7 +84,7 @@ Target load_target(const std::filesystem::path& file) {
   target.description = root.text_or("description", "");
   target.ssh = read_address(root);
   if (root.has("clock")) {
-    target.clock = root.choice("clock", kClocks) == 0 ? Clock::kWall : Clock::kCpu;
+    target.clock = root.choice("clock", kTargetClocks) == 0 ? Clock::kWall : Clock::kCpu;
   }
   if (target.ssh) reject_what_a_board_has_itself(root, target);
   target.cpu_factor = root.number_or("cpu_factor", kFactor, 1.0);

@@ -17,7 +17,7 @@ using uav::SensorKind;
 // Which keys there are.
 
 /// In the order of SensorKind.
-constexpr std::array<std::string_view, 3> kKinds = {"camera", "imu", "range"};
+constexpr std::array<std::string_view, 3> kSensorKinds = {"camera", "imu", "range"};
 
 struct KeyRule {
   std::string_view key;
@@ -60,7 +60,7 @@ std::vector<std::string_view> keys_of(std::optional<SensorKind> kind) {
 
 std::optional<SensorKind> read_kind(const TomlTable& sensor) {
   if (!sensor.has("kind")) return std::nullopt;
-  return static_cast<SensorKind>(sensor.choice("kind", kKinds));
+  return static_cast<SensorKind>(sensor.choice("kind", kSensorKinds));
 }
 
 // When it measures.

@@ -21,7 +21,7 @@ struct Place {
               message + ", or fly in another simulator");
 }
 
-std::string text_of(const XMLElement& element) {
+std::string trimmed_text(const XMLElement& element) {
   const std::string_view text = element.GetText() == nullptr ? "" : element.GetText();
   const auto begin = text.find_first_not_of(" \t\r\n"), end = text.find_last_not_of(" \t\r\n");
   return begin == std::string_view::npos ? "" : std::string(text.substr(begin, end - begin + 1));
@@ -34,7 +34,7 @@ bool leads_to_one_place(std::string_view uri) {
 /// Gazebo looks for a relative path in its working folder and its own folders, not beside the file
 /// that names it, and may find another one there.
 void check_uri(const Place& place, const std::string& what) {
-  const std::string uri = text_of(place.element);
+  const std::string uri = trimmed_text(place.element);
   if (leads_to_one_place(uri)) return;
   refuse(place, "<uri> of " + what + " is '" + uri +
                     "', which Gazebo 11 does not look for beside this file; write model:// with "

@@ -10,10 +10,6 @@ namespace {
 
 constexpr std::string_view kPrefix = "iio:";
 
-Failure invalid(const std::string& message) {
-  return {Failure::Kind::kInvalid, message};
-}
-
 Result<std::string> by_path(System& system, const std::string& label, const std::string& path) {
   FileKind kind{};
   const int status = system.stat(path, kind);

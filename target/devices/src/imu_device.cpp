@@ -9,10 +9,6 @@
 namespace tether::devices {
 namespace {
 
-Failure invalid(const std::string& message) {
-  return {Failure::Kind::kInvalid, message};
-}
-
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts;
   std::istringstream stream(text);

@@ -38,10 +38,6 @@ Ways ways_of(std::string_view driver) {
   return {driver, false, kInfinity, {}};
 }
 
-Failure invalid(const std::string& message) {
-  return {Failure::Kind::kInvalid, message};
-}
-
 }  // namespace
 
 RangeDevice::RangeDevice(const Timeline& time, std::string label, Channel channel,

@@ -11,12 +11,12 @@ namespace tether::sim {
 namespace {
 
 /// Of a length in a world's file, too.
-constexpr double kFarthest_m = 1e5;
+constexpr double kFarthestBody_m = 1e5;
 constexpr double kUavTolerance = 1e-6;
 /// What is in contact is pushed apart a little before the first state.
 constexpr double kBodyTolerance = 1e-3;
 
-std::string text(const std::string& name, std::initializer_list<double> numbers) {
+std::string shown(const std::string& name, std::initializer_list<double> numbers) {
   std::string out = name + " (";
   for (const double number : numbers) {
     char digits[32];
@@ -26,11 +26,11 @@ std::string text(const std::string& name, std::initializer_list<double> numbers)
   out.back() = ')';
   return out;
 }
-std::string text(const uav::Vec3& p) {
-  return text("p_WB", {p.x, p.y, p.z});
+std::string shown(const uav::Vec3& p) {
+  return shown("p_WB", {p.x, p.y, p.z});
 }
-std::string text(const uav::Pose& X) {
-  return text(X.p) + ", " + text("q_WB", {X.q.w, X.q.x, X.q.y, X.q.z});
+std::string shown(const uav::Pose& X) {
+  return shown(X.p) + ", " + shown("q_WB", {X.q.w, X.q.x, X.q.y, X.q.z});
 }
 
 double difference(const uav::Vec3& a, const uav::Vec3& b) {
@@ -43,7 +43,7 @@ double difference(const uav::Quat& a, const uav::Quat& b) {
                    std::abs(a.y - sign * b.y), std::abs(a.z - sign * b.z)});
 }
 
-std::vector<std::string> body_names(const World& world) {
+std::vector<std::string> shown_names(const World& world) {
   std::vector<std::string> names;
   for (const Uav& uav : world.uavs) names.push_back("UAV '" + uav.name + "'");
   for (const Model& model : world.models) {
@@ -62,11 +62,11 @@ struct Source {
 
 [[noreturn]] void refuse(const Source& source, std::size_t body, const std::string& what) {
   throw Error(ErrorCode::kSetup,
-              source.simulator + ": " + body_names(source.world).at(body) + " " + what);
+              source.simulator + ": " + shown_names(source.world).at(body) + " " + what);
 }
 
 bool is_near(const uav::Vec3& p) {
-  return difference(p, {}) <= kFarthest_m;
+  return difference(p, {}) <= kFarthestBody_m;
 }
 
 }  // namespace
@@ -75,12 +75,12 @@ void check_reach(const World& world, const protocol::State& state, const std::st
   const Source source{world, simulator};
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
     const uav::Vec3& p_WB = state.bodies[i].p_WB;
-    if (!is_near(p_WB)) refuse(source, i, "is at " + text(p_WB) + " m, beyond 1e5 m");
+    if (!is_near(p_WB)) refuse(source, i, "is at " + shown(p_WB) + " m, beyond 1e5 m");
   }
   for (std::size_t i = 0; i < state.past.size(); ++i) {
     const uav::Vec3& p_WB = state.past[i].p;
     if (!is_near(p_WB))
-      refuse(source, i % state.bodies.size(), "was at " + text(p_WB) + " m, beyond 1e5 m");
+      refuse(source, i % state.bodies.size(), "was at " + shown(p_WB) + " m, beyond 1e5 m");
   }
 }
 
@@ -94,14 +94,15 @@ void check_start(const World& world, const protocol::State& state, const std::st
     const double tolerance = is_uav ? kUavTolerance : kBodyTolerance;
     if (difference(got.p_WB, expected.p) > tolerance ||
         difference(got.q_WB, expected.q) > tolerance)
-      refuse(source, i,
-             "begins at " + text(uav::Pose{got.p_WB, got.q_WB}) + " instead of " + text(expected));
+      refuse(
+          source, i,
+          "begins at " + shown(uav::Pose{got.p_WB, got.q_WB}) + " instead of " + shown(expected));
     if (!is_uav) continue;
     if (difference(got.v_WB, {}) > tolerance || difference(got.w_WB_B, {}) > tolerance)
       refuse(source, i,
              "does not begin at rest: it moves with " +
-                 text("v_WB", {got.v_WB.x, got.v_WB.y, got.v_WB.z}) + " m/s, " +
-                 text("w_WB_B", {got.w_WB_B.x, got.w_WB_B.y, got.w_WB_B.z}) + " rad/s");
+                 shown("v_WB", {got.v_WB.x, got.v_WB.y, got.v_WB.z}) + " m/s, " +
+                 shown("w_WB_B", {got.w_WB_B.x, got.w_WB_B.y, got.w_WB_B.z}) + " rad/s");
   }
 }
 

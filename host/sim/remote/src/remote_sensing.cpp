@@ -11,7 +11,7 @@ namespace tether::sim {
 namespace {
 
 /// Stands for "however far": what a float of a simulator still counts metres in.
-constexpr double kFarthest_m = 1e6;
+constexpr double kFarthestRay_m = 1e6;
 
 std::optional<std::uint32_t> index(std::optional<std::size_t> body) {
   if (!body) return std::nullopt;
@@ -26,7 +26,7 @@ void RemoteRays::cast(const RayBundle& bundle, std::span<double> distances_m) {
   request.carrier = index(bundle.ignored);
   request.X_WS = bundle.X_WS;
   request.rays_S.assign(bundle.rays_S.begin(), bundle.rays_S.end());
-  request.max_m = std::min(bundle.max_m, kFarthest_m);
+  request.max_m = std::min(bundle.max_m, kFarthestRay_m);
   const protocol::Distances answer = session_.ask(request);
   assert(answer.distance_m.size() == distances_m.size());
   std::copy(answer.distance_m.begin(), answer.distance_m.end(), distances_m.begin());

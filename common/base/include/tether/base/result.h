@@ -27,6 +27,11 @@ struct Failure {
   std::string message;  ///< one printable line for a person, whatever a peer had in it
 };
 
+/// The failure of a call whose argument, file or device cannot be used.
+inline Failure invalid(const std::string& why) {
+  return {Failure::Kind::kInvalid, why};
+}
+
 /// A value or the reason why there is none. `T` must not be `Failure`.
 template <class T>
 class [[nodiscard]] Result {
