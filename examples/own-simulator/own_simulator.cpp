@@ -1,10 +1,13 @@
-// A whole simulator for Tether in one file, with nothing of Tether but the schema of its protocol
-// (docs/guide/simulator-protocol.md):
+// A complete external simulator in one file. It uses only the schema of Tether's protocol
+// (docs/guide/simulator-protocol.md).
 //
 //   own_simulator /path/of/socket
 //
-// It knows one world, the yard of yard.sdf, and one UAV, which does at once what it is told, within
-// a limit of acceleration, and never tilts.
+// It has one world, the yard of yard.sdf, and one UAV. The UAV follows each command at once, with
+// limited acceleration, and never tilts.
+//
+// Parts: cast() intersects one ray with the yard; Simulator replies to each request; serve() moves
+// frames between a socket and a Simulator.
 #include "simulator_generated.h"
 
 #include <algorithm>
@@ -27,7 +30,6 @@ using flatbuffers::FlatBufferBuilder;
 using flatbuffers::Offset;
 
 // --- vectors
-// --------------------------------------------------------------------------------------
 
 struct Vec {
   double x = 0, y = 0, z = 0;
@@ -62,10 +64,9 @@ wire::Quat turned_left(double yaw_rad) {
   return {std::cos(yaw_rad / 2), 0, 0, std::sin(yaw_rad / 2)};
 }
 
-// --- the yard: a ray and what it meets
-// ------------------------------------------------------------
+// --- the yard: what a ray hits
 
-const Vec kBox{5.0, 0.5, 1.2};  // its centre; see yard.sdf
+const Vec kBox{5.0, 0.5, 1.2};  // centre; see yard.sdf
 constexpr double kHalfEdge = 0.2;
 constexpr double kNothing = std::numeric_limits<double>::infinity();
 
@@ -76,7 +77,7 @@ struct Hit {
 
 Hit cast(Vec from_W, Vec ray_W) {
   Hit hit;
-  if (ray_W.z < 0 && from_W.z > 0) {  // the ground, in squares of one metre
+  if (ray_W.z < 0 && from_W.z > 0) {  // the ground, in squares of 1 m
     hit.distance_m = -from_W.z / ray_W.z;
     const Vec at = from_W + hit.distance_m * ray_W;
     const bool light = (std::llround(std::floor(at.x)) + std::llround(std::floor(at.y))) % 2 == 0;
@@ -94,12 +95,11 @@ Hit cast(Vec from_W, Vec ray_W) {
   return hit;
 }
 
-// --- the simulator: one answer to each request
-// ----------------------------------------------------
+// --- the simulator: one reply to each request
 
 class Simulator {
  public:
-  // A frame, size prefix included, as it goes over the wire.
+  // The reply as a frame, with its size prefix.
   FlatBufferBuilder answer(const wire::Envelope& request) {
     FlatBufferBuilder b;
     try {
@@ -170,8 +170,8 @@ class Simulator {
     return reply(b, wire::Content::State, state(b).Union());
   }
 
-  // Distances of rays from poses that the host gives. The yard has nothing that moves but the UAV
-  // itself, so that poses of bodies make no difference here.
+  // Distances along rays from a pose that the host gives. Only the UAV itself moves in the yard, so
+  // the poses of bodies have no effect here.
   FlatBufferBuilder cast_rays(FlatBufferBuilder& b, const wire::CastRays& request) {
     std::vector<double> distances;
     for (const wire::Vec3* ray : *request.rays_s()) {
@@ -192,7 +192,7 @@ class Simulator {
     double nearest = r.far_m();
     for (int v = 0; v < r.height_px(); ++v) {
       for (int u = 0; u < r.width_px(); ++u, rgb += 3) {
-        // x ahead, y left, z up; 1 m ahead.
+        // The pixel's point 1 m ahead (x ahead, y left, z up).
         const Vec ray{1.0, (r.cx_px() - u) / r.focal_px(), (r.cy_px() - v) / r.focal_px()};
         const Hit hit = cast(from(r.x_ws()->p()), rotate(r.x_ws()->q(), (1 / norm(ray)) * ray));
         std::memcpy(rgb, hit.rgb, 3);
@@ -215,7 +215,7 @@ class Simulator {
     v_ = a_ = command_ = Vec{};
   }
 
-  // What is commanded is meant in a frame that turns with the UAV.
+  // Commands are in the heading frame, which turns with the UAV.
   void step(double dt) {
     const Vec wanted = rotate(turned_left(yaw_), command_) - v_;
     a_ = std::min(5.0, 3.0 / std::max(norm(wanted), 1e-9)) * wanted;
@@ -244,14 +244,13 @@ class Simulator {
   std::vector<wire::Pose> past_;
 };
 
-// --- the wire: frames over a socket
-// ---------------------------------------------------------------
+// --- frames over a socket
 
 bool receive(int socket, std::uint8_t* to, std::size_t bytes) {
   return ::recv(socket, to, bytes, MSG_WAITALL) == static_cast<ssize_t>(bytes);
 }
 
-// A frame is a length (uint32, little-endian) and so many bytes behind it.
+// A frame is a length (uint32, little-endian), followed by that number of bytes.
 bool receive_frame(int socket, std::vector<std::uint8_t>& frame) {
   constexpr std::uint32_t kMost = 64u << 20;
   frame.resize(4);
@@ -273,7 +272,7 @@ bool send_frame(int socket, const FlatBufferBuilder& b) {
   return true;
 }
 
-// One run: ends when the host hangs up.
+// One run: ends when the host closes the connection.
 void serve(int socket) {
   Simulator simulator;
   std::vector<std::uint8_t> frame;
@@ -293,7 +292,7 @@ int main(int count, char** arguments) {
   }
   std::strcpy(address.sun_path, arguments[1]);
   ::unlink(address.sun_path);
-  ::umask(0077);  // nobody else may fly here
+  ::umask(0077);  // only the owner can connect
   const int listening = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (::bind(listening, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0 ||
       ::listen(listening, 1) != 0) {

@@ -1,9 +1,9 @@
-/* Turns the UAV towards an anchor: the "face anchor" task in plain C99, with nothing but Tether's client library.
+/* Turns the UAV towards an anchor: the "face anchor" task in plain C99, with only Tether's client library.
  *
  * usage: face_anchor_c ANCHOR
  *
- * Started by `tether run` (see face_anchor.toml). Exit code: 0 it faces the anchor, 1 it does not, 2 wrong use, 3 the
- * connection failed. */
+ * `tether run` starts it (see face_anchor.toml). Exit code: 0 if it faces the anchor, 1 if it does not, 2 for wrong
+ * use, 3 if the connection failed. */
 
 #include <math.h>
 #include <stdio.h>
@@ -13,11 +13,11 @@
 static const double kPi = 3.14159265358979323846;
 static const double kGain_per_s = 1.2;
 static const int kImagesInARow = 3;
-static const int64_t kTimeLimit_ns = INT64_C(40000000000); /* of execution time, like every time here */
+static const int64_t kTimeLimit_ns = INT64_C(40000000000); /* execution time, like every time here */
 static const int64_t kRest_ns = INT64_C(500000000);
 
-/* Light and shade change how bright a surface is, hardly which colour: a pixel belongs to the anchor if it points the
- * same way in the space of colours and is not too dark to tell. */
+/* Light and shade change the brightness of a surface, but hardly its colour. A pixel belongs to the anchor if its
+ * vector in the colour space has the anchor's direction, and if it is not too dark. */
 static int has_color(const uint8_t* rgb, const tether_vec3* color) {
   const double r = rgb[0], g = rgb[1], b = rgb[2];
   const double dot = r * color->x + g * color->y + b * color->z;
@@ -26,7 +26,7 @@ static int has_color(const uint8_t* rgb, const tether_vec3* color) {
   return pixel > 50.0 * 50.0 && dot * dot > 0.9 * pixel * wanted;
 }
 
-/* Column of the middle of the anchor's pixels; 0 is returned if there are too few to be it. */
+/* Mean column of the anchor's pixels. Returns 0 if there are too few pixels. */
 static int find_column(const tether_image* image, const tether_image_info* info, const tether_vec3* color,
                        double* u_px) {
   const uint8_t* rgb = tether_image_rgb(image);
@@ -49,11 +49,11 @@ static void tell(tether_vehicle* vehicle, const char* anchor, uint64_t image_ind
            "{\"anchor\": \"%s\", \"camera\": \"camera\", \"image_index\": %llu, \"bearing_rad\": %.6f, "
            "\"distance_m\": null, \"converged\": %s}",
            anchor, (unsigned long long)image_index, bearing_rad, converged ? "true" : "false");
-  /* What is only told need not stop the flight; a lost connection shows at the next call. */
+  /* A failed annotation need not stop the flight; the next call reports a lost connection. */
   (void)tether_annotate(vehicle, "estimate", json);
 }
 
-/* What one image says: 1 and the bearing [rad], left of the middle positive; 0 if the anchor is not in it. */
+/* Reads one image: *seen = 1 and the bearing [rad], positive to the left, or *seen = 0 without the anchor. */
 static tether_status look(tether_vehicle* vehicle, const tether_vec3* color, const tether_camera_model* lens, int* seen,
                           uint64_t* index, double* bearing_rad) {
   tether_image* image = NULL;
@@ -69,12 +69,12 @@ static tether_status look(tether_vehicle* vehicle, const tether_vec3* color, con
   return status;
 }
 
-/* Turns until the anchor is faced (*faced = 1) or the time is up. */
+/* Turns until the UAV faces the anchor (*faced = 1) or the time limit is reached. */
 static tether_status face(tether_vehicle* vehicle, const tether_anchor* anchor, const tether_camera_model* lens,
                           int* faced) {
   const int64_t begin_ns = tether_now(vehicle);
   const double precision_rad = 2.0 * kPi / 180.0, fastest_rad_s = 25.0 * kPi / 180.0;
-  double yaw_rate_rad_s = fastest_rad_s; /* looks to the left until it sees something */
+  double yaw_rate_rad_s = fastest_rad_s; /* turns left until it sees the anchor */
   int in_a_row = 0;
   tether_vec3 color;
   tether_status status = tether_anchor_color(anchor, &color);
@@ -99,7 +99,7 @@ static tether_status face(tether_vehicle* vehicle, const tether_anchor* anchor, 
   return status;
 }
 
-/* With a vehicle: what it knows of the anchor and the lens, the flight, and the end of it. */
+/* Gets the anchor and the lens, flies, and finishes. Returns the exit code. */
 static int fly(tether_vehicle* vehicle, const char* name) {
   const tether_anchor* anchor = tether_find_anchor(vehicle, name);
   const tether_sensor* camera = tether_find_sensor(vehicle, "camera");
@@ -125,7 +125,7 @@ int main(int argc, char** argv) {
     fprintf(stderr, "usage: face_anchor_c ANCHOR\n");
     return 2;
   }
-  if (tether_connect(NULL, &vehicle) != TETHER_OK) { /* as the environment says */
+  if (tether_connect(NULL, &vehicle) != TETHER_OK) { /* settings from the environment */
     fprintf(stderr, "face_anchor_c: %s\n", tether_last_error());
     return 3;
   }

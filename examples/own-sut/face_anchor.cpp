@@ -1,10 +1,10 @@
-// Turns the UAV towards an anchor: the "face anchor" task in plain C++17, with nothing but Tether's
-// client library.
+// Turns the UAV towards an anchor: the "face anchor" task in plain C++17, with only Tether's client
+// library.
 //
 // usage: face_anchor_cpp ANCHOR
 //
-// Started by `tether run` (see face_anchor.toml). Exit code: 0 it faces the anchor, 1 it does not,
-// 2 wrong use, 3 the connection failed.
+// `tether run` starts it (see face_anchor.toml). Exit code: 0 if it faces the anchor, 1 if it does
+// not, 2 for wrong use, 3 if the connection failed.
 
 #include <algorithm>
 #include <chrono>
@@ -24,10 +24,10 @@ constexpr double kPrecision_rad = 2.0 * kPi / 180.0;
 constexpr double kFastest_rad_s = 25.0 * kPi / 180.0;
 constexpr double kGain_per_s = 1.2;
 constexpr int kImagesInARow = 3;
-constexpr auto kTimeLimit = 40s;  // of execution time, like every time here
+constexpr auto kTimeLimit = 40s;  // execution time, like every time here
 
-// Light and shade change how bright a surface is, hardly which colour: a pixel belongs to the
-// anchor if it points the same way in the space of colours and is not too dark to tell.
+// Light and shade change the brightness of a surface, but hardly its colour. A pixel belongs to the
+// anchor if its vector in the colour space has the anchor's direction, and if it is not too dark.
 bool has_color(const std::uint8_t* rgb, const api::Vec3& color) {
   const double r = rgb[0], g = rgb[1], b = rgb[2];
   const double dot = r * color.x + g * color.y + b * color.z;
@@ -36,7 +36,7 @@ bool has_color(const std::uint8_t* rgb, const api::Vec3& color) {
   return pixel > 50.0 * 50.0 && dot * dot > 0.9 * pixel * wanted;
 }
 
-// Column of the middle of the anchor's pixels; none if there are too few to be it.
+// Mean column of the anchor's pixels; none if there are too few pixels.
 std::optional<double> find_column(const api::Image& image, const api::Vec3& color) {
   double sum = 0.0;
   int count = 0;
@@ -50,7 +50,7 @@ std::optional<double> find_column(const api::Image& image, const api::Vec3& colo
   return sum / count;
 }
 
-// Angle of a column's viewing direction, left of the middle positive, of a lens without distortion.
+// Angle of a column's viewing direction [rad], positive to the left, for a lens without distortion.
 double bearing_of(double u_px, const api::CameraModel& lens) {
   return std::atan((lens.cx_px - u_px) / lens.fx_px);
 }
@@ -63,15 +63,16 @@ void tell(api::Vehicle& vehicle, const char* anchor, const api::Image& image, do
                 R"("distance_m": null, "converged": %s})",
                 anchor, static_cast<unsigned long long>(image.index()), bearing_rad,
                 converged ? "true" : "false");
-  // What is only told need not stop the flight; a lost connection shows at the next call.
+  // A failed annotation need not stop the flight; the next call reports a lost connection.
   (void)vehicle.annotate("estimate", json);
 }
 
-// Whether the anchor is faced in the end; a failure if the vehicle is lost.
+// Turns until the UAV faces the anchor (true) or the time limit is reached (false). Fails if the
+// vehicle is lost.
 api::Result<bool> face(api::Vehicle& vehicle, const api::Anchor& anchor,
                        const api::CameraModel& lens) {
   const api::ExecTime begin = vehicle.now();
-  double yaw_rate_rad_s = kFastest_rad_s;  // looks to the left until it sees something
+  double yaw_rate_rad_s = kFastest_rad_s;  // turns left until it sees the anchor
   int in_a_row = 0;
   while (in_a_row < kImagesInARow) {
     if (vehicle.now() - begin > kTimeLimit) return false;
@@ -96,7 +97,7 @@ int fail(const api::Failure& failure) {
   return 3;
 }
 
-// Ends the run with a word about why; 2 as exit code, because it is the user's to mend.
+// Ends the run with a reason. The exit code is 2, because the user must correct the scenario.
 int give_up(api::Vehicle& vehicle, const char* why) {
   std::fprintf(stderr, "face_anchor_cpp: %s\n", why);
   (void)vehicle.finish(false, why);
