@@ -26,8 +26,18 @@ if(TETHER_SANITIZE)
   add_link_options(-fsanitize=${TETHER_SANITIZE})
 endif()
 
+# The linker that takes a tenth of the time, where there is one for this target.
+find_program(TETHER_MOLD mold)
+mark_as_advanced(TETHER_MOLD)
+if(TETHER_MOLD AND NOT CMAKE_CROSSCOMPILING)
+  add_link_options(-fuse-ld=mold)
+endif()
+
 # Each public header is compiled alone, so that it includes all it needs.
 function(_tether_check_headers target include_dir)
+  if(CMAKE_UNITY_BUILD)
+    return()  # they would be one file, in which the first include serves them all
+  endif()
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE "${include_dir}" "${include_dir}/*.h")
   set(sources)
   foreach(header IN LISTS headers)
@@ -42,12 +52,13 @@ function(_tether_check_headers target include_dir)
   endif()
 endfunction()
 
-# What each kind of test run has to build: `tether_unit_tests` and `tether_checked_tests` (asan runs
-# these) and `tether_threaded_tests` (tsan), so that a sanitizer build compiles nothing that it does
-# not run.
-add_custom_target(tether_unit_tests)
-add_custom_target(tether_threaded_tests)
-add_custom_target(tether_checked_tests)
+# What must be there before a source can be read (scripts/tidy).
+add_custom_target(tether_generated)
+
+# What each kind of test run has to build, so that it compiles nothing that it does not run.
+foreach(kind IN ITEMS unit threaded_unit checked_system hostile_system threaded_system)
+  add_custom_target(tether_${kind}_tests)
+endforeach()
 
 # Tests are half of all that is compiled. What nearly every one includes is compiled once, in a program, whose
 # code is compiled as theirs is; and only what they test is optimised.
@@ -65,34 +76,41 @@ if(BUILD_TESTING)
     <vector> <gmock/gmock.h>)
 endif()
 
-# Registers the cases of a GoogleTest executable with CTest under its labels.
-function(_tether_register_test target prefix)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "LABELS" ${ARGN})
+# Registers a GoogleTest executable with CTest, as one entry: loading libraries and flying what a fixture flies costs
+# more than most cases. Its cases with their times are in test-results/<entry>.xml.
+#   LABELS   see tether_add_test
+#   TIMEOUT  seconds for the whole entry
+#   EVERY_CHANGE  of a test with the label "full": the cases (a --gtest_filter) that each change runs all the same
+function(_tether_register_test target name)
+  cmake_parse_arguments(ARG "" "TIMEOUT;EVERY_CHANGE" "LABELS" ${ARGN})
   target_precompile_headers(${target} REUSE_FROM tether_test_headers)
-  foreach(label IN ITEMS unit threaded checked)
-    if(label IN_LIST ARG_LABELS)
-      add_dependencies(tether_${label}_tests ${target})
+  # Tests of one program give their helpers the same names.
+  set_target_properties(${target} PROPERTIES UNITY_BUILD OFF)
+  if("unit" IN_LIST ARG_LABELS)
+    add_dependencies(tether_unit_tests ${target})
+    set(level unit)
+  else()
+    set(level system)
+  endif()
+  foreach(label IN LISTS ARG_LABELS)
+    if(TARGET tether_${label}_${level}_tests)
+      add_dependencies(tether_${label}_${level}_tests ${target})
     endif()
   endforeach()
-  # With a sanitizer a program takes longer to load than a unit test to run: a quarter of its cases each time.
-  if(TETHER_SANITIZE AND "unit" IN_LIST ARG_LABELS)
-    foreach(shard RANGE 3)
-      add_test(NAME ${prefix}.shard${shard} COMMAND ${target})
-      math(EXPR timeout "4 * ${ARG_TIMEOUT}")
-      set_tests_properties(${prefix}.shard${shard} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${timeout}
-        ENVIRONMENT "GTEST_TOTAL_SHARDS=4;GTEST_SHARD_INDEX=${shard}")
-    endforeach()
-    return()
+  if(ARG_EVERY_CHANGE)
+    _tether_add_test_entry(${target} ${name}.full "-${ARG_EVERY_CHANGE}" "${ARG_LABELS}" ${ARG_TIMEOUT})
+    list(REMOVE_ITEM ARG_LABELS full)
   endif()
-  gtest_discover_tests(${target} TEST_PREFIX "${prefix}." DISCOVERY_TIMEOUT 60)
-  # PROPERTIES of gtest_discover_tests cannot carry a list, so several labels are set when CTest has read the cases.
-  set(file "${CMAKE_CURRENT_BINARY_DIR}/${target}_properties.cmake")
-  file(CONFIGURE OUTPUT "${file}" @ONLY CONTENT [[
-if(@target@_TESTS)
-  set_tests_properties(${@target@_TESTS} PROPERTIES LABELS "@ARG_LABELS@" TIMEOUT @ARG_TIMEOUT@)
-endif()
-]])
-  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${file}")
+  _tether_add_test_entry(${target} ${name} "${ARG_EVERY_CHANGE}" "${ARG_LABELS}" ${ARG_TIMEOUT})
+endfunction()
+
+function(_tether_add_test_entry target entry filter labels timeout)
+  if(filter)
+    list(APPEND options "--gtest_filter=${filter}")
+  endif()
+  add_test(NAME ${entry} COMMAND ${target}
+    "--gtest_output=xml:${PROJECT_BINARY_DIR}/test-results/${entry}.xml" ${options})
+  set_tests_properties(${entry} PROPERTIES LABELS "${labels}" TIMEOUT ${timeout})
 endfunction()
 
 # tether_add_library(<name> SOURCES ... [PUBLIC ...] [PRIVATE ...] [TESTS ...] [TEST_LIBS ...]
@@ -125,6 +143,7 @@ function(tether_add_library name)
   _tether_check_headers(${target} "${CMAKE_CURRENT_SOURCE_DIR}/include")
   if(ARG_TESTING_SOURCES)
     add_library(${target}_testing STATIC ${ARG_TESTING_SOURCES})
+    set_target_properties(${target}_testing PROPERTIES UNITY_BUILD OFF)
     target_include_directories(${target}_testing PUBLIC testing/include)
     target_link_libraries(${target}_testing PUBLIC ${target} PRIVATE tether_compile_options)
     add_library(tether::${name}_testing ALIAS ${target}_testing)
@@ -139,26 +158,30 @@ function(tether_add_library name)
     endif()
     target_compile_definitions(${target}_test PRIVATE
       TETHER_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TETHER_TEST_DIR="${CMAKE_CURRENT_SOURCE_DIR}/test")
-    _tether_register_test(${target}_test ${name} LABELS unit ${name} ${ARG_LABELS} TIMEOUT 300)
+    _tether_register_test(${target}_test ${name} LABELS unit ${ARG_LABELS} TIMEOUT 600)
   endif()
 endfunction()
 
-# tether_add_test(<name> SOURCES ... [LIBS ...] LABELS ... [TIMEOUT <seconds>])
+# tether_add_test(<name> SOURCES ... [LIBS ...] LABELS ... [TIMEOUT <seconds>] [EVERY_CHANGE <filter>])
 #
-# A GoogleTest executable below tests/, target <name>_test. LABELS: "unit" (also run under asan+ubsan),
-# "threaded" (also run under tsan), "system" (whole programs), "checked" (system tests that are run
-# under asan+ubsan as well), ...
+# A GoogleTest executable below tests/, target <name>_test. LABELS say when it runs (CONTRIBUTING, "Which test runs where"):
+#   unit      first, and under asan and ubsan as well
+#   system    whole programs
+#   threaded  under tsan as well; a system test in `scripts/test --full` only
+#   hostile, checked   a system test that runs under asan and ubsan as well, the latter with --full only
+#   board, arm64, gazebo   needs this part; not in `scripts/test --quick`
+#   full      in `scripts/test --full` only, but for the cases of EVERY_CHANGE
 function(tether_add_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT;EVERY_CHANGE" "SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 300)
+    set(ARG_TIMEOUT 600)
   endif()
   add_executable(${name}_test ${ARG_SOURCES})
   target_link_libraries(${name}_test PRIVATE ${ARG_LIBS} GTest::gmock GTest::gtest_main tether_test_options)
   target_compile_definitions(${name}_test PRIVATE
     TETHER_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TETHER_BINARY_DIR="${PROJECT_BINARY_DIR}"
     TETHER_TEST_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
-  _tether_register_test(${name}_test ${name} LABELS ${ARG_LABELS} TIMEOUT ${ARG_TIMEOUT})
+  _tether_register_test(${name}_test ${name} LABELS ${ARG_LABELS} TIMEOUT ${ARG_TIMEOUT} EVERY_CHANGE "${ARG_EVERY_CHANGE}")
 endfunction()
 
 # tether_add_program(<name> SOURCES ... LIBS ... [COMPONENT <component>]): an executable of apps/, installed as part of

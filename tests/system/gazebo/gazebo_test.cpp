@@ -1,4 +1,5 @@
 #include "support/gazebo.h"
+#include "support/gzserver.h"
 
 #include <csignal>
 #include <cstdlib>
@@ -30,6 +31,9 @@ std::filesystem::path patient_hover(const std::filesystem::path& folder) {
 
 class Gazebo : public testing::Test {
  protected:
+  void SetUp() override {
+    if (const auto why = no_gzserver()) GTEST_SKIP() << *why;
+  }
   Output fly(const std::filesystem::path& scenario, const Variables& variables = {}) {
     return run(gazebo_run(scenario, folder_ / "out", variables, mark_), 100s);
   }

@@ -1,3 +1,4 @@
+#include "support/gzserver.h"
 #include "support/trials.h"
 
 #include <algorithm>
@@ -67,6 +68,9 @@ void expect_same_roi(const Roi& a, const Roi& b, int tolerance_px) {
 
 class GazeboFlight : public testing::Test {
  protected:
+  void SetUp() override {
+    if (const auto why = no_gzserver()) GTEST_SKIP() << *why;
+  }
   TempFolder folder_;
 };
 
