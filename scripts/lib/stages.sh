@@ -1,0 +1,59 @@
+# Stages of scripts/test, and the table that it ends with; sourced, never run.
+# shellcheck shell=bash
+
+stage_names=()
+stage_seconds=()
+began=$SECONDS
+rm -rf "$ROOT"/build/{ci,asan,tsan}/test-results
+
+# stage NAME COMMAND...: runs it, and remembers how long it took.
+stage() {
+  local since=$SECONDS
+  say "$1"
+  stage_names+=("$1")
+  "${@:2}"
+  stage_seconds+=("$((SECONDS - since))")
+}
+
+# Cases of all test programs so far: "seconds<TAB>result<TAB>build: program.Suite.Case<TAB>why" a line.
+cases() {
+  local file
+  for file in "$ROOT"/build/{ci,asan,tsan}/test-results/*.xml; do
+    [ -e "$file" ] || continue
+    awk -v build="$(basename "$(dirname "$(dirname "$file")")")" -v program="$(basename "$file" .xml)" '
+      function value(name) { return match($0, " " name "=\"[^\"]*\"") ? substr($0, RSTART + length(name) + 3, RLENGTH - length(name) - 4) : "" }
+      function put() { if (id != "") printf "%s\t%s\t%s\t%s\n", seconds, result, id, why; id = "" }
+      /<testcase / {
+        put()
+        if (value("status") != "run") next
+        id = build ": " program " " value("classname") "." value("name"); seconds = value("time")
+        result = value("result") == "skipped" ? "skipped" : "passed"; why = ""
+      }
+      /<failure / { result = "failed" }
+      /<skipped / { sub(/.*&#x0A;/, "", $0); why = value("message"); if (why == "") { why = $0; sub(/".*/, "", why) } }
+      END { put() }' "$file"
+  done
+}
+
+# The last words of scripts/test, whatever it ended with.
+summary() {
+  local status=$? i
+  [ "${#stage_names[@]}" -gt 0 ] || return "$status"
+  printf '\n\033[1m== Seconds of each stage\033[0m\n'
+  for i in "${!stage_names[@]}"; do
+    printf '%6s  %s\n' "${stage_seconds[$i]:-failed}" "${stage_names[$i]}"
+  done
+  printf '%6s  in all\n' "$((SECONDS - began))"
+  cases >"$ROOT/build/test-cases.tsv"
+  printf '\n\033[1m== Seconds of the twenty slowest cases\033[0m\n'
+  sort -rn "$ROOT/build/test-cases.tsv" | awk -F '\t' 'NR <= 20 { printf "%6.1f  %s\n", $1, $3 }'
+  if grep -q $'\tskipped\t' "$ROOT/build/test-cases.tsv"; then
+    printf '\n\033[1m== Skipped\033[0m\n'
+    awk -F '\t' '$2 == "skipped" { print $3 ": " $4 }' "$ROOT/build/test-cases.tsv"
+  fi
+  echo
+  awk -F '\t' '{ ++n[$2] } END { printf "%d passed, %d failed, %d skipped\n", n["passed"], n["failed"], n["skipped"] }' \
+    "$ROOT/build/test-cases.tsv"
+  return "$status"
+}
+trap summary EXIT
