@@ -93,6 +93,7 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"link", {"base", "uav"}},
       {"client", {"base", "uav", "link"}},
       {"client_c_api", {"base", "uav", "link", "client"}},
+      {"supervisor", {"base", "link", "client"}},
       {"devices", {"base", "uav", "client"}},
       {"vision", {"base", "uav"}},
       {"tasks", {"base", "uav", "client", "vision"}},

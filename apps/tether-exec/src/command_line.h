@@ -1,6 +1,6 @@
 #pragma once
 
-#include "settings.h"
+#include <tether/supervisor/settings.h>
 
 #include <optional>
 #include <string>

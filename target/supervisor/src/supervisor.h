@@ -3,7 +3,7 @@
 #include "callers.h"
 #include "freezer.h"
 #include "joining.h"
-#include "settings.h"
+#include <tether/supervisor/settings.h>
 #include "statistics.h"
 #include "supervision.h"
 
