@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 void Callers::add_to(std::vector<pollfd>& entries) const {
   entries.push_back({listener_.get(), POLLIN, 0});
@@ -63,4 +63,4 @@ void Callers::send(CallerId caller, const link::Message& message) {
   if (found != connections_.end() && !found->second.send(message)) connections_.erase(found);
 }
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

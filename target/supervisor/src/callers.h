@@ -11,7 +11,7 @@
 
 #include <tether/client/exec/local_socket.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 /// The connections of the program's threads and processes.
 class Callers {
@@ -48,4 +48,4 @@ class Callers {
   std::map<CallerId, client::LocalSocket> connections_;
 };
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

@@ -18,7 +18,7 @@
 
 #include <tether/client/exec/file_descriptor.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 namespace {
 
 using client::FileDescriptor;
@@ -157,4 +157,4 @@ Result<std::unique_ptr<Freezer>> make_cgroup_freezer(const Cgroup& cgroup) {
       std::make_unique<CgroupFreezer>(std::move(freeze), std::move(events)));
 }
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

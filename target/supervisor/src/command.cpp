@@ -12,7 +12,7 @@
 
 #include <tether/client/exec/file_descriptor.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 namespace {
 
 using client::FileDescriptor;
@@ -67,4 +67,4 @@ Result<pid_t> start_command(const std::vector<std::string>& command, const std::
                                               "': " + std::strerror(child > 0 ? error : errno)};
 }
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

@@ -10,7 +10,7 @@
 
 #include <tether/base/result.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 /// Starts a command in a process group of its own, and in `cgroup` if there is one, with
 /// TETHER_EXEC set to `socket`. A standard input that is a terminal becomes /dev/null: a group in
@@ -20,4 +20,4 @@ namespace tether::exec {
 Result<pid_t> start_command(const std::vector<std::string>& command, const std::string& socket,
                             const std::optional<Cgroup>& cgroup);
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

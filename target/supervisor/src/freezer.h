@@ -8,7 +8,7 @@
 #include <tether/base/result.h>
 #include <tether/base/time.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 /// Stops every thread of the command's processes, and lets them go again.
 class Freezer {
@@ -48,4 +48,4 @@ Result<std::unique_ptr<Freezer>> make_cgroup_freezer(const Cgroup& cgroup);
 /// process's children.
 Result<std::unique_ptr<Freezer>> make_signal_freezer(pid_t group, pid_t guardian);
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 namespace {
 
 /// Reads process groups until the other end is gone; returns the last one.
@@ -68,4 +68,4 @@ void Guardian::watch(pid_t group) {
   static_cast<void>(!::write(pipe_.get(), &group, sizeof group));
 }
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

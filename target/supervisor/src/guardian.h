@@ -6,7 +6,7 @@
 
 #include <tether/client/exec/file_descriptor.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 /// A small process that outlives this one, however it ends, and clears up after it: kills what is
 /// left of the command's processes, stopped or not, and removes the cgroup and the private folder.
@@ -30,4 +30,4 @@ class Guardian {
   pid_t process_ = -1;
 };
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

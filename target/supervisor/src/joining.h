@@ -4,7 +4,7 @@
 
 #include <tether/base/time.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 /// Whether the command must stand still because it has asked to join and not been answered: what
 /// its threads computed meanwhile would be charged to nobody. Pure; instants on one clock.
@@ -30,4 +30,4 @@ class Joining {
   bool over_ = false;
 };
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

@@ -20,7 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 namespace {
 
 /// The text of a file of /proc; empty: its process has ended.
@@ -203,4 +203,4 @@ void kill_all_with(const std::string& variable) {
   wait_until([&variable] { return !kill_some_with(variable); }, kLongestFreeze);
 }
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

@@ -6,7 +6,7 @@
 
 #include <sys/types.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 /// A process as a look at it found it.
 struct ProcessState {
@@ -53,4 +53,4 @@ class ProcessTree {
 /// environment, wherever they belong.
 void kill_all_with(const std::string& variable);
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

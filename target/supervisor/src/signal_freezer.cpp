@@ -8,7 +8,7 @@
 #include <signal.h>
 #include <unistd.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 namespace {
 
 std::vector<pid_t> own_children_of(const std::vector<ProcessState>& processes) {
@@ -68,4 +68,4 @@ Result<std::unique_ptr<Freezer>> make_signal_freezer(pid_t group, pid_t guardian
                  "this kernel does not list the children of processes (CONFIG_PROC_CHILDREN)"};
 }
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-namespace tether::exec {
+namespace tether::supervisor {
 namespace {
 
 std::string line(const char* what, std::vector<Duration> durations) {
@@ -31,4 +31,4 @@ std::string Statistics::report(Duration execution_time) const {
   return head + line("freeze", freezes_) + line("thaw", thaws_) + line("overshoot", overshoots_);
 }
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

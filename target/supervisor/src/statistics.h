@@ -6,7 +6,7 @@
 
 #include <tether/base/time.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 /// What stopping costs, for `--verbose`.
 class Statistics {
@@ -23,4 +23,4 @@ class Statistics {
   std::vector<Duration> freezes_, thaws_, overshoots_;
 };
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

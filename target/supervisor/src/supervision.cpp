@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-namespace tether::exec {
+namespace tether::supervisor {
 namespace {
 
 Failure wrong(const std::string& what, std::uint64_t sequence) {
@@ -194,4 +194,4 @@ std::vector<Answer> Supervision::take_answers() {
   return std::exchange(answers_, {});
 }
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

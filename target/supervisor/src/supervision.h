@@ -9,7 +9,7 @@
 #include <tether/base/time.h>
 #include <tether/link/messages.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 /// One connection of a program under supervision; it has one call open at a time.
 using CallerId = std::uint64_t;
@@ -108,4 +108,4 @@ class Supervision {
   std::vector<Answer> answers_;
 };
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

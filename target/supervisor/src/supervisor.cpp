@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <utility>
 #include <variant>
 
@@ -12,7 +11,7 @@
 
 #include <tether/client/simulated_vehicle.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 namespace {
 
 using client::ClockState;
@@ -34,13 +33,14 @@ int exit_code_from(int status) {
 
 Supervisor::Supervisor(const Settings& settings, pid_t command, client::SharedClockPage clock,
                        client::FileDescriptor listener, client::FileDescriptor signals,
-                       std::unique_ptr<Freezer> freezer)
+                       std::unique_ptr<Freezer> freezer, Say say)
     : settings_(settings),
       command_(command),
       clock_(std::move(clock)),
       signals_(std::move(signals)),
       freezer_(std::move(freezer)),
       callers_(std::move(listener), clock_.descriptor),
+      say_(std::move(say)),
       joining_(client::ConnectOptions().welcome_timeout) {}
 
 int Supervisor::run() {
@@ -62,11 +62,7 @@ int Supervisor::run() {
 }
 
 std::string Supervisor::statistics() const {
-  return "tether-exec: " + statistics_.report(clock_.page->now().time_since_epoch());
-}
-
-void Supervisor::say(const std::string& text) const {
-  std::fprintf(stderr, "tether-exec: %s\n", text.c_str());
+  return statistics_.report(clock_.page->now().time_since_epoch());
 }
 
 // --- waiting ------------------------------------------------------------------------------------
@@ -271,7 +267,7 @@ void Supervisor::lose_coordinator(const Failure& failure) {
   joining_.over();
   const bool was_over = supervision_ && supervision_->is_over();
   if (supervision_) supervision_->end(std::nullopt);
-  if (!was_over && !(supervision_ && supervision_->is_finished())) say(failure.message);
+  if (!was_over && !(supervision_ && supervision_->is_finished())) say_(failure.message);
   for (const CallerId caller : std::exchange(waiting_, {})) callers_.drop(caller);
 }
 
@@ -316,7 +312,7 @@ void Supervisor::stop() {
 // The coordinator hears nothing more: from how far ET has come meanwhile it would conclude that the
 // program was slow, not that it is lost.
 void Supervisor::give_up(const Failure& failure) {
-  say(failure.message + "; it is killed");
+  say_(failure.message + "; it is killed");
   failed_ = true;
   ::kill(-command_, SIGKILL);
   channel_.reset();
@@ -341,4 +337,4 @@ void Supervisor::report_progress() {
   next_progress_ = read_monotonic() + progress_period_;
 }
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

@@ -3,7 +3,6 @@
 #include "callers.h"
 #include "freezer.h"
 #include "joining.h"
-#include <tether/supervisor/settings.h>
 #include "statistics.h"
 #include "supervision.h"
 
@@ -16,8 +15,10 @@
 #include <sys/types.h>
 
 #include <tether/client/exec/clock_page.h>
+#include <tether/supervisor/settings.h>
+#include <tether/supervisor/supervise.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 /// The loop around Supervision: one thread that waits for the command's threads, the coordinator,
 /// signals and the next instant at which the command must stand still.
@@ -26,7 +27,7 @@ class Supervisor {
   /// `signals` is a signalfd of SIGCHLD, SIGINT, SIGTERM and SIGHUP.
   Supervisor(const Settings& settings, pid_t command, client::SharedClockPage clock,
              client::FileDescriptor listener, client::FileDescriptor signals,
-             std::unique_ptr<Freezer> freezer);
+             std::unique_ptr<Freezer> freezer, Say say);
 
   /// Until the command ends. Returns its exit code, 128 + signal if one ended it, or 3 if it could
   /// not be stopped; then it has been killed.
@@ -67,14 +68,13 @@ class Supervisor {
   void report_progress();
   bool group_runs() const { return !held_ && (!supervision_ || supervision_->is_running()); }
 
-  void say(const std::string& text) const;
-
   const Settings& settings_;
   pid_t command_;
   client::SharedClockPage clock_;
   client::FileDescriptor signals_;
   std::unique_ptr<Freezer> freezer_;
   Callers callers_;
+  Say say_;
 
   std::unique_ptr<link::Channel> channel_;  // to the coordinator, from the first Hello on
   std::vector<CallerId> waiting_;           // for the Welcome
@@ -93,4 +93,4 @@ class Supervisor {
   Statistics statistics_;
 };
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

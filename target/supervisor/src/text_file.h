@@ -6,7 +6,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 /// Writes to a file of the kernel's that is there. False: not allowed. Allocates nothing, so that
 /// it may be called between fork and exec.
@@ -18,4 +18,4 @@ inline bool write_file(const std::string& path, std::string_view text) {
   return written;
 }
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

@@ -6,7 +6,7 @@
 
 #include <tether/base/time.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 /// Asks again and again until `done` holds; false: it did not within `limit`. Sleeps in between,
 /// since whoever is waited for may need this very core, and longer as time goes on.
@@ -23,4 +23,4 @@ bool wait_until(Done done, Duration limit) {
   return true;
 }
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor

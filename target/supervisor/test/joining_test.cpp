@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 namespace {
 
 using namespace std::chrono_literals;
@@ -33,4 +33,4 @@ TEST(Joining, NeverHoldsItAfterAnInterrupt) {
 }
 
 }  // namespace
-}  // namespace tether::exec
+}  // namespace tether::supervisor

@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 namespace {
 
 using Pairs = std::set<std::pair<pid_t, pid_t>>;
@@ -69,4 +69,4 @@ TEST(ProcessTree, ShowsAStoppedChildAndLeavesOneOut) {
 }
 
 }  // namespace
-}  // namespace tether::exec
+}  // namespace tether::supervisor

@@ -10,7 +10,7 @@
 
 #include <tether/base/random.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 namespace {
 
 using namespace std::chrono_literals;
@@ -393,4 +393,4 @@ TEST(SupervisionProperty, AnswersEveryCallWhenTheCoordinatorGoes) {
 }
 
 }  // namespace
-}  // namespace tether::exec
+}  // namespace tether::supervisor

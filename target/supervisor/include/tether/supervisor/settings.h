@@ -7,7 +7,7 @@
 #include <tether/base/time.h>
 #include <tether/link/channel.h>
 
-namespace tether::exec {
+namespace tether::supervisor {
 
 enum class FreezerChoice { kAuto, kCgroup, kSignal };
 
@@ -22,4 +22,4 @@ struct Settings {
   double factor = 1.0;  ///< of the wall clock
 };
 
-}  // namespace tether::exec
+}  // namespace tether::supervisor
