@@ -103,6 +103,7 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"sim_sensing", {"base", "uav", "sim"}},
       {"sim_mujoco", {"base", "uav", "sim", "sim_sensing"}},
       {"sim_protocol", {"base", "uav", "link"}},
+      {"sim_gazebo_plugin", {"base", "uav", "sim_protocol"}},
       {"sim_remote", {"base", "uav", "link", "sim", "sim_sensing", "sim_protocol"}},
       {"coordinator", {"base", "uav", "sync", "sim", "link", "record"}},
       {"scenario", {"base", "uav", "sim"}},

@@ -1,10 +1,10 @@
-#include "main_thread.h"
-
 #include <atomic>
 #include <stdexcept>
 #include <thread>
 
 #include <gtest/gtest.h>
+
+#include <tether/sim_gazebo_plugin/main_thread.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -1,8 +1,8 @@
-#include "texture_repeat.h"
-
 #include <numbers>
 
 #include <gtest/gtest.h>
+
+#include <tether/sim_gazebo_plugin/texture_repeat.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -1,6 +1,6 @@
-#include "texture_repeat.h"
-
 #include <numbers>
+
+#include <tether/sim_gazebo_plugin/texture_repeat.h>
 
 namespace tether::gazebo_plugin {
 

@@ -1,7 +1,7 @@
-#include "main_thread.h"
-
 #include <chrono>
 #include <utility>
+
+#include <tether/sim_gazebo_plugin/main_thread.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "session.h"
-
 #include <atomic>
 #include <condition_variable>
 #include <functional>
@@ -11,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include <tether/sim_gazebo_plugin/session.h>
 #include <tether/sim_protocol/connection.h>
 
 namespace tether::gazebo_plugin {

@@ -1,13 +1,12 @@
 #pragma once
 
-#include "flights.h"
-#include "simulation.h"
-
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <vector>
 
+#include <tether/sim_gazebo_plugin/flights.h>
+#include <tether/sim_gazebo_plugin/simulation.h>
 #include <tether/sim_protocol/messages.h>
 
 namespace tether::gazebo_plugin {

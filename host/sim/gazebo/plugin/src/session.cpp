@@ -1,6 +1,6 @@
-#include "session.h"
-
 #include <exception>
+
+#include <tether/sim_gazebo_plugin/session.h>
 
 namespace tether::gazebo_plugin {
 namespace {

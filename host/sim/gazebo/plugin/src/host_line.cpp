@@ -1,7 +1,7 @@
-#include "host_line.h"
-
 #include <chrono>
 #include <utility>
+
+#include <tether/sim_gazebo_plugin/host_line.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -1,4 +1,4 @@
-#include "flights.h"
+#include <tether/sim_gazebo_plugin/flights.h>
 
 namespace tether::gazebo_plugin {
 

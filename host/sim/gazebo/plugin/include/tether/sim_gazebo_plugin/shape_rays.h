@@ -1,7 +1,6 @@
 #pragma once
 
-#include "ray_frames.h"
-
+#include <tether/sim_gazebo_plugin/ray_frames.h>
 #include <tether/uav/math.h>
 
 /// How far along a ray, in the shape's own frame, a shape around the origin is met: its surface,

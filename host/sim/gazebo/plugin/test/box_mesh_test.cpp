@@ -1,6 +1,6 @@
-#include "box_mesh.h"
-
 #include <gtest/gtest.h>
+
+#include <tether/sim_gazebo_plugin/box_mesh.h>
 
 namespace tether::gazebo_plugin {
 namespace {

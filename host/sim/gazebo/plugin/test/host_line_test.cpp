@@ -1,11 +1,10 @@
-#include "host_line.h"
-
 #include <cmath>
 #include <future>
 
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/sim_gazebo_plugin/host_line.h>
 
 namespace tether::gazebo_plugin {
 namespace {

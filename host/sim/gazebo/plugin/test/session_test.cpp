@@ -1,10 +1,9 @@
-#include "session.h"
-
 #include <deque>
 
 #include <gtest/gtest.h>
 
 #include <tether/base/error.h>
+#include <tether/sim_gazebo_plugin/session.h>
 
 namespace tether::gazebo_plugin {
 namespace {

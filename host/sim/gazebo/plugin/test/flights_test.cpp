@@ -1,6 +1,6 @@
-#include "flights.h"
-
 #include <gtest/gtest.h>
+
+#include <tether/sim_gazebo_plugin/flights.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -1,6 +1,6 @@
-#include "ray_frames.h"
-
 #include <gtest/gtest.h>
+
+#include <tether/sim_gazebo_plugin/ray_frames.h>
 
 namespace tether::gazebo_plugin {
 namespace {

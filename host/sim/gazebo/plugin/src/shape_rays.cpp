@@ -1,8 +1,8 @@
-#include "shape_rays.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <tether/sim_gazebo_plugin/shape_rays.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -1,4 +1,4 @@
-#include "insertion.h"
+#include <tether/sim_gazebo_plugin/insertion.h>
 
 namespace tether::gazebo_plugin {
 

@@ -1,6 +1,6 @@
-#include "insertion.h"
-
 #include <gtest/gtest.h>
+
+#include <tether/sim_gazebo_plugin/insertion.h>
 
 namespace tether::gazebo_plugin {
 namespace {
