@@ -88,6 +88,7 @@ std::map<std::string, std::set<std::string>> actual_dependencies(
 const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
   static const std::map<std::string, std::set<std::string>> kArrows = {
       {"base", {}},
+      {"toml", {"base"}},
       {"uav", {"base"}},
       {"sync", {"base"}},
       {"link", {"base", "uav"}},
@@ -106,7 +107,7 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"sim_gazebo_plugin", {"base", "uav", "sim_protocol"}},
       {"sim_remote", {"base", "uav", "link", "sim", "sim_sensing", "sim_protocol"}},
       {"coordinator", {"base", "uav", "sync", "sim", "link", "record"}},
-      {"scenario", {"base", "uav", "sim"}},
+      {"scenario", {"base", "toml", "uav", "sim"}},
       {"experiment", {"base", "uav", "scenario", "record"}},
       {"report", {"base", "uav", "record", "scenario", "experiment"}},
   };

@@ -1,10 +1,10 @@
-#include "suggest.h"
-
 #include <array>
 
 #include <gtest/gtest.h>
 
-namespace tether::scenario {
+#include <tether/toml/suggest.h>
+
+namespace tether::toml {
 namespace {
 
 constexpr std::array<std::string_view, 4> kKeys = {"rate_hz", "period_ms", "phase_ms", "delay"};
@@ -34,4 +34,4 @@ TEST(QuotedList, ReadsAsASentence) {
 }
 
 }  // namespace
-}  // namespace tether::scenario
+}  // namespace tether::toml

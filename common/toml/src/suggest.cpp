@@ -1,9 +1,9 @@
-#include "suggest.h"
-
 #include <algorithm>
 #include <vector>
 
-namespace tether::scenario {
+#include <tether/toml/suggest.h>
+
+namespace tether::toml {
 namespace {
 
 // Optimal string alignment distance.
@@ -70,4 +70,4 @@ std::string allowed_hint(std::string_view word, std::span<const std::string_view
   return hint + "Allowed: " + quoted_list(candidates);
 }
 
-}  // namespace tether::scenario
+}  // namespace tether::toml
