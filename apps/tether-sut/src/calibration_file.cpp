@@ -1,9 +1,10 @@
 #include "calibration.h"
 #include "profile_text.h"
 #include "text_table.h"
-#include "toml_input.h"
 
-#include <cmath>
+#include <limits>
+
+#include <tether/toml/table.h>
 
 namespace tether::sut {
 namespace {
@@ -31,103 +32,54 @@ std::string machine_text(const Machine& machine) {
 
 // Reading -----------------------------------------------------------------------------------------
 
-const toml::node& member(const toml::table& table, std::string_view key) {
-  const toml::node* node = table.get(key);
-  if (node == nullptr) {
-    throw BadInput{line_of(table), "lacks the key '" + std::string(key) + "'"};
-  }
-  return *node;
+using toml::Table;
+
+int integer_of(const Table& table, std::string_view key, int least) {
+  return static_cast<int>(table.integer(key, least, std::numeric_limits<int>::max()));
 }
 
-/// Of the type, or not at all.
-template <class Value>
-Value value_of(const toml::table& table, std::string_view key, const char* what) {
-  const toml::node& node = member(table, key);
-  const auto value = node.value<Value>();
-  if (!value) {
-    throw BadInput{line_of(node), "'" + std::string(key) + "' must be " + what};
-  }
-  return *value;
-}
-
-std::string text_of(const toml::table& table, std::string_view key) {
-  return value_of<std::string>(table, key, "a string");
-}
-
-int integer_of(const toml::table& table, std::string_view key) {
-  return static_cast<int>(value_of<std::int64_t>(table, key, "an integer"));
-}
-
-const toml::table& table_of(const toml::table& table, std::string_view key) {
-  const toml::node& node = member(table, key);
-  if (!node.is_table()) {
-    throw BadInput{line_of(node), "'" + std::string(key) + "' must be a table"};
-  }
-  return *node.as_table();
-}
-
-std::vector<double> times_of(const toml::table& table, std::string_view key) {
-  const toml::node& node = member(table, key);
-  std::vector<double> times_ms;
-  if (const toml::array* array = node.as_array()) {
-    for (const toml::node& element : *array) {
-      times_ms.push_back(element.is_number() ? *element.value<double>() : NAN);
-      if (!(times_ms.back() > 0.0 && std::isfinite(times_ms.back()))) {
-        throw BadInput{line_of(element), "'" + std::string(key) + "' must be times above 0"};
-      }
-    }
-  }
-  if (times_ms.empty()) {
-    throw BadInput{line_of(node), "'" + std::string(key) + "' must be an array of times"};
-  }
-  return times_ms;
-}
-
-Machine read_machine_table(const toml::table& table) {
+Machine read_machine_table(const Table& table) {
   Machine machine;
-  machine.name = text_of(table, "name");
-  machine.cpu = text_of(table, "cpu");
-  machine.architecture = text_of(table, "architecture");
-  machine.cores = integer_of(table, "cores");
-  machine.cpu_index = integer_of(table, "cpu_index");
-  machine.governor = text_of(table, "governor");
-  machine.mhz_before = value_of<double>(table, "mhz_before", "a number");
-  machine.mhz_after = value_of<double>(table, "mhz_after", "a number");
+  machine.name = table.any_text("name");
+  machine.cpu = table.any_text("cpu");
+  machine.architecture = table.any_text("architecture");
+  machine.cores = integer_of(table, "cores", 0);
+  machine.cpu_index = integer_of(table, "cpu_index", -1);
+  machine.governor = table.any_text("governor");
+  machine.mhz_before = table.number("mhz_before", {});
+  machine.mhz_after = table.number("mhz_after", {});
   return machine;
 }
 
-std::vector<BlockTimes> read_blocks(const toml::table& file) {
-  const toml::node& node = member(file, "block");
-  const toml::array* array = node.as_array();
-  if (array == nullptr || !array->is_array_of_tables()) {
-    throw BadInput{line_of(node), "'block' must be tables [[block]]"};
-  }
+std::vector<BlockTimes> read_blocks(const Table& file) {
+  constexpr toml::Range kTime_ms{.min = 0.0, .above_min = true};
   std::vector<BlockTimes> blocks;
-  for (const toml::node& element : *array) {
-    const toml::table& table = *element.as_table();
-    blocks.push_back(
-        {text_of(table, "name"), times_of(table, "cpu_ms"), times_of(table, "wall_ms")});
+  for (const Table& table : file.tables("block")) {
+    blocks.push_back({table.any_text("name"), table.numbers("cpu_ms", kTime_ms),
+                      table.numbers("wall_ms", kTime_ms)});
     const std::size_t rounds = blocks.front().cpu_ms.size();
     if (blocks.back().cpu_ms.size() != rounds || blocks.back().wall_ms.size() != rounds) {
-      throw BadInput{line_of(table), "the blocks differ in their number of rounds"};
+      throw Error(ErrorCode::kBadFile, table.where(),
+                  "the blocks differ in their number of rounds");
     }
   }
   return blocks;
 }
 
-Calibration read_calibration(const toml::table& file) {
+Calibration read_calibration(const toml::Document& document) {
+  const Table file = document.root();
   Calibration calibration;
-  calibration.workload = integer_of(file, "workload");
+  calibration.workload = integer_of(file, "workload", 0);
   if (calibration.workload != kWorkloadVersion) {
-    throw BadInput{line_of(member(file, "workload")),
-                   "the workload is " + std::to_string(calibration.workload) +
-                       ", and this program's is " + std::to_string(kWorkloadVersion) +
-                       "; measure that machine again with the same tether-sut"};
+    throw Error(ErrorCode::kBadFile, file.where("workload"),
+                "the workload is " + std::to_string(calibration.workload) +
+                    ", and this program's is " + std::to_string(kWorkloadVersion) +
+                    "; measure that machine again with the same tether-sut");
   }
-  calibration.program = text_of(file, "program");
-  calibration.opencv = text_of(file, "opencv");
-  calibration.when = text_of(file, "when");
-  calibration.machine = read_machine_table(table_of(file, "machine"));
+  calibration.program = file.any_text("program");
+  calibration.opencv = file.any_text("opencv");
+  calibration.when = file.any_text("when");
+  calibration.machine = read_machine_table(file.table("machine"));
   calibration.blocks = read_blocks(file);
   return calibration;
 }
@@ -150,15 +102,11 @@ std::string calibration_text(const Calibration& calibration) {
 }
 
 Result<Calibration> parse_calibration(const std::string& text, const std::string& path) {
-  return read_toml<Calibration>(text, path, read_calibration);
+  return toml::result_of([&] { return read_calibration(toml::Document::parse(text, path)); });
 }
 
 Result<Calibration> load_calibration(const std::string& path) {
-  const Result<std::string> text = read_text(path, "measurement");
-  if (!text) {
-    return text.failure();
-  }
-  return parse_calibration(*text, path);
+  return toml::result_of([&] { return read_calibration(toml::Document::load(path)); });
 }
 
 }  // namespace tether::sut

@@ -6,31 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 namespace tether::sut {
 namespace {
 
 using uav::SensorKind;
-
-constexpr const char* kDevices =
-    "a path with a '/', a number N for /dev/videoN, a stream's URL, or iio:NAME";
-
-CLI::Validator device() {
-  return CLI::Validator(
-      [](std::string& text) {
-        return devices::is_device(text) ? std::string()
-                                        : "\"" + text + "\" is no device: " + kDevices;
-      },
-      "DEVICE");
-}
-
-void add_unless_there(CLI::App& app, const std::string& name, std::string& value,
-                      const std::string& description) {
-  if (app.get_option_no_throw(name) == nullptr) {
-    app.add_option(name, value, description)->check(device())->type_name("");
-  }
-}
 
 /// What a task's option for a sensor's name refers to.
 std::string* imu_of(TaskSpec& spec) {
@@ -201,18 +180,6 @@ Status check_rig(devices::Rig& rig, Mission& mission, const std::string& file) {
 }
 
 }  // namespace
-
-void add_device_options(CLI::App& app, DeviceArguments& arguments) {
-  const std::string real = std::string("Real devices instead of a coordinator: ");
-  app.add_option("--rig", arguments.rig,
-                 real + "the file (TOML) that says of them what the catalogue says in simulation")
-      ->type_name("FILE");
-  add_unless_there(app, "--camera", arguments.camera, std::string("A real camera: ") + kDevices);
-  add_unless_there(app, "--imu", arguments.imu,
-                   "A real IMU: a folder like iio:deviceN's, or iio:NAME");
-  add_unless_there(app, "--range", arguments.range,
-                   "A real rangefinder: a folder like iio:deviceN's, or iio:NAME");
-}
 
 void take_devices(TaskSpec& spec, DeviceArguments& arguments) {
   if (has_anchor(spec)) {

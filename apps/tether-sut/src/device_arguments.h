@@ -8,24 +8,16 @@
 #include <tether/base/result.h>
 #include <tether/devices/rig.h>
 
-namespace CLI {
-class App;
-}
-
 /// Real devices on the command line, instead of a coordinator.
 namespace tether::sut {
 
-/// What was written: the rig's file, and a device for a sensor of each kind; empty: none.
+/// What a command line says: the rig's file, and a device for a sensor of each kind; empty: none.
 struct DeviceArguments {
   std::string rig;
   std::string camera;
   std::string imu;
   std::string range;
 };
-
-/// Defines --rig, and --camera, --imu and --range where `app` has no such option of its own. Those
-/// that it has take a sensor's name as well.
-void add_device_options(CLI::App& app, DeviceArguments& arguments);
 
 /// Devices that were given where a task has a sensor's name (`--camera /dev/video0`) go to
 /// `arguments`; the task gets the name of the rig's sensor later, from `make_rig`.

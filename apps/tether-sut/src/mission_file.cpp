@@ -1,248 +1,111 @@
 #include "mission_file.h"
 
-#include "common_arguments.h"
-#include "task_arguments.h"
-#include "toml_input.h"
+#include "task_fields.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <charconv>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string_view>
 #include <vector>
 
-#include <toml++/toml.h>
+#include <tether/toml/table.h>
 
 namespace tether::sut {
 namespace {
 
-/// One key of the file: an option's value, as the command line would have it.
-struct Entry {
-  std::string value;
-  int line = 0;
-};
-using Entries = std::map<std::string, Entry, std::less<>>;
+using toml::Table;
+using Names = std::vector<std::string_view>;
 
-std::string option_name(std::string_view key) {
-  std::string name = "--" + std::string(key);
-  std::replace(name.begin(), name.end(), '_', '-');
-  return name;
+Names names_of(const std::vector<Field>& fields, Names others) {
+  for (const Field& field : fields) others.push_back(field.name);
+  return others;
 }
 
-/// CLI11's words about "--precision-deg" as words about "precision_deg".
-std::string in_words_of_the_file(std::string text) {
-  for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at)) {
-    text.erase(at, 2);
-    for (; at < text.size() &&
-           (std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '-');
-         ++at) {
-      text[at] = text[at] == '-' ? '_' : text[at];
-    }
-  }
-  return text;
+// What a field's value is, `key` of `table`.
+
+void read(const Table& table, std::string_view key, const TextField& field) {
+  *field.value = table.text(key);
+}
+void read(const Table& table, std::string_view key, const NumberField& field) {
+  field.set(table.number(key, {.min = field.least, .max = field.most}));
+}
+void read(const Table& table, std::string_view key, const IntegerField& field) {
+  *field.value = static_cast<int>(table.integer(key, field.least, field.most));
+  if (field.is_odd && *field.value % 2 == 0) table.fail(key, "must be odd");
+}
+void read(const Table& table, std::string_view key, const BooleanField& field) {
+  *field.value = table.boolean(key);
+}
+void read(const Table& table, std::string_view key, const ChoiceField& field) {
+  field.set(table.choice(key, field.words));
 }
 
-std::string text_of(double number) {
-  std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number);
-  return {digits.data(), end.ptr};
+bool is_required(const Field& field) {
+  const auto* text = std::get_if<TextField>(&field.value);
+  return text != nullptr && text->is_required;
 }
 
-std::string text_of(std::string_view key, const toml::node& node) {
-  if (const auto* text = node.as_string()) {
-    return text->get();
-  }
-  if (const auto* number = node.as_integer()) {
-    return std::to_string(number->get());
-  }
-  if (const auto* number = node.as_floating_point()) {
-    return text_of(number->get());
-  }
-  if (const auto* truth = node.as_boolean()) {
-    return truth->get() ? "true" : "false";
-  }
-  throw BadInput{line_of(node), std::string(key) + " must be a string, a number, true or false"};
+/// `sources`: the task's own table, then what the tasks share; the first that has a key counts.
+void read(const std::vector<Table>& sources, const Field& field) {
+  const auto has = [&field](const Table& table) { return table.has(field.name); };
+  const auto found = std::find_if(sources.begin(), sources.end(), has);
+  if (found == sources.end() && !is_required(field)) return;
+  const Table& table = found == sources.end() ? sources.front() : *found;
+  std::visit([&](const auto& value) { read(table, field.name, value); }, field.value);
 }
 
-/// Takes what is not there yet, so that whoever comes first is heard.
-void take(const toml::table& table, const std::vector<std::string_view>& but, Entries& entries) {
-  for (const auto& [key, node] : table) {
-    if (std::find(but.begin(), but.end(), key.str()) == but.end()) {
-      const int line = line_of(key);
-      entries.emplace(key.str(), Entry{text_of(key.str(), node), line});
-    }
-  }
-}
-
-/// One task's subcommand, with nothing around it.
-class TaskParser {
- public:
-  explicit TaskParser(std::string_view task) : arguments_(make_task_arguments(task)) {
-    if (arguments_ != nullptr) {
-      app_.set_help_flag();
-      arguments_->add_to(app_);
-    }
-  }
-
-  bool exists() const { return arguments_ != nullptr; }
-  bool knows(std::string_view key) const {
-    const bool is_plain = key.find('-') == std::string_view::npos;
-    return is_plain && app_.get_option_no_throw(option_name(key)) != nullptr;
-  }
-  /// What is wrong with these, if anything.
-  std::optional<std::string> parse(const Entries& entries) {
-    std::vector<std::string> words;
-    for (const auto& [key, entry] : entries) {
-      words.push_back(option_name(key) + "=" + entry.value);
-    }
-    try {
-      app_.parse(words);
-    } catch (const CLI::RequiredError& error) {
-      is_incomplete_ = true;
-      return in_words_of_the_file(error.what());
-    } catch (const CLI::ParseError& error) {
-      return in_words_of_the_file(error.what());
-    }
-    return std::nullopt;
-  }
-  bool is_incomplete() const { return is_incomplete_; }
-  TaskSpec spec() const { return arguments_->spec(); }
-
- private:
-  std::unique_ptr<TaskArguments> arguments_;
-  CLI::App app_;
-  bool is_incomplete_ = false;
-};
-
-/// Each alone, because CLI11 does not say which of several is wrong.
-void check_each(std::string_view task, const Entries& entries) {
-  for (const auto& [key, entry] : entries) {
-    TaskParser parser(task);
-    const auto wrong = parser.parse({{key, entry}});
-    if (wrong && !parser.is_incomplete()) {
-      throw BadInput{entry.line, *wrong};
-    }
-  }
-}
-
-std::string names_of_tasks() {
-  std::string names;
-  for (const auto& arguments : all_task_arguments()) {
-    names += (names.empty() ? "" : ", ") + std::string(arguments->name());
-  }
-  return names;
-}
-
-std::string name_of_task(const toml::table& table) {
-  const toml::node* node = table.get("task");
-  if (node == nullptr || !node->is_string()) {
-    throw BadInput{node != nullptr ? line_of(*node) : line_of(table),
-                   "a [[task]] needs task = \"NAME\"; there are " + names_of_tasks()};
-  }
-  const std::string name = node->as_string()->get();
-  if (!TaskParser(name).exists()) {
-    throw BadInput{line_of(*node),
-                   "there is no task \"" + name + "\"; there are " + names_of_tasks()};
-  }
-  return name;
-}
-
-bool is_required(const toml::table& table) {
-  const toml::node* node = table.get("required");
-  if (node != nullptr && !node->is_boolean()) {
-    throw BadInput{line_of(*node), "required must be true or false"};
-  }
-  return node == nullptr || node->as_boolean()->get();
-}
-
-TaskSpec read_task(const toml::table& table, const Entries& common) {
-  const std::string name = name_of_task(table);
-  TaskParser parser(name);
-  Entries entries;
-  take(table, {"task", "required"}, entries);
-  for (const auto& [key, entry] : entries) {
-    if (!parser.knows(key)) {
-      throw BadInput{entry.line, name + " has no parameter '" + key + "' (tether-sut " + name +
-                                     " --help lists them)"};
-    }
-  }
-  for (const auto& [key, entry] : common) {
-    if (parser.knows(key)) {
-      entries.emplace(key, entry);
-    }
-  }
-  check_each(name, entries);
-  if (const auto wrong = parser.parse(entries)) {
-    throw BadInput{line_of(table), name + ": " + *wrong};
-  }
-  TaskSpec spec = parser.spec();
-  spec.required = is_required(table);
+TaskSpec read_task(const Table& task, const std::vector<Table>& common) {
+  Names tasks;
+  for (const TaskKind& kind : task_kinds()) tasks.push_back(kind.name);
+  TaskSpec spec;
+  spec.options = task_kinds()[task.choice("task", tasks)].defaults;
+  spec.required = task.boolean_or("required", true);
+  const std::vector<Field> fields = fields_of(spec);
+  task.require_keys_in(names_of(fields, {"task", "required"}));
+  std::vector<Table> sources = {task};
+  sources.insert(sources.end(), common.begin(), common.end());
+  for (const Field& field : fields) read(sources, field);
   return spec;
 }
 
-bool any_task_knows(const std::string& key) {
-  const auto all = all_task_arguments();
-  return std::any_of(all.begin(), all.end(),
-                     [&](const auto& task) { return TaskParser(task->name()).knows(key); });
-}
-
-/// What the tasks share: the keys of `[vision]`, which are those of the options about vision, and
-/// those at the top.
-Entries read_common(const toml::table& file) {
-  Entries common;
-  if (const toml::node* node = file.get("vision")) {
-    if (!node->is_table()) {
-      throw BadInput{line_of(*node), "vision must be a table: [vision]"};
-    }
-    take(*node->as_table(), {}, common);
+/// What the tasks share: the keys of `[vision]`, and then those at the top.
+std::vector<Table> read_common(const Table& file) {
+  std::vector<Table> common;
+  if (file.has("vision")) {
     TaskSpec spec;
-    CLI::App vision;
-    vision.set_help_flag();
-    add_vision_options(vision, spec);
-    for (const auto& [key, entry] : common) {
-      if (vision.get_option_no_throw(option_name(key)) == nullptr) {
-        throw BadInput{entry.line, "[vision] has no parameter '" + key + "'"};
-      }
-    }
+    common.push_back(file.table("vision", names_of(vision_fields(spec), {})));
   }
-  take(file, {"vision", "task"}, common);
-  for (const auto& [key, entry] : common) {
-    if (!any_task_knows(key)) {
-      throw BadInput{entry.line, "no task has a parameter '" + key + "'"};
-    }
+  Names any = {"task", "vision"};
+  for (const TaskKind& kind : task_kinds()) {
+    TaskSpec spec;
+    spec.options = kind.defaults;
+    any = names_of(fields_of(spec), std::move(any));
   }
+  std::sort(any.begin(), any.end());
+  any.erase(std::unique(any.begin(), any.end()), any.end());
+  file.require_keys_in(any);
+  common.push_back(file);
   return common;
 }
 
-Mission read_mission(const toml::table& file) {
-  const toml::node* node = file.get("task");
-  if (node == nullptr || !node->is_array_of_tables()) {
-    throw BadInput{node != nullptr ? line_of(*node) : 1, "a mission needs a [[task]] or more"};
+Mission read_mission(const toml::Document& document, const std::string& path) {
+  const Table file = document.root();
+  if (!file.has("task")) {
+    throw Error(ErrorCode::kBadFile, {path, 1}, "a mission needs a [[task]] or more");
   }
-  const Entries common = read_common(file);
+  const std::vector<Table> tasks = file.tables("task");
+  const std::vector<Table> common = read_common(file);
   Mission mission;
   mission.is_sequence = true;
-  for (const toml::node& task : *node->as_array()) {
-    mission.tasks.push_back(read_task(*task.as_table(), common));
-  }
+  for (const Table& task : tasks) mission.tasks.push_back(read_task(task, common));
   return mission;
 }
 
 }  // namespace
 
 Result<Mission> parse_mission(const std::string& text, const std::string& path) {
-  return read_toml<Mission>(text, path, read_mission);
+  return toml::result_of([&] { return read_mission(toml::Document::parse(text, path), path); });
 }
 
 Result<Mission> load_mission(const std::string& path) {
-  const Result<std::string> text = read_text(path, "mission file");
-  if (!text) {
-    return text.failure();
-  }
-  return parse_mission(*text, path);
+  return toml::result_of([&] { return read_mission(toml::Document::load(path), path); });
 }
 
 }  // namespace tether::sut

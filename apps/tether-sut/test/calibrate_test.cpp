@@ -97,7 +97,8 @@ TEST_F(Calibrate, FailsBeforeItMeasures) {
   EXPECT_THAT(calibrate(options_, tell).failure().message, HasSubstr("cannot be written"));
   options_.out.clear();
   options_.against = path("none.toml");
-  EXPECT_THAT(calibrate(options_, tell).failure().message, HasSubstr("none.toml: cannot be read"));
+  EXPECT_THAT(calibrate(options_, tell).failure().message,
+              HasSubstr("none.toml: there is no such file"));
 }
 
 TEST_F(Calibrate, AFactorThatNoTargetTakesIsNotWritten) {

@@ -261,7 +261,7 @@ TEST(CommandLine, WhatDoesNotGoTogetherGetsOneLine) {
       {{"characterize", "--camera", "0", "--address", "h:1"}, "are about a coordinator"},
       {{"characterize", "--camera", "0", "--clock", "cpu"}, "are about a coordinator"},
       {{"characterize", "--acquisitions", "20000", "--experiments", "4"}, "at most 60000"},
-      {{"characterize", "--rig", "/nowhere/r.toml"}, "cannot be read"},
+      {{"characterize", "--rig", "/nowhere/r.toml"}, "/nowhere/r.toml: there is no such file"},
       {{"face_anchor", "--anchor", "b", "--camera", "0"}, "needs --rig FILE"},
       {{"relative_position", "--anchor", "b", "--keep-image", "i.png"}, "for real devices"},
       {{"relative_position", "--anchor", "b", "--true-roi-px", "1,2,3,4"}, "for real devices"},
@@ -277,7 +277,7 @@ TEST(CommandLine, WhatDoesNotGoTogetherGetsOneLine) {
 TEST(CommandLine, ABadMissionFileIsWrongUse) {
   const auto refused = std::get<Refusal>(parse({"mission", "/nowhere/m.toml"}));
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_EQ(refused.text, "tether-sut: /nowhere/m.toml: cannot be read, or is no mission file\n");
+  EXPECT_EQ(refused.text, "tether-sut: /nowhere/m.toml: there is no such file\n");
 }
 
 TEST(CommandLine, HelpAndVersionAreNoMistake) {

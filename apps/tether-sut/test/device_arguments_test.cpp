@@ -135,7 +135,7 @@ TEST_F(MakeRig, WhatATaskUsesNeedsADevice) {
 
 TEST_F(MakeRig, ABadFileIsNamed) {
   const DeviceArguments nowhere{.rig = "/nowhere/r.toml", .camera = "", .imu = "", .range = ""};
-  EXPECT_THAT(refused(nowhere, {}), HasSubstr("/nowhere/r.toml: cannot be read"));
+  EXPECT_THAT(refused(nowhere, {}), HasSubstr("/nowhere/r.toml: there is no such file"));
 }
 
 }  // namespace

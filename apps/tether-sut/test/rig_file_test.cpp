@@ -127,8 +127,8 @@ TEST(RigFile, ARelativeDeviceIsBesideTheFile) {
         .sensors[0]
         .device;
   };
-  EXPECT_EQ(device("./box.avi"), "rigs/box.avi");
-  EXPECT_EQ(device("../data/box.avi"), "data/box.avi");
+  EXPECT_EQ(device("./box.avi"), "data/rigs/box.avi");
+  EXPECT_EQ(device("../data/box.avi"), "data/data/box.avi");
   EXPECT_EQ(device("/data/box.avi"), "/data/box.avi");
   EXPECT_EQ(device("rtsp://eye/0"), "rtsp://eye/0");
   EXPECT_EQ(device("2"), "2");
@@ -143,32 +143,38 @@ struct Mistake {
 TEST(RigFile, MistakesNameFileAndLine) {
   const std::vector<Mistake> mistakes = {
       {"", 1, "needs a [sensors.NAME]"},
-      {"sensors = 3\n", 1, "needs a [sensors.NAME]"},
-      {"[sensors]\ncamera = 3\n", 2, "must be a table"},
+      {"sensors = 3\n", 1, "'sensors' of the file must be a table"},
+      {"[sensors]\n", 1, "needs a [sensors.NAME]"},
+      {"[sensors]\ncamera = 3\n", 2, "'camera' of [sensors] must be a table"},
       {"[sensors.c\n", 1, "no valid TOML"},
-      {"speed = 1\n[sensors.c]\nkind = \"imu\"\n", 1, "no key 'speed'"},
-      {"[sensors.c]\nposition_m = [0, 0, 0]\n", 1, "kind must be a text"},
-      {"[sensors.c]\nkind = \"radar\"\n", 2, "none of camera, imu, range"},
-      {"[sensors.c]\nkind = \"imu\"\nsize_px = [1, 1]\n", 3, "no key 'size_px'"},
-      {"[sensors.c]\nkind = \"imu\"\ndevice = \"imu0\"\n", 3, "\"imu0\" is no device"},
-      {"[sensors.c]\nkind = \"imu\"\ndevice = 0\n", 3, "device must be a text"},
-      {"[sensors.c]\nkind = \"imu\"\nposition_m = [0, 0]\n", 3, "array of 3 numbers"},
-      {"[sensors.c]\nkind = \"imu\"\nposition_m = [0, 0, nan]\n", 3, "must be a number"},
-      {"[sensors.c]\nkind = \"imu\"\nrpy_deg = [0, 0, 400]\n", 3, "out of bounds"},
-      {"[sensors.c]\nkind = \"camera\"\nsize_px = [0, 480]\n", 3, "out of bounds"},
+      {"speed = 1\n[sensors.c]\nkind = \"imu\"\n", 1, "unknown key 'speed' in the file"},
+      {"[sensors.c]\nposition_m = [0, 0, 0]\n", 1, "[sensors.c] lacks the key 'kind'"},
+      {"[sensors.c]\nkind = \"radar\"\n", 2, "Allowed: 'camera', 'imu' and 'range'"},
+      {"[sensors.c]\nkind = \"imu\"\nsize_px = [1, 1]\n", 3,
+       "unknown key 'size_px' in [sensors.c]"},
+      {"[sensors.c]\nkind = \"imu\"\ndevice = \"imu0\"\n", 3, "is \"imu0\", which is no device"},
+      {"[sensors.c]\nkind = \"imu\"\ndevice = 0\n", 3, "'device' of [sensors.c] must be a string"},
+      {"[sensors.c]\nkind = \"imu\"\nposition_m = [0, 0]\n", 3,
+       "must be an array of 3 numbers, but has 2 elements"},
+      {"[sensors.c]\nkind = \"imu\"\nposition_m = [0, 0, nan]\n", 3,
+       "must be at least -1000 and at most 1000, but is nan"},
+      {"[sensors.c]\nkind = \"imu\"\nrpy_deg = [0, 0, 400]\n", 3,
+       "must be at least -360 and at most 360, but is 400"},
+      {"[sensors.c]\nkind = \"camera\"\nsize_px = [0, 480]\n", 3,
+       "must be at least 1 and at most 16384, but is 0"},
       {"[sensors.c]\nkind = \"camera\"\nsize_px = [1.5, 480]\n", 3, "whole numbers"},
       {"[sensors.c]\nkind = \"camera\"\nintrinsics = { fx_px = 1, fy_px = 1 }\n", 3,
        "needs size_px"},
       {"[sensors.c]\nkind = \"camera\"\nsize_px = [4, 4]\nhorizontal_fov_deg = 180\n", 4,
-       "out of bounds"},
+       "must be at least 1 and at most 179, but is 180"},
       {"[sensors.c]\nkind = \"camera\"\nsize_px = [4, 4]\nhorizontal_fov_deg = 60\n"
        "intrinsics = { fx_px = 1, fy_px = 1 }\n",
        5, "say the same"},
       {"[sensors.c]\nkind = \"camera\"\nsize_px = [4, 4]\nintrinsics = { fx_px = 1 }\n", 4,
-       "fy_px is missing"},
+       "[sensors.c.intrinsics] lacks the key 'fy_px'"},
       {"[sensors.c]\nkind = \"camera\"\ndistortion = { k1 = 0.1 }\n", 3,
        "needs horizontal_fov_deg"},
-      {"[sensors.c]\nkind = \"range\"\nmin_m = -1\n", 3, "out of bounds"},
+      {"[sensors.c]\nkind = \"range\"\nmin_m = -1\n", 3, "must be at least 0"},
       {"[sensors.c]\nkind = \"range\"\nmin_m = 2\nmax_m = 1\n", 4, "more than min_m"},
       {"[[anchor]]\nname = \"a\"\n", 1, "needs a [sensors.NAME]"},
   };
@@ -185,10 +191,11 @@ TEST(RigFile, MistakesNameFileAndLine) {
 TEST(RigFile, MistakesOfAnchors) {
   const std::string start = "[sensors.c]\nkind = \"imu\"\n[[anchor]]\nname = \"a\"\n";
   const std::vector<Mistake> mistakes = {
-      {"", 3, "shape must be a text"},
-      {"shape = \"cone\"\n", 5, "none of box, cylinder, sphere"},
-      {"shape = \"box\"\nsize_m = [1, 1, 0]\n", 6, "out of bounds"},
-      {"shape = \"box\"\nsize_m = [1, 1, 1]\ncolor_rgb = [0, 0, 255]\n", 7, "out of bounds"},
+      {"", 3, "[anchor] lacks the key 'shape'"},
+      {"shape = \"cone\"\n", 5, "Allowed: 'box', 'cylinder' and 'sphere'"},
+      {"shape = \"box\"\nsize_m = [1, 1, 0]\n", 6, "must be at least 1e-06"},
+      {"shape = \"box\"\nsize_m = [1, 1, 1]\ncolor_rgb = [0, 0, 255]\n", 7,
+       "must be at least 0 and at most 1, but is 255"},
       {"shape = \"cylinder\"\nsize_m = [1, 2, 1]\ncolor_rgb = [0, 0, 1]\n", 6, "diameter"},
       {"shape = \"sphere\"\nsize_m = [1, 1, 2]\ncolor_rgb = [0, 0, 1]\n", 6, "diameter"},
       {"shape = \"box\"\nsize_m = [1, 1, 1]\ncolor_rgb = [0, 0, 1]\n[[anchor]]\nname = \"a\"\n"
@@ -206,7 +213,7 @@ TEST(RigFile, MistakesOfAnchors) {
 TEST(RigFile, WhatCannotBeReadIsNamed) {
   const Result<devices::Rig> rig = load_rig("/nowhere/r.toml");
   ASSERT_FALSE(rig);
-  EXPECT_EQ(rig.failure().message, "/nowhere/r.toml: cannot be read, or is no rig file");
+  EXPECT_EQ(rig.failure().message, "/nowhere/r.toml: there is no such file");
 }
 
 TEST(RigFile, TheShippedBenchHasTheRoomsBlueBox) {

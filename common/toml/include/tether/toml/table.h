@@ -49,6 +49,8 @@ class Table {
   std::vector<std::string> keys() const;
   /// "[uav.sensors.camera]", or "the file".
   std::string title() const;
+  /// Throws at the first key that is not one of `allowed`.
+  void require_keys_in(std::span<const std::string_view> allowed) const;
 
   // Required keys.
   std::string text(std::string_view key) const;
@@ -103,7 +105,6 @@ class Table {
 
   /// `path` is its name for messages ("uav.sensors.camera"; empty: the top of the file).
   Table(const Node& table, std::string path, std::string file);
-  void require_keys_in(std::span<const std::string_view> allowed) const;
   const Node& required(std::string_view key) const;
   [[noreturn]] void fail_type(std::string_view key, const Node& found,
                               std::string_view expected) const;
