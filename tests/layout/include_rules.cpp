@@ -98,6 +98,8 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"devices", {"base", "uav", "client"}},
       {"vision", {"base", "uav"}},
       {"tasks", {"base", "uav", "client", "vision"}},
+      {"calibration", {"base", "toml", "uav", "client", "vision", "tasks"}},
+      {"rig", {"base", "toml", "uav", "client", "vision", "tasks", "devices"}},
       {"record", {"base"}},
       {"audit", {"base", "record"}},
       {"sim", {"base", "uav"}},

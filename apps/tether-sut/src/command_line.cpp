@@ -1,11 +1,5 @@
 #include "command_line.h"
 
-#include "calibration_statistics.h"
-#include "device_arguments.h"
-#include "mission_file.h"
-#include "profile_text.h"
-#include "task_fields.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -17,6 +11,10 @@
 
 #include <tether/base/units.h>
 #include <tether/base/version.h>
+#include <tether/calibration/profile_text.h>
+#include <tether/rig/device_arguments.h>
+#include <tether/rig/mission_file.h>
+#include <tether/rig/task_fields.h>
 
 // The only source that includes CLI11. The arguments of tasks come from task_fields, the others are
 // defined here.
@@ -94,10 +92,11 @@ CLI::Validator device() {
 CLI::Validator profile_name() {
   return CLI::Validator(
       [](std::string& text) {
-        return is_profile_name(text) ? std::string()
-                                     : "\"" + text +
-                                           "\" is no name: 1 to 64 letters, digits, '_', '-' and "
-                                           "'.', not starting with '.'";
+        return calibration::is_profile_name(text)
+                   ? std::string()
+                   : "\"" + text +
+                         "\" is no name: 1 to 64 letters, digits, '_', '-' and "
+                         "'.', not starting with '.'";
       },
       "NAME");
 }
@@ -109,12 +108,12 @@ CLI::Validator file_name() {
 }
 
 /// "12,40,80,60" in whole pixels.
-void add_pixel_box(CLI::App& app, const std::string& name, std::optional<PixelBox>& box,
+void add_pixel_box(CLI::App& app, const std::string& name, std::optional<rig::PixelBox>& box,
                    const std::string& description) {
   app.add_option_function<std::vector<double>>(
          name,
          [&box](const std::vector<double>& v) {
-           box = PixelBox{v[0], v[1], v[2], v[3]};
+           box = rig::PixelBox{v[0], v[1], v[2], v[3]};
            if (box->width_px < 1.0 || box->height_px < 1.0) {
              throw CLI::ValidationError("--true-roi-px", "W and H must be at least 1");
            }
@@ -131,12 +130,12 @@ void add_pixel_box(CLI::App& app, const std::string& name, std::optional<PixelBo
 /// Defines the option of a task's field.
 class OptionOf {
  public:
-  OptionOf(CLI::App& app, const Field& field)
+  OptionOf(CLI::App& app, const rig::Field& field)
       : app_(app), name_("--" + std::string(field.name)), description_(field.description) {
     std::replace(name_.begin(), name_.end(), '_', '-');
   }
 
-  void operator()(const TextField& field) const {
+  void operator()(const rig::TextField& field) const {
     CLI::Option* option = app_.add_option(name_, *field.value, description_);
     if (field.is_required) {
       option->required();
@@ -144,21 +143,21 @@ class OptionOf {
       option->capture_default_str();
     }
   }
-  void operator()(const NumberField& field) const {
+  void operator()(const rig::NumberField& field) const {
     app_.add_option_function<double>(name_, field.set, description_)
         ->check(within(field.least, field.most))
         ->default_str(shown(field.usual));
   }
-  void operator()(const IntegerField& field) const {
+  void operator()(const rig::IntegerField& field) const {
     CLI::Option* option = app_.add_option(name_, *field.value, description_)
                               ->check(CLI::Range(field.least, field.most))
                               ->capture_default_str();
     if (field.is_odd) option->check(odd());
   }
-  void operator()(const BooleanField& field) const {
+  void operator()(const rig::BooleanField& field) const {
     app_.add_option(name_, *field.value, description_)->capture_default_str();
   }
-  void operator()(const ChoiceField& field) const {
+  void operator()(const rig::ChoiceField& field) const {
     const std::vector<std::string> words(field.words.begin(), field.words.end());
     app_.add_option_function<std::string>(
             name_,
@@ -177,24 +176,26 @@ class OptionOf {
   std::string description_;
 };
 
-void add_task_options(CLI::App& app, TaskSpec& spec) {
-  for (const Field& field : fields_of(spec)) std::visit(OptionOf(app, field), field.value);
+void add_task_options(CLI::App& app, rig::TaskSpec& spec) {
+  for (const rig::Field& field : fields_of(spec)) std::visit(OptionOf(app, field), field.value);
 }
 
 // Everything else ---------------------------------------------------------------------------------
 
-void add_characterize_options(CLI::App& app, CharacterizeOptions& options) {
-  static const std::map<std::string, Timing> kTimings = {
-      {"auto", Timing::kAuto}, {"on_demand", Timing::kOnDemand}, {"periodic", Timing::kPeriodic}};
+void add_characterize_options(CLI::App& app, calibration::CharacterizeOptions& options) {
+  static const std::map<std::string, calibration::Timing> kTimings = {
+      {"auto", calibration::Timing::kAuto},
+      {"on_demand", calibration::Timing::kOnDemand},
+      {"periodic", calibration::Timing::kPeriodic}};
   app.add_option("--sensors", options.sensors,
                  "Names of sensors, separated by commas; all that there are, if not given")
       ->delimiter(',')
       ->type_name("NAME,NAME");
   app.add_option("--acquisitions", options.acquisitions, "Of each experiment")
-      ->check(CLI::Range(1, kMostAcquisitions))
+      ->check(CLI::Range(1, calibration::kMostAcquisitions))
       ->capture_default_str();
   app.add_option("--experiments", options.experiments, "Of each sensor; the paper made ten")
-      ->check(CLI::Range(1, kMostAcquisitions))
+      ->check(CLI::Range(1, calibration::kMostAcquisitions))
       ->capture_default_str();
   app.add_option(
          "--timing", options.timing,
@@ -217,12 +218,12 @@ void add_characterize_options(CLI::App& app, CharacterizeOptions& options) {
       ->default_str(shown(to_seconds(options.time_limit)));
 }
 
-void add_calibrate_options(CLI::App& app, CalibrateOptions& options) {
+void add_calibrate_options(CLI::App& app, calibration::CalibrateOptions& options) {
   const auto add_file = [&app](const char* name, std::string& file, const char* description) {
     app.add_option(name, file, description)->check(file_name())->type_name("FILE");
   };
   app.add_option("--rounds", options.rounds, "Rounds that count, after three of warming up")
-      ->check(CLI::Range(kLeastRounds, 100'000))
+      ->check(CLI::Range(calibration::kLeastRounds, 100'000))
       ->capture_default_str();
   app.add_option("--cpu", options.cpu_index,
                  "The core to measure on, from 0; the last that may be used, if not given")
@@ -240,7 +241,7 @@ void add_calibrate_options(CLI::App& app, CalibrateOptions& options) {
       ->type_name("NAME");
 }
 
-void add_real_row_options(CLI::App& app, RealRowOptions& options) {
+void add_real_row_options(CLI::App& app, rig::RealRowOptions& options) {
   add_pixel_box(app, "--true-roi-px", options.true_roi,
                 "With real devices: the anchor in the image as you annotated it, in whole pixels "
                 "from the top left; gives the angle error");
@@ -250,7 +251,7 @@ void add_real_row_options(CLI::App& app, RealRowOptions& options) {
       ->type_name("FILE");
 }
 
-bool is_given(const RealRowOptions& options) {
+bool is_given(const rig::RealRowOptions& options) {
   return options.true_roi || !options.keep_image.empty();
 }
 
@@ -263,7 +264,7 @@ void add_unless_there(CLI::App& app, const std::string& name, std::string& value
 
 /// --rig, and --camera, --imu and --range where `app` has no such option of its own. Those that it
 /// has take a sensor's name as well.
-void add_device_options(CLI::App& app, DeviceArguments& arguments) {
+void add_device_options(CLI::App& app, rig::DeviceArguments& arguments) {
   const std::string real = std::string("Real devices instead of a coordinator: ");
   app.add_option("--rig", arguments.rig,
                  real + "the file (TOML) that says of them what the catalogue says in simulation")
@@ -285,10 +286,10 @@ void add_link_options(CLI::App& app, CommandLine& line) {
 /// What is written while parsing.
 struct Words {
   CommandLine line;
-  std::vector<TaskSpec> tasks;  ///< of each kind of task, in order
-  DeviceArguments devices;
-  CharacterizeOptions characterize;
-  CalibrateOptions calibrate;
+  std::vector<rig::TaskSpec> tasks;  ///< of each kind of task, in order
+  rig::DeviceArguments devices;
+  calibration::CharacterizeOptions characterize;
+  calibration::CalibrateOptions calibrate;
   std::string mission_file;
 };
 
@@ -319,10 +320,11 @@ Refusal refusal(const std::string& what) {
 }
 
 void define_tasks(CLI::App& app, Words& words) {
-  for (const TaskKind& kind : task_kinds()) words.tasks.emplace_back().options = kind.defaults;
+  for (const rig::TaskKind& kind : rig::task_kinds())
+    words.tasks.emplace_back().options = kind.defaults;
   for (std::size_t i = 0; i < words.tasks.size(); ++i) {
-    TaskSpec& spec = words.tasks[i];
-    const TaskKind& kind = task_kinds()[i];
+    rig::TaskSpec& spec = words.tasks[i];
+    const rig::TaskKind& kind = rig::task_kinds()[i];
     add_subcommand(app, kind.name, kind.description, words, [&](CLI::App& command) {
       add_task_options(command, spec);
       if (std::holds_alternative<tasks::RelativePositionOptions>(spec.options)) {
@@ -359,7 +361,7 @@ Status take_mission(const CLI::App& app, Words& words) {
                         std::max<std::size_t>(words.characterize.sensors.size(), 1));
   }
   if (app.got_subcommand("mission")) {
-    Result<Mission> loaded = load_mission(words.mission_file);
+    Result<rig::Mission> loaded = rig::load_mission(words.mission_file);
     if (!loaded) {
       return loaded.failure();
     }
@@ -367,7 +369,7 @@ Status take_mission(const CLI::App& app, Words& words) {
     return ok_status();
   }
   for (std::size_t i = 0; i < words.tasks.size(); ++i) {
-    if (app.got_subcommand(std::string(task_kinds()[i].name))) {
+    if (app.got_subcommand(std::string(rig::task_kinds()[i].name))) {
       words.line.mission.tasks = {words.tasks[i]};
       take_devices(words.line.mission.tasks.front(), words.devices);
     }
