@@ -1,6 +1,5 @@
 #include "gazebo_simulation.h"
 
-#include "insertion.h"
 #include "scene.h"
 
 #include <thread>
@@ -12,6 +11,7 @@
 #include <ignition/math/Rand.hh>
 
 #include <tether/base/error.h>
+#include <tether/sim_gazebo_plugin/insertion.h>
 
 namespace tether::gazebo_plugin {
 namespace {

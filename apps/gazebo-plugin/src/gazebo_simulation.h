@@ -1,10 +1,8 @@
 #pragma once
 
-#include "main_thread.h"
 #include "ode_bodies.h"
 #include "ode_rays.h"
 #include "pictures.h"
-#include "simulation.h"
 #include "space_order.h"
 
 #include <chrono>
@@ -15,6 +13,9 @@
 #include <vector>
 
 #include <gazebo/physics/PhysicsTypes.hh>
+
+#include <tether/sim_gazebo_plugin/main_thread.h>
+#include <tether/sim_gazebo_plugin/simulation.h>
 
 namespace tether::gazebo_plugin {
 

@@ -1,6 +1,4 @@
-#include "box_mesh.h"
 #include "scene.h"
-#include "texture_repeat.h"
 
 #include <fstream>
 
@@ -9,6 +7,8 @@
 #include <gazebo/rendering/rendering.hh>
 
 #include <tether/base/error.h>
+#include <tether/sim_gazebo_plugin/box_mesh.h>
+#include <tether/sim_gazebo_plugin/texture_repeat.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -1,13 +1,14 @@
 #include "ode_rays.h"
 
 #include "links.h"
-#include "shape_rays.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 
 #include <gazebo/physics/ode/ODECollision.hh>
+
+#include <tether/sim_gazebo_plugin/shape_rays.h>
 
 namespace tether::gazebo_plugin {
 namespace {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "ode_bodies.h"
-#include "ray_frames.h"
 
 #include <cstdint>
 #include <optional>
@@ -9,6 +8,7 @@
 
 #include <gazebo/ode/ode.h>
 
+#include <tether/sim_gazebo_plugin/ray_frames.h>
 #include <tether/sim_protocol/messages.h>
 
 namespace tether::gazebo_plugin {

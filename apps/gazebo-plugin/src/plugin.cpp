@@ -1,7 +1,4 @@
 #include "gazebo_simulation.h"
-#include "host_line.h"
-#include "main_thread.h"
-#include "session.h"
 #include "shutdown.h"
 
 #include <cstdio>
@@ -15,6 +12,9 @@
 #include <gazebo/physics/physics.hh>
 #include <gazebo/rendering/rendering.hh>
 
+#include <tether/sim_gazebo_plugin/host_line.h>
+#include <tether/sim_gazebo_plugin/main_thread.h>
+#include <tether/sim_gazebo_plugin/session.h>
 #include <tether/sim_protocol/connection.h>
 
 namespace tether::gazebo_plugin {

@@ -39,10 +39,11 @@ constexpr const char* kHelp =
     "  concurrent = true\n";
 
 /// What is wrong with it; empty: nothing.
-std::string set(Settings& settings, const std::string& freezer) {
-  const std::map<std::string, FreezerChoice> choices = {{"auto", FreezerChoice::kAuto},
-                                                        {"cgroup", FreezerChoice::kCgroup},
-                                                        {"signal", FreezerChoice::kSignal}};
+std::string set(supervisor::Settings& settings, const std::string& freezer) {
+  const std::map<std::string, supervisor::FreezerChoice> choices = {
+      {"auto", supervisor::FreezerChoice::kAuto},
+      {"cgroup", supervisor::FreezerChoice::kCgroup},
+      {"signal", supervisor::FreezerChoice::kSignal}};
   const auto found = choices.find(freezer);
   if (found == choices.end()) {
     return "--freezer is '" + freezer + "'; allowed are auto, cgroup and signal";
@@ -88,7 +89,7 @@ Parsed parse_command_line(const std::vector<std::string>& arguments) {
   return parsed;
 }
 
-Status read_environment(Settings& settings) {
+Status read_environment(supervisor::Settings& settings) {
   auto options = client::options_from_environment();
   if (!options) return options.failure();
   if (!options->exec_socket.empty()) {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "settings.h"
-
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <tether/supervisor/settings.h>
 
 namespace tether::exec {
 
@@ -16,11 +16,11 @@ struct Notice {
 
 /// `arguments` without the program's name.
 struct Parsed {
-  Settings settings;
+  supervisor::Settings settings;
   std::optional<Notice> notice;
 };
 Parsed parse_command_line(const std::vector<std::string>& arguments);
 /// Adds what TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV and TETHER_CLOCK say. Fails with kInvalid.
-Status read_environment(Settings& settings);
+Status read_environment(supervisor::Settings& settings);
 
 }  // namespace tether::exec

@@ -18,14 +18,14 @@ TEST(CommandLine, OptionsEndWhereTheCommandBegins) {
       parse_command_line({"--verbose", "--freezer", "signal", "fly", "--verbose", "-x"});
   ASSERT_FALSE(parsed.notice);
   EXPECT_TRUE(parsed.settings.verbose);
-  EXPECT_EQ(parsed.settings.freezer, FreezerChoice::kSignal);
+  EXPECT_EQ(parsed.settings.freezer, supervisor::FreezerChoice::kSignal);
   EXPECT_THAT(parsed.settings.command, ElementsAre("fly", "--verbose", "-x"));
 }
 
 TEST(CommandLine, TheCommandMayLookLikeAnOption) {
   const Parsed parsed = parse_command_line({"--freezer=cgroup", "--", "-fly"});
   ASSERT_FALSE(parsed.notice);
-  EXPECT_EQ(parsed.settings.freezer, FreezerChoice::kCgroup);
+  EXPECT_EQ(parsed.settings.freezer, supervisor::FreezerChoice::kCgroup);
   EXPECT_FALSE(parsed.settings.verbose);
   EXPECT_THAT(parsed.settings.command, ElementsAre("-fly"));
 }
@@ -62,7 +62,7 @@ class ExecEnvironment : public testing::Test {
       ::unsetenv(name);
     }
   }
-  Settings settings_;
+  supervisor::Settings settings_;
 };
 
 TEST_F(ExecEnvironment, GivesCoordinatorAndClock) {

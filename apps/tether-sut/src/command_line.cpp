@@ -1,18 +1,23 @@
 #include "command_line.h"
 
-#include "device_arguments.h"
-#include "measuring_arguments.h"
-#include "mission_file.h"
-#include "task_arguments.h"
-
-#include <memory>
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <sstream>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include <tether/base/units.h>
 #include <tether/base/version.h>
+#include <tether/calibration/profile_text.h>
+#include <tether/rig/device_arguments.h>
+#include <tether/rig/mission_file.h>
+#include <tether/rig/task_fields.h>
+
+// The only source that includes CLI11. The arguments of tasks come from task_fields, the others are
+// defined here.
 
 namespace tether::sut {
 namespace {
@@ -44,6 +49,233 @@ Environment (set by `tether run` for the SUT that it starts):
 
 Exit codes: 0 the goal was reached; 1 it was not; 2 wrong use; 3 set-up or link failed.)";
 
+// Kinds of values ---------------------------------------------------------------------------------
+
+/// Like CLI::Range, which lets NaN through.
+CLI::Validator within(double least, double most) {
+  const CLI::Range range(least, most);
+  return CLI::Validator(
+      [range](std::string& text) {
+        double value = 0.0;
+        const bool is_nan = CLI::detail::lexical_cast(text, value) && std::isnan(value);
+        return is_nan ? std::string("nan is no number") : range(text);
+      },
+      range.get_description());
+}
+
+CLI::Validator odd() {
+  return CLI::Validator(
+      [](std::string& text) {
+        const bool is_odd = !text.empty() && (text.back() - '0') % 2 == 1;
+        return is_odd ? std::string() : text + " is not odd";
+      },
+      "odd");
+}
+
+/// A number as defaults are shown: 25, not 25.000000000000004.
+std::string shown(double value) {
+  return CLI::detail::to_string(std::round(value * 1e9) / 1e9);
+}
+
+constexpr const char* kDevices =
+    "a path with a '/', a number N for /dev/videoN, a stream's URL, or iio:NAME";
+
+CLI::Validator device() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return devices::is_device(text) ? std::string()
+                                        : "\"" + text + "\" is no device: " + kDevices;
+      },
+      "DEVICE");
+}
+
+CLI::Validator profile_name() {
+  return CLI::Validator(
+      [](std::string& text) {
+        return calibration::is_profile_name(text)
+                   ? std::string()
+                   : "\"" + text +
+                         "\" is no name: 1 to 64 letters, digits, '_', '-' and "
+                         "'.', not starting with '.'";
+      },
+      "NAME");
+}
+
+CLI::Validator file_name() {
+  return CLI::Validator(
+      [](std::string& text) { return text.empty() ? std::string("needs a name") : std::string(); },
+      "FILE");
+}
+
+/// "12,40,80,60" in whole pixels.
+void add_pixel_box(CLI::App& app, const std::string& name, std::optional<rig::PixelBox>& box,
+                   const std::string& description) {
+  app.add_option_function<std::vector<double>>(
+         name,
+         [&box](const std::vector<double>& v) {
+           box = rig::PixelBox{v[0], v[1], v[2], v[3]};
+           if (box->width_px < 1.0 || box->height_px < 1.0) {
+             throw CLI::ValidationError("--true-roi-px", "W and H must be at least 1");
+           }
+         },
+         description)
+      ->delimiter(',')
+      ->expected(4)
+      ->check(within(-1e5, 1e5))
+      ->type_name("X,Y,W,H");
+}
+
+// Tasks -------------------------------------------------------------------------------------------
+
+/// Defines the option of a task's field.
+class OptionOf {
+ public:
+  OptionOf(CLI::App& app, const rig::Field& field)
+      : app_(app), name_("--" + std::string(field.name)), description_(field.description) {
+    std::replace(name_.begin(), name_.end(), '_', '-');
+  }
+
+  void operator()(const rig::TextField& field) const {
+    CLI::Option* option = app_.add_option(name_, *field.value, description_);
+    if (field.is_required) {
+      option->required();
+    } else {
+      option->capture_default_str();
+    }
+  }
+  void operator()(const rig::NumberField& field) const {
+    app_.add_option_function<double>(name_, field.set, description_)
+        ->check(within(field.least, field.most))
+        ->default_str(shown(field.usual));
+  }
+  void operator()(const rig::IntegerField& field) const {
+    CLI::Option* option = app_.add_option(name_, *field.value, description_)
+                              ->check(CLI::Range(field.least, field.most))
+                              ->capture_default_str();
+    if (field.is_odd) option->check(odd());
+  }
+  void operator()(const rig::BooleanField& field) const {
+    app_.add_option(name_, *field.value, description_)->capture_default_str();
+  }
+  void operator()(const rig::ChoiceField& field) const {
+    const std::vector<std::string> words(field.words.begin(), field.words.end());
+    app_.add_option_function<std::string>(
+            name_,
+            [set = field.set, words](const std::string& word) {
+              set(static_cast<std::size_t>(std::find(words.begin(), words.end(), word) -
+                                           words.begin()));
+            },
+            description_)
+        ->check(CLI::IsMember(words))
+        ->type_name("NAME");
+  }
+
+ private:
+  CLI::App& app_;
+  std::string name_;
+  std::string description_;
+};
+
+void add_task_options(CLI::App& app, rig::TaskSpec& spec) {
+  for (const rig::Field& field : fields_of(spec)) std::visit(OptionOf(app, field), field.value);
+}
+
+// Everything else ---------------------------------------------------------------------------------
+
+void add_characterize_options(CLI::App& app, calibration::CharacterizeOptions& options) {
+  static const std::map<std::string, calibration::Timing> kTimings = {
+      {"auto", calibration::Timing::kAuto},
+      {"on_demand", calibration::Timing::kOnDemand},
+      {"periodic", calibration::Timing::kPeriodic}};
+  app.add_option("--sensors", options.sensors,
+                 "Names of sensors, separated by commas; all that there are, if not given")
+      ->delimiter(',')
+      ->type_name("NAME,NAME");
+  app.add_option("--acquisitions", options.acquisitions, "Of each experiment")
+      ->check(CLI::Range(1, calibration::kMostAcquisitions))
+      ->capture_default_str();
+  app.add_option("--experiments", options.experiments, "Of each sensor; the paper made ten")
+      ->check(CLI::Range(1, calibration::kMostAcquisitions))
+      ->capture_default_str();
+  app.add_option(
+         "--timing", options.timing,
+         "What the profile says: on_demand (from asking to having), periodic (the sensor's "
+         "own period and delay), or auto (default: periodic where a sensor tells a rate and "
+         "can be modelled so, else on_demand)")
+      ->transform(CLI::Transformer(kTimings))
+      ->type_name("NAME");
+  app.add_option("--name", options.name, "The profile's name; usually the host's")
+      ->check(profile_name())
+      ->type_name("NAME");
+  app.add_option("--out", options.out, "Writes the profile (TOML) to this file")
+      ->check(file_name())
+      ->type_name("FILE");
+  app.add_option_function<double>(
+         "--time-limit-s",
+         [&options](double value) { options.time_limit = duration_from_seconds(value); },
+         "Gives up a sensor after this time")
+      ->check(within(0.001, 1e6))
+      ->default_str(shown(to_seconds(options.time_limit)));
+}
+
+void add_calibrate_options(CLI::App& app, calibration::CalibrateOptions& options) {
+  const auto add_file = [&app](const char* name, std::string& file, const char* description) {
+    app.add_option(name, file, description)->check(file_name())->type_name("FILE");
+  };
+  app.add_option("--rounds", options.rounds, "Rounds that count, after three of warming up")
+      ->check(CLI::Range(calibration::kLeastRounds, 100'000))
+      ->capture_default_str();
+  app.add_option("--cpu", options.cpu_index,
+                 "The core to measure on, from 0; the last that may be used, if not given")
+      ->check(CLI::Range(0, 100'000))
+      ->type_name("N");
+  add_file("--out", options.out, "Writes what was measured (TOML)");
+  add_file("--against", options.against,
+           "What was measured on another machine: says how many times longer it takes");
+  add_file("--measured", options.measured,
+           "What was measured on this machine before, instead of measuring now");
+  add_file("--write-target", options.target,
+           "With --against: writes that machine as a virtual target on this one (TOML)");
+  app.add_option("--name", options.name, "The target's name; usually that machine's")
+      ->check(profile_name())
+      ->type_name("NAME");
+}
+
+void add_real_row_options(CLI::App& app, rig::RealRowOptions& options) {
+  add_pixel_box(app, "--true-roi-px", options.true_roi,
+                "With real devices: the anchor in the image as you annotated it, in whole pixels "
+                "from the top left; gives the angle error");
+  app.add_option("--keep-image", options.keep_image,
+                 "With real devices: writes the last estimate's image, to annotate it (PNG)")
+      ->check(file_name())
+      ->type_name("FILE");
+}
+
+bool is_given(const rig::RealRowOptions& options) {
+  return options.true_roi || !options.keep_image.empty();
+}
+
+void add_unless_there(CLI::App& app, const std::string& name, std::string& value,
+                      const std::string& description) {
+  if (app.get_option_no_throw(name) == nullptr) {
+    app.add_option(name, value, description)->check(device())->type_name("");
+  }
+}
+
+/// --rig, and --camera, --imu and --range where `app` has no such option of its own. Those that it
+/// has take a sensor's name as well.
+void add_device_options(CLI::App& app, rig::DeviceArguments& arguments) {
+  const std::string real = std::string("Real devices instead of a coordinator: ");
+  app.add_option("--rig", arguments.rig,
+                 real + "the file (TOML) that says of them what the catalogue says in simulation")
+      ->type_name("FILE");
+  add_unless_there(app, "--camera", arguments.camera, std::string("A real camera: ") + kDevices);
+  add_unless_there(app, "--imu", arguments.imu,
+                   "A real IMU: a folder like iio:deviceN's, or iio:NAME");
+  add_unless_there(app, "--range", arguments.range,
+                   "A real rangefinder: a folder like iio:deviceN's, or iio:NAME");
+}
+
 void add_link_options(CLI::App& app, CommandLine& line) {
   app.add_option("--address", line.address,
                  "The coordinator, host:port (overrides TETHER_ADDRESS)");
@@ -54,9 +286,10 @@ void add_link_options(CLI::App& app, CommandLine& line) {
 /// What is written while parsing.
 struct Words {
   CommandLine line;
-  DeviceArguments devices;
-  CharacterizeOptions characterize;
-  CalibrateOptions calibrate;
+  std::vector<rig::TaskSpec> tasks;  ///< of each kind of task, in order
+  rig::DeviceArguments devices;
+  calibration::CharacterizeOptions characterize;
+  calibration::CalibrateOptions calibrate;
   std::string mission_file;
 };
 
@@ -86,17 +319,23 @@ Refusal refusal(const std::string& what) {
   return {2, "tether-sut: " + what + "\n"};
 }
 
-using Tasks = std::vector<std::unique_ptr<TaskArguments>>;
-
-void define_subcommands(CLI::App& app, const Tasks& tasks, Words& words) {
-  for (const auto& task : tasks) {
-    add_subcommand(app, task->name(), task->description(), words, [&](CLI::App& command) {
-      task->add_to(command);
-      if (task->name() == "relative_position") {
+void define_tasks(CLI::App& app, Words& words) {
+  for (const rig::TaskKind& kind : rig::task_kinds())
+    words.tasks.emplace_back().options = kind.defaults;
+  for (std::size_t i = 0; i < words.tasks.size(); ++i) {
+    rig::TaskSpec& spec = words.tasks[i];
+    const rig::TaskKind& kind = rig::task_kinds()[i];
+    add_subcommand(app, kind.name, kind.description, words, [&](CLI::App& command) {
+      add_task_options(command, spec);
+      if (std::holds_alternative<tasks::RelativePositionOptions>(spec.options)) {
         add_real_row_options(command, words.line.real_row);
       }
     });
   }
+}
+
+void define_subcommands(CLI::App& app, Words& words) {
+  define_tasks(app, words);
   add_subcommand(app, "mission", "Fly the tasks of a file, one after the other", words,
                  [&](CLI::App& command) {
                    command.add_option("file,--file", words.mission_file, "The mission file (TOML)")
@@ -111,26 +350,27 @@ void define_subcommands(CLI::App& app, const Tasks& tasks, Words& words) {
 }
 
 /// What is to be flown, of what was parsed.
-Status take_mission(const CLI::App& app, const Tasks& tasks, Words& words) {
+Status take_mission(const CLI::App& app, Words& words) {
   if (app.got_subcommand("calibrate")) {
     words.line.calibrate = words.calibrate;
     return check(words.calibrate);
   }
   if (app.got_subcommand("characterize")) {
     words.line.characterize = words.characterize;
-    return check(words.characterize);
+    return check_extent(words.characterize,
+                        std::max<std::size_t>(words.characterize.sensors.size(), 1));
   }
   if (app.got_subcommand("mission")) {
-    Result<Mission> loaded = load_mission(words.mission_file);
+    Result<rig::Mission> loaded = rig::load_mission(words.mission_file);
     if (!loaded) {
       return loaded.failure();
     }
     words.line.mission = std::move(loaded).value();
     return ok_status();
   }
-  for (const auto& task : tasks) {
-    if (app.got_subcommand(std::string(task->name()))) {
-      words.line.mission.tasks = {task->spec()};
+  for (std::size_t i = 0; i < words.tasks.size(); ++i) {
+    if (app.got_subcommand(std::string(rig::task_kinds()[i].name))) {
+      words.line.mission.tasks = {words.tasks[i]};
       take_devices(words.line.mission.tasks.front(), words.devices);
     }
   }
@@ -152,9 +392,8 @@ Status check_link(const CommandLine& line) {
 }
 
 /// The words that CLI11 could parse, as one command.
-std::variant<CommandLine, Refusal> understand(const CLI::App& app, const Tasks& tasks,
-                                              Words& words) {
-  if (const Status mission = take_mission(app, tasks, words); !mission) {
+std::variant<CommandLine, Refusal> understand(const CLI::App& app, Words& words) {
+  if (const Status mission = take_mission(app, words); !mission) {
     return refusal(mission.failure().message);
   }
   Result<std::optional<devices::Rig>> rig = make_rig(words.devices, words.line.mission);
@@ -172,18 +411,17 @@ std::variant<CommandLine, Refusal> understand(const CLI::App& app, const Tasks& 
 
 std::variant<CommandLine, Refusal> parse_command_line(int argc, const char* const* argv) {
   Words words;
-  const Tasks tasks = all_task_arguments();
   CLI::App app(kDescription, "tether-sut");
   app.set_version_flag("--version", "tether-sut " + std::string(version()));
   app.footer(kExamples);
   app.require_subcommand(1);
-  define_subcommands(app, tasks, words);
+  define_subcommands(app, words);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return refusal(app, error);
   }
-  return understand(app, tasks, words);
+  return understand(app, words);
 }
 
 }  // namespace tether::sut

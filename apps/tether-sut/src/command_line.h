@@ -1,25 +1,24 @@
 #pragma once
 
-#include "calibrate.h"
-#include "characterize.h"
-#include "mission.h"
-#include "real_row.h"
-
 #include <optional>
 #include <string>
 #include <variant>
 
+#include <tether/calibration/calibrate.h>
+#include <tether/calibration/characterize.h>
 #include <tether/devices/rig.h>
+#include <tether/rig/mission.h>
+#include <tether/rig/real_row.h>
 
 namespace tether::sut {
 
 /// What was asked for on the command line. `address`, `uav` and `clock` override the environment.
 struct CommandLine {
-  Mission mission;                                  ///< without tasks, if to characterize
-  std::optional<CharacterizeOptions> characterize;  ///< instead of a mission
-  std::optional<CalibrateOptions> calibrate;        ///< instead of all else
-  RealRowOptions real_row;                          ///< of a lone relative_position with a rig
-  std::optional<devices::Rig> rig;                  ///< real devices instead of a coordinator
+  rig::Mission mission;  ///< without tasks, if to characterize
+  std::optional<calibration::CharacterizeOptions> characterize;  ///< instead of a mission
+  std::optional<calibration::CalibrateOptions> calibrate;        ///< instead of all else
+  rig::RealRowOptions real_row;     ///< of a lone relative_position with a rig
+  std::optional<devices::Rig> rig;  ///< real devices instead of a coordinator
   std::optional<std::string> address;
   std::optional<std::string> uav;
   std::optional<std::string> clock;

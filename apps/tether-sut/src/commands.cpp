@@ -1,16 +1,17 @@
 #include "commands.h"
 
-#include "image_file.h"
-#include "machine.h"
-#include "profile_text.h"
 #include "progress_line.h"
-#include "whole_file.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <ostream>
 #include <utility>
+
+#include <tether/calibration/machine.h>
+#include <tether/calibration/profile_text.h>
+#include <tether/calibration/whole_file.h>
+#include <tether/rig/png.h>
 
 namespace tether::sut {
 namespace {
@@ -31,12 +32,12 @@ int report(const TaskOutcome& outcome, const Streams& streams) {
   } else {
     streams.out << tasks::details_json(outcome) << '\n';
   }
-  return exit_code(outcome);
+  return rig::exit_code(outcome);
 }
 
 // The real row ------------------------------------------------------------------------------------
 
-Status keep_image(const std::string& path, const RealRow& row, const Streams& streams) {
+Status keep_image(const std::string& path, const rig::RealRow& row, const Streams& streams) {
   if (path.empty()) {
     return ok_status();
   }
@@ -44,12 +45,16 @@ Status keep_image(const std::string& path, const RealRow& row, const Streams& st
     streams.err << "tether-sut: " << path << " is not written: there is no image with the anchor\n";
     return ok_status();
   }
-  if (Status written = write_png(path, row.sighting->image); !written) {
+  const Result<std::string> png = rig::png_of(row.sighting->image);
+  if (!png) {
+    return Failure{png.failure().kind, path + ": " + png.failure().message};
+  }
+  if (Status written = calibration::write_whole(path, *png); !written) {
     return written;
   }
   streams.out << path << ": image " << row.sighting->image.index
-              << "; the tracked ROI, as --true-roi-px takes it: " << to_pixel_box(row.sighting->roi)
-              << '\n';
+              << "; the tracked ROI, as --true-roi-px takes it: "
+              << rig::to_pixel_box(row.sighting->roi) << '\n';
   return ok_status();
 }
 
@@ -73,18 +78,20 @@ bool may_stamp_arrival(const CommandLine& line, const std::string& sensor) {
 }
 
 /// `notes` get a line for each sensor whose model is not the one that was hoped for.
-Result<MeasuredProfile> make_profile(const CommandLine& line, const Connection& connection,
-                                     const std::vector<SensorTimes>& all,
-                                     std::vector<std::string>& notes) {
-  const CharacterizeOptions& options = *line.characterize;
-  MeasuredProfile profile;
-  profile.name = options.name.empty() ? profile_name_from(host_name()) : options.name;
-  profile.when = utc_now();
+Result<calibration::MeasuredProfile> make_profile(const CommandLine& line,
+                                                  const Connection& connection,
+                                                  const std::vector<calibration::SensorTimes>& all,
+                                                  std::vector<std::string>& notes) {
+  const calibration::CharacterizeOptions& options = *line.characterize;
+  calibration::MeasuredProfile profile;
+  profile.name = options.name.empty() ? calibration::profile_name_from(calibration::host_name())
+                                      : options.name;
+  profile.when = calibration::utc_now();
   profile.where = connection.origin.location;
   profile.acquisitions = options.acquisitions;
   profile.experiments = options.experiments;
-  for (const SensorTimes& times : all) {
-    Result<ChosenTiming> timing =
+  for (const calibration::SensorTimes& times : all) {
+    Result<calibration::ChosenTiming> timing =
         choose_timing(times, options.timing, may_stamp_arrival(line, times.sensor));
     if (!timing) {
       return timing.failure();
@@ -99,9 +106,9 @@ Result<MeasuredProfile> make_profile(const CommandLine& line, const Connection& 
 }
 
 /// "Timing models: camera periodic, range on_demand".
-std::string models_text(const MeasuredProfile& profile) {
+std::string models_text(const calibration::MeasuredProfile& profile) {
   std::string text;
-  for (const ProfiledSensor& sensor : profile.sensors) {
+  for (const calibration::ProfiledSensor& sensor : profile.sensors) {
     text += (text.empty() ? "Timing models: " : ", ") + sensor.name +
             (sensor.timing.period ? " periodic" : " on_demand");
   }
@@ -109,12 +116,12 @@ std::string models_text(const MeasuredProfile& profile) {
 }
 
 /// What was acquired, and of a periodic sensor the delay that its profile has.
-std::vector<NamedTimes> rows_of(const std::vector<SensorTimes>& all,
-                                const MeasuredProfile& profile) {
-  std::vector<NamedTimes> rows;
+std::vector<calibration::NamedTimes> rows_of(const std::vector<calibration::SensorTimes>& all,
+                                             const calibration::MeasuredProfile& profile) {
+  std::vector<calibration::NamedTimes> rows;
   for (std::size_t i = 0; i < all.size(); ++i) {
     rows.push_back({all[i].sensor, all[i].taken(), stddev_between_experiments_s(all[i])});
-    const TimingModel& timing = profile.sensors[i].timing;
+    const calibration::TimingModel& timing = profile.sensors[i].timing;
     if (timing.period) {
       rows.push_back({all[i].sensor + " period", {*timing.period}, std::nullopt});
       rows.push_back({all[i].sensor + " delay", timing.delays, std::nullopt});
@@ -123,7 +130,7 @@ std::vector<NamedTimes> rows_of(const std::vector<SensorTimes>& all,
   return rows;
 }
 
-Characterization measure(const CommandLine& line, const Connection& connection) {
+calibration::Characterization measure(const CommandLine& line, const Connection& connection) {
   ProgressLine progress;
   return characterize(*connection.vehicle, *line.characterize,
                       [&progress](const std::string& what) { progress.show(what); });
@@ -137,7 +144,7 @@ int fly_command(const CommandLine& line, client::Vehicle& vehicle, const Streams
 
 int real_row_command(const CommandLine& line, const Connection& connection,
                      const Streams& streams) {
-  const RealRow row =
+  const rig::RealRow row =
       measure_real_row(line.mission.tasks.front(), line.real_row.true_roi, *connection.vehicle);
   if (row.outcome.failure) {
     return report(row.outcome, streams);
@@ -151,26 +158,27 @@ int real_row_command(const CommandLine& line, const Connection& connection,
   if (row.outcome.reached()) {
     streams.out << table_2(row, connection.origin.location);
   }
-  return report(finish(row.outcome, *connection.vehicle), streams);
+  return report(rig::finish(row.outcome, *connection.vehicle), streams);
 }
 
 int characterize_command(const CommandLine& line, const Connection& connection,
                          const Streams& streams) {
-  const Characterization measured = measure(line, connection);
+  const calibration::Characterization measured = measure(line, connection);
   if (!measured.outcome.reached()) {
-    return report(finish(measured.outcome, *connection.vehicle), streams);
+    return report(rig::finish(measured.outcome, *connection.vehicle), streams);
   }
   std::vector<std::string> notes;
-  const Result<MeasuredProfile> profile = make_profile(line, connection, measured.sensors, notes);
+  const Result<calibration::MeasuredProfile> profile =
+      make_profile(line, connection, measured.sensors, notes);
   if (!profile) {
-    return say(profile.failure(), exit_code(profile.failure()), streams);
+    return say(profile.failure(), rig::exit_code(profile.failure()), streams);
   }
   const std::string& out = line.characterize->out;
   if (!out.empty()) {
     if (const Status good = check_delays(*profile); !good) {
-      return say(good.failure(), exit_code(good.failure()), streams);
+      return say(good.failure(), rig::exit_code(good.failure()), streams);
     }
-    if (const Status written = write_whole(out, profile_text(*profile)); !written) {
+    if (const Status written = calibration::write_whole(out, profile_text(*profile)); !written) {
       return say(written.failure(), kSetUpFailed, streams);
     }
   }
@@ -180,17 +188,17 @@ int characterize_command(const CommandLine& line, const Connection& connection,
   streams.out << table_1(connection.origin, measured.sensors) << '\n'
               << distribution_table(rows_of(measured.sensors, *profile)) << models_text(*profile)
               << '\n';
-  return report(finish(measured.outcome, *connection.vehicle), streams);
+  return report(rig::finish(measured.outcome, *connection.vehicle), streams);
 }
 
-int calibrate_command(const CalibrateOptions& options, const Streams& streams) {
+int calibrate_command(const calibration::CalibrateOptions& options, const Streams& streams) {
   std::optional<Result<std::string>> made;
   {
     ProgressLine progress;
     made = calibrate(options, [&progress](const std::string& what) { progress.show(what); });
   }
   if (!*made) {
-    return say(made->failure(), exit_code(made->failure()), streams);
+    return say(made->failure(), rig::exit_code(made->failure()), streams);
   }
   streams.out << **made;
   return 0;
@@ -202,18 +210,18 @@ int run_command(const CommandLine& line, const Streams& streams) {
   }
   const std::string& file = line.characterize ? line.characterize->out : line.real_row.keep_image;
   if (!file.empty()) {
-    if (const Status writable = check_writable(file); !writable) {
-      return say(writable.failure(), exit_code(writable.failure()), streams);
+    if (const Status writable = calibration::check_writable(file); !writable) {
+      return say(writable.failure(), rig::exit_code(writable.failure()), streams);
     }
   }
   const Result<Connection> connection = connect_as(line);
   if (!connection) {
-    return say(connection.failure(), exit_code(connection.failure()), streams);
+    return say(connection.failure(), rig::exit_code(connection.failure()), streams);
   }
   if (line.characterize) {
     return characterize_command(line, *connection, streams);
   }
-  const std::vector<TaskSpec>& specs = line.mission.tasks;
+  const std::vector<rig::TaskSpec>& specs = line.mission.tasks;
   const bool is_real_row =
       connection->is_real && !line.mission.is_sequence &&
       std::holds_alternative<tasks::RelativePositionOptions>(specs.front().options);

@@ -30,7 +30,7 @@ int characterize_command(const CommandLine& line, const Connection& connection,
                          const Streams& streams);
 
 /// Calibrates and prints the tables.
-int calibrate_command(const CalibrateOptions& options, const Streams& streams);
+int calibrate_command(const calibration::CalibrateOptions& options, const Streams& streams);
 
 /// The whole: checks that the files can be written, connects, and runs the command.
 int run_command(const CommandLine& line, const Streams& streams);

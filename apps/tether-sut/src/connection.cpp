@@ -1,9 +1,5 @@
 #include "connection.h"
 
-#include "interruptible_vehicle.h"
-#include "text_table.h"
-
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -11,10 +7,12 @@
 
 #include <malloc.h>
 #include <sys/utsname.h>
-#include <unistd.h>
 
+#include <tether/base/text_table.h>
 #include <tether/base/version.h>
+#include <tether/calibration/machine.h>
 #include <tether/client/simulated_vehicle.h>
+#include <tether/rig/interruptible_vehicle.h>
 #include <tether/vision/runtime.h>
 
 namespace tether::sut {
@@ -66,19 +64,13 @@ Result<Connection> open_devices(const devices::Rig& rig) {
   if (!vehicle) {
     return Failure{Failure::Kind::kRefused, vehicle.failure().message};
   }
-  catch_interrupts();
-  return Connection{make_interruptible(std::move(vehicle).value(), interrupted),
-                    {"real sensor", host_name()},
+  rig::catch_interrupts();
+  return Connection{rig::make_interruptible(std::move(vehicle).value(), rig::interrupted),
+                    {"real sensor", calibration::host_name()},
                     true};
 }
 
 }  // namespace
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  const bool is_known = gethostname(name.data(), name.size() - 1) == 0 && name.front() != '\0';
-  return is_known ? name.data() : "unknown host";
-}
 
 std::string in_run_folder(const std::string& path) {
   const char* folder = std::getenv("TETHER_OUT");
@@ -106,7 +98,7 @@ Result<Connection> connect_as(const CommandLine& line) {
     return options.failure();
   }
   options->sut_name = name_of_this_program();
-  const std::string location = host_name() + ", " + clock_text(*options->time);
+  const std::string location = calibration::host_name() + ", " + clock_text(*options->time);
   prepare();
   Result<std::unique_ptr<client::Vehicle>> vehicle = client::connect(std::move(options).value());
   if (!vehicle) {

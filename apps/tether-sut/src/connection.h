@@ -1,11 +1,11 @@
 #pragma once
 
 #include "command_line.h"
-#include "sensor_table.h"
 
 #include <memory>
 
 #include <tether/base/result.h>
+#include <tether/calibration/sensor_table.h>
 #include <tether/client/vehicle.h>
 
 namespace tether::sut {
@@ -13,7 +13,7 @@ namespace tether::sut {
 /// What the SUT works with, and how the paper's tables name it.
 struct Connection {
   std::unique_ptr<client::Vehicle> vehicle;
-  Origin origin;
+  calibration::Origin origin;
   bool is_real = false;
 };
 
@@ -21,8 +21,6 @@ struct Connection {
 /// names. With real devices an interrupt then ends the vehicle's calls (`make_interruptible`). A
 /// device that cannot be opened is kRefused: the set-up failed.
 Result<Connection> connect_as(const CommandLine& line);
-
-std::string host_name();
 
 /// Where a file is to be written: a relative path is below the folder of the run that started this
 /// program (TETHER_OUT), if one did.

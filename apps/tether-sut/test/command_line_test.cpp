@@ -26,7 +26,7 @@ CommandLine parsed(std::vector<const char*> arguments) {
   return std::get<CommandLine>(result);
 }
 
-const TaskSpec& only(const CommandLine& line) {
+const rig::TaskSpec& only(const CommandLine& line) {
   EXPECT_FALSE(line.mission.is_sequence);
   return line.mission.tasks.at(0);
 }
@@ -241,7 +241,7 @@ TEST(CommandLine, Characterize) {
   EXPECT_THAT(line.characterize->sensors, ::testing::ElementsAre("camera", "range"));
   EXPECT_EQ(line.characterize->acquisitions, 50);
   EXPECT_EQ(line.characterize->experiments, 10);
-  EXPECT_EQ(line.characterize->timing, Timing::kPeriodic);
+  EXPECT_EQ(line.characterize->timing, calibration::Timing::kPeriodic);
   EXPECT_EQ(line.characterize->name, "pi");
   EXPECT_EQ(line.characterize->out, "p.toml");
   EXPECT_EQ(line.characterize->time_limit, std::chrono::seconds(30));
@@ -251,9 +251,9 @@ TEST(CommandLine, Characterize) {
   EXPECT_TRUE(plain.characterize->sensors.empty());
   EXPECT_EQ(plain.characterize->acquisitions, 100);
   EXPECT_EQ(plain.characterize->experiments, 1);
-  EXPECT_EQ(plain.characterize->timing, Timing::kAuto);
+  EXPECT_EQ(plain.characterize->timing, calibration::Timing::kAuto);
   EXPECT_EQ(parsed({"characterize", "--timing", "on_demand"}).characterize->timing,
-            Timing::kOnDemand);
+            calibration::Timing::kOnDemand);
 }
 
 TEST(CommandLine, WhatDoesNotGoTogetherGetsOneLine) {
@@ -261,7 +261,7 @@ TEST(CommandLine, WhatDoesNotGoTogetherGetsOneLine) {
       {{"characterize", "--camera", "0", "--address", "h:1"}, "are about a coordinator"},
       {{"characterize", "--camera", "0", "--clock", "cpu"}, "are about a coordinator"},
       {{"characterize", "--acquisitions", "20000", "--experiments", "4"}, "at most 60000"},
-      {{"characterize", "--rig", "/nowhere/r.toml"}, "cannot be read"},
+      {{"characterize", "--rig", "/nowhere/r.toml"}, "/nowhere/r.toml: there is no such file"},
       {{"face_anchor", "--anchor", "b", "--camera", "0"}, "needs --rig FILE"},
       {{"relative_position", "--anchor", "b", "--keep-image", "i.png"}, "for real devices"},
       {{"relative_position", "--anchor", "b", "--true-roi-px", "1,2,3,4"}, "for real devices"},
@@ -277,7 +277,7 @@ TEST(CommandLine, WhatDoesNotGoTogetherGetsOneLine) {
 TEST(CommandLine, ABadMissionFileIsWrongUse) {
   const auto refused = std::get<Refusal>(parse({"mission", "/nowhere/m.toml"}));
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_EQ(refused.text, "tether-sut: /nowhere/m.toml: cannot be read, or is no mission file\n");
+  EXPECT_EQ(refused.text, "tether-sut: /nowhere/m.toml: there is no such file\n");
 }
 
 TEST(CommandLine, HelpAndVersionAreNoMistake) {

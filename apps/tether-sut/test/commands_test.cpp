@@ -1,7 +1,5 @@
 #include "commands.h"
 
-#include "interruptible_vehicle.h"
-
 #include <filesystem>
 #include <sstream>
 #include <utility>
@@ -10,6 +8,7 @@
 #include <toml++/toml.h>
 
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/rig/interruptible_vehicle.h>
 #include <tether/tasks/testing/planar_vehicle.h>
 
 namespace tether::sut {
@@ -50,7 +49,7 @@ CommandLine characterize_line(const std::string& out) {
 
 CommandLine real_row_line() {
   CommandLine line;
-  TaskSpec spec;
+  rig::TaskSpec spec;
   spec.options = tasks::RelativePositionOptions{.convergence = {.tolerance_px = 2.0}};
   spec.anchor = "blue_box";
   line.mission.tasks = {spec};
@@ -66,7 +65,7 @@ TEST_F(Commands, CharacterizeWritesAProfileAndPrintsTheTables) {
   ASSERT_TRUE(vehicle_->finished());
   EXPECT_TRUE(vehicle_->finished()->reached_goal);
   EXPECT_THAT(vehicle_->finished()->details_json, HasSubstr("\"camera_p95_s\""));
-  toml::table profile = toml::parse_file(path("p.toml"));
+  ::toml::table profile = ::toml::parse_file(path("p.toml"));
   const auto* samples = profile["sensors"]["range"]["delay"]["samples_ms"].as_array();
   ASSERT_NE(samples, nullptr);
   EXPECT_EQ(samples->size(), 5u);
@@ -77,7 +76,7 @@ TEST_F(Commands, CharacterizeWritesAProfileAndPrintsTheTables) {
 TEST_F(Commands, EachSensorGetsTheModelThatItAllows) {
   const Connection virtual_uav = connection({}, false);
   EXPECT_EQ(characterize_command(characterize_line(path("p.toml")), virtual_uav, streams_), 0);
-  toml::table profile = toml::parse_file(path("p.toml"));
+  ::toml::table profile = ::toml::parse_file(path("p.toml"));
   const auto timing = [&](const char* sensor) {
     return profile["sensors"][sensor]["timing"].value<std::string>();
   };
@@ -98,13 +97,13 @@ TEST_F(Commands, ASensorThatIsNotPeriodicFallsBackAndSaysWhy) {
   EXPECT_THAT(err(), AllOf(HasSubstr("tether-sut: sensor \"camera\": "),
                            HasSubstr("no instants of its own"),
                            ::testing::EndsWith("; its model is on_demand\n")));
-  EXPECT_EQ(toml::parse_file(path("p.toml"))["sensors"]["camera"]["timing"].value<std::string>(),
+  EXPECT_EQ(::toml::parse_file(path("p.toml"))["sensors"]["camera"]["timing"].value<std::string>(),
             "on_demand");
 }
 
 // Its images' instants pass at a third of its clock's pace.
 TEST_F(Commands, WithoutSynchronisationThereIsNoPeriodicProfile) {
-  const auto run = [&](Timing timing) {
+  const auto run = [&](calibration::Timing timing) {
     const Connection untied = connection({.clock_factor = 3.0}, false);
     CommandLine line = characterize_line(path("p.toml"));
     line.characterize->sensors = {"camera"};
@@ -112,12 +111,12 @@ TEST_F(Commands, WithoutSynchronisationThereIsNoPeriodicProfile) {
     line.characterize->timing = timing;
     return characterize_command(line, untied, streams_);
   };
-  EXPECT_EQ(run(Timing::kPeriodic), 2);
+  EXPECT_EQ(run(calibration::Timing::kPeriodic), 2);
   EXPECT_TRUE(is_empty());
   EXPECT_EQ(out(), "");
   EXPECT_THAT(err(), HasSubstr("do not run at one pace"));
-  EXPECT_EQ(run(Timing::kAuto), 0);
-  EXPECT_EQ(toml::parse_file(path("p.toml"))["sensors"]["camera"]["timing"].value<std::string>(),
+  EXPECT_EQ(run(calibration::Timing::kAuto), 0);
+  EXPECT_EQ(::toml::parse_file(path("p.toml"))["sensors"]["camera"]["timing"].value<std::string>(),
             "on_demand");
 }
 
@@ -125,9 +124,9 @@ TEST_F(Commands, CharacterizePeriodicSensors) {
   const Connection virtual_uav = connection({}, false);
   CommandLine line = characterize_line(path("p.toml"));
   line.characterize->sensors = {"camera"};
-  line.characterize->timing = Timing::kPeriodic;
+  line.characterize->timing = calibration::Timing::kPeriodic;
   EXPECT_EQ(characterize_command(line, virtual_uav, streams_), 0);
-  toml::table profile = toml::parse_file(path("p.toml"));
+  ::toml::table profile = ::toml::parse_file(path("p.toml"));
   EXPECT_EQ(profile["sensors"]["camera"]["period_ms"].value<double>(), 33.333333);
   EXPECT_EQ(profile["sensors"]["camera"]["delay"]["samples_ms"][0].value<double>(), 20.0);
   EXPECT_THAT(out(),
@@ -147,7 +146,7 @@ TEST_F(Commands, ADeviceThatStopsLeavesNoProfile) {
 TEST_F(Commands, AnInterruptLeavesEitherAProfileOrNone) {
   for (const int readings_before : {0, 5, 6}) {
     Connection real = connection({}, true);
-    real.vehicle = make_interruptible(
+    real.vehicle = rig::make_interruptible(
         std::move(real.vehicle),
         [readings_before, asked = 0]() mutable { return asked++ >= readings_before; });
     CommandLine line = characterize_line(path("p.toml"));
@@ -173,7 +172,7 @@ TEST_F(Commands, ArrivalsAreNoPeriodicProfile) {
   const Connection real = connection({.image_delay = Duration(0)}, true);
   CommandLine line = characterize_line(path("p.toml"));
   line.characterize->sensors = {"camera"};
-  line.characterize->timing = Timing::kPeriodic;
+  line.characterize->timing = calibration::Timing::kPeriodic;
   line.rig = devices::Rig{"rig", {}, {}};
   EXPECT_EQ(characterize_command(line, real, streams_), 2);
   EXPECT_TRUE(is_empty());
@@ -210,7 +209,7 @@ TEST_F(Commands, WhereNothingCanBeWrittenIsToldBeforeAnythingIsOpened) {
 TEST_F(Commands, RealRowComesBeforeTheJson) {
   const Connection real = connection({.anchor_bearing_rad = 0.0, .anchor_distance_m = 9}, true);
   CommandLine line = real_row_line();
-  line.real_row.true_roi = PixelBox{76, 56, 8, 8};
+  line.real_row.true_roi = rig::PixelBox{76, 56, 8, 8};
   line.real_row.keep_image = path("i.png");
   EXPECT_EQ(real_row_command(line, real, streams_), 0);
   EXPECT_THAT(

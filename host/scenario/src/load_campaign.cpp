@@ -1,6 +1,3 @@
-#include "suggest.h"
-#include "toml_table.h"
-
 #include <algorithm>
 #include <array>
 #include <set>
@@ -8,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <tether/scenario/campaign.h>
+#include <tether/toml/suggest.h>
+#include <tether/toml/table.h>
 
 namespace tether::scenario {
 namespace {
@@ -20,7 +19,7 @@ std::vector<std::uint64_t> consecutive(std::int64_t first, std::int64_t count) {
   return seeds;
 }
 
-std::vector<std::uint64_t> read_seeds(const TomlTable& root) {
+std::vector<std::uint64_t> read_seeds(const toml::Table& root) {
   if (root.has("seeds") == root.has("trials")) {
     root.fail("needs either 'trials' (a number, with 'first_seed') or 'seeds' (an array)");
   }
@@ -37,7 +36,7 @@ std::vector<std::uint64_t> read_seeds(const TomlTable& root) {
   return {seeds.begin(), seeds.end()};
 }
 
-std::vector<std::string> read_conditions(const TomlTable& table, const Scenario& scenario) {
+std::vector<std::string> read_conditions(const toml::Table& table, const Scenario& scenario) {
   std::vector<std::string> all;
   for (const Condition& condition : scenario.conditions) all.push_back(condition.name);
   if (!table.has("conditions")) return all;
@@ -48,8 +47,9 @@ std::vector<std::string> read_conditions(const TomlTable& table, const Scenario&
   std::set<std::string> seen;
   for (const std::string& name : conditions) {
     if (scenario.find_condition(name) == nullptr) {
-      table.fail("conditions", fmt::format("names \"{}\", which {} does not have; {}", name,
-                                           scenario.file.string(), allowed_hint(name, allowed)));
+      table.fail("conditions",
+                 fmt::format("names \"{}\", which {} does not have; {}", name,
+                             scenario.file.string(), toml::allowed_hint(name, allowed)));
     }
     if (!seen.insert(name).second) {
       table.fail("conditions", fmt::format("names \"{}\" twice", name));
@@ -58,7 +58,7 @@ std::vector<std::string> read_conditions(const TomlTable& table, const Scenario&
   return conditions;
 }
 
-CampaignScenario read_scenario(const TomlTable& table) {
+CampaignScenario read_scenario(const toml::Table& table) {
   constexpr std::array<std::string_view, 5> kTables = {"I", "II", "III", "IV", "V"};
   CampaignScenario entry;
   entry.scenario = load_scenario(table.existing_file("file"));
@@ -76,16 +76,15 @@ CampaignScenario read_scenario(const TomlTable& table) {
 Campaign load_campaign(const std::filesystem::path& file) {
   Campaign campaign;
   campaign.file = std::filesystem::absolute(file).lexically_normal();
-  const toml::table document = parse_toml_file(campaign.file);
-  const TomlTable root(
-      document, "", campaign.file.string(),
+  const toml::Document document = toml::Document::load(campaign.file);
+  const toml::Table root = document.root(
       {"name", "description", "trials", "first_seed", "seeds", "images_of_first_seed", "scenario"});
   campaign.name = root.identifier("name");
   campaign.description = root.text_or("description", "");
   campaign.seeds = read_seeds(root);
   campaign.images_of_first_seed = root.boolean_or("images_of_first_seed", false);
   std::set<std::string> names;
-  for (const TomlTable& table :
+  for (const toml::Table& table :
        root.tables("scenario", {"file", "conditions", "profile", "paper_table"})) {
     campaign.scenarios.push_back(read_scenario(table));
     const std::string& name = campaign.scenarios.back().scenario.name;

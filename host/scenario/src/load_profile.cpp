@@ -1,7 +1,7 @@
 #include "read_sensor_profile.h"
-#include "toml_table.h"
 
 #include <tether/scenario/profile.h>
+#include <tether/toml/table.h>
 
 namespace tether::scenario {
 
@@ -9,11 +9,11 @@ Profile load_profile(const std::filesystem::path& file) {
   Profile profile;
   profile.file = std::filesystem::absolute(file).lexically_normal();
   profile.files = {profile.file};
-  const toml::table document = parse_toml_file(profile.file);
-  const TomlTable root(document, "", profile.file.string(), {"name", "description", "sensors"});
+  const toml::Document document = toml::Document::load(profile.file);
+  const toml::Table root = document.root({"name", "description", "sensors"});
   profile.name = root.identifier("name");
   profile.description = root.text_or("description", "");
-  const TomlTable sensors = root.table("sensors");
+  const toml::Table sensors = root.table("sensors");
   if (sensors.keys().empty()) {
     root.fail("sensors", "names no sensor; add a table [sensors.NAME] for each");
   }

@@ -1,6 +1,4 @@
 #include "read_sensor_profile.h"
-#include "suggest.h"
-#include "toml_table.h"
 
 #include <algorithm>
 #include <array>
@@ -11,6 +9,8 @@
 
 #include <tether/base/units.h>
 #include <tether/scenario/scenario.h>
+#include <tether/toml/suggest.h>
+#include <tether/toml/table.h>
 
 namespace tether::scenario {
 namespace {
@@ -25,10 +25,10 @@ std::vector<std::string_view> views(const std::vector<std::string>& words) {
   return {words.begin(), words.end()};
 }
 
-void require_one_of(const TomlTable& table, std::string_view key, const std::string& word,
+void require_one_of(const toml::Table& table, std::string_view key, const std::string& word,
                     const std::vector<std::string>& allowed) {
   if (std::find(allowed.begin(), allowed.end(), word) != allowed.end()) return;
-  table.fail(key, fmt::format("is \"{}\"; {}", word, allowed_hint(word, views(allowed))));
+  table.fail(key, fmt::format("is \"{}\"; {}", word, toml::allowed_hint(word, views(allowed))));
 }
 
 // The SUT.
@@ -42,16 +42,16 @@ bool is_option_name(std::string_view key) {
          key.find_first_not_of(kAllowed) == std::string_view::npos;
 }
 
-void require_option_name(const TomlTable& table, const std::string& key) {
+void require_option_name(const toml::Table& table, const std::string& key) {
   if (is_option_name(key)) return;
   table.fail(key,
              "must be lower-case letters, digits and '_', starting with a letter: it becomes an "
              "option of the SUT's command line");
 }
 
-void read_values(const TomlTable& sut, Parameters& parameters) {
+void read_values(const toml::Table& sut, Parameters& parameters) {
   if (!sut.has("parameters")) return;
-  const TomlTable table = sut.table("parameters");
+  const toml::Table table = sut.table("parameters");
   for (const std::string& key : table.keys()) {
     require_option_name(table, key);
     parameters.emplace_back(key, table.scalar_as_text(key));
@@ -59,10 +59,10 @@ void read_values(const TomlTable& sut, Parameters& parameters) {
 }
 
 // The SUT's working folder is not the scenario's, so that its files go by their whole path.
-void read_files(const TomlTable& sut, Parameters& parameters,
+void read_files(const toml::Table& sut, Parameters& parameters,
                 std::vector<std::filesystem::path>& files) {
   if (!sut.has("files")) return;
-  const TomlTable table = sut.table("files");
+  const toml::Table table = sut.table("files");
   for (const std::string& key : table.keys()) {
     require_option_name(table, key);
     const bool is_taken =
@@ -74,7 +74,7 @@ void read_files(const TomlTable& sut, Parameters& parameters,
   }
 }
 
-Parameters read_parameters(const TomlTable& sut, std::vector<std::filesystem::path>& files) {
+Parameters read_parameters(const toml::Table& sut, std::vector<std::filesystem::path>& files) {
   Parameters parameters;
   read_values(sut, parameters);
   read_files(sut, parameters, files);
@@ -83,7 +83,7 @@ Parameters read_parameters(const TomlTable& sut, std::vector<std::filesystem::pa
 }
 
 // Whether the program is there shows when the run starts: it may be one of a board only.
-std::vector<std::string> read_command(const TomlTable& sut, const std::filesystem::path& folder) {
+std::vector<std::string> read_command(const toml::Table& sut, const std::filesystem::path& folder) {
   std::vector<std::string> command = sut.texts("command");
   if (command.empty()) sut.fail("command", "must name a program, but is empty");
   std::string& program = command.front();
@@ -95,12 +95,12 @@ std::vector<std::string> read_command(const TomlTable& sut, const std::filesyste
 constexpr std::array<std::string_view, 4> kSutKeys = {"command", "concurrent", "parameters",
                                                       "files"};
 
-Sut read_program(const TomlTable& sut, const std::filesystem::path& folder) {
+Sut read_program(const toml::Table& sut, const std::filesystem::path& folder) {
   return {read_command(sut, folder), {}, sut.boolean_or("concurrent", false)};
 }
 
 // Two supervisors, one in the other, would wait for each other.
-void require_one_supervisor(const TomlTable& table, const Sut& sut) {
+void require_one_supervisor(const toml::Table& table, const Sut& sut) {
   const std::filesystem::path program = sut.command.front();
   if (!sut.concurrent || program.filename() != "tether-exec") return;
   table.fail(table.has("concurrent") ? "concurrent" : "command",
@@ -108,9 +108,9 @@ void require_one_supervisor(const TomlTable& table, const Sut& sut) {
              "and its options out of 'command'");
 }
 
-std::optional<Sut> read_default_sut(const TomlTable& root, Scenario& scenario) {
+std::optional<Sut> read_default_sut(const toml::Table& root, Scenario& scenario) {
   if (!root.has("sut")) return std::nullopt;
-  const TomlTable table = root.table("sut", kSutKeys);
+  const toml::Table table = root.table("sut", kSutKeys);
   Sut sut = read_program(table, scenario.file.parent_path());
   require_one_supervisor(table, sut);
   sut.parameters = read_parameters(table, scenario.files);
@@ -123,13 +123,13 @@ Parameters merged(const Parameters& defaults, const Parameters& own) {
   return {all.begin(), all.end()};
 }
 
-Sut read_sut(const TomlTable& uav, const std::optional<Sut>& fallback, Scenario& scenario) {
+Sut read_sut(const toml::Table& uav, const std::optional<Sut>& fallback, Scenario& scenario) {
   if (!uav.has("sut")) {
     if (!fallback)
       uav.fail("has no SUT: add a table [sut] for all UAVs, or [uav.sut] for this one");
     return *fallback;
   }
-  const TomlTable own = uav.table("sut", kSutKeys);
+  const toml::Table own = uav.table("sut", kSutKeys);
   const bool inherits = fallback && !own.has("command");
   Sut sut = inherits ? *fallback : read_program(own, scenario.file.parent_path());
   sut.concurrent = own.boolean_or("concurrent", sut.concurrent);
@@ -150,7 +150,7 @@ void sort_files(Scenario& scenario) {
   scenario.files.erase(last, scenario.files.end());
 }
 
-std::optional<Profile> read_profile(const TomlTable& table, Scenario& scenario) {
+std::optional<Profile> read_profile(const toml::Table& table, Scenario& scenario) {
   if (!table.has("profile")) return std::nullopt;
   Profile profile = load_profile(table.existing_file("profile"));
   add_files(scenario, profile.files);
@@ -159,21 +159,21 @@ std::optional<Profile> read_profile(const TomlTable& table, Scenario& scenario) 
 
 // UAVs.
 
-void read_sensors(const TomlTable& table, Scenario& scenario, UavSetup& uav) {
+void read_sensors(const toml::Table& table, Scenario& scenario, UavSetup& uav) {
   if (!table.has("sensors")) return;
-  const TomlTable sensors = table.table("sensors");
+  const toml::Table sensors = table.table("sensors");
   for (const std::string& name : sensors.keys()) {
     uav.sensors.emplace(name,
                         read_sensor_profile(sensors, name, KindKey::kOptional, scenario.files));
   }
 }
 
-UavSetup read_uav(const TomlTable& table, const std::optional<Sut>& default_sut,
+UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_sut,
                   Scenario& scenario) {
-  constexpr Range kCoordinate_m{.min = -1e5, .max = 1e5};
-  constexpr Range kYaw_deg{.min = -360.0, .max = 360.0};
-  constexpr Range kYawSpread_deg{.min = 0.0, .max = 180.0};
-  constexpr Range kLatency_ms{.min = 0.0, .max = 10'000.0};
+  constexpr toml::Range kCoordinate_m{.min = -1e5, .max = 1e5};
+  constexpr toml::Range kYaw_deg{.min = -360.0, .max = 360.0};
+  constexpr toml::Range kYawSpread_deg{.min = 0.0, .max = 180.0};
+  constexpr toml::Range kLatency_ms{.min = 0.0, .max = 10'000.0};
   UavSetup uav;
   uav.placement.name = table.identifier("name");
   uav.placement.model = table.existing_file("model");
@@ -189,10 +189,10 @@ UavSetup read_uav(const TomlTable& table, const std::optional<Sut>& default_sut,
   return uav;
 }
 
-void read_uavs(const TomlTable& root, Scenario& scenario) {
+void read_uavs(const toml::Table& root, Scenario& scenario) {
   const std::optional<Sut> default_sut = read_default_sut(root, scenario);
   std::set<std::string> names;
-  for (const TomlTable& table :
+  for (const toml::Table& table :
        root.tables("uav", {"name", "model", "position_m", "yaw_deg", "yaw_spread_deg",
                            "command_latency_ms", "profile", "sensors", "sut"})) {
     scenario.uavs.push_back(read_uav(table, default_sut, scenario));
@@ -206,9 +206,9 @@ void read_uavs(const TomlTable& root, Scenario& scenario) {
 // Conditions.
 
 // What goes with one clock or policy only.
-void read_clock(const TomlTable& table, Condition& condition) {
-  constexpr Range kFactor{.min = 1e-3, .max = 1e4};
-  constexpr Range kComputing_ms{.min = 1e-3, .max = 60'000.0};
+void read_clock(const toml::Table& table, Condition& condition) {
+  constexpr toml::Range kFactor{.min = 1e-3, .max = 1e4};
+  constexpr toml::Range kComputing_ms{.min = 1e-3, .max = 60'000.0};
   if (!table.has("clock")) {
     table.fail("lacks the key 'clock', or a 'target' whose file says how time is measured there");
   }
@@ -232,7 +232,7 @@ void read_clock(const TomlTable& table, Condition& condition) {
 }
 
 // A target says how its SUTs' time is measured.
-void read_target(const TomlTable& table, Condition& condition, Scenario& scenario) {
+void read_target(const toml::Table& table, Condition& condition, Scenario& scenario) {
   for (const char* key : {"clock", "cpu_factor", "computing_ms"}) {
     if (table.has(key)) table.fail(key, "is the target's to say; leave it out, or 'target'");
   }
@@ -244,8 +244,8 @@ void read_target(const TomlTable& table, Condition& condition, Scenario& scenari
   place_on(condition, std::move(target));
 }
 
-Condition read_condition(const TomlTable& table, Scenario& scenario) {
-  constexpr Range kFactor{.min = 1e-3, .max = 1e4};
+Condition read_condition(const toml::Table& table, Scenario& scenario) {
+  constexpr toml::Range kFactor{.min = 1e-3, .max = 1e4};
   Condition condition;
   condition.name = table.text("name");
   if (slug(condition.name).empty()) {
@@ -269,9 +269,9 @@ Condition read_condition(const TomlTable& table, Scenario& scenario) {
   return condition;
 }
 
-void read_conditions(const TomlTable& root, Scenario& scenario) {
+void read_conditions(const toml::Table& root, Scenario& scenario) {
   std::map<std::string, std::string> slugs;
-  for (const TomlTable& table : root.tables(
+  for (const toml::Table& table : root.tables(
            "condition", {"name", "description", "policy", "clock", "cpu_factor", "computing_ms",
                          "real_time_factor", "profile", "target", "simulator"})) {
     scenario.conditions.push_back(read_condition(table, scenario));
@@ -297,7 +297,7 @@ std::vector<std::string> uav_names(const Scenario& scenario) {
 }
 
 // The one that is named, or the only one there is.
-std::string choose(const TomlTable& table, std::string_view key,
+std::string choose(const toml::Table& table, std::string_view key,
                    const std::vector<std::string>& candidates) {
   if (!table.has(key) && candidates.size() == 1) return candidates.front();
   const std::string word = table.text(key);
@@ -305,13 +305,13 @@ std::string choose(const TomlTable& table, std::string_view key,
   return word;
 }
 
-const MetricKind& read_metric_kind(const TomlTable& table) {
+const MetricKind& read_metric_kind(const toml::Table& table) {
   std::vector<std::string_view> names;
   for (const MetricKind& kind : metric_kinds()) names.push_back(kind.name);
   return metric_kinds()[table.choice("kind", names)];
 }
 
-void reject_meaningless(const TomlTable& table, const MetricKind& kind) {
+void reject_meaningless(const toml::Table& table, const MetricKind& kind) {
   if (table.has("anchor") && !kind.needs_anchor) {
     table.fail("anchor", fmt::format("means nothing to the kind \"{}\"", kind.name));
   }
@@ -329,9 +329,9 @@ void reject_meaningless(const TomlTable& table, const MetricKind& kind) {
   }
 }
 
-Metric read_metric(const TomlTable& table, const Scenario& scenario) {
-  constexpr Range kLimit{.min = 0.0, .max = 1e9};
-  constexpr Range kThreshold_deg{.min = 0.0, .max = 180.0};
+Metric read_metric(const toml::Table& table, const Scenario& scenario) {
+  constexpr toml::Range kLimit{.min = 0.0, .max = 1e9};
+  constexpr toml::Range kThreshold_deg{.min = 0.0, .max = 180.0};
   const MetricKind& kind = read_metric_kind(table);
   reject_meaningless(table, kind);
   Metric metric;
@@ -353,9 +353,9 @@ Metric read_metric(const TomlTable& table, const Scenario& scenario) {
   return metric;
 }
 
-void read_metrics(const TomlTable& root, Scenario& scenario) {
+void read_metrics(const toml::Table& root, Scenario& scenario) {
   std::set<std::string> names;
-  for (const TomlTable& table : root.tables_or_none(
+  for (const toml::Table& table : root.tables_or_none(
            "metric", {"name", "kind", "label", "uav", "anchor", "sensor", "threshold_deg", "max",
                       "max_s", "max_ms", "max_m", "max_deg"})) {
     scenario.metrics.push_back(read_metric(table, scenario));
@@ -369,18 +369,18 @@ void read_metrics(const TomlTable& root, Scenario& scenario) {
 
 // The rest.
 
-void read_anchors(const TomlTable& root, Scenario& scenario) {
+void read_anchors(const toml::Table& root, Scenario& scenario) {
   scenario.anchors = root.texts_or_none("anchors");
   const std::set<std::string> distinct(scenario.anchors.begin(), scenario.anchors.end());
   if (distinct.size() < scenario.anchors.size()) root.fail("anchors", "names one anchor twice");
 }
 
-void read_record(const TomlTable& root, Scenario& scenario) {
+void read_record(const toml::Table& root, Scenario& scenario) {
   if (!root.has("record")) return;
-  const TomlTable record =
+  const toml::Table record =
       root.table("record", {"ground_truth_period_ms", "images", "image_period_ms"});
-  constexpr Range kImagePeriod_ms{.min = 0.0, .max = 1e6};
-  const Range period_ms{.min = to_seconds(scenario.step) * 1e3, .max = 1e6};
+  constexpr toml::Range kImagePeriod_ms{.min = 0.0, .max = 1e6};
+  const toml::Range period_ms{.min = to_seconds(scenario.step) * 1e3, .max = 1e6};
   scenario.ground_truth_period =
       record.duration_or("ground_truth_period_ms", period_ms, scenario.ground_truth_period);
   scenario.record_images = record.boolean_or("images", scenario.record_images);
@@ -388,9 +388,9 @@ void read_record(const TomlTable& root, Scenario& scenario) {
       record.duration_or("image_period_ms", kImagePeriod_ms, scenario.image_period);
 }
 
-void read_limits(const TomlTable& root, Scenario& scenario) {
-  constexpr Range kStep_ms{.min = 0.01, .max = 100.0};
-  constexpr Range kSpan_s{.min = 0.0, .max = kLongestRun_s, .above_min = true};
+void read_limits(const toml::Table& root, Scenario& scenario) {
+  constexpr toml::Range kStep_ms{.min = 0.01, .max = 100.0};
+  constexpr toml::Range kSpan_s{.min = 0.0, .max = kLongestRun_s, .above_min = true};
   scenario.step = root.duration_or("step_ms", kStep_ms, scenario.step);
   scenario.time_limit = root.duration("time_limit_s", kSpan_s);
   scenario.hang_limit = root.duration_or("hang_limit_s", kSpan_s, scenario.hang_limit);
@@ -426,10 +426,10 @@ const Condition* Scenario::find_condition(std::string_view condition) const {
 Scenario load_scenario(const std::filesystem::path& file) {
   Scenario scenario;
   scenario.file = std::filesystem::absolute(file).lexically_normal();
-  const toml::table document = parse_toml_file(scenario.file);
-  const TomlTable root(document, "", scenario.file.string(),
-                       {"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s",
-                        "anchors", "uav", "sut", "condition", "metric", "record"});
+  const toml::Document document = toml::Document::load(scenario.file);
+  const toml::Table root =
+      document.root({"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s",
+                     "anchors", "uav", "sut", "condition", "metric", "record"});
   scenario.name = root.identifier("name");
   scenario.description = root.text_or("description", "");
   scenario.world = root.existing_file("world");

@@ -1,5 +1,3 @@
-#include "toml_table.h"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -7,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <tether/scenario/target.h>
+#include <tether/toml/table.h>
 
 namespace tether::scenario {
 namespace {
@@ -20,7 +19,7 @@ bool has_letter_or_digit(const std::string& name) {
                      [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; });
 }
 
-std::optional<SshAddress> read_address(const TomlTable& root) {
+std::optional<SshAddress> read_address(const toml::Table& root) {
   if (!root.has("address")) return std::nullopt;
   const std::string address = root.text("address");
   try {
@@ -31,7 +30,7 @@ std::optional<SshAddress> read_address(const TomlTable& root) {
 }
 
 /// A board is measured, not made slower, and its cores are its own.
-void reject_what_a_board_has_itself(const TomlTable& root, const Target& target) {
+void reject_what_a_board_has_itself(const toml::Table& root, const Target& target) {
   if (target.clock == Clock::kCpu) {
     root.fail("clock",
               "is \"cpu\", which is for virtual targets; with an address the board's own \"wall\" "
@@ -50,7 +49,7 @@ std::string beside(const Target& target, const std::string& path) {
 }
 
 /// Words that begin with "./" or "../" are files beside the target's, as in `-L ../sysroot`.
-std::vector<std::string> read_launcher(const TomlTable& root, const Target& target) {
+std::vector<std::string> read_launcher(const toml::Table& root, const Target& target) {
   std::vector<std::string> words = root.texts_or_none("launcher");
   if (root.has("launcher") && words.empty()) {
     root.fail("launcher", "must name a program, but is empty");
@@ -64,7 +63,7 @@ std::vector<std::string> read_launcher(const TomlTable& root, const Target& targ
 
 /// What is on a board shows when it is asked. Of this host it need not be there yet either: what
 /// builds the programs may come after the file.
-std::string read_program_folder(const TomlTable& root, const Target& target) {
+std::string read_program_folder(const toml::Table& root, const Target& target) {
   const std::string folder = root.text_or("program_folder", "");
   return folder.empty() || target.ssh ? folder : beside(target, folder);
 }
@@ -72,13 +71,12 @@ std::string read_program_folder(const TomlTable& root, const Target& target) {
 }  // namespace
 
 Target load_target(const std::filesystem::path& file) {
-  constexpr Range kFactor{.min = 1e-3, .max = 1e4};
+  constexpr toml::Range kFactor{.min = 1e-3, .max = 1e4};
   Target target;
   target.file = std::filesystem::absolute(file).lexically_normal();
-  const toml::table document = parse_toml_file(target.file);
-  const TomlTable root(document, "", target.file.string(),
-                       {"name", "description", "address", "clock", "cpu_factor", "cores",
-                        "launcher", "program_folder"});
+  const toml::Document document = toml::Document::load(target.file);
+  const toml::Table root = document.root({"name", "description", "address", "clock", "cpu_factor",
+                                          "cores", "launcher", "program_folder"});
   target.name = root.identifier("name");
   if (!has_letter_or_digit(target.name)) root.fail("name", "must contain a letter or a digit");
   target.description = root.text_or("description", "");

@@ -10,7 +10,7 @@ namespace tether::scenario {
 namespace {
 
 constexpr double kLongestDelay_ms = 60'000.0;
-constexpr Range kDelay_ms{.min = 0.0, .max = kLongestDelay_ms};
+constexpr toml::Range kDelay_ms{.min = 0.0, .max = kLongestDelay_ms};
 constexpr std::array<std::string_view, 3> kSampleKeys = {"samples_ms", "file_ms", "file_s"};
 
 std::string_view trimmed(std::string_view line) {
@@ -45,7 +45,7 @@ Duration parse_sample(std::string_view text, double seconds_per_unit, const File
     throw Error(ErrorCode::kBadFile, at,
                 fmt::format("expected one number on the line, found \"{}\"", printable(text)));
   }
-  const Range range{.min = 0.0, .max = kLongestDelay_ms * 1e-3 / seconds_per_unit};
+  const toml::Range range{.min = 0.0, .max = kLongestDelay_ms * 1e-3 / seconds_per_unit};
   if (!range.contains(value)) {
     throw Error(ErrorCode::kBadFile, at,
                 fmt::format("a delay must be {}, but is {}", range.text(), value));
@@ -53,7 +53,7 @@ Duration parse_sample(std::string_view text, double seconds_per_unit, const File
   return duration_from_seconds(value * seconds_per_unit);
 }
 
-std::vector<Duration> read_inline_samples(const TomlTable& delay) {
+std::vector<Duration> read_inline_samples(const toml::Table& delay) {
   std::vector<Duration> samples;
   for (const double value_ms : delay.numbers("samples_ms", kDelay_ms)) {
     samples.push_back(duration_from_seconds(value_ms * 1e-3));
@@ -61,7 +61,7 @@ std::vector<Duration> read_inline_samples(const TomlTable& delay) {
   return samples;
 }
 
-uav::Delay read_empirical(const TomlTable& delay, std::vector<std::filesystem::path>& files) {
+uav::Delay read_empirical(const toml::Table& delay, std::vector<std::filesystem::path>& files) {
   const auto given = std::count_if(kSampleKeys.begin(), kSampleKeys.end(),
                                    [&](std::string_view key) { return delay.has(key); });
   if (given != 1) {
@@ -78,15 +78,15 @@ uav::Delay read_empirical(const TomlTable& delay, std::vector<std::filesystem::p
 }  // namespace
 
 // The kind decides which keys are allowed, so it is read first, with any key allowed.
-uav::Delay read_delay(const TomlTable& sensor, std::vector<std::filesystem::path>& files) {
+uav::Delay read_delay(const toml::Table& sensor, std::vector<std::filesystem::path>& files) {
   constexpr std::array<std::string_view, 3> kKinds = {"constant", "normal", "empirical"};
   switch (sensor.table("delay").choice("kind", kKinds)) {
     case 0: {
-      const TomlTable delay = sensor.table("delay", {"kind", "ms"});
+      const toml::Table delay = sensor.table("delay", {"kind", "ms"});
       return uav::ConstantDelay{delay.duration("ms", kDelay_ms)};
     }
     case 1: {
-      const TomlTable delay = sensor.table("delay", {"kind", "mean_ms", "stddev_ms"});
+      const toml::Table delay = sensor.table("delay", {"kind", "mean_ms", "stddev_ms"});
       return uav::NormalDelay{delay.duration("mean_ms", kDelay_ms),
                               delay.duration("stddev_ms", kDelay_ms)};
     }
@@ -99,7 +99,7 @@ uav::Delay read_delay(const TomlTable& sensor, std::vector<std::filesystem::path
 std::vector<Duration> read_delay_samples(const std::filesystem::path& file,
                                          double seconds_per_unit) {
   constexpr std::size_t kLargestFile = std::size_t{64} << 20;
-  const std::string whole = read_text_file(file, kLargestFile);
+  const std::string whole = toml::read_text_file(file, kLargestFile);
   const std::string_view text = without_byte_order_mark(whole);
   std::vector<Duration> samples;
   int line_number = 0;

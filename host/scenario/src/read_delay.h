@@ -1,17 +1,16 @@
 #pragma once
 
-#include "toml_table.h"
-
 #include <filesystem>
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/toml/table.h>
 #include <tether/uav/sensor_timing.h>
 
 namespace tether::scenario {
 
 /// The key 'delay' of a sensor's table; names of sample files are added to `files`.
-uav::Delay read_delay(const TomlTable& sensor, std::vector<std::filesystem::path>& files);
+uav::Delay read_delay(const toml::Table& sensor, std::vector<std::filesystem::path>& files);
 
 /// Measured delays: one number per line, in units of `seconds_per_unit`; blank lines and
 /// lines that start with '#' are skipped.

@@ -1,13 +1,13 @@
 #include "read_sensor_profile.h"
 
 #include "read_delay.h"
-#include "suggest.h"
 
 #include <array>
 
 #include <fmt/format.h>
 
 #include <tether/base/units.h>
+#include <tether/toml/suggest.h>
 
 namespace tether::scenario {
 namespace {
@@ -58,7 +58,7 @@ std::vector<std::string_view> keys_of(std::optional<SensorKind> kind) {
   return keys;
 }
 
-std::optional<SensorKind> read_kind(const TomlTable& sensor) {
+std::optional<SensorKind> read_kind(const toml::Table& sensor) {
   if (!sensor.has("kind")) return std::nullopt;
   return static_cast<SensorKind>(sensor.choice("kind", kSensorKinds));
 }
@@ -67,22 +67,22 @@ std::optional<SensorKind> read_kind(const TomlTable& sensor) {
 
 constexpr std::array<std::string_view, 3> kPeriodicKeys = {"rate_hz", "period_ms", "phase_ms"};
 
-Duration read_period(const TomlTable& sensor) {
+Duration read_period(const toml::Table& sensor) {
   if (sensor.has("rate_hz") == sensor.has("period_ms")) {
     sensor.fail("needs either 'rate_hz' or 'period_ms', because its timing is \"periodic\"");
   }
-  constexpr Range kRate_hz{.min = 1e-3, .max = 1e5};
-  constexpr Range kPeriod_ms{.min = 1e-2, .max = 1e6};
+  constexpr toml::Range kRate_hz{.min = 1e-3, .max = 1e5};
+  constexpr toml::Range kPeriod_ms{.min = 1e-2, .max = 1e6};
   if (sensor.has("period_ms")) return sensor.duration("period_ms", kPeriod_ms);
   return duration_from_seconds(1.0 / sensor.number("rate_hz", kRate_hz));
 }
 
-uav::PeriodicTiming read_periodic(const TomlTable& sensor, const uav::Delay& delay) {
-  constexpr Range kPhase_ms{.min = 0.0, .max = 1e6};
+uav::PeriodicTiming read_periodic(const toml::Table& sensor, const uav::Delay& delay) {
+  constexpr toml::Range kPhase_ms{.min = 0.0, .max = 1e6};
   return {read_period(sensor), sensor.duration_or("phase_ms", kPhase_ms, Duration{0}), delay};
 }
 
-void read_timing(const TomlTable& sensor, std::vector<std::filesystem::path>& files,
+void read_timing(const toml::Table& sensor, std::vector<std::filesystem::path>& files,
                  SensorProfile& profile) {
   constexpr std::array<std::string_view, 2> kTimings = {"periodic", "on_demand"};
   if (sensor.has("delay")) profile.delay = read_delay(sensor, files);
@@ -104,9 +104,9 @@ void read_timing(const TomlTable& sensor, std::vector<std::filesystem::path>& fi
 
 // Where it is mounted.
 
-void read_mounting(const TomlTable& sensor, SensorProfile& profile) {
-  constexpr Range kPosition_m{.min = -100.0, .max = 100.0};
-  constexpr Range kAngle_deg{.min = -360.0, .max = 360.0};
+void read_mounting(const toml::Table& sensor, SensorProfile& profile) {
+  constexpr toml::Range kPosition_m{.min = -100.0, .max = 100.0};
+  constexpr toml::Range kAngle_deg{.min = -360.0, .max = 360.0};
   if (sensor.has("position_m")) {
     const auto p = sensor.numbers("position_m", 3, kPosition_m);
     profile.p_BS = uav::Vec3{p[0], p[1], p[2]};
@@ -123,11 +123,11 @@ std::optional<double> scaled(const std::optional<double>& value, double factor) 
   return value ? std::optional(*value * factor) : std::nullopt;
 }
 
-std::optional<sim::Noise> read_noise(const TomlTable& sensor, std::string_view key) {
-  constexpr Range kMean{.min = -1e6, .max = 1e6};
-  constexpr Range kSpread{.min = 0.0, .max = 1e6};
+std::optional<sim::Noise> read_noise(const toml::Table& sensor, std::string_view key) {
+  constexpr toml::Range kMean{.min = -1e6, .max = 1e6};
+  constexpr toml::Range kSpread{.min = 0.0, .max = 1e6};
   if (!sensor.has(key)) return std::nullopt;
-  const TomlTable table =
+  const toml::Table table =
       sensor.table(key, {"mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev",
                          "dynamic_bias_correlation_time_s"});
   sim::Noise noise;
@@ -146,7 +146,7 @@ std::optional<sim::Noise> read_noise(const TomlTable& sensor, std::string_view k
   return noise;
 }
 
-std::optional<ImageSize> read_size(const TomlTable& camera) {
+std::optional<ImageSize> read_size(const toml::Table& camera) {
   constexpr std::int64_t kLongestEdge_px = 4096;
   if (!camera.has("size_px")) return std::nullopt;
   const std::vector<std::int64_t> size = camera.integers("size_px", 1);
@@ -162,10 +162,10 @@ std::optional<ImageSize> read_size(const TomlTable& camera) {
   return ImageSize{static_cast<int>(size[0]), static_cast<int>(size[1])};
 }
 
-std::optional<Distortion> read_distortion(const TomlTable& camera) {
-  constexpr Range kCoefficient{.min = -100.0, .max = 100.0};
+std::optional<Distortion> read_distortion(const toml::Table& camera) {
+  constexpr toml::Range kCoefficient{.min = -100.0, .max = 100.0};
   if (!camera.has("distortion")) return std::nullopt;
-  const TomlTable table = camera.table("distortion", {"k1", "k2", "k3", "p1", "p2"});
+  const toml::Table table = camera.table("distortion", {"k1", "k2", "k3", "p1", "p2"});
   const auto coefficient = [&](std::string_view key) {
     return table.number_or(key, kCoefficient, 0.0);
   };
@@ -173,9 +173,10 @@ std::optional<Distortion> read_distortion(const TomlTable& camera) {
                     coefficient("p2")};
 }
 
-void read_camera(const TomlTable& camera, SensorProfile& profile) {
-  constexpr Range kFieldOfView_deg{.min = 0.0, .max = 180.0, .above_min = true, .below_max = true};
-  constexpr Range kTime_ms{.min = 0.0, .max = 1000.0};
+void read_camera(const toml::Table& camera, SensorProfile& profile) {
+  constexpr toml::Range kFieldOfView_deg{
+      .min = 0.0, .max = 180.0, .above_min = true, .below_max = true};
+  constexpr toml::Range kTime_ms{.min = 0.0, .max = 1000.0};
   profile.size = read_size(camera);
   profile.horizontal_fov_rad =
       scaled(camera.number_if("horizontal_fov_deg", kFieldOfView_deg), rad_from_deg(1.0));
@@ -185,16 +186,16 @@ void read_camera(const TomlTable& camera, SensorProfile& profile) {
   profile.readout_s = scaled(camera.number_if("readout_ms", kTime_ms), 1e-3);
 }
 
-void read_imu(const TomlTable& imu, SensorProfile& profile) {
+void read_imu(const toml::Table& imu, SensorProfile& profile) {
   profile.angular_velocity_noise = read_noise(imu, "angular_velocity_noise_rad_s");
   profile.linear_acceleration_noise = read_noise(imu, "linear_acceleration_noise_m_s2");
 }
 
-void read_range(const TomlTable& range, SensorProfile& profile) {
-  constexpr Range kDistance_m{.min = 0.0, .max = 1e5};
-  constexpr Range kFarthest_m{.min = 0.0, .max = 1e5, .above_min = true};
-  constexpr Range kFieldOfView_deg{.min = 0.0, .max = 180.0, .below_max = true};
-  constexpr Range kProbability{.min = 0.0, .max = 1.0};
+void read_range(const toml::Table& range, SensorProfile& profile) {
+  constexpr toml::Range kDistance_m{.min = 0.0, .max = 1e5};
+  constexpr toml::Range kFarthest_m{.min = 0.0, .max = 1e5, .above_min = true};
+  constexpr toml::Range kFieldOfView_deg{.min = 0.0, .max = 180.0, .below_max = true};
+  constexpr toml::Range kProbability{.min = 0.0, .max = 1.0};
   profile.min_m = range.number_if("min_m", kDistance_m);
   profile.max_m = range.number_if("max_m", kFarthest_m);
   profile.resolution_m = range.number_if("resolution_m", kDistance_m);
@@ -211,16 +212,16 @@ FileLocation SensorProfile::at(std::string_view key) const {
   return found == lines.end() ? where : FileLocation{where.file, found->second};
 }
 
-SensorProfile read_sensor_profile(const TomlTable& sensors, std::string_view name, KindKey kind_key,
-                                  std::vector<std::filesystem::path>& files) {
+SensorProfile read_sensor_profile(const toml::Table& sensors, std::string_view name,
+                                  KindKey kind_key, std::vector<std::filesystem::path>& files) {
   SensorProfile profile;
-  const TomlTable any = sensors.table(name);
+  const toml::Table any = sensors.table(name);
   profile.where = any.where();
   for (const std::string& key : any.keys()) profile.lines[key] = any.where(key).line;
   profile.kind = read_kind(any);
   if (profile.kind) require_kind(profile, name, *profile.kind);
 
-  const TomlTable sensor = sensors.table(name, keys_of(profile.kind));
+  const toml::Table sensor = sensors.table(name, keys_of(profile.kind));
   if (kind_key == KindKey::kRequired && !profile.kind) (void)sensor.text("kind");
   read_timing(sensor, files, profile);
   read_mounting(sensor, profile);
@@ -237,7 +238,7 @@ void require_kind(const SensorProfile& profile, std::string_view sensor, SensorK
                 fmt::format("'{}' goes with the kind \"{}\", but the sensor '{}' is of the kind "
                             "\"{}\"; {}",
                             rule.key, uav::name(*rule.kind), sensor, uav::name(kind),
-                            allowed_hint(rule.key, keys_of(kind))));
+                            toml::allowed_hint(rule.key, keys_of(kind))));
   }
 }
 

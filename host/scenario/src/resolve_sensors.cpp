@@ -1,5 +1,4 @@
 #include "layered_sensor.h"
-#include "suggest.h"
 
 #include <algorithm>
 #include <map>
@@ -8,6 +7,7 @@
 
 #include <tether/base/error.h>
 #include <tether/scenario/scenario.h>
+#include <tether/toml/suggest.h>
 
 namespace tether::scenario {
 namespace {
@@ -97,11 +97,11 @@ class ProfileLayer {
 
   [[noreturn]] void refuse_choice(const std::string& name, const SensorProfile& entry,
                                   const std::vector<const LayeredSensor*>& candidates) const {
-    throw Error(
-        ErrorCode::kBadFile, entry.where,
-        fmt::format("the UAV '{}' has no sensor '{}' of the kind \"{}\", but {}; name the "
-                    "one that is meant",
-                    uav_.name, name, uav::name(*entry.kind), quoted_list(names_of(candidates))));
+    throw Error(ErrorCode::kBadFile, entry.where,
+                fmt::format("the UAV '{}' has no sensor '{}' of the kind \"{}\", but {}; name the "
+                            "one that is meant",
+                            uav_.name, name, uav::name(*entry.kind),
+                            toml::quoted_list(names_of(candidates))));
   }
 
   [[noreturn]] void refuse_second(const std::string& name, const SensorProfile& entry,
@@ -128,7 +128,7 @@ class ProfileLayer {
   for (const LayeredSensor& sensor : sensors) all.push_back(&sensor);
   throw Error(ErrorCode::kBadFile, at,
               fmt::format("the UAV '{}' has no sensor '{}' ({}); {}", setup.placement.name, name,
-                          setup.placement.model.string(), allowed_hint(name, names_of(all))));
+                          setup.placement.model.string(), toml::allowed_hint(name, names_of(all))));
 }
 
 void lay_setup(const UavSetup& setup, Sensors& sensors) {

@@ -1,12 +1,11 @@
-#include "suggest.h"
-#include "toml_table.h"
-
 #include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/toml/suggest.h>
+#include <tether/toml/table.h>
 #include <tether/scenario/shipped_files.h>
 
 // Shipped files are found by the folder and the extension of their kind; what describes them is in
@@ -51,8 +50,9 @@ std::string first_comment(const std::string& xml) {
 }
 
 std::string description_of(const fs::path& file) {
-  if (file.extension() == ".sdf") return first_comment(read_text_file(file, 1 << 20));
-  return parse_toml_file(file)["description"].value_or(std::string());
+  if (file.extension() == ".sdf") return first_comment(toml::read_text_file(file, 1 << 20));
+  const toml::Document document = toml::Document::load(file);
+  return document.root().text_or("description", "");
 }
 
 }  // namespace
@@ -95,7 +95,7 @@ fs::path ShippedFiles::find(ShippedKind kind, const std::string& given) const {
   const auto files = list(kind);
   std::vector<std::string_view> names;
   for (const ShippedFile& file : files) names.push_back(file.name);
-  const std::string_view near = nearest(given, names);
+  const std::string_view near = toml::nearest(given, names);
   throw Error(
       ErrorCode::kUsage,
       fmt::format("'{}' is neither a file nor a shipped {}{}. Run `tether list` to see what "

@@ -74,8 +74,8 @@ class InlineSamples : public testing::Test {
   /// The delay of a sensor with that text.
   uav::Delay read(const std::string& text) {
     const auto file = scratch_.write("p.toml", "[camera]\ndelay = " + text + "\n");
-    const toml::table document = parse_toml_file(file);
-    return read_delay(TomlTable(document, "", file).table("camera"), files_);
+    const toml::Document document = toml::Document::load(file);
+    return read_delay(document.root().table("camera"), files_);
   }
   std::string error_of(const std::string& text) {
     return bad_file_message([&] { (void)read(text); });

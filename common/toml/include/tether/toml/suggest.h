@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace tether::toml {
+
+/// The candidate that a person who wrote `word` most likely meant, or empty: the nearest by edit
+/// distance (insertion, deletion, substitution, transposition), if near for its length, or one
+/// that differs only in its unit suffix or by being longer.
+std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
+
+/// "'a', 'b' and 'c'"; "none" for an empty list.
+std::string quoted_list(std::span<const std::string_view> words);
+
+/// "allowed are 'a' and 'b'", with "; did you mean 'a'?" before it where `nearest` finds one.
+std::string allowed_hint(std::string_view word, std::span<const std::string_view> candidates);
+
+}  // namespace tether::toml

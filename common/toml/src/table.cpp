@@ -1,0 +1,419 @@
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <toml++/toml.h>
+
+#include <tether/toml/number_text.h>
+#include <tether/toml/suggest.h>
+#include <tether/toml/table.h>
+
+namespace tether::toml {
+namespace {
+
+// Node is a name for ::toml::node in a header that does not include the library.
+const ::toml::node& raw(const Node& node) {
+  return reinterpret_cast<const ::toml::node&>(node);  // NOLINT
+}
+const Node& opaque(const ::toml::node& node) {
+  return reinterpret_cast<const Node&>(node);  // NOLINT
+}
+const ::toml::table& as_table(const Node& node) {
+  return *raw(node).as_table();
+}
+
+int line_of(const ::toml::source_region& source) {
+  return static_cast<int>(source.begin.line);
+}
+
+std::string string_of(std::string_view view) {
+  return std::string(view);
+}
+
+std::string describe(const ::toml::node& node) {
+  switch (node.type()) {
+    case ::toml::node_type::string:
+      return "the string \"" + node.as_string()->get() + "\"";
+    case ::toml::node_type::integer:
+      return "the integer " + std::to_string(node.as_integer()->get());
+    case ::toml::node_type::floating_point:
+      return "the number " + number_text(node.as_floating_point()->get());
+    case ::toml::node_type::boolean:
+      return node.as_boolean()->get() ? "the boolean true" : "the boolean false";
+    case ::toml::node_type::array:
+      return "an array";
+    case ::toml::node_type::table:
+      return "a table";
+    default:
+      return "a date or time";
+  }
+}
+
+bool is_identifier(std::string_view text) {
+  constexpr std::string_view kAllowed =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
+  return !text.empty() && text.size() <= 64 && text.front() != '.' &&
+         text.find_first_not_of(kAllowed) == std::string_view::npos;
+}
+
+double seconds_per_unit(std::string_view key) {
+  return key.ends_with("ms") ? 1e-3 : 1.0;
+}
+
+/// Folders, devices and pipes are not read: a read of some of them would never end.
+/// @pre it is no regular file
+std::string_view why_no_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored) ? "that is no regular file"
+                                                : "there is no such file";
+}
+
+}  // namespace
+
+bool Range::contains(double value) const {
+  return std::isfinite(value) && (above_min ? value > min : value >= min) &&
+         (below_max ? value < max : value <= max);
+}
+
+std::string Range::text() const {
+  const bool has_min = std::isfinite(min), has_max = std::isfinite(max);
+  std::string text;
+  if (has_min) text = (above_min ? "greater than " : "at least ") + number_text(min);
+  if (has_min && has_max) text += " and ";
+  if (has_max) text += (below_max ? "less than " : "at most ") + number_text(max);
+  return text.empty() ? "finite" : text;
+}
+
+Table::Table(const Node& table, std::string path, std::string file)
+    : table_(&table), path_(std::move(path)), file_(std::move(file)) {}
+
+void Table::require_keys_in(std::span<const std::string_view> allowed) const {
+  for (const auto& [key, node] : as_table(*table_)) {
+    if (std::find(allowed.begin(), allowed.end(), key.str()) != allowed.end()) continue;
+    throw Error(ErrorCode::kBadFile, {file_, line_of(key.source())},
+                "unknown key '" + string_of(key.str()) + "' in " + title() + "; " +
+                    allowed_hint(key.str(), allowed));
+  }
+}
+
+// Locations and messages.
+
+bool Table::has(std::string_view key) const {
+  return as_table(*table_).contains(key);
+}
+
+std::vector<std::string> Table::keys() const {
+  std::vector<std::string> keys;
+  for (const auto& [key, node] : as_table(*table_)) keys.emplace_back(key.str());
+  return keys;
+}
+
+std::string Table::title() const {
+  return path_.empty() ? "the file" : "[" + path_ + "]";
+}
+
+std::string Table::child_path(std::string_view key) const {
+  return (path_.empty() ? "" : path_ + ".") + string_of(key);
+}
+
+FileLocation Table::where() const {
+  return {file_, path_.empty() ? 0 : line_of(raw(*table_).source())};
+}
+
+FileLocation Table::where(std::string_view key) const {
+  for (const auto& [name, node] : as_table(*table_)) {
+    if (name.str() == key) return {file_, line_of(name.source())};
+  }
+  return where();
+}
+
+void Table::fail(std::string_view key, const std::string& problem) const {
+  throw Error(ErrorCode::kBadFile, where(key),
+              "'" + string_of(key) + "' of " + title() + " " + problem);
+}
+
+void Table::fail(const std::string& problem) const {
+  throw Error(ErrorCode::kBadFile, where(), title() + " " + problem);
+}
+
+void Table::fail_type(std::string_view key, const Node& found, std::string_view expected) const {
+  fail(key, "must be " + string_of(expected) + ", but is " + describe(raw(found)));
+}
+
+const Node& Table::required(std::string_view key) const {
+  const ::toml::node* node = as_table(*table_).get(key);
+  if (node == nullptr) fail("lacks the key '" + string_of(key) + "'");
+  return opaque(*node);
+}
+
+// Scalars.
+
+std::string Table::any_text(std::string_view key) const {
+  const Node& node = required(key);
+  if (!raw(node).is_string()) fail_type(key, node, "a string");
+  return raw(node).as_string()->get();
+}
+
+std::string Table::text(std::string_view key) const {
+  const std::string text = any_text(key);
+  if (text.empty()) fail(key, "must not be empty");
+  if (text.find('\0') != std::string::npos) fail(key, "must not contain a NUL character");
+  return text;
+}
+
+std::string Table::text_or(std::string_view key, std::string_view fallback) const {
+  return has(key) ? text(key) : std::string(fallback);
+}
+
+std::string Table::identifier(std::string_view key) const {
+  const std::string name = text(key);
+  if (!is_identifier(name)) {
+    fail(key,
+         "must be 1 to 64 letters, digits, '_', '-' and '.', not starting with '.', but is \"" +
+             name + "\"");
+  }
+  return name;
+}
+
+double Table::number_of(std::string_view key, const Node& node, const Range& range) const {
+  if (!raw(node).is_number()) fail_type(key, node, "a number");
+  const double value = *raw(node).value<double>();
+  if (!range.contains(value))
+    fail(key, "must be " + range.text() + ", but is " + number_text(value));
+  return value;
+}
+
+double Table::number(std::string_view key, const Range& range) const {
+  return number_of(key, required(key), range);
+}
+
+double Table::number_or(std::string_view key, const Range& range, double fallback) const {
+  return has(key) ? number(key, range) : fallback;
+}
+
+std::optional<double> Table::number_if(std::string_view key, const Range& range) const {
+  return has(key) ? std::optional(number(key, range)) : std::nullopt;
+}
+
+std::int64_t Table::integer(std::string_view key, std::int64_t min, std::int64_t max) const {
+  const Node& node = required(key);
+  if (!raw(node).is_integer()) fail_type(key, node, "an integer");
+  const std::int64_t value = raw(node).as_integer()->get();
+  if (value < min || value > max) {
+    fail(key, "must be at least " + std::to_string(min) + " and at most " + std::to_string(max) +
+                  ", but is " + std::to_string(value));
+  }
+  return value;
+}
+
+std::int64_t Table::integer_or(std::string_view key, std::int64_t min, std::int64_t max,
+                               std::int64_t fallback) const {
+  return has(key) ? integer(key, min, max) : fallback;
+}
+
+bool Table::boolean(std::string_view key) const {
+  const Node& node = required(key);
+  if (!raw(node).is_boolean()) fail_type(key, node, "true or false");
+  return raw(node).as_boolean()->get();
+}
+
+bool Table::boolean_or(std::string_view key, bool fallback) const {
+  return has(key) ? boolean(key) : fallback;
+}
+
+Duration Table::duration(std::string_view key, const Range& range) const {
+  return duration_from_seconds(number(key, range) * seconds_per_unit(key));
+}
+
+Duration Table::duration_or(std::string_view key, const Range& range, Duration fallback) const {
+  return has(key) ? duration(key, range) : fallback;
+}
+
+std::size_t Table::choice(std::string_view key, std::span<const std::string_view> choices) const {
+  const std::string word = text(key);
+  const auto found = std::find(choices.begin(), choices.end(), word);
+  if (found == choices.end()) fail(key, "is \"" + word + "\"; " + allowed_hint(word, choices));
+  return static_cast<std::size_t>(found - choices.begin());
+}
+
+std::string Table::scalar_as_text(std::string_view key) const {
+  const Node& node = required(key);
+  if (raw(node).is_string()) return text(key);
+  if (const auto* integer = raw(node).as_integer()) return std::to_string(integer->get());
+  if (const auto* number = raw(node).as_floating_point()) return number_text(number->get());
+  if (const auto* boolean = raw(node).as_boolean()) return boolean->get() ? "true" : "false";
+  fail_type(key, node, "a string, a number or a boolean");
+}
+
+std::filesystem::path Table::existing_file(std::string_view key) const {
+  namespace fs = std::filesystem;
+  const std::string written = text(key);
+  std::error_code ignored;
+  const fs::path path = (fs::path(file_).parent_path() / written).lexically_normal();
+  if (!fs::is_regular_file(path, ignored)) {
+    fail(key, "names \"" + written + "\", but " + string_of(why_no_file(path)) + " (" +
+                  path.string() + ")");
+  }
+  return path;
+}
+
+// Arrays and tables.
+
+std::vector<const Node*> Table::elements(std::string_view key, std::string_view expected) const {
+  const Node& node = required(key);
+  if (!raw(node).is_array()) fail_type(key, node, expected);
+  std::vector<const Node*> elements;
+  for (const ::toml::node& element : *raw(node).as_array()) elements.push_back(&opaque(element));
+  return elements;
+}
+
+std::vector<std::string> Table::texts(std::string_view key) const {
+  std::vector<std::string> texts;
+  for (const Node* element : elements(key, "an array of strings")) {
+    if (!raw(*element).is_string()) fail_type(key, *element, "an array of strings only");
+    const std::string& text = raw(*element).as_string()->get();
+    if (text.empty()) fail(key, "must not contain an empty string");
+    if (text.find('\0') != std::string::npos) fail(key, "must not contain a NUL character");
+    texts.push_back(text);
+  }
+  return texts;
+}
+
+std::vector<std::string> Table::texts_or_none(std::string_view key) const {
+  return has(key) ? texts(key) : std::vector<std::string>{};
+}
+
+std::vector<double> Table::numbers(std::string_view key, std::size_t count,
+                                   const Range& range) const {
+  const std::string expected = "an array of " + std::to_string(count) + " numbers";
+  const std::vector<const Node*> all = elements(key, expected);
+  if (all.size() != count) {
+    fail(key, "must be " + expected + ", but has " + std::to_string(all.size()) + " elements");
+  }
+  std::vector<double> numbers;
+  for (const Node* element : all) numbers.push_back(number_of(key, *element, range));
+  return numbers;
+}
+
+std::vector<double> Table::numbers(std::string_view key, const Range& range) const {
+  std::vector<double> numbers;
+  for (const Node* element : elements(key, "an array of numbers")) {
+    const double value = raw(*element).is_number() ? *raw(*element).value<double>() : NAN;
+    if (!range.contains(value)) {
+      throw Error(ErrorCode::kBadFile, {file_, line_of(raw(*element).source())},
+                  "'" + string_of(key) + "' of " + title() + " must be numbers of " + range.text() +
+                      ", but has " + describe(raw(*element)));
+    }
+    numbers.push_back(value);
+  }
+  if (numbers.empty()) fail(key, "must hold at least one number, but is empty");
+  return numbers;
+}
+
+std::vector<std::int64_t> Table::integers(std::string_view key, std::int64_t min) const {
+  std::vector<std::int64_t> integers;
+  for (const Node* element : elements(key, "an array of integers")) {
+    if (!raw(*element).is_integer()) fail_type(key, *element, "an array of integers only");
+    integers.push_back(raw(*element).as_integer()->get());
+    if (integers.back() < min) {
+      fail(key, "must be integers of at least " + std::to_string(min) + ", but has " +
+                    std::to_string(integers.back()));
+    }
+  }
+  return integers;
+}
+
+Table Table::table(std::string_view key) const {
+  const Node& node = required(key);
+  if (!raw(node).is_table()) fail_type(key, node, "a table");
+  return {node, child_path(key), file_};
+}
+
+Table Table::table(std::string_view key, Keys allowed) const {
+  return table(key, std::span(allowed.begin(), allowed.size()));
+}
+
+Table Table::table(std::string_view key, std::span<const std::string_view> allowed) const {
+  Table any = table(key);
+  any.require_keys_in(allowed);
+  return any;
+}
+
+std::vector<Table> Table::tables(std::string_view key) const {
+  const std::string expected = "one or more tables [[" + child_path(key) + "]]";
+  const std::vector<const Node*> all = elements(key, expected);
+  if (all.empty()) fail(key, "must be " + expected + ", but is an empty array");
+  std::vector<Table> tables;
+  for (const Node* element : all) {
+    if (!raw(*element).is_table()) fail_type(key, *element, expected);
+    tables.push_back({*element, child_path(key), file_});
+  }
+  return tables;
+}
+
+std::vector<Table> Table::tables(std::string_view key, Keys allowed) const {
+  std::vector<Table> any = tables(key);
+  for (const Table& table : any) table.require_keys_in({allowed.begin(), allowed.size()});
+  return any;
+}
+
+std::vector<Table> Table::tables_or_none(std::string_view key, Keys allowed) const {
+  return has(key) ? tables(key, allowed) : std::vector<Table>{};
+}
+
+// Files.
+
+std::string read_text_file(const std::filesystem::path& file, std::size_t limit) {
+  const FileLocation where{file.string()};
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed)) {
+    throw Error(ErrorCode::kBadFile, where, string_of(why_no_file(file)));
+  }
+  const auto size = std::filesystem::file_size(file, failed);
+  if (!failed && size > limit) {
+    throw Error(ErrorCode::kBadFile, where,
+                "is " + std::to_string(size) + " bytes long; at most " + std::to_string(limit) +
+                    " are read");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (size > 0) text << stream.rdbuf();
+  if (failed || !stream || !text) {
+    require_a_handle_for(file.string());
+    throw Error(ErrorCode::kBadFile, where, "cannot be read");
+  }
+  return std::move(text).str();
+}
+
+void Document::Delete::operator()(const Node* node) const {
+  delete &as_table(*node);
+}
+
+Document Document::load(const std::filesystem::path& file) {
+  constexpr std::size_t kLargestFile = std::size_t{1} << 20;
+  return parse(read_text_file(file, kLargestFile), file.string());
+}
+
+Document Document::parse(std::string_view text, const std::string& file) {
+  try {
+    std::unique_ptr<const ::toml::table> tree =
+        std::make_unique<::toml::table>(::toml::parse(text, file));
+    return {std::unique_ptr<const Node, Delete>(&opaque(*tree.release())), file};
+  } catch (const ::toml::parse_error& error) {
+    throw Error(ErrorCode::kBadFile, {file, line_of(error.source())},
+                "no valid TOML: " + std::string(error.description()));
+  }
+}
+
+Table Document::root() const {
+  return {*tree_, "", file_};
+}
+
+Table Document::root(Keys allowed) const {
+  Table any = root();
+  any.require_keys_in({allowed.begin(), allowed.size()});
+  return any;
+}
+
+}  // namespace tether::toml

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include <tether/sim_gazebo_plugin/flights.h>
+#include <tether/sim_gazebo_plugin/simulation.h>
+#include <tether/sim_protocol/messages.h>
+
+namespace tether::gazebo_plugin {
+
+/// Where requests come from, and answers go.
+class Host {
+ public:
+  virtual ~Host() = default;
+  Host(const Host&) = delete;
+  Host& operator=(const Host&) = delete;
+
+  /// Blocks until there is a request that fits the conversation. None: that is over.
+  virtual std::optional<protocol::Request> next() = 0;
+  virtual void answer(const protocol::Reply& reply) = 0;
+
+ protected:
+  Host() = default;
+};
+
+/// What a host asks, done in step with a world that another program runs: it calls
+/// `at_step_boundary` before each step, and the world stands still until that returns.
+///
+/// One thread.
+class Session {
+ public:
+  /// Both live longer.
+  Session(Host& host, Simulation& simulation) : host_(host), simulation_(simulation) {}
+
+  /// Serves requests until one needs a step of the world.
+  void at_step_boundary();
+  /// Nothing is going to be asked any more; the world may do as it likes.
+  bool is_over() const { return phase_ == Phase::kOver; }
+
+ private:
+  enum class Phase { kAwaitingOpen, kWarmingUp, kServing, kOver };
+
+  bool needs_step() const;
+  void go_on();
+  void serve();
+  void warm_up();
+  void finish_advance();
+  void begin_step();
+  void refuse(const std::string& why);
+  void reset(std::uint64_t seed);
+  protocol::State state() const;
+
+  void handle(const protocol::Open& open);
+  void handle(const protocol::Reset& reset);
+  void handle(const protocol::Advance& advance);
+  void handle(const protocol::CastRays& rays);
+  void handle(const protocol::Render& view);
+
+  Host& host_;
+  Simulation& simulation_;
+  Phase phase_ = Phase::kAwaitingOpen;
+  protocol::Open open_;
+  Flights flights_;
+  SimTime now_;
+  std::int64_t steps_left_ = 0;
+  bool advancing_ = false;
+  /// When the last step began, and what came of it.
+  std::vector<uav::BodyState> before_;
+  std::vector<protocol::Motion> motions_;
+  /// The bodies' poses when the last steps began, all bodies of a step after one another.
+  std::deque<std::vector<uav::Pose>> past_;
+};
+
+}  // namespace tether::gazebo_plugin

@@ -1,0 +1,29 @@
+#include <tether/sim_gazebo_plugin/flights.h>
+
+namespace tether::gazebo_plugin {
+
+Flights::Flights(const sim::protocol::Open& open)
+    : gravity_m_s2_(open.gravity_m_s2), step_(open.step) {
+  for (const sim::protocol::UavDescription& uav : open.uavs) {
+    flights_.push_back({uav.airframe, uav::yaw_rad(uav.X_WB.q), {}, {}});
+  }
+  reset();
+}
+
+void Flights::reset() {
+  for (Flight& flight : flights_) {
+    flight.command = {};
+    flight.state = uav::hover_state(flight.airframe, gravity_m_s2_, flight.start_yaw_rad);
+  }
+}
+
+void Flights::set_command(std::size_t uav, const uav::VelocityCommand& command) {
+  flights_[uav].command = command;
+}
+
+uav::Wrench Flights::step(std::size_t uav, const uav::BodyState& body) {
+  Flight& flight = flights_[uav];
+  return uav::step(flight.airframe, gravity_m_s2_, body, flight.command, step_, flight.state);
+}
+
+}  // namespace tether::gazebo_plugin

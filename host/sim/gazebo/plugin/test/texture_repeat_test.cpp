@@ -1,0 +1,31 @@
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include <tether/sim_gazebo_plugin/texture_repeat.h>
+
+namespace tether::gazebo_plugin {
+namespace {
+
+constexpr uav::Vec3 kSize{2.0, 2.0, 5.0};
+
+TEST(TextureRepeat, CountsMetresAroundAndAlongACylinder) {
+  const TextureRepeat repeat = texture_repeat("unit_cylinder", kSize, 3.0, 0.5);
+  EXPECT_DOUBLE_EQ(repeat.x, 2.0 * std::numbers::pi * 3.0);
+  EXPECT_DOUBLE_EQ(repeat.y, 2.5);
+}
+
+TEST(TextureRepeat, CountsMetresFromPoleToPole) {
+  EXPECT_DOUBLE_EQ(texture_repeat("unit_sphere", kSize, 1.0, 2.0).y, 2.0 * std::numbers::pi);
+}
+
+TEST(TextureRepeat, CountsMetresOfAPlane) {
+  EXPECT_DOUBLE_EQ(texture_repeat("unit_plane", {4.0, 6.0, 1.0}, 0.5, 0.5).y, 3.0);
+}
+
+TEST(TextureRepeat, LeavesMeshesTheirOwnCoordinates) {
+  EXPECT_EQ(texture_repeat("/models/chair.obj", kSize, 3.0, 3.0).x, 1.0);
+}
+
+}  // namespace
+}  // namespace tether::gazebo_plugin

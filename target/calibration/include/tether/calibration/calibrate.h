@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <tether/base/result.h>
+#include <tether/calibration/calibration.h>
+
+/// `tether-sut calibrate`: how fast this machine is, and how much slower another one.
+namespace tether::calibration {
+
+struct CalibrateOptions {
+  int rounds = 30;
+  std::optional<int> cpu_index;  ///< the core to measure on; none: the last allowed
+  std::string out;               ///< the measurement's file; empty: none
+  std::string measured;          ///< a measurement of this machine, instead of making one
+  std::string against;           ///< a measurement of another machine; empty: none
+  std::string target;            ///< the virtual target's file; empty: none
+  std::string name;              ///< of the target; empty: that machine's
+};
+
+/// What holds for several options together: kInvalid, one line.
+Status check(const CalibrateOptions& options);
+
+/// Measures this machine, on one core and one thread. Fails as `run_workload`, and for a core that
+/// cannot be used.
+Result<Calibration> measure_machine(const CalibrateOptions& options, const TellRound& tell = {});
+
+/// The whole: reads, measures, writes the files, and returns what to print. Nothing is measured
+/// before the files that are to be read and written were found usable.
+Result<std::string> calibrate(const CalibrateOptions& options, const TellRound& tell = {});
+
+}  // namespace tether::calibration

@@ -1,0 +1,139 @@
+#include "report.h"
+#include "statistics.h"
+#include "workload.h"
+
+#include <utility>
+
+#include <opencv2/core/version.hpp>
+
+#include <tether/base/version.h>
+#include <tether/calibration/calibrate.h>
+#include <tether/calibration/machine.h>
+#include <tether/calibration/profile_text.h>
+#include <tether/calibration/sensor_table.h>
+#include <tether/calibration/whole_file.h>
+
+namespace tether::calibration {
+namespace {
+
+/// As a target file's reader takes it.
+constexpr double kLeastFactor = 1e-3, kGreatestFactor = 1e4;
+
+Failure invalid(const std::string& what) {
+  return {Failure::Kind::kInvalid, what};
+}
+
+Status check_files(const CalibrateOptions& options) {
+  for (const std::string& file : {options.out, options.target}) {
+    if (file.empty()) {
+      continue;
+    }
+    if (Status writable = check_writable(file); !writable) {
+      return writable;
+    }
+  }
+  return ok_status();
+}
+
+Result<Calibration> this_machine(const CalibrateOptions& options, const TellRound& tell) {
+  return options.measured.empty() ? measure_machine(options, tell)
+                                  : load_calibration(options.measured);
+}
+
+/// The name of the machine that was measured, if none is given.
+std::string target_name(const CalibrateOptions& options, const Calibration& there) {
+  return options.name.empty() ? profile_name_from(there.machine.name) : options.name;
+}
+
+Result<std::string> compared(const CalibrateOptions& options, const Calibration& here,
+                             const Calibration& there) {
+  const Result<Comparison> comparison = compare(here, there);
+  if (!comparison) {
+    return invalid(options.against + ": " + comparison.failure().message);
+  }
+  std::string text = comparison_table(here, there, *comparison);
+  if (options.target.empty()) {
+    return text;
+  }
+  const double factor = comparison->whole.value;
+  if (!(factor >= kLeastFactor && factor <= kGreatestFactor)) {
+    return invalid("a factor of " + std::to_string(factor) +
+                   " is beyond what a target may have (0.001 to 10000)");
+  }
+  const std::string target = target_text(target_name(options, there), here, there, *comparison);
+  if (const Status written = write_whole(options.target, target); !written) {
+    return written.failure();
+  }
+  return text + "\nWritten: " + options.target + "; use it with: tether run SCENARIO --target " +
+         options.target + "\n";
+}
+
+}  // namespace
+
+Status check(const CalibrateOptions& options) {
+  if (options.against.empty() && !(options.target.empty() && options.name.empty())) {
+    return invalid(
+        "--write-target and --name need --against, the measurement of the other machine");
+  }
+  if (!options.measured.empty() && (options.cpu_index || !options.out.empty())) {
+    return invalid(
+        "--measured takes a measurement that was made; --cpu and --out are of a new one");
+  }
+  return ok_status();
+}
+
+Result<Calibration> measure_machine(const CalibrateOptions& options, const TellRound& tell) {
+  Calibration calibration;
+  calibration.machine = read_machine();  // while it still has all its cores
+  const Result<int> core = bind_to_core(options.cpu_index);
+  if (!core) {
+    return core.failure();
+  }
+  calibration.program = "tether-sut " + std::string(version());
+  calibration.opencv = CV_VERSION;
+  calibration.when = utc_now();
+  calibration.machine.cpu_index = *core;
+  read_governor(*core, calibration.machine);
+  calibration.machine.mhz_before = read_mhz(*core);
+  auto blocks = run_workload({.rounds = options.rounds}, system_stopwatch(), tell);
+  if (!blocks) {
+    return blocks.failure();
+  }
+  calibration.machine.mhz_after = read_mhz(*core);
+  calibration.blocks = std::move(blocks).value();
+  return calibration;
+}
+
+Result<std::string> calibrate(const CalibrateOptions& options, const TellRound& tell) {
+  if (const Status writable = check_files(options); !writable) {
+    return writable.failure();
+  }
+  std::optional<Calibration> there;
+  if (!options.against.empty()) {
+    Result<Calibration> loaded = load_calibration(options.against);
+    if (!loaded) {
+      return loaded.failure();
+    }
+    there = std::move(loaded).value();
+  }
+  const Result<Calibration> here = this_machine(options, tell);
+  if (!here) {
+    return here.failure();
+  }
+  std::string text = speed_table(*here);
+  if (!options.out.empty()) {
+    if (const Status written = write_whole(options.out, calibration_text(*here)); !written) {
+      return written.failure();
+    }
+  }
+  if (!there) {
+    return text;
+  }
+  const Result<std::string> more = compared(options, *here, *there);
+  if (!more) {
+    return more.failure();
+  }
+  return text + "\n" + *more;
+}
+
+}  // namespace tether::calibration

@@ -1,0 +1,179 @@
+#include "statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include <tether/base/random.h>
+
+namespace tether::calibration {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// Times about a median, with a long tail above, as interrupts make it.
+std::vector<double> times(double median_ms, double scatter, std::uint64_t stream, int rounds = 30) {
+  std::vector<double> values;
+  for (int i = 0; i < rounds; ++i) {
+    KeyedRandom random({.seed = 7, .stream = stream, .index = static_cast<std::uint64_t>(i)});
+    const double tail = random.uniform() < 0.1 ? 1.0 : 0.0;
+    values.push_back(median_ms * std::exp(scatter * (random.normal() + tail)));
+  }
+  return values;
+}
+
+Calibration machine(const std::vector<std::pair<std::string, std::vector<double>>>& blocks) {
+  Calibration calibration;
+  for (const auto& [name, values] : blocks) {
+    calibration.blocks.push_back({name, values, values});
+  }
+  return calibration;
+}
+
+Calibration steady(double prefilter_ms, double tracking_ms, double whole_ms) {
+  return machine({{"prefilter", std::vector<double>(20, prefilter_ms)},
+                  {"tracking", std::vector<double>(20, tracking_ms)},
+                  {kWholeStep, std::vector<double>(20, whole_ms)}});
+}
+
+TEST(Quartiles, LieBetweenTheTimes) {
+  const Quartiles of = quartiles({4.0, 1.0, 3.0, 2.0, 5.0});
+  EXPECT_EQ(of.lower, 2.0);
+  EXPECT_EQ(of.median, 3.0);
+  EXPECT_EQ(of.upper, 4.0);
+  EXPECT_DOUBLE_EQ(of.spread(), 2.0 / 3.0);
+  EXPECT_EQ(quartiles({1.0, 2.0}).median, 1.5);
+  EXPECT_EQ(quartiles({7.0}).spread(), 0.0);
+}
+
+// Ranks from the binomial distribution: of 30 values the 9th and the 22nd, P(X <= 8) = 0.0081.
+TEST(MedianInterval, IsTakenFromTheRanks) {
+  std::vector<double> values;
+  for (int i = 1; i <= 30; ++i) {
+    values.push_back(i);
+  }
+  const Interval of = median_interval(values);
+  EXPECT_EQ(of.low, 9.0);
+  EXPECT_EQ(of.high, 22.0);
+  // Of ten the 2nd and the 9th: P(X <= 1) = 0.0107, P(X <= 2) = 0.055.
+  values.resize(10);
+  EXPECT_EQ(median_interval(values).low, 2.0);
+  EXPECT_EQ(median_interval(values).high, 9.0);
+}
+
+TEST(MedianInterval, HoldsTheTrueMedianAsOftenAsItSays) {
+  int held = 0;
+  constexpr int kSamples = 2000;
+  for (int sample = 0; sample < kSamples; ++sample) {
+    std::vector<double> values;
+    for (int i = 0; i < 25; ++i) {
+      KeyedRandom random({.seed = 3,
+                          .stream = static_cast<std::uint64_t>(sample),
+                          .index = static_cast<std::uint64_t>(i)});
+      values.push_back(-std::log(1.0 - random.uniform()));  // exponential: median ln 2
+    }
+    const Interval of = median_interval(values);
+    held += of.low <= std::log(2.0) && std::log(2.0) <= of.high ? 1 : 0;
+  }
+  EXPECT_GE(held, kSamples * 0.97);
+  EXPECT_LT(held, kSamples) << "an interval that always holds says nothing";
+}
+
+TEST(Compare, GivesTheFactorOfEachBlockAndTheirMean) {
+  const auto of = compare(steady(10.0, 1.0, 11.0), steady(40.0, 9.0, 49.5));
+  ASSERT_TRUE(of) << of.failure().message;
+  ASSERT_EQ(of->blocks.size(), 3u);
+  EXPECT_DOUBLE_EQ(of->blocks[0].value, 4.0);
+  EXPECT_DOUBLE_EQ(of->blocks[1].value, 9.0);
+  EXPECT_DOUBLE_EQ(of->whole.value, 4.5);
+  EXPECT_DOUBLE_EQ(of->overall.value, 6.0) << "without the whole step, which has them in it";
+  EXPECT_EQ(of->least().block, "prefilter");
+  EXPECT_EQ(of->greatest().block, "tracking");
+}
+
+TEST(Compare, IsTheInverseTheOtherWayRound) {
+  const Calibration a = machine({{"x", times(3.0, 0.05, 1)}, {kWholeStep, times(5.0, 0.05, 2)}});
+  const Calibration b = machine({{"x", times(9.0, 0.02, 3)}, {kWholeStep, times(40.0, 0.1, 4)}});
+  const auto forth = compare(a, b), back = compare(b, a);
+  ASSERT_TRUE(forth && back);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(forth->blocks[i].value * back->blocks[i].value, 1.0, 1e-12);
+    EXPECT_NEAR(forth->blocks[i].interval.low * back->blocks[i].interval.high, 1.0, 1e-12);
+  }
+}
+
+TEST(Compare, FindsAFactorThatIsThere) {
+  for (const double factor : {0.2, 1.0, 6.5, 80.0}) {
+    const Calibration here =
+        machine({{"x", times(8.0, 0.03, 1)}, {kWholeStep, times(8.0, 0.03, 2)}});
+    const Calibration there =
+        machine({{"x", times(8.0 * factor, 0.03, 3)}, {kWholeStep, times(8.0 * factor, 0.03, 4)}});
+    const auto of = compare(here, there);
+    ASSERT_TRUE(of);
+    EXPECT_NEAR(of->whole.value / factor, 1.0, 0.03);
+    EXPECT_LE(of->whole.interval.low, factor);
+    EXPECT_GE(of->whole.interval.high, factor);
+    EXPECT_LT(of->whole.interval.high / of->whole.interval.low, 1.15);
+  }
+}
+
+TEST(Compare, RefusesWhatDoesNotCompare) {
+  const Calibration whole = steady(1.0, 1.0, 1.0);
+  Calibration other = whole;
+  other.blocks[0].name = "another";
+  EXPECT_THAT(compare(whole, other).failure().message, HasSubstr("not the same blocks"));
+  other = whole;
+  other.blocks.pop_back();
+  EXPECT_FALSE(compare(other, other)) << "without the whole step";
+  EXPECT_FALSE(compare(whole, other));
+  other = whole;
+  other.blocks[1].cpu_ms.resize(9);
+  EXPECT_THAT(compare(whole, other).failure().message, HasSubstr("at least 10 rounds"));
+}
+
+TEST(Doubts, AreNoneOfASteadyMachine) {
+  Calibration calibration = machine({{kWholeStep, times(8.0, 0.01, 1)}});
+  calibration.machine.mhz_before = 1500.0;
+  calibration.machine.mhz_after = 1510.0;
+  EXPECT_THAT(doubts(calibration), IsEmpty());
+}
+
+TEST(Doubts, NameALoadedMachine) {
+  Calibration calibration = steady(1.0, 1.0, 8.0);
+  for (double& wall_ms : calibration.blocks.back().wall_ms) {
+    wall_ms = 12.0;
+  }
+  EXPECT_THAT(doubts(calibration), ElementsAre(HasSubstr("wall time is 50 % above CPU time")));
+}
+
+TEST(Doubts, NameAMachineThatBecomesSlowerOrFaster) {
+  Calibration calibration = steady(1.0, 1.0, 8.0);
+  auto& cpu_ms = calibration.blocks.back().cpu_ms;
+  for (std::size_t i = 14; i < cpu_ms.size(); ++i) {
+    cpu_ms[i] = 9.6;
+  }
+  calibration.blocks.back().wall_ms = cpu_ms;
+  EXPECT_THAT(doubts(calibration),
+              Contains(HasSubstr("last rounds took 20 % longer than the first")));
+  std::reverse(cpu_ms.begin(), cpu_ms.end());
+  calibration.blocks.back().wall_ms = cpu_ms;
+  EXPECT_THAT(doubts(calibration),
+              Contains(HasSubstr("first rounds took 20 % longer than the last")));
+}
+
+TEST(Doubts, NameScatterAndAChangedClockRate) {
+  Calibration calibration = machine({{kWholeStep, times(8.0, 0.3, 1)}});
+  EXPECT_THAT(doubts(calibration), Contains(HasSubstr("times scatter")));
+  calibration = steady(1.0, 1.0, 8.0);
+  calibration.machine.mhz_before = 1500.0;
+  EXPECT_THAT(doubts(calibration), IsEmpty()) << "not told afterwards";
+  calibration.machine.mhz_after = 600.0;
+  EXPECT_THAT(doubts(calibration), ElementsAre(HasSubstr("1500 MHz before and 600 MHz after")));
+}
+
+}  // namespace
+}  // namespace tether::calibration

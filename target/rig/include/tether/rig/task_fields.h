@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <tether/rig/mission.h>
+
+/// The tasks and their arguments, as data: what a person may write for each, and where it goes. The
+/// command line ("--precision-deg 2") and mission files ("precision_deg = 2") are both read by it.
+namespace tether::rig {
+
+struct TextField {
+  std::string* value;
+  bool is_required = false;
+};
+struct NumberField {
+  double least;
+  double most;
+  double usual;                     ///< in the unit that a person writes
+  std::function<void(double)> set;  ///< likewise
+};
+struct IntegerField {
+  int* value;
+  int least;
+  int most;
+  bool is_odd = false;  ///< even values are not allowed
+};
+struct BooleanField {
+  bool* value;
+};
+struct ChoiceField {
+  std::vector<std::string_view> words;
+  std::function<void(std::size_t)> set;  ///< the word's index
+};
+
+/// One argument of a task.
+struct Field {
+  std::string_view name;  ///< as in a file: "precision_deg"
+  std::string_view description;
+  std::variant<TextField, NumberField, IntegerField, BooleanField, ChoiceField> value;
+};
+
+/// The paper's tasks, in its order.
+struct TaskKind {
+  std::string_view name;         ///< "face_anchor"
+  std::string_view description;  ///< one line
+  TaskOptions defaults;
+};
+std::span<const TaskKind> task_kinds();
+
+/// The arguments of the task that `spec.options` is about. They write to `spec`, which must outlive
+/// them.
+std::vector<Field> fields_of(TaskSpec& spec);
+/// Those about vision, which tasks with an anchor share.
+std::vector<Field> vision_fields(TaskSpec& spec);
+
+}  // namespace tether::rig

@@ -1,0 +1,87 @@
+#include <utility>
+
+#include <signal.h>
+
+#include <tether/rig/interruptible_vehicle.h>
+
+namespace tether::rig {
+namespace {
+
+volatile sig_atomic_t g_interrupted = 0;
+
+extern "C" void on_interrupt(int /*signal*/) {
+  g_interrupted = 1;
+}
+
+class InterruptibleVehicle : public client::Vehicle {
+ public:
+  InterruptibleVehicle(std::unique_ptr<client::Vehicle> vehicle, std::function<bool()> is_over)
+      : vehicle_(std::move(vehicle)), is_interrupted_(std::move(is_over)) {}
+
+  ExecTime now() const override { return vehicle_->now(); }
+  const uav::Catalogue& catalogue() const override { return vehicle_->catalogue(); }
+  bool is_concurrent() const override { return vehicle_->is_concurrent(); }
+
+  Result<uav::CameraSample> read_camera(std::string_view sensor, client::Read read) override {
+    return unless_interrupted([&] { return vehicle_->read_camera(sensor, read); });
+  }
+  Result<uav::ImuSample> read_imu(std::string_view sensor, client::Read read) override {
+    return unless_interrupted([&] { return vehicle_->read_imu(sensor, read); });
+  }
+  Result<uav::RangeSample> read_range(std::string_view sensor, client::Read read) override {
+    return unless_interrupted([&] { return vehicle_->read_range(sensor, read); });
+  }
+  Status command_velocity(const uav::VelocityCommand& command) override {
+    return unless_interrupted([&] { return vehicle_->command_velocity(command); });
+  }
+  Status sleep_for(Duration duration) override {
+    return unless_interrupted([&] { return vehicle_->sleep_for(duration); });
+  }
+  Status sleep_until(ExecTime until) override {
+    return unless_interrupted([&] { return vehicle_->sleep_until(until); });
+  }
+  Status annotate(std::string_view topic, std::string_view json) override {
+    return vehicle_->annotate(topic, json);
+  }
+  Status finish(bool reached_goal, std::string_view outcome,
+                std::string_view details_json) override {
+    return vehicle_->finish(reached_goal, outcome, details_json);
+  }
+
+ private:
+  template <class Call>
+  auto unless_interrupted(Call call) -> decltype(call()) {
+    if (is_interrupted_()) {
+      return Failure{Failure::Kind::kRunEnded, "interrupted"};
+    }
+    auto result = call();
+    if (!result && is_interrupted_()) {
+      return Failure{Failure::Kind::kRunEnded, "interrupted"};
+    }
+    return result;
+  }
+
+  std::unique_ptr<client::Vehicle> vehicle_;
+  std::function<bool()> is_interrupted_;
+};
+
+}  // namespace
+
+std::unique_ptr<client::Vehicle> make_interruptible(std::unique_ptr<client::Vehicle> vehicle,
+                                                    std::function<bool()> is_interrupted) {
+  return std::make_unique<InterruptibleVehicle>(std::move(vehicle), std::move(is_interrupted));
+}
+
+void catch_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = on_interrupt;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+bool interrupted() {
+  return g_interrupted != 0;
+}
+
+}  // namespace tether::rig

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "supervision.h"
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <poll.h>
+
+#include <tether/client/exec/local_socket.h>
+
+namespace tether::supervisor {
+
+/// The connections of the program's threads and processes.
+class Callers {
+ public:
+  /// `clock_page` must outlive it.
+  Callers(client::FileDescriptor listener, const client::FileDescriptor& clock_page)
+      : listener_(std::move(listener)), clock_page_(clock_page) {}
+
+  struct Events {
+    std::function<void(CallerId, link::Message)> on_message;
+    std::function<void(CallerId)> on_gone;
+  };
+
+  /// Adds what there is to poll for.
+  void add_to(std::vector<pollfd>& entries) const;
+  /// Takes in everything that has come.
+  void receive_all(const Events& events);
+  /// Takes in what is there of new connections and of those that `entries` says have something.
+  void receive(const std::vector<pollfd>& entries, const Events& events);
+
+  void send(CallerId caller, const link::Message& message);
+  /// Hangs up; `on_gone` is not called.
+  void drop(CallerId caller) { connections_.erase(caller); }
+
+ private:
+  void accept_all();
+  bool drain(CallerId caller, client::LocalSocket& socket, const Events& events);
+  template <class Wanted>
+  void receive_if(const Events& events, Wanted wanted);
+
+  client::FileDescriptor listener_;
+  const client::FileDescriptor& clock_page_;
+  CallerId last_ = 0;
+  std::map<CallerId, client::LocalSocket> connections_;
+};
+
+}  // namespace tether::supervisor

@@ -1,0 +1,70 @@
+#include "command.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <tether/client/exec/file_descriptor.h>
+
+namespace tether::supervisor {
+namespace {
+
+using client::FileDescriptor;
+
+/// What the child runs, between fork and exec. Returns only if something fails, leaving errno.
+void become(char* const* arguments, const std::optional<Cgroup>& cgroup, pid_t parent) {
+  ::setpgid(0, 0);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);  // it died before the line above
+  if (cgroup && !cgroup->enter()) return;
+  if (::isatty(STDIN_FILENO) == 1) {
+    const int nothing = ::open("/dev/null", O_RDONLY);
+    if (nothing >= 0) ::dup2(nothing, STDIN_FILENO);
+  }
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  ::execvp(arguments[0], arguments);
+}
+
+}  // namespace
+
+Result<pid_t> start_command(const std::vector<std::string>& command, const std::string& socket,
+                            const std::optional<Cgroup>& cgroup) {
+  std::vector<char*> arguments;
+  // execvp does not change what it points to.
+  for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+  arguments.push_back(nullptr);
+  ::setenv("TETHER_EXEC", socket.c_str(), 1);
+
+  // The child's errno comes through a pipe that a successful exec closes.
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) {
+    return Failure{Failure::Kind::kInvalid, std::string("pipe: ") + std::strerror(errno)};
+  }
+  const FileDescriptor reading(ends[0]);
+  FileDescriptor writing(ends[1]);
+  const pid_t self = ::getpid();
+  const pid_t child = ::fork();
+  if (child == 0) {
+    become(arguments.data(), cgroup, self);
+    const int error = errno;
+    static_cast<void>(!::write(writing.get(), &error, sizeof error));
+    ::_exit(127);
+  }
+  ::setpgid(child, child);  // whoever is first
+  writing = FileDescriptor();
+  int error = 0;
+  if (child > 0 && ::read(reading.get(), &error, sizeof error) <= 0) return child;
+  if (child > 0) ::waitpid(child, nullptr, 0);
+  return Failure{Failure::Kind::kInvalid, "cannot start '" + command.front() +
+                                              "': " + std::strerror(child > 0 ? error : errno)};
+}
+
+}  // namespace tether::supervisor

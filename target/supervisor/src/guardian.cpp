@@ -1,0 +1,71 @@
+#include "guardian.h"
+
+#include "freezer.h"
+#include "process_tree.h"
+
+#include <cerrno>
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace tether::supervisor {
+namespace {
+
+/// Reads process groups until the other end is gone; returns the last one.
+pid_t read_until_end(int pipe) {
+  pid_t group = 0;
+  pid_t next = 0;
+  while (true) {
+    const ssize_t size = ::read(pipe, &next, sizeof next);
+    if (size == static_cast<ssize_t>(sizeof next)) group = next;
+    if (size == 0 || (size < 0 && errno != EINTR)) return group;
+  }
+}
+
+/// The guardian's life. It holds nothing open that anybody might wait for, and no terminal's or
+/// parent's signal ends it.
+void guard(int pipe, const std::string& folder, const std::string& cgroup) {
+  ::setsid();
+  sigset_t all;
+  ::sigfillset(&all);
+  ::sigprocmask(SIG_SETMASK, &all, nullptr);
+  const int nothing = ::open("/dev/null", O_RDWR);
+  for (int standard = 0; standard < 3; ++standard) ::dup2(nothing, standard);
+  for (int other = 3; other < 64; ++other) {
+    if (other != pipe) ::close(other);
+  }
+  const pid_t group = read_until_end(pipe);
+  if (group > 0) ::kill(-group, SIGKILL);
+  kill_all_with("TETHER_EXEC=" + folder + "/socket");
+  if (!cgroup.empty()) remove_cgroup(cgroup);
+  ::unlink((folder + "/socket").c_str());
+  ::rmdir(folder.c_str());
+}
+
+}  // namespace
+
+Guardian::Guardian(const std::string& folder, const std::string& cgroup) {
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) return;
+  const client::FileDescriptor reading(ends[0]);
+  pipe_ = client::FileDescriptor(ends[1]);
+  process_ = ::fork();
+  if (process_ != 0) return;
+  pipe_ = client::FileDescriptor();
+  guard(reading.get(), folder, cgroup);
+  ::_exit(0);
+}
+
+Guardian::~Guardian() {
+  if (process_ <= 0) return;
+  pipe_ = client::FileDescriptor();
+  ::waitpid(process_, nullptr, 0);
+}
+
+void Guardian::watch(pid_t group) {
+  static_cast<void>(!::write(pipe_.get(), &group, sizeof group));
+}
+
+}  // namespace tether::supervisor
