@@ -11,40 +11,71 @@
 #include <tether/client.h>
 #include <tether/client_values.hpp>
 
+/// @defgroup cpp_api C++17: <tether/client.hpp>
 /// The client library of Tether in C++17: what a UAV's own program, the software under test (SUT),
-/// links to. Header only, over the C API of <tether/client.h>, where each call's meaning, units,
-/// frames, errors and threads are described. Throws nothing and compiles with -fno-exceptions.
-/// What is owned is freed by destructors.
+/// links to. Header only, over the C API of <tether/client.h>. Units, frames, errors and threads
+/// are those of the @ref c_api "C API". Throws nothing and compiles with -fno-exceptions.
+/// Destructors free what an object owns.
+/// @{
+
+/// The client library of Tether in C++17.
 namespace tether::api {
 
-// ---- Connecting and flying ----------------------------------------------------------------------
+/// @defgroup cpp_connecting Connecting and flying
+/// "As tether_now()" and the like: unit, errors and threads are those of that C function. A failure
+/// has its status as Code, and its message.
+/// @{
 
-/// How to reach the coordinator, where it is not the environment that says so.
+/// How to reach the coordinator, if not as the environment says. One thread at a time can change
+/// it.
 class Options {
  public:
+  /// Makes options without address and token.
+  /// @return the options; fails as tether_options_new()
   static Result<Options> make() noexcept { return make_by(tether_options_new); }
+  /// Makes options from the environment.
+  /// @return the options; fails as tether_options_from_environment()
   static Result<Options> from_environment() noexcept {
     return make_by(tether_options_from_environment);
   }
 
+  /// Sets the coordinator's address.
+  /// @param host_and_port  "HOST:PORT" or "[IPV6]:PORT"
+  /// @return as tether_options_set_address()
   Status set_address(const char* host_and_port) noexcept {
     return Status::of(tether_options_set_address(get(), host_and_port));
   }
+  /// Sets the token that admits this program to the run.
+  /// @param token  as the coordinator prints it
+  /// @return as tether_options_set_token()
   Status set_token(const char* token) noexcept {
     return Status::of(tether_options_set_token(get(), token));
   }
+  /// Sets which UAV of the scenario to fly.
+  /// @param uav  its name; "" for the only UAV
+  /// @return as tether_options_set_uav()
   Status set_uav(const char* uav) noexcept {
     return Status::of(tether_options_set_uav(get(), uav));
   }
+  /// Sets the program's name and version, for the record.
+  /// @param name  any text
+  /// @return as tether_options_set_sut_name()
   Status set_sut_name(const char* name) noexcept {
     return Status::of(tether_options_set_sut_name(get(), name));
   }
+  /// Sets how ET is measured.
+  /// @param clock  as in TETHER_CLOCK: "wall", "cpu", "cpu*FACTOR", ...
+  /// @return as tether_options_set_clock()
   Status set_clock(const char* clock) noexcept {
     return Status::of(tether_options_set_clock(get(), clock));
   }
+  /// Sets the limits of connect(), in wall time.
+  /// @param connect  for the connection  @param welcome  then for the Welcome; both above 0
+  /// @return as tether_options_set_timeouts()
   Status set_timeouts(Duration connect, Duration welcome) noexcept {
     return Status::of(tether_options_set_timeouts(get(), connect.count(), welcome.count()));
   }
+  /// @return the same for the C API; owned by this
   tether_options* get() const noexcept { return options_.get(); }
 
  private:
@@ -61,11 +92,12 @@ class Options {
   std::unique_ptr<tether_options, Free> options_;
 };
 
-/// Data that comes by itself, until destruction. Not to be destroyed from within its own callback,
-/// nor after its vehicle.
+/// Measurements that are delivered to a callback, until destruction. It must not be destroyed by
+/// its own callback, nor after its vehicle.
 class Subscription {
  public:
-  /// OK as long as measurements come; else why none will any more.
+  /// Whether measurements still arrive.
+  /// @return success while measurements arrive; else why none will. Never blocks.
   Status status() const noexcept { return Status::of(tether_subscription_status(c_.get())); }
 
  private:
@@ -87,40 +119,58 @@ class Subscription {
   std::unique_ptr<tether_subscription, Unsubscribe> c_;  // last: ends before the callback goes
 };
 
-/// The UAV as its own program sees it. Several threads may call at once.
+/// The UAV as its own program sees it. Several threads can call it at the same time.
 class Vehicle {
  public:
-  /// Takes ownership of what the C API connected. @pre not NULL
+  /// Takes ownership. @param vehicle  of the C API; not NULL
   explicit Vehicle(tether_vehicle* vehicle) noexcept : vehicle_(vehicle) {}
-  /// For calls of the C API beside these.
+  /// @return the same for the C API; owned by this
   tether_vehicle* get() const noexcept { return vehicle_.get(); }
 
+  /// Whether the SUT runs under tether-exec. @return as tether_is_concurrent()
   bool is_concurrent() const noexcept { return tether_is_concurrent(get()) != 0; }
+  /// Reads the SUT's clock. @return ET, as tether_now()
   ExecTime now() const noexcept { return ExecTime(Duration(tether_now(get()))); }
 
+  /// @return the name of the UAV; owned by this
   const char* uav_name() const noexcept { return tether_uav_name(get()); }
+  /// @return the number of sensors
   std::size_t sensor_count() const noexcept { return tether_sensor_count(get()); }
+  /// A sensor by its index.
+  /// @param index  from 0  @return the sensor; none if `index` is too large
   std::optional<Sensor> sensor_at(std::size_t index) const noexcept {
     return optional_of<Sensor>(tether_sensor_at(get(), index));
   }
+  /// A sensor by its name.
+  /// @param name  as in the scenario  @return the sensor; none if the UAV has no such sensor
   std::optional<Sensor> find_sensor(const char* name) const noexcept {
     return optional_of<Sensor>(tether_find_sensor(get(), name));
   }
+  /// @return the number of anchors
   std::size_t anchor_count() const noexcept { return tether_anchor_count(get()); }
+  /// An anchor by its index.
+  /// @param index  from 0  @return the anchor; none if `index` is too large
   std::optional<Anchor> anchor_at(std::size_t index) const noexcept {
     return optional_of<Anchor>(tether_anchor_at(get(), index));
   }
+  /// An anchor by its name.
+  /// @param name  as in the scenario  @return the anchor; none if there is no such anchor
   std::optional<Anchor> find_anchor(const char* name) const noexcept {
     return optional_of<Anchor>(tether_find_anchor(get(), name));
   }
 
+  /// Reads a camera, without copying pixels.
+  /// @param sensor  its name  @param read  which image  @return as tether_read_camera()
   Result<Image> read_camera(const char* sensor, Read read = Read::kNext) noexcept {
     tether_image* image = nullptr;
     const tether_status got = tether_read_camera(get(), sensor, to_c(read), &image);
     if (got != TETHER_OK) return Failure::last(got);
     return Image(image);
   }
-  /// Into the caller's memory, with one copy.
+  /// Reads a camera into the caller's memory, with one copy.
+  /// @param sensor  its name  @param[out] rgb  the pixels, as ImageView::rgb() has them
+  /// @param capacity  bytes that `rgb` has  @param read  which image
+  /// @return as tether_read_camera_into()
   Result<ImageInfo> read_camera_into(const char* sensor, std::uint8_t* rgb, std::size_t capacity,
                                      Read read = Read::kNext) noexcept {
     ImageInfo info{};
@@ -129,47 +179,70 @@ class Vehicle {
     if (got != TETHER_OK) return Failure::last(got);
     return info;
   }
+  /// Reads an IMU.
+  /// @param sensor  its name  @param read  which measurement  @return as tether_read_imu()
   Result<ImuSample> read_imu(const char* sensor, Read read = Read::kNext) noexcept {
     return read_struct<ImuSample>(tether_read_imu, sensor, read);
   }
+  /// Reads a rangefinder.
+  /// @param sensor  its name  @param read  which measurement  @return as tether_read_range()
   Result<RangeSample> read_range(const char* sensor, Read read = Read::kNext) noexcept {
     return read_struct<RangeSample>(tether_read_range, sensor, read);
   }
 
-  /// Calls `on_image(ImageView)` with each image, in a thread of the library's. Under tether-exec
-  /// only.
+  /// Delivers the images of a camera, in a thread of the library. Needs tether-exec.
+  /// @param sensor  its name  @param on_image  is called as `on_image(ImageView)`; must not throw
+  /// @return as tether_subscribe_camera()
   template <class OnImage>
   Result<Subscription> subscribe_camera(const char* sensor, OnImage on_image) noexcept {
     return subscribe_by<ImageView, tether_image>(tether_subscribe_camera, sensor,
                                                  std::move(on_image));
   }
-  /// Likewise `on_sample(const ImuSample&)`.
+  /// Delivers the measurements of an IMU, in a thread of the library. Needs tether-exec.
+  /// @param sensor  its name
+  /// @param on_sample  is called as `on_sample(const ImuSample&)`; must not throw
+  /// @return as tether_subscribe_imu()
   template <class OnSample>
   Result<Subscription> subscribe_imu(const char* sensor, OnSample on_sample) noexcept {
     return subscribe_by<const ImuSample&, ImuSample>(tether_subscribe_imu, sensor,
                                                      std::move(on_sample));
   }
-  /// Likewise `on_sample(const RangeSample&)`.
+  /// Delivers the measurements of a rangefinder, in a thread of the library. Needs tether-exec.
+  /// @param sensor  its name
+  /// @param on_sample  is called as `on_sample(const RangeSample&)`; must not throw
+  /// @return as tether_subscribe_range()
   template <class OnSample>
   Result<Subscription> subscribe_range(const char* sensor, OnSample on_sample) noexcept {
     return subscribe_by<const RangeSample&, RangeSample>(tether_subscribe_range, sensor,
                                                          std::move(on_sample));
   }
 
-  /// In the heading frame: ahead, left, up; yaw counter-clockwise.
+  /// Flies with this velocity until the next command.
+  /// @param velocity_H_m_s  in the heading frame: ahead, left, up [m/s]
+  /// @param yaw_rate_rad_s  counter-clockwise seen from above [rad/s]
+  /// @return as tether_command_velocity()
   Status command_velocity(const Vec3& velocity_H_m_s, double yaw_rate_rad_s) noexcept {
     return Status::of(tether_command_velocity(get(), velocity_H_m_s.x, velocity_H_m_s.y,
                                               velocity_H_m_s.z, yaw_rate_rad_s));
   }
+  /// Waits in simulation.
+  /// @param duration  not above 0: returns at once  @return as tether_sleep_for()
   Status sleep_for(Duration duration) noexcept {
     return Status::of(tether_sleep_for(get(), duration.count()));
   }
+  /// Waits in simulation.
+  /// @param until  if it has passed, returns at once  @return as tether_sleep_until()
   Status sleep_until(ExecTime until) noexcept {
     return Status::of(tether_sleep_until(get(), until.time_since_epoch().count()));
   }
+  /// Writes a message into the record.
+  /// @param topic  its name  @param json  one JSON object  @return as tether_annotate()
   Status annotate(const char* topic, const char* json) noexcept {
     return Status::of(tether_annotate(get(), topic, json));
   }
+  /// Ends the mission. Every later interaction fails.
+  /// @param reached_goal  whether the mission succeeded  @param outcome  one line for a person
+  /// @param details_json  a JSON object, or ""  @return as tether_finish()
   Status finish(bool reached_goal, const char* outcome, const char* details_json = "") noexcept {
     return Status::of(tether_finish(get(), reached_goal ? 1 : 0, outcome, details_json));
   }
@@ -222,13 +295,16 @@ class Vehicle {
   std::unique_ptr<tether_vehicle, Disconnect> vehicle_;
 };
 
-/// Connects as the environment says: what a program that `tether run` starts calls.
+/// Connects as the environment says: for programs that `tether run` starts.
+/// @return the UAV; fails as tether_connect()
 inline Result<Vehicle> connect() noexcept {
   tether_vehicle* vehicle = nullptr;
   const tether_status connected = tether_connect(nullptr, &vehicle);
   if (connected != TETHER_OK) return Failure::last(connected);
   return Vehicle(vehicle);
 }
+/// Connects with options.
+/// @param options  can be used again  @return the UAV; fails as tether_connect()
 inline Result<Vehicle> connect(const Options& options) noexcept {
   tether_vehicle* vehicle = nullptr;
   const tether_status connected = tether_connect(options.get(), &vehicle);
@@ -236,9 +312,12 @@ inline Result<Vehicle> connect(const Options& options) noexcept {
   return Vehicle(vehicle);
 }
 
-/// Version of the library that is loaded.
+/// Version of the loaded library. @return as tether_client_version()
 inline const char* version() noexcept {
   return tether_client_version();
 }
 
+/// @}
+
 }  // namespace tether::api
+/// @}
