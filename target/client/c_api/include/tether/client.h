@@ -41,13 +41,14 @@
 /// that the caller knows; members that only the caller knows are set to zero.
 /// @{
 
+/// @cond
 #ifdef __cplusplus
 #define TETHER_NOEXCEPT noexcept
 extern "C" {
 #else
-/// `noexcept` in C++.
 #define TETHER_NOEXCEPT
 #endif
+/// @endcond
 
 /// @defgroup c_status Versions and statuses
 /// @{

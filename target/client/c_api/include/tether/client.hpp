@@ -16,12 +16,12 @@
 /// links to. Header only, over the C API of <tether/client.h>. Units, frames, errors and threads
 /// are those of the @ref c_api "C API". Throws nothing and compiles with -fno-exceptions.
 /// Destructors free what an object owns.
-/// @{
 
 /// The client library of Tether in C++17.
 namespace tether::api {
 
 /// @defgroup cpp_connecting Connecting and flying
+/// @ingroup cpp_api
 /// "As tether_now()" and the like: unit, errors and threads are those of that C function. A failure
 /// has its status as Code, and its message.
 /// @{
@@ -320,4 +320,3 @@ inline const char* version() noexcept {
 /// @}
 
 }  // namespace tether::api
-/// @}

@@ -11,11 +11,10 @@
 
 #include <tether/client.h>
 
-/// @addtogroup cpp_api
-/// @{
 namespace tether::api {
 
 /// @defgroup cpp_results Results
+/// @ingroup cpp_api
 /// Several threads can read a value at the same time; nothing else may happen while one changes it.
 /// @{
 
@@ -110,6 +109,7 @@ class [[nodiscard]] Status {
 
 /// @}
 /// @defgroup cpp_time Time
+/// @ingroup cpp_api
 /// @{
 
 /// Nanoseconds.
@@ -136,6 +136,7 @@ using SimTime = SimClock::time_point;    ///< a point in ST
 
 /// @}
 /// @defgroup cpp_catalogue Sensors and anchors
+/// @ingroup cpp_api
 /// What the SUT knows beforehand. These functions never block, and several threads can call them.
 /// @{
 
@@ -230,6 +231,7 @@ class Anchor {
 
 /// @}
 /// @defgroup cpp_measurements Measurements
+/// @ingroup cpp_api
 /// @{
 
 /// Which measurement to read: see tether_read_mode.
@@ -306,4 +308,3 @@ inline SimTime sampled_at(const RangeSample& sample) noexcept {
 
 /// @}
 }  // namespace tether::api
-/// @}
