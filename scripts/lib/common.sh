@@ -40,6 +40,8 @@ packages_gazebo=(cmake ninja-build g++ pkgconf mmdebstrap xvfb xauth)
 # libFuzzer and the sanitizers of clang; llvm has what names functions in their reports.
 packages_fuzz=(clang-14 libclang-rt-14-dev llvm-14)
 packages_tidy=(git clang-tidy)
+# The site of documents.
+packages_docs=(doxygen)
 
 # True where a package is installed. A name may be satisfied by another package that provides it.
 is_installed() { dpkg-query -W -f='${Status}\n' "$1" 2>/dev/null | grep -q '^install ok installed$'; }
@@ -73,7 +75,7 @@ install_packages() {
 command -v node >/dev/null || packages_test+=(nodejs)
 command -v npm >/dev/null || packages_test+=(npm)
 
-# install_for build|test|fuzz|tidy|package|arm64|gazebo
+# install_for build|test|fuzz|tidy|package|arm64|gazebo|docs
 install_for() {
   case "$1" in
     build) install_packages "${packages_build[@]}" ;;
@@ -83,7 +85,8 @@ install_for() {
     package) install_packages "${packages_build[@]}" "${packages_pack[@]}" ;;
     arm64) install_packages "${packages_arm64[@]}" ;;
     gazebo) install_packages "${packages_gazebo[@]}" ;;
-    *) fail "'$1': build, test, fuzz, tidy, package, arm64 or gazebo" ;;
+    docs) install_packages "${packages_docs[@]}" ;;
+    *) fail "'$1': build, test, fuzz, tidy, package, arm64, gazebo or docs" ;;
   esac
 }
 

@@ -20,8 +20,8 @@ std::string place(const SourceFile& file, int line) {
 std::string own_library(const std::string& include) {
   constexpr std::string_view kPrefix = "tether/";
   if (!include.starts_with(kPrefix)) return {};
-  // The two headers that users install have no folder of their own.
-  if (include == "tether/client.h" || include == "tether/client.hpp") return "client_c_api";
+  // The headers that users install have no folder of their own.
+  if (include.find('/', kPrefix.size()) == std::string::npos) return "client_c_api";
   return include.substr(kPrefix.size(), include.find('/', kPrefix.size()) - kPrefix.size());
 }
 

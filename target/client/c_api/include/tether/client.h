@@ -3,346 +3,494 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/// The client library of Tether in C: what a UAV's own program, the software under test (SUT),
-/// links to. In C++, <tether/client.hpp> is more convenient. C99; the guide is
-/// docs/guide/your-own-sut.md, the rules of time are in docs/design.md, section 2.
+/// @defgroup c_api C: <tether/client.h>
+/// The client library of Tether in C99: what a UAV's own program, the software under test (SUT),
+/// links to. In C++, <tether/client.hpp> is more convenient. The guide is
+/// docs/guide/your-own-sut.md; the rules of time are in docs/design.md, section 2.
 ///
-/// Time is int64_t nanoseconds. ET is the SUT's execution time: it runs while the SUT computes and
-/// stands still while a call is held. ST is simulated time; a measurement's instant is ST. Under
-/// the barrier, a call that returns at ET t has met the world of ST t. Lengths are metres, angles
-/// radians, yaw counter-clockwise seen from above.
+/// **Time** is int64_t nanoseconds. ET is the SUT's execution time: it advances while the SUT
+/// computes, and is stopped while a call is held. ST is simulated time; measurements carry ST.
+/// Under the barrier, a call that returns at ET t has met the world of ST t.
 ///
-/// Frames: W world (east, north, up), B body (ahead, left, up), H heading (W turned by the UAV's
-/// yaw), S a sensor (ahead, left, up; so also a camera's mounting), C a camera's optical frame
-/// (right, down, ahead). `q_WS` turns a vector's coordinates from S to W; X_BS is S's pose in B.
+/// **Units and frames**: lengths are metres, angles radians; yaw is counter-clockwise seen from
+/// above. W: world (east, north, up). B: body (ahead, left, up). H: heading (W turned by the UAV's
+/// yaw only). S: a sensor (ahead, left, up; also a camera's mounting). C: a camera's optical frame
+/// (right, down, ahead). `q_WS` turns coordinates from S to W; `X_BS` is the pose of S in B.
 ///
-/// Errors: functions that can fail return a status, and tether_last_error() says more. What a
-/// failed call would have put out is then NULL or zero. No pointer may be NULL where nothing else
-/// is said; one that is gives TETHER_INVALID. Text is UTF-8 and ends with a zero byte. The library
-/// never ends the program, prints nothing, and handles no signal.
+/// **Errors**: a function that can fail returns a status; tether_last_error() has the message. A
+/// failed call sets its outputs to NULL or zero. A pointer that is NULL without permission is an
+/// error: TETHER_INVALID, or the value that the function names. Every function that returns a
+/// status can also fail with TETHER_NO_MEMORY or TETHER_INTERNAL. Text is UTF-8 and ends with a
+/// zero byte. The library never ends the program, prints nothing, and handles no signal.
 ///
-/// Threads: every function may be called from any thread, and several at once, of one vehicle
-/// too, except that nothing may still use what a function frees. Where time is measured per
-/// process (tether_is_concurrent() is 0), calls of one vehicle that talk to the coordinator wait
-/// for each other; under tether-exec each thread waits for its own reply only. A vehicle is of the
-/// process that connected: after fork() the child connects for itself.
+/// @anchor interaction
+/// **Interactions** are calls that talk to the coordinator: reads, commands, sleeps and
+/// tether_finish(). They can block. An interaction error is TETHER_INVALID (an argument is wrong,
+/// or the mission is finished), TETHER_REFUSED, TETHER_DISCONNECTED, TETHER_PROTOCOL or
+/// TETHER_RUN_ENDED. After any of these except TETHER_INVALID, every later interaction of the
+/// vehicle fails with the same status.
 ///
-/// Stability: within TETHER_CLIENT_ABI_VERSION functions and constants are only added. A struct
-/// that may grow at its end is handed over with its size (`sizeof *out`), the library fills what
-/// the caller knows of it, and fills up with zeros where the caller knows more.
+/// **Threads**: several threads can call any function at the same time, also for the same vehicle.
+/// Nothing may be freed, and no options changed, while another thread uses them. If time is
+/// measured per process (tether_is_concurrent() is 0), interactions of one vehicle wait for each
+/// other; under tether-exec each thread waits for its own reply only. A vehicle belongs to the
+/// process that connected: after fork() the child must connect for itself.
+///
+/// **Stability**: within TETHER_CLIENT_ABI_VERSION functions and constants are only added. A struct
+/// that may grow at its end is passed with its size (`sizeof *out`). The library fills the members
+/// that the caller knows; members that only the caller knows are set to zero.
+/// @{
+
+/// @cond
 #ifdef __cplusplus
 #define TETHER_NOEXCEPT noexcept
 extern "C" {
 #else
 #define TETHER_NOEXCEPT
 #endif
+/// @endcond
 
-// ---- Versions and statuses ----------------------------------------------------------------------
+/// @defgroup c_status Versions and statuses
+/// @{
 
-/// Goes up when something that was there changes or goes; it is the number behind ".so." in the
-/// library's name.
+/// Increases when a function or constant changes or is removed; the number after ".so.".
 #define TETHER_CLIENT_ABI_VERSION 1
 
-/// TETHER_CLIENT_ABI_VERSION of the library that is loaded.
+/// Version of the loaded library's ABI.
+/// @return its TETHER_CLIENT_ABI_VERSION
 int32_t tether_client_abi_version(void) TETHER_NOEXCEPT;
-/// Version of the library that is loaded, "0.1.0" or "0.1.0+COMMIT". Never NULL; lives for ever.
+/// Version of the loaded library.
+/// @return "0.1.0" or "0.1.0+COMMIT"; never NULL, always valid
 const char* tether_client_version(void) TETHER_NOEXCEPT;
 
+/// What a call ended with: one of TETHER_OK, TETHER_INVALID, ...
 typedef int32_t tether_status;
+/// Values of tether_status.
 enum {
-  TETHER_OK = 0,
+  TETHER_OK = 0,            ///< the call succeeded
   TETHER_INVALID = 1,       ///< an argument cannot be used; the next call may succeed
-  TETHER_NOTHING_YET = 2,   ///< a read that was not to wait found nothing; not an error
-  TETHER_REFUSED = 3,       ///< the coordinator said no: wrong name, token or version
-  TETHER_DISCONNECTED = 4,  ///< the connection ended, or there is no coordinator there
+  TETHER_NOTHING_YET = 2,   ///< a read that does not wait found no measurement; not an error
+  TETHER_REFUSED = 3,       ///< the coordinator refused: wrong name, token or version
+  TETHER_DISCONNECTED = 4,  ///< the connection ended, or no coordinator is there
   TETHER_PROTOCOL = 5,      ///< the coordinator sent what the protocol does not allow
   TETHER_TIMEOUT = 6,       ///< no answer within the limit
   TETHER_RUN_ENDED = 7,     ///< the coordinator ended the run, or another thread finished it
-  TETHER_NO_MEMORY = 8,     ///< memory ran out
-  TETHER_INTERNAL = 9       ///< a fault of the library
+  TETHER_NO_MEMORY = 8,     ///< out of memory
+  TETHER_INTERNAL = 9       ///< an error in the library
 };
 
-/// "ok", "invalid", ...; "unknown" for a number that is no status. Never NULL; lives for ever.
+/// Name of a status.
+/// @param status  any number
+/// @return "ok", "invalid", ...; "unknown" if `status` is none. Never NULL, always valid.
 const char* tether_status_name(tether_status status) TETHER_NOEXCEPT;
 
-/// What the calling thread's last failed call said: one line for a person, at most 511 bytes
-/// (cut where it would be longer); "" if none has failed. Never NULL; its text changes with the
-/// thread's next failed call.
+/// Message of the calling thread's last failed call.
+/// @return one line for a person, at most 511 bytes (cut if longer); "" if no call has failed.
+///   Never NULL; the thread's next failed call changes the text.
 const char* tether_last_error(void) TETHER_NOEXCEPT;
 
-// ---- Small values; none of them ever grows ------------------------------------------------------
+/// @}
+/// @defgroup c_values Vectors and poses
+/// Small structs that never grow.
+/// @{
 
+/// A vector. Unit and frame are named where it is used.
 typedef struct tether_vec3 {
-  double x, y, z;
+  double x;  ///< ahead in B, H and S; east in W
+  double y;  ///< left in B, H and S; north in W
+  double z;  ///< up
 } tether_vec3;
 
 /// Unit quaternion, Hamilton convention.
 typedef struct tether_quat {
-  double w, x, y, z;
+  double w;  ///< scalar part
+  double x;  ///< vector part, x
+  double y;  ///< vector part, y
+  double z;  ///< vector part, z
 } tether_quat;
 
-/// X_PF of a frame F in its parent P.
+/// X_PF: the pose of a frame F in its parent P.
 typedef struct tether_pose {
   tether_vec3 position_m;  ///< of F's origin, in P
   tether_quat attitude;    ///< q_PF
 } tether_pose;
 
-// ---- Connecting ---------------------------------------------------------------------------------
+/// @}
+/// @defgroup c_connecting Connecting
+/// @{
 
 /// The UAV as its own program sees it.
 typedef struct tether_vehicle tether_vehicle;
 /// How to reach the coordinator.
 typedef struct tether_options tether_options;
 
-/// Options without address and token: the only UAV, the wall clock, this program's file name.
+/// Makes options for the only UAV, the wall clock and this program's file name; without address and
+/// token.
+/// @param[out] out  the options; free them with tether_options_free()
+/// @return TETHER_OK or TETHER_INVALID
 tether_status tether_options_new(tether_options** out) TETHER_NOEXCEPT;
-/// What `tether run` and tether-exec tell the SUT that they start: TETHER_ADDRESS, TETHER_TOKEN,
-/// TETHER_UAV, TETHER_CLOCK, TETHER_EXEC (the manual page tether-client(3) describes them). What is
-/// set besides goes over it. Fails with TETHER_INVALID, naming the variable. The environment is
-/// read here and by tether_connect(): no other thread may change it meanwhile.
+/// Makes options from the variables that `tether run` and tether-exec set: TETHER_ADDRESS,
+/// TETHER_TOKEN, TETHER_UAV, TETHER_CLOCK, TETHER_EXEC (see tether-client(3)). What is set
+/// afterwards replaces them. No other thread may change the environment during this function and
+/// tether_connect().
+/// @param[out] out  the options; free them with tether_options_free()
+/// @return TETHER_OK, or TETHER_INVALID with a message that names the variable
 tether_status tether_options_from_environment(tether_options** out) TETHER_NOEXCEPT;
-/// NULL is allowed.
+/// Frees options. @param options  the options, or NULL
 void tether_options_free(tether_options* options) TETHER_NOEXCEPT;
 
-/// "HOST:PORT" or "[IPV6]:PORT" of the coordinator; not looked up before tether_connect().
+/// Sets the coordinator's address. It is not looked up before tether_connect().
+/// @param options  the options  @param address  "HOST:PORT" or "[IPV6]:PORT"
+/// @return TETHER_OK or TETHER_INVALID
 tether_status tether_options_set_address(tether_options* options,
                                          const char* address) TETHER_NOEXCEPT;
-/// The word that lets this program into the run.
+/// Sets the token that admits this program to the run.
+/// @param options  the options  @param token  as the coordinator prints it
+/// @return TETHER_OK or TETHER_INVALID
 tether_status tether_options_set_token(tether_options* options, const char* token) TETHER_NOEXCEPT;
-/// Which UAV of the scenario to fly; "": the only one.
+/// Sets which UAV of the scenario to fly.
+/// @param options  the options  @param uav  its name; "" for the only UAV
+/// @return TETHER_OK or TETHER_INVALID
 tether_status tether_options_set_uav(tether_options* options, const char* uav) TETHER_NOEXCEPT;
-/// The program's name and version, for the record.
+/// Sets the program's name and version, for the record.
+/// @param options  the options  @param name  any text  @return TETHER_OK or TETHER_INVALID
 tether_status tether_options_set_sut_name(tether_options* options,
                                           const char* name) TETHER_NOEXCEPT;
-/// What ET is measured by, written as in TETHER_CLOCK: "wall", "cpu", "cpu*FACTOR",
-/// "scripted*MILLISECONDS", ... The coordinator refuses a clock that the scenario does not ask for.
+/// Sets how ET is measured. The coordinator refuses a clock that the scenario does not ask for.
+/// @param options  the options
+/// @param clock  as in TETHER_CLOCK: "wall", "cpu", "cpu*FACTOR", "scripted*MILLISECONDS", ...
+/// @return TETHER_OK or TETHER_INVALID
 tether_status tether_options_set_clock(tether_options* options, const char* clock) TETHER_NOEXCEPT;
-/// How long to try to connect (10 s if not set), and then to wait for the coordinator's Welcome
-/// (60 s: it may load a world, or wait for other SUTs) [ns of wall time]; both above 0.
+/// Sets the limits of tether_connect(), in nanoseconds of wall time; each must be above 0.
+/// @param options  the options
+/// @param connect_ns  for the connection (10 s if not set)
+/// @param welcome_ns  then for the coordinator's Welcome (60 s if not set), which can load a world
+///   or wait for other SUTs before
+/// @return TETHER_OK or TETHER_INVALID
 tether_status tether_options_set_timeouts(tether_options* options, int64_t connect_ns,
                                           int64_t welcome_ns) TETHER_NOEXCEPT;
 
-/// Connects and shakes hands; ET starts with the coordinator's Welcome. `options` may be NULL:
-/// those of the environment; they stay the caller's, and may be used again. Blocks.
-///
-/// Fails with TETHER_INVALID (options that cannot be used, or that lack address or token),
-/// TETHER_DISCONNECTED or TETHER_TIMEOUT (no coordinator there, or no answer), TETHER_REFUSED (the
-/// text has the coordinator's own words).
+/// Connects to the coordinator. Blocks until its Welcome, with which ET starts.
+/// @param options  NULL: those of the environment. They stay the caller's and can be used again.
+/// @param[out] out  the vehicle; free it with tether_disconnect()
+/// @return TETHER_OK; TETHER_INVALID if the options cannot be used, or have no address or token;
+///   TETHER_DISCONNECTED or TETHER_TIMEOUT if no coordinator is there or answers; TETHER_REFUSED
+///   with the coordinator's message; TETHER_PROTOCOL
 tether_status tether_connect(const tether_options* options, tether_vehicle** out) TETHER_NOEXCEPT;
-/// Closes the connection and frees the vehicle with all that it owns: sensors, anchors. A run that
-/// was not finished fails for that. Images that were read stay. NULL is allowed.
+/// Closes the connection and frees the vehicle with its sensors and anchors. Images that were read
+/// stay valid. The run fails if tether_finish() was not called. @param vehicle  the UAV, or NULL
 void tether_disconnect(tether_vehicle* vehicle) TETHER_NOEXCEPT;
 
-/// 1 where the SUT runs under tether-exec, which times all of its threads and processes together;
-/// 0 where it has one time line.
+/// Whether the SUT runs under tether-exec, which measures all its threads and processes together.
+/// @param vehicle  the UAV
+/// @return 1 if so; 0 if not, or if `vehicle` is NULL. Never blocks.
 int32_t tether_is_concurrent(const tether_vehicle* vehicle) TETHER_NOEXCEPT;
 
-// ---- What the SUT knows beforehand --------------------------------------------------------------
+/// @}
+/// @defgroup c_catalogue Sensors and anchors
+/// What the SUT knows beforehand. These functions never block. Anchors are objects of the world
+/// that the SUT knows by name, shape, size and colour; it has to find out where they are.
+/// @{
 
-/// A sensor or an anchor of the vehicle's catalogue: owned by the vehicle, never changes.
+/// A sensor of the UAV. Owned by the vehicle, never changes.
 typedef struct tether_sensor tether_sensor;
+/// An anchor of the UAV's world. Owned by the vehicle, never changes.
 typedef struct tether_anchor tether_anchor;
 
+/// Kind of a sensor: TETHER_CAMERA, TETHER_IMU, TETHER_RANGE; a later library may have more.
 typedef int32_t tether_sensor_kind;
-enum { TETHER_CAMERA = 0, TETHER_IMU = 1, TETHER_RANGE = 2 };
+/// Values of tether_sensor_kind.
+enum {
+  TETHER_CAMERA = 0,  ///< colour camera
+  TETHER_IMU = 1,     ///< inertial measurement unit
+  TETHER_RANGE = 2    ///< rangefinder
+};
 
+/// Shape of an anchor: TETHER_BOX, TETHER_CYLINDER, TETHER_SPHERE.
 typedef int32_t tether_anchor_shape;
-enum { TETHER_BOX = 0, TETHER_CYLINDER = 1, TETHER_SPHERE = 2 };
+/// Values of tether_anchor_shape.
+enum {
+  TETHER_BOX = 0,       ///< box
+  TETHER_CYLINDER = 1,  ///< cylinder along its own z
+  TETHER_SPHERE = 2     ///< sphere
+};
 
-/// A pinhole camera with Brown-Conrady distortion, as in SDF and OpenCV. A point (x, y, z) of C
-/// appears at u = fx * x/z + cx, v = fy * y/z + cy where nothing is distorted; (0, 0) is the centre
-/// of the top left pixel. May grow.
+/// A pinhole camera with Brown-Conrady distortion, as in SDF and OpenCV. Without distortion, a
+/// point (x, y, z) of C appears at u = fx * x/z + cx, v = fy * y/z + cy; (0, 0) is the centre of
+/// the top left pixel. May grow.
 typedef struct tether_camera_model {
-  int32_t width_px;
-  int32_t height_px;
-  double fx_px, fy_px;
-  double cx_px, cy_px;    ///< principal point
-  double k1, k2, p1, p2;  ///< radial and tangential, in OpenCV's order;
-  double k3;              ///< all 0: no distortion
+  int32_t width_px;   ///< width of an image [px]
+  int32_t height_px;  ///< height of an image [px]
+  double fx_px;       ///< focal length along u [px]
+  double fy_px;       ///< focal length along v [px]
+  double cx_px;       ///< principal point, u [px]
+  double cy_px;       ///< principal point, v [px]
+  double k1;          ///< radial distortion, 2nd order; if all five are 0, there is none
+  double k2;          ///< radial distortion, 4th order
+  double p1;          ///< tangential distortion, first coefficient
+  double p2;          ///< tangential distortion, second coefficient
+  double k3;          ///< radial distortion, 6th order
 } tether_camera_model;
 
-/// The name of the UAV. Owned by the vehicle; "" only if `vehicle` is NULL.
+/// Name of the UAV.
+/// @param vehicle  the UAV  @return the name, owned by the vehicle; "" only if `vehicle` is NULL
 const char* tether_uav_name(const tether_vehicle* vehicle) TETHER_NOEXCEPT;
 
+/// Number of the UAV's sensors.
+/// @param vehicle  the UAV  @return the number; 0 if `vehicle` is NULL
 size_t tether_sensor_count(const tether_vehicle* vehicle) TETHER_NOEXCEPT;
-/// NULL if `index` is not below the count.
+/// A sensor by its index.
+/// @param vehicle  the UAV  @param index  from 0
+/// @return the sensor; NULL if `index` is not below tether_sensor_count()
 const tether_sensor* tether_sensor_at(const tether_vehicle* vehicle, size_t index) TETHER_NOEXCEPT;
-/// NULL if the UAV has no sensor of that name.
+/// A sensor by its name.
+/// @param vehicle  the UAV  @param name  as in the scenario
+/// @return the sensor; NULL if the UAV has no such sensor
 const tether_sensor* tether_find_sensor(const tether_vehicle* vehicle,
                                         const char* name) TETHER_NOEXCEPT;
-/// Unique within the UAV.
+/// Name of a sensor, unique within the UAV.
+/// @param sensor  the sensor  @return the name, owned by the vehicle; "" only if `sensor` is NULL
 const char* tether_sensor_name(const tether_sensor* sensor) TETHER_NOEXCEPT;
-/// TETHER_CAMERA, TETHER_IMU or TETHER_RANGE; a later library may know more kinds.
+/// Kind of a sensor.
+/// @param sensor  the sensor  @return its kind; -1 if `sensor` is NULL
 tether_sensor_kind tether_sensor_get_kind(const tether_sensor* sensor) TETHER_NOEXCEPT;
-/// Of a sensor that measures periodically [Hz]; 0: it measures when it is asked.
+/// Rate of a periodic sensor.
+/// @param sensor  the sensor
+/// @return the rate [Hz]; 0 if the sensor measures on demand, or if `sensor` is NULL
 double tether_sensor_rate_hz(const tether_sensor* sensor) TETHER_NOEXCEPT;
-/// X_BS: where it is mounted. Of a camera, S looks along x; its optical frame C is S turned.
+/// Where a sensor is mounted. A camera's S looks along its x; its optical frame C is S turned.
+/// @param sensor  the sensor  @param[out] out  X_BS
+/// @return TETHER_OK or TETHER_INVALID
 tether_status tether_sensor_mounting(const tether_sensor* sensor, tether_pose* out) TETHER_NOEXCEPT;
-/// TETHER_INVALID if it is no camera. `size` is sizeof *out.
+/// Optics of a camera.
+/// @param sensor  the sensor  @param[out] out  its model  @param size  sizeof *out
+/// @return TETHER_OK, or TETHER_INVALID if the sensor is not a camera
 tether_status tether_sensor_camera_model(const tether_sensor* sensor, tether_camera_model* out,
                                          size_t size) TETHER_NOEXCEPT;
-/// What a rangefinder can tell apart [m]. TETHER_INVALID if it is none.
+/// The distances that a rangefinder can measure.
+/// @param sensor  the sensor  @param[out] min_m,max_m  least and largest [m]
+/// @return TETHER_OK, or TETHER_INVALID if the sensor is not a rangefinder
 tether_status tether_sensor_range_limits(const tether_sensor* sensor, double* min_m,
                                          double* max_m) TETHER_NOEXCEPT;
 
-/// Anchors: things of the world that the SUT may know by name, shape, size and colour. Where they
-/// are is for the SUT to find out.
+/// Number of anchors.
+/// @param vehicle  the UAV  @return the number; 0 if `vehicle` is NULL
 size_t tether_anchor_count(const tether_vehicle* vehicle) TETHER_NOEXCEPT;
-/// NULL if `index` is not below the count.
+/// An anchor by its index.
+/// @param vehicle  the UAV  @param index  from 0
+/// @return the anchor; NULL if `index` is not below tether_anchor_count()
 const tether_anchor* tether_anchor_at(const tether_vehicle* vehicle, size_t index) TETHER_NOEXCEPT;
-/// NULL if there is no anchor of that name.
+/// An anchor by its name.
+/// @param vehicle  the UAV  @param name  as in the scenario
+/// @return the anchor; NULL if there is no such anchor
 const tether_anchor* tether_find_anchor(const tether_vehicle* vehicle,
                                         const char* name) TETHER_NOEXCEPT;
+/// Name of an anchor.
+/// @param anchor  the anchor  @return the name, owned by the vehicle; "" only if `anchor` is NULL
 const char* tether_anchor_name(const tether_anchor* anchor) TETHER_NOEXCEPT;
+/// Shape of an anchor.
+/// @param anchor  the anchor  @return its shape; -1 if `anchor` is NULL
 tether_anchor_shape tether_anchor_get_shape(const tether_anchor* anchor) TETHER_NOEXCEPT;
-/// Box: edge lengths along its own axes; cylinder: diameter, diameter, length; sphere: diameter
-/// three times [m].
+/// Size of an anchor.
+/// @param anchor  the anchor
+/// @param[out] out_m  [m] of a box the edge lengths along its own axes; of a cylinder diameter,
+///   diameter, length; of a sphere the diameter three times
+/// @return TETHER_OK or TETHER_INVALID
 tether_status tether_anchor_size(const tether_anchor* anchor, tether_vec3* out_m) TETHER_NOEXCEPT;
-/// Red, green and blue as x, y and z, each 0 to 1, sRGB. Light and shade change what a camera sees.
+/// Colour of an anchor. Light and shade change what a camera sees.
+/// @param anchor  the anchor  @param[out] out  red, green, blue as x, y, z, each 0 to 1, sRGB
+/// @return TETHER_OK or TETHER_INVALID
 tether_status tether_anchor_color(const tether_anchor* anchor, tether_vec3* out) TETHER_NOEXCEPT;
 
-// ---- Reading sensors ----------------------------------------------------------------------------
-//
-// Reads are interactions: they may block, ET stands still meanwhile, and goes on from the moment
-// at which the measurement is available. Besides the statuses named below they fail with
-// TETHER_INVALID if the UAV has no sensor of that name and kind (the text lists those it has), and
-// with TETHER_REFUSED, TETHER_DISCONNECTED, TETHER_PROTOCOL or TETHER_RUN_ENDED, after which every
-// later call of the vehicle fails with the same.
+/// @}
+/// @defgroup c_reading Reading sensors
+/// A read is an @ref interaction that returns at the ET at which the measurement is available. If
+/// the UAV has no sensor of that name and kind, it fails with TETHER_INVALID, and the message lists
+/// the sensors that it has.
+/// @{
 
+/// Which measurement to read.
 typedef int32_t tether_read_mode;
+/// Values of tether_read_mode.
 enum {
   /// The newest measurement that this SUT has not read; waits for the next if there is none. A
   /// sensor that measures on demand measures now.
   TETHER_READ_NEXT = 0,
-  /// The newest measurement, again if need be.
+  /// The newest measurement, also if it was read before.
   TETHER_READ_LATEST = 1,
   /// The newest measurement that was not read, at once; TETHER_NOTHING_YET if there is none.
-  /// TETHER_INVALID of a sensor that measures on demand.
+  /// TETHER_INVALID for a sensor that measures on demand.
   TETHER_READ_IF_AVAILABLE = 2
 };
 
-/// What is known of an image besides its pixels. May grow.
+/// Describes an image. May grow.
 typedef struct tether_image_info {
-  int64_t sampled_at_ns;  ///< ST at which the light was seen
-  uint64_t index;         ///< which measurement of this sensor
-  int32_t width_px;
-  int32_t height_px;
-  uint64_t size_bytes;  ///< height x width x 3
+  int64_t sampled_at_ns;  ///< ST of the exposure [ns]
+  uint64_t index;         ///< number of the measurement of this sensor
+  int32_t width_px;       ///< width [px]
+  int32_t height_px;      ///< height [px]
+  uint64_t size_bytes;    ///< height x width x 3
 } tether_image_info;
 
-/// An image that the library keeps: of no vehicle, may outlive it, never changes.
+/// An image in memory of the library. It belongs to no vehicle, may outlive it, and never changes.
 typedef struct tether_image tether_image;
 
-/// Reads a camera into memory of the library, without copying pixels. Free *out with
-/// tether_image_free().
+/// Reads a camera into memory of the library, without copying pixels.
+/// @param vehicle  the UAV  @param sensor  name of the camera  @param mode  which image
+/// @param[out] out  the image; free it with tether_image_free()
+/// @return TETHER_OK, TETHER_NOTHING_YET or an @ref interaction error
 tether_status tether_read_camera(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                  tether_image** out) TETHER_NOEXCEPT;
-/// The same image once more, pixels copied: to keep one that a subscription shows. Free *out with
-/// tether_image_free().
+/// Copies an image with its pixels, for instance to keep one that a subscription shows.
+/// @param image  the image  @param[out] out  the copy; free it with tether_image_free()
+/// @return TETHER_OK or TETHER_INVALID
 tether_status tether_image_copy(const tether_image* image, tether_image** out) TETHER_NOEXCEPT;
-/// NULL is allowed.
+/// Frees an image. @param image  the image, or NULL
 void tether_image_free(tether_image* image) TETHER_NOEXCEPT;
-/// `size` is sizeof *out.
+/// Size, time and number of an image.
+/// @param image  the image  @param[out] out  the description  @param size  sizeof *out
+/// @return TETHER_OK or TETHER_INVALID
 tether_status tether_image_get_info(const tether_image* image, tether_image_info* out,
                                     size_t size) TETHER_NOEXCEPT;
-/// height x width x 3 sRGB bytes R, G, B, row by row from the top left without gaps; valid until
-/// tether_image_free(). NULL only if `image` is.
+/// Pixels of an image. @param image  the image
+/// @return height x width x 3 sRGB bytes R, G, B, row by row from the top left without gaps; valid
+///   until tether_image_free(). NULL only if `image` is.
 const uint8_t* tether_image_rgb(const tether_image* image) TETHER_NOEXCEPT;
 
-/// Reads a camera into the caller's `rgb` of `capacity` bytes, laid out as above; copies the pixels
-/// once. `info` may be NULL, `info_size` is sizeof *info. TETHER_INVALID, before anything is read,
-/// if the image does not fit: its size is that of the camera's model.
+/// Reads a camera into the caller's memory, with one copy.
+/// @param vehicle  the UAV  @param sensor  name of the camera  @param mode  which image
+/// @param[out] rgb  the pixels, laid out as in tether_image_rgb(); unchanged by a failed call
+/// @param capacity  bytes that `rgb` has; the camera's model has the size of an image
+/// @param[out] info  the description, or NULL  @param info_size  sizeof *info
+/// @return TETHER_OK, TETHER_NOTHING_YET or an @ref interaction error; TETHER_INVALID, before
+///   anything is read, if the image does not fit
 tether_status tether_read_camera_into(tether_vehicle* vehicle, const char* sensor,
                                       tether_read_mode mode, uint8_t* rgb, size_t capacity,
                                       tether_image_info* info, size_t info_size) TETHER_NOEXCEPT;
 
 /// One measurement of an inertial measurement unit. May grow.
 typedef struct tether_imu_sample {
-  int64_t sampled_at_ns;               ///< ST
-  uint64_t index;                      ///< which measurement of this sensor
+  int64_t sampled_at_ns;               ///< ST [ns]
+  uint64_t index;                      ///< number of the measurement of this sensor
   tether_vec3 angular_velocity_rad_s;  ///< w_WS in S
-  tether_vec3 specific_force_m_s2;     ///< a - g in S: +9.81 along "up" when at rest
-  tether_quat q_WS;  ///< attitude as the IMU's own filter tells it; NaN: it has none
+  tether_vec3 specific_force_m_s2;     ///< a - g in S: +9.81 along "up" at rest
+  tether_quat q_WS;                    ///< attitude from the IMU's own filter; NaN if it has none
 } tether_imu_sample;
 
-/// `size` is sizeof *out.
+/// Reads an IMU.
+/// @param vehicle  the UAV  @param sensor  its name  @param mode  which measurement
+/// @param[out] out  the measurement  @param size  sizeof *out
+/// @return TETHER_OK, TETHER_NOTHING_YET or an @ref interaction error
 tether_status tether_read_imu(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                               tether_imu_sample* out, size_t size) TETHER_NOEXCEPT;
 
 /// One measurement of a rangefinder. May grow.
 typedef struct tether_range_sample {
-  int64_t sampled_at_ns;  ///< ST
-  uint64_t index;         ///< which measurement of this sensor
-  double range_m;         ///< along S's x; +inf: nothing in reach; -inf: too close (REP-117)
+  int64_t sampled_at_ns;  ///< ST [ns]
+  uint64_t index;         ///< number of the measurement of this sensor
+  double range_m;         ///< along S's x [m]; +inf: nothing in reach; -inf: too close (REP-117)
 } tether_range_sample;
 
-/// `size` is sizeof *out.
+/// Reads a rangefinder. @copydetails tether_read_imu
 tether_status tether_read_range(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                                 tether_range_sample* out, size_t size) TETHER_NOEXCEPT;
 
-// ---- Data that comes by itself ------------------------------------------------------------------
-//
-// A thread of the library's reads a periodic sensor again and again, as TETHER_READ_NEXT does, and
-// calls `on_...` with each measurement at the ET at which it is available; `user` is handed
-// through. The callback runs in that thread with every signal blocked, may call the vehicle, and
-// may not throw; what it is given is valid until it returns. A measurement that comes meanwhile is
-// delivered after it; of several only the newest. What other threads read of the same sensor does
-// not come here.
-//
-// Only under tether-exec: TETHER_INVALID where tether_is_concurrent() is 0, where the UAV has no
-// such sensor, or where it measures on demand.
+/// @}
+/// @defgroup c_subscribing Subscriptions
+/// A thread of the library reads a periodic sensor continuously, as TETHER_READ_NEXT does, and
+/// calls the program with each measurement at the ET at which it is available. The callback runs in
+/// that thread with every signal blocked. It can call the vehicle, and must not throw. What it
+/// receives is valid until it returns. If measurements arrive while it runs, it receives the newest
+/// of them afterwards. Measurements that other threads read from the same sensor are not delivered.
+///
+/// A subscription needs tether-exec.
+/// @{
 
+/// Measurements that are delivered to a callback.
 typedef struct tether_subscription tether_subscription;
+/// Receives an image. @param image  valid until the return  @param user  as subscribed
 typedef void (*tether_on_image)(const tether_image* image, void* user);
+/// Receives a sample. @param sample  valid until the return  @param user  as subscribed
 typedef void (*tether_on_imu)(const tether_imu_sample* sample, void* user);
+/// Receives a sample. @param sample  valid until the return  @param user  as subscribed
 typedef void (*tether_on_range)(const tether_range_sample* sample, void* user);
 
+/// Subscribes to a camera.
+/// @param vehicle  the UAV  @param sensor  name of a periodic camera
+/// @param on_image  is called with each image  @param user  is passed to it; may be NULL
+/// @param[out] out  the subscription; end it with tether_unsubscribe()
+/// @return TETHER_OK; TETHER_INVALID if tether_is_concurrent() is 0, the UAV has no such sensor, or
+///   the sensor measures on demand
 tether_status tether_subscribe_camera(tether_vehicle* vehicle, const char* sensor,
                                       tether_on_image on_image, void* user,
                                       tether_subscription** out) TETHER_NOEXCEPT;
+/// Subscribes to an IMU.
+/// @param vehicle  the UAV  @param sensor  name of a periodic sensor of this kind
+/// @param on_sample  is called with each sample  @param user  is passed to it; may be NULL
+/// @param[out] out  the subscription; end it with tether_unsubscribe()
+/// @return as tether_subscribe_camera()
 tether_status tether_subscribe_imu(tether_vehicle* vehicle, const char* sensor,
                                    tether_on_imu on_sample, void* user,
                                    tether_subscription** out) TETHER_NOEXCEPT;
+/// Subscribes to a rangefinder. @copydetails tether_subscribe_imu
 tether_status tether_subscribe_range(tether_vehicle* vehicle, const char* sensor,
                                      tether_on_range on_sample, void* user,
                                      tether_subscription** out) TETHER_NOEXCEPT;
-/// TETHER_OK as long as measurements come; else why none will any more, e.g. TETHER_RUN_ENDED.
+/// Whether measurements still arrive. Never blocks.
+/// @param subscription  the subscription
+/// @return TETHER_OK if so; else why none will arrive, for instance TETHER_RUN_ENDED
 tether_status tether_subscription_status(const tether_subscription* subscription) TETHER_NOEXCEPT;
-/// Ends it: after the return no callback runs, except one that calls this itself. To be called
-/// before tether_disconnect(). NULL is allowed.
+/// Ends a subscription. After the return no callback runs, except one that calls this itself. Must
+/// be called before tether_disconnect(). @param subscription  the subscription, or NULL
 void tether_unsubscribe(tether_subscription* subscription) TETHER_NOEXCEPT;
 
-// ---- Flying, waiting, telling -------------------------------------------------------------------
+/// @}
+/// @defgroup c_flying Flying, waiting, reporting
+/// @{
 
-/// Flies with this velocity until told otherwise: metres per second in the heading frame H,
-/// whatever roll and pitch are, and radians per second of yaw. An interaction; fails as reads do,
-/// with TETHER_INVALID for what no multirotor does (not finite, above 100).
+/// Flies with this velocity until the next command. An @ref interaction.
+/// @param vehicle  the UAV  @param ahead_m_s,left_m_s,up_m_s  velocity in H [m/s]
+/// @param yaw_rate_rad_s  counter-clockwise seen from above [rad/s]
+/// @return TETHER_OK or an @ref interaction error; TETHER_INVALID if a value is not finite or > 100
 tether_status tether_command_velocity(tether_vehicle* vehicle, double ahead_m_s, double left_m_s,
                                       double up_m_s, double yaw_rate_rad_s) TETHER_NOEXCEPT;
 
-/// ET now [ns]; between two calls it grows by what the SUT computed. 0 if `vehicle` is NULL. Never
-/// blocks.
+/// Reads the SUT's clock. Between two calls it grows by what the SUT computed. Never blocks.
+/// @param vehicle  the UAV  @return ET [ns]; 0 if `vehicle` is NULL
 int64_t tether_now(const tether_vehicle* vehicle) TETHER_NOEXCEPT;
 
-/// Waits in simulation: ET and ST move by this much, wall time by what the simulator needs.
-/// Interactions that fail as reads do. What lies in the past returns at once (and is an
-/// interaction still). Sleeps of the operating system instead would be charged as computing.
+/// Waits in simulation: ET and ST move by the duration, wall time by what the simulator needs. An
+/// @ref interaction. Use it instead of the operating system's sleeps, which count as computing.
+/// @param vehicle  the UAV  @param duration_ns  [ns]; not above 0: returns at once
+/// @return TETHER_OK or an @ref interaction error
 tether_status tether_sleep_for(tether_vehicle* vehicle, int64_t duration_ns) TETHER_NOEXCEPT;
+/// Waits in simulation as tether_sleep_for() does, until a point in time.
+/// @param vehicle  the UAV  @param et_ns  ET [ns]; if it has passed, returns at once
+/// @return TETHER_OK or an @ref interaction error
 tether_status tether_sleep_until(tether_vehicle* vehicle, int64_t et_ns) TETHER_NOEXCEPT;
 
-/// Something for the record: `json` is one JSON object. Never waits for the coordinator, and costs
-/// no ET but under tether-exec.
-/// TETHER_INVALID if it is no JSON object. Topics "roi", "estimate" and "displacement" are read by
-/// metrics (docs/guide/tasks.md has their fields).
+/// Writes a message into the run's record, without waiting for the coordinator. Takes ET only under
+/// tether-exec.
+/// @param vehicle  the UAV
+/// @param topic  name; metrics read "roi", "estimate" and "displacement" (docs/guide/tasks.md)
+/// @param json  one JSON object
+/// @return TETHER_OK or an @ref interaction error; TETHER_INVALID if `json` is no JSON object
 tether_status tether_annotate(tether_vehicle* vehicle, const char* topic,
                               const char* json) TETHER_NOEXCEPT;
 
-/// The mission is over; 0 for `reached_goal` is "no". `outcome` is one line for a person,
-/// `details_json` a JSON object with the program's own results, or "". Every later call fails.
-/// Without it a run fails: its SUT was lost.
+/// Ends the mission. Every later @ref interaction fails. A run whose SUT does not call this fails,
+/// because the SUT counts as lost.
+/// @param vehicle  the UAV  @param reached_goal  0 for no, else yes
+/// @param outcome  one line for a person
+/// @param details_json  a JSON object with the program's own results, or ""
+/// @return TETHER_OK or an @ref interaction error
 tether_status tether_finish(tether_vehicle* vehicle, int32_t reached_goal, const char* outcome,
                             const char* details_json) TETHER_NOEXCEPT;
+
+/// @}
 
 #ifdef __cplusplus
 }
 #endif
+
+/// @}
