@@ -8,16 +8,14 @@
 
 namespace tether {
 
-namespace {
-std::string with_location(const FileLocation& where, const std::string& message) {
+std::string located(const FileLocation& where, const std::string& message) {
   std::string text = where.file;
   if (where.line > 0) text += ":" + std::to_string(where.line);
   return text + ": " + message;
 }
-}  // namespace
 
 Error::Error(ErrorCode code, const FileLocation& where, const std::string& message)
-    : Error(code, with_location(where, message)) {}
+    : Error(code, located(where, message)) {}
 
 void require_a_handle_for(const std::string& file) {
   const int handle = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include <tether/base/json_depth.h>
 #include <tether/link/codec.h>
 #include <tether/link/field_checker.h>
 
@@ -25,11 +26,12 @@ std::string excerpt(const std::string& text, std::size_t at) {
 void json_object(Checker& c, const std::string& value, std::string_view field) {
   c.text(value, kMaxJsonBytes, field);
   if (value.size() > kMaxJsonBytes) return;
-  const auto fault = fault_of_json_object(value);
-  if (!fault) return;
-  c.require(false, field,
-            "is not a JSON object of at most " + std::to_string(kMaxJsonDepth) +
-                " levels: fault at byte " + std::to_string(*fault) + ", " + excerpt(value, *fault));
+  c.require(json_depth(value) <= kMaxSutJsonDepth, field,
+            "is nested deeper than " + std::to_string(kMaxSutJsonDepth) + " levels");
+  if (const auto fault = fault_of_json_object(value))
+    c.require(false, field,
+              "is not a JSON object: fault at byte " + std::to_string(*fault) + ", " +
+                  excerpt(value, *fault));
 }
 
 // --- catalogue ----------------------------------------------------------------------------------

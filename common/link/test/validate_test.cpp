@@ -116,10 +116,26 @@ TEST(Validate, Catalogue) {
   expect({"twice", twice});
 }
 
+std::string nested(int levels) {
+  const auto lists = static_cast<std::size_t>(levels - 1);
+  return "{\"a\":" + std::string(lists, '[') + std::string(lists, ']') + "}";
+}
+
+TEST(Validate, JsonHasALimitedDepth) {
+  const std::string rule = "json is nested deeper than 60 levels";
+  expect({"", Annotation{ExecTime{}, "roi", nested(60)}});
+  expect({rule, Annotation{ExecTime{}, "roi", nested(61)}});
+  expect({rule, Annotation{ExecTime{}, "roi", nested(400'000)}});
+  std::string objects;
+  for (int i = 0; i < 100'000; ++i) objects += "{\"\":";
+  expect({rule, Annotation{ExecTime{}, "roi", objects}});
+}
+
 TEST(Validate, OneWayMessages) {
   expect({"", Annotation{ExecTime{}, "roi", "{}"}});
   expect({"topic is empty", Annotation{ExecTime{}, "", "{}"}});
-  expect({"json is not a JSON object", Annotation{ExecTime{}, "roi", ""}});
+  expect(
+      {"json is not a JSON object: fault at byte 0, its end", Annotation{ExecTime{}, "roi", ""}});
   expect({"reached", Progress{from_ns<ExecTime>(-1)}});
   expect({"reason", Refusal{static_cast<Refusal::Reason>(6), ""}});
 }

@@ -5,48 +5,21 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/base/json_depth.h>
 
 namespace tether::experiment {
 
-namespace {
-
-// What is too deep is dropped as it is read, so that nothing deep is ever there.
-struct Parsed {
-  Json document;
-  bool is_too_deep = false;
-};
-
-Parsed parse(const std::string& text, int most_levels) {
-  Parsed parsed;
-  const auto keep = [&](int levels_around, Json::parse_event_t event, Json&) {
-    const bool begins =
-        event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
-    const bool is_too_deep = begins && levels_around >= most_levels;
-    parsed.is_too_deep = parsed.is_too_deep || is_too_deep;
-    return !is_too_deep;
-  };
-  parsed.document = Json::parse(text, keep, false);
-  return parsed;
-}
-
-}  // namespace
-
-Json parse_shallow(const std::string& text, int most_levels) {
-  Parsed parsed = parse(text, most_levels);
-  return parsed.is_too_deep ? Json(Json::value_t::discarded) : std::move(parsed.document);
-}
-
 Json parse_json(const std::string& text, const std::filesystem::path& file) {
-  auto [document, is_too_deep] = parse(text, kMaxJsonDepth);
-  if (is_too_deep) {
+  if (json_depth(text) > kMaxJsonDepth) {
     throw Error(ErrorCode::kBadFile, FileLocation{file.string()},
                 fmt::format("is nested deeper than {} levels", kMaxJsonDepth));
   }
+  Json document = Json::parse(text, nullptr, false);
   if (document.is_discarded()) {
     throw Error(ErrorCode::kBadFile, FileLocation{file.string()},
                 "is torn or damaged: it is no whole JSON document");
   }
-  return std::move(document);
+  return document;
 }
 
 JsonReader::JsonReader(const Json& object, std::filesystem::path file)

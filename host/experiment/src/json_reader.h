@@ -16,13 +16,6 @@ namespace tether::experiment {
 
 using Json = nlohmann::ordered_json;
 
-/// Lists and objects within each other in what is read: whoever copies or writes what is nested
-/// needs stack for each.
-inline constexpr int kMaxJsonDepth = 100;
-
-/// The document, up to so many levels deep; discarded if it is none, or deeper.
-Json parse_shallow(const std::string& text, int most_levels);
-
 /// @throws Error(kBadFile) when the text is no whole JSON document, or deeper than kMaxJsonDepth.
 Json parse_json(const std::string& text, const std::filesystem::path& file);
 

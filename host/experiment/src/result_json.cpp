@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <tether/base/json_depth.h>
 #include <tether/experiment/result.h>
 #include <tether/experiment/text_file.h>
 
@@ -43,14 +44,12 @@ Json json_of(const MetricValue& metric) {
   return json;
 }
 
-// What stands around the details in the file.
-constexpr int kLevelsAroundDetails = 3;
-
 // A SUT's details are an object of its own making; what is none, or too deep to be read again, is
 // kept as the text it is.
 Json json_of_details(const std::string& details) {
   if (details.empty()) return nullptr;
-  Json parsed = parse_shallow(details, kMaxJsonDepth - kLevelsAroundDetails);
+  const bool is_deep = json_depth(details) > kMaxSutJsonDepth;
+  Json parsed = is_deep ? Json() : Json::parse(details, nullptr, false);
   return parsed.is_object() ? parsed : Json(details);
 }
 

@@ -131,16 +131,16 @@ TEST_F(Result, OfDetailsThatAreTooDeepKeepsTheText) {
   std::string file = to_json(trial_);
   file.replace(file.find("\"a\": 1"), 6, "\"a\": " + lists + ends);
   EXPECT_THAT(error_message(ErrorCode::kBadFile, [&] { (void)result_from_json(file, "r.json"); }),
-              HasSubstr("r.json: is nested deeper than 100 levels"));
+              HasSubstr("r.json: is nested deeper than 64 levels"));
 }
 
 // The deepest details that are kept as an object can be read again with all that is around them.
 TEST_F(Result, OfTheDeepestDetailsReadsBack) {
-  for (const std::size_t levels : {97u, 98u}) {
+  for (const std::size_t levels : {60u, 61u}) {
     const std::string lists(levels - 1, '['), ends(levels - 1, ']');
     trial_.suts[0].details = "{\"a\":" + lists + ends + "}";
     const std::string text = to_json(trial_);
-    EXPECT_EQ(text.find("\"details\": {") != std::string::npos, levels == 97);
+    EXPECT_EQ(text.find("\"details\": {") != std::string::npos, levels == 60);
     EXPECT_EQ(result_from_json(text, "f"), trial_);
   }
 }

@@ -15,12 +15,6 @@ namespace tether::record {
 
 using Json = nlohmann::ordered_json;
 
-/// How deep a record's JSON may be nested: a parser's recursion must not depend on what a file
-/// says.
-inline constexpr int kMaxJsonDepth = 64;
-/// The deepest nesting of brackets outside strings; meaningful for any text.
-int json_depth(std::string_view text);
-
 /// Parses one object.
 Json parse_object(std::string_view text);
 

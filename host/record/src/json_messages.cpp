@@ -4,6 +4,8 @@
 #include "json_fields.h"
 #include "json_text.h"
 
+#include <tether/base/json_depth.h>
+
 namespace tether::record {
 namespace {
 

@@ -6,6 +6,8 @@
 
 #include <charconv>
 
+#include <tether/base/json_depth.h>
+
 namespace tether::record {
 namespace {
 

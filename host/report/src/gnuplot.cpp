@@ -102,14 +102,13 @@ std::string draw_svg(const Plot& plot, const std::string& program) {
   const MemoryFile in, out, err;
   in.fill(plot.script);
   std::string failure = failure_of(start(program, in, out, err));
-  const std::string drawn = out.content();
-  if (failure.empty() && drawn.find("</svg>") == std::string::npos) failure = "no whole picture";
-  if (!failure.empty()) {
-    const std::string said = first_words(err.content());
-    fail(fmt::format("'{}' could not draw \"{}\": {}", program, plot.title,
-                     said.empty() ? failure : said));
+  if (failure.empty()) {
+    if (const auto svg = finished_svg(out.content(), plot.title)) return *svg;
+    failure = "no whole picture";
   }
-  return finished_svg(drawn, plot.title);
+  const std::string said = first_words(err.content());
+  fail(fmt::format("'{}' could not draw \"{}\": {}", program, plot.title,
+                   said.empty() ? failure : said));
 }
 
 }  // namespace tether::report

@@ -2,109 +2,89 @@
 
 #include "inks.h"
 
-#include <algorithm>
-#include <optional>
-
 #include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <tether/base/printable.h>
 
 namespace tether::report {
 namespace {
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
+using tinyxml2::XMLElement;
+
+std::string printed(const tinyxml2::XMLNode& node) {
+  tinyxml2::XMLPrinter printer(nullptr, true);
+  node.Accept(&printer);
+  return printer.CStr();
 }
 
-void drop_elements(std::string& svg, std::string_view open, std::string_view close) {
-  for (auto at = svg.find(open); at != std::string::npos; at = svg.find(open, at)) {
-    const auto end = svg.find(close, at);
-    if (end == std::string::npos) return;
-    svg.erase(at, end + close.size() - at);
+// What names the program that drew it, or does nothing: gnuplot opens a group per pen that it takes
+// up, drawn with or not.
+bool is_dropped(const XMLElement& element) {
+  const std::string_view name = element.Name();
+  return name == "title" || name == "desc" || name == "filter" ||
+         (name == "g" && element.NoChildren());
+}
+
+// Colours that stand for inks become the inks' classes, with their light colours beside.
+void put_inks(XMLElement& element) {
+  std::string classes;
+  for (const char* name : {"stroke", "fill", "color"}) {
+    const char* colour = element.Attribute(name);
+    const auto ink = colour != nullptr ? find_ink(colour) : std::nullopt;
+    if (!ink) continue;
+    element.SetAttribute(name, std::string(light_colour(*ink)).c_str());
+    classes += fmt::format("tp-{}-{} ", name, static_cast<std::size_t>(*ink));
+  }
+  if (classes.empty()) return;
+  const char* others = element.Attribute("class");
+  if (others == nullptr) classes.pop_back();
+  element.SetAttribute("class", (classes + (others != nullptr ? others : "")).c_str());
+}
+
+// SVG 2's name for it, which HTML knows as well.
+void rename_reference(XMLElement& element) {
+  if (const char* target = element.Attribute("xlink:href")) {
+    element.SetAttribute("href", target);
+    element.DeleteAttribute("xlink:href");
   }
 }
 
-// gnuplot opens a group per pen that it takes up, drawn with or not.
-void drop_empty_groups(std::string& svg) {
-  constexpr std::string_view kOpen = "<g ", kClose = "</g>\n";
-  std::string kept;
-  std::size_t from = 0;
-  for (auto at = svg.find(kOpen); at != std::string::npos; at = svg.find(kOpen, at + 1)) {
-    const auto end = svg.find('>', at);
-    if (end == std::string::npos) break;
-    const auto next = svg.find_first_not_of(" \t\n", end + 1);
-    if (next == std::string::npos || svg.compare(next, kClose.size(), kClose) != 0) continue;
-    kept.append(svg, from, at - from);
-    from = next + kClose.size();
+// From the innermost elements on: what is empty then is dropped from what is around it.
+void finish(XMLElement& element) {
+  for (XMLElement* child = element.FirstChildElement(); child != nullptr;) {
+    XMLElement* next = child->NextSiblingElement();
+    finish(*child);
+    if (is_dropped(*child)) element.DeleteChild(child);
+    child = next;
   }
-  svg = kept.append(svg, from);
+  put_inks(element);
+  rename_reference(element);
 }
 
-// Colours of one tag.
-
-struct Attribute {
-  std::string_view name;  // "stroke", "fill", "color"
-  std::size_t begin;      // of its value
-  std::size_t end;
-};
-
-std::optional<Attribute> find_colour(std::string_view tag, std::size_t from) {
-  const auto begin = tag.find("rgb(", from);
-  if (begin == std::string_view::npos) return std::nullopt;
-  const auto end = tag.find(')', begin);
-  const auto equals = tag.rfind('=', begin);
-  if (end == std::string_view::npos || equals == std::string_view::npos) return std::nullopt;
-  for (const std::string_view name : {"stroke", "fill", "color"}) {
-    const std::string_view before = tag.substr(0, tag.find_last_not_of(" =", equals) + 1);
-    if (before.ends_with(name)) return Attribute{name, begin, end + 1};
-  }
-  return std::nullopt;
+void add_in_front(XMLElement& root, const char* name, const std::string& text) {
+  XMLElement* element = root.GetDocument()->NewElement(name);
+  element->SetText(text.c_str());
+  root.InsertFirstChild(element);
 }
 
-std::string with_classes(std::string tag, const std::string& classes) {
-  if (const auto at = tag.find("class=\""); at != std::string::npos)
-    return tag.insert(at + std::string_view("class=\"").size(), classes + " ");
-  const std::size_t end = tag.ends_with("/>") ? tag.size() - 2 : tag.size() - 1;
-  return tag.insert(end, fmt::format(" class=\"{}\"", classes));
+std::string with_prefixed_ids(const tinyxml2::XMLAttribute& attribute, const std::string& prefix) {
+  constexpr std::string_view kReference = "url(#";
+  const std::string_view name = attribute.Name();
+  std::string value = attribute.Value();
+  if (name == "id") return prefix + value;
+  if (name == "href" && value.starts_with('#')) return value.insert(1, prefix);
+  if (value.starts_with(kReference)) value.insert(kReference.size(), prefix);
+  return value;
 }
 
-std::string inked_tag(std::string_view tag) {
-  std::string inked, classes;
-  std::size_t from = 0;
-  while (const auto colour = find_colour(tag, from)) {
-    const std::string_view value = tag.substr(colour->begin, colour->end - colour->begin);
-    const auto ink = find_ink(value);
-    inked += tag.substr(from, colour->begin - from);
-    inked += ink ? light_colour(*ink) : value;
-    if (ink) {
-      classes += fmt::format("{}tp-{}-{}", classes.empty() ? "" : " ", colour->name,
-                             static_cast<std::size_t>(*ink));
-    }
-    from = colour->end;
-  }
-  inked += tag.substr(from);
-  return classes.empty() ? inked : with_classes(std::move(inked), classes);
-}
-
-std::string inked(std::string_view svg) {
-  std::string text;
-  std::size_t from = 0;
-  for (auto at = svg.find('<'); at != std::string_view::npos; at = svg.find('<', from)) {
-    const auto end = svg.find('>', at);
-    if (end == std::string_view::npos) break;
-    text += svg.substr(from, at - from);
-    text += inked_tag(svg.substr(at, end + 1 - at));
-    from = end + 1;
-  }
-  return text.append(svg.substr(from));
-}
-
-void add_title_and_style(std::string& svg, const std::string& title) {
-  const auto open = svg.find("<svg");
-  const auto end = svg.find('>', open);
-  if (open == std::string::npos || end == std::string::npos) return;
-  const std::string text = escape_markup(title);
-  svg.insert(end + 1, fmt::format("\n<title>{}</title>\n<style>{}</style>", text, ink_css()));
-  svg.insert(open + 4, fmt::format(" role=\"img\" aria-label=\"{}\"", text));
+void prefix_ids(XMLElement& element, const std::string& prefix) {
+  for (auto* attribute = element.FirstAttribute(); attribute != nullptr;
+       attribute = attribute->Next())
+    element.SetAttribute(attribute->Name(), with_prefixed_ids(*attribute, prefix).c_str());
+  for (XMLElement* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement())
+    prefix_ids(*child, prefix);
 }
 
 }  // namespace
@@ -139,25 +119,26 @@ std::string escape_markup(std::string_view text) {
   return escaped;
 }
 
-std::string finished_svg(std::string_view drawn, const std::string& title) {
-  std::string svg(drawn);
-  drop_elements(svg, "<title>", "</title>");
-  drop_elements(svg, "<desc>", "</desc>");
-  drop_elements(svg, "<filter ", "</filter>");
-  replace_all(svg, "xlink:href", "href");
-  drop_empty_groups(svg);
-  svg = inked(svg);
-  add_title_and_style(svg, title);
-  return svg;
+std::optional<std::string> finished_svg(std::string_view drawn, const std::string& title) {
+  tinyxml2::XMLDocument svg;
+  XMLElement* root = nullptr;
+  if (svg.Parse(drawn.data(), drawn.size()) == tinyxml2::XML_SUCCESS) root = svg.RootElement();
+  if (root == nullptr) return std::nullopt;
+  finish(*root);
+  add_in_front(*root, "style", ink_css());
+  add_in_front(*root, "title", printable(title));
+  root->SetAttribute("role", "img");
+  root->SetAttribute("aria-label", printable(title).c_str());
+  return printed(svg);
 }
 
 std::string inline_svg(std::string_view finished, const std::string& prefix) {
-  std::string svg(finished);
-  svg.erase(0, std::min(svg.find("<svg"), svg.size()));
-  drop_elements(svg, "<style>", "</style>");
-  for (const std::string_view reference : {" id='", " id=\"", "href='#", "href=\"#", "url(#"})
-    replace_all(svg, reference, std::string(reference) + prefix);
-  return svg;
+  tinyxml2::XMLDocument svg;
+  svg.Parse(finished.data(), finished.size());
+  XMLElement& root = *svg.RootElement();
+  if (XMLElement* style = root.FirstChildElement("style")) root.DeleteChild(style);
+  prefix_ids(root, prefix);
+  return printed(root);
 }
 
 }  // namespace tether::report

@@ -241,9 +241,7 @@ class Walk {
 
 void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message,
              const WarningSink& warn) {
-  if (!warn) return;
-  const FileLocation where = source.where(element);
-  warn(where.file + ":" + std::to_string(where.line) + ": " + describe(element) + " " + message);
+  if (warn) warn(located(source.where(element), describe(element) + " " + message));
 }
 
 void refuse(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message) {
@@ -265,8 +263,8 @@ std::vector<double> read_numbers(const SdfSource& source, const sdf::ElementPtr&
 }
 
 void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn) {
-  for (const std::string& warning : source.console_warnings()) {
-    if (warn) warn(source.file().string() + ": " + warning);
+  for (const std::string& warning : source.warnings()) {
+    if (warn) warn(warning);
   }
   Walk(source, purpose, warn).visit_children(source.root().Element());
 }

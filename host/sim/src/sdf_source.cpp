@@ -68,30 +68,35 @@ std::vector<fs::path> model_folders(const fs::path& file) {
   return folders;
 }
 
-/// Longer words of libsdformat, which may quote a whole file, are cut: no person reads more, and
+/// Longer messages of libsdformat, which may quote a whole file, are cut: no person reads more, and
 /// std::regex needs stack for every character.
 constexpr std::size_t kLongestMessage = 2000;
 
-/// One line, without colour codes, trailing blanks and full stop.
-std::string one_line(std::string text) {
-  if (text.size() > kLongestMessage) text.resize(kLongestMessage);
-  static const std::regex colour("\x1b\\[[0-9;]*m");
-  static const std::regex blanks("\\s+");
-  text = std::regex_replace(std::regex_replace(text, colour, ""), blanks, " ");
-  while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
-  return text;
+/// One line, without trailing full stop.
+std::string one_line(const std::string& text) {
+  std::istringstream words(text.substr(0, kLongestMessage));
+  std::string line;
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  while (line.ends_with('.')) line.pop_back();
+  return line;
 }
 
 /// What the value at the end of an XML path ("/sdf/.../link[@name="l"]/inertial/mass") must be, as
 /// the end of a message; empty where no rule speaks of it.
 std::string allowed_value(const std::string& xml_path) {
-  static const std::regex tail("([a-z_]+)(\\[[^/]*\\])?/([a-z_]+)$");
-  std::smatch match;
-  const std::string end =
-      xml_path.substr(xml_path.size() - std::min(xml_path.size(), kLongestMessage));
-  if (!std::regex_search(end, match, tail)) return "";
-  const ValueRule* rule = find_rule(match[1], match[3]);
+  const std::size_t slash = xml_path.rfind('/');
+  if (slash == std::string::npos) return "";
+  std::string parent = xml_path.substr(0, slash);
+  if (parent.ends_with(']')) parent.resize(std::min(parent.rfind("[@name="), parent.size()));
+  parent.erase(0, parent.rfind('/') + 1);
+  const ValueRule* rule = find_rule(parent, xml_path.substr(slash + 1));
   return rule != nullptr ? std::string("; ") + rule->allowed : "";
+}
+
+/// Where libsdformat goes on in spite of it.
+bool is_warning(const sdf::Error& error) {
+  return error.Code() == sdf::ErrorCode::ATTRIBUTE_INCORRECT_TYPE ||
+         error.Code() == sdf::ErrorCode::ELEMENT_DEPRECATED;
 }
 
 sdf::ElementPtr find_named(const sdf::ElementPtr& element, const std::string& name) {
@@ -198,6 +203,10 @@ void SdfSource::parse() {
   for (const fs::path& folder : model_folders_) config.AddURIPath("model://", folder.string());
   config.SetFindCallback([](const std::string&) { return std::string(); });
 
+  // As errors they have a place. The elements that SDF does not know are named by `check_elements`.
+  config.SetWarningsPolicy(sdf::EnforcementPolicy::ERR);
+  config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
+
   QuietConsole console;
   try {
     errors_ = root_.Load(file_.string(), config);
@@ -207,17 +216,25 @@ void SdfSource::parse() {
                 "libsdformat cannot read it (" + std::string(error.what()) +
                     "); look at <sdf version='...'> here and in what it includes");
   }
+  for (const sdf::Error& error : errors_)
+    if (is_warning(error)) warnings_.push_back(located(where(error), one_line(error.Message())));
+  std::erase_if(errors_, is_warning);
   collect_console(console.text());
 }
 
+/// What libsdformat 12 has no typed error for: the reason why it refuses a value, names that occur
+/// twice, what it changed in a file of an older SDF, and warnings of included files.
 void SdfSource::collect_console(const std::string& text) {
-  static const std::regex prefix("^(Error|Warning) \\[[^\\]]*\\] *");
+  constexpr std::string_view kRed = "\x1b[1;31m", kEndOfPrefix = "]\x1b[0m ";
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    line = one_line(line);
-    const std::string message = std::regex_replace(line, prefix, "");
-    if (line.starts_with("Error")) console_errors_.push_back(message);
-    if (line.starts_with("Warning")) console_warnings_.push_back(message);
+    const std::size_t end = line.find(kEndOfPrefix);
+    if (end == std::string::npos) continue;
+    const std::string message = one_line(line.substr(end + kEndOfPrefix.size()));
+    if (line.starts_with(kRed))
+      console_errors_.push_back(message);
+    else
+      warnings_.push_back(located({file_.string(), 0}, message));
   }
 }
 
@@ -230,8 +247,8 @@ void SdfSource::throw_first_error() const {
   if (errors_.empty()) throw Error(ErrorCode::kBadFile, {file_.string(), 0}, "not an SDF file");
   const sdf::Error& first = errors_.front();
   std::string reason = one_line(first.Message());
-  // libsdformat tells what is wrong with a value only on the console.
-  if (reason.starts_with("Error reading element") && !console_errors_.empty()) {
+  const bool is_value = first.Code() == sdf::ErrorCode::ELEMENT_INVALID && !root_.Element();
+  if (is_value && !console_errors_.empty()) {
     reason += ": " + console_errors_.front() + allowed_value(first.XmlPath().value_or(""));
   }
   if (first.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID) {

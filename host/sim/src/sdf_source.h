@@ -20,7 +20,9 @@ class XMLDocument;
 namespace tether::sim {
 
 /// One SDF file as libsdformat parsed it, with everything that libsdformat would print to the
-/// console collected instead, and with the place of every element.
+/// console collected instead, and with the place of every element. Errors and warnings are
+/// libsdformat's typed ones, by its policies, where version 12 has them; for the rest its console
+/// is read.
 class SdfSource {
  public:
   /// @throws Error(kBadFile) where the file is missing or a directory, is no XML, no SDF, or has a
@@ -36,8 +38,8 @@ class SdfSource {
 
   /// What libsdformat found wrong beyond single values: frames, names, includes.
   void throw_on_errors() const;
-  /// What libsdformat would have warned of on the console, one line each.
-  const std::vector<std::string>& console_warnings() const { return console_warnings_; }
+  /// What libsdformat warns of, one line each: "file:line: message".
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
   /// File and line of an element, of its nearest ancestor with a line if need be.
   FileLocation where(const sdf::ElementPtr& element) const;
@@ -66,7 +68,7 @@ class SdfSource {
   sdf::Root root_;
   sdf::Errors errors_;
   std::vector<std::string> console_errors_;
-  std::vector<std::string> console_warnings_;
+  std::vector<std::string> warnings_;
   mutable std::set<std::filesystem::path> resources_;
   mutable std::map<std::string, std::unique_ptr<tinyxml2::XMLDocument>> xml_;
 };

@@ -90,6 +90,8 @@ const Unrepresented kUnrepresented[] = {
      world_sdf("<light name='lamp' type='spot'><spot><outer_angle>0.8</outer_angle>\n"
                "<inner_angle>0.2</inner_angle><falloff>1</falloff></spot></light>"),
      "w.sdf:4: ", "<inner_angle> of light 'lamp' is not represented"},
+    {"unknown_attribute", world_sdf("<model name='m'>\n<link name='l' colour='red'/></model>"),
+     "w.sdf:4: ", "Attribute[colour] in element[link] not defined in SDF"},
     {"nested_in_a_dynamic_model",
      world_sdf(
          "<model name='m'><link name='l'/>\n<model name='n'><link name='l'/></model></model>"),
@@ -135,6 +137,16 @@ TEST(SdfWarning, EveryElementIsNamedAndTheRestLoads) {
   EXPECT_THAT(loaded.warnings, Contains(HasSubstr("<laser_retro> of visual 'b'")));
   ASSERT_EQ(loaded.world.models.at(0).links.at(0).visuals.size(), 1u);
   EXPECT_EQ(loaded.world.models[0].links[0].visuals[0].name, "b");
+}
+
+TEST(SdfWarning, OfLibsdformatsConsoleIsPassedOn) {
+  const ScratchFolder folder;
+  const auto file = folder.write("w.sdf", world_sdf(R"(
+      <model name='a'><static>true</static><link name='l'/></model>
+      <light name='a' type='point'/>)"));
+  EXPECT_THAT(load({file, {}, {}}).warnings,
+              Contains(file.string() + ": Non-unique name[a] detected 2 times in XML children of "
+                                       "world with name[w]"));
 }
 
 TEST(SdfWarning, IsOnePrintableLineWhateverTheName) {

@@ -153,25 +153,25 @@ const Misdeed kMisdeeds[] = {
         [](auto) {
           return link::Annotation{ExecTime{}, "estimate", "{\"bearing_rad\": nan}"};
         },
-        "Annotation: json is not a JSON object of at most 60 levels: fault at byte 16, \"nan}\""),
+        "Annotation: json is not a JSON object: fault at byte 17, \"an}\""),
     sends(
         "DeepAnnotation",
         [](auto) {
           return link::Annotation{ExecTime{}, "step", deep_json()};
         },
-        "fault at byte 64, \"[[["),
+        "json is nested deeper than 60 levels"),
     sends(
         "DetailsOfNoJson",
         [](auto next) {
           return request(next, kFlown, link::Finish{true, "", "{]}"});
         },
-        "details is not a JSON object of at most 60 levels: fault at byte 1, \"]}\""),
+        "details is not a JSON object: fault at byte 1, \"]}\""),
     sends(
         "DeepDetails",
         [](auto next) {
           return request(next, kFlown, link::Finish{true, "", deep_json()});
         },
-        "fault at byte 64, \"[[["),
+        "details is nested deeper than 60 levels"),
     sends(
         "Reply",
         [](auto) {

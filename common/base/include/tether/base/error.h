@@ -28,13 +28,16 @@ struct FileLocation {
   int line = 0;
 };
 
+/// "file:line: message", or "file: message".
+std::string located(const FileLocation& where, const std::string& message);
+
 /// The one exception of host-side code. `what()` is one printable line, whatever a file or a peer
 /// had in it: where (file:line), what is wrong, what to do.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message)
       : std::runtime_error(printable(message)), code_(code) {}
-  /// Prefixes the message with "file:line: " (or "file: ").
+  /// With the message `located`.
   Error(ErrorCode code, const FileLocation& where, const std::string& message);
 
   ErrorCode code() const { return code_; }

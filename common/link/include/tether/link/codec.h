@@ -25,10 +25,9 @@ inline constexpr std::uint32_t kMaxHelloBytes = 4u << 10;
 inline constexpr std::size_t kMaxNameBytes = 256;
 /// Longest text for a person: a refusal's message, an outcome [bytes].
 inline constexpr std::size_t kMaxTextBytes = 4096;
-/// Longest JSON text: details of an outcome, an annotation [bytes].
+/// Longest JSON text: details of an outcome, an annotation [bytes]. Nested no deeper than
+/// kMaxSutJsonDepth.
 inline constexpr std::size_t kMaxJsonBytes = 1000u << 10;
-/// Objects and lists within each other in it, itself counted; less than a record's reader takes.
-inline constexpr int kMaxJsonDepth = 60;
 /// Most sensors, and most anchors, of a catalogue.
 inline constexpr std::size_t kMaxCatalogueEntries = 1024;
 /// Every timestamp t has 0 ≤ t < this (146 years), so that sums of two cannot overflow [ns].
