@@ -6,17 +6,14 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include <asio/ip/tcp.hpp>
 
 #include <tether/link/frame_buffer.h>
 #include <tether/link/server.h>
 #include <tether/link/socket.h>
 
 namespace tether::link {
-
-using Tcp = asio::ip::tcp;
 
 /// A frame, or what is left of it, that the socket did not take at once.
 struct QueuedFrame {
@@ -42,12 +39,14 @@ class Peer {
   enum class State { kOpen, kDraining, kDead };
   using Deadline = std::optional<std::chrono::steady_clock::time_point>;
 
-  Peer(PeerId id, Tcp::socket socket, std::string remote);
+  /// `socket`: connected, does not block.
+  Peer(PeerId id, Descriptor socket, std::string remote)
+      : id_(id), socket_(std::move(socket)), remote_(std::move(remote)) {}
 
   PeerId id() const { return id_; }
   const std::string& remote() const { return remote_; }
   State state() const { return state_; }
-  int descriptor() { return socket_.native_handle(); }
+  int descriptor() const { return socket_.get(); }
   bool wants_to_write() const { return !queue_.empty(); }
   /// It has closed its sending side: there is nothing to be received any more.
   bool input_has_ended() const { return input_has_ended_; }
@@ -82,7 +81,7 @@ class Peer {
   void shut_when_flushed();
 
   PeerId id_;
-  Tcp::socket socket_;
+  Descriptor socket_;
   std::string remote_;
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
   bool is_stranger_ = true;

@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include <asio/error.hpp>
-#include <asio/io_context.hpp>
 #include <poll.h>
 #include <time.h>
 
@@ -51,7 +49,7 @@ class TcpServer final : public Server {
   bool look_out(Duration max_wait);
   bool wait(Duration max_wait);
   void accept_all();
-  void accept_one(Tcp::socket socket);
+  void accept_one(Accepted accepted);
   void serve(Peer& peer, int happened);
   /// Whether a peer that could not be received from is kept to be sent to.
   bool may_still_listen(const Peer& peer);
@@ -62,8 +60,7 @@ class TcpServer final : public Server {
 
   void refuse(Peer& peer, const Failure& failure);
 
-  asio::io_context context_{1};
-  Tcp::acceptor acceptor_{context_};
+  Descriptor acceptor_;
   Address address_;
   Duration hello_timeout_;
   ServerEvents& events_;
@@ -78,31 +75,17 @@ class TcpServer final : public Server {
   int look_outs_ = 0;
 };
 
-Address to_address(const Tcp::endpoint& endpoint) {
-  return {endpoint.address().to_string(), endpoint.port()};
-}
-
-[[noreturn]] void cannot_listen(const Address& address, const std::error_code& error) {
-  throw Error(ErrorCode::kSetup,
-              "cannot listen on " + to_string(address) + ": " + error.message() +
-                  " (choose an address of this machine and a free port; port 0 takes any)");
-}
-
 TcpServer::TcpServer(const Address& address, Duration hello_timeout, ServerEvents& events)
     : hello_timeout_(std::min(hello_timeout, kLongestTimeout)), events_(events) {
-  std::error_code error;
-  const auto found = Tcp::resolver(context_).resolve(address.host, std::to_string(address.port),
-                                                     asio::ip::resolver_base::passive, error);
-  if (error) cannot_listen(address, error);
-  const Tcp::endpoint endpoint = found.begin()->endpoint();
-  acceptor_.open(endpoint.protocol(), error);
-  if (!error) acceptor_.set_option(Tcp::acceptor::reuse_address(true), error);
-  if (!error) acceptor_.bind(endpoint, error);
-  if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
-  if (!error) acceptor_.non_blocking(true, error);
-  if (!error) address_ = to_address(acceptor_.local_endpoint(error));
-  if (error) cannot_listen(address, error);
-  close_on_exec(acceptor_.native_handle());
+  auto listening = listen_on_tcp(address);
+  if (!listening) {
+    throw Error(ErrorCode::kSetup,
+                listening.failure().message +
+                    " (choose an address of this machine and a free port; port 0 takes any)");
+  }
+  acceptor_ = std::move(*listening);
+  set_blocking(acceptor_.get(), false);
+  address_ = local_address(acceptor_.get());
 }
 
 TcpServer::~TcpServer() {
@@ -186,7 +169,7 @@ bool TcpServer::wait(Duration max_wait) {
   }
   watched_.resize(peers_.size() + 1);
   const bool may_accept = !accept_paused_until_ && !is_crowded_;
-  watched_[0] = {may_accept ? acceptor_.native_handle() : -1, POLLIN, 0};
+  watched_[0] = {may_accept ? acceptor_.get() : -1, POLLIN, 0};
   for (std::size_t i = 0; i < peers_.size(); ++i) {
     const int in = peers_[i]->input_has_ended() ? 0 : POLLIN;
     const int out = peers_[i]->wants_to_write() ? POLLOUT : 0;
@@ -220,27 +203,20 @@ Peer::Deadline TcpServer::next_deadline() const {
 void TcpServer::accept_all() {
   is_crowded_ = is_full();
   while (!is_full()) {
-    std::error_code error;
-    Tcp::socket socket(context_);
-    acceptor_.accept(socket, error);
-    if (!error) {
-      accept_one(std::move(socket));
-    } else if (error == asio::error::connection_aborted) {
-      continue;
-    } else {
-      const bool none_left = error == asio::error::would_block;
+    Accepted accepted = accept_tcp(acceptor_.get());
+    if (!accepted.error) {
+      accept_one(std::move(accepted));
+    } else if (accepted.error != std::errc::connection_aborted) {
+      const bool none_left = accepted.error == std::errc::operation_would_block;
       if (!none_left) accept_paused_until_ = steady_clock::now() + kAcceptPause;
       return;
     }
   }
 }
 
-void TcpServer::accept_one(Tcp::socket socket) {
-  std::error_code error;
-  const Tcp::endpoint remote = socket.remote_endpoint(error);
-  if (error) return;  // gone already
+void TcpServer::accept_one(Accepted accepted) {
   peers_.push_back(
-      std::make_unique<Peer>(next_id_++, std::move(socket), to_string(to_address(remote))));
+      std::make_unique<Peer>(next_id_++, std::move(accepted.socket), to_string(accepted.remote)));
   Peer& peer = *peers_.back();
   peer.deadline = peer.since() + hello_timeout_;
   events_.on_connected(peer.id(), peer.remote());

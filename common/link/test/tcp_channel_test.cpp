@@ -6,34 +6,28 @@
 #include <thread>
 #include <vector>
 
-#include <asio/io_context.hpp>
-#include <asio/ip/tcp.hpp>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include <tether/link/channel.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 namespace {
 
 using namespace std::chrono_literals;
-using Tcp = asio::ip::tcp;
 
 /// A listening socket that accepts nobody unless told to.
 struct Listener {
-  explicit Listener(int backlog) {
-    acceptor.open(Tcp::v4());
-    acceptor.bind({asio::ip::address_v4::loopback(), 0});
-    acceptor.listen(backlog);
-  }
-  Address address() const { return {"127.0.0.1", acceptor.local_endpoint().port()}; }
-  asio::io_context context;
-  Tcp::acceptor acceptor{context};
+  explicit Listener(int backlog) { ::listen(socket.get(), backlog); }
+  Address address() const { return local_address(socket.get()); }
+  Descriptor socket = listen_on_tcp({"127.0.0.1", 0}).value();
 };
 
 TEST(TcpChannel, SaysWhereNobodyListens) {
   Listener listener(1);
   const Address address = listener.address();
-  listener.acceptor.close();
+  listener.socket = Descriptor();
   const auto channel = connect_tcp(address, 10s);
   ASSERT_FALSE(channel.ok());
   EXPECT_EQ(channel.failure().kind, Failure::Kind::kDisconnected);
