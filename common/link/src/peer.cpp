@@ -27,10 +27,14 @@ std::vector<std::uint8_t> copy(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-void Peer::greet() {
-  is_stranger_ = false;
-  deadline.reset();
-  input_.set_limit(kMaxRequestBytes);
+Result<std::span<const std::uint8_t>> Peer::next_frame() {
+  auto frame = input_.next();
+  may_have_frame_ = frame && !frame->empty();
+  if (may_have_frame_ && frames_++ == 0) {
+    deadline.reset();
+    input_.set_limit(kMaxRequestBytes);
+  }
+  return frame;
 }
 
 Status Peer::send(const FramePieces& pieces, Message& message) {

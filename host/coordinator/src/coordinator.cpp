@@ -99,9 +99,6 @@ Coordinator::Coordinator(sim::Simulator& simulator, record::Recorder& recorder, 
     : impl_(
           std::make_unique<Impl>(simulator, recorder, std::move(options), std::move(host_clock))) {}
 Coordinator::~Coordinator() = default;
-link::ServerEvents& Coordinator::events() {
-  return *impl_;
-}
 RunReport Coordinator::run(link::Server& server, const RunHooks& hooks) {
   return impl_->run(server, hooks);
 }
@@ -127,20 +124,24 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
   server_ = &server;
   hooks_ = hooks;
   moved_ = host_clock_();
-  while (!running_ && !ended_) {
-    server.poll(kIdleWait);
-    watch();
-  }
   while (!ended_) {
-    guarded([&] {
-      const bool moved = advance();
-      server.poll(moved ? Duration(0)
-                        : std::min(kIdleWait, pace_ ? pace_->wait_for(grid_.dt()) : kIdleWait));
-    });
+    try {
+      turn();
+    } catch (const SimulatorFailure& e) {
+      // Unless the caller knows of a reason behind that.
+      const auto behind = hooks_.should_stop ? hooks_.should_stop() : std::nullopt;
+      const auto& [why, reason] = behind.value_or(std::pair(RunEnd::kSimulatorLost, e.what()));
+      end(why, reason);
+    }
     watch();
   }
-  if (failure_) std::rethrow_exception(failure_);
   return close_run();
+}
+
+void Coordinator::Impl::turn() {
+  const bool moved = running_ && advance();
+  const Duration wait = pace_ ? std::min(kIdleWait, pace_->wait_for(grid_.dt())) : kIdleWait;
+  for (const link::Event& event : server_->poll(moved ? Duration(0) : wait)) on_event(event);
 }
 
 // Every SUT has joined: ST and every ET begin at 0.

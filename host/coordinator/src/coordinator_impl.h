@@ -5,7 +5,6 @@
 #include "run_log.h"
 #include "session.h"
 
-#include <exception>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -26,21 +25,16 @@ struct SimulatorFailure : std::runtime_error {
 
 /// The loop (coordinator.cpp), what SUTs say (incoming.cpp) and what they are told (outgoing.cpp)
 /// over one state.
-class Coordinator::Impl final : public link::ServerEvents {
+class Coordinator::Impl {
  public:
   Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
        std::function<WallTime()> host_clock);
 
   RunReport run(link::Server& server, const RunHooks& hooks);
 
-  // Incoming.
-  void on_connected(link::PeerId peer, const std::string& remote_address) override;
-  void on_message(link::PeerId peer, link::Message message) override;
-  bool on_half_closed(link::PeerId peer) override;
-  void on_closed(link::PeerId peer, const Failure& failure) override;
-
  private:
   // The loop.
+  void turn();
   void start();
   record::Header make_header() const;
   bool advance();
@@ -66,23 +60,9 @@ class Coordinator::Impl final : public link::ServerEvents {
   RunStatus status(WallTime now) const;
 
   // Incoming.
-
-  /// Runs what may meet a lost simulator, which ends the run, unless the caller knows of a reason
-  /// behind that; anything else that is thrown is kept for run(), because the server's callbacks
-  /// must not throw.
-  template <class F>
-  void guarded(F&& f) {
-    try {
-      f();
-    } catch (const SimulatorFailure& e) {
-      const auto behind = hooks_.should_stop ? hooks_.should_stop() : std::nullopt;
-      const auto& [why, reason] = behind.value_or(std::pair(RunEnd::kSimulatorLost, e.what()));
-      end(why, reason);
-    } catch (...) {
-      failure_ = std::current_exception();
-      end(RunEnd::kInterrupted, "internal failure");
-    }
-  }
+  void on_event(const link::Event& event);
+  void on_message(link::PeerId peer, const link::Message& message);
+  void on_closed(link::PeerId peer, const Failure& failure);
   void join(link::PeerId peer, const link::Hello& hello);
   void on_request(Session& session, const link::Request& request, WallTime now);
   bool is_word(const Session& session, const link::Message& message) const;
@@ -159,7 +139,6 @@ class Coordinator::Impl final : public link::ServerEvents {
   WallTime watched_;      // when the limits of WT were last looked at
   WallTime moved_;        // when ST last moved, or a reply last left
   std::optional<std::pair<RunEnd, std::string>> ended_;
-  std::exception_ptr failure_;  // thrown in a callback, to be thrown again in run()
 };
 
 }  // namespace tether::coordinator

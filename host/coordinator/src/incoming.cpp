@@ -52,31 +52,32 @@ void Coordinator::Impl::refuse(link::PeerId peer, link::Refusal::Reason reason,
   remote_.erase(peer);  // no event comes from it any more
 }
 
-void Coordinator::Impl::on_connected(link::PeerId peer, const std::string& remote_address) {
-  remote_[peer] = remote_address;
+void Coordinator::Impl::on_event(const link::Event& event) {
+  if (const auto* connected = std::get_if<link::Connected>(&event.what))
+    remote_[event.peer] = connected->remote_address;
+  if (const auto* message = std::get_if<link::Message>(&event.what); message && !ended_)
+    on_message(event.peer, *message);
+  if (const auto* closed = std::get_if<link::Closed>(&event.what))
+    on_closed(event.peer, closed->failure);
 }
 
-void Coordinator::Impl::on_message(link::PeerId peer, link::Message message) {
-  if (ended_) return;
-  guarded([&] {
-    Session* session = find(peer);
-    if (const auto* hello = std::get_if<link::Hello>(&message); hello && !session)
-      return join(peer, *hello);
-    if (!session)
-      return refuse(peer, link::Refusal::Reason::kBadMessage, "the first message must be a Hello");
-    const WallTime now = host_clock_();
-    if (is_word(*session, message)) session->last_word = now;
-    if (const auto* request = std::get_if<link::Request>(&message))
-      return on_request(*session, *request, now);
-    if (const auto* progress = std::get_if<link::Progress>(&message))
-      return on_progress(*session, *progress, now);
-    if (const auto* note = std::get_if<link::Annotation>(&message))
-      return on_annotation(*session, *note);
-    break_off(*session, link::Refusal::Reason::kBadMessage,
-              std::holds_alternative<link::Hello>(message)
-                  ? "a second Hello"
-                  : "a message that only coordinators send");
-  });
+void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& message) {
+  Session* session = find(peer);
+  if (const auto* hello = std::get_if<link::Hello>(&message); hello && !session)
+    return join(peer, *hello);
+  if (!session)
+    return refuse(peer, link::Refusal::Reason::kBadMessage, "the first message must be a Hello");
+  const WallTime now = host_clock_();
+  if (is_word(*session, message)) session->last_word = now;
+  if (const auto* request = std::get_if<link::Request>(&message))
+    return on_request(*session, *request, now);
+  if (const auto* progress = std::get_if<link::Progress>(&message))
+    return on_progress(*session, *progress, now);
+  if (const auto* note = std::get_if<link::Annotation>(&message))
+    return on_annotation(*session, *note);
+  break_off(*session, link::Refusal::Reason::kBadMessage,
+            std::holds_alternative<link::Hello>(message) ? "a second Hello"
+                                                         : "a message that only coordinators send");
 }
 
 // It broke the protocol: it is told, and the run cannot go on without it.
@@ -92,11 +93,6 @@ void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason
 // after it leaves.
 bool Coordinator::Impl::has_only_to_be_told(const Session& session) const {
   return session.finish && !is_computing(session);
-}
-
-bool Coordinator::Impl::on_half_closed(link::PeerId peer) {
-  const Session* session = find(peer);
-  return session && !session->left && has_only_to_be_told(*session);
 }
 
 void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {

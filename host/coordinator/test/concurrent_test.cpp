@@ -175,7 +175,7 @@ TEST_F(ConcurrentTest, NoStateIsDroppedBeforeItIsRead) {
     options_.uavs[0].timings[kCamera] = camera;
     coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
                                                  [this] { return now_ += tick_; });
-    server_ = std::make_unique<ScriptedServer>(coordinator_->events());
+    server_ = std::make_unique<ScriptedServer>();
     ASSERT_EQ(run_threads(busy_threads(seed), microseconds(seed * 397)).end, RunEnd::kFinished);
     for (const auto& entry : recorder_.interactions) {
       if (!entry.sampled_at) continue;

@@ -448,7 +448,7 @@ TEST_F(CoordinatorTest, LongStepsArePacedToo) {
   options_.uavs.assign(1, {{kCameraTiming, kImuTiming, kRangeTiming}, Duration(0), std::nullopt});
   coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
                                                [this] { return now_ += tick_; });
-  server_ = std::make_unique<ScriptedServer>(coordinator_->events());
+  server_ = std::make_unique<ScriptedServer>();
   server_->add_sut(hello(), {});
   EXPECT_EQ(coordinator_->run(*server_).end, RunEnd::kTimeLimit);
 }
