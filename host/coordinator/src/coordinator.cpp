@@ -37,22 +37,24 @@ std::optional<sync::ClockBound> bound_of(const link::Hello& hello, int cores) {
   return std::nullopt;
 }
 
-SensorState make_sensor(const sim::Uav& uav, const sim::Sensor& sensor,
-                        const uav::SensorTiming& timing, std::uint64_t seed) {
-  return {.name = sensor.name,
-          .schedule = SensorSchedule(timing, seed, random_stream(uav.name, sensor.name, "delay")),
-          .captures = {}};
+std::vector<Sampler::Sensor> sensors_of(const sim::Uav& uav,
+                                        const std::vector<uav::SensorTiming>& timings,
+                                        std::uint64_t seed) {
+  std::vector<Sampler::Sensor> sensors;
+  for (std::size_t i = 0; i < uav.sensors.size(); ++i) {
+    const std::string& name = uav.sensors[i].name;
+    sensors.push_back({name, {timings[i], seed, random_stream(uav.name, name, "delay")}});
+  }
+  return sensors;
 }
 
 Session make_session(std::size_t index, const sim::Uav& uav, const UavOptions& options,
-                     std::uint64_t seed) {
-  Session session;
+                     Sampler sampler) {
+  Session session(std::move(sampler));
   session.uav = index;
   session.uav_name = uav.name;
   session.command_latency = options.command_latency;
   session.cores = options.cores;
-  for (std::size_t i = 0; i < uav.sensors.size(); ++i)
-    session.sensors.push_back(make_sensor(uav, uav.sensors[i], options.timings[i], seed));
   return session;
 }
 
@@ -115,7 +117,9 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
   check_options(options_, world());
   options_.ground_truth_period = std::max(options_.ground_truth_period, grid_.dt());
   for (std::size_t i = 0; i < world().uavs.size(); ++i)
-    sessions_.push_back(make_session(i, world().uavs[i], options_.uavs[i], options_.seed));
+    sessions_.push_back(make_session(
+        i, world().uavs[i], options_.uavs[i],
+        {sensors_of(world().uavs[i], options_.uavs[i].timings, options_.seed), grid_, tied()}));
   started_ = watched_ = flushed_ = moved_ = host_clock_();
   for (Session& session : sessions_) session.last_word = started_;
 }
@@ -209,15 +213,7 @@ SimTime Coordinator::Impl::horizon() const {
 SimTime Coordinator::Impl::next_stop() const {
   SimTime stop = std::min(horizon(), commands_.next_effect());
   stop = std::min(stop, grid_.ceil(SimTime(ground_truths_ * options_.ground_truth_period)));
-  for (const Session& session : sessions_) {
-    for (const PendingInteraction& pending : session.open)
-      if (pending.on_demand && !pending.captured)
-        stop = std::min(stop, grid_.floor(pending.measurement->sampled_at));
-    if (!tied() || session.left) continue;
-    for (const SensorState& sensor : session.sensors)
-      if (const auto instant = sensor.schedule.sampling_instant(sensor.next_capture))
-        stop = std::min(stop, grid_.floor(*instant));
-  }
+  for (const Session& session : sessions_) stop = std::min(stop, session.sampler.next_due());
   return stop;
 }
 
@@ -231,42 +227,11 @@ void Coordinator::Impl::at_boundary() {
 }
 
 void Coordinator::Impl::capture_due() {
-  for (Session& session : sessions_) {
-    for (PendingInteraction& pending : session.open) {
-      if (!pending.on_demand || pending.captured) continue;
-      if (grid_.floor(pending.measurement->sampled_at) > st_) continue;
-      ask_simulator([&](sim::Simulator& s) { s.capture(pending.state); });
-      pending.captured = true;
-    }
-    if (!tied() || session.left) continue;
-    for (std::size_t i = 0; i < session.sensors.size(); ++i) capture_periodic(session, i);
-  }
-}
-
-// Keeps the states from which a later read may still be answered; images are rendered only when one
-// is.
-void Coordinator::Impl::capture_periodic(Session& session, std::size_t sensor_index) {
-  SensorState& sensor = session.sensors[sensor_index];
-  auto instant = sensor.schedule.sampling_instant(sensor.next_capture);
-  while (instant && grid_.floor(*instant) <= st_) {
-    ask_simulator([&](sim::Simulator& s) { s.capture(sensor.captures.add(sensor.next_capture)); });
-    instant = sensor.schedule.sampling_instant(++sensor.next_capture);
-    sensor.captures.drop_before(first_needed(session, sensor_index));
-  }
-}
-
-// The first measurement of this sensor whose state may still be asked for: by a read that is open
-// and has its measurement, or by one still to come, which cannot be stamped before the SUT's bound.
-std::uint64_t Coordinator::Impl::first_needed(const Session& session,
-                                              std::size_t sensor_index) const {
-  std::uint64_t first = session.sensors[sensor_index].schedule.first_readable(
-      same_instant(barrier_.bound(session.uav)));
-  for (const PendingInteraction& pending : session.open) {
-    const auto* read = std::get_if<link::ReadSensor>(&pending.request.body);
-    if (read && read->sensor == sensor_index && pending.measurement)
-      first = std::min(first, pending.measurement->index);
-  }
-  return first;
+  // A SUT can stamp nothing before its bound.
+  for (Session& session : sessions_)
+    session.sampler.sample(st_, same_instant(barrier_.bound(session.uav)), [&](auto& snapshot) {
+      ask_simulator([&](sim::Simulator& s) { s.capture(snapshot); });
+    });
 }
 
 void Coordinator::Impl::apply_due() {

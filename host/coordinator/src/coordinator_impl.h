@@ -42,8 +42,6 @@ class Coordinator::Impl {
   SimTime horizon() const;
   void at_boundary();
   void capture_due();
-  void capture_periodic(Session& session, std::size_t sensor_index);
-  std::uint64_t first_needed(const Session& session, std::size_t sensor_index) const;
   void apply_due();
   void log_ground_truth();
   void watch();
@@ -87,8 +85,6 @@ class Coordinator::Impl {
   ExecTime charge(Session& session, const link::Request& request, record::Interaction& entry);
   ExecTime accept(Session& session, PendingInteraction& pending);
   ExecTime accept_read(Session& session, PendingInteraction& pending, const link::ReadSensor& read);
-  std::optional<Measurement> choose(const SensorSchedule& schedule, SimTime t,
-                                    const link::ReadSensor& read) const;
   ExecTime accept_command(Session& session, PendingInteraction& pending,
                           const link::SetVelocity& set);
   Session* find(link::PeerId peer);
@@ -101,7 +97,7 @@ class Coordinator::Impl {
   void leave(Session& session);
   std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
                                                    const link::Reply& reply) const;
-  std::optional<uav::Sample> take_sample(const Session& session, PendingInteraction& pending);
+  std::optional<uav::Sample> take_sample(Session& session, PendingInteraction& pending);
 
   bool tied() const { return options_.policy == sync::SyncPolicy::kConservativeBarrier; }
   const sim::World& world() const { return simulator_->world(); }

@@ -245,11 +245,11 @@ std::optional<std::string> Coordinator::Impl::order_fault(const Session& session
 
 std::optional<std::string> Coordinator::Impl::read_fault(const Session& session,
                                                          const link::ReadSensor& read) const {
-  if (read.sensor >= session.sensors.size())
-    return fmt::format("sensor number {}, but the UAV has {}", read.sensor, session.sensors.size());
-  const SensorState& sensor = session.sensors[read.sensor];
-  if (read.only_if_available && !sensor.schedule.is_periodic())
-    return fmt::format("a read of what sensor \"{}\" has, which measures on demand", sensor.name);
+  if (read.sensor >= session.sampler.size())
+    return fmt::format("sensor number {}, but the UAV has {}", read.sensor, session.sampler.size());
+  if (read.only_if_available && !session.sampler.is_periodic(read.sensor))
+    return fmt::format("a read of what sensor \"{}\" has, which measures on demand",
+                       session.sampler.name(read.sensor));
   return std::nullopt;
 }
 
@@ -287,10 +287,6 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
 // can run on until then.
 void Coordinator::Impl::begin(Session& session, const link::Request& request, WallTime now) {
   PendingInteraction pending{.request = request, .entry = make_entry(session, request, now)};
-  if (!session.spare_states.empty()) {
-    pending.state = std::move(session.spare_states.back());
-    session.spare_states.pop_back();
-  }
   record::Interaction& entry = pending.entry;
   entry.request_at = charge(session, request, entry);
   session.calls_in_step = st_ > session.called_at ? 1 : session.calls_in_step + 1;
@@ -352,31 +348,21 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
   return pending.entry.request_at;
 }
 
-// A read that finds nothing marks nothing as read, and its reply is due at once.
+// The reply to a read that finds nothing is due at once.
 ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pending,
                                         const link::ReadSensor& read) {
-  SensorState& sensor = session.sensors[read.sensor];
   record::Interaction& entry = pending.entry;
-  entry.sensor = sensor.name;
+  entry.sensor = session.sampler.name(read.sensor);
   entry.latest = read.latest;
   entry.only_if_available = read.only_if_available;
-  pending.measurement = choose(sensor.schedule, same_instant(entry.request_at), read);
-  if (!pending.measurement) return entry.request_at;
+  const auto measurement =
+      session.sampler.plan(entry.sequence, read, same_instant(entry.request_at));
+  if (!measurement) return entry.request_at;
 
-  sensor.schedule.mark_read(*pending.measurement);
-  pending.on_demand = !tied() || !sensor.schedule.is_periodic();
-  entry.sample_index = pending.measurement->index;
-  entry.sampled_at = pending.measurement->sampled_at;
-  entry.available_at = pending.measurement->available_at;
-  return std::max(entry.request_at, same_instant(pending.measurement->available_at));
-}
-
-std::optional<Measurement> Coordinator::Impl::choose(const SensorSchedule& schedule, SimTime t,
-                                                     const link::ReadSensor& read) const {
-  if (read.only_if_available)
-    return tied() ? schedule.choose_available(t, read.latest)
-                  : schedule.choose_available_untied(t, read.latest);
-  return tied() ? schedule.choose(t, read.latest) : schedule.choose_untied(t, read.latest);
+  entry.sample_index = measurement->index;
+  entry.sampled_at = measurement->sampled_at;
+  entry.available_at = measurement->available_at;
+  return std::max(entry.request_at, same_instant(measurement->available_at));
 }
 
 ExecTime Coordinator::Impl::accept_command(Session& session, PendingInteraction& pending,

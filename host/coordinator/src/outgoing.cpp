@@ -20,7 +20,8 @@ void Coordinator::Impl::answer_untied() {
   for (Session& session : sessions_) {
     for (std::size_t i = 0; i < session.open.size();) {
       PendingInteraction& pending = session.open[i];
-      if (pending.measurement && !pending.captured) {
+      const Sampler::Read* read = session.sampler.find(pending.entry.sequence);
+      if (read && !read->captured) {
         ++i;
         continue;
       }
@@ -52,7 +53,6 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   moved_ = entry.wall_at_release;
   if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
   if (session.witness) session.witness->go_on(barrier_.bound(session.uav), entry.wall_at_release);
-  session.spare_states.push_back(std::move(pending.state));
   log_.interaction(st, entry);
   if (image) log_.image(st, session.uav_name, entry.sensor, *image);
   if (entry.kind == record::kFinish) leave(session);
@@ -63,7 +63,7 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
   if (!options_.record_images || !reply.sample) return std::nullopt;
   const auto* image = std::get_if<uav::CameraSample>(&*reply.sample);
   if (image == nullptr) return std::nullopt;
-  auto& last = session.sensors[std::get<link::ReadSensor>(request.body).sensor].recorded_image_at;
+  auto& last = session.recorded_image_at[std::get<link::ReadSensor>(request.body).sensor];
   if (last && image->sampled_at < *last + options_.image_period) return std::nullopt;
   last = image->sampled_at;
   return *image;
@@ -73,28 +73,25 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
 void Coordinator::Impl::leave(Session& session) {
   session.left = true;
   session.open.clear();
+  session.sampler.close();
   barrier_.remove(session.uav);
   server_->close(session.peer);
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.left; }))
     end(RunEnd::kFinished, "every SUT has finished");
 }
 
-std::optional<uav::Sample> Coordinator::Impl::take_sample(const Session& session,
+std::optional<uav::Sample> Coordinator::Impl::take_sample(Session& session,
                                                           PendingInteraction& pending) {
-  if (!pending.measurement) return std::nullopt;
-  const auto& read = std::get<link::ReadSensor>(pending.request.body);
-  const Measurement& measurement = *pending.measurement;
-  const sim::Snapshot* state = pending.on_demand
-                                   ? &pending.state
-                                   : session.sensors[read.sensor].captures.find(measurement.index);
-  if (!state)
-    throw Error(ErrorCode::kInternal, "the state of a measurement was dropped before it was read");
-
-  pending.entry.sample_state_at = state->at;
-  pending.entry.grid_error = std::max(pending.entry.grid_error, measurement.sampled_at - state->at);
+  record::Interaction& entry = pending.entry;
+  const Sampler::Read* read = session.sampler.find(entry.sequence);
+  if (!read) return std::nullopt;
+  const sim::Snapshot& state = session.sampler.state_of(*read);
+  entry.sample_state_at = state.at;
+  entry.grid_error = std::max(entry.grid_error, read->measurement.sampled_at - state.at);
   auto sample = ask_simulator([&](sim::Simulator& s) {
-    return s.measure(*state, session.uav, read.sensor, measurement.index);
+    return s.measure(state, session.uav, read->sensor, read->measurement.index);
   });
+  session.sampler.answered(entry.sequence);
   if (std::holds_alternative<uav::CameraSample>(sample)) log_.count_image();
   return sample;
 }

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "capture_store.h"
-#include "sensor_schedule.h"
+#include "sampler.h"
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tether/link/messages.h>
@@ -18,32 +18,24 @@
 
 namespace tether::coordinator {
 
-/// One sensor of a session: when it measures, and the states that may still be read.
-struct SensorState {
-  std::string name;
-  SensorSchedule schedule;
-  CaptureStore captures;
-  std::uint64_t next_capture = 0;  ///< periodic: index of the first measurement not yet captured
-  std::optional<SimTime> recorded_image_at{};  ///< when the last image in the record was taken
-};
-
 /// A request between its arrival and its reply.
 struct PendingInteraction {
   link::Request request;
-  record::Interaction entry;                 ///< filled in as things happen
-  std::optional<Measurement> measurement{};  ///< of ReadSensor; none if none was there
-  bool on_demand = false;                    ///< its state is captured for it alone …
-  bool captured = false;                     ///< … and has been, into `state`
-  sim::Snapshot state{};
+  record::Interaction entry;  ///< filled in as things happen
 };
 
 /// One SUT and the UAV that it flies. Plain state; `Coordinator` acts on it.
 struct Session {
+  explicit Session(Sampler its_sampler)
+      : sampler(std::move(its_sampler)), recorded_image_at(sampler.size()) {}
+
   std::size_t uav = 0;  ///< index in the world, and of the SUT in the barrier
   std::string uav_name;
   Duration command_latency{0};
   int cores = 0;  ///< of the SUT's machine; 0: not known
-  std::vector<SensorState> sensors;
+  Sampler sampler;
+  /// Of each sensor, when the last image in the record was taken.
+  std::vector<std::optional<SimTime>> recorded_image_at;
 
   // From joining to leaving.
   link::PeerId peer = 0;  ///< 0: nobody
@@ -61,7 +53,6 @@ struct Session {
 
   /// Requests without their reply, in the order of their sequence: of a serial SUT one at most.
   std::vector<PendingInteraction> open;
-  std::vector<sim::Snapshot> spare_states;  ///< storage for the next ones
   Duration last_hold{0};  ///< WT between the last request's arrival and its reply; 0: none yet
 
   bool joined() const { return peer != 0; }

@@ -160,30 +160,6 @@ TEST_F(ConcurrentTest, TheSimulatorsSpeedMakesNoDifference) {
   }
 }
 
-// Delays of several periods reorder what becomes available; several reads of one sensor are open at
-// once. Whatever a read is to get, its state is still there (else the run throws), and it is that
-// of the instant at which the sensor measured.
-TEST_F(ConcurrentTest, NoStateIsDroppedBeforeItIsRead) {
-  const uav::PeriodicTiming camera{milliseconds(5), Duration(0),
-                                   uav::NormalDelay{milliseconds(8), milliseconds(9)}};
-  options_.real_time_factor = 0.05;  // ST is behind when requests arrive
-  for (std::uint64_t seed = 0; seed < 30; ++seed) {
-    SCOPED_TRACE(seed);
-    options_.seed = seed;
-    recorder_ = {};
-    make();
-    options_.uavs[0].timings[kCamera] = camera;
-    coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
-                                                 [this] { return now_ += tick_; });
-    server_ = std::make_unique<ScriptedServer>();
-    ASSERT_EQ(run_threads(busy_threads(seed), microseconds(seed * 397)).end, RunEnd::kFinished);
-    for (const auto& entry : recorder_.interactions) {
-      if (!entry.sampled_at) continue;
-      ASSERT_EQ(entry.sample_state_at, StepGrid(milliseconds(1)).floor(*entry.sampled_at));
-    }
-  }
-}
-
 TEST_F(ConcurrentTest, WhenOneThreadFinishesTheOthersCallsAreDropped) {
   const RunReport report = run_threads({{sleep(Duration(0), seconds(9))},
                                         {read(milliseconds(2), kRange)},
