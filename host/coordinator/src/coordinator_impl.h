@@ -68,17 +68,8 @@ class Coordinator::Impl {
   void on_annotation(Session& session, const link::Annotation& note);
   void on_stop(Session& session, ExecTime at, WallTime now);
   static std::optional<ExecTime> earliest_due(const Session& session, ExecTime at);
-  void break_off(Session& session, link::Refusal::Reason reason, const std::string& sent);
-  std::optional<std::string> fault_of(const Session& session, const link::Request& request,
-                                      WallTime now) const;
-  std::optional<std::string> honesty_fault(const Session& session, ExecTime stamp,
-                                           WallTime now) const;
-  std::optional<std::string> order_fault(const Session& session,
-                                         const link::Request& request) const;
-  std::optional<std::string> standstill_fault(const Session& session) const;
-  std::optional<std::string> command_fault(const Session& session,
-                                           const link::SetVelocity& set) const;
-  std::optional<std::string> read_fault(const Session& session, const link::ReadSensor& read) const;
+  void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);
+  Standing standing(const Session& session) const;
   void begin(Session& session, const link::Request& request, WallTime now);
   record::Interaction make_entry(const Session& session, const link::Request& request,
                                  WallTime now) const;

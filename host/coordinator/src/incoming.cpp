@@ -14,22 +14,6 @@ namespace tether::coordinator {
 
 namespace {
 
-// No honest stamp comes near (292 years are 2^63 ns); sums of stamps and delays stay within int64.
-constexpr ExecTime kLatestStamp = from_ns<ExecTime>(std::int64_t{1} << 62);
-bool is_stamp(ExecTime t) {
-  return t >= ExecTime{} && t < kLatestStamp;
-}
-
-/// Calls of a SUT between two steps of ST: a loop that waits for something, and takes no time or
-/// next to none, would never end.
-constexpr std::size_t kMaxCallsInAStep = 10'000;
-/// Of one UAV: a latency of a second at a command every 15 us.
-constexpr std::size_t kMaxWaitingCommands = 65'536;
-/// Of one SUT's annotations in a run: two hours of 1 kB for each of 30 images a second.
-constexpr std::size_t kMaxAnnotatedBytes = std::size_t{256} << 20;
-/// What one takes up besides its text.
-constexpr std::size_t kAnnotationBytes = 128;
-
 std::string kind_of(const link::Request& request) {
   constexpr const char* kKinds[] = {"sensor", "command", "sleep", "finish"};
   return kKinds[request.body.index()];
@@ -75,17 +59,15 @@ void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& messa
     return on_progress(*session, *progress, now);
   if (const auto* note = std::get_if<link::Annotation>(&message))
     return on_annotation(*session, *note);
-  break_off(*session, link::Refusal::Reason::kBadMessage,
-            std::holds_alternative<link::Hello>(message) ? "a second Hello"
-                                                         : "a message that only coordinators send");
+  break_off(*session, link::Refusal::Reason::kBadMessage, fault_of_other(message));
 }
 
 // It broke the protocol: it is told, and the run cannot go on without it.
 void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason,
-                                  const std::string& sent) {
-  refuse(session.peer, reason, sent);
+                                  const Fault& fault) {
+  refuse(session.peer, reason, fault.what);
   session.left = true;
-  end(RunEnd::kSutLost, fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, sent));
+  end(RunEnd::kSutLost, fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what));
 }
 
 // Its Finish is here, and it stands still for it: whatever becomes of it, nothing that it could
@@ -147,19 +129,16 @@ bool Coordinator::Impl::is_word(const Session& session, const link::Message& mes
 void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress,
                                     WallTime now) {
   if (!running_ || !tied() || !is_stamp(progress.reached)) return;
-  if (const auto fault = honesty_fault(session, progress.reached, now))
+  if (const auto fault = fault_of(progress, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
   if (progress.stopped) return on_stop(session, progress.reached, now);
   barrier_.progress(session.uav, progress.reached);
   release_ready();
 }
 
-// A record is read whole when the run is judged.
 void Coordinator::Impl::on_annotation(Session& session, const link::Annotation& note) {
-  session.annotated_bytes += kAnnotationBytes + note.topic.size() + note.json.size();
-  if (session.annotated_bytes > kMaxAnnotatedBytes)
-    return break_off(session, link::Refusal::Reason::kBadMessage,
-                     fmt::format("annotations of more than {} MiB", kMaxAnnotatedBytes >> 20));
+  if (const auto fault = session.annotations.spend(note))
+    return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
   log_.annotation(st_, {session.uav_name, note.at, note.topic, note.json});
 }
 
@@ -176,105 +155,34 @@ std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session, 
 
 // All of a concurrent SUT stands still: replies that are due by then may leave.
 void Coordinator::Impl::on_stop(Session& session, ExecTime at, WallTime now) {
-  const auto reason = link::Refusal::Reason::kBadMessage;
-  if (!session.is_concurrent())
-    return break_off(session, reason, "a stop, which is for concurrent SUTs");
-  if (const ExecTime reached = barrier_.bound(session.uav); at < reached)
-    return break_off(session, reason,
-                     fmt::format("a stop at ET {} ns, although it had reached {} ns", to_ns(at),
-                                 to_ns(reached)));
-  if (barrier_.is_held(session.uav))
-    return break_off(session, reason,
-                     fmt::format("a stop at ET {} ns while it stood still for a reply at {} ns",
-                                 to_ns(at), to_ns(barrier_.bound(session.uav))));
   log_.stop(st_, {session.uav_name, at, earliest_due(session, at), now});
   barrier_.stop(session.uav, at);
   release_ready();
 }
 
-/// A stamp ahead of all that can have gone by would let the simulation run on unhindered.
-std::optional<std::string> Coordinator::Impl::honesty_fault(const Session& session, ExecTime stamp,
-                                                            WallTime now) const {
-  if (!session.witness) return std::nullopt;
-  const Duration excess = session.witness->excess(stamp, now);
-  if (excess == Duration(0)) return std::nullopt;
+Standing Coordinator::Impl::standing(const Session& session) const {
   const bool adds_up_cores = session.hello.clock == link::ClockKind::kCpu;
   const int cores = session.cores > 0 ? session.cores : sync::kMostCores;
-  return fmt::format(
-      "a time stamp of ET {:.6f} s, which is {:.6f} s ahead: since it went on at ET {:.6f} s, no "
-      "more can have gone by than this machine's clock shows{}",
-      to_seconds(stamp), to_seconds(excess), to_seconds(session.witness->went_on_at()),
-      adds_up_cores ? fmt::format(" for each of {} cores", cores) : "");
-}
-
-std::optional<std::string> Coordinator::Impl::fault_of(const Session& session,
-                                                       const link::Request& request,
-                                                       WallTime now) const {
-  if (const auto fault = order_fault(session, request)) return fault;
-  if (!is_stamp(request.issued_at)) return "a time stamp out of range";
-  if (const auto fault = honesty_fault(session, request.issued_at, now)) return fault;
-  if (const auto fault = standstill_fault(session)) return fault;
-  if (const auto* read = std::get_if<link::ReadSensor>(&request.body))
-    return read_fault(session, *read);
-  if (const auto* set = std::get_if<link::SetVelocity>(&request.body))
-    return command_fault(session, *set);
-  if (const auto* sleep = std::get_if<link::Sleep>(&request.body)) {
-    if (!is_stamp(sleep->until)) return "a time to sleep until that is out of range";
-    if (!tied()) return "a sleep, which in free running is the SUT's own affair";
-  }
-  return std::nullopt;
-}
-
-std::optional<std::string> Coordinator::Impl::order_fault(const Session& session,
-                                                          const link::Request& request) const {
-  if (!running_) return "a request before the Welcome";
-  if (session.is_concurrent()) {
-    if (session.open.size() >= sync::kMaxOpenCalls)
-      return fmt::format("a request while {} others are open", session.open.size());
-    if (tied() && barrier_.is_held(session.uav))
-      return fmt::format("a request stamped {} ns while it stood still for a reply at {} ns",
-                         to_ns(request.issued_at), to_ns(barrier_.bound(session.uav)));
-  } else {
-    if (!session.open.empty()) return "a request while another one is held";
-    if (session.finish) return "a request after Finish";
-  }
-  if (request.sequence != session.next_sequence)
-    return fmt::format("request number {}, expected {}", request.sequence, session.next_sequence);
-  return std::nullopt;
-}
-
-std::optional<std::string> Coordinator::Impl::read_fault(const Session& session,
-                                                         const link::ReadSensor& read) const {
-  if (read.sensor >= session.sampler.size())
-    return fmt::format("sensor number {}, but the UAV has {}", read.sensor, session.sampler.size());
-  if (read.only_if_available && !session.sampler.is_periodic(read.sensor))
-    return fmt::format("a read of what sensor \"{}\" has, which measures on demand",
-                       session.sampler.name(read.sensor));
-  return std::nullopt;
-}
-
-std::optional<std::string> Coordinator::Impl::standstill_fault(const Session& session) const {
-  if (!tied() || st_ > session.called_at || session.calls_in_step < kMaxCallsInAStep)
-    return std::nullopt;
-  return fmt::format(
-      "{} requests while ST stood at {:.6f} s: a loop that waits must let time go by, with a sleep "
-      "or by its scripted clock",
-      kMaxCallsInAStep + 1, to_seconds(st_));
-}
-
-std::optional<std::string> Coordinator::Impl::command_fault(const Session& session,
-                                                            const link::SetVelocity& set) const {
-  if (!uav::is_valid(set.command))
-    return "a velocity command that is not finite or beyond any multirotor";
-  if (commands_.waiting(session.uav) >= kMaxWaitingCommands)
-    return fmt::format("a velocity command while {} others wait to act", kMaxWaitingCommands);
-  return std::nullopt;
+  return {.running = running_,
+          .tied = tied(),
+          .concurrent = session.is_concurrent(),
+          .finished = session.finish.has_value(),
+          .held = running_ && barrier_.is_held(session.uav),
+          .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
+          .open_calls = session.open.size(),
+          .next_sequence = session.next_sequence,
+          .st = st_,
+          .calls_in_step = st_ > session.called_at ? 0 : session.calls_in_step,
+          .waiting_commands = commands_.waiting(session.uav),
+          .sensors = session.sampler,
+          .witness = session.witness ? &*session.witness : nullptr,
+          .clock_cores = adds_up_cores ? cores : 0};
 }
 
 void Coordinator::Impl::on_request(Session& session, const link::Request& request, WallTime now) {
   // One thread of a concurrent SUT ends it for all; what the others still ask is dropped.
   if (session.is_concurrent() && session.finish) return;
-  if (const auto fault = fault_of(session, request, now))
+  if (const auto fault = fault_of(request, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
   ++session.next_sequence;
   begin(session, request, now);

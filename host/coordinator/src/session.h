@@ -1,6 +1,7 @@
 #pragma once
 
 #include "sampler.h"
+#include "validator.h"
 
 #include <cstdint>
 #include <optional>
@@ -43,9 +44,9 @@ struct Session {
   std::optional<sync::ExecutionTimer> timer;  ///< of an unstamped client
   std::optional<sync::ClockWitness> witness;  ///< tied, of one that stamps by its own clock
   std::uint64_t next_sequence = 1;
-  SimTime called_at{};              ///< ST when the last request came
-  std::size_t calls_in_step = 0;    ///< requests since ST came there
-  std::size_t annotated_bytes = 0;  ///< of all annotations
+  SimTime called_at{};            ///< ST when the last request came
+  std::size_t calls_in_step = 0;  ///< requests since ST came there
+  AnnotationBudget annotations;
   /// When it was last heard; before it has joined, since when it is waited for.
   WallTime last_word;
   std::optional<link::Finish> finish;
