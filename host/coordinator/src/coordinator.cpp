@@ -16,18 +16,11 @@ namespace {
 constexpr int kStepsPerTurn = 64;
 // How long the loop sleeps when there is nothing to do; a message wakes it at once.
 constexpr Duration kIdleWait = std::chrono::milliseconds(20);
-// How often limits of WT are looked at.
-constexpr Duration kWatchPeriod = std::chrono::milliseconds(20);
 // A paced simulation may catch up this much ST after a late turn (rendering an image, say); two
 // steps at least.
 constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
 // How often the record goes to its file, so that a killed run leaves what it had.
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
-// A turn that took longer than this was not spent listening: we were stopped, say, or the whole
-// machine was.
-constexpr Duration kLongestTurn = std::chrono::seconds(1);
-// How long nothing may move before it is said who waits for whom.
-constexpr Duration kStillPeriod = std::chrono::seconds(1);
 
 /// How fast the clock can go that a SUT says it has; none where it is the coordinator's own, or a
 /// script's.
@@ -113,29 +106,31 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
       host_clock_(std::move(host_clock)),
       grid_(simulator.grid()),
       barrier_(grid_),
-      time_limit_(grid_.ceil(SimTime(options_.time_limit))) {
+      time_limit_(grid_.ceil(SimTime(options_.time_limit))),
+      started_(host_clock_()),
+      flushed_(started_),
+      watchdog_({time_limit_, options_.connect_limit, options_.hang_limit}, world().uavs.size(),
+                tied(), started_) {
   check_options(options_, world());
   options_.ground_truth_period = std::max(options_.ground_truth_period, grid_.dt());
   for (std::size_t i = 0; i < world().uavs.size(); ++i)
     sessions_.push_back(make_session(
         i, world().uavs[i], options_.uavs[i],
         {sensors_of(world().uavs[i], options_.uavs[i].timings, options_.seed), grid_, tied()}));
-  started_ = watched_ = flushed_ = moved_ = host_clock_();
-  for (Session& session : sessions_) session.last_word = started_;
 }
 
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
   server_ = &server;
   hooks_ = hooks;
-  moved_ = host_clock_();
+  watchdog_.moved(host_clock_());
   while (!ended_) {
     try {
       turn();
     } catch (const SimulatorFailure& e) {
       // Unless the caller knows of a reason behind that.
       const auto behind = hooks_.should_stop ? hooks_.should_stop() : std::nullopt;
-      const auto& [why, reason] = behind.value_or(std::pair(RunEnd::kSimulatorLost, e.what()));
-      end(why, reason);
+      end(behind ? Ending{behind->first, behind->second}
+                 : Ending{RunEnd::kSimulatorLost, e.what()});
     }
     watch();
   }
@@ -151,7 +146,8 @@ void Coordinator::Impl::turn() {
 // Every SUT has joined: ST and every ET begin at 0.
 void Coordinator::Impl::start() {
   ask_simulator([&](sim::Simulator& s) { s.reset(options_.seed); });
-  started_ = moved_ = host_clock_();
+  started_ = host_clock_();
+  watchdog_.begin(started_);
   log_.begin(make_header());
   running_ = true;
   if (options_.real_time_factor > 0.0)
@@ -159,7 +155,6 @@ void Coordinator::Impl::start() {
   for (Session& session : sessions_) {
     barrier_.add(ExecTime{},
                  session.is_concurrent() ? sync::SutKind::kConcurrent : sync::SutKind::kSerial);
-    session.last_word = started_;
     if (session.hello.clock == link::ClockKind::kUnstamped)
       session.timer.emplace(ExecTime{}, started_);
     if (const auto bound = bound_of(session.hello, session.cores); bound && tied())
@@ -195,13 +190,10 @@ bool Coordinator::Impl::advance() {
   }
   ask_simulator([&](sim::Simulator& s) { s.advance_to(target); });
   st_ = target;
-  moved_ = now;
+  watchdog_.moved(now);
   at_boundary();
   release_ready();
-  if (st_ >= time_limit_ && !ended_)
-    end(RunEnd::kTimeLimit,
-        fmt::format("ST reached the scenario's time limit of {} s before the task was done",
-                    to_seconds(time_limit_)));
+  if (const auto over = watchdog_.over_time(st_)) end(*over);
   return true;
 }
 
@@ -250,89 +242,46 @@ void Coordinator::Impl::log_ground_truth() {
                       }));
 }
 
-void Coordinator::Impl::end(RunEnd how, const std::string& reason) {
-  if (!ended_) ended_.emplace(how, printable(reason));
+void Coordinator::Impl::end(const Ending& ending) {
+  if (!ended_) ended_ = {ending.how, printable(ending.reason)};
 }
 
 // Limits of WT, the caller's wishes, the status: none of it reaches a decision of the barrier.
 void Coordinator::Impl::watch() {
   const WallTime now = host_clock_();
-  if (now - watched_ < kWatchPeriod) return;
-  pardon(now - watched_ - kLongestTurn, now);
-  watched_ = now;
+  if (!watchdog_.is_due(now)) return;
   if (running_ && now - flushed_ >= kFlushPeriod) {
     flushed_ = now;
     log_.flush();
   }
-  if (!ended_) check_words(now);
+  if (const auto overdue = watchdog_.overdue(parties(now), st_)) end(*overdue);
   if (hooks_.on_status) hooks_.on_status(status(now));
   if (hooks_.should_stop && !ended_)
-    if (const auto stop = hooks_.should_stop()) end(stop->first, stop->second);
-}
-
-// Nobody is silent while we do not listen: what was said meanwhile is still to be read, and who was
-// stopped together with us has had no time to say it.
-void Coordinator::Impl::pardon(Duration unheard, WallTime now) {
-  if (unheard <= Duration(0)) return;
-  moved_ = std::min(moved_ + unheard, now);
-  for (Session& session : sessions_) session.last_word = std::min(session.last_word + unheard, now);
+    if (const auto stop = hooks_.should_stop()) end({stop->first, stop->second});
 }
 
 // It owes us the next word; a SUT that waits for a reply of ours does not.
 bool Coordinator::Impl::is_computing(const Session& session) const {
-  if (!session.joined() || session.left) return false;
+  if (!running_ || session.left) return false;
   return tied() ? !barrier_.is_held(session.uav) : session.open.empty();
-}
-
-void Coordinator::Impl::check_words(WallTime now) {
-  for (const Session& session : sessions_) {
-    if (!running_ && !session.joined() && now - session.last_word > options_.connect_limit)
-      return end(RunEnd::kSutLost,
-                 fmt::format("no SUT joined for UAV \"{}\" within {} s", session.uav_name,
-                             to_seconds(options_.connect_limit)));
-    if (running_ && is_computing(session) && now - session.last_word > options_.hang_limit)
-      return end(RunEnd::kSutHung,
-                 fmt::format("SUT \"{}\" of UAV \"{}\" gave no word for {} s (limit){}",
-                             session.hello.sut, session.uav_name, to_seconds(options_.hang_limit),
-                             tied() ? ": " + diagnosis(now) : ""));
-  }
 }
 
 Party Coordinator::Impl::party(const Session& session, WallTime now) const {
   Party party{.sut = session.hello.sut,
               .uav = session.uav_name,
+              .joined = session.joined(),
               .computing = is_computing(session),
-              .bound = barrier_.bound(session.uav),
-              .silence = now - session.last_word};
+              .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
+              .silence = watchdog_.silence(session.uav, now)};
   for (const PendingInteraction& pending : session.open)
     party.reply_at = std::min(party.reply_at.value_or(ExecTime::max()), pending.entry.reply_at);
   return party;
 }
 
-std::string Coordinator::Impl::diagnosis(WallTime now) const {
+std::vector<Party> Coordinator::Impl::parties(WallTime now) const {
   std::vector<Party> parties;
-  for (const Session& session : sessions_)
-    if (!session.left) parties.push_back(party(session, now));
-  return who_blocks_whom(st_, parties);
-}
-
-// Before the run.
-std::string Coordinator::Impl::missing(WallTime now) const {
-  std::vector<std::string> uavs;
-  WallTime since = now;
-  for (const Session& session : sessions_) {
-    if (session.joined()) continue;
-    uavs.push_back(session.uav_name);
-    since = std::min(since, session.last_word);
-  }
-  return who_has_not_joined(uavs, now - since);
-}
-
-// Said only when nothing has moved for a while.
-std::string Coordinator::Impl::blocked(WallTime now) const {
-  if (ended_ || now - moved_ < kStillPeriod) return "";
-  if (!running_) return missing(now);
-  return tied() ? diagnosis(now) : "";
+  for (const Session& session : sessions_) parties.push_back(party(session, now));
+  return parties;
 }
 
 RunStatus Coordinator::Impl::status(WallTime now) const {
@@ -342,7 +291,7 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
                    .interactions = log_.figures().interactions,
                    .images = log_.figures().images,
                    .waiting_for = {},
-                   .blocked = blocked(now)};
+                   .blocked = ended_ ? "" : watchdog_.blocked(parties(now), st_, now)};
   for (const Session& session : sessions_) {
     if (session.joined()) ++status.joined;
     if (running_ && tied())
@@ -357,8 +306,8 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
 // Whoever is still there is told; then the record gets its end.
 RunReport Coordinator::Impl::close_run() {
   const SyncFigures& figures = log_.figures();
-  RunReport report{.end = ended_->first,
-                   .reason = ended_->second,
+  RunReport report{.end = ended_->how,
+                   .reason = ended_->reason,
                    .st = st_,
                    .began = running_,
                    .wall = running_ ? host_clock_() - started_ : Duration(0),

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "command_queue.h"
-#include "diagnosis.h"
 #include "run_log.h"
 #include "session.h"
+#include "watchdog.h"
 
 #include <map>
 #include <optional>
@@ -45,15 +45,11 @@ class Coordinator::Impl {
   void apply_due();
   void log_ground_truth();
   void watch();
-  void pardon(Duration unheard, WallTime now);
   bool is_computing(const Session& session) const;
   bool has_only_to_be_told(const Session& session) const;
-  void check_words(WallTime now);
   Party party(const Session& session, WallTime now) const;
-  std::string diagnosis(WallTime now) const;
-  std::string missing(WallTime now) const;
-  std::string blocked(WallTime now) const;
-  void end(RunEnd how, const std::string& reason);
+  std::vector<Party> parties(WallTime now) const;
+  void end(const Ending& ending);
   RunReport close_run();
   RunStatus status(WallTime now) const;
 
@@ -63,7 +59,6 @@ class Coordinator::Impl {
   void on_closed(link::PeerId peer, const Failure& failure);
   void join(link::PeerId peer, const link::Hello& hello);
   void on_request(Session& session, const link::Request& request, WallTime now);
-  bool is_word(const Session& session, const link::Message& message) const;
   void on_progress(Session& session, const link::Progress& progress, WallTime now);
   void on_annotation(Session& session, const link::Annotation& note);
   void on_stop(Session& session, ExecTime at, WallTime now);
@@ -123,9 +118,8 @@ class Coordinator::Impl {
   bool running_ = false;  // every SUT has joined
   WallTime started_;      // construction, then the moment when every SUT had joined
   WallTime flushed_;      // when the record last went to its file
-  WallTime watched_;      // when the limits of WT were last looked at
-  WallTime moved_;        // when ST last moved, or a reply last left
-  std::optional<std::pair<RunEnd, std::string>> ended_;
+  Watchdog watchdog_;
+  std::optional<Ending> ended_;
 };
 
 }  // namespace tether::coordinator

@@ -52,7 +52,8 @@ void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& messa
   if (!session)
     return refuse(peer, link::Refusal::Reason::kBadMessage, "the first message must be a Hello");
   const WallTime now = host_clock_();
-  if (is_word(*session, message)) session->last_word = now;
+  if (shows_life(message, standing(*session), session->hello.clock))
+    watchdog_.heard(session->uav, now);
   if (const auto* request = std::get_if<link::Request>(&message))
     return on_request(*session, *request, now);
   if (const auto* progress = std::get_if<link::Progress>(&message))
@@ -67,7 +68,8 @@ void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason
                                   const Fault& fault) {
   refuse(session.peer, reason, fault.what);
   session.left = true;
-  end(RunEnd::kSutLost, fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what));
+  end({RunEnd::kSutLost,
+       fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)});
 }
 
 // Its Finish is here, and it stands still for it: whatever becomes of it, nothing that it could
@@ -86,8 +88,8 @@ void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
   if (failure.kind == Failure::Kind::kDisconnected && has_only_to_be_told(*session)) return;
   const std::string where =
       running_ && tied() ? "; " + whereabouts(party(*session, host_clock_())) : "";
-  end(RunEnd::kSutLost,
-      fmt::format("lost the SUT of UAV \"{}\": {}{}", session->uav_name, failure.message, where));
+  end({RunEnd::kSutLost,
+       fmt::format("lost the SUT of UAV \"{}\": {}{}", session->uav_name, failure.message, where)});
 }
 
 void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
@@ -108,22 +110,9 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   session.hello = hello;
   session.hello.token.clear();
   session.hello.sut = printable(hello.sut);
-  moved_ = host_clock_();
+  watchdog_.moved(host_clock_());
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.joined(); }))
     start();
-}
-
-/// Whether a message tells that the SUT lives. Under the barrier a progress may not: its sender is
-/// a helper, and the SUT itself may be stuck. That it has computed shows in CPU time, which then
-/// goes on; the wall clock goes on whatever the SUT does, so there only its calls tell, as long as
-/// none of them is open. Annotations tell nothing: a SUT could go on with them for ever.
-bool Coordinator::Impl::is_word(const Session& session, const link::Message& message) const {
-  if (!running_ || !tied()) return true;
-  if (std::holds_alternative<link::Annotation>(message)) return false;
-  const auto* progress = std::get_if<link::Progress>(&message);
-  if (!progress) return true;
-  if (session.hello.clock == link::ClockKind::kWall && session.open.empty()) return false;
-  return progress->reached > barrier_.bound(session.uav);
 }
 
 void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress,

@@ -49,8 +49,8 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   server_->send(session.peer, std::move(message));
 
   session.last_hold = entry.wall_at_release - entry.wall_at_arrival;
-  session.last_word = entry.wall_at_release;
-  moved_ = entry.wall_at_release;
+  watchdog_.heard(session.uav, entry.wall_at_release);
+  watchdog_.moved(entry.wall_at_release);
   if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
   if (session.witness) session.witness->go_on(barrier_.bound(session.uav), entry.wall_at_release);
   log_.interaction(st, entry);
@@ -77,7 +77,7 @@ void Coordinator::Impl::leave(Session& session) {
   barrier_.remove(session.uav);
   server_->close(session.peer);
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.left; }))
-    end(RunEnd::kFinished, "every SUT has finished");
+    end({RunEnd::kFinished, "every SUT has finished"});
 }
 
 std::optional<uav::Sample> Coordinator::Impl::take_sample(Session& session,

@@ -47,8 +47,6 @@ struct Session {
   SimTime called_at{};            ///< ST when the last request came
   std::size_t calls_in_step = 0;  ///< requests since ST came there
   AnnotationBudget annotations;
-  /// When it was last heard; before it has joined, since when it is waited for.
-  WallTime last_word;
   std::optional<link::Finish> finish;
   bool left = false;  ///< finished or sent away: nothing more is expected or told
 

@@ -377,33 +377,6 @@ TEST_F(CoordinatorTest, ProgressThatGoesNowhereIsNoWord) {
   EXPECT_EQ(coordinator_->run(*server_, hooks_).end, RunEnd::kSutHung);
 }
 
-// The wall clock goes on for a SUT in a deadlock as well.
-TEST_F(CoordinatorTest, OnTheWallClockProgressWithoutACallIsNoWord) {
-  options_.hang_limit = milliseconds(300);
-  for (const auto clock : {link::ClockKind::kWall, link::ClockKind::kCpu}) {
-    make();
-    auto introduction = hello();
-    introduction.clock = clock;
-    const auto peer = server_->add_sut(introduction, {});
-    hooks_.on_status = [&](const RunStatus& status) {
-      server_->deliver(peer, link::Progress{same_instant(status.st) + milliseconds(10)});
-    };
-    const RunEnd end = coordinator_->run(*server_, hooks_).end;
-    EXPECT_EQ(end, clock == link::ClockKind::kWall ? RunEnd::kSutHung : RunEnd::kTimeLimit);
-  }
-}
-
-TEST_F(CoordinatorTest, InFreeRunningAnyProgressIsAWord) {
-  options_.policy = sync::SyncPolicy::kFreeRunning;
-  options_.real_time_factor = 1.0;
-  options_.hang_limit = milliseconds(300);
-  options_.time_limit = seconds(2);
-  make();
-  const auto peer = server_->add_sut(hello(), {});
-  hooks_.on_status = [&](const RunStatus&) { server_->deliver(peer, link::Progress{us(0)}); };
-  EXPECT_EQ(coordinator_->run(*server_, hooks_).end, RunEnd::kTimeLimit);
-}
-
 // Two SUTs may wait for each other behind our back: one's progress must let the other go on.
 TEST_F(CoordinatorTest, ProgressOfOneSutReleasesAnother) {
   make(2);
