@@ -30,25 +30,34 @@ std::optional<sync::ClockBound> bound_of(const link::Hello& hello, int cores) {
   return std::nullopt;
 }
 
-std::vector<Sampler::Sensor> sensors_of(const sim::Uav& uav,
-                                        const std::vector<uav::SensorTiming>& timings,
-                                        std::uint64_t seed) {
+Sampler make_sampler(const sim::Uav& uav, const std::vector<uav::SensorTiming>& timings,
+                     const RunOptions& options, StepGrid grid) {
   std::vector<Sampler::Sensor> sensors;
   for (std::size_t i = 0; i < uav.sensors.size(); ++i) {
     const std::string& name = uav.sensors[i].name;
-    sensors.push_back({name, {timings[i], seed, random_stream(uav.name, name, "delay")}});
+    sensors.push_back({name, {timings[i], options.seed, random_stream(uav.name, name, "delay")}});
   }
-  return sensors;
+  return {std::move(sensors), grid, options.policy == sync::SyncPolicy::kConservativeBarrier};
 }
 
-Session make_session(std::size_t index, const sim::Uav& uav, const UavOptions& options,
-                     Sampler sampler) {
-  Session session(std::move(sampler));
-  session.uav = index;
-  session.uav_name = uav.name;
-  session.command_latency = options.command_latency;
-  session.cores = options.cores;
-  return session;
+std::vector<Sampler> make_samplers(const sim::Simulator& simulator, const RunOptions& options) {
+  const std::vector<sim::Uav>& uavs = simulator.world().uavs;
+  std::vector<Sampler> samplers;
+  for (std::size_t i = 0; i < uavs.size(); ++i)
+    samplers.push_back(make_sampler(uavs[i], options.uavs[i].timings, options, simulator.grid()));
+  return samplers;
+}
+
+std::vector<Session> make_sessions(const sim::World& world, const RunOptions& options) {
+  std::vector<Session> sessions(world.uavs.size());
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    sessions[i].uav = i;
+    sessions[i].uav_name = world.uavs[i].name;
+    sessions[i].command_latency = options.uavs[i].command_latency;
+    sessions[i].cores = options.uavs[i].cores;
+    sessions[i].recorded_image_at.resize(world.uavs[i].sensors.size());
+  }
+  return sessions;
 }
 
 void check_options(const RunOptions& options, const sim::World& world) {
@@ -67,6 +76,12 @@ void check_options(const RunOptions& options, const sim::World& world) {
   require(
       options.policy == sync::SyncPolicy::kConservativeBarrier || options.real_time_factor > 0.0,
       "free running needs a real-time factor");
+}
+
+RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
+  check_options(options, simulator.world());
+  options.ground_truth_period = std::max(options.ground_truth_period, simulator.grid().dt());
+  return options;
 }
 
 }  // namespace
@@ -101,23 +116,18 @@ RunReport Coordinator::run(link::Server& server, const RunHooks& hooks) {
 Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
                         std::function<WallTime()> host_clock)
     : simulator_(&simulator),
-      log_(recorder),
-      options_(std::move(options)),
+      options_(checked(std::move(options), simulator)),
       host_clock_(std::move(host_clock)),
-      grid_(simulator.grid()),
-      barrier_(grid_),
-      time_limit_(grid_.ceil(SimTime(options_.time_limit))),
+      log_(recorder),
+      barrier_(simulator.grid()),
+      stepper_(simulator, barrier_, log_, options_.ground_truth_period,
+               make_samplers(simulator, options_)),
+      sessions_(make_sessions(world(), options_)),
+      time_limit_(simulator.grid().ceil(SimTime(options_.time_limit))),
       started_(host_clock_()),
       flushed_(started_),
-      watchdog_({time_limit_, options_.connect_limit, options_.hang_limit}, world().uavs.size(),
-                tied(), started_) {
-  check_options(options_, world());
-  options_.ground_truth_period = std::max(options_.ground_truth_period, grid_.dt());
-  for (std::size_t i = 0; i < world().uavs.size(); ++i)
-    sessions_.push_back(make_session(
-        i, world().uavs[i], options_.uavs[i],
-        {sensors_of(world().uavs[i], options_.uavs[i].timings, options_.seed), grid_, tied()}));
-}
+      watchdog_({time_limit_, options_.connect_limit, options_.hang_limit}, sessions_.size(),
+                tied(), started_) {}
 
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
   server_ = &server;
@@ -139,19 +149,19 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
 
 void Coordinator::Impl::turn() {
   const bool moved = running_ && advance();
-  const Duration wait = pace_ ? std::min(kIdleWait, pace_->wait_for(grid_.dt())) : kIdleWait;
+  const Duration wait = pace_ ? std::min(kIdleWait, pace_->wait_for(grid().dt())) : kIdleWait;
   for (const link::Event& event : server_->poll(moved ? Duration(0) : wait)) on_event(event);
 }
 
 // Every SUT has joined: ST and every ET begin at 0.
 void Coordinator::Impl::start() {
-  ask_simulator([&](sim::Simulator& s) { s.reset(options_.seed); });
+  stepper_.reset(options_.seed);
   started_ = host_clock_();
   watchdog_.begin(started_);
   log_.begin(make_header());
   running_ = true;
   if (options_.real_time_factor > 0.0)
-    pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid_.dt()), started_);
+    pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid().dt()), started_);
   for (Session& session : sessions_) {
     barrier_.add(ExecTime{},
                  session.is_concurrent() ? sync::SutKind::kConcurrent : sync::SutKind::kSerial);
@@ -160,7 +170,7 @@ void Coordinator::Impl::start() {
     if (const auto bound = bound_of(session.hello, session.cores); bound && tied())
       session.witness.emplace(*bound, ExecTime{}, started_);
   }
-  at_boundary();
+  stepper_.act();
   for (const Session& session : sessions_)
     server_->send(session.peer, link::Welcome{.catalogue = sim::make_catalogue(
                                                   world(), world().uavs[session.uav]),
@@ -171,75 +181,40 @@ void Coordinator::Impl::start() {
 // One turn of stepping; false if ST may not move now.
 bool Coordinator::Impl::advance() {
   const WallTime now = host_clock_();
-  for (Session& session : sessions_)
-    if (session.timer && is_computing(session))
-      barrier_.progress(session.uav, session.timer->read(now));
-
-  // An unstamped client's clock may just have let another SUT go on.
+  read_timers(now);
   release_ready();
-
-  SimTime target = std::min(next_stop(), st_ + kStepsPerTurn * grid_.dt());
-  if (target <= st_) {
-    if (pace_) pace_->idle(now);
-    return false;
-  }
-  if (pace_) {
-    target = std::min(target, grid_.floor(st_ + pace_->allowance(now)));
-    if (target <= st_) return false;
-    pace_->spend(target - st_);
-  }
-  ask_simulator([&](sim::Simulator& s) { s.advance_to(target); });
-  st_ = target;
+  const SimTime target = paced(next_stop(), now);
+  if (target <= st()) return false;
+  stepper_.advance_to(target);
   watchdog_.moved(now);
-  at_boundary();
   release_ready();
-  if (const auto over = watchdog_.over_time(st_)) end(*over);
+  if (const auto over = watchdog_.over_time(st())) end(*over);
   return true;
 }
 
-SimTime Coordinator::Impl::horizon() const {
-  return std::min(time_limit_, tied() ? barrier_.horizon() : SimTime::max());
-}
-
-// The next boundary at which something other than stepping is due, and no further than ST may go.
-SimTime Coordinator::Impl::next_stop() const {
-  SimTime stop = std::min(horizon(), commands_.next_effect());
-  stop = std::min(stop, grid_.ceil(SimTime(ground_truths_ * options_.ground_truth_period)));
-  for (const Session& session : sessions_) stop = std::min(stop, session.sampler.next_due());
-  return stop;
-}
-
-// What is due at the present ST. Samples come first: they show what the steps up to here have led
-// to, so the commands that act from here on make no difference to them, in whatever order SUTs were
-// heard.
-void Coordinator::Impl::at_boundary() {
-  capture_due();
-  apply_due();
-  log_ground_truth();
-}
-
-void Coordinator::Impl::capture_due() {
-  // A SUT can stamp nothing before its bound.
-  for (Session& session : sessions_)
-    session.sampler.sample(st_, same_instant(barrier_.bound(session.uav)), [&](auto& snapshot) {
-      ask_simulator([&](sim::Simulator& s) { s.capture(snapshot); });
-    });
-}
-
-void Coordinator::Impl::apply_due() {
-  while (const auto command = commands_.pop_due(st_)) {
-    ask_simulator([&](sim::Simulator& s) { s.apply(command->uav, command->command); });
-    log_.command_effect(st_, sessions_[command->uav].uav_name, *command);
-  }
-}
-
-void Coordinator::Impl::log_ground_truth() {
-  if (grid_.ceil(SimTime(ground_truths_ * options_.ground_truth_period)) > st_) return;
-  ++ground_truths_;
+// An unstamped client's clock may let another SUT go on.
+void Coordinator::Impl::read_timers(WallTime now) {
   for (const Session& session : sessions_)
-    log_.ground_truth(session.uav_name, ask_simulator([&](sim::Simulator& s) {
-                        return s.ground_truth(session.uav);
-                      }));
+    if (session.timer && is_computing(session))
+      barrier_.progress(session.uav, session.timer->read(now));
+}
+
+// How far ST may go in this turn.
+SimTime Coordinator::Impl::next_stop() const {
+  const SimTime horizon = tied() ? barrier_.horizon() : SimTime::max();
+  return std::min({horizon, time_limit_, stepper_.next_due(), st() + kStepsPerTurn * grid().dt()});
+}
+
+// How much of that the pace allows.
+SimTime Coordinator::Impl::paced(SimTime target, WallTime now) {
+  if (!pace_) return target;
+  if (target <= st()) {
+    pace_->idle(now);
+    return target;
+  }
+  target = std::min(target, grid().floor(st() + pace_->allowance(now)));
+  if (target > st()) pace_->spend(target - st());
+  return target;
 }
 
 void Coordinator::Impl::end(const Ending& ending) {
@@ -254,7 +229,7 @@ void Coordinator::Impl::watch() {
     flushed_ = now;
     log_.flush();
   }
-  if (const auto overdue = watchdog_.overdue(parties(now), st_)) end(*overdue);
+  if (const auto overdue = watchdog_.overdue(parties(now), st())) end(*overdue);
   if (hooks_.on_status) hooks_.on_status(status(now));
   if (hooks_.should_stop && !ended_)
     if (const auto stop = hooks_.should_stop()) end({stop->first, stop->second});
@@ -285,13 +260,13 @@ std::vector<Party> Coordinator::Impl::parties(WallTime now) const {
 }
 
 RunStatus Coordinator::Impl::status(WallTime now) const {
-  RunStatus status{.st = st_,
+  RunStatus status{.st = st(),
                    .et = std::nullopt,
                    .wall = running_ ? now - started_ : Duration(0),
                    .interactions = log_.figures().interactions,
                    .images = log_.figures().images,
                    .waiting_for = {},
-                   .blocked = ended_ ? "" : watchdog_.blocked(parties(now), st_, now)};
+                   .blocked = ended_ ? "" : watchdog_.blocked(parties(now), st(), now)};
   for (const Session& session : sessions_) {
     if (session.joined()) ++status.joined;
     if (running_ && tied())
@@ -308,7 +283,7 @@ RunReport Coordinator::Impl::close_run() {
   const SyncFigures& figures = log_.figures();
   RunReport report{.end = ended_->how,
                    .reason = ended_->reason,
-                   .st = st_,
+                   .st = st(),
                    .began = running_,
                    .wall = running_ ? host_clock_() - started_ : Duration(0),
                    .interactions = figures.interactions,
@@ -332,7 +307,7 @@ RunReport Coordinator::Impl::close_run() {
   record::Footer footer;
   footer.end = name(report.end);
   footer.reason = report.reason;
-  footer.st_at_end = st_;
+  footer.st_at_end = st();
   footer.wall = report.wall;
   for (const SutReport& sut : report.suts) footer.et_at_end.push_back(sut.et);
   if (hooks_.read_target) footer.target_after = hooks_.read_target();

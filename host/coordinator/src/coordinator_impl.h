@@ -1,30 +1,28 @@
 #pragma once
 
-#include "command_queue.h"
 #include "run_log.h"
 #include "session.h"
+#include "stepper.h"
 #include "watchdog.h"
 
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include <tether/base/error.h>
 #include <tether/coordinator/coordinator.h>
 #include <tether/sync/real_time_limit.h>
 
 namespace tether::coordinator {
 
-/// The simulator threw: nothing may be asked of it any more.
-struct SimulatorFailure : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// The loop (coordinator.cpp), what SUTs say (incoming.cpp) and what they are told (outgoing.cpp)
-/// over one state.
+/// Carries out a run: hears the SUTs (incoming.cpp), answers them (outgoing.cpp), and lets ST go on
+/// in between (coordinator.cpp). It decides little itself:
+///
+///     Event ─► validator: may it say that? ─► barrier: what is held, until when, and how far ST
+///     may go
+///                                         └─► Stepper: steps up to there, samples, applies
+///                                         commands
+///              Watchdog: is it all taking too long?
 class Coordinator::Impl {
  public:
   Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
@@ -39,11 +37,8 @@ class Coordinator::Impl {
   record::Header make_header() const;
   bool advance();
   SimTime next_stop() const;
-  SimTime horizon() const;
-  void at_boundary();
-  void capture_due();
-  void apply_due();
-  void log_ground_truth();
+  SimTime paced(SimTime target, WallTime now);
+  void read_timers(WallTime now);
   void watch();
   bool is_computing(const Session& session) const;
   bool has_only_to_be_told(const Session& session) const;
@@ -83,36 +78,24 @@ class Coordinator::Impl {
   void leave(Session& session);
   std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
                                                    const link::Reply& reply) const;
-  std::optional<uav::Sample> take_sample(Session& session, PendingInteraction& pending);
 
   bool tied() const { return options_.policy == sync::SyncPolicy::kConservativeBarrier; }
   const sim::World& world() const { return simulator_->world(); }
+  const StepGrid& grid() const { return stepper_.grid(); }
+  SimTime st() const { return stepper_.st(); }
 
-  /// Calls the simulator; what it throws becomes a SimulatorFailure.
-  template <class F>
-  auto ask_simulator(F&& f) {
-    try {
-      return f(*simulator_);
-    } catch (const Error& e) {
-      throw SimulatorFailure(e.what());
-    }
-  }
-
-  sim::Simulator* simulator_;
-  RunLog log_;
-  RunOptions options_;
+  const sim::Simulator* simulator_;
+  const RunOptions options_;
   std::function<WallTime()> host_clock_;
   link::Server* server_ = nullptr;
   RunHooks hooks_;
   std::map<link::PeerId, std::string> remote_;  // address of each connection
 
-  StepGrid grid_;
+  RunLog log_;
   sync::BarrierSynchronizer barrier_;
-  CommandQueue commands_;
-  std::vector<Session> sessions_;   // one per UAV, in the world's order
-  SimTime st_{};                    // the simulator's present ST
-  SimTime time_limit_;              // a step boundary
-  std::int64_t ground_truths_ = 0;  // instants logged so far
+  Stepper stepper_;
+  std::vector<Session> sessions_;  // one per UAV, in the world's order
+  SimTime time_limit_;             // a step boundary
   std::optional<sync::RealTimeLimit> pace_;
 
   bool running_ = false;  // every SUT has joined

@@ -128,7 +128,7 @@ void Coordinator::Impl::on_progress(Session& session, const link::Progress& prog
 void Coordinator::Impl::on_annotation(Session& session, const link::Annotation& note) {
   if (const auto fault = session.annotations.spend(note))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
-  log_.annotation(st_, {session.uav_name, note.at, note.topic, note.json});
+  log_.annotation(st(), {session.uav_name, note.at, note.topic, note.json});
 }
 
 // No reply leaves before the SUT has stopped for it, so what is open and due by now is what this
@@ -144,7 +144,7 @@ std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session, 
 
 // All of a concurrent SUT stands still: replies that are due by then may leave.
 void Coordinator::Impl::on_stop(Session& session, ExecTime at, WallTime now) {
-  log_.stop(st_, {session.uav_name, at, earliest_due(session, at), now});
+  log_.stop(st(), {session.uav_name, at, earliest_due(session, at), now});
   barrier_.stop(session.uav, at);
   release_ready();
 }
@@ -160,10 +160,10 @@ Standing Coordinator::Impl::standing(const Session& session) const {
           .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
           .open_calls = session.open.size(),
           .next_sequence = session.next_sequence,
-          .st = st_,
-          .calls_in_step = st_ > session.called_at ? 0 : session.calls_in_step,
-          .waiting_commands = commands_.waiting(session.uav),
-          .sensors = session.sampler,
+          .st = st(),
+          .calls_in_step = st() > session.called_at ? 0 : session.calls_in_step,
+          .waiting_commands = stepper_.waiting_commands(session.uav),
+          .sensors = stepper_.sampler(session.uav),
           .witness = session.witness ? &*session.witness : nullptr,
           .clock_cores = adds_up_cores ? cores : 0};
 }
@@ -175,8 +175,7 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
     return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
   ++session.next_sequence;
   begin(session, request, now);
-  capture_due();
-  apply_due();
+  stepper_.act();
   release_ready();
 }
 
@@ -186,8 +185,8 @@ void Coordinator::Impl::begin(Session& session, const link::Request& request, Wa
   PendingInteraction pending{.request = request, .entry = make_entry(session, request, now)};
   record::Interaction& entry = pending.entry;
   entry.request_at = charge(session, request, entry);
-  session.calls_in_step = st_ > session.called_at ? 1 : session.calls_in_step + 1;
-  session.called_at = st_;
+  session.calls_in_step = st() > session.called_at ? 1 : session.calls_in_step + 1;
+  session.called_at = st();
   entry.reply_at = accept(session, pending);
   if (tied()) {
     barrier_.hold({session.uav, entry.reply_at, entry.sequence});
@@ -204,7 +203,7 @@ record::Interaction Coordinator::Impl::make_entry(const Session& session,
   entry.uav = session.uav_name;
   entry.sequence = request.sequence;
   entry.kind = kind_of(request);
-  entry.st_at_arrival = st_;
+  entry.st_at_arrival = st();
   entry.wall_at_arrival = now;
   entry.stamped = !session.timer && tied();
   // Calls of several threads overlap: a round trip less another call's hold says nothing.
@@ -218,10 +217,10 @@ record::Interaction Coordinator::Impl::make_entry(const Session& session,
 // free running, ST.
 ExecTime Coordinator::Impl::charge(Session& session, const link::Request& request,
                                    record::Interaction& entry) {
-  if (!tied()) return same_instant(st_);
+  if (!tied()) return same_instant(st());
   const ExecTime stamp =
       session.timer ? session.timer->pause(entry.wall_at_arrival) : request.issued_at;
-  const sync::Arrival arrival = barrier_.arrive(session.uav, stamp, st_);
+  const sync::Arrival arrival = barrier_.arrive(session.uav, stamp, st());
   entry.lag = arrival.lag;
   if (arrival.violation)
     entry.violation =
@@ -249,11 +248,11 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
 ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pending,
                                         const link::ReadSensor& read) {
   record::Interaction& entry = pending.entry;
-  entry.sensor = session.sampler.name(read.sensor);
+  Sampler& sampler = stepper_.sampler(session.uav);
+  entry.sensor = sampler.name(read.sensor);
   entry.latest = read.latest;
   entry.only_if_available = read.only_if_available;
-  const auto measurement =
-      session.sampler.plan(entry.sequence, read, same_instant(entry.request_at));
+  const auto measurement = sampler.plan(entry.sequence, read, same_instant(entry.request_at));
   if (!measurement) return entry.request_at;
 
   entry.sample_index = measurement->index;
@@ -265,9 +264,9 @@ ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pe
 ExecTime Coordinator::Impl::accept_command(Session& session, PendingInteraction& pending,
                                            const link::SetVelocity& set) {
   const SimTime acts = same_instant(pending.entry.request_at) + session.command_latency;
-  pending.entry.effect_at = grid_.ceil(acts);
+  pending.entry.effect_at =
+      stepper_.command(session.uav, pending.entry.sequence, set.command, acts);
   pending.entry.grid_error = *pending.entry.effect_at - acts;
-  commands_.push({*pending.entry.effect_at, session.uav, pending.entry.sequence, set.command});
   return pending.entry.request_at;
 }
 

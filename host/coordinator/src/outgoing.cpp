@@ -7,7 +7,7 @@ namespace tether::coordinator {
 
 void Coordinator::Impl::release_ready() {
   if (!tied()) return answer_untied();
-  while (const auto grant = barrier_.release(st_)) {
+  while (const auto grant = barrier_.release(st())) {
     Session& session = sessions_[grant->sut];
     std::size_t i = 0;
     while (session.open[i].entry.sequence != grant->call) ++i;
@@ -20,13 +20,13 @@ void Coordinator::Impl::answer_untied() {
   for (Session& session : sessions_) {
     for (std::size_t i = 0; i < session.open.size();) {
       PendingInteraction& pending = session.open[i];
-      const Sampler::Read* read = session.sampler.find(pending.entry.sequence);
+      const Sampler::Read* read = stepper_.sampler(session.uav).find(pending.entry.sequence);
       if (read && !read->captured) {
         ++i;
         continue;
       }
-      pending.entry.reply_at = same_instant(st_);
-      reply(session, i, st_);
+      pending.entry.reply_at = same_instant(st());
+      reply(session, i, st());
     }
   }
 }
@@ -41,7 +41,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
 
   link::Reply message{.sequence = entry.sequence,
                       .resume_at = entry.reply_at,
-                      .sample = take_sample(session, pending)};
+                      .sample = stepper_.measure(session.uav, entry)};
   const std::optional<uav::CameraSample> image = image_to_record(session, pending.request, message);
   entry.st_at_release = st;
   entry.grid_error = std::max(entry.grid_error, same_instant(entry.reply_at) - st);
@@ -73,27 +73,11 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
 void Coordinator::Impl::leave(Session& session) {
   session.left = true;
   session.open.clear();
-  session.sampler.close();
+  stepper_.sampler(session.uav).close();
   barrier_.remove(session.uav);
   server_->close(session.peer);
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.left; }))
     end({RunEnd::kFinished, "every SUT has finished"});
-}
-
-std::optional<uav::Sample> Coordinator::Impl::take_sample(Session& session,
-                                                          PendingInteraction& pending) {
-  record::Interaction& entry = pending.entry;
-  const Sampler::Read* read = session.sampler.find(entry.sequence);
-  if (!read) return std::nullopt;
-  const sim::Snapshot& state = session.sampler.state_of(*read);
-  entry.sample_state_at = state.at;
-  entry.grid_error = std::max(entry.grid_error, read->measurement.sampled_at - state.at);
-  auto sample = ask_simulator([&](sim::Simulator& s) {
-    return s.measure(state, session.uav, read->sensor, read->measurement.index);
-  });
-  session.sampler.answered(entry.sequence);
-  if (std::holds_alternative<uav::CameraSample>(sample)) log_.count_image();
-  return sample;
 }
 
 }  // namespace tether::coordinator

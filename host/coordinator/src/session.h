@@ -1,12 +1,10 @@
 #pragma once
 
-#include "sampler.h"
 #include "validator.h"
 
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <tether/link/messages.h>
@@ -27,14 +25,10 @@ struct PendingInteraction {
 
 /// One SUT and the UAV that it flies. Plain state; `Coordinator` acts on it.
 struct Session {
-  explicit Session(Sampler its_sampler)
-      : sampler(std::move(its_sampler)), recorded_image_at(sampler.size()) {}
-
   std::size_t uav = 0;  ///< index in the world, and of the SUT in the barrier
   std::string uav_name;
   Duration command_latency{0};
   int cores = 0;  ///< of the SUT's machine; 0: not known
-  Sampler sampler;
   /// Of each sensor, when the last image in the record was taken.
   std::vector<std::optional<SimTime>> recorded_image_at;
 
