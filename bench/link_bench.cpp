@@ -156,8 +156,7 @@ class CoordinatorHost {
                 ("tether_link_bench." + std::to_string(::getpid()))),
         recorder_(folder_, simulator_),
         coordinator_(simulator_, recorder_, run_options(), wall_now),
-        server_(
-            link::listen_tcp({"127.0.0.1", 0}, std::chrono::seconds(10), coordinator_.events())),
+        server_(link::listen_tcp({"127.0.0.1", 0}, std::chrono::seconds(10))),
         thread_([this] { coordinator_.run(*server_); }) {}
   ~CoordinatorHost() { thread_.join(); }
 

@@ -139,9 +139,8 @@ link::Address listen_address(const TrialSpec& spec, const Board* board) {
   return {board && !spec.uses_tunnel ? board->host_address() : "127.0.0.1", 0};
 }
 
-std::unique_ptr<link::Server> listen(const TrialSpec& spec, const Board* board,
-                                     link::ServerEvents& events) try {
-  return link::listen_tcp(listen_address(spec, board), kHelloTimeout, events);
+std::unique_ptr<link::Server> listen(const TrialSpec& spec, const Board* board) try {
+  return link::listen_tcp(listen_address(spec, board), kHelloTimeout);
 } catch (const Error& e) {
   if (!board || spec.listen || spec.uses_tunnel) throw;
   throw Error(e.code(), fmt::format("{}; the board sees this machine as {}, which is none of its "
@@ -194,7 +193,7 @@ Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* boa
   auto options = run_options(spec, timings, token);
   options.header.target = target_info(spec, board);
   coordinator::Coordinator coordinator(simulator.get(), *recorder, std::move(options), host_now);
-  const auto server = listen(spec, board, coordinator.events());
+  const auto server = listen(spec, board);
   const SutRun sut_run{sut_address(spec, board, *server), token, spec.condition};
   SutProcesses suts;
   if (board) {

@@ -22,7 +22,7 @@ packages_build=(
   libmujoco-dev libegl-dev libgl-dev libopengl-dev libegl1 libgl1-mesa-dri
   libsdformat-dev libtinyxml2-dev libconsole-bridge-dev libassimp-dev
   libopencv-dev libpng-dev libturbojpeg0-dev zlib1g-dev libzstd-dev libboost-dev
-  libasio-dev libflatbuffers-dev flatbuffers-compiler
+  libflatbuffers-dev flatbuffers-compiler
   libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   gnuplot-nox
 )

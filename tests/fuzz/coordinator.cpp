@@ -57,14 +57,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const coordinator::RunOptions options = fuzz::options_of(choices);
   sim::FakeSimulator simulator(sim::make_fake_world(options.uavs.size()));
   fuzz::MemoryRecord recorder;
-  const fuzz::Peers* clock = nullptr;
+  fuzz::Peers peers(choices);
   WallTime now{};
   coordinator::Coordinator coordinator(simulator, recorder, options, [&] {
     now += std::chrono::microseconds(100);
-    return clock == nullptr ? now : now + clock->passed;
+    return now + peers.passed;
   });
-  fuzz::Peers peers(choices, coordinator.events());
-  clock = &peers;
   const coordinator::RunReport report = coordinator.run(peers);
   fuzz::require_honest(report, recorder.record,
                        options.policy == sync::SyncPolicy::kConservativeBarrier);

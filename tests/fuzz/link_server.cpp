@@ -14,24 +14,41 @@
 namespace tether::fuzz {
 namespace {
 
-/// Peers come, speak, and go once, in this order.
-class Heard final : public link::ServerEvents {
+/// Peers come, speak, and go once, in this order, one event of each per poll.
+class Hearing {
  public:
-  void on_connected(link::PeerId peer, const std::string&) override {
-    require(open_.insert(peer).second, "a peer that came twice");
+  explicit Hearing(link::Server& server) : server_(server) {}
+
+  /// Until nothing is there.
+  void poll() {
+    while (poll_once()) {
+    }
   }
-  void on_message(link::PeerId peer, link::Message message) override {
-    require(open_.contains(peer), "a message of nobody");
-    require(link::validate(message).ok(), "a message that may not be sent");
-    server->send(peer, link::Refusal{link::Refusal::Reason::kBadRequest, "heard"});
-  }
-  void on_closed(link::PeerId peer, const Failure& failure) override {
-    require(open_.erase(peer) == 1, "a peer that left twice");
-    require_one_line(failure.message);
-  }
-  link::Server* server = nullptr;
 
  private:
+  bool poll_once() {
+    std::set<link::PeerId> heard;
+    for (const link::Event& event : server_.poll(Duration::zero())) {
+      require(heard.insert(event.peer).second, "two events of a peer");
+      std::visit([&](const auto& what) { take(event.peer, what); }, event.what);
+    }
+    return !heard.empty();
+  }
+  void take(link::PeerId peer, const link::Connected&) {
+    require(open_.insert(peer).second, "a peer that came twice");
+  }
+  void take(link::PeerId peer, const link::Message& message) {
+    require(open_.contains(peer), "a message of nobody");
+    require(link::validate(message).ok(), "a message that may not be sent");
+    server_.send(peer, link::Refusal{link::Refusal::Reason::kBadRequest, "heard"});
+  }
+  void take(link::PeerId peer, const link::Closed& end) {
+    require(open_.erase(peer) == 1, "a peer that left twice");
+    require_one_line(end.failure.message);
+    if (end.may_still_read) server_.close(peer);
+  }
+
+  link::Server& server_;
   std::set<link::PeerId> open_;
 };
 
@@ -63,18 +80,19 @@ void require_answers(const link::Descriptor& client) {
 }
 
 void talk(link::Server& server, Choices choices) {
+  Hearing hearing(server);
   link::Descriptor client = connect_to(server.address().port);
   const bool closes_half = choices.coin();
   while (!choices.empty()) {
     const Bytes piece = choices.take(std::size_t{choices.byte()} * 8 + 1);
     (void)::send(client.get(), piece.data(), piece.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-    server.poll(Duration::zero());
+    hearing.poll();
   }
   if (closes_half) ::shutdown(client.get(), SHUT_WR);
-  server.poll(Duration::zero());
+  hearing.poll();
   require_answers(client);
   client = link::Descriptor();
-  server.poll(Duration::zero());
+  hearing.poll();
 }
 
 }  // namespace
@@ -82,9 +100,7 @@ void talk(link::Server& server, Choices choices) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tether;
-  fuzz::Heard heard;
-  const auto server = link::listen_tcp({"127.0.0.1", 0}, std::chrono::seconds(10), heard);
-  heard.server = server.get();
+  const auto server = link::listen_tcp({"127.0.0.1", 0}, std::chrono::seconds(10));
   fuzz::talk(*server, fuzz::Choices({data, size}));
   return 0;
 }

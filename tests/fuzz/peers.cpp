@@ -1,16 +1,26 @@
 #include "peers.h"
 
 #include <iterator>
+#include <utility>
 
 namespace tether::fuzz {
 
 using link::Message;
 
-bool Peers::poll(Duration) {
-  if (finished() && peers_.empty()) {
+std::span<link::Event> Peers::poll(Duration) {
+  event_.reset();
+  if (const auto came = std::exchange(came_, std::nullopt)) {
+    if (peers_.contains(*came)) event_ = {*came, Message(hello())};
+  } else if (finished() && peers_.empty()) {
     passed += std::chrono::hours(1);
-    return false;
+  } else {
+    go_on();
   }
+  if (!event_) return {};
+  return {&*event_, 1};
+}
+
+void Peers::go_on() {
   const std::size_t choice = choices_.below(16);
   if (finished() || (choice == 0 && !peers_.empty())) {
     leave(peers_.empty() ? 0 : peers_.begin()->first);
@@ -22,22 +32,21 @@ bool Peers::poll(Duration) {
     const auto peer = std::next(peers_.begin(), static_cast<long>(choices_.below(peers_.size())));
     speak(peer->first, peer->second);
   }
-  return true;
 }
 
 void Peers::come() {
   peers_[++last_id_] = {};
-  events_.on_connected(last_id_, "peer " + std::to_string(last_id_));
-  if (peers_.contains(last_id_)) events_.on_message(last_id_, hello());
+  came_ = last_id_;
+  event_ = {last_id_, link::Connected{"peer " + std::to_string(last_id_)}};
 }
 
 void Peers::leave(link::PeerId id) {
-  if (peers_.erase(id) == 1) events_.on_closed(id, {Failure::Kind::kDisconnected, "hung up"});
+  if (peers_.erase(id) == 1) event_ = {id, link::Closed{{Failure::Kind::kDisconnected, "hung up"}}};
 }
 
 void Peers::speak(link::PeerId id, Peer& peer) {
   Message said = message(peer);
-  if (link::validate(said).ok()) events_.on_message(id, std::move(said));
+  if (link::validate(said).ok()) event_ = {id, std::move(said)};
 }
 
 link::Hello Peers::hello() {

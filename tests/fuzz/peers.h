@@ -4,7 +4,7 @@
 
 #include <map>
 #include <optional>
-#include <vector>
+#include <span>
 
 #include <tether/link/server.h>
 
@@ -14,12 +14,12 @@ namespace tether::fuzz {
 /// up. No thread, socket or clock.
 class Peers final : public link::Server {
  public:
-  Peers(Choices choices, link::ServerEvents& events) : choices_(choices), events_(events) {}
+  explicit Peers(Choices choices) : choices_(choices) {}
 
   bool finished() const { return choices_.empty(); }
 
   link::Address address() const override { return {"fuzz", 0}; }
-  bool poll(Duration max_wait) override;
+  std::span<link::Event> poll(Duration max_wait) override;
   void send(link::PeerId id, link::Message message) override;
   void close(link::PeerId id) override { peers_.erase(id); }
 
@@ -31,6 +31,7 @@ class Peers final : public link::Server {
     ExecTime et;
     std::uint64_t sequence = 0;
   };
+  void go_on();
   void come();
   void leave(link::PeerId id);
   void speak(link::PeerId id, Peer& peer);
@@ -40,7 +41,8 @@ class Peers final : public link::Server {
   ExecTime stamp(ExecTime from);
 
   Choices choices_;
-  link::ServerEvents& events_;
+  std::optional<link::PeerId> came_;  // says its Hello next
+  std::optional<link::Event> event_;  // of the last poll
   std::map<link::PeerId, Peer> peers_;
   link::PeerId last_id_ = 0;
 };

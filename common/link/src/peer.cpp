@@ -27,17 +27,14 @@ std::vector<std::uint8_t> copy(std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-Peer::Peer(PeerId id, Tcp::socket socket, std::string remote)
-    : id_(id), socket_(std::move(socket)), remote_(std::move(remote)) {
-  tune(descriptor());
-  std::error_code ignored;
-  socket_.native_non_blocking(true, ignored);
-}
-
-void Peer::greet() {
-  is_stranger_ = false;
-  deadline.reset();
-  input_.set_limit(kMaxRequestBytes);
+Result<std::span<const std::uint8_t>> Peer::next_frame() {
+  auto frame = input_.next();
+  may_have_frame_ = frame && !frame->empty();
+  if (may_have_frame_ && frames_++ == 0) {
+    deadline.reset();
+    input_.set_limit(kMaxRequestBytes);
+  }
+  return frame;
 }
 
 Status Peer::send(const FramePieces& pieces, Message& message) {
@@ -124,8 +121,7 @@ void Peer::die() {
   deadline.reset();
   queue_.clear();
   queued_bytes_ = 0;
-  std::error_code ignored;
-  socket_.close(ignored);
+  socket_ = Descriptor();
 }
 
 void Peer::finish(std::chrono::steady_clock::time_point end) {

@@ -6,17 +6,14 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include <asio/ip/tcp.hpp>
 
 #include <tether/link/frame_buffer.h>
 #include <tether/link/server.h>
 #include <tether/link/socket.h>
 
 namespace tether::link {
-
-using Tcp = asio::ip::tcp;
 
 /// A frame, or what is left of it, that the socket did not take at once.
 struct QueuedFrame {
@@ -29,7 +26,7 @@ struct QueuedFrame {
   std::size_t left() const { return head.size() + image.size() + tail.size() - done; }
 };
 
-/// One connection of a TcpServer. A stranger until greeted.
+/// One connection of a TcpServer.
 ///
 ///   kOpen ──drain()──► kDraining ──peer closed or deadline──► kDead
 ///     └──────────────── connection lost ───────────────────────┘
@@ -42,19 +39,20 @@ class Peer {
   enum class State { kOpen, kDraining, kDead };
   using Deadline = std::optional<std::chrono::steady_clock::time_point>;
 
-  Peer(PeerId id, Tcp::socket socket, std::string remote);
+  /// `socket`: connected, does not block.
+  Peer(PeerId id, Descriptor socket, std::string remote)
+      : id_(id), socket_(std::move(socket)), remote_(std::move(remote)) {}
 
   PeerId id() const { return id_; }
   const std::string& remote() const { return remote_; }
   State state() const { return state_; }
-  int descriptor() { return socket_.native_handle(); }
+  int descriptor() const { return socket_.get(); }
   bool wants_to_write() const { return !queue_.empty(); }
   /// It has closed its sending side: there is nothing to be received any more.
   bool input_has_ended() const { return input_has_ended_; }
   std::chrono::steady_clock::time_point since() const { return since_; }
-  bool is_stranger() const { return is_stranger_; }
-  /// Its first frame was taken: it may take its time from here on, and send larger ones.
-  void greet();
+  /// It has sent no whole frame yet, or was sent away by what it sent first.
+  bool is_stranger() const { return frames_ == 0 || (frames_ == 1 && state_ == State::kDraining); }
 
   /// Sends what the socket takes and queues the rest, whose image it takes out of `message`.
   /// Fails (and is dead then) if the connection is lost or too much is waiting.
@@ -64,8 +62,11 @@ class Peer {
   /// Receives once. True: something came. Fails at the end of its input, and (dead then) if the
   /// connection is lost.
   Result<bool> receive();
-  /// The next whole frame; empty: none.
-  Result<std::span<const std::uint8_t>> next_frame() { return input_.next(); }
+  /// The next whole frame; empty: none. From the first one on it may take its time, and send larger
+  /// ones.
+  Result<std::span<const std::uint8_t>> next_frame();
+  /// Another frame may have come with the last one.
+  bool may_have_frame() const { return may_have_frame_ && state_ == State::kOpen; }
   /// Receives once and drops it; dead when the peer has closed and nothing is queued for it.
   void discard_input();
 
@@ -75,17 +76,18 @@ class Peer {
   void finish(std::chrono::steady_clock::time_point end);
 
   Deadline deadline;               ///< of the first frame, or of draining
-  std::optional<Failure> closing;  ///< what on_closed still has to tell
+  std::optional<Failure> closing;  ///< what is still to be reported
 
  private:
   void enqueue(const FramePieces& pieces, std::size_t done, Message& message);
   void shut_when_flushed();
 
   PeerId id_;
-  Tcp::socket socket_;
+  Descriptor socket_;
   std::string remote_;
   std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
-  bool is_stranger_ = true;
+  std::size_t frames_ = 0;  // taken so far
+  bool may_have_frame_ = false;
   FrameBuffer input_{kMaxHelloBytes};
   std::deque<QueuedFrame> queue_;
   std::size_t queued_bytes_ = 0;

@@ -74,11 +74,13 @@ void tune(int descriptor) {
   set_option(descriptor, IPPROTO_TCP, TCP_KEEPIDLE, 10);
   set_option(descriptor, IPPROTO_TCP, TCP_KEEPINTVL, 5);
   set_option(descriptor, IPPROTO_TCP, TCP_KEEPCNT, 4);
-  close_on_exec(descriptor);
+  // Child processes (the SUT that `tether run` starts) must not hold our connections open.
+  ::fcntl(descriptor, F_SETFD, FD_CLOEXEC);
 }
 
-void close_on_exec(int descriptor) {
-  ::fcntl(descriptor, F_SETFD, FD_CLOEXEC);
+void set_blocking(int descriptor, bool blocks) {
+  const int flags = ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK;
+  ::fcntl(descriptor, F_SETFL, blocks ? flags : flags | O_NONBLOCK);
 }
 
 void limit_sending(int descriptor, Duration limit) {

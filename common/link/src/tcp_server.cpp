@@ -4,12 +4,11 @@
 #include <cerrno>
 #include <chrono>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <asio/error.hpp>
-#include <asio/io_context.hpp>
 #include <poll.h>
 #include <time.h>
 
@@ -31,11 +30,11 @@ constexpr std::chrono::seconds kFinishLimit{1};
 
 class TcpServer final : public Server {
  public:
-  TcpServer(const Address& address, Duration hello_timeout, ServerEvents& events);
+  TcpServer(const Address& address, Duration hello_timeout);
   ~TcpServer() override;
 
   Address address() const override { return address_; }
-  bool poll(Duration max_wait) override;
+  std::span<Event> poll(Duration max_wait) override;
   void send(PeerId id, Message message) override;
   void close(PeerId id) override;
 
@@ -48,25 +47,24 @@ class TcpServer final : public Server {
   Peer::Deadline next_deadline() const;
 
   // The parts of poll(), in order.
+  void report_and_remove_dead();
   bool look_out(Duration max_wait);
   bool wait(Duration max_wait);
   void accept_all();
-  void accept_one(Tcp::socket socket);
+  void accept_one(Accepted accepted);
   void serve(Peer& peer, int happened);
-  /// Whether a peer that could not be received from is kept to be sent to.
-  bool may_still_listen(const Peer& peer);
   bool receive(Peer& peer);
-  void handle_frames(Peer& peer);
+  void handle_frame(Peer& peer);
   void expire_deadlines();
-  bool report_and_remove_dead();
 
   void refuse(Peer& peer, const Failure& failure);
+  /// The connection of an open peer is gone, which is reported if its end was not yet.
+  static void lose(Peer& peer, const Failure& failure);
 
-  asio::io_context context_{1};
-  Tcp::acceptor acceptor_{context_};
+  Descriptor acceptor_;
   Address address_;
   Duration hello_timeout_;
-  ServerEvents& events_;
+  std::vector<Event> events_;  // of the last poll
   Encoder encoder_;
   std::vector<std::unique_ptr<Peer>> peers_;
   std::vector<pollfd> watched_;  // the acceptor, then peers_ in order
@@ -78,31 +76,17 @@ class TcpServer final : public Server {
   int look_outs_ = 0;
 };
 
-Address to_address(const Tcp::endpoint& endpoint) {
-  return {endpoint.address().to_string(), endpoint.port()};
-}
-
-[[noreturn]] void cannot_listen(const Address& address, const std::error_code& error) {
-  throw Error(ErrorCode::kSetup,
-              "cannot listen on " + to_string(address) + ": " + error.message() +
-                  " (choose an address of this machine and a free port; port 0 takes any)");
-}
-
-TcpServer::TcpServer(const Address& address, Duration hello_timeout, ServerEvents& events)
-    : hello_timeout_(std::min(hello_timeout, kLongestTimeout)), events_(events) {
-  std::error_code error;
-  const auto found = Tcp::resolver(context_).resolve(address.host, std::to_string(address.port),
-                                                     asio::ip::resolver_base::passive, error);
-  if (error) cannot_listen(address, error);
-  const Tcp::endpoint endpoint = found.begin()->endpoint();
-  acceptor_.open(endpoint.protocol(), error);
-  if (!error) acceptor_.set_option(Tcp::acceptor::reuse_address(true), error);
-  if (!error) acceptor_.bind(endpoint, error);
-  if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
-  if (!error) acceptor_.non_blocking(true, error);
-  if (!error) address_ = to_address(acceptor_.local_endpoint(error));
-  if (error) cannot_listen(address, error);
-  close_on_exec(acceptor_.native_handle());
+TcpServer::TcpServer(const Address& address, Duration hello_timeout)
+    : hello_timeout_(std::min(hello_timeout, kLongestTimeout)) {
+  auto listening = listen_on_tcp(address);
+  if (!listening) {
+    throw Error(ErrorCode::kSetup,
+                listening.failure().message +
+                    " (choose an address of this machine and a free port; port 0 takes any)");
+  }
+  acceptor_ = std::move(*listening);
+  set_blocking(acceptor_.get(), false);
+  address_ = local_address(acceptor_.get());
 }
 
 TcpServer::~TcpServer() {
@@ -127,7 +111,7 @@ void TcpServer::send(PeerId id, Message message) {
   }
   const FramePieces pieces = encoder_.encode_pieces(message);
   if (!pieces.image.empty()) spoke_last_ = 0;  // taking that in alone takes the peer too long
-  if (const Status sent = peer->send(pieces, message); !sent) peer->closing = sent.failure();
+  if (const Status sent = peer->send(pieces, message); !sent) lose(*peer, sent.failure());
 }
 
 void TcpServer::close(PeerId id) {
@@ -146,11 +130,18 @@ void TcpServer::refuse(Peer& peer, const Failure& failure) {
 
 // --- polling ------------------------------------------------------------------------------------
 
-bool TcpServer::poll(Duration max_wait) {
-  bool handled = report_and_remove_dead();
-  if (!handled && look_out(max_wait)) return true;
-  if (wait(handled ? Duration::zero() : max_wait)) {
-    handled = true;
+void TcpServer::lose(Peer& peer, const Failure& failure) {
+  if (!peer.input_has_ended()) peer.closing = failure;
+}
+
+std::span<Event> TcpServer::poll(Duration max_wait) {
+  events_.clear();
+  for (const auto& peer : peers_) {
+    if (peer->may_have_frame()) handle_frame(*peer);
+  }
+  report_and_remove_dead();
+  if (events_.empty() && look_out(max_wait)) return events_;
+  if (wait(events_.empty() ? max_wait : Duration::zero())) {
     // Peers that come now are served the next time.
     const std::size_t served = peers_.size();
     if (watched_[0].revents != 0) accept_all();
@@ -159,7 +150,8 @@ bool TcpServer::poll(Duration max_wait) {
     }
   }
   expire_deadlines();
-  return report_and_remove_dead() || handled;
+  report_and_remove_dead();
+  return events_;
 }
 
 bool TcpServer::look_out(Duration max_wait) {
@@ -186,11 +178,14 @@ bool TcpServer::wait(Duration max_wait) {
   }
   watched_.resize(peers_.size() + 1);
   const bool may_accept = !accept_paused_until_ && !is_crowded_;
-  watched_[0] = {may_accept ? acceptor_.native_handle() : -1, POLLIN, 0};
+  watched_[0] = {may_accept ? acceptor_.get() : -1, POLLIN, 0};
   for (std::size_t i = 0; i < peers_.size(); ++i) {
-    const int in = peers_[i]->input_has_ended() ? 0 : POLLIN;
-    const int out = peers_[i]->wants_to_write() ? POLLOUT : 0;
-    watched_[i + 1] = {peers_[i]->descriptor(), static_cast<short>(in | out), 0};
+    const Peer& peer = *peers_[i];
+    const int in = peer.input_has_ended() ? 0 : POLLIN;
+    const int out = peer.wants_to_write() ? POLLOUT : 0;
+    // Who had an event already has none from its socket in this poll.
+    const int descriptor = peer.may_have_frame() ? -1 : peer.descriptor();
+    watched_[i + 1] = {descriptor, static_cast<short>(in | out), 0};
   }
   const std::int64_t ns = limit.count();
   const timespec timeout{ns / 1'000'000'000, ns % 1'000'000'000};
@@ -220,37 +215,31 @@ Peer::Deadline TcpServer::next_deadline() const {
 void TcpServer::accept_all() {
   is_crowded_ = is_full();
   while (!is_full()) {
-    std::error_code error;
-    Tcp::socket socket(context_);
-    acceptor_.accept(socket, error);
-    if (!error) {
-      accept_one(std::move(socket));
-    } else if (error == asio::error::connection_aborted) {
-      continue;
-    } else {
-      const bool none_left = error == asio::error::would_block;
+    Accepted accepted = accept_tcp(acceptor_.get());
+    if (!accepted.error) {
+      accept_one(std::move(accepted));
+    } else if (accepted.error != std::errc::connection_aborted) {
+      const bool none_left = accepted.error == std::errc::operation_would_block;
       if (!none_left) accept_paused_until_ = steady_clock::now() + kAcceptPause;
       return;
     }
   }
 }
 
-void TcpServer::accept_one(Tcp::socket socket) {
-  std::error_code error;
-  const Tcp::endpoint remote = socket.remote_endpoint(error);
-  if (error) return;  // gone already
+void TcpServer::accept_one(Accepted accepted) {
   peers_.push_back(
-      std::make_unique<Peer>(next_id_++, std::move(socket), to_string(to_address(remote))));
+      std::make_unique<Peer>(next_id_++, std::move(accepted.socket), to_string(accepted.remote)));
   Peer& peer = *peers_.back();
   peer.deadline = peer.since() + hello_timeout_;
-  events_.on_connected(peer.id(), peer.remote());
+  events_.push_back({peer.id(), Connected{peer.remote()}});
 }
 
 void TcpServer::serve(Peer& peer, int happened) {
   if (peer.state() == Peer::State::kDead) return;
   if (happened & POLLOUT) {
+    const bool is_open = peer.state() == Peer::State::kOpen;
     if (const Status flushed = peer.flush(); !flushed) {
-      if (peer.state() == Peer::State::kOpen) peer.closing = flushed.failure();
+      if (is_open) lose(peer, flushed.failure());
       return;
     }
   }
@@ -260,33 +249,27 @@ void TcpServer::serve(Peer& peer, int happened) {
   receive(peer);
 }
 
-bool TcpServer::may_still_listen(const Peer& peer) {
-  return peer.input_has_ended() && !peer.is_stranger() && events_.on_half_closed(peer.id());
-}
-
 bool TcpServer::receive(Peer& peer) {
   const auto received = peer.receive();
-  if (!received) {
-    if (may_still_listen(peer)) return true;
+  if (!received && peer.input_has_ended() && !peer.is_stranger()) {
+    events_.push_back({peer.id(), Closed{received.failure(), true}});
+  } else if (!received) {
     peer.die();
     peer.closing = received.failure();
   } else if (*received) {
-    handle_frames(peer);
+    handle_frame(peer);
   }
   return !received || *received;
 }
 
-void TcpServer::handle_frames(Peer& peer) {
-  while (peer.state() == Peer::State::kOpen) {
-    const auto frame = peer.next_frame();
-    if (!frame) return refuse(peer, frame.failure());
-    if (frame->empty()) return;
-    auto message = decode(*frame);
-    if (!message) return refuse(peer, message.failure());
-    spoke_last_ = peer.id();
-    events_.on_message(peer.id(), std::move(message).value());
-    if (peer.is_stranger() && peer.state() == Peer::State::kOpen) peer.greet();
-  }
+void TcpServer::handle_frame(Peer& peer) {
+  const auto frame = peer.next_frame();
+  if (!frame) return refuse(peer, frame.failure());
+  if (frame->empty()) return;
+  auto message = decode(*frame);
+  if (!message) return refuse(peer, message.failure());
+  spoke_last_ = peer.id();
+  events_.push_back({peer.id(), std::move(message).value()});
 }
 
 void TcpServer::expire_deadlines() {
@@ -306,25 +289,18 @@ void TcpServer::expire_deadlines() {
   }
 }
 
-bool TcpServer::report_and_remove_dead() {
-  bool reported = false;
-  for (std::size_t i = 0; i < peers_.size(); ++i) {
-    if (!peers_[i]->closing) continue;
-    const Failure failure = *std::exchange(peers_[i]->closing, std::nullopt);
-    events_.on_closed(peers_[i]->id(), failure);
-    reported = true;
+void TcpServer::report_and_remove_dead() {
+  for (const auto& peer : peers_) {
+    if (auto failure = std::exchange(peer->closing, std::nullopt))
+      events_.push_back({peer->id(), Closed{std::move(*failure)}});
   }
-  std::erase_if(peers_, [](const auto& peer) {
-    return peer->state() == Peer::State::kDead && !peer->closing;
-  });
-  return reported;
+  std::erase_if(peers_, [](const auto& peer) { return peer->state() == Peer::State::kDead; });
 }
 
 }  // namespace
 
-std::unique_ptr<Server> listen_tcp(const Address& address, Duration hello_timeout,
-                                   ServerEvents& events) {
-  return std::make_unique<TcpServer>(address, hello_timeout, events);
+std::unique_ptr<Server> listen_tcp(const Address& address, Duration hello_timeout) {
+  return std::make_unique<TcpServer>(address, hello_timeout);
 }
 
 }  // namespace tether::link

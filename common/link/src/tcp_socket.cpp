@@ -1,14 +1,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <system_error>
 #include <utility>
 
-#include <fcntl.h>
 #include <netdb.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <tether/link/channel.h>
@@ -34,8 +33,7 @@ std::string reason(int error) {
   return std::system_category().message(error);
 }
 
-// ---- finding addresses
-// ---------------------------------------------------------------------------
+// ---- finding addresses --------------------------------------------------------------------------
 
 using FoundAddresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
@@ -62,8 +60,15 @@ Resolved resolve(const Address& address) {
   return resolved;
 }
 
-// ---- connecting
-// ----------------------------------------------------------------------------------
+Address in_numbers(const sockaddr_storage& address, socklen_t size) {
+  char host[NI_MAXHOST] = "";
+  char port[NI_MAXSERV] = "";
+  ::getnameinfo(reinterpret_cast<const sockaddr*>(&address), size, host, sizeof host, port,
+                sizeof port, NI_NUMERICHOST | NI_NUMERICSERV);
+  return {host, static_cast<std::uint16_t>(std::strtoul(port, nullptr, 10))};
+}
+
+// ---- connecting ---------------------------------------------------------------------------------
 
 /// What trying one address came to.
 struct Attempt {
@@ -84,10 +89,6 @@ int outcome_of_connecting(int descriptor) {
   return ::getsockopt(descriptor, SOL_SOCKET, SO_ERROR, &error, &size) == 0 ? error : errno;
 }
 
-void make_blocking(int descriptor) {
-  ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
-}
-
 Attempt try_address(const addrinfo& candidate, SteadyClock::time_point deadline) {
   const int type = candidate.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC;
   Attempt attempt{Descriptor(::socket(candidate.ai_family, type, candidate.ai_protocol))};
@@ -99,7 +100,7 @@ Attempt try_address(const addrinfo& candidate, SteadyClock::time_point deadline)
     attempt.out_of_time = !wait_writable(descriptor, deadline - SteadyClock::now());
     attempt.error = attempt.out_of_time ? ETIMEDOUT : outcome_of_connecting(descriptor);
   }
-  make_blocking(descriptor);
+  set_blocking(descriptor, true);
   return attempt;
 }
 
@@ -113,8 +114,7 @@ Attempt try_all(const addrinfo* candidate, SteadyClock::time_point deadline) {
   return attempt;
 }
 
-// ---- listening
-// ---------------------------------------------------------------------------------
+// ---- listening ----------------------------------------------------------------------------------
 
 Attempt try_to_listen(const addrinfo& candidate) {
   const int type = candidate.ai_socktype | SOCK_CLOEXEC;
@@ -144,14 +144,26 @@ Result<Descriptor> listen_on_tcp(const Address& address) {
   return cannot_listen(address, reason(attempt.error));
 }
 
-std::uint16_t local_port(int descriptor) {
+Address local_address(int descriptor) {
   sockaddr_storage address{};
   socklen_t size = sizeof address;
-  if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) != 0) return 0;
-  if (address.ss_family == AF_INET6) {
-    return ntohs(reinterpret_cast<const sockaddr_in6&>(address).sin6_port);
+  if (::getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) != 0) return {};
+  return in_numbers(address, size);
+}
+
+Accepted accept_tcp(int listening) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  Accepted accepted;
+  accepted.socket = Descriptor(::accept4(listening, reinterpret_cast<sockaddr*>(&address), &size,
+                                         SOCK_NONBLOCK | SOCK_CLOEXEC));
+  if (!accepted.socket.is_open()) {
+    accepted.error = {errno, std::system_category()};
+    return accepted;
   }
-  return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
+  tune(accepted.socket.get());
+  accepted.remote = in_numbers(address, size);
+  return accepted;
 }
 
 Result<Descriptor> open_tcp(const Address& address, Duration timeout) {

@@ -19,12 +19,12 @@ using link::Welcome;
 
 TEST(MemoryServer, CarriesMessagesBothWays) {
   RecordingEvents events;
-  MemoryServer server(events);
-  EXPECT_FALSE(server.poll(Duration(0)));
+  MemoryServer server;
+  EXPECT_FALSE(events.poll(server, Duration(0)));
   auto channel = server.connect();
   ASSERT_TRUE(channel->send(Progress{from_ns<ExecTime>(5)}).ok());
-  EXPECT_TRUE(server.poll(Duration(0)));  // connected
-  EXPECT_TRUE(server.poll(Duration(0)));  // the message
+  EXPECT_TRUE(events.poll(server, Duration(0)));  // connected
+  EXPECT_TRUE(events.poll(server, Duration(0)));  // the message
   ASSERT_EQ(events.received.size(), 1u);
   EXPECT_EQ(to_ns(std::get<Progress>(events.received[0].message).reached), 5);
 
@@ -37,11 +37,11 @@ TEST(MemoryServer, CarriesMessagesBothWays) {
 
 TEST(MemoryServer, WhatWasSentBeforeClosingArrives) {
   RecordingEvents events;
-  MemoryServer server(events);
+  MemoryServer server;
   auto channel = server.connect();
   ASSERT_TRUE(channel->send(Progress{}).ok());
   channel.reset();
-  while (server.poll(Duration(0))) {
+  while (events.poll(server, Duration(0))) {
   }
   EXPECT_EQ(events.received.size(), 1u);
   ASSERT_EQ(events.closed.size(), 1u);
@@ -49,7 +49,7 @@ TEST(MemoryServer, WhatWasSentBeforeClosingArrives) {
   EXPECT_EQ(events.closed[0].failure.kind, Failure::Kind::kDisconnected);
 
   auto refused = server.connect();
-  server.poll(Duration(0));
+  events.poll(server, Duration(0));
   server.send(2, Refusal{Refusal::Reason::kToken, "wrong token"});
   server.close(2);
   const auto refusal = refused->receive();
@@ -58,13 +58,13 @@ TEST(MemoryServer, WhatWasSentBeforeClosingArrives) {
   EXPECT_EQ(refused->receive().failure().kind, Failure::Kind::kDisconnected);
   EXPECT_FALSE(refused->send(Progress{}).ok());
   refused.reset();
-  EXPECT_FALSE(server.poll(Duration(0)));
+  EXPECT_FALSE(events.poll(server, Duration(0)));
   EXPECT_EQ(events.closed.size(), 1u);
 }
 
 TEST(MemoryServer, ChannelsMayLiveInOtherThreadsAndOutliveIt) {
   RecordingEvents events;
-  auto server = std::make_unique<MemoryServer>(events);
+  auto server = std::make_unique<MemoryServer>();
   events.react = [&](link::PeerId peer, const link::Message&) { server->send(peer, Welcome{}); };
   std::thread sut([channel = server->connect()] {
     for (int i = 0; i < 100; ++i) {
@@ -73,7 +73,7 @@ TEST(MemoryServer, ChannelsMayLiveInOtherThreadsAndOutliveIt) {
     }
     EXPECT_EQ(channel->receive().failure().kind, Failure::Kind::kDisconnected);
   });
-  EXPECT_TRUE(link::poll_until(*server, [&] { return events.received.size() == 100; }));
+  EXPECT_TRUE(link::poll_until(*server, events, [&] { return events.received.size() == 100; }));
   server.reset();
   sut.join();
 }

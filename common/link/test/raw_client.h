@@ -1,54 +1,53 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
-#include <asio/io_context.hpp>
-#include <asio/ip/tcp.hpp>
-#include <asio/write.hpp>
+#include <sys/socket.h>
 
 #include <tether/link/channel.h>
 #include <tether/link/codec.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 
 /// A peer that says what it likes, whatever the protocol.
 class RawClient {
  public:
-  explicit RawClient(const Address& address) {
-    socket_.connect({asio::ip::make_address(address.host), address.port});
-  }
+  explicit RawClient(const Address& address)
+      : socket_(open_tcp(address, std::chrono::seconds(10)).value()) {}
 
+  /// The server may have hung up already.
   void write(std::span<const std::uint8_t> bytes) {
-    std::error_code ignored;  // the server may have hung up already
-    asio::write(socket_, asio::buffer(bytes.data(), bytes.size()), ignored);
+    Transfer sent;
+    for (std::size_t done = 0; done < bytes.size() && !sent.error; done += sent.bytes)
+      sent = send_some(socket_.get(), {bytes, {}, {}}, done);
   }
   void write(const std::string& text) {
     write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   }
   void write(const Message& message) { write(Encoder().encode(message)); }
 
-  bool has_input() { return socket_.available() > 0; }
+  bool has_input() { return wait_readable(socket_.get(), Duration(0)); }
   /// Everything up to the end of the stream, decoded as one frame.
   Result<Message> read_last_message() {
     std::vector<std::uint8_t> bytes;
-    std::error_code error;
-    while (!error) {
-      std::uint8_t chunk[4096];
-      const std::size_t count = socket_.read_some(asio::buffer(chunk), error);
-      bytes.insert(bytes.end(), chunk, chunk + count);
+    std::uint8_t chunk[4096];
+    Transfer got;
+    while (!got.ended && !got.error) {
+      got = receive_some(socket_.get(), chunk);
+      bytes.insert(bytes.end(), chunk, chunk + got.bytes);
     }
     return decode(bytes);
   }
-  void close_half() { socket_.shutdown(Tcp::socket::shutdown_send); }
-  void close() { socket_.close(); }
+  void close_half() { ::shutdown(socket_.get(), SHUT_WR); }
+  void close() { socket_ = Descriptor(); }
 
  private:
-  using Tcp = asio::ip::tcp;
-  asio::io_context context_;
-  Tcp::socket socket_{context_};
+  Descriptor socket_;
 };
 
 }  // namespace tether::link

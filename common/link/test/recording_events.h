@@ -1,8 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
-#include <string>
+#include <map>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <tether/link/server.h>
@@ -10,42 +12,53 @@
 namespace tether::link {
 
 /// Keeps what a server reports, and lets a test react to messages.
-struct RecordingEvents final : ServerEvents {
+struct RecordingEvents {
   struct Received {
     PeerId peer;
     Message message;
   };
-  struct Closed {
+  struct Lost {
     PeerId peer;
     Failure failure;
   };
   std::vector<PeerId> connected;
   std::vector<Received> received;
-  std::vector<Closed> closed;
+  std::map<PeerId, std::size_t> received_from;
+  std::vector<Lost> closed;
   std::vector<PeerId> half_closed;
   std::function<void(PeerId, const Message&)> react;
   bool keeps_half_closed = false;
 
-  void on_connected(PeerId peer, const std::string&) override { connected.push_back(peer); }
-  void on_message(PeerId peer, Message message) override {
+  /// Polls once; whether anything was reported.
+  bool poll(Server& server, Duration max_wait) {
+    const auto events = server.poll(max_wait);
+    for (Event& event : events) {
+      if (std::holds_alternative<Connected>(event.what)) connected.push_back(event.peer);
+      if (auto* message = std::get_if<Message>(&event.what)) take(event.peer, *message);
+      if (const auto* end = std::get_if<Closed>(&event.what)) take(server, event.peer, *end);
+    }
+    return !events.empty();
+  }
+
+ private:
+  void take(PeerId peer, Message& message) {
     if (react) react(peer, message);
     received.push_back({peer, std::move(message)});
+    ++received_from[peer];
   }
-  bool on_half_closed(PeerId peer) override {
-    half_closed.push_back(peer);
-    return keeps_half_closed;
-  }
-  void on_closed(PeerId peer, const Failure& failure) override {
-    closed.push_back({peer, failure});
+  void take(Server& server, PeerId peer, const Closed& end) {
+    if (end.may_still_read && keeps_half_closed) return half_closed.push_back(peer);
+    closed.push_back({peer, end.failure});
+    if (end.may_still_read) server.close(peer);
   }
 };
 
 /// Polls until `done`; false if that takes longer than a test should.
-inline bool poll_until(Server& server, const std::function<bool()>& done) {
+inline bool poll_until(Server& server, RecordingEvents& events, const std::function<bool()>& done) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   while (!done()) {
     if (std::chrono::steady_clock::now() > end) return false;
-    server.poll(std::chrono::milliseconds(100));
+    events.poll(server, std::chrono::milliseconds(100));
   }
   return true;
 }

@@ -6,34 +6,28 @@
 #include <thread>
 #include <vector>
 
-#include <asio/io_context.hpp>
-#include <asio/ip/tcp.hpp>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 
 #include <tether/link/channel.h>
+#include <tether/link/socket.h>
 
 namespace tether::link {
 namespace {
 
 using namespace std::chrono_literals;
-using Tcp = asio::ip::tcp;
 
 /// A listening socket that accepts nobody unless told to.
 struct Listener {
-  explicit Listener(int backlog) {
-    acceptor.open(Tcp::v4());
-    acceptor.bind({asio::ip::address_v4::loopback(), 0});
-    acceptor.listen(backlog);
-  }
-  Address address() const { return {"127.0.0.1", acceptor.local_endpoint().port()}; }
-  asio::io_context context;
-  Tcp::acceptor acceptor{context};
+  explicit Listener(int backlog) { ::listen(socket.get(), backlog); }
+  Address address() const { return local_address(socket.get()); }
+  Descriptor socket = listen_on_tcp({"127.0.0.1", 0}).value();
 };
 
 TEST(TcpChannel, SaysWhereNobodyListens) {
   Listener listener(1);
   const Address address = listener.address();
-  listener.acceptor.close();
+  listener.socket = Descriptor();
   const auto channel = connect_tcp(address, 10s);
   ASSERT_FALSE(channel.ok());
   EXPECT_EQ(channel.failure().kind, Failure::Kind::kDisconnected);
@@ -67,30 +61,30 @@ TEST(TcpChannel, ConnectingTimesOut) {
 TEST(TcpChannel, TriesTheAddressesOfAName) {
   // Where the name has an IPv6 address as well, nobody listens there, and the next one answers.
   RecordingEvents events;
-  auto server = listen_tcp({"127.0.0.1", 0}, 10s, events);
+  auto server = listen_tcp({"127.0.0.1", 0}, 10s);
   const auto channel = connect_tcp({"localhost", server->address().port}, 10s);
   ASSERT_TRUE(channel.ok()) << channel.failure().message;
-  EXPECT_TRUE(poll_until(*server, [&] { return events.connected.size() == 1; }));
+  EXPECT_TRUE(poll_until(*server, events, [&] { return events.connected.size() == 1; }));
 }
 
 TEST(TcpChannel, ReceivingTimesOutAndGoesOn) {
   RecordingEvents events;
-  auto server = listen_tcp({"127.0.0.1", 0}, 10s, events);
+  auto server = listen_tcp({"127.0.0.1", 0}, 10s);
   auto channel = connect_tcp(server->address(), 10s).value();
   const auto nothing = channel->receive_within(1ms);
   ASSERT_FALSE(nothing.ok());
   EXPECT_EQ(nothing.failure().kind, Failure::Kind::kTimeout);
 
-  ASSERT_TRUE(poll_until(*server, [&] { return events.connected.size() == 1; }));
+  ASSERT_TRUE(poll_until(*server, events, [&] { return events.connected.size() == 1; }));
   server->send(1, Welcome{});
   EXPECT_TRUE(channel->receive_within(10s).ok());
 }
 
 TEST(TcpChannel, DeliversWhatCameBeforeTheEnd) {
   RecordingEvents events;
-  auto server = listen_tcp({"127.0.0.1", 0}, 10s, events);
+  auto server = listen_tcp({"127.0.0.1", 0}, 10s);
   auto channel = connect_tcp(server->address(), 10s).value();
-  ASSERT_TRUE(poll_until(*server, [&] { return events.connected.size() == 1; }));
+  ASSERT_TRUE(poll_until(*server, events, [&] { return events.connected.size() == 1; }));
   // Input that the server never reads must not turn its last word into a reset.
   ASSERT_TRUE(channel->send(Progress{}).ok());
   server->send(1, Refusal{Refusal::Reason::kRunEnded, "time limit"});
@@ -105,7 +99,7 @@ TEST(TcpChannel, DeliversWhatCameBeforeTheEnd) {
 
 TEST(TcpChannel, CloseUnblocksReceive) {
   RecordingEvents events;
-  auto server = listen_tcp({"127.0.0.1", 0}, 10s, events);
+  auto server = listen_tcp({"127.0.0.1", 0}, 10s);
   auto channel = connect_tcp(server->address(), 10s).value();
   std::thread closer([&] { channel->close(); });
   const auto message = channel->receive();
@@ -117,7 +111,7 @@ TEST(TcpChannel, CloseUnblocksReceive) {
 
 TEST(TcpChannel, RefusesToSendInvalidMessages) {
   RecordingEvents events;
-  auto server = listen_tcp({"127.0.0.1", 0}, 10s, events);
+  auto server = listen_tcp({"127.0.0.1", 0}, 10s);
   auto channel = connect_tcp(server->address(), 10s).value();
   const Status sent = channel->send(Annotation{ExecTime{}, "roi", "not json"});
   ASSERT_FALSE(sent.ok());
@@ -126,7 +120,7 @@ TEST(TcpChannel, RefusesToSendInvalidMessages) {
 
 TEST(TcpChannel, ManyThreadsSendWholeFrames) {
   RecordingEvents events;
-  auto server = listen_tcp({"127.0.0.1", 0}, 10s, events);
+  auto server = listen_tcp({"127.0.0.1", 0}, 10s);
   auto channel = connect_tcp(server->address(), 10s).value();
   std::vector<std::thread> senders;
   for (int t = 0; t < 4; ++t) {
@@ -136,14 +130,14 @@ TEST(TcpChannel, ManyThreadsSendWholeFrames) {
       }
     });
   }
-  EXPECT_TRUE(poll_until(*server, [&] { return events.received.size() == 2000; }));
+  EXPECT_TRUE(poll_until(*server, events, [&] { return events.received.size() == 2000; }));
   for (auto& sender : senders) sender.join();
   EXPECT_TRUE(events.closed.empty());
 }
 
 TEST(TcpChannel, LargeImagesArriveIntact) {
   RecordingEvents events;
-  auto server = listen_tcp({"127.0.0.1", 0}, 10s, events);
+  auto server = listen_tcp({"127.0.0.1", 0}, 10s);
   uav::CameraSample sample{from_ns<SimTime>(1), 2, 1000, 700, {}};
   sample.rgb.resize(2'100'000);
   for (std::size_t i = 0; i < sample.rgb.size(); ++i)
@@ -165,7 +159,7 @@ TEST(TcpChannel, LargeImagesArriveIntact) {
       EXPECT_EQ(std::get<uav::CameraSample>(*reply.sample).rgb, sample.rgb);
     }
   });
-  EXPECT_TRUE(poll_until(*server, [&] { return sent == 1 && !events.closed.empty(); }));
+  EXPECT_TRUE(poll_until(*server, events, [&] { return sent == 1 && !events.closed.empty(); }));
   sut.join();
 }
 

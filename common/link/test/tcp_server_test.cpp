@@ -30,10 +30,12 @@ Reply image_reply(int side_px, std::uint64_t sequence = 1) {
 class TcpServer : public testing::Test {
  protected:
   void listen(Duration hello_timeout = 10s) {
-    server_ = listen_tcp({"127.0.0.1", 0}, hello_timeout, events_);
+    server_ = listen_tcp({"127.0.0.1", 0}, hello_timeout);
   }
   RawClient connect() { return RawClient(server_->address()); }
-  bool poll_until(const std::function<bool()>& done) { return link::poll_until(*server_, done); }
+  bool poll_until(const std::function<bool()>& done) {
+    return link::poll_until(*server_, events_, done);
+  }
 
   /// One peer that is welcome, to see that others' misdeeds do it no harm.
   void expect_served(RawClient& client) {
@@ -56,7 +58,7 @@ class TcpServer : public testing::Test {
   /// What the client reads up to the end of the stream.
   Result<Message> read_while_polling(RawClient& client) {
     std::atomic<bool> read_all = false;
-    std::thread pump([&] { link::poll_until(*server_, [&] { return read_all.load(); }); });
+    std::thread pump([&] { link::poll_until(*server_, events_, [&] { return read_all.load(); }); });
     Result<Message> message = client.read_last_message();
     read_all = true;
     pump.join();
@@ -75,7 +77,7 @@ TEST_F(TcpServer, TakesAFreePortOnLoopback) {
 
 TEST_F(TcpServer, PollReturnsAtOnceWhenNothingIsThere) {
   listen();
-  EXPECT_FALSE(server_->poll(Duration(0)));
+  EXPECT_FALSE(events_.poll(*server_, Duration(0)));
 }
 
 TEST_F(TcpServer, DeliversMessagesInOrderAndReportsTheEnd) {
@@ -201,6 +203,27 @@ TEST_F(TcpServer, ClosesAPeerThatDoesNotRead) {
   expect_served(good);
 }
 
+TEST_F(TcpServer, ReportsAPeerThatIsResetWhileFramesWaitForIt) {
+  listen();
+  RawClient client = connect();
+  expect_served(client);
+  for (int i = 0; i < 2; ++i) server_->send(1, image_reply(2000));
+  client.close();
+  ASSERT_TRUE(poll_until([&] { return events_.closed.size() == 1; }));
+  EXPECT_EQ(events_.closed[0].failure.kind, Failure::Kind::kDisconnected);
+}
+
+TEST_F(TcpServer, ReportsNothingOfAPeerThatWasClosedForItsMessage) {
+  listen();
+  RawClient client = connect();
+  expect_served(client);
+  events_.react = [this](PeerId peer, const Message&) { server_->close(peer); };
+  const auto frame = Encoder().encode(Progress{});
+  client.write(std::string(frame.begin(), frame.end()) + std::string(frame.begin(), frame.end()));
+  ASSERT_TRUE(poll_until([&] { return events_.received.size() == 2; }));
+  EXPECT_FALSE(events_.poll(*server_, 1ms));
+}
+
 TEST_F(TcpServer, CloseSendsWhatIsQueuedFirst) {
   listen();
   RawClient client = connect();
@@ -241,7 +264,9 @@ TEST_F(HalfClosed, APeerCostsNothingWhileItIsKept) {
   listen();
   RawClient client = connect();
   half_close(client);
-  for (int i = 0; i < 3; ++i) EXPECT_FALSE(server_->poll(1ms));
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(events_.poll(*server_, 5ms));
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, 15ms);
   EXPECT_EQ(events_.half_closed.size(), 1u);
 }
 
@@ -251,10 +276,12 @@ TEST_F(HalfClosed, APeerThatHangsUpIsForgotten) {
   half_close(client);
   client.close();
   server_->send(1, Welcome{});  // is answered by a reset
-  EXPECT_TRUE(server_->poll(10s));
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_FALSE(events_.poll(*server_, 10s));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 5s);
   server_->send(1, Welcome{});
   server_->close(1);
-  EXPECT_FALSE(server_->poll(1ms));
+  EXPECT_FALSE(events_.poll(*server_, 1ms));
   EXPECT_TRUE(events_.closed.empty());
 }
 
@@ -298,22 +325,21 @@ TEST_F(TcpServer, IgnoresUnknownPeersAndForbidsInvalidMessages) {
 
 TEST_F(TcpServer, SaysWhatCannotBeBound) {
   listen();
-  RecordingEvents other;
   try {
-    listen_tcp(server_->address(), 1s, other);
+    listen_tcp(server_->address(), 1s);
     FAIL() << "bound twice";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::kSetup);
     EXPECT_NE(std::string(error.what()).find(to_string(server_->address())), std::string::npos);
   }
-  EXPECT_THROW(listen_tcp({"203.0.113.1", 0}, 1s, other), Error);
+  EXPECT_THROW(listen_tcp({"203.0.113.1", 0}, 1s), Error);
 }
 
 TEST_F(TcpServer, ListensOnIPv6) {
   RecordingEvents events;
   std::unique_ptr<Server> server;
   try {
-    server = listen_tcp({"::1", 0}, 10s, events);
+    server = listen_tcp({"::1", 0}, 10s);
   } catch (const Error&) {
     GTEST_SKIP() << "no IPv6 on this machine";
   }
@@ -321,7 +347,7 @@ TEST_F(TcpServer, ListensOnIPv6) {
   const auto parsed = parse_address(to_string(server->address()));
   auto channel = connect_tcp(*parsed, 10s).value();
   ASSERT_TRUE(channel->send(kHello).ok());
-  EXPECT_TRUE(link::poll_until(*server, [&] { return events.received.size() == 1; }));
+  EXPECT_TRUE(link::poll_until(*server, events, [&] { return events.received.size() == 1; }));
 }
 
 }  // namespace

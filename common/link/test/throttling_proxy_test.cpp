@@ -31,7 +31,7 @@ TEST(WireSchedule, BytesLeaveOneAfterAnother) {
 /// takes its time.
 TEST(ThrottlingProxy, DelaysAndThrottlesBothWays) {
   link::RecordingEvents events;
-  auto server = link::listen_tcp({"127.0.0.1", 0}, 10s, events);
+  auto server = link::listen_tcp({"127.0.0.1", 0}, 10s);
   ThrottlingProxy proxy({"127.0.0.1", 0}, server->address(), {3ms, 100e6});
   const std::vector<std::uint8_t> rgb(600'000, 9);
   events.react = [&](link::PeerId peer, const link::Message&) {
@@ -47,13 +47,13 @@ TEST(ThrottlingProxy, DelaysAndThrottlesBothWays) {
     EXPECT_EQ(std::get<uav::CameraSample>(*std::get<link::Reply>(*message).sample).rgb, rgb);
     EXPECT_GE(took, 12ms);  // 3 ms there, 3 ms and 6 ms of image back
   });
-  EXPECT_TRUE(link::poll_until(*server, [&] { return !events.closed.empty(); }));
+  EXPECT_TRUE(link::poll_until(*server, events, [&] { return !events.closed.empty(); }));
   sut.join();
 }
 
 TEST(ThrottlingProxy, TellsTheClientThatTheTargetIsGone) {
   link::RecordingEvents events;
-  const link::Address gone = link::listen_tcp({"127.0.0.1", 0}, 10s, events)->address();
+  const link::Address gone = link::listen_tcp({"127.0.0.1", 0}, 10s)->address();
   ThrottlingProxy proxy({"127.0.0.1", 0}, gone, {});
   auto channel = link::connect_tcp(proxy.address(), 10s).value();
   EXPECT_EQ(channel->receive().failure().kind, Failure::Kind::kDisconnected);

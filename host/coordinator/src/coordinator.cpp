@@ -16,18 +16,11 @@ namespace {
 constexpr int kStepsPerTurn = 64;
 // How long the loop sleeps when there is nothing to do; a message wakes it at once.
 constexpr Duration kIdleWait = std::chrono::milliseconds(20);
-// How often limits of WT are looked at.
-constexpr Duration kWatchPeriod = std::chrono::milliseconds(20);
 // A paced simulation may catch up this much ST after a late turn (rendering an image, say); two
 // steps at least.
 constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
 // How often the record goes to its file, so that a killed run leaves what it had.
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
-// A turn that took longer than this was not spent listening: we were stopped, say, or the whole
-// machine was.
-constexpr Duration kLongestTurn = std::chrono::seconds(1);
-// How long nothing may move before it is said who waits for whom.
-constexpr Duration kStillPeriod = std::chrono::seconds(1);
 
 /// How fast the clock can go that a SUT says it has; none where it is the coordinator's own, or a
 /// script's.
@@ -37,23 +30,34 @@ std::optional<sync::ClockBound> bound_of(const link::Hello& hello, int cores) {
   return std::nullopt;
 }
 
-SensorState make_sensor(const sim::Uav& uav, const sim::Sensor& sensor,
-                        const uav::SensorTiming& timing, std::uint64_t seed) {
-  return {.name = sensor.name,
-          .schedule = SensorSchedule(timing, seed, random_stream(uav.name, sensor.name, "delay")),
-          .captures = {}};
+Sampler make_sampler(const sim::Uav& uav, const std::vector<uav::SensorTiming>& timings,
+                     const RunOptions& options, StepGrid grid) {
+  std::vector<Sampler::Sensor> sensors;
+  for (std::size_t i = 0; i < uav.sensors.size(); ++i) {
+    const std::string& name = uav.sensors[i].name;
+    sensors.push_back({name, {timings[i], options.seed, random_stream(uav.name, name, "delay")}});
+  }
+  return {std::move(sensors), grid, options.policy == sync::SyncPolicy::kConservativeBarrier};
 }
 
-Session make_session(std::size_t index, const sim::Uav& uav, const UavOptions& options,
-                     std::uint64_t seed) {
-  Session session;
-  session.uav = index;
-  session.uav_name = uav.name;
-  session.command_latency = options.command_latency;
-  session.cores = options.cores;
-  for (std::size_t i = 0; i < uav.sensors.size(); ++i)
-    session.sensors.push_back(make_sensor(uav, uav.sensors[i], options.timings[i], seed));
-  return session;
+std::vector<Sampler> make_samplers(const sim::Simulator& simulator, const RunOptions& options) {
+  const std::vector<sim::Uav>& uavs = simulator.world().uavs;
+  std::vector<Sampler> samplers;
+  for (std::size_t i = 0; i < uavs.size(); ++i)
+    samplers.push_back(make_sampler(uavs[i], options.uavs[i].timings, options, simulator.grid()));
+  return samplers;
+}
+
+std::vector<Session> make_sessions(const sim::World& world, const RunOptions& options) {
+  std::vector<Session> sessions(world.uavs.size());
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    sessions[i].uav = i;
+    sessions[i].uav_name = world.uavs[i].name;
+    sessions[i].command_latency = options.uavs[i].command_latency;
+    sessions[i].cores = options.uavs[i].cores;
+    sessions[i].recorded_image_at.resize(world.uavs[i].sensors.size());
+  }
+  return sessions;
 }
 
 void check_options(const RunOptions& options, const sim::World& world) {
@@ -72,6 +76,12 @@ void check_options(const RunOptions& options, const sim::World& world) {
   require(
       options.policy == sync::SyncPolicy::kConservativeBarrier || options.real_time_factor > 0.0,
       "free running needs a real-time factor");
+}
+
+RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
+  check_options(options, simulator.world());
+  options.ground_truth_period = std::max(options.ground_truth_period, simulator.grid().dt());
+  return options;
 }
 
 }  // namespace
@@ -99,9 +109,6 @@ Coordinator::Coordinator(sim::Simulator& simulator, record::Recorder& recorder, 
     : impl_(
           std::make_unique<Impl>(simulator, recorder, std::move(options), std::move(host_clock))) {}
 Coordinator::~Coordinator() = default;
-link::ServerEvents& Coordinator::events() {
-  return *impl_;
-}
 RunReport Coordinator::run(link::Server& server, const RunHooks& hooks) {
   return impl_->run(server, hooks);
 }
@@ -109,58 +116,61 @@ RunReport Coordinator::run(link::Server& server, const RunHooks& hooks) {
 Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
                         std::function<WallTime()> host_clock)
     : simulator_(&simulator),
-      log_(recorder),
-      options_(std::move(options)),
+      options_(checked(std::move(options), simulator)),
       host_clock_(std::move(host_clock)),
-      grid_(simulator.grid()),
-      barrier_(grid_),
-      time_limit_(grid_.ceil(SimTime(options_.time_limit))) {
-  check_options(options_, world());
-  options_.ground_truth_period = std::max(options_.ground_truth_period, grid_.dt());
-  for (std::size_t i = 0; i < world().uavs.size(); ++i)
-    sessions_.push_back(make_session(i, world().uavs[i], options_.uavs[i], options_.seed));
-  started_ = watched_ = flushed_ = moved_ = host_clock_();
-  for (Session& session : sessions_) session.last_word = started_;
-}
+      log_(recorder),
+      barrier_(simulator.grid()),
+      stepper_(simulator, barrier_, log_, options_.ground_truth_period,
+               make_samplers(simulator, options_)),
+      sessions_(make_sessions(world(), options_)),
+      time_limit_(simulator.grid().ceil(SimTime(options_.time_limit))),
+      started_(host_clock_()),
+      flushed_(started_),
+      watchdog_({time_limit_, options_.connect_limit, options_.hang_limit}, sessions_.size(),
+                tied(), started_) {}
 
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
   server_ = &server;
   hooks_ = hooks;
-  moved_ = host_clock_();
-  while (!running_ && !ended_) {
-    server.poll(kIdleWait);
-    watch();
-  }
+  watchdog_.moved(host_clock_());
   while (!ended_) {
-    guarded([&] {
-      const bool moved = advance();
-      server.poll(moved ? Duration(0)
-                        : std::min(kIdleWait, pace_ ? pace_->wait_for(grid_.dt()) : kIdleWait));
-    });
+    try {
+      turn();
+    } catch (const SimulatorFailure& e) {
+      // Unless the caller knows of a reason behind that.
+      const auto behind = hooks_.should_stop ? hooks_.should_stop() : std::nullopt;
+      end(behind ? Ending{behind->first, behind->second}
+                 : Ending{RunEnd::kSimulatorLost, e.what()});
+    }
     watch();
   }
-  if (failure_) std::rethrow_exception(failure_);
   return close_run();
+}
+
+void Coordinator::Impl::turn() {
+  const bool moved = running_ && advance();
+  const Duration wait = pace_ ? std::min(kIdleWait, pace_->wait_for(grid().dt())) : kIdleWait;
+  for (const link::Event& event : server_->poll(moved ? Duration(0) : wait)) on_event(event);
 }
 
 // Every SUT has joined: ST and every ET begin at 0.
 void Coordinator::Impl::start() {
-  ask_simulator([&](sim::Simulator& s) { s.reset(options_.seed); });
-  started_ = moved_ = host_clock_();
+  stepper_.reset(options_.seed);
+  started_ = host_clock_();
+  watchdog_.begin(started_);
   log_.begin(make_header());
   running_ = true;
   if (options_.real_time_factor > 0.0)
-    pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid_.dt()), started_);
+    pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid().dt()), started_);
   for (Session& session : sessions_) {
     barrier_.add(ExecTime{},
                  session.is_concurrent() ? sync::SutKind::kConcurrent : sync::SutKind::kSerial);
-    session.last_word = started_;
     if (session.hello.clock == link::ClockKind::kUnstamped)
       session.timer.emplace(ExecTime{}, started_);
     if (const auto bound = bound_of(session.hello, session.cores); bound && tied())
       session.witness.emplace(*bound, ExecTime{}, started_);
   }
-  at_boundary();
+  stepper_.act();
   for (const Session& session : sessions_)
     server_->send(session.peer, link::Welcome{.catalogue = sim::make_catalogue(
                                                   world(), world().uavs[session.uav]),
@@ -171,212 +181,92 @@ void Coordinator::Impl::start() {
 // One turn of stepping; false if ST may not move now.
 bool Coordinator::Impl::advance() {
   const WallTime now = host_clock_();
-  for (Session& session : sessions_)
-    if (session.timer && is_computing(session))
-      barrier_.progress(session.uav, session.timer->read(now));
-
-  // An unstamped client's clock may just have let another SUT go on.
+  read_timers(now);
   release_ready();
-
-  SimTime target = std::min(next_stop(), st_ + kStepsPerTurn * grid_.dt());
-  if (target <= st_) {
-    if (pace_) pace_->idle(now);
-    return false;
-  }
-  if (pace_) {
-    target = std::min(target, grid_.floor(st_ + pace_->allowance(now)));
-    if (target <= st_) return false;
-    pace_->spend(target - st_);
-  }
-  ask_simulator([&](sim::Simulator& s) { s.advance_to(target); });
-  st_ = target;
-  moved_ = now;
-  at_boundary();
+  const SimTime target = paced(next_stop(), now);
+  if (target <= st()) return false;
+  stepper_.advance_to(target);
+  watchdog_.moved(now);
   release_ready();
-  if (st_ >= time_limit_ && !ended_)
-    end(RunEnd::kTimeLimit,
-        fmt::format("ST reached the scenario's time limit of {} s before the task was done",
-                    to_seconds(time_limit_)));
+  if (const auto over = watchdog_.over_time(st())) end(*over);
   return true;
 }
 
-SimTime Coordinator::Impl::horizon() const {
-  return std::min(time_limit_, tied() ? barrier_.horizon() : SimTime::max());
-}
-
-// The next boundary at which something other than stepping is due, and no further than ST may go.
-SimTime Coordinator::Impl::next_stop() const {
-  SimTime stop = std::min(horizon(), commands_.next_effect());
-  stop = std::min(stop, grid_.ceil(SimTime(ground_truths_ * options_.ground_truth_period)));
-  for (const Session& session : sessions_) {
-    for (const PendingInteraction& pending : session.open)
-      if (pending.on_demand && !pending.captured)
-        stop = std::min(stop, grid_.floor(pending.measurement->sampled_at));
-    if (!tied() || session.left) continue;
-    for (const SensorState& sensor : session.sensors)
-      if (const auto instant = sensor.schedule.sampling_instant(sensor.next_capture))
-        stop = std::min(stop, grid_.floor(*instant));
-  }
-  return stop;
-}
-
-// What is due at the present ST. Samples come first: they show what the steps up to here have led
-// to, so the commands that act from here on make no difference to them, in whatever order SUTs were
-// heard.
-void Coordinator::Impl::at_boundary() {
-  capture_due();
-  apply_due();
-  log_ground_truth();
-}
-
-void Coordinator::Impl::capture_due() {
-  for (Session& session : sessions_) {
-    for (PendingInteraction& pending : session.open) {
-      if (!pending.on_demand || pending.captured) continue;
-      if (grid_.floor(pending.measurement->sampled_at) > st_) continue;
-      ask_simulator([&](sim::Simulator& s) { s.capture(pending.state); });
-      pending.captured = true;
-    }
-    if (!tied() || session.left) continue;
-    for (std::size_t i = 0; i < session.sensors.size(); ++i) capture_periodic(session, i);
-  }
-}
-
-// Keeps the states from which a later read may still be answered; images are rendered only when one
-// is.
-void Coordinator::Impl::capture_periodic(Session& session, std::size_t sensor_index) {
-  SensorState& sensor = session.sensors[sensor_index];
-  auto instant = sensor.schedule.sampling_instant(sensor.next_capture);
-  while (instant && grid_.floor(*instant) <= st_) {
-    ask_simulator([&](sim::Simulator& s) { s.capture(sensor.captures.add(sensor.next_capture)); });
-    instant = sensor.schedule.sampling_instant(++sensor.next_capture);
-    sensor.captures.drop_before(first_needed(session, sensor_index));
-  }
-}
-
-// The first measurement of this sensor whose state may still be asked for: by a read that is open
-// and has its measurement, or by one still to come, which cannot be stamped before the SUT's bound.
-std::uint64_t Coordinator::Impl::first_needed(const Session& session,
-                                              std::size_t sensor_index) const {
-  std::uint64_t first = session.sensors[sensor_index].schedule.first_readable(
-      same_instant(barrier_.bound(session.uav)));
-  for (const PendingInteraction& pending : session.open) {
-    const auto* read = std::get_if<link::ReadSensor>(&pending.request.body);
-    if (read && read->sensor == sensor_index && pending.measurement)
-      first = std::min(first, pending.measurement->index);
-  }
-  return first;
-}
-
-void Coordinator::Impl::apply_due() {
-  while (const auto command = commands_.pop_due(st_)) {
-    ask_simulator([&](sim::Simulator& s) { s.apply(command->uav, command->command); });
-    log_.command_effect(st_, sessions_[command->uav].uav_name, *command);
-  }
-}
-
-void Coordinator::Impl::log_ground_truth() {
-  if (grid_.ceil(SimTime(ground_truths_ * options_.ground_truth_period)) > st_) return;
-  ++ground_truths_;
+// An unstamped client's clock may let another SUT go on.
+void Coordinator::Impl::read_timers(WallTime now) {
   for (const Session& session : sessions_)
-    log_.ground_truth(session.uav_name, ask_simulator([&](sim::Simulator& s) {
-                        return s.ground_truth(session.uav);
-                      }));
+    if (session.timer && is_computing(session))
+      barrier_.progress(session.uav, session.timer->read(now));
 }
 
-void Coordinator::Impl::end(RunEnd how, const std::string& reason) {
-  if (!ended_) ended_.emplace(how, printable(reason));
+// How far ST may go in this turn.
+SimTime Coordinator::Impl::next_stop() const {
+  const SimTime horizon = tied() ? barrier_.horizon() : SimTime::max();
+  return std::min({horizon, time_limit_, stepper_.next_due(), st() + kStepsPerTurn * grid().dt()});
+}
+
+// How much of that the pace allows.
+SimTime Coordinator::Impl::paced(SimTime target, WallTime now) {
+  if (!pace_) return target;
+  if (target <= st()) {
+    pace_->idle(now);
+    return target;
+  }
+  target = std::min(target, grid().floor(st() + pace_->allowance(now)));
+  if (target > st()) pace_->spend(target - st());
+  return target;
+}
+
+void Coordinator::Impl::end(const Ending& ending) {
+  if (!ended_) ended_ = {ending.how, printable(ending.reason)};
 }
 
 // Limits of WT, the caller's wishes, the status: none of it reaches a decision of the barrier.
 void Coordinator::Impl::watch() {
   const WallTime now = host_clock_();
-  if (now - watched_ < kWatchPeriod) return;
-  pardon(now - watched_ - kLongestTurn, now);
-  watched_ = now;
+  if (!watchdog_.is_due(now)) return;
   if (running_ && now - flushed_ >= kFlushPeriod) {
     flushed_ = now;
     log_.flush();
   }
-  if (!ended_) check_words(now);
+  if (const auto overdue = watchdog_.overdue(parties(now), st())) end(*overdue);
   if (hooks_.on_status) hooks_.on_status(status(now));
   if (hooks_.should_stop && !ended_)
-    if (const auto stop = hooks_.should_stop()) end(stop->first, stop->second);
-}
-
-// Nobody is silent while we do not listen: what was said meanwhile is still to be read, and who was
-// stopped together with us has had no time to say it.
-void Coordinator::Impl::pardon(Duration unheard, WallTime now) {
-  if (unheard <= Duration(0)) return;
-  moved_ = std::min(moved_ + unheard, now);
-  for (Session& session : sessions_) session.last_word = std::min(session.last_word + unheard, now);
+    if (const auto stop = hooks_.should_stop()) end({stop->first, stop->second});
 }
 
 // It owes us the next word; a SUT that waits for a reply of ours does not.
 bool Coordinator::Impl::is_computing(const Session& session) const {
-  if (!session.joined() || session.left) return false;
+  if (!running_ || session.left) return false;
   return tied() ? !barrier_.is_held(session.uav) : session.open.empty();
-}
-
-void Coordinator::Impl::check_words(WallTime now) {
-  for (const Session& session : sessions_) {
-    if (!running_ && !session.joined() && now - session.last_word > options_.connect_limit)
-      return end(RunEnd::kSutLost,
-                 fmt::format("no SUT joined for UAV \"{}\" within {} s", session.uav_name,
-                             to_seconds(options_.connect_limit)));
-    if (running_ && is_computing(session) && now - session.last_word > options_.hang_limit)
-      return end(RunEnd::kSutHung,
-                 fmt::format("SUT \"{}\" of UAV \"{}\" gave no word for {} s (limit){}",
-                             session.hello.sut, session.uav_name, to_seconds(options_.hang_limit),
-                             tied() ? ": " + diagnosis(now) : ""));
-  }
 }
 
 Party Coordinator::Impl::party(const Session& session, WallTime now) const {
   Party party{.sut = session.hello.sut,
               .uav = session.uav_name,
+              .joined = session.joined(),
               .computing = is_computing(session),
-              .bound = barrier_.bound(session.uav),
-              .silence = now - session.last_word};
+              .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
+              .silence = watchdog_.silence(session.uav, now)};
   for (const PendingInteraction& pending : session.open)
     party.reply_at = std::min(party.reply_at.value_or(ExecTime::max()), pending.entry.reply_at);
   return party;
 }
 
-std::string Coordinator::Impl::diagnosis(WallTime now) const {
+std::vector<Party> Coordinator::Impl::parties(WallTime now) const {
   std::vector<Party> parties;
-  for (const Session& session : sessions_)
-    if (!session.left) parties.push_back(party(session, now));
-  return who_blocks_whom(st_, parties);
-}
-
-// Before the run.
-std::string Coordinator::Impl::missing(WallTime now) const {
-  std::vector<std::string> uavs;
-  WallTime since = now;
-  for (const Session& session : sessions_) {
-    if (session.joined()) continue;
-    uavs.push_back(session.uav_name);
-    since = std::min(since, session.last_word);
-  }
-  return who_has_not_joined(uavs, now - since);
-}
-
-// Said only when nothing has moved for a while.
-std::string Coordinator::Impl::blocked(WallTime now) const {
-  if (ended_ || now - moved_ < kStillPeriod) return "";
-  if (!running_) return missing(now);
-  return tied() ? diagnosis(now) : "";
+  for (const Session& session : sessions_) parties.push_back(party(session, now));
+  return parties;
 }
 
 RunStatus Coordinator::Impl::status(WallTime now) const {
-  RunStatus status{.st = st_,
+  RunStatus status{.st = st(),
                    .et = std::nullopt,
                    .wall = running_ ? now - started_ : Duration(0),
                    .interactions = log_.figures().interactions,
                    .images = log_.figures().images,
                    .waiting_for = {},
-                   .blocked = blocked(now)};
+                   .blocked = ended_ ? "" : watchdog_.blocked(parties(now), st(), now)};
   for (const Session& session : sessions_) {
     if (session.joined()) ++status.joined;
     if (running_ && tied())
@@ -391,9 +281,9 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
 // Whoever is still there is told; then the record gets its end.
 RunReport Coordinator::Impl::close_run() {
   const SyncFigures& figures = log_.figures();
-  RunReport report{.end = ended_->first,
-                   .reason = ended_->second,
-                   .st = st_,
+  RunReport report{.end = ended_->how,
+                   .reason = ended_->reason,
+                   .st = st(),
                    .began = running_,
                    .wall = running_ ? host_clock_() - started_ : Duration(0),
                    .interactions = figures.interactions,
@@ -417,7 +307,7 @@ RunReport Coordinator::Impl::close_run() {
   record::Footer footer;
   footer.end = name(report.end);
   footer.reason = report.reason;
-  footer.st_at_end = st_;
+  footer.st_at_end = st();
   footer.wall = report.wall;
   for (const SutReport& sut : report.suts) footer.et_at_end.push_back(sut.et);
   if (hooks_.read_target) footer.target_after = hooks_.read_target();

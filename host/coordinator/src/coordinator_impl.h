@@ -1,114 +1,71 @@
 #pragma once
 
-#include "command_queue.h"
-#include "diagnosis.h"
 #include "run_log.h"
 #include "session.h"
+#include "stepper.h"
+#include "watchdog.h"
 
-#include <exception>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include <tether/base/error.h>
 #include <tether/coordinator/coordinator.h>
 #include <tether/sync/real_time_limit.h>
 
 namespace tether::coordinator {
 
-/// The simulator threw: nothing may be asked of it any more.
-struct SimulatorFailure : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// The loop (coordinator.cpp), what SUTs say (incoming.cpp) and what they are told (outgoing.cpp)
-/// over one state.
-class Coordinator::Impl final : public link::ServerEvents {
+/// Carries out a run: hears the SUTs (incoming.cpp), answers them (outgoing.cpp), and lets ST go on
+/// in between (coordinator.cpp). It decides little itself:
+///
+///     Event ─► validator: may it say that? ─► barrier: what is held, until when, and how far ST
+///     may go
+///                                         └─► Stepper: steps up to there, samples, applies
+///                                         commands
+///              Watchdog: is it all taking too long?
+class Coordinator::Impl {
  public:
   Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
        std::function<WallTime()> host_clock);
 
   RunReport run(link::Server& server, const RunHooks& hooks);
 
-  // Incoming.
-  void on_connected(link::PeerId peer, const std::string& remote_address) override;
-  void on_message(link::PeerId peer, link::Message message) override;
-  bool on_half_closed(link::PeerId peer) override;
-  void on_closed(link::PeerId peer, const Failure& failure) override;
-
  private:
   // The loop.
+  void turn();
   void start();
   record::Header make_header() const;
   bool advance();
   SimTime next_stop() const;
-  SimTime horizon() const;
-  void at_boundary();
-  void capture_due();
-  void capture_periodic(Session& session, std::size_t sensor_index);
-  std::uint64_t first_needed(const Session& session, std::size_t sensor_index) const;
-  void apply_due();
-  void log_ground_truth();
+  SimTime paced(SimTime target, WallTime now);
+  void read_timers(WallTime now);
   void watch();
-  void pardon(Duration unheard, WallTime now);
   bool is_computing(const Session& session) const;
   bool has_only_to_be_told(const Session& session) const;
-  void check_words(WallTime now);
   Party party(const Session& session, WallTime now) const;
-  std::string diagnosis(WallTime now) const;
-  std::string missing(WallTime now) const;
-  std::string blocked(WallTime now) const;
-  void end(RunEnd how, const std::string& reason);
+  std::vector<Party> parties(WallTime now) const;
+  void end(const Ending& ending);
   RunReport close_run();
   RunStatus status(WallTime now) const;
 
   // Incoming.
-
-  /// Runs what may meet a lost simulator, which ends the run, unless the caller knows of a reason
-  /// behind that; anything else that is thrown is kept for run(), because the server's callbacks
-  /// must not throw.
-  template <class F>
-  void guarded(F&& f) {
-    try {
-      f();
-    } catch (const SimulatorFailure& e) {
-      const auto behind = hooks_.should_stop ? hooks_.should_stop() : std::nullopt;
-      const auto& [why, reason] = behind.value_or(std::pair(RunEnd::kSimulatorLost, e.what()));
-      end(why, reason);
-    } catch (...) {
-      failure_ = std::current_exception();
-      end(RunEnd::kInterrupted, "internal failure");
-    }
-  }
+  void on_event(const link::Event& event);
+  void on_message(link::PeerId peer, const link::Message& message);
+  void on_closed(link::PeerId peer, const Failure& failure);
   void join(link::PeerId peer, const link::Hello& hello);
   void on_request(Session& session, const link::Request& request, WallTime now);
-  bool is_word(const Session& session, const link::Message& message) const;
   void on_progress(Session& session, const link::Progress& progress, WallTime now);
   void on_annotation(Session& session, const link::Annotation& note);
   void on_stop(Session& session, ExecTime at, WallTime now);
   static std::optional<ExecTime> earliest_due(const Session& session, ExecTime at);
-  void break_off(Session& session, link::Refusal::Reason reason, const std::string& sent);
-  std::optional<std::string> fault_of(const Session& session, const link::Request& request,
-                                      WallTime now) const;
-  std::optional<std::string> honesty_fault(const Session& session, ExecTime stamp,
-                                           WallTime now) const;
-  std::optional<std::string> order_fault(const Session& session,
-                                         const link::Request& request) const;
-  std::optional<std::string> standstill_fault(const Session& session) const;
-  std::optional<std::string> command_fault(const Session& session,
-                                           const link::SetVelocity& set) const;
-  std::optional<std::string> read_fault(const Session& session, const link::ReadSensor& read) const;
+  void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);
+  Standing standing(const Session& session) const;
   void begin(Session& session, const link::Request& request, WallTime now);
   record::Interaction make_entry(const Session& session, const link::Request& request,
                                  WallTime now) const;
   ExecTime charge(Session& session, const link::Request& request, record::Interaction& entry);
   ExecTime accept(Session& session, PendingInteraction& pending);
   ExecTime accept_read(Session& session, PendingInteraction& pending, const link::ReadSensor& read);
-  std::optional<Measurement> choose(const SensorSchedule& schedule, SimTime t,
-                                    const link::ReadSensor& read) const;
   ExecTime accept_command(Session& session, PendingInteraction& pending,
                           const link::SetVelocity& set);
   Session* find(link::PeerId peer);
@@ -121,45 +78,31 @@ class Coordinator::Impl final : public link::ServerEvents {
   void leave(Session& session);
   std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
                                                    const link::Reply& reply) const;
-  std::optional<uav::Sample> take_sample(const Session& session, PendingInteraction& pending);
 
   bool tied() const { return options_.policy == sync::SyncPolicy::kConservativeBarrier; }
   const sim::World& world() const { return simulator_->world(); }
+  const StepGrid& grid() const { return stepper_.grid(); }
+  SimTime st() const { return stepper_.st(); }
 
-  /// Calls the simulator; what it throws becomes a SimulatorFailure.
-  template <class F>
-  auto ask_simulator(F&& f) {
-    try {
-      return f(*simulator_);
-    } catch (const Error& e) {
-      throw SimulatorFailure(e.what());
-    }
-  }
-
-  sim::Simulator* simulator_;
-  RunLog log_;
-  RunOptions options_;
+  const sim::Simulator* simulator_;
+  const RunOptions options_;
   std::function<WallTime()> host_clock_;
   link::Server* server_ = nullptr;
   RunHooks hooks_;
   std::map<link::PeerId, std::string> remote_;  // address of each connection
 
-  StepGrid grid_;
+  RunLog log_;
   sync::BarrierSynchronizer barrier_;
-  CommandQueue commands_;
-  std::vector<Session> sessions_;   // one per UAV, in the world's order
-  SimTime st_{};                    // the simulator's present ST
-  SimTime time_limit_;              // a step boundary
-  std::int64_t ground_truths_ = 0;  // instants logged so far
+  Stepper stepper_;
+  std::vector<Session> sessions_;  // one per UAV, in the world's order
+  SimTime time_limit_;             // a step boundary
   std::optional<sync::RealTimeLimit> pace_;
 
   bool running_ = false;  // every SUT has joined
   WallTime started_;      // construction, then the moment when every SUT had joined
   WallTime flushed_;      // when the record last went to its file
-  WallTime watched_;      // when the limits of WT were last looked at
-  WallTime moved_;        // when ST last moved, or a reply last left
-  std::optional<std::pair<RunEnd, std::string>> ended_;
-  std::exception_ptr failure_;  // thrown in a callback, to be thrown again in run()
+  Watchdog watchdog_;
+  std::optional<Ending> ended_;
 };
 
 }  // namespace tether::coordinator

@@ -12,6 +12,7 @@ namespace tether::coordinator {
 struct Party {
   std::string sut;  ///< the name it gave
   std::string uav;
+  bool joined = true;
   bool computing = false;              ///< its word is the next
   ExecTime bound;                      ///< ET that it is known to have reached
   Duration silence{0};                 ///< WT since its last word

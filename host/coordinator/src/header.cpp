@@ -70,7 +70,7 @@ record::Header Coordinator::Impl::make_header() const {
   header.seed = options_.seed;
   header.policy = std::string(sync::name(options_.policy));
   header.simulator = simulator_->description();
-  header.step = grid_.dt();
+  header.step = grid().dt();
   header.ground_truth_period = options_.ground_truth_period;
   header.real_time_factor = options_.real_time_factor;
   header.wall_at_start = started_;

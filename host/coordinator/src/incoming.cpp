@@ -14,22 +14,6 @@ namespace tether::coordinator {
 
 namespace {
 
-// No honest stamp comes near (292 years are 2^63 ns); sums of stamps and delays stay within int64.
-constexpr ExecTime kLatestStamp = from_ns<ExecTime>(std::int64_t{1} << 62);
-bool is_stamp(ExecTime t) {
-  return t >= ExecTime{} && t < kLatestStamp;
-}
-
-/// Calls of a SUT between two steps of ST: a loop that waits for something, and takes no time or
-/// next to none, would never end.
-constexpr std::size_t kMaxCallsInAStep = 10'000;
-/// Of one UAV: a latency of a second at a command every 15 us.
-constexpr std::size_t kMaxWaitingCommands = 65'536;
-/// Of one SUT's annotations in a run: two hours of 1 kB for each of 30 images a second.
-constexpr std::size_t kMaxAnnotatedBytes = std::size_t{256} << 20;
-/// What one takes up besides its text.
-constexpr std::size_t kAnnotationBytes = 128;
-
 std::string kind_of(const link::Request& request) {
   constexpr const char* kKinds[] = {"sensor", "command", "sleep", "finish"};
   return kKinds[request.body.index()];
@@ -52,39 +36,40 @@ void Coordinator::Impl::refuse(link::PeerId peer, link::Refusal::Reason reason,
   remote_.erase(peer);  // no event comes from it any more
 }
 
-void Coordinator::Impl::on_connected(link::PeerId peer, const std::string& remote_address) {
-  remote_[peer] = remote_address;
+void Coordinator::Impl::on_event(const link::Event& event) {
+  if (const auto* connected = std::get_if<link::Connected>(&event.what))
+    remote_[event.peer] = connected->remote_address;
+  if (const auto* message = std::get_if<link::Message>(&event.what); message && !ended_)
+    on_message(event.peer, *message);
+  if (const auto* closed = std::get_if<link::Closed>(&event.what))
+    on_closed(event.peer, closed->failure);
 }
 
-void Coordinator::Impl::on_message(link::PeerId peer, link::Message message) {
-  if (ended_) return;
-  guarded([&] {
-    Session* session = find(peer);
-    if (const auto* hello = std::get_if<link::Hello>(&message); hello && !session)
-      return join(peer, *hello);
-    if (!session)
-      return refuse(peer, link::Refusal::Reason::kBadMessage, "the first message must be a Hello");
-    const WallTime now = host_clock_();
-    if (is_word(*session, message)) session->last_word = now;
-    if (const auto* request = std::get_if<link::Request>(&message))
-      return on_request(*session, *request, now);
-    if (const auto* progress = std::get_if<link::Progress>(&message))
-      return on_progress(*session, *progress, now);
-    if (const auto* note = std::get_if<link::Annotation>(&message))
-      return on_annotation(*session, *note);
-    break_off(*session, link::Refusal::Reason::kBadMessage,
-              std::holds_alternative<link::Hello>(message)
-                  ? "a second Hello"
-                  : "a message that only coordinators send");
-  });
+void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& message) {
+  Session* session = find(peer);
+  if (const auto* hello = std::get_if<link::Hello>(&message); hello && !session)
+    return join(peer, *hello);
+  if (!session)
+    return refuse(peer, link::Refusal::Reason::kBadMessage, "the first message must be a Hello");
+  const WallTime now = host_clock_();
+  if (shows_life(message, standing(*session), session->hello.clock))
+    watchdog_.heard(session->uav, now);
+  if (const auto* request = std::get_if<link::Request>(&message))
+    return on_request(*session, *request, now);
+  if (const auto* progress = std::get_if<link::Progress>(&message))
+    return on_progress(*session, *progress, now);
+  if (const auto* note = std::get_if<link::Annotation>(&message))
+    return on_annotation(*session, *note);
+  break_off(*session, link::Refusal::Reason::kBadMessage, fault_of_other(message));
 }
 
 // It broke the protocol: it is told, and the run cannot go on without it.
 void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason,
-                                  const std::string& sent) {
-  refuse(session.peer, reason, sent);
+                                  const Fault& fault) {
+  refuse(session.peer, reason, fault.what);
   session.left = true;
-  end(RunEnd::kSutLost, fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, sent));
+  end({RunEnd::kSutLost,
+       fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)});
 }
 
 // Its Finish is here, and it stands still for it: whatever becomes of it, nothing that it could
@@ -92,11 +77,6 @@ void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason
 // after it leaves.
 bool Coordinator::Impl::has_only_to_be_told(const Session& session) const {
   return session.finish && !is_computing(session);
-}
-
-bool Coordinator::Impl::on_half_closed(link::PeerId peer) {
-  const Session* session = find(peer);
-  return session && !session->left && has_only_to_be_told(*session);
 }
 
 void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
@@ -108,8 +88,8 @@ void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
   if (failure.kind == Failure::Kind::kDisconnected && has_only_to_be_told(*session)) return;
   const std::string where =
       running_ && tied() ? "; " + whereabouts(party(*session, host_clock_())) : "";
-  end(RunEnd::kSutLost,
-      fmt::format("lost the SUT of UAV \"{}\": {}{}", session->uav_name, failure.message, where));
+  end({RunEnd::kSutLost,
+       fmt::format("lost the SUT of UAV \"{}\": {}{}", session->uav_name, failure.message, where)});
 }
 
 void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
@@ -130,41 +110,25 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   session.hello = hello;
   session.hello.token.clear();
   session.hello.sut = printable(hello.sut);
-  moved_ = host_clock_();
+  watchdog_.moved(host_clock_());
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.joined(); }))
     start();
-}
-
-/// Whether a message tells that the SUT lives. Under the barrier a progress may not: its sender is
-/// a helper, and the SUT itself may be stuck. That it has computed shows in CPU time, which then
-/// goes on; the wall clock goes on whatever the SUT does, so there only its calls tell, as long as
-/// none of them is open. Annotations tell nothing: a SUT could go on with them for ever.
-bool Coordinator::Impl::is_word(const Session& session, const link::Message& message) const {
-  if (!running_ || !tied()) return true;
-  if (std::holds_alternative<link::Annotation>(message)) return false;
-  const auto* progress = std::get_if<link::Progress>(&message);
-  if (!progress) return true;
-  if (session.hello.clock == link::ClockKind::kWall && session.open.empty()) return false;
-  return progress->reached > barrier_.bound(session.uav);
 }
 
 void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress,
                                     WallTime now) {
   if (!running_ || !tied() || !is_stamp(progress.reached)) return;
-  if (const auto fault = honesty_fault(session, progress.reached, now))
+  if (const auto fault = fault_of(progress, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
   if (progress.stopped) return on_stop(session, progress.reached, now);
   barrier_.progress(session.uav, progress.reached);
   release_ready();
 }
 
-// A record is read whole when the run is judged.
 void Coordinator::Impl::on_annotation(Session& session, const link::Annotation& note) {
-  session.annotated_bytes += kAnnotationBytes + note.topic.size() + note.json.size();
-  if (session.annotated_bytes > kMaxAnnotatedBytes)
-    return break_off(session, link::Refusal::Reason::kBadMessage,
-                     fmt::format("annotations of more than {} MiB", kMaxAnnotatedBytes >> 20));
-  log_.annotation(st_, {session.uav_name, note.at, note.topic, note.json});
+  if (const auto fault = session.annotations.spend(note))
+    return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
+  log_.annotation(st(), {session.uav_name, note.at, note.topic, note.json});
 }
 
 // No reply leaves before the SUT has stopped for it, so what is open and due by now is what this
@@ -180,110 +144,38 @@ std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session, 
 
 // All of a concurrent SUT stands still: replies that are due by then may leave.
 void Coordinator::Impl::on_stop(Session& session, ExecTime at, WallTime now) {
-  const auto reason = link::Refusal::Reason::kBadMessage;
-  if (!session.is_concurrent())
-    return break_off(session, reason, "a stop, which is for concurrent SUTs");
-  if (const ExecTime reached = barrier_.bound(session.uav); at < reached)
-    return break_off(session, reason,
-                     fmt::format("a stop at ET {} ns, although it had reached {} ns", to_ns(at),
-                                 to_ns(reached)));
-  if (barrier_.is_held(session.uav))
-    return break_off(session, reason,
-                     fmt::format("a stop at ET {} ns while it stood still for a reply at {} ns",
-                                 to_ns(at), to_ns(barrier_.bound(session.uav))));
-  log_.stop(st_, {session.uav_name, at, earliest_due(session, at), now});
+  log_.stop(st(), {session.uav_name, at, earliest_due(session, at), now});
   barrier_.stop(session.uav, at);
   release_ready();
 }
 
-/// A stamp ahead of all that can have gone by would let the simulation run on unhindered.
-std::optional<std::string> Coordinator::Impl::honesty_fault(const Session& session, ExecTime stamp,
-                                                            WallTime now) const {
-  if (!session.witness) return std::nullopt;
-  const Duration excess = session.witness->excess(stamp, now);
-  if (excess == Duration(0)) return std::nullopt;
+Standing Coordinator::Impl::standing(const Session& session) const {
   const bool adds_up_cores = session.hello.clock == link::ClockKind::kCpu;
   const int cores = session.cores > 0 ? session.cores : sync::kMostCores;
-  return fmt::format(
-      "a time stamp of ET {:.6f} s, which is {:.6f} s ahead: since it went on at ET {:.6f} s, no "
-      "more can have gone by than this machine's clock shows{}",
-      to_seconds(stamp), to_seconds(excess), to_seconds(session.witness->went_on_at()),
-      adds_up_cores ? fmt::format(" for each of {} cores", cores) : "");
-}
-
-std::optional<std::string> Coordinator::Impl::fault_of(const Session& session,
-                                                       const link::Request& request,
-                                                       WallTime now) const {
-  if (const auto fault = order_fault(session, request)) return fault;
-  if (!is_stamp(request.issued_at)) return "a time stamp out of range";
-  if (const auto fault = honesty_fault(session, request.issued_at, now)) return fault;
-  if (const auto fault = standstill_fault(session)) return fault;
-  if (const auto* read = std::get_if<link::ReadSensor>(&request.body))
-    return read_fault(session, *read);
-  if (const auto* set = std::get_if<link::SetVelocity>(&request.body))
-    return command_fault(session, *set);
-  if (const auto* sleep = std::get_if<link::Sleep>(&request.body)) {
-    if (!is_stamp(sleep->until)) return "a time to sleep until that is out of range";
-    if (!tied()) return "a sleep, which in free running is the SUT's own affair";
-  }
-  return std::nullopt;
-}
-
-std::optional<std::string> Coordinator::Impl::order_fault(const Session& session,
-                                                          const link::Request& request) const {
-  if (!running_) return "a request before the Welcome";
-  if (session.is_concurrent()) {
-    if (session.open.size() >= sync::kMaxOpenCalls)
-      return fmt::format("a request while {} others are open", session.open.size());
-    if (tied() && barrier_.is_held(session.uav))
-      return fmt::format("a request stamped {} ns while it stood still for a reply at {} ns",
-                         to_ns(request.issued_at), to_ns(barrier_.bound(session.uav)));
-  } else {
-    if (!session.open.empty()) return "a request while another one is held";
-    if (session.finish) return "a request after Finish";
-  }
-  if (request.sequence != session.next_sequence)
-    return fmt::format("request number {}, expected {}", request.sequence, session.next_sequence);
-  return std::nullopt;
-}
-
-std::optional<std::string> Coordinator::Impl::read_fault(const Session& session,
-                                                         const link::ReadSensor& read) const {
-  if (read.sensor >= session.sensors.size())
-    return fmt::format("sensor number {}, but the UAV has {}", read.sensor, session.sensors.size());
-  const SensorState& sensor = session.sensors[read.sensor];
-  if (read.only_if_available && !sensor.schedule.is_periodic())
-    return fmt::format("a read of what sensor \"{}\" has, which measures on demand", sensor.name);
-  return std::nullopt;
-}
-
-std::optional<std::string> Coordinator::Impl::standstill_fault(const Session& session) const {
-  if (!tied() || st_ > session.called_at || session.calls_in_step < kMaxCallsInAStep)
-    return std::nullopt;
-  return fmt::format(
-      "{} requests while ST stood at {:.6f} s: a loop that waits must let time go by, with a sleep "
-      "or by its scripted clock",
-      kMaxCallsInAStep + 1, to_seconds(st_));
-}
-
-std::optional<std::string> Coordinator::Impl::command_fault(const Session& session,
-                                                            const link::SetVelocity& set) const {
-  if (!uav::is_valid(set.command))
-    return "a velocity command that is not finite or beyond any multirotor";
-  if (commands_.waiting(session.uav) >= kMaxWaitingCommands)
-    return fmt::format("a velocity command while {} others wait to act", kMaxWaitingCommands);
-  return std::nullopt;
+  return {.running = running_,
+          .tied = tied(),
+          .concurrent = session.is_concurrent(),
+          .finished = session.finish.has_value(),
+          .held = running_ && barrier_.is_held(session.uav),
+          .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
+          .open_calls = session.open.size(),
+          .next_sequence = session.next_sequence,
+          .st = st(),
+          .calls_in_step = st() > session.called_at ? 0 : session.calls_in_step,
+          .waiting_commands = stepper_.waiting_commands(session.uav),
+          .sensors = stepper_.sampler(session.uav),
+          .witness = session.witness ? &*session.witness : nullptr,
+          .clock_cores = adds_up_cores ? cores : 0};
 }
 
 void Coordinator::Impl::on_request(Session& session, const link::Request& request, WallTime now) {
   // One thread of a concurrent SUT ends it for all; what the others still ask is dropped.
   if (session.is_concurrent() && session.finish) return;
-  if (const auto fault = fault_of(session, request, now))
+  if (const auto fault = fault_of(request, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
   ++session.next_sequence;
   begin(session, request, now);
-  capture_due();
-  apply_due();
+  stepper_.act();
   release_ready();
 }
 
@@ -291,14 +183,10 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
 // can run on until then.
 void Coordinator::Impl::begin(Session& session, const link::Request& request, WallTime now) {
   PendingInteraction pending{.request = request, .entry = make_entry(session, request, now)};
-  if (!session.spare_states.empty()) {
-    pending.state = std::move(session.spare_states.back());
-    session.spare_states.pop_back();
-  }
   record::Interaction& entry = pending.entry;
   entry.request_at = charge(session, request, entry);
-  session.calls_in_step = st_ > session.called_at ? 1 : session.calls_in_step + 1;
-  session.called_at = st_;
+  session.calls_in_step = st() > session.called_at ? 1 : session.calls_in_step + 1;
+  session.called_at = st();
   entry.reply_at = accept(session, pending);
   if (tied()) {
     barrier_.hold({session.uav, entry.reply_at, entry.sequence});
@@ -315,7 +203,7 @@ record::Interaction Coordinator::Impl::make_entry(const Session& session,
   entry.uav = session.uav_name;
   entry.sequence = request.sequence;
   entry.kind = kind_of(request);
-  entry.st_at_arrival = st_;
+  entry.st_at_arrival = st();
   entry.wall_at_arrival = now;
   entry.stamped = !session.timer && tied();
   // Calls of several threads overlap: a round trip less another call's hold says nothing.
@@ -329,10 +217,10 @@ record::Interaction Coordinator::Impl::make_entry(const Session& session,
 // free running, ST.
 ExecTime Coordinator::Impl::charge(Session& session, const link::Request& request,
                                    record::Interaction& entry) {
-  if (!tied()) return same_instant(st_);
+  if (!tied()) return same_instant(st());
   const ExecTime stamp =
       session.timer ? session.timer->pause(entry.wall_at_arrival) : request.issued_at;
-  const sync::Arrival arrival = barrier_.arrive(session.uav, stamp, st_);
+  const sync::Arrival arrival = barrier_.arrive(session.uav, stamp, st());
   entry.lag = arrival.lag;
   if (arrival.violation)
     entry.violation =
@@ -356,39 +244,29 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
   return pending.entry.request_at;
 }
 
-// A read that finds nothing marks nothing as read, and its reply is due at once.
+// The reply to a read that finds nothing is due at once.
 ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pending,
                                         const link::ReadSensor& read) {
-  SensorState& sensor = session.sensors[read.sensor];
   record::Interaction& entry = pending.entry;
-  entry.sensor = sensor.name;
+  Sampler& sampler = stepper_.sampler(session.uav);
+  entry.sensor = sampler.name(read.sensor);
   entry.latest = read.latest;
   entry.only_if_available = read.only_if_available;
-  pending.measurement = choose(sensor.schedule, same_instant(entry.request_at), read);
-  if (!pending.measurement) return entry.request_at;
+  const auto measurement = sampler.plan(entry.sequence, read, same_instant(entry.request_at));
+  if (!measurement) return entry.request_at;
 
-  sensor.schedule.mark_read(*pending.measurement);
-  pending.on_demand = !tied() || !sensor.schedule.is_periodic();
-  entry.sample_index = pending.measurement->index;
-  entry.sampled_at = pending.measurement->sampled_at;
-  entry.available_at = pending.measurement->available_at;
-  return std::max(entry.request_at, same_instant(pending.measurement->available_at));
-}
-
-std::optional<Measurement> Coordinator::Impl::choose(const SensorSchedule& schedule, SimTime t,
-                                                     const link::ReadSensor& read) const {
-  if (read.only_if_available)
-    return tied() ? schedule.choose_available(t, read.latest)
-                  : schedule.choose_available_untied(t, read.latest);
-  return tied() ? schedule.choose(t, read.latest) : schedule.choose_untied(t, read.latest);
+  entry.sample_index = measurement->index;
+  entry.sampled_at = measurement->sampled_at;
+  entry.available_at = measurement->available_at;
+  return std::max(entry.request_at, same_instant(measurement->available_at));
 }
 
 ExecTime Coordinator::Impl::accept_command(Session& session, PendingInteraction& pending,
                                            const link::SetVelocity& set) {
   const SimTime acts = same_instant(pending.entry.request_at) + session.command_latency;
-  pending.entry.effect_at = grid_.ceil(acts);
+  pending.entry.effect_at =
+      stepper_.command(session.uav, pending.entry.sequence, set.command, acts);
   pending.entry.grid_error = *pending.entry.effect_at - acts;
-  commands_.push({*pending.entry.effect_at, session.uav, pending.entry.sequence, set.command});
   return pending.entry.request_at;
 }
 

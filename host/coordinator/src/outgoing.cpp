@@ -7,7 +7,7 @@ namespace tether::coordinator {
 
 void Coordinator::Impl::release_ready() {
   if (!tied()) return answer_untied();
-  while (const auto grant = barrier_.release(st_)) {
+  while (const auto grant = barrier_.release(st())) {
     Session& session = sessions_[grant->sut];
     std::size_t i = 0;
     while (session.open[i].entry.sequence != grant->call) ++i;
@@ -20,12 +20,13 @@ void Coordinator::Impl::answer_untied() {
   for (Session& session : sessions_) {
     for (std::size_t i = 0; i < session.open.size();) {
       PendingInteraction& pending = session.open[i];
-      if (pending.measurement && !pending.captured) {
+      const Sampler::Read* read = stepper_.sampler(session.uav).find(pending.entry.sequence);
+      if (read && !read->captured) {
         ++i;
         continue;
       }
-      pending.entry.reply_at = same_instant(st_);
-      reply(session, i, st_);
+      pending.entry.reply_at = same_instant(st());
+      reply(session, i, st());
     }
   }
 }
@@ -40,7 +41,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
 
   link::Reply message{.sequence = entry.sequence,
                       .resume_at = entry.reply_at,
-                      .sample = take_sample(session, pending)};
+                      .sample = stepper_.measure(session.uav, entry)};
   const std::optional<uav::CameraSample> image = image_to_record(session, pending.request, message);
   entry.st_at_release = st;
   entry.grid_error = std::max(entry.grid_error, same_instant(entry.reply_at) - st);
@@ -48,11 +49,10 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   server_->send(session.peer, std::move(message));
 
   session.last_hold = entry.wall_at_release - entry.wall_at_arrival;
-  session.last_word = entry.wall_at_release;
-  moved_ = entry.wall_at_release;
+  watchdog_.heard(session.uav, entry.wall_at_release);
+  watchdog_.moved(entry.wall_at_release);
   if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
   if (session.witness) session.witness->go_on(barrier_.bound(session.uav), entry.wall_at_release);
-  session.spare_states.push_back(std::move(pending.state));
   log_.interaction(st, entry);
   if (image) log_.image(st, session.uav_name, entry.sensor, *image);
   if (entry.kind == record::kFinish) leave(session);
@@ -63,7 +63,7 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
   if (!options_.record_images || !reply.sample) return std::nullopt;
   const auto* image = std::get_if<uav::CameraSample>(&*reply.sample);
   if (image == nullptr) return std::nullopt;
-  auto& last = session.sensors[std::get<link::ReadSensor>(request.body).sensor].recorded_image_at;
+  auto& last = session.recorded_image_at[std::get<link::ReadSensor>(request.body).sensor];
   if (last && image->sampled_at < *last + options_.image_period) return std::nullopt;
   last = image->sampled_at;
   return *image;
@@ -73,30 +73,11 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
 void Coordinator::Impl::leave(Session& session) {
   session.left = true;
   session.open.clear();
+  stepper_.sampler(session.uav).close();
   barrier_.remove(session.uav);
   server_->close(session.peer);
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.left; }))
-    end(RunEnd::kFinished, "every SUT has finished");
-}
-
-std::optional<uav::Sample> Coordinator::Impl::take_sample(const Session& session,
-                                                          PendingInteraction& pending) {
-  if (!pending.measurement) return std::nullopt;
-  const auto& read = std::get<link::ReadSensor>(pending.request.body);
-  const Measurement& measurement = *pending.measurement;
-  const sim::Snapshot* state = pending.on_demand
-                                   ? &pending.state
-                                   : session.sensors[read.sensor].captures.find(measurement.index);
-  if (!state)
-    throw Error(ErrorCode::kInternal, "the state of a measurement was dropped before it was read");
-
-  pending.entry.sample_state_at = state->at;
-  pending.entry.grid_error = std::max(pending.entry.grid_error, measurement.sampled_at - state->at);
-  auto sample = ask_simulator([&](sim::Simulator& s) {
-    return s.measure(*state, session.uav, read.sensor, measurement.index);
-  });
-  if (std::holds_alternative<uav::CameraSample>(sample)) log_.count_image();
-  return sample;
+    end({RunEnd::kFinished, "every SUT has finished"});
 }
 
 }  // namespace tether::coordinator

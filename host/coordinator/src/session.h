@@ -1,7 +1,6 @@
 #pragma once
 
-#include "capture_store.h"
-#include "sensor_schedule.h"
+#include "validator.h"
 
 #include <cstdint>
 #include <optional>
@@ -18,23 +17,10 @@
 
 namespace tether::coordinator {
 
-/// One sensor of a session: when it measures, and the states that may still be read.
-struct SensorState {
-  std::string name;
-  SensorSchedule schedule;
-  CaptureStore captures;
-  std::uint64_t next_capture = 0;  ///< periodic: index of the first measurement not yet captured
-  std::optional<SimTime> recorded_image_at{};  ///< when the last image in the record was taken
-};
-
 /// A request between its arrival and its reply.
 struct PendingInteraction {
   link::Request request;
-  record::Interaction entry;                 ///< filled in as things happen
-  std::optional<Measurement> measurement{};  ///< of ReadSensor; none if none was there
-  bool on_demand = false;                    ///< its state is captured for it alone …
-  bool captured = false;                     ///< … and has been, into `state`
-  sim::Snapshot state{};
+  record::Interaction entry;  ///< filled in as things happen
 };
 
 /// One SUT and the UAV that it flies. Plain state; `Coordinator` acts on it.
@@ -43,7 +29,8 @@ struct Session {
   std::string uav_name;
   Duration command_latency{0};
   int cores = 0;  ///< of the SUT's machine; 0: not known
-  std::vector<SensorState> sensors;
+  /// Of each sensor, when the last image in the record was taken.
+  std::vector<std::optional<SimTime>> recorded_image_at;
 
   // From joining to leaving.
   link::PeerId peer = 0;  ///< 0: nobody
@@ -51,17 +38,14 @@ struct Session {
   std::optional<sync::ExecutionTimer> timer;  ///< of an unstamped client
   std::optional<sync::ClockWitness> witness;  ///< tied, of one that stamps by its own clock
   std::uint64_t next_sequence = 1;
-  SimTime called_at{};              ///< ST when the last request came
-  std::size_t calls_in_step = 0;    ///< requests since ST came there
-  std::size_t annotated_bytes = 0;  ///< of all annotations
-  /// When it was last heard; before it has joined, since when it is waited for.
-  WallTime last_word;
+  SimTime called_at{};            ///< ST when the last request came
+  std::size_t calls_in_step = 0;  ///< requests since ST came there
+  AnnotationBudget annotations;
   std::optional<link::Finish> finish;
   bool left = false;  ///< finished or sent away: nothing more is expected or told
 
   /// Requests without their reply, in the order of their sequence: of a serial SUT one at most.
   std::vector<PendingInteraction> open;
-  std::vector<sim::Snapshot> spare_states;  ///< storage for the next ones
   Duration last_hold{0};  ///< WT between the last request's arrival and its reply; 0: none yet
 
   bool joined() const { return peer != 0; }

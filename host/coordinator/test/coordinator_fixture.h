@@ -65,7 +65,7 @@ class CoordinatorTest : public testing::Test {
                          {{kCameraTiming, kImuTiming, kRangeTiming}, latency_, clock_, cores_});
     coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
                                                  [this] { return now_ += tick_; });
-    server_ = std::make_unique<ScriptedServer>(coordinator_->events());
+    server_ = std::make_unique<ScriptedServer>();
   }
   RunReport run(ScriptedServer::Script script) {
     if (!coordinator_) make();

@@ -3,8 +3,8 @@
 #include "scripted_threads.h"
 
 #include <deque>
-#include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -19,8 +19,6 @@ namespace tether::coordinator {
 class ScriptedServer final : public link::Server {
  public:
   using Script = coordinator::Script;
-
-  explicit ScriptedServer(link::ServerEvents& events) : events_(&events) {}
 
   /// A peer that says `hello` and then follows its script; returns its id.
   link::PeerId add_sut(link::Hello hello, Script script) {
@@ -41,30 +39,24 @@ class ScriptedServer final : public link::Server {
   }
   /// A message of `peer` at the next poll.
   void deliver(link::PeerId peer, link::Message message) {
-    queue_.push_back(
-        [this, peer, message = std::move(message)] { events_->on_message(peer, message); });
+    queue_.push_back({peer, std::move(message)});
   }
   void disconnect(link::PeerId peer) {
-    queue_.push_back([this, peer] {
-      events_->on_closed(peer, {Failure::Kind::kDisconnected, "connection closed"});
-    });
+    queue_.push_back({peer, link::Closed{{Failure::Kind::kDisconnected, "connection closed"}}});
   }
-  /// It says no more; closed if the coordinator has nothing to tell it.
+  /// It says no more, but may still read.
   void half_close(link::PeerId peer) {
-    queue_.push_back([this, peer] {
-      if (!events_->on_half_closed(peer))
-        events_->on_closed(peer, {Failure::Kind::kDisconnected, "connection closed"});
-    });
+    disconnect(peer);
+    std::get<link::Closed>(queue_.back().what).may_still_read = true;
   }
 
   link::Address address() const override { return {"script", 0}; }
-  bool poll(Duration) override {
+  std::span<link::Event> poll(Duration) override {
     ++polls;
-    if (queue_.empty()) return false;
-    const auto action = std::move(queue_.front());
+    if (queue_.empty()) return {};
+    event_ = std::move(queue_.front());
     queue_.pop_front();
-    action();
-    return true;
+    return {&event_, 1};
   }
   void send(link::PeerId peer, link::Message message) override {
     sent[peer].push_back(message);
@@ -96,11 +88,11 @@ class ScriptedServer final : public link::Server {
     deliver(peer, make_request(act, ++sut.sequence, sut.et));
   }
 
-  link::ServerEvents* events_;
   link::PeerId last_peer_ = 0;
   std::map<link::PeerId, Sut> suts_;
   std::map<link::PeerId, ScriptedThreads> threads_;
-  std::deque<std::function<void()>> queue_;
+  std::deque<link::Event> queue_;
+  link::Event event_;  // of the last poll
 };
 
 /// Keeps everything, for assertions.

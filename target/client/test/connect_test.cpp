@@ -63,12 +63,7 @@ TEST(Connect, RefusesAnotherAnswer) {
 }
 
 TEST(Connect, DoesNotWaitForeverForAWelcome) {
-  struct Deaf final : link::ServerEvents {
-    void on_connected(link::PeerId, const std::string&) override {}
-    void on_message(link::PeerId, link::Message) override {}
-    void on_closed(link::PeerId, const Failure&) override {}
-  } deaf;
-  link_testing::MemoryServer server(deaf);
+  link_testing::MemoryServer server;
   ConnectOptions options = options_with();
   options.welcome_timeout = 1ms;
   const auto vehicle = connect(server.connect(), std::move(options));

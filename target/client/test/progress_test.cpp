@@ -88,22 +88,26 @@ TEST(Progress, KeepsItsPlaceBetweenRequests) {
 /// the client.
 TEST(Progress, IsSilentWhileTheSutIsHeld) {
   ManualTimeSource source(link::ClockKind::kWall);
-  struct Held final : link::ServerEvents {
-    void on_connected(link::PeerId, const std::string&) override {}
-    void on_message(link::PeerId peer_id, link::Message message) override {
+  struct Held {
+    void poll(link::Server& server, Duration max_wait) {
+      for (const link::Event& event : server.poll(max_wait)) {
+        closed = closed || std::holds_alternative<link::Closed>(event.what);
+        if (const auto* said = std::get_if<link::Message>(&event.what)) take(event.peer, *said);
+      }
+    }
+    void take(link::PeerId peer_id, const link::Message& message) {
       peer = peer_id;
       if (const auto* request = std::get_if<Request>(&message)) held = *request;
       if (held && std::holds_alternative<Progress>(message)) ++words_while_held;
       said_hello = said_hello || std::holds_alternative<link::Hello>(message);
     }
-    void on_closed(link::PeerId, const Failure&) override { closed = true; }
     link::PeerId peer = 0;
     bool said_hello = false;
     bool closed = false;
     std::optional<Request> held;
     int words_while_held = 0;
   } held;
-  link_testing::MemoryServer server(held);
+  link_testing::MemoryServer server;
   std::thread sut([&source, channel = server.connect()]() mutable {
     ConnectOptions options;
     options.time = std::make_unique<ManualTimeSource>(source);
@@ -111,17 +115,17 @@ TEST(Progress, IsSilentWhileTheSutIsHeld) {
     const auto vehicle = connect(std::move(channel), std::move(options)).value();
     ASSERT_TRUE(vehicle->command_velocity({}).ok());
   });
-  while (!held.said_hello) server.poll(100ms);
+  while (!held.said_hello) held.poll(server, 100ms);
   server.send(held.peer, link::Welcome{});
-  while (!held.held) server.poll(100ms);
+  while (!held.held) held.poll(server, 100ms);
   for (int i = 0; i < 50; ++i) {
     source.advance(1ms);
-    server.poll(200us);  // many periods
+    held.poll(server, 200us);  // many periods
   }
   EXPECT_EQ(held.words_while_held, 0);
   const Request request = *std::exchange(held.held, std::nullopt);
   server.send(held.peer, link::Reply{request.sequence, request.issued_at, {}});
-  while (!held.closed) server.poll(100ms);
+  while (!held.closed) held.poll(server, 100ms);
   sut.join();
 }
 

@@ -17,17 +17,18 @@ namespace tether::client {
 
 /// The other end of a vehicle, in a thread of its own: answers as the test says, and keeps what it
 /// heard. By default it grants every request at its own timestamp.
-class ScriptedCoordinator final : public link::ServerEvents {
+class ScriptedCoordinator {
  public:
   using Answer = std::function<std::vector<link::Message>(const link::Request&)>;
 
   explicit ScriptedCoordinator(link::Message greeting, Answer answer = grant_at_once)
       : greeting_(std::move(greeting)), answer_(std::move(answer)) {
     thread_ = std::thread([this] {
-      while (!stopping_) server_.poll(std::chrono::milliseconds(20));
+      while (!stopping_)
+        for (link::Event& event : server_.poll(std::chrono::milliseconds(20))) take(event);
     });
   }
-  ~ScriptedCoordinator() override { stop(); }
+  ~ScriptedCoordinator() { stop(); }
 
   std::unique_ptr<link::Channel> connect() { return server_.connect(); }
 
@@ -65,8 +66,12 @@ class ScriptedCoordinator final : public link::ServerEvents {
   }
 
  private:
-  void on_connected(link::PeerId, const std::string&) override {}
-  void on_message(link::PeerId peer, link::Message message) override {
+  void take(const link::Event& event) {
+    if (const auto* message = std::get_if<link::Message>(&event.what))
+      on_message(event.peer, *message);
+    if (std::holds_alternative<link::Closed>(event.what)) on_closed();
+  }
+  void on_message(link::PeerId peer, const link::Message& message) {
     {
       const std::lock_guard lock(mutex_);
       heard_.push_back(message);
@@ -77,7 +82,7 @@ class ScriptedCoordinator final : public link::ServerEvents {
     if (request == nullptr) return;
     for (auto& answer : answer_(*request)) server_.send(peer, std::move(answer));
   }
-  void on_closed(link::PeerId, const Failure&) override {
+  void on_closed() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
     heard_more_.notify_all();
@@ -89,7 +94,7 @@ class ScriptedCoordinator final : public link::ServerEvents {
 
   link::Message greeting_;
   Answer answer_;
-  link_testing::MemoryServer server_{*this};
+  link_testing::MemoryServer server_;
   std::mutex mutex_;
   std::condition_variable heard_more_;
   std::vector<link::Message> heard_;

@@ -81,7 +81,7 @@ class HostileSimulator {
     thread_.join();
   }
   std::string address() const {
-    return "tcp://127.0.0.1:" + std::to_string(link::local_port(listener_.get()));
+    return "tcp://127.0.0.1:" + std::to_string(link::local_address(listener_.get()).port);
   }
 
  private:

@@ -106,15 +106,14 @@ void MemoryChannel::close() {
   hub_->to_client.notify_all();
 }
 
-/// What the server has to hear next from one of its peers.
-struct Event {
-  PeerId peer = 0;
-  bool connected = false;
-  std::optional<Frame> frame;  // neither this nor `connected`: the peer has closed
-};
+link::Message decoded(const Frame& frame) {
+  auto message = link::decode(frame);
+  if (!message) throw Error(ErrorCode::kInternal, message.failure().message);
+  return std::move(message).value();
+}
 
 /// Takes the next event, peers in turn of their ids. @pre hub's mutex held
-std::optional<Event> take_event(MemoryServer::Hub& hub) {
+std::optional<link::Event> take_event(MemoryServer::Hub& hub) {
   for (auto it = hub.connections.begin(); it != hub.connections.end(); ++it) {
     const PeerId id = it->first;
     Connection& c = it->second;
@@ -123,15 +122,16 @@ std::optional<Event> take_event(MemoryServer::Hub& hub) {
       hub.connections.erase(it);
       return take_event(hub);
     }
-    if (!std::exchange(c.announced, true)) return Event{id, true, std::nullopt};
+    if (!std::exchange(c.announced, true))
+      return link::Event{id, link::Connected{"memory:" + std::to_string(id)}};
     if (!c.to_server.empty()) {
-      Event event{id, false, std::move(c.to_server.front())};
+      link::Event event{id, decoded(c.to_server.front())};
       c.to_server.pop_front();
       return event;
     }
     if (c.client_closed) {
       hub.connections.erase(it);
-      return Event{id, false, std::nullopt};
+      return link::Event{id, link::Closed{{Failure::Kind::kDisconnected, "the client closed"}}};
     }
   }
   return std::nullopt;
@@ -139,8 +139,7 @@ std::optional<Event> take_event(MemoryServer::Hub& hub) {
 
 }  // namespace
 
-MemoryServer::MemoryServer(link::ServerEvents& events)
-    : hub_(std::make_shared<Hub>()), events_(events) {}
+MemoryServer::MemoryServer() : hub_(std::make_shared<Hub>()) {}
 
 MemoryServer::~MemoryServer() {
   const std::lock_guard lock(hub_->mutex);
@@ -156,27 +155,14 @@ std::unique_ptr<link::Channel> MemoryServer::connect() {
   return std::make_unique<MemoryChannel>(hub_, id);
 }
 
-bool MemoryServer::poll(Duration max_wait) {
-  std::optional<Event> event;
-  {
-    std::unique_lock lock(hub_->mutex);
-    hub_->to_server.wait_for(lock, std::min(max_wait, kLongestWait), [&] {
-      event = take_event(*hub_);
-      return event.has_value();
-    });
-  }
-  if (!event) return false;
-  // Without the lock: the events call send and close.
-  if (event->connected) {
-    events_.on_connected(event->peer, "memory:" + std::to_string(event->peer));
-  } else if (event->frame) {
-    auto message = link::decode(*event->frame);
-    if (!message) throw Error(ErrorCode::kInternal, message.failure().message);
-    events_.on_message(event->peer, std::move(message).value());
-  } else {
-    events_.on_closed(event->peer, {Failure::Kind::kDisconnected, "the client closed"});
-  }
-  return true;
+std::span<link::Event> MemoryServer::poll(Duration max_wait) {
+  std::unique_lock lock(hub_->mutex);
+  hub_->to_server.wait_for(lock, std::min(max_wait, kLongestWait), [&] {
+    event_ = take_event(*hub_);
+    return event_.has_value();
+  });
+  if (!event_) return {};
+  return {&*event_, 1};
 }
 
 void MemoryServer::send(PeerId peer, Message message) {

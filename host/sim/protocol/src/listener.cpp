@@ -7,7 +7,6 @@
 #include <system_error>
 #include <utility>
 
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
@@ -26,7 +25,7 @@ class SocketListener final : public Listener {
   SocketListener(Descriptor socket, Descriptor closed, Endpoint endpoint)
       : socket_(std::move(socket)), closed_(std::move(closed)), endpoint_(std::move(endpoint)) {
     // A host that hangs up between poll and accept must not make accept block.
-    ::fcntl(socket_.get(), F_SETFL, ::fcntl(socket_.get(), F_GETFL) | O_NONBLOCK);
+    link::set_blocking(socket_.get(), false);
   }
   ~SocketListener() override {
     if (const auto* path = std::get_if<std::filesystem::path>(&endpoint_)) {
@@ -90,7 +89,7 @@ Result<std::unique_ptr<Listener>> listen(const Endpoint& endpoint) {
   auto& address = std::get<link::Address>(bound);
   auto socket = link::listen_on_tcp(address);
   if (!socket) return socket.failure();
-  address.port = link::local_port(socket->get());
+  address.port = link::local_address(socket->get()).port;
   return std::unique_ptr<Listener>(
       std::make_unique<SocketListener>(std::move(*socket), std::move(closed), std::move(bound)));
 }

@@ -156,8 +156,7 @@ TEST_P(ConnectionTest, TakesHostsOneAfterTheOther) {
 class RawSimulator {
  public:
   RawSimulator() : listener_(link::listen_on_tcp({"127.0.0.1", 0}).value()) {
-    host =
-        connect(link::Address{"127.0.0.1", link::local_port(listener_.get())}, seconds(10)).value();
+    host = connect(link::local_address(listener_.get()), seconds(10)).value();
     socket_ = link::Descriptor(::accept(listener_.get(), nullptr, nullptr));
   }
   void write(std::span<const std::uint8_t> bytes) {

@@ -17,24 +17,25 @@ namespace {
 using testing::HasSubstr;
 
 /// The other end over TCP: welcomes who has the token, and grants every request at its timestamp.
-class Coordinator final : public link::ServerEvents {
+class Coordinator {
  public:
   Coordinator() {
-    server_ = link::listen_tcp({"127.0.0.1", 0}, std::chrono::seconds(5), *this);
+    server_ = link::listen_tcp({"127.0.0.1", 0}, std::chrono::seconds(5));
     thread_ = std::thread([this] {
-      while (!stopping_) server_->poll(std::chrono::milliseconds(20));
+      while (!stopping_)
+        for (const link::Event& event : server_->poll(std::chrono::milliseconds(20)))
+          if (const auto* message = std::get_if<link::Message>(&event.what))
+            on_message(event.peer, *message);
     });
   }
-  ~Coordinator() override {
+  ~Coordinator() {
     stopping_ = true;
     thread_.join();
   }
   std::string address() const { return link::to_string(server_->address()); }
 
  private:
-  void on_connected(link::PeerId, const std::string&) override {}
-  void on_closed(link::PeerId, const Failure&) override {}
-  void on_message(link::PeerId peer, link::Message message) override {
+  void on_message(link::PeerId peer, const link::Message& message) {
     if (const auto* hello = std::get_if<link::Hello>(&message)) greet(peer, *hello);
     if (const auto* request = std::get_if<link::Request>(&message))
       server_->send(peer, link::Reply{request->sequence, request->issued_at, std::nullopt});

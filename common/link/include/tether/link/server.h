@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <variant>
 
 #include <tether/base/result.h>
 #include <tether/base/time.h>
@@ -16,21 +18,23 @@ namespace tether::link {
 /// Identifies one connection for its whole life; never reused within a server.
 using PeerId = std::uint64_t;
 
-/// What happened on the coordinator's end. Called from within `Server::poll`, on its thread; may
-/// call `send` and `close`, but not `poll`; must not throw.
-class ServerEvents {
- public:
-  virtual ~ServerEvents() = default;
-  virtual void on_connected(PeerId peer, const std::string& remote_address) = 0;
-  virtual void on_message(PeerId peer, Message message) = 0;
-  /// It has closed its sending side, or all of it, which looks the same from here: it says no more,
-  /// but may still read. True: it is kept, to be sent to until `close`, and no event comes from it
-  /// any more. Otherwise on_closed follows. Not asked of strangers.
-  virtual bool on_half_closed(PeerId) { return false; }
-  /// The connection is gone; the peer's id is not used again. `failure` says why. kDisconnected: it
-  /// closed, or did not read what it was sent. kProtocol: it sent what it must not. kTimeout: it
-  /// never sent a whole frame. In the latter two cases it was told so with a Refusal.
-  virtual void on_closed(PeerId peer, const Failure& failure) = 0;
+/// A peer has connected; it is a stranger until its first whole frame is there.
+struct Connected {
+  std::string remote_address;
+};
+/// A peer says no more. `failure` says why. kDisconnected: it closed, or did not read what it was
+/// sent. kProtocol: it sent what it must not. kTimeout: it never sent a whole frame. In the latter
+/// two cases a Refusal with the reason was sent to it.
+struct Closed {
+  Failure failure;
+  /// It has closed its sending side, or all of it, which looks the same from here: it is kept, and
+  /// can be sent to until `close`. Otherwise the connection is gone. Never of strangers.
+  bool may_still_read = false;
+};
+/// What happened at one peer.
+struct Event {
+  PeerId peer = 0;
+  std::variant<Connected, Message, Closed> what;
 };
 
 /// Bytes that may wait for a peer that reads slowly; one frame of any size may always wait.
@@ -49,14 +53,14 @@ class Server {
   virtual ~Server() = default;
   /// Where to connect.
   virtual Address address() const = 0;
-  /// Handles what is there, calling the events from within. If nothing is, waits at most `max_wait`
-  /// (0: does not wait) for something to come. Returns whether anything was handled. Of each peer,
-  /// no more is handled than one read gives (about kMaxRequestBytes at most), so that none keeps
-  /// the others waiting, or the caller.
-  virtual bool poll(Duration max_wait) = 0;
+  /// Handles what is there. If nothing is, waits at most `max_wait` (0: does not wait) for
+  /// something to come. Returns what happened, one event per peer at most, so that a peer that is
+  /// closed because of its message has no other event here, and none keeps the others waiting, or
+  /// the caller. The caller may move messages out; the span is valid until the next poll.
+  virtual std::span<Event> poll(Duration max_wait) = 0;
   /// Writes the message to the connection at once as far as it takes it, and keeps the rest for
   /// `poll`. Move the message in: its image is then never copied. A peer that does not read is
-  /// closed (`on_closed` comes from the next poll) when something is to be sent while more than
+  /// closed (`Closed` comes from the next poll) when something is to be sent while more than
   /// kMaxQueuedBytes or kMaxQueuedFrames wait for it. Does nothing for a peer that is gone.
   /// @throws Error(kInternal) if the message breaks `validate`.
   virtual void send(PeerId peer, Message message) = 0;
@@ -66,10 +70,8 @@ class Server {
 
 /// Listens on TCP with TCP_NODELAY; port 0 takes a free one. A peer that has not sent its first
 /// whole frame (kMaxHelloBytes at most) within `hello_timeout` of connecting is refused, however
-/// steadily its bytes come. `events` must outlive the server.
-/// @throws Error(kSetup) when the address cannot be bound.
-std::unique_ptr<Server> listen_tcp(const Address& address, Duration hello_timeout,
-                                   ServerEvents& events);
+/// steadily its bytes come. @throws Error(kSetup) when the address cannot be bound.
+std::unique_ptr<Server> listen_tcp(const Address& address, Duration hello_timeout);
 
 /// A new random token: 128 bits of the kernel's generator, in hex. @throws Error(kSetup).
 std::string make_token();

@@ -42,8 +42,8 @@ inline constexpr Duration kLongestTimeout = std::chrono::hours(24 * 365);
 /// inherited by child processes. Buffer sizes are left to the system, which fits them to the
 /// traffic. What the system does not grant is done without.
 void tune(int descriptor);
-/// Child processes (the SUT that `tether run` starts) must not hold our connections open.
-void close_on_exec(int descriptor);
+/// False: calls on it return `would_block` instead of waiting.
+void set_blocking(int descriptor, bool blocks);
 
 /// Calls that send give up (`would_block`) when the peer has read nothing for so long.
 void limit_sending(int descriptor, Duration limit);
@@ -78,8 +78,17 @@ Result<Descriptor> open_tcp(const Address& address, Duration timeout);
 
 /// A socket that listens there; port 0 takes a free one. Fails with kInvalid, naming the address.
 Result<Descriptor> listen_on_tcp(const Address& address);
-/// The port of this end of a TCP socket; 0: it has none.
-std::uint16_t local_port(int descriptor);
+/// This end of a TCP socket, in numbers; empty: it has none.
+Address local_address(int descriptor);
+
+/// What accepting came to.
+struct Accepted {
+  Descriptor socket;  ///< tuned, does not block; closed where `error` is set
+  Address remote;     ///< in numbers
+  std::error_code error;
+};
+/// Accepts one of the connections that wait at a listening socket.
+Accepted accept_tcp(int listening);
 
 /// "the connection to HOST:PORT was lost: REASON".
 Failure lost(const std::string& peer, const std::error_code& error);

@@ -115,7 +115,7 @@ struct RunHooks {
   std::function<record::Readings()> read_target;
 };
 
-/// One run. Construct, let `events()` hear a server, call `run` once.
+/// One run. Construct, call `run` once.
 ///
 /// Everything happens on the caller's thread: messages are handled, decisions taken and steps made
 /// in one loop, so that there is nothing to lock and no order left to chance. `host_clock` is read
@@ -129,8 +129,6 @@ class Coordinator {
   ~Coordinator();
   Coordinator(const Coordinator&) = delete;
   Coordinator& operator=(const Coordinator&) = delete;
-
-  link::ServerEvents& events();
 
   /// Waits for every UAV's SUT, runs until the end, tells the SUTs, and writes the record's footer.
   /// Every way in which a run can fail is in the report. @throws Error(kSetup) only when the record

@@ -38,8 +38,8 @@ uav::Quat turned(const uav::Quat& q_WB, const Vec3& w_WB_B, double dt_s) {
 FakeOutside::FakeOutside(const World& world, Fault fault)
     : world_(world), scene_(world_), fault_(std::move(fault)) {
   link::Descriptor listening = link::listen_on_tcp({"127.0.0.1", 0}).value();
-  const link::Address address{"127.0.0.1", link::local_port(listening.get())};
-  connection_ = connect(Endpoint(address), std::chrono::seconds(30)).value();
+  const Endpoint address = link::local_address(listening.get());
+  connection_ = connect(address, std::chrono::seconds(30)).value();
   thread_ = std::thread([this, socket = std::move(listening)] { serve(socket.get()); });
 }
 

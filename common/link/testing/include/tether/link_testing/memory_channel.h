@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 
 #include <tether/link/channel.h>
 #include <tether/link/server.h>
@@ -15,8 +17,7 @@ namespace tether::link_testing {
 /// may outlive the server: they find themselves disconnected.
 class MemoryServer final : public link::Server {
  public:
-  /// `events` must outlive the server.
-  explicit MemoryServer(link::ServerEvents& events);
+  MemoryServer();
   ~MemoryServer() override;
 
   /// A new connection; the server hears of it in its next poll. From any thread.
@@ -24,7 +25,8 @@ class MemoryServer final : public link::Server {
 
   /// A placeholder: there is nothing to connect to over TCP.
   link::Address address() const override { return {"memory", 0}; }
-  bool poll(Duration max_wait) override;
+  /// One event at most.
+  std::span<link::Event> poll(Duration max_wait) override;
   void send(link::PeerId peer, link::Message message) override;
   void close(link::PeerId peer) override;
 
@@ -33,7 +35,7 @@ class MemoryServer final : public link::Server {
  private:
   // Shared with the channels, which may outlive the server.
   std::shared_ptr<Hub> hub_;
-  link::ServerEvents& events_;
+  std::optional<link::Event> event_;  // of the last poll
   link::Encoder encoder_;
 };
 

@@ -1,0 +1,116 @@
+#include "sampler.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <tether/base/error.h>
+
+namespace tether::coordinator {
+
+Sampler::Sampler(std::vector<Sensor> sensors, StepGrid grid, bool tied) : grid_(grid), tied_(tied) {
+  for (Sensor& sensor : sensors)
+    sensors_.push_back({std::move(sensor.name), std::move(sensor.schedule)});
+}
+
+// A read that finds nothing marks nothing as read.
+std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSensor& read,
+                                         SimTime t) {
+  SensorSchedule& schedule = sensors_[read.sensor].schedule;
+  const auto measurement = choose(schedule, read, t);
+  if (!measurement) return std::nullopt;
+  schedule.mark_read(*measurement);
+  const bool on_demand = !tied_ || !schedule.is_periodic();
+  reads_.push_back({.call = call,
+                    .sensor = read.sensor,
+                    .measurement = *measurement,
+                    .on_demand = on_demand,
+                    .state = take_spare()});
+  return measurement;
+}
+
+std::optional<Measurement> Sampler::choose(const SensorSchedule& schedule,
+                                           const link::ReadSensor& read, SimTime t) const {
+  if (read.only_if_available)
+    return tied_ ? schedule.choose_available(t, read.latest)
+                 : schedule.choose_available_untied(t, read.latest);
+  return tied_ ? schedule.choose(t, read.latest) : schedule.choose_untied(t, read.latest);
+}
+
+sim::Snapshot Sampler::take_spare() {
+  if (spares_.empty()) return {};
+  sim::Snapshot spare = std::move(spares_.back());
+  spares_.pop_back();
+  return spare;
+}
+
+SimTime Sampler::next_due() const {
+  SimTime due = SimTime::max();
+  for (const Read& read : reads_)
+    if (read.on_demand && !read.captured)
+      due = std::min(due, grid_.floor(read.measurement.sampled_at));
+  if (!tied_ || closed_) return due;
+  for (const State& sensor : sensors_)
+    if (const auto instant = sensor.schedule.sampling_instant(sensor.next_capture))
+      due = std::min(due, grid_.floor(*instant));
+  return due;
+}
+
+void Sampler::sample(SimTime st, SimTime earliest, const Capture& capture) {
+  for (Read& read : reads_) {
+    if (!read.on_demand || read.captured) continue;
+    if (grid_.floor(read.measurement.sampled_at) > st) continue;
+    capture(read.state);
+    read.captured = true;
+  }
+  if (!tied_ || closed_) return;
+  for (std::size_t i = 0; i < sensors_.size(); ++i) sample_periodic(i, st, earliest, capture);
+}
+
+void Sampler::sample_periodic(std::size_t sensor, SimTime st, SimTime earliest,
+                              const Capture& capture) {
+  State& state = sensors_[sensor];
+  auto instant = state.schedule.sampling_instant(state.next_capture);
+  while (instant && grid_.floor(*instant) <= st) {
+    capture(state.captures.add(state.next_capture));
+    instant = state.schedule.sampling_instant(++state.next_capture);
+    state.captures.drop_before(first_needed(sensor, earliest));
+  }
+}
+
+// By a read that has its measurement, or by one still to come.
+std::uint64_t Sampler::first_needed(std::size_t sensor, SimTime earliest) const {
+  std::uint64_t first = sensors_[sensor].schedule.first_readable(earliest);
+  for (const Read& read : reads_)
+    if (read.sensor == sensor) first = std::min(first, read.measurement.index);
+  return first;
+}
+
+const Sampler::Read* Sampler::find(std::uint64_t call) const {
+  const auto read =
+      std::find_if(reads_.begin(), reads_.end(), [call](const Read& r) { return r.call == call; });
+  return read == reads_.end() ? nullptr : &*read;
+}
+
+const sim::Snapshot& Sampler::state_of(const Read& read) const {
+  const sim::Snapshot* state = read.on_demand
+                                   ? (read.captured ? &read.state : nullptr)
+                                   : sensors_[read.sensor].captures.find(read.measurement.index);
+  if (!state)
+    throw Error(ErrorCode::kInternal, "the state of a measurement was dropped before it was read");
+  return *state;
+}
+
+void Sampler::answered(std::uint64_t call) {
+  const auto read =
+      std::find_if(reads_.begin(), reads_.end(), [call](const Read& r) { return r.call == call; });
+  if (read == reads_.end()) return;
+  spares_.push_back(std::move(read->state));
+  reads_.erase(read);
+}
+
+void Sampler::close() {
+  closed_ = true;
+  reads_.clear();
+}
+
+}  // namespace tether::coordinator

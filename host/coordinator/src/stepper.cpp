@@ -1,0 +1,91 @@
+#include "stepper.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tether::coordinator {
+
+Stepper::Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& barrier, RunLog& log,
+                 Duration ground_truth_period, std::vector<Sampler> samplers)
+    : simulator_(&simulator),
+      barrier_(&barrier),
+      log_(&log),
+      grid_(simulator.grid()),
+      ground_truth_period_(ground_truth_period),
+      samplers_(std::move(samplers)) {}
+
+void Stepper::reset(std::uint64_t seed) {
+  ask([&](sim::Simulator& s) { s.reset(seed); });
+}
+
+SimTime Stepper::next_ground_truth() const {
+  return grid_.ceil(SimTime(ground_truths_ * ground_truth_period_));
+}
+
+SimTime Stepper::next_due() const {
+  SimTime due = std::min(commands_.next_effect(), next_ground_truth());
+  for (const Sampler& sampler : samplers_) due = std::min(due, sampler.next_due());
+  return due;
+}
+
+void Stepper::advance_to(SimTime to) {
+  ask([&](sim::Simulator& s) { s.advance_to(to); });
+  st_ = to;
+  act();
+}
+
+// Samples come first: they show what the steps up to here have led to, so the commands that act
+// from here on make no difference to them, in whatever order SUTs were heard.
+void Stepper::act() {
+  sample();
+  apply_commands();
+  log_ground_truth();
+}
+
+// A SUT can stamp nothing before its bound.
+void Stepper::sample() {
+  const Sampler::Capture capture = [this](sim::Snapshot& snapshot) {
+    ask([&](sim::Simulator& s) { s.capture(snapshot); });
+  };
+  for (std::size_t uav = 0; uav < samplers_.size(); ++uav)
+    samplers_[uav].sample(st_, same_instant(barrier_->bound(uav)), capture);
+}
+
+void Stepper::apply_commands() {
+  while (const auto command = commands_.pop_due(st_)) {
+    ask([&](sim::Simulator& s) { s.apply(command->uav, command->command); });
+    log_->command_effect(st_, simulator_->world().uavs[command->uav].name, *command);
+  }
+}
+
+void Stepper::log_ground_truth() {
+  if (next_ground_truth() > st_) return;
+  ++ground_truths_;
+  for (std::size_t uav = 0; uav < samplers_.size(); ++uav)
+    log_->ground_truth(simulator_->world().uavs[uav].name,
+                       ask([&](sim::Simulator& s) { return s.ground_truth(uav); }));
+}
+
+SimTime Stepper::command(std::size_t uav, std::uint64_t sequence,
+                         const uav::VelocityCommand& command, SimTime t) {
+  const SimTime effect_at = grid_.ceil(t);
+  commands_.push({effect_at, uav, sequence, command});
+  return effect_at;
+}
+
+std::optional<uav::Sample> Stepper::measure(std::size_t uav, record::Interaction& entry) {
+  Sampler& sampler = samplers_[uav];
+  const Sampler::Read* read = sampler.find(entry.sequence);
+  if (!read) return std::nullopt;
+  const sim::Snapshot& state = sampler.state_of(*read);
+  entry.sample_state_at = state.at;
+  entry.grid_error = std::max(entry.grid_error, read->measurement.sampled_at - state.at);
+  auto sample = ask([&](sim::Simulator& s) {
+    return s.measure(state, uav, read->sensor, read->measurement.index);
+  });
+  sampler.answered(entry.sequence);
+  if (std::holds_alternative<uav::CameraSample>(sample)) log_->count_image();
+  return sample;
+}
+
+}  // namespace tether::coordinator

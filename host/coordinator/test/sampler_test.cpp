@@ -1,0 +1,116 @@
+#include "sampler.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <tether/base/error.h>
+#include <tether/base/random.h>
+
+namespace tether::coordinator {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+SimTime us(std::int64_t value) {
+  return SimTime(microseconds(value));
+}
+
+/// A sampler of one sensor, over a simulator whose state is its instant.
+class Sampling : public testing::Test {
+ protected:
+  void make(uav::SensorTiming timing, bool tied = true, std::uint64_t seed = 0) {
+    sampler_.emplace(std::vector<Sampler::Sensor>{{"sensor", {std::move(timing), seed, 0}}}, kGrid,
+                     tied);
+  }
+  void sample(SimTime st, SimTime earliest) {
+    sampler_->sample(st, earliest, [&](sim::Snapshot& snapshot) {
+      snapshot.at = st;
+      ++captures_;
+    });
+  }
+  static constexpr StepGrid kGrid{milliseconds(1)};
+  std::optional<Sampler> sampler_;
+  int captures_ = 0;
+};
+
+const uav::OnDemandTiming kOnDemand{uav::ConstantDelay{milliseconds(20)}};
+const uav::PeriodicTiming kPeriodic{milliseconds(10), Duration(0),
+                                    uav::ConstantDelay{milliseconds(25)}};
+
+TEST_F(Sampling, CapturesAnOnDemandReadOnceAtTheBoundaryOfItsRequest) {
+  make(kOnDemand);
+  EXPECT_EQ(sampler_->next_due(), SimTime::max());
+  ASSERT_TRUE(sampler_->plan(7, {}, us(2'300)));
+  EXPECT_EQ(sampler_->next_due(), us(2'000));
+  sample(us(1'000), us(0));
+  EXPECT_EQ(captures_, 0);
+  EXPECT_THROW(sampler_->state_of(*sampler_->find(7)), Error);
+  sample(us(2'000), us(0));
+  sample(us(3'000), us(0));
+  EXPECT_EQ(captures_, 1);
+  EXPECT_EQ(sampler_->state_of(*sampler_->find(7)).at, us(2'000));
+  EXPECT_EQ(sampler_->next_due(), SimTime::max());
+  sampler_->answered(7);
+  EXPECT_EQ(sampler_->find(7), nullptr);
+}
+
+TEST_F(Sampling, CapturesPeriodicSensorsWhetherReadOrNotWhereTimeIsTied) {
+  make(kPeriodic);
+  EXPECT_EQ(sampler_->next_due(), us(0));
+  sample(us(0), us(0));
+  EXPECT_EQ(sampler_->next_due(), us(10'000));
+  make(kPeriodic, false);
+  EXPECT_EQ(sampler_->next_due(), SimTime::max());
+}
+
+TEST_F(Sampling, AReadThatFindsNothingIsNotPlanned) {
+  make(kPeriodic);
+  EXPECT_FALSE(sampler_->plan(1, {0, false, true}, us(24'999)));
+  EXPECT_EQ(sampler_->find(1), nullptr);
+}
+
+TEST_F(Sampling, NothingIsDueOnceTheSutHasLeft) {
+  make(kPeriodic);
+  ASSERT_TRUE(sampler_->plan(1, {}, us(0)));
+  sampler_->close();
+  EXPECT_EQ(sampler_->next_due(), SimTime::max());
+  sample(us(50'000), us(0));
+  EXPECT_EQ(captures_, 0);
+}
+
+// Delays of several periods reorder what becomes available, several reads are open at once, and ST
+// is behind when requests are stamped. Whatever a read is to get, its state is still there, and it
+// is that of the instant at which the sensor measured.
+TEST_F(Sampling, NoStateIsDroppedBeforeItIsRead) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    SCOPED_TRACE(seed);
+    make(uav::PeriodicTiming{milliseconds(5), Duration(0),
+                             uav::NormalDelay{milliseconds(8), milliseconds(9)}},
+         true, seed);
+    KeyedRandom random({.seed = seed});
+    std::vector<std::pair<std::uint64_t, SimTime>> open;
+    SimTime st{}, stamp{};
+    for (std::uint64_t call = 1; call <= 300; ++call) {
+      stamp += microseconds(random.bits() % 9'000);
+      const auto read = sampler_->plan(call, {0, random.bits() % 2 == 0}, stamp);
+      open.emplace_back(call, std::max(stamp, read->available_at));
+      const SimTime until = kGrid.floor(stamp);
+      while ((st = std::min(until, sampler_->next_due())) < until) sample(st, stamp);
+      sample(st, stamp);
+      std::erase_if(open, [&](const auto& due) {
+        if (due.second > st) return false;
+        const Sampler::Read& answered = *sampler_->find(due.first);
+        EXPECT_EQ(sampler_->state_of(answered).at, kGrid.floor(answered.measurement.sampled_at));
+        sampler_->answered(due.first);
+        return true;
+      });
+    }
+    EXPECT_LT(open.size(), 20u);
+  }
+}
+
+}  // namespace
+}  // namespace tether::coordinator

@@ -1,0 +1,147 @@
+#include "validator.h"
+
+#include <limits>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+namespace tether::coordinator {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using Kind = Fault::Kind;
+
+constexpr ExecTime us(std::int64_t value) {
+  return ExecTime(microseconds(value));
+}
+
+/// A running SUT of a UAV with a periodic sensor and one on demand.
+class Validator : public testing::Test {
+ protected:
+  static link::Request request(decltype(link::Request::body) body, ExecTime at = us(100)) {
+    return {.sequence = 4, .issued_at = at, .body = std::move(body)};
+  }
+  void expect(std::optional<Kind> kind, const link::Request& asked = request(link::ReadSensor{})) {
+    EXPECT_EQ(kind_of(fault_of(asked, sut_, WallTime{})), kind);
+  }
+  void expect_stop(std::optional<Kind> kind, ExecTime at) {
+    EXPECT_EQ(kind_of(fault_of(link::Progress{at, true}, sut_, WallTime{})), kind);
+  }
+  static std::optional<Kind> kind_of(const std::optional<Fault>& fault) {
+    return fault ? std::optional(fault->kind) : std::nullopt;
+  }
+
+  Sampler sensors_{{{"imu", {uav::PeriodicTiming{milliseconds(5), Duration(0), {}}, 0, 0}},
+                    {"range", {uav::OnDemandTiming{}, 0, 1}}},
+                   StepGrid(milliseconds(1)),
+                   true};
+  Standing sut_{
+      .running = true, .bound = us(50), .next_sequence = 4, .st = {}, .sensors = sensors_};
+};
+
+TEST_F(Validator, AcceptsTheNextRequestOfASutThatComputes) {
+  expect(std::nullopt);
+  expect(std::nullopt, request(link::SetVelocity{}));
+  expect(std::nullopt, request(link::Sleep{us(200)}));
+  expect(std::nullopt, request(link::Finish{}));
+  sut_.tied = false;
+  expect(std::nullopt);
+}
+
+TEST_F(Validator, RefusesARequestBeforeTheWelcome) {
+  sut_.running = false;
+  expect(Kind::kTooEarly);
+}
+
+TEST_F(Validator, ASerialSutHasOneOpenCallAndOneFinish) {
+  sut_.open_calls = 1;
+  expect(Kind::kOutOfOrder);
+  sut_.open_calls = 0;
+  sut_.finished = true;
+  expect(Kind::kOutOfOrder);
+}
+
+TEST_F(Validator, AConcurrentSutHasManyOpenCallsButNoneWhileHeld) {
+  sut_.concurrent = true;
+  sut_.open_calls = 63;
+  expect(std::nullopt);
+  sut_.held = true;
+  expect(Kind::kOutOfOrder);
+  sut_.tied = false;
+  expect(std::nullopt);
+  sut_.open_calls = 64;
+  expect(Kind::kTooMany);
+}
+
+TEST_F(Validator, RequestsAreNumberedWithoutGaps) {
+  sut_.next_sequence = 3;
+  expect(Kind::kOutOfOrder);
+  sut_.next_sequence = 5;
+  expect(Kind::kOutOfOrder);
+}
+
+TEST_F(Validator, StampsAreFromZeroTo146Years) {
+  for (const ExecTime at : {us(-1), ExecTime::max(), from_ns<ExecTime>(std::int64_t{1} << 62)}) {
+    expect(Kind::kStamp, request(link::ReadSensor{}, at));
+    expect(Kind::kStamp, request(link::Sleep{at}));
+  }
+}
+
+TEST_F(Validator, NoStampIsAheadOfAClockThatIsChecked) {
+  const sync::ClockWitness witness(sync::wall_bound(1.0), ExecTime{}, WallTime{});
+  const link::Request hour = request(link::ReadSensor{}, ExecTime(std::chrono::hours(1)));
+  expect(std::nullopt, hour);
+  sut_.witness = &witness;
+  expect(Kind::kAheadOfClock, hour);
+  expect_stop(Kind::kAheadOfClock, hour.issued_at);
+  expect(std::nullopt, request(link::ReadSensor{}, us(10)));
+}
+
+TEST_F(Validator, CallsAreBoundedWhileStStands) {
+  sut_.calls_in_step = kMaxCallsInAStep - 1;
+  expect(std::nullopt);
+  sut_.calls_in_step = kMaxCallsInAStep;
+  expect(Kind::kTooMany);
+  sut_.tied = false;  // ST follows the wall clock there
+  expect(std::nullopt);
+}
+
+TEST_F(Validator, ReadsAreOfSensorsThatTheUavHas) {
+  expect(std::nullopt, request(link::ReadSensor{1}));
+  expect(Kind::kNotAvailable, request(link::ReadSensor{2}));
+  expect(std::nullopt, request(link::ReadSensor{0, false, true}));
+  expect(Kind::kNotAvailable, request(link::ReadSensor{1, false, true}));
+}
+
+TEST_F(Validator, CommandsAreFiniteAndFewWait) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  expect(Kind::kBadValue, request(link::SetVelocity{{{nan, 0, 0}, 0}}));
+  sut_.waiting_commands = kMaxWaitingCommands;
+  expect(Kind::kTooMany, request(link::SetVelocity{}));
+  expect(std::nullopt);
+}
+
+TEST_F(Validator, NobodySleepsInFreeRunning) {
+  sut_.tied = false;
+  expect(Kind::kNotAvailable, request(link::Sleep{us(200)}));
+}
+
+TEST_F(Validator, AStopIsOfAConcurrentSutThatRuns) {
+  expect_stop(Kind::kImpossibleStop, us(60));
+  sut_.concurrent = true;
+  expect_stop(std::nullopt, us(50));
+  expect_stop(Kind::kImpossibleStop, us(49));
+  sut_.held = true;
+  expect_stop(Kind::kImpossibleStop, us(60));
+}
+
+TEST_F(Validator, AnnotationsAreBoundedByTheirBytes) {
+  AnnotationBudget budget;
+  const link::Annotation note{ExecTime{}, "step", std::string((1 << 20) - 132, 'x')};  // 1 MiB
+  for (int i = 0; i < 256; ++i) ASSERT_FALSE(budget.spend(note));
+  EXPECT_EQ(budget.spend({})->kind, Kind::kTooMany);
+}
+
+}  // namespace
+}  // namespace tether::coordinator
