@@ -92,7 +92,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "whether a UAV's computer is fast enough f
 # describe(<component> <section> <text>...): one argument per line, as dpkg wants it.
 function(describe component section)
   string(TOUPPER "${component}" key)
-  list(JOIN ARGN "\n " text)
+  list(JOIN ARGN "\n" text)
   set(CPACK_DEBIAN_${key}_PACKAGE_NAME "${package_of_${component}}" PARENT_SCOPE)
   set(CPACK_DEBIAN_${key}_PACKAGE_SECTION ${section} PARENT_SCOPE)
   set(CPACK_DEBIAN_${key}_DESCRIPTION "${text}" PARENT_SCOPE)
