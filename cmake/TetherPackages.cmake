@@ -5,13 +5,20 @@
 #   tether-sut   tether-sut             the target: the paper's tasks, and what supervises other programs
 #   client       libtether-client1      the shared library of other people's programs
 #   client-dev   libtether-client-dev   what it takes to build them
+#   doc          tether-doc             the site of scripts/docs, if it was built before CMake configures
 
 set(components tether-sut)
 if(NOT TETHER_TARGET_ONLY)
   list(APPEND components tether)
   install(DIRECTORY data/campaigns data/missions data/models data/profiles data/rigs data/scenarios data/worlds
     DESTINATION "${CMAKE_INSTALL_DATADIR}/tether" COMPONENT tether)
+  set(site "${PROJECT_SOURCE_DIR}/build/docs/html")
+  install(DIRECTORY "${site}" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tether-doc" COMPONENT doc OPTIONAL)
+  if(EXISTS "${site}")
+    list(APPEND components doc)
+  endif()
 endif()
+set(package_of_doc tether-doc)
 set(package_of_tether tether)
 set(package_of_tether-sut tether-sut)
 if(TARGET tether-client)
@@ -92,7 +99,7 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "whether a UAV's computer is fast enough f
 # describe(<component> <section> <text>...): one argument per line, as dpkg wants it.
 function(describe component section)
   string(TOUPPER "${component}" key)
-  list(JOIN ARGN "\n " text)
+  list(JOIN ARGN "\n" text)
   set(CPACK_DEBIAN_${key}_PACKAGE_NAME "${package_of_${component}}" PARENT_SCOPE)
   set(CPACK_DEBIAN_${key}_PACKAGE_SECTION ${section} PARENT_SCOPE)
   set(CPACK_DEBIAN_${key}_DESCRIPTION "${text}" PARENT_SCOPE)
@@ -124,5 +131,11 @@ describe(client-dev libdevel
   "The client library of Tether, development files: headers for C and C++17, files"
   "for CMake and pkg-config, and examples.")
 set(CPACK_DEBIAN_CLIENT-DEV_PACKAGE_DEPENDS "libtether-client1 (= ${PROJECT_VERSION})")
+
+describe(doc doc
+  "The documents of Tether as a site: guides, results, decisions, and the reference"
+  "of the client library in C and C++. It starts with"
+  "/usr/share/doc/tether-doc/html/index.html.")
+set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
 
 include(CPack)

@@ -126,5 +126,17 @@ TEST_F(ClientPackage, CMakeChecksTheVersion) {
   EXPECT_NE(configure("99.0"), 0);
 }
 
+TEST(DocPackage, HasTheSite) {
+  if (!std::filesystem::exists(std::filesystem::path(TETHER_SOURCE_DIR) / "build/docs/html"))
+    GTEST_SKIP() << "the site is missing; scripts/docs builds it";
+  const TempFolder folder;
+  output_of({TETHER_CMAKE, "--install", TETHER_BINARY_DIR, "--prefix", folder / "installed",
+             "--component", "doc"});
+  const auto site = folder / "installed/share/doc/tether-doc/html";
+  for (const char* page : {"index.html", "guide-board.html", "adr.html", "group__c__reading.html",
+                           "classtether_1_1api_1_1Vehicle.html", "tracked_roi.png"})
+    EXPECT_TRUE(std::filesystem::exists(site / page)) << page;
+}
+
 }  // namespace
 }  // namespace tether::system_test

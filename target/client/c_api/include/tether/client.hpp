@@ -22,8 +22,8 @@ namespace tether::api {
 
 /// @defgroup cpp_connecting Connecting and flying
 /// @ingroup cpp_api
-/// "As tether_now()" and the like: unit, errors and threads are those of that C function. A failure
-/// has its status as Code, and its message.
+/// If a description names a C function, units, errors and threads are those of that function. A
+/// failure has the status of that function as Code, and its message.
 /// @{
 
 /// How to reach the coordinator, if not as the environment says. One thread at a time can change
