@@ -10,7 +10,7 @@ namespace tether {
 
 std::string located(const FileLocation& where, const std::string& message) {
   std::string text = where.file;
-  if (where.line > 0) text += ":" + std::to_string(where.line);
+  if (where.line > 0) text.append(":").append(std::to_string(where.line));
   return text + ": " + message;
 }
 
