@@ -43,7 +43,7 @@ void override_environment(const CommandLine& line) {
 }
 
 /// "6", "0.5".
-std::string shown(double factor) {
+std::string factor_text(double factor) {
   const bool is_whole = factor == std::floor(factor);
   return fixed(factor, is_whole ? 0 : 3);
 }
@@ -55,7 +55,7 @@ std::string clock_text(const client::TimeSource& time) {
     case link::ClockKind::kScripted:
       return "scripted";
     default:
-      return "cpu × " + shown(time.factor());
+      return "cpu × " + factor_text(time.factor());
   }
 }
 

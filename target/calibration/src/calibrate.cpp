@@ -1,3 +1,4 @@
+#include "invalid.h"
 #include "report.h"
 #include "statistics.h"
 #include "workload.h"
@@ -18,10 +19,6 @@ namespace {
 
 /// As a target file's reader takes it.
 constexpr double kLeastFactor = 1e-3, kGreatestFactor = 1e4;
-
-Failure invalid(const std::string& what) {
-  return {Failure::Kind::kInvalid, what};
-}
 
 Status check_files(const CalibrateOptions& options) {
   for (const std::string& file : {options.out, options.target}) {

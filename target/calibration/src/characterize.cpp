@@ -1,3 +1,5 @@
+#include "invalid.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -24,10 +26,6 @@ std::string listed(const std::vector<std::string>& names) {
     text += (text.empty() ? "" : ", ") + name;
   }
   return text;
-}
-
-Failure invalid(const std::string& what) {
-  return {Failure::Kind::kInvalid, what};
 }
 
 /// The sensors that are asked for, if they are there and have what is to be measured.

@@ -65,22 +65,6 @@ bool is_control(char c) {
   return code < 0x20 || code == 0x7F;
 }
 
-/// A basic string, also where a key must be quoted. Control characters are escaped, so that no two
-/// keys become one.
-std::string quoted(std::string_view text) {
-  static constexpr std::string_view kHex = "0123456789ABCDEF";
-  std::string result = "\"";
-  for (const char c : in_utf8(text)) {
-    if (is_control(c)) {
-      const auto code = static_cast<unsigned char>(c);
-      result += std::string("\\u00") + kHex[code / 16] + kHex[code % 16];
-    } else {
-      result += (c == '"' || c == '\\') ? std::string("\\") + c : std::string(1, c);
-    }
-  }
-  return result + "\"";
-}
-
 /// A URL's "user:password@" is for the device alone.
 std::string without_user(std::string url) {
   const std::size_t scheme = url.find("://");
@@ -99,7 +83,7 @@ std::string without_user(std::string url) {
 std::string key(const std::string& name) {
   const bool is_bare = !name.empty() && name.find('.') == std::string::npos &&
                        name.find_first_not_of(kNameCharacters) == std::string::npos;
-  return is_bare ? name : quoted(name);
+  return is_bare ? name : toml_string(name);
 }
 
 std::string samples_text(const std::vector<Duration>& samples) {
@@ -115,7 +99,7 @@ std::string sensor_text(const ProfiledSensor& sensor) {
   const std::string table = "sensors." + key(sensor.name);
   std::string text = "\n# " + plain(without_user(sensor.source)) + ", " +
                      std::to_string(sensor.timing.delays.size()) + " measured\n[" + table + "]\n";
-  text += "kind = " + quoted(std::string(uav::name(sensor.kind))) + "\n";
+  text += "kind = " + toml_string(std::string(uav::name(sensor.kind))) + "\n";
   if (sensor.timing.period) {
     text += "timing = \"periodic\"\nperiod_ms = " + in_ms(*sensor.timing.period) + "\n";
   } else {
@@ -133,8 +117,20 @@ std::string plain(std::string_view text) {
   return result;
 }
 
+/// A basic string, also where a key must be quoted. Control characters are escaped, so that no two
+/// keys become one.
 std::string toml_string(std::string_view text) {
-  return quoted(text);
+  static constexpr std::string_view kHex = "0123456789ABCDEF";
+  std::string result = "\"";
+  for (const char c : in_utf8(text)) {
+    if (is_control(c)) {
+      const auto code = static_cast<unsigned char>(c);
+      result += std::string("\\u00") + kHex[code / 16] + kHex[code % 16];
+    } else {
+      result += (c == '"' || c == '\\') ? std::string("\\") + c : std::string(1, c);
+    }
+  }
+  return result + "\"";
 }
 
 bool is_profile_name(std::string_view name) {
@@ -176,8 +172,8 @@ std::string profile_text(const MeasuredProfile& profile) {
   std::string text = "# Measured by tether-sut " + std::string(version()) + " on " +
                      plain(profile.where) + ", " + plain(profile.when) + ".\n";
   text += "# The paper's Algorithm 1: " + extent + ".\n";
-  text += "name = " + quoted(profile.name) + "\n";
-  text += "description = " + quoted(plain(names + " as measured on " + profile.where)) + "\n";
+  text += "name = " + toml_string(profile.name) + "\n";
+  text += "description = " + toml_string(plain(names + " as measured on " + profile.where)) + "\n";
   for (const ProfiledSensor& sensor : profile.sensors) {
     text += sensor_text(sensor);
   }

@@ -27,7 +27,7 @@ std::string percent(double share) {
 }
 
 /// From microseconds to seconds.
-std::string in_ms(double ms) {
+std::string ms_text(double ms) {
   return fixed(ms, ms < 0.1 ? 5 : 3);
 }
 
@@ -35,9 +35,9 @@ std::vector<std::string> speed_row(const BlockTimes& block) {
   const Quartiles cpu = quartiles(block.cpu_ms), wall = quartiles(block.wall_ms);
   return {block.name,
           std::to_string(block.cpu_ms.size()),
-          in_ms(cpu.median),
+          ms_text(cpu.median),
           percent(cpu.spread()),
-          in_ms(wall.median),
+          ms_text(wall.median),
           percent(wall.spread()),
           fixed(1e3 / cpu.median, cpu.median < 1.0 ? 0 : 1)};
 }

@@ -1,21 +1,18 @@
 #include "statistics.h"
 
+#include "invalid.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include <tether/base/text_table.h>
+#include <tether/tasks/sample_statistics.h>
 
 namespace tether::calibration {
 namespace {
 
-/// @pre sorted, not empty
-double quantile(const std::vector<double>& sorted, double share) {
-  const double at = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return std::lerp(sorted[below], sorted[above], at - static_cast<double>(below));
-}
+using tasks::quantile;
 
 double median(const std::vector<double>& values) {
   return quartiles(values).median;
@@ -74,20 +71,16 @@ bool is_less(const Factor& a, const Factor& b) {
   return a.value < b.value;
 }
 
-Failure invalid(const std::string& what) {
-  return {Failure::Kind::kInvalid, what};
-}
-
 // Doubts ------------------------------------------------------------------------------------------
 
-std::string percent(double share) {
+std::string whole_percent(double share) {
   return fixed(100.0 * share, 0) + " %";
 }
 
 void doubt_load(const BlockTimes& whole, std::vector<std::string>& doubts) {
   const double excess = median(whole.wall_ms) / median(whole.cpu_ms) - 1.0;
   if (excess > 0.1) {
-    doubts.push_back("wall time is " + percent(excess) +
+    doubts.push_back("wall time is " + whole_percent(excess) +
                      " above CPU time: other programs had this core meanwhile");
   }
 }
@@ -100,10 +93,10 @@ void doubt_drift(const BlockTimes& whole, std::vector<std::string>& doubts) {
   const double first = median({whole.cpu_ms.begin(), whole.cpu_ms.begin() + third});
   const double last = median({whole.cpu_ms.end() - third, whole.cpu_ms.end()});
   if (last > 1.05 * first) {
-    doubts.push_back("the last rounds took " + percent(last / first - 1.0) +
+    doubts.push_back("the last rounds took " + whole_percent(last / first - 1.0) +
                      " longer than the first: the clock rate fell (heat, power), or load rose");
   } else if (first > 1.05 * last) {
-    doubts.push_back("the first rounds took " + percent(first / last - 1.0) +
+    doubts.push_back("the first rounds took " + whole_percent(first / last - 1.0) +
                      " longer than the last: the clock rate rose (governor), or load fell");
   }
 }
@@ -111,7 +104,7 @@ void doubt_drift(const BlockTimes& whole, std::vector<std::string>& doubts) {
 void doubt_scatter(const BlockTimes& whole, std::vector<std::string>& doubts) {
   const double spread = quartiles(whole.cpu_ms).spread();
   if (spread > 0.1) {
-    doubts.push_back("times scatter: half of the rounds lie " + percent(spread) + " apart");
+    doubts.push_back("times scatter: half of the rounds lie " + whole_percent(spread) + " apart");
   }
 }
 

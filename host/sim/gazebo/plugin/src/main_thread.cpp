@@ -6,7 +6,7 @@
 namespace tether::gazebo_plugin {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{100};
+constexpr std::chrono::milliseconds kJobLook{100};
 
 }  // namespace
 
@@ -21,7 +21,7 @@ bool MainThread::run(const std::function<void()>& job, const std::function<bool(
       lock.lock();
     }
     // A job that runs uses what its owner has, so it is waited for in any case.
-    if (job_ || running_) done_.wait_for(lock, kLook);
+    if (job_ || running_) done_.wait_for(lock, kJobLook);
     if (job_ && give_up()) {
       job_ = nullptr;
       return false;
