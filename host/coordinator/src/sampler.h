@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tether/base/step_grid.h>
@@ -24,11 +25,14 @@ class Sampler {
   struct Sensor {
     std::string name;
     SensorSchedule schedule;
+    CaptureStore captures{};         ///< of a periodic one
+    std::uint64_t next_capture = 0;  ///< index of its first measurement not yet captured
   };
   using Capture = std::function<void(sim::Snapshot&)>;
 
   /// `tied`: by the barrier; false: free running.
-  Sampler(std::vector<Sensor> sensors, StepGrid grid, bool tied);
+  Sampler(std::vector<Sensor> sensors, StepGrid grid, bool tied)
+      : sensors_(std::move(sensors)), grid_(grid), tied_(tied) {}
 
   std::size_t size() const { return sensors_.size(); }
   const std::string& name(std::size_t sensor) const { return sensors_[sensor].name; }
@@ -61,20 +65,13 @@ class Sampler {
   void close();
 
  private:
-  struct State {
-    std::string name;
-    SensorSchedule schedule;
-    CaptureStore captures{};
-    std::uint64_t next_capture = 0;  // periodic: index of the first measurement not yet captured
-  };
-
   std::optional<Measurement> choose(const SensorSchedule& schedule, const link::ReadSensor& read,
                                     SimTime t) const;
   void sample_periodic(std::size_t sensor, SimTime st, SimTime earliest, const Capture& capture);
   std::uint64_t first_needed(std::size_t sensor, SimTime earliest) const;
   sim::Snapshot take_spare();
 
-  std::vector<State> sensors_;
+  std::vector<Sensor> sensors_;
   StepGrid grid_;
   bool tied_;
   bool closed_ = false;
