@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include <tether/base/printable.h>
 #include <tether/coordinator/coordinator.h>
 
+/// The loop: start, pacing, limits of WT, and the end of a run.
 namespace tether::coordinator {
 
 namespace {

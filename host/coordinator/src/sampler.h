@@ -17,9 +17,10 @@
 
 namespace tether::coordinator {
 
-/// What the sensors of one UAV sample, and when: plans which measurement each read gets, captures
-/// the simulator's state at the step boundary of its sampling instant, and keeps it until the read
-/// is answered. Images are rendered from it only then. Pure: the simulator is an argument.
+/// Decides what the sensors of one UAV sample, and when. It plans which measurement each read gets,
+/// captures the simulator's state at the boundary of the sampling instant, and keeps the state
+/// until the read is answered; only then are images rendered from it. Pure: the simulator is an
+/// argument.
 class Sampler {
  public:
   struct Sensor {
@@ -43,7 +44,7 @@ class Sampler {
   std::optional<Measurement> plan(std::uint64_t call, const link::ReadSensor& read, SimTime t);
   /// The first boundary at which a state has to be captured; SimTime::max(): none.
   SimTime next_due() const;
-  /// Captures what is due by `st`. No read that is still to come is stamped before `earliest`.
+  /// Captures what is due by `st`. No later read is stamped before `earliest`.
   void sample(SimTime st, SimTime earliest, const Capture& capture);
 
   /// A read that was planned and not yet answered.
