@@ -51,7 +51,7 @@ class Peer {
   /// It has closed its sending side: there is nothing to be received any more.
   bool input_has_ended() const { return input_has_ended_; }
   std::chrono::steady_clock::time_point since() const { return since_; }
-  /// It has sent no whole frame yet, or was sent away by what it sent first.
+  /// It has sent no whole frame yet, or was closed after its first one.
   bool is_stranger() const { return frames_ == 0 || (frames_ == 1 && state_ == State::kDraining); }
 
   /// Sends what the socket takes and queues the rest, whose image it takes out of `message`.
@@ -62,8 +62,8 @@ class Peer {
   /// Receives once. True: something came. Fails at the end of its input, and (dead then) if the
   /// connection is lost.
   Result<bool> receive();
-  /// The next whole frame; empty: none. From the first one on it may take its time, and send larger
-  /// ones.
+  /// The next whole frame; empty: none. The first one removes the deadline, and raises the limit
+  /// on sizes.
   Result<std::span<const std::uint8_t>> next_frame();
   /// Another frame may have come with the last one.
   bool may_have_frame() const { return may_have_frame_ && state_ == State::kOpen; }

@@ -1,7 +1,6 @@
 #include "peer.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <memory>
 #include <span>
@@ -16,6 +15,9 @@
 #include <tether/link/server.h>
 #include <tether/link/socket.h>
 
+/// The coordinator's end over TCP: one `ppoll` per poll over the listening socket and all peers. A
+/// Peer reads, queues and writes; this file accepts connections, enforces the limits on strangers,
+/// and reports at most one event per peer and poll.
 namespace tether::link {
 namespace {
 

@@ -218,7 +218,8 @@ TEST_F(TcpServer, ReportsNothingOfAPeerThatWasClosedForItsMessage) {
   RawClient client = connect();
   expect_served(client);
   events_.react = [this](PeerId peer, const Message&) { server_->close(peer); };
-  const auto frame = Encoder().encode(Progress{});
+  Encoder encoder;
+  const auto frame = encoder.encode(Progress{});
   client.write(std::string(frame.begin(), frame.end()) + std::string(frame.begin(), frame.end()));
   ASSERT_TRUE(poll_until([&] { return events_.received.size() == 2; }));
   EXPECT_FALSE(events_.poll(*server_, 1ms));

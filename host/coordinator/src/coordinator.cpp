@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include <tether/base/printable.h>
 #include <tether/coordinator/coordinator.h>
 
+/// The loop: start, pacing, limits of WT, and the end of a run.
 namespace tether::coordinator {
 
 namespace {
@@ -87,21 +86,9 @@ RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
 }  // namespace
 
 std::string_view name(RunEnd end) {
-  switch (end) {
-    case RunEnd::kFinished:
-      return "finished";
-    case RunEnd::kTimeLimit:
-      return "time_limit";
-    case RunEnd::kSutLost:
-      return "sut_lost";
-    case RunEnd::kSutHung:
-      return "sut_hung";
-    case RunEnd::kSimulatorLost:
-      return "simulator_lost";
-    case RunEnd::kInterrupted:
-      return "interrupted";
-  }
-  return "unknown";
+  constexpr std::string_view kNames[] = {"finished", "time_limit",     "sut_lost",
+                                         "sut_hung", "simulator_lost", "interrupted"};
+  return kNames[static_cast<std::size_t>(end)];
 }
 
 Coordinator::Coordinator(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
@@ -263,8 +250,8 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
   RunStatus status{.st = st(),
                    .et = std::nullopt,
                    .wall = running_ ? now - started_ : Duration(0),
-                   .interactions = log_.figures().interactions,
-                   .images = log_.figures().images,
+                   .interactions = log_.footer().interactions,
+                   .images = log_.images(),
                    .waiting_for = {},
                    .blocked = ended_ ? "" : watchdog_.blocked(parties(now), st(), now)};
   for (const Session& session : sessions_) {
@@ -280,19 +267,19 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
 
 // Whoever is still there is told; then the record gets its end.
 RunReport Coordinator::Impl::close_run() {
-  const SyncFigures& figures = log_.figures();
+  record::Footer& footer = log_.footer();
   RunReport report{.end = ended_->how,
                    .reason = ended_->reason,
                    .st = st(),
                    .began = running_,
                    .wall = running_ ? host_clock_() - started_ : Duration(0),
-                   .interactions = figures.interactions,
-                   .images = figures.images,
-                   .causality_violations = figures.causality_violations,
-                   .largest_lag = figures.largest_lag,
-                   .largest_grid_error = figures.largest_grid_error,
-                   .stops = figures.stops,
-                   .largest_overshoot = figures.largest_overshoot,
+                   .interactions = footer.interactions,
+                   .images = log_.images(),
+                   .causality_violations = footer.causality_violations,
+                   .largest_lag = footer.largest_lag,
+                   .largest_grid_error = footer.largest_grid_error,
+                   .stops = footer.stops,
+                   .largest_overshoot = footer.largest_overshoot,
                    .suts = {}};
   for (const Session& session : sessions_) {
     if (session.joined() && !session.left)
@@ -304,14 +291,13 @@ RunReport Coordinator::Impl::close_run() {
   }
   if (!running_) return report;
 
-  record::Footer footer;
   footer.end = name(report.end);
   footer.reason = report.reason;
   footer.st_at_end = st();
   footer.wall = report.wall;
   for (const SutReport& sut : report.suts) footer.et_at_end.push_back(sut.et);
   if (hooks_.read_target) footer.target_after = hooks_.read_target();
-  log_.end(footer);
+  log_.end();
   return report;
 }
 

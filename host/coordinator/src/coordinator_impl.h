@@ -15,14 +15,13 @@
 
 namespace tether::coordinator {
 
-/// Carries out a run: hears the SUTs (incoming.cpp), answers them (outgoing.cpp), and lets ST go on
-/// in between (coordinator.cpp). It decides little itself:
+/// The loop of a run: receives messages of the SUTs (incoming.cpp), sends replies (outgoing.cpp),
+/// and advances ST in between (coordinator.cpp). The decisions are made by its parts:
 ///
-///     Event ─► validator: may it say that? ─► barrier: what is held, until when, and how far ST
-///     may go
-///                                         └─► Stepper: steps up to there, samples, applies
-///                                         commands
-///              Watchdog: is it all taking too long?
+///     validator    whether a SUT may send what it sent
+///     barrier      which replies are held until when, and how far ST may advance
+///     Stepper      what is due at each boundary; Sampler, in it: what sensors sample when
+///     Watchdog     whether the run takes too long, and who is blocked on whom
 class Coordinator::Impl {
  public:
   Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,

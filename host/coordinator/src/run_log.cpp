@@ -5,10 +5,10 @@
 namespace tether::coordinator {
 
 void RunLog::interaction(SimTime st, const record::Interaction& entry) {
-  ++figures_.interactions;
-  if (entry.violation) ++figures_.causality_violations;
-  figures_.largest_lag = std::max(figures_.largest_lag, entry.lag);
-  figures_.largest_grid_error = std::max(figures_.largest_grid_error, entry.grid_error);
+  ++footer_.interactions;
+  if (entry.violation) ++footer_.causality_violations;
+  footer_.largest_lag = std::max(footer_.largest_lag, entry.lag);
+  footer_.largest_grid_error = std::max(footer_.largest_grid_error, entry.grid_error);
   recorder_->write(st, entry);
 }
 
@@ -34,9 +34,9 @@ void RunLog::ground_truth(const std::string& uav, const sim::GroundTruth& truth)
 }
 
 void RunLog::stop(SimTime st, const record::Stop& stop) {
-  ++figures_.stops;
+  ++footer_.stops;
   if (stop.reply_at)
-    figures_.largest_overshoot = std::max(figures_.largest_overshoot, stop.at - *stop.reply_at);
+    footer_.largest_overshoot = std::max(footer_.largest_overshoot, stop.at - *stop.reply_at);
   recorder_->write(st, stop);
 }
 
@@ -48,16 +48,6 @@ void RunLog::image(SimTime st, const std::string& uav, const std::string& sensor
                         .at = sample.sampled_at,
                         .index = sample.index,
                         .png = record::encode_png(sample.width_px, sample.height_px, sample.rgb)});
-}
-
-void RunLog::end(record::Footer footer) {
-  footer.interactions = figures_.interactions;
-  footer.causality_violations = figures_.causality_violations;
-  footer.largest_lag = figures_.largest_lag;
-  footer.largest_grid_error = figures_.largest_grid_error;
-  footer.stops = figures_.stops;
-  footer.largest_overshoot = figures_.largest_overshoot;
-  recorder_->write(footer);
 }
 
 }  // namespace tether::coordinator

@@ -12,17 +12,6 @@
 
 namespace tether::coordinator {
 
-/// The figures that sum a run up.
-struct SyncFigures {
-  std::uint64_t interactions = 0;
-  std::uint64_t images = 0;
-  std::uint64_t causality_violations = 0;
-  Duration largest_lag{0};
-  Duration largest_grid_error{0};
-  std::uint64_t stops = 0;        ///< of concurrent SUTs
-  Duration largest_overshoot{0};  ///< by how much one of them came after the reply for which it was
-};
-
 /// Writes what happens to the record and keeps the figures.
 class RunLog {
  public:
@@ -39,14 +28,19 @@ class RunLog {
   void image(SimTime st, const std::string& uav, const std::string& sensor,
              const uav::CameraSample& sample);
   void flush() { recorder_->flush(); }
-  void end(record::Footer footer);
+  /// Writes the footer.
+  void end() { recorder_->write(footer_); }
 
-  const SyncFigures& figures() const { return figures_; }
-  void count_image() { ++figures_.images; }
+  /// Its figures are kept up to date.
+  record::Footer& footer() { return footer_; }
+  const record::Footer& footer() const { return footer_; }
+  std::uint64_t images() const { return images_; }
+  void count_image() { ++images_; }
 
  private:
   record::Recorder* recorder_;
-  SyncFigures figures_;
+  record::Footer footer_;
+  std::uint64_t images_ = 0;  // rendered because a SUT read them
 };
 
 }  // namespace tether::coordinator

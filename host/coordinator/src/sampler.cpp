@@ -7,11 +7,6 @@
 
 namespace tether::coordinator {
 
-Sampler::Sampler(std::vector<Sensor> sensors, StepGrid grid, bool tied) : grid_(grid), tied_(tied) {
-  for (Sensor& sensor : sensors)
-    sensors_.push_back({std::move(sensor.name), std::move(sensor.schedule)});
-}
-
 // A read that finds nothing marks nothing as read.
 std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSensor& read,
                                          SimTime t) {
@@ -49,7 +44,7 @@ SimTime Sampler::next_due() const {
     if (read.on_demand && !read.captured)
       due = std::min(due, grid_.floor(read.measurement.sampled_at));
   if (!tied_ || closed_) return due;
-  for (const State& sensor : sensors_)
+  for (const Sensor& sensor : sensors_)
     if (const auto instant = sensor.schedule.sampling_instant(sensor.next_capture))
       due = std::min(due, grid_.floor(*instant));
   return due;
@@ -68,7 +63,7 @@ void Sampler::sample(SimTime st, SimTime earliest, const Capture& capture) {
 
 void Sampler::sample_periodic(std::size_t sensor, SimTime st, SimTime earliest,
                               const Capture& capture) {
-  State& state = sensors_[sensor];
+  Sensor& state = sensors_[sensor];
   auto instant = state.schedule.sampling_instant(state.next_capture);
   while (instant && grid_.floor(*instant) <= st) {
     capture(state.captures.add(state.next_capture));

@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tether/base/step_grid.h>
@@ -16,19 +17,23 @@
 
 namespace tether::coordinator {
 
-/// What the sensors of one UAV sample, and when: plans which measurement each read gets, captures
-/// the simulator's state at the step boundary of its sampling instant, and keeps it until the read
-/// is answered. Images are rendered from it only then. Pure: the simulator is an argument.
+/// Decides what the sensors of one UAV sample, and when. It plans which measurement each read gets,
+/// captures the simulator's state at the boundary of the sampling instant, and keeps the state
+/// until the read is answered; only then are images rendered from it. Pure: the simulator is an
+/// argument.
 class Sampler {
  public:
   struct Sensor {
     std::string name;
     SensorSchedule schedule;
+    CaptureStore captures{};         ///< of a periodic one
+    std::uint64_t next_capture = 0;  ///< index of its first measurement not yet captured
   };
   using Capture = std::function<void(sim::Snapshot&)>;
 
   /// `tied`: by the barrier; false: free running.
-  Sampler(std::vector<Sensor> sensors, StepGrid grid, bool tied);
+  Sampler(std::vector<Sensor> sensors, StepGrid grid, bool tied)
+      : sensors_(std::move(sensors)), grid_(grid), tied_(tied) {}
 
   std::size_t size() const { return sensors_.size(); }
   const std::string& name(std::size_t sensor) const { return sensors_[sensor].name; }
@@ -39,7 +44,7 @@ class Sampler {
   std::optional<Measurement> plan(std::uint64_t call, const link::ReadSensor& read, SimTime t);
   /// The first boundary at which a state has to be captured; SimTime::max(): none.
   SimTime next_due() const;
-  /// Captures what is due by `st`. No read that is still to come is stamped before `earliest`.
+  /// Captures what is due by `st`. No later read is stamped before `earliest`.
   void sample(SimTime st, SimTime earliest, const Capture& capture);
 
   /// A read that was planned and not yet answered.
@@ -61,20 +66,13 @@ class Sampler {
   void close();
 
  private:
-  struct State {
-    std::string name;
-    SensorSchedule schedule;
-    CaptureStore captures{};
-    std::uint64_t next_capture = 0;  // periodic: index of the first measurement not yet captured
-  };
-
   std::optional<Measurement> choose(const SensorSchedule& schedule, const link::ReadSensor& read,
                                     SimTime t) const;
   void sample_periodic(std::size_t sensor, SimTime st, SimTime earliest, const Capture& capture);
   std::uint64_t first_needed(std::size_t sensor, SimTime earliest) const;
   sim::Snapshot take_spare();
 
-  std::vector<State> sensors_;
+  std::vector<Sensor> sensors_;
   StepGrid grid_;
   bool tied_;
   bool closed_ = false;

@@ -22,9 +22,9 @@ struct SimulatorFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The simulator's side of a run: steps it, and does at each step boundary what is due there. How
-/// far it may go, and when, is not its business. What the simulator throws becomes a
-/// SimulatorFailure.
+/// Drives the simulator: steps it, and at each boundary samples, applies commands and logs ground
+/// truth as they are due. The caller decides how far and when to step. Errors of the simulator are
+/// thrown as SimulatorFailure.
 class Stepper {
  public:
   /// `samplers`: one per UAV of the simulator's world. All but these must outlive it.

@@ -10,41 +10,42 @@
 #include <tether/link/messages.h>
 #include <tether/sync/clock_witness.h>
 
-/// What a SUT may say, decided from what it has said so far. Pure: times are arguments.
+/// Checks what a SUT sends against the protocol, given its earlier messages. Pure: times are
+/// arguments.
 namespace tether::coordinator {
 
-/// Calls of a SUT between two steps of ST: a loop that waits for something, and takes no time or
-/// next to none, would never end.
+/// Calls of a SUT between two steps of ST. Without a limit, a loop of calls that take next to no
+/// time would never end.
 inline constexpr std::size_t kMaxCallsInAStep = 10'000;
 /// Of one UAV: a latency of a second at a command every 15 us.
 inline constexpr std::size_t kMaxWaitingCommands = 65'536;
 /// Of one SUT's annotations in a run: two hours of 1 kB for each of 30 images a second.
 inline constexpr std::size_t kMaxAnnotatedBytes = std::size_t{256} << 20;
 
-/// How a SUT broke the protocol.
+/// A breach of the protocol by a SUT.
 struct Fault {
   enum class Kind {
-    kWrongMessage,   ///< a message that no SUT sends, or sends once only
+    kWrongMessage,   ///< a message that a SUT must not send, or not twice
     kTooEarly,       ///< a request before the Welcome
     kOutOfOrder,     ///< a request while it is held, after its Finish, or with a wrong number
-    kTooMany,        ///< of open calls, of calls while ST stands, of commands, of annotations
+    kTooMany,        ///< open calls, calls in a step, commands or annotations
     kStamp,          ///< a time that is out of range
-    kAheadOfClock,   ///< a stamp beyond all that can have gone by
-    kNotAvailable,   ///< something that its UAV or its run does not have
-    kBadValue,       ///< a command that no multirotor can follow
-    kImpossibleStop  ///< a stop that contradicts what it has said
+    kAheadOfClock,   ///< a stamp later than the host clock allows
+    kNotAvailable,   ///< the UAV has no such sensor, or the run no such call
+    kBadValue,       ///< a velocity that is not finite or too large
+    kImpossibleStop  ///< a stop of a serial SUT, in the past, or while held
   };
   Kind kind;
-  std::string what;  ///< for a person: what it sent, after "the SUT … sent"
+  std::string what;  ///< for people: the object of "the SUT of UAV … sent"
 };
 
-/// A SUT as far as it matters to what it may say next.
+/// The state of a SUT that decides which messages it may send next.
 struct Standing {
   bool running = false;     ///< every SUT has joined
   bool tied = true;         ///< by the barrier; false: free running
   bool concurrent = false;  ///< it has several threads
   bool finished = false;    ///< its Finish has come
-  bool held = false;        ///< it stands still for a reply of ours
+  bool held = false;        ///< it is stopped until a reply
   ExecTime bound;           ///< ET that it has reached; of a held one, of its reply
   std::size_t open_calls = 0;
   std::uint64_t next_sequence = 1;
@@ -53,19 +54,19 @@ struct Standing {
   std::size_t waiting_commands = 0;
   const Sampler& sensors;
   const sync::ClockWitness* witness = nullptr;  ///< nullptr: its clock is not checked
-  int clock_cores = 0;  ///< on so many at once its clock goes on; 0: no CPU clock
+  int clock_cores = 0;  ///< cores that its CPU clock adds up; 0: it has none
 };
 
-/// Whether a SUT's clock can have reached this. Sums of stamps and delays stay within int64.
+/// Whether a time is in the range of stamps, where sums of stamps and delays stay within int64.
 bool is_stamp(ExecTime t);
-/// Why it must not send this request, heard at `now`; none if it may.
+/// What is wrong with a request received at `now`; none if nothing is.
 std::optional<Fault> fault_of(const link::Request& request, const Standing& sut, WallTime now);
-/// The same of progress, a stop among it. @pre running, tied, is_stamp(progress.reached).
+/// The same for progress and stops. @pre running, tied, is_stamp(progress.reached).
 std::optional<Fault> fault_of(const link::Progress& progress, const Standing& sut, WallTime now);
-/// The same of a message that is neither Request, Progress nor Annotation.
+/// The fault of a message that is neither Request, Progress nor Annotation.
 Fault fault_of_other(const link::Message& message);
 
-/// How much a SUT has annotated. A record is read whole when the run is judged.
+/// Limits the annotations of one SUT: records are read into memory when a run is evaluated.
 class AnnotationBudget {
  public:
   std::optional<Fault> spend(const link::Annotation& note);

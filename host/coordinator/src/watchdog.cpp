@@ -55,8 +55,8 @@ bool Watchdog::is_due(WallTime now) {
   return true;
 }
 
-// What was said while we did not listen is still to be read, and who was stopped together with us
-// has had no time to say it.
+// Messages that came meanwhile are still to be read, and SUTs that were stopped together with this
+// process had no time to send any.
 void Watchdog::pardon(Duration unheard, WallTime now) {
   if (unheard <= Duration(0)) return;
   moved_ = std::min(moved_ + unheard, now);

@@ -16,18 +16,16 @@ namespace tether::coordinator {
 /// Why a run is over.
 struct Ending {
   RunEnd how = RunEnd::kFinished;
-  std::string reason;  ///< one line; names the culprit
+  std::string reason;  ///< one line; names the cause
 };
 
-/// Whether a message shows that the SUT lives. Under the barrier a progress may not: its sender is
-/// a helper, and the SUT itself may be stuck. That it has computed shows in CPU time, which then
-/// goes on; the wall clock goes on whatever the SUT does, so there only its calls tell, as long as
-/// none of them is open. Annotations tell nothing: a SUT could go on with them for ever.
+/// Whether a message is a sign of life. Under the barrier, progress is sent by a helper thread, and
+/// the SUT itself may be stuck. If it computes, its CPU time grows. A wall clock always grows, so
+/// it counts only while a call is open. Annotations do not count: a SUT could send them for ever.
 bool shows_life(const link::Message& message, const Standing& sut, link::ClockKind clock);
 
-/// Ends a run that takes too long, or in which a SUT is silent for too long, and says who waits for
-/// whom where nothing moves. Pure: times are arguments. None of it reaches a decision of the
-/// barrier.
+/// Detects that a run takes too long or that a SUT is silent for too long, and describes who is
+/// blocked on whom. Pure: times are arguments. The barrier does not depend on it.
 class Watchdog {
  public:
   struct Limits {
@@ -40,23 +38,23 @@ class Watchdog {
 
   /// Every SUT has joined.
   void begin(WallTime now);
-  /// ST went on, a reply left, or a SUT joined.
+  /// ST advanced, a reply was sent, or a SUT joined.
   void moved(WallTime now) { moved_ = now; }
-  /// A SUT has shown life, or has been told to go on.
+  /// A SUT gave a sign of life, or a reply was sent to it.
   void heard(std::size_t sut, WallTime now) { last_heard_[sut] = now; }
 
-  /// Whether it is time to look at the limits again; called once per turn of the loop. Time in
-  /// which it was not called is nobody's silence.
+  /// Whether the limits have to be checked again; call it once per turn of the loop. Time in which
+  /// it was not called (the process was stopped, say) does not count as silence.
   bool is_due(WallTime now);
-  /// Since it was heard last; before it has joined, since it is waited for.
+  /// Time since its last sign of life; before it has joined, since the start.
   Duration silence(std::size_t sut, WallTime now) const { return now - last_heard_[sut]; }
 
-  /// The run's end, if ST has come to its limit.
+  /// The end of the run if ST has reached its limit.
   std::optional<Ending> over_time(SimTime st) const;
-  /// The run's end, if a SUT is overdue. `parties`: all SUTs in the world's order.
+  /// The end of the run if a SUT has not joined in time or is hung. `parties`: all SUTs in the
+  /// world's order.
   std::optional<Ending> overdue(const std::vector<Party>& parties, SimTime st) const;
-  /// Who blocks whom, or whose SUT has not joined, where nothing has moved for a second; else
-  /// empty.
+  /// If nothing has moved for a second: who is blocked on whom, or which SUTs have not joined.
   std::string blocked(const std::vector<Party>& parties, SimTime st, WallTime now) const;
 
  private:

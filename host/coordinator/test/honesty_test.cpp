@@ -107,17 +107,6 @@ TEST_F(HonestyTest, ProgressAheadOfOurClockEndsTheRun) {
   EXPECT_LT(report.st, st_ms(100));
 }
 
-TEST_F(HonestyTest, AStopAheadOfOurClockEndsTheRun) {
-  make();
-  link::Hello introduction = hello();
-  introduction.clock = link::ClockKind::kWall;
-  introduction.concurrent = true;
-  const auto peer = server_->add_sut(introduction, {});
-  server_->deliver(peer, link::Progress{.reached = ExecTime(hours(1)), .stopped = true});
-  EXPECT_THAT(coordinator_->run(*server_).reason,
-              HasSubstr("sent a time stamp of ET 3600.000000 s"));
-}
-
 // Nothing is tied to ET there.
 TEST_F(HonestyTest, InFreeRunningNobodyIsDoubted) {
   options_.policy = sync::SyncPolicy::kFreeRunning;

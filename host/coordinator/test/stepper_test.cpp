@@ -52,14 +52,20 @@ TEST_F(Stepping, StopsWhereverSomethingIsDueAndDoesItOnce) {
 
 TEST_F(Stepping, ACommandActsAtTheFirstBoundaryNotBeforeItsTime) {
   stepper_.act();
-  EXPECT_EQ(stepper_.command(0, 7, {}, SimTime(microseconds(2'001))), ms(3));
-  EXPECT_EQ(stepper_.waiting_commands(0), 1u);
-  EXPECT_EQ(stepper_.next_due(), ms(3));
+  const std::pair<int, int> cases[] = {{0, 0}, {1'000, 1}, {1'001, 2}, {2'999, 3}};  // us, ms
+  for (const auto& [t, effect] : cases)
+    EXPECT_EQ(stepper_.command(0, 7, {}, SimTime(microseconds(t))), ms(effect));
+  EXPECT_EQ(stepper_.waiting_commands(0), 4u);
+  EXPECT_EQ(stepper_.next_due(), ms(0));
+  stepper_.act();
+  EXPECT_EQ(stepper_.next_due(), ms(1));
   advance_to(ms(3));
-  ASSERT_EQ(simulator_.applied().size(), 1u);
-  EXPECT_EQ(simulator_.applied()[0].at, ms(3));
-  EXPECT_EQ(recorder_.commands.at(0).sequence, 7u);
   EXPECT_EQ(stepper_.waiting_commands(0), 0u);
+  ASSERT_EQ(recorder_.commands.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(simulator_.applied()[i].at, ms(cases[i].second));
+    EXPECT_EQ(recorder_.commands[i].applied_at, ms(cases[i].second));
+  }
 }
 
 TEST_F(Stepping, AReadGetsTheStateOfItsSamplingInstantHoweverFarStIs) {

@@ -88,7 +88,7 @@ TEST_F(Validator, StampsAreFromZeroTo146Years) {
   }
 }
 
-TEST_F(Validator, NoStampIsAheadOfAClockThatIsChecked) {
+TEST_F(Validator, RefusesStampsAheadOfACheckedClock) {
   const sync::ClockWitness witness(sync::wall_bound(1.0), ExecTime{}, WallTime{});
   const link::Request hour = request(link::ReadSensor{}, ExecTime(std::chrono::hours(1)));
   expect(std::nullopt, hour);
@@ -98,7 +98,7 @@ TEST_F(Validator, NoStampIsAheadOfAClockThatIsChecked) {
   expect(std::nullopt, request(link::ReadSensor{}, us(10)));
 }
 
-TEST_F(Validator, CallsAreBoundedWhileStStands) {
+TEST_F(Validator, LimitsCallsWhileStDoesNotAdvance) {
   sut_.calls_in_step = kMaxCallsInAStep - 1;
   expect(std::nullopt);
   sut_.calls_in_step = kMaxCallsInAStep;
@@ -114,7 +114,7 @@ TEST_F(Validator, ReadsAreOfSensorsThatTheUavHas) {
   expect(Kind::kNotAvailable, request(link::ReadSensor{1, false, true}));
 }
 
-TEST_F(Validator, CommandsAreFiniteAndFewWait) {
+TEST_F(Validator, LimitsVelocitiesAndWaitingCommands) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect(Kind::kBadValue, request(link::SetVelocity{{{nan, 0, 0}, 0}}));
   sut_.waiting_commands = kMaxWaitingCommands;
@@ -122,7 +122,7 @@ TEST_F(Validator, CommandsAreFiniteAndFewWait) {
   expect(std::nullopt);
 }
 
-TEST_F(Validator, NobodySleepsInFreeRunning) {
+TEST_F(Validator, RefusesSleepInFreeRunning) {
   sut_.tied = false;
   expect(Kind::kNotAvailable, request(link::Sleep{us(200)}));
 }

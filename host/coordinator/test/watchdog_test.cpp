@@ -76,11 +76,12 @@ TEST_F(Watching, IsDueEvery20Milliseconds) {
   EXPECT_FALSE(watchdog.is_due(at(milliseconds(39))));
 }
 
-TEST_F(Watching, TimeInWhichItDidNotListenIsNobodysSilence) {
+TEST_F(Watching, TimeWithoutTurnsDoesNotCountAsSilence) {
   Watchdog watchdog = make();
   ASSERT_TRUE(watchdog.is_due(at(milliseconds(500))));
   watchdog.heard(1, at(milliseconds(900)));
-  ASSERT_TRUE(watchdog.is_due(at(milliseconds(60'500))));  // all but a second of that is forgiven
+  ASSERT_TRUE(
+      watchdog.is_due(at(milliseconds(60'500))));  // all but a second of that does not count
   EXPECT_EQ(watchdog.silence(0, at(milliseconds(60'500))), milliseconds(1'500));
   EXPECT_EQ(watchdog.silence(1, at(milliseconds(60'500))), milliseconds(600));
   EXPECT_THAT(watchdog.blocked({absent("a", seconds(1))}, kSt, at(milliseconds(60'500))),
@@ -118,7 +119,7 @@ struct LifeCase {
   bool shows_life;
 };
 
-TEST(ShowsLife, AHelperThreadOfAStuckSutDoesNot) {
+TEST(ShowsLife, IgnoresTheHelperThreadOfAStuckSut) {
   const Sampler sensors({}, StepGrid(milliseconds(1)), true);
   constexpr auto kCpu = link::ClockKind::kCpu, kWall = link::ClockKind::kWall;
   const link::Progress same{ExecTime(milliseconds(5))}, further{ExecTime(milliseconds(6))};

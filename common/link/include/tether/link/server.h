@@ -54,9 +54,9 @@ class Server {
   /// Where to connect.
   virtual Address address() const = 0;
   /// Handles what is there. If nothing is, waits at most `max_wait` (0: does not wait) for
-  /// something to come. Returns what happened, one event per peer at most, so that a peer that is
-  /// closed because of its message has no other event here, and none keeps the others waiting, or
-  /// the caller. The caller may move messages out; the span is valid until the next poll.
+  /// something to come. Returns at most one event per peer: if the caller closes a peer because of
+  /// its event, no other event of it is in the span, and no peer can delay the others or the
+  /// caller. The caller may move messages out. The span is valid until the next poll.
   virtual std::span<Event> poll(Duration max_wait) = 0;
   /// Writes the message to the connection at once as far as it takes it, and keeps the rest for
   /// `poll`. Move the message in: its image is then never copied. A peer that does not read is
