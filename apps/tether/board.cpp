@@ -1,7 +1,6 @@
 #include "board.h"
 
 #include "board_scripts.h"
-#include "interrupt.h"
 
 #include <chrono>
 #include <csignal>
@@ -16,6 +15,10 @@
 
 #include <tether/base/error.h>
 #include <tether/base/system_reason.h>
+#include <tether/os/captured_run.h>
+#include <tether/os/child_process.h>
+#include <tether/os/shell_word.h>
+#include <tether/os/text_file.h>
 
 namespace tether::app {
 
@@ -46,7 +49,7 @@ exec tar -cf - .
 )script";
 
 std::string assign(const std::string& name, const std::string& value) {
-  return fmt::format("{}={}\n", name, shell_word(value));
+  return fmt::format("{}={}\n", name, os::shell_word(value));
 }
 
 std::string who_runs() {
@@ -70,7 +73,7 @@ void write_all(int fd, std::string_view text) {
 std::string joined(std::vector<std::string>::const_iterator begin,
                    std::vector<std::string>::const_iterator end) {
   std::string text;
-  for (; begin != end; ++begin) text += " " + shell_word(*begin);
+  for (; begin != end; ++begin) text += " " + os::shell_word(*begin);
   return text;
 }
 
@@ -83,7 +86,7 @@ std::string sut_prologue(const BoardSut& sut) {
                      assign("launcher", sut.program > launcher ? sut.words[launcher] : "");
   text += "join() {\n";
   for (const auto& [name, value] : sut.environment)
-    text += fmt::format("{}={}\nexport {}\n", name, shell_word(value), name);
+    text += fmt::format("{}={}\nexport {}\n", name, os::shell_word(value), name);
   text += fmt::format(
       "}}\nrun_sut() {{\n"
       "sh -c 'echo $$ >\"$0\" && exec setsid \"$@\"' \"$folder/pid.$uav\"{} \"$program\"{}\n}}\n",
@@ -117,7 +120,7 @@ Board::~Board() {
 }
 
 std::string Board::keeper_said() const {
-  return read_whole(connection_.folder() / "keeper.out");
+  return os::read_whole(connection_.folder() / "keeper.out");
 }
 
 bool Board::wait_for_keeper(const std::string& word, Duration limit) {
@@ -140,25 +143,26 @@ void Board::hold() {
   to_keeper_ = ends[1];
   write_all(to_keeper_, script);
   const auto& folder = connection_.folder();
-  keeper_ =
-      std::make_unique<ChildProcess>(ChildCommand{.arguments = connection_.shell(script.size()),
-                                                  .environment = {},
-                                                  .log = folder / "keeper.out",
-                                                  .errors = folder / "keeper.err",
-                                                  .input_pipe = ends[0]});
+  keeper_ = std::make_unique<os::ChildProcess>(
+      os::ChildCommand{.arguments = connection_.shell(script.size()),
+                       .environment = {},
+                       .log = folder / "keeper.out",
+                       .errors = folder / "keeper.err",
+                       .input_pipe = ends[0]});
   close(ends[0]);
 
   const bool answered = wait_for_keeper("held ", kHoldLimit);
   const std::string where = scenario::to_string(connection_.address());
-  const std::string said = last_line(keeper_said());
+  const std::string said = os::last_line(keeper_said());
   if (said.starts_with("busy "))
     throw Error(ErrorCode::kSetup,
                 fmt::format("{} is in use by {}; wait for that run to end, or end it", where,
                             said.substr(5)));
   if (!answered)
-    throw Error(ErrorCode::kSetup,
-                fmt::format("{} cannot be held: {}", where,
-                            said.empty() ? last_line(read_whole(folder / "keeper.err")) : said));
+    throw Error(
+        ErrorCode::kSetup,
+        fmt::format("{} cannot be held: {}", where,
+                    said.empty() ? os::last_line(os::read_whole(folder / "keeper.err")) : said));
   std::istringstream words(said);
   std::string held;
   words >> held >> host_address_ >> std::ws;
@@ -170,20 +174,20 @@ std::string Board::prologue() const {
 }
 
 std::string Board::copy(const std::filesystem::path& file) {
-  const std::string bytes = read_whole(file);
+  const std::string bytes = os::read_whole(file);
   const std::string number = std::to_string(++copies_), name = file.filename().string();
   const std::string script = prologue() + assign("number", number) + assign("name", name) +
                              assign("size", std::to_string(bytes.size())) +
                              std::string(kCopyScript);
-  const Captured copied = connection_.run(script, kCopyLimit, bytes);
+  const os::Captured copied = connection_.run(script, kCopyLimit, bytes);
   if (copied.code != 0)
     throw Error(ErrorCode::kSetup,
                 fmt::format("{} cannot be copied to {}: {}", file.string(),
-                            scenario::to_string(connection_.address()), last_line(copied.err)));
+                            scenario::to_string(connection_.address()), os::last_line(copied.err)));
   return fmt::format("{}/files/{}/{}", folder_, number, name);
 }
 
-std::unique_ptr<ChildProcess> Board::start(const BoardSut& sut) {
+std::unique_ptr<os::ChildProcess> Board::start(const BoardSut& sut) {
   const std::string script = prologue() + sut_prologue(sut) + std::string(kBoardSut);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw Error(ErrorCode::kSetup, "pipe: " + reason_of(errno));
@@ -191,22 +195,22 @@ std::unique_ptr<ChildProcess> Board::start(const BoardSut& sut) {
   fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);
   write_all(ends[1], script);
   close(ends[1]);
-  auto process =
-      std::make_unique<ChildProcess>(ChildCommand{.arguments = connection_.shell(script.size()),
-                                                  .environment = {},
-                                                  .log = sut.log,
-                                                  .input_pipe = ends[0]});
+  auto process = std::make_unique<os::ChildProcess>(
+      os::ChildCommand{.arguments = connection_.shell(script.size()),
+                       .environment = {},
+                       .log = sut.log,
+                       .input_pipe = ends[0]});
   close(ends[0]);
   return process;
 }
 
-std::string Board::end_of(const ChildExit& exit, const std::string& last_words) {
+std::string Board::end_of(const os::ChildExit& exit, const std::string& last_words) {
   constexpr std::string_view kOwn = "tether: ";
   if (exit.code == kSshFailed)
     if (const auto why = connection_.lost(kShowLimit)) return "was cut off: " + *why;
   if (exit.code == kNotStarted && last_words.starts_with(kOwn))
     return "could not be started: " + last_words.substr(kOwn.size());
-  const int signal = exit.code - kSignalled;
+  const int signal = exit.code - os::kSignalled;
   const bool may_be_keepers = signal == SIGTERM || signal == SIGKILL;
   if ((may_be_keepers || signal <= 0) && keeper_->wait(may_be_keepers ? kKeeperLimit : kShowLimit))
     return "was ended because " + let_go();
@@ -215,7 +219,7 @@ std::string Board::end_of(const ChildExit& exit, const std::string& last_words) 
 }
 
 std::string Board::let_go() const {
-  const std::string said = last_line(read_whole(connection_.folder() / "keeper.err"));
+  const std::string said = os::last_line(os::read_whole(connection_.folder() / "keeper.err"));
   return fmt::format("{} is no longer held for this run: {}",
                      scenario::to_string(connection_.address()),
                      said.empty() ? "the shell that held it there was ended" : said);
@@ -239,19 +243,19 @@ std::optional<std::string> Board::bring_back(const std::string& uav,
   const std::string script = prologue() + assign("uav", uav) +
                              assign("largest", std::to_string(kLargestReturn_KiB)) +
                              std::string(kReturnScript);
-  const Captured files = connection_.run(script, kCopyLimit, {}, true);
+  const os::Captured files = connection_.run(script, kCopyLimit, {}, true);
   const auto failed = [&](const std::string& why) {
     return fmt::format("what the SUT of UAV \"{}\" wrote into TETHER_OUT stays behind on {}: {}",
                        uav, scenario::to_string(connection_.address()), why);
   };
-  if (files.code != 0) return failed(last_line(files.err));
+  if (files.code != 0) return failed(os::last_line(files.err));
   if (files.out.empty()) return std::nullopt;
   // What this machine writes into the folder is not the SUT's to replace.
-  const Captured unpacked =
-      run_captured({"tar", "-x", "-f", "-", "--no-same-owner", "--exclude=./record.mcap",
-                    "--exclude=./result.json", "--exclude=./sut-*.log", "-C", folder.string()},
-                   files.out, kCopyLimit, true);
-  if (unpacked.code != 0) return failed(last_line(unpacked.err));
+  const os::Captured unpacked =
+      os::run_captured({"tar", "-x", "-f", "-", "--no-same-owner", "--exclude=./record.mcap",
+                        "--exclude=./result.json", "--exclude=./sut-*.log", "-C", folder.string()},
+                       files.out, kCopyLimit, true);
+  if (unpacked.code != 0) return failed(os::last_line(unpacked.err));
   return std::nullopt;
 }
 

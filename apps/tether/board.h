@@ -1,6 +1,5 @@
 #pragma once
 
-#include "child_process.h"
 #include "ssh_connection.h"
 #include "sut_environment.h"
 
@@ -12,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include <tether/os/child_process.h>
 #include <tether/scenario/scenario.h>
 
 namespace tether::app {
@@ -22,7 +22,7 @@ struct BoardSut {
   std::vector<std::string> words;  ///< as the board takes them
   std::size_t program = 0;         ///< which of the words is the program
   bool concurrent = false;         ///< the first of the words is tether-exec
-  Environment environment;
+  os::Environment environment;
   std::filesystem::path log;  ///< on this machine; gets the SUT's stdout and stderr
 };
 
@@ -46,9 +46,9 @@ class Board {
   std::string copy(const std::filesystem::path& file);
   /// Starts a SUT. The process is this machine's end of it, and ends when it does; `end_of` says
   /// how it ended.
-  std::unique_ptr<ChildProcess> start(const BoardSut& sut);
+  std::unique_ptr<os::ChildProcess> start(const BoardSut& sut);
   /// What came of a SUT whose process has ended.
-  std::string end_of(const ChildExit& exit, const std::string& last_words);
+  std::string end_of(const os::ChildExit& exit, const std::string& last_words);
 
   /// Why the board is out of reach; none while it is not.
   std::optional<std::string> lost();
@@ -69,7 +69,7 @@ class Board {
   std::string host_address_;
   std::string folder_;  // of the run, on the board
   int to_keeper_ = -1;  // a pipe
-  std::unique_ptr<ChildProcess> keeper_;
+  std::unique_ptr<os::ChildProcess> keeper_;
   std::jthread heart_;
   int copies_ = 0;
 };

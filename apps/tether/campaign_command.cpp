@@ -1,9 +1,6 @@
-#include "child_process.h"
 #include "commands.h"
 #include "gazebo/gazebo_install.h"
-#include "interrupt.h"
 #include "local_sut.h"
-#include "machine.h"
 #include "print_report.h"
 #include "progress_bar.h"
 #include "running_simulator.h"
@@ -27,6 +24,10 @@
 #include <tether/base/version.h>
 #include <tether/experiment/campaign_folder.h>
 #include <tether/experiment/run_campaign.h>
+#include <tether/os/child_process.h>
+#include <tether/os/interrupt.h>
+#include <tether/os/machine.h>
+#include <tether/os/program.h>
 #include <tether/scenario/campaign.h>
 
 namespace tether::app {
@@ -100,7 +101,7 @@ void add_programs(const scenario::CampaignScenario& entry,
 std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign) {
   std::set<std::string> warnings;
   std::vector<std::filesystem::path> files = experiment::files_of(campaign);
-  files.push_back(own_file());
+  files.push_back(os::own_file());
   const auto every_trial_says_it = [](const std::string&) {};
   for (const auto& entry : campaign.scenarios) {
     add_programs(entry, files);
@@ -130,23 +131,23 @@ std::filesystem::path log_file(const experiment::TrialPlan& plan) {
 experiment::TrialResult execute(const experiment::TrialPlan& plan, std::stop_source& stop) {
   const std::filesystem::path log = log_file(plan);
   std::vector<std::string> arguments = {
-      own_file().string(),  "run",         plan.scenario->file.string(), "--condition",
-      plan.condition->name, "--seed",      std::to_string(plan.seed),    "--out",
-      plan.folder.string(), "--simulator", plan.condition->simulator,    "--quiet"};
+      os::own_file().string(), "run",         plan.scenario->file.string(), "--condition",
+      plan.condition->name,    "--seed",      std::to_string(plan.seed),    "--out",
+      plan.folder.string(),    "--simulator", plan.condition->simulator,    "--quiet"};
   if (!plan.profile.empty())
     arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
   if (plan.record_images) arguments.push_back("--images");
   // It has processes of its own to end.
-  ChildProcess process({.arguments = std::move(arguments),
-                        .environment = {},
-                        .log = log,
-                        .grace = std::chrono::seconds(10)});
+  os::ChildProcess process({.arguments = std::move(arguments),
+                            .environment = {},
+                            .log = log,
+                            .grace = std::chrono::seconds(10)});
   while (!process.wait(kLook)) {
-    if (!interrupted()) continue;
+    if (!os::interrupted()) continue;
     stop.request_stop();
     process.terminate();
   }
-  if (interrupted()) {
+  if (os::interrupted()) {
     auto result = experiment::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
                                                  "interrupted by the user");
     result.end = experiment::kEndInterrupted;
@@ -186,7 +187,7 @@ int run(const CampaignOptions& options) {
   const experiment::Settings settings = experiment::campaign_settings(
       campaign,
       {{"tether", std::string(version())},
-       {"machine", describe_machine()},
+       {"machine", os::describe_machine()},
        {"simulator", fmt::format("{}", fmt::join(simulators(campaign), ", "))}},
       files);
   const experiment::CampaignFolder folder(

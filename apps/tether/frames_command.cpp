@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/text_file.h>
+#include <tether/os/text_file.h>
 #include <tether/record/reader.h>
 #include <tether/report/camera_frame.h>
 
@@ -47,11 +47,10 @@ int run(const FramesOptions& options) {
   if (error) throw Error(ErrorCode::kSetup, fmt::format("{}: {}", out.string(), error.message()));
   for (const auto& logged : record.images) {
     const record::Image& image = logged.message;
-    experiment::write_file_atomically(
-        out / fmt::format("{}-{}-{:06}.svg", experiment::file_name_of(image.uav),
-                          experiment::file_name_of(image.sensor), image.index),
-        report::frame_svg(image, report::find_roi(record, image),
-                          report::find_true_roi(record, image)));
+    os::write_file_atomically(out / fmt::format("{}-{}-{:06}.svg", os::file_name_of(image.uav),
+                                                os::file_name_of(image.sensor), image.index),
+                              report::frame_svg(image, report::find_roi(record, image),
+                                                report::find_true_roi(record, image)));
   }
   fmt::print("{} images in {}\n", record.images.size(), out.string());
   return 0;

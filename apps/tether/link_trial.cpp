@@ -10,6 +10,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <tether/os/captured_run.h>
+#include <tether/os/child_process.h>
+
 namespace tether::app {
 
 namespace {
@@ -61,11 +64,11 @@ std::optional<double> median_round_trip(const SshConnection& connection) {
   const std::string script = "exec cat";
   const Pipe pipe;
   const auto echo = connection.folder() / "echo";
-  ChildProcess process({.arguments = connection.shell(script.size()),
-                        .environment = {},
-                        .log = echo,
-                        .errors = connection.folder() / "echo.err",
-                        .input_pipe = pipe.in()});
+  os::ChildProcess process({.arguments = connection.shell(script.size()),
+                            .environment = {},
+                            .log = echo,
+                            .errors = connection.folder() / "echo.err",
+                            .input_pipe = pipe.in()});
   if (!pipe.write_text(script)) return std::nullopt;
   std::vector<double> times;
   for (int i = 0; i <= kRoundTrips; ++i) {
@@ -85,8 +88,8 @@ std::optional<LinkTrial> try_link(const SshConnection& connection) {
   if (!round_trip) return std::nullopt;
   // What the transfer takes beyond that of nothing is the bytes' own.
   const std::string script = "exec cat >/dev/null";
-  const Captured nothing = connection.run(script, kLimit);
-  const Captured bytes = connection.run(script, kLimit, std::string(kBytes, 'x'));
+  const os::Captured nothing = connection.run(script, kLimit);
+  const os::Captured bytes = connection.run(script, kLimit, std::string(kBytes, 'x'));
   const double time_s = to_seconds(bytes.wall - nothing.wall);
   if (nothing.code != 0 || bytes.code != 0) return std::nullopt;
   return LinkTrial{*round_trip, static_cast<double>(kBytes) / 1e6 / std::max(time_s, 1e-3)};

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/os/child_process.h>
+#include <tether/os/machine.h>
 
 namespace tether::app {
 
@@ -21,7 +23,7 @@ std::string files_folder(const std::filesystem::path& folder) {
 }
 
 void require_cores(const scenario::Scenario& scenario, const scenario::Condition& condition) {
-  const std::size_t allowed = allowed_cpus().size(), suts = scenario.uavs.size();
+  const std::size_t allowed = os::allowed_cpus().size(), suts = scenario.uavs.size();
   const int cores = condition.target ? condition.target->cores : 0;
   if (static_cast<std::size_t>(cores) * suts <= allowed) return;
   throw Error(ErrorCode::kBadFile, {condition.target->file.string()},
@@ -51,15 +53,15 @@ void require_sut_programs(const scenario::Scenario& scenario,
   require_cores(scenario, condition);
 }
 
-ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
-                       const std::filesystem::path& out, const std::filesystem::path& log) {
+os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
+                           const std::filesystem::path& out, const std::filesystem::path& log) {
   const auto& target = run.condition.target;
   auto environment = environment_of(uav.placement.name, run);
   environment.emplace_back("TETHER_OUT", files_folder(out));
   return {.arguments = local_sut_command(uav.sut, target).words,
           .environment = std::move(environment),
           .log = log,
-          .cpus = cpus_for(allowed_cpus(), target ? target->cores : 0, index)};
+          .cpus = cpus_for(os::allowed_cpus(), target ? target->cores : 0, index)};
 }
 
 }  // namespace tether::app

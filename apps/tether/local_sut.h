@@ -1,11 +1,11 @@
 #pragma once
 
-#include "child_process.h"
 #include "sut_environment.h"
 
 #include <filesystem>
 #include <vector>
 
+#include <tether/os/child_process.h>
 #include <tether/scenario/scenario.h>
 
 /// SUTs as processes of this machine.
@@ -22,7 +22,7 @@ void require_sut_programs(const scenario::Scenario& scenario, const scenario::Co
 /// How to start the SUT of `uav` here, the run's SUT of that index. It may leave files in `out`;
 /// its output goes to `log`.
 /// @throws Error(kSetup) when `out` cannot be made.
-ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
-                       const std::filesystem::path& out, const std::filesystem::path& log);
+os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
+                           const std::filesystem::path& out, const std::filesystem::path& log);
 
 }  // namespace tether::app

@@ -1,5 +1,4 @@
 #include "commands.h"
-#include "interrupt.h"
 #include "say.h"
 
 #include <cerrno>
@@ -14,6 +13,7 @@
 
 #include <tether/base/error.h>
 #include <tether/base/version.h>
+#include <tether/os/interrupt.h>
 
 namespace {
 
@@ -69,7 +69,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return program.exit(e) == 0 ? 0 : tether::exit_code(tether::ErrorCode::kUsage);
   }
-  tether::app::catch_interrupts();
+  tether::os::catch_interrupts();
   return action();
 }
 

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/text_file.h>
+#include <tether/os/text_file.h>
 #include <tether/record/reader.h>
 #include <tether/report/gnuplot.h>
 #include <tether/report/plots.h>
@@ -46,7 +46,7 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
   };
   const std::vector<report::PlottedRun> runs = runs_of(record);
   for (const report::PlottedRun& run : runs) {
-    const std::string suffix = runs.size() == 1 ? "" : "-" + experiment::file_name_of(run.uav);
+    const std::string suffix = runs.size() == 1 ? "" : "-" + os::file_name_of(run.uav);
     add("timeline" + suffix, timeline_plot(run, report::Extent::kWhole));
     add("timeline_zoom" + suffix, timeline_plot(run, report::Extent::kFirstInteractions));
     add("lag" + suffix, lag_plot(run));
@@ -71,7 +71,7 @@ int run(const PlotOptions& options) {
   std::filesystem::create_directories(out, error);
   if (error) throw Error(ErrorCode::kSetup, fmt::format("{}: {}", out.string(), error.message()));
   for (const auto& [name, svg] : drawings) {
-    experiment::write_file_atomically(out / name, svg);
+    os::write_file_atomically(out / name, svg);
     fmt::print("{}\n", (out / name).string());
   }
   return 0;

@@ -13,7 +13,7 @@
 #include <tether/base/error.h>
 #include <tether/experiment/campaign_results.h>
 #include <tether/experiment/result.h>
-#include <tether/experiment/text_file.h>
+#include <tether/os/text_file.h>
 #include <tether/report/page.h>
 #include <tether/report/report.h>
 
@@ -80,7 +80,7 @@ int run(const ReportOptions& options) {
   if (out.empty()) {
     fmt::print("{}", text);
   } else {
-    experiment::write_file_atomically(out, text);
+    os::write_file_atomically(out, text);
     fmt::print("{}\n", out.string());
   }
   return 0;

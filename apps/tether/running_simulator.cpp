@@ -1,13 +1,12 @@
 #include "running_simulator.h"
 
-#include "interrupt.h"
-
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/os/interrupt.h>
 #include <tether/sim/gazebo_world.h>
 #include <tether/sim/sdf_version.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
@@ -83,12 +82,12 @@ std::optional<std::string> RunningSimulator::lost() {
 }
 
 std::optional<std::string> RunningSimulator::why_give_up() {
-  if (interrupted()) return "interrupted by the user";
+  if (os::interrupted()) return "interrupted by the user";
   return gazebo_ && !simulator_ ? gazebo_->why_not_up() : lost();
 }
 
 std::string RunningSimulator::post_mortem(const std::string& said) {
-  return gazebo_ && !interrupted() ? gazebo_->post_mortem(said) : "";
+  return gazebo_ && !os::interrupted() ? gazebo_->post_mortem(said) : "";
 }
 
 }  // namespace tether::app

@@ -1,7 +1,5 @@
 #include "ssh_connection.h"
 
-#include "interrupt.h"
-
 #include <cctype>
 #include <charconv>
 #include <chrono>
@@ -12,6 +10,10 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/os/captured_run.h>
+#include <tether/os/child_process.h>
+#include <tether/os/interrupt.h>
+#include <tether/os/text_file.h>
 
 namespace tether::app {
 
@@ -72,7 +74,7 @@ std::string advice(const std::string& said, const scenario::SshAddress& address)
 }  // namespace
 
 std::string explain_ssh(const std::string& said, const scenario::SshAddress& address) {
-  const std::string last = last_line(said);
+  const std::string last = os::last_line(said);
   return fmt::format("{}; {}", last.empty() ? "ssh said nothing" : last, advice(said, address));
 }
 
@@ -107,18 +109,18 @@ void SshConnection::connect() {
          {"-N", "-o", "ControlMaster=yes", "-o", "ControlPersist=no", "-o", "ConnectTimeout=10",
           "-o", "ServerAliveInterval=3", "-o", "ServerAliveCountMax=3", "-o",
           "ClearAllForwardings=yes", "-o", "LogLevel=INFO", "--", address_.destination});
-  master_ = std::make_unique<ChildProcess>(ChildCommand{.arguments = command,
-                                                        .environment = {},
-                                                        .log = folder_ / "master.out",
-                                                        .errors = folder_ / "master.err"});
+  master_ = std::make_unique<os::ChildProcess>(os::ChildCommand{.arguments = command,
+                                                                .environment = {},
+                                                                .log = folder_ / "master.out",
+                                                                .errors = folder_ / "master.err"});
   const auto started = std::chrono::steady_clock::now();
   while (!std::filesystem::exists(folder_ / "socket")) {
     const std::string where = scenario::to_string(address_);
-    if (interrupted()) throw Error(ErrorCode::kSetup, "interrupted by the user");
+    if (os::interrupted()) throw Error(ErrorCode::kSetup, "interrupted by the user");
     if (master_->wait(kLook))
       throw Error(ErrorCode::kSetup,
                   fmt::format("cannot reach {}: {}", where,
-                              explain_ssh(read_whole(folder_ / "master.err"), address_)));
+                              explain_ssh(os::read_whole(folder_ / "master.err"), address_)));
     if (std::chrono::steady_clock::now() - started > kConnectLimit)
       throw Error(
           ErrorCode::kSetup,
@@ -137,15 +139,15 @@ std::vector<std::string> SshConnection::shell(std::size_t script_bytes) const {
   return command;
 }
 
-Captured SshConnection::run(std::string_view script, Duration limit, std::string_view input,
-                            bool is_leaving) const {
-  return run_captured(shell(script.size()), std::string(script) + std::string(input), limit,
-                      is_leaving);
+os::Captured SshConnection::run(std::string_view script, Duration limit, std::string_view input,
+                                bool is_leaving) const {
+  return os::run_captured(shell(script.size()), std::string(script) + std::string(input), limit,
+                          is_leaving);
 }
 
 std::optional<std::string> SshConnection::lost(Duration limit) {
   if (!master_->wait(limit)) return std::nullopt;
-  const std::string said = last_line(read_whole(folder_ / "master.err"));
+  const std::string said = os::last_line(os::read_whole(folder_ / "master.err"));
   return fmt::format("the connection to {} was lost{}", scenario::to_string(address_),
                      said.empty() ? "" : ": " + said);
 }
@@ -154,7 +156,7 @@ std::uint16_t SshConnection::forward_back(std::uint16_t local_port) const {
   std::vector<std::string> command = words();
   append(command, {"-O", "forward", "-R", fmt::format("127.0.0.1:0:127.0.0.1:{}", local_port), "--",
                    address_.destination});
-  const Captured said = run_captured(command, "", kForwardLimit);
+  const os::Captured said = os::run_captured(command, "", kForwardLimit);
   // "Allocated port 40123 for remote forward to …", or the number alone.
   const auto digits = said.out.find_first_of("0123456789");
   std::uint16_t port = 0;
@@ -164,7 +166,7 @@ std::uint16_t SshConnection::forward_back(std::uint16_t local_port) const {
     throw Error(ErrorCode::kSetup,
                 fmt::format("{} does not forward a port ({}); allow it there "
                             "(AllowTcpForwarding in sshd_config), or leave out --tunnel",
-                            scenario::to_string(address_), last_line(said.err + said.out)));
+                            scenario::to_string(address_), os::last_line(said.err + said.out)));
   return port;
 }
 

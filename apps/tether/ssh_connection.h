@@ -1,8 +1,5 @@
 #pragma once
 
-#include "captured_run.h"
-#include "child_process.h"
-
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -11,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include <tether/os/captured_run.h>
+#include <tether/os/child_process.h>
 #include <tether/scenario/target.h>
 
 namespace tether::app {
@@ -34,8 +33,8 @@ class SshConnection {
   /// list of processes.
   std::vector<std::string> shell(std::size_t script_bytes) const;
   /// Runs the script there to its end; `input` is its standard input.
-  Captured run(std::string_view script, Duration limit, std::string_view input = {},
-               bool is_leaving = false) const;
+  os::Captured run(std::string_view script, Duration limit, std::string_view input = {},
+                   bool is_leaving = false) const;
 
   /// Why it has ended; none while it stands. Waits at most `limit` for that to show.
   std::optional<std::string> lost(Duration limit = Duration(0));
@@ -53,7 +52,7 @@ class SshConnection {
 
   scenario::SshAddress address_;
   std::filesystem::path folder_;
-  std::unique_ptr<ChildProcess> master_;
+  std::unique_ptr<os::ChildProcess> master_;
 };
 
 /// One line of what ssh said, with what to do about it.

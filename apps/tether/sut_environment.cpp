@@ -1,11 +1,12 @@
 #include "sut_environment.h"
 
 #include <algorithm>
-#include <cctype>
-#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <tether/os/child_process.h>
+#include <tether/os/shell_word.h>
 
 namespace tether::app {
 
@@ -52,31 +53,20 @@ SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::T
   return command;
 }
 
-Environment environment_of(const std::string& uav, const SutRun& run) {
+os::Environment environment_of(const std::string& uav, const SutRun& run) {
   return {{"TETHER_ADDRESS", run.address},
           {"TETHER_TOKEN", run.token},
           {"TETHER_UAV", uav},
           {"TETHER_CLOCK", clock_of(run.condition)}};
 }
 
-std::string shell_word(const std::string& text) {
-  const bool is_plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) ||
-           std::string_view("_.:/-").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (is_plain && !text.empty()) return text;
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
-
 std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run) {
   std::string text;
   for (const scenario::UavSetup& uav : scenario.uavs) {
     for (const auto& [name, value] : environment_of(uav.placement.name, run))
-      text += fmt::format("{}={} ", name, shell_word(value));
+      text += fmt::format("{}={} ", name, os::shell_word(value));
     std::vector<std::string> words = sut_command(uav.sut, run.condition.target).words;
-    std::transform(words.begin(), words.end(), words.begin(), shell_word);
+    std::transform(words.begin(), words.end(), words.begin(), os::shell_word);
     text += fmt::format("{}\n", fmt::join(words, " "));
   }
   return text;

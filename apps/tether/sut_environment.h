@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <tether/os/child_process.h>
 #include <tether/scenario/scenario.h>
 
 /// What a SUT is started with, wherever it runs.
@@ -18,8 +19,6 @@ struct SutRun {
   scenario::Condition condition;
 };
 
-using Environment = std::vector<std::pair<std::string, std::string>>;
-
 /// The SUT's program with its parameters as options: max_frames = 5 becomes --max-frames 5.
 std::vector<std::string> command_line(const scenario::Sut& sut);
 /// A SUT's command line, and which of its words is its program.
@@ -31,10 +30,8 @@ struct SutCommand {
 /// tether-exec where the SUT is concurrent. Looks at no file.
 SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::Target>& target);
 /// What joins the SUT of that UAV to the run, as the client library takes it.
-Environment environment_of(const std::string& uav, const SutRun& run);
+os::Environment environment_of(const std::string& uav, const SutRun& run);
 
-/// As a shell takes it for one word and nothing more.
-std::string shell_word(const std::string& text);
 /// For a person who starts the SUTs: a command line for each, with its environment.
 std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run);
 

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include <tether/os/child_process.h>
+
 namespace tether::app {
 
 namespace {
@@ -42,7 +44,7 @@ void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
     const std::string& name = uav.placement.name;
     const std::filesystem::path log = folder / fmt::format("sut-{}.log", name);
     const std::filesystem::path out = scenario.uavs.size() > 1 ? folder / name : folder;
-    auto process = std::make_unique<ChildProcess>(local_sut(uav, run, suts_.size(), out, log));
+    auto process = std::make_unique<os::ChildProcess>(local_sut(uav, run, suts_.size(), out, log));
     const std::string program = process->program();
     suts_.push_back({name, log, out, program, std::move(process)});
   }
@@ -97,7 +99,7 @@ std::vector<std::string> SutProcesses::let_leave() {
           fmt::format("the SUT of UAV \"{}\" ({}) had finished and did not leave for "
                       "{} s; it was ended",
                       sut.uav, sut.program, to_seconds(kLeaveLimit)));
-    else if (sut.process->poll()->code > kSignalled)
+    else if (sut.process->poll()->code > os::kSignalled)
       notes.push_back("after it had finished: " + describe_end(sut));
   return notes;
 }
@@ -117,7 +119,7 @@ std::string SutProcesses::describe_end(Sut& sut) const {
   std::string last;
   for (std::string line; std::getline(log, line);)
     if (!line.empty()) last = line;
-  const ChildExit& exit = *sut.process->poll();
+  const os::ChildExit& exit = *sut.process->poll();
   const std::string end = board_ ? board_->end_of(exit, last) : exit.description;
   const bool is_told = last.empty() || end.find("could not be started") == 0;
   return fmt::format(

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "board.h"
-#include "child_process.h"
 #include "sut_environment.h"
 
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <tether/os/child_process.h>
 #include <tether/scenario/scenario.h>
 
 namespace tether::app {
@@ -49,7 +49,7 @@ class SutProcesses {
     std::filesystem::path log;
     std::filesystem::path files;  // of TETHER_OUT, here
     std::string program;
-    std::unique_ptr<ChildProcess> process;
+    std::unique_ptr<os::ChildProcess> process;
   };
   std::string describe_end(Sut& sut) const;
 

@@ -8,6 +8,7 @@
 
 #include <tether/base/error.h>
 #include <tether/experiment/target_readings.h>
+#include <tether/os/captured_run.h>
 
 namespace tether::app {
 
@@ -22,7 +23,7 @@ std::string script_of(ProbeDepth depth) {
 }  // namespace
 
 record::Readings probe_here(ProbeDepth depth) try {
-  return experiment::parse_readings(run_captured({"sh"}, script_of(depth), kLimit, true).out);
+  return experiment::parse_readings(os::run_captured({"sh"}, script_of(depth), kLimit, true).out);
 } catch (const Error& e) {
   throw Error(e.code(), fmt::format("the state of this machine cannot be read: {}", e.what()));
 }

@@ -1,9 +1,7 @@
 #include "trial.h"
 
 #include "board.h"
-#include "interrupt.h"
 #include "local_sut.h"
-#include "machine.h"
 #include "refusals.h"
 #include "running_simulator.h"
 #include "stall_watch.h"
@@ -23,8 +21,11 @@
 #include <tether/audit/audit.h>
 #include <tether/base/error.h>
 #include <tether/base/version.h>
+#include <tether/os/interrupt.h>
+#include <tether/os/machine.h>
 #include <tether/record/reader.h>
 #include <tether/record/writer.h>
+#include <tether/sync/clock_witness.h>
 
 namespace tether::app {
 
@@ -66,6 +67,12 @@ link::ClockKind kind_of(scenario::Clock clock) {
   return link::ClockKind::kWall;
 }
 
+/// 0: not known, or more than a run can tell.
+int cores_for_witness() {
+  const int cores = os::machine_cores();
+  return cores <= sync::kMostCores ? cores : 0;
+}
+
 /// The condition's SUTs are started on this machine.
 bool is_local(const TrialSpec& spec) {
   return !spec.waits_for_sut && !(spec.condition.target && spec.condition.target->ssh);
@@ -81,7 +88,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
                                         spec.condition.computing};
   for (std::size_t i = 0; i < timings.size(); ++i)
     options.uavs.push_back({timings[i], spec.scenario.uavs[i].command_latency, clock,
-                            is_local(spec) ? machine_cores() : 0});
+                            is_local(spec) ? cores_for_witness() : 0});
   options.token = token;
   options.seed = spec.seed;
   options.real_time_factor = spec.condition.real_time_factor;
@@ -94,7 +101,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
   options.header.tether_version = version();
   options.header.scenario = spec.scenario.name;
   options.header.condition = spec.condition.name;
-  options.header.machine = describe_machine();
+  options.header.machine = os::describe_machine();
   return options;
 }
 
@@ -211,7 +218,7 @@ Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* boa
   Refusals refusals(observer.on_refused);
   coordinator::RunHooks hooks;
   hooks.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
-    if (interrupted())
+    if (os::interrupted())
       return std::pair(RunEnd::kInterrupted, std::string("interrupted by the user"));
     if (const auto why = simulator.lost()) return std::pair(RunEnd::kSimulatorLost, *why);
     if (const auto why = suts.lost()) {
@@ -304,7 +311,7 @@ experiment::TrialResult setup_failure(const TrialSpec& spec, const std::string& 
   std::error_code ignored;
   std::filesystem::remove(spec.folder / kRecordFile, ignored);
   auto result = experiment::make_setup_failure(spec.scenario, spec.condition, spec.seed, reason);
-  if (interrupted()) result.end = experiment::kEndInterrupted;
+  if (os::interrupted()) result.end = experiment::kEndInterrupted;
   return result;
 }
 
@@ -367,7 +374,7 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
   }
   result.versions["tether"] = version();
   result.this_run.started_at = started_at;
-  result.this_run.machine = describe_machine();
+  result.this_run.machine = os::describe_machine();
   keep(spec, result);
   return result;
 }

@@ -88,10 +88,11 @@ std::map<std::string, std::set<std::string>> actual_dependencies(
 const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
   static const std::map<std::string, std::set<std::string>> kArrows = {
       {"base", {}},
+      {"os", {"base"}},
       {"uav", {"base"}},
       {"sync", {"base"}},
       {"link", {"base", "uav"}},
-      {"client", {"base", "uav", "link"}},
+      {"client", {"base", "os", "uav", "link"}},
       {"client_c_api", {"base", "uav", "link", "client"}},
       {"devices", {"base", "uav", "client"}},
       {"vision", {"base", "uav"}},
@@ -105,7 +106,7 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"sim_remote", {"base", "uav", "link", "sim", "sim_sensing", "sim_protocol"}},
       {"coordinator", {"base", "uav", "sync", "sim", "link", "record"}},
       {"scenario", {"base", "uav", "sim"}},
-      {"experiment", {"base", "uav", "scenario", "record"}},
+      {"experiment", {"base", "os", "uav", "scenario", "record"}},
       {"report", {"base", "uav", "record", "scenario", "experiment"}},
   };
   return kArrows;

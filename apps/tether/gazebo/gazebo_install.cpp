@@ -1,7 +1,5 @@
 #include "gazebo_install.h"
 
-#include "child_process.h"
-
 #include <cstdlib>
 #include <optional>
 #include <system_error>
@@ -11,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include <tether/base/error.h>
+#include <tether/os/program.h>
 
 namespace tether::app {
 
@@ -36,7 +35,7 @@ std::string before_users(std::string list, const char* name) {
 }
 
 fs::path own_folder() {
-  return own_file().parent_path();
+  return os::own_file().parent_path();
 }
 
 /// The folder of the builds: programs are in <builds>/<preset>/bin.
@@ -100,7 +99,7 @@ std::optional<GazeboInstall> try_root(const fs::path& root) {
 }
 
 GazeboInstall on_system(const std::vector<fs::path>& roots) try {
-  const fs::path gzserver = find_program("gzserver");
+  const fs::path gzserver = os::find_program("gzserver");
   return {.command = {gzserver}, .environment = {}, .gzserver = gzserver, .plugin = {}};
 } catch (const Error&) {
   std::vector<std::string> places;

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include <tether/os/child_process.h>
+
 namespace tether::app {
 
 /// Gazebo 11 as this machine has it.
 struct GazeboInstall {
   std::vector<std::string> command;  ///< what starts gzserver, up to its own options
-  Environment environment;           ///< that it needs to find what is its own
+  os::Environment environment;       ///< that it needs to find what is its own
   std::filesystem::path gzserver;
   std::filesystem::path plugin;
   /// Both, for whoever asks what a result rests on.

@@ -1,9 +1,7 @@
 #include "gazebo_server.h"
 
-#include "captured_run.h"
 #include "gazebo_log.h"
 #include "gazebo_master.h"
-#include "interrupt.h"
 
 #include <cerrno>
 #include <charconv>
@@ -21,6 +19,9 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/os/child_process.h>
+#include <tether/os/interrupt.h>
+#include <tether/os/text_file.h>
 
 namespace tether::app {
 
@@ -111,37 +112,37 @@ void GazeboServer::wait_for_display() {
 }
 
 void GazeboServer::start_gzserver() {
-  said_before_ = read_whole(run_.log).size();
+  said_before_ = os::read_whole(run_.log).size();
   master_ = users_master_;
   if (master_.empty()) master_ = fmt::format("http://127.0.0.1:{}", free_port());
   const std::string home = folder_.path();
-  ChildCommand command{.arguments = run_.install.command,
-                       .environment = run_.install.environment,
-                       .log = run_.log,
-                       .appends = true,
-                       // Gazebo looks there for any relative path: nothing of the user's.
-                       .working_folder = home,
-                       .end_signal = SIGINT};
+  os::ChildCommand command{.arguments = run_.install.command,
+                           .environment = run_.install.environment,
+                           .log = run_.log,
+                           .appends = true,
+                           // Gazebo looks there for any relative path: nothing of the user's.
+                           .working_folder = home,
+                           .end_signal = SIGINT};
   for (const std::string& word :
        {std::string("--verbose"), std::string("--lockstep"), std::string("-s"),
         run_.install.plugin.string(), run_.world.string()})
     command.arguments.push_back(word);
-  const Environment own = {{"GAZEBO_MASTER_URI", master_},
-                           {"GAZEBO_IP", "127.0.0.1"},
-                           {"IGN_IP", "127.0.0.1"},
-                           {"IGN_PARTITION", folder_.path().filename()},
-                           {"GAZEBO_MODEL_PATH", model_path(run_.world)},
-                           {"GAZEBO_MODEL_DATABASE_URI", ""},
-                           {"GAZEBO_LOG_PATH", home + "/log"},
-                           {"HOME", home},
-                           {"TMPDIR", home},
-                           {"ALSOFT_DRIVERS", "null"},
-                           {"DISPLAY", ""},
-                           {"TETHER_SIMULATOR_ENDPOINT", "unix:" + home + "/simulator"}};
+  const os::Environment own = {{"GAZEBO_MASTER_URI", master_},
+                               {"GAZEBO_IP", "127.0.0.1"},
+                               {"IGN_IP", "127.0.0.1"},
+                               {"IGN_PARTITION", folder_.path().filename()},
+                               {"GAZEBO_MODEL_PATH", model_path(run_.world)},
+                               {"GAZEBO_MODEL_DATABASE_URI", ""},
+                               {"GAZEBO_LOG_PATH", home + "/log"},
+                               {"HOME", home},
+                               {"TMPDIR", home},
+                               {"ALSOFT_DRIVERS", "null"},
+                               {"DISPLAY", ""},
+                               {"TETHER_SIMULATOR_ENDPOINT", "unix:" + home + "/simulator"}};
   for (const auto& variable : own) command.environment.push_back(variable);
   if (x_server_)
     for (const auto& variable : x_server_->environment()) command.environment.push_back(variable);
-  gzserver_ = std::make_unique<ChildProcess>(command);
+  gzserver_ = std::make_unique<os::ChildProcess>(command);
 }
 
 std::unique_ptr<sim::protocol::Connection> GazeboServer::connect() {
@@ -165,7 +166,7 @@ Duration GazeboServer::start_limit() const {
 
 /// Whether to go on waiting.
 void GazeboServer::look() const {
-  if (interrupted()) throw Error(ErrorCode::kSetup, "interrupted by the user");
+  if (os::interrupted()) throw Error(ErrorCode::kSetup, "interrupted by the user");
   if (Steady::now() - started_ < limit_) return;
   throw Error(ErrorCode::kSetup,
               fmt::format("gzserver has not come up in {:g} s (see {}); where it needs longer, set "
@@ -174,11 +175,11 @@ void GazeboServer::look() const {
 }
 
 bool GazeboServer::has_port_in_use() {
-  return holds(read_whole(run_.log).substr(said_before_), "Address already in use");
+  return holds(os::read_whole(run_.log).substr(said_before_), "Address already in use");
 }
 
 std::optional<std::string> GazeboServer::why_not_up() {
-  const std::string log = read_whole(run_.log);
+  const std::string log = os::read_whole(run_.log);
   if (const std::string why = plugin_error(log); !why.empty())
     return fmt::format("{} (see {})", why, run_.log.string());
   if (const std::string why = drawing_error(log); x_server_ && !why.empty())
@@ -209,9 +210,9 @@ std::optional<std::string> GazeboServer::end_beyond(const std::string& said) {
 }
 
 /// Who is killed says nothing of it; nor does what was said before the world was open.
-std::string GazeboServer::last_words(const ChildExit& exit) const {
+std::string GazeboServer::last_words(const os::ChildExit& exit) const {
   if (exit.code == 128 + SIGKILL) return "";
-  std::string last = last_words_of_gazebo(read_whole(run_.log).substr(said_before_));
+  std::string last = last_words_of_gazebo(os::read_whole(run_.log).substr(said_before_));
   constexpr std::string_view kOwn = "tether: ";
   if (last.starts_with(kOwn)) last.erase(0, kOwn.size());
   return last;
@@ -219,7 +220,7 @@ std::string GazeboServer::last_words(const ChildExit& exit) const {
 
 std::string GazeboServer::post_mortem(const std::string& said) {
   gzserver_->wait(kEndLimit);
-  const auto errors = reading_errors(read_whole(run_.log));
+  const auto errors = reading_errors(os::read_whole(run_.log));
   if (!errors.empty() && !holds(said, errors.front()))
     return fmt::format("; Gazebo said, in {}: {}", run_.log.string(), errors.front());
   const auto& exit = gzserver_->poll();
@@ -229,7 +230,7 @@ std::string GazeboServer::post_mortem(const std::string& said) {
 }
 
 void GazeboServer::check_world() {
-  const std::string log = read_whole(run_.log);
+  const std::string log = os::read_whole(run_.log);
   auto errors = reading_errors(log);
   if (const std::string why = plugin_error(log); !why.empty()) errors.push_back(why);
   if (!errors.empty())

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "child_process.h"
 #include "gazebo_install.h"
 #include "private_folder.h"
 #include "x_server.h"
@@ -12,6 +11,7 @@
 #include <string>
 
 #include <tether/base/time.h>
+#include <tether/os/child_process.h>
 #include <tether/sim_protocol/connection.h>
 
 namespace tether::app {
@@ -60,7 +60,7 @@ class GazeboServer {
   bool has_port_in_use();
   void look() const;
   std::optional<std::string> end_beyond(const std::string& said);
-  std::string last_words(const ChildExit& exit) const;
+  std::string last_words(const os::ChildExit& exit) const;
   [[noreturn]] void fail(const std::string& what) const;
 
   GazeboRun run_;
@@ -69,7 +69,7 @@ class GazeboServer {
   std::chrono::steady_clock::time_point started_;
   PrivateFolder folder_;
   std::unique_ptr<XServer> x_server_;
-  std::unique_ptr<ChildProcess> gzserver_;
+  std::unique_ptr<os::ChildProcess> gzserver_;
   std::string master_;           // its URI
   std::size_t said_before_ = 0;  // size of the log when gzserver was started, or the world open
 };

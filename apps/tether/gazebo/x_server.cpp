@@ -1,7 +1,5 @@
 #include "x_server.h"
 
-#include "captured_run.h"
-
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -10,6 +8,9 @@
 
 #include <tether/base/error.h>
 #include <tether/link/server.h>
+#include <tether/os/child_process.h>
+#include <tether/os/program.h>
+#include <tether/os/text_file.h>
 
 namespace tether::app {
 
@@ -17,7 +18,7 @@ namespace {
 
 constexpr const char* kProgram = "Xvfb";
 
-void require_xvfb() try { find_program(kProgram); } catch (const Error&) {
+void require_xvfb() try { os::find_program(kProgram); } catch (const Error&) {
   throw Error(ErrorCode::kSetup,
               "cameras in Gazebo need an X server, and there is no Xvfb in PATH; type: apt-get "
               "install xvfb");
@@ -45,25 +46,25 @@ XServer::XServer(const std::filesystem::path& folder, const std::filesystem::pat
   require_xvfb();
   write_cookie(cookie_);
   // With SIGTERM for a death signal it takes its socket and its lock in /tmp with it.
-  process_ = std::make_unique<ChildProcess>(
-      ChildCommand{.arguments = {kProgram, "-displayfd", "1", "-screen", "0", "640x480x24",
-                                 "-nolisten", "tcp", "-noreset", "-auth", cookie_.string()},
-                   .environment = {},
-                   .log = display_file_,
-                   .errors = log,
-                   .appends = true,
-                   .death_signal = SIGTERM});
+  process_ = std::make_unique<os::ChildProcess>(
+      os::ChildCommand{.arguments = {kProgram, "-displayfd", "1", "-screen", "0", "640x480x24",
+                                     "-nolisten", "tcp", "-noreset", "-auth", cookie_.string()},
+                       .environment = {},
+                       .log = display_file_,
+                       .errors = log,
+                       .appends = true,
+                       .death_signal = SIGTERM});
 }
 
 bool XServer::is_ready() {
   if (!display_.empty()) return true;
-  const std::string text = read_whole(display_file_);
+  const std::string text = os::read_whole(display_file_);
   if (text.empty() || text.back() != '\n') return false;
-  display_ = ":" + last_line(text);
+  display_ = ":" + os::last_line(text);
   return true;
 }
 
-Environment XServer::environment() const {
+os::Environment XServer::environment() const {
   return {{"DISPLAY", display_}, {"XAUTHORITY", cookie_.string()}};
 }
 

@@ -1,12 +1,13 @@
 #pragma once
 
-#include "child_process.h"
 #include "sut_environment.h"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+
+#include <tether/os/child_process.h>
 
 namespace tether::app {
 
@@ -22,7 +23,7 @@ class XServer {
   /// Whether programs can connect yet.
   bool is_ready();
   /// What a program needs to draw there. @pre is_ready().
-  Environment environment() const;
+  os::Environment environment() const;
   /// How it ended; none while it runs.
   std::optional<std::string> end();
 
@@ -30,7 +31,7 @@ class XServer {
   std::filesystem::path cookie_;
   std::filesystem::path display_file_;  // gets the display's number
   std::string display_;                 // ":7"; empty: not known yet
-  std::unique_ptr<ChildProcess> process_;
+  std::unique_ptr<os::ChildProcess> process_;
 };
 
 }  // namespace tether::app

@@ -9,13 +9,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/base_testing/error_message.h>
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/scenario_testing/error_message.h>
+#include <tether/os/child_process.h>
 
 namespace tether::app {
 namespace {
 
-using scenario::error_message;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -64,7 +64,7 @@ class GazeboInstallTest : public testing::Test {
   ScratchFolder scratch_;
 };
 
-std::string value_of(const Environment& environment, const std::string& name) {
+std::string value_of(const os::Environment& environment, const std::string& name) {
   const auto found = std::ranges::find(environment, name, [](const auto& v) { return v.first; });
   return found == environment.end() ? "not there" : found->second;
 }

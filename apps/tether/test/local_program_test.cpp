@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/base_testing/error_message.h>
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/scenario_testing/error_message.h>
 
 namespace tether::app {
 namespace {
@@ -63,7 +63,7 @@ TEST(LocalProgram, GivesALauncherTheWholePath) {
 
 TEST(LocalProgram, NamesTheProgramThatIsMissing) {
   const auto error = [](const std::vector<std::string>& launcher, const std::string& folder) {
-    return scenario::error_message(ErrorCode::kSetup, [&] {
+    return error_message(ErrorCode::kSetup, [&] {
       local_sut_command({{"fly"}, {}}, target(launcher, folder));
     });
   };
@@ -71,12 +71,11 @@ TEST(LocalProgram, NamesTheProgramThatIsMissing) {
               HasSubstr("no program /nowhere/bin/fly, which the target \"t\" of /targets/t.toml"));
   EXPECT_THAT(error({}, "/nowhere/bin"), HasSubstr("\"/nowhere/bin/fly\""));
   EXPECT_THAT(error({"no-such-launcher"}, "/bin"), HasSubstr("/bin/fly"));
-  EXPECT_THAT(
-      scenario::error_message(ErrorCode::kSetup,
-                              [&] {
-                                local_sut_command({{"sh"}, {}}, target({"no-such-launcher"}, ""));
-                              }),
-      HasSubstr("\"no-such-launcher\""));
+  EXPECT_THAT(error_message(ErrorCode::kSetup,
+                            [&] {
+                              local_sut_command({{"sh"}, {}}, target({"no-such-launcher"}, ""));
+                            }),
+              HasSubstr("\"no-such-launcher\""));
 }
 
 TEST(CpusFor, TakesTheLastOnesAndGivesEachSutItsOwn) {

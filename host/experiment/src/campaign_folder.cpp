@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include <tether/experiment/campaign_folder.h>
-#include <tether/experiment/text_file.h>
+#include <tether/os/text_file.h>
 
 namespace tether::experiment {
 namespace {
@@ -23,7 +23,7 @@ void make_folder(const fs::path& folder) {
 
 // A campaign.json that was being written when all ended goes with the next one.
 bool holds_anything(const fs::path& folder) {
-  const std::string torn = std::string(kCampaignFile) + std::string(kPartSuffix);
+  const std::string torn = std::string(kCampaignFile) + std::string(os::kPartSuffix);
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(folder, failed)) {
     const fs::path name = entry.path().filename();
@@ -119,7 +119,7 @@ CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campai
                                 "another folder",
                                 finished_, finished_ + missing_.size()));
   }
-  write_file_atomically(folder_ / kCampaignFile, to_json(manifest));
+  os::write_file_atomically(folder_ / kCampaignFile, to_json(manifest));
 }
 
 CampaignFolder::~CampaignFolder() = default;

@@ -6,7 +6,7 @@
 
 #include <tether/base/error.h>
 #include <tether/experiment/campaign_plan.h>
-#include <tether/experiment/text_file.h>
+#include <tether/os/text_file.h>
 
 namespace tether::experiment {
 namespace {
@@ -126,7 +126,7 @@ Settings campaign_settings(const scenario::Campaign& campaign, const Settings& v
                            const std::vector<std::filesystem::path>& files) {
   Settings settings = versions;
   for (const std::filesystem::path& file : files) {
-    settings[setting_name(campaign, file)] = digest_of_file(file);
+    settings[setting_name(campaign, file)] = os::digest_of_file(file);
   }
   for (const scenario::CampaignScenario& entry : campaign.scenarios) {
     if (entry.profile.empty()) continue;
@@ -140,7 +140,7 @@ void require_unchanged(const scenario::Campaign& campaign, const Settings& setti
   for (const std::filesystem::path& file : files) {
     std::error_code ignored;
     const bool exists = std::filesystem::is_regular_file(file, ignored);
-    if (exists && digest_of_file(file) == settings.at(setting_name(campaign, file))) continue;
+    if (exists && os::digest_of_file(file) == settings.at(setting_name(campaign, file))) continue;
     throw Error(
         ErrorCode::kBadFile, FileLocation{file.string()},
         fmt::format("was {} while the campaign ran, so the trial that has just ended is not "

@@ -1,7 +1,7 @@
 #include "json_reader.h"
 
 #include <tether/experiment/campaign_folder.h>
-#include <tether/experiment/text_file.h>
+#include <tether/os/text_file.h>
 
 namespace tether::experiment {
 namespace {
@@ -49,7 +49,7 @@ std::string to_json(const CampaignManifest& manifest) {
 
 CampaignManifest read_manifest(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kCampaignFile;
-  const Json document = parse_json(read_file(file), file);
+  const Json document = parse_json(os::read_file(file), file);
   const JsonReader json(document, file);
   json.require_schema(kCampaignSchemaVersion);
   CampaignManifest manifest{json.text("campaign"),

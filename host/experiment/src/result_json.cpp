@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <tether/experiment/result.h>
-#include <tether/experiment/text_file.h>
+#include <tether/os/text_file.h>
 
 namespace tether::experiment {
 namespace {
@@ -268,12 +268,12 @@ TrialResult result_from_json(const std::string& text, const std::filesystem::pat
 }
 
 void write_result(const std::filesystem::path& folder, const TrialResult& result) {
-  write_file_atomically(folder / kResultFile, to_json(result));
+  os::write_file_atomically(folder / kResultFile, to_json(result));
 }
 
 TrialResult read_result(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kResultFile;
-  return result_from_json(read_file(file), file);
+  return result_from_json(os::read_file(file), file);
 }
 
 }  // namespace tether::experiment

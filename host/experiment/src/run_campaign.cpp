@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include <tether/experiment/run_campaign.h>
-#include <tether/experiment/text_file.h>
+#include <tether/os/text_file.h>
 
 namespace tether::experiment {
 namespace {

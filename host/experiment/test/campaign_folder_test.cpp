@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <tether/experiment/campaign_folder.h>
-#include <tether/experiment/text_file.h>
 #include <tether/experiment_testing/sample_campaign.h>
+#include <tether/os/text_file.h>
 
 namespace tether::experiment {
 namespace {

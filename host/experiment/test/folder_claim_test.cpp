@@ -9,8 +9,8 @@
 
 #include <tether/experiment/campaign_folder.h>
 #include <tether/experiment/folder_claim.h>
-#include <tether/experiment/text_file.h>
 #include <tether/experiment_testing/sample_campaign.h>
+#include <tether/os/text_file.h>
 
 /// With whole processes: tests/system/faults_campaign_test.cpp.
 namespace tether::experiment {

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <tether/experiment/run_campaign.h>
-#include <tether/experiment/text_file.h>
 #include <tether/experiment_testing/sample_campaign.h>
+#include <tether/os/text_file.h>
 
 namespace tether::experiment {
 namespace {
@@ -125,7 +125,7 @@ TEST_F(RunCampaign, KeepsTheLogOfTheFirstAttemptAlone) {
     return good(plan);
   });
   EXPECT_EQ(attempts, 2);
-  EXPECT_EQ(read_file(plan_trials(campaign_, out_)[3].folder / log), "no port");
+  EXPECT_EQ(os::read_file(plan_trials(campaign_, out_)[3].folder / log), "no port");
 }
 
 TEST_F(RunCampaign, EndsWithoutKeepingTheTrialThatTheCheckRefuses) {

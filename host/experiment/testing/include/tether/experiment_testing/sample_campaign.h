@@ -3,14 +3,12 @@
 #include <cstdint>
 #include <string>
 
+#include <tether/base_testing/error_message.h>
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/experiment/result.h>
 #include <tether/scenario/campaign.h>
-#include <tether/scenario_testing/error_message.h>
 
 namespace tether::experiment {
-
-using scenario::error_message;
 
 /// Three conditions as in the paper's Section V, two metrics, seeds 1 to 3; files are in `scratch`.
 scenario::Campaign make_campaign(const ScratchFolder& scratch);

@@ -1,14 +1,18 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-namespace tether::app {
+namespace tether::os {
 
 /// The machine in one line: CPU model, cores, kernel.
 std::string describe_machine();
 
 /// Cores that this machine has, whether or not this process may use them, or they are switched on
-/// now; 0: not known, or more than a run can tell.
+/// now; 0: not known.
 int machine_cores();
 
-}  // namespace tether::app
+/// The CPUs that this process may run on, ascending.
+std::vector<int> allowed_cpus();
+
+}  // namespace tether::os

@@ -1,28 +1,29 @@
 #pragma once
 
+#include <csignal>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <signal.h>
-#include <sys/types.h>
-
 #include <tether/base/time.h>
 
-namespace tether::app {
+namespace tether::os {
+
+/// Variables with their values.
+using Environment = std::vector<std::pair<std::string, std::string>>;
 
 /// What to start, and how.
 struct ChildCommand {
-  std::vector<std::string> arguments;                            ///< program first
-  std::vector<std::pair<std::string, std::string>> environment;  ///< over this process' own
-  std::filesystem::path log;       ///< gets stdout and stderr; empty: /dev/null
-  std::vector<int> cpus{};         ///< it and its children run on these only; empty: on all
-  std::filesystem::path errors{};  ///< gets stderr instead; empty: `log` does
-  std::filesystem::path input{};   ///< read as stdin; empty: `input_pipe`, or /dev/null
-  int input_pipe = -1;             ///< the caller's end to read from, as stdin; stays the caller's
-  bool appends = false;            ///< to its logs, which several processes may then share
+  std::vector<std::string> arguments;  ///< program first
+  Environment environment;             ///< over this process' own
+  std::filesystem::path log;           ///< gets stdout and stderr; empty: /dev/null
+  std::vector<int> cpus{};             ///< it and its children run on these only; empty: on all
+  std::filesystem::path errors{};      ///< gets stderr instead; empty: `log` does
+  std::filesystem::path input{};       ///< read as stdin; empty: `input_pipe`, or /dev/null
+  int input_pipe = -1;   ///< the caller's end to read from, as stdin; stays the caller's
+  bool appends = false;  ///< to its logs, which several processes may then share
   std::filesystem::path working_folder{};    ///< empty: this process' own
   int end_signal = SIGTERM;                  ///< what asks it to end
   int death_signal = SIGKILL;                ///< what it gets when this process is gone
@@ -71,14 +72,4 @@ class ChildProcess {
   std::optional<ChildExit> exit_;
 };
 
-/// The CPUs that this process may run on, ascending.
-std::vector<int> allowed_cpus();
-
-/// This program's own file.
-std::filesystem::path own_file();
-/// The file that a command starts: beside this program's own file, else in PATH; a name with '/' is
-/// taken as it is.
-/// @throws Error(kSetup) when there is none.
-std::filesystem::path find_program(const std::string& name);
-
-}  // namespace tether::app
+}  // namespace tether::os

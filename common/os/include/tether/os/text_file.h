@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace tether::experiment {
+namespace tether::os {
 
 /// Ends the name of a file that is being written, or was when the machine or the process stopped.
 inline constexpr std::string_view kPartSuffix = ".part";
@@ -22,9 +22,14 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view t
 /// @throws Error(kBadFile) when it is missing or unreadable.
 std::string read_file(const std::filesystem::path& file);
 
+/// The whole file; empty where there is none.
+std::string read_whole(const std::filesystem::path& file);
+/// The last line that is not blank, without what is around it; empty: none.
+std::string last_line(const std::string& text);
+
 /// A 64-bit FNV-1a digest of the content as 16 hexadecimal digits: tells versions apart, proves
 /// nothing.
 /// @throws Error(kBadFile) as `read_file`.
 std::string digest_of_file(const std::filesystem::path& file);
 
-}  // namespace tether::experiment
+}  // namespace tether::os

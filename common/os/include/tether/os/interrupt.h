@@ -1,6 +1,6 @@
 #pragma once
 
-namespace tether::app {
+namespace tether::os {
 
 /// From now on SIGINT and SIGTERM only set a flag; one that comes half a
 /// second later or more ends the process at once. Call
@@ -9,4 +9,4 @@ void catch_interrupts();
 /// Whether one has come.
 bool interrupted();
 
-}  // namespace tether::app
+}  // namespace tether::os

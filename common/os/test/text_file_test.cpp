@@ -4,10 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <tether/experiment/text_file.h>
-#include <tether/experiment_testing/sample_campaign.h>
+#include <tether/base_testing/error_message.h>
+#include <tether/base_testing/scratch_folder.h>
+#include <tether/os/text_file.h>
 
-namespace tether::experiment {
+namespace tether::os {
 namespace {
 
 using testing::HasSubstr;
@@ -106,4 +107,4 @@ TEST(DigestOfFile, IsFnv1a) {
 }
 
 }  // namespace
-}  // namespace tether::experiment
+}  // namespace tether::os

@@ -1,45 +1,31 @@
 #include <cerrno>
+#include <cinttypes>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/text_file.h>
+#include <tether/os/file_descriptor.h>
+#include <tether/os/pipe.h>
+#include <tether/os/text_file.h>
 
-namespace tether::experiment {
+namespace tether::os {
 namespace {
-
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 [[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
   throw Error(ErrorCode::kSetup, FileLocation{file.string()},
-              fmt::format("cannot be {}: {}", what, std::strerror(errno)));
+              std::string("cannot be ") + what + ": " + std::strerror(errno));
 }
 
-void write_all(int fd, std::string_view text, const std::filesystem::path& file) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(fd, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) fail(file, "written");
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
+void write_text(const FileDescriptor& to, std::string_view text,
+                const std::filesystem::path& file) {
+  if (!write_all(to, text)) fail(file, "written");
 }
 
 bool is_special(const std::filesystem::path& file) {
@@ -49,9 +35,9 @@ bool is_special(const std::filesystem::path& file) {
 }
 
 void write_to_special(const std::filesystem::path& file, std::string_view text) {
-  const Descriptor fd(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
-  if (fd.get() < 0) fail(file, "opened");
-  write_all(fd.get(), text, file);
+  const FileDescriptor fd(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
+  if (!fd) fail(file, "opened");
+  write_text(fd, text, file);
 }
 
 // The file behind the symbolic links, which need not exist.
@@ -69,10 +55,16 @@ std::filesystem::path behind_links(std::filesystem::path file) {
 }
 
 void write_and_flush(const std::filesystem::path& file, std::string_view text) {
-  const Descriptor fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
-  if (fd.get() < 0) fail(file, "created");
-  write_all(fd.get(), text, file);
+  const FileDescriptor fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+  if (!fd) fail(file, "created");
+  write_text(fd, text, file);
   if (::fsync(fd.get()) != 0) fail(file, "flushed to the disk");
+}
+
+std::string stripped(const std::string& line) {
+  const auto begin = line.find_first_not_of(" \t\r");
+  const auto end = line.find_last_not_of(" \t\r");
+  return begin == std::string::npos ? "" : line.substr(begin, end - begin + 1);
 }
 
 }  // namespace
@@ -95,9 +87,9 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view t
     throw;
   }
   // The rename itself is on the disk once the folder is.
-  const Descriptor folder(
+  const FileDescriptor folder(
       ::open((file.parent_path() / ".").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (folder.get() >= 0) ::fsync(folder.get());
+  if (folder) ::fsync(folder.get());
 }
 
 std::string read_file(const std::filesystem::path& file) {
@@ -118,12 +110,27 @@ std::string read_file(const std::filesystem::path& file) {
   return text;
 }
 
+std::string read_whole(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::string last_line(const std::string& text) {
+  std::istringstream lines(text);
+  std::string last;
+  for (std::string line; std::getline(lines, line);)
+    if (const std::string words = stripped(line); !words.empty()) last = words;
+  return last;
+}
+
 std::string digest_of_file(const std::filesystem::path& file) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : read_file(file)) {
     hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
   }
-  return fmt::format("{:016x}", hash);
+  char text[17];
+  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
+  return text;
 }
 
-}  // namespace tether::experiment
+}  // namespace tether::os

@@ -1,12 +1,11 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <tether/base/time.h>
 
-namespace tether::app {
+namespace tether::os {
 
 /// What a program that has run left.
 struct Captured {
@@ -23,9 +22,4 @@ struct Captured {
 Captured run_captured(const std::vector<std::string>& arguments, const std::string& input,
                       Duration limit, bool is_leaving = false);
 
-/// The whole file; empty where there is none.
-std::string read_whole(const std::filesystem::path& file);
-/// The last line that is not blank, without what is around it; empty: none.
-std::string last_line(const std::string& text);
-
-}  // namespace tether::app
+}  // namespace tether::os

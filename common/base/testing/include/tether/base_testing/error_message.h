@@ -5,10 +5,10 @@
 
 #include <tether/base/error.h>
 
-/// For tests that read files which people write.
-namespace tether::scenario {
+/// For tests of what is refused.
+namespace tether {
 
 /// The message of the Error of that code that `action` throws; fails the test when there is none.
 std::string error_message(ErrorCode code, const std::function<void()>& action);
 
-}  // namespace tether::scenario
+}  // namespace tether

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <tether/scenario_testing/error_message.h>
+#include <tether/base_testing/error_message.h>
 
-namespace tether::scenario {
+namespace tether {
 
 std::string error_message(ErrorCode code, const std::function<void()>& action) {
   try {
@@ -15,4 +15,4 @@ std::string error_message(ErrorCode code, const std::function<void()>& action) {
   return "";
 }
 
-}  // namespace tether::scenario
+}  // namespace tether

@@ -1,11 +1,11 @@
 #include <unistd.h>
 
-#include <tether/client/exec/file_descriptor.h>
+#include <tether/os/file_descriptor.h>
 
-namespace tether::client {
+namespace tether::os {
 
 FileDescriptor::~FileDescriptor() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-}  // namespace tether::client
+}  // namespace tether::os

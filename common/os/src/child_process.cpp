@@ -1,14 +1,10 @@
-#include "child_process.h"
 
 #include <cerrno>
 #include <chrono>
-#include <cstdlib>
 #include <map>
-#include <sstream>
 #include <thread>
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -17,22 +13,20 @@
 
 #include <tether/base/error.h>
 #include <tether/base/system_reason.h>
+#include <tether/os/child_process.h>
+#include <tether/os/file_descriptor.h>
+#include <tether/os/pipe.h>
+#include <tether/os/program.h>
 
 extern char** environ;
 
-namespace tether::app {
+namespace tether::os {
 
 namespace {
 
 constexpr auto kPollPeriod = std::chrono::milliseconds(5);
 
-bool is_program(const std::filesystem::path& file) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(file, ignored) && access(file.c_str(), X_OK) == 0;
-}
-
-std::vector<std::string> merged_environment(
-    const std::vector<std::pair<std::string, std::string>>& extra) {
+std::vector<std::string> merged_environment(const Environment& extra) {
   std::map<std::string, std::string> variables;
   for (char** entry = environ; *entry; ++entry) {
     const std::string text = *entry;
@@ -52,14 +46,16 @@ std::vector<char*> pointers(std::vector<std::string>& strings) {
   return list;
 }
 
-int open_log(const std::filesystem::path& log, bool appends) {
-  const std::filesystem::path file = log.empty() ? "/dev/null" : log;
-  const int how = appends ? O_APPEND : O_TRUNC;
-  const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | how, 0644);
-  if (fd < 0)
-    throw Error(ErrorCode::kSetup,
-                fmt::format("{}: cannot be opened: {}", file.string(), reason_of(errno)));
-  return fd;
+FileDescriptor open_file(const std::filesystem::path& file, int how) {
+  FileDescriptor descriptor(open(file.c_str(), how | O_CLOEXEC, 0644));
+  if (!descriptor)
+    throw Error(ErrorCode::kSetup, file.string() + ": cannot be opened: " + reason_of(errno));
+  return descriptor;
+}
+
+FileDescriptor open_log(const std::filesystem::path& log, bool appends) {
+  return open_file(log.empty() ? "/dev/null" : log,
+                   O_WRONLY | O_CREAT | (appends ? O_APPEND : O_TRUNC));
 }
 
 cpu_set_t to_set(const std::vector<int>& cpus) {
@@ -69,37 +65,15 @@ cpu_set_t to_set(const std::vector<int>& cpus) {
   return set;
 }
 
-int open_input(const std::filesystem::path& file) {
-  const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0)
-    throw Error(ErrorCode::kSetup,
-                fmt::format("{}: cannot be opened: {}", file.string(), reason_of(errno)));
-  return fd;
-}
-
-/// One's own, closed at the end.
-class Descriptor {
- public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  ~Descriptor() {
-    if (fd_ >= 0) close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 /// A child's standard streams; an input of -1 is /dev/null.
 class Streams {
  public:
   explicit Streams(const ChildCommand& command)
       : pipe_(command.input_pipe),
-        input_(command.input.empty() ? -1 : open_input(command.input)),
+        input_(command.input.empty() ? FileDescriptor() : open_file(command.input, O_RDONLY)),
         log_(open_log(command.log, command.appends)),
-        errors_(command.errors.empty() ? -1 : open_log(command.errors, command.appends)) {}
+        errors_(command.errors.empty() ? FileDescriptor()
+                                       : open_log(command.errors, command.appends)) {}
 
   int in() const { return input_.get() < 0 ? pipe_ : input_.get(); }
   int out() const { return log_.get(); }
@@ -107,8 +81,19 @@ class Streams {
 
  private:
   int pipe_;
-  Descriptor input_, log_, errors_;
+  FileDescriptor input_, log_, errors_;
 };
+
+Error cannot_start(const std::string& program, const std::string& why) {
+  return {ErrorCode::kSetup, "cannot start \"" + program + "\": " + why};
+}
+
+/// Where a child says why it could not become the program.
+Pipe open_report(const std::string& program) {
+  Pipe report = make_pipe();
+  if (!report.read_end) throw cannot_start(program, reason_of(errno));
+  return report;
+}
 
 /// What a child becomes; made before the fork.
 struct Image {
@@ -145,36 +130,6 @@ struct Image {
 
 }  // namespace
 
-std::vector<int> allowed_cpus() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  std::vector<int> cpus;
-  if (sched_getaffinity(0, sizeof set, &set) != 0) return cpus;
-  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu)
-    if (CPU_ISSET(static_cast<std::size_t>(cpu), &set)) cpus.push_back(cpu);
-  return cpus;
-}
-
-std::filesystem::path own_file() {
-  return std::filesystem::read_symlink("/proc/self/exe");
-}
-
-std::filesystem::path find_program(const std::string& name) {
-  if (name.find('/') != std::string::npos) {
-    if (is_program(name)) return name;
-    throw Error(ErrorCode::kSetup,
-                fmt::format("cannot start \"{}\": no such program, or not executable", name));
-  }
-  std::vector<std::filesystem::path> folders{own_file().parent_path()};
-  const char* path = std::getenv("PATH");
-  std::istringstream list(path ? path : "");
-  for (std::string folder; std::getline(list, folder, ':');) folders.emplace_back(folder);
-  for (const auto& folder : folders)
-    if (is_program(folder / name)) return folder / name;
-  throw Error(ErrorCode::kSetup, fmt::format("cannot start \"{}\": it is neither in {} nor in PATH",
-                                             name, own_file().parent_path().string()));
-}
-
 ChildProcess::ChildProcess(const ChildCommand& command)
     : program_(find_program(command.arguments.at(0)).string()),
       end_signal_(command.end_signal),
@@ -184,10 +139,7 @@ ChildProcess::ChildProcess(const ChildCommand& command)
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
   const cpu_set_t cpus = to_set(command.cpus);
   const Streams streams(command);
-  int report[2];
-  if (pipe2(report, O_CLOEXEC) != 0)
-    throw Error(ErrorCode::kSetup,
-                fmt::format("cannot start \"{}\": {}", program_, reason_of(errno)));
+  Pipe report = open_report(program_);
 
   const Image image{program_.c_str(),
                     argv.data(),
@@ -197,16 +149,14 @@ ChildProcess::ChildProcess(const ChildCommand& command)
                     command.death_signal};
   const pid_t parent = getpid();
   pid_ = fork();
-  if (pid_ == 0) become(image, streams, report[1], parent);
-  close(report[1]);
+  if (pid_ == 0) become(image, streams, report.write_end.get(), parent);
+  report.write_end = FileDescriptor();
   int why = pid_ < 0 ? errno : 0;
   // Ends with nothing read once the exec has succeeded.
-  if (pid_ > 0 && read(report[0], &why, sizeof why) > 0) waitpid(pid_, nullptr, 0);
-  close(report[0]);
+  if (pid_ > 0 && read(report.read_end.get(), &why, sizeof why) > 0) waitpid(pid_, nullptr, 0);
   if (why != 0) {
     pid_ = -1;
-    throw Error(ErrorCode::kSetup,
-                fmt::format("cannot start \"{}\": {}", program_, reason_of(why)));
+    throw cannot_start(program_, reason_of(why));
   }
 }
 
@@ -224,8 +174,8 @@ void ChildProcess::reap(int status) {
   const int code = WEXITSTATUS(status);
   const int signal = code - kSignalled;
   const bool tells_of_signal = signal > 0 && signal < NSIG;
-  exit_ = {code, fmt::format("exited with code {}{}", code,
-                             tells_of_signal ? ", as after " + name_of_signal(signal) : "")};
+  exit_ = {code, "exited with code " + std::to_string(code) +
+                     (tells_of_signal ? ", as after " + name_of_signal(signal) : "")};
 }
 
 const std::optional<ChildExit>& ChildProcess::poll() {
@@ -254,4 +204,4 @@ void ChildProcess::terminate() {
   pid_ = -1;
 }
 
-}  // namespace tether::app
+}  // namespace tether::os

@@ -1,10 +1,11 @@
-#include "interrupt.h"
 
 #include <signal.h>
 #include <time.h>
 #include <unistd.h>
 
-namespace tether::app {
+#include <tether/os/interrupt.h>
+
+namespace tether::os {
 
 namespace {
 
@@ -43,4 +44,4 @@ bool interrupted() {
   return g_interrupted != 0;
 }
 
-}  // namespace tether::app
+}  // namespace tether::os
