@@ -1,5 +1,4 @@
 #include "commands.h"
-#include "gazebo/gazebo_install.h"
 #include "local_sut.h"
 #include "print_report.h"
 #include "progress_bar.h"
@@ -29,6 +28,7 @@
 #include <tether/os/machine.h>
 #include <tether/os/program.h>
 #include <tether/scenario/campaign.h>
+#include <tether/sim_gazebo/gazebo_install.h>
 
 namespace tether::app {
 
@@ -114,7 +114,7 @@ std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign)
     try_profiles(entry, world, warnings);
   }
   if (simulators(campaign).contains("gazebo")) {
-    const auto gazebo = find_gazebo().files();
+    const auto gazebo = sim::find_gazebo().files();
     files.insert(files.end(), gazebo.begin(), gazebo.end());
   }
   for (const std::string& warning : warnings) say("warning: {}\n", warning);

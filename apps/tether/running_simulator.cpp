@@ -1,14 +1,13 @@
 #include "running_simulator.h"
 
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
 #include <tether/os/interrupt.h>
-#include <tether/sim/gazebo_world.h>
 #include <tether/sim/sdf_version.h>
+#include <tether/sim_gazebo/gazebo_world.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
 #include <tether/sim_remote/remote_simulator.h>
 
@@ -18,12 +17,8 @@ namespace {
 
 constexpr Duration kAttachLimit = std::chrono::seconds(5);
 
-bool has_camera(const sim::World& world) {
-  return std::ranges::any_of(world.uavs, [](const sim::Uav& uav) {
-    return std::ranges::any_of(uav.sensors, [](const sim::Sensor& sensor) {
-      return sensor.kind() == uav::SensorKind::kCamera;
-    });
-  });
+std::optional<std::string> why_give_up() {
+  return os::interrupted() ? std::optional<std::string>("interrupted by the user") : std::nullopt;
 }
 
 }  // namespace
@@ -36,30 +31,16 @@ void require_readable(const sim::World& world, const SimulatorOption& option) {
 
 RunningSimulator::RunningSimulator(const SimulatorOption& option, sim::World world,
                                    SimulatorSetup setup) {
-  if (std::holds_alternative<GazeboSimulator>(option))
-    start_gazebo(std::move(world), setup);
-  else if (const auto* endpoint = std::get_if<sim::protocol::Endpoint>(&option))
+  if (std::holds_alternative<GazeboSimulator>(option)) {
+    if (setup.on_setup) setup.on_setup("starting Gazebo");
+    gazebo_ = std::make_unique<sim::GazeboSimulator>(
+        std::move(world),
+        sim::GazeboSetup{setup.answer_limit, setup.log, setup.warn, setup.on_silence});
+  } else if (const auto* endpoint = std::get_if<sim::protocol::Endpoint>(&option)) {
     attach(*endpoint, std::move(world), setup);
-  else
+  } else {
     simulator_ = sim::make_mujoco_simulator(std::move(world), setup.warn);
-}
-
-void RunningSimulator::start_gazebo(sim::World world, const SimulatorSetup& setup) {
-  if (setup.on_setup) setup.on_setup("starting Gazebo");
-  gazebo_ = std::make_unique<GazeboServer>(GazeboRun{
-      .install = find_gazebo(), .world = world.file, .draws = has_camera(world), .log = setup.log});
-  auto connection = gazebo_->connect();
-  try {
-    simulator_ = sim::make_remote_simulator(std::move(world), std::move(connection),
-                                            {.open_limit = gazebo_->start_limit(),
-                                             .answer_limit = setup.answer_limit,
-                                             .why_give_up = [this] { return why_give_up(); },
-                                             .on_silence = setup.on_silence},
-                                            setup.warn);
-  } catch (const Error& e) {
-    throw Error(e.code(), e.what() + post_mortem(e.what()));
   }
-  gazebo_->check_world();
 }
 
 void RunningSimulator::attach(const sim::protocol::Endpoint& endpoint, sim::World world,
@@ -71,7 +52,7 @@ void RunningSimulator::attach(const sim::protocol::Endpoint& endpoint, sim::Worl
                             connection.failure().message));
   simulator_ = sim::make_remote_simulator(std::move(world), std::move(*connection),
                                           {.answer_limit = setup.answer_limit,
-                                           .why_give_up = [this] { return why_give_up(); },
+                                           .why_give_up = why_give_up,
                                            .on_silence = setup.on_silence,
                                            .address = sim::protocol::to_string(endpoint)},
                                           setup.warn);
@@ -81,13 +62,8 @@ std::optional<std::string> RunningSimulator::lost() {
   return gazebo_ ? gazebo_->lost() : std::nullopt;
 }
 
-std::optional<std::string> RunningSimulator::why_give_up() {
-  if (os::interrupted()) return "interrupted by the user";
-  return gazebo_ && !simulator_ ? gazebo_->why_not_up() : lost();
-}
-
 std::string RunningSimulator::post_mortem(const std::string& said) {
-  return gazebo_ && !os::interrupted() ? gazebo_->post_mortem(said) : "";
+  return gazebo_ ? gazebo_->post_mortem(said) : "";
 }
 
 }  // namespace tether::app

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "gazebo/gazebo_server.h"
 #include "simulator_option.h"
 
 #include <filesystem>
@@ -11,6 +10,7 @@
 
 #include <tether/base/time.h>
 #include <tether/sim/simulator.h>
+#include <tether/sim_gazebo/gazebo_simulator.h>
 
 namespace tether::app {
 
@@ -33,19 +33,17 @@ class RunningSimulator {
   /// Starts it, or connects to it. @throws Error(kSetup) with the reason why it is not to be had.
   RunningSimulator(const SimulatorOption& option, sim::World world, SimulatorSetup setup);
 
-  sim::Simulator& get() { return *simulator_; }
+  sim::Simulator& get() { return gazebo_ ? gazebo_->get() : *simulator_; }
   /// Why it is lost, as far as its processes show it; none: it is not.
   std::optional<std::string> lost();
   /// After it failed with `said`: what else is known of its end, with "; " before.
   std::string post_mortem(const std::string& said);
 
  private:
-  std::optional<std::string> why_give_up();
-  void start_gazebo(sim::World world, const SimulatorSetup& setup);
   void attach(const sim::protocol::Endpoint& endpoint, sim::World world,
               const SimulatorSetup& setup);
 
-  std::unique_ptr<GazeboServer> gazebo_;  // outlives the simulator, which is connected to it
+  std::unique_ptr<sim::GazeboSimulator> gazebo_;
   std::unique_ptr<sim::Simulator> simulator_;
 };
 

@@ -104,6 +104,7 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"sim_mujoco", {"base", "uav", "sim", "sim_sensing"}},
       {"sim_protocol", {"base", "uav", "link"}},
       {"sim_remote", {"base", "uav", "link", "sim", "sim_sensing", "sim_protocol"}},
+      {"sim_gazebo", {"base", "os", "link", "sim", "sim_protocol", "sim_remote", "uav"}},
       {"coordinator", {"base", "uav", "sync", "sim", "link", "record"}},
       {"scenario", {"base", "uav", "sim"}},
       {"experiment", {"base", "os", "uav", "scenario", "record"}},

@@ -1,4 +1,4 @@
-#include "gazebo/gazebo_master.h"
+#include "gazebo_master.h"
 
 #include <cstdlib>
 
@@ -8,7 +8,7 @@
 
 #include <tether/base/error.h>
 
-namespace tether::app {
+namespace tether::sim {
 namespace {
 
 using testing::AllOf;
@@ -61,4 +61,4 @@ TEST_F(GazeboMaster, MustBeAUriWithAPort) {
 }
 
 }  // namespace
-}  // namespace tether::app
+}  // namespace tether::sim

@@ -4,7 +4,7 @@
 #include <vector>
 
 /// What gzserver says, on one line each, without colours.
-namespace tether::app {
+namespace tether::sim {
 
 /// The last line that may say why it ended: neither a message, nor a warning, nor what is said
 /// where there is no sound card. Empty: none.
@@ -20,4 +20,4 @@ std::string drawing_error(const std::string& log);
 /// What Gazebo could not read, of the world and what it includes: SDF and meshes.
 std::vector<std::string> reading_errors(const std::string& log);
 
-}  // namespace tether::app
+}  // namespace tether::sim

@@ -23,7 +23,7 @@
 #include <tether/os/interrupt.h>
 #include <tether/os/text_file.h>
 
-namespace tether::app {
+namespace tether::sim {
 
 namespace {
 
@@ -77,7 +77,7 @@ void make_empty(const std::filesystem::path& log) {
   std::filesystem::remove(log, ignored);
 }
 
-bool holds(const std::string& text, std::string_view part) {
+bool says(const std::string& text, std::string_view part) {
   return text.find(part) != std::string::npos;
 }
 
@@ -145,11 +145,10 @@ void GazeboServer::start_gzserver() {
   gzserver_ = std::make_unique<os::ChildProcess>(command);
 }
 
-std::unique_ptr<sim::protocol::Connection> GazeboServer::connect() {
-  const sim::protocol::Endpoint endpoint = folder_.path() / "simulator";
+std::unique_ptr<protocol::Connection> GazeboServer::connect() {
+  const protocol::Endpoint endpoint = folder_.path() / "simulator";
   for (int attempt = 1;; std::this_thread::sleep_for(kLook)) {
-    if (auto connection = sim::protocol::connect(endpoint, start_limit()))
-      return std::move(*connection);
+    if (auto connection = protocol::connect(endpoint, start_limit())) return std::move(*connection);
     look();
     const auto why = why_not_up();
     if (!why) continue;
@@ -175,7 +174,7 @@ void GazeboServer::look() const {
 }
 
 bool GazeboServer::has_port_in_use() {
-  return holds(os::read_whole(run_.log).substr(said_before_), "Address already in use");
+  return says(os::read_whole(run_.log).substr(said_before_), "Address already in use");
 }
 
 std::optional<std::string> GazeboServer::why_not_up() {
@@ -204,7 +203,7 @@ std::optional<std::string> GazeboServer::end_beyond(const std::string& said) {
         exit->description, master_);
   const std::string last = last_words(*exit);
   return fmt::format("gzserver {}; {}", exit->description,
-                     last.empty() || holds(said, last)
+                     last.empty() || says(said, last)
                          ? "see " + run_.log.string()
                          : fmt::format("its last words in {}: {}", run_.log.string(), last));
 }
@@ -221,12 +220,12 @@ std::string GazeboServer::last_words(const os::ChildExit& exit) const {
 std::string GazeboServer::post_mortem(const std::string& said) {
   gzserver_->wait(kEndLimit);
   const auto errors = reading_errors(os::read_whole(run_.log));
-  if (!errors.empty() && !holds(said, errors.front()))
+  if (!errors.empty() && !says(said, errors.front()))
     return fmt::format("; Gazebo said, in {}: {}", run_.log.string(), errors.front());
   const auto& exit = gzserver_->poll();
-  if (exit && holds(said, "gzserver " + exit->description)) return "";
+  if (exit && says(said, "gzserver " + exit->description)) return "";
   const auto end = end_beyond(said);
-  return end && !holds(said, *end) ? "; " + *end : "";
+  return end && !says(said, *end) ? "; " + *end : "";
 }
 
 void GazeboServer::check_world() {
@@ -244,4 +243,4 @@ void GazeboServer::fail(const std::string& what) const {
   throw Error(ErrorCode::kSetup, "Gazebo cannot be started: " + what);
 }
 
-}  // namespace tether::app
+}  // namespace tether::sim

@@ -1,4 +1,3 @@
-#include "gazebo/gazebo_install.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -12,8 +11,9 @@
 #include <tether/base_testing/error_message.h>
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/os/child_process.h>
+#include <tether/sim_gazebo/gazebo_install.h>
 
-namespace tether::app {
+namespace tether::sim {
 namespace {
 
 using testing::ElementsAre;
@@ -132,4 +132,4 @@ TEST_F(GazeboInstallTest, WithoutARootTheSystemsGazeboIsTaken) {
 }
 
 }  // namespace
-}  // namespace tether::app
+}  // namespace tether::sim

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace tether::app {
+namespace tether::sim {
 
 /// GAZEBO_MASTER_URI, which is the user's choice so that his own tools find the server; empty: not
 /// set.
@@ -10,4 +10,4 @@ namespace tether::app {
 /// with this machine as the host.
 std::string master_of_user();
 
-}  // namespace tether::app
+}  // namespace tether::sim

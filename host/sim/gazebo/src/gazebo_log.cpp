@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-namespace tether::app {
+namespace tether::sim {
 
 namespace {
 
@@ -131,4 +131,4 @@ std::vector<std::string> reading_errors(const std::string& log) {
   return errors;
 }
 
-}  // namespace tether::app
+}  // namespace tether::sim

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-namespace tether::app {
+namespace tether::sim {
 
 /// A folder for what a run needs only while it lasts: this user's alone (mode 0700), with a short
 /// path, so that it may hold sockets. It is removed with the object. One whose process was killed
@@ -23,4 +23,4 @@ class PrivateFolder {
   int lock_ = -1;  // of the folder, held while its owner lives
 };
 
-}  // namespace tether::app
+}  // namespace tether::sim

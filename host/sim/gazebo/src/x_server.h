@@ -1,7 +1,5 @@
 #pragma once
 
-#include "sut_environment.h"
-
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -9,7 +7,7 @@
 
 #include <tether/os/child_process.h>
 
-namespace tether::app {
+namespace tether::sim {
 
 /// An X server without a screen (Xvfb), for programs that draw: on a free display, reached through
 /// a local socket by those who have its cookie only. It ends with the object, and with this process
@@ -34,4 +32,4 @@ class XServer {
   std::unique_ptr<os::ChildProcess> process_;
 };
 
-}  // namespace tether::app
+}  // namespace tether::sim

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "gazebo_install.h"
 #include "private_folder.h"
 #include "x_server.h"
 
@@ -12,9 +11,10 @@
 
 #include <tether/base/time.h>
 #include <tether/os/child_process.h>
+#include <tether/sim_gazebo/gazebo_install.h>
 #include <tether/sim_protocol/connection.h>
 
-namespace tether::app {
+namespace tether::sim {
 
 /// What to start.
 struct GazeboRun {
@@ -38,7 +38,7 @@ class GazeboServer {
 
   /// Waits for the plugin. @throws Error(kSetup) when one of them ends, nobody answers in time
   /// (TETHER_GAZEBO_START_LIMIT_S), or the user interrupts.
-  std::unique_ptr<sim::protocol::Connection> connect();
+  std::unique_ptr<protocol::Connection> connect();
   /// How long the plugin may still take to open the world.
   Duration start_limit() const;
 
@@ -74,4 +74,4 @@ class GazeboServer {
   std::size_t said_before_ = 0;  // size of the log when gzserver was started, or the world open
 };
 
-}  // namespace tether::app
+}  // namespace tether::sim

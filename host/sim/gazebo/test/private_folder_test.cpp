@@ -1,4 +1,4 @@
-#include "gazebo/private_folder.h"
+#include "private_folder.h"
 
 #include <csignal>
 #include <fstream>
@@ -8,7 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace tether::app {
+namespace tether::sim {
 namespace {
 
 namespace fs = std::filesystem;
@@ -83,4 +83,4 @@ TEST(PrivateFolder, FollowsNoLinkWhenItCleansUp) {
 }
 
 }  // namespace
-}  // namespace tether::app
+}  // namespace tether::sim

@@ -1,14 +1,12 @@
 #pragma once
 
-#include "sut_environment.h"
-
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include <tether/os/child_process.h>
 
-namespace tether::app {
+namespace tether::sim {
 
 /// Gazebo 11 as this machine has it.
 struct GazeboInstall {
@@ -27,4 +25,4 @@ struct GazeboInstall {
 /// @throws Error(kSetup) saying what is missing, where it was looked for, and how to get it.
 GazeboInstall find_gazebo();
 
-}  // namespace tether::app
+}  // namespace tether::sim

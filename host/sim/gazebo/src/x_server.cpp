@@ -12,7 +12,7 @@
 #include <tether/os/program.h>
 #include <tether/os/text_file.h>
 
-namespace tether::app {
+namespace tether::sim {
 
 namespace {
 
@@ -74,4 +74,4 @@ std::optional<std::string> XServer::end() {
   return std::nullopt;
 }
 
-}  // namespace tether::app
+}  // namespace tether::sim

@@ -1,9 +1,9 @@
-#include "sdf_folder.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/sim/gazebo_world.h>
+#include <tether/base/error.h>
+#include <tether/base_testing/scratch_folder.h>
+#include <tether/sim_gazebo/gazebo_world.h>
 
 namespace tether::sim {
 namespace {

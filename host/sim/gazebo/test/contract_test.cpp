@@ -1,10 +1,9 @@
-#include "running_simulator.h"
-
 #include <memory>
 #include <string>
 #include <utility>
 
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/sim_gazebo/gazebo_simulator.h>
 #include <tether/sim_testing/simulator_contract.h>
 
 /// Real Gazebo keeps what every back end promises.
@@ -60,10 +59,9 @@ class InGazebo final : public Simulator {
   explicit InGazebo(World world) {
     for (Model& model : world.models) model.links.at(0).name = "link";
     world.file = folder_.write("world.sdf", sdf_world(world));
-    running_ = std::make_unique<app::RunningSimulator>(
-        app::GazeboSimulator{}, world,
-        app::SimulatorSetup{std::chrono::seconds(30), folder_.path("simulator.log"),
-                            [](const std::string& line) { ADD_FAILURE() << line; }});
+    running_ = std::make_unique<GazeboSimulator>(
+        world, GazeboSetup{std::chrono::seconds(30), folder_.path("simulator.log"),
+                           [](const std::string& line) { ADD_FAILURE() << line; }});
   }
 
   const World& world() const override { return it().world(); }
@@ -86,7 +84,7 @@ class InGazebo final : public Simulator {
   Simulator& it() const { return running_->get(); }
 
   ScratchFolder folder_;
-  std::unique_ptr<app::RunningSimulator> running_;
+  std::unique_ptr<GazeboSimulator> running_;
 };
 
 }  // namespace

@@ -17,7 +17,7 @@
 
 #include <tether/base/error.h>
 
-namespace tether::app {
+namespace tether::sim {
 
 namespace {
 
@@ -67,4 +67,4 @@ std::string master_of_user() {
                        : "which is not http://HOST:PORT"));
 }
 
-}  // namespace tether::app
+}  // namespace tether::sim

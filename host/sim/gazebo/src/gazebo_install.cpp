@@ -1,4 +1,3 @@
-#include "gazebo_install.h"
 
 #include <cstdlib>
 #include <optional>
@@ -10,8 +9,9 @@
 
 #include <tether/base/error.h>
 #include <tether/os/program.h>
+#include <tether/sim_gazebo/gazebo_install.h>
 
-namespace tether::app {
+namespace tether::sim {
 
 namespace {
 
@@ -147,4 +147,4 @@ GazeboInstall find_gazebo() {
   return install;
 }
 
-}  // namespace tether::app
+}  // namespace tether::sim

@@ -14,7 +14,7 @@
 
 #include <tether/base/error.h>
 
-namespace tether::app {
+namespace tether::sim {
 
 namespace {
 
@@ -88,4 +88,4 @@ PrivateFolder::~PrivateFolder() {
   close(lock_);
 }
 
-}  // namespace tether::app
+}  // namespace tether::sim

@@ -1,9 +1,9 @@
-#include "gazebo/gazebo_log.h"
+#include "gazebo_log.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace tether::app {
+namespace tether::sim {
 namespace {
 
 using testing::ElementsAre;
@@ -114,4 +114,4 @@ TEST(LinesOfAMegabyte, AreReadAndCut) {
 }
 
 }  // namespace
-}  // namespace tether::app
+}  // namespace tether::sim
