@@ -15,8 +15,9 @@ namespace tether::app {
 namespace {
 
 /// The SUT as the board takes it. A parameter that names a file of the scenario is a file there.
-BoardSut board_sut(Board& board, const scenario::Scenario& scenario, const scenario::UavSetup& uav,
-                   const SutRun& run, const std::filesystem::path& log) {
+board::BoardSut board_sut(board::Board& board, const scenario::Scenario& scenario,
+                          const scenario::UavSetup& uav, const SutRun& run,
+                          const std::filesystem::path& log) {
   scenario::Sut sut = uav.sut;
   for (auto& [key, value] : sut.parameters)
     if (std::binary_search(scenario.files.begin(), scenario.files.end(),
@@ -50,13 +51,13 @@ void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
   }
 }
 
-void SutProcesses::start_on(Board& board, const scenario::Scenario& scenario, const SutRun& run,
-                            const std::filesystem::path& folder) {
+void SutProcesses::start_on(board::Board& board, const scenario::Scenario& scenario,
+                            const SutRun& run, const std::filesystem::path& folder) {
   board_ = &board;
   for (const scenario::UavSetup& uav : scenario.uavs) {
     const std::string& name = uav.placement.name;
     const std::filesystem::path log = folder / fmt::format("sut-{}.log", name);
-    const BoardSut sut = board_sut(board, scenario, uav, run, log);
+    const board::BoardSut sut = board_sut(board, scenario, uav, run, log);
     suts_.push_back({name, log, scenario.uavs.size() > 1 ? folder / name : folder,
                      fmt::format("{} on {}", sut.words[sut.program],
                                  scenario::to_string(board.connection().address())),

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "board.h"
 #include "sut_environment.h"
 
 #include <filesystem>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tether/board/board.h>
 #include <tether/os/child_process.h>
 #include <tether/scenario/scenario.h>
 
@@ -25,7 +25,7 @@ class SutProcesses {
              const std::filesystem::path& folder);
   /// The same on the board, which must outlive them. The scenario's files that their parameters
   /// name are copied there.
-  void start_on(Board& board, const scenario::Scenario& scenario, const SutRun& run,
+  void start_on(board::Board& board, const scenario::Scenario& scenario, const SutRun& run,
                 const std::filesystem::path& folder);
 
   /// Before every SUT has joined: how the first one ended that did; none while all run.
@@ -53,7 +53,7 @@ class SutProcesses {
   };
   std::string describe_end(Sut& sut) const;
 
-  Board* board_ = nullptr;
+  board::Board* board_ = nullptr;
   std::vector<Sut> suts_;
 };
 

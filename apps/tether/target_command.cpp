@@ -1,6 +1,4 @@
 #include "commands.h"
-#include "link_trial.h"
-#include "target_probe.h"
 
 #include <algorithm>
 #include <memory>
@@ -13,15 +11,17 @@
 
 #include <tether/base/error.h>
 #include <tether/base/version.h>
-#include <tether/experiment/target_readings.h>
+#include <tether/board/bandwidth_probe.h>
+#include <tether/board/target_probe.h>
+#include <tether/board/target_readings.h>
 #include <tether/scenario/target.h>
 
 namespace tether::app {
 
 namespace {
 
-using experiment::Finding;
-using experiment::Health;
+using board::Finding;
+using board::Health;
 
 struct CheckOptions {
   std::string address;
@@ -53,22 +53,23 @@ Finding judge_bandwidth(double MB_s) {
 }
 
 Check check_here() {
-  Check check{"this machine", probe_here(ProbeDepth::kFull), {}};
+  Check check{"this machine", board::probe_here(board::ProbeDepth::kFull), {}};
   if (check.readings.empty())
     throw Error(ErrorCode::kSetup, "this machine's shell (sh) does not run the probe");
-  check.findings = experiment::judge(check.readings, version());
+  check.findings = board::judge(check.readings, version());
   return check;
 }
 
 Check check_board(const scenario::SshAddress& address) {
-  SshConnection connection(address);
-  Check check{scenario::to_string(address), probe_board(connection, ProbeDepth::kFull), {}};
+  board::SshConnection connection(address);
+  Check check{
+      scenario::to_string(address), board::probe_board(connection, board::ProbeDepth::kFull), {}};
   if (check.readings.empty())
     throw Error(
         ErrorCode::kSetup,
         fmt::format("{} is there, but its shell (sh) does not run the probe", check.target));
-  check.findings = experiment::judge(check.readings, version());
-  if (const auto link = try_link(connection)) {
+  check.findings = board::judge(check.readings, version());
+  if (const auto link = board::probe_bandwidth(connection)) {
     check.findings.push_back(judge_round_trip(link->round_trip_s));
     check.findings.push_back(judge_bandwidth(link->to_board_MB_s));
   } else {
@@ -93,7 +94,7 @@ std::string to_text(const Check& check) {
   std::string text = check.target + "\n";
   for (const Finding& finding : check.findings)
     text += fmt::format("  {:<5}{:<22} {}{}\n",
-                        finding.health == Health::kOk ? "" : experiment::name(finding.health),
+                        finding.health == Health::kOk ? "" : board::name(finding.health),
                         finding.subject, finding.value,
                         finding.advice.empty() ? "" : fmt::format("  ({})", finding.advice));
   return text + conclusion(check) + "\n";
@@ -104,7 +105,7 @@ std::string to_json(const Check& check) {
   for (const Finding& finding : check.findings)
     json["findings"].push_back({{"subject", finding.subject},
                                 {"value", finding.value},
-                                {"health", experiment::name(finding.health)},
+                                {"health", board::name(finding.health)},
                                 {"advice", finding.advice}});
   json["readings"] = check.readings;
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

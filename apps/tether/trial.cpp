@@ -1,12 +1,10 @@
 #include "trial.h"
 
-#include "board.h"
 #include "local_sut.h"
 #include "refusals.h"
 #include "running_simulator.h"
 #include "stall_watch.h"
 #include "sut_processes.h"
-#include "target_probe.h"
 #include "trial_folder.h"
 
 #include <chrono>
@@ -21,6 +19,8 @@
 #include <tether/audit/audit.h>
 #include <tether/base/error.h>
 #include <tether/base/version.h>
+#include <tether/board/board.h>
+#include <tether/board/target_probe.h>
 #include <tether/os/interrupt.h>
 #include <tether/os/machine.h>
 #include <tether/record/reader.h>
@@ -118,20 +118,20 @@ void warm_up_cameras(sim::Simulator& simulator) {
 }
 
 /// The board that the condition names, connected and held; none where the SUTs run here.
-std::unique_ptr<Board> hold_board(const TrialSpec& spec) {
+std::unique_ptr<board::Board> hold_board(const TrialSpec& spec) {
   const auto& target = spec.condition.target;
   if (spec.waits_for_sut || !target || !target->ssh) return nullptr;
-  return std::make_unique<Board>(*target->ssh);
+  return std::make_unique<board::Board>(*target->ssh);
 }
 
 /// Where the SUTs' machine is read; who starts SUTs on another one by hand has to look himself.
-record::Readings read_target(const TrialSpec& spec, Board* board) {
+record::Readings read_target(const TrialSpec& spec, board::Board* board) {
   if (spec.waits_for_sut) return {};
-  return board ? probe_board(board->connection(), ProbeDepth::kBrief)
-               : probe_here(ProbeDepth::kBrief);
+  return board ? board::probe_board(board->connection(), board::ProbeDepth::kBrief)
+               : board::probe_here(board::ProbeDepth::kBrief);
 }
 
-std::optional<record::TargetInfo> target_info(const TrialSpec& spec, Board* board) {
+std::optional<record::TargetInfo> target_info(const TrialSpec& spec, board::Board* board) {
   if (spec.waits_for_sut) return std::nullopt;
   const auto& target = spec.condition.target;
   return record::TargetInfo{
@@ -141,12 +141,12 @@ std::optional<record::TargetInfo> target_info(const TrialSpec& spec, Board* boar
 }
 
 /// Where to listen: a board that may not come through its SSH connection has to reach us.
-link::Address listen_address(const TrialSpec& spec, const Board* board) {
+link::Address listen_address(const TrialSpec& spec, const board::Board* board) {
   if (spec.listen) return *spec.listen;
   return {board && !spec.uses_tunnel ? board->host_address() : "127.0.0.1", 0};
 }
 
-std::unique_ptr<link::Server> listen(const TrialSpec& spec, const Board* board,
+std::unique_ptr<link::Server> listen(const TrialSpec& spec, const board::Board* board,
                                      link::ServerEvents& events) try {
   return link::listen_tcp(listen_address(spec, board), kHelloTimeout, events);
 } catch (const Error& e) {
@@ -157,7 +157,7 @@ std::unique_ptr<link::Server> listen(const TrialSpec& spec, const Board* board,
 }
 
 /// The server as the SUTs reach it.
-std::string sut_address(const TrialSpec& spec, Board* board, const link::Server& server) {
+std::string sut_address(const TrialSpec& spec, board::Board* board, const link::Server& server) {
   link::Address address = server.address();
   if (!board) return link::to_string(address);
   if (spec.uses_tunnel)
@@ -194,7 +194,7 @@ std::string who_is_stopped(const coordinator::RunReport& report, const SutProces
 }
 
 /// The coordinator's run with its SUTs, up to the closed record.
-Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, Board* board,
+Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, board::Board* board,
                   const Timings& timings, const TrialObserver& observer) {
   const std::string token = token_of_run();
   const auto recorder = record::make_mcap_recorder(spec.folder / kRecordFile);

@@ -107,7 +107,8 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"sim_gazebo", {"base", "os", "link", "sim", "sim_protocol", "sim_remote", "uav"}},
       {"coordinator", {"base", "uav", "sync", "sim", "link", "record"}},
       {"scenario", {"base", "uav", "sim"}},
-      {"experiment", {"base", "os", "uav", "scenario", "record"}},
+      {"board", {"base", "os", "record", "scenario"}},
+      {"experiment", {"base", "board", "os", "uav", "scenario", "record"}},
       {"report", {"base", "uav", "record", "scenario", "experiment"}},
   };
   return kArrows;

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <tether/board/target_readings.h>
 #include <tether/experiment/result.h>
-#include <tether/experiment/target_readings.h>
 
 namespace tether::experiment {
 namespace {
@@ -117,7 +117,8 @@ void take_target(TrialResult& result, const record::Record& record) {
   TargetReport target{.name = info.name, .address = info.address, .before = info.before};
   if (record.footer) target.after = record.footer->target_after;
   const bool is_board = !info.address.empty();
-  for (const RunWarning& warning : run_warnings(target.before, target.after, is_board)) {
+  for (const board::RunWarning& warning :
+       board::run_warnings(target.before, target.after, is_board)) {
     target.warnings.push_back(warning.text);
     if (!warning.spoils || !is_board) continue;
     target.is_spoiled = true;

@@ -1,19 +1,17 @@
-#include "link_trial.h"
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include <fcntl.h>
-#include <unistd.h>
-
+#include <tether/board/bandwidth_probe.h>
 #include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
+#include <tether/os/pipe.h>
 
-namespace tether::app {
+namespace tether::board {
 
 namespace {
 
@@ -21,33 +19,12 @@ using Steady = std::chrono::steady_clock;
 
 constexpr int kRoundTrips = 40;
 constexpr std::size_t kBytes = 8u << 20;
-constexpr Duration kLimit = std::chrono::seconds(20);
+constexpr Duration kTransferLimit = std::chrono::seconds(20);
 constexpr Duration kEchoLimit = std::chrono::seconds(10);
 
 double seconds_since(Steady::time_point start) {
   return std::chrono::duration<double>(Steady::now() - start).count();
 }
-
-/// Both ends of a pipe; they are closed with it.
-class Pipe {
- public:
-  Pipe() {
-    if (pipe2(ends_, O_CLOEXEC) != 0) ends_[0] = ends_[1] = -1;
-  }
-  ~Pipe() {
-    close(ends_[0]);
-    close(ends_[1]);
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  int in() const { return ends_[0]; }
-  bool write_text(const std::string& text) const {
-    return write(ends_[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  }
-
- private:
-  int ends_[2];
-};
 
 /// Waits until the file has grown to so many bytes.
 bool wait_for_size(const std::filesystem::path& file, std::uintmax_t size) {
@@ -62,18 +39,19 @@ bool wait_for_size(const std::filesystem::path& file, std::uintmax_t size) {
 
 std::optional<double> median_round_trip(const SshConnection& connection) {
   const std::string script = "exec cat";
-  const Pipe pipe;
+  const os::Pipe pipe = os::make_pipe();
   const auto echo = connection.folder() / "echo";
   os::ChildProcess process({.arguments = connection.shell(script.size()),
                             .environment = {},
                             .log = echo,
                             .errors = connection.folder() / "echo.err",
-                            .input_pipe = pipe.in()});
-  if (!pipe.write_text(script)) return std::nullopt;
+                            .input_pipe = pipe.read_end.get()});
+  if (!os::write_all(pipe.write_end, script)) return std::nullopt;
   std::vector<double> times;
   for (int i = 0; i <= kRoundTrips; ++i) {
     const auto start = Steady::now();
-    if (!pipe.write_text("x") || !wait_for_size(echo, static_cast<std::uintmax_t>(i) + 1))
+    if (!os::write_all(pipe.write_end, "x") ||
+        !wait_for_size(echo, static_cast<std::uintmax_t>(i) + 1))
       return std::nullopt;
     if (i > 0) times.push_back(seconds_since(start));  // the first one waits for the shell
   }
@@ -83,16 +61,16 @@ std::optional<double> median_round_trip(const SshConnection& connection) {
 
 }  // namespace
 
-std::optional<LinkTrial> try_link(const SshConnection& connection) {
+std::optional<Bandwidth> probe_bandwidth(const SshConnection& connection) {
   const auto round_trip = median_round_trip(connection);
   if (!round_trip) return std::nullopt;
   // What the transfer takes beyond that of nothing is the bytes' own.
   const std::string script = "exec cat >/dev/null";
-  const os::Captured nothing = connection.run(script, kLimit);
-  const os::Captured bytes = connection.run(script, kLimit, std::string(kBytes, 'x'));
+  const os::Captured nothing = connection.run(script, kTransferLimit);
+  const os::Captured bytes = connection.run(script, kTransferLimit, std::string(kBytes, 'x'));
   const double time_s = to_seconds(bytes.wall - nothing.wall);
   if (nothing.code != 0 || bytes.code != 0) return std::nullopt;
-  return LinkTrial{*round_trip, static_cast<double>(kBytes) / 1e6 / std::max(time_s, 1e-3)};
+  return Bandwidth{*round_trip, static_cast<double>(kBytes) / 1e6 / std::max(time_s, 1e-3)};
 }
 
-}  // namespace tether::app
+}  // namespace tether::board

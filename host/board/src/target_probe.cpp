@@ -1,4 +1,3 @@
-#include "target_probe.h"
 
 #include "board_scripts.h"
 
@@ -7,14 +6,15 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/target_readings.h>
+#include <tether/board/target_probe.h>
+#include <tether/board/target_readings.h>
 #include <tether/os/captured_run.h>
 
-namespace tether::app {
+namespace tether::board {
 
 namespace {
 
-constexpr Duration kLimit = std::chrono::seconds(10);
+constexpr Duration kProbeLimit = std::chrono::seconds(10);
 
 std::string script_of(ProbeDepth depth) {
   return fmt::format("depth={}\n{}", depth == ProbeDepth::kBrief ? "brief" : "full", kTargetProbe);
@@ -23,13 +23,13 @@ std::string script_of(ProbeDepth depth) {
 }  // namespace
 
 record::Readings probe_here(ProbeDepth depth) try {
-  return experiment::parse_readings(os::run_captured({"sh"}, script_of(depth), kLimit, true).out);
+  return parse_readings(os::run_captured({"sh"}, script_of(depth), kProbeLimit, true).out);
 } catch (const Error& e) {
   throw Error(e.code(), fmt::format("the state of this machine cannot be read: {}", e.what()));
 }
 
 record::Readings probe_board(const SshConnection& connection, ProbeDepth depth) {
-  return experiment::parse_readings(connection.run(script_of(depth), kLimit, {}, true).out);
+  return parse_readings(connection.run(script_of(depth), kProbeLimit, {}, true).out);
 }
 
-}  // namespace tether::app
+}  // namespace tether::board

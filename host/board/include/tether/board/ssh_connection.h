@@ -12,7 +12,7 @@
 #include <tether/os/child_process.h>
 #include <tether/scenario/target.h>
 
-namespace tether::app {
+namespace tether::board {
 
 /// One connection of OpenSSH to a board, over which any number of commands run: a master of its own
 /// with its socket in a private folder. Keys, names and jump hosts are those of the user's
@@ -58,4 +58,4 @@ class SshConnection {
 /// One line of what ssh said, with what to do about it.
 std::string explain_ssh(const std::string& said, const scenario::SshAddress& address);
 
-}  // namespace tether::app
+}  // namespace tether::board

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tether/experiment/target_readings.h>
+#include <tether/board/target_readings.h>
 
-namespace tether::experiment {
+namespace tether::board {
 namespace {
 
 using record::Readings;
@@ -303,4 +303,4 @@ std::vector<RunWarning> run_warnings(const Readings& before, const Readings& aft
   return warnings;
 }
 
-}  // namespace tether::experiment
+}  // namespace tether::board

@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/experiment/target_readings.h>
+#include <tether/board/target_readings.h>
 
 /// The probe's output as machines gave it.
-namespace tether::experiment {
+namespace tether::board {
 namespace {
 
 using record::Readings;
@@ -240,4 +240,4 @@ TEST(Health, HasNames) {
 }
 
 }  // namespace
-}  // namespace tether::experiment
+}  // namespace tether::board

@@ -1,11 +1,10 @@
 #pragma once
 
-#include "ssh_connection.h"
-
+#include <tether/board/ssh_connection.h>
 #include <tether/record/messages.h>
 
-/// What a machine tells of itself: the same script (board/target_probe.sh) here and on a board.
-namespace tether::app {
+/// What a machine tells of itself: the same script (src/target_probe.sh) here and on a board.
+namespace tether::board {
 
 enum class ProbeDepth {
   kBrief,  ///< what may change from run to run; some milliseconds
@@ -17,4 +16,4 @@ record::Readings probe_here(ProbeDepth depth);
 /// The same of a board; empty also where the connection is gone.
 record::Readings probe_board(const SshConnection& connection, ProbeDepth depth);
 
-}  // namespace tether::app
+}  // namespace tether::board

@@ -6,9 +6,9 @@
 
 #include <tether/record/messages.h>
 
-/// What a machine tells of itself (apps/tether/board/target_probe.sh), and what of it would spoil a
+/// What a machine tells of itself (host/board/src/target_probe.sh), and what of it would spoil a
 /// measurement. Pure functions.
-namespace tether::experiment {
+namespace tether::board {
 
 enum class Health {
   kOk,
@@ -43,4 +43,4 @@ struct RunWarning {
 std::vector<RunWarning> run_warnings(const record::Readings& before, const record::Readings& after,
                                      bool is_board);
 
-}  // namespace tether::experiment
+}  // namespace tether::board

@@ -1,26 +1,30 @@
-#include "board.h"
 
 #include "board_scripts.h"
+#include "sut_script.h"
 
+#include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <csignal>
 #include <cstdlib>
+#include <mutex>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
-#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
 #include <tether/base/system_reason.h>
+#include <tether/board/board.h>
 #include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
-#include <tether/os/shell_word.h>
+#include <tether/os/memory_file.h>
 #include <tether/os/text_file.h>
 
-namespace tether::app {
+namespace tether::board {
 
 namespace {
 
@@ -30,7 +34,8 @@ constexpr Duration kHoldLimit = std::chrono::seconds(20);
 constexpr Duration kCopyLimit = std::chrono::minutes(5);
 // Ending is a second of asking, a second of making, and the way there.
 constexpr Duration kEndLimit = std::chrono::seconds(8);
-constexpr Duration kLook = std::chrono::milliseconds(5);
+constexpr Duration kHeartbeat = std::chrono::seconds(1);
+constexpr Duration kKeeperLook = std::chrono::milliseconds(5);
 // How long a connection that has ended may take to show it.
 constexpr Duration kShowLimit = std::chrono::milliseconds(300);
 // The keeper ends the SUTs before it ends itself, which takes it up to two seconds.
@@ -48,8 +53,10 @@ constexpr std::string_view kReturnScript = R"script(cd "$folder/out.$uav" 2>/dev
 exec tar -cf - .
 )script";
 
-std::string assign(const std::string& name, const std::string& value) {
-  return fmt::format("{}={}\n", name, os::shell_word(value));
+os::Pipe open_pipe() {
+  os::Pipe pipe = os::make_pipe();
+  if (!pipe.read_end) throw Error(ErrorCode::kSetup, "pipe: " + reason_of(errno));
+  return pipe;
 }
 
 std::string who_runs() {
@@ -62,61 +69,28 @@ std::string who_runs() {
       fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
 }
 
-void write_all(int fd, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = write(fd, text.data(), text.size());
-    if (written <= 0) return;  // who reads is gone, which shows elsewhere
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
-std::string joined(std::vector<std::string>::const_iterator begin,
-                   std::vector<std::string>::const_iterator end) {
-  std::string text;
-  for (; begin != end; ++begin) text += " " + os::shell_word(*begin);
-  return text;
-}
-
-/// What board_sut.sh is given.
-std::string sut_prologue(const BoardSut& sut) {
-  const auto program = sut.words.begin() + static_cast<std::ptrdiff_t>(sut.program);
-  const std::size_t launcher = sut.concurrent ? 1 : 0;
-  std::string text = assign("uav", sut.uav) + assign("program", *program) +
-                     assign("supervisor", sut.concurrent ? sut.words.front() : "") +
-                     assign("launcher", sut.program > launcher ? sut.words[launcher] : "");
-  text += "join() {\n";
-  for (const auto& [name, value] : sut.environment)
-    text += fmt::format("{}={}\nexport {}\n", name, os::shell_word(value), name);
-  text += fmt::format(
-      "}}\nrun_sut() {{\n"
-      "sh -c 'echo $$ >\"$0\" && exec setsid \"$@\"' \"$folder/pid.$uav\"{} \"$program\"{}\n}}\n",
-      joined(sut.words.begin(), program), joined(program + 1, sut.words.end()));
-  return text;
-}
-
 }  // namespace
 
 Board::Board(const scenario::SshAddress& address) : connection_(address) {
-  try {
-    hold();
-  } catch (...) {
-    keeper_.reset();
-    if (to_keeper_ >= 0) close(to_keeper_);
-    throw;
-  }
-  heart_ = std::jthread([this](const std::stop_token& stop) {
-    for (int looks = 0; !stop.stop_requested(); ++looks) {
-      if (looks % 20 == 0) write_all(to_keeper_, "\n");
-      std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    }
-  });
+  hold();
+  heart_ = std::jthread([this](const std::stop_token& stop) { beat(stop); });
 }
 
 Board::~Board() {
   heart_.request_stop();
   heart_.join();
-  close(to_keeper_);
+  to_keeper_ = os::FileDescriptor();
   keeper_->wait(kEndLimit);
+}
+
+/// The keeper lets go of the board where this stays away.
+void Board::beat(const std::stop_token& stop) const {
+  std::mutex mutex;
+  std::unique_lock lock(mutex);
+  std::condition_variable_any stopped;
+  do {
+    os::write_all(to_keeper_, "\n");
+  } while (!stopped.wait_for(lock, stop, kHeartbeat, [&] { return stop.stop_requested(); }));
 }
 
 std::string Board::keeper_said() const {
@@ -131,25 +105,24 @@ bool Board::wait_for_keeper(const std::string& word, Duration limit) {
     const auto at = said.find(word);
     if (at != std::string::npos && said.find('\n', at) != std::string::npos) return true;
     if (last_look) return false;
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kKeeperLook);
   }
   return false;
 }
 
 void Board::hold() {
   const std::string script = assign("who", who_runs()) + std::string(kBoardKeeper);
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw Error(ErrorCode::kSetup, "pipe: " + reason_of(errno));
-  to_keeper_ = ends[1];
-  write_all(to_keeper_, script);
+  os::Pipe pipe = open_pipe();
   const auto& folder = connection_.folder();
   keeper_ = std::make_unique<os::ChildProcess>(
       os::ChildCommand{.arguments = connection_.shell(script.size()),
                        .environment = {},
                        .log = folder / "keeper.out",
                        .errors = folder / "keeper.err",
-                       .input_pipe = ends[0]});
-  close(ends[0]);
+                       .input_pipe = pipe.read_end.get()});
+  pipe.read_end = os::FileDescriptor();
+  to_keeper_ = std::move(pipe.write_end);
+  os::write_all(to_keeper_, script);
 
   const bool answered = wait_for_keeper("held ", kHoldLimit);
   const std::string where = scenario::to_string(connection_.address());
@@ -189,18 +162,13 @@ std::string Board::copy(const std::filesystem::path& file) {
 
 std::unique_ptr<os::ChildProcess> Board::start(const BoardSut& sut) {
   const std::string script = prologue() + sut_prologue(sut) + std::string(kBoardSut);
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw Error(ErrorCode::kSetup, "pipe: " + reason_of(errno));
-  // As large as any command line; a file would leave the token on the disk.
-  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);
-  write_all(ends[1], script);
-  close(ends[1]);
+  // A file on the disk would leave the token there.
+  const os::MemoryFile input(script);
   auto process = std::make_unique<os::ChildProcess>(
       os::ChildCommand{.arguments = connection_.shell(script.size()),
                        .environment = {},
                        .log = sut.log,
-                       .input_pipe = ends[0]});
-  close(ends[0]);
+                       .input = input.path()});
   return process;
 }
 
@@ -234,7 +202,7 @@ std::optional<std::string> Board::lost() {
 
 bool Board::end_suts() {
   if (lost()) return false;
-  write_all(to_keeper_, "stop\n");
+  os::write_all(to_keeper_, "stop\n");
   return wait_for_keeper("stopped", kEndLimit);
 }
 
@@ -259,4 +227,4 @@ std::optional<std::string> Board::bring_back(const std::string& uav,
   return std::nullopt;
 }
 
-}  // namespace tether::app
+}  // namespace tether::board

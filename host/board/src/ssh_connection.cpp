@@ -1,4 +1,3 @@
-#include "ssh_connection.h"
 
 #include <cctype>
 #include <charconv>
@@ -10,12 +9,13 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/board/ssh_connection.h>
 #include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
 #include <tether/os/interrupt.h>
 #include <tether/os/text_file.h>
 
-namespace tether::app {
+namespace tether::board {
 
 namespace {
 
@@ -170,4 +170,4 @@ std::uint16_t SshConnection::forward_back(std::uint16_t local_port) const {
   return port;
 }
 
-}  // namespace tether::app
+}  // namespace tether::board

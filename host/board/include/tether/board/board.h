@@ -1,20 +1,21 @@
 #pragma once
 
-#include "ssh_connection.h"
-#include "sut_environment.h"
-
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include <tether/board/ssh_connection.h>
 #include <tether/os/child_process.h>
+#include <tether/os/file_descriptor.h>
+#include <tether/os/pipe.h>
 #include <tether/scenario/scenario.h>
 
-namespace tether::app {
+namespace tether::board {
 
 /// A SUT to start on a board.
 struct BoardSut {
@@ -64,14 +65,15 @@ class Board {
   std::string let_go() const;  // once the keeper has ended
   bool wait_for_keeper(const std::string& word, Duration limit);
   std::string prologue() const;
+  void beat(const std::stop_token& stop) const;
 
   SshConnection connection_;
   std::string host_address_;
   std::string folder_;  // of the run, on the board
-  int to_keeper_ = -1;  // a pipe
+  os::FileDescriptor to_keeper_;
   std::unique_ptr<os::ChildProcess> keeper_;
   std::jthread heart_;
   int copies_ = 0;
 };
 
-}  // namespace tether::app
+}  // namespace tether::board
