@@ -21,8 +21,8 @@
 
 #include <tether/base/error.h>
 #include <tether/base/version.h>
-#include <tether/experiment/campaign_folder.h>
-#include <tether/experiment/run_campaign.h>
+#include <tether/campaign/campaign_folder.h>
+#include <tether/campaign/run_campaign.h>
 #include <tether/os/child_process.h>
 #include <tether/os/interrupt.h>
 #include <tether/os/machine.h>
@@ -100,7 +100,7 @@ void add_programs(const scenario::CampaignScenario& entry,
 /// Everything that a trial's result rests on, as far as files go. Each is looked into.
 std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign) {
   std::set<std::string> warnings;
-  std::vector<std::filesystem::path> files = experiment::files_of(campaign);
+  std::vector<std::filesystem::path> files = campaign::files_of(campaign);
   files.push_back(os::own_file());
   const auto every_trial_says_it = [](const std::string&) {};
   for (const auto& entry : campaign.scenarios) {
@@ -122,13 +122,13 @@ std::vector<std::filesystem::path> all_files(const scenario::Campaign& campaign)
 }
 
 /// The second attempt leaves the first one's log alone.
-std::filesystem::path log_file(const experiment::TrialPlan& plan) {
-  const std::filesystem::path first = plan.folder / experiment::kTrialLog;
+std::filesystem::path log_file(const campaign::TrialPlan& plan) {
+  const std::filesystem::path first = plan.folder / campaign::kTrialLog;
   return std::filesystem::exists(first) ? plan.folder / "run-2.log" : first;
 }
 
 /// A trial is a `tether run` of its own, so that whatever happens in one leaves the others alone.
-experiment::TrialResult execute(const experiment::TrialPlan& plan, std::stop_source& stop) {
+campaign::TrialResult execute(const campaign::TrialPlan& plan, std::stop_source& stop) {
   const std::filesystem::path log = log_file(plan);
   std::vector<std::string> arguments = {
       os::own_file().string(), "run",         plan.scenario->file.string(), "--condition",
@@ -148,27 +148,27 @@ experiment::TrialResult execute(const experiment::TrialPlan& plan, std::stop_sou
     process.terminate();
   }
   if (os::interrupted()) {
-    auto result = experiment::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
-                                                 "interrupted by the user");
-    result.end = experiment::kEndInterrupted;
+    auto result = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
+                                               "interrupted by the user");
+    result.end = campaign::kEndInterrupted;
     return result;
   }
-  if (std::filesystem::exists(plan.folder / experiment::kResultFile))
-    return experiment::read_result(plan.folder);
+  if (std::filesystem::exists(plan.folder / campaign::kResultFile))
+    return campaign::read_result(plan.folder);
   throw Error(ErrorCode::kSetup, fmt::format("the trial left no result: it {}; see {}",
                                              process.poll()->description, log.string()));
 }
 
-experiment::CampaignOutcome fly(const experiment::CampaignFolder& folder,
-                                const scenario::Campaign& campaign, int jobs,
-                                const std::function<void()>& check) {
+campaign::CampaignOutcome fly(const campaign::CampaignFolder& folder,
+                              const scenario::Campaign& campaign, int jobs,
+                              const std::function<void()>& check) {
   std::stop_source stop;
   ProgressBar bar;
   try {
-    const auto outcome = experiment::run_campaign(
-        folder, campaign, [&](const experiment::TrialPlan& plan) { return execute(plan, stop); },
+    const auto outcome = campaign::run_campaign(
+        folder, campaign, [&](const campaign::TrialPlan& plan) { return execute(plan, stop); },
         {.jobs = jobs, .stop = stop.get_token(), .wall = {}, .check = check},
-        [&](const experiment::CampaignProgress& progress) { bar.show(progress); });
+        [&](const campaign::CampaignProgress& progress) { bar.show(progress); });
     bar.finish();
     return outcome;
   } catch (...) {
@@ -179,24 +179,24 @@ experiment::CampaignOutcome fly(const experiment::CampaignFolder& folder,
 
 int run(const CampaignOptions& options) {
   const scenario::Campaign campaign = load(options);
-  experiment::require_jobs_allowed(campaign, options.jobs);
+  campaign::require_jobs_allowed(campaign, options.jobs);
   require_ports(campaign, options.jobs);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out") / campaign.name : options.out;
   const std::vector<std::filesystem::path> files = all_files(campaign);
-  const experiment::Settings settings = experiment::campaign_settings(
+  const campaign::Settings settings = campaign::campaign_settings(
       campaign,
       {{"tether", std::string(version())},
        {"machine", os::describe_machine()},
        {"simulator", fmt::format("{}", fmt::join(simulators(campaign), ", "))}},
       files);
-  const experiment::CampaignFolder folder(
+  const campaign::CampaignFolder folder(
       out, campaign, settings,
-      options.resume ? experiment::OpenMode::kResume : experiment::OpenMode::kFresh);
+      options.resume ? campaign::OpenMode::kResume : campaign::OpenMode::kFresh);
   for (const std::string& warning : folder.warnings()) say("warning: {}\n", warning);
 
   const auto outcome = fly(folder, campaign, options.jobs,
-                           [&] { experiment::require_unchanged(campaign, settings, files); });
+                           [&] { campaign::require_unchanged(campaign, settings, files); });
   if (outcome.interrupted) {
     say("tether: interrupted; go on with: tether campaign {} --out {} --resume\n",
         options.campaign.string(), out.string());

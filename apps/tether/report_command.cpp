@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/campaign_results.h>
-#include <tether/experiment/result.h>
+#include <tether/campaign/campaign_results.h>
+#include <tether/campaign/result.h>
 #include <tether/os/text_file.h>
 #include <tether/report/page.h>
 #include <tether/report/report.h>
@@ -30,15 +30,15 @@ struct ReportOptions {
 };
 
 bool is_run(const std::filesystem::path& folder) {
-  return !std::filesystem::exists(folder / experiment::kCampaignFile) &&
-         std::filesystem::exists(folder / experiment::kResultFile);
+  return !std::filesystem::exists(folder / campaign::kCampaignFile) &&
+         std::filesystem::exists(folder / campaign::kResultFile);
 }
 
 /// A run that was killed leaves its record only.
 void refuse_run_without_result(const std::filesystem::path& folder) {
   const std::filesystem::path record = folder / kRecordFile;
-  if (std::filesystem::exists(folder / experiment::kCampaignFile) ||
-      std::filesystem::exists(folder / experiment::kResultFile) || !std::filesystem::exists(record))
+  if (std::filesystem::exists(folder / campaign::kCampaignFile) ||
+      std::filesystem::exists(folder / campaign::kResultFile) || !std::filesystem::exists(record))
     return;
   throw Error(
       ErrorCode::kBadFile, {folder.string()},
@@ -54,7 +54,7 @@ std::string joined(const std::vector<report::Table>& tables,
   return text;
 }
 
-std::vector<report::Table> run_tables(const experiment::CampaignResults& results) {
+std::vector<report::Table> run_tables(const campaign::CampaignResults& results) {
   const auto& trial = results.scenarios.front().conditions.front().trials.front();
   return {report::run_table(trial), report::basis_table(results)};
 }
@@ -63,9 +63,8 @@ std::string rendered(const ReportOptions& options) {
   refuse_run_without_result(options.folder);
   const bool run = is_run(options.folder);
   if (options.format == kHtml && run) return report::run_page(options.folder);
-  const experiment::CampaignResults results =
-      run ? report::read_run_results(options.folder)
-          : experiment::read_campaign_results(options.folder);
+  const campaign::CampaignResults results = run ? report::read_run_results(options.folder)
+                                                : campaign::read_campaign_results(options.folder);
   if (options.format == kHtml) return report::campaign_page(results, options.folder);
   if (options.format == "csv") return to_csv(report::trials_table(results));
   if (options.format == "summary-csv") return to_csv(report::summaries_table(results));
@@ -89,7 +88,7 @@ int run(const ReportOptions& options) {
 }  // namespace
 
 void print_campaign_summary(const std::filesystem::path& folder) {
-  const experiment::CampaignResults results = experiment::read_campaign_results(folder);
+  const campaign::CampaignResults results = campaign::read_campaign_results(folder);
   for (const auto& scenario : results.scenarios)
     fmt::print("{}\n", to_text(report::paper_form_table(scenario)));
   fmt::print(

@@ -16,8 +16,8 @@
 #include <fmt/ranges.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/campaign_plan.h>
-#include <tether/experiment/result.h>
+#include <tether/campaign/campaign_plan.h>
+#include <tether/campaign/result.h>
 #include <tether/scenario/scenario.h>
 
 namespace tether::app {
@@ -99,10 +99,9 @@ TrialSpec make_spec(const RunOptions& options) {
     scenario::lay_profile(spec.scenario, scenario::load_profile(options.profile));
   spec.condition = make_condition(spec.scenario, options);
   spec.seed = options.seed;
-  spec.folder =
-      options.out.empty()
-          ? "out" / experiment::trial_folder(spec.scenario.name, spec.condition.name, spec.seed)
-          : options.out;
+  spec.folder = options.out.empty() ? "out" / campaign::trial_folder(spec.scenario.name,
+                                                                     spec.condition.name, spec.seed)
+                                    : options.out;
   if (!options.listen.empty()) {
     const auto address = link::parse_address(options.listen);
     if (!address) throw Error(ErrorCode::kUsage, "--listen: " + address.failure().message);
@@ -114,9 +113,9 @@ TrialSpec make_spec(const RunOptions& options) {
   return spec;
 }
 
-void print_result(const TrialSpec& spec, const experiment::TrialResult& result) {
+void print_result(const TrialSpec& spec, const campaign::TrialResult& result) {
   fmt::print("{} under \"{}\", seed {}: {}: {}\n", result.scenario, result.condition, result.seed,
-             experiment::name(result.outcome), result.reason);
+             campaign::name(result.outcome), result.reason);
   for (const auto& metric : result.metrics) {
     const std::string value =
         metric.value
@@ -145,7 +144,7 @@ void print_result(const TrialSpec& spec, const experiment::TrialResult& result) 
 
 int run(const RunOptions& options) {
   const TrialSpec spec = make_spec(options);
-  experiment::TrialResult result;
+  campaign::TrialResult result;
   {
     StatusLine line;
     TrialObserver observer;
@@ -164,11 +163,11 @@ int run(const RunOptions& options) {
     result = run_trial(spec, observer);
   }
   if (options.json)
-    fmt::print("{}\n", experiment::to_json(result));
+    fmt::print("{}\n", campaign::to_json(result));
   else if (!options.quiet)
     print_result(spec, result);
-  if (result.outcome == experiment::Outcome::kFailed) say("tether: {}\n", result.reason);
-  return experiment::exit_code(result.outcome);
+  if (result.outcome == campaign::Outcome::kFailed) say("tether: {}\n", result.reason);
+  return campaign::exit_code(result.outcome);
 }
 
 }  // namespace

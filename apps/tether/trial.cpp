@@ -257,8 +257,8 @@ Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, board::Boa
   return {std::move(report), std::move(notes)};
 }
 
-std::vector<experiment::TaskEnd> task_ends(const coordinator::RunReport& report) {
-  std::vector<experiment::TaskEnd> ends;
+std::vector<campaign::TaskEnd> task_ends(const coordinator::RunReport& report) {
+  std::vector<campaign::TaskEnd> ends;
   for (const auto& sut : report.suts)
     if (sut.finish)
       ends.push_back({sut.uav, sut.finish->reached_goal, sut.finish->outcome, sut.finish->details});
@@ -266,32 +266,32 @@ std::vector<experiment::TaskEnd> task_ends(const coordinator::RunReport& report)
 }
 
 /// A run that never began (no SUT joined) leaves no record worth reading.
-experiment::TrialResult judge(const TrialSpec& spec, const coordinator::RunReport& report) {
+campaign::TrialResult judge(const TrialSpec& spec, const coordinator::RunReport& report) {
   if (!report.began) {
     std::filesystem::remove(spec.folder / kRecordFile);
     auto result =
-        experiment::make_setup_failure(spec.scenario, spec.condition, spec.seed, report.reason);
-    if (report.end == RunEnd::kInterrupted) result.end = experiment::kEndInterrupted;
+        campaign::make_setup_failure(spec.scenario, spec.condition, spec.seed, report.reason);
+    if (report.end == RunEnd::kInterrupted) result.end = campaign::kEndInterrupted;
     return result;
   }
   if (!std::filesystem::exists(spec.folder / kRecordFile))
     throw Error(ErrorCode::kSetup, (spec.folder / kRecordFile).string() + " was removed meanwhile");
   const record::Record record = record::read_record(spec.folder / kRecordFile);
-  auto result = experiment::make_result(spec.scenario, spec.condition, record, task_ends(report));
+  auto result = campaign::make_result(spec.scenario, spec.condition, record, task_ends(report));
   const audit::Verdict verdict = audit::audit(record);
   result.audit = {verdict.passed(), audit::to_line(verdict)};
-  if (result.outcome == experiment::Outcome::kFailed)
-    experiment::invalidate(result, report.reason);
+  if (result.outcome == campaign::Outcome::kFailed)
+    campaign::invalidate(result, report.reason);
   else if (!verdict.passed())
-    experiment::invalidate(result, "the record breaks the rules of time: " + result.audit->summary);
+    campaign::invalidate(result, "the record breaks the rules of time: " + result.audit->summary);
   return result;
 }
 
 /// The record stays where the run has ended but cannot be judged.
-experiment::TrialResult judged(const TrialSpec& spec, const coordinator::RunReport& report) try {
+campaign::TrialResult judged(const TrialSpec& spec, const coordinator::RunReport& report) try {
   return judge(spec, report);
 } catch (const std::bad_alloc&) {
-  return experiment::make_setup_failure(
+  return campaign::make_setup_failure(
       spec.scenario, spec.condition, spec.seed,
       fmt::format("too little memory is free to judge the run, which ended with: {}; `tether audit "
                   "{}` reads its record where there is more",
@@ -307,18 +307,18 @@ SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& obser
 }
 
 /// A trial whose parts did not come together leaves no record.
-experiment::TrialResult setup_failure(const TrialSpec& spec, const std::string& reason) {
+campaign::TrialResult setup_failure(const TrialSpec& spec, const std::string& reason) {
   std::error_code ignored;
   std::filesystem::remove(spec.folder / kRecordFile, ignored);
-  auto result = experiment::make_setup_failure(spec.scenario, spec.condition, spec.seed, reason);
-  if (os::interrupted()) result.end = experiment::kEndInterrupted;
+  auto result = campaign::make_setup_failure(spec.scenario, spec.condition, spec.seed, reason);
+  if (os::interrupted()) result.end = campaign::kEndInterrupted;
   return result;
 }
 
 /// @throws Error(kSetup) when simulator, board or SUTs cannot be had, or the simulator is lost
 /// before the run.
-experiment::TrialResult fly(const TrialSpec& spec, const SimulatorOption& option, sim::World world,
-                            const Timings& timings, const TrialObserver& observer) {
+campaign::TrialResult fly(const TrialSpec& spec, const SimulatorOption& option, sim::World world,
+                          const Timings& timings, const TrialObserver& observer) {
   const auto board = hold_board(spec);
   RunningSimulator simulator(option, std::move(world), simulator_setup(spec, observer));
   try {
@@ -333,8 +333,8 @@ experiment::TrialResult fly(const TrialSpec& spec, const SimulatorOption& option
 }
 
 /// @throws Error(kSetup) that tells how the trial ended as well.
-void keep(const TrialSpec& spec, const experiment::TrialResult& result) try {
-  experiment::write_result(spec.folder, result);
+void keep(const TrialSpec& spec, const campaign::TrialResult& result) try {
+  campaign::write_result(spec.folder, result);
 } catch (const Error& e) {
   throw Error(ErrorCode::kSetup,
               fmt::format("{}; the run itself ended with: {}", e.what(), result.reason));
@@ -348,7 +348,7 @@ std::string utc_now() {
 
 }  // namespace
 
-experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer) {
+campaign::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer) {
   // Whatever is wrong with the user's words and files shows before anything is written.
   const SimulatorOption simulator = parse_simulator_option(spec.condition.simulator);
   scenario::require_clock(spec.scenario, spec.condition);
@@ -362,7 +362,7 @@ experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& ob
   const TrialFolder folder(spec.folder);
 
   const std::string started_at = utc_now();
-  experiment::TrialResult result;
+  campaign::TrialResult result;
   try {
     result = fly(spec, simulator, std::move(world), timings, observer);
   } catch (const Error& e) {

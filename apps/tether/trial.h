@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
+#include <tether/campaign/result.h>
 #include <tether/coordinator/coordinator.h>
-#include <tether/experiment/result.h>
 #include <tether/link/channel.h>
 #include <tether/link/server.h>
 #include <tether/scenario/scenario.h>
@@ -48,6 +48,6 @@ struct TrialObserver {
 /// @throws Error(kBadFile) before anything is written, when world, models or profiles cannot be
 /// used; Error(kSetup) when the folder
 ///   cannot be written.
-experiment::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer);
+campaign::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer);
 
 }  // namespace tether::app

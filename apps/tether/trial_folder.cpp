@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/result.h>
+#include <tether/campaign/result.h>
 
 namespace tether::app {
 
@@ -24,15 +24,15 @@ void make(const std::filesystem::path& folder) {
 }
 
 /// Once it is locked, a campaign that starts now sees it.
-std::unique_ptr<experiment::PathLock> claim(const std::filesystem::path& folder) {
-  experiment::require_no_campaign(folder);
+std::unique_ptr<campaign::PathLock> claim(const std::filesystem::path& folder) {
+  campaign::require_no_campaign(folder);
   make(folder);
-  auto lock = std::make_unique<experiment::PathLock>(folder);
+  auto lock = std::make_unique<campaign::PathLock>(folder);
   if (!lock->is_held())
     throw Error(ErrorCode::kUsage,
                 folder.string() +
                     ": another run writes there; give this one a folder of its own with --out");
-  experiment::require_no_campaign(folder);
+  campaign::require_no_campaign(folder);
   return lock;
 }
 
@@ -47,7 +47,7 @@ void drop(const std::filesystem::path& file) {
 TrialFolder::TrialFolder(const std::filesystem::path& folder) : lock_(claim(folder)) {
   // Rather now than when there is a result to write.
   if (access(folder.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
-  drop(folder / experiment::kResultFile);
+  drop(folder / campaign::kResultFile);
   drop(folder / kRecordFile);
   drop(folder / kSimulatorLog);
 }

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <memory>
 
-#include <tether/experiment/folder_claim.h>
+#include <tether/campaign/folder_claim.h>
 
 namespace tether::app {
 
@@ -21,7 +21,7 @@ class TrialFolder {
   explicit TrialFolder(const std::filesystem::path& folder);
 
  private:
-  std::unique_ptr<experiment::PathLock> lock_;  // of the folder
+  std::unique_ptr<campaign::PathLock> lock_;  // of the folder
 };
 
 }  // namespace tether::app

@@ -108,8 +108,8 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"coordinator", {"base", "uav", "sync", "sim", "link", "record"}},
       {"scenario", {"base", "uav", "sim"}},
       {"board", {"base", "os", "record", "scenario"}},
-      {"experiment", {"base", "board", "os", "uav", "scenario", "record"}},
-      {"report", {"base", "uav", "record", "scenario", "experiment"}},
+      {"campaign", {"base", "board", "os", "uav", "scenario", "record"}},
+      {"report", {"base", "uav", "record", "scenario", "campaign"}},
   };
   return kArrows;
 }
