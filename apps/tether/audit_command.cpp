@@ -38,7 +38,8 @@ void add_audit_command(CLI::App& program, Action& action) {
 
 Example:
   tether audit out/one/record.mcap)");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+  command->callback(
+      [options, &action] { action = [options](const std::stop_token&) { return run(*options); }; });
 }
 
 }  // namespace tether::app

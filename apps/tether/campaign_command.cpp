@@ -24,7 +24,6 @@
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/run_campaign.h>
 #include <tether/os/child_process.h>
-#include <tether/os/interrupt.h>
 #include <tether/os/machine.h>
 #include <tether/os/program.h>
 #include <tether/scenario/campaign.h>
@@ -128,7 +127,7 @@ std::filesystem::path log_file(const campaign::TrialPlan& plan) {
 }
 
 /// A trial is a `tether run` of its own, so that whatever happens in one leaves the others alone.
-campaign::TrialResult execute(const campaign::TrialPlan& plan, std::stop_source& stop) {
+campaign::TrialResult execute(const campaign::TrialPlan& plan, const std::stop_token& stop) {
   const std::filesystem::path log = log_file(plan);
   std::vector<std::string> arguments = {
       os::own_file().string(), "run",         plan.scenario->file.string(), "--condition",
@@ -143,11 +142,9 @@ campaign::TrialResult execute(const campaign::TrialPlan& plan, std::stop_source&
                             .log = log,
                             .grace = std::chrono::seconds(10)});
   while (!process.wait(kLook)) {
-    if (!os::interrupted()) continue;
-    stop.request_stop();
-    process.terminate();
+    if (stop.stop_requested()) process.terminate();
   }
-  if (os::interrupted()) {
+  if (stop.stop_requested()) {
     auto result = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
                                                "interrupted by the user");
     result.end = campaign::kEndInterrupted;
@@ -161,13 +158,12 @@ campaign::TrialResult execute(const campaign::TrialPlan& plan, std::stop_source&
 
 campaign::CampaignOutcome fly(const campaign::CampaignFolder& folder,
                               const scenario::Campaign& campaign, int jobs,
-                              const std::function<void()>& check) {
-  std::stop_source stop;
+                              const std::function<void()>& check, const std::stop_token& stop) {
   ProgressBar bar;
   try {
     const auto outcome = campaign::run_campaign(
         folder, campaign, [&](const campaign::TrialPlan& plan) { return execute(plan, stop); },
-        {.jobs = jobs, .stop = stop.get_token(), .wall = {}, .check = check},
+        {.jobs = jobs, .stop = stop, .wall = {}, .check = check},
         [&](const campaign::CampaignProgress& progress) { bar.show(progress); });
     bar.finish();
     return outcome;
@@ -177,7 +173,7 @@ campaign::CampaignOutcome fly(const campaign::CampaignFolder& folder,
   }
 }
 
-int run(const CampaignOptions& options) {
+int run(const CampaignOptions& options, const std::stop_token& stop) {
   const scenario::Campaign campaign = load(options);
   campaign::require_jobs_allowed(campaign, options.jobs);
   require_ports(campaign, options.jobs);
@@ -195,8 +191,9 @@ int run(const CampaignOptions& options) {
       options.resume ? campaign::OpenMode::kResume : campaign::OpenMode::kFresh);
   for (const std::string& warning : folder.warnings()) say("warning: {}\n", warning);
 
-  const auto outcome = fly(folder, campaign, options.jobs,
-                           [&] { campaign::require_unchanged(campaign, settings, files); });
+  const auto outcome = fly(
+      folder, campaign, options.jobs,
+      [&] { campaign::require_unchanged(campaign, settings, files); }, stop);
   if (outcome.interrupted) {
     say("tether: interrupted; go on with: tether campaign {} --out {} --resume\n",
         options.campaign.string(), out.string());
@@ -225,7 +222,9 @@ void add_campaign_command(CLI::App& program, Action& action) {
   tether campaign data/campaigns/face_anchor.toml --out out/face_anchor
   tether campaign data/campaigns/face_anchor.toml --out out/face_anchor --resume
   tether campaign data/campaigns/face_anchor.toml --simulator gazebo --out out/face_anchor_gazebo)");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+  command->callback([options, &action] {
+    action = [options](const std::stop_token& stop) { return run(*options, stop); };
+  });
 }
 
 }  // namespace tether::app

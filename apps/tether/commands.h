@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <stop_token>
 
 #include <CLI/CLI.hpp>
 
@@ -8,7 +9,8 @@
 /// returns the exit code.
 namespace tether::app {
 
-using Action = std::function<int()>;
+/// Ends early when a stop is requested, where it can.
+using Action = std::function<int(const std::stop_token& stop)>;
 
 /// Sets `action` when the subcommand is chosen.
 void add_run_command(CLI::App& program, Action& action);

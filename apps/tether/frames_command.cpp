@@ -68,7 +68,8 @@ void add_frames_command(CLI::App& program, Action& action) {
   command->footer(R"(Example:
   tether run data/scenarios/face_anchor.toml --images --out out/one
   tether frames out/one/record.mcap)");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+  command->callback(
+      [options, &action] { action = [options](const std::stop_token&) { return run(*options); }; });
 }
 
 }  // namespace tether::app

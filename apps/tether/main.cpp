@@ -6,6 +6,7 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
 #include <system_error>
 
 #include <fcntl.h>
@@ -48,7 +49,7 @@ Examples:
   tether campaign data/campaigns/face_anchor.toml --out out/face_anchor
   tether audit out/face_anchor/face_anchor/host/seed-0001/record.mcap)";
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, std::optional<tether::os::Interrupt>& interrupt) {
   CLI::App program{
       "Tells whether a UAV's computer is fast enough for its task, before anything flies."};
   program.name("tether");
@@ -69,16 +70,17 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return program.exit(e) == 0 ? 0 : tether::exit_code(tether::ErrorCode::kUsage);
   }
-  tether::os::catch_interrupts();
-  return action();
+  interrupt.emplace();
+  return action(interrupt->token());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   open_standard_streams();
+  std::optional<tether::os::Interrupt> interrupt;  // until all is printed
   try {
-    return end(run(argc, argv));
+    return end(run(argc, argv, interrupt));
   } catch (const tether::Error& e) {
     say("tether: {}\n", e.what());
     return tether::exit_code(e.code());

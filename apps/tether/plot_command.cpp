@@ -91,7 +91,8 @@ run without synchronisation: nothing lags there) and path.svg. Needs gnuplot.
 
 Example:
   tether plot out/one/record.mcap)");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+  command->callback(
+      [options, &action] { action = [options](const std::stop_token&) { return run(*options); }; });
 }
 
 }  // namespace tether::app

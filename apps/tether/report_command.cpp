@@ -120,7 +120,8 @@ void add_report_command(CLI::App& program, Action& action) {
   tether report out/face_anchor --format html
   tether report out/one --format html --out one.html
   tether report out/face_anchor --format csv --out trials.csv)");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+  command->callback(
+      [options, &action] { action = [options](const std::stop_token&) { return run(*options); }; });
 }
 
 }  // namespace tether::app

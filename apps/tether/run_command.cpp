@@ -142,7 +142,7 @@ void print_result(const TrialSpec& spec, const campaign::TrialResult& result) {
     fmt::print("  {:<24} {}\n", "record", (spec.folder / kRecordFile).string());
 }
 
-int run(const RunOptions& options) {
+int run(const RunOptions& options, const std::stop_token& stop) {
   const TrialSpec spec = make_spec(options);
   campaign::TrialResult result;
   {
@@ -160,7 +160,7 @@ int run(const RunOptions& options) {
     observer.on_listening = [](const std::string& text) {
       say("Waiting for the SUT. Start it with:\n{}", text);
     };
-    result = run_trial(spec, observer);
+    result = run_trial(spec, observer, stop);
   }
   if (options.json)
     fmt::print("{}\n", campaign::to_json(result));
@@ -213,7 +213,9 @@ void add_run_command(CLI::App& program, Action& action) {
   tether run data/scenarios/face_anchor.toml --profile data/profiles/ideal.toml
   tether run data/scenarios/face_anchor.toml --simulator gazebo
   tether run data/scenarios/face_anchor.toml --images --out out/one)");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+  command->callback([options, &action] {
+    action = [options](const std::stop_token& stop) { return run(*options, stop); };
+  });
 }
 
 }  // namespace tether::app

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/os/interrupt.h>
 #include <tether/sim/sdf_version.h>
 #include <tether/sim_gazebo/gazebo_world.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
@@ -16,10 +15,6 @@ namespace tether::app {
 namespace {
 
 constexpr Duration kAttachLimit = std::chrono::seconds(5);
-
-std::optional<std::string> why_give_up() {
-  return os::interrupted() ? std::optional<std::string>("interrupted by the user") : std::nullopt;
-}
 
 }  // namespace
 
@@ -35,7 +30,7 @@ RunningSimulator::RunningSimulator(const SimulatorOption& option, sim::World wor
     if (setup.on_setup) setup.on_setup("starting Gazebo");
     gazebo_ = std::make_unique<sim::GazeboSimulator>(
         std::move(world),
-        sim::GazeboSetup{setup.answer_limit, setup.log, setup.warn, setup.on_silence});
+        sim::GazeboSetup{setup.answer_limit, setup.log, setup.warn, setup.on_silence, setup.stop});
   } else if (const auto* endpoint = std::get_if<sim::protocol::Endpoint>(&option)) {
     attach(*endpoint, std::move(world), setup);
   } else {
@@ -50,12 +45,16 @@ void RunningSimulator::attach(const sim::protocol::Endpoint& endpoint, sim::Worl
     throw Error(ErrorCode::kSetup,
                 fmt::format("no simulator listens at {}: {}", sim::protocol::to_string(endpoint),
                             connection.failure().message));
-  simulator_ = sim::make_remote_simulator(std::move(world), std::move(*connection),
-                                          {.answer_limit = setup.answer_limit,
-                                           .why_give_up = why_give_up,
-                                           .on_silence = setup.on_silence,
-                                           .address = sim::protocol::to_string(endpoint)},
-                                          setup.warn);
+  simulator_ = sim::make_remote_simulator(
+      std::move(world), std::move(*connection),
+      {.answer_limit = setup.answer_limit,
+       .why_give_up = [stop = setup.stop]() -> std::optional<std::string> {
+         if (!stop.stop_requested()) return std::nullopt;
+         return "interrupted by the user";
+       },
+       .on_silence = setup.on_silence,
+       .address = sim::protocol::to_string(endpoint)},
+      setup.warn);
 }
 
 std::optional<std::string> RunningSimulator::lost() {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include <tether/base/time.h>
@@ -21,6 +22,7 @@ struct SimulatorSetup {
   sim::WarningSink warn;
   std::function<void(const std::string&)> on_setup{};    ///< told what is being started
   std::function<void(const std::string&)> on_silence{};  ///< told when an answer is long in coming
+  std::stop_token stop{};                                ///< ends all waiting for it
 };
 
 /// @throws Error(kBadFile) with file and line for what that simulator cannot read.

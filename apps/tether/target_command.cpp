@@ -60,8 +60,8 @@ Check check_here() {
   return check;
 }
 
-Check check_board(const scenario::SshAddress& address) {
-  board::SshConnection connection(address);
+Check check_board(const scenario::SshAddress& address, const std::stop_token& stop) {
+  board::SshConnection connection(address, stop);
   Check check{
       scenario::to_string(address), board::probe_board(connection, board::ProbeDepth::kFull), {}};
   if (check.readings.empty())
@@ -111,10 +111,10 @@ std::string to_json(const Check& check) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-int run(const CheckOptions& options) {
+int run(const CheckOptions& options, const std::stop_token& stop) {
   const Check check = options.address.empty()
                           ? check_here()
-                          : check_board(scenario::parse_ssh_address(options.address));
+                          : check_board(scenario::parse_ssh_address(options.address), stop);
   fmt::print("{}", options.json ? to_json(check) : to_text(check));
   return has(check, Health::kBad) ? 1 : 0;
 }
@@ -137,7 +137,9 @@ void add_target_command(CLI::App& program, Action& action) {
 Examples:
   tether target check
   tether target check ssh://pi@board.local)");
-  check->callback([options, &action] { action = [options] { return run(*options); }; });
+  check->callback([options, &action] {
+    action = [options](const std::stop_token& stop) { return run(*options, stop); };
+  });
 }
 
 }  // namespace tether::app

@@ -21,7 +21,6 @@
 #include <tether/base/version.h>
 #include <tether/board/board.h>
 #include <tether/board/target_probe.h>
-#include <tether/os/interrupt.h>
 #include <tether/os/machine.h>
 #include <tether/record/reader.h>
 #include <tether/record/writer.h>
@@ -118,10 +117,10 @@ void warm_up_cameras(sim::Simulator& simulator) {
 }
 
 /// The board that the condition names, connected and held; none where the SUTs run here.
-std::unique_ptr<board::Board> hold_board(const TrialSpec& spec) {
+std::unique_ptr<board::Board> hold_board(const TrialSpec& spec, const std::stop_token& stop) {
   const auto& target = spec.condition.target;
   if (spec.waits_for_sut || !target || !target->ssh) return nullptr;
-  return std::make_unique<board::Board>(*target->ssh);
+  return std::make_unique<board::Board>(*target->ssh, stop);
 }
 
 /// Where the SUTs' machine is read; who starts SUTs on another one by hand has to look himself.
@@ -195,7 +194,8 @@ std::string who_is_stopped(const coordinator::RunReport& report, const SutProces
 
 /// The coordinator's run with its SUTs, up to the closed record.
 Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, board::Board* board,
-                  const Timings& timings, const TrialObserver& observer) {
+                  const Timings& timings, const TrialObserver& observer,
+                  const std::stop_token& stop) {
   const std::string token = token_of_run();
   const auto recorder = record::make_mcap_recorder(spec.folder / kRecordFile);
   auto options = run_options(spec, timings, token);
@@ -218,7 +218,7 @@ Conducted conduct(const TrialSpec& spec, RunningSimulator& simulator, board::Boa
   Refusals refusals(observer.on_refused);
   coordinator::RunHooks hooks;
   hooks.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
-    if (os::interrupted())
+    if (stop.stop_requested())
       return std::pair(RunEnd::kInterrupted, std::string("interrupted by the user"));
     if (const auto why = simulator.lost()) return std::pair(RunEnd::kSimulatorLost, *why);
     if (const auto why = suts.lost()) {
@@ -298,31 +298,35 @@ campaign::TrialResult judged(const TrialSpec& spec, const coordinator::RunReport
                   report.reason, (spec.folder / kRecordFile).string()));
 }
 
-SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& observer) {
+SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& observer,
+                               const std::stop_token& stop) {
   return {.answer_limit = spec.scenario.hang_limit,
           .log = spec.folder / kSimulatorLog,
           .warn = observer.warn,
           .on_setup = observer.on_setup,
-          .on_silence = observer.on_blocked};
+          .on_silence = observer.on_blocked,
+          .stop = stop};
 }
 
 /// A trial whose parts did not come together leaves no record.
-campaign::TrialResult setup_failure(const TrialSpec& spec, const std::string& reason) {
+campaign::TrialResult setup_failure(const TrialSpec& spec, const std::string& reason,
+                                    const std::stop_token& stop) {
   std::error_code ignored;
   std::filesystem::remove(spec.folder / kRecordFile, ignored);
   auto result = campaign::make_setup_failure(spec.scenario, spec.condition, spec.seed, reason);
-  if (os::interrupted()) result.end = campaign::kEndInterrupted;
+  if (stop.stop_requested()) result.end = campaign::kEndInterrupted;
   return result;
 }
 
 /// @throws Error(kSetup) when simulator, board or SUTs cannot be had, or the simulator is lost
 /// before the run.
 campaign::TrialResult fly(const TrialSpec& spec, const SimulatorOption& option, sim::World world,
-                          const Timings& timings, const TrialObserver& observer) {
-  const auto board = hold_board(spec);
-  RunningSimulator simulator(option, std::move(world), simulator_setup(spec, observer));
+                          const Timings& timings, const TrialObserver& observer,
+                          const std::stop_token& stop) {
+  const auto board = hold_board(spec, stop);
+  RunningSimulator simulator(option, std::move(world), simulator_setup(spec, observer, stop));
   try {
-    const auto [report, notes] = conduct(spec, simulator, board.get(), timings, observer);
+    const auto [report, notes] = conduct(spec, simulator, board.get(), timings, observer, stop);
     auto result = judged(spec, report);
     result.this_run.notes = notes;
     result.versions["simulator"] = simulator.get().description();
@@ -348,7 +352,8 @@ std::string utc_now() {
 
 }  // namespace
 
-campaign::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer) {
+campaign::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer,
+                                const std::stop_token& stop) {
   // Whatever is wrong with the user's words and files shows before anything is written.
   const SimulatorOption simulator = parse_simulator_option(spec.condition.simulator);
   scenario::require_clock(spec.scenario, spec.condition);
@@ -364,13 +369,13 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& obse
   const std::string started_at = utc_now();
   campaign::TrialResult result;
   try {
-    result = fly(spec, simulator, std::move(world), timings, observer);
+    result = fly(spec, simulator, std::move(world), timings, observer, stop);
   } catch (const Error& e) {
-    result = setup_failure(spec, e.what());
+    result = setup_failure(spec, e.what(), stop);
   } catch (const std::bad_alloc&) {
-    result = setup_failure(spec, "too little memory is free for this run");
+    result = setup_failure(spec, "too little memory is free for this run", stop);
   } catch (const std::exception& e) {
-    result = setup_failure(spec, fmt::format("internal error: {}", e.what()));
+    result = setup_failure(spec, fmt::format("internal error: {}", e.what()), stop);
   }
   result.versions["tether"] = version();
   result.this_run.started_at = started_at;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include <tether/campaign/result.h>
@@ -44,10 +45,11 @@ struct TrialObserver {
 };
 
 /// Runs one trial and leaves its result in the folder, whatever it was. An earlier trial's files
-/// there are replaced.
+/// there are replaced. A stop request ends it as an interrupted one.
 /// @throws Error(kBadFile) before anything is written, when world, models or profiles cannot be
 /// used; Error(kSetup) when the folder
 ///   cannot be written.
-campaign::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer);
+campaign::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer,
+                                const std::stop_token& stop);
 
 }  // namespace tether::app

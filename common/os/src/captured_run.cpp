@@ -2,7 +2,6 @@
 
 #include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
-#include <tether/os/interrupt.h>
 #include <tether/os/memory_file.h>
 
 namespace tether::os {
@@ -15,7 +14,7 @@ constexpr Duration kLook = std::chrono::milliseconds(20);
 }  // namespace
 
 Captured run_captured(const std::vector<std::string>& arguments, const std::string& input,
-                      Duration limit, bool is_leaving) {
+                      Duration limit, const std::stop_token& stop) {
   const MemoryFile in(input), out, err;
   const auto started = Steady::now();
   Captured captured;
@@ -25,8 +24,7 @@ Captured run_captured(const std::vector<std::string>& arguments, const std::stri
                           .log = out.path(),
                           .errors = err.path(),
                           .input = in.path()});
-    while (!process.wait(kLook) && (is_leaving || !interrupted()) &&
-           Steady::now() - started < limit)
+    while (!process.wait(kLook) && !stop.stop_requested() && Steady::now() - started < limit)
       continue;
     captured.wall = std::chrono::duration_cast<Duration>(Steady::now() - started);
     captured.timed_out = !process.poll();

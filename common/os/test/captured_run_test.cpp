@@ -31,6 +31,14 @@ TEST(RunCaptured, EndsAProgramThatExceedsItsLimit) {
   EXPECT_EQ(late.code, -1);
 }
 
+TEST(RunCaptured, EndsAProgramWhenAStopIsRequested) {
+  std::stop_source stop;
+  stop.request_stop();
+  const Captured captured = run_captured({"sleep", "60"}, "", kLong, stop.get_token());
+  EXPECT_TRUE(captured.timed_out);
+  EXPECT_EQ(captured.code, -1);
+}
+
 TEST(RunCaptured, ThrowsWhenTheProgramDoesNotExist) {
   EXPECT_THROW(run_captured({"no-such-program-of-tether"}, "", kLong), Error);
 }

@@ -71,9 +71,10 @@ std::string who_runs() {
 
 }  // namespace
 
-Board::Board(const scenario::SshAddress& address) : connection_(address) {
+Board::Board(const scenario::SshAddress& address, std::stop_token stop)
+    : connection_(address, std::move(stop)) {
   hold();
-  heart_ = std::jthread([this](const std::stop_token& stop) { beat(stop); });
+  heart_ = std::jthread([this](const std::stop_token& ended) { beat(ended); });
 }
 
 Board::~Board() {
@@ -222,7 +223,7 @@ std::optional<std::string> Board::bring_back(const std::string& uav,
   const os::Captured unpacked =
       os::run_captured({"tar", "-x", "-f", "-", "--no-same-owner", "--exclude=./record.mcap",
                         "--exclude=./result.json", "--exclude=./sut-*.log", "-C", folder.string()},
-                       files.out, kCopyLimit, true);
+                       files.out, kCopyLimit);
   if (unpacked.code != 0) return failed(os::last_line(unpacked.err));
   return std::nullopt;
 }

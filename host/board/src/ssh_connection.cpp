@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -12,7 +13,6 @@
 #include <tether/board/ssh_connection.h>
 #include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
-#include <tether/os/interrupt.h>
 #include <tether/os/text_file.h>
 
 namespace tether::board {
@@ -78,8 +78,8 @@ std::string explain_ssh(const std::string& said, const scenario::SshAddress& add
   return fmt::format("{}; {}", last.empty() ? "ssh said nothing" : last, advice(said, address));
 }
 
-SshConnection::SshConnection(const scenario::SshAddress& address)
-    : address_(address), folder_(make_private_folder()) {
+SshConnection::SshConnection(const scenario::SshAddress& address, std::stop_token stop)
+    : address_(address), stop_(std::move(stop)), folder_(make_private_folder()) {
   try {
     connect();
   } catch (...) {
@@ -116,7 +116,7 @@ void SshConnection::connect() {
   const auto started = std::chrono::steady_clock::now();
   while (!std::filesystem::exists(folder_ / "socket")) {
     const std::string where = scenario::to_string(address_);
-    if (os::interrupted()) throw Error(ErrorCode::kSetup, "interrupted by the user");
+    if (stop_.stop_requested()) throw Error(ErrorCode::kSetup, "interrupted by the user");
     if (master_->wait(kLook))
       throw Error(ErrorCode::kSetup,
                   fmt::format("cannot reach {}: {}", where,
@@ -142,7 +142,7 @@ std::vector<std::string> SshConnection::shell(std::size_t script_bytes) const {
 os::Captured SshConnection::run(std::string_view script, Duration limit, std::string_view input,
                                 bool is_leaving) const {
   return os::run_captured(shell(script.size()), std::string(script) + std::string(input), limit,
-                          is_leaving);
+                          is_leaving ? std::stop_token() : stop_);
 }
 
 std::optional<std::string> SshConnection::lost(Duration limit) {
@@ -156,7 +156,7 @@ std::uint16_t SshConnection::forward_back(std::uint16_t local_port) const {
   std::vector<std::string> command = words();
   append(command, {"-O", "forward", "-R", fmt::format("127.0.0.1:0:127.0.0.1:{}", local_port), "--",
                    address_.destination});
-  const os::Captured said = os::run_captured(command, "", kForwardLimit);
+  const os::Captured said = os::run_captured(command, "", kForwardLimit, stop_);
   // "Allocated port 40123 for remote forward to …", or the number alone.
   const auto digits = said.out.find_first_of("0123456789");
   std::uint16_t port = 0;

@@ -23,7 +23,7 @@ std::string script_of(ProbeDepth depth) {
 }  // namespace
 
 record::Readings probe_here(ProbeDepth depth) try {
-  return parse_readings(os::run_captured({"sh"}, script_of(depth), kProbeLimit, true).out);
+  return parse_readings(os::run_captured({"sh"}, script_of(depth), kProbeLimit).out);
 } catch (const Error& e) {
   throw Error(e.code(), fmt::format("the state of this machine cannot be read: {}", e.what()));
 }

@@ -67,6 +67,25 @@ TEST(SshConnection, NamesTheBoardThatItCannotReach) {
                              EndsWith("start an SSH server there, or give its port")));
 }
 
+TEST(SshConnection, EndsWhatRunsWhenAStopIsRequestedUnlessItIsPartOfLeaving) {
+  const FakeSsh ssh;
+  std::stop_source stop;
+  const SshConnection connection(FakeSsh::address(), stop.get_token());
+  stop.request_stop();
+  EXPECT_TRUE(connection.run("exec sleep 60", kLong).timed_out);
+  EXPECT_EQ(connection.run("echo text", kLong, {}, true).out, "text\n");
+}
+
+TEST(SshConnection, IsNotMadeOnceAStopIsRequested) {
+  const FakeSsh ssh;
+  ssh.scratch().write("ssh", "exec sleep 60\n");
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(error_message(ErrorCode::kSetup,
+                          [&] { SshConnection(FakeSsh::address(), stop.get_token()); }),
+            "interrupted by the user");
+}
+
 TEST(ExplainSsh, AdvisesByWhatSshSays) {
   const auto explained = [](const std::string& said) {
     return explain_ssh(said, scenario::parse_ssh_address("ssh://pi@board:2222"));

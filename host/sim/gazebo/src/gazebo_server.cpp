@@ -20,7 +20,6 @@
 
 #include <tether/base/error.h>
 #include <tether/os/child_process.h>
-#include <tether/os/interrupt.h>
 #include <tether/os/text_file.h>
 
 namespace tether::sim {
@@ -165,7 +164,7 @@ Duration GazeboServer::start_limit() const {
 
 /// Whether to go on waiting.
 void GazeboServer::look() const {
-  if (os::interrupted()) throw Error(ErrorCode::kSetup, "interrupted by the user");
+  if (run_.stop.stop_requested()) throw Error(ErrorCode::kSetup, "interrupted by the user");
   if (Steady::now() - started_ < limit_) return;
   throw Error(ErrorCode::kSetup,
               fmt::format("gzserver has not come up in {:g} s (see {}); where it needs longer, set "

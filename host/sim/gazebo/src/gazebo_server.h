@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include <tether/base/time.h>
@@ -22,6 +23,7 @@ struct GazeboRun {
   std::filesystem::path world;  ///< absolute
   bool draws = false;           ///< somebody may ask for a picture
   std::filesystem::path log;    ///< gets what gzserver and the X server print
+  std::stop_token stop{};       ///< ends the waiting for it
 };
 
 /// A gzserver with Tether's plugin in it, and an X server where it draws, for one run. Several at
@@ -37,7 +39,7 @@ class GazeboServer {
   GazeboServer& operator=(const GazeboServer&) = delete;
 
   /// Waits for the plugin. @throws Error(kSetup) when one of them ends, nobody answers in time
-  /// (TETHER_GAZEBO_START_LIMIT_S), or the user interrupts.
+  /// (TETHER_GAZEBO_START_LIMIT_S), or a stop is requested.
   std::unique_ptr<protocol::Connection> connect();
   /// How long the plugin may still take to open the world.
   Duration start_limit() const;

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <tether/base/error.h>
-#include <tether/os/interrupt.h>
 #include <tether/sim_gazebo/gazebo_install.h>
 #include <tether/sim_gazebo/gazebo_simulator.h>
 #include <tether/sim_remote/remote_simulator.h>
@@ -24,10 +23,12 @@ bool has_camera(const World& world) {
 }  // namespace
 
 GazeboSimulator::GazeboSimulator(World world, const GazeboSetup& setup)
-    : server_(std::make_unique<GazeboServer>(GazeboRun{.install = find_gazebo(),
+    : stop_(setup.stop),
+      server_(std::make_unique<GazeboServer>(GazeboRun{.install = find_gazebo(),
                                                        .world = world.file,
                                                        .draws = has_camera(world),
-                                                       .log = setup.log})) {
+                                                       .log = setup.log,
+                                                       .stop = setup.stop})) {
   auto connection = server_->connect();
   try {
     simulator_ = make_remote_simulator(std::move(world), std::move(connection),
@@ -49,12 +50,12 @@ std::optional<std::string> GazeboSimulator::lost() {
 }
 
 std::optional<std::string> GazeboSimulator::why_give_up() {
-  if (os::interrupted()) return "interrupted by the user";
+  if (stop_.stop_requested()) return "interrupted by the user";
   return simulator_ ? lost() : server_->why_not_up();
 }
 
 std::string GazeboSimulator::post_mortem(const std::string& said) {
-  return os::interrupted() ? "" : server_->post_mortem(said);
+  return stop_.stop_requested() ? "" : server_->post_mortem(said);
 }
 
 }  // namespace tether::sim

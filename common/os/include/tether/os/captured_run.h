@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,9 @@ struct Captured {
 };
 
 /// Runs a program to its end with `input` as its standard input. Its streams are in memory
-/// only. Ends it when the user interrupts, unless it is part of leaving.
+/// only. Ends it early when a stop is requested.
 /// @throws Error(kSetup) when it cannot be started.
 Captured run_captured(const std::vector<std::string>& arguments, const std::string& input,
-                      Duration limit, bool is_leaving = false);
+                      Duration limit, const std::stop_token& stop = {});
 
 }  // namespace tether::os

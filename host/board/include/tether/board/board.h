@@ -32,9 +32,9 @@ struct BoardSut {
 /// is gone, however that came. Nothing of the run stays on the board. Not thread-safe.
 class Board {
  public:
-  /// Connects and holds it. @throws Error(kSetup) when it cannot be reached, or another run, which
-  /// is named, holds it.
-  explicit Board(const scenario::SshAddress& address);
+  /// Connects and holds it, until a stop is requested. @throws Error(kSetup) when it cannot be
+  /// reached, or another run, which is named, holds it.
+  explicit Board(const scenario::SshAddress& address, std::stop_token stop = {});
   ~Board();
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,8 +23,9 @@ namespace tether::board {
 /// TETHER_SSH in the environment is the command to use for `ssh`, with its first options.
 class SshConnection {
  public:
-  /// Connects. @throws Error(kSetup) saying why that failed and what to do.
-  explicit SshConnection(const scenario::SshAddress& address);
+  /// Connects. Once a stop is requested, that and what runs over it ends. @throws Error(kSetup)
+  /// saying why that failed and what to do.
+  explicit SshConnection(const scenario::SshAddress& address, std::stop_token stop = {});
   ~SshConnection();
   SshConnection(const SshConnection&) = delete;
   SshConnection& operator=(const SshConnection&) = delete;
@@ -33,6 +35,7 @@ class SshConnection {
   /// list of processes.
   std::vector<std::string> shell(std::size_t script_bytes) const;
   /// Runs the script there to its end; `input` is its standard input.
+  /// What is part of leaving goes on when a stop is requested.
   os::Captured run(std::string_view script, Duration limit, std::string_view input = {},
                    bool is_leaving = false) const;
 
@@ -51,6 +54,7 @@ class SshConnection {
   void connect();
 
   scenario::SshAddress address_;
+  std::stop_token stop_;
   std::filesystem::path folder_;
   std::unique_ptr<os::ChildProcess> master_;
 };

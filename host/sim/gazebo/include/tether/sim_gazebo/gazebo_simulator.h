@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include <tether/base/time.h>
@@ -19,6 +20,7 @@ struct GazeboSetup {
   std::filesystem::path log;  ///< gets what its processes print
   WarningSink warn;
   std::function<void(const std::string&)> on_silence{};  ///< told when an answer is long in coming
+  std::stop_token stop{};                                ///< ends all waiting for it
 };
 
 /// Gazebo 11 with a world open in it, for one run. Its processes end with the object. Not
@@ -40,6 +42,7 @@ class GazeboSimulator {
  private:
   std::optional<std::string> why_give_up();
 
+  std::stop_token stop_;
   std::unique_ptr<GazeboServer> server_;  // outlives the simulator, which is connected to it
   std::unique_ptr<Simulator> simulator_;
 };
