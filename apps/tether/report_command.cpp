@@ -1,6 +1,5 @@
 #include "commands.h"
 #include "print_report.h"
-#include "trial_folder.h"
 
 #include <cstdio>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include <tether/os/text_file.h>
 #include <tether/report/page.h>
 #include <tether/report/report.h>
+#include <tether/runner/trial_folder.h>
 
 namespace tether::app {
 
@@ -36,7 +36,7 @@ bool is_run(const std::filesystem::path& folder) {
 
 /// A run that was killed leaves its record only.
 void refuse_run_without_result(const std::filesystem::path& folder) {
-  const std::filesystem::path record = folder / kRecordFile;
+  const std::filesystem::path record = folder / runner::kRecordFile;
   if (std::filesystem::exists(folder / campaign::kCampaignFile) ||
       std::filesystem::exists(folder / campaign::kResultFile) || !std::filesystem::exists(record))
     return;

@@ -1,10 +1,9 @@
+#include "back_ends.h"
 #include "commands.h"
 #include "say.h"
 #include "simulator_option.h"
 #include "status_line.h"
 #include "target_option.h"
-#include "trial.h"
-#include "trial_folder.h"
 
 #include <algorithm>
 #include <cctype>
@@ -18,6 +17,8 @@
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/result.h>
+#include <tether/runner/trial.h>
+#include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>
 
 namespace tether::app {
@@ -82,7 +83,7 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
 }
 
 /// Options that would do nothing are refused.
-void require_use_of_tunnel(const TrialSpec& spec) {
+void require_use_of_tunnel(const runner::TrialSpec& spec) {
   const auto& target = spec.condition.target;
   if (!spec.uses_tunnel || (!spec.waits_for_sut && target && target->ssh)) return;
   throw Error(ErrorCode::kUsage,
@@ -91,8 +92,8 @@ void require_use_of_tunnel(const TrialSpec& spec) {
               "--tunnel out");
 }
 
-TrialSpec make_spec(const RunOptions& options) {
-  TrialSpec spec;
+runner::TrialSpec make_spec(const RunOptions& options) {
+  runner::TrialSpec spec;
   spec.scenario = scenario::load_scenario(options.scenario);
   spec.scenario.record_images |= options.record_images;
   if (!options.profile.empty())
@@ -113,7 +114,7 @@ TrialSpec make_spec(const RunOptions& options) {
   return spec;
 }
 
-void print_result(const TrialSpec& spec, const campaign::TrialResult& result) {
+void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& result) {
   fmt::print("{} under \"{}\", seed {}: {}: {}\n", result.scenario, result.condition, result.seed,
              campaign::name(result.outcome), result.reason);
   for (const auto& metric : result.metrics) {
@@ -138,16 +139,16 @@ void print_result(const TrialSpec& spec, const campaign::TrialResult& result) {
     fmt::print("  {:<24} {}\n", "simulator", simulator->second);
   if (result.audit) fmt::print("  {:<24} {}\n", "audit", result.audit->summary);
   for (const std::string& note : result.this_run.notes) fmt::print("  {:<24} {}\n", "note", note);
-  if (std::filesystem::exists(spec.folder / kRecordFile))
-    fmt::print("  {:<24} {}\n", "record", (spec.folder / kRecordFile).string());
+  if (std::filesystem::exists(spec.folder / runner::kRecordFile))
+    fmt::print("  {:<24} {}\n", "record", (spec.folder / runner::kRecordFile).string());
 }
 
 int run(const RunOptions& options, const std::stop_token& stop) {
-  const TrialSpec spec = make_spec(options);
+  const runner::TrialSpec spec = make_spec(options);
   campaign::TrialResult result;
   {
     StatusLine line;
-    TrialObserver observer;
+    runner::TrialObserver observer;
     observer.warn = [&](const std::string& text) { say("warning: {}\n", text); };
     if (!options.quiet) {
       observer.on_status = [&](const coordinator::RunStatus& status) {
@@ -160,7 +161,7 @@ int run(const RunOptions& options, const std::stop_token& stop) {
     observer.on_listening = [](const std::string& text) {
       say("Waiting for the SUT. Start it with:\n{}", text);
     };
-    result = run_trial(spec, observer, stop);
+    result = runner::run_trial(spec, find_back_end, observer, stop);
   }
   if (options.json)
     fmt::print("{}\n", campaign::to_json(result));

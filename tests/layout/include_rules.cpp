@@ -109,6 +109,9 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"scenario", {"base", "uav", "sim"}},
       {"board", {"base", "os", "record", "scenario"}},
       {"campaign", {"base", "board", "os", "uav", "scenario", "record"}},
+      {"runner",
+       {"audit", "base", "board", "campaign", "coordinator", "link", "os", "record", "scenario",
+        "sim", "sync", "uav"}},
       {"report", {"base", "uav", "record", "scenario", "campaign"}},
   };
   return kArrows;

@@ -173,18 +173,20 @@ std::unique_ptr<os::ChildProcess> Board::start(const BoardSut& sut) {
   return process;
 }
 
-std::string Board::end_of(const os::ChildExit& exit, const std::string& last_words) {
+SutEnd Board::end_of(const os::ChildExit& exit, const std::string& last_words) {
   constexpr std::string_view kOwn = "tether: ";
   if (exit.code == kSshFailed)
-    if (const auto why = connection_.lost(kShowLimit)) return "was cut off: " + *why;
+    if (const auto why = connection_.lost(kShowLimit))
+      return {SutEndCause::kConnection, "was cut off: " + *why};
   if (exit.code == kNotStarted && last_words.starts_with(kOwn))
-    return "could not be started: " + last_words.substr(kOwn.size());
+    return {SutEndCause::kNotStarted, "could not be started: " + last_words.substr(kOwn.size())};
   const int signal = exit.code - os::kSignalled;
   const bool may_be_keepers = signal == SIGTERM || signal == SIGKILL;
   if ((may_be_keepers || signal <= 0) && keeper_->wait(may_be_keepers ? kKeeperLimit : kShowLimit))
-    return "was ended because " + let_go();
-  if (signal > 0 && signal < NSIG) return "was ended by " + name_of_signal(signal);
-  return exit.description;
+    return {SutEndCause::kBoard, "was ended because " + let_go()};
+  if (signal > 0 && signal < NSIG)
+    return {SutEndCause::kItself, "was ended by " + name_of_signal(signal)};
+  return {SutEndCause::kItself, exit.description};
 }
 
 std::string Board::let_go() const {

@@ -27,7 +27,7 @@ class HeldBoard : public testing::Test {
             .log = log_};
   }
   /// What came of it.
-  std::string run(const BoardSut& sut) {
+  SutEnd run(const BoardSut& sut) {
     const auto process = board_.start(sut);
     EXPECT_TRUE(process->wait(kLong));
     return board_.end_of(*process->poll(), os::last_line(os::read_whole(log_)));
@@ -57,7 +57,7 @@ TEST_F(HeldBoard, GetsFilesAsTheyAre) {
 }
 
 TEST_F(HeldBoard, RunsASutAndBringsItsFilesBack) {
-  EXPECT_EQ(run(shell("echo \"$TETHER_UAV\"; echo text >\"$TETHER_OUT/left\"; exit 3")),
+  EXPECT_EQ(run(shell("echo \"$TETHER_UAV\"; echo text >\"$TETHER_OUT/left\"; exit 3")).description,
             "exited with code 3");
   EXPECT_EQ(os::read_whole(log_), "uav1\n");
   const auto here = ssh_.scratch().path("here");
@@ -67,14 +67,16 @@ TEST_F(HeldBoard, RunsASutAndBringsItsFilesBack) {
 }
 
 TEST_F(HeldBoard, ReportsTheSignalThatEndedASut) {
-  EXPECT_EQ(run(shell("kill -SEGV $$")), "was ended by signal 11 (Segmentation fault)");
+  EXPECT_EQ(run(shell("kill -SEGV $$")).description, "was ended by signal 11 (Segmentation fault)");
 }
 
 TEST_F(HeldBoard, ReportsAProgramThatIsNotThere) {
   BoardSut sut = shell("");
   sut.words.front() = "no-such-program-of-tether";
-  EXPECT_THAT(run(sut), testing::StartsWith("could not be started: the board has no program "
-                                            "\"no-such-program-of-tether\""));
+  const SutEnd end = run(sut);
+  EXPECT_EQ(end.cause, SutEndCause::kNotStarted);
+  EXPECT_THAT(end.description, testing::StartsWith("could not be started: the board has no program "
+                                                   "\"no-such-program-of-tether\""));
 }
 
 TEST_F(HeldBoard, EndsItsSuts) {

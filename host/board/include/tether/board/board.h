@@ -27,6 +27,18 @@ struct BoardSut {
   std::filesystem::path log;  ///< on this machine; gets the SUT's stdout and stderr
 };
 
+/// What ended a SUT's process.
+enum class SutEndCause {
+  kItself,      ///< its program ended, by itself or by a signal
+  kNotStarted,  ///< there was nothing to start
+  kConnection,  ///< the connection to the board was lost
+  kBoard,       ///< the board is no longer held
+};
+struct SutEnd {
+  SutEndCause cause = SutEndCause::kItself;
+  std::string description;  ///< "was ended by signal 11 (Segmentation fault)"
+};
+
 /// A board that SSH reaches, held for one run: no other run of Tether uses it meanwhile. Whatever
 /// was started there ends with the object, and within seconds when this process or the connection
 /// is gone, however that came. Nothing of the run stays on the board. Not thread-safe.
@@ -49,7 +61,7 @@ class Board {
   /// how it ended.
   std::unique_ptr<os::ChildProcess> start(const BoardSut& sut);
   /// What came of a SUT whose process has ended.
-  std::string end_of(const os::ChildExit& exit, const std::string& last_words);
+  SutEnd end_of(const os::ChildExit& exit, const std::string& last_words);
 
   /// Why the board is out of reach; none while it is not.
   std::optional<std::string> lost();

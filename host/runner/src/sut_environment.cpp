@@ -8,7 +8,7 @@
 #include <tether/os/child_process.h>
 #include <tether/os/shell_word.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 namespace {
 
@@ -72,4 +72,4 @@ std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& r
   return text;
 }
 
-}  // namespace tether::app
+}  // namespace tether::runner

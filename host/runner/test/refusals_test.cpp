@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tether::app {
+namespace tether::runner {
 namespace {
 
 TEST(Refusals, OfAFewEachIsShown) {
@@ -35,4 +35,4 @@ TEST(Refusals, NobodyNeedsToListen) {
 }
 
 }  // namespace
-}  // namespace tether::app
+}  // namespace tether::runner

@@ -8,7 +8,7 @@
 #include <tether/base_testing/error_message.h>
 #include <tether/base_testing/scratch_folder.h>
 
-namespace tether::app {
+namespace tether::runner {
 namespace {
 
 using testing::ElementsAre;
@@ -88,4 +88,4 @@ TEST(CpusFor, TakesTheLastOnesAndGivesEachSutItsOwn) {
 }
 
 }  // namespace
-}  // namespace tether::app
+}  // namespace tether::runner

@@ -11,10 +11,11 @@
 #include <tether/coordinator/coordinator.h>
 #include <tether/link/channel.h>
 #include <tether/link/server.h>
+#include <tether/runner/back_end.h>
 #include <tether/scenario/scenario.h>
 #include <tether/sim/simulator.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 /// One trial to run.
 struct TrialSpec {
@@ -46,10 +47,10 @@ struct TrialObserver {
 
 /// Runs one trial and leaves its result in the folder, whatever it was. An earlier trial's files
 /// there are replaced. A stop request ends it as an interrupted one.
-/// @throws Error(kBadFile) before anything is written, when world, models or profiles cannot be
-/// used; Error(kSetup) when the folder
+/// @throws Error(kUsage) and Error(kBadFile) before anything is written, when world, models or
+/// profiles cannot be used; Error(kSetup) when the folder
 ///   cannot be written.
-campaign::TrialResult run_trial(const TrialSpec& spec, const TrialObserver& observer,
-                                const std::stop_token& stop);
+campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_back_end,
+                                const TrialObserver& observer, const std::stop_token& stop);
 
-}  // namespace tether::app
+}  // namespace tether::runner

@@ -1,5 +1,3 @@
-#include "trial_folder.h"
-
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -8,8 +6,9 @@
 
 #include <tether/base/error.h>
 #include <tether/campaign/result.h>
+#include <tether/runner/trial_folder.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 namespace {
 
@@ -52,4 +51,4 @@ TrialFolder::TrialFolder(const std::filesystem::path& folder) : lock_(claim(fold
   drop(folder / kSimulatorLog);
 }
 
-}  // namespace tether::app
+}  // namespace tether::runner

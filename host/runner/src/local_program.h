@@ -7,7 +7,7 @@
 
 #include <tether/scenario/scenario.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 /// What starts a SUT on this host.
 struct LocalSutCommand {
@@ -24,4 +24,4 @@ LocalSutCommand local_sut_command(const scenario::Sut& sut,
 /// first are the busiest. Empty: all (`cores` is 0), or there are too few.
 std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_t index);
 
-}  // namespace tether::app
+}  // namespace tether::runner

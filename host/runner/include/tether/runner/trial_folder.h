@@ -5,7 +5,7 @@
 
 #include <tether/campaign/folder_claim.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 /// The record's file in a trial's folder.
 inline constexpr const char* kRecordFile = "record.mcap";
@@ -24,4 +24,4 @@ class TrialFolder {
   std::unique_ptr<campaign::PathLock> lock_;  // of the folder
 };
 
-}  // namespace tether::app
+}  // namespace tether::runner

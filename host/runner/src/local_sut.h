@@ -9,7 +9,7 @@
 #include <tether/scenario/scenario.h>
 
 /// SUTs as processes of this machine.
-namespace tether::app {
+namespace tether::runner {
 
 /// What starts the SUTs of a condition here, each program once.
 /// @throws Error(kBadFile) naming the scenario, the UAV and the program that cannot be found here.
@@ -25,4 +25,4 @@ void require_sut_programs(const scenario::Scenario& scenario, const scenario::Co
 os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
                            const std::filesystem::path& out, const std::filesystem::path& log);
 
-}  // namespace tether::app
+}  // namespace tether::runner

@@ -7,7 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace tether::app {
+namespace tether::runner {
 namespace {
 
 using std::chrono::milliseconds;
@@ -108,4 +108,4 @@ TEST_F(StoppedProcess, IsFoundUnderADebugger) {
 }
 
 }  // namespace
-}  // namespace tether::app
+}  // namespace tether::runner

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <time.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 namespace {
 
@@ -108,4 +108,4 @@ std::vector<std::string> StallWatch::notes(HostClocks now) const {
   return notes;
 }
 
-}  // namespace tether::app
+}  // namespace tether::runner

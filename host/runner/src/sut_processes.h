@@ -12,7 +12,7 @@
 #include <tether/os/child_process.h>
 #include <tether/scenario/scenario.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 /// The scenario's SUTs, here or on a board; they end with the object. Not thread-safe.
 class SutProcesses {
@@ -34,6 +34,8 @@ class SutProcesses {
   std::optional<std::string> stopped() const;
   /// Why the board with the SUTs is out of reach; none where there is none, or it is not.
   std::optional<std::string> lost();
+  /// Whether the last words of one that has ended are that it cannot connect to that address.
+  bool has_failed_to_connect(const std::string& address);
   /// After a SUT was lost: how those that ended did so, "; " before each; empty: nothing is known.
   std::string post_mortem();
   /// Gives those that have finished the time to leave by themselves. A note for each that a signal
@@ -57,4 +59,4 @@ class SutProcesses {
   std::vector<Sut> suts_;
 };
 
-}  // namespace tether::app
+}  // namespace tether::runner

@@ -10,7 +10,7 @@
 #include <tether/scenario/scenario.h>
 
 /// What a SUT is started with, wherever it runs.
-namespace tether::app {
+namespace tether::runner {
 
 /// What a SUT needs to know of its run.
 struct SutRun {
@@ -35,4 +35,4 @@ os::Environment environment_of(const std::string& uav, const SutRun& run);
 /// For a person who starts the SUTs: a command line for each, with its environment.
 std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run);
 
-}  // namespace tether::app
+}  // namespace tether::runner

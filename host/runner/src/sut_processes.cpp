@@ -10,7 +10,7 @@
 
 #include <tether/os/child_process.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 namespace {
 
@@ -30,6 +30,15 @@ board::BoardSut board_sut(board::Board& board, const scenario::Scenario& scenari
           .concurrent = sut.concurrent,
           .environment = environment_of(uav.placement.name, run),
           .log = log};
+}
+
+/// The last line that is not empty; empty: none.
+std::string last_words(const std::filesystem::path& file) {
+  std::ifstream log(file);
+  std::string last;
+  for (std::string line; std::getline(log, line);)
+    if (!line.empty()) last = line;
+  return last;
 }
 
 // How long a SUT that has finished may take to leave.
@@ -69,6 +78,13 @@ std::optional<std::string> SutProcesses::early_end() {
   for (Sut& sut : suts_)
     if (sut.process->poll()) return describe_end(sut);
   return std::nullopt;
+}
+
+bool SutProcesses::has_failed_to_connect(const std::string& address) {
+  return std::ranges::any_of(suts_, [&](const Sut& sut) {
+    return sut.process->poll() &&
+           last_words(sut.log).find("cannot connect to " + address) != std::string::npos;
+  });
 }
 
 std::string SutProcesses::post_mortem() {
@@ -116,16 +132,14 @@ std::vector<std::string> SutProcesses::bring_back() {
 }
 
 std::string SutProcesses::describe_end(Sut& sut) const {
-  std::ifstream log(sut.log);
-  std::string last;
-  for (std::string line; std::getline(log, line);)
-    if (!line.empty()) last = line;
+  const std::string last = last_words(sut.log);
   const os::ChildExit& exit = *sut.process->poll();
-  const std::string end = board_ ? board_->end_of(exit, last) : exit.description;
-  const bool is_told = last.empty() || end.find("could not be started") == 0;
+  using board::SutEnd;
+  const SutEnd end = board_ ? board_->end_of(exit, last) : SutEnd{{}, exit.description};
+  const bool is_told = last.empty() || end.cause == board::SutEndCause::kNotStarted;
   return fmt::format(
-      "the SUT of UAV \"{}\" ({}) {}{}", sut.uav, sut.program, end,
+      "the SUT of UAV \"{}\" ({}) {}{}", sut.uav, sut.program, end.description,
       is_told ? "" : fmt::format("; its last words in {}: {}", sut.log.string(), last));
 }
 
-}  // namespace tether::app
+}  // namespace tether::runner

@@ -10,7 +10,7 @@
 #include <tether/base/time.h>
 #include <tether/coordinator/coordinator.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 /// This machine's clocks, as far as a stall shows in them.
 struct HostClocks {
@@ -46,4 +46,4 @@ class StallWatch {
 /// The process of this group that is stopped by a signal or a debugger, if one is.
 std::optional<pid_t> stopped_process(pid_t group);
 
-}  // namespace tether::app
+}  // namespace tether::runner

@@ -1,19 +1,18 @@
 #pragma once
 
-#include "simulator_option.h"
-
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include <tether/base/time.h>
 #include <tether/sim/simulator.h>
-#include <tether/sim_gazebo/gazebo_simulator.h>
 
-namespace tether::app {
+/// What a trial needs of simulators. Which there are is up to the program.
+namespace tether::runner {
 
 /// What a simulator is started with.
 struct SimulatorSetup {
@@ -25,28 +24,30 @@ struct SimulatorSetup {
   std::stop_token stop{};                                ///< ends all waiting for it
 };
 
-/// @throws Error(kBadFile) with file and line for what that simulator cannot read.
-void require_readable(const sim::World& world, const SimulatorOption& option);
-
 /// The simulator of one run, with the processes that it takes; they end with the object. Not
 /// thread-safe.
 class RunningSimulator {
  public:
-  /// Starts it, or connects to it. @throws Error(kSetup) with the reason why it is not to be had.
-  RunningSimulator(const SimulatorOption& option, sim::World world, SimulatorSetup setup);
+  virtual ~RunningSimulator() = default;
 
-  sim::Simulator& get() { return gazebo_ ? gazebo_->get() : *simulator_; }
+  virtual sim::Simulator& get() = 0;
   /// Why it is lost, as far as its processes show it; none: it is not.
-  std::optional<std::string> lost();
+  virtual std::optional<std::string> lost() { return std::nullopt; }
   /// After it failed with `said`: what else is known of its end, with "; " before.
-  std::string post_mortem(const std::string& said);
-
- private:
-  void attach(const sim::protocol::Endpoint& endpoint, sim::World world,
-              const SimulatorSetup& setup);
-
-  std::unique_ptr<sim::GazeboSimulator> gazebo_;
-  std::unique_ptr<sim::Simulator> simulator_;
+  virtual std::string post_mortem(const std::string& /*said*/) { return ""; }
 };
 
-}  // namespace tether::app
+/// A simulator that a condition may name.
+struct BackEnd {
+  /// @throws Error(kBadFile) with file and line for what it cannot read.
+  std::function<void(const sim::World&)> require_readable;
+  /// Starts it, or connects to it. @throws Error(kSetup) with the reason why it is not to be had.
+  std::function<std::unique_ptr<RunningSimulator>(sim::World, const SimulatorSetup&)> start;
+  /// Its own, which a result rests on. @throws Error(kSetup) when one is missing.
+  std::function<std::vector<std::filesystem::path>()> files;
+};
+
+/// @throws Error(kUsage) for a name of none.
+using FindBackEnd = std::function<BackEnd(const std::string& name)>;
+
+}  // namespace tether::runner

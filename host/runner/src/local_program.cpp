@@ -9,7 +9,7 @@
 #include <tether/base/error.h>
 #include <tether/os/program.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 namespace {
 
@@ -54,4 +54,4 @@ std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_
           allowed.rbegin() + static_cast<std::ptrdiff_t>(end + count)};
 }
 
-}  // namespace tether::app
+}  // namespace tether::runner

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 /// Connections that a run did not let in. Whoever wants to fill a terminal, or the disk that its
 /// output goes to, could make a thousand a second.
@@ -36,4 +36,4 @@ class Refusals {
   std::string last_;
 };
 
-}  // namespace tether::app
+}  // namespace tether::runner

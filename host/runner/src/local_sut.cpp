@@ -10,7 +10,7 @@
 #include <tether/os/child_process.h>
 #include <tether/os/machine.h>
 
-namespace tether::app {
+namespace tether::runner {
 
 namespace {
 
@@ -64,4 +64,4 @@ os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std
           .cpus = cpus_for(os::allowed_cpus(), target ? target->cores : 0, index)};
 }
 
-}  // namespace tether::app
+}  // namespace tether::runner
