@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <set>
 #include <stop_token>
 #include <string>
@@ -28,14 +27,6 @@
 namespace tether::app {
 
 namespace {
-
-struct CampaignOptions {
-  std::filesystem::path campaign;
-  std::filesystem::path out;
-  std::string simulator;
-  int jobs = 1;
-  bool resume = false;
-};
 
 /// The campaign as it is flown: in the simulator that is asked for, whatever its conditions say.
 scenario::Campaign load(const CampaignOptions& options) {
@@ -76,7 +67,9 @@ campaign::CampaignOutcome fly(const campaign::CampaignFolder& folder,
   }
 }
 
-int run(const CampaignOptions& options, const std::stop_token& stop) {
+}  // namespace
+
+int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
   const scenario::Campaign campaign = load(options);
   campaign::require_jobs_allowed(campaign, options.jobs);
   require_ports(campaign, options.jobs);
@@ -105,30 +98,6 @@ int run(const CampaignOptions& options, const std::stop_token& stop) {
   }
   print_campaign_summary(out);
   return outcome.failed > 0 ? exit_code(ErrorCode::kSetup) : 0;
-}
-
-}  // namespace
-
-void add_campaign_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<CampaignOptions>();
-  CLI::App* command =
-      program.add_subcommand("campaign", "Run many trials: scenarios x conditions x seeds");
-  command->add_option("campaign", options->campaign, "Campaign file (TOML)")->required();
-  command->add_option("--out", options->out, "Folder for the trials [out/CAMPAIGN]");
-  command
-      ->add_option(
-          "--jobs", options->jobs,
-          "Cores for trials side by side; refused where that would disturb the measured time")
-      ->capture_default_str();
-  add_simulator_option(*command, options->simulator);
-  command->add_flag("--resume", options->resume, "Go on with a folder: run only what is missing");
-  command->footer(R"(Examples:
-  tether campaign data/campaigns/face_anchor.toml --out out/face_anchor
-  tether campaign data/campaigns/face_anchor.toml --out out/face_anchor --resume
-  tether campaign data/campaigns/face_anchor.toml --simulator gazebo --out out/face_anchor_gazebo)");
-  command->callback([options, &action] {
-    action = [options](const std::stop_token& stop) { return run(*options, stop); };
-  });
 }
 
 }  // namespace tether::app

@@ -2,7 +2,6 @@
 #include "say.h"
 
 #include <filesystem>
-#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -19,11 +18,6 @@
 namespace tether::app {
 
 namespace {
-
-struct PlotOptions {
-  std::filesystem::path record;
-  std::filesystem::path out;
-};
 
 using NamedPlot = std::pair<std::string, report::Plot>;
 
@@ -55,7 +49,9 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
   return plots;
 }
 
-int run(const PlotOptions& options) {
+}  // namespace
+
+int draw_plots(const PlotOptions& options) {
   const record::Record record = record::read_record(options.record);
   if (!record.damage.empty())
     say("tether: {}: plotted up to where it is torn: {}\n", options.record.string(), record.damage);
@@ -75,24 +71,6 @@ int run(const PlotOptions& options) {
     fmt::print("{}\n", (out / name).string());
   }
   return 0;
-}
-
-}  // namespace
-
-void add_plot_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = program.add_subcommand(
-      "plot", "ST and ET against wall time, lag, and the path from above, as SVG");
-  command->add_option("record", options->record, "record.mcap of a run")->required();
-  command->add_option("--out", options->out, "Folder for the plots [plots, beside the record]");
-  command->footer(
-      R"(Writes timeline.svg (the whole run), timeline_zoom.svg (its first interactions), lag.svg (not of a
-run without synchronisation: nothing lags there) and path.svg. Needs gnuplot.
-
-Example:
-  tether plot out/one/record.mcap)");
-  command->callback(
-      [options, &action] { action = [options](const std::stop_token&) { return run(*options); }; });
 }
 
 }  // namespace tether::app

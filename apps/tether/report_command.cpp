@@ -3,7 +3,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,12 +21,6 @@ namespace tether::app {
 namespace {
 
 constexpr const char* kHtml = "html";
-
-struct ReportOptions {
-  std::filesystem::path folder;
-  std::string format = "text";
-  std::filesystem::path out;
-};
 
 bool is_run(const std::filesystem::path& folder) {
   return !std::filesystem::exists(folder / campaign::kCampaignFile) &&
@@ -72,7 +65,9 @@ std::string rendered(const ReportOptions& options) {
                 options.format == "markdown" ? report::to_markdown : report::to_text);
 }
 
-int run(const ReportOptions& options) {
+}  // namespace
+
+int report(const ReportOptions& options) {
   const std::string text = rendered(options);
   std::filesystem::path out = options.out;
   if (out.empty() && options.format == kHtml) out = options.folder / "report.html";
@@ -84,8 +79,6 @@ int run(const ReportOptions& options) {
   }
   return 0;
 }
-
-}  // namespace
 
 void print_campaign_summary(const std::filesystem::path& folder) {
   const campaign::CampaignResults results = campaign::read_campaign_results(folder);
@@ -100,28 +93,6 @@ void print_campaign_summary(const std::filesystem::path& folder) {
       "               tether audit {0}/SCENARIO/CONDITION/seed-NNNN/record.mcap\n"
       "               any record.mcap opens in Foxglove (log time = simulated time)\n",
       folder.string());
-}
-
-void add_report_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<ReportOptions>();
-  CLI::App* command =
-      program.add_subcommand("report", "Tables and plots of a campaign's results, or of one run's");
-  command->add_option("folder", options->folder, "Folder of a campaign or of a run")->required();
-  command
-      ->add_option("--format", options->format,
-                   "text, markdown, csv (one row per trial and metric), summary-csv (one row per "
-                   "condition and metric), or html (one self-contained page; needs gnuplot)")
-      ->check(CLI::IsMember({"text", "markdown", "csv", "summary-csv", kHtml}))
-      ->capture_default_str();
-  command->add_option("--out", options->out,
-                      "File to write [standard output; of html: report.html in the folder]");
-  command->footer(R"(Examples:
-  tether report out/face_anchor
-  tether report out/face_anchor --format html
-  tether report out/one --format html --out one.html
-  tether report out/face_anchor --format csv --out trials.csv)");
-  command->callback(
-      [options, &action] { action = [options](const std::stop_token&) { return run(*options); }; });
 }
 
 }  // namespace tether::app

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include <fmt/format.h>
@@ -24,22 +23,6 @@
 namespace tether::app {
 
 namespace {
-
-struct RunOptions {
-  std::filesystem::path scenario;
-  std::string condition;
-  std::string target;
-  std::string simulator;
-  std::filesystem::path profile;
-  std::uint64_t seed = 1;
-  std::filesystem::path out;
-  std::string listen;
-  double real_time_factor = 0.0;
-  bool tunnel = false;
-  bool record_images = false;
-  bool json = false;
-  bool quiet = false;
-};
 
 scenario::Condition pick_condition(const scenario::Scenario& scenario, const std::string& wanted) {
   if (wanted.empty()) return scenario.conditions.front();
@@ -143,7 +126,9 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
     fmt::print("  {:<24} {}\n", "record", (spec.folder / runner::kRecordFile).string());
 }
 
-int run(const RunOptions& options, const std::stop_token& stop) {
+}  // namespace
+
+int run_one(const RunOptions& options, const std::stop_token& stop) {
   const runner::TrialSpec spec = make_spec(options);
   campaign::TrialResult result;
   {
@@ -169,54 +154,6 @@ int run(const RunOptions& options, const std::stop_token& stop) {
     print_result(spec, result);
   if (result.outcome == campaign::Outcome::kFailed) say("tether: {}\n", result.reason);
   return campaign::exit_code(result.outcome);
-}
-
-}  // namespace
-
-void add_run_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<RunOptions>();
-  CLI::App* command = program.add_subcommand("run", "Run one trial of a scenario");
-  command->add_option("scenario", options->scenario, "Scenario file (TOML)")->required();
-  command->add_option("--condition", options->condition,
-                      "Condition of the scenario; its first one if not given");
-  command->add_option("--profile", options->profile,
-                      "Profile of the sensors (TOML), laid over what the scenario says of them");
-  command->add_option("--seed", options->seed, "Seed of noise, delays and start poses")
-      ->check(CLI::Range(0.0, 9007199254740992.0))
-      ->capture_default_str();
-  command->add_option(
-      "--out", options->out,
-      "Folder for result.json, record.mcap and the SUT's log [out/SCENARIO/CONDITION/seed-N]");
-  command
-      ->add_option("--real-time-factor", options->real_time_factor,
-                   "Simulate at most this fast against the wall clock")
-      ->check(CLI::Range(1e-3, 1e4));
-  command->add_option("--listen", options->listen, "Address for the SUT; port 0 takes a free one")
-      ->capture_default_str();
-  command->add_option(
-      "--target", options->target,
-      "Where the SUT runs, over what the condition says: a target file (TOML); "
-      "ssh://[user@]board[:port]; or \"wait\": do not start the SUT, print what to type where it "
-      "runs, and wait for it");
-  add_simulator_option(*command, options->simulator);
-  command->add_flag("--tunnel", options->tunnel,
-                    "The board's SUT comes through the SSH connection, where it cannot reach this "
-                    "machine; costs the board the encryption of every image");
-  command->add_flag("--images", options->record_images,
-                    "Keep the camera images that the SUT consumed in the record");
-  command->add_flag("--json", options->json, "Print result.json instead of a summary");
-  command->add_flag("--quiet", options->quiet, "Print errors and warnings only");
-  command->footer(R"(Examples:
-  tether run data/scenarios/face_anchor.toml
-  tether run data/scenarios/face_anchor.toml --condition "target, no sync" --seed 7
-  tether run data/scenarios/face_anchor.toml --target data/profiles/targets/six_times_slower.toml
-  tether run data/scenarios/face_anchor.toml --target ssh://pi@board.local
-  tether run data/scenarios/face_anchor.toml --profile data/profiles/ideal.toml
-  tether run data/scenarios/face_anchor.toml --simulator gazebo
-  tether run data/scenarios/face_anchor.toml --images --out out/one)");
-  command->callback([options, &action] {
-    action = [options](const std::stop_token& stop) { return run(*options, stop); };
-  });
 }
 
 }  // namespace tether::app

@@ -1,7 +1,6 @@
 #include "commands.h"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,11 +21,6 @@ namespace {
 
 using board::Finding;
 using board::Health;
-
-struct CheckOptions {
-  std::string address;
-  bool json = false;
-};
 
 struct Check {
   std::string target;
@@ -111,35 +105,14 @@ std::string to_json(const Check& check) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-int run(const CheckOptions& options, const std::stop_token& stop) {
+}  // namespace
+
+int check_target(const CheckOptions& options, const std::stop_token& stop) {
   const Check check = options.address.empty()
                           ? check_here()
                           : check_board(scenario::parse_ssh_address(options.address), stop);
   fmt::print("{}", options.json ? to_json(check) : to_text(check));
   return has(check, Health::kBad) ? 1 : 0;
-}
-
-}  // namespace
-
-void add_target_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<CheckOptions>();
-  CLI::App* target = program.add_subcommand("target", "Machines that a SUT may run on");
-  target->require_subcommand(1);
-  target->footer("Examples:\n  tether target check ssh://pi@board.local");
-  CLI::App* check =
-      target->add_subcommand("check", "Say what of a machine would spoil a measurement");
-  check->add_option("address", options->address,
-                    "ssh://[user@]board[:port]; this machine if not given");
-  check->add_flag("--json", options->json, "Print findings and readings as JSON");
-  check->footer(
-      R"(Exit codes: 0 fine, 1 something would spoil a measurement, 2 wrong use, 3 not reachable.
-
-Examples:
-  tether target check
-  tether target check ssh://pi@board.local)");
-  check->callback([options, &action] {
-    action = [options](const std::stop_token& stop) { return run(*options, stop); };
-  });
 }
 
 }  // namespace tether::app
