@@ -1,22 +1,77 @@
 #pragma once
 
-#include <functional>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <stop_token>
+#include <string>
 
-#include <CLI/CLI.hpp>
-
-/// The subcommands of `tether`, a file each. Every function adds one to the program; its action
-/// returns the exit code.
+/// The subcommands of `tether`, a file each; command_line.cpp reads their options. Each returns the
+/// program's exit code, and ends early when a stop is requested, where it can.
 namespace tether::app {
 
-using Action = std::function<int()>;
+struct RunOptions {
+  std::filesystem::path scenario;
+  std::string condition;
+  std::string target;
+  std::string simulator;
+  std::filesystem::path profile;
+  std::uint64_t seed = 1;
+  std::filesystem::path out;
+  std::string listen;
+  double real_time_factor = 0.0;
+  bool tunnel = false;
+  bool record_images = false;
+  bool json = false;
+  bool quiet = false;
+};
+/// Runs one trial, and prints its result.
+int run_one(const RunOptions& options, const std::stop_token& stop);
 
-/// Sets `action` when the subcommand is chosen.
-void add_run_command(CLI::App& program, Action& action);
-void add_campaign_command(CLI::App& program, Action& action);
-void add_report_command(CLI::App& program, Action& action);
-void add_frames_command(CLI::App& program, Action& action);
-void add_plot_command(CLI::App& program, Action& action);
-void add_audit_command(CLI::App& program, Action& action);
-void add_target_command(CLI::App& program, Action& action);
+struct CampaignOptions {
+  std::filesystem::path campaign;
+  std::filesystem::path out;
+  std::string simulator;
+  int jobs = 1;
+  bool resume = false;
+};
+/// Runs many trials: scenarios x conditions x seeds.
+int run_campaign(const CampaignOptions& options, const std::stop_token& stop);
+
+struct ReportOptions {
+  std::filesystem::path folder;
+  std::string format = "text";
+  std::filesystem::path out;
+};
+/// Prints tables of a campaign's results or of one run's, or writes a page.
+int report(const ReportOptions& options);
+
+struct FramesOptions {
+  std::filesystem::path record;
+  std::filesystem::path out;
+};
+/// Draws the recorded camera images with their ROIs.
+int draw_frames(const FramesOptions& options);
+
+struct PlotOptions {
+  std::filesystem::path record;
+  std::filesystem::path out;
+};
+/// Draws ST and ET against wall time, lag, and the path.
+int draw_plots(const PlotOptions& options);
+
+struct AuditOptions {
+  std::filesystem::path record;
+  std::size_t max_findings = 20;
+};
+/// Checks a record against the rules of time.
+int audit_record(const AuditOptions& options);
+
+struct CheckOptions {
+  std::string address;
+  bool json = false;
+};
+/// Says what of a machine would spoil a measurement.
+int check_target(const CheckOptions& options, const std::stop_token& stop);
 
 }  // namespace tether::app

@@ -2,24 +2,18 @@
 #include "say.h"
 
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/text_file.h>
+#include <tether/os/text_file.h>
 #include <tether/record/reader.h>
 #include <tether/report/camera_frame.h>
 
 namespace tether::app {
 
 namespace {
-
-struct FramesOptions {
-  std::filesystem::path record;
-  std::filesystem::path out;
-};
 
 std::string why_no_images(const record::Record& record) {
   if (record.damage.empty())
@@ -38,7 +32,9 @@ record::Record read_images(const std::filesystem::path& file) {
   return record;
 }
 
-int run(const FramesOptions& options) {
+}  // namespace
+
+int draw_frames(const FramesOptions& options) {
   const record::Record record = read_images(options.record);
   const std::filesystem::path out =
       options.out.empty() ? options.record.parent_path() / "frames" : options.out;
@@ -47,29 +43,13 @@ int run(const FramesOptions& options) {
   if (error) throw Error(ErrorCode::kSetup, fmt::format("{}: {}", out.string(), error.message()));
   for (const auto& logged : record.images) {
     const record::Image& image = logged.message;
-    experiment::write_file_atomically(
-        out / fmt::format("{}-{}-{:06}.svg", experiment::file_name_of(image.uav),
-                          experiment::file_name_of(image.sensor), image.index),
-        report::frame_svg(image, report::find_roi(record, image),
-                          report::find_true_roi(record, image)));
+    os::write_file_atomically(out / fmt::format("{}-{}-{:06}.svg", os::file_name_of(image.uav),
+                                                os::file_name_of(image.sensor), image.index),
+                              report::frame_svg(image, report::find_roi(record, image),
+                                                report::find_true_roi(record, image)));
   }
   fmt::print("{} images in {}\n", record.images.size(), out.string());
   return 0;
-}
-
-}  // namespace
-
-void add_frames_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<FramesOptions>();
-  CLI::App* command = program.add_subcommand(
-      "frames", "Recorded camera images with the ROI that the SUT tracked and the true one");
-  command->add_option("record", options->record, "record.mcap of a run with --images")->required();
-  command->add_option("--out", options->out,
-                      "Folder for the pictures (SVG) [frames, beside the record]");
-  command->footer(R"(Example:
-  tether run data/scenarios/face_anchor.toml --images --out out/one
-  tether frames out/one/record.mcap)");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 
 }  // namespace tether::app

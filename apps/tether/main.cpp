@@ -1,5 +1,4 @@
-#include "commands.h"
-#include "interrupt.h"
+#include "command_line.h"
 #include "say.h"
 
 #include <cerrno>
@@ -7,13 +6,14 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
 #include <system_error>
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
-#include <tether/base/version.h>
+#include <tether/os/interrupt.h>
 
 namespace {
 
@@ -39,46 +39,13 @@ int end(int code) {
   return std::fflush(stdout) == 0 && !std::ferror(stdout) ? code : fail_to_print(errno);
 }
 
-constexpr const char* kFooter =
-    R"(Exit codes: 0 goal reached, 1 goal missed, 2 wrong use or a bad file, 3 set-up failed.
-
-Examples:
-  tether run data/scenarios/face_anchor.toml
-  tether run data/scenarios/face_anchor.toml --condition "target, no sync" --seed 7
-  tether campaign data/campaigns/face_anchor.toml --out out/face_anchor
-  tether audit out/face_anchor/face_anchor/host/seed-0001/record.mcap)";
-
-int run(int argc, char** argv) {
-  CLI::App program{
-      "Tells whether a UAV's computer is fast enough for its task, before anything flies."};
-  program.name("tether");
-  program.footer(kFooter);
-  program.set_version_flag("--version", std::string(tether::version()));
-  program.require_subcommand(1);
-
-  tether::app::Action action;
-  tether::app::add_run_command(program, action);
-  tether::app::add_campaign_command(program, action);
-  tether::app::add_report_command(program, action);
-  tether::app::add_audit_command(program, action);
-  tether::app::add_frames_command(program, action);
-  tether::app::add_plot_command(program, action);
-  tether::app::add_target_command(program, action);
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return program.exit(e) == 0 ? 0 : tether::exit_code(tether::ErrorCode::kUsage);
-  }
-  tether::app::catch_interrupts();
-  return action();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   open_standard_streams();
+  std::optional<tether::os::Interrupt> interrupt;  // until all is printed
   try {
-    return end(run(argc, argv));
+    return end(tether::app::run_command_line(argc, argv, interrupt));
   } catch (const tether::Error& e) {
     say("tether: {}\n", e.what());
     return tether::exit_code(e.code());

@@ -2,7 +2,6 @@
 #include "say.h"
 
 #include <filesystem>
-#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -11,7 +10,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/text_file.h>
+#include <tether/os/text_file.h>
 #include <tether/record/reader.h>
 #include <tether/report/gnuplot.h>
 #include <tether/report/plots.h>
@@ -19,11 +18,6 @@
 namespace tether::app {
 
 namespace {
-
-struct PlotOptions {
-  std::filesystem::path record;
-  std::filesystem::path out;
-};
 
 using NamedPlot = std::pair<std::string, report::Plot>;
 
@@ -46,7 +40,7 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
   };
   const std::vector<report::PlottedRun> runs = runs_of(record);
   for (const report::PlottedRun& run : runs) {
-    const std::string suffix = runs.size() == 1 ? "" : "-" + experiment::file_name_of(run.uav);
+    const std::string suffix = runs.size() == 1 ? "" : "-" + os::file_name_of(run.uav);
     add("timeline" + suffix, timeline_plot(run, report::Extent::kWhole));
     add("timeline_zoom" + suffix, timeline_plot(run, report::Extent::kFirstInteractions));
     add("lag" + suffix, lag_plot(run));
@@ -55,7 +49,9 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
   return plots;
 }
 
-int run(const PlotOptions& options) {
+}  // namespace
+
+int draw_plots(const PlotOptions& options) {
   const record::Record record = record::read_record(options.record);
   if (!record.damage.empty())
     say("tether: {}: plotted up to where it is torn: {}\n", options.record.string(), record.damage);
@@ -71,27 +67,10 @@ int run(const PlotOptions& options) {
   std::filesystem::create_directories(out, error);
   if (error) throw Error(ErrorCode::kSetup, fmt::format("{}: {}", out.string(), error.message()));
   for (const auto& [name, svg] : drawings) {
-    experiment::write_file_atomically(out / name, svg);
+    os::write_file_atomically(out / name, svg);
     fmt::print("{}\n", (out / name).string());
   }
   return 0;
-}
-
-}  // namespace
-
-void add_plot_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = program.add_subcommand(
-      "plot", "ST and ET against wall time, lag, and the path from above, as SVG");
-  command->add_option("record", options->record, "record.mcap of a run")->required();
-  command->add_option("--out", options->out, "Folder for the plots [plots, beside the record]");
-  command->footer(
-      R"(Writes timeline.svg (the whole run), timeline_zoom.svg (its first interactions), lag.svg (not of a
-run without synchronisation: nothing lags there) and path.svg. Needs gnuplot.
-
-Example:
-  tether plot out/one/record.mcap)");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 
 }  // namespace tether::app

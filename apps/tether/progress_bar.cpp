@@ -14,11 +14,11 @@ namespace {
 
 constexpr std::size_t kWidth = 30;
 
-std::string trial_name(const experiment::TrialPlan& plan) {
+std::string trial_name(const campaign::TrialPlan& plan) {
   return fmt::format("{}, {}, seed {}", plan.scenario->name, plan.condition->name, plan.seed);
 }
 
-std::string time_left(const experiment::CampaignProgress& progress) {
+std::string time_left(const campaign::CampaignProgress& progress) {
   if (!progress.time_left) return "";
   const auto seconds =
       std::chrono::duration_cast<std::chrono::seconds>(*progress.time_left).count();
@@ -29,7 +29,7 @@ std::string time_left(const experiment::CampaignProgress& progress) {
 
 ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
 
-void ProgressBar::show(const experiment::CampaignProgress& progress) {
+void ProgressBar::show(const campaign::CampaignProgress& progress) {
   if (is_terminal_) {
     const std::size_t filled =
         progress.total == 0 ? kWidth : kWidth * progress.done / progress.total;
@@ -40,7 +40,7 @@ void ProgressBar::show(const experiment::CampaignProgress& progress) {
     shown_ = true;
   } else if (progress.result && progress.latest) {
     say("{}/{}  {}: {}{}\n", progress.done, progress.total, trial_name(*progress.latest),
-        experiment::name(progress.result->outcome), time_left(progress));
+        campaign::name(progress.result->outcome), time_left(progress));
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <tether/experiment/run_campaign.h>
+#include <tether/campaign/run_campaign.h>
 
 namespace tether::app {
 
@@ -9,7 +9,7 @@ namespace tether::app {
 class ProgressBar {
  public:
   ProgressBar();
-  void show(const experiment::CampaignProgress& progress);
+  void show(const campaign::CampaignProgress& progress);
   /// Leaves the bar as it is and begins a new line.
   void finish();
 

@@ -1,21 +1,20 @@
 #include "commands.h"
 #include "print_report.h"
-#include "trial_folder.h"
 
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/campaign_results.h>
-#include <tether/experiment/result.h>
-#include <tether/experiment/text_file.h>
+#include <tether/campaign/campaign_results.h>
+#include <tether/campaign/result.h>
+#include <tether/os/text_file.h>
 #include <tether/report/page.h>
 #include <tether/report/report.h>
+#include <tether/runner/trial_folder.h>
 
 namespace tether::app {
 
@@ -23,22 +22,16 @@ namespace {
 
 constexpr const char* kHtml = "html";
 
-struct ReportOptions {
-  std::filesystem::path folder;
-  std::string format = "text";
-  std::filesystem::path out;
-};
-
 bool is_run(const std::filesystem::path& folder) {
-  return !std::filesystem::exists(folder / experiment::kCampaignFile) &&
-         std::filesystem::exists(folder / experiment::kResultFile);
+  return !std::filesystem::exists(folder / campaign::kCampaignFile) &&
+         std::filesystem::exists(folder / campaign::kResultFile);
 }
 
 /// A run that was killed leaves its record only.
 void refuse_run_without_result(const std::filesystem::path& folder) {
-  const std::filesystem::path record = folder / kRecordFile;
-  if (std::filesystem::exists(folder / experiment::kCampaignFile) ||
-      std::filesystem::exists(folder / experiment::kResultFile) || !std::filesystem::exists(record))
+  const std::filesystem::path record = folder / runner::kRecordFile;
+  if (std::filesystem::exists(folder / campaign::kCampaignFile) ||
+      std::filesystem::exists(folder / campaign::kResultFile) || !std::filesystem::exists(record))
     return;
   throw Error(
       ErrorCode::kBadFile, {folder.string()},
@@ -54,7 +47,7 @@ std::string joined(const std::vector<report::Table>& tables,
   return text;
 }
 
-std::vector<report::Table> run_tables(const experiment::CampaignResults& results) {
+std::vector<report::Table> run_tables(const campaign::CampaignResults& results) {
   const auto& trial = results.scenarios.front().conditions.front().trials.front();
   return {report::run_table(trial), report::basis_table(results)};
 }
@@ -63,9 +56,8 @@ std::string rendered(const ReportOptions& options) {
   refuse_run_without_result(options.folder);
   const bool run = is_run(options.folder);
   if (options.format == kHtml && run) return report::run_page(options.folder);
-  const experiment::CampaignResults results =
-      run ? report::read_run_results(options.folder)
-          : experiment::read_campaign_results(options.folder);
+  const campaign::CampaignResults results = run ? report::read_run_results(options.folder)
+                                                : campaign::read_campaign_results(options.folder);
   if (options.format == kHtml) return report::campaign_page(results, options.folder);
   if (options.format == "csv") return to_csv(report::trials_table(results));
   if (options.format == "summary-csv") return to_csv(report::summaries_table(results));
@@ -73,23 +65,23 @@ std::string rendered(const ReportOptions& options) {
                 options.format == "markdown" ? report::to_markdown : report::to_text);
 }
 
-int run(const ReportOptions& options) {
+}  // namespace
+
+int report(const ReportOptions& options) {
   const std::string text = rendered(options);
   std::filesystem::path out = options.out;
   if (out.empty() && options.format == kHtml) out = options.folder / "report.html";
   if (out.empty()) {
     fmt::print("{}", text);
   } else {
-    experiment::write_file_atomically(out, text);
+    os::write_file_atomically(out, text);
     fmt::print("{}\n", out.string());
   }
   return 0;
 }
 
-}  // namespace
-
 void print_campaign_summary(const std::filesystem::path& folder) {
-  const experiment::CampaignResults results = experiment::read_campaign_results(folder);
+  const campaign::CampaignResults results = campaign::read_campaign_results(folder);
   for (const auto& scenario : results.scenarios)
     fmt::print("{}\n", to_text(report::paper_form_table(scenario)));
   fmt::print(
@@ -101,27 +93,6 @@ void print_campaign_summary(const std::filesystem::path& folder) {
       "               tether audit {0}/SCENARIO/CONDITION/seed-NNNN/record.mcap\n"
       "               any record.mcap opens in Foxglove (log time = simulated time)\n",
       folder.string());
-}
-
-void add_report_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<ReportOptions>();
-  CLI::App* command =
-      program.add_subcommand("report", "Tables and plots of a campaign's results, or of one run's");
-  command->add_option("folder", options->folder, "Folder of a campaign or of a run")->required();
-  command
-      ->add_option("--format", options->format,
-                   "text, markdown, csv (one row per trial and metric), summary-csv (one row per "
-                   "condition and metric), or html (one self-contained page; needs gnuplot)")
-      ->check(CLI::IsMember({"text", "markdown", "csv", "summary-csv", kHtml}))
-      ->capture_default_str();
-  command->add_option("--out", options->out,
-                      "File to write [standard output; of html: report.html in the folder]");
-  command->footer(R"(Examples:
-  tether report out/face_anchor
-  tether report out/face_anchor --format html
-  tether report out/one --format html --out one.html
-  tether report out/face_anchor --format csv --out trials.csv)");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
 }
 
 }  // namespace tether::app

@@ -1,44 +1,28 @@
+#include "back_ends.h"
 #include "commands.h"
 #include "say.h"
 #include "simulator_option.h"
 #include "status_line.h"
 #include "target_option.h"
-#include "trial.h"
-#include "trial_folder.h"
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/campaign_plan.h>
-#include <tether/experiment/result.h>
+#include <tether/campaign/campaign_plan.h>
+#include <tether/campaign/result.h>
+#include <tether/runner/trial.h>
+#include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>
 
 namespace tether::app {
 
 namespace {
-
-struct RunOptions {
-  std::filesystem::path scenario;
-  std::string condition;
-  std::string target;
-  std::string simulator;
-  std::filesystem::path profile;
-  std::uint64_t seed = 1;
-  std::filesystem::path out;
-  std::string listen;
-  double real_time_factor = 0.0;
-  bool tunnel = false;
-  bool record_images = false;
-  bool json = false;
-  bool quiet = false;
-};
 
 scenario::Condition pick_condition(const scenario::Scenario& scenario, const std::string& wanted) {
   if (wanted.empty()) return scenario.conditions.front();
@@ -82,7 +66,7 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
 }
 
 /// Options that would do nothing are refused.
-void require_use_of_tunnel(const TrialSpec& spec) {
+void require_use_of_tunnel(const runner::TrialSpec& spec) {
   const auto& target = spec.condition.target;
   if (!spec.uses_tunnel || (!spec.waits_for_sut && target && target->ssh)) return;
   throw Error(ErrorCode::kUsage,
@@ -91,18 +75,17 @@ void require_use_of_tunnel(const TrialSpec& spec) {
               "--tunnel out");
 }
 
-TrialSpec make_spec(const RunOptions& options) {
-  TrialSpec spec;
+runner::TrialSpec make_spec(const RunOptions& options) {
+  runner::TrialSpec spec;
   spec.scenario = scenario::load_scenario(options.scenario);
   spec.scenario.record_images |= options.record_images;
   if (!options.profile.empty())
     scenario::lay_profile(spec.scenario, scenario::load_profile(options.profile));
   spec.condition = make_condition(spec.scenario, options);
   spec.seed = options.seed;
-  spec.folder =
-      options.out.empty()
-          ? "out" / experiment::trial_folder(spec.scenario.name, spec.condition.name, spec.seed)
-          : options.out;
+  spec.folder = options.out.empty() ? "out" / campaign::trial_folder(spec.scenario.name,
+                                                                     spec.condition.name, spec.seed)
+                                    : options.out;
   if (!options.listen.empty()) {
     const auto address = link::parse_address(options.listen);
     if (!address) throw Error(ErrorCode::kUsage, "--listen: " + address.failure().message);
@@ -114,9 +97,9 @@ TrialSpec make_spec(const RunOptions& options) {
   return spec;
 }
 
-void print_result(const TrialSpec& spec, const experiment::TrialResult& result) {
+void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& result) {
   fmt::print("{} under \"{}\", seed {}: {}: {}\n", result.scenario, result.condition, result.seed,
-             experiment::name(result.outcome), result.reason);
+             campaign::name(result.outcome), result.reason);
   for (const auto& metric : result.metrics) {
     const std::string value =
         metric.value
@@ -139,16 +122,18 @@ void print_result(const TrialSpec& spec, const experiment::TrialResult& result) 
     fmt::print("  {:<24} {}\n", "simulator", simulator->second);
   if (result.audit) fmt::print("  {:<24} {}\n", "audit", result.audit->summary);
   for (const std::string& note : result.this_run.notes) fmt::print("  {:<24} {}\n", "note", note);
-  if (std::filesystem::exists(spec.folder / kRecordFile))
-    fmt::print("  {:<24} {}\n", "record", (spec.folder / kRecordFile).string());
+  if (std::filesystem::exists(spec.folder / runner::kRecordFile))
+    fmt::print("  {:<24} {}\n", "record", (spec.folder / runner::kRecordFile).string());
 }
 
-int run(const RunOptions& options) {
-  const TrialSpec spec = make_spec(options);
-  experiment::TrialResult result;
+}  // namespace
+
+int run_one(const RunOptions& options, const std::stop_token& stop) {
+  const runner::TrialSpec spec = make_spec(options);
+  campaign::TrialResult result;
   {
     StatusLine line;
-    TrialObserver observer;
+    runner::TrialObserver observer;
     observer.warn = [&](const std::string& text) { say("warning: {}\n", text); };
     if (!options.quiet) {
       observer.on_status = [&](const coordinator::RunStatus& status) {
@@ -161,60 +146,14 @@ int run(const RunOptions& options) {
     observer.on_listening = [](const std::string& text) {
       say("Waiting for the SUT. Start it with:\n{}", text);
     };
-    result = run_trial(spec, observer);
+    result = runner::run_trial(spec, find_back_end, observer, stop);
   }
   if (options.json)
-    fmt::print("{}\n", experiment::to_json(result));
+    fmt::print("{}\n", campaign::to_json(result));
   else if (!options.quiet)
     print_result(spec, result);
-  if (result.outcome == experiment::Outcome::kFailed) say("tether: {}\n", result.reason);
-  return experiment::exit_code(result.outcome);
-}
-
-}  // namespace
-
-void add_run_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<RunOptions>();
-  CLI::App* command = program.add_subcommand("run", "Run one trial of a scenario");
-  command->add_option("scenario", options->scenario, "Scenario file (TOML)")->required();
-  command->add_option("--condition", options->condition,
-                      "Condition of the scenario; its first one if not given");
-  command->add_option("--profile", options->profile,
-                      "Profile of the sensors (TOML), laid over what the scenario says of them");
-  command->add_option("--seed", options->seed, "Seed of noise, delays and start poses")
-      ->check(CLI::Range(0.0, 9007199254740992.0))
-      ->capture_default_str();
-  command->add_option(
-      "--out", options->out,
-      "Folder for result.json, record.mcap and the SUT's log [out/SCENARIO/CONDITION/seed-N]");
-  command
-      ->add_option("--real-time-factor", options->real_time_factor,
-                   "Simulate at most this fast against the wall clock")
-      ->check(CLI::Range(1e-3, 1e4));
-  command->add_option("--listen", options->listen, "Address for the SUT; port 0 takes a free one")
-      ->capture_default_str();
-  command->add_option(
-      "--target", options->target,
-      "Where the SUT runs, over what the condition says: a target file (TOML); "
-      "ssh://[user@]board[:port]; or \"wait\": do not start the SUT, print what to type where it "
-      "runs, and wait for it");
-  add_simulator_option(*command, options->simulator);
-  command->add_flag("--tunnel", options->tunnel,
-                    "The board's SUT comes through the SSH connection, where it cannot reach this "
-                    "machine; costs the board the encryption of every image");
-  command->add_flag("--images", options->record_images,
-                    "Keep the camera images that the SUT consumed in the record");
-  command->add_flag("--json", options->json, "Print result.json instead of a summary");
-  command->add_flag("--quiet", options->quiet, "Print errors and warnings only");
-  command->footer(R"(Examples:
-  tether run data/scenarios/face_anchor.toml
-  tether run data/scenarios/face_anchor.toml --condition "target, no sync" --seed 7
-  tether run data/scenarios/face_anchor.toml --target data/profiles/targets/six_times_slower.toml
-  tether run data/scenarios/face_anchor.toml --target ssh://pi@board.local
-  tether run data/scenarios/face_anchor.toml --profile data/profiles/ideal.toml
-  tether run data/scenarios/face_anchor.toml --simulator gazebo
-  tether run data/scenarios/face_anchor.toml --images --out out/one)");
-  command->callback([options, &action] { action = [options] { return run(*options); }; });
+  if (result.outcome == campaign::Outcome::kFailed) say("tether: {}\n", result.reason);
+  return campaign::exit_code(result.outcome);
 }
 
 }  // namespace tether::app

@@ -16,11 +16,4 @@ SimulatorOption parse_simulator_option(const std::string& text) {
                           text));
 }
 
-void add_simulator_option(CLI::App& command, std::string& simulator) {
-  command.add_option("--simulator", simulator,
-                     "What plays the world, over what the condition says: mujoco, in this program; "
-                     "gazebo, which is started and ended by it; or where a simulator listens, "
-                     "unix:/path or tcp://host:port");
-}
-
 }  // namespace tether::app

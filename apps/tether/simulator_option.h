@@ -3,8 +3,6 @@
 #include <string>
 #include <variant>
 
-#include <CLI/CLI.hpp>
-
 #include <tether/sim_protocol/connection.h>
 
 namespace tether::app {
@@ -21,8 +19,5 @@ using SimulatorOption = std::variant<EmbeddedSimulator, GazeboSimulator, sim::pr
 /// "mujoco", "gazebo", "unix:/path" or "tcp://host:port".
 /// @throws Error(kUsage) for anything else.
 SimulatorOption parse_simulator_option(const std::string& text);
-
-/// `--simulator`, of every command that flies.
-void add_simulator_option(CLI::App& command, std::string& simulator);
 
 }  // namespace tether::app

@@ -1,9 +1,6 @@
 #include "commands.h"
-#include "link_trial.h"
-#include "target_probe.h"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,20 +10,17 @@
 
 #include <tether/base/error.h>
 #include <tether/base/version.h>
-#include <tether/experiment/target_readings.h>
+#include <tether/board/bandwidth_probe.h>
+#include <tether/board/target_probe.h>
+#include <tether/board/target_readings.h>
 #include <tether/scenario/target.h>
 
 namespace tether::app {
 
 namespace {
 
-using experiment::Finding;
-using experiment::Health;
-
-struct CheckOptions {
-  std::string address;
-  bool json = false;
-};
+using board::Finding;
+using board::Health;
 
 struct Check {
   std::string target;
@@ -53,22 +47,23 @@ Finding judge_bandwidth(double MB_s) {
 }
 
 Check check_here() {
-  Check check{"this machine", probe_here(ProbeDepth::kFull), {}};
+  Check check{"this machine", board::probe_here(board::ProbeDepth::kFull), {}};
   if (check.readings.empty())
     throw Error(ErrorCode::kSetup, "this machine's shell (sh) does not run the probe");
-  check.findings = experiment::judge(check.readings, version());
+  check.findings = board::judge(check.readings, version());
   return check;
 }
 
-Check check_board(const scenario::SshAddress& address) {
-  SshConnection connection(address);
-  Check check{scenario::to_string(address), probe_board(connection, ProbeDepth::kFull), {}};
+Check check_board(const scenario::SshAddress& address, const std::stop_token& stop) {
+  board::SshConnection connection(address, stop);
+  Check check{
+      scenario::to_string(address), board::probe_board(connection, board::ProbeDepth::kFull), {}};
   if (check.readings.empty())
     throw Error(
         ErrorCode::kSetup,
         fmt::format("{} is there, but its shell (sh) does not run the probe", check.target));
-  check.findings = experiment::judge(check.readings, version());
-  if (const auto link = try_link(connection)) {
+  check.findings = board::judge(check.readings, version());
+  if (const auto link = board::probe_bandwidth(connection)) {
     check.findings.push_back(judge_round_trip(link->round_trip_s));
     check.findings.push_back(judge_bandwidth(link->to_board_MB_s));
   } else {
@@ -93,7 +88,7 @@ std::string to_text(const Check& check) {
   std::string text = check.target + "\n";
   for (const Finding& finding : check.findings)
     text += fmt::format("  {:<5}{:<22} {}{}\n",
-                        finding.health == Health::kOk ? "" : experiment::name(finding.health),
+                        finding.health == Health::kOk ? "" : board::name(finding.health),
                         finding.subject, finding.value,
                         finding.advice.empty() ? "" : fmt::format("  ({})", finding.advice));
   return text + conclusion(check) + "\n";
@@ -104,39 +99,20 @@ std::string to_json(const Check& check) {
   for (const Finding& finding : check.findings)
     json["findings"].push_back({{"subject", finding.subject},
                                 {"value", finding.value},
-                                {"health", experiment::name(finding.health)},
+                                {"health", board::name(finding.health)},
                                 {"advice", finding.advice}});
   json["readings"] = check.readings;
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-int run(const CheckOptions& options) {
-  const Check check = options.address.empty()
-                          ? check_here()
-                          : check_board(scenario::parse_ssh_address(options.address));
-  fmt::print("{}", options.json ? to_json(check) : to_text(check));
-  return has(check, Health::kBad) ? 1 : 0;
-}
-
 }  // namespace
 
-void add_target_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<CheckOptions>();
-  CLI::App* target = program.add_subcommand("target", "Machines that a SUT may run on");
-  target->require_subcommand(1);
-  target->footer("Examples:\n  tether target check ssh://pi@board.local");
-  CLI::App* check =
-      target->add_subcommand("check", "Say what of a machine would spoil a measurement");
-  check->add_option("address", options->address,
-                    "ssh://[user@]board[:port]; this machine if not given");
-  check->add_flag("--json", options->json, "Print findings and readings as JSON");
-  check->footer(
-      R"(Exit codes: 0 fine, 1 something would spoil a measurement, 2 wrong use, 3 not reachable.
-
-Examples:
-  tether target check
-  tether target check ssh://pi@board.local)");
-  check->callback([options, &action] { action = [options] { return run(*options); }; });
+int check_target(const CheckOptions& options, const std::stop_token& stop) {
+  const Check check = options.address.empty()
+                          ? check_here()
+                          : check_board(scenario::parse_ssh_address(options.address), stop);
+  fmt::print("{}", options.json ? to_json(check) : to_text(check));
+  return has(check, Health::kBad) ? 1 : 0;
 }
 
 }  // namespace tether::app

@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include <tether/experiment/campaign_folder.h>
+#include <tether/campaign/campaign_folder.h>
 
 /// Campaign files, and the plan that is made of them. Input: the file.
 namespace tether::fuzz {
@@ -22,8 +22,8 @@ void require_whole(const scenario::Campaign& campaign) {
 
 void require_plan(const scenario::Campaign& campaign) {
   std::set<std::filesystem::path> folders;
-  const auto plans = experiment::plan_trials(campaign, "/results");
-  for (const experiment::TrialPlan& plan : plans) {
+  const auto plans = campaign::plan_trials(campaign, "/results");
+  for (const campaign::TrialPlan& plan : plans) {
     require(folders.insert(plan.folder).second, "two trials in one folder");
     require(plan.scenario != nullptr && plan.condition != nullptr, "a trial of nothing");
   }

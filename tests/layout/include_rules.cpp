@@ -88,11 +88,12 @@ std::map<std::string, std::set<std::string>> actual_dependencies(
 const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
   static const std::map<std::string, std::set<std::string>> kArrows = {
       {"base", {}},
+      {"os", {"base"}},
       {"toml", {"base"}},
       {"uav", {"base"}},
       {"sync", {"base"}},
       {"link", {"base", "uav"}},
-      {"client", {"base", "uav", "link"}},
+      {"client", {"base", "os", "uav", "link"}},
       {"client_c_api", {"base", "uav", "link", "client"}},
       {"supervisor", {"base", "link", "client"}},
       {"devices", {"base", "uav", "client"}},
@@ -108,10 +109,15 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"sim_protocol", {"base", "uav", "link"}},
       {"sim_gazebo_plugin", {"base", "uav", "sim_protocol"}},
       {"sim_remote", {"base", "uav", "link", "sim", "sim_sensing", "sim_protocol"}},
+      {"sim_gazebo", {"base", "os", "link", "sim", "sim_protocol", "sim_remote", "uav"}},
       {"coordinator", {"base", "uav", "sync", "sim", "link", "record"}},
       {"scenario", {"base", "toml", "uav", "sim"}},
-      {"experiment", {"base", "uav", "scenario", "record"}},
-      {"report", {"base", "uav", "record", "scenario", "experiment"}},
+      {"board", {"base", "os", "record", "scenario"}},
+      {"campaign", {"base", "board", "os", "uav", "scenario", "record"}},
+      {"runner",
+       {"audit", "base", "board", "campaign", "coordinator", "link", "os", "record", "scenario",
+        "sim", "sync", "uav"}},
+      {"report", {"base", "uav", "record", "scenario", "campaign"}},
   };
   return kArrows;
 }

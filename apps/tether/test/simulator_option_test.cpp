@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/scenario_testing/error_message.h>
+#include <tether/base_testing/error_message.h>
 
 namespace tether::app {
 namespace {
@@ -24,7 +24,7 @@ TEST(SimulatorOption, AnythingElseIsWrongUseThatSaysWhatIsAllowed) {
   for (const std::string text :
        {"", "Gazebo", "unix:", "tcp://lab", "ssh://lab:22", "/run/sim.sock"}) {
     const std::string message =
-        scenario::error_message(ErrorCode::kUsage, [&] { parse_simulator_option(text); });
+        error_message(ErrorCode::kUsage, [&] { parse_simulator_option(text); });
     EXPECT_THAT(message, HasSubstr("\"" + text + "\""));
     EXPECT_THAT(message, HasSubstr("mujoco, gazebo, or where one listens"));
   }

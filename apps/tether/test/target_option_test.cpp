@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/scenario_testing/error_message.h>
+#include <tether/base_testing/error_message.h>
 
 namespace tether::app {
 namespace {
@@ -25,7 +25,7 @@ TEST(TargetOption, TellsFilesAddressesAndWaitingApart) {
 
 TEST(TargetOption, AnAddressThatIsNoneIsWrongUse) {
   for (const std::string text : {"ssh://", "http://board", "://"})
-    EXPECT_NE(scenario::error_message(ErrorCode::kUsage, [&] { parse_target_option(text); }), "");
+    EXPECT_NE(error_message(ErrorCode::kUsage, [&] { parse_target_option(text); }), "");
 }
 
 }  // namespace

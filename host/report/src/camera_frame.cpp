@@ -105,7 +105,7 @@ std::string caption_line(unsigned y_px, const char* colour, bool dashed, const s
 }
 
 // Pixel centres lie at whole coordinates in a ROI, at halves in the picture.
-std::string framed(const experiment::PixelRect& rect, const char* colour, bool dashed) {
+std::string framed(const campaign::PixelRect& rect, const char* colour, bool dashed) {
   return fmt::format(
       R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="none" stroke="{}" stroke-width="2.5"{}/>)"
       "\n",
@@ -113,12 +113,12 @@ std::string framed(const experiment::PixelRect& rect, const char* colour, bool d
       rect.bottom_px - rect.top_px, colour, dashed ? R"( stroke-dasharray="7 4")" : "");
 }
 
-experiment::PixelRect rect_of(const ReportedRoi& roi) {
+campaign::PixelRect rect_of(const ReportedRoi& roi) {
   return {roi.u_px - roi.width_px / 2.0, roi.v_px - roi.height_px / 2.0,
           roi.u_px + roi.width_px / 2.0, roi.v_px + roi.height_px / 2.0};
 }
 
-std::string size_text(const experiment::PixelRect& rect) {
+std::string size_text(const campaign::PixelRect& rect) {
   return fmt::format("{:.0f} x {:.0f} px", rect.right_px - rect.left_px,
                      rect.bottom_px - rect.top_px);
 }
@@ -134,8 +134,8 @@ std::optional<ReportedRoi> find_roi(const record::Record& record, const record::
   return std::nullopt;
 }
 
-std::optional<experiment::PixelRect> find_true_roi(const record::Record& record,
-                                                   const record::Image& image) {
+std::optional<campaign::PixelRect> find_true_roi(const record::Record& record,
+                                                 const record::Image& image) {
   const auto name = anchor_looked_for(record, image);
   const auto* anchor = find_if(record.header.anchors, [&](const record::Anchor& candidate) {
     return name && candidate.name == *name;
@@ -143,14 +143,14 @@ std::optional<experiment::PixelRect> find_true_roi(const record::Record& record,
   const auto* camera = find_if(record.header.sensors, [&](const record::SensorInfo& candidate) {
     return candidate.uav == image.uav && candidate.name == image.sensor && candidate.camera;
   });
-  const auto X_WB = experiment::pose_at(record, image.uav, image.at);
+  const auto X_WB = campaign::pose_at(record, image.uav, image.at);
   if (anchor == nullptr || camera == nullptr || !X_WB) return std::nullopt;
-  const auto whole = experiment::true_roi(*camera, *X_WB, *anchor);
-  return whole ? experiment::visible_part(*camera, *whole) : std::nullopt;
+  const auto whole = campaign::true_roi(*camera, *X_WB, *anchor);
+  return whole ? campaign::visible_part(*camera, *whole) : std::nullopt;
 }
 
 std::string frame_svg(const record::Image& image, const std::optional<ReportedRoi>& roi,
-                      const std::optional<experiment::PixelRect>& true_roi, ImageQuality quality) {
+                      const std::optional<campaign::PixelRect>& true_roi, ImageQuality quality) {
   const PixelSize size = size_of_png(image.png);
   const unsigned caption_px = 10 + kCaptionLine_px * (true_roi ? 3 : 2);
   const std::string what = escape_markup(

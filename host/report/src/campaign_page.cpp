@@ -12,13 +12,13 @@
 namespace tether::report {
 namespace {
 
-std::string heading_of(const experiment::ScenarioResults& scenario) {
+std::string heading_of(const campaign::ScenarioResults& scenario) {
   const PaperTable* paper = find_paper_table(scenario.paper_table);
   if (paper == nullptr) return scenario.scenario;
   return fmt::format("{} (the paper's Table {})", scenario.scenario, paper->number);
 }
 
-std::string contents(const experiment::CampaignResults& results) {
+std::string contents(const campaign::CampaignResults& results) {
   if (results.scenarios.size() < 2) return "";
   std::string html = "<nav aria-label=\"Contents\"><ul>";
   for (std::size_t i = 0; i < results.scenarios.size(); ++i) {
@@ -28,7 +28,7 @@ std::string contents(const experiment::CampaignResults& results) {
   return html + "<li><a href=\"#basis\">What the numbers rest on</a></li></ul></nav>\n";
 }
 
-std::string optimism_part(const experiment::ScenarioResults& scenario) {
+std::string optimism_part(const campaign::ScenarioResults& scenario) {
   const std::vector<Comparison> comparisons = optimism(scenario);
   if (comparisons.empty()) return "";
   std::string html =
@@ -38,7 +38,7 @@ std::string optimism_part(const experiment::ScenarioResults& scenario) {
   return html + "</div>\n" + to_html(optimism_table(scenario));
 }
 
-std::string distributions_part(FigureMaker& figures, const experiment::ScenarioResults& scenario) {
+std::string distributions_part(FigureMaker& figures, const campaign::ScenarioResults& scenario) {
   std::string html;
   for (const std::string& metric : scenario.metrics)
     html += figures.plot(distribution_plot(scenario, metric), "");
@@ -101,14 +101,14 @@ std::string frames_part(FigureMaker& figures, const SeedRecords& records) {
          frames;
 }
 
-std::string tables_part(const experiment::ScenarioResults& scenario) {
+std::string tables_part(const campaign::ScenarioResults& scenario) {
   std::string html = folded("All statistics", to_html(details_table(scenario)));
   if (!compare_conditions(scenario).empty())
     html += folded("How the conditions differ", to_html(comparisons_table(scenario)));
   return html;
 }
 
-std::string scenario_section(FigureMaker& figures, const experiment::ScenarioResults& scenario,
+std::string scenario_section(FigureMaker& figures, const campaign::ScenarioResults& scenario,
                              const std::filesystem::path& folder, std::size_t number) {
   const SeedRecords records = read_seed_records(scenario, folder);
   const std::vector<PlottedRun> runs = runs_of(records);
@@ -129,7 +129,7 @@ std::string scenario_section(FigureMaker& figures, const experiment::ScenarioRes
 
 }  // namespace
 
-std::string campaign_page(const experiment::CampaignResults& results,
+std::string campaign_page(const campaign::CampaignResults& results,
                           const std::filesystem::path& folder) {
   FigureMaker figures(results.scenarios.size());
   const std::string& name = results.manifest.name;
@@ -137,7 +137,7 @@ std::string campaign_page(const experiment::CampaignResults& results,
   if (!results.manifest.description.empty()) body += element("p", results.manifest.description);
   body += problems_box(problems(results)) + contents(results);
   std::size_t number = 0;
-  for (const experiment::ScenarioResults& scenario : results.scenarios)
+  for (const campaign::ScenarioResults& scenario : results.scenarios)
     body += scenario_section(figures, scenario, folder, ++number);
   body += "<section id=\"basis\">\n" + element("h2", "What the numbers rest on") +
           basis_html(results) + "</section>\n";

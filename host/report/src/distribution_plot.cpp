@@ -83,18 +83,18 @@ int left_margin_px(const std::vector<Row>& rows) {
   return std::clamp(static_cast<int>(7.5 * static_cast<double>(longest)) + 24, 60, 340);
 }
 
-std::vector<Row> rows_of(const experiment::ScenarioResults& scenario, const std::string& metric) {
+std::vector<Row> rows_of(const campaign::ScenarioResults& scenario, const std::string& metric) {
   std::vector<Row> rows;
-  for (const experiment::ConditionResults& condition : scenario.conditions)
+  for (const campaign::ConditionResults& condition : scenario.conditions)
     rows.push_back({condition.condition, condition.planned, condition.values(metric)});
   return rows;
 }
 
 }  // namespace
 
-std::optional<Plot> distribution_plot(const experiment::ScenarioResults& scenario,
+std::optional<Plot> distribution_plot(const campaign::ScenarioResults& scenario,
                                       const std::string& metric) {
-  const experiment::MetricValue* value = scenario.find_metric(metric);
+  const campaign::MetricValue* value = scenario.find_metric(metric);
   const std::vector<Row> rows = rows_of(scenario, metric);
   const bool any =
       std::any_of(rows.begin(), rows.end(), [](const Row& row) { return !row.values.empty(); });

@@ -100,7 +100,7 @@ std::string figure(const std::string& drawing, const std::string& caption,
                      drawing, caption.empty() ? "" : element("figcaption", caption));
 }
 
-std::string basis_html(const experiment::CampaignResults& results) {
+std::string basis_html(const campaign::CampaignResults& results) {
   Table table = basis_table(results);
   table.title.clear();
   Table files;

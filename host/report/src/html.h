@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <tether/experiment/campaign_results.h>
+#include <tether/campaign/campaign_results.h>
 #include <tether/report/table.h>
 
 /// Parts of an HTML page. Texts are escaped here, and only here.
@@ -24,7 +24,7 @@ std::string folded(const std::string& summary, const std::string& inner);
 std::string figure(const std::string& drawing, const std::string& caption, const std::string& kind);
 
 /// What the numbers rest on, the digests of files folded.
-std::string basis_html(const experiment::CampaignResults& results);
+std::string basis_html(const campaign::CampaignResults& results);
 
 /// The whole page. `body` is HTML.
 std::string html_page(const std::string& title, const std::string& body);

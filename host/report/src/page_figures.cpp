@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
-#include <tether/experiment/campaign_plan.h>
+#include <tether/campaign/campaign_plan.h>
 #include <tether/report/camera_frame.h>
 #include <tether/report/gnuplot.h>
 
@@ -22,14 +22,14 @@ constexpr std::size_t kBytesOfFrames = 6'500'000;
 
 std::filesystem::path record_file(const std::filesystem::path& folder, const std::string& scenario,
                                   const std::string& condition, std::uint64_t seed) {
-  return folder / experiment::trial_folder(scenario, condition, seed) / "record.mcap";
+  return folder / campaign::trial_folder(scenario, condition, seed) / "record.mcap";
 }
 
-std::vector<std::uint64_t> seeds_with_record(const experiment::ScenarioResults& scenario,
-                                             const experiment::ConditionResults& condition,
+std::vector<std::uint64_t> seeds_with_record(const campaign::ScenarioResults& scenario,
+                                             const campaign::ConditionResults& condition,
                                              const std::filesystem::path& folder) {
   std::vector<std::uint64_t> seeds;
-  for (const experiment::TrialResult& trial : condition.trials) {
+  for (const campaign::TrialResult& trial : condition.trials) {
     const auto file = record_file(folder, scenario.scenario, condition.condition, trial.seed);
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored)) seeds.push_back(trial.seed);
@@ -94,10 +94,10 @@ std::string FigureMaker::frames(const record::Record& record) const {
   return html.empty() ? "" : "<div class=\"frames\">\n" + html + "</div>\n";
 }
 
-SeedRecords read_seed_records(const experiment::ScenarioResults& scenario,
+SeedRecords read_seed_records(const campaign::ScenarioResults& scenario,
                               const std::filesystem::path& folder) {
   std::vector<std::vector<std::uint64_t>> seeds;
-  for (const experiment::ConditionResults& condition : scenario.conditions)
+  for (const campaign::ConditionResults& condition : scenario.conditions)
     seeds.push_back(seeds_with_record(scenario, condition, folder));
   std::vector<std::vector<std::uint64_t>> with_any = seeds;
   std::erase_if(with_any, [](const auto& of_condition) { return of_condition.empty(); });

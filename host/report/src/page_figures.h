@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <tether/experiment/campaign_results.h>
+#include <tether/campaign/campaign_results.h>
 #include <tether/record/reader.h>
 #include <tether/report/plots.h>
 
@@ -41,7 +41,7 @@ struct SeedRecords {
 };
 
 /// Of the first seed that has a record under every condition; else each condition's first.
-SeedRecords read_seed_records(const experiment::ScenarioResults& scenario,
+SeedRecords read_seed_records(const campaign::ScenarioResults& scenario,
                               const std::filesystem::path& folder);
 
 }  // namespace tether::report

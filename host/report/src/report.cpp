@@ -18,11 +18,11 @@ struct Column {
   bool in_paper = false;
 };
 
-std::vector<Column> columns_of(const experiment::ScenarioResults& scenario) {
+std::vector<Column> columns_of(const campaign::ScenarioResults& scenario) {
   const PaperTable* paper = find_paper_table(scenario.paper_table);
   std::vector<Column> columns;
   for (const std::string& name : scenario.metrics) {
-    const experiment::MetricValue* metric = scenario.find_metric(name);
+    const campaign::MetricValue* metric = scenario.find_metric(name);
     if (metric == nullptr) continue;
     const bool in_paper = paper != nullptr && paper->has_metric(metric->kind, name);
     columns.push_back({name, metric->kind, with_unit(metric->label, metric->unit), in_paper});
@@ -52,16 +52,16 @@ void add_paper_cells(std::vector<std::string>& row, std::string_view condition,
   row.push_back(figure != nullptr && figure->stddev ? exact(*figure->stddev) : kNone);
 }
 
-void add_cells(std::vector<std::string>& row, const experiment::ConditionResults& results,
+void add_cells(std::vector<std::string>& row, const campaign::ConditionResults& results,
                const Column& column, const PaperTable* paper) {
-  const experiment::Summary summary = experiment::summarise(results.values(column.name));
+  const campaign::Summary summary = campaign::summarise(results.values(column.name));
   row.push_back(summary.n > 0 ? decimals(summary.mean) : kNone);
   row.push_back(decimals(summary.stddev));
   if (column.in_paper) add_paper_cells(row, results.condition, column, *paper);
 }
 
 // What the paper measured and the campaign did not, such as with real sensors.
-void add_rows_of_the_paper_alone(Table& table, const experiment::ScenarioResults& scenario,
+void add_rows_of_the_paper_alone(Table& table, const campaign::ScenarioResults& scenario,
                                  const std::vector<Column>& columns, const PaperTable& paper) {
   const bool any = std::any_of(columns.begin(), columns.end(),
                                [](const Column& column) { return column.in_paper; });
@@ -77,30 +77,29 @@ void add_rows_of_the_paper_alone(Table& table, const experiment::ScenarioResults
   }
 }
 
-std::string trials_note(const experiment::ScenarioResults& scenario) {
+std::string trials_note(const campaign::ScenarioResults& scenario) {
   std::string note = "Trials:";
   const char* separator = "";
-  for (const experiment::ConditionResults& results : scenario.conditions) {
+  for (const campaign::ConditionResults& results : scenario.conditions) {
     note += fmt::format("{} {} {} of {} ({} reached the goal)", separator, results.condition,
                         results.trials.size(), results.planned,
-                        results.count(experiment::Outcome::kGoalReached));
+                        results.count(campaign::Outcome::kGoalReached));
     separator = ";";
   }
   return note + ". Times are simulated time.";
 }
 
 // Why a trial has no value: said once per trial and reason.
-void add_missing_notes(Table& table, const experiment::ConditionResults& results,
+void add_missing_notes(Table& table, const campaign::ConditionResults& results,
                        const std::vector<Column>& columns) {
-  for (const experiment::TrialResult& trial : results.trials) {
+  for (const campaign::TrialResult& trial : results.trials) {
     std::set<std::string> reasons;
     for (const Column& column : columns) {
-      const experiment::MetricValue* metric = trial.find_metric(column.name);
+      const campaign::MetricValue* metric = trial.find_metric(column.name);
       const bool has_value = metric != nullptr && metric->value;
       if (has_value) continue;
       const std::string why = metric != nullptr ? metric->missing_because : "not computed";
-      const std::string& reason =
-          trial.outcome == experiment::Outcome::kFailed ? trial.reason : why;
+      const std::string& reason = trial.outcome == campaign::Outcome::kFailed ? trial.reason : why;
       if (!reasons.insert(reason).second) continue;
       table.notes.push_back(
           fmt::format("Not in a mean: {}, seed {}: {}.", results.condition, trial.seed, reason));
@@ -111,8 +110,8 @@ void add_missing_notes(Table& table, const experiment::ConditionResults& results
                                     results.planned - results.trials.size(), results.condition));
 }
 
-void add_second_attempt_notes(Table& table, const experiment::ConditionResults& results) {
-  for (const experiment::TrialResult& trial : results.trials) {
+void add_second_attempt_notes(Table& table, const campaign::ConditionResults& results) {
+  for (const campaign::TrialResult& trial : results.trials) {
     if (trial.this_run.attempts < 2) continue;
     table.notes.push_back(
         fmt::format("Second attempt: {}, seed {}; the first could not be set up: {}.",
@@ -120,8 +119,8 @@ void add_second_attempt_notes(Table& table, const experiment::ConditionResults& 
   }
 }
 
-void add_target_notes(Table& table, const experiment::ConditionResults& results) {
-  for (const experiment::TrialResult& trial : results.trials) {
+void add_target_notes(Table& table, const campaign::ConditionResults& results) {
+  for (const campaign::TrialResult& trial : results.trials) {
     if (!trial.this_run.target) continue;
     for (const std::string& warning : trial.this_run.target->warnings)
       table.notes.push_back(
@@ -132,10 +131,10 @@ void add_target_notes(Table& table, const experiment::ConditionResults& results)
 // A machine that is too busy may have something to say of every trial: the first few in full.
 constexpr std::size_t kTrialsNotedInFull = 3;
 
-void add_run_notes(Table& table, const experiment::ConditionResults& results) {
+void add_run_notes(Table& table, const campaign::ConditionResults& results) {
   std::size_t in_full = 0;
   std::vector<std::uint64_t> others;
-  for (const experiment::TrialResult& trial : results.trials) {
+  for (const campaign::TrialResult& trial : results.trials) {
     if (trial.this_run.notes.empty()) continue;
     if (in_full == kTrialsNotedInFull) {
       others.push_back(trial.seed);
@@ -155,29 +154,29 @@ void add_run_notes(Table& table, const experiment::ConditionResults& results) {
 // Comparisons.
 
 std::optional<Comparison> compare(const std::string& metric, const std::string& unit,
-                                  const experiment::ConditionResults& a,
-                                  const experiment::ConditionResults& b) {
+                                  const campaign::ConditionResults& a,
+                                  const campaign::ConditionResults& b) {
   const std::vector<double> values_a = a.values(metric), values_b = b.values(metric);
   if (values_a.empty() || values_b.empty()) return std::nullopt;
   return Comparison{metric,
                     unit,
                     a.condition,
                     b.condition,
-                    experiment::compare_means(values_a, values_b),
-                    experiment::mann_whitney(values_a, values_b)};
+                    campaign::compare_means(values_a, values_b),
+                    campaign::mann_whitney(values_a, values_b)};
 }
 
 template <class Wanted>
-std::vector<Comparison> compare_where(const experiment::ScenarioResults& scenario,
+std::vector<Comparison> compare_where(const campaign::ScenarioResults& scenario,
                                       const Wanted& wanted) {
   std::vector<Comparison> comparisons;
   for (const std::string& name : scenario.metrics) {
-    const experiment::MetricValue* metric = scenario.find_metric(name);
+    const campaign::MetricValue* metric = scenario.find_metric(name);
     if (metric == nullptr) continue;
     for (std::size_t i = 0; i < scenario.conditions.size(); ++i) {
       for (std::size_t j = 0; j < scenario.conditions.size(); ++j) {
         if (!wanted(i, j)) continue;
-        const experiment::ConditionResults &a = scenario.conditions[i], &b = scenario.conditions[j];
+        const campaign::ConditionResults &a = scenario.conditions[i], &b = scenario.conditions[j];
         if (auto result = compare(name, metric->unit, a, b)) comparisons.push_back(*result);
       }
     }
@@ -185,17 +184,17 @@ std::vector<Comparison> compare_where(const experiment::ScenarioResults& scenari
   return comparisons;
 }
 
-bool is_synchronised_twin(const experiment::ConditionResults& a,
-                          const experiment::ConditionResults& b) {
+bool is_synchronised_twin(const campaign::ConditionResults& a,
+                          const campaign::ConditionResults& b) {
   if (a.trials.empty() || b.trials.empty()) return false;
-  const experiment::TrialResult &first_a = a.trials.front(), &first_b = b.trials.front();
+  const campaign::TrialResult &first_a = a.trials.front(), &first_b = b.trials.front();
   return first_a.policy == scenario::name(scenario::Policy::kConservativeBarrier) &&
          first_b.policy == scenario::name(scenario::Policy::kFreeRunning) &&
          first_a.clock == first_b.clock && first_a.cpu_factor == first_b.cpu_factor &&
          first_a.target == first_b.target && first_a.profiles == first_b.profiles;
 }
 
-Table table_of(const experiment::ScenarioResults& scenario,
+Table table_of(const campaign::ScenarioResults& scenario,
                const std::vector<Comparison>& comparisons) {
   Table table;
   table.text_columns = 2;
@@ -205,7 +204,7 @@ Table table_of(const experiment::ScenarioResults& scenario,
                      {"95 % interval", 1},
                      {"p", 1}}};
   for (const Comparison& c : comparisons) {
-    const experiment::MetricValue* metric = scenario.find_metric(c.metric);
+    const campaign::MetricValue* metric = scenario.find_metric(c.metric);
     table.rows.push_back({with_unit(metric->label, c.unit), fmt::format("{} − {}", c.a, c.b),
                           decimals(c.means.difference), interval(c.means.ci95),
                           p_value(c.ranks.p_two_sided)});
@@ -220,14 +219,14 @@ Table table_of(const experiment::ScenarioResults& scenario,
 
 }  // namespace
 
-Table paper_form_table(const experiment::ScenarioResults& scenario) {
+Table paper_form_table(const campaign::ScenarioResults& scenario) {
   const PaperTable* paper = find_paper_table(scenario.paper_table);
   const std::vector<Column> columns = columns_of(scenario);
   Table table;
   table.title = paper != nullptr ? fmt::format("Table {}: {}", paper->number, paper->title)
                                  : fmt::format("Scenario {}", scenario.scenario);
   add_headings(table, columns);
-  for (const experiment::ConditionResults& results : scenario.conditions) {
+  for (const campaign::ConditionResults& results : scenario.conditions) {
     std::vector<std::string> row = {results.condition};
     for (const Column& column : columns) add_cells(row, results, column, paper);
     table.rows.push_back(std::move(row));
@@ -235,7 +234,7 @@ Table paper_form_table(const experiment::ScenarioResults& scenario) {
   if (paper != nullptr) add_rows_of_the_paper_alone(table, scenario, columns, *paper);
   table.notes.push_back(trials_note(scenario));
   if (paper != nullptr) table.notes.push_back(fmt::format("Paper: {}.", paper->source));
-  for (const experiment::ConditionResults& results : scenario.conditions) {
+  for (const campaign::ConditionResults& results : scenario.conditions) {
     add_missing_notes(table, results, columns);
     add_second_attempt_notes(table, results);
     add_target_notes(table, results);
@@ -244,7 +243,7 @@ Table paper_form_table(const experiment::ScenarioResults& scenario) {
   return table;
 }
 
-Table details_table(const experiment::ScenarioResults& scenario) {
+Table details_table(const campaign::ScenarioResults& scenario) {
   Table table;
   table.title = fmt::format("Details of {}", scenario.scenario);
   table.text_columns = 2;
@@ -258,8 +257,8 @@ Table details_table(const experiment::ScenarioResults& scenario) {
                      {"Min", 1},
                      {"Max", 1}}};
   for (const Column& column : columns_of(scenario)) {
-    for (const experiment::ConditionResults& results : scenario.conditions) {
-      const experiment::Summary s = experiment::summarise(results.values(column.name));
+    for (const campaign::ConditionResults& results : scenario.conditions) {
+      const campaign::Summary s = campaign::summarise(results.values(column.name));
       std::vector<std::string> row = {column.heading, results.condition, std::to_string(s.n)};
       if (s.n == 0) {
         row.resize(9, kNone);
@@ -274,24 +273,24 @@ Table details_table(const experiment::ScenarioResults& scenario) {
   return table;
 }
 
-std::vector<Comparison> compare_conditions(const experiment::ScenarioResults& scenario) {
+std::vector<Comparison> compare_conditions(const campaign::ScenarioResults& scenario) {
   // Each pair once, the later minus the earlier.
   return compare_where(scenario, [](std::size_t a, std::size_t b) { return a > b; });
 }
 
-Table comparisons_table(const experiment::ScenarioResults& scenario) {
+Table comparisons_table(const campaign::ScenarioResults& scenario) {
   Table table = table_of(scenario, compare_conditions(scenario));
   table.title = fmt::format("How the conditions of {} differ", scenario.scenario);
   return table;
 }
 
-std::vector<Comparison> optimism(const experiment::ScenarioResults& scenario) {
+std::vector<Comparison> optimism(const campaign::ScenarioResults& scenario) {
   return compare_where(scenario, [&](std::size_t a, std::size_t b) {
     return is_synchronised_twin(scenario.conditions[a], scenario.conditions[b]);
   });
 }
 
-Table optimism_table(const experiment::ScenarioResults& scenario) {
+Table optimism_table(const campaign::ScenarioResults& scenario) {
   Table table = table_of(scenario, optimism(scenario));
   table.title = fmt::format("The optimism of an unsynchronised test of {}", scenario.scenario);
   table.notes.push_back(
@@ -299,9 +298,9 @@ Table optimism_table(const experiment::ScenarioResults& scenario) {
   return table;
 }
 
-std::vector<Table> report_tables(const experiment::CampaignResults& results) {
+std::vector<Table> report_tables(const campaign::CampaignResults& results) {
   std::vector<Table> tables;
-  for (const experiment::ScenarioResults& scenario : results.scenarios) {
+  for (const campaign::ScenarioResults& scenario : results.scenarios) {
     tables.push_back(paper_form_table(scenario));
     tables.push_back(details_table(scenario));
     if (!compare_conditions(scenario).empty()) tables.push_back(comparisons_table(scenario));

@@ -29,21 +29,21 @@ std::string seeds_text(const std::vector<std::uint64_t>& seeds) {
 }
 
 template <class Visit>
-void for_each_trial(const experiment::CampaignResults& results, const Visit& visit) {
-  for (const experiment::ScenarioResults& scenario : results.scenarios) {
-    for (const experiment::ConditionResults& condition : scenario.conditions) {
-      for (const experiment::TrialResult& trial : condition.trials) visit(scenario, trial);
+void for_each_trial(const campaign::CampaignResults& results, const Visit& visit) {
+  for (const campaign::ScenarioResults& scenario : results.scenarios) {
+    for (const campaign::ConditionResults& condition : scenario.conditions) {
+      for (const campaign::TrialResult& trial : condition.trials) visit(scenario, trial);
     }
   }
 }
 
-std::size_t noted_trials(const experiment::ConditionResults& condition) {
+std::size_t noted_trials(const campaign::ConditionResults& condition) {
   return static_cast<std::size_t>(
       std::count_if(condition.trials.begin(), condition.trials.end(),
                     [](const auto& trial) { return !trial.this_run.notes.empty(); }));
 }
 
-std::string tie_text(const experiment::TrialResult& trial) {
+std::string tie_text(const campaign::TrialResult& trial) {
   std::string text = fmt::format("{}: {}, {} clock", trial.condition, trial.policy, trial.clock);
   if (trial.clock == "cpu" || (trial.clock == "wall" && trial.cpu_factor != 1.0))
     text += fmt::format(" × {}", trial.cpu_factor);
@@ -60,7 +60,7 @@ std::string tie_text(const experiment::TrialResult& trial) {
 // Seconds of ST per second of wall time, under each condition.
 class Speeds {
  public:
-  void add(const experiment::TrialResult& trial) {
+  void add(const campaign::TrialResult& trial) {
     const double wall_s = to_seconds(trial.this_run.wall);
     if (wall_s <= 0.0) return;
     const double speed = to_seconds(trial.sync.st_at_end) / wall_s;
@@ -87,14 +87,14 @@ struct Basis {
   std::set<std::string> ties, machines, suts;
   std::size_t audited = 0, passed = 0, synchronised = 0;
   std::uint64_t violations = 0, interactions = 0;
-  std::optional<experiment::StopFigures> stops;
+  std::optional<campaign::StopFigures> stops;
 
-  void add(const experiment::TrialResult& trial) {
+  void add(const campaign::TrialResult& trial) {
     ties.insert(tie_text(trial));
     speeds.add(trial);
     ++trials;
     if (!trial.this_run.machine.empty()) machines.insert(trial.this_run.machine);
-    for (const experiment::SutResult& sut : trial.suts) suts.insert(sut.sut);
+    for (const campaign::SutResult& sut : trial.suts) suts.insert(sut.sut);
     violations += trial.sync.causality_violations;
     interactions += trial.sync.interactions;
     if (trial.sync.stops) add(*trial.sync.stops);
@@ -104,7 +104,7 @@ struct Basis {
     if (trial.audit->passed) ++passed;
   }
 
-  void add(const experiment::StopFigures& trial) {
+  void add(const campaign::StopFigures& trial) {
     if (!stops) stops.emplace();
     stops->count += trial.count;
     stops->largest_overshoot = std::max(stops->largest_overshoot, trial.largest_overshoot);
@@ -113,11 +113,12 @@ struct Basis {
 
 }  // namespace
 
-Table basis_table(const experiment::CampaignResults& results) {
+Table basis_table(const campaign::CampaignResults& results) {
   Basis basis;
-  for_each_trial(results, [&](const experiment::ScenarioResults&,
-                              const experiment::TrialResult& t) { basis.add(t); });
-  for (const experiment::ScenarioResults& scenario : results.scenarios) {
+  for_each_trial(results, [&](const campaign::ScenarioResults&, const campaign::TrialResult& t) {
+    basis.add(t);
+  });
+  for (const campaign::ScenarioResults& scenario : results.scenarios) {
     for (const auto& condition : scenario.conditions) basis.planned += condition.planned;
   }
   Table table;
@@ -143,12 +144,12 @@ Table basis_table(const experiment::CampaignResults& results) {
   return table;
 }
 
-Table run_table(const experiment::TrialResult& trial) {
+Table run_table(const campaign::TrialResult& trial) {
   Table table;
   table.title = fmt::format("{}, {}, seed {}: {}", trial.scenario, trial.condition, trial.seed,
                             name(trial.outcome));
   table.headings = {{{"Metric", 1}, {"Value", 1}, {"At most", 1}}};
-  for (const experiment::MetricValue& metric : trial.metrics) {
+  for (const campaign::MetricValue& metric : trial.metrics) {
     table.rows.push_back({with_unit(metric.label, metric.unit), decimals(metric.value),
                           metric.max ? exact(*metric.max) : kNone});
     if (!metric.value)
@@ -160,7 +161,7 @@ Table run_table(const experiment::TrialResult& trial) {
   return table;
 }
 
-Table trials_table(const experiment::CampaignResults& results) {
+Table trials_table(const campaign::CampaignResults& results) {
   Table table;
   table.headings = {{{"scenario", 1},
                      {"condition", 1},
@@ -171,18 +172,18 @@ Table trials_table(const experiment::CampaignResults& results) {
                      {"value", 1},
                      {"reason", 1},
                      {"notes", 1}}};
-  for_each_trial(results, [&](const experiment::ScenarioResults& scenario,
-                              const experiment::TrialResult& trial) {
-    for (const experiment::MetricValue& metric : trial.metrics) {
-      table.rows.push_back({scenario.scenario, trial.condition, std::to_string(trial.seed),
-                            std::string(name(trial.outcome)), metric.name, metric.unit,
-                            exact(metric.value), trial.reason, notes_of(trial)});
-    }
-  });
+  for_each_trial(
+      results, [&](const campaign::ScenarioResults& scenario, const campaign::TrialResult& trial) {
+        for (const campaign::MetricValue& metric : trial.metrics) {
+          table.rows.push_back({scenario.scenario, trial.condition, std::to_string(trial.seed),
+                                std::string(name(trial.outcome)), metric.name, metric.unit,
+                                exact(metric.value), trial.reason, notes_of(trial)});
+        }
+      });
   return table;
 }
 
-Table summaries_table(const experiment::CampaignResults& results) {
+Table summaries_table(const campaign::CampaignResults& results) {
   Table table;
   table.headings = {{{"scenario", 1},
                      {"condition", 1},
@@ -198,13 +199,13 @@ Table summaries_table(const experiment::CampaignResults& results) {
                      {"paper_mean", 1},
                      {"paper_stddev", 1},
                      {"noted", 1}}};
-  for (const experiment::ScenarioResults& scenario : results.scenarios) {
+  for (const campaign::ScenarioResults& scenario : results.scenarios) {
     const PaperTable* paper = find_paper_table(scenario.paper_table);
     for (const std::string& name : scenario.metrics) {
-      const experiment::MetricValue* metric = scenario.find_metric(name);
+      const campaign::MetricValue* metric = scenario.find_metric(name);
       if (metric == nullptr) continue;
-      for (const experiment::ConditionResults& condition : scenario.conditions) {
-        const experiment::Summary s = experiment::summarise(condition.values(name));
+      for (const campaign::ConditionResults& condition : scenario.conditions) {
+        const campaign::Summary s = campaign::summarise(condition.values(name));
         const bool any = s.n > 0;
         const PaperFigure* figure =
             paper != nullptr ? paper->find(condition.condition, metric->kind, name) : nullptr;

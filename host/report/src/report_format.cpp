@@ -13,7 +13,7 @@ std::string decimals(const std::optional<double>& value) {
   return value ? decimals(*value) : kNone;
 }
 
-std::string interval(const std::optional<experiment::Interval>& value) {
+std::string interval(const std::optional<campaign::Interval>& value) {
   if (!value) return kNone;
   return fmt::format("[{}, {}]", decimals(value->low), decimals(value->high));
 }
@@ -33,7 +33,7 @@ std::string with_unit(const std::string& label, const std::string& unit) {
   return unit == "1" ? label : fmt::format("{} ({})", label, unit);
 }
 
-std::string notes_of(const experiment::TrialResult& trial) {
+std::string notes_of(const campaign::TrialResult& trial) {
   return fmt::format("{}", fmt::join(trial.this_run.notes, "; "));
 }
 

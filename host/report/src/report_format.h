@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include <tether/experiment/result.h>
-#include <tether/experiment/statistics.h>
+#include <tether/campaign/result.h>
+#include <tether/campaign/statistics.h>
 
 /// How the numbers of a report are written.
 namespace tether::report {
@@ -15,7 +15,7 @@ inline constexpr const char* kNone = "–";
 std::string decimals(double value);
 std::string decimals(const std::optional<double>& value);
 /// "[1.234, 5.678]".
-std::string interval(const std::optional<experiment::Interval>& value);
+std::string interval(const std::optional<campaign::Interval>& value);
 /// "0.012", "< 0.001".
 std::string p_value(double p);
 /// The shortest text that reads back as the same number; empty for none.
@@ -24,6 +24,6 @@ std::string exact(const std::optional<double>& value);
 /// "Time required (s)"; counts have no unit.
 std::string with_unit(const std::string& label, const std::string& unit);
 /// What happened to a run and nobody meant to, in one line; empty: nothing.
-std::string notes_of(const experiment::TrialResult& trial);
+std::string notes_of(const campaign::TrialResult& trial);
 
 }  // namespace tether::report

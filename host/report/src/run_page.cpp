@@ -13,25 +13,25 @@
 namespace tether::report {
 namespace {
 
-const experiment::TrialResult& trial_of(const experiment::CampaignResults& results) {
+const campaign::TrialResult& trial_of(const campaign::CampaignResults& results) {
   return results.scenarios.front().conditions.front().trials.front();
 }
 
-std::string outcome_words(experiment::Outcome outcome) {
+std::string outcome_words(campaign::Outcome outcome) {
   switch (outcome) {
-    case experiment::Outcome::kGoalReached:
+    case campaign::Outcome::kGoalReached:
       return "Goal reached";
-    case experiment::Outcome::kGoalMissed:
+    case campaign::Outcome::kGoalMissed:
       return "Goal missed";
-    case experiment::Outcome::kFailed:
+    case campaign::Outcome::kFailed:
       return "Failed";
   }
   return std::string(name(outcome));
 }
 
-std::string outcome_sentences(const experiment::TrialResult& trial) {
+std::string outcome_sentences(const campaign::TrialResult& trial) {
   std::string text = fmt::format("{}: {}.", outcome_words(trial.outcome), trial.reason);
-  for (const experiment::SutResult& sut : trial.suts) {
+  for (const campaign::SutResult& sut : trial.suts) {
     if (!sut.outcome.empty())
       text += fmt::format(" The software of {} ended with: {}.", sut.uav, sut.outcome);
   }
@@ -77,14 +77,13 @@ std::string record_part(const std::filesystem::path& folder) {
 
 }  // namespace
 
-experiment::CampaignResults read_run_results(const std::filesystem::path& folder) {
-  const experiment::TrialResult trial = experiment::read_result(folder);
-  experiment::ScenarioResults scenario;
+campaign::CampaignResults read_run_results(const std::filesystem::path& folder) {
+  const campaign::TrialResult trial = campaign::read_result(folder);
+  campaign::ScenarioResults scenario;
   scenario.scenario = trial.scenario;
-  for (const experiment::MetricValue& metric : trial.metrics)
-    scenario.metrics.push_back(metric.name);
+  for (const campaign::MetricValue& metric : trial.metrics) scenario.metrics.push_back(metric.name);
   scenario.conditions = {{trial.condition, {trial}, 1}};
-  experiment::CampaignResults results;
+  campaign::CampaignResults results;
   results.manifest.name =
       fmt::format("{}, {}, seed {}", trial.scenario, trial.condition, trial.seed);
   results.manifest.seeds = {trial.seed};
@@ -94,8 +93,8 @@ experiment::CampaignResults read_run_results(const std::filesystem::path& folder
 }
 
 std::string run_page(const std::filesystem::path& folder) {
-  const experiment::CampaignResults results = read_run_results(folder);
-  const experiment::TrialResult& trial = trial_of(results);
+  const campaign::CampaignResults results = read_run_results(folder);
+  const campaign::TrialResult& trial = trial_of(results);
   const std::string& title = results.manifest.name;
   std::string body = element("h1", title);
   body += "<p class=\"verdict\">" + escape_markup(outcome_sentences(trial)) + "</p>\n";

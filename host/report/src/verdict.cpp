@@ -32,7 +32,7 @@ std::string with_and(const std::vector<std::string>& parts) {
 }
 
 // Decimals that show the interval's half width with one digit, or two where the first is below 5.
-int decimals_for(const experiment::MeanDifference& means) {
+int decimals_for(const campaign::MeanDifference& means) {
   const double scale = means.ci95 && means.ci95->high > means.ci95->low
                            ? 0.5 * (means.ci95->high - means.ci95->low)
                            : std::abs(means.difference) / 10.0;
@@ -53,7 +53,7 @@ std::string amount(double value, int places, const std::string& unit) {
   return number(value, places) + (unit == "1" ? "" : " " + unit);
 }
 
-std::string interval_text(const std::optional<experiment::Interval>& interval, int places,
+std::string interval_text(const std::optional<campaign::Interval>& interval, int places,
                           bool negated) {
   if (!interval) return "too few trials for an interval";
   const double low = negated ? -interval->high : interval->low;
@@ -61,7 +61,7 @@ std::string interval_text(const std::optional<experiment::Interval>& interval, i
   return fmt::format("95 % interval {} to {}", number(low, places), number(high, places));
 }
 
-bool holds_zero(const std::optional<experiment::Interval>& interval) {
+bool holds_zero(const std::optional<campaign::Interval>& interval) {
   return interval && interval->low <= 0.0 && interval->high >= 0.0;
 }
 
@@ -71,12 +71,12 @@ bool is_told_apart(const Comparison& comparison) {
 
 // The verdict.
 
-std::string goals_sentence(const experiment::ScenarioResults& scenario) {
+std::string goals_sentence(const campaign::ScenarioResults& scenario) {
   std::vector<std::string> parts;
-  for (const experiment::ConditionResults& condition : scenario.conditions) {
+  for (const campaign::ConditionResults& condition : scenario.conditions) {
     parts.push_back(fmt::format("{} of {} trials on {}",
-                                condition.count(experiment::Outcome::kGoalReached),
-                                condition.planned, in_quotes(condition.condition)));
+                                condition.count(campaign::Outcome::kGoalReached), condition.planned,
+                                in_quotes(condition.condition)));
   }
   return fmt::format("The software reached its goal within the limits in {}.", with_and(parts));
 }
@@ -89,7 +89,7 @@ std::string difference_text(const Comparison& c, const std::string& label) {
                      interval_text(c.means.ci95, places, smaller));
 }
 
-std::string comparison_sentence(const experiment::ScenarioResults& scenario,
+std::string comparison_sentence(const campaign::ScenarioResults& scenario,
                                 const std::vector<Comparison>& comparisons,
                                 const std::string& first, const std::string& other) {
   std::vector<std::string> differences, alike;
@@ -112,9 +112,9 @@ std::string comparison_sentence(const experiment::ScenarioResults& scenario,
 }
 
 /// Boards that were slowed down; empty: none.
-std::string spoiled_sentence(const experiment::ScenarioResults& scenario) {
+std::string spoiled_sentence(const campaign::ScenarioResults& scenario) {
   std::vector<std::string> parts;
-  for (const experiment::ConditionResults& condition : scenario.conditions) {
+  for (const campaign::ConditionResults& condition : scenario.conditions) {
     const auto spoiled = std::ranges::count_if(condition.trials, [](const auto& trial) {
       return trial.this_run.target && trial.this_run.target->is_spoiled;
     });
@@ -129,19 +129,19 @@ std::string spoiled_sentence(const experiment::ScenarioResults& scenario) {
 
 // Problems.
 
-std::string place(const experiment::ScenarioResults& scenario,
-                  const experiment::ConditionResults& condition) {
+std::string place(const campaign::ScenarioResults& scenario,
+                  const campaign::ConditionResults& condition) {
   return fmt::format("{}, {}", scenario.scenario, condition.condition);
 }
 
 void add_trial_problems(std::vector<std::string>& lines, const std::string& where,
-                        const experiment::TrialResult& trial) {
+                        const campaign::TrialResult& trial) {
   const std::string which = fmt::format("{}, seed {}", where, trial.seed);
-  if (trial.outcome == experiment::Outcome::kFailed) {
+  if (trial.outcome == campaign::Outcome::kFailed) {
     lines.push_back(fmt::format("{}: failed, and is in no mean: {}", which, trial.reason));
     return;
   }
-  for (const experiment::MetricValue& metric : trial.metrics) {
+  for (const campaign::MetricValue& metric : trial.metrics) {
     if (!metric.value)
       lines.push_back(
           fmt::format("{}: no {}: {}", which, in_a_sentence(metric.label), metric.missing_because));
@@ -160,7 +160,7 @@ void add_trial_problems(std::vector<std::string>& lines, const std::string& wher
 
 void add_missing_seeds(std::vector<std::string>& lines, const std::string& where,
                        const std::vector<std::uint64_t>& seeds,
-                       const experiment::ConditionResults& condition) {
+                       const campaign::ConditionResults& condition) {
   std::vector<std::string> missing;
   for (const std::uint64_t seed : seeds) {
     const bool is_there = std::any_of(condition.trials.begin(), condition.trials.end(),
@@ -174,17 +174,17 @@ void add_missing_seeds(std::vector<std::string>& lines, const std::string& where
 
 }  // namespace
 
-std::string verdict(const experiment::ScenarioResults& scenario) {
+std::string verdict(const campaign::ScenarioResults& scenario) {
   std::string text = goals_sentence(scenario);
   if (scenario.conditions.empty()) return text;
   const std::vector<Comparison> comparisons = compare_conditions(scenario);
   const std::string& first = scenario.conditions.front().condition;
-  for (const experiment::ConditionResults& other : scenario.conditions)
+  for (const campaign::ConditionResults& other : scenario.conditions)
     text += comparison_sentence(scenario, comparisons, first, other.condition);
   return text + spoiled_sentence(scenario);
 }
 
-std::string optimism_sentence(const Comparison& comparison, const experiment::MetricValue& metric) {
+std::string optimism_sentence(const Comparison& comparison, const campaign::MetricValue& metric) {
   const double hidden = comparison.means.difference;
   const int places = decimals_for(comparison.means);
   if (hidden == 0.0 || holds_zero(comparison.means.ci95)) {
@@ -207,12 +207,12 @@ std::string optimism_sentence(const Comparison& comparison, const experiment::Me
                              range);
 }
 
-std::vector<std::string> problems(const experiment::CampaignResults& results) {
+std::vector<std::string> problems(const campaign::CampaignResults& results) {
   std::vector<std::string> lines;
-  for (const experiment::ScenarioResults& scenario : results.scenarios) {
-    for (const experiment::ConditionResults& condition : scenario.conditions) {
+  for (const campaign::ScenarioResults& scenario : results.scenarios) {
+    for (const campaign::ConditionResults& condition : scenario.conditions) {
       const std::string where = place(scenario, condition);
-      for (const experiment::TrialResult& trial : condition.trials)
+      for (const campaign::TrialResult& trial : condition.trials)
         add_trial_problems(lines, where, trial);
       add_missing_seeds(lines, where, results.manifest.seeds, condition);
     }

@@ -106,8 +106,8 @@ TEST(CameraFrame, TakesTheOnlyAnchorWithoutAWord) {
 }
 
 TEST(CameraFrame, FramesBothRoisAndSaysWhichIsWhich) {
-  const std::string svg = frame_svg(image(), ReportedRoi{5.0, 3.0, 4.0, 2.0},
-                                    experiment::PixelRect{1.0, 2.0, 4.0, 7.0});
+  const std::string svg =
+      frame_svg(image(), ReportedRoi{5.0, 3.0, 4.0, 2.0}, campaign::PixelRect{1.0, 2.0, 4.0, 7.0});
   EXPECT_THAT(svg, HasSubstr(R"(<image width="12" height="8" href="data:image/png;base64,iVBOR)"));
   EXPECT_THAT(svg, HasSubstr(R"(<rect x="3.50" y="2.50" width="4.00" height="2.00")"));
   EXPECT_THAT(svg, HasSubstr(R"(<rect x="1.50" y="2.50" width="3.00" height="5.00")"));

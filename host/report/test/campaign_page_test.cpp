@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <tinyxml2.h>
 
-#include <tether/experiment/campaign_folder.h>
-#include <tether/experiment_testing/sample_campaign.h>
+#include <tether/campaign/campaign_folder.h>
+#include <tether/campaign_testing/sample_campaign.h>
 #include <tether/record/png.h>
 #include <tether/record/writer.h>
 #include <tether/report/page.h>
@@ -33,20 +33,20 @@ void write_record(const std::filesystem::path& file, const record::Record& recor
 class CampaignPage : public testing::Test {
  protected:
   CampaignPage() {
-    experiment::CampaignFolder folder(out_, campaign_, {{"tether", "0.1.0"}},
-                                      experiment::OpenMode::kFresh);
+    campaign::CampaignFolder folder(out_, campaign_, {{"tether", "0.1.0"}},
+                                    campaign::OpenMode::kFresh);
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const double s = static_cast<double>(seed);
-      write(experiment::make_trial(scenario(), "host", seed, 0, 2.4 + 0.1 * s));
-      write(experiment::make_trial(scenario(), "target", seed, 2, 7.0 + 0.1 * s));
-      write(experiment::make_trial(scenario(), "target, no sync", seed, 0, 2.3 + 0.1 * s));
+      write(campaign::make_trial(scenario(), "host", seed, 0, 2.4 + 0.1 * s));
+      write(campaign::make_trial(scenario(), "target", seed, 2, 7.0 + 0.1 * s));
+      write(campaign::make_trial(scenario(), "target, no sync", seed, 0, 2.3 + 0.1 * s));
     }
   }
   const scenario::Scenario& scenario() const { return campaign_.scenarios[0].scenario; }
   std::filesystem::path folder_of(const std::string& condition, std::uint64_t seed) const {
-    return out_ / experiment::trial_folder("turn", condition, seed);
+    return out_ / campaign::trial_folder("turn", condition, seed);
   }
-  void write(const experiment::TrialResult& result) {
+  void write(const campaign::TrialResult& result) {
     std::filesystem::create_directories(folder_of(result.condition, result.seed));
     write_result(folder_of(result.condition, result.seed), result);
   }
@@ -63,11 +63,11 @@ class CampaignPage : public testing::Test {
       write_record(folder_of(condition, 1) / "record.mcap", record);
     }
   }
-  std::string page() const { return campaign_page(experiment::read_campaign_results(out_), out_); }
+  std::string page() const { return campaign_page(campaign::read_campaign_results(out_), out_); }
 
   ScratchFolder scratch_;
   std::filesystem::path out_ = scratch_.path("out");
-  scenario::Campaign campaign_ = experiment::make_campaign(scratch_);
+  scenario::Campaign campaign_ = campaign::make_campaign(scratch_);
 };
 
 TEST_F(CampaignPage, HasItsPartsInReadingOrder) {
@@ -117,8 +117,8 @@ TEST_F(CampaignPage, IsTheSameEachTime) {
 }
 
 TEST_F(CampaignPage, NamesAFailedTrialOnTop) {
-  write(experiment::make_setup_failure(scenario(), *scenario().find_condition("target"), 2,
-                                       "no <free> port"));
+  write(campaign::make_setup_failure(scenario(), *scenario().find_condition("target"), 2,
+                                     "no <free> port"));
   const std::string html = page();
   const auto at =
       html.find("turn, target, seed 2: failed, and is in no mean: no &lt;free&gt; port");
@@ -127,7 +127,7 @@ TEST_F(CampaignPage, NamesAFailedTrialOnTop) {
 }
 
 TEST_F(CampaignPage, NamesWhatWasNotedOfARunOnTopAndBelowTheTable) {
-  experiment::TrialResult noted = experiment::make_trial(scenario(), "target", 2, 2, 7.2);
+  campaign::TrialResult noted = campaign::make_trial(scenario(), "target", 2, 2, 7.2);
   noted.this_run.notes = {"process <7> was stopped"};
   write(noted);
   const std::string html = page();
@@ -181,7 +181,7 @@ TEST_F(CampaignPage, OfARunWithoutARecordSaysSo) {
   const std::string html = run_page(folder_of("target", 1));
   EXPECT_THAT(html, HasSubstr("No plots: "));
   EXPECT_THAT(html, HasSubstr("record.mcap"));
-  EXPECT_THAT(experiment::error_message(ErrorCode::kBadFile, [&] { run_page(out_); }),
+  EXPECT_THAT(campaign::error_message(ErrorCode::kBadFile, [&] { run_page(out_); }),
               HasSubstr("result.json"));
 }
 

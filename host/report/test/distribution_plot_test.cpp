@@ -9,10 +9,10 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-experiment::TrialResult trial(double value) {
-  experiment::TrialResult result;
-  result.outcome = experiment::Outcome::kGoalReached;
-  experiment::MetricValue metric;
+campaign::TrialResult trial(double value) {
+  campaign::TrialResult result;
+  result.outcome = campaign::Outcome::kGoalReached;
+  campaign::MetricValue metric;
   metric.name = metric.kind = "time_required";
   metric.label = "Time required";
   metric.unit = "s";
@@ -21,11 +21,11 @@ experiment::TrialResult trial(double value) {
   return result;
 }
 
-experiment::ScenarioResults results(const std::vector<double>& host) {
-  experiment::ScenarioResults scenario;
+campaign::ScenarioResults results(const std::vector<double>& host) {
+  campaign::ScenarioResults scenario;
   scenario.scenario = "turn";
   scenario.metrics = {"time_required"};
-  experiment::ConditionResults condition;
+  campaign::ConditionResults condition;
   condition.condition = "host";
   condition.planned = host.size();
   for (const double value : host) condition.trials.push_back(trial(value));
@@ -56,14 +56,14 @@ TEST(DistributionPlot, OfTwoTrialsHasNoBox) {
 }
 
 TEST(DistributionPlot, SaysHowManyTrialsAreMissing) {
-  experiment::ScenarioResults scenario = results({1, 2, 3});
+  campaign::ScenarioResults scenario = results({1, 2, 3});
   scenario.conditions[0].planned = 5;
   scenario.conditions[0].trials[1].metrics[0].value.reset();
   EXPECT_THAT(distribution_plot(scenario, "time_required")->script, HasSubstr("'host (2 of 5)' 1"));
 }
 
 TEST(DistributionPlot, NeedsAValue) {
-  experiment::ScenarioResults scenario = results({1});
+  campaign::ScenarioResults scenario = results({1});
   EXPECT_FALSE(distribution_plot(scenario, "oscillations"));
   scenario.conditions[0].trials[0].metrics[0].value.reset();
   EXPECT_FALSE(distribution_plot(scenario, "time_required"));

@@ -1,13 +1,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/experiment_testing/sample_campaign.h>
+#include <tether/campaign_testing/sample_campaign.h>
 #include <tether/report/report.h>
 
 namespace tether::report {
 namespace {
 
-using namespace experiment;  // NOLINT: the results that the tables are of
+using namespace campaign;  // NOLINT: the results that the tables are of
 
 using testing::AllOf;
 using testing::Contains;
@@ -244,7 +244,7 @@ TEST_F(Report, SaysHowLateConcurrentSutsStoodStill) {
   EXPECT_THAT(text(), testing::Not(HasSubstr("Stops of all threads")));
   for (const std::uint64_t seed : {1u, 2u}) {
     TrialResult trial = make_trial(scenario(), "target", seed, 0, 3);
-    trial.sync.stops = experiment::StopFigures{100 * seed, Duration(70'000 / seed)};
+    trial.sync.stops = campaign::StopFigures{100 * seed, Duration(70'000 / seed)};
     write(trial);
   }
   EXPECT_THAT(text(), HasSubstr("300, at most 0.070 ms late"));

@@ -10,8 +10,8 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-experiment::MetricValue metric(const std::string& label, const std::string& unit, double value) {
-  experiment::MetricValue result;
+campaign::MetricValue metric(const std::string& label, const std::string& unit, double value) {
+  campaign::MetricValue result;
   result.name = result.kind = label;
   result.label = label;
   result.unit = unit;
@@ -19,24 +19,24 @@ experiment::MetricValue metric(const std::string& label, const std::string& unit
   return result;
 }
 
-experiment::ConditionResults condition(const std::string& name, const std::vector<double>& times) {
-  experiment::ConditionResults results;
+campaign::ConditionResults condition(const std::string& name, const std::vector<double>& times) {
+  campaign::ConditionResults results;
   results.condition = name;
   results.planned = times.size();
   for (const double time_s : times) {
-    experiment::TrialResult trial;
+    campaign::TrialResult trial;
     trial.condition = name;
     trial.seed = results.trials.size() + 1;
-    trial.outcome = experiment::Outcome::kGoalReached;
+    trial.outcome = campaign::Outcome::kGoalReached;
     trial.metrics = {metric("Time required", "s", time_s)};
     results.trials.push_back(trial);
   }
   return results;
 }
 
-experiment::ScenarioResults scenario(const std::vector<double>& host,
-                                     const std::vector<double>& target) {
-  experiment::ScenarioResults results;
+campaign::ScenarioResults scenario(const std::vector<double>& host,
+                                   const std::vector<double>& target) {
+  campaign::ScenarioResults results;
   results.scenario = "turn";
   results.metrics = {"Time required"};
   results.conditions = {condition("host", host), condition("target", target)};
@@ -64,13 +64,13 @@ TEST(Verdict, SaysWhatCannotBeToldApart) {
 }
 
 TEST(Verdict, CountsTrialsThatDidNotReachTheGoal) {
-  experiment::ScenarioResults results = scenario({1, 2, 3}, {1, 2, 3});
-  results.conditions[1].trials[0].outcome = experiment::Outcome::kGoalMissed;
+  campaign::ScenarioResults results = scenario({1, 2, 3}, {1, 2, 3});
+  results.conditions[1].trials[0].outcome = campaign::Outcome::kGoalMissed;
   results.conditions[1].trials.pop_back();
   EXPECT_THAT(verdict(results), HasSubstr("and 1 of 3 trials on “target”"));
 }
 
-Comparison comparison(double difference, std::optional<experiment::Interval> interval) {
+Comparison comparison(double difference, std::optional<campaign::Interval> interval) {
   Comparison result;
   result.a = "target";
   result.b = "target, no sync";
@@ -115,7 +115,7 @@ TEST(Verdict, NamesThrottledBoards) {
 }
 
 TEST(Problems, NameWhatTheTargetSuffered) {
-  experiment::CampaignResults results;
+  campaign::CampaignResults results;
   results.manifest.seeds = {1, 2};
   results.scenarios = {scenario({1, 2}, {1, 2})};
   results.scenarios[0].conditions[1].trials[0].this_run.target.emplace().warnings = {"it was hot"};
@@ -123,7 +123,7 @@ TEST(Problems, NameWhatTheTargetSuffered) {
 }
 
 TEST(Problems, NameWhatWasNotedOfARun) {
-  experiment::CampaignResults results;
+  campaign::CampaignResults results;
   results.manifest.seeds = {1, 2};
   results.scenarios = {scenario({1, 2}, {1, 2})};
   results.scenarios[0].conditions[1].trials[0].this_run.notes = {"a signal stopped the SUT",
@@ -133,15 +133,15 @@ TEST(Problems, NameWhatWasNotedOfARun) {
 }
 
 TEST(Problems, AreEachNamed) {
-  experiment::CampaignResults results;
+  campaign::CampaignResults results;
   results.manifest.seeds = {1, 2, 3, 4};
   results.scenarios = {scenario({1, 2, 3, 4}, {1, 2})};
-  std::vector<experiment::TrialResult>& host = results.scenarios[0].conditions[0].trials;
-  host[0].outcome = experiment::Outcome::kFailed;
+  std::vector<campaign::TrialResult>& host = results.scenarios[0].conditions[0].trials;
+  host[0].outcome = campaign::Outcome::kFailed;
   host[0].reason = "the SUT was lost";
   host[1].metrics[0].value.reset();
   host[1].metrics[0].missing_because = "it did not finish";
-  host[2].audit = experiment::AuditVerdict{false, "a command in the past"};
+  host[2].audit = campaign::AuditVerdict{false, "a command in the past"};
   host[3].sync.causality_violations = 2;
   results.damaged = {"turn/target/seed-0003/result.json: torn"};
   EXPECT_THAT(problems(results),
@@ -154,7 +154,7 @@ TEST(Problems, AreEachNamed) {
 }
 
 TEST(Problems, OfASoundCampaignAreNone) {
-  experiment::CampaignResults results;
+  campaign::CampaignResults results;
   results.manifest.seeds = {1, 2};
   results.scenarios = {scenario({1, 2}, {1, 2})};
   EXPECT_TRUE(problems(results).empty());

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/scenario/shipped_files.h>
 #include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
-#include <tether/scenario/shipped_files.h>
 
 // Shipped files are found by the folder and the extension of their kind; what describes them is in
 // the file itself.

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/base_testing/error_message.h>
 #include <tether/scenario/scenario.h>
-#include <tether/scenario_testing/error_message.h>
 
 namespace tether::scenario {
 namespace {

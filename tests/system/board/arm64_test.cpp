@@ -85,7 +85,8 @@ TEST_F(Arm64, ComputesWhatThisMachineComputes) {
 
 /// The names in a package's Depends; each has to come with a least version.
 std::vector<std::string> needs_of(const std::string& package) {
-  const auto file = kSources / "build/arm64/packages" / (package + "_" TETHER_VERSION_NUMBER "_arm64.deb");
+  const auto file =
+      kSources / "build/arm64/packages" / (package + "_" TETHER_VERSION_NUMBER "_arm64.deb");
   const Output told = run({{"dpkg-deb", "-f", file, "Depends"}, {}, {}});
   EXPECT_EQ(told.code, 0) << told.err << "scripts/build-arm64 makes it";
   std::vector<std::string> names;

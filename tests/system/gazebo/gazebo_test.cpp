@@ -1,4 +1,5 @@
 #include "support/gazebo.h"
+
 #include "support/gzserver.h"
 
 #include <csignal>

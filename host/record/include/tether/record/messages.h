@@ -155,7 +155,7 @@ struct SutInfo {
   /// Clock "cpu": cores of the machine that it ran on, whose time may have added up; 0: not known.
   int cores = 0;
 };
-/// What a machine told of itself, by name, as apps/tether/board/target_probe.sh has it: "governor",
+/// What a machine told of itself, by name, as host/board/src/target_probe.sh has it: "governor",
 /// "temperature_mc", … What it could not tell is not there.
 using Readings = std::map<std::string, std::string>;
 /// The machine that the SUTs ran on.

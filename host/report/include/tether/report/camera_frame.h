@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include <tether/experiment/true_roi.h>
+#include <tether/campaign/true_roi.h>
 #include <tether/record/reader.h>
 
 /// Recorded camera images as a person looks at them (paper, Fig. 5).
@@ -24,8 +24,8 @@ std::optional<ReportedRoi> find_roi(const record::Record& record, const record::
 /// for it, else of its last estimate before, else of its first, else the record's only one. None
 /// where no anchor can be named, the record does not describe the camera, or nothing of the anchor
 /// is in the image.
-std::optional<experiment::PixelRect> find_true_roi(const record::Record& record,
-                                                   const record::Image& image);
+std::optional<campaign::PixelRect> find_true_roi(const record::Record& record,
+                                                 const record::Image& image);
 
 enum class ImageQuality {
   kLossless,
@@ -35,7 +35,7 @@ enum class ImageQuality {
 /// The image with both ROIs framed and a caption below that says which is which: one
 /// self-contained SVG.
 std::string frame_svg(const record::Image& image, const std::optional<ReportedRoi>& roi,
-                      const std::optional<experiment::PixelRect>& true_roi,
+                      const std::optional<campaign::PixelRect>& true_roi,
                       ImageQuality quality = ImageQuality::kLossless);
 
 }  // namespace tether::report

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include <tether/experiment/campaign_results.h>
+#include <tether/campaign/campaign_results.h>
 
 /// Results as one HTML page that needs nothing beside it: no network, no scripts; plots and images
 /// are inside. Equal results and records give equal pages.
@@ -15,7 +15,7 @@ namespace tether::report {
 /// @param folder of the campaign: the records are read from below it. A record that is missing or
 ///   damaged leaves out its plots, and the page says so.
 /// @throws Error(kSetup) when gnuplot is missing or fails.
-std::string campaign_page(const experiment::CampaignResults& results,
+std::string campaign_page(const campaign::CampaignResults& results,
                           const std::filesystem::path& folder);
 
 /// One run: its outcome and metrics, timelines, lag, path, camera frames, and what they rest on.
@@ -25,6 +25,6 @@ std::string run_page(const std::filesystem::path& folder);
 
 /// The result of one run as a campaign of one trial: for the tables of report.h.
 /// @throws Error(kBadFile) when there is no usable result.
-experiment::CampaignResults read_run_results(const std::filesystem::path& folder);
+campaign::CampaignResults read_run_results(const std::filesystem::path& folder);
 
 }  // namespace tether::report

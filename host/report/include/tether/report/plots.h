@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include <tether/experiment/campaign_results.h>
+#include <tether/campaign/campaign_results.h>
 #include <tether/record/reader.h>
 
 /// Plots of runs and campaigns as gnuplot scripts with their data inline. Pure functions: equal
@@ -47,7 +47,7 @@ std::optional<Plot> path_plot(std::span<const PlottedRun> runs);
 
 /// Every trial's value of a metric, a row per condition, with the quartiles as a box and the median
 /// in it where there are at least three. None: no trial has a value.
-std::optional<Plot> distribution_plot(const experiment::ScenarioResults& scenario,
+std::optional<Plot> distribution_plot(const campaign::ScenarioResults& scenario,
                                       const std::string& metric);
 
 }  // namespace tether::report

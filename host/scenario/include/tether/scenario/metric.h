@@ -6,7 +6,7 @@
 #include <string_view>
 
 /// What a run is judged by: numbers computed from the record, against its ground truth
-/// (`experiment` computes them; here is what a scenario may ask for).
+/// (`campaign` computes them; here is what a scenario may ask for).
 namespace tether::scenario {
 
 /// A number to compute after a run, with the limit within which the goal counts as reached.

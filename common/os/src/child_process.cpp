@@ -1,0 +1,207 @@
+
+#include <cerrno>
+#include <chrono>
+#include <map>
+#include <thread>
+
+#include <fcntl.h>
+#include <sched.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+#include <tether/base/system_reason.h>
+#include <tether/os/child_process.h>
+#include <tether/os/file_descriptor.h>
+#include <tether/os/pipe.h>
+#include <tether/os/program.h>
+
+extern char** environ;
+
+namespace tether::os {
+
+namespace {
+
+constexpr auto kPollPeriod = std::chrono::milliseconds(5);
+
+std::vector<std::string> merged_environment(const Environment& extra) {
+  std::map<std::string, std::string> variables;
+  for (char** entry = environ; *entry; ++entry) {
+    const std::string text = *entry;
+    const auto equals = text.find('=');
+    if (equals != std::string::npos) variables[text.substr(0, equals)] = text.substr(equals + 1);
+  }
+  for (const auto& [name, value] : extra) variables[name] = value;
+  std::vector<std::string> list;
+  for (const auto& [name, value] : variables) list.push_back(name + "=" + value);
+  return list;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& strings) {
+  std::vector<char*> list;
+  for (std::string& s : strings) list.push_back(s.data());
+  list.push_back(nullptr);
+  return list;
+}
+
+FileDescriptor open_file(const std::filesystem::path& file, int how) {
+  FileDescriptor descriptor(open(file.c_str(), how | O_CLOEXEC, 0644));
+  if (!descriptor)
+    throw Error(ErrorCode::kSetup, file.string() + ": cannot be opened: " + reason_of(errno));
+  return descriptor;
+}
+
+FileDescriptor open_log(const std::filesystem::path& log, bool appends) {
+  return open_file(log.empty() ? "/dev/null" : log,
+                   O_WRONLY | O_CREAT | (appends ? O_APPEND : O_TRUNC));
+}
+
+cpu_set_t to_set(const std::vector<int>& cpus) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (const int cpu : cpus) CPU_SET(static_cast<std::size_t>(cpu), &set);
+  return set;
+}
+
+/// A child's standard streams; an input of -1 is /dev/null.
+class Streams {
+ public:
+  explicit Streams(const ChildCommand& command)
+      : pipe_(command.input_pipe),
+        input_(command.input.empty() ? FileDescriptor() : open_file(command.input, O_RDONLY)),
+        log_(open_log(command.log, command.appends)),
+        errors_(command.errors.empty() ? FileDescriptor()
+                                       : open_log(command.errors, command.appends)) {}
+
+  int in() const { return input_.get() < 0 ? pipe_ : input_.get(); }
+  int out() const { return log_.get(); }
+  int err() const { return errors_.get() < 0 ? log_.get() : errors_.get(); }
+
+ private:
+  int pipe_;
+  FileDescriptor input_, log_, errors_;
+};
+
+Error cannot_start(const std::string& program, const std::string& why) {
+  return {ErrorCode::kSetup, "cannot start \"" + program + "\": " + why};
+}
+
+/// Where a child says why it could not become the program.
+Pipe open_report(const std::string& program) {
+  Pipe report = make_pipe();
+  if (!report.read_end) throw cannot_start(program, reason_of(errno));
+  return report;
+}
+
+/// What a child becomes; made before the fork.
+struct Image {
+  const char* program;
+  char* const* arguments;
+  char* const* environment;
+  const char* working_folder;  // nullptr: as it is
+  const cpu_set_t* cpus;       // nullptr: all
+  int death_signal;
+};
+
+// Between fork and exec only calls that are safe after a fork of a program with threads. Tells
+// `report` why it failed.
+[[noreturn]] void become(const Image& image, const Streams& streams, int report, pid_t parent) {
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, image.death_signal);
+  if (getppid() != parent) _exit(127);
+  dup2(streams.in() < 0 ? open("/dev/null", O_RDONLY) : streams.in(), STDIN_FILENO);
+  dup2(streams.out(), STDOUT_FILENO);
+  dup2(streams.err(), STDERR_FILENO);
+  signal(SIGPIPE, SIG_DFL);
+  signal(SIGXFSZ, SIG_DFL);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  const bool is_placed =
+      (!image.cpus || sched_setaffinity(0, sizeof *image.cpus, image.cpus) == 0) &&
+      (!image.working_folder || chdir(image.working_folder) == 0);
+  if (is_placed) execve(image.program, image.arguments, image.environment);
+  const int why = errno;
+  const auto written = write(report, &why, sizeof why);
+  _exit(written == sizeof why ? 127 : 126);
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const ChildCommand& command)
+    : program_(find_program(command.arguments.at(0)).string()),
+      end_signal_(command.end_signal),
+      grace_(command.grace) {
+  std::vector<std::string> arguments = command.arguments;
+  std::vector<std::string> environment = merged_environment(command.environment);
+  const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
+  const cpu_set_t cpus = to_set(command.cpus);
+  const Streams streams(command);
+  Pipe report = open_report(program_);
+
+  const Image image{program_.c_str(),
+                    argv.data(),
+                    envp.data(),
+                    command.working_folder.empty() ? nullptr : command.working_folder.c_str(),
+                    command.cpus.empty() ? nullptr : &cpus,
+                    command.death_signal};
+  const pid_t parent = getpid();
+  pid_ = fork();
+  if (pid_ == 0) become(image, streams, report.write_end.get(), parent);
+  report.write_end = FileDescriptor();
+  int why = pid_ < 0 ? errno : 0;
+  // Ends with nothing read once the exec has succeeded.
+  if (pid_ > 0 && read(report.read_end.get(), &why, sizeof why) > 0) waitpid(pid_, nullptr, 0);
+  if (why != 0) {
+    pid_ = -1;
+    throw cannot_start(program_, reason_of(why));
+  }
+}
+
+ChildProcess::~ChildProcess() {
+  terminate();
+}
+
+// Shells, launchers and tether-exec tell by such a code that a signal ended their program.
+void ChildProcess::reap(int status) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    exit_ = {kSignalled + signal, "was ended by " + name_of_signal(signal)};
+    return;
+  }
+  const int code = WEXITSTATUS(status);
+  const int signal = code - kSignalled;
+  const bool tells_of_signal = signal > 0 && signal < NSIG;
+  exit_ = {code, "exited with code " + std::to_string(code) +
+                     (tells_of_signal ? ", as after " + name_of_signal(signal) : "")};
+}
+
+const std::optional<ChildExit>& ChildProcess::poll() {
+  int status = 0;
+  if (!exit_ && pid_ > 0 && waitpid(pid_, &status, WNOHANG) == pid_) reap(status);
+  return exit_;
+}
+
+bool ChildProcess::wait(Duration limit) {
+  const auto deadline = std::chrono::steady_clock::now() + limit;
+  while (!poll() && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(kPollPeriod);
+  return exit_.has_value();
+}
+
+void ChildProcess::terminate() {
+  if (pid_ < 0) return;
+  if (!poll()) {
+    kill(-pid_, end_signal_);
+    kill(-pid_, SIGCONT);
+    wait(grace_);
+  }
+  kill(-pid_, SIGKILL);  // what is left of its group
+  int status = 0;
+  if (!exit_ && waitpid(pid_, &status, 0) == pid_) reap(status);
+  pid_ = -1;
+}
+
+}  // namespace tether::os

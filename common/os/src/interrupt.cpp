@@ -1,0 +1,71 @@
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <optional>
+#include <system_error>
+
+#include <unistd.h>
+
+#include <tether/base/error.h>
+#include <tether/base/system_reason.h>
+#include <tether/os/interrupt.h>
+
+// A handler may do next to nothing: it passes the signal's number through a pipe to a thread, which
+// requests the stop.
+namespace tether::os {
+
+namespace {
+
+using Steady = std::chrono::steady_clock;
+
+// Terminals and supervisors may send one interrupt twice in a row; a person who means it comes
+// later.
+constexpr auto kSecondThoughts = std::chrono::milliseconds(500);
+constexpr char kEnd = 0;
+
+volatile std::sig_atomic_t g_signals = -1;  // where the handler writes
+
+extern "C" void pass_on(int signal_number) {
+  const int before = errno;
+  const char byte = static_cast<char>(signal_number);
+  [[maybe_unused]] const auto written = write(g_signals, &byte, 1);
+  errno = before;
+}
+
+}  // namespace
+
+Interrupt::Interrupt() : signals_(make_pipe()) {
+  if (!signals_.write_end) throw Error(ErrorCode::kSetup, "pipe: " + reason_of(errno));
+  try {
+    watcher_ = std::thread([this] { watch(); });
+  } catch (const std::system_error& e) {
+    throw Error(ErrorCode::kSetup, "thread: " + reason_of(e.code().value()));
+  }
+  g_signals = signals_.write_end.get();
+  struct sigaction action {};
+  action.sa_handler = pass_on;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a reason like a full disk
+}
+
+Interrupt::~Interrupt() {
+  for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_DFL);
+  write_all(signals_.write_end, {&kEnd, 1});
+  watcher_.join();
+}
+
+void Interrupt::watch() {
+  std::optional<Steady::time_point> first;
+  for (char signal = 0;;) {
+    const ssize_t got = read(signals_.read_end.get(), &signal, 1);
+    if (got < 0 && errno == EINTR) continue;
+    if (got != 1 || signal == kEnd) return;
+    if (first && Steady::now() - *first > kSecondThoughts) _exit(128 + signal);
+    if (!first) first = Steady::now();
+    stop_.request_stop();
+  }
+}
+
+}  // namespace tether::os

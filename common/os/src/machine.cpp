@@ -1,0 +1,45 @@
+
+#include <fstream>
+#include <thread>
+
+#include <sched.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <tether/os/machine.h>
+
+namespace tether::os {
+
+namespace {
+std::string cpu_model() {
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);)
+    if (line.rfind("model name", 0) == 0 || line.rfind("Model", 0) == 0)
+      return line.substr(line.find(':') + 2);
+  return "unknown CPU";
+}
+}  // namespace
+
+std::string describe_machine() {
+  utsname system{};
+  uname(&system);
+  return cpu_model() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, " +
+         system.sysname + " " + system.release + " " + system.machine;
+}
+
+int machine_cores() {
+  const long cores = sysconf(_SC_NPROCESSORS_CONF);
+  return cores > 0 ? static_cast<int>(cores) : 0;
+}
+
+std::vector<int> allowed_cpus() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  std::vector<int> cpus;
+  if (sched_getaffinity(0, sizeof set, &set) != 0) return cpus;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu)
+    if (CPU_ISSET(static_cast<std::size_t>(cpu), &set)) cpus.push_back(cpu);
+  return cpus;
+}
+
+}  // namespace tether::os

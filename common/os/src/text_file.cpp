@@ -1,0 +1,136 @@
+#include <cerrno>
+#include <cinttypes>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+#include <tether/os/file_descriptor.h>
+#include <tether/os/pipe.h>
+#include <tether/os/text_file.h>
+
+namespace tether::os {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
+  throw Error(ErrorCode::kSetup, FileLocation{file.string()},
+              std::string("cannot be ") + what + ": " + std::strerror(errno));
+}
+
+void write_text(const FileDescriptor& to, std::string_view text,
+                const std::filesystem::path& file) {
+  if (!write_all(to, text)) fail(file, "written");
+}
+
+bool is_special(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+}
+
+void write_to_special(const std::filesystem::path& file, std::string_view text) {
+  const FileDescriptor fd(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
+  if (!fd) fail(file, "opened");
+  write_text(fd, text, file);
+}
+
+// The file behind the symbolic links, which need not exist.
+std::filesystem::path behind_links(std::filesystem::path file) {
+  constexpr int kMostLinks = 40;  // as Linux follows
+  std::error_code ignored;
+  for (int i = 0; std::filesystem::is_symlink(file, ignored); ++i) {
+    if (i == kMostLinks) {
+      errno = ELOOP;
+      fail(file, "followed");
+    }
+    file = file.parent_path() / std::filesystem::read_symlink(file, ignored);
+  }
+  return file;
+}
+
+void write_and_flush(const std::filesystem::path& file, std::string_view text) {
+  const FileDescriptor fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+  if (!fd) fail(file, "created");
+  write_text(fd, text, file);
+  if (::fsync(fd.get()) != 0) fail(file, "flushed to the disk");
+}
+
+std::string stripped(const std::string& line) {
+  const auto begin = line.find_first_not_of(" \t\r");
+  const auto end = line.find_last_not_of(" \t\r");
+  return begin == std::string::npos ? "" : line.substr(begin, end - begin + 1);
+}
+
+}  // namespace
+
+std::string file_name_of(std::string_view name) {
+  std::string part(name);
+  for (char& c : part) c = c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '_' : c;
+  return part;
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::string_view text) {
+  if (is_special(path)) return write_to_special(path, text);
+  const std::filesystem::path file = behind_links(path);
+  const std::filesystem::path beside = file.string() + std::string(kPartSuffix);
+  try {
+    write_and_flush(beside, text);
+    if (::rename(beside.c_str(), file.c_str()) != 0) fail(file, "replaced");
+  } catch (...) {
+    ::unlink(beside.c_str());
+    throw;
+  }
+  // The rename itself is on the disk once the folder is.
+  const FileDescriptor folder(
+      ::open((file.parent_path() / ".").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (folder) ::fsync(folder.get());
+}
+
+std::string read_file(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) {
+    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "there is no such file");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::string text;
+  char block[1 << 16];
+  while (stream.read(block, sizeof block) || stream.gcount() > 0) {
+    text.append(block, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream.eof()) {
+    require_a_handle_for(file.string());
+    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "cannot be read");
+  }
+  return text;
+}
+
+std::string read_whole(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::string last_line(const std::string& text) {
+  std::istringstream lines(text);
+  std::string last;
+  for (std::string line; std::getline(lines, line);)
+    if (const std::string words = stripped(line); !words.empty()) last = words;
+  return last;
+}
+
+std::string digest_of_file(const std::filesystem::path& file) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : read_file(file)) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  }
+  char text[17];
+  std::snprintf(text, sizeof text, "%016" PRIx64, hash);
+  return text;
+}
+
+}  // namespace tether::os

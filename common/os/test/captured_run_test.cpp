@@ -1,0 +1,47 @@
+#include <gtest/gtest.h>
+
+#include <tether/base/error.h>
+#include <tether/os/captured_run.h>
+
+namespace tether::os {
+namespace {
+
+constexpr Duration kLong = std::chrono::seconds(60);
+
+TEST(RunCaptured, ReturnsOutputErrorsAndExitCode) {
+  const Captured captured =
+      run_captured({"sh", "-c", "cat; echo problem >&2; exit 3"}, "the input\n", kLong);
+  EXPECT_EQ(captured.out, "the input\n");
+  EXPECT_EQ(captured.err, "problem\n");
+  EXPECT_EQ(captured.code, 3);
+  EXPECT_FALSE(captured.timed_out);
+  EXPECT_GT(captured.wall, Duration(0));
+}
+
+TEST(RunCaptured, PassesAnInputLargerThanAPipe) {
+  const std::string input(1 << 20, 'x');
+  EXPECT_EQ(run_captured({"cat"}, input, kLong).out, input);
+}
+
+TEST(RunCaptured, EndsAProgramThatExceedsItsLimit) {
+  const Captured captured = run_captured({"sh", "-c", "echo begun; exec cat"}, "", kLong);
+  EXPECT_FALSE(captured.timed_out);
+  const Captured late = run_captured({"sleep", "60"}, "", Duration(0));
+  EXPECT_TRUE(late.timed_out);
+  EXPECT_EQ(late.code, -1);
+}
+
+TEST(RunCaptured, EndsAProgramWhenAStopIsRequested) {
+  std::stop_source stop;
+  stop.request_stop();
+  const Captured captured = run_captured({"sleep", "60"}, "", kLong, stop.get_token());
+  EXPECT_TRUE(captured.timed_out);
+  EXPECT_EQ(captured.code, -1);
+}
+
+TEST(RunCaptured, ThrowsWhenTheProgramDoesNotExist) {
+  EXPECT_THROW(run_captured({"no-such-program-of-tether"}, "", kLong), Error);
+}
+
+}  // namespace
+}  // namespace tether::os

@@ -1,0 +1,173 @@
+
+#include <cctype>
+#include <charconv>
+#include <chrono>
+#include <cstdlib>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+#include <tether/board/ssh_connection.h>
+#include <tether/os/captured_run.h>
+#include <tether/os/child_process.h>
+#include <tether/os/text_file.h>
+
+namespace tether::board {
+
+namespace {
+
+constexpr Duration kConnectLimit = std::chrono::seconds(40);
+constexpr Duration kForwardLimit = std::chrono::seconds(10);
+constexpr Duration kLook = std::chrono::milliseconds(10);
+
+/// `ssh`, or what the user has it be.
+std::vector<std::string> ssh_words() {
+  const char* given = std::getenv("TETHER_SSH");
+  std::istringstream text(given && *given ? given : "ssh");
+  std::vector<std::string> words;
+  for (std::string word; text >> word;) words.push_back(word);
+  if (words.empty()) words.emplace_back("ssh");
+  return words;
+}
+
+std::filesystem::path make_private_folder() {
+  // A socket's path must be short, so this is not in the run's folder.
+  std::string name = "/tmp/tether-ssh-XXXXXX";
+  if (!mkdtemp(name.data()))
+    throw Error(ErrorCode::kSetup, name + ": no folder for the connection can be made");
+  return name;
+}
+
+void append(std::vector<std::string>& words, std::initializer_list<std::string> more) {
+  words.insert(words.end(), more);
+}
+
+bool holds(const std::string& text, std::string_view part) {
+  return text.find(part) != std::string::npos;
+}
+
+std::string advice(const std::string& said, const scenario::SshAddress& address) {
+  const std::string by_hand = fmt::format(
+      "ssh {}{}", address.port ? fmt::format("-p {} ", address.port) : "", address.destination);
+  if (holds(said, "IDENTIFICATION HAS CHANGED") || holds(said, "has changed"))
+    return fmt::format(
+        "the board shows another key than before; if it was set up anew, type: "
+        "ssh-keygen -R {}",
+        address.destination.substr(address.destination.rfind('@') + 1));
+  if (holds(said, "Host key verification failed"))
+    return fmt::format("this machine does not know the board's key yet; connect once by hand: {}",
+                       by_hand);
+  if (holds(said, "Permission denied"))
+    return fmt::format("put your key there: ssh-copy-id {}{}",
+                       address.port ? fmt::format("-p {} ", address.port) : "",
+                       address.destination);
+  if (holds(said, "Could not resolve")) return "check the board's name, or give its address";
+  if (holds(said, "Connection refused")) return "start an SSH server there, or give its port";
+  if (holds(said, "timed out") || holds(said, "No route"))
+    return "check that the board is on and on the same network";
+  return "try by hand: " + by_hand;
+}
+
+}  // namespace
+
+std::string explain_ssh(const std::string& said, const scenario::SshAddress& address) {
+  const std::string last = os::last_line(said);
+  return fmt::format("{}; {}", last.empty() ? "ssh said nothing" : last, advice(said, address));
+}
+
+SshConnection::SshConnection(const scenario::SshAddress& address, std::stop_token stop)
+    : address_(address), stop_(std::move(stop)), folder_(make_private_folder()) {
+  try {
+    connect();
+  } catch (...) {
+    master_.reset();
+    std::filesystem::remove_all(folder_);
+    throw;
+  }
+}
+
+SshConnection::~SshConnection() {
+  master_.reset();
+  std::error_code ignored;
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+std::vector<std::string> SshConnection::words() const {
+  std::vector<std::string> words = ssh_words();
+  append(words, {"-T", "-x", "-a", "-o", "BatchMode=yes", "-o",
+                 "ControlPath=" + (folder_ / "socket").string(), "-o", "RemoteCommand=none"});
+  if (address_.port != 0) append(words, {"-p", std::to_string(address_.port)});
+  return words;
+}
+
+void SshConnection::connect() {
+  std::vector<std::string> command = words();
+  append(command,
+         {"-N", "-o", "ControlMaster=yes", "-o", "ControlPersist=no", "-o", "ConnectTimeout=10",
+          "-o", "ServerAliveInterval=3", "-o", "ServerAliveCountMax=3", "-o",
+          "ClearAllForwardings=yes", "-o", "LogLevel=INFO", "--", address_.destination});
+  master_ = std::make_unique<os::ChildProcess>(os::ChildCommand{.arguments = command,
+                                                                .environment = {},
+                                                                .log = folder_ / "master.out",
+                                                                .errors = folder_ / "master.err"});
+  const auto started = std::chrono::steady_clock::now();
+  while (!std::filesystem::exists(folder_ / "socket")) {
+    const std::string where = scenario::to_string(address_);
+    if (stop_.stop_requested()) throw Error(ErrorCode::kSetup, "interrupted by the user");
+    if (master_->wait(kLook))
+      throw Error(ErrorCode::kSetup,
+                  fmt::format("cannot reach {}: {}", where,
+                              explain_ssh(os::read_whole(folder_ / "master.err"), address_)));
+    if (std::chrono::steady_clock::now() - started > kConnectLimit)
+      throw Error(
+          ErrorCode::kSetup,
+          fmt::format("cannot reach {}: no connection within {} s", where,
+                      std::chrono::duration_cast<std::chrono::seconds>(kConnectLimit).count()));
+  }
+}
+
+std::vector<std::string> SshConnection::shell(std::size_t script_bytes) const {
+  std::vector<std::string> command = words();
+  // Should the master be gone, ssh would connect anew by itself.
+  append(command,
+         {"-o", "ControlMaster=no", "-o", "ProxyCommand=false", "-o", "LogLevel=ERROR", "--",
+          address_.destination,
+          fmt::format("exec sh -c 'eval \"$(dd bs=1 count={} 2>/dev/null)\"'", script_bytes)});
+  return command;
+}
+
+os::Captured SshConnection::run(std::string_view script, Duration limit, std::string_view input,
+                                bool is_leaving) const {
+  return os::run_captured(shell(script.size()), std::string(script) + std::string(input), limit,
+                          is_leaving ? std::stop_token() : stop_);
+}
+
+std::optional<std::string> SshConnection::lost(Duration limit) {
+  if (!master_->wait(limit)) return std::nullopt;
+  const std::string said = os::last_line(os::read_whole(folder_ / "master.err"));
+  return fmt::format("the connection to {} was lost{}", scenario::to_string(address_),
+                     said.empty() ? "" : ": " + said);
+}
+
+std::uint16_t SshConnection::forward_back(std::uint16_t local_port) const {
+  std::vector<std::string> command = words();
+  append(command, {"-O", "forward", "-R", fmt::format("127.0.0.1:0:127.0.0.1:{}", local_port), "--",
+                   address_.destination});
+  const os::Captured said = os::run_captured(command, "", kForwardLimit, stop_);
+  // "Allocated port 40123 for remote forward to …", or the number alone.
+  const auto digits = said.out.find_first_of("0123456789");
+  std::uint16_t port = 0;
+  if (digits != std::string::npos)
+    std::from_chars(said.out.data() + digits, said.out.data() + said.out.size(), port);
+  if (said.code != 0 || port == 0)
+    throw Error(ErrorCode::kSetup,
+                fmt::format("{} does not forward a port ({}); allow it there "
+                            "(AllowTcpForwarding in sshd_config), or leave out --tunnel",
+                            scenario::to_string(address_), os::last_line(said.err + said.out)));
+  return port;
+}
+
+}  // namespace tether::board

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+/// Statistics of few trials. Pure functions; all values must be finite.
+namespace tether::campaign {
+
+struct Interval {
+  double low = 0.0;
+  double high = 0.0;
+  friend bool operator==(const Interval&, const Interval&) = default;
+};
+
+struct Summary {
+  std::size_t n = 0;
+  double mean = 0.0;  ///< @pre of this and the next three: n ≥ 1
+  double median = 0.0;
+  double min = 0.0;
+  double max = 0.0;
+  std::optional<double> stddev;  ///< of the sample (n − 1); n ≥ 2
+  std::optional<Interval> ci95;  ///< of the mean, by Student's t; n ≥ 2
+};
+Summary summarise(std::span<const double> values);
+
+/// How much larger the mean of `a` is than that of `b`, without assuming equal variances.
+struct MeanDifference {
+  double difference = 0.0;          ///< mean(a) − mean(b)
+  std::optional<Interval> ci95;     ///< Welch's t interval; each n ≥ 2
+  double degrees_of_freedom = 0.0;  ///< Welch-Satterthwaite; 0 where neither sample varies
+};
+/// @pre neither is empty.
+MeanDifference compare_means(std::span<const double> a, std::span<const double> b);
+
+/// The Mann-Whitney U (Wilcoxon rank-sum) test: whether one of two samples tends to be larger.
+/// It suits small and skewed samples: no distribution is assumed, and up to 100 values in all the
+/// p-value is exact, also with ties (the permutation distribution of the mid-ranks).
+struct RankTest {
+  double u = 0.0;  ///< of `a`: pairs in which a's value is larger, plus half the tied ones
+  double p_two_sided = 1.0;  ///< twice the smaller tail, at most 1
+  bool exact = true;  ///< false: normal approximation with corrections for ties and continuity
+};
+/// @pre neither is empty.
+RankTest mann_whitney(std::span<const double> a, std::span<const double> b);
+
+}  // namespace tether::campaign

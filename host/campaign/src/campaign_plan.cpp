@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/campaign/campaign_plan.h>
+#include <tether/os/text_file.h>
+
+namespace tether::campaign {
+namespace {
+
+// Such as the script of ["python3", "sut.py"]. What runs them is looked for as programs are.
+void add_argument_files(std::vector<std::filesystem::path>& files, const scenario::Sut& sut) {
+  for (std::size_t i = 1; i < sut.command.size(); ++i) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(sut.command[i], ignored)) continue;
+    files.push_back(std::filesystem::absolute(sut.command[i]));
+  }
+}
+
+std::string name_in(const scenario::Campaign& campaign, const std::filesystem::path& file) {
+  return file.lexically_proximate(campaign.file.parent_path()).string();
+}
+
+// One that this program neither brings nor starts: it listens somewhere, and has one run at a time.
+bool is_attached(const std::string& simulator) {
+  return simulator != "mujoco" && simulator != "gazebo";
+}
+
+[[noreturn]] void refuse_jobs(int jobs, const std::string& why) {
+  throw Error(ErrorCode::kUsage, fmt::format("--jobs {}: {}", jobs, why));
+}
+
+std::string setting_name(const scenario::Campaign& campaign, const std::filesystem::path& file) {
+  return "file " + name_in(campaign, file);
+}
+
+}  // namespace
+
+std::filesystem::path trial_folder(const std::string& scenario, const std::string& condition,
+                                   std::uint64_t seed) {
+  return std::filesystem::path(scenario) / scenario::slug(condition) /
+         fmt::format("seed-{:04}", seed);
+}
+
+std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
+                                   const std::filesystem::path& folder) {
+  std::vector<TrialPlan> plans;
+  for (const scenario::CampaignScenario& entry : campaign.scenarios) {
+    for (const std::uint64_t seed : campaign.seeds) {
+      for (const std::string& condition : entry.conditions) {
+        plans.push_back({&entry.scenario, entry.scenario.find_condition(condition), seed,
+                         folder / trial_folder(entry.scenario.name, condition, seed),
+                         campaign.images_of_first_seed && seed == campaign.seeds.front(),
+                         entry.profile});
+      }
+    }
+  }
+  return plans;
+}
+
+int trials_side_by_side(const TrialPlan& plan, int jobs) {
+  const scenario::Condition& condition = *plan.condition;
+  // SUTs that are bound to so many cores would be bound to the same ones.
+  const bool is_bound = condition.target && condition.target->cores > 0;
+  if (condition.clock == scenario::Clock::kWall || is_bound || jobs == 1) return 1;
+  if (condition.policy == scenario::Policy::kConservativeBarrier) return jobs;
+  if (condition.simulator != "mujoco") return 1;
+  // A stalling SUT computes for one part in `cpu_factor` of the time; the embedded simulator with
+  // its camera took up to half a core at real time.
+  constexpr double kSimulatorLoad = 0.5, kShareInUse = 0.5;
+  const double load_of_one =
+      1.0 / condition.cpu_factor + kSimulatorLoad * condition.real_time_factor;
+  const double load = load_of_one * static_cast<double>(plan.scenario->uavs.size());
+  return std::max(1, static_cast<int>(kShareInUse * jobs / load));
+}
+
+std::vector<Batch> make_batches(const std::vector<const TrialPlan*>& plans, int jobs) {
+  std::map<std::pair<bool, int>, Batch> batches;
+  for (const TrialPlan* plan : plans) {
+    const int side_by_side = trials_side_by_side(*plan, jobs);
+    const bool is_free = plan->condition->policy == scenario::Policy::kFreeRunning;
+    Batch& batch = batches[{is_free, side_by_side}];
+    batch.jobs = side_by_side;
+    batch.plans.push_back(plan);
+  }
+  std::vector<Batch> in_order;
+  for (auto& [key, batch] : batches) in_order.push_back(std::move(batch));
+  return in_order;
+}
+
+void require_jobs_allowed(const scenario::Campaign& campaign, int jobs) {
+  if (jobs < 1) refuse_jobs(jobs, "must be at least 1");
+  if (jobs == 1) return;
+  for (const scenario::CampaignScenario& entry : campaign.scenarios) {
+    for (const std::string& name : entry.conditions) {
+      const scenario::Condition& condition = *entry.scenario.find_condition(name);
+      const std::string where =
+          fmt::format("condition '{}' of {}", name, entry.scenario.file.string());
+      if (is_attached(condition.simulator))
+        refuse_jobs(jobs, fmt::format("{} flies in the simulator at {}, which has one run at a "
+                                      "time; use --jobs 1",
+                                      where, condition.simulator));
+      if (condition.clock == scenario::Clock::kWall)
+        refuse_jobs(jobs, fmt::format("{} measures its SUT by the wall clock, which trials side by "
+                                      "side would disturb; use --jobs 1, or clock = \"cpu\" or "
+                                      "\"scripted\"",
+                                      where));
+    }
+  }
+}
+
+std::vector<std::filesystem::path> files_of(const scenario::Campaign& campaign) {
+  std::vector<std::filesystem::path> files;
+  for (const scenario::CampaignScenario& entry : campaign.scenarios) {
+    const scenario::Scenario& scenario = entry.scenario;
+    files.insert(files.end(), scenario.files.begin(), scenario.files.end());
+    for (const scenario::UavSetup& uav : scenario.uavs) add_argument_files(files, uav.sut);
+  }
+  return files;
+}
+
+Settings campaign_settings(const scenario::Campaign& campaign, const Settings& versions,
+                           const std::vector<std::filesystem::path>& files) {
+  Settings settings = versions;
+  for (const std::filesystem::path& file : files) {
+    settings[setting_name(campaign, file)] = os::digest_of_file(file);
+  }
+  for (const scenario::CampaignScenario& entry : campaign.scenarios) {
+    if (entry.profile.empty()) continue;
+    settings["profile of " + entry.scenario.name] = name_in(campaign, entry.profile);
+  }
+  return settings;
+}
+
+void require_unchanged(const scenario::Campaign& campaign, const Settings& settings,
+                       const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) {
+    std::error_code ignored;
+    const bool exists = std::filesystem::is_regular_file(file, ignored);
+    if (exists && os::digest_of_file(file) == settings.at(setting_name(campaign, file))) continue;
+    throw Error(
+        ErrorCode::kBadFile, FileLocation{file.string()},
+        fmt::format("was {} while the campaign ran, so the trial that has just ended is not "
+                    "kept; put it back and go on with --resume, or choose another folder",
+                    exists ? "changed" : "removed"));
+  }
+}
+
+}  // namespace tether::campaign

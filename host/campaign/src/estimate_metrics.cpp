@@ -1,0 +1,185 @@
+#include "metric_outcome.h"
+
+#include <cmath>
+#include <cstdint>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <tether/base/units.h>
+#include <tether/campaign/true_roi.h>
+
+/// What the SUT made of what it saw, against ground truth (paper, Tables II and V).
+namespace tether::campaign {
+namespace {
+
+// ---- Annotations: a stranger's words, of which those that make no sense are passed over.
+
+std::optional<double> number_of(const nlohmann::json& note, const char* member) {
+  const auto found = note.find(member);
+  if (found == note.end() || !found->is_number()) return std::nullopt;
+  return found->get<double>();
+}
+
+std::optional<std::string> text_of(const nlohmann::json& note, const char* member) {
+  const auto found = note.find(member);
+  if (found == note.end() || !found->is_string()) return std::nullopt;
+  return found->get<std::string>();
+}
+
+// What `read` makes of the last annotation before the SUT finished that it can read.
+template <class Note>
+std::optional<Note> last_note(const record::Record& record, const std::string& uav,
+                              const std::string& topic,
+                              std::optional<Note> (*read)(const nlohmann::json&,
+                                                          const scenario::Metric&),
+                              const scenario::Metric& metric) {
+  const auto* finish = find_finish(record, uav);
+  const auto& notes = record.annotations;
+  for (auto logged = notes.rbegin(); logged != notes.rend(); ++logged) {
+    const record::Annotation& message = logged->message;
+    if (message.uav != uav || message.topic != topic || logged->order > finish->order) continue;
+    const nlohmann::json note = nlohmann::json::parse(message.json, nullptr, false);
+    if (!note.is_object()) continue;
+    if (const std::optional<Note> read_note = read(note, metric)) return read_note;
+  }
+  return std::nullopt;
+}
+
+struct Estimate {
+  std::string camera;
+  std::uint64_t image_index = 0;
+  double bearing_rad = 0.0;
+  std::optional<double> distance_m;
+};
+
+// Of the metric's anchor.
+std::optional<Estimate> read_estimate(const nlohmann::json& note, const scenario::Metric& metric) {
+  const auto camera = text_of(note, "camera");
+  const auto bearing_rad = number_of(note, "bearing_rad");
+  const auto index = note.find("image_index");
+  if (text_of(note, "anchor") != metric.anchor || !camera || !bearing_rad) return std::nullopt;
+  if (index == note.end() || !index->is_number_unsigned()) return std::nullopt;
+  return Estimate{*camera, index->get<std::uint64_t>(), *bearing_rad,
+                  number_of(note, "distance_m")};
+}
+
+std::optional<uav::Vec3> read_displacement(const nlohmann::json& note, const scenario::Metric&) {
+  const auto x_m = number_of(note, "x_m"), y_m = number_of(note, "y_m");
+  if (!x_m || !y_m) return std::nullopt;
+  return uav::Vec3{*x_m, *y_m, 0.0};
+}
+
+// ---- The image that an estimate rests on.
+
+const record::SensorInfo* find_camera(const record::Record& record, const std::string& uav,
+                                      const std::string& name) {
+  for (const record::SensorInfo& sensor : record.header.sensors) {
+    if (sensor.uav == uav && sensor.name == name && sensor.camera) return &sensor;
+  }
+  return nullptr;
+}
+
+std::optional<SimTime> instant_of_image(const record::Record& record, const std::string& uav,
+                                        const Estimate& estimate) {
+  for (const auto& logged : record.interactions) {
+    const record::Interaction& read = logged.message;
+    if (read.kind != record::kSensor || read.uav != uav || read.sensor != estimate.camera ||
+        read.sample_index != estimate.image_index)
+      continue;
+    return read.sample_state_at ? read.sample_state_at : read.sampled_at;
+  }
+  return std::nullopt;
+}
+
+// The SUT's last estimate, with the truth of its image.
+struct Look {
+  Estimate estimate;
+  const record::SensorInfo* camera = nullptr;
+  const record::Anchor* anchor = nullptr;
+  uav::Pose X_WB;
+};
+
+using Evaluate = MetricOutcome (*)(const Look&);
+
+MetricOutcome with_image(const scenario::Metric& metric, const record::Record& record, Look look,
+                         Evaluate evaluate) {
+  const Estimate& estimate = look.estimate;
+  look.camera = find_camera(record, metric.uav, estimate.camera);
+  if (look.camera == nullptr) {
+    return missing(fmt::format("the record does not describe a camera '{}' of '{}'",
+                               estimate.camera, metric.uav));
+  }
+  const auto instant = instant_of_image(record, metric.uav, estimate);
+  if (!instant) {
+    return missing(
+        fmt::format("the SUT of '{}' estimated from image {} of '{}', which it never got",
+                    metric.uav, estimate.image_index, estimate.camera));
+  }
+  const auto X_WB = pose_at(record, metric.uav, *instant);
+  if (!X_WB) return no_ground_truth(metric);
+  look.X_WB = *X_WB;
+  return evaluate(look);
+}
+
+MetricOutcome with_last_look(const scenario::Metric& metric, const record::Record& record,
+                             Evaluate evaluate) {
+  Look look;
+  look.anchor = find_anchor(record, metric.anchor);
+  if (look.anchor == nullptr) return no_anchor(metric);
+  if (find_finish(record, metric.uav) == nullptr) return no_finish(metric);
+  const auto estimate = last_note(record, metric.uav, "estimate", read_estimate, metric);
+  if (!estimate) {
+    return missing(
+        fmt::format("the SUT of '{}' left no estimate of '{}'", metric.uav, metric.anchor));
+  }
+  look.estimate = *estimate;
+  return with_image(metric, record, look, evaluate);
+}
+
+MetricOutcome bearing_error_of(const Look& look) {
+  const auto roi = true_roi(*look.camera, look.X_WB, *look.anchor);
+  if (!roi) {
+    return missing(fmt::format("'{}' is not before the camera '{}' at the image of the estimate",
+                               look.anchor->name, look.camera->name));
+  }
+  const double true_rad = roi_bearing_rad(*look.camera, *roi);
+  return {deg_from_rad(std::abs(wrap_angle_rad(look.estimate.bearing_rad - true_rad))), ""};
+}
+
+MetricOutcome distance_error_of(const Look& look) {
+  if (!look.estimate.distance_m) {
+    return missing(
+        fmt::format("the SUT's last estimate of '{}' has no distance", look.anchor->name));
+  }
+  const uav::Vec3 p_WC = camera_pose(*look.camera, look.X_WB).p;
+  const double true_m =
+      std::hypot(look.anchor->p_WA_m[0] - p_WC.x, look.anchor->p_WA_m[1] - p_WC.y);
+  return {std::abs(*look.estimate.distance_m - true_m), ""};
+}
+
+}  // namespace
+
+MetricOutcome bearing_error(const scenario::Metric& metric, const record::Record& record) {
+  return with_last_look(metric, record, bearing_error_of);
+}
+
+MetricOutcome distance_error(const scenario::Metric& metric, const record::Record& record) {
+  return with_last_look(metric, record, distance_error_of);
+}
+
+// Both in the start-heading frame H0: ahead at the start, and to the left.
+MetricOutcome estimate_error(const scenario::Metric& metric, const record::Record& record) {
+  if (find_finish(record, metric.uav) == nullptr) return no_finish(metric);
+  const auto said_H0 = last_note(record, metric.uav, "displacement", read_displacement, metric);
+  if (!said_H0) {
+    return missing(fmt::format("the SUT of '{}' left no estimate of its displacement", metric.uav));
+  }
+  const auto path = start_and_end(record, metric.uav);
+  if (!path) return no_ground_truth(metric);
+  const uav::Quat q_H0W = uav::from_rpy(0.0, 0.0, -uav::yaw_rad(path->start.q));
+  const uav::Vec3 off_H0 = *said_H0 - rotate(q_H0W, path->end.p - path->start.p);
+  return {std::hypot(off_H0.x, off_H0.y), ""};
+}
+
+}  // namespace tether::campaign

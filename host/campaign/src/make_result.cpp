@@ -1,0 +1,181 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <tether/board/target_readings.h>
+#include <tether/campaign/result.h>
+
+namespace tether::campaign {
+namespace {
+
+TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condition& condition,
+                      std::uint64_t seed) {
+  TrialResult result;
+  result.scenario = scenario.name;
+  result.condition = condition.name;
+  result.seed = seed;
+  result.policy = scenario::name(condition.policy);
+  result.clock = scenario::name(condition.clock);
+  result.cpu_factor = condition.cpu_factor;
+  result.computing = condition.computing;
+  result.real_time_factor = condition.real_time_factor;
+  if (condition.target) result.target = condition.target->name;
+  result.profiles = scenario::profile_names(scenario, condition);
+  return result;
+}
+
+std::vector<SutResult> sut_results(const record::Record& record,
+                                   const std::vector<TaskEnd>& task_ends) {
+  std::vector<SutResult> suts;
+  for (const record::SutInfo& info : record.header.suts) {
+    SutResult sut;
+    sut.uav = info.uav;
+    sut.sut = info.sut;
+    sut.clock = info.clock;
+    sut.cpu_factor = info.cpu_factor;
+    const std::size_t index = suts.size();
+    const bool tied = record.header.policy == record::kConservativeBarrier;
+    if (tied && record.footer && index < record.footer->et_at_end.size()) {
+      sut.et_at_end = record.footer->et_at_end[index];
+    }
+    for (const TaskEnd& end : task_ends) {
+      if (end.uav != sut.uav) continue;
+      sut.finished = true;
+      sut.reached_goal = end.reached_goal;
+      sut.outcome = end.outcome;
+      sut.details = end.details;
+    }
+    suts.push_back(std::move(sut));
+  }
+  return suts;
+}
+
+// A task that was given up measures nothing of what it is for: an UAV that never set out ends where
+// it began, and at once.
+void drop_metrics_of_missed_tasks(TrialResult& result, const scenario::Scenario& scenario) {
+  for (const SutResult& sut : result.suts) {
+    if (sut.reached_goal) continue;
+    const std::string why = sut.finished ? fmt::format("the SUT of '{}' did not reach its goal: {}",
+                                                       sut.uav, sut.outcome)
+                                         : fmt::format("the SUT of '{}' did not finish", sut.uav);
+    for (std::size_t i = 0; i < result.metrics.size(); ++i) {
+      if (scenario.metrics[i].uav != sut.uav) continue;
+      result.metrics[i].value.reset();
+      result.metrics[i].missing_because = why;
+    }
+  }
+}
+
+std::string text_of(double value, const std::string& unit) {
+  return unit == "1" ? fmt::format("{:.6g}", value) : fmt::format("{:.6g} {}", value, unit);
+}
+
+// Why the goal was missed; empty: it was reached.
+std::string why_missed(const TrialResult& result) {
+  for (const SutResult& sut : result.suts) {
+    if (!sut.finished) return fmt::format("the SUT of '{}' did not finish", sut.uav);
+    if (!sut.reached_goal) {
+      return fmt::format("the SUT of '{}' did not reach its goal: {}", sut.uav, sut.outcome);
+    }
+  }
+  for (const MetricValue& metric : result.metrics) {
+    if (metric.is_met()) continue;
+    if (!metric.value) return fmt::format("no {}: {}", metric.name, metric.missing_because);
+    return fmt::format("{} is {}, beyond its limit of {}", metric.name,
+                       text_of(*metric.value, metric.unit), text_of(*metric.max, metric.unit));
+  }
+  return "";
+}
+
+std::optional<StopFigures> stop_figures(const record::Record& record) {
+  const auto& suts = record.header.suts;
+  const bool tied = record.header.policy == record::kConservativeBarrier;
+  if (!tied || std::ranges::none_of(suts, &record::SutInfo::concurrent)) return std::nullopt;
+  return StopFigures{record.footer->stops, record.footer->largest_overshoot};
+}
+
+// A SUT that was lost before it did anything never came to be: a matter of the set-up.
+std::string end_of(const record::Footer& footer) {
+  const bool nothing_happened = footer.interactions == 0 && footer.end == "sut_lost";
+  return nothing_happened ? std::string(kEndSetupFailed) : footer.end;
+}
+
+void settle(TrialResult& result, const std::string& reason_of_end) {
+  const bool ran = result.end == kEndFinished || result.end == kEndTimeLimit;
+  if (!ran) return invalidate(result, reason_of_end.empty() ? result.end : reason_of_end);
+  const std::string missed = result.end == kEndTimeLimit ? reason_of_end : why_missed(result);
+  const bool reached = result.end == kEndFinished && missed.empty();
+  result.outcome = reached ? Outcome::kGoalReached : Outcome::kGoalMissed;
+  result.reason = reached ? "every SUT reached its goal within the limits"
+                          : (missed.empty() ? "the time limit was reached" : missed);
+}
+
+// A board that was slowed down is part of why the trial came out as it did.
+void take_target(TrialResult& result, const record::Record& record) {
+  if (!record.header.target) return;
+  const record::TargetInfo& info = *record.header.target;
+  TargetReport target{.name = info.name, .address = info.address, .before = info.before};
+  if (record.footer) target.after = record.footer->target_after;
+  const bool is_board = !info.address.empty();
+  for (const board::RunWarning& warning :
+       board::run_warnings(target.before, target.after, is_board)) {
+    target.warnings.push_back(warning.text);
+    if (!warning.spoils || !is_board) continue;
+    target.is_spoiled = true;
+    result.reason += "; but " + warning.text;
+  }
+  result.this_run.target = std::move(target);
+}
+
+}  // namespace
+
+TrialResult make_result(const scenario::Scenario& scenario, const scenario::Condition& condition,
+                        const record::Record& record, const std::vector<TaskEnd>& task_ends) {
+  TrialResult result = result_of(scenario, condition, record.header.seed);
+  result.metrics = compute_metrics(scenario.metrics, record);
+  result.suts = sut_results(record, task_ends);
+  drop_metrics_of_missed_tasks(result, scenario);
+  result.versions = {{"tether", record.header.tether_version},
+                     {"simulator", record.header.simulator}};
+  for (const record::SutInfo& sut : record.header.suts) {
+    result.versions["sut of " + sut.uav] = sut.sut;
+  }
+  result.this_run.machine = record.header.machine;
+  if (!record.footer) {
+    result.end = "record_cut";
+    settle(result, "the record was cut short: " +
+                       (record.damage.empty() ? "it has no end" : record.damage));
+    return result;
+  }
+  const record::Footer& footer = *record.footer;
+  result.end = end_of(footer);
+  result.sync = {footer.interactions, footer.causality_violations, footer.largest_grid_error,
+                 footer.st_at_end, stop_figures(record)};
+  result.this_run.wall = footer.wall;
+  result.this_run.largest_lag = footer.largest_lag;
+  settle(result, footer.reason);
+  take_target(result, record);
+  return result;
+}
+
+void invalidate(TrialResult& result, const std::string& reason) {
+  result.outcome = Outcome::kFailed;
+  result.reason = reason;
+  for (MetricValue& metric : result.metrics) {
+    metric.value.reset();
+    metric.missing_because = reason;
+  }
+}
+
+TrialResult make_setup_failure(const scenario::Scenario& scenario,
+                               const scenario::Condition& condition, std::uint64_t seed,
+                               const std::string& reason) {
+  TrialResult result = result_of(scenario, condition, seed);
+  result.end = kEndSetupFailed;
+  result.metrics = compute_metrics(scenario.metrics, record::Record{});
+  for (MetricValue& metric : result.metrics) metric.missing_because = "the trial was not set up";
+  settle(result, reason);
+  return result;
+}
+
+}  // namespace tether::campaign

@@ -1,0 +1,278 @@
+#include "json_reader.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <tether/base/json_depth.h>
+#include <tether/campaign/result.h>
+#include <tether/os/text_file.h>
+
+namespace tether::campaign {
+namespace {
+
+constexpr std::string_view kScripted = "scripted";
+constexpr std::array<std::string_view, 3> kOutcomes = {"goal_reached", "goal_missed", "failed"};
+
+// Division rounds correctly, so that every nanosecond count prints short and reads back exactly.
+double exact_seconds(Duration d) {
+  return static_cast<double>(d.count()) / 1e9;
+}
+template <class Clock>
+double exact_seconds(std::chrono::time_point<Clock, Duration> t) {
+  return exact_seconds(t.time_since_epoch());
+}
+
+// To JSON.
+
+Json optional_number(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json json_of(const MetricValue& metric) {
+  Json json{{"name", metric.name},
+            {"kind", metric.kind},
+            {"label", metric.label},
+            {"unit", metric.unit},
+            {"value", optional_number(metric.value)},
+            {"max", optional_number(metric.max)},
+            {"met", metric.is_met()}};
+  if (!metric.value) json["missing_because"] = metric.missing_because;
+  return json;
+}
+
+// A SUT's details are an object of its own making; what is none, or too deep to be read again, is
+// kept as the text it is.
+Json json_of_details(const std::string& details) {
+  if (details.empty()) return nullptr;
+  const bool is_deep = json_depth(details) > kMaxSutJsonDepth;
+  Json parsed = is_deep ? Json() : Json::parse(details, nullptr, false);
+  return parsed.is_object() ? parsed : Json(details);
+}
+
+Json json_of(const SutResult& sut) {
+  return Json{{"uav", sut.uav},
+              {"sut", sut.sut},
+              {"clock", sut.clock},
+              {"cpu_factor", sut.cpu_factor},
+              {"et_at_end_s", sut.et_at_end ? Json(exact_seconds(*sut.et_at_end)) : Json(nullptr)},
+              {"finished", sut.finished},
+              {"reached_goal", sut.reached_goal},
+              {"outcome", sut.outcome},
+              {"details", json_of_details(sut.details)}};
+}
+
+template <class T>
+Json json_of(const std::vector<T>& elements) {
+  Json array = Json::array();
+  for (const T& element : elements) array.push_back(json_of(element));
+  return array;
+}
+
+Json json_of(const SyncFigures& sync) {
+  Json json{{"interactions", sync.interactions},
+            {"causality_violations", sync.causality_violations},
+            {"largest_grid_error_s", exact_seconds(sync.largest_grid_error)},
+            {"st_at_end_s", exact_seconds(sync.st_at_end)}};
+  if (sync.stops) {
+    json["stops"] = sync.stops->count;
+    json["largest_overshoot_s"] = exact_seconds(sync.stops->largest_overshoot);
+  }
+  return json;
+}
+
+Json json_of(const std::optional<AuditVerdict>& audit) {
+  if (!audit) return nullptr;
+  return Json{{"passed", audit->passed}, {"summary", audit->summary}};
+}
+
+Json json_of(const std::map<std::string, std::string>& texts) {
+  Json json = Json::object();
+  for (const auto& [key, text] : texts) json[key] = text;
+  return json;
+}
+
+Json json_of(const TargetReport& target) {
+  return Json{{"name", target.name},
+              {"address", target.address},
+              {"before", json_of(target.before)},
+              {"after", json_of(target.after)},
+              {"warnings", target.warnings},
+              {"is_spoiled", target.is_spoiled}};
+}
+
+Json json_of(const ThisRun& run) {
+  Json json{{"started_at", run.started_at},
+            {"machine", run.machine},
+            {"wall_s", exact_seconds(run.wall)},
+            {"largest_lag_s", exact_seconds(run.largest_lag)},
+            {"attempts", run.attempts}};
+  if (!run.first_failure.empty()) json["first_failure"] = run.first_failure;
+  if (run.target) json["target"] = json_of(*run.target);
+  if (!run.notes.empty()) json["notes"] = run.notes;
+  return json;
+}
+
+// From JSON.
+
+MetricValue read_metric(const JsonReader& json) {
+  MetricValue metric;
+  metric.name = json.text("name");
+  metric.kind = json.text("kind");
+  metric.label = json.text("label");
+  metric.unit = json.text("unit");
+  metric.value = json.optional_number("value");
+  metric.max = json.optional_number("max");
+  if (!metric.value) metric.missing_because = json.text("missing_because");
+  return metric;
+}
+
+std::string read_details(const JsonReader& json) {
+  const Json& details = json.member("details");
+  if (details.is_null()) return "";
+  return details.is_string() ? details.get<std::string>() : details.dump();
+}
+
+SutResult read_sut(const JsonReader& json) {
+  SutResult sut;
+  sut.uav = json.text("uav");
+  sut.sut = json.text("sut");
+  sut.clock = json.text("clock");
+  sut.cpu_factor = json.number("cpu_factor");
+  if (!json.member("et_at_end_s").is_null()) sut.et_at_end = ExecTime(json.seconds("et_at_end_s"));
+  sut.finished = json.boolean("finished");
+  sut.reached_goal = json.boolean("reached_goal");
+  sut.outcome = json.text("outcome");
+  sut.details = read_details(json);
+  return sut;
+}
+
+SyncFigures read_sync(const JsonReader& json) {
+  SyncFigures sync{json.count("interactions"), json.count("causality_violations"),
+                   json.seconds("largest_grid_error_s"), SimTime(json.seconds("st_at_end_s"))};
+  if (json.has("stops"))
+    sync.stops = StopFigures{json.count("stops"), json.seconds("largest_overshoot_s")};
+  return sync;
+}
+
+TargetReport read_target(const JsonReader& json) {
+  return {.name = json.text("name"),
+          .address = json.text("address"),
+          .before = json.object("before").all_texts(),
+          .after = json.object("after").all_texts(),
+          .warnings = json.texts("warnings"),
+          .is_spoiled = json.boolean("is_spoiled")};
+}
+
+ThisRun read_this_run(const JsonReader& json) {
+  ThisRun run;
+  run.started_at = json.text("started_at");
+  run.machine = json.text("machine");
+  run.wall = json.seconds("wall_s");
+  run.largest_lag = json.seconds("largest_lag_s");
+  const std::uint64_t attempts = json.count("attempts");
+  if (attempts < 1 || attempts > 1000) json.fail("'attempts' is out of range");
+  run.attempts = static_cast<int>(attempts);
+  if (json.has("first_failure")) run.first_failure = json.text("first_failure");
+  if (json.has("target")) run.target = read_target(json.object("target"));
+  if (json.has("notes")) run.notes = json.texts("notes");
+  return run;
+}
+
+Outcome read_outcome(const JsonReader& json) {
+  const std::string word = json.text("outcome");
+  for (std::size_t i = 0; i < kOutcomes.size(); ++i) {
+    if (kOutcomes[i] == word) return static_cast<Outcome>(i);
+  }
+  json.fail(fmt::format("'outcome' is \"{}\"", word));
+}
+
+void read_trial(const JsonReader& json, TrialResult& result) {
+  result.scenario = json.text("scenario");
+  result.condition = json.text("condition");
+  result.seed = json.count("seed");
+  result.policy = json.text("policy");
+  result.clock = json.text("clock");
+  result.cpu_factor = json.number("cpu_factor");
+  if (result.clock == kScripted) result.computing = json.seconds("computing_s");
+  result.real_time_factor = json.number("real_time_factor");
+  if (json.has("target")) result.target = json.text("target");
+  if (json.has("profiles")) result.profiles = json.texts("profiles");
+  result.outcome = read_outcome(json);
+  result.end = json.text("end");
+  result.reason = json.text("reason");
+}
+
+}  // namespace
+
+std::string_view name(Outcome outcome) {
+  return kOutcomes[static_cast<std::size_t>(outcome)];
+}
+
+int exit_code(Outcome outcome) {
+  constexpr std::array kCodes = {0, 1, 3};
+  return kCodes[static_cast<std::size_t>(outcome)];
+}
+
+const MetricValue* TrialResult::find_metric(std::string_view metric) const {
+  for (const MetricValue& value : metrics) {
+    if (value.name == metric) return &value;
+  }
+  return nullptr;
+}
+
+std::string to_json(const TrialResult& result) {
+  Json json{{"schema", kResultSchemaVersion}, {"scenario", result.scenario},
+            {"condition", result.condition},  {"seed", result.seed},
+            {"policy", result.policy},        {"clock", result.clock},
+            {"cpu_factor", result.cpu_factor}};
+  if (result.clock == kScripted) json["computing_s"] = exact_seconds(result.computing);
+  if (!result.target.empty()) json["target"] = result.target;
+  json.update(Json{{"real_time_factor", result.real_time_factor},
+                   {"profiles", result.profiles},
+                   {"outcome", name(result.outcome)},
+                   {"exit_code", exit_code(result.outcome)},
+                   {"end", result.end},
+                   {"reason", result.reason},
+                   {"metrics", json_of(result.metrics)},
+                   {"suts", json_of(result.suts)},
+                   {"sync", json_of(result.sync)},
+                   {"audit", json_of(result.audit)},
+                   {"versions", json_of(result.versions)},
+                   {"this_run", json_of(result.this_run)}});
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+TrialResult result_from_json(const std::string& text, const std::filesystem::path& file) {
+  const Json document = parse_json(text, file);
+  const JsonReader json(document, file);
+  json.require_schema(kResultSchemaVersion);
+  TrialResult result;
+  read_trial(json, result);
+  for (const JsonReader& metric : json.objects("metrics")) {
+    result.metrics.push_back(read_metric(metric));
+  }
+  for (const JsonReader& sut : json.objects("suts")) result.suts.push_back(read_sut(sut));
+  result.sync = read_sync(json.object("sync"));
+  if (!json.member("audit").is_null()) {
+    const JsonReader audit = json.object("audit");
+    result.audit = AuditVerdict{audit.boolean("passed"), audit.text("summary")};
+  }
+  result.versions = json.object("versions").all_texts();
+  result.this_run = read_this_run(json.object("this_run"));
+  return result;
+}
+
+void write_result(const std::filesystem::path& folder, const TrialResult& result) {
+  os::write_file_atomically(folder / kResultFile, to_json(result));
+}
+
+TrialResult read_result(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / kResultFile;
+  return result_from_json(os::read_file(file), file);
+}
+
+}  // namespace tether::campaign

@@ -1,0 +1,224 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <tether/base/units.h>
+#include <tether/campaign/true_roi.h>
+#include <tether/uav/camera_model.h>
+
+namespace tether::campaign {
+namespace {
+
+// Points along each edge of a box (a lens may bend it) and around each rim or silhouette: the
+// rectangle of a circle of 200 px is too small by less than 0.02 px.
+constexpr int kEdgePoints = 16;
+constexpr int kRimPoints = 256;
+
+uav::Vec3 vec3(const double (&v)[3]) {
+  return {v[0], v[1], v[2]};
+}
+uav::Quat quat(const double (&q)[4]) {
+  return {q[0], q[1], q[2], q[3]};
+}
+uav::Pose pose_of(const record::GroundTruth& truth) {
+  return {vec3(truth.p_WB_m), quat(truth.q_WB)};
+}
+
+// Poses between two.
+
+double dot(const uav::Quat& a, const uav::Quat& b) {
+  return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+uav::Quat blend(double share_a, const uav::Quat& a, double share_b, const uav::Quat& b) {
+  return uav::normalized({share_a * a.w + share_b * b.w, share_a * a.x + share_b * b.x,
+                          share_a * a.y + share_b * b.y, share_a * a.z + share_b * b.z});
+}
+
+uav::Quat slerp(const uav::Quat& a, const uav::Quat& b, double fraction) {
+  // q and −q are one attitude; the nearer one is meant.
+  const double sign = dot(a, b) < 0.0 ? -1.0 : 1.0;
+  const double angle_rad = std::acos(std::min(1.0, std::abs(dot(a, b))));
+  constexpr double kAsGoodAsLinear_rad = 1e-6;
+  if (angle_rad < kAsGoodAsLinear_rad) return blend(1.0 - fraction, a, sign * fraction, b);
+  return blend(std::sin((1.0 - fraction) * angle_rad), a, sign * std::sin(fraction * angle_rad), b);
+}
+
+uav::Pose between(const record::GroundTruth& before, const record::GroundTruth& after,
+                  SimTime instant) {
+  const uav::Pose a = pose_of(before), b = pose_of(after);
+  const double fraction = to_seconds(instant - before.at) / to_seconds(after.at - before.at);
+  return {a.p + fraction * (b.p - a.p), slerp(a.q, b.q, fraction)};
+}
+
+// What of an anchor bounds its image, in its own frame A.
+
+void add_circle(std::vector<uav::Vec3>& points, const uav::Vec3& centre, const uav::Vec3& u,
+                const uav::Vec3& v) {
+  for (int i = 0; i < kRimPoints; ++i) {
+    const double angle_rad = 2.0 * std::numbers::pi * i / kRimPoints;
+    points.push_back(centre + std::cos(angle_rad) * u + std::sin(angle_rad) * v);
+  }
+}
+
+std::vector<uav::Vec3> box_edges_A(const uav::Vec3& size_m) {
+  std::vector<uav::Vec3> points;
+  for (const double along : {-0.5, 0.5}) {
+    for (const double across : {-0.5, 0.5}) {
+      for (int i = 0; i <= kEdgePoints; ++i) {
+        const double t = static_cast<double>(i) / kEdgePoints - 0.5;
+        points.push_back({t * size_m.x, along * size_m.y, across * size_m.z});
+        points.push_back({along * size_m.x, t * size_m.y, across * size_m.z});
+        points.push_back({along * size_m.x, across * size_m.y, t * size_m.z});
+      }
+    }
+  }
+  return points;
+}
+
+std::vector<uav::Vec3> cylinder_rims_A(const uav::Vec3& size_m) {
+  std::vector<uav::Vec3> points;
+  for (const double end : {-0.5, 0.5}) {
+    add_circle(points, {0.0, 0.0, end * size_m.z}, {0.5 * size_m.x, 0.0, 0.0},
+               {0.0, 0.5 * size_m.x, 0.0});
+  }
+  return points;
+}
+
+// The circle in which the cone of tangents from the eye touches the sphere; empty when the eye is
+// inside.
+std::vector<uav::Vec3> sphere_silhouette_A(double radius_m, const uav::Vec3& eye_A) {
+  const double distance_m = uav::norm(eye_A);
+  if (distance_m <= radius_m) return {};
+  const uav::Vec3 towards_eye = (1.0 / distance_m) * eye_A;
+  const uav::Vec3 aside =
+      std::abs(towards_eye.x) < 0.8 ? uav::Vec3{1.0, 0.0, 0.0} : uav::Vec3{0.0, 1.0, 0.0};
+  const uav::Vec3 across = uav::cross(towards_eye, aside);
+  const double sine = radius_m / distance_m;
+  const double rim_m = radius_m * std::sqrt(1.0 - sine * sine);
+  const uav::Vec3 u = (rim_m / uav::norm(across)) * across;
+  std::vector<uav::Vec3> points;
+  add_circle(points, radius_m * sine * towards_eye, u, uav::cross(towards_eye, u));
+  return points;
+}
+
+std::vector<uav::Vec3> outline_A(const record::Anchor& anchor, const uav::Vec3& eye_A) {
+  const uav::Vec3 size_m = vec3(anchor.size_m);
+  if (anchor.shape == "box") return box_edges_A(size_m);
+  if (anchor.shape == "cylinder") return cylinder_rims_A(size_m);
+  if (anchor.shape == "sphere") return sphere_silhouette_A(0.5 * size_m.x, eye_A);
+  return {};
+}
+
+// Projection.
+
+uav::CameraModel model_of(const record::CameraInfo& camera) {
+  uav::CameraModel model;
+  model.width_px = camera.width_px;
+  model.height_px = camera.height_px;
+  model.fx_px = camera.fx_px;
+  model.fy_px = camera.fy_px;
+  model.cx_px = camera.cx_px;
+  model.cy_px = camera.cy_px;
+  model.k1 = camera.k1;
+  model.k2 = camera.k2;
+  model.k3 = camera.k3;
+  model.p1 = camera.p1;
+  model.p2 = camera.p2;
+  return model;
+}
+
+// Far aside, the polynomials of a distortion fold back into the image; such a pixel shows something
+// else.
+std::optional<uav::Pixel> project(const uav::CameraModel& model, const uav::Vec3& p_C) {
+  const std::optional<uav::Pixel> pixel = model.project(p_C);
+  if (!pixel || !model.has_distortion()) return pixel;
+  const uav::Vec3 back_C = p_C.z * model.unproject(*pixel);
+  const uav::Vec3 off_C = back_C - p_C;
+  const bool is_its_own = uav::dot(off_C, off_C) < 1e-8 * uav::dot(p_C, p_C);
+  return is_its_own ? pixel : std::nullopt;
+}
+
+void extend(PixelRect& rect, const uav::Pixel& pixel) {
+  rect.left_px = std::min(rect.left_px, pixel.u_px);
+  rect.right_px = std::max(rect.right_px, pixel.u_px);
+  rect.top_px = std::min(rect.top_px, pixel.v_px);
+  rect.bottom_px = std::max(rect.bottom_px, pixel.v_px);
+}
+
+PixelRect image_of(const record::CameraInfo& camera) {
+  return {-0.5, -0.5, camera.width_px - 0.5, camera.height_px - 0.5};
+}
+
+}  // namespace
+
+std::optional<uav::Pose> pose_at(const record::Record& record, const std::string& uav,
+                                 SimTime instant) {
+  const record::GroundTruth* before = nullptr;
+  const record::GroundTruth* after = nullptr;
+  for (const auto& logged : record.ground_truth) {
+    const record::GroundTruth& truth = logged.message;
+    if (truth.uav != uav) continue;
+    if (truth.at <= instant) before = &truth;
+    if (truth.at < instant) continue;
+    after = &truth;
+    break;
+  }
+  if (before != nullptr && after != nullptr) {
+    return before == after ? pose_of(*before) : between(*before, *after, instant);
+  }
+  const record::GroundTruth* nearest = before != nullptr ? before : after;
+  if (nearest == nullptr) return std::nullopt;
+  const Duration off = std::max(instant - nearest->at, nearest->at - instant);
+  if (off > record.header.ground_truth_period) return std::nullopt;
+  return pose_of(*nearest);
+}
+
+uav::Pose camera_pose(const record::SensorInfo& camera, const uav::Pose& X_WB) {
+  return X_WB * uav::Pose{vec3(camera.camera->p_BS_m), quat(camera.camera->q_BS)};
+}
+
+std::optional<PixelRect> true_roi(const record::SensorInfo& camera, const uav::Pose& X_WB,
+                                  const record::Anchor& anchor) {
+  if (!camera.camera) return std::nullopt;
+  const uav::CameraModel model = model_of(*camera.camera);
+  const uav::Pose X_WC =
+      camera_pose(camera, X_WB) * uav::Pose{uav::Vec3{}, uav::q_body_from_optical()};
+  const uav::Pose X_CA = inverse(X_WC) * uav::Pose{vec3(anchor.p_WA_m), quat(anchor.q_WA)};
+  std::optional<PixelRect> roi;
+  for (const uav::Vec3& p_A : outline_A(anchor, inverse(X_CA).p)) {
+    const std::optional<uav::Pixel> pixel = project(model, transform(X_CA, p_A));
+    if (!pixel) return std::nullopt;
+    if (!roi) roi = PixelRect{pixel->u_px, pixel->v_px, pixel->u_px, pixel->v_px};
+    extend(*roi, *pixel);
+  }
+  return roi;
+}
+
+std::optional<PixelRect> visible_part(const record::SensorInfo& camera, const PixelRect& roi) {
+  const PixelRect image = image_of(*camera.camera);
+  const PixelRect part{std::max(roi.left_px, image.left_px), std::max(roi.top_px, image.top_px),
+                       std::min(roi.right_px, image.right_px),
+                       std::min(roi.bottom_px, image.bottom_px)};
+  const bool is_empty = part.left_px >= part.right_px || part.top_px >= part.bottom_px;
+  return is_empty ? std::nullopt : std::optional(part);
+}
+
+bool is_cut(const record::SensorInfo& camera, const PixelRect& roi) {
+  return visible_part(camera, roi) != roi;
+}
+
+double roi_bearing_rad(const record::SensorInfo& camera, const PixelRect& roi) {
+  const uav::CameraModel model = model_of(*camera.camera);
+  const uav::Quat q_BC = quat(camera.camera->q_BS) * uav::q_body_from_optical();
+  const double v_px = 0.5 * (roi.top_px + roi.bottom_px);
+  const auto bearing_at = [&](double u_px) {
+    const uav::Vec3 direction_B = rotate(q_BC, model.unproject({u_px, v_px}));
+    return std::atan2(direction_B.y, direction_B.x);
+  };
+  const double left_rad = bearing_at(roi.left_px), right_rad = bearing_at(roi.right_px);
+  return wrap_angle_rad(right_rad + 0.5 * wrap_angle_rad(left_rad - right_rad));
+}
+
+}  // namespace tether::campaign

@@ -1,0 +1,271 @@
+#include <atomic>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/campaign/run_campaign.h>
+#include <tether/campaign_testing/sample_campaign.h>
+#include <tether/os/text_file.h>
+
+namespace tether::campaign {
+namespace {
+
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+// What a trial did, by its folder below the campaign's.
+class RunCampaign : public testing::Test {
+ protected:
+  CampaignFolder open(OpenMode mode = OpenMode::kFresh) const {
+    return CampaignFolder(out_, campaign_, {}, mode);
+  }
+  CampaignOutcome run(const CampaignFolder& folder, const TrialExecutor& execute) {
+    return run_campaign(folder, campaign_, execute, options_, [&](const CampaignProgress& now) {
+      progress_.push_back(now);
+      if (now.result != nullptr) ended_.push_back(folder_of(*now.latest));
+    });
+  }
+  std::string folder_of(const TrialPlan& plan) const {
+    return plan.folder.lexically_relative(out_).string();
+  }
+  static TrialResult good(const TrialPlan& plan) {
+    return make_trial(*plan.scenario, plan.condition->name, plan.seed, 0.0, 2.5);
+  }
+  TrialResult result_of(std::size_t trial) const {
+    return read_result(plan_trials(campaign_, out_)[trial].folder);
+  }
+
+  ScratchFolder scratch_;
+  std::filesystem::path out_ = scratch_.path("out");
+  scenario::Campaign campaign_ = make_campaign(scratch_);
+  CampaignOptions options_;
+  std::vector<CampaignProgress> progress_;
+  std::vector<std::string> ended_;
+};
+
+TEST_F(RunCampaign, RunsEverythingOnce) {
+  const CampaignFolder folder = open();
+  std::multiset<std::string> ran;
+  const CampaignOutcome outcome = run(folder, [&](const TrialPlan& plan) {
+    EXPECT_TRUE(std::filesystem::is_empty(plan.folder));
+    ran.insert(folder_of(plan));
+    return good(plan);
+  });
+  EXPECT_EQ(outcome.ran, 9u);
+  EXPECT_EQ(outcome.failed, 0u);
+  EXPECT_FALSE(outcome.interrupted);
+  EXPECT_EQ(ran.size(), 9u);
+  EXPECT_EQ(std::set<std::string>(ran.begin(), ran.end()).size(), 9u);
+  EXPECT_EQ(result_of(4).condition, "target");
+  EXPECT_EQ(ended_.front(), "turn/host/seed-0001");
+  EXPECT_EQ(ended_.back(), "turn/target-no-sync/seed-0003");
+}
+
+TEST_F(RunCampaign, ResumesWithWhatIsMissing) {
+  std::stop_source stop;
+  options_.stop = stop.get_token();
+  const CampaignOutcome first = run(open(), [&](const TrialPlan& plan) {
+    if (plan.seed == 2) stop.request_stop();
+    return good(plan);
+  });
+  EXPECT_EQ(first.ran, 3u);
+  EXPECT_TRUE(first.interrupted);
+
+  options_.stop = {};
+  progress_.clear();
+  EXPECT_EQ(run(open(OpenMode::kResume), good).ran, 6u);
+  EXPECT_EQ(progress_.front().done, 3u);
+  EXPECT_EQ(progress_.back().done, 9u);
+  EXPECT_TRUE(open(OpenMode::kResume).missing().empty());
+}
+
+TEST_F(RunCampaign, ClearsAwayWhatATornTrialLeft) {
+  open();
+  scratch_.write("out/turn/host/seed-0001/record.mcap", "torn");
+  run(open(), [&](const TrialPlan& plan) {
+    EXPECT_TRUE(std::filesystem::is_empty(plan.folder));
+    return good(plan);
+  });
+}
+
+TEST_F(RunCampaign, TriesASetUpFailureOnceMore) {
+  std::map<std::string, int> attempts;
+  const CampaignOutcome outcome = run(open(), [&](const TrialPlan& plan) {
+    const bool first = ++attempts[folder_of(plan)] == 1;
+    if (plan.seed == 2 && first) throw Error(ErrorCode::kSetup, "the port was taken");
+    return good(plan);
+  });
+  EXPECT_EQ(outcome.failed, 0u);
+  EXPECT_EQ(attempts["turn/host/seed-0001"], 1);
+  EXPECT_EQ(attempts["turn/host/seed-0002"], 2);
+  EXPECT_EQ(result_of(0).this_run.attempts, 1);
+  EXPECT_EQ(result_of(3).this_run.attempts, 2);
+  EXPECT_EQ(result_of(3).this_run.first_failure, "the port was taken");
+  EXPECT_EQ(result_of(3).outcome, Outcome::kGoalReached);
+}
+
+TEST_F(RunCampaign, KeepsTheLogOfTheFirstAttemptAlone) {
+  const std::string log(kTrialLog);
+  int attempts = 0;
+  run(open(), [&](const TrialPlan& plan) {
+    if (plan.seed != 2 || plan.condition->name != "host") return good(plan);
+    const auto at = [&](const std::string& name) {
+      return folder_of(plan).insert(0, "out/") + "/" + name;
+    };
+    if (++attempts == 1) {
+      scratch_.write(at(log), "no port");
+      scratch_.write(at("record.mcap"), "torn");
+      throw Error(ErrorCode::kSetup, "the port was taken");
+    }
+    EXPECT_FALSE(std::filesystem::exists(plan.folder / "record.mcap"));
+    return good(plan);
+  });
+  EXPECT_EQ(attempts, 2);
+  EXPECT_EQ(os::read_file(plan_trials(campaign_, out_)[3].folder / log), "no port");
+}
+
+TEST_F(RunCampaign, EndsWithoutKeepingTheTrialThatTheCheckRefuses) {
+  int checks = 0;
+  options_.check = [&] {
+    if (++checks == 3) throw Error(ErrorCode::kBadFile, "room.sdf was changed");
+  };
+  const std::string message = error_message(ErrorCode::kBadFile, [&] {
+    run(open(), [&](const TrialPlan& plan) {
+      write_result(plan.folder, good(plan));  // as a child does
+      return good(plan);
+    });
+  });
+  EXPECT_EQ(message, "room.sdf was changed");
+  EXPECT_EQ(checks, 3);
+  EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
+}
+
+TEST_F(RunCampaign, KeepsATrialThatFailedTwiceAsFailed) {
+  std::map<std::string, int> attempts;
+  const CampaignOutcome outcome = run(open(), [&](const TrialPlan& plan) {
+    ++attempts[folder_of(plan)];
+    if (plan.seed != 2) return good(plan);
+    return make_setup_failure(*plan.scenario, *plan.condition, plan.seed, "no simulator");
+  });
+  EXPECT_EQ(outcome.ran, 9u);
+  EXPECT_EQ(outcome.failed, 3u);
+  EXPECT_EQ(attempts["turn/host/seed-0002"], 2);
+  EXPECT_EQ(result_of(3).reason, "no simulator");
+  EXPECT_EQ(result_of(3).this_run.attempts, 2);
+}
+
+TEST_F(RunCampaign, DoesNotRetryASutThatCrashedInMidRun) {
+  int calls = 0;
+  run(open(), [&](const TrialPlan& plan) {
+    ++calls;
+    TrialResult result = good(plan);
+    result.outcome = Outcome::kFailed;
+    result.end = "sut_lost";
+    return result;
+  });
+  EXPECT_EQ(calls, 9);
+}
+
+TEST_F(RunCampaign, DoesNotKeepATrialThatTheUserStopped) {
+  const CampaignOutcome outcome = run(open(), [&](const TrialPlan& plan) {
+    TrialResult result = good(plan);
+    if (plan.seed == 2) result.end = kEndInterrupted;
+    return result;
+  });
+  EXPECT_TRUE(outcome.interrupted);
+  EXPECT_EQ(outcome.ran, 2u);
+  EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
+}
+
+TEST_F(RunCampaign, EndsWithTheErrorOfTheUsersFiles) {
+  const std::string message = error_message(ErrorCode::kBadFile, [&] {
+    run(open(), [&](const TrialPlan& plan) -> TrialResult {
+      if (plan.seed == 2) throw Error(ErrorCode::kBadFile, "the mesh is broken");
+      return good(plan);
+    });
+  });
+  EXPECT_EQ(message, "the mesh is broken");
+  EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
+}
+
+// A gate that opens only when as many trials are inside as should run at once.
+class Gate {
+ public:
+  explicit Gate(int together) : together_(together) {}
+  void pass() {
+    std::unique_lock lock(mutex_);
+    if (++inside_ % together_ == 0) {
+      ++generation_;
+      changed_.notify_all();
+      return;
+    }
+    const int mine = generation_;
+    changed_.wait(lock, [&] { return generation_ != mine; });
+  }
+
+ private:
+  int together_;
+  int inside_ = 0;
+  int generation_ = 0;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+};
+
+TEST_F(RunCampaign, RunsSideBySideWhatMayAndTheRestAlone) {
+  options_.jobs = 2;
+  // A free-running SUT that is always busy.
+  campaign_.scenarios[0].scenario.conditions[2].cpu_factor = 1.0;
+  campaign_.scenarios[0].scenario.conditions[2].real_time_factor = 1.0;
+  Gate gate(2);
+  std::atomic<int> inside{0};
+  run(open(), [&](const TrialPlan& plan) {
+    const int others = inside++;
+    if (trials_side_by_side(plan, options_.jobs) > 1) {
+      gate.pass();  // would wait for ever if it ran alone
+    } else {
+      EXPECT_EQ(others, 0);
+    }
+    --inside;
+    return good(plan);
+  });
+  EXPECT_TRUE(open(OpenMode::kResume).missing().empty());
+}
+
+TEST_F(RunCampaign, RefusesJobsBesideAWallClockBeforeAnythingRuns) {
+  options_.jobs = 2;
+  campaign_.scenarios[0].scenario.conditions[0].clock = scenario::Clock::kWall;
+  const CampaignFolder folder = open();
+  EXPECT_THAT(error_message(ErrorCode::kUsage,
+                            [&] {
+                              run(folder, [](const TrialPlan& plan) {
+                                ADD_FAILURE();
+                                return good(plan);
+                              });
+                            }),
+              HasSubstr("by the wall clock"));
+}
+
+TEST_F(RunCampaign, TellsHowFarItIs) {
+  Duration now{0};
+  options_.wall = [&] { return now; };
+  run(open(), [&](const TrialPlan& plan) {
+    now += seconds(plan.condition->name == "host" ? 1 : 4);
+    return good(plan);
+  });
+  ASSERT_EQ(progress_.size(), 18u);  // start and end of each
+  EXPECT_EQ(progress_[0].running, 1u);
+  EXPECT_EQ(progress_[0].total, 9u);
+  EXPECT_FALSE(progress_[0].time_left);
+  EXPECT_EQ(progress_[1].done, 1u);
+  EXPECT_EQ(progress_[1].running, 0u);
+  // host and target are known: 2 × 1 + 2 × 4, and 3 others at the mean of both, 2.5.
+  EXPECT_EQ(progress_[3].time_left, std::chrono::milliseconds(17'500));
+  EXPECT_EQ(progress_.back().time_left, Duration{0});
+}
+
+}  // namespace
+}  // namespace tether::campaign

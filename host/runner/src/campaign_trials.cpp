@@ -1,0 +1,111 @@
+#include "local_sut.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/campaign/campaign_folder.h>
+#include <tether/os/child_process.h>
+#include <tether/os/program.h>
+#include <tether/runner/campaign_trials.h>
+
+namespace tether::runner {
+
+namespace {
+
+constexpr Duration kTrialLook = std::chrono::milliseconds(50);
+
+/// Lays every condition's profiles over a world of its own, so that what is wrong with them shows
+/// before anything is written. What means nothing to any UAV is said once.
+void try_profiles(const scenario::CampaignScenario& entry, const sim::World& world,
+                  std::set<std::string>& warnings) {
+  for (const std::string& name : entry.conditions) {
+    sim::World copy = world;
+    scenario::resolve_sensors(entry.scenario, *entry.scenario.find_condition(name), copy,
+                              [&](const std::string& text) { warnings.insert(text); });
+  }
+}
+
+/// What starts the SUTs here, under each condition.
+void add_programs(const scenario::CampaignScenario& entry,
+                  std::vector<std::filesystem::path>& files) {
+  for (const std::string& name : entry.conditions) {
+    const scenario::Condition& condition = *entry.scenario.find_condition(name);
+    scenario::require_clock(entry.scenario, condition);
+    if (condition.target && condition.target->ssh) continue;
+    for (const auto& program : sut_programs(entry.scenario, condition))
+      if (std::find(files.begin(), files.end(), program) == files.end()) files.push_back(program);
+  }
+}
+
+/// The second attempt leaves the first one's log alone.
+std::filesystem::path log_file(const campaign::TrialPlan& plan) {
+  const std::filesystem::path first = plan.folder / campaign::kTrialLog;
+  return std::filesystem::exists(first) ? plan.folder / "run-2.log" : first;
+}
+
+}  // namespace
+
+std::set<std::string> simulators(const scenario::Campaign& campaign) {
+  std::set<std::string> names;
+  for (const auto& entry : campaign.scenarios)
+    for (const std::string& name : entry.conditions)
+      names.insert(entry.scenario.find_condition(name)->simulator);
+  return names;
+}
+
+CampaignFiles files_of_trials(const scenario::Campaign& campaign,
+                              const FindBackEnd& find_back_end) {
+  std::set<std::string> warnings;
+  std::vector<std::filesystem::path> files = campaign::files_of(campaign);
+  files.push_back(os::own_file());
+  const auto every_trial_says_it = [](const std::string&) {};
+  for (const auto& entry : campaign.scenarios) {
+    add_programs(entry, files);
+    const sim::World world = sim::load_world(
+        scenario::world_request(entry.scenario, campaign.seeds.front()), every_trial_says_it);
+    files.insert(files.end(), world.files.begin(), world.files.end());
+    for (const std::string& name : entry.conditions)
+      find_back_end(entry.scenario.find_condition(name)->simulator).require_readable(world);
+    try_profiles(entry, world, warnings);
+  }
+  for (const std::string& name : simulators(campaign)) {
+    const auto own = find_back_end(name).files();
+    files.insert(files.end(), own.begin(), own.end());
+  }
+  return {std::move(files), std::move(warnings)};
+}
+
+campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
+                                        const std::stop_token& stop) {
+  const std::filesystem::path log = log_file(plan);
+  std::vector<std::string> arguments = {
+      os::own_file().string(), "run",         plan.scenario->file.string(), "--condition",
+      plan.condition->name,    "--seed",      std::to_string(plan.seed),    "--out",
+      plan.folder.string(),    "--simulator", plan.condition->simulator,    "--quiet"};
+  if (!plan.profile.empty())
+    arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
+  if (plan.record_images) arguments.push_back("--images");
+  // It has processes of its own to end.
+  os::ChildProcess process({.arguments = std::move(arguments),
+                            .environment = {},
+                            .log = log,
+                            .grace = std::chrono::seconds(10)});
+  while (!process.wait(kTrialLook)) {
+    if (stop.stop_requested()) process.terminate();
+  }
+  if (stop.stop_requested()) {
+    auto result = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
+                                               "interrupted by the user");
+    result.end = campaign::kEndInterrupted;
+    return result;
+  }
+  if (std::filesystem::exists(plan.folder / campaign::kResultFile))
+    return campaign::read_result(plan.folder);
+  throw Error(ErrorCode::kSetup, fmt::format("the trial left no result: it {}; see {}",
+                                             process.poll()->description, log.string()));
+}
+
+}  // namespace tether::runner

@@ -1,0 +1,111 @@
+#include "stall_watch.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+#include <time.h>
+
+namespace tether::runner {
+
+namespace {
+
+constexpr Duration kAskPeriod = std::chrono::seconds(1);
+// Looks come some tens of times a second.
+constexpr Duration kLongestPause = std::chrono::seconds(2);
+// The two clocks cannot be read at the same instant.
+constexpr Duration kClockError = std::chrono::milliseconds(50);
+
+WallTime read(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return WallTime(std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec));
+}
+
+// What follows the program's name, which may hold anything, in /proc/PID/stat.
+struct ProcessState {
+  char state = '?';
+  pid_t parent = 0;
+  pid_t group = 0;
+};
+
+std::optional<ProcessState> state_of(const std::filesystem::path& process) {
+  std::ifstream file(process / "stat");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto name_end = text.rfind(')');
+  if (name_end == std::string::npos) return std::nullopt;
+  std::istringstream rest(text.substr(name_end + 1));
+  ProcessState process_state;
+  rest >> process_state.state >> process_state.parent >> process_state.group;
+  return rest ? std::optional(process_state) : std::nullopt;
+}
+
+std::optional<pid_t> number_of(const std::filesystem::path& process) {
+  const std::string name = process.filename().string();
+  pid_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  return error == std::errc{} && end == name.data() + name.size() ? std::optional(number)
+                                                                  : std::nullopt;
+}
+
+}  // namespace
+
+HostClocks host_clocks() {
+  return {read(CLOCK_MONOTONIC), read(CLOCK_BOOTTIME)};
+}
+
+std::optional<pid_t> stopped_process(pid_t group) {
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc", failed)) {
+    const auto number = number_of(entry.path());
+    if (!number) continue;
+    const auto process = state_of(entry.path());
+    if (process && process->group == group && (process->state == 'T' || process->state == 't'))
+      return number;
+  }
+  return std::nullopt;
+}
+
+StallWatch::StallWatch(std::function<std::optional<std::string>()> stopped_sut, HostClocks now)
+    : stopped_sut_(std::move(stopped_sut)), began_(now), last_look_(now.running) {}
+
+std::string StallWatch::look(const coordinator::RunStatus& status, HostClocks now) {
+  const Duration pause = now.running - std::exchange(last_look_, now.running);
+  if (pause > kLongestPause)
+    notes_.push_back(fmt::format(
+        "the coordinator stood still for {:.1f} s up to ST {:.3f} s: stopped, short of processor "
+        "time, or waiting for its simulator",
+        to_seconds(pause), to_seconds(status.st)));
+  const bool is_new = !status.blocked.empty() && !stalled_;
+  stalled_ = !status.blocked.empty();
+  std::string stopped;
+  if (stalled_ && (is_new || now.running - last_asked_ >= kAskPeriod)) {
+    last_asked_ = now.running;
+    stopped = look_for_stopped_sut(status);
+  }
+  return is_new ? status.blocked + stopped : "";
+}
+
+std::string StallWatch::look_for_stopped_sut(const coordinator::RunStatus& status) {
+  const auto stopped = stopped_sut_();
+  if (!stopped) return "";
+  const std::string note = fmt::format("{} at ST {:.6f} s", *stopped, to_seconds(status.st));
+  if (std::find(notes_.begin(), notes_.end(), note) == notes_.end()) notes_.push_back(note);
+  return "; " + *stopped;
+}
+
+std::vector<std::string> StallWatch::notes(HostClocks now) const {
+  std::vector<std::string> notes = notes_;
+  const Duration suspended = (now.since_boot - began_.since_boot) - (now.running - began_.running);
+  if (suspended > kClockError)
+    notes.push_back(fmt::format("this machine was suspended for {:.1f} s during the run",
+                                to_seconds(suspended)));
+  return notes;
+}
+
+}  // namespace tether::runner

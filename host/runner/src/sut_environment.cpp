@@ -1,0 +1,75 @@
+#include "sut_environment.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <tether/os/child_process.h>
+#include <tether/os/shell_word.h>
+
+namespace tether::runner {
+
+namespace {
+
+/// As the client library takes it.
+std::string clock_of(const scenario::Condition& condition) {
+  switch (condition.clock) {
+    case scenario::Clock::kWall:
+      return condition.cpu_factor == 1.0 ? "wall" : fmt::format("wall*{}", condition.cpu_factor);
+    case scenario::Clock::kCpu:
+      return fmt::format("cpu*{}", condition.cpu_factor);
+    case scenario::Clock::kScripted:
+      return fmt::format("scripted*{}", static_cast<double>(condition.computing.count()) / 1e6);
+  }
+  return "wall";
+}
+
+}  // namespace
+
+std::vector<std::string> command_line(const scenario::Sut& sut) {
+  std::vector<std::string> words = sut.command;
+  for (const auto& [key, value] : sut.parameters) {
+    std::string option = "--" + key;
+    std::replace(option.begin(), option.end(), '_', '-');
+    words.push_back(option);
+    words.push_back(value);
+  }
+  return words;
+}
+
+SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::Target>& target) {
+  SutCommand command{{}, 0};
+  if (sut.concurrent) command.words.emplace_back("tether-exec");
+  std::vector<std::string> words = command_line(sut);
+  if (target) {
+    std::string& program = words.front();
+    if (!target->program_folder.empty() && program.find('/') == std::string::npos)
+      program = (std::filesystem::path(target->program_folder) / program).string();
+    command.words.insert(command.words.end(), target->launcher.begin(), target->launcher.end());
+  }
+  command.program = command.words.size();
+  command.words.insert(command.words.end(), words.begin(), words.end());
+  return command;
+}
+
+os::Environment environment_of(const std::string& uav, const SutRun& run) {
+  return {{"TETHER_ADDRESS", run.address},
+          {"TETHER_TOKEN", run.token},
+          {"TETHER_UAV", uav},
+          {"TETHER_CLOCK", clock_of(run.condition)}};
+}
+
+std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run) {
+  std::string text;
+  for (const scenario::UavSetup& uav : scenario.uavs) {
+    for (const auto& [name, value] : environment_of(uav.placement.name, run))
+      text += fmt::format("{}={} ", name, os::shell_word(value));
+    std::vector<std::string> words = sut_command(uav.sut, run.condition.target).words;
+    std::transform(words.begin(), words.end(), words.begin(), os::shell_word);
+    text += fmt::format("{}\n", fmt::join(words, " "));
+  }
+  return text;
+}
+
+}  // namespace tether::runner

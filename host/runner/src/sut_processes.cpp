@@ -1,0 +1,145 @@
+#include "sut_processes.h"
+
+#include "local_sut.h"
+#include "stall_watch.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include <tether/os/child_process.h>
+
+namespace tether::runner {
+
+namespace {
+
+/// The SUT as the board takes it. A parameter that names a file of the scenario is a file there.
+board::BoardSut board_sut(board::Board& board, const scenario::Scenario& scenario,
+                          const scenario::UavSetup& uav, const SutRun& run,
+                          const std::filesystem::path& log) {
+  scenario::Sut sut = uav.sut;
+  for (auto& [key, value] : sut.parameters)
+    if (std::binary_search(scenario.files.begin(), scenario.files.end(),
+                           std::filesystem::path(value)))
+      value = board.copy(value);
+  SutCommand command = sut_command(sut, run.condition.target);
+  return {.uav = uav.placement.name,
+          .words = std::move(command.words),
+          .program = command.program,
+          .concurrent = sut.concurrent,
+          .environment = environment_of(uav.placement.name, run),
+          .log = log};
+}
+
+/// The last line that is not empty; empty: none.
+std::string last_words(const std::filesystem::path& file) {
+  std::ifstream log(file);
+  std::string last;
+  for (std::string line; std::getline(log, line);)
+    if (!line.empty()) last = line;
+  return last;
+}
+
+// How long a SUT that has finished may take to leave.
+constexpr Duration kLeaveLimit = std::chrono::seconds(2);
+// How long a lost SUT's process may take to end once its connection has.
+constexpr Duration kEndLimit = std::chrono::milliseconds(200);
+
+}  // namespace
+
+void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
+                         const std::filesystem::path& folder) {
+  for (const scenario::UavSetup& uav : scenario.uavs) {
+    const std::string& name = uav.placement.name;
+    const std::filesystem::path log = folder / fmt::format("sut-{}.log", name);
+    const std::filesystem::path out = scenario.uavs.size() > 1 ? folder / name : folder;
+    auto process = std::make_unique<os::ChildProcess>(local_sut(uav, run, suts_.size(), out, log));
+    const std::string program = process->program();
+    suts_.push_back({name, log, out, program, std::move(process)});
+  }
+}
+
+void SutProcesses::start_on(board::Board& board, const scenario::Scenario& scenario,
+                            const SutRun& run, const std::filesystem::path& folder) {
+  board_ = &board;
+  for (const scenario::UavSetup& uav : scenario.uavs) {
+    const std::string& name = uav.placement.name;
+    const std::filesystem::path log = folder / fmt::format("sut-{}.log", name);
+    const board::BoardSut sut = board_sut(board, scenario, uav, run, log);
+    suts_.push_back({name, log, scenario.uavs.size() > 1 ? folder / name : folder,
+                     fmt::format("{} on {}", sut.words[sut.program],
+                                 scenario::to_string(board.connection().address())),
+                     board.start(sut)});
+  }
+}
+
+std::optional<std::string> SutProcesses::early_end() {
+  for (Sut& sut : suts_)
+    if (sut.process->poll()) return describe_end(sut);
+  return std::nullopt;
+}
+
+bool SutProcesses::has_failed_to_connect(const std::string& address) {
+  return std::ranges::any_of(suts_, [&](const Sut& sut) {
+    return sut.process->poll() &&
+           last_words(sut.log).find("cannot connect to " + address) != std::string::npos;
+  });
+}
+
+std::string SutProcesses::post_mortem() {
+  std::string text;
+  for (Sut& sut : suts_)
+    if (sut.process->wait(kEndLimit)) text += "; " + describe_end(sut);
+  return text;
+}
+
+std::optional<std::string> SutProcesses::lost() {
+  return board_ ? board_->lost() : std::nullopt;
+}
+
+std::optional<std::string> SutProcesses::stopped() const {
+  if (board_) return std::nullopt;
+  for (const Sut& sut : suts_)
+    if (const auto pid = stopped_process(sut.process->pid()))
+      return fmt::format(
+          "process {} of the SUT of UAV \"{}\" was stopped (by a signal or a debugger)", *pid,
+          sut.uav);
+  return std::nullopt;
+}
+
+std::vector<std::string> SutProcesses::let_leave() {
+  std::vector<std::string> notes;
+  for (Sut& sut : suts_)
+    if (!sut.process->wait(kLeaveLimit))
+      notes.push_back(
+          fmt::format("the SUT of UAV \"{}\" ({}) had finished and did not leave for "
+                      "{} s; it was ended",
+                      sut.uav, sut.program, to_seconds(kLeaveLimit)));
+    else if (sut.process->poll()->code > os::kSignalled)
+      notes.push_back("after it had finished: " + describe_end(sut));
+  return notes;
+}
+
+std::vector<std::string> SutProcesses::bring_back() {
+  std::vector<std::string> warnings;
+  if (!board_ || !board_->end_suts()) return warnings;
+  for (const Sut& sut : suts_) {
+    std::filesystem::create_directories(sut.files);
+    if (auto warning = board_->bring_back(sut.uav, sut.files)) warnings.push_back(*warning);
+  }
+  return warnings;
+}
+
+std::string SutProcesses::describe_end(Sut& sut) const {
+  const std::string last = last_words(sut.log);
+  const os::ChildExit& exit = *sut.process->poll();
+  using board::SutEnd;
+  const SutEnd end = board_ ? board_->end_of(exit, last) : SutEnd{{}, exit.description};
+  const bool is_told = last.empty() || end.cause == board::SutEndCause::kNotStarted;
+  return fmt::format(
+      "the SUT of UAV \"{}\" ({}) {}{}", sut.uav, sut.program, end.description,
+      is_told ? "" : fmt::format("; its last words in {}: {}", sut.log.string(), last));
+}
+
+}  // namespace tether::runner

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <tether/coordinator/coordinator.h>
+
+/// How a trial's run ended, as data: what is asked afterwards depends on it.
+namespace tether::runner {
+
+/// Why the runner ends a run before the coordinator does.
+enum class StopCause {
+  kInterrupted,    ///< the user wants it
+  kSimulatorLost,  ///< one of the simulator's processes ended
+  kBoardLost,      ///< the board with the SUTs is out of reach
+  kSutEnded,       ///< a SUT's process ended before every SUT had joined
+};
+
+struct EarlyStop {
+  StopCause cause;
+  std::string reason;  ///< one line
+};
+/// As the coordinator takes it.
+std::pair<coordinator::RunEnd, std::string> to_run_end(const EarlyStop& stop);
+
+struct TrialEnd {
+  coordinator::RunReport report;
+  std::optional<StopCause> cause{};  ///< none: the coordinator ended the run
+};
+
+/// A SUT gave no word: its process may be stopped.
+bool may_have_stopped_sut(const TrialEnd& end);
+/// A SUT was lost, and its process has not been asked why.
+bool has_unexplained_sut(const TrialEnd& end);
+/// A SUT was lost before the run began without having joined.
+bool lacks_sut(const TrialEnd& end);
+
+}  // namespace tether::runner

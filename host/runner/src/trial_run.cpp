@@ -1,0 +1,248 @@
+#include "trial_run.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/base/version.h>
+#include <tether/board/target_probe.h>
+#include <tether/os/machine.h>
+#include <tether/runner/trial_folder.h>
+#include <tether/sync/clock_witness.h>
+
+namespace tether::runner {
+
+namespace {
+
+using coordinator::RunEnd;
+
+constexpr Duration kHelloTimeout = std::chrono::seconds(5);
+
+WallTime host_now() {
+  return WallTime(
+      std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch()));
+}
+
+std::string token_of_run() {
+  const char* given = std::getenv("TETHER_TOKEN");
+  if (!given || !*given) return link::make_token();
+  std::string token = given;
+  if (token.size() > link::kMaxNameBytes)
+    throw Error(ErrorCode::kSetup,
+                fmt::format("TETHER_TOKEN is longer than {} bytes; leave it unset, and the run "
+                            "makes one of its own",
+                            link::kMaxNameBytes));
+  return token;
+}
+
+link::ClockKind kind_of(scenario::Clock clock) {
+  switch (clock) {
+    case scenario::Clock::kWall:
+      return link::ClockKind::kWall;
+    case scenario::Clock::kCpu:
+      return link::ClockKind::kCpu;
+    case scenario::Clock::kScripted:
+      return link::ClockKind::kScripted;
+  }
+  return link::ClockKind::kWall;
+}
+
+/// 0: not known, or more than a run can tell.
+int cores_for_witness() {
+  const int cores = os::machine_cores();
+  return cores <= sync::kMostCores ? cores : 0;
+}
+
+/// Where the SUTs' machine is read; who starts SUTs on another one by hand has to look himself.
+record::Readings read_target(const TrialSpec& spec, board::Board* board) {
+  if (spec.waits_for_sut) return {};
+  return board ? board::probe_board(board->connection(), board::ProbeDepth::kBrief)
+               : board::probe_here(board::ProbeDepth::kBrief);
+}
+
+std::optional<record::TargetInfo> target_info(const TrialSpec& spec, board::Board* board) {
+  if (spec.waits_for_sut) return std::nullopt;
+  const auto& target = spec.condition.target;
+  return record::TargetInfo{
+      .name = target ? target->name : "host",
+      .address = board ? scenario::to_string(board->connection().address()) : "",
+      .before = read_target(spec, board)};
+}
+
+coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timings,
+                                    const std::string& token, board::Board* board) {
+  coordinator::RunOptions options;
+  options.policy = spec.condition.policy == scenario::Policy::kFreeRunning
+                       ? sync::SyncPolicy::kFreeRunning
+                       : sync::SyncPolicy::kConservativeBarrier;
+  const coordinator::ClockSetting clock{kind_of(spec.condition.clock), spec.condition.cpu_factor,
+                                        spec.condition.computing};
+  for (std::size_t i = 0; i < timings.size(); ++i)
+    options.uavs.push_back({timings[i], spec.scenario.uavs[i].command_latency, clock,
+                            is_local(spec) ? cores_for_witness() : 0});
+  options.token = token;
+  options.seed = spec.seed;
+  options.real_time_factor = spec.condition.real_time_factor;
+  options.time_limit = spec.scenario.time_limit;
+  options.hang_limit = spec.scenario.hang_limit;
+  if (spec.waits_for_sut) options.connect_limit = std::chrono::hours(24);
+  options.ground_truth_period = spec.scenario.ground_truth_period;
+  options.record_images = spec.scenario.record_images;
+  options.image_period = spec.scenario.image_period;
+  options.header.tether_version = version();
+  options.header.scenario = spec.scenario.name;
+  options.header.condition = spec.condition.name;
+  options.header.machine = os::describe_machine();
+  options.header.target = target_info(spec, board);
+  return options;
+}
+
+/// A camera's first image costs the most by far (GL start-up, shaders); it is made while the SUTs'
+/// processes start.
+void warm_up_cameras(sim::Simulator& simulator) {
+  sim::Snapshot snapshot;
+  simulator.capture(snapshot);
+  for (std::size_t u = 0; u < simulator.world().uavs.size(); ++u) {
+    const auto& sensors = simulator.world().uavs[u].sensors;
+    for (std::size_t s = 0; s < sensors.size(); ++s)
+      if (sensors[s].kind() == uav::SensorKind::kCamera) simulator.measure(snapshot, u, s, 0);
+  }
+}
+
+/// Where to listen: a board that may not come through its SSH connection has to reach us.
+link::Address listen_address(const TrialSpec& spec, const board::Board* board) {
+  if (spec.listen) return *spec.listen;
+  return {board && !spec.uses_tunnel ? board->host_address() : "127.0.0.1", 0};
+}
+
+std::unique_ptr<link::Server> listen(const TrialSpec& spec, const board::Board* board) try {
+  return link::listen_tcp(listen_address(spec, board), kHelloTimeout);
+} catch (const Error& e) {
+  if (!board || spec.listen || spec.uses_tunnel) throw;
+  throw Error(e.code(), fmt::format("{}; the board sees this machine as {}, which is none of its "
+                                    "addresses: give --tunnel, or --listen ADDRESS:PORT",
+                                    e.what(), board->host_address()));
+}
+
+/// The server as the SUTs reach it.
+std::string sut_address(const TrialSpec& spec, board::Board* board, const link::Server& server) {
+  link::Address address = server.address();
+  if (!board) return link::to_string(address);
+  if (spec.uses_tunnel)
+    return fmt::format("127.0.0.1:{}", board->connection().forward_back(address.port));
+  const bool is_any = address.host == "0.0.0.0" || address.host == "::";
+  if (is_any) address.host = board->host_address();
+  return link::to_string(address);
+}
+
+}  // namespace
+
+bool is_local(const TrialSpec& spec) {
+  return !spec.waits_for_sut && !(spec.condition.target && spec.condition.target->ssh);
+}
+
+TrialRun::TrialRun(const TrialSpec& spec, const Timings& timings, RunningSimulator& simulator,
+                   board::Board* board, const TrialObserver& observer, std::stop_token stop)
+    : spec_(spec),
+      simulator_(simulator),
+      board_(board),
+      observer_(observer),
+      stop_(std::move(stop)),
+      token_(token_of_run()),
+      recorder_(record::make_mcap_recorder(spec.folder / kRecordFile)),
+      coordinator_(simulator.get(), *recorder_, run_options(spec, timings, token_, board),
+                   host_now),
+      server_(listen(spec, board)),
+      sut_run_{sut_address(spec, board, *server_), token_, spec.condition},
+      refusals_(observer.on_refused) {}
+
+Conducted TrialRun::conduct() {
+  start_suts();
+  warm_up_cameras(simulator_.get());
+  if (spec_.waits_for_sut && observer_.on_listening)
+    observer_.on_listening(sut_instructions(spec_.scenario, sut_run_));
+  TrialEnd end = fly();
+  end.report.reason += explanation(end);
+  let_leave(end);
+  return {std::move(end.report), std::move(notes_)};
+}
+
+void TrialRun::start_suts() {
+  if (board_)
+    suts_.start_on(*board_, spec_.scenario, sut_run_, spec_.folder);
+  else if (!spec_.waits_for_sut)
+    suts_.start(spec_.scenario, sut_run_, spec_.folder);
+}
+
+TrialEnd TrialRun::fly() {
+  TrialEnd end;
+  StallWatch stalls([&] { return suts_.stopped(); }, host_clocks());
+  coordinator::RunHooks hooks;
+  hooks.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
+    const auto stop = early_stop();
+    if (!stop) return std::nullopt;
+    end.cause = stop->cause;
+    return to_run_end(*stop);
+  };
+  hooks.on_status = [&](const coordinator::RunStatus& status) { watch(status, stalls); };
+  hooks.on_refused = [&](const std::string& text) { refusals_.add(text); };
+  hooks.read_target = [&] { return read_target(spec_, board_); };
+  end.report = coordinator_.run(*server_, hooks);
+  refusals_.close();
+  notes_ = stalls.notes(host_clocks());
+  return end;
+}
+
+std::optional<EarlyStop> TrialRun::early_stop() {
+  if (stop_.stop_requested()) return EarlyStop{StopCause::kInterrupted, "interrupted by the user"};
+  if (const auto why = simulator_.lost()) return EarlyStop{StopCause::kSimulatorLost, *why};
+  if (const auto why = suts_.lost()) return EarlyStop{StopCause::kBoardLost, *why};
+  const auto ended = have_all_joined_ ? std::nullopt : suts_.early_end();
+  if (!ended) return std::nullopt;
+  const std::string refusal = refusals_.last().empty() ? "" : "; " + refusals_.last();
+  return EarlyStop{StopCause::kSutEnded, *ended + refusal};
+}
+
+void TrialRun::watch(const coordinator::RunStatus& status, StallWatch& stalls) {
+  have_all_joined_ = status.joined == spec_.scenario.uavs.size();
+  if (observer_.on_status) observer_.on_status(status);
+  const std::string stall = stalls.look(status, host_clocks());
+  // Who starts the SUTs himself has been told that they are waited for.
+  const bool is_told = spec_.waits_for_sut && status.joined == 0;
+  if (!stall.empty() && !is_told && observer_.on_blocked) observer_.on_blocked(stall);
+}
+
+/// What else is known of the end, "; " before each.
+std::string TrialRun::explanation(const TrialEnd& end) {
+  std::string text;
+  if (may_have_stopped_sut(end))
+    if (const auto stopped = suts_.stopped()) text += "; " + *stopped;
+  if (has_unexplained_sut(end)) text += suts_.post_mortem();
+  if (end.report.end == RunEnd::kSimulatorLost)
+    text += simulator_.post_mortem(end.report.reason + text);
+  return text + reach_hint(end);
+}
+
+/// What to try when a board's SUT could not reach us.
+std::string TrialRun::reach_hint(const TrialEnd& end) {
+  if (!board_ || spec_.uses_tunnel || end.report.began) return "";
+  const bool is_unreached = lacks_sut(end) || (end.report.end == RunEnd::kSutLost &&
+                                               suts_.has_failed_to_connect(sut_run_.address));
+  if (!is_unreached) return "";
+  return fmt::format(
+      "; if the board cannot reach {} (a firewall on this machine?), open that port "
+      "and name it with --listen, or give --tunnel",
+      sut_run_.address);
+}
+
+void TrialRun::let_leave(const TrialEnd& end) {
+  if (end.report.end == RunEnd::kFinished)
+    for (std::string& note : suts_.let_leave()) notes_.push_back(std::move(note));
+  for (const std::string& warning : suts_.bring_back())
+    if (observer_.warn) observer_.warn(warning);
+}
+
+}  // namespace tether::runner

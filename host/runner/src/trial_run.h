@@ -1,0 +1,73 @@
+#pragma once
+
+#include "refusals.h"
+#include "stall_watch.h"
+#include "sut_environment.h"
+#include "sut_processes.h"
+#include "trial_end.h"
+
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <tether/board/board.h>
+#include <tether/coordinator/coordinator.h>
+#include <tether/record/writer.h>
+#include <tether/runner/back_end.h>
+#include <tether/runner/trial.h>
+
+namespace tether::runner {
+
+/// One list per UAV of the world, in the order of its sensors.
+using Timings = std::vector<std::vector<uav::SensorTiming>>;
+
+/// The condition's SUTs are started on this machine.
+bool is_local(const TrialSpec& spec);
+
+/// A run's report, and what else is to be known of it.
+struct Conducted {
+  coordinator::RunReport report;
+  std::vector<std::string> notes;
+};
+
+/// The coordinator's run with its SUTs: they are started, fly, are asked why they ended, and leave.
+/// The record is closed when the object goes. Not thread-safe.
+class TrialRun {
+ public:
+  /// Opens the record and listens. What is given must outlive it; `board` is null where the SUTs
+  /// run here. @throws Error(kSetup).
+  TrialRun(const TrialSpec& spec, const Timings& timings, RunningSimulator& simulator,
+           board::Board* board, const TrialObserver& observer, std::stop_token stop);
+
+  /// To be called once. @throws Error(kSetup) when a SUT cannot be started, or the simulator is
+  /// lost before the run.
+  Conducted conduct();
+
+ private:
+  void start_suts();
+  TrialEnd fly();
+  std::optional<EarlyStop> early_stop();
+  void watch(const coordinator::RunStatus& status, StallWatch& stalls);
+  std::string explanation(const TrialEnd& end);
+  std::string reach_hint(const TrialEnd& end);
+  void let_leave(const TrialEnd& end);
+
+  const TrialSpec& spec_;
+  RunningSimulator& simulator_;
+  board::Board* board_;
+  const TrialObserver& observer_;
+  std::stop_token stop_;
+  std::string token_;
+  std::unique_ptr<record::Recorder> recorder_;
+  coordinator::Coordinator coordinator_;
+  std::unique_ptr<link::Server> server_;
+  SutRun sut_run_;
+  SutProcesses suts_;
+  Refusals refusals_;
+  bool have_all_joined_ = false;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace tether::runner

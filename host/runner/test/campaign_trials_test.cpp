@@ -1,0 +1,53 @@
+#include "fake_back_end.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/base_testing/error_message.h>
+#include <tether/os/program.h>
+#include <tether/runner/campaign_trials.h>
+
+namespace tether::runner {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+
+class CampaignTrials : public testing::Test {
+ protected:
+  CampaignTrials()
+      : campaign_(scenario::load_campaign(std::filesystem::path(TETHER_SOURCE_DIR) /
+                                          "data/campaigns/face_anchor.toml")) {
+    for (auto& entry : campaign_.scenarios) {
+      for (auto& uav : entry.scenario.uavs) uav.sut.command = {"sh"};
+      for (auto& condition : entry.scenario.conditions) condition.simulator = "fake";
+    }
+  }
+
+  scenario::Campaign campaign_;
+};
+
+TEST_F(CampaignTrials, NameEachSimulatorOnce) {
+  EXPECT_THAT(simulators(campaign_), ElementsAre("fake"));
+  auto& entry = campaign_.scenarios.front();
+  for (auto& condition : entry.scenario.conditions)
+    if (condition.name == entry.conditions.front()) condition.simulator = "another";
+  EXPECT_THAT(simulators(campaign_), ElementsAre("another", "fake"));
+}
+
+TEST_F(CampaignTrials, RestOnTheirProgramsWorldAndSimulator) {
+  const auto files = files_of_trials(campaign_, fake_back_end()).files;
+  EXPECT_THAT(files, Contains(os::own_file()).Times(1));
+  EXPECT_THAT(files, Contains(os::find_program("sh")).Times(1));
+  EXPECT_THAT(files, Contains(campaign_.scenarios.front().scenario.file));
+  EXPECT_EQ(files.back(), "/fake/simulator");
+}
+
+TEST_F(CampaignTrials, NeedASimulatorThatThereIs) {
+  campaign_.scenarios.front().scenario.conditions.front().simulator = "another";
+  EXPECT_EQ(error_message(ErrorCode::kUsage, [&] { files_of_trials(campaign_, fake_back_end()); }),
+            "no simulator \"another\"");
+}
+
+}  // namespace
+}  // namespace tether::runner

@@ -1,0 +1,98 @@
+#include "fake_back_end.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/base_testing/error_message.h>
+#include <tether/base_testing/scratch_folder.h>
+#include <tether/runner/trial.h>
+#include <tether/runner/trial_folder.h>
+
+/// Ends of trials without a SUT that flies. Whole ones: tests/system.
+namespace tether::runner {
+namespace {
+
+using testing::HasSubstr;
+
+class Trial : public testing::Test {
+ protected:
+  Trial() {
+    spec_.scenario = scenario::load_scenario(std::filesystem::path(TETHER_SOURCE_DIR) /
+                                             "data/scenarios/face_anchor.toml");
+    spec_.condition = spec_.scenario.conditions.front();
+    spec_.condition.simulator = "fake";
+    spec_.folder = scratch_.path("out");
+    run_as_sut("exec sleep 600");
+  }
+  void run_as_sut(const std::string& script) {
+    spec_.scenario.uavs.at(0).sut.command = {"sh", "-c", script};
+  }
+  campaign::TrialResult run(const FindBackEnd& back_end = fake_back_end()) {
+    auto result = run_trial(spec_, back_end, observer_, stop_.get_token());
+    EXPECT_EQ(campaign::read_result(spec_.folder).reason, result.reason);
+    EXPECT_FALSE(std::filesystem::exists(spec_.folder / kRecordFile));
+    return result;
+  }
+
+  ScratchFolder scratch_;
+  TrialSpec spec_;
+  TrialObserver observer_{};
+  std::stop_source stop_;
+};
+
+TEST_F(Trial, FailsWhenItsSutEndsBeforeItJoins) {
+  run_as_sut("echo no camera; exit 3");
+  const auto result = run();
+  EXPECT_EQ(result.outcome, campaign::Outcome::kFailed);
+  EXPECT_EQ(result.end, campaign::kEndSetupFailed);
+  EXPECT_THAT(result.reason, HasSubstr("exited with code 3; its last words in "));
+  EXPECT_THAT(result.reason, testing::EndsWith("sut-uav1.log: no camera"));
+}
+
+TEST_F(Trial, IsInterruptedByAStopRequest) {
+  observer_.on_status = [&](const coordinator::RunStatus&) { stop_.request_stop(); };
+  const auto result = run();
+  EXPECT_EQ(result.end, campaign::kEndInterrupted);
+  EXPECT_EQ(result.reason, "interrupted by the user");
+}
+
+TEST_F(Trial, FailsWithWhatIsKnownOfALostSimulator) {
+  const auto result = run(fake_back_end("the simulator was ended by signal 9"));
+  EXPECT_EQ(result.end, campaign::kEndSetupFailed);
+  EXPECT_EQ(result.reason, "the simulator was ended by signal 9; it said more");
+}
+
+TEST_F(Trial, FailsWhenTheSimulatorCannotBeStarted) {
+  const auto result = run([](const std::string& name) {
+    BackEnd back_end = fake_back_end()(name);
+    back_end.start = [](sim::World, const SimulatorSetup&) -> std::unique_ptr<RunningSimulator> {
+      throw Error(ErrorCode::kSetup, "no memory for it");
+    };
+    return back_end;
+  });
+  EXPECT_EQ(result.end, campaign::kEndSetupFailed);
+  EXPECT_EQ(result.reason, "no memory for it");
+}
+
+TEST_F(Trial, TellsWhoStartsTheSutWhereToConnect) {
+  spec_.waits_for_sut = true;
+  std::string instructions;
+  observer_.on_listening = [&](const std::string& text) { instructions = text; };
+  observer_.on_status = [&](const coordinator::RunStatus&) { stop_.request_stop(); };
+  run();
+  EXPECT_THAT(instructions, testing::AllOf(HasSubstr("TETHER_ADDRESS=127.0.0.1:"),
+                                           HasSubstr("TETHER_UAV="), HasSubstr("TETHER_TOKEN=")));
+}
+
+TEST_F(Trial, WritesNothingWhereTheUsersWordsAreWrong) {
+  spec_.condition.simulator = "another";
+  const auto run_it = [&] { run_trial(spec_, fake_back_end(), observer_, stop_.get_token()); };
+  EXPECT_EQ(error_message(ErrorCode::kUsage, run_it), "no simulator \"another\"");
+  spec_.condition.simulator = "fake";
+  spec_.scenario.uavs.at(0).sut.command = {"no-such-program-of-tether"};
+  EXPECT_THAT(error_message(ErrorCode::kBadFile, run_it), HasSubstr("no-such-program-of-tether"));
+  EXPECT_FALSE(std::filesystem::exists(spec_.folder));
+}
+
+}  // namespace
+}  // namespace tether::runner
