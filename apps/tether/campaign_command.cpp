@@ -21,8 +21,10 @@
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/run_campaign.h>
 #include <tether/os/machine.h>
+#include <tether/os/program.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/scenario/campaign.h>
+#include <tether/scenario/shipped_files.h>
 
 namespace tether::app {
 
@@ -30,7 +32,9 @@ namespace {
 
 /// The campaign as it is flown: in the simulator that is asked for, whatever its conditions say.
 scenario::Campaign load(const CampaignOptions& options) {
-  scenario::Campaign campaign = scenario::load_campaign(options.campaign);
+  const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
+  scenario::Campaign campaign =
+      scenario::load_campaign(shipped.find(scenario::ShippedKind::kCampaign, options.campaign));
   if (options.simulator.empty()) return campaign;
   parse_simulator_option(options.simulator);
   for (auto& entry : campaign.scenarios)

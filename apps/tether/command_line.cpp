@@ -23,9 +23,9 @@ constexpr const char* kFooter =
     R"(Exit codes: 0 goal reached, 1 goal missed, 2 wrong use or a bad file, 3 set-up failed.
 
 Examples:
-  tether run data/scenarios/face_anchor.toml
-  tether run data/scenarios/face_anchor.toml --condition "target, no sync" --seed 7
-  tether campaign data/campaigns/face_anchor.toml --out out/face_anchor
+  tether run face_anchor
+  tether run face_anchor --condition "target, no sync" --seed 7
+  tether campaign face_anchor --out out/face_anchor
   tether audit out/face_anchor/face_anchor/host/seed-0001/record.mcap)";
 
 /// `--simulator`, of every command that flies.
@@ -41,11 +41,13 @@ void add_simulator_option(CLI::App& command, std::string& simulator) {
 void add_run_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = program.add_subcommand("run", "Run one trial of a scenario");
-  command->add_option("scenario", options->scenario, "Scenario file (TOML)")->required();
+  command->add_option("scenario", options->scenario, "Name of a shipped scenario, or a file (TOML)")
+      ->required();
   command->add_option("--condition", options->condition,
                       "Condition of the scenario; its first one if not given");
   command->add_option("--profile", options->profile,
-                      "Profile of the sensors (TOML), laid over what the scenario says of them");
+                      "Profile of the sensors (a shipped one's name, or a file), laid over the "
+                      "scenario's settings");
   command->add_option("--seed", options->seed, "Seed of noise, delays and start poses")
       ->check(CLI::Range(0.0, 9007199254740992.0))
       ->capture_default_str();
@@ -60,7 +62,8 @@ void add_run_command(CLI::App& program, Action& action) {
       ->capture_default_str();
   command->add_option(
       "--target", options->target,
-      "Where the SUT runs, over what the condition says: a target file (TOML); "
+      "Where the SUT runs, over what the condition says: the name of a shipped target, or a file "
+      "(TOML); "
       "ssh://[user@]board[:port]; or \"wait\": do not start the SUT, print what to type where it "
       "runs, and wait for it");
   add_simulator_option(*command, options->simulator);
@@ -72,13 +75,13 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_flag("--json", options->json, "Print result.json instead of a summary");
   command->add_flag("--quiet", options->quiet, "Print errors and warnings only");
   command->footer(R"(Examples:
-  tether run data/scenarios/face_anchor.toml
-  tether run data/scenarios/face_anchor.toml --condition "target, no sync" --seed 7
-  tether run data/scenarios/face_anchor.toml --target data/profiles/targets/six_times_slower.toml
-  tether run data/scenarios/face_anchor.toml --target ssh://pi@board.local
-  tether run data/scenarios/face_anchor.toml --profile data/profiles/ideal.toml
-  tether run data/scenarios/face_anchor.toml --simulator gazebo
-  tether run data/scenarios/face_anchor.toml --images --out out/one)");
+  tether run face_anchor
+  tether run face_anchor --condition "target, no sync" --seed 7
+  tether run face_anchor --target six_times_slower
+  tether run face_anchor --target ssh://pi@board.local
+  tether run face_anchor --profile ideal
+  tether run face_anchor --simulator gazebo
+  tether run face_anchor --images --out out/one)");
   command->callback([options, &action] {
     action = [options](const std::stop_token& stop) { return run_one(*options, stop); };
   });
@@ -88,7 +91,8 @@ void add_campaign_command(CLI::App& program, Action& action) {
   auto options = std::make_shared<CampaignOptions>();
   CLI::App* command =
       program.add_subcommand("campaign", "Run many trials: scenarios x conditions x seeds");
-  command->add_option("campaign", options->campaign, "Campaign file (TOML)")->required();
+  command->add_option("campaign", options->campaign, "Name of a shipped campaign, or a file (TOML)")
+      ->required();
   command->add_option("--out", options->out, "Folder for the trials [out/CAMPAIGN]");
   command
       ->add_option(
@@ -98,9 +102,9 @@ void add_campaign_command(CLI::App& program, Action& action) {
   add_simulator_option(*command, options->simulator);
   command->add_flag("--resume", options->resume, "Go on with a folder: run only what is missing");
   command->footer(R"(Examples:
-  tether campaign data/campaigns/face_anchor.toml --out out/face_anchor
-  tether campaign data/campaigns/face_anchor.toml --out out/face_anchor --resume
-  tether campaign data/campaigns/face_anchor.toml --simulator gazebo --out out/face_anchor_gazebo)");
+  tether campaign face_anchor --out out/face_anchor
+  tether campaign face_anchor --out out/face_anchor --resume
+  tether campaign face_anchor --simulator gazebo --out out/face_anchor_gazebo)");
   command->callback([options, &action] {
     action = [options](const std::stop_token& stop) { return run_campaign(*options, stop); };
   });
@@ -137,7 +141,7 @@ void add_frames_command(CLI::App& program, Action& action) {
   command->add_option("--out", options->out,
                       "Folder for the pictures (SVG) [frames, beside the record]");
   command->footer(R"(Example:
-  tether run data/scenarios/face_anchor.toml --images --out out/one
+  tether run face_anchor --images --out out/one
   tether frames out/one/record.mcap)");
   command->callback([options, &action] {
     action = [options](const std::stop_token&) { return draw_frames(*options); };
@@ -176,6 +180,15 @@ Example:
   command->callback([options, &action] {
     action = [options](const std::stop_token&) { return audit_record(*options); };
   });
+}
+
+void add_list_command(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand(
+      "list", "List the scenarios, campaigns, worlds, profiles and targets that Tether ships");
+  command->footer(
+      "`tether run`, `tether campaign`, --profile and --target take these names in place of a "
+      "file.");
+  command->callback([&action] { action = [](const std::stop_token&) { return list_shipped(); }; });
 }
 
 void add_target_command(CLI::App& program, Action& action) {
@@ -217,6 +230,7 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
   add_frames_command(program, action);
   add_plot_command(program, action);
   add_target_command(program, action);
+  add_list_command(program, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

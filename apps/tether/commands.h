@@ -67,6 +67,9 @@ struct AuditOptions {
 /// Checks a record against the rules of time.
 int audit_record(const AuditOptions& options);
 
+/// Prints the names and descriptions of the files that Tether ships.
+int list_shipped();
+
 struct CheckOptions {
   std::string address;
   bool json = false;

@@ -16,9 +16,11 @@
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/result.h>
+#include <tether/os/program.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>
+#include <tether/scenario/shipped_files.h>
 
 namespace tether::app {
 
@@ -52,13 +54,15 @@ scenario::Target board_at(const scenario::SshAddress& address) {
 }
 
 /// The condition that is asked for, on the target that is asked for.
-scenario::Condition make_condition(const scenario::Scenario& scenario, const RunOptions& options) {
+scenario::Condition make_condition(const scenario::Scenario& scenario, const RunOptions& options,
+                                   const scenario::ShippedFiles& shipped) {
   scenario::Condition condition = pick_condition(scenario, options.condition);
   if (options.real_time_factor > 0.0) condition.real_time_factor = options.real_time_factor;
   const bool keep_name = !options.condition.empty();
   const TargetOption target = parse_target_option(options.target);
   if (const auto* file = std::get_if<std::filesystem::path>(&target))
-    move_to(condition, scenario::load_target(*file), keep_name);
+    move_to(condition, scenario::load_target(shipped.find(scenario::ShippedKind::kTarget, *file)),
+            keep_name);
   if (const auto* address = std::get_if<scenario::SshAddress>(&target))
     move_to(condition, board_at(*address), keep_name);
   if (!options.simulator.empty()) condition.simulator = options.simulator;
@@ -76,12 +80,15 @@ void require_use_of_tunnel(const runner::TrialSpec& spec) {
 }
 
 runner::TrialSpec make_spec(const RunOptions& options) {
+  const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   runner::TrialSpec spec;
-  spec.scenario = scenario::load_scenario(options.scenario);
+  spec.scenario =
+      scenario::load_scenario(shipped.find(scenario::ShippedKind::kScenario, options.scenario));
   spec.scenario.record_images |= options.record_images;
   if (!options.profile.empty())
-    scenario::lay_profile(spec.scenario, scenario::load_profile(options.profile));
-  spec.condition = make_condition(spec.scenario, options);
+    scenario::lay_profile(spec.scenario, scenario::load_profile(shipped.find(
+                                             scenario::ShippedKind::kProfile, options.profile)));
+  spec.condition = make_condition(spec.scenario, options, shipped);
   spec.seed = options.seed;
   spec.folder = options.out.empty() ? "out" / campaign::trial_folder(spec.scenario.name,
                                                                      spec.condition.name, spec.seed)

@@ -89,6 +89,34 @@ INSTANTIATE_TEST_SUITE_P(
                     std::vector<std::string>{"report", ".", "--format", "xml"},
                     std::vector<std::string>{"campaign", "nothing.toml"}));
 
+// ---- Names of shipped files
+
+TEST(ShippedNames, AreListedWithTheirDescriptions) {
+  const Output output = run(tether({"list"}));
+  EXPECT_EQ(output.code, 0) << output.err;
+  EXPECT_THAT(output.out, HasSubstr("scenarios\n"));
+  EXPECT_THAT(output.out, HasSubstr("\n  face_anchor  "));
+  EXPECT_THAT(output.out, HasSubstr("\n\ntargets\n"));
+}
+
+TEST(ShippedNames, StandForScenarioProfileAndTarget) {
+  const TempFolder folder;
+  const Output output = run(tether({"run", "face_anchor", "--profile", "ideal", "--target",
+                                    "six_times_slower", "--quiet", "--out", folder / "out"}));
+  EXPECT_LE(output.code, 1) << output.err;
+  const auto result = read_result(folder / "out");
+  EXPECT_EQ(result["scenario"], "face_anchor");
+  EXPECT_EQ(result["condition"], "six_times_slower");
+  EXPECT_EQ(result["profiles"].back(), "ideal");
+}
+
+TEST(ShippedNames, OfNothingEndWithTwoAndNameTheNearest) {
+  const Output output = run(tether({"campaign", "face_ancor"}));
+  EXPECT_EQ(output.code, 2);
+  EXPECT_THAT(output.err, HasSubstr("'face_ancor' is neither a file nor a shipped campaign; did "
+                                    "you mean 'face_anchor'?"));
+}
+
 TEST(SutProgram, EndsWithTwoAfterWrongUse) {
   const Output output = run({{sut_program(), "face_anchor"}, {}, {}});
   EXPECT_EQ(output.code, 2);

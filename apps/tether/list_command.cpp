@@ -1,0 +1,38 @@
+#include "commands.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include <tether/os/program.h>
+#include <tether/scenario/shipped_files.h>
+
+namespace tether::app {
+namespace {
+
+using scenario::ShippedFile;
+using scenario::ShippedFiles;
+using scenario::ShippedKind;
+
+constexpr std::array kKinds = {ShippedKind::kScenario, ShippedKind::kCampaign, ShippedKind::kWorld,
+                               ShippedKind::kProfile, ShippedKind::kTarget};
+
+}  // namespace
+
+int list_shipped() {
+  const auto shipped = ShippedFiles::of_program(os::own_file());
+  const char* gap = "";
+  for (const ShippedKind kind : kKinds) {
+    const auto files = shipped.list(kind);
+    std::size_t width = 0;
+    for (const ShippedFile& file : files) width = std::max(width, file.name.size());
+    fmt::print("{}{}s\n", gap, scenario::to_text(kind));
+    for (const ShippedFile& file : files)
+      fmt::print("  {:<{}}  {}\n", file.name, width, file.description);
+    gap = "\n";
+  }
+  return 0;
+}
+
+}  // namespace tether::app
