@@ -12,6 +12,7 @@
 
 #include <tether/sim/world.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
+#include <tether/sim_sdf/load_world.h>
 
 // The embedded simulator in the corridor world: steps and images per second, each beside the least
 // that the same work could cost in the same program.

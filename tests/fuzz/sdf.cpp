@@ -7,6 +7,7 @@
 #include <tether/sim/simulator.h>
 #include <tether/sim/world.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
+#include <tether/sim_sdf/load_world.h>
 
 /// SDF to the scene that back ends get, and on to the embedded simulator's model of it, which flies
 /// some steps. Input: a world's file where it has a <world>, else a UAV's; it may include the other

@@ -16,6 +16,7 @@
 #include <tether/base/units.h>
 #include <tether/sim/world.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include <tether/os/child_process.h>
 #include <tether/os/program.h>
 #include <tether/runner/campaign_trials.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::runner {
 

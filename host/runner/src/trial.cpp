@@ -17,6 +17,7 @@
 #include <tether/record/reader.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::runner {
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/scenario/campaign.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::scenario {
 namespace {

@@ -9,6 +9,7 @@
 
 #include <tether/sim_mujoco/mujoco_simulator.h>
 #include <tether/sim_remote/remote_simulator.h>
+#include <tether/sim_sdf/load_world.h>
 
 /// A real gzserver with Tether's plugin, as the host's half sees it.
 namespace tether::system_test {

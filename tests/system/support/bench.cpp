@@ -10,6 +10,7 @@
 
 #include <tether/sim/world.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::system_test {
 namespace {

@@ -2,7 +2,9 @@
 #include <string>
 #include <utility>
 
+#include <tether/base/error.h>
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/sim_gazebo/gazebo_install.h>
 #include <tether/sim_gazebo/gazebo_simulator.h>
 #include <tether/sim_testing/simulator_contract.h>
 
@@ -86,6 +88,19 @@ class InGazebo final : public Simulator {
   ScratchFolder folder_;
   std::unique_ptr<GazeboSimulator> running_;
 };
+
+/// Skips all tests where there is no Gazebo or no plugin.
+class NeedsGazebo : public ::testing::Environment {
+ public:
+  void SetUp() override {
+    try {
+      (void)find_gazebo();
+    } catch (const Error& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+};
+const auto* const kNeedsGazebo = ::testing::AddGlobalTestEnvironment(new NeedsGazebo);
 
 }  // namespace
 

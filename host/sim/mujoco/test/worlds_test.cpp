@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/sim_mujoco/mujoco_simulator.h>
+#include <tether/sim_sdf/load_world.h>
 
 // The worlds that come with Tether, through the whole back end.
 namespace tether::sim {

@@ -8,6 +8,7 @@
 #include <tether/base/error.h>
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/sim/world.h>
+#include <tether/sim_sdf/load_world.h>
 
 /// SDF files for a scratch folder, and what `load_world` says of them.
 namespace tether::sim {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <tether/sim/bodies.h>
+#include <tether/sim_sdf/load_world.h>
 
 namespace tether::sim {
 

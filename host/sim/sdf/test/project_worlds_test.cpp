@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base/units.h>
+#include <tether/sim_sdf/load_world.h>
 
 /// The worlds and models that Tether ships with.
 namespace tether::sim {
