@@ -152,7 +152,7 @@ void Supervisor::hear_callers() {
 }
 
 void Supervisor::on_message(CallerId caller, link::Message message) {
-  if (auto* hello = std::get_if<link::Hello>(&message)) return on_hello(caller, std::move(*hello));
+  if (auto* hello = std::get_if<link::Hello>(&message)) return on_hello(caller, *hello);
   auto* const request = std::get_if<link::Request>(&message);
   auto* const annotation = std::get_if<link::Annotation>(&message);
   if (supervision_ && request != nullptr) return supervision_->asked(caller, std::move(*request));
@@ -160,7 +160,7 @@ void Supervisor::on_message(CallerId caller, link::Message message) {
   callers_.drop(caller);
 }
 
-void Supervisor::on_hello(CallerId caller, link::Hello hello) {
+void Supervisor::on_hello(CallerId caller, const link::Hello& hello) {
   using Reason = link::Refusal::Reason;
   if (hello.protocol_version != link::kProtocolVersion) {
     return callers_.send(caller, link::Refusal{Reason::kVersion,

@@ -46,7 +46,7 @@ class Supervisor {
   // The callers.
   void hear_callers();
   void on_message(CallerId caller, link::Message message);
-  void on_hello(CallerId caller, link::Hello hello);
+  void on_hello(CallerId caller, const link::Hello& hello);
   void hand_out_answers();
   Callers::Events caller_events();
 
