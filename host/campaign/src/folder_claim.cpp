@@ -84,12 +84,12 @@ bool has_trial(const fs::path& campaign, const fs::path& folder) try {
   return false;  // no campaign that could be reported on
 }
 
-[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
+[[noreturn]] void refuse_claim(const fs::path& folder, const std::string& why) {
   throw Error(ErrorCode::kUsage, folder.string() + ": " + why);
 }
 
 [[noreturn]] void refuse_busy(const fs::path& folder, const std::string& what) {
-  refuse(folder, what + "; wait for it, or choose another folder with --out");
+  refuse_claim(folder, what + "; wait for it, or choose another folder with --out");
 }
 
 [[noreturn]] void refuse_running(const fs::path& folder, const fs::path& campaign,
@@ -104,10 +104,11 @@ void require_not_in(const fs::path& campaign, const fs::path& folder, const fs::
   if (holder.is_there && (holder.process == ::getppid() || holder.process == ::getpid())) return;
   if (holder.is_there) refuse_running(folder, campaign, whole);
   if (has_trial(campaign, whole))
-    refuse(folder, fmt::format("is a trial of the campaign in {}, whose results must be of one "
-                               "kind; choose another folder with --out, or remove this one and "
-                               "run the campaign with --resume",
-                               campaign.string()));
+    refuse_claim(folder,
+                 fmt::format("is a trial of the campaign in {}, whose results must be of one "
+                             "kind; choose another folder with --out, or remove this one and "
+                             "run the campaign with --resume",
+                             campaign.string()));
 }
 
 /// Whether that is still so after this time, and has been all along.
