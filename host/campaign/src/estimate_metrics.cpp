@@ -13,15 +13,17 @@
 namespace tether::campaign {
 namespace {
 
+using Details = nlohmann::json;
+
 // ---- Annotations: a stranger's words, of which those that make no sense are passed over.
 
-std::optional<double> number_of(const nlohmann::json& note, const char* member) {
+std::optional<double> number_of(const Details& note, const char* member) {
   const auto found = note.find(member);
   if (found == note.end() || !found->is_number()) return std::nullopt;
   return found->get<double>();
 }
 
-std::optional<std::string> text_of(const nlohmann::json& note, const char* member) {
+std::optional<std::string> text_of(const Details& note, const char* member) {
   const auto found = note.find(member);
   if (found == note.end() || !found->is_string()) return std::nullopt;
   return found->get<std::string>();
@@ -31,15 +33,14 @@ std::optional<std::string> text_of(const nlohmann::json& note, const char* membe
 template <class Note>
 std::optional<Note> last_note(const record::Record& record, const std::string& uav,
                               const std::string& topic,
-                              std::optional<Note> (*read)(const nlohmann::json&,
-                                                          const scenario::Metric&),
+                              std::optional<Note> (*read)(const Details&, const scenario::Metric&),
                               const scenario::Metric& metric) {
   const auto* finish = find_finish(record, uav);
   const auto& notes = record.annotations;
   for (auto logged = notes.rbegin(); logged != notes.rend(); ++logged) {
     const record::Annotation& message = logged->message;
     if (message.uav != uav || message.topic != topic || logged->order > finish->order) continue;
-    const nlohmann::json note = nlohmann::json::parse(message.json, nullptr, false);
+    const Details note = Details::parse(message.json, nullptr, false);
     if (!note.is_object()) continue;
     if (const std::optional<Note> read_note = read(note, metric)) return read_note;
   }
@@ -54,7 +55,7 @@ struct Estimate {
 };
 
 // Of the metric's anchor.
-std::optional<Estimate> read_estimate(const nlohmann::json& note, const scenario::Metric& metric) {
+std::optional<Estimate> read_estimate(const Details& note, const scenario::Metric& metric) {
   const auto camera = text_of(note, "camera");
   const auto bearing_rad = number_of(note, "bearing_rad");
   const auto index = note.find("image_index");
@@ -64,7 +65,7 @@ std::optional<Estimate> read_estimate(const nlohmann::json& note, const scenario
                   number_of(note, "distance_m")};
 }
 
-std::optional<uav::Vec3> read_displacement(const nlohmann::json& note, const scenario::Metric&) {
+std::optional<uav::Vec3> read_displacement(const Details& note, const scenario::Metric&) {
   const auto x_m = number_of(note, "x_m"), y_m = number_of(note, "y_m");
   if (!x_m || !y_m) return std::nullopt;
   return uav::Vec3{*x_m, *y_m, 0.0};

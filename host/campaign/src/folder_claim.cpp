@@ -26,7 +26,7 @@ constexpr auto kPatience = std::chrono::seconds(2);
 /// Whoever only looks is gone by then, however little of the processor he gets.
 constexpr auto kLookersStay = std::chrono::milliseconds(200);
 
-[[noreturn]] void fail_folder(const fs::path& path, const char* what) {
+[[noreturn]] void fail(const fs::path& path, const char* what) {
   const std::string why = std::strerror(errno);
   require_a_handle_for(path.string());
   throw Error(ErrorCode::kSetup,
@@ -54,7 +54,7 @@ Holder holder_of(const fs::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) {
     if (errno == ENOENT || errno == ENOTDIR || errno == EACCES || errno == EPERM) return {};
-    fail_folder(path, "opened");
+    fail(path, "opened");
   }
   Holder holder;
   if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK)
@@ -84,12 +84,12 @@ bool has_trial(const fs::path& campaign, const fs::path& folder) try {
   return false;  // no campaign that could be reported on
 }
 
-[[noreturn]] void refuse_folder(const fs::path& folder, const std::string& why) {
+[[noreturn]] void refuse_claim(const fs::path& folder, const std::string& why) {
   throw Error(ErrorCode::kUsage, folder.string() + ": " + why);
 }
 
 [[noreturn]] void refuse_busy(const fs::path& folder, const std::string& what) {
-  refuse_folder(folder, what + "; wait for it, or choose another folder with --out");
+  refuse_claim(folder, what + "; wait for it, or choose another folder with --out");
 }
 
 [[noreturn]] void refuse_running(const fs::path& folder, const fs::path& campaign,
@@ -104,11 +104,11 @@ void require_not_in(const fs::path& campaign, const fs::path& folder, const fs::
   if (holder.is_there && (holder.process == ::getppid() || holder.process == ::getpid())) return;
   if (holder.is_there) refuse_running(folder, campaign, whole);
   if (has_trial(campaign, whole))
-    refuse_folder(folder,
-                  fmt::format("is a trial of the campaign in {}, whose results must be of one "
-                              "kind; choose another folder with --out, or remove this one and "
-                              "run the campaign with --resume",
-                              campaign.string()));
+    refuse_claim(folder,
+                 fmt::format("is a trial of the campaign in {}, whose results must be of one "
+                             "kind; choose another folder with --out, or remove this one and "
+                             "run the campaign with --resume",
+                             campaign.string()));
 }
 
 /// Whether that is still so after this time, and has been all along.
@@ -142,7 +142,7 @@ fs::path whole_path(const fs::path& folder) {
   const fs::path whole = failed ? absolute : fs::weakly_canonical(absolute, failed);
   if (!failed) return whole;
   errno = failed.value();
-  fail_folder(folder, "found");
+  fail(folder, "found");
 }
 
 }  // namespace
@@ -151,7 +151,7 @@ PathLock::PathLock(const fs::path& path, bool makes_file)
     : path_(path),
       descriptor_(
           ::open(path.c_str(), O_CLOEXEC | (makes_file ? O_RDWR | O_CREAT : O_RDONLY), 0644)) {
-  if (descriptor_ < 0) fail_folder(path, "opened");
+  if (descriptor_ < 0) fail(path, "opened");
   const auto is_busy = [this] {
     is_held_ = ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
     return !is_held_ && errno == EWOULDBLOCK;
@@ -160,7 +160,7 @@ PathLock::PathLock(const fs::path& path, bool makes_file)
   const int why = errno;
   ::close(descriptor_);
   errno = why;
-  fail_folder(path, "locked");
+  fail(path, "locked");
 }
 
 PathLock::~PathLock() {
@@ -171,7 +171,7 @@ void PathLock::write(std::string_view text) const {
   const auto size = static_cast<ssize_t>(text.size());
   if (::pwrite(descriptor_, text.data(), text.size(), 0) != size ||
       ::ftruncate(descriptor_, size) != 0)
-    fail_folder(path_, "written");
+    fail(path_, "written");
 }
 
 void require_no_campaign(const fs::path& folder) {
@@ -191,7 +191,7 @@ void require_nobody_in(const fs::path& folder) {
     if (entry->is_directory() && !entry->is_symlink()) require_free(entry->path(), folder);
   if (!failed) return;
   errno = failed.value();
-  fail_folder(folder, "read");
+  fail(folder, "read");
 }
 
 }  // namespace tether::campaign
