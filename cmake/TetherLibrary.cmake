@@ -108,7 +108,7 @@ function(_tether_add_test_entry target entry filter labels timeout)
   if(filter)
     list(APPEND options "--gtest_filter=${filter}")
   endif()
-  add_test(NAME ${entry} COMMAND ${target}
+  add_test(NAME ${entry} COMMAND ${target} --gtest_brief=1
     "--gtest_output=xml:${PROJECT_BINARY_DIR}/test-results/${entry}.xml" ${options})
   set_tests_properties(${entry} PROPERTIES LABELS "${labels}" TIMEOUT ${timeout})
 endfunction()

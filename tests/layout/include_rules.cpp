@@ -89,6 +89,7 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
   static const std::map<std::string, std::set<std::string>> kArrows = {
       {"base", {}},
       {"os", {"base"}},
+      {"stats", {}},
       {"toml", {"base"}},
       {"uav", {"base"}},
       {"sync", {"base"}},
@@ -98,9 +99,9 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"supervisor", {"base", "link", "client"}},
       {"devices", {"base", "uav", "client"}},
       {"vision", {"base", "uav"}},
-      {"tasks", {"base", "uav", "client", "vision"}},
-      {"calibration", {"base", "toml", "uav", "client", "vision", "tasks"}},
-      {"rig", {"base", "toml", "uav", "client", "vision", "tasks", "devices"}},
+      {"tasks", {"base", "stats", "uav", "client", "vision"}},
+      {"calibration", {"base", "stats", "toml", "uav", "client", "vision", "tasks"}},
+      {"rig", {"base", "stats", "toml", "uav", "client", "vision", "tasks", "devices"}},
       {"record", {"base"}},
       {"audit", {"base", "record"}},
       {"sim", {"base", "uav"}},
@@ -118,7 +119,7 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"runner",
        {"audit", "base", "board", "campaign", "coordinator", "link", "os", "record", "scenario",
         "sim", "sim_sdf", "sync", "uav"}},
-      {"report", {"base", "uav", "record", "scenario", "campaign"}},
+      {"report", {"base", "stats", "uav", "record", "scenario", "campaign"}},
   };
   return kArrows;
 }

@@ -181,7 +181,7 @@ TEST_F(CampaignPage, OfARunWithoutARecordSaysSo) {
   const std::string html = run_page(folder_of("target", 1));
   EXPECT_THAT(html, HasSubstr("No plots: "));
   EXPECT_THAT(html, HasSubstr("record.mcap"));
-  EXPECT_THAT(campaign::error_message(ErrorCode::kBadFile, [&] { run_page(out_); }),
+  EXPECT_THAT(error_message(ErrorCode::kBadFile, [&] { run_page(out_); }),
               HasSubstr("result.json"));
 }
 

@@ -45,7 +45,7 @@ TEST(Gnuplot, DrawsALongRecordSmall) {
 }
 
 TEST(Gnuplot, ThatIsMissingIsNamedWithItsPackage) {
-  const std::string message = campaign::error_message(ErrorCode::kSetup, [] {
+  const std::string message = error_message(ErrorCode::kSetup, [] {
     draw_svg({"plot x\n", "a line"}, "no-such-gnuplot");
   });
   EXPECT_THAT(message, HasSubstr("'no-such-gnuplot' is not installed"));
@@ -53,7 +53,7 @@ TEST(Gnuplot, ThatIsMissingIsNamedWithItsPackage) {
 }
 
 TEST(Gnuplot, ThatRefusesSaysWhy) {
-  const std::string message = campaign::error_message(ErrorCode::kSetup, [] {
+  const std::string message = error_message(ErrorCode::kSetup, [] {
     draw_svg({"plot $nothing\n", "a line"});
   });
   EXPECT_THAT(message, HasSubstr("could not draw \"a line\""));
@@ -62,9 +62,7 @@ TEST(Gnuplot, ThatRefusesSaysWhy) {
 
 TEST(Gnuplot, ThatSaysNothingIsToldByItsEnd) {
   const auto message_with = [](const std::string& program) {
-    return campaign::error_message(ErrorCode::kSetup, [&] {
-      draw_svg({"plot x\n", "a line"}, program);
-    });
+    return error_message(ErrorCode::kSetup, [&] { draw_svg({"plot x\n", "a line"}, program); });
   };
   const ScratchFolder folder;
   const std::string killed = folder.write("killed", "#!/bin/sh\nkill -9 $$\n");

@@ -96,12 +96,11 @@ fs::path ShippedFiles::find(ShippedKind kind, const std::string& given) const {
   std::vector<std::string_view> names;
   for (const ShippedFile& file : files) names.push_back(file.name);
   const std::string_view near = toml::nearest(given, names);
-  throw Error(
-      ErrorCode::kUsage,
-      fmt::format("'{}' is neither a file nor a shipped {}{}. Run `tether list` to see what "
-                  "is shipped",
-                  given, place_of(kind).name,
-                  near.empty() ? "" : fmt::format("; did you mean '{}'?", near)));
+  throw Error(ErrorCode::kUsage,
+              fmt::format("'{}' is neither a file nor a shipped {}{} Run `tether list` to see what "
+                          "is shipped",
+                          given, place_of(kind).name,
+                          near.empty() ? "." : fmt::format("; did you mean '{}'?", near)));
 }
 
 }  // namespace tether::scenario

@@ -3,14 +3,14 @@
 
 #include <tether/base/text_table.h>
 #include <tether/calibration/sensor_table.h>
-#include <tether/tasks/sample_statistics.h>
+#include <tether/stats/sample_statistics.h>
 
 namespace tether::calibration {
 namespace {
 
-using tasks::mean;
-using tasks::quantile;
-using tasks::sample_stddev;
+using stats::mean;
+using stats::quantile;
+using stats::sample_stddev;
 using Row = std::vector<std::string>;
 
 std::vector<double> in_seconds(const std::vector<Duration>& times) {

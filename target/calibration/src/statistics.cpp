@@ -7,12 +7,12 @@
 #include <numeric>
 
 #include <tether/base/text_table.h>
-#include <tether/tasks/sample_statistics.h>
+#include <tether/stats/sample_statistics.h>
 
 namespace tether::calibration {
 namespace {
 
-using tasks::quantile;
+using stats::quantile;
 
 double median(const std::vector<double>& values) {
   return quartiles(values).median;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include <tether/base/text_table.h>
-#include <tether/tasks/sample_statistics.h>
+#include <tether/stats/sample_statistics.h>
 
 namespace tether::rig {
 namespace {
@@ -34,7 +34,7 @@ std::optional<double> median_of_finite_m(std::vector<double> readings_m) {
     return std::nullopt;
   }
   std::sort(readings_m.begin(), readings_m.end());
-  return tasks::quantile(readings_m, 0.5);
+  return stats::quantile(readings_m, 0.5);
 }
 
 DistanceReference reference_from(double range_m, const uav::SensorDescription& range,

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <tether/tasks/sample_statistics.h>
+#include <tether/stats/sample_statistics.h>
 #include <tether/tasks/sensor_characterization_task.h>
 #include <tether/tasks/task_context.h>
 
@@ -84,11 +84,11 @@ void SensorCharacterizationTask::finalise(TaskContext& context, TaskOutcome& out
     return;
   }
   const std::vector<double> taken_s = sorted_times_s(acquisitions_);
-  outcome.results["mean_s"] = mean(taken_s);
+  outcome.results["mean_s"] = stats::mean(taken_s);
   outcome.results["min_s"] = taken_s.front();
-  outcome.results["median_s"] = quantile(taken_s, 0.5);
+  outcome.results["median_s"] = stats::quantile(taken_s, 0.5);
   outcome.results["max_s"] = taken_s.back();
-  if (const auto stddev_s = sample_stddev(taken_s)) {
+  if (const auto stddev_s = stats::sample_stddev(taken_s)) {
     outcome.results["stddev_s"] = *stddev_s;
   }
 }

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <numeric>
 
-#include <tether/tasks/sample_statistics.h>
+#include <tether/stats/sample_statistics.h>
 
-namespace tether::tasks {
+namespace tether::stats {
 
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -31,4 +31,4 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted[below] + rest * (sorted[above] - sorted[below]);
 }
 
-}  // namespace tether::tasks
+}  // namespace tether::stats

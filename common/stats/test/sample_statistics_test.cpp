@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/tasks/sample_statistics.h>
+#include <tether/stats/sample_statistics.h>
 
-namespace tether::tasks {
+namespace tether::stats {
 namespace {
 
 TEST(SampleStatistics, Mean) {
@@ -29,4 +29,4 @@ TEST(SampleStatistics, QuantilesAreInterpolated) {
 }
 
 }  // namespace
-}  // namespace tether::tasks
+}  // namespace tether::stats
