@@ -8,7 +8,7 @@
 
 #include <tether/os/interrupt.h>
 
-/// A second signal that comes later: tests/system/interrupt_test.cpp.
+/// A second signal that comes later: tests/system/run/interrupt_test.cpp.
 namespace tether::os {
 namespace {
 

@@ -7,7 +7,7 @@
 #include <tether/board/board.h>
 #include <tether/os/text_file.h>
 
-/// With the scripts as they are, on this machine. Over real SSH: tests/system/board_test.cpp.
+/// With the scripts as they are, on this machine. Over real SSH: tests/system/board/board_test.cpp.
 namespace tether::board {
 namespace {
 

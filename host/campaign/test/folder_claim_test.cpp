@@ -12,7 +12,7 @@
 #include <tether/campaign_testing/sample_campaign.h>
 #include <tether/os/text_file.h>
 
-/// With whole processes: tests/system/faults_campaign_test.cpp.
+/// With whole processes: tests/system/faults/faults_campaign_test.cpp.
 namespace tether::campaign {
 namespace {
 

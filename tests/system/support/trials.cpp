@@ -77,7 +77,7 @@ std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder
   const auto file = folder / "scenarios" / (name + ".toml");
   std::filesystem::create_directory(file.parent_path());
   write_text(file,
-             substituted(read_text(sources / "data/scenarios" / (name + ".toml")), substitutions));
+             substituted(read_text(sources / "scenarios" / (name + ".toml")), substitutions));
   return file;
 }
 
