@@ -56,14 +56,14 @@ endfunction()
 add_custom_target(tether_generated)
 
 # What each kind of test run has to build, so that it compiles nothing that it does not run.
-foreach(kind IN ITEMS unit threaded_unit checked_system hostile_system threaded_system)
+foreach(kind IN ITEMS unit input_unit threaded_unit checked_system threaded_system)
   add_custom_target(tether_${kind}_tests)
 endforeach()
 
 # Tests are half of all that is compiled. What nearly every one includes is compiled once, in a program, whose
 # code is compiled as theirs is; and only what they test is optimised.
 add_library(tether_test_options INTERFACE)
-target_compile_options(tether_test_options INTERFACE $<$<CONFIG:RelWithDebInfo>:-Og>
+target_compile_options(tether_test_options INTERFACE $<$<CONFIG:RelWithDebInfo>:-Og> $<$<CONFIG:Debug>:-O0>
   # Optimised that little, the standard library's own code sets this one off.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 target_link_libraries(tether_test_options INTERFACE tether_compile_options)
@@ -122,7 +122,7 @@ endfunction()
 #   TESTS           files below test/, one executable tether_<name>_test
 #   TESTING_SOURCES fakes that other folders' tests use, as tether::<name>_testing, with headers in
 #                   testing/include
-#   LABELS          extra ctest labels of the tests ("threaded" ones run under tsan)
+#   LABELS          extra labels of the tests: input, threaded (see tether_add_test)
 function(tether_add_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE;TESTS;TEST_LIBS;TESTING_SOURCES;LABELS" ${ARGN})
   set(target tether_${name})
@@ -165,10 +165,11 @@ endfunction()
 # tether_add_test(<name> SOURCES ... [LIBS ...] LABELS ... [TIMEOUT <seconds>] [EVERY_CHANGE <filter>])
 #
 # A GoogleTest executable below tests/, target <name>_test. LABELS say when it runs (CONTRIBUTING, "Which test runs where"):
-#   unit      first, and under asan and ubsan as well
+#   unit      first; in `scripts/test --full` under asan and ubsan as well
 #   system    whole programs
-#   threaded  under tsan as well; a system test in `scripts/test --full` only
-#   hostile, checked   a system test that runs under asan and ubsan as well, the latter with --full only
+#   input     unit tests of what reads what others wrote or sent: under asan and ubsan at each change
+#   threaded  unit tests of what starts threads: under tsan as well; a system test with --full only
+#   checked   a system test that runs under asan and ubsan as well, with --full
 #   board, arm64, gazebo   needs this part; not in `scripts/test --quick`
 #   full      in `scripts/test --full` only, but for the cases of EVERY_CHANGE
 function(tether_add_test name)
