@@ -19,7 +19,7 @@ TEST(Boundaries, RoundTowardsEitherSideForAnySign) {
 }
 
 TEST(Boundaries, StandTheLimitsOfTime) {
-  const Boundaries grid(Duration(std::numeric_limits<std::int64_t>::max()));
+  const Boundaries grid(Duration{std::numeric_limits<std::int64_t>::max()});
   const Wide least = wide(SimTime::min());
   EXPECT_TRUE(grid.at_or_before(least) <= least);
   EXPECT_TRUE(grid.at_or_after(wide(SimTime::max())) >= wide(SimTime::max()));

@@ -144,7 +144,8 @@ class Sut {
   // The one of those not yet read that is available first. Delays are below two periods.
   std::uint64_t next_available() const {
     const auto candidates = {unread_, unread_ + 1, unread_ + 2};
-    return std::ranges::min(candidates, {}, [this](std::uint64_t k) { return available_at(k); });
+    return *std::ranges::min_element(candidates, {},
+                                     [this](std::uint64_t k) { return available_at(k); });
   }
 
   std::int64_t below(std::int64_t bound) {

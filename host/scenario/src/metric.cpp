@@ -6,7 +6,7 @@
 namespace tether::scenario {
 namespace {
 
-constexpr std::array kKinds = {
+constexpr std::array kMetricKinds = {
     MetricKind{.name = "time_required",
                .label = "Time required",
                .unit = "s",
@@ -58,13 +58,13 @@ constexpr std::array kKinds = {
 }  // namespace
 
 std::span<const MetricKind> metric_kinds() {
-  return kKinds;
+  return kMetricKinds;
 }
 
 const MetricKind* find_metric_kind(std::string_view kind) {
-  const auto found = std::find_if(kKinds.begin(), kKinds.end(),
+  const auto found = std::find_if(kMetricKinds.begin(), kMetricKinds.end(),
                                   [&](const MetricKind& k) { return k.name == kind; });
-  return found == kKinds.end() ? nullptr : &*found;
+  return found == kMetricKinds.end() ? nullptr : &*found;
 }
 
 std::string unit_suffix(std::string_view unit) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/base_testing/sanitizer.h>
+
 /// Too few file handles, too little memory (docs/guide/faults.md): whatever cannot be had, a run
 /// ends with a reason and never by a crash.
 namespace tether::system_test {
@@ -72,7 +74,7 @@ TEST_F(Limits, OfFileHandlesAreACampaignsReason) {
   }
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if TETHER_ADDRESS_SANITIZER || TETHER_THREAD_SANITIZER
 constexpr bool kTakesAllMemory = true;
 #else
 constexpr bool kTakesAllMemory = false;

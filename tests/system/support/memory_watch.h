@@ -5,9 +5,11 @@
 
 #include <sys/types.h>
 
+#include <tether/base_testing/sanitizer.h>
+
 namespace tether::system_test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if TETHER_ADDRESS_SANITIZER || TETHER_THREAD_SANITIZER
 inline constexpr bool kMemoryIsTethers = false;  // a sanitizer keeps what was freed
 #else
 inline constexpr bool kMemoryIsTethers = true;

@@ -76,8 +76,7 @@ std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder
     std::filesystem::create_directory_symlink(sources / data, folder / data);
   const auto file = folder / "scenarios" / (name + ".toml");
   std::filesystem::create_directory(file.parent_path());
-  write_text(file,
-             substituted(read_text(sources / "scenarios" / (name + ".toml")), substitutions));
+  write_text(file, substituted(read_text(sources / "scenarios" / (name + ".toml")), substitutions));
   return file;
 }
 

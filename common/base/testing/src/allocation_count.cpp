@@ -5,7 +5,7 @@
 
 #include <tether/base_testing/allocation_count.h>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if TETHER_ADDRESS_SANITIZER || TETHER_THREAD_SANITIZER
 #define TETHER_COUNTS_ALLOCATIONS 0
 #else
 #define TETHER_COUNTS_ALLOCATIONS 1

@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <tether/base_testing/no_more_handles.h>
+#include <tether/base_testing/sanitizer.h>
 
 namespace tether {
 
@@ -17,7 +18,7 @@ NoMoreHandles::~NoMoreHandles() {
 }
 
 bool NoMoreHandles::allows_exceptions() {
-#if defined(__SANITIZE_ADDRESS__)
+#if TETHER_ADDRESS_SANITIZER
   return false;
 #else
   return true;
