@@ -4,6 +4,7 @@
 #include <malloc.h>
 
 #include <tether/base_testing/allocation_count.h>
+#include <tether/base_testing/sanitizer.h>
 
 #if TETHER_ADDRESS_SANITIZER || TETHER_THREAD_SANITIZER
 #define TETHER_COUNTS_ALLOCATIONS 0
