@@ -4,7 +4,12 @@
 stage_names=()
 stage_seconds=()
 began=$SECONDS
-rm -rf "$ROOT"/build/{ci,asan,tsan}/test-results
+
+# begin_stages: forgets the results of an earlier run, and has the summary printed at the end of this one.
+begin_stages() {
+  rm -rf "$ROOT"/build/{ci,asan,tsan}/test-results
+  trap summary EXIT
+}
 
 # stage NAME COMMAND...: runs it, and remembers how long it took.
 stage() {
@@ -38,7 +43,6 @@ cases() {
 # The last words of scripts/test, whatever it ended with.
 summary() {
   local status=$? i
-  [ "${#stage_names[@]}" -gt 0 ] || return "$status"
   printf '\n\033[1m== Seconds of each stage\033[0m\n'
   for i in "${!stage_names[@]}"; do
     printf '%6s  %s\n' "${stage_seconds[$i]:-failed}" "${stage_names[$i]}"
@@ -56,4 +60,3 @@ summary() {
     "$ROOT/build/test-cases.tsv"
   return "$status"
 }
-trap summary EXIT

@@ -1,6 +1,7 @@
 #include <algorithm>
-#include <array>
-#include <charconv>
+#include <iomanip>
+#include <locale>
+#include <sstream>
 
 #include <tether/base/text_table.h>
 
@@ -44,10 +45,10 @@ std::string text_table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string fixed(double value, int digits) {
-  std::array<char, 400> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
-                                 std::chars_format::fixed, digits);
-  return {text.data(), end.ptr};
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::fixed << std::setprecision(digits) << value;
+  return text.str();
 }
 
 }  // namespace tether
