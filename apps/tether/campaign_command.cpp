@@ -42,15 +42,14 @@ scenario::Campaign load(const CampaignOptions& options) {
   return campaign;
 }
 
-/// Trials side by side have a Gazebo each, and so a port each.
+/// Each parallel trial has its own Gazebo, and its own port.
 void require_ports(const scenario::Campaign& campaign, int jobs) {
   const char* master = std::getenv("GAZEBO_MASTER_URI");
   if (jobs == 1 || !master || !*master || !runner::simulators(campaign).contains("gazebo")) return;
-  throw Error(
-      ErrorCode::kUsage,
-      fmt::format("--jobs {}: GAZEBO_MASTER_URI names one port, {}, and trials side by side "
-                  "need one each; unset it, or use --jobs 1",
-                  jobs, master));
+  throw Error(ErrorCode::kUsage,
+              fmt::format("--jobs {}: GAZEBO_MASTER_URI names one port, {}, and parallel trials "
+                          "need one each; unset it, or use --jobs 1",
+                          jobs, master));
 }
 
 campaign::CampaignOutcome fly(const campaign::CampaignFolder& folder,

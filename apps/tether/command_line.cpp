@@ -97,7 +97,7 @@ void add_campaign_command(CLI::App& program, Action& action) {
   command
       ->add_option(
           "--jobs", options->jobs,
-          "Cores for trials side by side; refused where that would disturb the measured time")
+          "Number of parallel trials. Rejected if parallel runs would distort measured time")
       ->capture_default_str();
   add_simulator_option(*command, options->simulator);
   command->add_flag("--resume", options->resume, "Go on with a folder: run only what is missing");
@@ -197,12 +197,12 @@ void add_target_command(CLI::App& program, Action& action) {
   target->require_subcommand(1);
   target->footer("Examples:\n  tether target check ssh://pi@board.local");
   CLI::App* check =
-      target->add_subcommand("check", "Say what of a machine would spoil a measurement");
+      target->add_subcommand("check", "Report what on a machine would disturb a measurement");
   check->add_option("address", options->address,
                     "ssh://[user@]board[:port]; this machine if not given");
   check->add_flag("--json", options->json, "Print findings and readings as JSON");
   check->footer(
-      R"(Exit codes: 0 fine, 1 something would spoil a measurement, 2 wrong use, 3 not reachable.
+      R"(Exit codes: 0 fine, 1 something would disturb a measurement, 2 wrong use, 3 not reachable.
 
 Examples:
   tether target check
@@ -216,7 +216,7 @@ Examples:
 
 int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interrupt) {
   CLI::App program{
-      "Tells whether a UAV's computer is fast enough for its task, before anything flies."};
+      "Reports whether a UAV's computer is fast enough for its task, before anything flies."};
   program.name("tether");
   program.footer(kFooter);
   program.set_version_flag("--version", std::string(version()));

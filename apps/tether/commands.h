@@ -74,7 +74,7 @@ struct CheckOptions {
   std::string address;
   bool json = false;
 };
-/// Says what of a machine would spoil a measurement.
+/// Reports what on a machine would disturb a measurement.
 int check_target(const CheckOptions& options, const std::stop_token& stop);
 
 }  // namespace tether::app

@@ -79,9 +79,9 @@ bool has(const Check& check, Health health) {
 }
 
 std::string conclusion(const Check& check) {
-  if (has(check, Health::kBad)) return "What is marked \"bad\" would spoil a measurement.";
+  if (has(check, Health::kBad)) return "Findings marked \"bad\" would disturb a measurement.";
   if (has(check, Health::kWarn)) return "What is marked \"warn\" may spoil a measurement.";
-  return "Nothing here would spoil a measurement.";
+  return "Nothing here would disturb a measurement.";
 }
 
 std::string to_text(const Check& check) {

@@ -13,10 +13,9 @@ namespace {
 constexpr const char* kHelp =
     "Usage: tether-exec [OPTIONS] COMMAND [ARGUMENT]...\n"
     "\n"
-    "Runs a program of several threads or processes under test: each of its calls to the UAV "
-    "waits\n"
-    "for its own reply only, and all of the program stands still whenever the simulation has to\n"
-    "catch up. `tether run` sets the environment it needs (TETHER_ADDRESS, TETHER_TOKEN, and\n"
+    "Runs a program under test that has several threads or processes. Each call to the UAV waits\n"
+    "for its own reply only. The whole program is stopped while the simulation catches up.\n"
+    "`tether run` sets the environment it needs (TETHER_ADDRESS, TETHER_TOKEN, and\n"
     "TETHER_UAV and TETHER_CLOCK where they matter); TETHER_CLOCK is wall or wall*FACTOR.\n"
     "\n"
     "Options:\n"

@@ -18,7 +18,7 @@ const Party* culprit(const std::vector<Party>& parties) {
 }
 
 std::string waiting(const Party& party) {
-  return fmt::format("UAV \"{}\" (reply due at ET {:.6f} s)", party.uav,
+  return fmt::format("UAV \"{}\" waits for its reply of ET {:.6f} s", party.uav,
                      to_seconds(*party.reply_at));
 }
 
@@ -36,20 +36,18 @@ std::string who_blocks_whom(SimTime st, const std::vector<Party>& parties) {
   std::vector<std::string> others;
   for (const Party& party : parties)
     if (&party != blocker && party.reply_at) others.push_back(waiting(party));
-  const std::string with =
-      others.empty() ? "" : fmt::format(", and with it {}", fmt::join(others, ", "));
+  const std::string with = others.empty() ? "" : fmt::format(" ({})", fmt::join(others, ", "));
   return fmt::format(
-      "ST {:.6f} s{} waits for SUT \"{}\" of UAV \"{}\", computing since {:.1f} s without a word, "
-      "last at ET {:.6f} s",
+      "ST {:.6f} s{}: blocked on SUT \"{}\" (UAV \"{}\"), which has been computing for {:.1f} s "
+      "without a message; last message at ET {:.6f} s",
       to_seconds(st), with, blocker->sut, blocker->uav, to_seconds(blocker->silence),
       to_seconds(blocker->bound));
 }
 
 std::string who_has_not_joined(const std::vector<std::string>& uavs, Duration waited) {
   const bool is_one = uavs.size() == 1;
-  return fmt::format("the start waits for {} \"{}\"; none has joined for {:.1f} s",
-                     is_one ? "a SUT for UAV" : "SUTs for the UAVs", fmt::join(uavs, "\", \""),
-                     to_seconds(waited));
+  return fmt::format("waiting for the SUT{} of \"{}\" to connect ({:.1f} s so far)",
+                     is_one ? "" : "s", fmt::join(uavs, "\", \""), to_seconds(waited));
 }
 
 }  // namespace tether::coordinator

@@ -25,7 +25,7 @@ MaybeFault order_fault(const link::Request& request, const Standing& sut) {
                    fmt::format("a request while {} others are open", sut.open_calls)};
     if (sut.tied && sut.held)
       return Fault{Kind::kOutOfOrder,
-                   fmt::format("a request stamped {} ns while it stood still for a reply at {} ns",
+                   fmt::format("a request stamped {} ns while it was stopped for a reply at {} ns",
                                to_ns(request.issued_at), to_ns(sut.bound))};
   } else {
     if (sut.open_calls > 0) return Fault{Kind::kOutOfOrder, "a request while another one is held"};
@@ -98,7 +98,7 @@ MaybeFault stop_fault(ExecTime at, const Standing& sut) {
                              to_ns(sut.bound))};
   if (sut.held)
     return Fault{Kind::kImpossibleStop,
-                 fmt::format("a stop at ET {} ns while it stood still for a reply at {} ns",
+                 fmt::format("a stop at ET {} ns while it was stopped for a reply at {} ns",
                              to_ns(at), to_ns(sut.bound))};
   return std::nullopt;
 }

@@ -82,10 +82,11 @@ std::optional<Ending> Watchdog::overdue(const Party& party, const std::vector<Pa
     return Ending{RunEnd::kSutLost, fmt::format("no SUT joined for UAV \"{}\" within {} s",
                                                 party.uav, to_seconds(limits_.connect))};
   if (running_ && party.computing && party.silence > limits_.hang)
-    return Ending{RunEnd::kSutHung,
-                  fmt::format("SUT \"{}\" of UAV \"{}\" gave no word for {} s (limit){}", party.sut,
-                              party.uav, to_seconds(limits_.hang),
-                              tied_ ? ": " + who_blocks_whom(st, parties) : "")};
+    return Ending{
+        RunEnd::kSutHung,
+        fmt::format("SUT \"{}\" of UAV \"{}\" timed out: no message for {} s (hang_limit_s){}",
+                    party.sut, party.uav, to_seconds(limits_.hang),
+                    tied_ ? ": " + who_blocks_whom(st, parties) : "")};
   return std::nullopt;
 }
 

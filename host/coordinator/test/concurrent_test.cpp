@@ -285,13 +285,13 @@ TEST_F(ConcurrentTest, BreaksOfTheProtocolEndTheRun) {
 TEST_F(ConcurrentTest, GoingOnBeforeItsReplyIsThereEndsTheRun) {
   const std::pair<link::Message, const char*> cases[] = {
       {request(2, us(2'950), link::SetVelocity{}),
-       "stamped 2950000 ns while it stood still for a reply at 2900000 ns"},
+       "stamped 2950000 ns while it was stopped for a reply at 2900000 ns"},
       {request(2, us(2'900), link::SetVelocity{}),
-       "stamped 2900000 ns while it stood still for a reply at 2900000 ns"},
+       "stamped 2900000 ns while it was stopped for a reply at 2900000 ns"},
       {request(2, us(2'850), link::SetVelocity{}),
-       "stamped 2850000 ns while it stood still for a reply at 2900000 ns"},
+       "stamped 2850000 ns while it was stopped for a reply at 2900000 ns"},
       {link::Progress{us(2'950), true},
-       "a stop at ET 2950000 ns while it stood still for a reply at 2900000 ns"},
+       "a stop at ET 2950000 ns while it was stopped for a reply at 2900000 ns"},
   };
   for (const auto& [message, reason] : cases) {
     make(2);

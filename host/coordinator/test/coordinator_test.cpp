@@ -221,7 +221,7 @@ TEST_F(CoordinatorTest, ASutThatGivesNoWordIsHung) {
   options_.hang_limit = seconds(3);
   const RunReport report = run({sleep(Duration(0), milliseconds(5))});
   EXPECT_EQ(report.end, RunEnd::kSutHung);
-  EXPECT_THAT(report.reason, HasSubstr("\"script\" of UAV \"uav0\" gave no word for 3 s"));
+  EXPECT_THAT(report.reason, HasSubstr("\"script\" of UAV \"uav0\" timed out: no message for 3 s"));
   EXPECT_EQ(recorder_.interactions.size(), 1u);
 }
 

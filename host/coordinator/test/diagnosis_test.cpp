@@ -28,15 +28,15 @@ const SimTime kSt{milliseconds(1200)};
 TEST(Diagnosis, NamesTheOneThatIsLeastFar) {
   EXPECT_EQ(
       who_blocks_whom(kSt, {computing("a", 1300, 10), computing("b", 1200, 1500)}),
-      "ST 1.200000 s waits for SUT \"sut of b\" of UAV \"b\", computing since 1.5 s without a "
-      "word, last at ET 1.200000 s");
+      "ST 1.200000 s: blocked on SUT \"sut of b\" (UAV \"b\"), which has been computing for 1.5 s "
+      "without a message; last message at ET 1.200000 s");
 }
 
 TEST(Diagnosis, NamesThoseThatWaitForIt) {
   EXPECT_THAT(
       who_blocks_whom(kSt, {held("a", 1250), computing("b", 1200, 1500), held("c", 1300)}),
-      testing::HasSubstr("and with it UAV \"a\" (reply due at ET 1.250000 s), UAV \"c\" (reply due "
-                         "at ET 1.300000 s) waits for SUT \"sut of b\""));
+      testing::HasSubstr("(UAV \"a\" waits for its reply of ET 1.250000 s, UAV \"c\" waits for its "
+                         "reply of ET 1.300000 s): blocked on SUT \"sut of b\""));
 }
 
 TEST(Diagnosis, IsSilentWhereTheSimulatorHasTheWord) {
@@ -46,9 +46,9 @@ TEST(Diagnosis, IsSilentWhereTheSimulatorHasTheWord) {
 
 TEST(Diagnosis, NamesThoseThatHaveNotJoined) {
   EXPECT_EQ(who_has_not_joined({"a"}, milliseconds(1040)),
-            "the start waits for a SUT for UAV \"a\"; none has joined for 1.0 s");
+            "waiting for the SUT of \"a\" to connect (1.0 s so far)");
   EXPECT_EQ(who_has_not_joined({"a", "b"}, milliseconds(2500)),
-            "the start waits for SUTs for the UAVs \"a\", \"b\"; none has joined for 2.5 s");
+            "waiting for the SUTs of \"a\", \"b\" to connect (2.5 s so far)");
 }
 
 TEST(Diagnosis, SaysWhereAPartyStood) {

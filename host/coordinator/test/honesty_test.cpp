@@ -128,10 +128,10 @@ TEST_F(HonestyTest, WhenNothingMovesTheStatusSaysWhoBlocksWhom) {
     st_before = status.st;
   };
   const RunReport report = coordinator_->run(*server_, hooks_);
-  EXPECT_THAT(first, testing::StartsWith("ST 0.005000 s waits for SUT \"script\" of UAV \"uav0\", "
-                                         "computing since 1.0 s without a word"));
+  EXPECT_THAT(first, testing::StartsWith("ST 0.005000 s: blocked on SUT \"script\" (UAV \"uav0\"), "
+                                         "which has been computing for 1.0 s"));
   EXPECT_THAT(report.reason,
-              HasSubstr("computing since 3.0 s without a word, last at ET 0.005000 s"));
+              HasSubstr("computing for 3.0 s without a message; last message at ET 0.005000 s"));
 }
 
 TEST_F(HonestyTest, AJoinIsAMove) {

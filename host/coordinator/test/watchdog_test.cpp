@@ -57,7 +57,9 @@ TEST_F(Watching, ASutThatComputesWithoutASignOfLifeIsHung) {
   const auto end = watchdog.overdue({party("a", seconds(0)), party("b", seconds(4))}, kSt);
   ASSERT_TRUE(end);
   EXPECT_EQ(end->how, RunEnd::kSutHung);
-  EXPECT_THAT(end->reason, StartsWith("SUT \"sut\" of UAV \"b\" gave no word for 3 s (limit): ST"));
+  EXPECT_THAT(
+      end->reason,
+      StartsWith("SUT \"sut\" of UAV \"b\" timed out: no message for 3 s (hang_limit_s): ST"));
 }
 
 TEST_F(Watching, SilenceIsCountedFromTheLastSignOfLife) {
@@ -107,7 +109,7 @@ TEST_F(Watching, SaysWhoseSutHasNotJoinedBeforeTheRun) {
     const Watchdog watchdog = make(tied);
     EXPECT_EQ(
         watchdog.blocked({absent("a", seconds(2)), party("b", seconds(9))}, kSt, at(seconds(2))),
-        "the start waits for a SUT for UAV \"a\"; none has joined for 2.0 s");
+        "waiting for the SUT of \"a\" to connect (2.0 s so far)");
   }
 }
 

@@ -78,7 +78,7 @@ std::string StallWatch::look(const coordinator::RunStatus& status, HostClocks no
   const Duration pause = now.running - std::exchange(last_look_, now.running);
   if (pause > kLongestPause)
     notes_.push_back(fmt::format(
-        "the coordinator stood still for {:.1f} s up to ST {:.3f} s: stopped, short of processor "
+        "the coordinator stalled for {:.1f} s up to ST {:.3f} s: stopped, short of processor "
         "time, or waiting for its simulator",
         to_seconds(pause), to_seconds(status.st)));
   const bool is_new = !status.blocked.empty() && !stalled_;

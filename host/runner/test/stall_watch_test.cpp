@@ -62,7 +62,7 @@ TEST(StallWatch, NotesThatTheCoordinatorItselfStoodStill) {
   EXPECT_THAT(watch.notes(at(seconds(2))), IsEmpty());
   watch.look(status(""), at(milliseconds(7'500)));
   EXPECT_THAT(watch.notes(at(milliseconds(7'500))),
-              ElementsAre(HasSubstr("stood still for 5.5 s up to ST 3.000 s")));
+              ElementsAre(HasSubstr("stalled for 5.5 s up to ST 3.000 s")));
 }
 
 TEST(StallWatch, NotesASuspendedMachine) {

@@ -330,7 +330,7 @@ TEST_F(OnABoard, ASutThatCrashesIsNamedWithItsSignal) {
 TEST_F(OnABoard, ASutThatHangsIsNamed) {
   for (const std::string mode : {"stop", "idle"}) {  // halted; waiting for what never comes
     const auto result =
-        expect_failure(tether_run(scenario(mode), mode), mode, {"bad_sut", "no word for 2 s"});
+        expect_failure(tether_run(scenario(mode), mode), mode, {"bad_sut", "no message for 2 s"});
     EXPECT_EQ(result["end"], "sut_hung") << mode;
     expect_nothing_left();
   }

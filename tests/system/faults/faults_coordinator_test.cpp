@@ -146,7 +146,7 @@ class Stopped : public testing::Test {
   std::unique_ptr<Process> tether_;
 };
 
-const std::string kStoodStill = "the coordinator stood still for ";
+const std::string kStoodStill = "the coordinator stalled for ";
 
 TEST_F(Stopped, BeforeItsSutHasJoinedItChangesNothing) {
   start("stopped", "late");

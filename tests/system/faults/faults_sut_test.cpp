@@ -51,7 +51,8 @@ TEST_P(AtEachPhase, AStruckSutIsNamed) {
 const std::string kKilled = "was ended by signal 9 (Killed)";
 const std::string kStopped = "was stopped (by a signal or a debugger)";
 const std::string kComputing =
-    "waits for SUT \"bad_sut\" of UAV \"uav1\", computing since 2.0 s without a word";
+    "blocked on SUT \"bad_sut\" (UAV \"uav1\"), which has been computing for 2.0 s without a "
+    "message";
 
 // A SUT that is lost before its first interaction was never there, as far as campaigns go.
 const StruckSut kStruckSuts[] = {
@@ -72,7 +73,7 @@ const StruckSut kStruckSuts[] = {
     {"kill_reply_half", {"sut_lost", {kKilled, "it was computing"}}, "sut_lost"},
     // 30 s are allowed for joining.
     {"stop_connected", {"setup_failed", {"no SUT joined", "30 s", kStopped}}, ""},
-    {"stop_joined", {"sut_hung", {"no word for 2 s", kComputing, kStopped}}, "sut_hung"},
+    {"stop_joined", {"sut_hung", {"no message for 2 s", kComputing, kStopped}}, "sut_hung"},
     {"stop_computing", {"sut_hung", {kComputing, "last at ET 1.", kStopped}}, "sut_hung"},
     // Its reply left in time; nothing came after it.
     {"stop_held", {"sut_hung", {kComputing, "last at ET 4.000000 s", kStopped}}, "sut_hung"},
@@ -152,7 +153,8 @@ class ScriptedFlight : public testing::Test {
   TempFolder folder_;
 };
 
-const std::string kWaits = "waits for SUT \"bad_sut\" of UAV \"uav1\", computing since 1.0 s";
+const std::string kWaits =
+    "blocked on SUT \"bad_sut\" (UAV \"uav1\"), which has been computing for 1.0 s";
 
 TEST_F(ScriptedFlight, IsTheSameAfterItsSutWasStopped) {
   Process process(command("stopped"));

@@ -63,9 +63,9 @@ const StruckProgram kStruckPrograms[] = {
      "threads_sut",
      SIGKILL,
      {"sut_lost", {"exited with code 137, as after signal 9 (Killed)"}}},
-    {"stop_program", "threads_sut", SIGSTOP, {"sut_hung", {"without a word"}}},
+    {"stop_program", "threads_sut", SIGSTOP, {"sut_hung", {"without a message"}}},
     {"kill_exec", "tether-exec", SIGKILL, {"sut_lost", {"was ended by signal 9 (Killed)"}}},
-    {"stop_exec", "tether-exec", SIGSTOP, {"sut_hung", {"without a word"}}},
+    {"stop_exec", "tether-exec", SIGSTOP, {"sut_hung", {"without a message"}}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Signals, InFlight, testing::ValuesIn(kStruckPrograms),

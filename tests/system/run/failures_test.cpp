@@ -71,7 +71,7 @@ const Failing kInFlight[] = {
     {"crash", "sut_lost", {"signal 11"}, 60},
     {"exit", "sut_lost", {"closed the connection"}, 60},
     // Its limit is 2 s.
-    {"stop", "sut_hung", {"bad_sut", "no word for 2 s"}, 60},
+    {"stop", "sut_hung", {"bad_sut", "no message for 2 s"}, 60},
 };
 
 INSTANTIATE_TEST_SUITE_P(Modes, FailingInFlight, testing::ValuesIn(kInFlight),

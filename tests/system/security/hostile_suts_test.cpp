@@ -227,14 +227,14 @@ const Misdeed kMisdeeds[] = {
        sut.shut(SHUT_RDWR);
      },
      "it was waiting for its reply of ET 4.000000 s"},
-    {"ClosedTheOtherHalf", [](RawPeer& sut, auto) { sut.shut(SHUT_RD); }, "no word for 2 s",
+    {"ClosedTheOtherHalf", [](RawPeer& sut, auto) { sut.shut(SHUT_RD); }, "no message for 2 s",
      "sut_hung"},
     {"AFrameThatNeverEnds",
      [](RawPeer& sut, std::uint64_t next) {
        const std::string frame = frame_of(command(next, kFlown));
        sut.write(frame.substr(0, frame.size() - 1));
      },
-     "no word for 2 s", "sut_hung"},
+     "no message for 2 s", "sut_hung"},
     // Few enough that it is not their number that ends it.
     {"AnnotationsWithoutEnd",
      [](RawPeer& sut, auto) {
@@ -242,7 +242,7 @@ const Misdeed kMisdeeds[] = {
        for (int i = 0; i < 40'000; ++i) sut.write(note);
        while (sut.write(note)) std::this_thread::sleep_for(1ms);
      },
-     "no word for 2 s", "sut_hung"},
+     "no message for 2 s", "sut_hung"},
     {"CallsThatTakeNoTime",
      [](RawPeer& sut, std::uint64_t next) {
        const link::ReadSensor if_there{.sensor = 1, .only_if_available = true};
@@ -256,7 +256,7 @@ const Misdeed kMisdeeds[] = {
        while (sut.write(same)) {
        }
      },
-     "no word for 2 s", "sut_hung"},
+     "no message for 2 s", "sut_hung"},
 };
 
 Output audit(const std::filesystem::path& folder) {
