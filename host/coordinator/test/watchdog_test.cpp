@@ -97,7 +97,7 @@ TEST_F(Watching, SaysWhoBlocksWhomOnceNothingHasMovedForASecond) {
   const std::vector<Party> parties{party("a", seconds(1))};
   EXPECT_EQ(watchdog.blocked(parties, kSt, at(milliseconds(7'999))), "");
   EXPECT_THAT(watchdog.blocked(parties, kSt, at(seconds(8))),
-              StartsWith("ST 0.005000 s waits for SUT \"sut\" of UAV \"a\""));
+              StartsWith("ST 0.005000 s: blocked on SUT \"sut\" (UAV \"a\")"));
   Watchdog free_running = make(false);
   free_running.begin(WallTime{});
   EXPECT_EQ(free_running.blocked(parties, kSt, at(seconds(8))), "");
