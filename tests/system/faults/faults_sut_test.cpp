@@ -74,11 +74,13 @@ const StruckSut kStruckSuts[] = {
     // 30 s are allowed for joining.
     {"stop_connected", {"setup_failed", {"no SUT joined", "30 s", kStopped}}, ""},
     {"stop_joined", {"sut_hung", {"no message for 2 s", kComputing, kStopped}}, "sut_hung"},
-    {"stop_computing", {"sut_hung", {kComputing, "last at ET 1.", kStopped}}, "sut_hung"},
+    {"stop_computing", {"sut_hung", {kComputing, "last message at ET 1.", kStopped}}, "sut_hung"},
     // Its reply left in time; nothing came after it.
-    {"stop_held", {"sut_hung", {kComputing, "last at ET 4.000000 s", kStopped}}, "sut_hung"},
+    {"stop_held",
+     {"sut_hung", {kComputing, "last message at ET 4.000000 s", kStopped}},
+     "sut_hung"},
     {"stop_request_half",
-     {"sut_hung", {kComputing, "last at ET 0.000000 s", kStopped}},
+     {"sut_hung", {kComputing, "last message at ET 0.000000 s", kStopped}},
      "sut_hung"},
     {"stop_reply_half", {"sut_hung", {kComputing, kStopped}}, "sut_hung"},
 };
