@@ -18,7 +18,7 @@ usage() { sed -n '2,/^[^#]/{/^# shellcheck /q;/^#/s/^# \{0,1\}//p}' "$0"; }
 
 # Compiler and libraries of the product, with the software renderer that cameras need without a GPU.
 packages_build=(
-  g++ cmake ninja-build
+  g++ cmake ninja-build mold
   libmujoco-dev libegl-dev libgl-dev libopengl-dev libegl1 libgl1-mesa-dri
   libsdformat-dev libtinyxml2-dev libconsole-bridge-dev libassimp-dev
   libopencv-dev libpng-dev libturbojpeg0-dev zlib1g-dev libzstd-dev libboost-dev
