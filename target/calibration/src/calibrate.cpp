@@ -1,4 +1,3 @@
-#include "invalid.h"
 #include "report.h"
 #include "statistics.h"
 #include "workload.h"
@@ -7,6 +6,7 @@
 
 #include <opencv2/core/version.hpp>
 
+#include <tether/base/result.h>
 #include <tether/base/version.h>
 #include <tether/calibration/calibrate.h>
 #include <tether/calibration/machine.h>

@@ -1,8 +1,7 @@
-#include "invalid.h"
-
 #include <algorithm>
 #include <utility>
 
+#include <tether/base/result.h>
 #include <tether/calibration/characterize.h>
 #include <tether/calibration/sensor_table.h>
 #include <tether/tasks/task_context.h>

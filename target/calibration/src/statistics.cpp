@@ -1,11 +1,10 @@
 #include "statistics.h"
 
-#include "invalid.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include <tether/base/result.h>
 #include <tether/base/text_table.h>
 #include <tether/stats/sample_statistics.h>
 

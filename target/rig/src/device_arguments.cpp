@@ -2,6 +2,7 @@
 #include <utility>
 #include <vector>
 
+#include <tether/base/result.h>
 #include <tether/rig/device_arguments.h>
 #include <tether/rig/rig_file.h>
 
@@ -30,10 +31,6 @@ void take(std::string& name, std::string& device) {
   if (devices::is_device(name)) {
     device = std::exchange(name, "");
   }
-}
-
-Failure invalid(const std::string& what) {
-  return {Failure::Kind::kInvalid, what};
 }
 
 std::string option_of(SensorKind kind) {
