@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/base_testing/error_message.h>
+#include <tether/base_testing/thrown_error.h>
 
 namespace tether::app {
 namespace {

@@ -14,9 +14,6 @@ std::string located(const FileLocation& where, const std::string& message) {
   return text + ": " + message;
 }
 
-Error::Error(ErrorCode code, const FileLocation& where, const std::string& message)
-    : Error(code, located(where, message)) {}
-
 void require_a_handle_for(const std::string& file) {
   const int handle = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (handle >= 0) {

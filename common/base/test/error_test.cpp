@@ -7,8 +7,12 @@
 namespace tether {
 namespace {
 
-TEST(Error, SaysWhere) {
-  EXPECT_STREQ(Error(ErrorCode::kBadFile, {"a.toml", 7}, "bad").what(), "a.toml:7: bad");
+TEST(Error, CarriesPlaceAndSubject) {
+  const Error error = Error(ErrorCode::kBadFile, {"a.toml", 7}, "bad").about("rate_hz");
+  EXPECT_STREQ(error.what(), "a.toml:7: bad");
+  EXPECT_EQ(error.where().file, "a.toml");
+  EXPECT_EQ(error.where().line, 7);
+  EXPECT_EQ(error.subject(), "rate_hz");
   EXPECT_STREQ(Error(ErrorCode::kBadFile, {"a.toml", 0}, "bad").what(), "a.toml: bad");
 }
 

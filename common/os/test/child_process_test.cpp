@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <tether/base_testing/error_message.h>
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
 #include <tether/os/child_process.h>
 #include <tether/os/machine.h>
 #include <tether/os/pipe.h>

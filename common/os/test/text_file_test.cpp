@@ -4,8 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <tether/base_testing/error_message.h>
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
 #include <tether/os/text_file.h>
 
 namespace tether::os {

@@ -93,7 +93,8 @@ void Table::require_keys_in(std::span<const std::string_view> allowed) const {
     if (std::find(allowed.begin(), allowed.end(), key.str()) != allowed.end()) continue;
     throw Error(ErrorCode::kBadFile, {file_, line_of(key.source())},
                 "unknown key '" + string_of(key.str()) + "' in " + title() + "; " +
-                    allowed_hint(key.str(), allowed));
+                    allowed_hint(key.str(), allowed))
+        .about(string_of(key.str()));
   }
 }
 
@@ -130,11 +131,12 @@ FileLocation Table::where(std::string_view key) const {
 
 void Table::fail(std::string_view key, const std::string& problem) const {
   throw Error(ErrorCode::kBadFile, where(key),
-              "'" + string_of(key) + "' of " + title() + " " + problem);
+              "'" + string_of(key) + "' of " + title() + " " + problem)
+      .about(string_of(key));
 }
 
 void Table::fail(const std::string& problem) const {
-  throw Error(ErrorCode::kBadFile, where(), title() + " " + problem);
+  throw Error(ErrorCode::kBadFile, where(), title() + " " + problem).about(title());
 }
 
 void Table::fail_type(std::string_view key, const Node& found, std::string_view expected) const {
@@ -143,7 +145,10 @@ void Table::fail_type(std::string_view key, const Node& found, std::string_view 
 
 const Node& Table::required(std::string_view key) const {
   const ::toml::node* node = as_table(*table_).get(key);
-  if (node == nullptr) fail("lacks the key '" + string_of(key) + "'");
+  if (node == nullptr) {
+    throw Error(ErrorCode::kBadFile, where(), title() + " lacks the key '" + string_of(key) + "'")
+        .about(string_of(key));
+  }
   return opaque(*node);
 }
 

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/base_testing/error_message.h>
+#include <tether/base_testing/thrown_error.h>
 #include <tether/board/ssh_connection.h>
 
 namespace tether::board {

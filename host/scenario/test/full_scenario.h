@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/base_testing/error_message.h>
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
 
 namespace tether::scenario {
 

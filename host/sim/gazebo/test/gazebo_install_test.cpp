@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/base_testing/error_message.h>
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
 #include <tether/os/child_process.h>
 #include <tether/sim_gazebo/gazebo_install.h>
 

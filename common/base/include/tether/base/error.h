@@ -3,18 +3,19 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <tether/base/printable.h>
 
 namespace tether {
 
-/// What kind of thing went wrong; decides the exit code of the command line (DESIGN section 5).
+/// The kind of an error; decides the exit code of the program (docs/design.md section 5).
 enum class ErrorCode {
   kUsage,     ///< wrong option, or options that exclude each other (exit 2)
   kBadFile,   ///< a scenario, world, profile or record that cannot be used (exit 2)
   kSetup,     ///< the simulator, the link or a device could not be set up (exit 3)
   kLinkLost,  ///< a peer disconnected or sent what it must not (exit 3)
-  kHung,      ///< a peer gave no word for longer than its limit (exit 3)
+  kHung,      ///< a peer sent no message within its time limit (exit 3)
   kInternal,  ///< a broken invariant of Tether itself: a bug (exit 3)
 };
 
@@ -22,7 +23,7 @@ enum class ErrorCode {
 int exit_code(ErrorCode code);
 std::string_view name(ErrorCode code);
 
-/// A place in a file that a person wrote. `line` is 0 where there is none.
+/// A place in a file that a person wrote. `line` counts from 1; it is 0 where there is none.
 struct FileLocation {
   std::string file;
   int line = 0;
@@ -31,23 +32,38 @@ struct FileLocation {
 /// "file:line: message", or "file: message".
 std::string located(const FileLocation& where, const std::string& message);
 
-/// The one exception of host-side code. `what()` is one printable line, whatever a file or a peer
-/// had in it: where (file:line), what is wrong, what to do.
+/// The exception that host-side code throws. `what()` is one printable line: where (file:line),
+/// what is wrong, what to do. Code and tests read the fields, never the sentence.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message)
       : std::runtime_error(printable(message)), code_(code) {}
   /// With the message `located`.
-  Error(ErrorCode code, const FileLocation& where, const std::string& message);
+  Error(ErrorCode code, const FileLocation& where, const std::string& message)
+      : Error(code, located(where, message)) {
+    where_ = where;
+  }
+
+  /// The same error, with its subject.
+  Error&& about(std::string subject) && {
+    subject_ = std::move(subject);
+    return std::move(*this);
+  }
 
   ErrorCode code() const { return code_; }
+  /// The place that is wrong; without a file where there is none.
+  const FileLocation& where() const { return where_; }
+  /// What is wrong: the key, option, name or address; empty where the message has no single one.
+  const std::string& subject() const { return subject_; }
 
  private:
   ErrorCode code_;
+  FileLocation where_;
+  std::string subject_;
 };
 
-/// For a file that could not be read: that this process may open no more files is not its fault.
-/// @throws Error(kSetup) if so.
+/// For a file that could not be read: checks that the cause is not this process's limit of open
+/// files. @throws Error(kSetup) if it is.
 void require_a_handle_for(const std::string& file);
 
 }  // namespace tether

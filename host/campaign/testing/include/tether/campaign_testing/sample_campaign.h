@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string>
 
-#include <tether/base_testing/error_message.h>
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
 #include <tether/campaign/result.h>
 #include <tether/scenario/campaign.h>
 
