@@ -40,6 +40,7 @@ packages_gazebo=(cmake ninja-build g++ pkgconf mmdebstrap xvfb xauth)
 # libFuzzer and the sanitizers of clang; llvm has what names functions in their reports.
 packages_fuzz=(clang-14 libclang-rt-14-dev llvm-14)
 packages_tidy=(git clang-tidy)
+packages_coverage=(gcovr)
 # The site of documents.
 packages_docs=(doxygen)
 
@@ -75,18 +76,19 @@ install_packages() {
 command -v node >/dev/null || packages_test+=(nodejs)
 command -v npm >/dev/null || packages_test+=(npm)
 
-# install_for build|test|fuzz|tidy|package|arm64|gazebo|docs
+# install_for build|test|fuzz|tidy|coverage|package|arm64|gazebo|docs
 install_for() {
   case "$1" in
     build) install_packages "${packages_build[@]}" ;;
     test) install_packages "${packages_build[@]}" "${packages_test[@]}" ;;
     fuzz) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_fuzz[@]}" ;;
     tidy) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_tidy[@]}" ;;
+    coverage) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_coverage[@]}" ;;
     package) install_packages "${packages_build[@]}" "${packages_pack[@]}" ;;
     arm64) install_packages "${packages_arm64[@]}" ;;
     gazebo) install_packages "${packages_gazebo[@]}" ;;
     docs) install_packages "${packages_docs[@]}" ;;
-    *) fail "'$1': build, test, fuzz, tidy, package, arm64, gazebo or docs" ;;
+    *) fail "'$1': build, test, fuzz, tidy, coverage, package, arm64, gazebo or docs" ;;
   esac
 }
 
