@@ -6,6 +6,8 @@
 
 #include <tether/link/codec.h>
 
+/// Messages to frames. Each `write` adds a table to the builder and returns its offset, innermost
+/// first. An image's pixels are not copied into the builder: only their place is kept (ImageSlot).
 namespace tether::link {
 namespace {
 

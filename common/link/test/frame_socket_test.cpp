@@ -3,7 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
@@ -45,21 +44,19 @@ TEST(FrameSocketTest, CarriesFramesInOrder) {
   EXPECT_EQ(received(), second);
 }
 
-TEST(FrameSocketTest, TellsSilenceFromAnEnd) {
+TEST(FrameSocketTest, ReportsATimeoutAndAnEnd) {
   auto [a, b] = connected();
-  FrameSocket here(std::move(a), "the other end", 100);
+  FrameSocket here(std::move(a), "there", 100);
   {
-    FrameSocket there(std::move(b), "here", 100);
-    const auto silence = here.receive_within(milliseconds(1));
-    EXPECT_EQ(silence.failure().kind, Failure::Kind::kTimeout);
-    EXPECT_THAT(silence.failure().message, ::testing::HasSubstr("the other end"));
+    const FrameSocket there(std::move(b), "here", 100);
+    EXPECT_EQ(here.receive_within(milliseconds(1)).failure().kind, Failure::Kind::kTimeout);
   }
   EXPECT_EQ(here.receive().failure().kind, Failure::Kind::kDisconnected);
   const Bytes frame = frame_of(7);
   EXPECT_EQ(here.send({frame, {}, {}}).failure().kind, Failure::Kind::kDisconnected);
 }
 
-TEST(FrameSocketTest, GivesUpOnAPeerThatDoesNotRead) {
+TEST(FrameSocketTest, StopsSendingToAPeerThatDoesNotRead) {
   auto [a, b] = connected();
   limit_sending(a.get(), milliseconds(1));
   FrameSocket here(std::move(a), "there", 100);
@@ -67,7 +64,6 @@ TEST(FrameSocketTest, GivesUpOnAPeerThatDoesNotRead) {
   const Status sent = here.send({more_than_the_system_keeps, {}, {}});
   ASSERT_FALSE(sent.ok());
   EXPECT_EQ(sent.failure().kind, Failure::Kind::kTimeout);
-  EXPECT_EQ(sent.failure().message, "there does not read what it is sent");
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ class FieldChecker {
   void in(std::string where) { where_ = std::move(where); }
   void text(const std::string& value, std::size_t limit, std::string_view field) {
     require(value.size() <= limit, field, "is longer than " + std::to_string(limit) + " bytes");
-    require(value.find('\0') == std::string::npos, field, "contains a zero byte");
+    require(value.find('\0') == std::string::npos, field, "contains a NUL byte");
   }
   void finite(double value, std::string_view field) {
     require(std::isfinite(value), field, "is not a finite number");
