@@ -2,7 +2,6 @@
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/base/system_reason.h>
 #include <tether/os/file_descriptor.h>
 #include <tether/os/pipe.h>
 #include <tether/os/text_file.h>
@@ -20,7 +20,7 @@ namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
   throw Error(ErrorCode::kSetup, FileLocation{file.string()},
-              std::string("cannot be ") + what + ": " + std::strerror(errno));
+              std::string("cannot be ") + what + ": " + reason_of(errno));
 }
 
 void write_text(const FileDescriptor& to, std::string_view text,

@@ -17,27 +17,20 @@ FileDescriptor open_null() {
   return FileDescriptor(open("/dev/null", O_RDONLY | O_CLOEXEC));
 }
 
-TEST(FileDescriptor, ClosesWhatItOwns) {
+TEST(FileDescriptor, HasOneOwnerThatClosesIt) {
   int number = -1;
   {
-    const FileDescriptor owner = open_null();
-    ASSERT_TRUE(owner);
-    number = owner.get();
+    FileDescriptor first = open_null();
+    number = first.get();
+    const FileDescriptor second = std::move(first);
+    EXPECT_FALSE(first);  // NOLINT(bugprone-use-after-move)
+    EXPECT_EQ(second.get(), number);
     EXPECT_TRUE(is_open(number));
   }
   EXPECT_FALSE(is_open(number));
 }
 
-TEST(FileDescriptor, IsEmptyOnceMovedFrom) {
-  FileDescriptor first = open_null();
-  const int number = first.get();
-  const FileDescriptor second = std::move(first);
-  EXPECT_FALSE(first);  // NOLINT(bugprone-use-after-move)
-  EXPECT_EQ(second.get(), number);
-  EXPECT_TRUE(is_open(number));
-}
-
-TEST(FileDescriptor, ClosesItsOldOneWhenEmptied) {
+TEST(FileDescriptor, AssignmentClosesThePreviousOne) {
   FileDescriptor owner = open_null();
   const int number = owner.get();
   owner = FileDescriptor();

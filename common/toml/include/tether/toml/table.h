@@ -106,10 +106,17 @@ class Table {
   /// `path` is its name for messages ("uav.sensors.camera"; empty: the top of the file).
   Table(const Node& table, std::string path, std::string file);
   const Node& required(std::string_view key) const;
+  [[noreturn]] void fail_at(const FileLocation& place, std::string_view key,
+                            const std::string& problem) const;
+  [[noreturn]] void fail_at(const Node& node, std::string_view key,
+                            const std::string& problem) const;
   [[noreturn]] void fail_type(std::string_view key, const Node& found,
                               std::string_view expected) const;
   std::vector<const Node*> elements(std::string_view key, std::string_view expected) const;
+  std::string text_of(std::string_view key, const Node& node, std::string_view expected) const;
   double number_of(std::string_view key, const Node& node, const Range& range) const;
+  std::int64_t integer_of(std::string_view key, const Node& node, std::int64_t min,
+                          std::int64_t max) const;
   std::string child_path(std::string_view key) const;
 
   const Node* table_;
