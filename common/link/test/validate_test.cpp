@@ -48,10 +48,7 @@ uav::CameraSample image(int width, int height, std::size_t bytes) {
 
 TEST(Validate, Hello) {
   expect({"", hello_with(1.0)});
-  expect({"cpu_factor", hello_with(0.0)});
-  expect({"cpu_factor", hello_with(-1.0)});
-  expect({"cpu_factor", hello_with(kNan)});
-  expect({"cpu_factor", hello_with(kInf)});
+  for (const double factor : {0.0, -1.0, kNan, kInf}) expect({"cpu_factor", hello_with(factor)});
   expect({"sut", hello_with(1.0, std::string(257, 'x'))});
   expect({"sut", hello_with(1.0, std::string(1, '\0'))});
   expect({"clock", hello_with(1.0, "", static_cast<ClockKind>(4))});
@@ -60,8 +57,8 @@ TEST(Validate, Hello) {
 TEST(Validate, Requests) {
   expect({"", request_with(ReadSensor{3, true})});
   expect({"sensor", request_with(ReadSensor{5000, false})});
-  expect({"issued_at", request_with(ReadSensor{}, -1)});
-  expect({"issued_at", request_with(ReadSensor{}, kMaxTimestampNs)});
+  for (const std::int64_t issued_ns : {std::int64_t{-1}, kMaxTimestampNs})
+    expect({"issued_at", request_with(ReadSensor{}, issued_ns)});
   expect({"sequence", Request{}});
   expect({"velocity command", request_with(SetVelocity{{{kNan, 0, 0}, 0}})});
   expect({"velocity command", request_with(SetVelocity{{{0, 0, 0}, 1e9}})});

@@ -18,23 +18,14 @@ FileDescriptor open_null() {
 }
 
 TEST(FileDescriptor, HasOneOwnerThatClosesIt) {
-  int number = -1;
-  {
-    FileDescriptor first = open_null();
-    number = first.get();
-    const FileDescriptor second = std::move(first);
-    EXPECT_FALSE(first);  // NOLINT(bugprone-use-after-move)
-    EXPECT_EQ(second.get(), number);
-    EXPECT_TRUE(is_open(number));
-  }
-  EXPECT_FALSE(is_open(number));
-}
-
-TEST(FileDescriptor, AssignmentClosesThePreviousOne) {
-  FileDescriptor owner = open_null();
-  const int number = owner.get();
-  owner = FileDescriptor();
-  EXPECT_FALSE(owner);
+  FileDescriptor first = open_null();
+  const int number = first.get();
+  FileDescriptor second = std::move(first);
+  EXPECT_FALSE(first);  // NOLINT(bugprone-use-after-move)
+  EXPECT_EQ(second.get(), number);
+  EXPECT_TRUE(is_open(number));
+  second = FileDescriptor();
+  EXPECT_FALSE(second);
   EXPECT_FALSE(is_open(number));
 }
 

@@ -68,7 +68,9 @@ class Schedule {
     while (interactions_ < interactions && !testing::Test::HasFatalFailure()) {
       const SutIndex i = random_.bits() % suts_.size();
       const std::uint32_t turn = random_.bits() % 4;
-      if (turn == 0) suts_[i].concurrent ? move_concurrent(i) : maybe_request(i);
+      Caller& first = suts_[i].callers[0];
+      if (turn == 0 && suts_[i].concurrent) move_concurrent(i);
+      if (turn == 0 && !suts_[i].concurrent && !first.held) request(i, first);
       if (turn == 1) maybe_progress(i);
       if (turn > 1) simulate(1 + random_.bits() % 5);
       release_all();
@@ -83,24 +85,14 @@ class Schedule {
   ExecTime random_time(ExecTime from, std::int64_t steps) {
     const ExecTime anywhere = from + Duration(random_.bits() % (steps * kStep.count() + 1));
     const ExecTime boundary = same_instant(kGrid.ceil(same_instant(anywhere)));
-    switch (random_.bits() % 4) {
-      case 0:
-        return boundary;
-      case 1:
-        return boundary + Duration(1);
-      case 2:
-        return std::max(from, boundary - Duration(1));
-      default:
-        return anywhere;
-    }
+    const std::uint32_t kind = random_.bits() % 4;
+    if (kind == 0) return boundary;
+    if (kind == 1) return boundary + Duration(1);
+    return kind == 2 ? std::max(from, boundary - Duration(1)) : anywhere;
   }
 
   void plan_next_request(Caller& caller, ExecTime from) {
     caller.next_request = random_time(from, random_.bits() % 9);
-  }
-
-  void maybe_request(SutIndex i) {
-    if (!suts_[i].callers[0].held) request(i, suts_[i].callers[0]);
   }
 
   // One turn of a concurrent SUT: sends its next message; else continues if no reply is due, or

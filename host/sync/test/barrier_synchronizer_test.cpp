@@ -185,26 +185,6 @@ TEST(ConcurrentSut, GetsAReplyOnlyWhileItIsStoppedAtOrAfterItsTimestamp) {
   EXPECT_TRUE(barrier.release(st(0)));
 }
 
-TEST(ConcurrentSut, RepliesLeaveInTheOrderOfTimestampsThenCalls) {
-  auto barrier = with_concurrent();
-  call(barrier, 4, 100, 700);
-  call(barrier, 5, 200, 300);
-  call(barrier, 6, 300, 300);
-  barrier.stop(0, et(720));
-  std::vector<CallId> order;
-  while (const auto grant = barrier.release(st(0))) order.push_back(grant->call);
-  EXPECT_EQ(order, (std::vector<CallId>{5, 6, 4}));
-}
-
-TEST(ConcurrentSut, AStampBeforeItsLastStopIsAViolation) {
-  auto barrier = with_concurrent();
-  barrier.stop(0, et(1500));
-  const Arrival arrival = barrier.arrive(0, et(1400), st(1000));
-  ASSERT_TRUE(arrival.violation);
-  EXPECT_EQ(arrival.violation->size, Duration(100));
-  EXPECT_EQ(arrival.charged_at, et(1500));
-}
-
 // Its open calls do not make it a held SUT: it may still stamp an earlier command.
 TEST(ConcurrentSut, DelaysOthersWhileItComputesWithAnOpenCall) {
   auto barrier = with_concurrent(3000);
