@@ -24,7 +24,7 @@ TEST(Address, RefusesAnythingElseWithTheText) {
     const auto parsed = parse_address(text);
     ASSERT_FALSE(parsed.ok()) << text;
     EXPECT_EQ(parsed.failure().kind, Failure::Kind::kInvalid);
-    EXPECT_THAT(parsed.failure().message, testing::HasSubstr('"' + text + '"'));
+    EXPECT_THAT(parsed.failure().message, testing::HasSubstr("'" + text + "'"));
   }
 }
 

@@ -23,11 +23,6 @@ namespace {
               std::string("cannot be ") + what + ": " + reason_of(errno));
 }
 
-void write_text(const FileDescriptor& to, std::string_view text,
-                const std::filesystem::path& file) {
-  if (!write_all(to, text)) fail(file, "written");
-}
-
 bool is_special(const std::filesystem::path& file) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(file, ignored);
@@ -37,7 +32,7 @@ bool is_special(const std::filesystem::path& file) {
 void write_to_special(const std::filesystem::path& file, std::string_view text) {
   const FileDescriptor fd(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
   if (!fd) fail(file, "opened");
-  write_text(fd, text, file);
+  if (!write_all(fd, text)) fail(file, "written");
 }
 
 // The file behind the symbolic links, which need not exist.
@@ -57,7 +52,7 @@ std::filesystem::path behind_links(std::filesystem::path file) {
 void write_and_flush(const std::filesystem::path& file, std::string_view text) {
   const FileDescriptor fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
   if (!fd) fail(file, "created");
-  write_text(fd, text, file);
+  if (!write_all(fd, text)) fail(file, "written");
   if (::fsync(fd.get()) != 0) fail(file, "flushed to the disk");
 }
 

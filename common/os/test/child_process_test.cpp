@@ -73,17 +73,15 @@ TEST_F(Child, WritesOneLogOrTwoAndAppendsOnlyWhenAsked) {
 }
 
 TEST_F(Child, ReadsAFileAPipeOrNothing) {
-  EXPECT_EQ(output_of(shell("cat")), "");
-  ChildCommand of_file = shell("cat");
-  of_file.input = scratch_.write("input", "of the file");
-  EXPECT_EQ(output_of(of_file), "of the file");
-
+  ChildCommand command = shell("cat");
+  EXPECT_EQ(output_of(command), "");
   Pipe pipe = make_pipe();
   ASSERT_TRUE(write_all(pipe.write_end, "of the pipe"));
   pipe.write_end = FileDescriptor();
-  ChildCommand of_pipe = shell("cat");
-  of_pipe.input_pipe = pipe.read_end.get();
-  EXPECT_EQ(output_of(of_pipe), "of the pipe");
+  command.input_pipe = pipe.read_end.get();
+  EXPECT_EQ(output_of(command), "of the pipe");
+  command.input = scratch_.write("input", "of the file");
+  EXPECT_EQ(output_of(command), "of the file");
 }
 
 TEST_F(Child, RunsInItsFolderOnItsCpusWithoutBlockedSignals) {
@@ -129,24 +127,16 @@ TEST_F(Child, GetsItsEndSignalAndIsKilledAfterItsGrace) {
 }
 
 TEST_F(Child, RefusesWhatCannotBeStarted) {
-  ChildCommand text = shell("");
+  const auto error_of = [](const ChildCommand& command) {
+    return thrown_error(ErrorCode::kSetup, [&] { ChildProcess{command}; });
+  };
+  ChildCommand text = shell(""), nowhere = shell("true"), no_log = shell("true");
   text.arguments = {scratch_.write("text", "no program")};
-  ChildCommand nowhere = shell("true");
+  EXPECT_EQ(error_of(text).subject(), text.arguments[0]);
   nowhere.working_folder = scratch_.path("none");
-  ChildCommand no_log = shell("true");
+  EXPECT_EQ(std::filesystem::path(error_of(nowhere).subject()).filename(), "sh");
   no_log.log = scratch_.path("none/log");
-  ChildCommand no_interpreter = shell("");
-  no_interpreter.arguments = {scratch_.write("script", "#!/no/such/interpreter\n")};
-  std::filesystem::permissions(no_interpreter.arguments[0], std::filesystem::perms::owner_all);
-  for (const auto& [command, subject] :
-       {std::pair{text, text.arguments[0]}, {no_interpreter, no_interpreter.arguments[0]}}) {
-    const Error error = thrown_error(ErrorCode::kSetup, [&] { ChildProcess{command}; });
-    EXPECT_EQ(error.subject(), subject);
-  }
-  const Error error = thrown_error(ErrorCode::kSetup, [&] { ChildProcess{nowhere}; });
-  EXPECT_EQ(std::filesystem::path(error.subject()).filename(), "sh");
-  EXPECT_EQ(thrown_error(ErrorCode::kSetup, [&] { ChildProcess{no_log}; }).where().file,
-            no_log.log);
+  EXPECT_EQ(error_of(no_log).where().file, no_log.log);
 }
 
 }  // namespace
