@@ -8,7 +8,7 @@ namespace tether::link {
 namespace {
 
 Failure bad_address(const std::string& text, const std::string& why) {
-  return {Failure::Kind::kInvalid, "address \"" + text + "\": " + why +
+  return {Failure::Kind::kInvalid, "address '" + text + "': " + why +
                                        ". Expected: host:port or [IPv6]:port, e.g. 127.0.0.1:5200"};
 }
 

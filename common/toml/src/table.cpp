@@ -9,10 +9,13 @@
 #include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
 
+/// Values are checked where they are read. `required` finds the node of a key, `text_of`,
+/// `number_of` and `integer_of` check one value, of a key or of an element, and the fail functions
+/// build the message and the place of an error.
 namespace tether::toml {
 namespace {
 
-// Node is a name for ::toml::node in a header that does not include the library.
+// Node stands for ::toml::node in the header, which does not include the library.
 const ::toml::node& raw(const Node& node) {
   return reinterpret_cast<const ::toml::node&>(node);  // NOLINT
 }
@@ -61,8 +64,8 @@ double seconds_per_unit(std::string_view key) {
   return key.ends_with("ms") ? 1e-3 : 1.0;
 }
 
-/// Folders, devices and pipes are not read: a read of some of them would never end.
-/// @pre it is no regular file
+/// Folders, devices and pipes are not read: reading some of them would never end.
+/// @pre it is not a regular file
 std::string_view why_no_file(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored) ? "that is no regular file"

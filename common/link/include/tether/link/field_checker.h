@@ -15,8 +15,8 @@
 
 namespace tether::link {
 
-/// The first complaint about a message; later ones are dropped. Checks read as one line per field.
-/// One thread at a time.
+/// Checks the fields of a message, one call per field, and keeps the first complaint. Not
+/// thread-safe.
 class FieldChecker {
  public:
   void require(bool holds, std::string_view field, std::string_view rule) {

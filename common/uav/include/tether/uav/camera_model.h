@@ -28,7 +28,7 @@ struct CameraModel {
   double horizontal_fov_rad() const;
   bool has_distortion() const;
 
-  /// Where the point appears; none if it is not in front of the camera (z ≤ 0). May lie outside the
+  /// The pixel of a point; none if it is not in front of the camera (z ≤ 0). May be outside the
   /// image.
   std::optional<Pixel> project(const Vec3& p_C) const;
   /// The viewing direction of a pixel, scaled to z = 1. Undoes the distortion iteratively.
