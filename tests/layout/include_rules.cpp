@@ -96,7 +96,7 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"link", {"base", "uav"}},
       {"client", {"base", "os", "uav", "link"}},
       {"client_c_api", {"base", "uav", "link", "client"}},
-      {"supervisor", {"base", "link", "client"}},
+      {"supervisor", {"base", "os", "link", "client"}},
       {"devices", {"base", "uav", "client"}},
       {"vision", {"base", "uav"}},
       {"tasks", {"base", "stats", "uav", "client", "vision"}},

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <tether/base/enum_name.h>
 #include <tether/base/error.h>
 #include <tether/base/system_reason.h>
 
@@ -24,35 +25,12 @@ void require_a_handle_for(const std::string& file) {
 }
 
 int exit_code(ErrorCode code) {
-  switch (code) {
-    case ErrorCode::kUsage:
-    case ErrorCode::kBadFile:
-      return 2;
-    case ErrorCode::kSetup:
-    case ErrorCode::kLinkLost:
-    case ErrorCode::kHung:
-    case ErrorCode::kInternal:
-      return 3;
-  }
-  return 3;
+  return code == ErrorCode::kUsage || code == ErrorCode::kBadFile ? 2 : 3;
 }
 
 std::string_view name(ErrorCode code) {
-  switch (code) {
-    case ErrorCode::kUsage:
-      return "usage";
-    case ErrorCode::kBadFile:
-      return "bad file";
-    case ErrorCode::kSetup:
-      return "set-up failed";
-    case ErrorCode::kLinkLost:
-      return "link lost";
-    case ErrorCode::kHung:
-      return "hung";
-    case ErrorCode::kInternal:
-      return "internal error";
-  }
-  return "unknown";
+  return enum_name(code,
+                   {"usage", "bad file", "set-up failed", "link lost", "hung", "internal error"});
 }
 
 }  // namespace tether

@@ -18,15 +18,18 @@ std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST(ScratchFolder, IsNewAndEmptyAndOfItsObjectAlone) {
-  const ScratchFolder one;
-  const ScratchFolder two;
-  EXPECT_NE(one.path(), two.path());
-  EXPECT_TRUE(fs::is_empty(one.path()));
-  EXPECT_TRUE(fs::is_empty(two.path()));
+TEST(ScratchFolder, IsNewEmptyAndRemovedWithItsObject) {
+  const ScratchFolder other;
+  auto folder = std::make_unique<ScratchFolder>();
+  const fs::path path = folder->path();
+  EXPECT_NE(path, other.path());
+  EXPECT_TRUE(fs::is_empty(path));
+  folder->write("a/b", "text");
+  folder.reset();
+  EXPECT_FALSE(fs::exists(path));
 }
 
-TEST(ScratchFolder, WritesAFileWithTheFoldersAboveIt) {
+TEST(ScratchFolder, WritesWholeFilesAndTheirFolders) {
   const ScratchFolder folder;
   const fs::path file = folder.write("a/b/c", "longer\n");
   EXPECT_EQ(file, folder.path() / "a/b/c");
@@ -34,23 +37,10 @@ TEST(ScratchFolder, WritesAFileWithTheFoldersAboveIt) {
   EXPECT_EQ(text_of(file), "longer\n");
   folder.write("a/b/c", "new");
   EXPECT_EQ(text_of(file), "new");
-}
-
-TEST(ScratchFolder, AFileThatCannotBeWrittenThrows) {
-  const ScratchFolder folder;
-  folder.write("a/b", "");
   EXPECT_THROW(folder.write("a", "is a folder"), std::runtime_error);
 }
 
-TEST(ScratchFolder, GoesWithItsObjectAndAllInIt) {
-  auto folder = std::make_unique<ScratchFolder>();
-  const fs::path path = folder->path();
-  folder->write("a/b", "text");
-  folder.reset();
-  EXPECT_FALSE(fs::exists(path));
-}
-
-// In a child process, as this test must not have failed; the folder goes with this one's object.
+// In a child process, because this test must not fail.
 TEST(ScratchFolder, IsKeptWhenTheTestHasFailed) {
   auto folder = std::make_unique<ScratchFolder>();
   const fs::path file = folder->write("a/b", "text");

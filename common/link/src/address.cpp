@@ -9,7 +9,7 @@ namespace {
 
 Failure bad_address(const std::string& text, const std::string& why) {
   return {Failure::Kind::kInvalid, "address '" + text + "': " + why +
-                                       "; expected host:port or [IPv6]:port, e.g. 127.0.0.1:5200"};
+                                       ". Expected: host:port or [IPv6]:port, e.g. 127.0.0.1:5200"};
 }
 
 /// The end of the host within `text`, or npos; the colon before the port follows it.

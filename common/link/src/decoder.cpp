@@ -8,10 +8,12 @@
 
 #include <tether/link/codec.h>
 
+/// Frames to messages. FlatBuffers verifies the structure of a frame, `read` converts each table to
+/// its message, and `validate` checks the values. Only then the message is returned.
 namespace tether::link {
 namespace {
 
-/// Deeper or larger than anything that `validate` lets through.
+/// Above anything that `validate` accepts.
 constexpr flatbuffers::uoffset_t kMaxDepth = 8;
 constexpr flatbuffers::uoffset_t kMaxTables = 4 * kMaxCatalogueEntries + 16;
 /// Length, root offset, identifier, and the least root table.
@@ -34,19 +36,8 @@ uav::Pose from_wire(const wire::Pose& X) {
 // --- catalogue ----------------------------------------------------------------------------------
 
 uav::CameraProperties read(const wire::CameraProperties& c) {
-  uav::CameraModel m;
-  m.width_px = c.width_px();
-  m.height_px = c.height_px();
-  m.fx_px = c.fx_px();
-  m.fy_px = c.fy_px();
-  m.cx_px = c.cx_px();
-  m.cy_px = c.cy_px();
-  m.k1 = c.k1();
-  m.k2 = c.k2();
-  m.k3 = c.k3();
-  m.p1 = c.p1();
-  m.p2 = c.p2();
-  return {m};
+  return {{c.width_px(), c.height_px(), c.fx_px(), c.fy_px(), c.cx_px(), c.cy_px(), c.k1(), c.k2(),
+           c.k3(), c.p1(), c.p2()}};
 }
 
 /// False: a kind that this version does not know.
@@ -112,13 +103,11 @@ Result<Message> read(const wire::Request& request) {
 // --- reply --------------------------------------------------------------------------------------
 
 uav::CameraSample read(const wire::CameraSample& s) {
-  uav::CameraSample out;
-  out.sampled_at = from_ns<SimTime>(s.sampled_at_st_ns());
-  out.index = s.index();
-  out.width_px = s.width_px();
-  out.height_px = s.height_px();
-  out.rgb.assign(s.rgb()->data(), s.rgb()->data() + s.rgb()->size());
-  return out;
+  return {from_ns<SimTime>(s.sampled_at_st_ns()),
+          s.index(),
+          s.width_px(),
+          s.height_px(),
+          {s.rgb()->data(), s.rgb()->data() + s.rgb()->size()}};
 }
 uav::ImuSample read(const wire::ImuSample& s) {
   return {from_ns<SimTime>(s.sampled_at_st_ns()), s.index(), from_wire(*s.angular_velocity_rad_s()),
@@ -197,7 +186,7 @@ bool is_aligned(const std::uint8_t* p) {
 
 Result<Message> decode(std::span<const std::uint8_t> frame) {
   if (frame.size() < kMinFrameBytes) return protocol_failure("frame too short");
-  // The fields are read in place, so that they must lie where their types may.
+  // The fields are read in place, and must be aligned for their types.
   if (!is_aligned(frame.data())) {
     std::vector<std::uint64_t> aligned((frame.size() + 7) / 8);
     std::memcpy(aligned.data(), frame.data(), frame.size());
@@ -205,7 +194,7 @@ Result<Message> decode(std::span<const std::uint8_t> frame) {
   }
   flatbuffers::Verifier verifier(frame.data(), frame.size(), kMaxDepth, kMaxTables);
   if (!wire::VerifySizePrefixedEnvelopeBuffer(verifier)) {
-    return protocol_failure("not a Tether message, or damaged");
+    return protocol_failure("not a Tether message, or corrupt");
   }
   auto message = read(*wire::GetSizePrefixedEnvelope(frame.data()));
   if (!message) return message;

@@ -6,6 +6,8 @@
 
 #include <tether/link/codec.h>
 
+/// Messages to frames. Each `write` adds a table to the builder and returns its offset, innermost
+/// first. An image's pixels are not copied into the builder: only their place is kept (ImageSlot).
 namespace tether::link {
 namespace {
 
@@ -211,8 +213,6 @@ struct Encoder::Impl {
 
 Encoder::Encoder() : impl_(std::make_unique<Impl>()) {}
 Encoder::~Encoder() = default;
-Encoder::Encoder(Encoder&&) noexcept = default;
-Encoder& Encoder::operator=(Encoder&&) noexcept = default;
 
 std::span<const std::uint8_t> Encoder::encode(const Message& message) {
   impl_->build(message);

@@ -23,7 +23,7 @@ Status FrameSocket::send(const FramePieces& frame) {
     const Transfer sent = send_some(descriptor(), frame, done);
     if (sent.error) return lost(peer_, sent.error);
     if (sent.would_block) {
-      return Failure{Failure::Kind::kTimeout, peer_ + " does not read what it is sent"};
+      return Failure{Failure::Kind::kTimeout, peer_ + " does not read its messages"};
     }
     done += sent.bytes;
   }
@@ -50,13 +50,13 @@ void FrameSocket::look_out() const {
 }
 
 Status FrameSocket::receive_more(const Deadline& deadline) {
-  // Of a frame that has begun to come, the rest is fetched in one go.
+  // The rest of a frame that has begun is received with one call.
   std::span<std::uint8_t> space = input_.space();
   const bool rest_of_frame = input_.missing() > 0 && !deadline;
   if (rest_of_frame) space = space.first(input_.missing());
   if (!rest_of_frame && (!deadline || *deadline - Clock::now() > kLookOut)) look_out();
   if (deadline && !wait_readable(descriptor(), *deadline - Clock::now())) {
-    return Failure{Failure::Kind::kTimeout, "no answer from " + peer_ + " within the limit"};
+    return Failure{Failure::Kind::kTimeout, "timed out: no message from " + peer_};
   }
   const Transfer received = receive_some(descriptor(), space, rest_of_frame);
   if (received.error) return lost(peer_, received.error);

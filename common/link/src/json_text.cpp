@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Takes all there is and keeps nothing but where the reader stopped.
+/// Accepts every value and keeps only the position at which the reader stopped.
 struct FaultHandler {
   std::size_t bytes_read = 0;
 
@@ -35,7 +35,7 @@ struct FaultHandler {
 }  // namespace
 
 std::optional<std::size_t> fault_of_json_object(std::string_view text) {
-  // The reader also takes other values, a byte order mark, and a zero byte for the end.
+  // The reader also accepts other values and a byte order mark, and ends at a NUL byte.
   const std::size_t begin = text.find_first_not_of(" \t\n\r");
   if (begin == std::string_view::npos || text[begin] != '{') return std::min(begin, text.size());
   const std::string_view before_zero = text.substr(0, text.find('\0'));

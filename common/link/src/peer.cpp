@@ -11,7 +11,7 @@ namespace {
 
 /// How long a connection that is being closed waits for its peer to close too.
 constexpr std::chrono::seconds kDrainLimit{2};
-/// Reads before a close at the end; a peer that sends on and on does not keep us.
+/// Most reads before a close at the end: a peer may keep sending.
 constexpr int kLastReads = 16;
 
 std::vector<std::uint8_t> take_image(Message& message) {
@@ -39,11 +39,12 @@ Result<std::span<const std::uint8_t>> Peer::next_frame() {
 
 Status Peer::send(const FramePieces& pieces, Message& message) {
   if (queued_bytes_ > kMaxQueuedBytes || queue_.size() >= kMaxQueuedFrames) {
-    std::string waiting = std::to_string(queued_bytes_) + " bytes in " +
-                          std::to_string(queue_.size()) + " frames wait for it";
+    const Failure failure{Failure::Kind::kDisconnected,
+                          remote_ +
+                              " does not read its messages: " + std::to_string(queued_bytes_) +
+                              " bytes in " + std::to_string(queue_.size()) + " frames are queued"};
     die();
-    return Failure{Failure::Kind::kDisconnected,
-                   remote_ + " does not read what it is sent: " + std::move(waiting)};
+    return failure;
   }
   std::size_t done = 0;
   if (queue_.empty()) {

@@ -15,7 +15,7 @@
 
 namespace tether::link {
 
-/// A frame, or what is left of it, that the socket did not take at once.
+/// A frame that the socket did not take completely.
 struct QueuedFrame {
   std::vector<std::uint8_t> head;
   std::vector<std::uint8_t> image;
@@ -31,9 +31,9 @@ struct QueuedFrame {
 ///   kOpen ──drain()──► kDraining ──peer closed or deadline──► kDead
 ///     └──────────────── connection lost ───────────────────────┘
 ///
-/// While draining, what is queued still goes out, then our side is shut; what comes in is dropped.
-/// Closing at once instead could destroy a Refusal on its way: unread input makes TCP reset.
-/// A peer whose input has ended may be open or draining still.
+/// While draining, queued frames are still sent, then our side is shut down; input is dropped.
+/// Closing at once could lose a Refusal on its way, because unread input makes TCP reset the
+/// connection. A peer whose input has ended may still be open or draining.
 class Peer {
  public:
   enum class State { kOpen, kDraining, kDead };
@@ -48,26 +48,26 @@ class Peer {
   State state() const { return state_; }
   int descriptor() const { return socket_.get(); }
   bool wants_to_write() const { return !queue_.empty(); }
-  /// It has closed its sending side: there is nothing to be received any more.
+  /// It has closed its sending side: nothing more can be received.
   bool input_has_ended() const { return input_has_ended_; }
   std::chrono::steady_clock::time_point since() const { return since_; }
   /// It has sent no whole frame yet, or was closed after its first one.
   bool is_stranger() const { return frames_ == 0 || (frames_ == 1 && state_ == State::kDraining); }
 
   /// Sends what the socket takes and queues the rest, whose image it takes out of `message`.
-  /// Fails (and is dead then) if the connection is lost or too much is waiting.
+  /// Fails (and is dead then) if the connection is lost or too much is queued.
   Status send(const FramePieces& pieces, Message& message);
   /// Sends what is queued as far as the socket takes it.
   Status flush();
-  /// Receives once. True: something came. Fails at the end of its input, and (dead then) if the
-  /// connection is lost.
+  /// Receives once. True if it received bytes. Fails at the end of its input, and (dead then) if
+  /// the connection is lost.
   Result<bool> receive();
-  /// The next whole frame; empty: none. The first one removes the deadline, and raises the limit
-  /// on sizes.
+  /// The next whole frame; empty if there is none. The first one removes the deadline and raises
+  /// the limit on sizes.
   Result<std::span<const std::uint8_t>> next_frame();
-  /// Another frame may have come with the last one.
+  /// Another frame may have arrived with the last one.
   bool may_have_frame() const { return may_have_frame_ && state_ == State::kOpen; }
-  /// Receives once and drops it; dead when the peer has closed and nothing is queued for it.
+  /// Receives once and drops the bytes; dead if the peer has closed and nothing is queued for it.
   void discard_input();
 
   void drain();
@@ -76,7 +76,7 @@ class Peer {
   void finish(std::chrono::steady_clock::time_point end);
 
   Deadline deadline;               ///< of the first frame, or of draining
-  std::optional<Failure> closing;  ///< what is still to be reported
+  std::optional<Failure> closing;  ///< still to be reported
 
  private:
   void enqueue(const FramePieces& pieces, std::size_t done, Message& message);

@@ -17,7 +17,8 @@
 
 /// The coordinator's end over TCP: one `ppoll` per poll over the listening socket and all peers. A
 /// Peer reads, queues and writes; this file accepts connections, enforces the limits on strangers,
-/// and reports at most one event per peer and poll.
+/// and reports at most one event per peer and poll. Before it sleeps, it reads from the peer that
+/// sent last for a moment (look_out), because its next request often follows at once.
 namespace tether::link {
 namespace {
 
@@ -25,7 +26,7 @@ using std::chrono::steady_clock;
 
 /// After a failed accept (no descriptors left), how long before the next try.
 constexpr std::chrono::milliseconds kAcceptPause{100};
-/// Successful look-outs in a row before the other peers are looked after again.
+/// Successful look-outs in a row before the other peers are served again.
 constexpr int kMaxLookOuts = 16;
 /// On destruction, how long unsent frames may take.
 constexpr std::chrono::seconds kFinishLimit{1};
@@ -43,7 +44,7 @@ class TcpServer final : public Server {
  private:
   Peer* find(PeerId id);
   bool is_full() const;
-  /// The peer's, sooner while others wait to be let in.
+  /// The peer's deadline; sooner while other connections wait.
   Peer::Deadline deadline_of(const Peer& peer) const;
   /// The earliest of the deadlines, or none.
   Peer::Deadline next_deadline() const;
@@ -60,7 +61,7 @@ class TcpServer final : public Server {
   void expire_deadlines();
 
   void refuse(Peer& peer, const Failure& failure);
-  /// The connection of an open peer is gone, which is reported if its end was not yet.
+  /// Reports the end of an open peer, unless it was reported.
   static void lose(Peer& peer, const Failure& failure);
 
   Descriptor acceptor_;
@@ -72,7 +73,8 @@ class TcpServer final : public Server {
   std::vector<pollfd> watched_;  // the acceptor, then peers_ in order
   PeerId next_id_ = 1;
   Peer::Deadline accept_paused_until_;
-  bool is_crowded_ = false;  // full of strangers, and others wait; the acceptor is not watched then
+  bool is_crowded_ =
+      false;  // full of strangers while others wait; the acceptor is not watched then
   const bool may_look_out_ = may_look_out();
   PeerId spoke_last_ = 0;
   int look_outs_ = 0;
@@ -84,7 +86,8 @@ TcpServer::TcpServer(const Address& address, Duration hello_timeout)
   if (!listening) {
     throw Error(ErrorCode::kSetup,
                 listening.failure().message +
-                    " (choose an address of this machine and a free port; port 0 takes any)");
+                    " (choose an address of this machine and a free port; port 0 takes any)")
+        .about(to_string(address));
   }
   acceptor_ = std::move(*listening);
   set_blocking(acceptor_.get(), false);
@@ -112,7 +115,7 @@ void TcpServer::send(PeerId id, Message message) {
                 "message to " + peer->remote() + " cannot be sent: " + valid.failure().message);
   }
   const FramePieces pieces = encoder_.encode_pieces(message);
-  if (!pieces.image.empty()) spoke_last_ = 0;  // taking that in alone takes the peer too long
+  if (!pieces.image.empty()) spoke_last_ = 0;  // reading it takes the peer too long
   if (const Status sent = peer->send(pieces, message); !sent) lose(*peer, sent.failure());
 }
 
@@ -185,7 +188,7 @@ bool TcpServer::wait(Duration max_wait) {
     const Peer& peer = *peers_[i];
     const int in = peer.input_has_ended() ? 0 : POLLIN;
     const int out = peer.wants_to_write() ? POLLOUT : 0;
-    // Who had an event already has none from its socket in this poll.
+    // A peer that already has an event gets none from its socket in this poll.
     const int descriptor = peer.may_have_frame() ? -1 : peer.descriptor();
     watched_[i + 1] = {descriptor, static_cast<short>(in | out), 0};
   }
@@ -285,8 +288,9 @@ void TcpServer::expire_deadlines() {
     if (!its_deadline || *its_deadline > now) continue;
     const bool is_draining = peer.state() == Peer::State::kDraining;
     if (!is_draining)
-      refuse(peer, {Failure::Kind::kTimeout, "no whole Hello came within the limit"});
-    // Its place is wanted: no time to see whether it takes the Refusal.
+      refuse(peer, {Failure::Kind::kTimeout,
+                    "timed out: no complete Hello message within the time limit"});
+    // Another connection needs its place: do not wait until it has read the Refusal.
     if (is_draining || is_crowded_) peer.die();
   }
 }

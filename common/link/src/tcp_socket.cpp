@@ -18,15 +18,11 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-Failure cannot(const std::string& what, const Address& address, Failure::Kind kind,
-               const std::string& why) {
-  return {kind, "cannot " + what + " " + to_string(address) + ": " + why};
-}
 Failure cannot_connect(const Address& address, Failure::Kind kind, const std::string& why) {
-  return cannot("connect to", address, kind, why);
+  return {kind, "cannot connect to " + to_string(address) + ": " + why};
 }
 Failure cannot_listen(const Address& address, const std::string& why) {
-  return cannot("listen on", address, Failure::Kind::kInvalid, why);
+  return {Failure::Kind::kInvalid, "cannot listen on " + to_string(address) + ": " + why};
 }
 
 std::string reason(int error) {
@@ -37,13 +33,8 @@ std::string reason(int error) {
 
 using FoundAddresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
-/// Addresses, or why there are none.
-struct Resolved {
-  FoundAddresses addresses{nullptr, &::freeaddrinfo};
-  std::string failure;
-};
-
-Resolved resolve(const Address& address) {
+/// All addresses of a name. Fails with kInvalid and the system's reason.
+Result<FoundAddresses> resolve(const Address& address) {
   addrinfo wanted{};
   wanted.ai_family = AF_UNSPEC;
   wanted.ai_socktype = SOCK_STREAM;
@@ -51,13 +42,8 @@ Resolved resolve(const Address& address) {
   const std::string port = std::to_string(address.port);
   addrinfo* found = nullptr;
   const int error = ::getaddrinfo(address.host.c_str(), port.c_str(), &wanted, &found);
-  Resolved resolved;
-  if (error == 0) {
-    resolved.addresses.reset(found);
-  } else {
-    resolved.failure = error == EAI_SYSTEM ? reason(errno) : ::gai_strerror(error);
-  }
-  return resolved;
+  if (error != 0) return invalid(error == EAI_SYSTEM ? reason(errno) : ::gai_strerror(error));
+  return FoundAddresses(found, &::freeaddrinfo);
 }
 
 Address in_numbers(const sockaddr_storage& address, socklen_t size) {
@@ -134,10 +120,10 @@ Attempt try_to_listen(const addrinfo& candidate) {
 }  // namespace
 
 Result<Descriptor> listen_on_tcp(const Address& address) {
-  const Resolved found = resolve(address);
-  if (!found.addresses) return cannot_listen(address, found.failure);
+  const auto found = resolve(address);
+  if (!found) return cannot_listen(address, found.failure().message);
   Attempt attempt = failed(EADDRNOTAVAIL);
-  for (const addrinfo* a = found.addresses.get(); a != nullptr; a = a->ai_next) {
+  for (const addrinfo* a = found->get(); a != nullptr; a = a->ai_next) {
     attempt = try_to_listen(*a);
     if (attempt.error == 0) return std::move(attempt.socket);
   }
@@ -167,13 +153,11 @@ Accepted accept_tcp(int listening) {
 }
 
 Result<Descriptor> open_tcp(const Address& address, Duration timeout) {
-  const Resolved found = resolve(address);
-  if (!found.addresses) {
-    return cannot_connect(address, Failure::Kind::kDisconnected, found.failure);
-  }
+  const auto found = resolve(address);
+  if (!found) return cannot_connect(address, Failure::Kind::kDisconnected, found.failure().message);
   const auto deadline = SteadyClock::now() + std::min(timeout, kLongestTimeout);
-  Attempt attempt = try_all(found.addresses.get(), deadline);
-  if (attempt.out_of_time) return cannot_connect(address, Failure::Kind::kTimeout, "no answer");
+  Attempt attempt = try_all(found->get(), deadline);
+  if (attempt.out_of_time) return cannot_connect(address, Failure::Kind::kTimeout, "timed out");
   if (attempt.error != 0)
     return cannot_connect(address, Failure::Kind::kDisconnected, reason(attempt.error));
   tune(attempt.socket.get());

@@ -1,10 +1,10 @@
 #include <array>
 #include <cerrno>
-#include <cstring>
 
 #include <sys/random.h>
 
 #include <tether/base/error.h>
+#include <tether/base/system_reason.h>
 #include <tether/link/server.h>
 
 namespace tether::link {
@@ -16,8 +16,7 @@ std::string make_token() {
     got = ::getrandom(bytes.data(), bytes.size(), 0);
   } while (got < 0 && errno == EINTR);
   if (got != static_cast<ssize_t>(bytes.size())) {
-    throw Error(ErrorCode::kSetup,
-                std::string("no random bytes for the token: ") + std::strerror(errno));
+    throw Error(ErrorCode::kSetup, "cannot create a token: " + reason_of(errno));
   }
   constexpr char kHex[] = "0123456789abcdef";
   std::string token;

@@ -9,12 +9,14 @@
 #include <tether/link/codec.h>
 #include <tether/link/field_checker.h>
 
+/// The values that each message may have, one `check` per message and part of a message. Both ends
+/// call `validate`: before they send, and after they decoded.
 namespace tether::link {
 namespace {
 
 using Checker = FieldChecker;
 
-/// What stands at a place of a text, for a person.
+/// The text from a position on, shortened and printable.
 std::string excerpt(const std::string& text, std::size_t at) {
   constexpr std::size_t kLength = 24;
   std::string found = text.substr(at, kLength);
@@ -84,7 +86,7 @@ void check_entries(Checker& c, const std::vector<Entry>& entries, std::string_vi
   std::set<std::string_view> names;
   for (const Entry& entry : entries) {
     check(c, entry);
-    c.require(names.insert(entry.name).second, "name", "is there twice");
+    c.require(names.insert(entry.name).second, "name", "is a duplicate");
   }
 }
 
@@ -116,10 +118,11 @@ void check(Checker& c, const Refusal& refusal) {
 }
 
 void check(Checker& c, const ReadSensor& read) {
-  c.require(read.sensor < kMaxCatalogueEntries, "sensor", "is beyond any catalogue");
+  c.require(read.sensor < kMaxCatalogueEntries, "sensor", "is larger than any catalogue");
 }
 void check(Checker& c, const SetVelocity& set) {
-  c.require(uav::is_valid(set.command), "velocity command", "is not finite or beyond any UAV");
+  c.require(uav::is_valid(set.command), "velocity command",
+            "is not finite, or above 100 m/s or 100 rad/s");
 }
 void check(Checker& c, const Sleep& sleep) {
   c.timestamp(sleep.until, "until");

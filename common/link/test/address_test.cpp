@@ -1,4 +1,4 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <tether/link/channel.h>
 
@@ -6,29 +6,25 @@ namespace tether::link {
 namespace {
 
 TEST(Address, Parses) {
-  struct Case {
-    std::string text;
-    Address expected;
-  };
-  for (const Case& c :
+  using Case = std::pair<std::string, Address>;
+  for (const auto& [text, expected] :
        {Case{"127.0.0.1:5200", {"127.0.0.1", 5200}}, Case{"host:0", {"host", 0}},
         Case{"[::1]:65535", {"::1", 65535}}, Case{"[fe80::1%eth0]:1", {"fe80::1%eth0", 1}}}) {
-    const auto parsed = parse_address(c.text);
-    ASSERT_TRUE(parsed.ok()) << c.text;
-    EXPECT_EQ(*parsed, c.expected);
-    EXPECT_EQ(to_string(*parsed), c.text);
+    const auto parsed = parse_address(text);
+    ASSERT_TRUE(parsed.ok()) << text;
+    EXPECT_EQ(*parsed, expected);
+    EXPECT_EQ(to_string(*parsed), text);
   }
 }
 
-TEST(Address, RefusesWithTheTextAndWhatIsExpected) {
+TEST(Address, RefusesAnythingElseWithTheText) {
   for (const std::string text :
        {"", "host", ":5200", "host:", "host:65536", "host:-1", "host:12x", "::1", "fe80::1:5200",
         "[::1]", "[::1]5200", "[]:5200", "[::1:5", "host:1:2", "host: 5"}) {
     const auto parsed = parse_address(text);
     ASSERT_FALSE(parsed.ok()) << text;
     EXPECT_EQ(parsed.failure().kind, Failure::Kind::kInvalid);
-    EXPECT_NE(parsed.failure().message.find("'" + text + "'"), std::string::npos);
-    EXPECT_NE(parsed.failure().message.find("expected host:port"), std::string::npos);
+    EXPECT_THAT(parsed.failure().message, testing::HasSubstr("'" + text + "'"));
   }
 }
 

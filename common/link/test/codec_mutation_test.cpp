@@ -38,19 +38,11 @@ TEST(CodecMutation, DamagedFramesAreRefusedOrValid) {
 TEST(CodecMutation, TruncatedFramesAreRefused) {
   Encoder encoder;
   for (std::uint64_t i = 0; i < 60; ++i) {
-    const Bytes frame = exact(encoder.encode(RandomMessage(i).draw()));
-    for (std::size_t size = 0; size < frame.size(); ++size) {
-      ASSERT_FALSE(decode(exact(std::span(frame).first(size))).ok()) << i << " at " << size;
-    }
-  }
-}
-
-TEST(CodecMutation, TruncatedFramesWithMatchingLengthDoNotCrash) {
-  Encoder encoder;
-  for (std::uint64_t i = 0; i < 60; ++i) {
     const Bytes whole = exact(encoder.encode(RandomMessage(i).draw()));
-    for (std::size_t size = 4; size < whole.size(); ++size) {
+    for (std::size_t size = 0; size < whole.size(); ++size) {
       Bytes frame = exact(std::span(whole).first(size));
+      ASSERT_FALSE(decode(frame).ok()) << i << " at " << size;
+      if (size < 4) continue;
       for (std::size_t b = 0; b < 4; ++b) frame[b] = static_cast<std::uint8_t>((size - 4) >> 8 * b);
       expect_refused_or_valid(frame);
     }

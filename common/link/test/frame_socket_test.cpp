@@ -3,7 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
@@ -27,39 +26,23 @@ Bytes frame_of(std::uint8_t content) {
   return {1, 0, 0, 0, content};
 }
 
-TEST(FrameSocketTest, CarriesFramesInOrder) {
+TEST(FrameSocketTest, ReportsATimeoutThenAFrameThenTheEnd) {
   auto [a, b] = connected();
   FrameSocket here(std::move(a), "there", 100);
-  FrameSocket there(std::move(b), "here", 100);
-  const Bytes first = frame_of(7);
-  const Bytes second = frame_of(8);
-  ASSERT_TRUE(here.send({first, {}, {}}).ok());
-  ASSERT_TRUE(here.send({std::span(second).first(2), std::span(second).subspan(2, 2),
-                         std::span(second).last(1)})
-                  .ok());
-  const auto received = [&] {
-    const auto frame = there.receive_within(seconds(10));
-    return Bytes(frame->begin(), frame->end());
-  };
-  EXPECT_EQ(received(), first);
-  EXPECT_EQ(received(), second);
-}
-
-TEST(FrameSocketTest, TellsSilenceFromAnEnd) {
-  auto [a, b] = connected();
-  FrameSocket here(std::move(a), "the other end", 100);
   {
     FrameSocket there(std::move(b), "here", 100);
-    const auto silence = here.receive_within(milliseconds(1));
-    EXPECT_EQ(silence.failure().kind, Failure::Kind::kTimeout);
-    EXPECT_THAT(silence.failure().message, ::testing::HasSubstr("the other end"));
+    EXPECT_EQ(here.receive_within(milliseconds(1)).failure().kind, Failure::Kind::kTimeout);
+    const Bytes first = frame_of(8);
+    ASSERT_TRUE(there.send({std::span(first).first(2), {}, std::span(first).subspan(2)}).ok());
+    const auto received = here.receive_within(seconds(10));
+    EXPECT_EQ(Bytes(received->begin(), received->end()), first);
   }
   EXPECT_EQ(here.receive().failure().kind, Failure::Kind::kDisconnected);
   const Bytes frame = frame_of(7);
   EXPECT_EQ(here.send({frame, {}, {}}).failure().kind, Failure::Kind::kDisconnected);
 }
 
-TEST(FrameSocketTest, GivesUpOnAPeerThatDoesNotRead) {
+TEST(FrameSocketTest, StopsSendingToAPeerThatDoesNotRead) {
   auto [a, b] = connected();
   limit_sending(a.get(), milliseconds(1));
   FrameSocket here(std::move(a), "there", 100);
@@ -67,7 +50,6 @@ TEST(FrameSocketTest, GivesUpOnAPeerThatDoesNotRead) {
   const Status sent = here.send({more_than_the_system_keeps, {}, {}});
   ASSERT_FALSE(sent.ok());
   EXPECT_EQ(sent.failure().kind, Failure::Kind::kTimeout);
-  EXPECT_EQ(sent.failure().message, "there does not read what it is sent");
 }
 
 }  // namespace

@@ -8,61 +8,35 @@
 namespace tether::link {
 namespace {
 
-bool is_json_object(std::string_view text) {
-  return !fault_of_json_object(text);
+TEST(JsonText, AcceptsObjects) {
+  for (const std::string text :
+       {"{}", " \t\r\n{ }\n", R"({"a": 1, "b": -0.5e-1, "c": [true, false, null], "d": {"e": []}})",
+        R"({"a":"\"\\\/\b\f\n\r\t\u00e9\ud83d\ude00", "":""})",
+        "{\"\u00e9\u20ac\U0001F600\": [[1, 2], [\"x\", {}]]}", R"({"a":0,"a":10,"a":1.0})"}) {
+    EXPECT_FALSE(fault_of_json_object(text)) << text;
+  }
 }
 
-const std::vector<std::string> kObjects = {
-    "{}",
-    " \t\r\n{ }\n",
-    R"({"a": 1, "b": -0.5e-1, "c": [true, false, null], "d": {"e": []}})",
-    R"({"a":"\"\\\/\b\f\n\r\t\u00e9\ud83d\ude00", "":""})",
-    "{\"\u00e9\u20ac\U0001F600\": [[1, 2], [\"x\", {}]]}",
-    R"({"a":0,"a":10,"a":1.0})",
-};
-
-TEST(JsonText, TakesObjects) {
-  for (const std::string& text : kObjects) EXPECT_TRUE(is_json_object(text)) << text;
-}
-
-TEST(JsonText, SaysWhereAnythingElseFails) {
-  struct Case {
-    std::string text;
-    std::size_t fault;
-  };
-  const Case cases[] = {
+// The grammar is the library's; here are the places of faults, and what the library would accept.
+TEST(JsonText, FindsWhereAnythingElseFails) {
+  const std::vector<std::pair<std::string, std::size_t>> cases = {
       {"", 0},
       {"[1]", 0},
-      {"1", 0},
       {" \t[1]", 2},
       {"\n", 1},
       {"\xef\xbb\xbf{}", 0},
       {"{", 1},
-      {"{]}", 1},
       {"{}{}", 2},
-      {"{\"", 2},
-      {"{\"a\"}", 4},
-      {"{\"a\":}", 5},
-      {"{\"a\":nan}", 6},
       {"{\"a\":NaN}", 5},
-      {"{\"a\":Infinity}", 5},
-      {"{\"a\":1,}", 7},
       {"{\"a\":[1,]}", 8},
-      {"{\"a\":[1}}", 7},
       {"{\"a\":01}", 6},
-      {"{\"a\":1.}", 7},
       {"{\"a\":1e400}", 9},
-      {"{\"a\":\"\\x\"}", 7},
       {"{\"a\":\"\\ud800\"}", 12},
       {"{'a':1}", 1},
-      {"{a:1}", 1},
-      {"{\"a\":\"\xff\"}", 6},
       {"{\"a\":\"\xed\xa0\x80\"}", 7},
-      {"{\"a\":\"\xc3\"}", 7},
       {"{\"a\":\"\n\"}", 6},
       {std::string("{\"a\":1}\0", 8), 7},
-      {std::string("{\0}", 3), 1},
-  };
+      {std::string("{\0}", 3), 1}};
   for (const auto& [text, fault] : cases) EXPECT_EQ(fault_of_json_object(text), fault) << text;
 }
 

@@ -3,6 +3,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <tether/base/random.h>
 #include <tether/link/messages.h>
@@ -17,25 +18,16 @@ class RandomMessage {
   Message draw() { return draw(random_.bits() % 8); }
 
   Message draw(std::uint32_t kind) {
-    switch (kind) {
-      case 0:
-        return Hello{random_.bits(),  text(), text(), static_cast<ClockKind>(random_.bits() % 4),
-                     0.01 + number(), text(), coin()};
-      case 1:
-        return welcome();
-      case 2:
-        return Refusal{static_cast<Refusal::Reason>(random_.bits() % 6), text()};
-      case 3:
-        return request();
-      case 4:
-        return reply();
-      case 5:
-        return Progress{time<ExecTime>(), coin()};
-      case 6:
-        return Due{1 + word() % 1000, time<ExecTime>()};
-      default:
-        return Annotation{time<ExecTime>(), "t" + text(), json()};
-    }
+    if (kind == 0)
+      return Hello{random_.bits(),  text(), text(), static_cast<ClockKind>(random_.bits() % 4),
+                   0.01 + number(), text(), coin()};
+    if (kind == 1) return welcome();
+    if (kind == 2) return Refusal{static_cast<Refusal::Reason>(random_.bits() % 6), text()};
+    if (kind == 3) return request();
+    if (kind == 4) return reply();
+    if (kind == 5) return Progress{time<ExecTime>(), coin()};
+    if (kind == 6) return Due{1 + word() % 1000, time<ExecTime>()};
+    return Annotation{time<ExecTime>(), "t" + text(), json()};
   }
 
  private:
@@ -63,17 +55,12 @@ class RandomMessage {
 
   uav::SensorDescription sensor(std::size_t i) {
     uav::SensorDescription out{"s" + std::to_string(i), {vec3(), quat()}, number(), {}};
-    switch (random_.bits() % 3) {
-      case 0:
-        out.properties = uav::CameraProperties{
-            {640, 480, 1.0 + number(), 2.0, number(), number(), 0.1, 0.2, 0.3, 0.4, number()}};
-        break;
-      case 1:
-        out.properties = uav::ImuProperties{};
-        break;
-      default:
-        out.properties = uav::RangeProperties{0.1, 0.2 + number()};
-    }
+    const std::uint32_t kind = random_.bits() % 3;
+    if (kind == 0)
+      out.properties = uav::CameraProperties{
+          {640, 480, 1.0 + number(), 2.0, number(), number(), 0.1, 0.2, 0.3, 0.4, number()}};
+    if (kind == 1) out.properties = uav::ImuProperties{};
+    if (kind == 2) out.properties = uav::RangeProperties{0.1, 0.2 + number()};
     return out;
   }
 
@@ -93,58 +80,31 @@ class RandomMessage {
   }
 
   Message request() {
-    Request out;
-    out.sequence = 1 + word() / 2;
-    out.issued_at = time<ExecTime>();
-    out.previous_round_trip = time<ExecTime>().time_since_epoch();
-    switch (random_.bits() % 4) {
-      case 0:
-        out.body = ReadSensor{random_.bits() % 1000, coin(), coin()};
-        break;
-      case 1:
-        out.body = SetVelocity{{vec3(), number()}};
-        break;
-      case 2:
-        out.body = Sleep{time<ExecTime>()};
-        break;
-      default:
-        out.body = Finish{coin(), text(), coin() ? json() : ""};
-    }
+    Request out{1 + word() / 2, time<ExecTime>(), time<ExecTime>().time_since_epoch(), {}};
+    const std::uint32_t kind = random_.bits() % 4;
+    if (kind == 0) out.body = ReadSensor{random_.bits() % 1000, coin(), coin()};
+    if (kind == 1) out.body = SetVelocity{{vec3(), number()}};
+    if (kind == 2) out.body = Sleep{time<ExecTime>()};
+    if (kind == 3) out.body = Finish{coin(), text(), coin() ? json() : ""};
     return out;
   }
 
   uav::CameraSample image() {
-    uav::CameraSample out{time<SimTime>(),
-                          word(),
-                          1 + static_cast<int>(random_.bits() % 40),
-                          1 + static_cast<int>(random_.bits() % 40),
-                          {}};
-    out.rgb.resize(static_cast<std::size_t>(3 * out.width_px * out.height_px));
-    for (auto& byte : out.rgb) byte = static_cast<std::uint8_t>(random_.bits());
-    return out;
+    const int width = 1 + static_cast<int>(random_.bits() % 40);
+    const int height = 1 + static_cast<int>(random_.bits() % 40);
+    std::vector<std::uint8_t> rgb(static_cast<std::size_t>(3 * width * height));
+    for (auto& byte : rgb) byte = static_cast<std::uint8_t>(random_.bits());
+    return {time<SimTime>(), word(), width, height, std::move(rgb)};
   }
 
   Message reply() {
-    Reply out;
-    out.sequence = 1 + word() / 2;
-    out.resume_at = time<ExecTime>();
+    Reply out{1 + word() / 2, time<ExecTime>(), {}};
     constexpr double kInf = std::numeric_limits<double>::infinity();
-    switch (random_.bits() % 5) {
-      case 0:
-        out.sample = image();
-        break;
-      case 1:
-        out.sample = uav::ImuSample{time<SimTime>(), word(), vec3(), vec3(), quat()};
-        break;
-      case 2:
-        out.sample = uav::RangeSample{time<SimTime>(), word(), number()};
-        break;
-      case 3:
-        out.sample = uav::RangeSample{time<SimTime>(), word(), coin() ? kInf : -kInf};
-        break;
-      default:
-        break;
-    }
+    const std::uint32_t kind = random_.bits() % 5;
+    if (kind == 0) out.sample = image();
+    if (kind == 1) out.sample = uav::ImuSample{time<SimTime>(), word(), vec3(), vec3(), quat()};
+    if (kind == 2) out.sample = uav::RangeSample{time<SimTime>(), word(), number()};
+    if (kind == 3) out.sample = uav::RangeSample{time<SimTime>(), word(), coin() ? kInf : -kInf};
     return out;
   }
 

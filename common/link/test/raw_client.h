@@ -14,22 +14,27 @@
 
 namespace tether::link {
 
-/// A peer that says what it likes, whatever the protocol.
+/// The frame of one message.
+inline std::string frame_bytes(const Message& message) {
+  Encoder encoder;
+  const auto frame = encoder.encode(message);
+  return {frame.begin(), frame.end()};
+}
+
+/// A peer that sends any bytes, whatever the protocol allows.
 class RawClient {
  public:
   explicit RawClient(const Address& address)
       : socket_(open_tcp(address, std::chrono::seconds(10)).value()) {}
 
   /// The server may have hung up already.
-  void write(std::span<const std::uint8_t> bytes) {
+  void write(const std::string& text) {
+    const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
     Transfer sent;
     for (std::size_t done = 0; done < bytes.size() && !sent.error; done += sent.bytes)
       sent = send_some(socket_.get(), {bytes, {}, {}}, done);
   }
-  void write(const std::string& text) {
-    write({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  }
-  void write(const Message& message) { write(Encoder().encode(message)); }
+  void write(const Message& message) { write(frame_bytes(message)); }
 
   bool has_input() { return wait_readable(socket_.get(), Duration(0)); }
   /// Everything up to the end of the stream, decoded as one frame.

@@ -32,24 +32,23 @@ struct RecordingEvents {
   /// Polls once; whether anything was reported.
   bool poll(Server& server, Duration max_wait) {
     const auto events = server.poll(max_wait);
-    for (Event& event : events) {
-      if (std::holds_alternative<Connected>(event.what)) connected.push_back(event.peer);
-      if (auto* message = std::get_if<Message>(&event.what)) take(event.peer, *message);
-      if (const auto* end = std::get_if<Closed>(&event.what)) take(server, event.peer, *end);
+    for (auto& [peer, what] : events) {
+      if (std::holds_alternative<Connected>(what)) connected.push_back(peer);
+      if (auto* message = std::get_if<Message>(&what)) {
+        if (react) react(peer, *message);
+        received.push_back({peer, std::move(*message)});
+        ++received_from[peer];
+      }
+      if (const auto* end = std::get_if<Closed>(&what)) {
+        if (end->may_still_read && keeps_half_closed) {
+          half_closed.push_back(peer);
+          continue;
+        }
+        closed.push_back({peer, end->failure});
+        if (end->may_still_read) server.close(peer);
+      }
     }
     return !events.empty();
-  }
-
- private:
-  void take(PeerId peer, Message& message) {
-    if (react) react(peer, message);
-    received.push_back({peer, std::move(message)});
-    ++received_from[peer];
-  }
-  void take(Server& server, PeerId peer, const Closed& end) {
-    if (end.may_still_read && keeps_half_closed) return half_closed.push_back(peer);
-    closed.push_back({peer, end.failure});
-    if (end.may_still_read) server.close(peer);
   }
 };
 

@@ -1,4 +1,3 @@
-
 #include <cerrno>
 #include <chrono>
 #include <map>
@@ -20,6 +19,9 @@
 
 extern char** environ;
 
+/// Everything that a child needs is prepared before the fork; between fork and exec it only makes
+/// system calls. It reports through a pipe why it could not become the program: the pipe closes
+/// without a report when the exec succeeds.
 namespace tether::os {
 
 namespace {
@@ -49,7 +51,7 @@ std::vector<char*> pointers(std::vector<std::string>& strings) {
 FileDescriptor open_file(const std::filesystem::path& file, int how) {
   FileDescriptor descriptor(open(file.c_str(), how | O_CLOEXEC, 0644));
   if (!descriptor)
-    throw Error(ErrorCode::kSetup, file.string() + ": cannot be opened: " + reason_of(errno));
+    throw Error(ErrorCode::kSetup, {file.string()}, "cannot be opened: " + reason_of(errno));
   return descriptor;
 }
 
@@ -84,18 +86,12 @@ class Streams {
   FileDescriptor input_, log_, errors_;
 };
 
-Error cannot_start(const std::string& program, const std::string& why) {
-  return {ErrorCode::kSetup, "cannot start \"" + program + "\": " + why};
+Error cannot_start(const std::string& program, int why) {
+  return Error(ErrorCode::kSetup, "cannot start \"" + program + "\": " + reason_of(why))
+      .about(program);
 }
 
-/// Where a child says why it could not become the program.
-Pipe open_report(const std::string& program) {
-  Pipe report = make_pipe();
-  if (!report.read_end) throw cannot_start(program, reason_of(errno));
-  return report;
-}
-
-/// What a child becomes; made before the fork.
+/// What a child becomes.
 struct Image {
   const char* program;
   char* const* arguments;
@@ -105,8 +101,8 @@ struct Image {
   int death_signal;
 };
 
-// Between fork and exec only calls that are safe after a fork of a program with threads. Tells
-// `report` why it failed.
+// Only makes calls that are safe after the fork of a program with threads. Writes to `report` why
+// it failed.
 [[noreturn]] void become(const Image& image, const Streams& streams, int report, pid_t parent) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, image.death_signal);
@@ -139,7 +135,8 @@ ChildProcess::ChildProcess(const ChildCommand& command)
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
   const cpu_set_t cpus = to_set(command.cpus);
   const Streams streams(command);
-  Pipe report = open_report(program_);
+  Pipe report = make_pipe();
+  if (!report.read_end) throw cannot_start(program_, errno);
 
   const Image image{program_.c_str(),
                     argv.data(),
@@ -152,11 +149,11 @@ ChildProcess::ChildProcess(const ChildCommand& command)
   if (pid_ == 0) become(image, streams, report.write_end.get(), parent);
   report.write_end = FileDescriptor();
   int why = pid_ < 0 ? errno : 0;
-  // Ends with nothing read once the exec has succeeded.
+  // Nothing can be read once the exec has succeeded.
   if (pid_ > 0 && read(report.read_end.get(), &why, sizeof why) > 0) waitpid(pid_, nullptr, 0);
   if (why != 0) {
     pid_ = -1;
-    throw cannot_start(program_, reason_of(why));
+    throw cannot_start(program_, why);
   }
 }
 
@@ -164,7 +161,7 @@ ChildProcess::~ChildProcess() {
   terminate();
 }
 
-// Shells, launchers and tether-exec tell by such a code that a signal ended their program.
+// Shells, launchers and tether-exec report by such a code that a signal ended their program.
 void ChildProcess::reap(int status) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
@@ -173,9 +170,9 @@ void ChildProcess::reap(int status) {
   }
   const int code = WEXITSTATUS(status);
   const int signal = code - kSignalled;
-  const bool tells_of_signal = signal > 0 && signal < NSIG;
+  const bool reports_signal = signal > 0 && signal < NSIG;
   exit_ = {code, "exited with code " + std::to_string(code) +
-                     (tells_of_signal ? ", as after " + name_of_signal(signal) : "")};
+                     (reports_signal ? ", as after " + name_of_signal(signal) : "")};
 }
 
 const std::optional<ChildExit>& ChildProcess::poll() {

@@ -10,17 +10,17 @@
 #include <tether/base/system_reason.h>
 #include <tether/os/interrupt.h>
 
-// A handler may do next to nothing: it passes the signal's number through a pipe to a thread, which
-// requests the stop.
+// A signal handler may only make few calls: it passes the signal's number through a pipe to a
+// thread, which requests the stop.
 namespace tether::os {
 
 namespace {
 
 using Steady = std::chrono::steady_clock;
 
-// Terminals and supervisors may send one interrupt twice in a row; a person who means it comes
+// Terminals and supervisors may send one interrupt twice in a row; a person's second one comes
 // later.
-constexpr auto kSecondThoughts = std::chrono::milliseconds(500);
+constexpr auto kSameInterrupt = std::chrono::milliseconds(500);
 constexpr char kEnd = 0;
 
 volatile std::sig_atomic_t g_signals = -1;  // where the handler writes
@@ -35,11 +35,13 @@ extern "C" void pass_on(int signal_number) {
 }  // namespace
 
 Interrupt::Interrupt() : signals_(make_pipe()) {
-  if (!signals_.write_end) throw Error(ErrorCode::kSetup, "pipe: " + reason_of(errno));
+  if (!signals_.write_end)
+    throw Error(ErrorCode::kSetup, "cannot create a pipe for signals: " + reason_of(errno));
   try {
     watcher_ = std::thread([this] { watch(); });
   } catch (const std::system_error& e) {
-    throw Error(ErrorCode::kSetup, "thread: " + reason_of(e.code().value()));
+    throw Error(ErrorCode::kSetup,
+                "cannot start a thread for signals: " + reason_of(e.code().value()));
   }
   g_signals = signals_.write_end.get();
   struct sigaction action {};
@@ -47,7 +49,7 @@ Interrupt::Interrupt() : signals_(make_pipe()) {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is a reason like a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit of file sizes then fails with an error
 }
 
 Interrupt::~Interrupt() {
@@ -62,7 +64,7 @@ void Interrupt::watch() {
     const ssize_t got = read(signals_.read_end.get(), &signal, 1);
     if (got < 0 && errno == EINTR) continue;
     if (got != 1 || signal == kEnd) return;
-    if (first && Steady::now() - *first > kSecondThoughts) _exit(128 + signal);
+    if (first && Steady::now() - *first > kSameInterrupt) _exit(128 + signal);
     if (!first) first = Steady::now();
     stop_.request_stop();
   }

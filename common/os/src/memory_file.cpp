@@ -13,10 +13,9 @@ namespace tether::os {
 
 MemoryFile::MemoryFile(std::string_view content)
     : descriptor_(memfd_create("tether", MFD_CLOEXEC)) {
-  if (!descriptor_)
-    throw Error(ErrorCode::kSetup, "no file can be made in memory: " + reason_of(errno));
-  if (!write_all(descriptor_, content) || lseek(descriptor_.get(), 0, SEEK_SET) != 0)
-    throw Error(ErrorCode::kSetup, "no copy can be made in memory: " + reason_of(errno));
+  if (!descriptor_ || !write_all(descriptor_, content) ||
+      lseek(descriptor_.get(), 0, SEEK_SET) != 0)
+    throw Error(ErrorCode::kSetup, "cannot create a file in memory: " + reason_of(errno));
 }
 
 std::filesystem::path MemoryFile::path() const {

@@ -26,7 +26,8 @@ std::filesystem::path find_program(const std::string& name) {
   if (name.find('/') != std::string::npos) {
     if (is_program(name)) return name;
     throw Error(ErrorCode::kSetup,
-                "cannot start \"" + name + "\": no such program, or not executable");
+                "cannot start \"" + name + "\": no such program, or not executable")
+        .about(name);
   }
   std::vector<std::filesystem::path> folders{own_file().parent_path()};
   const char* path = std::getenv("PATH");
@@ -35,7 +36,8 @@ std::filesystem::path find_program(const std::string& name) {
   for (const auto& folder : folders)
     if (is_program(folder / name)) return folder / name;
   throw Error(ErrorCode::kSetup, "cannot start \"" + name + "\": it is neither in " +
-                                     own_file().parent_path().string() + " nor in PATH");
+                                     own_file().parent_path().string() + " nor in PATH")
+      .about(name);
 }
 
 }  // namespace tether::os

@@ -2,7 +2,6 @@
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/base/system_reason.h>
 #include <tether/os/file_descriptor.h>
 #include <tether/os/pipe.h>
 #include <tether/os/text_file.h>
@@ -20,12 +20,7 @@ namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
   throw Error(ErrorCode::kSetup, FileLocation{file.string()},
-              std::string("cannot be ") + what + ": " + std::strerror(errno));
-}
-
-void write_text(const FileDescriptor& to, std::string_view text,
-                const std::filesystem::path& file) {
-  if (!write_all(to, text)) fail(file, "written");
+              std::string("cannot be ") + what + ": " + reason_of(errno));
 }
 
 bool is_special(const std::filesystem::path& file) {
@@ -37,7 +32,7 @@ bool is_special(const std::filesystem::path& file) {
 void write_to_special(const std::filesystem::path& file, std::string_view text) {
   const FileDescriptor fd(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
   if (!fd) fail(file, "opened");
-  write_text(fd, text, file);
+  if (!write_all(fd, text)) fail(file, "written");
 }
 
 // The file behind the symbolic links, which need not exist.
@@ -57,7 +52,7 @@ std::filesystem::path behind_links(std::filesystem::path file) {
 void write_and_flush(const std::filesystem::path& file, std::string_view text) {
   const FileDescriptor fd(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
   if (!fd) fail(file, "created");
-  write_text(fd, text, file);
+  if (!write_all(fd, text)) fail(file, "written");
   if (::fsync(fd.get()) != 0) fail(file, "flushed to the disk");
 }
 

@@ -17,31 +17,15 @@ FileDescriptor open_null() {
   return FileDescriptor(open("/dev/null", O_RDONLY | O_CLOEXEC));
 }
 
-TEST(FileDescriptor, ClosesWhatItOwns) {
-  int number = -1;
-  {
-    const FileDescriptor owner = open_null();
-    ASSERT_TRUE(owner);
-    number = owner.get();
-    EXPECT_TRUE(is_open(number));
-  }
-  EXPECT_FALSE(is_open(number));
-}
-
-TEST(FileDescriptor, IsEmptyOnceMovedFrom) {
+TEST(FileDescriptor, HasOneOwnerThatClosesIt) {
   FileDescriptor first = open_null();
   const int number = first.get();
-  const FileDescriptor second = std::move(first);
+  FileDescriptor second = std::move(first);
   EXPECT_FALSE(first);  // NOLINT(bugprone-use-after-move)
   EXPECT_EQ(second.get(), number);
   EXPECT_TRUE(is_open(number));
-}
-
-TEST(FileDescriptor, ClosesItsOldOneWhenEmptied) {
-  FileDescriptor owner = open_null();
-  const int number = owner.get();
-  owner = FileDescriptor();
-  EXPECT_FALSE(owner);
+  second = FileDescriptor();
+  EXPECT_FALSE(second);
   EXPECT_FALSE(is_open(number));
 }
 

@@ -15,16 +15,12 @@ TEST(MemoryFile, HoldsItsContent) {
   EXPECT_EQ(MemoryFile().content(), "");
 }
 
-TEST(MemoryFile, IsReadFromItsBeginningByDescriptorAndByPath) {
+TEST(MemoryFile, IsReadFromItsBeginningAndWrittenThroughItsPath) {
   const MemoryFile file("text");
   char read_back[8] = {};
   EXPECT_EQ(read(file.descriptor(), read_back, sizeof read_back), 4);
   EXPECT_STREQ(read_back, "text");
   EXPECT_EQ(read_whole(file.path()), "text");
-}
-
-TEST(MemoryFile, IsWrittenThroughItsPath) {
-  const MemoryFile file("old and longer");
   std::ofstream(file.path(), std::ios::trunc) << "new";
   EXPECT_EQ(file.content(), "new");
 }

@@ -1,5 +1,4 @@
 #include <fcntl.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -11,45 +10,35 @@
 namespace tether::os {
 namespace {
 
-using testing::HasSubstr;
+namespace fs = std::filesystem;
 
-TEST(FileNameOf, LeadsNowhere) {
+TEST(FileNameOf, HasNoSlashesAndControlCharacters) {
   EXPECT_EQ(file_name_of("uav-1_b.c"), "uav-1_b.c");
   EXPECT_EQ(file_name_of("../../etc/x"), ".._.._etc_x");
   EXPECT_EQ(file_name_of("a\nb\x1b[2J\x7f"), "a_b_[2J_");
 }
 
+TEST(LastLine, IsTheLastThatIsNotBlank) {
+  EXPECT_EQ(last_line("first\n \tlast line \r\n\n  \n"), "last line");
+  EXPECT_EQ(last_line(" \n"), "");
+}
+
 TEST(WriteFileAtomically, ReplacesTheWholeFileAndLeavesNothingElse) {
   const ScratchFolder scratch;
-  const auto file = scratch.path("a.json");
-  write_file_atomically(file, "a longer first text");
+  const auto file = scratch.write("a.json", "a longer first text");
+  scratch.write("a.json.part", "what a process wrote that was killed");
   write_file_atomically(file, "second");
   EXPECT_EQ(read_file(file), "second");
-  const auto entries = std::filesystem::directory_iterator(scratch.path());
+  const auto entries = fs::directory_iterator(scratch.path());
   EXPECT_EQ(std::distance(begin(entries), end(entries)), 1);
 }
 
-TEST(WriteFileAtomically, ReplacesAPartThatACrashLeft) {
-  const ScratchFolder scratch;
-  scratch.write("a.json.part", "torn and longer than the new one");
-  write_file_atomically(scratch.path("a.json"), "whole");
-  EXPECT_EQ(read_file(scratch.path("a.json")), "whole");
-  EXPECT_FALSE(std::filesystem::exists(scratch.path("a.json.part")));
-}
-
-TEST(WriteFileAtomically, NamesTheFileThatCannotBeWritten) {
-  const ScratchFolder scratch;
-  const std::string message = error_message(
-      ErrorCode::kSetup, [&] { write_file_atomically(scratch.path("none/a.json"), "text"); });
-  EXPECT_THAT(message, HasSubstr("none/a.json"));
-  EXPECT_THAT(message, HasSubstr("No such file or directory"));
-}
-
-TEST(WriteFileAtomically, KeepsTheOldContentWhenItFails) {
+TEST(WriteFileAtomically, NamesTheFileAndKeepsItsContentWhenItFails) {
   const ScratchFolder scratch;
   const auto file = scratch.write("a.json", "old");
-  std::filesystem::create_directories(scratch.path("a.json.part"));
-  error_message(ErrorCode::kSetup, [&] { write_file_atomically(file, "new"); });
+  fs::create_directories(scratch.path("a.json.part"));
+  const Error error = thrown_error(ErrorCode::kSetup, [&] { write_file_atomically(file, "new"); });
+  EXPECT_EQ(error.where().file, scratch.path("a.json.part"));
   EXPECT_EQ(read_file(file), "old");
 }
 
@@ -57,30 +46,25 @@ TEST(WriteFileAtomically, ReplacesTheFileBehindALinkAndNotTheLink) {
   const ScratchFolder scratch;
   const auto file = scratch.write("there/a.json", "old");
   const auto link = scratch.path("link.json"), link_to_link = scratch.path("second.json");
-  std::filesystem::create_symlink("there/a.json", link);
-  std::filesystem::create_symlink(link, link_to_link);
+  fs::create_symlink("there/a.json", link);
+  fs::create_symlink(link, link_to_link);
   write_file_atomically(link_to_link, "new");
-  EXPECT_TRUE(std::filesystem::is_symlink(link));
-  EXPECT_TRUE(std::filesystem::is_symlink(link_to_link));
+  EXPECT_TRUE(fs::is_symlink(link) && fs::is_symlink(link_to_link));
   EXPECT_EQ(read_file(file), "new");
-  std::filesystem::remove(file);
+  fs::remove(file);
   write_file_atomically(link, "made");
   EXPECT_EQ(read_file(file), "made");
-}
 
-TEST(WriteFileAtomically, EndsALoopOfLinks) {
-  const ScratchFolder scratch;
-  std::filesystem::create_symlink("b", scratch.path("a"));
-  std::filesystem::create_symlink("a", scratch.path("b"));
-  EXPECT_THAT(
-      error_message(ErrorCode::kSetup, [&] { write_file_atomically(scratch.path("a"), "text"); }),
-      HasSubstr("cannot be followed"));
+  const auto loop = scratch.path("a");
+  fs::create_symlink("b", loop);
+  fs::create_symlink("a", scratch.path("b"));
+  thrown_error(ErrorCode::kSetup, [&] { write_file_atomically(loop, "text"); });
 }
 
 TEST(WriteFileAtomically, WritesIntoAPipeAlsoThroughALink) {
   const ScratchFolder scratch;
   const auto pipe = scratch.path("pipe"), link = scratch.path("link");
-  std::filesystem::create_symlink(pipe, link);
+  fs::create_symlink(pipe, link);
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   const int reader = open(pipe.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   write_file_atomically(pipe, "a ");
@@ -88,15 +72,14 @@ TEST(WriteFileAtomically, WritesIntoAPipeAlsoThroughALink) {
   char text[16] = {};
   EXPECT_EQ(read(reader, text, sizeof text), 6);
   EXPECT_STREQ(text, "a page");
-  EXPECT_EQ(std::filesystem::symlink_status(pipe).type(), std::filesystem::file_type::fifo);
-  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_TRUE(fs::is_fifo(pipe) && fs::is_symlink(link));
   close(reader);
 }
 
 TEST(ReadFile, NamesAMissingFile) {
   const ScratchFolder scratch;
-  EXPECT_THAT(error_message(ErrorCode::kBadFile, [&] { (void)read_file(scratch.path("none")); }),
-              HasSubstr("no such file"));
+  const auto file = scratch.path("none");
+  EXPECT_EQ(bad_file_error([&] { (void)read_file(file); }).where().file, file);
 }
 
 // Values of the FNV reference (Fowler, Noll, Vo): fnv1a_64 of "" and of "foobar".

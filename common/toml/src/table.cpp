@@ -9,10 +9,13 @@
 #include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
 
+/// Values are checked where they are read. `required` finds the node of a key, `text_of`,
+/// `number_of` and `integer_of` check one value, of a key or of an element, and the fail functions
+/// build the message and the place of an error.
 namespace tether::toml {
 namespace {
 
-// Node is a name for ::toml::node in a header that does not include the library.
+// Node stands for ::toml::node in the header, which does not include the library.
 const ::toml::node& raw(const Node& node) {
   return reinterpret_cast<const ::toml::node&>(node);  // NOLINT
 }
@@ -61,8 +64,8 @@ double seconds_per_unit(std::string_view key) {
   return key.ends_with("ms") ? 1e-3 : 1.0;
 }
 
-/// Folders, devices and pipes are not read: a read of some of them would never end.
-/// @pre it is no regular file
+/// Folders, devices and pipes are not read: reading some of them would never end.
+/// @pre it is not a regular file
 std::string_view why_no_file(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored) ? "that is no regular file"
@@ -123,16 +126,23 @@ FileLocation Table::where() const {
 }
 
 FileLocation Table::where(std::string_view key) const {
-  for (const auto& [name, node] : as_table(*table_)) {
-    if (name.str() == key) return {file_, line_of(name.source())};
-  }
-  return where();
+  const auto found = as_table(*table_).find(key);
+  if (found == as_table(*table_).end()) return where();
+  return {file_, line_of(found->first.source())};
 }
 
 void Table::fail(std::string_view key, const std::string& problem) const {
-  throw Error(ErrorCode::kBadFile, where(key),
-              "'" + string_of(key) + "' of " + title() + " " + problem)
+  fail_at(where(key), key, problem);
+}
+
+void Table::fail_at(const FileLocation& place, std::string_view key,
+                    const std::string& problem) const {
+  throw Error(ErrorCode::kBadFile, place, "'" + string_of(key) + "' of " + title() + " " + problem)
       .about(string_of(key));
+}
+
+void Table::fail_at(const Node& node, std::string_view key, const std::string& problem) const {
+  fail_at({file_, line_of(raw(node).source())}, key, problem);
 }
 
 void Table::fail(const std::string& problem) const {
@@ -140,7 +150,7 @@ void Table::fail(const std::string& problem) const {
 }
 
 void Table::fail_type(std::string_view key, const Node& found, std::string_view expected) const {
-  fail(key, "must be " + string_of(expected) + ", but is " + describe(raw(found)));
+  fail_at(found, key, "must be " + string_of(expected) + ", but is " + describe(raw(found)));
 }
 
 const Node& Table::required(std::string_view key) const {
@@ -160,11 +170,17 @@ std::string Table::any_text(std::string_view key) const {
   return raw(node).as_string()->get();
 }
 
-std::string Table::text(std::string_view key) const {
-  const std::string text = any_text(key);
-  if (text.empty()) fail(key, "must not be empty");
-  if (text.find('\0') != std::string::npos) fail(key, "must not contain a NUL character");
+std::string Table::text_of(std::string_view key, const Node& node,
+                           std::string_view expected) const {
+  if (!raw(node).is_string()) fail_type(key, node, expected);
+  std::string text = raw(node).as_string()->get();
+  if (text.empty()) fail_at(node, key, "must not be empty");
+  if (text.find('\0') != std::string::npos) fail_at(node, key, "must not contain a NUL character");
   return text;
+}
+
+std::string Table::text(std::string_view key) const {
+  return text_of(key, required(key), "a string");
 }
 
 std::string Table::text_or(std::string_view key, std::string_view fallback) const {
@@ -185,7 +201,7 @@ double Table::number_of(std::string_view key, const Node& node, const Range& ran
   if (!raw(node).is_number()) fail_type(key, node, "a number");
   const double value = *raw(node).value<double>();
   if (!range.contains(value))
-    fail(key, "must be " + range.text() + ", but is " + number_text(value));
+    fail_at(node, key, "must be " + range.text() + ", but is " + number_text(value));
   return value;
 }
 
@@ -201,15 +217,22 @@ std::optional<double> Table::number_if(std::string_view key, const Range& range)
   return has(key) ? std::optional(number(key, range)) : std::nullopt;
 }
 
-std::int64_t Table::integer(std::string_view key, std::int64_t min, std::int64_t max) const {
-  const Node& node = required(key);
+std::int64_t Table::integer_of(std::string_view key, const Node& node, std::int64_t min,
+                               std::int64_t max) const {
   if (!raw(node).is_integer()) fail_type(key, node, "an integer");
   const std::int64_t value = raw(node).as_integer()->get();
   if (value < min || value > max) {
-    fail(key, "must be at least " + std::to_string(min) + " and at most " + std::to_string(max) +
-                  ", but is " + std::to_string(value));
+    const bool has_max = max < std::numeric_limits<std::int64_t>::max();
+    fail_at(node, key,
+            "must be at least " + std::to_string(min) +
+                (has_max ? " and at most " + std::to_string(max) : "") + ", but is " +
+                std::to_string(value));
   }
   return value;
+}
+
+std::int64_t Table::integer(std::string_view key, std::int64_t min, std::int64_t max) const {
+  return integer_of(key, required(key), min, max);
 }
 
 std::int64_t Table::integer_or(std::string_view key, std::int64_t min, std::int64_t max,
@@ -275,13 +298,8 @@ std::vector<const Node*> Table::elements(std::string_view key, std::string_view 
 
 std::vector<std::string> Table::texts(std::string_view key) const {
   std::vector<std::string> texts;
-  for (const Node* element : elements(key, "an array of strings")) {
-    if (!raw(*element).is_string()) fail_type(key, *element, "an array of strings only");
-    const std::string& text = raw(*element).as_string()->get();
-    if (text.empty()) fail(key, "must not contain an empty string");
-    if (text.find('\0') != std::string::npos) fail(key, "must not contain a NUL character");
-    texts.push_back(text);
-  }
+  for (const Node* element : elements(key, "an array of strings"))
+    texts.push_back(text_of(key, *element, "an array of strings only"));
   return texts;
 }
 
@@ -291,41 +309,26 @@ std::vector<std::string> Table::texts_or_none(std::string_view key) const {
 
 std::vector<double> Table::numbers(std::string_view key, std::size_t count,
                                    const Range& range) const {
-  const std::string expected = "an array of " + std::to_string(count) + " numbers";
-  const std::vector<const Node*> all = elements(key, expected);
+  std::vector<double> all = numbers(key, range);
   if (all.size() != count) {
-    fail(key, "must be " + expected + ", but has " + std::to_string(all.size()) + " elements");
+    fail(key, "must be an array of " + std::to_string(count) + " numbers, but has " +
+                  std::to_string(all.size()) + " elements");
   }
-  std::vector<double> numbers;
-  for (const Node* element : all) numbers.push_back(number_of(key, *element, range));
-  return numbers;
+  return all;
 }
 
 std::vector<double> Table::numbers(std::string_view key, const Range& range) const {
   std::vector<double> numbers;
-  for (const Node* element : elements(key, "an array of numbers")) {
-    const double value = raw(*element).is_number() ? *raw(*element).value<double>() : NAN;
-    if (!range.contains(value)) {
-      throw Error(ErrorCode::kBadFile, {file_, line_of(raw(*element).source())},
-                  "'" + string_of(key) + "' of " + title() + " must be numbers of " + range.text() +
-                      ", but has " + describe(raw(*element)));
-    }
-    numbers.push_back(value);
-  }
+  for (const Node* element : elements(key, "an array of numbers"))
+    numbers.push_back(number_of(key, *element, range));
   if (numbers.empty()) fail(key, "must hold at least one number, but is empty");
   return numbers;
 }
 
 std::vector<std::int64_t> Table::integers(std::string_view key, std::int64_t min) const {
   std::vector<std::int64_t> integers;
-  for (const Node* element : elements(key, "an array of integers")) {
-    if (!raw(*element).is_integer()) fail_type(key, *element, "an array of integers only");
-    integers.push_back(raw(*element).as_integer()->get());
-    if (integers.back() < min) {
-      fail(key, "must be integers of at least " + std::to_string(min) + ", but has " +
-                    std::to_string(integers.back()));
-    }
-  }
+  for (const Node* element : elements(key, "an array of integers"))
+    integers.push_back(integer_of(key, *element, min, std::numeric_limits<std::int64_t>::max()));
   return integers;
 }
 

@@ -9,21 +9,20 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kKeys = {"rate_hz", "period_ms", "phase_ms", "delay"};
 
-TEST(Nearest, FindsSlipsOfTheKeyboard) {
-  EXPECT_EQ(nearest("dealy", kKeys), "delay");
-  EXPECT_EQ(nearest("delai", kKeys), "delay");
-  EXPECT_EQ(nearest("perod_ms", kKeys), "period_ms");
-}
-
-TEST(Nearest, FindsAnotherUnit) {
-  EXPECT_EQ(nearest("period_s", kKeys), "period_ms");
-  EXPECT_EQ(nearest("rate", kKeys), "rate_hz");
+TEST(Nearest, FindsTyposAndOtherUnits) {
+  for (const auto& [word, key] : {std::pair{"dealy", "delay"},
+                                  {"delai", "delay"},
+                                  {"perod_ms", "period_ms"},
+                                  {"period_s", "period_ms"},
+                                  {"rate", "rate_hz"}}) {
+    EXPECT_EQ(nearest(word, kKeys), key);
+  }
 }
 
 TEST(Nearest, FindsNothingForAnotherWord) {
-  EXPECT_EQ(nearest("colour", kKeys), "");
-  EXPECT_EQ(nearest("x", kKeys), "");
-  EXPECT_EQ(nearest(std::string(100'000, 'd'), kKeys), "");
+  for (const std::string& word :
+       {std::string("colour"), std::string("x"), std::string(100'000, 'd')})
+    EXPECT_EQ(nearest(word, kKeys), "");
   EXPECT_EQ(nearest("delay", {}), "");
 }
 

@@ -70,12 +70,6 @@ double CameraModel::horizontal_fov_rad() const {
   return std::atan(right.x) - std::atan(left.x);
 }
 
-double CameraModel::vertical_fov_rad() const {
-  const Vec3 top = unproject({cx_px, -0.5});
-  const Vec3 bottom = unproject({cx_px, height_px - 0.5});
-  return std::atan(bottom.y) - std::atan(top.y);
-}
-
 bool CameraModel::has_distortion() const {
   return k1 != 0.0 || k2 != 0.0 || k3 != 0.0 || p1 != 0.0 || p2 != 0.0;
 }

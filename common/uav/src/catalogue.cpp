@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include <tether/base/enum_name.h>
 #include <tether/uav/catalogue.h>
 
 namespace tether::uav {
@@ -15,27 +16,11 @@ const T* find_by_name(const std::vector<T>& things, std::string_view name) {
 }  // namespace
 
 std::string_view name(SensorKind kind) {
-  switch (kind) {
-    case SensorKind::kCamera:
-      return "camera";
-    case SensorKind::kImu:
-      return "imu";
-    case SensorKind::kRange:
-      return "range";
-  }
-  return "unknown";
+  return enum_name(kind, {"camera", "imu", "range"});
 }
 
 std::string_view name(AnchorShape shape) {
-  switch (shape) {
-    case AnchorShape::kBox:
-      return "box";
-    case AnchorShape::kCylinder:
-      return "cylinder";
-    case AnchorShape::kSphere:
-      return "sphere";
-  }
-  return "unknown";
+  return enum_name(shape, {"box", "cylinder", "sphere"});
 }
 
 const SensorDescription* Catalogue::find_sensor(std::string_view sensor) const {

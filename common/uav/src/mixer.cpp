@@ -102,14 +102,4 @@ RotorThrusts mix(const MultirotorParameters& parameters, const Demand& demand) {
   return thrusts;
 }
 
-Demand unmix(const MultirotorParameters& parameters, const RotorThrusts& thrusts) {
-  Demand sum;
-  for (std::size_t i = 0; i < parameters.rotors.size(); ++i) {
-    const Vec4 a = effect_of(parameters, parameters.rotors[i]);
-    sum.thrust_N += a[0] * thrusts[i];
-    sum.torque_B_N_m = sum.torque_B_N_m + thrusts[i] * Vec3{a[1], a[2], a[3]};
-  }
-  return sum;
-}
-
 }  // namespace tether::uav

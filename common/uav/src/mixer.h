@@ -22,7 +22,4 @@ double max_rotor_thrust_N(const MultirotorParameters& parameters);
 /// and pitch torque.
 RotorThrusts mix(const MultirotorParameters& parameters, const Demand& demand);
 
-/// What these thrusts do: the inverse of `mix` within the limits.
-Demand unmix(const MultirotorParameters& parameters, const RotorThrusts& thrusts);
-
 }  // namespace tether::uav

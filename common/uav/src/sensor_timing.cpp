@@ -6,8 +6,8 @@
 namespace tether::uav {
 namespace {
 
-/// Enough for any sensible distribution (half of the draws are good at mean 0); a mean far below 0
-/// ends here instead of never.
+/// Enough for any sensible distribution (half of the draws are valid at mean 0); with a mean far
+/// below 0 the loop ends here.
 constexpr int kMaxRedraws = 1000;
 /// 292 years: keeps the rounding below within int64.
 constexpr double kMaxDelay_ns = 9.2e18;

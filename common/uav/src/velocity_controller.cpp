@@ -5,6 +5,9 @@
 
 #include <tether/base/units.h>
 
+/// Three cascaded loops. The commanded velocity and yaw rate pass acceleration limits and become
+/// set-points; the velocity loop computes the force in W; the attitude that points the thrust along
+/// it gives the set-point of the body's rate; the rate loop computes the torques.
 namespace tether::uav {
 namespace {
 
@@ -16,17 +19,17 @@ constexpr double kVelocityGain_1_s = 2.6;
 constexpr Vec3 kAccelerationLag_s{0.20, 0.20, 0.02};
 constexpr double kVelocityIntegralGain_1_s2 = 1.2;
 constexpr double kMaxVelocityIntegral_m_s2 = 2.0;
-constexpr double kMaxIntegratedError_m_s = 0.5;  // an upset is no lasting disturbance
+constexpr double kMaxIntegratedError_m_s = 0.5;  // of an upset, which is not a lasting disturbance
 constexpr Vec3 kAttitudeGain_1_s{7.0, 7.0, 5.0};
 constexpr Vec3 kRateGain_1_s{24.0, 24.0, 18.0};
 constexpr double kRateIntegralGain_1_s2 = 25.0;
 constexpr double kMaxRateIntegral_rad_s2 = 5.0;
 
-// Thrust is kept within these, so that there is always some left to turn the body with.
+// Limits of the thrust, so that the rotors can always turn the body as well.
 constexpr double kMinThrustOfWeight = 0.3;
 constexpr double kMaxThrustOfRotors = 0.85;
 
-/// The yaw set-point never runs further ahead of the yaw than this, so that a UAV that was kept
+/// The yaw set-point is never further ahead of the yaw than this, so that a UAV that was prevented
 /// from turning does not unwind later.
 constexpr double kMaxYawLead_rad = 0.2;
 
@@ -77,11 +80,11 @@ double advance_yaw_setpoint(const MultirotorParameters& parameters, double comma
 
 struct VelocitySetpoint {
   Vec3 velocity_W;      // where the velocity should be by now [m/s]
-  Vec3 acceleration_W;  // to be fed forward, with the centripetal one of a turning heading [m/s²]
+  Vec3 acceleration_W;  // fed forward, with the centripetal one of a turning heading [m/s²]
 };
 
-/// The commanded velocity, within its limits, behind an acceleration limit. What the velocity is
-/// compared with is a lag later: a following error that nothing can avoid does not wind up the
+/// The commanded velocity, within its limits, behind an acceleration limit. The reference for the
+/// velocity error follows with a lag, so that an unavoidable following error does not wind up the
 /// integral.
 VelocitySetpoint advance_velocity_setpoint(const MultirotorParameters& parameters,
                                            const Vec3& commanded_H, double yaw, double dt_s,
@@ -125,7 +128,7 @@ Vec3 limited_force(const MultirotorParameters& parameters, double gravity_m_s2, 
   return with_horizontal_limit(force, force.z * std::tan(parameters.max_tilt_rad));
 }
 
-/// The integral of an axis stands still while that axis is at its limit.
+/// The integral of an axis does not change while that axis is at its limit.
 void advance_velocity_integral(const Vec3& error, const Vec3& asked, const Vec3& force, double dt_s,
                                Vec3& integral) {
   const double gain = kVelocityIntegralGain_1_s2 * dt_s;

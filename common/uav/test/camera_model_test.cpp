@@ -15,13 +15,9 @@ CameraModel ideal() {
 
 /// A wide webcam lens: barrel distortion with some decentring.
 CameraModel distorted() {
-  CameraModel m = ideal();
-  m.k1 = -0.25;
-  m.k2 = 0.08;
-  m.k3 = -0.01;
-  m.p1 = 0.001;
-  m.p2 = -0.0015;
-  return m;
+  const CameraModel m = ideal();
+  return {m.width_px, m.height_px, m.fx_px, m.fy_px, m.cx_px, m.cy_px,
+          -0.25,      0.08,        -0.01,   0.001,   -0.0015};
 }
 
 TEST(CameraModel, CentredWithTheGivenFieldOfView) {
@@ -30,47 +26,30 @@ TEST(CameraModel, CentredWithTheGivenFieldOfView) {
   EXPECT_DOUBLE_EQ(m.cy_px, 239.5);
   EXPECT_DOUBLE_EQ(m.fx_px, m.fy_px);
   EXPECT_NEAR(m.horizontal_fov_rad(), rad_from_deg(80), 1e-12);
-  EXPECT_NEAR(std::tan(m.vertical_fov_rad() / 2), 0.75 * std::tan(rad_from_deg(40)), 1e-12);
   EXPECT_FALSE(m.has_distortion());
   EXPECT_TRUE(distorted().has_distortion());
 }
 
 TEST(CameraModel, ProjectsInTheOpticalFrame) {
   const CameraModel m = ideal();
-  const auto ahead = m.project({0, 0, 2});
-  ASSERT_TRUE(ahead);
-  EXPECT_DOUBLE_EQ(ahead->u_px, m.cx_px);
-  EXPECT_DOUBLE_EQ(ahead->v_px, m.cy_px);
   const auto right_below = m.project({1, 0.5, 2});
   ASSERT_TRUE(right_below);
   EXPECT_DOUBLE_EQ(right_below->u_px, m.cx_px + 0.5 * m.fx_px);
   EXPECT_DOUBLE_EQ(right_below->v_px, m.cy_px + 0.25 * m.fy_px);
-}
-
-TEST(CameraModel, NothingBehindTheCamera) {
-  EXPECT_FALSE(ideal().project({0, 0, 0}));
-  EXPECT_FALSE(ideal().project({0.1, 0, -1}));
-  EXPECT_FALSE(ideal().project({0, 0, std::nan("")}));
+  for (const double z : {0.0, -1.0, std::nan("")}) EXPECT_FALSE(m.project({0.1, 0, z})) << z;
 }
 
 TEST(CameraModel, ContainsWholePixels) {
   const CameraModel m = ideal();
-  EXPECT_TRUE(m.contains({-0.5, -0.5}));
-  EXPECT_TRUE(m.contains({639.49, 479.49}));
-  EXPECT_FALSE(m.contains({639.5, 0}));
-  EXPECT_FALSE(m.contains({0, 479.5}));
-  EXPECT_FALSE(m.contains({-0.51, 0}));
+  for (const Pixel& pixel : {Pixel{-0.5, -0.5}, {639.49, 479.49}}) EXPECT_TRUE(m.contains(pixel));
+  for (const Pixel& pixel : {Pixel{639.5, 0}, {0, 479.5}, {-0.51, 0}, {0, -0.51}})
+    EXPECT_FALSE(m.contains(pixel));
 }
 
 TEST(CameraModel, BarrelDistortionPullsInwards) {
   const Vec3 p_C{0.7, 0.4, 1};
-  const auto plain = ideal().project(p_C);
-  CameraModel barrel = ideal();
-  barrel.k1 = -0.25;
-  const auto bent = barrel.project(p_C);
-  ASSERT_TRUE(plain && bent);
-  EXPECT_LT(bent->u_px, plain->u_px);
-  EXPECT_LT(bent->v_px, plain->v_px);
+  EXPECT_LT(distorted().project(p_C)->u_px, ideal().project(p_C)->u_px);
+  EXPECT_LT(distorted().project(p_C)->v_px, ideal().project(p_C)->v_px);
 }
 
 TEST(CameraModel, UnprojectInvertsProjectAnywhereInTheImage) {
@@ -86,14 +65,9 @@ TEST(CameraModel, UnprojectInvertsProjectAnywhereInTheImage) {
   }
 }
 
-TEST(Bearing, IsCounterClockwise) {
-  const CameraModel m = ideal();
-  EXPECT_DOUBLE_EQ(bearing_rad(m, {m.cx_px, 17}), 0.0);
-  EXPECT_NEAR(bearing_rad(m, {-0.5, 200}), rad_from_deg(40), 1e-12);
-  EXPECT_NEAR(bearing_rad(m, {639.5, 200}), rad_from_deg(-40), 1e-12);
-}
-
-TEST(Bearing, IsThatOfThePointThatIsSeen) {
+TEST(Bearing, IsCounterClockwiseAndThatOfTheVisiblePoint) {
+  EXPECT_NEAR(bearing_rad(ideal(), {-0.5, 200}), rad_from_deg(40), 1e-12);
+  EXPECT_NEAR(bearing_rad(ideal(), {639.5, 200}), rad_from_deg(-40), 1e-12);
   const CameraModel m = distorted();
   for (double deg = -35; deg <= 35; deg += 5) {
     const double angle = rad_from_deg(deg);

@@ -9,30 +9,21 @@ namespace {
 
 TEST(Samples, SamplingInstantOfEachKind) {
   const SimTime t = from_ns<SimTime>(42);
-  CameraSample camera;
-  camera.sampled_at = t;
-  ImuSample imu;
-  imu.sampled_at = t;
-  RangeSample range;
-  range.sampled_at = t;
-  for (const Sample& sample : {Sample(camera), Sample(imu), Sample(range)}) {
+  for (const Sample& sample :
+       {Sample(CameraSample{t, 0, 0, 0, {}}), Sample(ImuSample{t, 0, {}, {}, {}}),
+        Sample(RangeSample{t, 0, 1.0})}) {
     EXPECT_EQ(sampled_at(sample), t);
   }
 }
 
-TEST(VelocityCommand, ValidWithinWhatAnyMultirotorCouldDo) {
+TEST(VelocityCommand, IsValidWithinWhatAnyMultirotorCanDo) {
   EXPECT_TRUE(is_valid({}));
   EXPECT_TRUE(is_valid({{100, -100, 100}, -100}));
-}
-
-TEST(VelocityCommand, InvalidOutsideOrNotFinite) {
-  const double nan = std::nan("");
   const double inf = std::numeric_limits<double>::infinity();
-  for (const double bad : {nan, inf, -inf, 100.1, -100.1}) {
-    EXPECT_FALSE(is_valid({{bad, 0, 0}, 0})) << bad;
-    EXPECT_FALSE(is_valid({{0, bad, 0}, 0})) << bad;
-    EXPECT_FALSE(is_valid({{0, 0, bad}, 0})) << bad;
-    EXPECT_FALSE(is_valid({{}, bad})) << bad;
+  for (const double bad : {std::nan(""), inf, -inf, 100.1, -100.1}) {
+    for (const VelocityCommand& command :
+         {VelocityCommand{{bad, 0, 0}, 0}, {{0, bad, 0}, 0}, {{0, 0, bad}, 0}, {{}, bad}})
+      EXPECT_FALSE(is_valid(command)) << bad;
   }
 }
 

@@ -18,9 +18,10 @@ RandomKey key(std::uint64_t index) {
 TEST(Delay, ConstantIsConstant) {
   EXPECT_EQ(draw(ConstantDelay{milliseconds(20)}, key(0)), milliseconds(20));
   EXPECT_EQ(draw(ConstantDelay{milliseconds(-20)}, key(0)), Duration::zero());
+  EXPECT_EQ(draw(EmpiricalDelay{}, key(0)), Duration::zero());
 }
 
-TEST(Delay, NormalHasItsMeanAndDeviation) {
+TEST(Delay, NormalHasItsMeanAndStandardDeviation) {
   const NormalDelay delay{milliseconds(50), milliseconds(5)};
   constexpr int kDraws = 20'000;
   double sum = 0, squares = 0;
@@ -57,28 +58,22 @@ TEST(Delay, EmpiricalDrawsEachSampleAsOften) {
     const Duration value = draw(delay, key(i));
     ++count.at(static_cast<std::size_t>(value / milliseconds(1)));
   }
-  EXPECT_EQ(count[0] + count[3], 0);
-  for (const int n : {count[1], count[2], count[4]}) {
-    EXPECT_NEAR(n, 2000, 150);
-  }
+  for (const int n : {count[1], count[2], count[4]}) EXPECT_NEAR(n, 2000, 150);
 }
 
 TEST(Delay, IsAFunctionOfItsKeyAlone) {
   const Delay delay = NormalDelay{milliseconds(50), milliseconds(5)};
   std::set<Duration> values;
-  for (std::uint64_t i = 0; i < 100; ++i) {
-    values.insert(draw(delay, key(i)));
-  }
+  for (std::uint64_t i = 0; i < 100; ++i) values.insert(draw(delay, key(i)));
   EXPECT_GT(values.size(), 95u);
-  for (std::uint64_t i = 100; i-- > 0;) {
-    EXPECT_TRUE(values.contains(draw(delay, key(i))));
-  }
+  for (std::uint64_t i = 100; i-- > 0;) EXPECT_TRUE(values.contains(draw(delay, key(i))));
 }
 
 TEST(Delay, Mean) {
   EXPECT_EQ(mean(ConstantDelay{milliseconds(7)}), milliseconds(7));
   EXPECT_EQ(mean(NormalDelay{milliseconds(8), milliseconds(80)}), milliseconds(8));
   EXPECT_EQ(mean(EmpiricalDelay{{milliseconds(2), milliseconds(5)}}), Duration(3'500'000));
+  EXPECT_EQ(mean(EmpiricalDelay{}), Duration::zero());
 }
 
 TEST(PeriodicTiming, SamplesAtPhasePlusMultiples) {

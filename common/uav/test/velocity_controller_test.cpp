@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <gmock/gmock.h>
 
@@ -27,25 +26,17 @@ Response respond(FlyingBody& uav, const VelocityCommand& command, double seconds
   uav.fly(command, seconds, [&](double t) {
     r.last = measure();
     r.peak = std::max(r.peak, r.last);
-    if (std::abs(r.last - 1.0) > 0.05) {
-      r.settled_s = t;
-    }
+    if (std::abs(r.last - 1.0) > 0.05) r.settled_s = t;
   });
   return r;
 }
 
-struct Axis {
-  const char* name;
-  Vec3 direction_H;
-};
-
 TEST(VelocityController, StepOfOneMetrePerSecondSettlesWithLittleOvershoot) {
-  for (const Axis& axis : {Axis{"ahead", {1, 0, 0}}, Axis{"left", {0, 1, 0}}, Axis{"up", {0, 0, 1}},
-                           Axis{"down", {0, 0, -1}}, Axis{"back", {-1, 0, 0}}}) {
-    SCOPED_TRACE(axis.name);
+  for (const Vec3& axis :
+       {Vec3{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}) {
+    SCOPED_TRACE(testing::Message() << axis.x << ' ' << axis.y << ' ' << axis.z);
     FlyingBody uav;
-    const Response r = respond(uav, {axis.direction_H, 0}, 4.0,
-                               [&] { return dot(axis.direction_H, uav.body.v_WB); });
+    const Response r = respond(uav, {axis, 0}, 4.0, [&] { return dot(axis, uav.body.v_WB); });
     EXPECT_LT(r.settled_s, 1.5);
     EXPECT_LT(r.peak, 1.10);
     EXPECT_NEAR(r.last, 1.0, 0.01);
@@ -88,23 +79,16 @@ TEST(VelocityController, StopsFromFlight) {
   EXPECT_LT(norm(uav.body.v_WB), 0.03);
 }
 
-TEST(VelocityController, VelocityIsInTheHeadingFrame) {
-  FlyingBody uav(hummingbird(), std::numbers::pi / 2);
-  uav.fly({{1, 0, 0}, 0}, 4.0);
-  EXPECT_NEAR(uav.body.v_WB.x, 0.0, 0.01);
-  EXPECT_NEAR(uav.body.v_WB.y, 1.0, 0.01);
-}
-
 TEST(VelocityController, KeepsItsSpeedAheadWhileTurning) {
-  FlyingBody uav;
-  uav.fly({{1, 0, 0}, 0.5}, 10.0, [&](double t) {
-    if (t < 3.0) {
-      return;
-    }
-    const Vec3 v_H = rotate(from_rpy(0, 0, -uav.yaw()), uav.body.v_WB);
-    ASSERT_NEAR(v_H.x, 1.0, 0.05);
-    ASSERT_NEAR(v_H.y, 0.0, 0.05);
-  });
+  for (const double yaw_rate : {0.5, -0.5}) {
+    FlyingBody uav;
+    uav.fly({{1, 0, 0}, yaw_rate}, 10.0, [&](double t) {
+      if (t < 3.0) return;
+      const Vec3 v_H = rotate(from_rpy(0, 0, -uav.yaw()), uav.body.v_WB);
+      ASSERT_NEAR(v_H.x, 1.0, 0.05);
+      ASSERT_NEAR(v_H.y, 0.0, 0.05);
+    });
+  }
 }
 
 TEST(VelocityController, HoldsAgainstWindAndAnOffCentreLoad) {
@@ -144,36 +128,12 @@ TEST(VelocityController, RespectsTheParametersLimits) {
 TEST(VelocityController, DoesNotUnwindAfterBeingHeld) {
   FlyingBody uav;
   const BodyState held = uav.body;
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < 5000; ++i)
     step(uav.parameters(), FlyingBody::kGravity, held, {{1, 0, 0}, 1.0}, FlyingBody::kDt,
          uav.state);
-  }
   uav.fly({}, 6.0);
   EXPECT_LT(std::abs(uav.yaw()), 0.7);
   EXPECT_LT(norm(uav.body.v_WB), 0.05);
-}
-
-/// The UAV has no handedness apart from its rotors' spin: mirrored commands give a mirrored flight,
-/// when the spins are mirrored, too.
-TEST(VelocityController, MirroredCommandsGiveAMirroredFlight) {
-  MultirotorParameters mirrored = hummingbird();
-  for (Rotor& rotor : mirrored.rotors) {
-    rotor.p_BR.y = -rotor.p_BR.y;
-    rotor.direction = -rotor.direction;
-  }
-  KeyedRandom random({6, 0, 0});
-  FlyingBody left;
-  FlyingBody right(mirrored);
-  for (int i = 0; i < 20; ++i) {
-    const VelocityCommand c{{random.normal(), random.normal(), random.normal()}, random.normal()};
-    const Vec3& v = c.velocity_H_m_s;
-    left.fly(c, 0.2);
-    right.fly({{v.x, -v.y, v.z}, -c.yaw_rate_rad_s}, 0.2);
-    ASSERT_NEAR(left.body.p_WB.x, right.body.p_WB.x, 1e-6);
-    ASSERT_NEAR(left.body.p_WB.y, -right.body.p_WB.y, 1e-6);
-    ASSERT_NEAR(left.body.p_WB.z, right.body.p_WB.z, 1e-6);
-    ASSERT_NEAR(left.yaw(), -right.yaw(), 1e-6);
-  }
 }
 
 }  // namespace

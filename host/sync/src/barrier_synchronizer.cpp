@@ -66,10 +66,10 @@ SimTime BarrierSynchronizer::horizon() const {
   return least;
 }
 
-// A command stamped t by another SUT acts at ceil(t). It would count as "earlier, and in effect at
-// st" only if t < reply and ceil(t) ≤ st = floor(reply): impossible once that SUT's bound is beyond
-// st, or is not before the reply itself. A concurrent SUT's own earlier commands have come once it
-// has stopped.
+// A command stamped t by another SUT acts at ceil(t). It must be in effect before the reply only if
+// t < reply and ceil(t) ≤ st = floor(reply): impossible once that SUT's bound is beyond st, or is
+// not before the reply itself. A concurrent SUT's own earlier commands have arrived once it has
+// stopped.
 bool BarrierSynchronizer::may_resume(SutIndex sut, const Call& call, SimTime st) const {
   if (grid_.floor(same_instant(call.reply_at)) != st || !suts_[sut].waits_for(call)) return false;
   return std::all_of(suts_.begin(), suts_.end(), [&](const Sut& other) {

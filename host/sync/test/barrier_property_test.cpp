@@ -14,9 +14,8 @@
 #include <tether/base/random.h>
 #include <tether/sync/barrier_synchronizer.h>
 
-// Random schedules of several SUTs against the barrier, judged from outside: the model below knows
-// the rules of time (DESIGN section 2) and the order in which things really happened, and nothing
-// of how the barrier decides.
+// Random schedules of several SUTs against the barrier. The model below checks the rules of time
+// (DESIGN section 2) from the order of events, and knows nothing of how the barrier decides.
 namespace tether::sync {
 namespace {
 
@@ -30,7 +29,7 @@ struct Caller {
 
   ExecTime next_request;  // where its computing will end
   bool held = false;      // its call is open …
-  bool answered = false;  // … or has been answered, and it stands still with the others
+  bool answered = false;  // … or has been answered, and it is stopped with the others
   CallId call = 0;
   ExecTime reply_at;
   Kind kind = Kind::kCommand;
@@ -41,13 +40,13 @@ struct Caller {
 struct Sut {
   bool concurrent = false;
   std::vector<Caller> callers;
-  ExecTime known;  // what it has told the barrier
+  ExecTime known;  // what it has reported to the barrier
   CallId last_call = 0;
   std::pair<ExecTime, CallId> last_release{ExecTime::min(), 0};
 
   // Of a concurrent SUT.
-  std::optional<ExecTime> stopped_at;        // where it stands still, told to the barrier or not
-  std::deque<std::function<void()>> outbox;  // what it has yet to tell: requests, then the stop
+  std::optional<ExecTime> stopped_at;        // where it is stopped, reported to the barrier or not
+  std::deque<std::function<void()>> outbox;  // messages to be sent: requests, then the stop
 };
 
 class Schedule {
@@ -68,17 +67,12 @@ class Schedule {
   void run(std::uint64_t interactions) {
     while (interactions_ < interactions && !testing::Test::HasFatalFailure()) {
       const SutIndex i = random_.bits() % suts_.size();
-      switch (random_.bits() % 4) {
-        case 0:
-          suts_[i].concurrent ? move_concurrent(i) : maybe_request(i);
-          break;
-        case 1:
-          maybe_progress(i);
-          break;
-        default:
-          simulate(1 + random_.bits() % 5);
-          break;
-      }
+      const std::uint32_t turn = random_.bits() % 4;
+      Caller& first = suts_[i].callers[0];
+      if (turn == 0 && suts_[i].concurrent) move_concurrent(i);
+      if (turn == 0 && !suts_[i].concurrent && !first.held) request(i, first);
+      if (turn == 1) maybe_progress(i);
+      if (turn > 1) simulate(1 + random_.bits() % 5);
       release_all();
       check_held();
       if (++idle_ > 100'000) FAIL() << "no interaction ends any more: deadlock";
@@ -91,34 +85,24 @@ class Schedule {
   ExecTime random_time(ExecTime from, std::int64_t steps) {
     const ExecTime anywhere = from + Duration(random_.bits() % (steps * kStep.count() + 1));
     const ExecTime boundary = same_instant(kGrid.ceil(same_instant(anywhere)));
-    switch (random_.bits() % 4) {
-      case 0:
-        return boundary;
-      case 1:
-        return boundary + Duration(1);
-      case 2:
-        return std::max(from, boundary - Duration(1));
-      default:
-        return anywhere;
-    }
+    const std::uint32_t kind = random_.bits() % 4;
+    if (kind == 0) return boundary;
+    if (kind == 1) return boundary + Duration(1);
+    return kind == 2 ? std::max(from, boundary - Duration(1)) : anywhere;
   }
 
   void plan_next_request(Caller& caller, ExecTime from) {
     caller.next_request = random_time(from, random_.bits() % 9);
   }
 
-  void maybe_request(SutIndex i) {
-    if (!suts_[i].callers[0].held) request(i, suts_[i].callers[0]);
-  }
-
-  // One turn of a concurrent SUT: tells what it has to tell; else runs on, if it stands still for
-  // nothing, or stops where it next has to.
+  // One turn of a concurrent SUT: sends its next message; else continues if no reply is due, or
+  // stops where it next has to.
   void move_concurrent(SutIndex i) {
     Sut& sut = suts_[i];
     if (!sut.outbox.empty()) {
-      const auto tell = std::move(sut.outbox.front());
+      const auto send = std::move(sut.outbox.front());
       sut.outbox.pop_front();
-      return tell();
+      return send();
     }
     if (!sut.stopped_at) return stop(i);
     if (!waits(sut)) go_on(sut);
@@ -216,8 +200,8 @@ class Schedule {
       ASSERT_TRUE(pending_commands_.empty() || pending_commands_.begin()->first > st_);
       st_ += kStep;
       last_release_here_ = ExecTime::min();
-      // Rule 4 from outside: nobody who computes will stamp anything before ST, and nobody who is
-      // held resumes before it.
+      // Rule 4: no computing caller will stamp anything before ST, and no held one resumes before
+      // it.
       for (const Sut& sut : suts_)
         for (const Caller& c : sut.callers)
           ASSERT_LE(st_, same_instant(c.answered ? *sut.stopped_at
@@ -280,7 +264,7 @@ class Schedule {
     for (const auto& [effect, stamp] : pending_commands_)
       ASSERT_FALSE(stamp < caller.reply_at && effect <= st_);
     if (!sut.concurrent) return;
-    // Rule 5, concurrent: it stands still, at the reply's timestamp or after it.
+    // Rule 5, concurrent: it is stopped, at the reply's timestamp or after it.
     ASSERT_TRUE(sut.stopped_at && sut.outbox.empty());
     ASSERT_GE(*sut.stopped_at, caller.reply_at);
     // Its replies leave in an order that does not depend on how ST and messages met.
@@ -309,12 +293,8 @@ class Schedule {
   std::uint64_t idle_ = 0;
 };
 
-struct Mixture {
-  std::size_t serial = 0;
-  std::size_t concurrent = 0;
-};
-
-class BarrierProperty : public testing::TestWithParam<Mixture> {};
+/// Numbers of serial and of concurrent SUTs.
+class BarrierProperty : public testing::TestWithParam<std::pair<std::size_t, std::size_t>> {};
 
 constexpr std::uint64_t kDecisions = 5'000;  // of each schedule
 
@@ -327,18 +307,15 @@ std::uint64_t schedules() {
 TEST_P(BarrierProperty, RulesOneToFiveHoldForAnySchedule) {
   for (std::uint64_t seed = 0; seed < schedules(); ++seed) {
     SCOPED_TRACE(seed);
-    Schedule(seed, GetParam().serial, GetParam().concurrent).run(kDecisions);
+    Schedule(seed, GetParam().first, GetParam().second).run(kDecisions);
     if (HasFatalFailure()) return;
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Serial, BarrierProperty,
-                         testing::Values(Mixture{1, 0}, Mixture{2, 0}, Mixture{3, 0},
-                                         Mixture{7, 0}));
-INSTANTIATE_TEST_SUITE_P(Concurrent, BarrierProperty,
-                         testing::Values(Mixture{0, 1}, Mixture{0, 3}));
-INSTANTIATE_TEST_SUITE_P(Mixed, BarrierProperty,
-                         testing::Values(Mixture{1, 1}, Mixture{3, 1}, Mixture{2, 3}));
+INSTANTIATE_TEST_SUITE_P(Mixtures, BarrierProperty,
+                         testing::Values(std::pair(1, 0), std::pair(2, 0), std::pair(3, 0),
+                                         std::pair(7, 0), std::pair(0, 1), std::pair(0, 3),
+                                         std::pair(1, 1), std::pair(3, 1), std::pair(2, 3)));
 
 }  // namespace
 }  // namespace tether::sync

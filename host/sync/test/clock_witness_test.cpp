@@ -16,6 +16,8 @@ using std::chrono::hours;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
+constexpr Duration kNone{0};
+
 ExecTime et(Duration t) {
   return ExecTime(t);
 }
@@ -23,104 +25,96 @@ WallTime wt(Duration t) {
   return WallTime(t);
 }
 
-TEST(ClockWitness, NamesTheSizeOfWhatIsAhead) {
-  const ClockWitness witness(wall_bound(1.0), et(seconds(5)), wt(seconds(100)));
+TEST(ClockWitness, MeasuresHowFarAStampIsAhead) {
+  ClockWitness witness(wall_bound(1.0), et(seconds(5)), wt(seconds(100)));
   const Duration most = seconds(2) + milliseconds(2) + milliseconds(1);
-  EXPECT_EQ(witness.excess(et(seconds(5) + most), wt(seconds(102))), Duration(0));
+  EXPECT_EQ(witness.excess(et(seconds(1)), wt(seconds(100))), kNone);
+  EXPECT_EQ(witness.excess(et(seconds(5) + most), wt(seconds(102))), kNone);
   EXPECT_EQ(witness.excess(et(seconds(5) + most + Duration(7)), wt(seconds(102))), Duration(7));
   EXPECT_EQ(witness.excess(et(hours(1)), wt(seconds(102))), hours(1) - seconds(5) - most);
+  // The time in which it was stopped does not count.
+  witness.go_on(et(seconds(7)), wt(seconds(150)));
+  EXPECT_EQ(witness.went_on_at(), et(seconds(7)));
+  EXPECT_EQ(witness.excess(et(seconds(7) + milliseconds(1)), wt(seconds(150))), kNone);
+  EXPECT_EQ(witness.excess(et(seconds(8)), wt(seconds(150))), seconds(1) - milliseconds(1));
 }
 
-TEST(ClockWitness, StandingStillEarnsNothing) {
-  ClockWitness witness(wall_bound(1.0), et(seconds(0)), wt(seconds(0)));
-  witness.go_on(et(seconds(3)), wt(seconds(50)));
-  EXPECT_EQ(witness.went_on_at(), et(seconds(3)));
-  EXPECT_EQ(witness.excess(et(seconds(3) + milliseconds(1)), wt(seconds(50))), Duration(0));
-  EXPECT_EQ(witness.excess(et(seconds(4)), wt(seconds(50))), seconds(1) - milliseconds(1));
-}
-
-TEST(ClockWitness, WhatIsBehindIsNotAhead) {
-  const ClockWitness witness(wall_bound(1.0), et(seconds(5)), wt(seconds(0)));
-  EXPECT_EQ(witness.excess(et(seconds(1)), wt(seconds(0))), Duration(0));
-}
-
-TEST(ClockWitness, HoldsForTheGreatestStampsThatThereAre) {
+TEST(ClockWitness, DoesNotOverflowForTheGreatestStamp) {
   constexpr auto latest = from_ns<ExecTime>((std::int64_t{1} << 62) - 1);
-  const ClockWitness witness(wall_bound(1.0), et(Duration(0)), wt(seconds(1)));
+  const ClockWitness witness(wall_bound(1.0), et(kNone), wt(seconds(1)));
   EXPECT_EQ(witness.excess(latest, wt(seconds(1))), latest - et(milliseconds(1)));
-  const ClockWitness fast(cpu_bound(1e6, kMostCores), et(Duration(0)), wt(Duration(0)));
-  EXPECT_EQ(fast.excess(latest, wt(hours(24 * 365))), Duration(0));
+  const ClockWitness fast(cpu_bound(1e6, kMostCores), et(kNone), wt(kNone));
+  EXPECT_EQ(fast.excess(latest, wt(hours(24 * 365))), kNone);
 }
 
-// A run seen from outside: the SUT's clock drifts within bounds, computes and waits in turns; the
-// link delays what either side hears. Its honest stamps are never doubted, and one that is ahead of
-// everything that has gone by is found out by as much as it exceeds the tolerances.
-TEST(ClockWitness, NeverDoubtsAnHonestClockAndFindsOneThatRunsAhead) {
+TEST(ClockWitness, CpuTimeGrowsOnEachCoreAndByATickOfEach) {
+  const struct {
+    ClockBound bound;
+    double rate;
+    Duration slack;
+  } cases[] = {{cpu_bound(1.0, 2), 2.0, milliseconds(20)},
+               {cpu_bound(6.0, 4), 24.0, milliseconds(240)},
+               {cpu_bound(1.0, 0), 1024.0, seconds(1)}};  // unknown: any number of cores
+  for (const auto& c : cases) {
+    EXPECT_EQ(c.bound.rate, c.rate);
+    EXPECT_EQ(c.bound.slack, c.slack);
+    const ClockWitness witness(c.bound, et(seconds(5)), wt(kNone));
+    const Duration most = Duration(std::llround(c.rate * 1.001e9)) + c.slack;
+    EXPECT_EQ(witness.excess(et(seconds(5) + most), wt(seconds(1))), kNone);
+    EXPECT_EQ(witness.excess(et(seconds(5) + most + Duration(7)), wt(seconds(1))), Duration(7));
+  }
+}
+
+/// Draws of one run.
+class Draws {
+ public:
+  explicit Draws(std::uint64_t seed) : random_({.seed = seed}) {}
+  double uniform(double from, double to) { return from + (to - from) * random_.uniform(); }
+  Duration up_to(Duration most) { return scaled(most, random_.uniform()); }
+  std::size_t below(std::size_t count) { return random_.bits() % count; }
+  static Duration scaled(Duration d, double by) {
+    return Duration(std::llround(static_cast<double>(d.count()) * by));
+  }
+
+ private:
+  KeyedRandom random_;
+};
+
+// The SUT's clock drifts within its limits, computes and waits in turns; the link delays messages.
+// Its correct stamps are accepted, and a stamp that exceeds all tolerances is found.
+TEST(ClockWitness, AcceptsACorrectClockAndFindsOneThatRunsAhead) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    KeyedRandom random({.seed = seed});
-    const auto up_to = [&](Duration most) {
-      return Duration(std::llround(random.uniform() * static_cast<double>(most.count())));
-    };
-    const double factor = 0.1 + 9.9 * random.uniform();
-    const double drift = 2e-4 * (2.0 * random.uniform() - 1.0);
-    Duration now = up_to(hours(1));
+    Draws draw(seed);
+    const double factor = draw.uniform(0.1, 10.0), drift = draw.uniform(-2e-4, 2e-4);
+    Duration now = draw.up_to(hours(1));
     ExecTime reached{};
     ClockWitness witness(wall_bound(factor), reached, wt(now));
     for (int i = 0; i < 50; ++i) {
-      const Duration computing = up_to(milliseconds(300));
-      const Duration link = up_to(milliseconds(5));
+      const Duration computing = draw.up_to(milliseconds(300)), link = draw.up_to(milliseconds(5));
       now += computing + link;
-      const auto grown =
-          Duration(std::llround(static_cast<double>(computing.count()) * factor * (1.0 + drift)));
-      reached += grown;
-      ASSERT_EQ(witness.excess(reached, wt(now)), Duration(0)) << "seed " << seed;
-      const double margin_ns =
-          factor * (static_cast<double>((computing + link).count()) * 2e-3 + 1.001e6) +
-          factor * static_cast<double>(link.count());
-      const Duration lie = Duration(std::llround(margin_ns)) + up_to(seconds(1)) + Duration(1);
-      ASSERT_GT(witness.excess(reached + lie, wt(now)), Duration(0)) << "seed " << seed;
-      now += up_to(seconds(2));  // held
+      reached += Draws::scaled(computing, factor * (1.0 + drift));
+      ASSERT_EQ(witness.excess(reached, wt(now)), kNone) << "seed " << seed;
+      const Duration margin = Draws::scaled(computing + link, factor * 2e-3) +
+                              Draws::scaled(link + Duration(1'001'000), factor);
+      const Duration ahead = margin + draw.up_to(seconds(1)) + Duration(3);
+      ASSERT_GT(witness.excess(reached + ahead, wt(now)), kNone) << "seed " << seed;
+      now += draw.up_to(seconds(2));  // held
       witness.go_on(reached, wt(now));
     }
   }
 }
 
-// ---- CPU time
-
-TEST(ClockWitness, CpuTimeGrowsOnEachCoreAndByATickOfEach) {
-  const ClockWitness witness(cpu_bound(1.0, 2), et(seconds(5)), wt(seconds(0)));
-  const Duration most = 2 * (seconds(1) + milliseconds(1)) + milliseconds(20);
-  EXPECT_EQ(witness.excess(et(seconds(5) + most), wt(seconds(1))), Duration(0));
-  EXPECT_EQ(witness.excess(et(seconds(5) + most + Duration(7)), wt(seconds(1))), Duration(7));
-}
-
-TEST(ClockWitness, AFactorStretchesCpuTimeAndItsSlack) {
-  const ClockBound one = cpu_bound(1.0, 4), six = cpu_bound(6.0, 4);
-  EXPECT_EQ(one.rate, 4.0);
-  EXPECT_EQ(one.slack, milliseconds(40));
-  EXPECT_EQ(six.rate, 24.0);
-  EXPECT_EQ(six.slack, milliseconds(240));
-}
-
-TEST(ClockWitness, WhereTheCoresAreNotKnownAnyNumberIsBelieved) {
-  EXPECT_EQ(cpu_bound(1.0, 0).rate, 1024.0);
-  EXPECT_EQ(cpu_bound(1.0, 0).slack, seconds(1));
-}
-
-/// A process on a kernel that accounts threads at its ticks: one that computes besides the reader
-/// is seen only as far as its core's last tick.
+/// A process on a kernel that accounts for threads at its ticks: the time of a thread other than
+/// the reader is seen only up to its core's last tick.
 class TickedProcess {
  public:
-  TickedProcess(KeyedRandom& random, int cores) : random_(&random) {
-    for (int i = 0; i < cores; ++i) phase_.push_back(part_of(kTick));
+  TickedProcess(Draws& draw, std::size_t cores) {
+    for (std::size_t i = 0; i < cores; ++i) phase_.push_back(draw.up_to(kTick));
   }
-  Duration part_of(Duration whole) {
-    return Duration(std::llround(random_->uniform() * static_cast<double>(whole.count())));
-  }
-  /// `busy` of its cores compute for that long, its reader's first.
+  /// `busy` of its cores compute for that long, the reader's first.
   void go_on(Duration length, std::size_t busy) {
     now_ += length;
-    for (std::size_t i = 0; i < busy; ++i) used_ += length;
+    used_ += static_cast<std::int64_t>(busy) * length;
     busy_ = busy;
     length_ = length;
   }
@@ -134,51 +128,35 @@ class TickedProcess {
 
  private:
   static constexpr Duration kTick = milliseconds(10);  // the slowest that kernels have
-  KeyedRandom* random_;
   std::vector<Duration> phase_;
   Duration now_{0}, used_{0}, length_{0};
   std::size_t busy_ = 0;
 };
 
-// Threads beside the one that calls compute on while it is held, and while it is not. What is
-// charged for a time in which it was not held may have been used before.
-TEST(ClockWitness, NeverDoubtsCpuTimeThatIsAccountedByTicks) {
+// Other threads compute while the calling thread is held, and while it is not. Time that is charged
+// after it resumed may have been used before.
+TEST(ClockWitness, AcceptsCpuTimeThatIsAccountedByTicks) {
   Duration furthest{0};
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
-    KeyedRandom random({.seed = seed});
-    const int cores = 1 + static_cast<int>(seed % 8);
-    const double factor = 0.1 + 9.9 * random.uniform();
-    const auto some = [&] { return random.bits() % (static_cast<std::size_t>(cores) + 1); };
-    TickedProcess process(random, cores);
+    Draws draw(seed);
+    const std::size_t cores = 1 + seed % 8;
+    const double factor = draw.uniform(0.1, 10.0);
+    TickedProcess process(draw, cores);
     ExecTime reached{};
-    ClockWitness witness(cpu_bound(factor, cores), reached, wt(process.now()));
+    ClockWitness witness(cpu_bound(factor, static_cast<int>(cores)), reached, wt(process.now()));
     for (int i = 0; i < 60; ++i) {
-      process.go_on(process.part_of(milliseconds(30)), some());  // held
+      process.go_on(draw.up_to(milliseconds(30)), draw.below(cores + 1));  // held
       witness.go_on(reached, wt(process.now()));
       const Duration before = process.reading(), since = process.now();
-      process.go_on(process.part_of(milliseconds(i % 2 == 0 ? 1 : 30)), some());
+      process.go_on(draw.up_to(milliseconds(i % 2 == 0 ? 1 : 30)), draw.below(cores + 1));
       const Duration charged = process.reading() - before;
-      furthest = std::max(furthest, charged - cores * (process.now() - since));
-      reached += Duration(std::llround(static_cast<double>(charged.count()) * factor));
-      ASSERT_EQ(witness.excess(reached, wt(process.now())), Duration(0)) << "seed " << seed;
+      const auto most = static_cast<std::int64_t>(cores) * (process.now() - since);
+      furthest = std::max(furthest, charged - most);
+      reached += Draws::scaled(charged, factor);
+      ASSERT_EQ(witness.excess(reached, wt(process.now())), kNone) << "seed " << seed;
     }
   }
   EXPECT_GT(furthest, milliseconds(10));  // so much of the slack was needed
-}
-
-TEST(ClockWitness, FindsCpuTimeThatRunsAheadOfEveryCore) {
-  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    KeyedRandom random({.seed = seed});
-    const int cores = 1 + static_cast<int>(seed % 16);
-    const double factor = 0.1 + 9.9 * random.uniform();
-    const Duration elapsed(std::llround(random.uniform() * 1e9));
-    const double most_ns = factor * cores * (static_cast<double>(elapsed.count()) * 1.001 + 10e6);
-    const ClockWitness witness(cpu_bound(factor, cores), et(seconds(7)), wt(seconds(3)));
-    const Duration ahead = milliseconds(1);
-    const Duration lie = Duration(std::llround(most_ns)) + ahead;
-    const Duration found = witness.excess(et(seconds(7) + lie), wt(seconds(3) + elapsed));
-    ASSERT_NEAR(static_cast<double>(found.count()), 1e6, 10.0) << "seed " << seed;
-  }
 }
 
 }  // namespace

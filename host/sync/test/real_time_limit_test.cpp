@@ -10,31 +10,22 @@ WallTime wt(std::int64_t ms) {
   return WallTime(milliseconds(ms));
 }
 
-TEST(RealTimeLimit, EarnsInProportionToWallTime) {
+TEST(RealTimeLimit, AllowsTimeInProportionToWallTime) {
   RealTimeLimit limit(0.25, milliseconds(100), wt(0));
   EXPECT_EQ(limit.allowance(wt(0)), Duration(0));
   EXPECT_EQ(limit.allowance(wt(40)), milliseconds(10));
   limit.spend(milliseconds(9));
   EXPECT_EQ(limit.allowance(wt(44)), milliseconds(2));
+  EXPECT_EQ(limit.wait_for(milliseconds(3)), milliseconds(4));
+  EXPECT_EQ(limit.wait_for(milliseconds(1)), Duration(0));
+  EXPECT_EQ(limit.allowance(wt(48)), milliseconds(3));
 }
 
-TEST(RealTimeLimit, LosesWhatExceedsTheCredit) {
+TEST(RealTimeLimit, LosesIdleTimeAndTimeAboveTheCredit) {
   RealTimeLimit limit(1.0, milliseconds(20), wt(0));
   EXPECT_EQ(limit.allowance(wt(1'000)), milliseconds(20));
-}
-
-TEST(RealTimeLimit, IdleTimeEarnsNothing) {
-  RealTimeLimit limit(1.0, milliseconds(20), wt(0));
-  limit.idle(wt(500));
-  EXPECT_EQ(limit.allowance(wt(501)), milliseconds(1));
-}
-
-TEST(RealTimeLimit, SaysHowLongToWait) {
-  RealTimeLimit limit(0.1, milliseconds(20), wt(0));
-  limit.allowance(wt(5));
-  EXPECT_EQ(limit.wait_for(milliseconds(1)), milliseconds(5));
-  EXPECT_EQ(limit.wait_for(Duration(0)), Duration(0));
-  EXPECT_EQ(limit.allowance(wt(10)), milliseconds(1));
+  limit.idle(wt(1'500));
+  EXPECT_EQ(limit.allowance(wt(1'501)), milliseconds(1));
 }
 
 }  // namespace

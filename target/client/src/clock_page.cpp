@@ -85,7 +85,7 @@ void MappedClockPage::Unmap::operator()(const ClockPage* mapped) const {
 }
 
 Result<SharedClockPage> make_clock_page() {
-  FileDescriptor descriptor(::memfd_create("tether-clock", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  os::FileDescriptor descriptor(::memfd_create("tether-clock", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!descriptor) return failed("memfd_create");
   if (::ftruncate(descriptor.get(), kPageBytes) != 0) return failed("ftruncate");
   void* const memory =
@@ -101,7 +101,7 @@ Result<SharedClockPage> make_clock_page() {
   return SharedClockPage{std::move(page), std::move(descriptor)};
 }
 
-Result<MappedClockPage> map_clock_page(const FileDescriptor& descriptor) {
+Result<MappedClockPage> map_clock_page(const os::FileDescriptor& descriptor) {
   struct stat status {};
   if (::fstat(descriptor.get(), &status) != 0 || status.st_size != off_t{kPageBytes}) {
     return Failure{Failure::Kind::kProtocol,

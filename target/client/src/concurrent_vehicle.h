@@ -36,7 +36,7 @@ class ConcurrentVehicle final : public InteractingVehicle {
   /// What a new connection hears first.
   struct Greeting {
     std::unique_ptr<Connection> connection;
-    FileDescriptor clock_page;
+    os::FileDescriptor clock_page;
     link::Welcome welcome;
   };
   struct Caller {

@@ -49,12 +49,12 @@ struct alignas(cmsghdr) Control {
   std::array<char, CMSG_SPACE(sizeof(int))> bytes{};
 };
 
-FileDescriptor take_descriptor(msghdr& header) {
+os::FileDescriptor take_descriptor(msghdr& header) {
   const cmsghdr* const control = CMSG_FIRSTHDR(&header);
-  if (control == nullptr || control->cmsg_type != SCM_RIGHTS) return FileDescriptor();
+  if (control == nullptr || control->cmsg_type != SCM_RIGHTS) return os::FileDescriptor();
   int descriptor = -1;
   std::memcpy(&descriptor, CMSG_DATA(control), sizeof descriptor);
-  return FileDescriptor(descriptor);
+  return os::FileDescriptor(descriptor);
 }
 
 bool wait_readable(int descriptor, Duration timeout) {
@@ -66,7 +66,7 @@ bool wait_readable(int descriptor, Duration timeout) {
 }
 
 /// Decodes the frame in a sealed piece of memory, in place.
-Result<link::Message> decode_memory(const FileDescriptor& memory) {
+Result<link::Message> decode_memory(const os::FileDescriptor& memory) {
   struct stat status {};
   const int seals = ::fcntl(memory.get(), F_GET_SEALS);
   if (seals < 0 || (seals & F_SEAL_SHRINK) == 0 || ::fstat(memory.get(), &status) != 0) {
@@ -82,13 +82,13 @@ Result<link::Message> decode_memory(const FileDescriptor& memory) {
 }
 
 Result<LocalSocket::Packet> understand(std::span<const std::uint8_t> bytes,
-                                       FileDescriptor descriptor) {
+                                       os::FileDescriptor descriptor) {
   if (descriptor && std::equal(bytes.begin(), bytes.end(), kClockPage.begin(), kClockPage.end())) {
     return LocalSocket::Packet{std::nullopt, std::move(descriptor)};
   }
   auto message = descriptor ? decode_memory(descriptor) : link::decode(bytes);
   if (!message) return message.failure();
-  return LocalSocket::Packet{std::move(*message), FileDescriptor()};
+  return LocalSocket::Packet{std::move(*message), os::FileDescriptor()};
 }
 
 Result<sockaddr_un> address_of(const std::string& path) {
@@ -101,8 +101,8 @@ Result<sockaddr_un> address_of(const std::string& path) {
   return address;
 }
 
-FileDescriptor make_socket(int more_flags) {
-  return FileDescriptor(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | more_flags, 0));
+os::FileDescriptor make_socket(int more_flags) {
+  return os::FileDescriptor(::socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC | more_flags, 0));
 }
 
 /// Any socket address goes by this type through the system's calls.
@@ -123,12 +123,12 @@ Status LocalSocket::send(const link::Message& message) {
   return send_packet(packet_.data(), packet_.size(), -1);
 }
 
-Status LocalSocket::send_clock(const FileDescriptor& clock_page) {
+Status LocalSocket::send_clock(const os::FileDescriptor& clock_page) {
   return send_packet(kClockPage.data(), kClockPage.size(), clock_page.get());
 }
 
 Status LocalSocket::send_as_memory(const link::FramePieces& pieces) {
-  const FileDescriptor memory(::memfd_create("tether-frame", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  const os::FileDescriptor memory(::memfd_create("tether-frame", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!memory) return lost();
   for (const auto piece : {pieces.head, pieces.image, pieces.tail}) {
     for (std::size_t done = 0; done < piece.size();) {
@@ -183,7 +183,7 @@ Result<LocalSocket::Packet> LocalSocket::receive(std::optional<Duration> timeout
     return Failure{Failure::Kind::kTimeout, "nothing has come"};
   }
   if (received < 0) return lost();
-  FileDescriptor descriptor = take_descriptor(header);
+  os::FileDescriptor descriptor = take_descriptor(header);
   if (received == 0) return lost("it was closed");
   if ((header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) != 0) return broken("it is too long");
   return understand({input_.data(), static_cast<std::size_t>(received)}, std::move(descriptor));
@@ -196,7 +196,7 @@ void LocalSocket::shut_down() {
 Result<LocalSocket> connect_local(const std::string& path) {
   const auto address = address_of(path);
   if (!address) return address.failure();
-  FileDescriptor socket = make_socket(0);
+  os::FileDescriptor socket = make_socket(0);
   if (!socket || ::connect(socket.get(), generic(*address), sizeof *address) != 0) {
     return Failure{Failure::Kind::kDisconnected, "cannot connect to tether-exec at " + path + ": " +
                                                      std::strerror(errno) +
@@ -206,10 +206,10 @@ Result<LocalSocket> connect_local(const std::string& path) {
   return LocalSocket(std::move(socket));
 }
 
-Result<FileDescriptor> listen_local(const std::string& path) {
+Result<os::FileDescriptor> listen_local(const std::string& path) {
   const auto address = address_of(path);
   if (!address) return address.failure();
-  FileDescriptor socket = make_socket(SOCK_NONBLOCK);
+  os::FileDescriptor socket = make_socket(SOCK_NONBLOCK);
   if (!socket || ::bind(socket.get(), generic(*address), sizeof *address) != 0 ||
       ::listen(socket.get(), SOMAXCONN) != 0) {
     return Failure{Failure::Kind::kInvalid,
@@ -218,8 +218,8 @@ Result<FileDescriptor> listen_local(const std::string& path) {
   return socket;
 }
 
-FileDescriptor accept_local(const FileDescriptor& listener) {
-  return FileDescriptor(static_cast<int>(uninterrupted(
+os::FileDescriptor accept_local(const os::FileDescriptor& listener) {
+  return os::FileDescriptor(static_cast<int>(uninterrupted(
       [&] { return ::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK); })));
 }
 

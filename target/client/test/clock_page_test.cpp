@@ -84,7 +84,7 @@ TEST(ClockPage, IsReadInAnotherMappingAndNotWrittenThere) {
   made->page->publish(state);
   EXPECT_EQ(mapped->page->state(), state);
   EXPECT_EQ(mapped->page->now(), et(3s));
-  EXPECT_FALSE(map_clock_page(FileDescriptor()).ok());
+  EXPECT_FALSE(map_clock_page(os::FileDescriptor()).ok());
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ class FakeExec {
     while (!stopping_) {
       pollfd nothing{-1, 0, 0};
       ::poll(&nothing, 1, 1);
-      while (FileDescriptor accepted = accept_local(listener_)) {
+      while (os::FileDescriptor accepted = accept_local(listener_)) {
         sockets_.emplace_back(std::move(accepted));
         ++connections_;
         EXPECT_TRUE(sockets_.back().send_clock(clock_.descriptor).ok());
@@ -104,7 +104,7 @@ class FakeExec {
   Answer answer_;
   link::Welcome welcome_;
   SharedClockPage clock_;
-  FileDescriptor listener_;
+  os::FileDescriptor listener_;
   std::vector<LocalSocket> sockets_;
   std::atomic<std::size_t> connections_ = 0;
   std::atomic<std::size_t> requests_ = 0;

@@ -63,10 +63,11 @@ TEST(Connect, RefusesAnotherAnswer) {
 }
 
 TEST(Connect, DoesNotWaitForeverForAWelcome) {
-  link_testing::MemoryServer server;
+  const auto server = link::listen_tcp({"127.0.0.1", 0}, std::chrono::seconds(20));
   ConnectOptions options = options_with();
   options.welcome_timeout = 1ms;
-  const auto vehicle = connect(server.connect(), std::move(options));
+  const auto vehicle = connect(
+      link::connect_tcp(server->address(), std::chrono::seconds(20)).value(), std::move(options));
   ASSERT_FALSE(vehicle.ok());
   EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kTimeout);
 }

@@ -17,11 +17,11 @@ class LocalSocketTest : public testing::Test {
   void SetUp() override {
     int ends[2];
     ASSERT_EQ(::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, ends), 0);
-    here_ = LocalSocket(FileDescriptor(ends[0]));
-    there_ = LocalSocket(FileDescriptor(ends[1]));
+    here_ = LocalSocket(os::FileDescriptor(ends[0]));
+    there_ = LocalSocket(os::FileDescriptor(ends[1]));
   }
-  LocalSocket here_{FileDescriptor()};
-  LocalSocket there_{FileDescriptor()};
+  LocalSocket here_{os::FileDescriptor()};
+  LocalSocket there_{os::FileDescriptor()};
 };
 
 link::Message image_reply(int width_px, int height_px) {
@@ -59,7 +59,7 @@ TEST_F(LocalSocketTest, ALongRequestGoesTheOtherWay) {
 TEST_F(LocalSocketTest, CarriesTheClock) {
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
-  const FileDescriptor reading(ends[0]), writing(ends[1]);
+  const os::FileDescriptor reading(ends[0]), writing(ends[1]);
   ASSERT_TRUE(here_.send_clock(writing).ok());
   auto packet = there_.receive();
   ASSERT_TRUE(packet.ok());
@@ -89,7 +89,7 @@ TEST_F(LocalSocketTest, SaysWhatIsWrong) {
 TEST_F(LocalSocketTest, MemoryThatIsNotSealedIsRefused) {
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
-  const FileDescriptor reading(ends[0]), writing(ends[1]);
+  const os::FileDescriptor reading(ends[0]), writing(ends[1]);
   const std::uint8_t zeros[4] = {};
   iovec part{const_cast<std::uint8_t*>(zeros), sizeof zeros};
   alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))] = {};

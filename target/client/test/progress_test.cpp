@@ -107,25 +107,25 @@ TEST(Progress, IsSilentWhileTheSutIsHeld) {
     std::optional<Request> held;
     int words_while_held = 0;
   } held;
-  link_testing::MemoryServer server;
-  std::thread sut([&source, channel = server.connect()]() mutable {
+  const auto server = link::listen_tcp({"127.0.0.1", 0}, 20s);
+  std::thread sut([&source, channel = link::connect_tcp(server->address(), 20s).value()]() mutable {
     ConnectOptions options;
     options.time = std::make_unique<ManualTimeSource>(source);
     options.progress_period = 20us;
     const auto vehicle = connect(std::move(channel), std::move(options)).value();
     ASSERT_TRUE(vehicle->command_velocity({}).ok());
   });
-  while (!held.said_hello) held.poll(server, 100ms);
-  server.send(held.peer, link::Welcome{});
-  while (!held.held) held.poll(server, 100ms);
+  while (!held.said_hello) held.poll(*server, 100ms);
+  server->send(held.peer, link::Welcome{});
+  while (!held.held) held.poll(*server, 100ms);
   for (int i = 0; i < 50; ++i) {
     source.advance(1ms);
-    held.poll(server, 200us);  // many periods
+    held.poll(*server, 200us);  // many periods
   }
   EXPECT_EQ(held.words_while_held, 0);
   const Request request = *std::exchange(held.held, std::nullopt);
-  server.send(held.peer, link::Reply{request.sequence, request.issued_at, {}});
-  while (!held.closed) held.poll(server, 100ms);
+  server->send(held.peer, link::Reply{request.sequence, request.issued_at, {}});
+  while (!held.closed) held.poll(*server, 100ms);
   sut.join();
 }
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include <tether/link_testing/memory_channel.h>
+#include <tether/link/server.h>
 
 namespace tether::client {
 
@@ -25,12 +25,14 @@ class ScriptedCoordinator {
       : greeting_(std::move(greeting)), answer_(std::move(answer)) {
     thread_ = std::thread([this] {
       while (!stopping_)
-        for (link::Event& event : server_.poll(std::chrono::milliseconds(20))) take(event);
+        for (link::Event& event : server_->poll(std::chrono::milliseconds(20))) take(event);
     });
   }
   ~ScriptedCoordinator() { stop(); }
 
-  std::unique_ptr<link::Channel> connect() { return server_.connect(); }
+  std::unique_ptr<link::Channel> connect() {
+    return link::connect_tcp(server_->address(), std::chrono::seconds(20)).value();
+  }
 
   static std::vector<link::Message> grant_at_once(const link::Request& request) {
     return {link::Reply{request.sequence, request.issued_at, std::nullopt}};
@@ -77,10 +79,10 @@ class ScriptedCoordinator {
       heard_.push_back(message);
       heard_more_.notify_all();
     }
-    if (std::holds_alternative<link::Hello>(message)) return server_.send(peer, greeting_);
+    if (std::holds_alternative<link::Hello>(message)) return server_->send(peer, greeting_);
     const auto* request = std::get_if<link::Request>(&message);
     if (request == nullptr) return;
-    for (auto& answer : answer_(*request)) server_.send(peer, std::move(answer));
+    for (auto& answer : answer_(*request)) server_->send(peer, std::move(answer));
   }
   void on_closed() {
     const std::lock_guard lock(mutex_);
@@ -94,7 +96,8 @@ class ScriptedCoordinator {
 
   link::Message greeting_;
   Answer answer_;
-  link_testing::MemoryServer server_;
+  std::unique_ptr<link::Server> server_ =
+      link::listen_tcp({"127.0.0.1", 0}, std::chrono::seconds(20));
   std::mutex mutex_;
   std::condition_variable heard_more_;
   std::vector<link::Message> heard_;

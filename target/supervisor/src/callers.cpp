@@ -12,7 +12,7 @@ void Callers::add_to(std::vector<pollfd>& entries) const {
 }
 
 void Callers::accept_all() {
-  while (client::FileDescriptor accepted = client::accept_local(listener_)) {
+  while (os::FileDescriptor accepted = client::accept_local(listener_)) {
     client::LocalSocket socket(std::move(accepted));
     if (socket.send_clock(clock_page_)) connections_.emplace(++last_, std::move(socket));
   }

@@ -17,7 +17,7 @@ namespace tether::supervisor {
 class Callers {
  public:
   /// `clock_page` must outlive it.
-  Callers(client::FileDescriptor listener, const client::FileDescriptor& clock_page)
+  Callers(os::FileDescriptor listener, const os::FileDescriptor& clock_page)
       : listener_(std::move(listener)), clock_page_(clock_page) {}
 
   struct Events {
@@ -42,8 +42,8 @@ class Callers {
   template <class Wanted>
   void receive_if(const Events& events, Wanted wanted);
 
-  client::FileDescriptor listener_;
-  const client::FileDescriptor& clock_page_;
+  os::FileDescriptor listener_;
+  const os::FileDescriptor& clock_page_;
   CallerId last_ = 0;
   std::map<CallerId, client::LocalSocket> connections_;
 };

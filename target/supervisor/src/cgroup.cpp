@@ -16,12 +16,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <tether/client/exec/file_descriptor.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::supervisor {
 namespace {
 
-using client::FileDescriptor;
+using os::FileDescriptor;
 
 Failure no_cgroup(const std::string& why) {
   return {Failure::Kind::kInvalid, "no cgroup of its own for the command: " + why};

@@ -10,12 +10,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <tether/client/exec/file_descriptor.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::supervisor {
 namespace {
 
-using client::FileDescriptor;
+using os::FileDescriptor;
 
 /// What the child runs, between fork and exec. Returns only if something fails, leaving errno.
 void become(char* const* arguments, const std::optional<Cgroup>& cgroup, pid_t parent) {

@@ -49,18 +49,18 @@ void guard(int pipe, const std::string& folder, const std::string& cgroup) {
 Guardian::Guardian(const std::string& folder, const std::string& cgroup) {
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return;
-  const client::FileDescriptor reading(ends[0]);
-  pipe_ = client::FileDescriptor(ends[1]);
+  const os::FileDescriptor reading(ends[0]);
+  pipe_ = os::FileDescriptor(ends[1]);
   process_ = ::fork();
   if (process_ != 0) return;
-  pipe_ = client::FileDescriptor();
+  pipe_ = os::FileDescriptor();
   guard(reading.get(), folder, cgroup);
   ::_exit(0);
 }
 
 Guardian::~Guardian() {
   if (process_ <= 0) return;
-  pipe_ = client::FileDescriptor();
+  pipe_ = os::FileDescriptor();
   ::waitpid(process_, nullptr, 0);
 }
 

@@ -4,7 +4,7 @@
 
 #include <sys/types.h>
 
-#include <tether/client/exec/file_descriptor.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::supervisor {
 
@@ -26,7 +26,7 @@ class Guardian {
   void watch(pid_t group);
 
  private:
-  client::FileDescriptor pipe_;
+  os::FileDescriptor pipe_;
   pid_t process_ = -1;
 };
 

@@ -29,7 +29,7 @@ int fail(const Say& say, int code, const std::string& message) {
   return code;
 }
 
-client::FileDescriptor catch_signals() {
+os::FileDescriptor catch_signals() {
   struct sigaction action {};
   action.sa_handler = SIG_DFL;
   action.sa_flags = SA_NOCLDSTOP;
@@ -38,7 +38,7 @@ client::FileDescriptor catch_signals() {
   ::sigemptyset(&caught);
   for (const int signal : {SIGCHLD, SIGINT, SIGTERM, SIGHUP}) ::sigaddset(&caught, signal);
   ::sigprocmask(SIG_BLOCK, &caught, nullptr);
-  return client::FileDescriptor(::signalfd(-1, &caught, SFD_CLOEXEC | SFD_NONBLOCK));
+  return os::FileDescriptor(::signalfd(-1, &caught, SFD_CLOEXEC | SFD_NONBLOCK));
 }
 
 /// A folder that only this user can enter; empty: there cannot be one.
@@ -76,7 +76,7 @@ Result<std::unique_ptr<Freezer>> make_freezer(const std::optional<Cgroup>& cgrou
 
 int supervise_in(const std::string& folder, const Settings& settings,
                  const std::optional<Cgroup>& cgroup, Guardian& guardian,
-                 client::FileDescriptor signals, const Say& say) {
+                 os::FileDescriptor signals, const Say& say) {
   auto clock = client::make_clock_page();
   if (!clock) return fail(say, 3, clock.failure().message);
   const std::string path = folder + "/socket";
@@ -101,7 +101,7 @@ int supervise_in(const std::string& folder, const Settings& settings,
 }  // namespace
 
 int supervise(const Settings& settings, const Say& say) {
-  client::FileDescriptor signals = catch_signals();
+  os::FileDescriptor signals = catch_signals();
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   const std::string folder = make_private_folder();
   if (folder.empty())

@@ -32,7 +32,7 @@ int exit_code_from(int status) {
 }  // namespace
 
 Supervisor::Supervisor(const Settings& settings, pid_t command, client::SharedClockPage clock,
-                       client::FileDescriptor listener, client::FileDescriptor signals,
+                       os::FileDescriptor listener, os::FileDescriptor signals,
                        std::unique_ptr<Freezer> freezer, Say say)
     : settings_(settings),
       command_(command),

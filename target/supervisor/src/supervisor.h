@@ -26,7 +26,7 @@ class Supervisor {
  public:
   /// `signals` is a signalfd of SIGCHLD, SIGINT, SIGTERM and SIGHUP.
   Supervisor(const Settings& settings, pid_t command, client::SharedClockPage clock,
-             client::FileDescriptor listener, client::FileDescriptor signals,
+             os::FileDescriptor listener, os::FileDescriptor signals,
              std::unique_ptr<Freezer> freezer, Say say);
 
   /// Until the command ends. Returns its exit code, 128 + signal if one ended it, or 3 if it could
@@ -71,7 +71,7 @@ class Supervisor {
   const Settings& settings_;
   pid_t command_;
   client::SharedClockPage clock_;
-  client::FileDescriptor signals_;
+  os::FileDescriptor signals_;
   std::unique_ptr<Freezer> freezer_;
   Callers callers_;
   Say say_;

@@ -6,27 +6,19 @@
 #include <tether/base_testing/allocation_count.h>
 #include <tether/base_testing/sanitizer.h>
 
-#if TETHER_ADDRESS_SANITIZER || TETHER_THREAD_SANITIZER
-#define TETHER_COUNTS_ALLOCATIONS 0
-#else
-#define TETHER_COUNTS_ALLOCATIONS 1
-#endif
-
 namespace {
 
 std::atomic<bool> counting = false;
 std::atomic<long> allocations = 0;
 
-}  // namespace
-
-#if TETHER_COUNTS_ALLOCATIONS
-namespace {
-void count() {
+[[maybe_unused]] void count() {
   if (counting) ++allocations;
 }
+
 }  // namespace
 
-// Everything that a program allocates with goes through these, its libraries included.
+#if !TETHER_ADDRESS_SANITIZER && !TETHER_THREAD_SANITIZER
+// All allocations of a program and its libraries call one of these.
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
@@ -69,7 +61,7 @@ long AllocationCount::stop() {
 }
 
 bool AllocationCount::is_possible() {
-  return TETHER_COUNTS_ALLOCATIONS == 1;
+  return !TETHER_ADDRESS_SANITIZER && !TETHER_THREAD_SANITIZER;
 }
 
 }  // namespace tether

@@ -6,19 +6,9 @@ void damage(std::vector<std::uint8_t>& bytes, KeyedRandom& random) {
   const std::uint32_t changes = 1 + random.bits() % 4;
   for (std::uint32_t i = 0; i < changes; ++i) {
     std::uint8_t& byte = bytes[random.bits() % bytes.size()];
-    switch (random.bits() % 4) {
-      case 0:
-        byte ^= static_cast<std::uint8_t>(1u << random.bits() % 8);
-        break;
-      case 1:
-        byte = 0xff;
-        break;
-      case 2:
-        byte = 0;
-        break;
-      default:
-        byte = static_cast<std::uint8_t>(random.bits());
-    }
+    const std::uint32_t flipped = byte ^ 1u << random.bits() % 8;
+    const std::uint32_t values[] = {flipped, 0xff, 0, random.bits()};
+    byte = static_cast<std::uint8_t>(values[random.bits() % 4]);
   }
 }
 

@@ -9,12 +9,12 @@
 
 namespace tether {
 
-/// The kind of an error; decides the exit code of the program (docs/design.md section 5).
+/// The kind of an error; determines the exit code of the program (docs/design.md section 5).
 enum class ErrorCode {
   kUsage,     ///< wrong option, or options that exclude each other (exit 2)
   kBadFile,   ///< a scenario, world, profile or record that cannot be used (exit 2)
   kSetup,     ///< the simulator, the link or a device could not be set up (exit 3)
-  kLinkLost,  ///< a peer disconnected or sent what it must not (exit 3)
+  kLinkLost,  ///< a peer disconnected or violated the protocol (exit 3)
   kHung,      ///< a peer sent no message within its time limit (exit 3)
   kInternal,  ///< a broken invariant of Tether itself: a bug (exit 3)
 };
@@ -23,7 +23,7 @@ enum class ErrorCode {
 int exit_code(ErrorCode code);
 std::string_view name(ErrorCode code);
 
-/// A place in a file that a person wrote. `line` counts from 1; it is 0 where there is none.
+/// A place in a file that a user wrote. `line` counts from 1; 0 means no line.
 struct FileLocation {
   std::string file;
   int line = 0;
@@ -32,8 +32,8 @@ struct FileLocation {
 /// "file:line: message", or "file: message".
 std::string located(const FileLocation& where, const std::string& message);
 
-/// The exception that host-side code throws. `what()` is one printable line: where (file:line),
-/// what is wrong, what to do. Code and tests read the fields, never the sentence.
+/// The exception that host-side code throws. `what()` is one printable line: where (FILE:LINE),
+/// what is wrong, what to do. Code and tests use the fields, not the message.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message)
@@ -51,9 +51,9 @@ class Error : public std::runtime_error {
   }
 
   ErrorCode code() const { return code_; }
-  /// The place that is wrong; without a file where there is none.
+  /// The place of the error; its file is empty if there is none.
   const FileLocation& where() const { return where_; }
-  /// What is wrong: the key, option, name or address; empty where the message has no single one.
+  /// The key, option, name or address that the error is about; empty if there is no single one.
   const std::string& subject() const { return subject_; }
 
  private:
@@ -62,8 +62,8 @@ class Error : public std::runtime_error {
   std::string subject_;
 };
 
-/// For a file that could not be read: checks that the cause is not this process's limit of open
-/// files. @throws Error(kSetup) if it is.
+/// For a file that could not be read: checks whether the cause is the limit of open files of this
+/// process. @throws Error(kSetup) if it is.
 void require_a_handle_for(const std::string& file);
 
 }  // namespace tether

@@ -6,12 +6,10 @@
 
 namespace tether {
 
-/// Keyed random numbers (Philox4x32-10; Salmon et al., "Parallel random numbers: as easy as 1, 2,
-/// 3", SC 2011). A value is a pure function of its key, never of what was drawn before, so that
-/// results do not depend on the order in which anything ran.
-///
-/// Which draw it is. Two draws with the same key are equal; draws that differ anywhere in the key
-/// are independent.
+/// The key of a random number (Philox4x32-10; Salmon et al., "Parallel random numbers: as easy as
+/// 1, 2, 3", SC 2011). A value is a pure function of its key, never of earlier draws, so that
+/// results do not depend on the order of execution. Draws with the same key are equal; draws with
+/// different keys are independent.
 struct RandomKey {
   std::uint64_t seed = 0;    ///< of the trial
   std::uint64_t stream = 0;  ///< which quantity: `random_stream(uav, sensor, "delay")`
@@ -26,8 +24,8 @@ std::uint64_t random_stream(std::string_view uav, std::string_view sensor,
 std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
                                         std::array<std::uint32_t, 2> key);
 
-/// A sequence of draws under one key, for quantities that need more than one number (an image's
-/// noise, a truncated normal). Cheap to make and to copy; not shared between threads.
+/// A sequence of draws under one key, for quantities that need more than one number (the noise of
+/// an image, a truncated normal distribution). Cheap to make and to copy. Not thread-safe.
 class KeyedRandom {
  public:
   explicit KeyedRandom(const RandomKey& key);

@@ -8,23 +8,23 @@
 
 namespace tether {
 
-/// Why a call that throws nothing failed. Used by the SUT's side of the link (`client`, `link`),
-/// where an exception would be the SUT's problem; host code turns it into an `Error`.
+/// Why a call that does not throw failed. Used on the SUT's side of the link (`client`, `link`), so
+/// that users' programs need not handle our exceptions; host code turns it into an `Error`.
 struct Failure {
   enum class Kind {
-    kRefused,  ///< the coordinator answered, and said no (wrong name, token, version, argument)
+    kRefused,       ///< the coordinator refused (wrong name, token, version, argument)
     kDisconnected,  ///< the connection ended
-    kProtocol,      ///< the peer sent something that the protocol does not allow
+    kProtocol,      ///< the peer violated the protocol
     kTimeout,       ///< no answer within the limit
     kRunEnded,      ///< the coordinator ended the run
     kInvalid,       ///< the caller's argument cannot be used
-    kNothingYet,    ///< a read that was not to wait found nothing; not an error
+    kNothingYet,    ///< a read that does not wait found no sample; not an error
   };
   Failure() = default;
   Failure(Kind what_kind, const std::string& why) : kind(what_kind), message(printable(why)) {}
 
   Kind kind = Kind::kInvalid;
-  std::string message;  ///< one printable line for a person, whatever a peer had in it
+  std::string message;  ///< one printable line for the user
 };
 
 /// The failure of a call whose argument, file or device cannot be used.
@@ -32,7 +32,7 @@ inline Failure invalid(const std::string& why) {
   return {Failure::Kind::kInvalid, why};
 }
 
-/// A value or the reason why there is none. `T` must not be `Failure`.
+/// A value or a failure. `T` must not be `Failure`.
 template <class T>
 class [[nodiscard]] Result {
  public:

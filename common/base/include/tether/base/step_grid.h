@@ -4,9 +4,9 @@
 
 namespace tether {
 
-/// The simulator's time grid: step boundaries k·dt, k ≥ 0. Sampling rounds down to it, acting
-/// rounds up (DESIGN section 2, rules 1 to 3), so that neither rounding can move data or a command
-/// across its timestamp. Immutable value; safe to share between threads.
+/// The simulator's time grid: step boundaries k·dt, k ≥ 0. Times of samples are rounded down, times
+/// of commands up (DESIGN section 2, rules 1 to 3), so that neither data nor a command moves across
+/// its timestamp. An immutable value; thread-safe.
 class StepGrid {
  public:
   /// @pre dt > 0.

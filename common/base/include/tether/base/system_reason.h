@@ -4,8 +4,8 @@
 
 namespace tether {
 
-/// What the system says of `error_number` (an errno), and what to do where a process may open no
-/// more files. Thread-safe.
+/// The system's text for `error_number` (an errno), with advice if the limit of open files is
+/// reached. Thread-safe.
 std::string reason_of(int error_number);
 
 /// "signal 9 (Killed)". Not thread-safe.

@@ -9,7 +9,7 @@ namespace tether {
 /// right, without blanks at the end. A row may have fewer cells than others.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
 
-/// With so many digits after the point, whatever the locale.
+/// The number with `digits` digits after the point, in any locale.
 std::string fixed(double value, int digits);
 
 }  // namespace tether

@@ -3,66 +3,55 @@
 #include <chrono>
 #include <cstdint>
 
-/// The clocks of a run (paper, Section II). Three time axes meet in Tether; each has a type of its
-/// own, and none converts into another except through a function whose name says what is claimed.
+/// The clocks of a run (paper, Section II). Tether has three time axes. Each has its own type, and
+/// only the named functions below convert between them.
 namespace tether {
 
 /// A span of time on any of the axes [ns]. Exact: no rounding ever happens between integers.
 using Duration = std::chrono::duration<std::int64_t, std::nano>;
 
-/// Simulated time (ST): the simulator's clock. It moves only when the simulator steps, so it has no
-/// `now()`.
-struct SimClock {
+/// What the clocks of the three axes have in common. `Axis` is the clock itself, so that each has
+/// time points of its own type. None has a `now()`: times are arguments.
+template <class Axis>
+struct AxisClock {
   using rep = Duration::rep;
   using period = Duration::period;
   using duration = Duration;
-  using time_point = std::chrono::time_point<SimClock>;
+  using time_point = std::chrono::time_point<Axis, Duration>;
   static constexpr bool is_steady = true;
   static time_point now() = delete;
 };
 
-/// Execution time (ET) of one SUT: how long it was free to execute. It stands still while the SUT
-/// is held.
-struct ExecClock {
-  using rep = Duration::rep;
-  using period = Duration::period;
-  using duration = Duration;
-  using time_point = std::chrono::time_point<ExecClock>;
-  static constexpr bool is_steady = true;
-  static time_point now() = delete;
-};
+/// Simulated time (ST): the simulator's clock. It advances only when the simulator steps.
+struct SimClock : AxisClock<SimClock> {};
+
+/// Execution time (ET) of one SUT: how long it was free to execute. It is paused while the SUT is
+/// held.
+struct ExecClock : AxisClock<ExecClock> {};
 
 /// Wall time (WT) of one machine since an origin that the machine chose. For the record only.
-struct WallClock {
-  using rep = Duration::rep;
-  using period = Duration::period;
-  using duration = Duration;
-  using time_point = std::chrono::time_point<WallClock>;
-  static constexpr bool is_steady = true;
-  static time_point now() = delete;
-};
+struct WallClock : AxisClock<WallClock> {};
 
 using SimTime = SimClock::time_point;
 using ExecTime = ExecClock::time_point;
 using WallTime = WallClock::time_point;
 
-/// The instant of ST that carries the same timestamp as `et`. This is the identification on which
-/// the method rests: a SUT at ET t may only meet the world of ST t (paper, Section II).
+/// The instant of ST with the same timestamp as `et`. The method is based on this: a SUT at ET t
+/// may only interact with the world of ST t (paper, Section II).
 constexpr SimTime same_instant(ExecTime et) {
   return SimTime(et.time_since_epoch());
 }
-/// The instant of ET that carries the same timestamp as `st`.
+/// The instant of ET with the same timestamp as `st`.
 constexpr ExecTime same_instant(SimTime st) {
   return ExecTime(st.time_since_epoch());
 }
 
-/// The lag ε = ET − ST of a SUT at the moment when its request arrives. Positive: the simulation is
-/// behind.
+/// The lag ε = ET − ST of a SUT when its request arrives. Positive if the simulation is behind.
 constexpr Duration lag(ExecTime et, SimTime st) {
   return et.time_since_epoch() - st.time_since_epoch();
 }
 
-/// Nanoseconds since the axis' origin, for files and frames.
+/// Nanoseconds since the origin of the axis, for files and frames.
 template <class Clock>
 constexpr std::int64_t to_ns(std::chrono::time_point<Clock, Duration> t) {
   return t.time_since_epoch().count();
@@ -71,7 +60,7 @@ constexpr std::int64_t to_ns(Duration d) {
   return d.count();
 }
 
-/// The time point `ns` nanoseconds after the axis' origin: `from_ns<SimTime>(1'000'000)`.
+/// The time point `ns` nanoseconds after the origin of the axis: `from_ns<SimTime>(1'000'000)`.
 template <class Time>
 constexpr Time from_ns(std::int64_t ns) {
   return Time(Duration(ns));

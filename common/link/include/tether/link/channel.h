@@ -11,21 +11,21 @@
 
 namespace tether::link {
 
-/// The SUT's end of a connection: blocking, whole messages. `send` and `close` may be called from
-/// any thread at any time, `receive` and `receive_within` from one thread at a time.
+/// The SUT's end of a connection, for whole messages; calls block. `send` and `close` are
+/// thread-safe; `receive` and `receive_within` may be called from one thread at a time.
 class Channel {
  public:
   virtual ~Channel() = default;
-  /// Fails with kInvalid (the message breaks `validate`; nothing was sent) or kDisconnected.
+  /// Fails with kInvalid (`validate` rejects the message; nothing was sent) or kDisconnected.
   virtual Status send(const Message& message) = 0;
-  /// Blocks until a whole message is there. Fails with kDisconnected or kProtocol; what arrived
-  /// before the connection ended is delivered first.
+  /// Blocks until a whole message has arrived. Fails with kDisconnected or kProtocol, after all
+  /// messages that arrived before the connection ended.
   virtual Result<Message> receive() = 0;
-  /// The same, but fails with kTimeout if no whole message is there after `timeout`; a message that
-  /// had begun to come is not lost.
+  /// The same, but fails with kTimeout if no whole message has arrived after `timeout`. A message
+  /// that arrived in part is not lost.
   virtual Result<Message> receive_within(Duration timeout) = 0;
-  /// What a loop with other things to do may poll for input; then receives with a `timeout` of 0
-  /// until that fails with kTimeout. −1: a channel without a descriptor.
+  /// For a loop that polls several descriptors for input: when this one is readable, call
+  /// `receive_within` with a timeout of 0 until it fails with kTimeout. −1: no descriptor.
   virtual int descriptor() const { return -1; }
   /// Ends the connection; unblocks `receive` on this and the other end.
   virtual void close() = 0;
@@ -37,13 +37,13 @@ struct Address {
   std::uint16_t port = 0;
   friend bool operator==(const Address&, const Address&) = default;
 };
-/// Fails with kInvalid, saying what is expected.
+/// Fails with kInvalid and the expected form.
 Result<Address> parse_address(const std::string& text);
 std::string to_string(const Address& address);
 
 /// Connects over TCP with TCP_NODELAY (paper, Section II), trying every address of the host in
-/// turn. Fails with kDisconnected (name unknown, refused, unreachable) or kTimeout; the text names
-/// the address.
+/// turn. Fails with kDisconnected (name unknown, refused, unreachable) or kTimeout; the message
+/// contains the address.
 Result<std::unique_ptr<Channel>> connect_tcp(const Address& address, Duration timeout);
 
 }  // namespace tether::link

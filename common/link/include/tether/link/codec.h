@@ -15,10 +15,10 @@ namespace tether::link {
 inline constexpr std::size_t kFrameHeaderBytes = 4;
 /// Largest frame towards the SUT: a 4096×4096 RGB image and its envelope.
 inline constexpr std::uint32_t kMaxReplyBytes = 64u << 20;
-/// Largest frame towards the coordinator; nothing a SUT says is long.
+/// Largest frame towards the coordinator: messages of a SUT are short.
 inline constexpr std::uint32_t kMaxRequestBytes = 1u << 20;
-/// Largest first frame towards the coordinator: four times the longest Hello of this version. Who
-/// has not said who it is has no more than this kept of what it sends.
+/// Largest first frame towards the coordinator: four times the longest Hello of this version. It
+/// limits the memory for peers that are not authenticated.
 inline constexpr std::uint32_t kMaxHelloBytes = 4u << 10;
 
 /// Longest name, token or topic [bytes].
@@ -33,15 +33,14 @@ inline constexpr std::size_t kMaxCatalogueEntries = 1024;
 /// Every timestamp t has 0 ≤ t < this (146 years), so that sums of two cannot overflow [ns].
 inline constexpr std::int64_t kMaxTimestampNs = std::int64_t{1} << 62;
 
-/// Whether the message may go over the wire: enumerations in range, numbers finite (a range may be
-/// ±inf), timestamps within bounds, texts and lists no longer than the limits above, images of as
-/// many bytes as width × height × 3, JSON texts one object. Fails with Failure::Kind::kInvalid,
-/// naming the field. The protocol version of a Hello may be any.
+/// Checks the values of a message: enumerations in range, numbers finite (a range may be ±inf),
+/// timestamps, texts and lists within the limits above, images of width × height × 3 bytes, JSON
+/// texts of one object. Fails with Failure::Kind::kInvalid and the name of the field. The protocol
+/// version of a Hello may be any.
 Status validate(const Message& message);
 
-/// A frame in up to three pieces, to be sent one right after the other. `image` is the message's
-/// own pixel buffer, so that an image goes from there to the socket without a copy; it is empty for
-/// messages without one.
+/// A frame in up to three consecutive pieces. `image` is the message's own pixel buffer, so that an
+/// image is sent without a copy; it is empty for messages without an image.
 struct FramePieces {
   std::span<const std::uint8_t> head;
   std::span<const std::uint8_t> image;
@@ -50,15 +49,14 @@ struct FramePieces {
   std::size_t size() const { return head.size() + image.size() + tail.size(); }
 };
 
-/// Serialises messages into whole frames (length included). Keeps its buffer, so that what flows in
-/// flight (Request, Reply, Progress, Due) allocates nothing in steady use. Not thread-safe. @pre of
-/// both calls: validate(message).ok()
+/// Serialises messages into whole frames (length included). It reuses its buffer: the messages of a
+/// flight (Request, Reply, Progress, Due) allocate nothing once it is large enough. Not
+/// thread-safe.
+/// @pre of both calls: validate(message).ok()
 class Encoder {
  public:
   Encoder();
   ~Encoder();
-  Encoder(Encoder&&) noexcept;
-  Encoder& operator=(Encoder&&) noexcept;
 
   /// The frame; valid until the next call.
   std::span<const std::uint8_t> encode(const Message& message);
@@ -70,11 +68,11 @@ class Encoder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Decodes one whole frame (length included). Verifies every offset before use, then `validate`s.
-/// Fails with Failure::Kind::kProtocol, whatever the bytes are; never reads outside of them.
+/// Decodes one whole frame (length included), from any bytes: verifies every offset before use,
+/// then calls `validate`. Fails with Failure::Kind::kProtocol; never reads outside the frame.
 Result<Message> decode(std::span<const std::uint8_t> frame);
 
-/// The length announced by a frame header. Fails with kProtocol if it is 0 or above `limit`.
+/// The length in a frame header. Fails with kProtocol if it is 0 or above `limit`.
 Result<std::uint32_t> decode_frame_length(std::span<const std::uint8_t, kFrameHeaderBytes> header,
                                           std::uint32_t limit);
 

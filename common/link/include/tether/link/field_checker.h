@@ -15,8 +15,8 @@
 
 namespace tether::link {
 
-/// The first complaint about a message; later ones are dropped. Checks read as one line per field.
-/// One thread at a time.
+/// Checks the fields of a message, one call per field, and keeps the first complaint. Not
+/// thread-safe.
 class FieldChecker {
  public:
   void require(bool holds, std::string_view field, std::string_view rule) {
@@ -26,7 +26,7 @@ class FieldChecker {
   void in(std::string where) { where_ = std::move(where); }
   void text(const std::string& value, std::size_t limit, std::string_view field) {
     require(value.size() <= limit, field, "is longer than " + std::to_string(limit) + " bytes");
-    require(value.find('\0') == std::string::npos, field, "contains a zero byte");
+    require(value.find('\0') == std::string::npos, field, "contains a NUL byte");
   }
   void finite(double value, std::string_view field) {
     require(std::isfinite(value), field, "is not a finite number");

@@ -10,29 +10,29 @@
 
 namespace tether::link {
 
-/// Cuts a byte stream into frames. Bytes go straight from the socket into it, as many as there are,
-/// so that a small frame costs one system call; it grows to the largest frame seen and stays there.
-/// What a header announces is not allocated before its limit has been checked.
+/// Splits a byte stream into frames. The socket's bytes are received directly into it, as many as
+/// there are, so that a small frame costs one system call. It grows to the largest frame and keeps
+/// that size. The length in a header is checked against the limit before memory is allocated.
 ///
-///   receive into space(), commit(n), then next() until it gives an empty span.
+///   receive into space(), commit(n), then call next() until it returns an empty span.
 class FrameBuffer {
  public:
-  /// `limit`: the largest frame that may be announced [bytes].
+  /// `limit`: the largest frame that is accepted [bytes].
   explicit FrameBuffer(std::uint32_t limit);
   /// From the next frame on.
   void set_limit(std::uint32_t limit) { limit_ = limit; }
 
-  /// Where the next bytes go; never empty, and enough for the rest of a frame that has begun.
-  /// Invalidates what next() gave.
+  /// Space for the next bytes; never empty, and enough for the rest of a frame that has begun.
+  /// Invalidates the frames that next() returned.
   std::span<std::uint8_t> space();
   /// The first `count` bytes of space() have been received.
   void commit(std::size_t count) { end_ += count; }
 
-  /// The next whole frame, length included; empty: it is not all there yet. Fails with kProtocol if
-  /// a length is announced that is not allowed; there is no way on after that.
+  /// The next whole frame, length included; empty if it has not arrived completely. Fails with
+  /// kProtocol if its length is not allowed; the stream cannot be used after that.
   Result<std::span<const std::uint8_t>> next();
 
-  /// Bytes still to come of a frame whose header is there; 0 if that is not so.
+  /// Missing bytes of a frame whose header has arrived; 0 if there is none.
   std::size_t missing() const { return frame_bytes_ > size() ? frame_bytes_ - size() : 0; }
 
  private:

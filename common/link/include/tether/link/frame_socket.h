@@ -14,27 +14,26 @@
 
 namespace tether::link {
 
-/// Whole frames over a connected, blocking stream socket of any family, whatever is in them.
-/// Failures call the other end `peer`. One thread sends and one receives at a time; `close` may be
-/// called from any thread at any time.
+/// Whole frames of any content over a connected, blocking stream socket of any family. Failures
+/// name the other end `peer`. One thread sends and one receives at a time; `close` is thread-safe.
 class FrameSocket {
  public:
-  /// `limit`: the largest frame that the peer may announce [bytes].
+  /// `limit`: the largest frame that is accepted from the peer [bytes].
   FrameSocket(Descriptor socket, std::string peer, std::uint32_t limit);
 
-  /// Blocks until the whole frame is on its way. Fails with kDisconnected, or kTimeout where
-  /// sending is limited (limit_sending) and the peer does not read; there is no way on after that.
+  /// Blocks until the system has taken the whole frame. Fails with kDisconnected, or with kTimeout
+  /// if the peer does not read (limit_sending); the socket cannot be used after that.
   Status send(const FramePieces& frame);
-  /// Blocks until a whole frame is there, length included; valid until the next call. Fails with
-  /// kDisconnected, or kProtocol for a length that is not allowed; what arrived before the
-  /// connection ended is delivered first.
+  /// Blocks until a whole frame has arrived, length included; valid until the next call. Fails with
+  /// kDisconnected, or kProtocol for a length that is not allowed, after all frames that arrived
+  /// before the connection ended.
   Result<std::span<const std::uint8_t>> receive() { return receive_until(std::nullopt); }
-  /// The same, but fails with kTimeout if no whole frame is there after `timeout`; a frame that had
-  /// begun to come is not lost.
+  /// The same, but fails with kTimeout if no whole frame has arrived after `timeout`. A frame that
+  /// arrived in part is not lost.
   Result<std::span<const std::uint8_t>> receive_within(Duration timeout);
 
   int descriptor() const { return socket_.get(); }
-  /// Ends the connection; unblocks whoever sends or receives on either end.
+  /// Ends the connection; unblocks calls that send or receive on either end.
   void close();
 
  private:

@@ -11,12 +11,12 @@
 #include <tether/uav/catalogue.h>
 #include <tether/uav/samples.h>
 
-/// What SUT and coordinator say to each other, in our own types. The wire format (FlatBuffers,
-/// `schema/link.fbs`) and this header say the same; `codec.h` converts. Every conversation: Hello →
-/// Welcome or Refusal; then Requests, each answered by one Reply (or by Refusal, which ends it),
-/// with Progress and Annotation one-way in between; Finish ends. A SUT that
-/// said in its Hello that it is concurrent may have several Requests open; of each it is told at
-/// once when its reply is due (Due).
+/// The messages between SUT and coordinator. The wire format (FlatBuffers, `schema/link.fbs`) has
+/// the same fields; `codec.h` converts. Order: Hello → Welcome or Refusal; then Requests, each
+/// answered by one Reply (or by Refusal, which ends the connection), with Progress and Annotation
+/// one-way in between; Finish is the last Request. A SUT whose Hello says that it is concurrent may
+/// have several open Requests; for each it receives at once the time at which its reply is due
+/// (Due).
 namespace tether::link {
 
 inline constexpr std::uint32_t kProtocolVersion = 2;
@@ -31,12 +31,11 @@ struct Hello {
   std::string sut;  ///< the program's name and version
   std::string uav;  ///< which UAV it flies; empty: the only one
   ClockKind clock = ClockKind::kWall;
-  /// Of a virtual target: seconds of ET per second of what the clock measures. 1 where it is the
-  /// target itself that computes.
+  /// Of a virtual target: seconds of ET per second that the clock measures. 1 on the target itself.
   double cpu_factor = 1.0;
   std::string token;
-  /// Several threads or processes call, each waiting for its own reply only. Under the barrier all
-  /// of them stand still while a reply that is due is not there (Progress::stopped).
+  /// Several threads or processes call, and each waits for its own reply only. Under the barrier
+  /// all of them are stopped while a reply that is due has not arrived (Progress::stopped).
   bool concurrent = false;
 };
 
@@ -58,30 +57,29 @@ std::string_view name(Refusal::Reason reason);
 /// Read a sensor by its index in the catalogue.
 struct ReadSensor {
   std::uint32_t sensor = 0;
-  bool latest =
-      false;  ///< periodic sensors: take the last measurement again rather than wait for a new one
-  /// Periodic sensors: reply at once, without a sample where none is available that would do.
+  bool latest = false;  ///< periodic sensors: the newest measurement again, without waiting
+  /// Periodic sensors: reply at once, without a sample if no suitable one is available.
   bool only_if_available = false;
 };
 struct SetVelocity {
   uav::VelocityCommand command;
 };
-/// Wait until ET `until` (in free running the client sleeps by itself and never sends this).
+/// Wait until ET `until` (in free running the client sleeps itself and does not send this).
 struct Sleep {
   ExecTime until;
 };
-/// The SUT is done. The reply confirms that the record has it.
+/// The SUT has finished. The reply confirms that this is in the record.
 struct Finish {
   bool reached_goal = false;
   std::string outcome;  ///< one line: why
-  std::string details;  ///< JSON object: the task's own results, may be empty
+  std::string details;  ///< JSON object: results of the task; may be empty
 };
 
 /// SUT → coordinator: an interaction begins.
 struct Request {
   std::uint64_t sequence = 0;  ///< 1, 2, 3, …
-  /// t_req; ignored from an unstamped client. Of a concurrent SUT not before that of an earlier
-  /// request, nor before any Progress.
+  /// t_req; ignored from an unstamped client. Of a concurrent SUT, not before that of an earlier
+  /// Request or Progress.
   ExecTime issued_at;
   Duration previous_round_trip{0};  ///< WT on the SUT's side from issuing the previous request to
                                     ///< having its reply; 0: not measured
@@ -92,12 +90,12 @@ struct Request {
 struct Reply {
   std::uint64_t sequence = 0;
   ExecTime resume_at;                 ///< t_rep: the SUT goes on with ET = this
-  std::optional<uav::Sample> sample;  ///< of ReadSensor; none where nothing was available
+  std::optional<uav::Sample> sample;  ///< of ReadSensor; none if none was available
 };
 
-/// Coordinator → concurrent SUT under the barrier, as soon as a request has arrived: when its reply
-/// is due. The SUT may run until its ET reaches `reply_at`, and stands still from there until the
-/// reply comes.
+/// Coordinator → concurrent SUT under the barrier, as soon as a request has arrived: the time at
+/// which its reply is due. The SUT may run until its ET reaches `reply_at`, and is stopped there
+/// until the reply arrives.
 struct Due {
   std::uint64_t sequence = 0;
   ExecTime reply_at;  ///< t_rep, ≥ the request's stamp
@@ -106,13 +104,12 @@ struct Due {
 /// SUT → coordinator while it computes: ET has reached at least this.
 struct Progress {
   ExecTime reached;
-  /// Of a concurrent SUT under the barrier: all of its threads stand still, and did so from
-  /// `reached` on.
+  /// Of a concurrent SUT under the barrier: all of its threads have been stopped since `reached`.
   bool stopped = false;
 };
 
-/// SUT → coordinator: something for the record (ROI, estimate, task phase). Costs no ET; not
-/// answered.
+/// SUT → coordinator: an entry for the record (ROI, estimate, task phase). Takes no ET and gets no
+/// answer.
 struct Annotation {
   ExecTime at;
   std::string topic;  ///< e.g. "task", "roi", "estimate"

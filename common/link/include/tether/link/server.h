@@ -18,33 +18,35 @@ namespace tether::link {
 /// Identifies one connection for its whole life; never reused within a server.
 using PeerId = std::uint64_t;
 
-/// A peer has connected; it is a stranger until its first whole frame is there.
+/// A peer has connected; it is a stranger until its first whole frame has arrived.
 struct Connected {
   std::string remote_address;
 };
-/// A peer says no more. `failure` says why. kDisconnected: it closed, or did not read what it was
-/// sent. kProtocol: it sent what it must not. kTimeout: it never sent a whole frame. In the latter
-/// two cases a Refusal with the reason was sent to it.
+/// No more messages come from a peer, because of `failure`. kDisconnected: it closed the
+/// connection, or did not read its messages. kProtocol: it violated the protocol. kTimeout: it sent
+/// no whole frame in time. In the latter two cases a Refusal with the reason was sent to it.
 struct Closed {
   Failure failure;
-  /// It has closed its sending side, or all of it, which looks the same from here: it is kept, and
-  /// can be sent to until `close`. Otherwise the connection is gone. Never of strangers.
+  /// The peer has closed its sending side or the whole connection, which cannot be distinguished:
+  /// it is kept, and messages can be sent to it until `close`. Otherwise the connection is gone.
+  /// Always false for strangers.
   bool may_still_read = false;
 };
-/// What happened at one peer.
+/// An event of one peer.
 struct Event {
   PeerId peer = 0;
   std::variant<Connected, Message, Closed> what;
 };
 
-/// Bytes that may wait for a peer that reads slowly; one frame of any size may always wait.
+/// Bytes that may be queued for a peer that reads slowly; one frame of any size can always be
+/// queued.
 inline constexpr std::size_t kMaxQueuedBytes = 16u << 20;
-/// Frames that may wait for it, whatever their size. A SUT of 64 threads that reads has fewer.
+/// Frames of any size that may be queued for it. A SUT of 64 threads that reads has fewer.
 inline constexpr std::size_t kMaxQueuedFrames = 1024;
-/// Strangers are connections that have not sent a whole frame yet, or were sent away by what they
-/// sent first. So many are there at the same time; more wait with the system until one goes.
+/// Strangers are connections that have not sent a whole frame yet, or were refused because of their
+/// first one. At most so many are accepted; others wait in the system's queue until one ends.
 inline constexpr std::size_t kMaxStrangers = 128;
-/// While others wait, how long a stranger may stay; whoever speaks at once is not hurried by it.
+/// Time limit of a stranger while other connections wait; enough for a peer that sends at once.
 inline constexpr Duration kCrowdedStay = std::chrono::milliseconds(500);
 
 /// The coordinator's end: many connections, one thread, no locks. Frames go out whole and in order.
@@ -53,30 +55,29 @@ class Server {
   virtual ~Server() = default;
   /// Where to connect.
   virtual Address address() const = 0;
-  /// Handles what is there. If nothing is, waits at most `max_wait` (0: does not wait) for
-  /// something to come. Returns at most one event per peer: if the caller closes a peer because of
-  /// its event, no other event of it is in the span, and no peer can delay the others or the
-  /// caller. The caller may move messages out. The span is valid until the next poll.
+  /// Handles input and output, and returns the events. If there are none, waits for one for at most
+  /// `max_wait` (0: does not wait). Returns at most one event per peer: if the caller closes a peer
+  /// because of its event, the span has no other event of it, and no peer can delay the others or
+  /// the caller. The caller may move messages out. The span is valid until the next poll.
   virtual std::span<Event> poll(Duration max_wait) = 0;
-  /// Writes the message to the connection at once as far as it takes it, and keeps the rest for
-  /// `poll`. Move the message in: its image is then never copied. A peer that does not read is
-  /// closed (`Closed` comes from the next poll) when something is to be sent while more than
-  /// kMaxQueuedBytes or kMaxQueuedFrames wait for it. Does nothing for a peer that is gone.
-  /// @throws Error(kInternal) if the message breaks `validate`.
+  /// Writes as much of the message to the connection as it takes at once, and queues the rest for
+  /// `poll`. Move the message in: its image is then never copied. A peer for which more than
+  /// kMaxQueuedBytes or kMaxQueuedFrames are queued already is closed instead (`Closed` comes from
+  /// the next poll). Does nothing for a peer that is gone.
+  /// @throws Error(kInternal) if `validate` rejects the message.
   virtual void send(PeerId peer, Message message) = 0;
-  /// Sends what is queued, then closes; no event comes from this peer any more.
+  /// Sends what is queued, then closes; no further event comes from this peer.
   virtual void close(PeerId peer) = 0;
 };
 
 /// Listens on TCP with TCP_NODELAY; port 0 takes a free one. A peer that has not sent its first
-/// whole frame (kMaxHelloBytes at most) within `hello_timeout` of connecting is refused, however
-/// steadily its bytes come. @throws Error(kSetup) when the address cannot be bound.
+/// whole frame (kMaxHelloBytes at most) within `hello_timeout` after connecting is refused, even if
+/// it keeps sending bytes. @throws Error(kSetup), about the address, if it cannot be bound.
 std::unique_ptr<Server> listen_tcp(const Address& address, Duration hello_timeout);
 
 /// A new random token: 128 bits of the kernel's generator, in hex. @throws Error(kSetup).
 std::string make_token();
-/// Compares without telling, by its duration, where they differ. Their lengths may show: that of a
-/// run's token is no secret, 32 unless somebody chose another one.
+/// Compares in constant time for texts of one length. The length of a token is not secret.
 bool tokens_equal(const std::string& a, const std::string& b);
 
 }  // namespace tether::link

@@ -13,7 +13,7 @@
 #include <tether/link/channel.h>
 #include <tether/link/codec.h>
 
-/// What both ends do with a socket: the system calls themselves, one each way per frame.
+/// System calls on sockets, for both ends of the link: one call per frame in each direction.
 namespace tether::link {
 
 /// Owns a file descriptor; -1: none.
@@ -35,59 +35,60 @@ class Descriptor {
   int value_ = -1;
 };
 
-/// Longer limits mean this one, so that a point in time can be reckoned.
+/// Longer limits are reduced to this, so that deadlines do not overflow.
 inline constexpr Duration kLongestTimeout = std::chrono::hours(24 * 365);
 
-/// No delay; keep-alive probes, so that a peer that vanished is noticed within half a minute; not
-/// inherited by child processes. Buffer sizes are left to the system, which fits them to the
-/// traffic. What the system does not grant is done without.
+/// Sets TCP_NODELAY, keep-alive probes that find a vanished peer within half a minute, and
+/// close-on-exec. The system chooses the buffer sizes. Options that the system refuses are ignored.
 void tune(int descriptor);
 /// False: calls on it return `would_block` instead of waiting.
 void set_blocking(int descriptor, bool blocks);
 
-/// Calls that send give up (`would_block`) when the peer has read nothing for so long.
+/// Calls that send return `would_block` if the peer has read nothing for `limit`.
 void limit_sending(int descriptor, Duration limit);
 
-/// What one call did. `bytes` is 0 when the call would have blocked, failed, or found the end.
+/// The result of one call. `bytes` is 0 if the call would have blocked, failed, or found the end.
 struct Transfer {
   std::size_t bytes = 0;
   bool would_block = false;
   bool ended = false;     ///< the peer closed its side (receiving only)
-  std::error_code error;  ///< not of would_block
+  std::error_code error;  ///< not set with would_block
 };
 
-/// Sends what is left of the pieces after the first `done` bytes with one call.
+/// Sends the pieces without their first `done` bytes, with one call.
 Transfer send_some(int descriptor, const FramePieces& pieces, std::size_t done);
 /// Receives into `space` with one call; with `whole`, blocks until it is full.
 Transfer receive_some(int descriptor, std::span<std::uint8_t> space, bool whole = false);
 
-/// Replies and the next requests often come at once: a command, then an image. Looking out for them
-/// so long before sleeping saves the time of falling asleep and waking, most of an exchange.
+/// A request often follows a reply at once: a command, then an image. Polling for this time before
+/// sleeping saves the time to fall asleep and to wake up, which is most of an exchange.
 inline constexpr std::chrono::microseconds kLookOut{20};
-/// Whether a thread that looks out leaves a core to its peer.
+/// Whether there is more than one core, so that a polling thread leaves one to its peer.
 bool may_look_out();
 
-/// Waits until the socket can be read (also: has ended). False: not within `timeout`.
+/// Waits until the socket can be read or has ended. False: not within `timeout`.
 bool wait_readable(int descriptor, Duration timeout);
-/// Waits until the socket can be written to: a connection that was begun is made, or has failed.
+/// Waits until the socket can be written to, or a pending connection was made or has failed.
 bool wait_writable(int descriptor, Duration timeout);
 
 /// A socket connected over TCP, tuned, trying every address of the host in turn. Fails with
-/// kDisconnected (name unknown, refused, unreachable) or kTimeout; the text names the address.
+/// kDisconnected (name unknown, refused, unreachable) or kTimeout; the message contains the
+/// address.
 Result<Descriptor> open_tcp(const Address& address, Duration timeout);
 
-/// A socket that listens there; port 0 takes a free one. Fails with kInvalid, naming the address.
+/// A socket that listens at `address`; port 0 takes a free one. Fails with kInvalid; the message
+/// contains the address.
 Result<Descriptor> listen_on_tcp(const Address& address);
-/// This end of a TCP socket, in numbers; empty: it has none.
+/// The numeric address of this end of a TCP socket; empty if it has none.
 Address local_address(int descriptor);
 
-/// What accepting came to.
+/// An accepted connection, or why there is none.
 struct Accepted {
-  Descriptor socket;  ///< tuned, does not block; closed where `error` is set
-  Address remote;     ///< in numbers
+  Descriptor socket;  ///< tuned, does not block; closed if `error` is set
+  Address remote;     ///< numeric
   std::error_code error;
 };
-/// Accepts one of the connections that wait at a listening socket.
+/// Accepts one pending connection of a listening socket.
 Accepted accept_tcp(int listening);
 
 /// "the connection to HOST:PORT was lost: REASON".

@@ -8,18 +8,18 @@
 
 namespace tether::os {
 
-/// What a program that has run left.
+/// The result of a program.
 struct Captured {
-  int code = -1;           ///< exit code; 128 + signal where a signal ended it
-  bool timed_out = false;  ///< it was ended because it took too long
+  int code = -1;           ///< exit code; 128 + signal if a signal ended it
+  bool timed_out = false;  ///< it was ended at the limit, or because of a stop
   std::string out;
   std::string err;
   Duration wall{0};  ///< from its start to its end
 };
 
-/// Runs a program to its end with `input` as its standard input. Its streams are in memory
-/// only. Ends it early when a stop is requested.
-/// @throws Error(kSetup) when it cannot be started.
+/// Runs a program with `input` as its standard input until it exits. Its streams are only in
+/// memory. Ends it after `limit`, or when a stop is requested.
+/// @throws Error(kSetup) if it cannot be started.
 Captured run_captured(const std::vector<std::string>& arguments, const std::string& input,
                       Duration limit, const std::stop_token& stop = {});
 

@@ -14,49 +14,49 @@ namespace tether::os {
 /// Variables with their values.
 using Environment = std::vector<std::pair<std::string, std::string>>;
 
-/// What to start, and how.
+/// A program to start, and how.
 struct ChildCommand {
   std::vector<std::string> arguments;  ///< program first
-  Environment environment;             ///< over this process' own
-  std::filesystem::path log;           ///< gets stdout and stderr; empty: /dev/null
-  std::vector<int> cpus{};             ///< it and its children run on these only; empty: on all
-  std::filesystem::path errors{};      ///< gets stderr instead; empty: `log` does
-  std::filesystem::path input{};       ///< read as stdin; empty: `input_pipe`, or /dev/null
-  int input_pipe = -1;   ///< the caller's end to read from, as stdin; stays the caller's
-  bool appends = false;  ///< to its logs, which several processes may then share
-  std::filesystem::path working_folder{};    ///< empty: this process' own
-  int end_signal = SIGTERM;                  ///< what asks it to end
-  int death_signal = SIGKILL;                ///< what it gets when this process is gone
-  Duration grace = std::chrono::seconds(1);  ///< from being asked to end to being made to
+  Environment environment;             ///< added to that of this process
+  std::filesystem::path log;           ///< file for stdout and stderr; empty: /dev/null
+  std::vector<int> cpus{};             ///< for it and its children; empty: all
+  std::filesystem::path errors{};      ///< file for stderr; empty: `log`
+  std::filesystem::path input{};       ///< file for stdin; empty: `input_pipe`, or /dev/null
+  int input_pipe = -1;                 ///< read end of a pipe for stdin; the caller keeps owning it
+  bool appends = false;                ///< to its logs, which several processes can then share
+  std::filesystem::path working_folder{};    ///< empty: that of this process
+  int end_signal = SIGTERM;                  ///< asks it to end
+  int death_signal = SIGKILL;                ///< sent to it when this process ends
+  Duration grace = std::chrono::seconds(1);  ///< from `end_signal` to SIGKILL
 };
 
-/// Exit codes beyond it say which signal ended a program; shells have it so, too.
+/// Higher exit codes are this plus the signal that ended a program, as in shells.
 inline constexpr int kSignalled = 128;
 
 /// How a child ended.
 struct ChildExit {
-  int code = 0;             ///< exit code; kSignalled + signal where a signal ended it
+  int code = 0;             ///< exit code; kSignalled + signal if a signal ended it
   std::string description;  ///< "exited with code 3", "was ended by signal 11 (Segmentation fault)"
 };
 
-/// A process of ours that never outlives us: it dies with its object, and with this process however
-/// that ends. In a process group of its own, so that Ctrl-C at the terminal reaches only us. Not
-/// thread-safe.
+/// A child process that ends with its object, and with this process however that ends. It is in its
+/// own process group, so that Ctrl-C at the terminal reaches only this process. Not thread-safe.
 class ChildProcess {
  public:
-  /// Starts it. A program without '/' is looked for beside this program's own file, then in PATH.
-  /// @throws Error(kSetup) naming the program and why it cannot be started.
+  /// Starts it. A program without '/' is searched for in the folder of this program, then in PATH.
+  /// @throws Error(kSetup), about the program, if it cannot be started; with the place of a log or
+  /// input that cannot be opened.
   explicit ChildProcess(const ChildCommand& command);
-  /// Ends it if it still runs.
+  /// Ends it if it is still running.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Whether and how it has ended. Does not block.
+  /// How it ended; none while it runs. Does not block.
   const std::optional<ChildExit>& poll();
-  /// Waits at most `limit` for it to end; whether it has.
+  /// Waits at most `limit` for its end; true if it has ended.
   bool wait(Duration limit);
-  /// Asks it and its children to end (`end_signal`), and makes them after its grace (SIGKILL).
+  /// Sends `end_signal` to it and its children, and SIGKILL after its grace.
   void terminate();
 
   pid_t pid() const { return pid_; }

@@ -17,7 +17,7 @@ class FileDescriptor {
   }
   ~FileDescriptor();
 
-  /// −1: none.
+  /// −1 if it owns none.
   int get() const { return descriptor_; }
   explicit operator bool() const { return descriptor_ >= 0; }
 

@@ -7,12 +7,12 @@
 
 namespace tether::os {
 
-/// SIGINT and SIGTERM as a request to stop, while it lives. One that comes more than half a second
-/// after the first ends the process at once. Meanwhile SIGPIPE and SIGXFSZ are ignored, so that
-/// what cannot be written is an error with a reason. One at a time.
+/// Turns SIGINT and SIGTERM into a request to stop while it lives. A second signal more than half a
+/// second after the first ends the process at once. SIGPIPE and SIGXFSZ are ignored meanwhile, so
+/// that failed writes return an error. One object at a time.
 class Interrupt {
  public:
-  /// @throws Error(kSetup) when the system has neither a pipe nor a thread for it.
+  /// @throws Error(kSetup) if a pipe or a thread cannot be created.
   Interrupt();
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;

@@ -8,8 +8,8 @@ namespace tether::os {
 /// The machine in one line: CPU model, cores, kernel.
 std::string describe_machine();
 
-/// Cores that this machine has, whether or not this process may use them, or they are switched on
-/// now; 0: not known.
+/// Number of cores of this machine, including cores that this process may not use or that are
+/// switched off; 0 if unknown.
 int machine_cores();
 
 /// The CPUs that this process may run on, ascending.

@@ -8,17 +8,16 @@
 
 namespace tether::os {
 
-/// A file in memory: a killed process leaves nothing of it. Not inherited by programs that are
-/// started meanwhile.
+/// A file in memory, which is gone when its process ends. Child processes do not inherit it.
 class MemoryFile {
  public:
-  /// With that content, to be read from its beginning. @throws Error(kSetup).
+  /// With this content, positioned at its beginning. @throws Error(kSetup).
   explicit MemoryFile(std::string_view content = {});
 
   int descriptor() const { return descriptor_.get(); }
-  /// For whoever is in this process.
+  /// Valid within this process.
   std::filesystem::path path() const;
-  /// All that is in it now.
+  /// Its whole current content.
   std::string content() const;
 
  private:

@@ -6,16 +6,16 @@
 
 namespace tether::os {
 
-/// Both ends of a pipe. Programs that are started meanwhile do not inherit them.
+/// Both ends of a pipe. Child processes do not inherit them.
 struct Pipe {
   FileDescriptor read_end;
   FileDescriptor write_end;
 };
 
-/// Neither end is there, and errno says why, when the system refuses.
+/// Both ends are empty, and errno has the reason, if the system refuses.
 Pipe make_pipe();
 
-/// Writes all of it, waiting for whoever reads. @return whether that was possible.
+/// Writes the whole text; blocks while the reader is slow. @return false if the write failed.
 bool write_all(const FileDescriptor& to, std::string_view text);
 
 }  // namespace tether::os

@@ -5,11 +5,11 @@
 
 namespace tether::os {
 
-/// This program's own file.
+/// The file of this program.
 std::filesystem::path own_file();
-/// The file that a command starts: beside this program's own file, else in PATH; a name with '/' is
-/// taken as it is.
-/// @throws Error(kSetup) when there is none.
+/// The file that a command starts: in the folder of this program, else in PATH. A name with '/' is
+/// a path.
+/// @throws Error(kSetup), about the name, if there is no such program.
 std::filesystem::path find_program(const std::string& name);
 
 }  // namespace tether::os

@@ -4,7 +4,7 @@
 
 namespace tether::os {
 
-/// As a shell takes it for one word and nothing more.
+/// The text quoted so that a shell reads it as one word.
 std::string shell_word(const std::string& text);
 
 }  // namespace tether::os

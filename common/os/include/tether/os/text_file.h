@@ -6,29 +6,29 @@
 
 namespace tether::os {
 
-/// Ends the name of a file that is being written, or was when the machine or the process stopped.
+/// Suffix of a file that is being written, or was when the process or the machine stopped.
 inline constexpr std::string_view kPartSuffix = ".part";
 
-/// A name that a record or a peer gave as part of a file's name: '_' stands for what would lead out
-/// of the folder or into a terminal ('/', control characters).
+/// A name from a record or a peer as part of a file's name: '/' and control characters become '_',
+/// so that it cannot lead out of the folder or control a terminal.
 std::string file_name_of(std::string_view name);
 
-/// Replaces `path` by `text`, whole or not at all: written beside it, flushed to the disk, renamed.
-/// A symbolic link stays one, and the file behind it is replaced. What exists and is no regular
-/// file (a pipe, a device) is written to directly.
-/// @throws Error(kSetup) naming the file when the file system refuses; the old content stays.
+/// Replaces the content of `path` by `text`, completely or not at all: writes a file in the same
+/// folder, flushes it to the disk, renames it. Of a symbolic link, the file behind it is replaced.
+/// A pipe or a device is written to directly.
+/// @throws Error(kSetup) with the file's place if the file system refuses; the old content stays.
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
-/// @throws Error(kBadFile) when it is missing or unreadable.
+/// The content of a regular file. @throws Error(kBadFile) if it is missing or cannot be read.
 std::string read_file(const std::filesystem::path& file);
 
-/// The whole file; empty where there is none.
+/// The content of a file of any kind; empty if it is missing.
 std::string read_whole(const std::filesystem::path& file);
-/// The last line that is not blank, without what is around it; empty: none.
+/// The last line that is not blank, without blanks at its ends; empty if there is none.
 std::string last_line(const std::string& text);
 
-/// A 64-bit FNV-1a digest of the content as 16 hexadecimal digits: tells versions apart, proves
-/// nothing.
+/// A 64-bit FNV-1a digest of the content as 16 hexadecimal digits. It distinguishes versions; it is
+/// not cryptographic.
 /// @throws Error(kBadFile) as `read_file`.
 std::string digest_of_file(const std::filesystem::path& file);
 

@@ -9,7 +9,7 @@ namespace tether::stats {
 /// @pre not empty
 double mean(const std::vector<double>& values);
 
-/// Standard deviation of a sample (over n − 1); none of fewer than two values.
+/// Standard deviation of a sample (over n − 1); none for fewer than two values.
 std::optional<double> sample_stddev(const std::vector<double>& values);
 
 /// Interpolated between the two nearest values (type 7 of Hyndman and Fan, 1996); 0.5 is the

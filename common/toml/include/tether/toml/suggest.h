@@ -6,9 +6,9 @@
 
 namespace tether::toml {
 
-/// The candidate that a person who wrote `word` most likely meant, or empty: the nearest by edit
-/// distance (insertion, deletion, substitution, transposition), if near for its length, or one
-/// that differs only in its unit suffix or by being longer.
+/// The candidate that a user who wrote `word` most likely meant: the nearest by edit distance
+/// (insertion, deletion, substitution, transposition) if the distance is small for its length, or
+/// one that differs only in its unit suffix or is longer. Empty if there is none.
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
 
 /// "'a', 'b' and 'c'"; "none" for an empty list.

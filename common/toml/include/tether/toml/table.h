@@ -17,12 +17,12 @@
 #include <tether/base/result.h>
 #include <tether/base/time.h>
 
-/// How Tether reads the TOML files that people write: a Document is parsed, and its Tables are read
-/// key by key. Each mistake becomes an Error that names file, line, key, what was found and what is
-/// allowed.
+/// Reader of the TOML files that users write: a Document is parsed, and its Tables are read key by
+/// key. Each mistake becomes an Error about the key, with file and line; its message says what was
+/// found and what is allowed.
 namespace tether::toml {
 
-/// A value of the file, as the library behind this has it.
+/// A value of the file, of the TOML library's type.
 struct Node;
 
 /// The values that a number may have.
@@ -40,9 +40,9 @@ struct Range {
 /// The keys that a table may have.
 using Keys = std::initializer_list<std::string_view>;
 
-/// One table of a TOML file, read with full checking. Every reading function throws
-/// Error(kBadFile) at the line of the key (or of the table's header, for a missing key). A view:
-/// the document must outlive it. Where `allowed` is given the table may have no other keys.
+/// One table of a TOML file. Every reading function checks the value and throws Error(kBadFile) at
+/// the line of the key, of a wrong element, or of the table's header for a missing key. A view: the
+/// document must outlive it. With `allowed`, the table may have no other keys.
 class Table {
  public:
   bool has(std::string_view key) const;
@@ -54,14 +54,14 @@ class Table {
 
   // Required keys.
   std::string text(std::string_view key) const;
-  /// May be empty, and have any character.
+  /// May be empty and have any characters.
   std::string any_text(std::string_view key) const;
   /// Letters, digits, '_', '-' and '.', 1 to 64 of them, not starting with '.'.
   std::string identifier(std::string_view key) const;
   double number(std::string_view key, const Range& range) const;
   std::vector<std::string> texts(std::string_view key) const;
   std::vector<double> numbers(std::string_view key, std::size_t count, const Range& range) const;
-  /// At least one. A wrong one is named at its own line.
+  /// At least one.
   std::vector<double> numbers(std::string_view key, const Range& range) const;
   std::int64_t integer(std::string_view key, std::int64_t min, std::int64_t max) const;
   bool boolean(std::string_view key) const;
@@ -90,7 +90,7 @@ class Table {
   std::vector<std::string> texts_or_none(std::string_view key) const;
   std::vector<Table> tables_or_none(std::string_view key, Keys allowed) const;
 
-  /// A string, number or boolean as a command line would have it.
+  /// A string, number or boolean as on a command line.
   std::string scalar_as_text(std::string_view key) const;
 
   FileLocation where() const;
@@ -103,13 +103,20 @@ class Table {
  private:
   friend class Document;
 
-  /// `path` is its name for messages ("uav.sensors.camera"; empty: the top of the file).
+  /// `path`: its name in messages ("uav.sensors.camera"; empty for the top of the file).
   Table(const Node& table, std::string path, std::string file);
   const Node& required(std::string_view key) const;
+  [[noreturn]] void fail_at(const FileLocation& place, std::string_view key,
+                            const std::string& problem) const;
+  [[noreturn]] void fail_at(const Node& node, std::string_view key,
+                            const std::string& problem) const;
   [[noreturn]] void fail_type(std::string_view key, const Node& found,
                               std::string_view expected) const;
   std::vector<const Node*> elements(std::string_view key, std::string_view expected) const;
+  std::string text_of(std::string_view key, const Node& node, std::string_view expected) const;
   double number_of(std::string_view key, const Node& node, const Range& range) const;
+  std::int64_t integer_of(std::string_view key, const Node& node, std::int64_t min,
+                          std::int64_t max) const;
   std::string child_path(std::string_view key) const;
 
   const Node* table_;
@@ -117,11 +124,11 @@ class Table {
   std::string file_;
 };
 
-/// The whole text of a file that a person wrote.
-/// @throws Error(kBadFile) when it is missing, no regular file, unreadable or larger than `limit`.
+/// The whole text of a file that a user wrote.
+/// @throws Error(kBadFile) if it is missing, not a regular file, unreadable or larger than `limit`.
 std::string read_text_file(const std::filesystem::path& file, std::size_t limit);
 
-/// A file, parsed.
+/// A parsed file.
 class Document {
  public:
   /// Of at most 1 MiB. @throws as read_text_file and `parse`.
@@ -143,8 +150,8 @@ class Document {
   std::string file_;
 };
 
-/// For the target's side, which throws nothing: what `read` returns, or kInvalid with the message
-/// of the Error that it throws.
+/// For the target's side, which does not throw: the value that `read` returns, or kInvalid with the
+/// message of the Error that it throws.
 template <class Read>
 auto result_of(const Read& read) -> Result<decltype(read())> {
   try {

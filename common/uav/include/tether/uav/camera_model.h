@@ -26,10 +26,9 @@ struct CameraModel {
   static CameraModel from_horizontal_fov(int width_px, int height_px, double horizontal_fov_rad);
 
   double horizontal_fov_rad() const;
-  double vertical_fov_rad() const;
   bool has_distortion() const;
 
-  /// Where the point appears; none if it is not in front of the camera (z ≤ 0). May lie outside the
+  /// The pixel of a point; none if it is not in front of the camera (z ≤ 0). May be outside the
   /// image.
   std::optional<Pixel> project(const Vec3& p_C) const;
   /// The viewing direction of a pixel, scaled to z = 1. Undoes the distortion iteratively.

@@ -8,9 +8,8 @@
 #include <tether/uav/camera_model.h>
 #include <tether/uav/math.h>
 
-/// What a SUT is told about its UAV and the world: the sensors, and the anchors "known in advance
-/// with some useful properties" (paper, Section III). Not where anything is: that is for the SUT to
-/// find out.
+/// What a SUT knows of its UAV and the world: the sensors, and the anchors "known in advance with
+/// some useful properties" (paper, Section III). Positions are not included: the SUT measures them.
 namespace tether::uav {
 
 enum class SensorKind { kCamera, kImu, kRange };
@@ -29,7 +28,7 @@ struct SensorDescription {
   std::string name;  ///< unique within the UAV
   Pose X_BS;  ///< mounting; a camera's S is body-style (x forward), its optical frame C follows by
               ///< q_body_from_optical()
-  double rate_hz = 0.0;  ///< of a periodic sensor; 0: measures on demand
+  double rate_hz = 0.0;  ///< of a periodic sensor; 0 for one that measures on demand
   std::variant<CameraProperties, ImuProperties, RangeProperties> properties;
 
   SensorKind kind() const { return static_cast<SensorKind>(properties.index()); }
@@ -51,7 +50,7 @@ struct Catalogue {
   std::vector<SensorDescription> sensors;
   std::vector<Anchor> anchors;
 
-  /// nullptr where there is none of that name.
+  /// nullptr if there is none of that name.
   const SensorDescription* find_sensor(std::string_view sensor) const;
   const Anchor* find_anchor(std::string_view anchor) const;
 };

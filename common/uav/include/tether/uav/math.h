@@ -27,7 +27,7 @@ struct Pose {
   friend bool operator==(const Pose&, const Pose&) = default;
 };
 
-// Inline, because the step loop of the multirotor is made of these.
+// Inline, because the step loop of the multirotor consists of these.
 constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }

@@ -8,9 +8,9 @@
 #include <tether/uav/math.h>
 #include <tether/uav/samples.h>
 
-/// The UAV itself: a rigid body with rotors under a velocity controller. Pure functions of state
-/// and input, shared by every simulator back end, so that the same UAV flies in all of them. The
-/// back end integrates the rigid body; this header says which force and torque act on it.
+/// The UAV: a rigid body with rotors and a velocity controller. Pure functions of state and input,
+/// shared by all simulator back ends, so that the same UAV flies in each. The back end integrates
+/// the rigid body; these functions compute the force and torque that act on it.
 namespace tether::uav {
 
 /// One rotor, spinning about the body's +z.
@@ -51,7 +51,7 @@ struct MultirotorParameters {
 /// constants).
 MultirotorParameters hummingbird();
 
-/// What the controller and the rotors know of the body at a step boundary.
+/// State of the body at a step boundary, as the controller and the rotors use it.
 struct BodyState {
   Vec3 p_WB;  ///< [m]
   Quat q_WB;
@@ -66,8 +66,7 @@ struct Wrench {
   friend bool operator==(const Wrench&, const Wrench&) = default;
 };
 
-/// State of rotors and controller between steps. Plain data, fixed size: copying it is the
-/// snapshot.
+/// State of rotors and controller between steps. Plain data of fixed size: a copy is a snapshot.
 struct MultirotorState {
   static constexpr std::size_t kMaxRotors = 8;
   /// The first rotors.size() are in use.

@@ -14,8 +14,8 @@ namespace tether::uav {
 
 /// One camera image.
 struct CameraSample {
-  SimTime sampled_at;       ///< when the light was seen [ST]
-  std::uint64_t index = 0;  ///< which measurement of this sensor
+  SimTime sampled_at;       ///< time of the exposure [ST]
+  std::uint64_t index = 0;  ///< number of this measurement of the sensor
   int width_px = 0;
   int height_px = 0;
   std::vector<std::uint8_t>
@@ -44,14 +44,14 @@ using Sample = std::variant<CameraSample, ImuSample, RangeSample>;
 SimTime sampled_at(const Sample& sample);
 
 /// A velocity set-point, held until the next one. Linear velocity is in the heading frame H: x
-/// ahead along the heading, y left, z up, whatever the UAV's roll and pitch.
+/// ahead along the heading, y left, z up, for any roll and pitch of the UAV.
 struct VelocityCommand {
   Vec3 velocity_H_m_s;
   double yaw_rate_rad_s = 0.0;  ///< counter-clockwise seen from above
   friend bool operator==(const VelocityCommand&, const VelocityCommand&) = default;
 };
 
-/// Whether every field is finite and within what any multirotor could do (100 m/s, 100 rad/s).
+/// Whether every field is finite and within 100 m/s and 100 rad/s, which no multirotor exceeds.
 bool is_valid(const VelocityCommand& command);
 
 }  // namespace tether::uav

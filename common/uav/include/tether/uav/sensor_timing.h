@@ -9,8 +9,8 @@
 #include <tether/base/random.h>
 #include <tether/base/time.h>
 
-/// When a sensor measures and when its data is there (paper, Section IV and Fig. 8; DESIGN section
-/// 2, "Sensor timing").
+/// When a sensor measures, and when its data is available (paper, Section IV and Fig. 8; DESIGN
+/// section 2, "Sensor timing").
 namespace tether::uav {
 
 struct ConstantDelay {
@@ -21,7 +21,7 @@ struct NormalDelay {
   Duration mean{0};
   Duration stddev{0};
 };
-/// One of the measured samples, each as likely as any other. Not empty; none negative.
+/// One of the measured samples, all with the same probability. Not empty; none negative.
 struct EmpiricalDelay {
   std::vector<Duration> samples;
 };

@@ -5,8 +5,8 @@
 namespace tether::sync {
 
 /// ET of a SUT that does not stamp its requests, as in the paper (Section II): a timer on the
-/// coordinator's own clock, paused whenever the SUT is held. It charges link time to the SUT, which
-/// is why records name such SUTs "unstamped". Pure: the clock's readings are arguments. Not
+/// coordinator's clock, paused while the SUT is held. It charges link time to the SUT, so records
+/// call such SUTs "unstamped". Pure: the clock's readings are arguments. Not
 /// thread-safe.
 class ExecutionTimer {
  public:
@@ -17,7 +17,7 @@ class ExecutionTimer {
   ExecTime read(WallTime now) const { return held_ ? base_et_ : base_et_ + (now - base_wall_); }
   /// The SUT is held from `now` on; returns its ET.
   ExecTime pause(WallTime now);
-  /// It goes on at `now` with ET = `at`.
+  /// It resumes at `now` with ET = `at`.
   void resume(WallTime now, ExecTime at);
 
  private:

@@ -4,9 +4,9 @@
 
 namespace tether::sync {
 
-/// A limit on how fast ST may run against WT: the pace of a free-running simulation, or a simulator
-/// slowed on purpose. Time not used is lost beyond a small credit, as in the simulators of today:
-/// one that was late does not race to catch up. Pure: the clock's readings are arguments. Not
+/// A limit on the speed of ST relative to WT: the pace of a free-running simulation, or a simulator
+/// that is slowed down. Unused time is lost beyond a small credit, as in other simulators: one that
+/// was late does not catch up. Pure: the clock's readings are arguments. Not
 /// thread-safe.
 class RealTimeLimit {
  public:
@@ -16,7 +16,7 @@ class RealTimeLimit {
 
   /// ST that may be simulated at `now`.
   Duration allowance(WallTime now);
-  /// That much was simulated. @pre spent ≤ the last allowance.
+  /// `spent` was simulated. @pre spent ≤ the last allowance.
   void spend(Duration spent) { credit_ -= spent; }
   /// Nothing was to be simulated until `now`: no credit for it.
   void idle(WallTime now);

@@ -3,8 +3,8 @@
 /// For tests of code that must not allocate.
 namespace tether {
 
-/// How often this program has asked for memory while the object lives, whoever asked: a test that
-/// includes this has every call of malloc and its kin counted. One at a time; not thread-safe.
+/// Counts all allocations of the program while the object lives: every call of malloc, calloc,
+/// realloc and aligned_alloc in any thread. One object at a time; not thread-safe.
 class AllocationCount {
  public:
   AllocationCount();
@@ -14,7 +14,7 @@ class AllocationCount {
 
   /// Ends the counting. Expectations allocate, so call it before them.
   long stop();
-  /// Sanitizers bring an allocator of their own, of which nothing is counted.
+  /// False with sanitizers: their allocators are not counted.
   static bool is_possible();
 };
 

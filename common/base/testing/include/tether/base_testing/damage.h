@@ -5,7 +5,7 @@
 
 #include <tether/base/random.h>
 
-/// For tests of readers that must withstand anything.
+/// For tests of readers with corrupt input.
 namespace tether {
 
 /// Changes one to four bytes: a bit, all ones, all zeros, or anything. @pre not empty.

@@ -2,11 +2,11 @@
 
 #include <sys/resource.h>
 
-/// For tests of what happens where a process may open no more files.
+/// For tests of processes that have reached their limit of open files.
 namespace tether {
 
-/// This process gets no new file descriptor while the object lives; those it has stay. One at a
-/// time; not thread-safe.
+/// This process cannot open a file descriptor while the object lives; open ones stay open. One
+/// object at a time; not thread-safe.
 class NoMoreHandles {
  public:
   NoMoreHandles();
@@ -14,8 +14,8 @@ class NoMoreHandles {
   NoMoreHandles(const NoMoreHandles&) = delete;
   NoMoreHandles& operator=(const NoMoreHandles&) = delete;
 
-  /// Whether exceptions can be made meanwhile: the undefined-behaviour sanitizer opens a pipe to
-  /// look at one.
+  /// Whether exceptions work meanwhile: the undefined-behaviour sanitizer opens a pipe to inspect
+  /// them.
   static bool allows_exceptions();
 
  private:

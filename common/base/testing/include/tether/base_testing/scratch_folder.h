@@ -6,10 +6,9 @@
 /// For tests that need files.
 namespace tether {
 
-/// A new, empty folder below the system's folder for temporary files: no other object has it,
-/// however many tests run at once. It goes with its object; when the running test has failed, it is
-/// kept and its path told on stderr, so that one can look at what was left. All members may be
-/// called from several threads.
+/// A new, empty folder of its own below the system's folder for temporary files. It is removed with
+/// its object. If the running test has failed, it is kept and its path is printed to stderr.
+/// Thread-safe.
 class ScratchFolder {
  public:
   /// @throws std::runtime_error when it cannot be made.
@@ -19,7 +18,7 @@ class ScratchFolder {
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Of what has that name in the folder; it need not exist.
+  /// The path of a name in the folder; it need not exist.
   std::filesystem::path path(const std::string& name) const { return path_ / name; }
   /// Writes the whole file, with the folders above it, and returns its path.
   /// @throws std::runtime_error when it cannot be written.

@@ -7,7 +7,7 @@
 
 #include <tether/base/result.h>
 #include <tether/base/time.h>
-#include <tether/client/exec/file_descriptor.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::client {
 
@@ -80,7 +80,7 @@ struct SharedClockPage {
     void operator()(ClockPage* page) const;
   };
   std::unique_ptr<ClockPage, Unmap> page;
-  FileDescriptor descriptor;
+  os::FileDescriptor descriptor;
 };
 Result<SharedClockPage> make_clock_page();
 
@@ -91,6 +91,6 @@ struct MappedClockPage {
   };
   std::unique_ptr<const ClockPage, Unmap> page;
 };
-Result<MappedClockPage> map_clock_page(const FileDescriptor& descriptor);
+Result<MappedClockPage> map_clock_page(const os::FileDescriptor& descriptor);
 
 }  // namespace tether::client

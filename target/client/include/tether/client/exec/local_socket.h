@@ -8,9 +8,9 @@
 
 #include <tether/base/result.h>
 #include <tether/base/time.h>
-#include <tether/client/exec/file_descriptor.h>
 #include <tether/link/codec.h>
 #include <tether/link/messages.h>
+#include <tether/os/file_descriptor.h>
 
 namespace tether::client {
 
@@ -20,19 +20,19 @@ namespace tether::client {
 /// that is frozen. One thread may send while another receives; `shut_down` may come from any.
 class LocalSocket {
  public:
-  explicit LocalSocket(FileDescriptor socket) : socket_(std::move(socket)) {}
+  explicit LocalSocket(os::FileDescriptor socket) : socket_(std::move(socket)) {}
 
   int descriptor() const { return socket_.get(); }
 
   /// Fails with kInvalid (the message breaks `validate`) or kDisconnected (also: the receiver has
   /// not read what it was sent before, and the socket does not block).
   Status send(const link::Message& message);
-  Status send_clock(const FileDescriptor& clock_page);
+  Status send_clock(const os::FileDescriptor& clock_page);
 
   /// One packet: a message, or else the clock page.
   struct Packet {
     std::optional<link::Message> message;
-    FileDescriptor clock_page;
+    os::FileDescriptor clock_page;
   };
   /// Fails with kTimeout (nothing there within `timeout`; none: blocks), kDisconnected or
   /// kProtocol.
@@ -45,7 +45,7 @@ class LocalSocket {
   Status send_packet(const std::uint8_t* data, std::size_t bytes, int descriptor);
   Status send_as_memory(const link::FramePieces& pieces);
 
-  FileDescriptor socket_;
+  os::FileDescriptor socket_;
   link::Encoder encoder_;
   std::vector<std::uint8_t> packet_;  // kept, so that steady use allocates nothing
   std::vector<std::uint8_t> input_;
@@ -56,8 +56,8 @@ Result<LocalSocket> connect_local(const std::string& path);
 
 /// A listening socket at `path`, which no other user can connect to if the folder is private.
 /// Fails with kInvalid, saying what the system refused.
-Result<FileDescriptor> listen_local(const std::string& path);
+Result<os::FileDescriptor> listen_local(const std::string& path);
 /// The next connection that waits, not blocking; none: there is none.
-FileDescriptor accept_local(const FileDescriptor& listener);
+os::FileDescriptor accept_local(const os::FileDescriptor& listener);
 
 }  // namespace tether::client
