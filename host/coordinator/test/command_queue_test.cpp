@@ -9,7 +9,7 @@ SimTime st(std::int64_t ns) {
   return from_ns<SimTime>(ns);
 }
 
-TEST(CommandQueue, GivesWhatIsDueInTheOrderOfEffectThenArrival) {
+TEST(CommandQueue, ReturnsDueCommandsInTheOrderOfEffectThenArrival) {
   CommandQueue queue;
   EXPECT_EQ(queue.next_effect(), SimTime::max());
   queue.push({st(30), 0, 1, {}});
@@ -26,7 +26,7 @@ TEST(CommandQueue, GivesWhatIsDueInTheOrderOfEffectThenArrival) {
   EXPECT_EQ(queue.next_effect(), SimTime::max());
 }
 
-TEST(CommandQueue, CountsWhatWaitsOfEachUav) {
+TEST(CommandQueue, CountsThePendingCommandsOfEachUav) {
   CommandQueue queue;
   EXPECT_EQ(queue.waiting(3), 0u);
   for (const std::size_t uav : {3u, 0u, 3u}) queue.push({st(10), uav, 1, {}});

@@ -39,7 +39,7 @@ class Stepping : public testing::Test {
                simulator_.grid(), true)}};
 };
 
-TEST_F(Stepping, StopsWhereverSomethingIsDueAndDoesItOnce) {
+TEST_F(Stepping, StopsAtEachDueEventAndActsOnce) {
   stepper_.act();
   stepper_.act();
   EXPECT_EQ(recorder_.ground_truth.size(), 1u);
@@ -50,7 +50,7 @@ TEST_F(Stepping, StopsWhereverSomethingIsDueAndDoesItOnce) {
   EXPECT_EQ(recorder_.ground_truth.back().at, ms(30));
 }
 
-TEST_F(Stepping, ACommandActsAtTheFirstBoundaryNotBeforeItsTime) {
+TEST_F(Stepping, ACommandTakesEffectAtTheFirstBoundaryFromItsTimeOn) {
   stepper_.act();
   const std::pair<int, int> cases[] = {{0, 0}, {1'000, 1}, {1'001, 2}, {2'999, 3}};  // us, ms
   for (const auto& [t, effect] : cases)
@@ -68,7 +68,7 @@ TEST_F(Stepping, ACommandActsAtTheFirstBoundaryNotBeforeItsTime) {
   }
 }
 
-TEST_F(Stepping, AReadGetsTheStateOfItsSamplingInstantHoweverFarStIs) {
+TEST_F(Stepping, AReadGetsTheStateOfItsSamplingInstant) {
   stepper_.act();
   advance_to(ms(40));
   record::Interaction entry;
@@ -80,7 +80,7 @@ TEST_F(Stepping, AReadGetsTheStateOfItsSamplingInstantHoweverFarStIs) {
   EXPECT_EQ(simulator_.calls().measure, 1u);
 }
 
-TEST_F(Stepping, WhatTheSimulatorThrowsIsASimulatorFailure) {
+TEST_F(Stepping, ErrorsOfTheSimulatorAreSimulatorFailures) {
   simulator_.on_advance([](SimTime, SimTime) { throw Error(ErrorCode::kSetup, "crashed"); });
   EXPECT_THROW(stepper_.advance_to(ms(1)), SimulatorFailure);
   EXPECT_EQ(stepper_.st(), ms(0));
