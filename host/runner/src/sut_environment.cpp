@@ -12,7 +12,7 @@ namespace tether::runner {
 
 namespace {
 
-/// As the client library takes it.
+/// In the syntax of TETHER_CLOCK.
 std::string clock_of(const scenario::Condition& condition) {
   switch (condition.clock) {
     case scenario::Clock::kWall:

@@ -7,7 +7,7 @@ namespace {
 
 using coordinator::RunEnd;
 
-/// Of a run with one SUT; without a name it never joined.
+/// Of a run with one SUT; without a name, it did not join.
 TrialEnd end_of(RunEnd end, bool began, const std::string& sut = "fly",
                 std::optional<StopCause> cause = std::nullopt) {
   coordinator::RunReport report;
@@ -17,7 +17,7 @@ TrialEnd end_of(RunEnd end, bool began, const std::string& sut = "fly",
   return {report, cause};
 }
 
-TEST(EarlyStop, IsAnEndOfTheCoordinatorsWithItsReason) {
+TEST(EarlyStop, MapsToTheEndOfARun) {
   const auto end_for = [](StopCause cause) { return to_run_end({cause, "why"}).first; };
   EXPECT_EQ(end_for(StopCause::kInterrupted), RunEnd::kInterrupted);
   EXPECT_EQ(end_for(StopCause::kSimulatorLost), RunEnd::kSimulatorLost);
@@ -26,7 +26,7 @@ TEST(EarlyStop, IsAnEndOfTheCoordinatorsWithItsReason) {
   EXPECT_EQ(to_run_end({StopCause::kSutEnded, "why"}).second, "why");
 }
 
-TEST(TrialEnd, AsksForAStoppedSutWhenOneWasSilent) {
+TEST(TrialEnd, MayHaveAStoppedSutIfOneWasSilent) {
   EXPECT_TRUE(may_have_stopped_sut(end_of(RunEnd::kSutHung, true)));
   EXPECT_TRUE(may_have_stopped_sut(end_of(RunEnd::kSutLost, false)));
   EXPECT_FALSE(may_have_stopped_sut(end_of(RunEnd::kSutLost, true)));
@@ -34,7 +34,7 @@ TEST(TrialEnd, AsksForAStoppedSutWhenOneWasSilent) {
   EXPECT_FALSE(may_have_stopped_sut(end_of(RunEnd::kInterrupted, false)));
 }
 
-TEST(TrialEnd, AsksHowALostSutEndedUnlessThatEndedTheRun) {
+TEST(TrialEnd, HasAnUnexplainedSutUnlessTheRunnerEndedTheRun) {
   EXPECT_TRUE(has_unexplained_sut(end_of(RunEnd::kSutLost, true)));
   EXPECT_TRUE(has_unexplained_sut(end_of(RunEnd::kSutLost, false)));
   for (const StopCause cause : {StopCause::kBoardLost, StopCause::kSutEnded})
@@ -42,7 +42,7 @@ TEST(TrialEnd, AsksHowALostSutEndedUnlessThatEndedTheRun) {
   EXPECT_FALSE(has_unexplained_sut(end_of(RunEnd::kSutHung, true)));
 }
 
-TEST(TrialEnd, LacksASutThatNeverJoined) {
+TEST(TrialEnd, LacksASutThatDidNotJoin) {
   EXPECT_TRUE(lacks_sut(end_of(RunEnd::kSutLost, false, "")));
   EXPECT_FALSE(lacks_sut(end_of(RunEnd::kSutLost, false, "fly")));
   EXPECT_FALSE(lacks_sut(end_of(RunEnd::kSutLost, true, "")));
