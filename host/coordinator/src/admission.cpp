@@ -41,9 +41,7 @@ std::variant<std::size_t, Refusal> admit(const link::Hello& hello, const std::st
   return uav;
 }
 
-namespace {
-/// In the syntax of TETHER_CLOCK.
-std::string text_of(const ClockSetting& setting) {
+std::string to_text(const ClockSetting& setting) {
   if (setting.kind == link::ClockKind::kCpu) return fmt::format("cpu*{}", setting.cpu_factor);
   if (setting.kind == link::ClockKind::kWall && setting.cpu_factor != 1.0)
     return fmt::format("wall*{}", setting.cpu_factor);
@@ -51,7 +49,6 @@ std::string text_of(const ClockSetting& setting) {
     return fmt::format("scripted*{}", static_cast<double>(setting.computing.count()) / 1e6);
   return std::string(link::name(setting.kind));
 }
-}  // namespace
 
 std::optional<std::string> clock_fault(const link::Hello& hello,
                                        const std::optional<ClockSetting>& wanted) {
@@ -64,8 +61,8 @@ std::optional<std::string> clock_fault(const link::Hello& hello,
   const bool is_measured =
       hello.clock == link::ClockKind::kWall || hello.clock == link::ClockKind::kCpu;
   if (!wanted || !is_measured) return std::nullopt;
-  const std::string given = text_of({.kind = hello.clock, .cpu_factor = hello.cpu_factor});
-  const std::string asked = text_of(*wanted);
+  const std::string given = to_text({.kind = hello.clock, .cpu_factor = hello.cpu_factor});
+  const std::string asked = to_text(*wanted);
   if (given == asked) return std::nullopt;
   return fmt::format(
       "the SUT's clock is \"{}\", but the condition requires \"{}\"; start the SUT with "

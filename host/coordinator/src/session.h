@@ -35,8 +35,9 @@ struct Session {
   // From the Hello on.
   link::PeerId peer = 0;  ///< 0: not joined
   link::Hello hello;
-  std::optional<sync::ExecutionTimer> timer;       ///< of an unstamped client
-  std::optional<sync::ClockWitness> plausibility;  ///< synchronised, with a clock of its own
+  std::optional<sync::ExecutionTimer> timer;  ///< of an unstamped client
+  std::optional<sync::ClockWitness>
+      plausibility;  ///< synchronised, if the SUT measures its own time
   std::uint64_t next_sequence = 1;
   SimTime called_at{};            ///< ST of the last request
   std::size_t calls_in_step = 0;  ///< requests at that ST

@@ -21,14 +21,6 @@ TEST(CaptureStore, KeepsStatesFromAnIndexOn) {
   EXPECT_EQ(store.size(), 0u);
 }
 
-TEST(CaptureStore, ReusesTheStorageOfDroppedStates) {
-  CaptureStore store;
-  store.add(0).state.assign(64, 1.0);
-  const double* storage = store.find(0)->state.data();
-  store.drop_before(1);
-  EXPECT_EQ(store.add(1).state.data(), storage);
-}
-
 TEST(CaptureStore, SteadyUseAllocatesNothing) {
   if (!AllocationCount::is_possible()) GTEST_SKIP() << "a sanitizer's allocator";
   CaptureStore store;

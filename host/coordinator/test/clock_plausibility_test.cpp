@@ -1,14 +1,11 @@
 #include "coordinator_fixture.h"
 
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// Timestamps of a SUT with a clock of its own are checked against the host clock. One that is
+/// Timestamps of a SUT that measures its own time are checked against the host clock. One that is
 /// ahead ends the run.
 namespace tether::coordinator {
 namespace {
@@ -95,53 +92,6 @@ TEST_F(ClockPlausibility, DependsOnTheClockAndTheCores) {
 TEST_F(ClockPlausibility, IsNotCheckedInFreeRunning) {
   set_free_running(1.0);
   EXPECT_EQ(fly(ClockKind::kWall, 1.0, {finish(hours(1))}).end, RunEnd::kFinished);
-}
-
-// ---- Status and messages while nothing moves.
-
-TEST_F(CoordinatorTest, TheStatusNamesTheSutThatBlocksTheRun) {
-  options_.hang_limit = seconds(3);
-  make();
-  server_->add_sut(hello(), {sleep(Duration(0), milliseconds(5))});
-  std::string first;
-  SimTime st_before{};
-  hooks_.on_status = [&](const RunStatus& status) {
-    if (first.empty() && !status.blocked.empty()) {
-      first = status.blocked;
-      EXPECT_EQ(status.st, st_before);
-    }
-    st_before = status.st;
-  };
-  const RunReport report = run();
-  EXPECT_THAT(first, HasSubstr("(UAV \"uav0\"), which has been computing for 1.0 s"));
-  EXPECT_THAT(report.reason, HasSubstr("3.0 s without a message; last message at ET 0.005000 s"));
-}
-
-TEST_F(CoordinatorTest, AJoinCountsAsAMove) {
-  options_.connect_limit = seconds(3);
-  make(2);
-  std::optional<WallTime> added, joined, reported;
-  hooks_.on_status = [&](const RunStatus& status) {
-    if (status.joined == 1 && !joined) joined = now_;
-    if (!status.blocked.empty() && !reported) reported = now_;
-    if (!added && now_ > WallTime(milliseconds(700))) {
-      added = now_;
-      add_silent(false, "uav1");
-    }
-  };
-  run();
-  ASSERT_TRUE(joined && reported);
-  EXPECT_NEAR(to_seconds(*reported - *joined), 1.0, 0.1);
-}
-
-TEST_F(CoordinatorTest, ReportsTheStateOfALostSut) {
-  options_.real_time_factor = 0.5;
-  make();
-  const auto peer = server_->add_sut(hello(), {sleep(Duration(0), seconds(5))});
-  hooks_.on_status = [&](const RunStatus& status) {
-    if (status.st > st_ms(1'000)) server_->disconnect(peer);
-  };
-  EXPECT_THAT(run().reason, HasSubstr("waiting for its reply at ET 5.000000 s"));
 }
 
 }  // namespace

@@ -224,19 +224,6 @@ TEST_F(ConcurrentTest, SeveralRequestsAreOpenInFreeRunning) {
   EXPECT_EQ(empty_reads, 1);
 }
 
-TEST_F(ConcurrentTest, ProtocolViolationsEndTheRun) {
-  for (const link::Message& message : {link::Message(link::Progress{us(10), true}),
-                                       link::Message(request(3, us(60), link::SetVelocity{}))}) {
-    make();
-    const auto peer = add_silent(true);
-    server_->deliver(peer, request(1, us(50), link::Sleep{us(900)}));
-    server_->deliver(peer, message);
-    const RunReport report = run();
-    EXPECT_EQ(report.end, RunEnd::kSutLost);
-    EXPECT_THAT(report.reason, EndsWith(refusal(peer).message));
-  }
-}
-
 // The other SUT sends nothing, so ST does not reach the time of the reply.
 TEST_F(ConcurrentTest, ContinuingBeforeItsReplyEndsTheRun) {
   std::vector<link::Message> messages{link::Progress{us(2'950), true}};
@@ -251,16 +238,6 @@ TEST_F(ConcurrentTest, ContinuingBeforeItsReplyEndsTheRun) {
     server_->deliver(peer, message);
     EXPECT_THAT(run().reason, EndsWith(" while it was stopped for a reply at 2900000 ns"));
   }
-}
-
-TEST_F(ConcurrentTest, CountsATimestampThatGoesBackAsAViolation) {
-  make();
-  const auto peer = add_silent(true);
-  server_->deliver(peer, request(1, us(500), link::Sleep{us(90'000)}));
-  server_->deliver(peer, request(2, us(400), link::Finish{true, "", ""}));
-  server_->deliver(peer, link::Progress{us(500), true});
-  EXPECT_EQ(run().causality_violations, 1u);
-  EXPECT_EQ(recorder_.interactions.at(0).violation, "request in the past by 100000 ns");
 }
 
 TEST_F(ConcurrentTest, SharesTheTimeOfASerialSut) {

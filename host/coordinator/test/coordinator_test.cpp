@@ -1,4 +1,5 @@
 #include "coordinator_fixture.h"
+#include "validator.h"
 
 #include <algorithm>
 
@@ -208,23 +209,6 @@ TEST_F(CoordinatorTest, EndsAtTheTimeLimit) {
   EXPECT_EQ(recorder_.ground_truth.size(), 201u);
 }
 
-TEST_F(CoordinatorTest, EndsIfNoMessageComesFromASut) {
-  options_.hang_limit = seconds(3);
-  const RunReport report = run({sleep(Duration(0), milliseconds(5))});
-  EXPECT_EQ(report.end, RunEnd::kSutHung);
-  EXPECT_THAT(report.reason, HasSubstr("hang_limit_s"));
-  EXPECT_EQ(recorder_.interactions.size(), 1u);
-}
-
-// From the helper thread of a SUT that is stuck.
-TEST_F(CoordinatorTest, RepeatedProgressIsNoSignOfLife) {
-  options_.hang_limit = seconds(3);
-  make();
-  const auto peer = add_silent();
-  hooks_.on_status = [&](const RunStatus&) { server_->deliver(peer, link::Progress{us(0)}); };
-  EXPECT_EQ(run().end, RunEnd::kSutHung);
-}
-
 TEST_F(CoordinatorTest, EndsIfASutDoesNotJoinOrDisconnects) {
   options_.connect_limit = seconds(1);
   make();
@@ -327,6 +311,95 @@ TEST_F(CoordinatorTest, RejectsASutWithAnotherClockThanItsCondition) {
     EXPECT_THAT(refusal(peer).message, HasSubstr(expected));
     EXPECT_THAT(refused, testing::ElementsAre(HasSubstr(expected)));
   }
+}
+
+TEST_F(CoordinatorTest, RecordsAnnotationsOfSutsOnly) {
+  make();
+  const auto peer = server_->add_sut(hello(), {finish(milliseconds(1))});
+  const link::PeerId stranger = peer + 1;
+  for (const auto from : {peer, stranger})
+    server_->deliver(from, link::Annotation{ExecTime{}, "step", "{}"});
+  EXPECT_EQ(run().end, RunEnd::kFinished);
+  EXPECT_EQ(recorder_.annotations.size(), 1u);
+  EXPECT_EQ(refusal(stranger).reason, link::Refusal::Reason::kBadMessage);
+}
+
+// ---- Status and messages while nothing moves.
+
+TEST_F(CoordinatorTest, TheStatusNamesTheSutThatBlocksTheRun) {
+  options_.hang_limit = seconds(3);
+  make();
+  server_->add_sut(hello(), {sleep(Duration(0), milliseconds(5))});
+  std::string first;
+  SimTime st_before{};
+  hooks_.on_status = [&](const RunStatus& status) {
+    if (first.empty() && !status.blocked.empty()) {
+      first = status.blocked;
+      EXPECT_EQ(status.st, st_before);
+    }
+    st_before = status.st;
+  };
+  const RunReport report = run();
+  EXPECT_EQ(report.end, RunEnd::kSutHung);
+  EXPECT_EQ(recorder_.interactions.size(), 1u);
+  EXPECT_THAT(first, HasSubstr("(UAV \"uav0\"), which has been computing for 1.0 s"));
+  EXPECT_THAT(report.reason, HasSubstr("3.0 s without a message; last message at ET 0.005000 s"));
+}
+
+TEST_F(CoordinatorTest, AJoinCountsAsAMove) {
+  options_.connect_limit = seconds(3);
+  make(2);
+  std::optional<WallTime> added, joined, reported;
+  hooks_.on_status = [&](const RunStatus& status) {
+    if (status.joined == 1 && !joined) joined = now_;
+    if (!status.blocked.empty() && !reported) reported = now_;
+    if (!added && now_ > WallTime(milliseconds(700))) {
+      added = now_;
+      add_silent(false, "uav1");
+    }
+  };
+  run();
+  ASSERT_TRUE(joined && reported);
+  EXPECT_NEAR(to_seconds(*reported - *joined), 1.0, 0.1);
+}
+
+TEST_F(CoordinatorTest, ReportsTheStateOfALostSut) {
+  options_.real_time_factor = 0.5;
+  make();
+  const auto peer = server_->add_sut(hello(), {sleep(Duration(0), seconds(5))});
+  hooks_.on_status = [&](const RunStatus& status) {
+    if (status.st > st_ms(1'000)) server_->disconnect(peer);
+  };
+  EXPECT_THAT(run().reason, HasSubstr("waiting for its reply at ET 5.000000 s"));
+}
+
+// ---- Limits on calls, without which a SUT could keep a run from ending.
+
+/// So many calls, each after `compute`, and the finish.
+ScriptedServer::Script calls(std::size_t count, Duration compute) {
+  ScriptedServer::Script script(count, turn(compute, 0.1));
+  script.push_back(finish(compute));
+  return script;
+}
+
+TEST_F(CoordinatorTest, CallsWithoutComputingTimeEndTheRunUnlessTheClientIsUnstamped) {
+  tick_ = Duration(1000);
+  EXPECT_EQ(run(calls(20'000, Duration(0))).end, RunEnd::kSutLost);
+  EXPECT_EQ(recorder_.interactions.size(), kMaxCallsInAStep);
+  make();
+  server_->add_sut(hello("", link::ClockKind::kUnstamped), calls(20'000, Duration(0)));
+  EXPECT_EQ(run().end, RunEnd::kFinished) << "the clock of the coordinator charges each call";
+}
+
+TEST_F(CoordinatorTest, EachStepAllowsTheSameNumberOfCalls) {
+  tick_ = Duration(1000);
+  ScriptedServer::Script script;
+  for (int i = 0; i < 3; ++i) {
+    script.insert(script.end(), 9'000, turn(Duration(0), 0.1));
+    script.push_back(turn(milliseconds(2), 0.1));
+  }
+  script.push_back(finish(Duration(0)));
+  EXPECT_EQ(run(std::move(script)).end, RunEnd::kFinished);
 }
 
 }  // namespace

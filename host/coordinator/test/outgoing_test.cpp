@@ -19,25 +19,23 @@ TEST_F(CoordinatorTest, RendersOnlyImagesThatAreRead) {
 }
 
 // Images are 33 ms apart. The SUT gets all of them.
-TEST_F(CoordinatorTest, RecordsImagesAtTheImagePeriod) {
+TEST_F(CoordinatorTest, RecordsAllImagesOrThoseOfTheImagePeriod) {
   options_.record_images = true;
-  options_.image_period = milliseconds(66);
   ScriptedServer::Script script;
   for (int i = 0; i < 6; ++i) script.push_back(read(Duration(0), kCamera));
   script.push_back(read(Duration(0), kCamera, true));
+  script.push_back(read(Duration(0), kRange));
   script.push_back(finish(Duration(0)));
-  const RunReport report = run(script);
-  EXPECT_EQ(report.images, 7u);
-  std::vector<std::uint64_t> indices;
-  for (const record::Image& image : recorder_.images) indices.push_back(image.index);
-  EXPECT_THAT(indices, testing::ElementsAre(0u, 2u, 4u));
-}
-
-TEST_F(CoordinatorTest, RecordsEveryImageThatIsReadByDefault) {
-  options_.record_images = true;
-  run({read(Duration(0), kCamera), read(Duration(0), kCamera), read(Duration(0), kCamera, true),
-       read(Duration(0), kRange), finish(Duration(0))});
-  EXPECT_EQ(recorder_.images.size(), 3u);
+  const auto recorded = [&](Duration period) {
+    options_.image_period = period;
+    make();
+    EXPECT_EQ(run(script).images, 7u);
+    std::vector<std::uint64_t> indices;
+    for (const record::Image& image : recorder_.images) indices.push_back(image.index);
+    return indices;
+  };
+  EXPECT_THAT(recorded(Duration(0)), testing::ElementsAre(0u, 1u, 2u, 3u, 4u, 5u, 5u));
+  EXPECT_THAT(recorded(milliseconds(66)), testing::ElementsAre(0u, 2u, 4u));
 }
 
 // ---- The end of a SUT

@@ -66,24 +66,6 @@ TEST_F(Sampling, CapturesPeriodicSensorsUnlessInFreeRunning) {
   EXPECT_EQ(sampler_->next_due(), SimTime::max());
 }
 
-TEST_F(Sampling, InFreeRunningAPeriodicSensorIsReadOncePerPeriod) {
-  make(kPeriodic, false);
-  ASSERT_TRUE(sampler_->plan(1, {}, us(2'500)));
-  ASSERT_TRUE(sampler_->plan(2, {}, us(2'500)));
-  sample(us(2'000), us(0));
-  EXPECT_TRUE(sampler_->find(1)->captured);
-  EXPECT_FALSE(sampler_->find(2)->captured);
-  EXPECT_EQ(sampler_->next_due(), us(10'000));
-  sample(us(10'000), us(0));
-  EXPECT_EQ(sampler_->state_of(*sampler_->find(2)).at, us(10'000));
-}
-
-TEST_F(Sampling, AReadWithoutAMeasurementIsNotPlanned) {
-  make(kPeriodic);
-  EXPECT_FALSE(sampler_->plan(1, {0, false, true}, us(24'999)));
-  EXPECT_EQ(sampler_->find(1), nullptr);
-}
-
 TEST_F(Sampling, NothingIsDueOnceTheSutHasLeft) {
   make(kPeriodic);
   ASSERT_TRUE(sampler_->plan(1, {}, us(0)));

@@ -41,12 +41,6 @@ TEST(SensorSchedule, PeriodicReads) {
     EXPECT_EQ(schedule.choose(ms(c.read_ms), c.latest), c.expected) << c.what;
 }
 
-TEST(SensorSchedule, ReadsBeforeThePhaseWaitForTheFirstMeasurement) {
-  const SensorSchedule schedule = camera(milliseconds(10), milliseconds(5));
-  EXPECT_EQ(schedule.choose(ms(0), false), (Measurement{0, ms(5), ms(15)}));
-  EXPECT_EQ(schedule.choose(ms(0), true), (Measurement{0, ms(5), ms(15)}));
-}
-
 TEST(SensorSchedule, OnDemandMeasuresAtTheRequestAndDeliversADelayLater) {
   SensorSchedule schedule(uav::OnDemandTiming{uav::ConstantDelay{milliseconds(98)}}, 0, 0);
   const auto t = from_ns<SimTime>(1'234'567);

@@ -14,7 +14,7 @@ namespace tether::runner {
 
 namespace {
 
-/// The program of a SUT with a launcher, as an absolute path unless it has a folder of its own.
+/// The program of a SUT with a launcher, as an absolute path unless it is given with a folder.
 std::filesystem::path find_launched(const std::string& program, const scenario::Target& target) {
   std::error_code ignored;
   if (program.find('/') == std::string::npos) return os::find_program(program);

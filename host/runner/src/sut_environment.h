@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <tether/coordinator/coordinator.h>
 #include <tether/os/child_process.h>
 #include <tether/scenario/scenario.h>
 
@@ -18,6 +19,9 @@ struct SutRun {
   std::string token;
   scenario::Condition condition;
 };
+
+/// The clock of the SUTs under a condition.
+coordinator::ClockSetting clock_of(const scenario::Condition& condition);
 
 /// The SUT's program with its parameters as options: max_frames = 5 becomes --max-frames 5.
 std::vector<std::string> command_line(const scenario::Sut& sut);

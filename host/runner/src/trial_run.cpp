@@ -43,18 +43,6 @@ std::string token_of_run() {
   return token;
 }
 
-link::ClockKind kind_of(scenario::Clock clock) {
-  switch (clock) {
-    case scenario::Clock::kWall:
-      return link::ClockKind::kWall;
-    case scenario::Clock::kCpu:
-      return link::ClockKind::kCpu;
-    case scenario::Clock::kScripted:
-      return link::ClockKind::kScripted;
-  }
-  return link::ClockKind::kWall;
-}
-
 /// 0: not known, or out of range.
 int known_cores() {
   const int cores = os::machine_cores();
@@ -83,8 +71,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
   options.policy = spec.condition.policy == scenario::Policy::kFreeRunning
                        ? sync::SyncPolicy::kFreeRunning
                        : sync::SyncPolicy::kConservativeBarrier;
-  const coordinator::ClockSetting clock{kind_of(spec.condition.clock), spec.condition.cpu_factor,
-                                        spec.condition.computing};
+  const coordinator::ClockSetting clock = clock_of(spec.condition);
   for (std::size_t i = 0; i < timings.size(); ++i)
     options.uavs.push_back({timings[i], spec.scenario.uavs[i].command_latency, clock,
                             is_local(spec) ? known_cores() : 0});

@@ -23,10 +23,12 @@ namespace tether::coordinator {
 
 struct ClockSetting {
   link::ClockKind kind = link::ClockKind::kWall;
-  double cpu_factor =
-      1.0;  ///< of link::ClockKind::kCpu and kWall: seconds of ET per second of that clock
-  Duration computing{0};  ///< of link::ClockKind::kScripted: for each phase of computing
+  double cpu_factor = 1.0;  ///< of kCpu and kWall: seconds of ET per second of the clock
+  Duration computing{0};    ///< of kScripted: for each phase of computing
 };
+
+/// In the syntax of TETHER_CLOCK: "cpu*6".
+std::string to_text(const ClockSetting& setting);
 
 /// One UAV of the world and its SUT.
 struct UavOptions {
