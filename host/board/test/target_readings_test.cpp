@@ -167,14 +167,13 @@ TEST(Evaluate, GradesSingleReadings) {
     const char* subject;
     std::string_view health;
   };
-  const Case cases[] = {
-      {with(kThrottledPi, {{"frequency_min_khz", "1800000"}}), "governor", "ok"},
-      {healthy_pi({{"frequency_now_min_khz", "1000000"}}), "frequency", "bad"},
-      {healthy_pi({{"frequency_max_khz", "1500000"}}), "frequency", "warn"},
-      {healthy_pi({{"held_by", "ada@host since noon"}}), "in use", "bad"},
-      {with(kPc, {{"clock_source", "tsc"}}), "clock source", "ok"},
-      {with(kPc, {{"clock_source", "hpet"}}), "clock source", "warn"},
-      {with(kPc, {{"clock_source", "jiffies"}}), "clock source", "bad"}};
+  const Case cases[] = {{with(kThrottledPi, {{"frequency_min_khz", "1800000"}}), "governor", "ok"},
+                        {healthy_pi({{"frequency_now_min_khz", "1000000"}}), "frequency", "bad"},
+                        {healthy_pi({{"frequency_max_khz", "1500000"}}), "frequency", "warn"},
+                        {healthy_pi({{"held_by", "ada@host since noon"}}), "in use", "bad"},
+                        {with(kPc, {{"clock_source", "tsc"}}), "clock source", "ok"},
+                        {with(kPc, {{"clock_source", "hpet"}}), "clock source", "warn"},
+                        {with(kPc, {{"clock_source", "jiffies"}}), "clock source", "bad"}};
   for (const Case& c : cases)
     EXPECT_EQ(name(finding(c.readings, c.subject).health), c.health) << c.subject;
 }
