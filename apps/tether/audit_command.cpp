@@ -10,9 +10,7 @@
 
 namespace tether::app {
 
-namespace {}  // namespace
-
-int audit_record(const AuditOptions& options) {
+int audit_record(const AuditOptions& options, const std::stop_token&) {
   const record::Record record = record::read_record(options.record);
   if (!record.damage.empty()) say("warning: {}: {}\n", options.record.string(), record.damage);
   const audit::Verdict verdict = audit::audit(record);

@@ -23,7 +23,7 @@ using runner::SimulatorSetup;
 
 constexpr Duration kAttachLimit = std::chrono::seconds(5);
 
-/// In this process, or started by somebody else.
+/// The embedded simulator, or an external one.
 class WithoutProcesses final : public runner::RunningSimulator {
  public:
   explicit WithoutProcesses(std::unique_ptr<sim::Simulator> simulator)
@@ -41,7 +41,9 @@ class InGazebo final : public runner::RunningSimulator {
                 {setup.answer_limit, setup.log, setup.warn, setup.on_silence, setup.stop}) {}
   sim::Simulator& get() override { return gazebo_.get(); }
   std::optional<std::string> lost() override { return gazebo_.lost(); }
-  std::string post_mortem(const std::string& said) override { return gazebo_.post_mortem(said); }
+  std::string post_mortem(const std::string& message) override {
+    return gazebo_.post_mortem(message);
+  }
 
  private:
   sim::GazeboSimulator gazebo_;
@@ -52,8 +54,9 @@ std::unique_ptr<sim::Simulator> attach(const sim::protocol::Endpoint& endpoint, 
   auto connection = sim::protocol::connect(endpoint, kAttachLimit);
   if (!connection)
     throw Error(ErrorCode::kSetup,
-                fmt::format("no simulator listens at {}: {}", sim::protocol::to_string(endpoint),
-                            connection.failure().message));
+                fmt::format("cannot connect to the simulator at {}: {}",
+                            sim::protocol::to_string(endpoint), connection.failure().message))
+        .about(sim::protocol::to_string(endpoint));
   return sim::make_remote_simulator(
       std::move(world), std::move(*connection),
       {.answer_limit = setup.answer_limit,
@@ -66,28 +69,27 @@ std::unique_ptr<sim::Simulator> attach(const sim::protocol::Endpoint& endpoint, 
       setup.warn);
 }
 
-std::vector<std::filesystem::path> no_files() {
-  return {};
+/// A simulator without processes and files; `make` returns it.
+template <class Make>
+runner::BackEnd without_processes(Make make) {
+  return {.require_readable = [](const sim::World&) {},
+          .start =
+              [make](sim::World world, const SimulatorSetup& setup) {
+                return std::make_unique<WithoutProcesses>(make(std::move(world), setup));
+              },
+          .files = [] { return std::vector<std::filesystem::path>{}; }};
 }
 
 runner::BackEnd back_end(EmbeddedSimulator) {
-  return {.require_readable = [](const sim::World&) {},
-          .start =
-              [](sim::World world, const SimulatorSetup& setup) {
-                return std::make_unique<WithoutProcesses>(
-                    sim::make_mujoco_simulator(std::move(world), setup.warn));
-              },
-          .files = no_files};
+  return without_processes([](sim::World world, const SimulatorSetup& setup) {
+    return sim::make_mujoco_simulator(std::move(world), setup.warn);
+  });
 }
 
 runner::BackEnd back_end(const sim::protocol::Endpoint& endpoint) {
-  return {
-      .require_readable = [](const sim::World&) {},
-      .start =
-          [endpoint](sim::World world, const SimulatorSetup& setup) {
-            return std::make_unique<WithoutProcesses>(attach(endpoint, std::move(world), setup));
-          },
-      .files = no_files};
+  return without_processes([endpoint](sim::World world, const SimulatorSetup& setup) {
+    return attach(endpoint, std::move(world), setup);
+  });
 }
 
 runner::BackEnd back_end(GazeboSimulator) {

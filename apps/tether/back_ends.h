@@ -6,7 +6,7 @@
 
 namespace tether::app {
 
-/// The simulator that `--simulator` or a condition names.
+/// The simulator with that name in `--simulator` or a condition.
 /// @throws Error(kUsage) as parse_simulator_option.
 runner::BackEnd find_back_end(const std::string& name);
 

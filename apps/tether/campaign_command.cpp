@@ -30,7 +30,7 @@ namespace tether::app {
 
 namespace {
 
-/// The campaign as it is flown: in the simulator that is asked for, whatever its conditions say.
+/// The campaign, with the simulator of the options in all conditions if one is given.
 scenario::Campaign load(const CampaignOptions& options) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   scenario::Campaign campaign =
@@ -42,14 +42,15 @@ scenario::Campaign load(const CampaignOptions& options) {
   return campaign;
 }
 
-/// Each parallel trial has its own Gazebo, and its own port.
+/// Each parallel trial with Gazebo needs a port.
 void require_ports(const scenario::Campaign& campaign, int jobs) {
   const char* master = std::getenv("GAZEBO_MASTER_URI");
   if (jobs == 1 || !master || !*master || !runner::simulators(campaign).contains("gazebo")) return;
   throw Error(ErrorCode::kUsage,
-              fmt::format("--jobs {}: GAZEBO_MASTER_URI names one port, {}, and parallel trials "
-                          "need one each; unset it, or use --jobs 1",
-                          jobs, master));
+              fmt::format("--jobs {}: each parallel trial needs a port, but GAZEBO_MASTER_URI "
+                          "selects one ({}). Unset it, or use --jobs 1",
+                          jobs, master))
+      .about("GAZEBO_MASTER_URI");
 }
 
 campaign::CampaignOutcome fly(const campaign::CampaignFolder& folder,
@@ -95,7 +96,7 @@ int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
       folder, campaign, options.jobs,
       [&, &files = files] { campaign::require_unchanged(campaign, settings, files); }, stop);
   if (outcome.interrupted) {
-    say("tether: interrupted; go on with: tether campaign {} --out {} --resume\n",
+    say("tether: interrupted; to continue, type: tether campaign {} --out {} --resume\n",
         options.campaign.string(), out.string());
     return exit_code(ErrorCode::kSetup);
   }

@@ -12,7 +12,8 @@
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 
-// All that needs CLI11, which is expensive to compile.
+// The options of all commands, with their help texts; the only source that includes CLI11, which is
+// expensive to compile. docs/man/tether.1 describes the same options.
 namespace tether::app {
 
 namespace {
@@ -28,52 +29,62 @@ Examples:
   tether campaign face_anchor --out out/face_anchor
   tether audit out/face_anchor/face_anchor/host/seed-0001/record.mcap)";
 
-/// `--simulator`, of every command that flies.
+/// Adds a subcommand; if it is chosen, `action` calls `run` with the options that were parsed.
+template <class Options>
+std::pair<CLI::App*, std::shared_ptr<Options>> add_command(
+    CLI::App& program, Action& action, const char* name, const char* description,
+    int (*run)(const Options&, const std::stop_token&)) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(name, description);
+  command->callback([options, run, &action] {
+    action = [options, run](const std::stop_token& stop) { return run(*options, stop); };
+  });
+  return {command, options};
+}
+
 void add_simulator_option(CLI::App& command, std::string& simulator) {
   command.add_option("--simulator", simulator,
-                     "What plays the world, over what the condition says: mujoco, in this program; "
-                     "gazebo, which is started and ended by it; or where a simulator listens, "
+                     "Simulator to use instead of the condition's: mujoco (embedded), gazebo "
+                     "(started and ended by tether), or the address of an external simulator, "
                      "unix:/path or tcp://host:port");
 }
 
-// Each adds a subcommand to the program, and sets `action` when it is chosen.
-
 void add_run_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<RunOptions>();
-  CLI::App* command = program.add_subcommand("run", "Run one trial of a scenario");
+  const auto [command, options] =
+      add_command(program, action, "run", "Run one trial of a scenario", run_one);
   command->add_option("scenario", options->scenario, "Name of a shipped scenario, or a file (TOML)")
       ->required();
   command->add_option("--condition", options->condition,
-                      "Condition of the scenario; its first one if not given");
+                      "Condition of the scenario [its first one]");
   command->add_option("--profile", options->profile,
-                      "Profile of the sensors (a shipped one's name, or a file), laid over the "
-                      "scenario's settings");
+                      "Sensor profile that overrides the scenario's settings: name of a shipped "
+                      "profile, or a file (TOML)");
   command->add_option("--seed", options->seed, "Seed of noise, delays and start poses")
       ->check(CLI::Range(0.0, 9007199254740992.0))
       ->capture_default_str();
-  command->add_option(
-      "--out", options->out,
-      "Folder for result.json, record.mcap and the SUT's log [out/SCENARIO/CONDITION/seed-N]");
+  command->add_option("--out", options->out,
+                      "Folder for result.json, record.mcap and the SUT's log "
+                      "[out/SCENARIO/CONDITION/seed-N]");
   command
       ->add_option("--real-time-factor", options->real_time_factor,
-                   "Simulate at most this fast against the wall clock")
+                   "Maximum speed of the simulation relative to the wall clock")
       ->check(CLI::Range(1e-3, 1e4));
-  command->add_option("--listen", options->listen, "Address for the SUT; port 0 takes a free one")
+  command
+      ->add_option("--listen", options->listen,
+                   "Address for the SUT, host:port; port 0 selects a free port")
       ->capture_default_str();
-  command->add_option(
-      "--target", options->target,
-      "Where the SUT runs, over what the condition says: the name of a shipped target, or a file "
-      "(TOML); "
-      "ssh://[user@]board[:port]; or \"wait\": do not start the SUT, print what to type where it "
-      "runs, and wait for it");
+  command->add_option("--target", options->target,
+                      "Where the SUT runs, instead of the condition's target: name of a shipped "
+                      "target, a file (TOML), or a board, ssh://[user@]board[:port]; with "
+                      "\"wait\", print the command that starts the SUT and wait for it to connect");
   add_simulator_option(*command, options->simulator);
   command->add_flag("--tunnel", options->tunnel,
-                    "The board's SUT comes through the SSH connection, where it cannot reach this "
-                    "machine; costs the board the encryption of every image");
+                    "Tunnel the SUT's connection through SSH, for a board that cannot reach this "
+                    "machine; the board must then decrypt every image");
   command->add_flag("--images", options->record_images,
-                    "Keep the camera images that the SUT consumed in the record");
+                    "Record the camera images that the SUT reads");
   command->add_flag("--json", options->json, "Print result.json instead of a summary");
-  command->add_flag("--quiet", options->quiet, "Print errors and warnings only");
+  command->add_flag("--quiet", options->quiet, "Print only errors and warnings");
   command->footer(R"(Examples:
   tether run face_anchor
   tether run face_anchor --condition "target, no sync" --seed 7
@@ -82,15 +93,13 @@ void add_run_command(CLI::App& program, Action& action) {
   tether run face_anchor --profile ideal
   tether run face_anchor --simulator gazebo
   tether run face_anchor --images --out out/one)");
-  command->callback([options, &action] {
-    action = [options](const std::stop_token& stop) { return run_one(*options, stop); };
-  });
 }
 
 void add_campaign_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<CampaignOptions>();
-  CLI::App* command =
-      program.add_subcommand("campaign", "Run many trials: scenarios x conditions x seeds");
+  const auto [command, options] = add_command(program, action, "campaign",
+                                              "Run the trials of a campaign: scenarios x "
+                                              "conditions x seeds",
+                                              run_campaign);
   command->add_option("campaign", options->campaign, "Name of a shipped campaign, or a file (TOML)")
       ->required();
   command->add_option("--out", options->out, "Folder for the trials [out/CAMPAIGN]");
@@ -100,21 +109,18 @@ void add_campaign_command(CLI::App& program, Action& action) {
           "Number of parallel trials. Rejected if parallel runs would distort measured time")
       ->capture_default_str();
   add_simulator_option(*command, options->simulator);
-  command->add_flag("--resume", options->resume, "Go on with a folder: run only what is missing");
+  command->add_flag("--resume", options->resume,
+                    "Continue a campaign: run only the trials without a result");
   command->footer(R"(Examples:
   tether campaign face_anchor --out out/face_anchor
   tether campaign face_anchor --out out/face_anchor --resume
   tether campaign face_anchor --simulator gazebo --out out/face_anchor_gazebo)");
-  command->callback([options, &action] {
-    action = [options](const std::stop_token& stop) { return run_campaign(*options, stop); };
-  });
 }
 
 void add_report_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<ReportOptions>();
-  CLI::App* command =
-      program.add_subcommand("report", "Tables and plots of a campaign's results, or of one run's");
-  command->add_option("folder", options->folder, "Folder of a campaign or of a run")->required();
+  const auto [command, options] =
+      add_command(program, action, "report", "Report the results of a campaign or a run", report);
+  command->add_option("folder", options->folder, "Folder of a campaign or a run")->required();
   command
       ->add_option("--format", options->format,
                    "text, markdown, csv (one row per trial and metric), summary-csv (one row per "
@@ -122,115 +128,96 @@ void add_report_command(CLI::App& program, Action& action) {
       ->check(CLI::IsMember({"text", "markdown", "csv", "summary-csv", "html"}))
       ->capture_default_str();
   command->add_option("--out", options->out,
-                      "File to write [standard output; of html: report.html in the folder]");
+                      "File to write [standard output; for html, report.html in the folder]");
   command->footer(R"(Examples:
   tether report out/face_anchor
   tether report out/face_anchor --format html
   tether report out/one --format html --out one.html
   tether report out/face_anchor --format csv --out trials.csv)");
-  command->callback([options, &action] {
-    action = [options](const std::stop_token&) { return report(*options); };
-  });
 }
 
 void add_frames_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<FramesOptions>();
-  CLI::App* command = program.add_subcommand(
-      "frames", "Recorded camera images with the ROI that the SUT tracked and the true one");
+  const auto [command, options] = add_command(
+      program, action, "frames",
+      "Draw the recorded camera images with the tracked and the true ROI (SVG)", draw_frames);
   command->add_option("record", options->record, "record.mcap of a run with --images")->required();
-  command->add_option("--out", options->out,
-                      "Folder for the pictures (SVG) [frames, beside the record]");
+  command->add_option("--out", options->out, "Folder for the images [frames, next to the record]");
   command->footer(R"(Example:
   tether run face_anchor --images --out out/one
   tether frames out/one/record.mcap)");
-  command->callback([options, &action] {
-    action = [options](const std::stop_token&) { return draw_frames(*options); };
-  });
 }
 
 void add_plot_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = program.add_subcommand(
-      "plot", "ST and ET against wall time, lag, and the path from above, as SVG");
+  const auto [command, options] = add_command(
+      program, action, "plot",
+      "Plot ST and ET over wall time, the lag, and the path of a run (SVG)", draw_plots);
   command->add_option("record", options->record, "record.mcap of a run")->required();
-  command->add_option("--out", options->out, "Folder for the plots [plots, beside the record]");
+  command->add_option("--out", options->out, "Folder for the plots [plots, next to the record]");
   command->footer(
-      R"(Writes timeline.svg (the whole run), timeline_zoom.svg (its first interactions), lag.svg (not of a
-run without synchronisation: nothing lags there) and path.svg. Needs gnuplot.
+      R"(Writes timeline.svg (the whole run), timeline_zoom.svg (its first interactions), lag.svg (only
+for synchronised runs) and path.svg. Needs gnuplot.
 
 Example:
   tether plot out/one/record.mcap)");
-  command->callback([options, &action] {
-    action = [options](const std::stop_token&) { return draw_plots(*options); };
-  });
 }
 
 void add_audit_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<AuditOptions>();
-  CLI::App* command = program.add_subcommand(
-      "audit", "Check a record against the rules of time, from the record alone");
+  const auto [command, options] = add_command(
+      program, action, "audit", "Check a record against the rules of time", audit_record);
   command->add_option("record", options->record, "record.mcap of a run")->required();
-  command->add_option("--max-findings", options->max_findings, "Print at most this many")
+  command
+      ->add_option("--max-findings", options->max_findings, "Maximum number of findings to print")
       ->check(CLI::Range(0.0, 1e9))
       ->capture_default_str();
-  command->footer(R"(Exit code 0: every rule is kept; 1: not, or the record has no end.
+  command->footer(
+      R"(Exit codes: 0 all rules are kept, 1 a rule is violated or the record is incomplete.
 
 Example:
   tether audit out/one/record.mcap)");
-  command->callback([options, &action] {
-    action = [options](const std::stop_token&) { return audit_record(*options); };
-  });
 }
 
 void add_list_command(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand(
-      "list", "List the scenarios, campaigns, worlds, profiles and targets that Tether ships");
+  const auto [command, options] =
+      add_command(program, action, "list",
+                  "List the scenarios, campaigns, worlds, profiles and targets that Tether ships",
+                  list_shipped);
   command->footer(
-      "`tether run`, `tether campaign`, --profile and --target take these names in place of a "
-      "file.");
-  command->callback([&action] { action = [](const std::stop_token&) { return list_shipped(); }; });
+      "You can pass these names to `tether run`, `tether campaign`, --profile and --target instead "
+      "of a file.");
 }
 
 void add_target_command(CLI::App& program, Action& action) {
-  auto options = std::make_shared<CheckOptions>();
-  CLI::App* target = program.add_subcommand("target", "Machines that a SUT may run on");
+  CLI::App* target = program.add_subcommand("target", "Check machines on which a SUT can run");
   target->require_subcommand(1);
   target->footer("Examples:\n  tether target check ssh://pi@board.local");
-  CLI::App* check =
-      target->add_subcommand("check", "Report what on a machine would disturb a measurement");
-  check->add_option("address", options->address,
-                    "ssh://[user@]board[:port]; this machine if not given");
+  const auto [check, options] =
+      add_command(*target, action, "check", "Report what would disturb a measurement on a machine",
+                  check_target);
+  check->add_option("address", options->address, "ssh://[user@]board[:port] [this machine]");
   check->add_flag("--json", options->json, "Print findings and readings as JSON");
   check->footer(
-      R"(Exit codes: 0 fine, 1 something would disturb a measurement, 2 wrong use, 3 not reachable.
+      R"(Exit codes: 0 nothing would disturb a measurement, 1 something would, 2 wrong use,
+3 the machine cannot be reached.
 
 Examples:
   tether target check
   tether target check ssh://pi@board.local)");
-  check->callback([options, &action] {
-    action = [options](const std::stop_token& stop) { return check_target(*options, stop); };
-  });
 }
 
 }  // namespace
 
 int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interrupt) {
-  CLI::App program{
-      "Reports whether a UAV's computer is fast enough for its task, before anything flies."};
+  CLI::App program{"Tests in simulation whether a UAV's computer is fast enough for its task."};
   program.name("tether");
   program.footer(kFooter);
   program.set_version_flag("--version", std::string(version()));
   program.require_subcommand(1);
 
   Action action;
-  add_run_command(program, action);
-  add_campaign_command(program, action);
-  add_report_command(program, action);
-  add_audit_command(program, action);
-  add_frames_command(program, action);
-  add_plot_command(program, action);
-  add_target_command(program, action);
-  add_list_command(program, action);
+  for (const auto add :
+       {add_run_command, add_campaign_command, add_report_command, add_audit_command,
+        add_frames_command, add_plot_command, add_target_command, add_list_command})
+    add(program, action);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -6,8 +6,8 @@
 
 namespace tether::app {
 
-/// Reads the command line, and does what it says; from then on there is an interrupt.
-/// @return the program's exit code.
+/// Parses the command line and runs the command. Sets `interrupt` before it runs.
+/// @return the exit code of the program.
 int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interrupt);
 
 }  // namespace tether::app

@@ -6,8 +6,8 @@
 #include <stop_token>
 #include <string>
 
-/// The subcommands of `tether`, a file each; command_line.cpp reads their options. Each returns the
-/// program's exit code, and ends early when a stop is requested, where it can.
+/// The subcommands of `tether`, one file each; command_line.cpp parses their options. Each returns
+/// the exit code of the program. The long ones end early after a stop request.
 namespace tether::app {
 
 struct RunOptions {
@@ -25,7 +25,7 @@ struct RunOptions {
   bool json = false;
   bool quiet = false;
 };
-/// Runs one trial, and prints its result.
+/// Runs one trial and prints its result.
 int run_one(const RunOptions& options, const std::stop_token& stop);
 
 struct CampaignOptions {
@@ -43,38 +43,39 @@ struct ReportOptions {
   std::string format = "text";
   std::filesystem::path out;
 };
-/// Prints tables of a campaign's results or of one run's, or writes a page.
-int report(const ReportOptions& options);
+/// Prints or writes the results of a campaign or a run.
+int report(const ReportOptions& options, const std::stop_token&);
 
 struct FramesOptions {
   std::filesystem::path record;
   std::filesystem::path out;
 };
 /// Draws the recorded camera images with their ROIs.
-int draw_frames(const FramesOptions& options);
+int draw_frames(const FramesOptions& options, const std::stop_token&);
 
 struct PlotOptions {
   std::filesystem::path record;
   std::filesystem::path out;
 };
-/// Draws ST and ET against wall time, lag, and the path.
-int draw_plots(const PlotOptions& options);
+/// Draws ST and ET over wall time, the lag, and the path.
+int draw_plots(const PlotOptions& options, const std::stop_token&);
 
 struct AuditOptions {
   std::filesystem::path record;
   std::size_t max_findings = 20;
 };
 /// Checks a record against the rules of time.
-int audit_record(const AuditOptions& options);
+int audit_record(const AuditOptions& options, const std::stop_token&);
 
+struct ListOptions {};
 /// Prints the names and descriptions of the files that Tether ships.
-int list_shipped();
+int list_shipped(const ListOptions&, const std::stop_token&);
 
 struct CheckOptions {
   std::string address;
   bool json = false;
 };
-/// Reports what on a machine would disturb a measurement.
+/// Reports what would disturb a measurement on a machine.
 int check_target(const CheckOptions& options, const std::stop_token& stop);
 
 }  // namespace tether::app

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "output_folder.h"
 #include "say.h"
 
 #include <filesystem>
@@ -17,9 +18,9 @@ namespace {
 
 std::string why_no_images(const record::Record& record) {
   if (record.damage.empty())
-    return "holds no images; record them with: tether run SCENARIO --images";
+    return "the record has no images. To record images, type: tether run SCENARIO --images";
   return fmt::format(
-      "holds no images up to where it is torn: {}; the run has to be flown again, with --images",
+      "the record has no images up to the damage: {}. Run the trial again with --images",
       record.damage);
 }
 
@@ -28,19 +29,15 @@ record::Record read_images(const std::filesystem::path& file) {
   if (record.images.empty())
     throw Error(ErrorCode::kBadFile, {file.string()}, why_no_images(record));
   if (!record.damage.empty())
-    say("tether: {}: drawn up to where it is torn: {}\n", file.string(), record.damage);
+    say("tether: {}: drawn up to the damage: {}\n", file.string(), record.damage);
   return record;
 }
 
 }  // namespace
 
-int draw_frames(const FramesOptions& options) {
+int draw_frames(const FramesOptions& options, const std::stop_token&) {
   const record::Record record = read_images(options.record);
-  const std::filesystem::path out =
-      options.out.empty() ? options.record.parent_path() / "frames" : options.out;
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error) throw Error(ErrorCode::kSetup, fmt::format("{}: {}", out.string(), error.message()));
+  const auto out = make_output_folder(options.out, options.record, "frames");
   for (const auto& logged : record.images) {
     const record::Image& image = logged.message;
     os::write_file_atomically(out / fmt::format("{}-{}-{:06}.svg", os::file_name_of(image.uav),

@@ -20,7 +20,7 @@ constexpr std::array kKinds = {ShippedKind::kScenario, ShippedKind::kCampaign, S
 
 }  // namespace
 
-int list_shipped() {
+int list_shipped(const ListOptions&, const std::stop_token&) {
   const auto shipped = ShippedFiles::of_program(os::own_file());
   const char* gap = "";
   for (const ShippedKind kind : kKinds) {

@@ -19,9 +19,8 @@ namespace {
 
 using tether::app::say;
 
-/// A file that is opened later must not get the number of a stream that was closed: what is printed
-/// would go into it. Results that are printed nowhere are missed: what stands for the standard
-/// output cannot be written.
+/// Opens closed standard streams, so that no other file gets their number and the output. A
+/// replaced standard output is read-only: a result that cannot be printed is an error.
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     const int how = stream == STDOUT_FILENO ? O_RDONLY : O_RDWR;
@@ -34,7 +33,7 @@ int fail_to_print(int error_number) {
   return tether::exit_code(tether::ErrorCode::kSetup);
 }
 
-/// What was printed has to be all there.
+/// The exit code, unless the output could not be written completely.
 int end(int code) {
   return std::fflush(stdout) == 0 && !std::ferror(stdout) ? code : fail_to_print(errno);
 }
@@ -43,14 +42,14 @@ int end(int code) {
 
 int main(int argc, char** argv) {
   open_standard_streams();
-  std::optional<tether::os::Interrupt> interrupt;  // until all is printed
+  std::optional<tether::os::Interrupt> interrupt;  // until everything is printed
   try {
     return end(tether::app::run_command_line(argc, argv, interrupt));
   } catch (const tether::Error& e) {
     say("tether: {}\n", e.what());
     return tether::exit_code(e.code());
   } catch (const std::bad_alloc&) {
-    say("tether: too little memory is free\n");
+    say("tether: out of memory\n");
     return tether::exit_code(tether::ErrorCode::kSetup);
   } catch (const std::system_error& e) {
     if (std::ferror(stdout)) return fail_to_print(e.code().value());

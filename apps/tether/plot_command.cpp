@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "output_folder.h"
 #include "say.h"
 
 #include <filesystem>
@@ -51,21 +52,17 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
 
 }  // namespace
 
-int draw_plots(const PlotOptions& options) {
+int draw_plots(const PlotOptions& options, const std::stop_token&) {
   const record::Record record = record::read_record(options.record);
   if (!record.damage.empty())
-    say("tether: {}: plotted up to where it is torn: {}\n", options.record.string(), record.damage);
-  // All are drawn before the first is written.
+    say("tether: {}: plotted up to the damage: {}\n", options.record.string(), record.damage);
+  // Draws all of them before the first is written.
   std::vector<std::pair<std::string, std::string>> drawings;
   for (const auto& [name, plot] : plots_of(record)) drawings.emplace_back(name, draw_svg(plot));
   if (drawings.empty())
     throw Error(ErrorCode::kBadFile, {options.record.string()},
-                "holds neither interactions nor ground truth: nothing to plot");
-  const std::filesystem::path out =
-      options.out.empty() ? options.record.parent_path() / "plots" : options.out;
-  std::error_code error;
-  std::filesystem::create_directories(out, error);
-  if (error) throw Error(ErrorCode::kSetup, fmt::format("{}: {}", out.string(), error.message()));
+                "nothing to plot: the record has neither interactions nor ground truth");
+  const auto out = make_output_folder(options.out, options.record, "plots");
   for (const auto& [name, svg] : drawings) {
     os::write_file_atomically(out / name, svg);
     fmt::print("{}\n", (out / name).string());

@@ -4,9 +4,8 @@
 
 namespace tether::app {
 
-/// A campaign's tables in the paper's form, where its records lie, and what to look at next; to
-/// stdout.
-/// @throws Error(kBadFile) when the folder holds no campaign.
+/// Prints the tables of a campaign in the paper's form, the folder, and next steps.
+/// @throws Error(kBadFile) if there is no campaign in the folder.
 void print_campaign_summary(const std::filesystem::path& folder);
 
 }  // namespace tether::app

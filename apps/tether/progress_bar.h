@@ -4,13 +4,13 @@
 
 namespace tether::app {
 
-/// A campaign's progress on stderr: a bar with the time left on a terminal, a line per trial
-/// elsewhere.
+/// The progress of a campaign on stderr: a bar with the remaining time on a terminal, otherwise a
+/// line per trial.
 class ProgressBar {
  public:
   ProgressBar();
   void show(const campaign::CampaignProgress& progress);
-  /// Leaves the bar as it is and begins a new line.
+  /// Ends the line of the bar.
   void finish();
 
  private:

@@ -27,16 +27,16 @@ bool is_run(const std::filesystem::path& folder) {
          std::filesystem::exists(folder / campaign::kResultFile);
 }
 
-/// A run that was killed leaves its record only.
-void refuse_run_without_result(const std::filesystem::path& folder) {
+/// A run that was killed leaves only its record.
+void require_result(const std::filesystem::path& folder) {
   const std::filesystem::path record = folder / runner::kRecordFile;
   if (std::filesystem::exists(folder / campaign::kCampaignFile) ||
       std::filesystem::exists(folder / campaign::kResultFile) || !std::filesystem::exists(record))
     return;
   throw Error(
       ErrorCode::kBadFile, {folder.string()},
-      fmt::format("this run has no result because it did not end, or has not yet; check what "
-                  "there is of it with: tether audit {}",
+      fmt::format("this run has no result, because it is still running or was killed. To check its "
+                  "record, type: tether audit {}",
                   record.string()));
 }
 
@@ -53,7 +53,7 @@ std::vector<report::Table> run_tables(const campaign::CampaignResults& results) 
 }
 
 std::string rendered(const ReportOptions& options) {
-  refuse_run_without_result(options.folder);
+  require_result(options.folder);
   const bool run = is_run(options.folder);
   if (options.format == kHtml && run) return report::run_page(options.folder);
   const campaign::CampaignResults results = run ? report::read_run_results(options.folder)
@@ -67,7 +67,7 @@ std::string rendered(const ReportOptions& options) {
 
 }  // namespace
 
-int report(const ReportOptions& options) {
+int report(const ReportOptions& options, const std::stop_token&) {
   const std::string text = rendered(options);
   std::filesystem::path out = options.out;
   if (out.empty() && options.format == kHtml) out = options.folder / "report.html";
@@ -86,12 +86,11 @@ void print_campaign_summary(const std::filesystem::path& folder) {
     fmt::print("{}\n", to_text(report::paper_form_table(scenario)));
   fmt::print(
       "Records and results: {0}\n"
-      "Look next at:  tether report {0} --format html      one page: tables, plots, the optimism "
-      "of "
-      "\"no sync\"\n"
-      "               tether report {0}      the tables alone\n"
-      "               tether audit {0}/SCENARIO/CONDITION/seed-NNNN/record.mcap\n"
-      "               any record.mcap opens in Foxglove (log time = simulated time)\n",
+      "Next steps:\n"
+      "  tether report {0} --format html   one page with tables and plots\n"
+      "  tether report {0}   only the tables\n"
+      "  tether audit {0}/SCENARIO/CONDITION/seed-NNNN/record.mcap\n"
+      "  open a record.mcap in Foxglove (log time is simulated time)\n",
       folder.string());
 }
 

@@ -22,6 +22,8 @@
 #include <tether/scenario/scenario.h>
 #include <tether/scenario/shipped_files.h>
 
+/// `tether run`: makes the specification of a trial from the options, runs it with the status on
+/// stderr, and prints the result.
 namespace tether::app {
 
 namespace {
@@ -29,15 +31,16 @@ namespace {
 scenario::Condition pick_condition(const scenario::Scenario& scenario, const std::string& wanted) {
   if (wanted.empty()) return scenario.conditions.front();
   if (const auto* condition = scenario.find_condition(wanted)) return *condition;
-  std::string names;
-  for (const auto& condition : scenario.conditions)
-    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", condition.name);
-  throw Error(ErrorCode::kUsage, fmt::format("{} has no condition \"{}\"; it has {}",
-                                             scenario.file.string(), wanted, names));
+  std::vector<std::string> names;
+  for (const auto& condition : scenario.conditions) names.push_back(condition.name);
+  throw Error(ErrorCode::kUsage, {scenario.file.string()},
+              fmt::format("unknown condition \"{}\". The scenario has \"{}\"", wanted,
+                          fmt::join(names, "\", \"")))
+      .about(wanted);
 }
 
-/// Has the condition's SUTs run on that target. A condition that was asked for by name keeps it, so
-/// that results show both.
+/// Moves the condition's SUTs to that target. A condition that was selected by name keeps its name,
+/// so that results show both.
 void move_to(scenario::Condition& condition, scenario::Target target, bool keep_name) {
   const std::string name = target.name, description = target.description;
   scenario::place_on(condition, std::move(target));
@@ -45,7 +48,7 @@ void move_to(scenario::Condition& condition, scenario::Target target, bool keep_
   if (!keep_name) condition.description = description;
 }
 
-/// A board of which nothing but its address is known: its own clock counts.
+/// The target for a board's address; its time is measured by the wall clock.
 scenario::Target board_at(const scenario::SshAddress& address) {
   scenario::Target target;
   target.name = address.destination;
@@ -53,7 +56,7 @@ scenario::Target board_at(const scenario::SshAddress& address) {
   return target;
 }
 
-/// The condition that is asked for, on the target that is asked for.
+/// The condition and the target of the options.
 scenario::Condition make_condition(const scenario::Scenario& scenario, const RunOptions& options,
                                    const scenario::ShippedFiles& shipped) {
   scenario::Condition condition = pick_condition(scenario, options.condition);
@@ -69,14 +72,14 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
   return condition;
 }
 
-/// Options that would do nothing are refused.
+/// Rejects --tunnel if it has no effect.
 void require_use_of_tunnel(const runner::TrialSpec& spec) {
   const auto& target = spec.condition.target;
   if (!spec.uses_tunnel || (!spec.waits_for_sut && target && target->ssh)) return;
   throw Error(ErrorCode::kUsage,
-              "--tunnel is for a SUT that is started on a board over SSH; name the board with "
-              "--target ssh://[user@]board[:port] or a target file that has its address, or leave "
-              "--tunnel out");
+              "--tunnel needs a SUT on a board. Select the board with --target "
+              "ssh://[user@]board[:port] or a target file with its address, or omit --tunnel")
+      .about("--tunnel");
 }
 
 runner::TrialSpec make_spec(const RunOptions& options) {
@@ -95,7 +98,8 @@ runner::TrialSpec make_spec(const RunOptions& options) {
                                     : options.out;
   if (!options.listen.empty()) {
     const auto address = link::parse_address(options.listen);
-    if (!address) throw Error(ErrorCode::kUsage, "--listen: " + address.failure().message);
+    if (!address)
+      throw Error(ErrorCode::kUsage, "--listen: " + address.failure().message).about("--listen");
     spec.listen = *address;
   }
   spec.waits_for_sut = std::holds_alternative<WaitForSut>(parse_target_option(options.target));
@@ -147,11 +151,11 @@ int run_one(const RunOptions& options, const std::stop_token& stop) {
         line.show(to_line(status));
       };
       observer.on_setup = [&](const std::string& text) { line.show(text); };
-      observer.on_blocked = [&](const std::string& text) { line.leave(text); };
+      observer.on_blocked = [&](const std::string& text) { line.print(text); };
     }
     observer.on_refused = [](const std::string& text) { say("warning: {}\n", text); };
     observer.on_listening = [](const std::string& text) {
-      say("Waiting for the SUT. Start it with:\n{}", text);
+      say("Waiting for the SUT to connect. Start it with:\n{}", text);
     };
     result = runner::run_trial(spec, find_back_end, observer, stop);
   }

@@ -11,9 +11,10 @@ SimulatorOption parse_simulator_option(const std::string& text) {
   if (text == "gazebo") return GazeboSimulator{};
   if (const auto endpoint = sim::protocol::parse_endpoint(text)) return *endpoint;
   throw Error(ErrorCode::kUsage,
-              fmt::format("no simulator \"{}\": mujoco, gazebo, or where one listens, "
-                          "unix:/path or tcp://host:port",
-                          text));
+              fmt::format("unknown simulator \"{}\". Use mujoco, gazebo, or the address of an "
+                          "external simulator, unix:/path or tcp://host:port",
+                          text))
+      .about(text);
 }
 
 }  // namespace tether::app

@@ -9,15 +9,14 @@ namespace tether::app {
 
 /// In this process.
 struct EmbeddedSimulator {};
-/// Gazebo 11, which this program starts and ends.
+/// Gazebo 11, started and ended by this program.
 struct GazeboSimulator {};
 
-/// Which simulator plays the world: one of ours, or one that somebody else has started and that
-/// listens there.
+/// The simulator to use. An Endpoint is the address of an external simulator.
 using SimulatorOption = std::variant<EmbeddedSimulator, GazeboSimulator, sim::protocol::Endpoint>;
 
-/// "mujoco", "gazebo", "unix:/path" or "tcp://host:port".
-/// @throws Error(kUsage) for anything else.
+/// Parses "mujoco", "gazebo", "unix:/path" or "tcp://host:port".
+/// @throws Error(kUsage) about any other text.
 SimulatorOption parse_simulator_option(const std::string& text);
 
 }  // namespace tether::app

@@ -12,7 +12,7 @@ namespace tether::app {
 std::string to_line(const coordinator::RunStatus& status) {
   if (status.wall == Duration(0))
     return fmt::format("waiting for {}",
-                       status.waiting_for.empty() ? "the SUT to join" : status.waiting_for);
+                       status.waiting_for.empty() ? "the SUT to connect" : status.waiting_for);
   const double st_s = to_seconds(status.st);
   const std::string et =
       status.et ? fmt::format("   ET {:7.3f} s   lag {:6.1f} ms", to_seconds(*status.et),
@@ -34,7 +34,7 @@ void StatusLine::clear() {
   shown_ = false;
 }
 
-void StatusLine::leave(const std::string& line) {
+void StatusLine::print(const std::string& line) {
   clear();
   say("{}\n", line);
 }

@@ -7,10 +7,10 @@
 
 namespace tether::app {
 
-/// The status in one line: ST, ET, lag, real-time factor, frames, and whom everything waits for.
+/// The status in one line: ST, ET, lag, real-time factor, frames, and the SUT that computes.
 std::string to_line(const coordinator::RunStatus& status);
 
-/// One line on stderr that is written over itself; silent where stderr is not a terminal.
+/// A line on stderr that is overwritten with each status; nothing if stderr is not a terminal.
 class StatusLine {
  public:
   StatusLine();
@@ -20,8 +20,8 @@ class StatusLine {
   StatusLine& operator=(const StatusLine&) = delete;
 
   void show(const std::string& line);
-  /// A line that stays, terminal or not.
-  void leave(const std::string& line);
+  /// Prints a permanent line, on a terminal or not.
+  void print(const std::string& line);
 
  private:
   void clear();

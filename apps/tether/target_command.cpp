@@ -28,29 +28,27 @@ struct Check {
   std::vector<Finding> findings;
 };
 
-// An uncompressed 640 × 480 image in a few milliseconds, and a round trip that progress messages
-// do not pile up in.
-constexpr double kSlowRoundTrip_s = 0.02, kThinBandwidth_MB_s = 5.0;
+// Limits for warnings: round trips in which progress messages do not accumulate, and enough
+// bandwidth for uncompressed images of 640 × 480 pixels.
+constexpr double kSlowRoundTrip_s = 0.02, kLowBandwidth_MB_s = 5.0;
 
-Finding judge_round_trip(double median_s) {
-  const bool is_slow = median_s > kSlowRoundTrip_s;
-  return {"round trip over SSH", fmt::format("{:.1f} ms (median)", median_s * 1e3),
-          is_slow ? Health::kWarn : Health::kOk,
-          is_slow ? "never charged to the software, but runs take longer; use a cable" : ""};
-}
-
-Finding judge_bandwidth(double MB_s) {
-  const bool is_thin = MB_s < kThinBandwidth_MB_s;
-  return {"to the board over SSH", fmt::format("{:.1f} MB/s, encrypted", MB_s),
-          is_thin ? Health::kWarn : Health::kOk,
-          is_thin ? "never charged to the software, but each image takes long; use a cable" : ""};
+void add_link(Check& check, const board::Bandwidth& link) {
+  const auto add = [&](const char* subject, const std::string& value, bool is_slow) {
+    check.findings.push_back(
+        {subject, value, is_slow ? Health::kWarn : Health::kOk,
+         is_slow ? "not charged to the software, but runs take longer; use a cable" : ""});
+  };
+  add("round trip over SSH", fmt::format("{:.1f} ms (median)", link.round_trip_s * 1e3),
+      link.round_trip_s > kSlowRoundTrip_s);
+  add("to the board over SSH", fmt::format("{:.1f} MB/s, encrypted", link.to_board_MB_s),
+      link.to_board_MB_s < kLowBandwidth_MB_s);
 }
 
 Check check_here() {
   Check check{"this machine", board::probe_here(board::ProbeDepth::kFull), {}};
   if (check.readings.empty())
-    throw Error(ErrorCode::kSetup, "this machine's shell (sh) does not run the probe");
-  check.findings = board::judge(check.readings, version());
+    throw Error(ErrorCode::kSetup, "the shell (sh) of this machine cannot run the probe");
+  check.findings = board::evaluate(check.readings, version());
   return check;
 }
 
@@ -61,15 +59,14 @@ Check check_board(const scenario::SshAddress& address, const std::stop_token& st
   if (check.readings.empty())
     throw Error(
         ErrorCode::kSetup,
-        fmt::format("{} is there, but its shell (sh) does not run the probe", check.target));
-  check.findings = board::judge(check.readings, version());
-  if (const auto link = board::probe_bandwidth(connection)) {
-    check.findings.push_back(judge_round_trip(link->round_trip_s));
-    check.findings.push_back(judge_bandwidth(link->to_board_MB_s));
-  } else {
-    check.findings.push_back({"the way over SSH", "could not be measured", Health::kWarn,
-                              "the board answers too slowly; try again when it is idle"});
-  }
+        fmt::format("{} is reachable, but its shell (sh) cannot run the probe", check.target))
+        .about(check.target);
+  check.findings = board::evaluate(check.readings, version());
+  if (const auto link = board::probe_bandwidth(connection))
+    add_link(check, *link);
+  else
+    check.findings.push_back({"connection over SSH", "could not be measured", Health::kWarn,
+                              "the board responds too slowly; try again when it is idle"});
   return check;
 }
 
@@ -80,8 +77,8 @@ bool has(const Check& check, Health health) {
 
 std::string conclusion(const Check& check) {
   if (has(check, Health::kBad)) return "Findings marked \"bad\" would disturb a measurement.";
-  if (has(check, Health::kWarn)) return "What is marked \"warn\" may spoil a measurement.";
-  return "Nothing here would disturb a measurement.";
+  if (has(check, Health::kWarn)) return "Findings marked \"warn\" may disturb a measurement.";
+  return "No finding would disturb a measurement.";
 }
 
 std::string to_text(const Check& check) {

@@ -8,15 +8,15 @@
 
 namespace tether::app {
 
-/// Somebody else starts the SUT, on whatever machine: `--target wait`.
+/// The user starts the SUT, on any machine: `--target wait`.
 struct WaitForSut {};
 
-/// What `--target` names: nothing, a file, a board's address, or nobody yet.
+/// The value of `--target`: none, a name or file, the address of a board, or "wait".
 using TargetOption =
     std::variant<std::monostate, std::filesystem::path, scenario::SshAddress, WaitForSut>;
 
-/// "" is nothing, "wait" is WaitForSut, what has a "://" is an address, and all else is a file's
-/// name. Looks at no file.
+/// Parses the value: "" is none, "wait" is WaitForSut, a text with "://" is an address, and any
+/// other text is a name or file. Reads no file.
 /// @throws Error(kUsage) as `scenario::parse_ssh_address`.
 TargetOption parse_target_option(const std::string& text);
 

@@ -14,39 +14,38 @@ constexpr const char* kHelp =
     "Usage: tether-exec [OPTIONS] COMMAND [ARGUMENT]...\n"
     "\n"
     "Runs a program under test that has several threads or processes. Each call to the UAV waits\n"
-    "for its own reply only. The whole program is stopped while the simulation catches up.\n"
-    "`tether run` sets the environment it needs (TETHER_ADDRESS, TETHER_TOKEN, and\n"
-    "TETHER_UAV and TETHER_CLOCK where they matter); TETHER_CLOCK is wall or wall*FACTOR.\n"
+    "only for its own reply. The whole program is stopped while the simulation catches up.\n"
+    "`tether run` sets the environment: TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV and "
+    "TETHER_CLOCK,\n"
+    "which must be wall or wall*FACTOR.\n"
     "\n"
     "Options:\n"
-    "  --freezer KIND  how the program is stopped: cgroup (a cgroup v2 of its own), signal "
-    "(SIGSTOP\n"
-    "                  to its process group) or auto (the default: cgroup where the system allows "
-    "it)\n"
-    "  --verbose       say at the end what stopping has cost\n"
-    "  --help          print this and exit\n"
+    "  --freezer KIND  how to stop the program: cgroup (with a cgroup v2), signal (with SIGSTOP) "
+    "or\n"
+    "                  auto (the default: cgroup if the system allows it, otherwise signal)\n"
+    "  --verbose       report the cost of stopping at the end\n"
+    "  --help          print this help and exit\n"
     "  --version       print the version and exit\n"
     "\n"
-    "Exit code: the program's own, or 128 + the signal that ended it. 2: wrong use. 3: the set-up\n"
+    "Exit code: that of the program, or 128 + the signal that ended it. 2: wrong use. 3: set-up\n"
     "failed.\n"
     "\n"
     "Examples:\n"
     "  tether-exec ./my-uav-program --config flight.yaml\n"
     "  tether-exec --freezer signal --verbose python3 fly.py\n"
-    "In a scenario:\n"
+    "In a scenario file:\n"
     "  command = [\"./my-uav-program\"]\n"
     "  concurrent = true\n";
 
-/// What is wrong with it; empty: nothing.
+/// Returns what is wrong with the value; empty if nothing is.
 std::string set(supervisor::Settings& settings, const std::string& freezer) {
   const std::map<std::string, supervisor::FreezerChoice> choices = {
       {"auto", supervisor::FreezerChoice::kAuto},
       {"cgroup", supervisor::FreezerChoice::kCgroup},
       {"signal", supervisor::FreezerChoice::kSignal}};
   const auto found = choices.find(freezer);
-  if (found == choices.end()) {
-    return "--freezer is '" + freezer + "'; allowed are auto, cgroup and signal";
-  }
+  if (found == choices.end())
+    return "invalid value '" + freezer + "' of --freezer. Use auto, cgroup or signal";
   settings.freezer = found->second;
   return "";
 }
@@ -74,11 +73,11 @@ Parsed parse_command_line(const std::vector<std::string>& arguments) {
       parsed.settings.verbose = true;
     } else if (option == "--freezer") {
       error = i + 1 < arguments.size() ? set(parsed.settings, arguments[++i])
-                                       : "--freezer needs a value: auto, cgroup or signal";
+                                       : "--freezer needs a value. Use auto, cgroup or signal";
     } else if (option.rfind("--freezer=", 0) == 0) {
       error = set(parsed.settings, option.substr(std::string("--freezer=").size()));
     } else {
-      error = "there is no option " + option;
+      error = "unknown option " + option;
     }
     if (!error.empty()) return wrong_use(error);
   }
@@ -93,12 +92,13 @@ Status read_environment(supervisor::Settings& settings) {
   if (!options) return options.failure();
   if (!options->exec_socket.empty()) {
     return Failure{Failure::Kind::kInvalid,
-                   "TETHER_EXEC is set: this already runs under a tether-exec"};
+                   "TETHER_EXEC is set, so this process already runs under tether-exec"};
   }
   if (options->time->kind() != link::ClockKind::kWall) {
-    return Failure{Failure::Kind::kInvalid,
-                   "TETHER_CLOCK is neither wall nor wall*FACTOR: several threads share one time "
-                   "line, and only the wall clock is one"};
+    return Failure{
+        Failure::Kind::kInvalid,
+        "TETHER_CLOCK must be wall or wall*FACTOR, because only the wall clock works for "
+        "several threads"};
   }
   settings.coordinator = options->address;
   settings.token = options->token;

@@ -8,19 +8,21 @@
 
 namespace tether::exec {
 
-/// A text to print instead of running anything.
+/// A text to print instead of running a program.
 struct Notice {
   std::string text;
   int exit_code = 0;  ///< 0: to stdout; 2: to stderr
 };
 
-/// `arguments` without the program's name.
+/// A parsed command line.
 struct Parsed {
   supervisor::Settings settings;
   std::optional<Notice> notice;
 };
+/// @param arguments without the program's name.
 Parsed parse_command_line(const std::vector<std::string>& arguments);
-/// Adds what TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV and TETHER_CLOCK say. Fails with kInvalid.
+/// Adds the settings in TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV and TETHER_CLOCK. Fails with
+/// kInvalid.
 Status read_environment(supervisor::Settings& settings);
 
 }  // namespace tether::exec

@@ -16,15 +16,18 @@
 #include <tether/rig/mission_file.h>
 #include <tether/rig/task_fields.h>
 
-// The only source that includes CLI11. The arguments of tasks come from task_fields, the others are
-// defined here.
+// The options of all commands; the only source that includes CLI11. The options of tasks are made
+// from rig::task_fields, the others are defined here. After CLI11 has parsed the arguments,
+// understand() checks which options can be combined. docs/man/tether-sut.1 describes the same
+// options.
 
 namespace tether::sut {
 namespace {
 
 constexpr const char* kDescription =
-    "The paper's tasks as a program for the target: connects to Tether's coordinator and flies, or "
-    "runs them on real sensors (--rig, --camera DEVICE, ...).";
+    "Runs the tasks of the paper on the target: in simulation, connected to Tether's coordinator, "
+    "or "
+    "with real sensors (--rig, --camera DEVICE, ...).";
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -40,14 +43,14 @@ Examples:
   tether-sut calibrate --out board.toml
   tether-sut calibrate --against board.toml --write-target my_board.toml
 
-Environment (set by `tether run` for the SUT that it starts):
-  TETHER_ADDRESS  the coordinator, host:port
-  TETHER_TOKEN    the run's token, as the coordinator prints it
-  TETHER_UAV      which UAV to fly; may be empty if there is only one
+Environment (`tether run` sets it for the SUTs that it starts):
+  TETHER_ADDRESS  address of the coordinator, host:port
+  TETHER_TOKEN    token of the run, as printed by the coordinator
+  TETHER_UAV      UAV to control; can be empty if there is only one
   TETHER_CLOCK    wall, cpu, or cpu*FACTOR for a virtual target FACTOR times slower
-  TETHER_OUT      the run's folder; files to write are relative to it
+  TETHER_OUT      folder of the run; output files are relative to it
 
-Exit codes: 0 the goal was reached; 1 it was not; 2 wrong use; 3 set-up or link failed.)";
+Exit codes: 0 goal reached, 1 goal missed, 2 wrong use or a bad file, 3 set-up or connection failed.)";
 
 // Kinds of values ---------------------------------------------------------------------------------
 
@@ -58,7 +61,7 @@ CLI::Validator within(double least, double most) {
       [range](std::string& text) {
         double value = 0.0;
         const bool is_nan = CLI::detail::lexical_cast(text, value) && std::isnan(value);
-        return is_nan ? std::string("nan is no number") : range(text);
+        return is_nan ? std::string("nan is not a number") : range(text);
       },
       range.get_description());
 }
@@ -72,7 +75,7 @@ CLI::Validator odd() {
       "odd");
 }
 
-/// A number as defaults are shown: 25, not 25.000000000000004.
+/// A default value: 25, not 25.000000000000004.
 std::string shown(double value) {
   return CLI::detail::to_string(std::round(value * 1e9) / 1e9);
 }
@@ -84,7 +87,7 @@ CLI::Validator device() {
   return CLI::Validator(
       [](std::string& text) {
         return devices::is_device(text) ? std::string()
-                                        : "\"" + text + "\" is no device: " + kDevices;
+                                        : "invalid device \"" + text + "\". Use " + kDevices;
       },
       "DEVICE");
 }
@@ -94,16 +97,18 @@ CLI::Validator profile_name() {
       [](std::string& text) {
         return calibration::is_profile_name(text)
                    ? std::string()
-                   : "\"" + text +
-                         "\" is no name: 1 to 64 letters, digits, '_', '-' and "
-                         "'.', not starting with '.'";
+                   : "invalid name \"" + text +
+                         "\". Use 1 to 64 letters, digits, '_', '-' and '.', not "
+                         "starting with '.'";
       },
       "NAME");
 }
 
 CLI::Validator file_name() {
   return CLI::Validator(
-      [](std::string& text) { return text.empty() ? std::string("needs a name") : std::string(); },
+      [](std::string& text) {
+        return text.empty() ? std::string("the name is empty") : std::string();
+      },
       "FILE");
 }
 
@@ -114,9 +119,8 @@ void add_pixel_box(CLI::App& app, const std::string& name, std::optional<rig::Pi
          name,
          [&box](const std::vector<double>& v) {
            box = rig::PixelBox{v[0], v[1], v[2], v[3]};
-           if (box->width_px < 1.0 || box->height_px < 1.0) {
+           if (box->width_px < 1.0 || box->height_px < 1.0)
              throw CLI::ValidationError("--true-roi-px", "W and H must be at least 1");
-           }
          },
          description)
       ->delimiter(',')
@@ -137,11 +141,10 @@ class OptionOf {
 
   void operator()(const rig::TextField& field) const {
     CLI::Option* option = app_.add_option(name_, *field.value, description_);
-    if (field.is_required) {
+    if (field.is_required)
       option->required();
-    } else {
+    else
       option->capture_default_str();
-    }
   }
   void operator()(const rig::NumberField& field) const {
     app_.add_option_function<double>(name_, field.set, description_)
@@ -188,32 +191,33 @@ void add_characterize_options(CLI::App& app, calibration::CharacterizeOptions& o
       {"on_demand", calibration::Timing::kOnDemand},
       {"periodic", calibration::Timing::kPeriodic}};
   app.add_option("--sensors", options.sensors,
-                 "Names of sensors, separated by commas; all that there are, if not given")
+                 "Names of sensors, separated by commas [all sensors]")
       ->delimiter(',')
       ->type_name("NAME,NAME");
-  app.add_option("--acquisitions", options.acquisitions, "Of each experiment")
+  app.add_option("--acquisitions", options.acquisitions, "Acquisitions per experiment")
       ->check(CLI::Range(1, calibration::kMostAcquisitions))
       ->capture_default_str();
-  app.add_option("--experiments", options.experiments, "Of each sensor; the paper made ten")
+  app.add_option("--experiments", options.experiments, "Experiments per sensor; ten in the paper")
       ->check(CLI::Range(1, calibration::kMostAcquisitions))
       ->capture_default_str();
   app.add_option(
          "--timing", options.timing,
-         "What the profile says: on_demand (from asking to having), periodic (the sensor's "
-         "own period and delay), or auto (default: periodic where a sensor tells a rate and "
-         "can be modelled so, else on_demand)")
+         "Timing model in the profile: on_demand (delay from request to data), periodic (period "
+         "and "
+         "delay of the sensor), or auto (periodic if the sensor has a rate and the model fits, "
+         "otherwise on_demand) [auto]")
       ->transform(CLI::Transformer(kTimings))
       ->type_name("NAME");
-  app.add_option("--name", options.name, "The profile's name; usually the host's")
+  app.add_option("--name", options.name, "Name of the profile [name of this machine]")
       ->check(profile_name())
       ->type_name("NAME");
-  app.add_option("--out", options.out, "Writes the profile (TOML) to this file")
+  app.add_option("--out", options.out, "File for the profile (TOML)")
       ->check(file_name())
       ->type_name("FILE");
   app.add_option_function<double>(
          "--time-limit-s",
          [&options](double value) { options.time_limit = duration_from_seconds(value); },
-         "Gives up a sensor after this time")
+         "Time limit per sensor")
       ->check(within(0.001, 1e6))
       ->default_str(shown(to_seconds(options.time_limit)));
 }
@@ -222,31 +226,34 @@ void add_calibrate_options(CLI::App& app, calibration::CalibrateOptions& options
   const auto add_file = [&app](const char* name, std::string& file, const char* description) {
     app.add_option(name, file, description)->check(file_name())->type_name("FILE");
   };
-  app.add_option("--rounds", options.rounds, "Rounds that count, after three of warming up")
+  app.add_option("--rounds", options.rounds, "Measured rounds, after three warm-up rounds")
       ->check(CLI::Range(calibration::kLeastRounds, 100'000))
       ->capture_default_str();
   app.add_option("--cpu", options.cpu_index,
-                 "The core to measure on, from 0; the last that may be used, if not given")
+                 "CPU core to measure on, from 0 [the last one that is allowed]")
       ->check(CLI::Range(0, 100'000))
       ->type_name("N");
-  add_file("--out", options.out, "Writes what was measured (TOML)");
+  add_file("--out", options.out, "File for the measurements (TOML)");
   add_file("--against", options.against,
-           "What was measured on another machine: says how many times longer it takes");
+           "Measurements of another machine; reports how many times longer it takes");
   add_file("--measured", options.measured,
-           "What was measured on this machine before, instead of measuring now");
-  add_file("--write-target", options.target,
-           "With --against: writes that machine as a virtual target on this one (TOML)");
-  app.add_option("--name", options.name, "The target's name; usually that machine's")
+           "Earlier measurements of this machine, to use instead of measuring");
+  add_file(
+      "--write-target", options.target,
+      "With --against: file for a virtual target on this machine that represents the other one "
+      "(TOML)");
+  app.add_option("--name", options.name, "Name of the target [name of the other machine]")
       ->check(profile_name())
       ->type_name("NAME");
 }
 
 void add_real_row_options(CLI::App& app, rig::RealRowOptions& options) {
-  add_pixel_box(app, "--true-roi-px", options.true_roi,
-                "With real devices: the anchor in the image as you annotated it, in whole pixels "
-                "from the top left; gives the angle error");
+  add_pixel_box(
+      app, "--true-roi-px", options.true_roi,
+      "With real devices: the true box of the anchor in the image, in whole pixels from the "
+      "top left; adds the angle error to the result");
   app.add_option("--keep-image", options.keep_image,
-                 "With real devices: writes the last estimate's image, to annotate it (PNG)")
+                 "With real devices: file for the image of the last estimate, for annotation (PNG)")
       ->check(file_name())
       ->type_name("FILE");
 }
@@ -257,33 +264,32 @@ bool is_given(const rig::RealRowOptions& options) {
 
 void add_unless_there(CLI::App& app, const std::string& name, std::string& value,
                       const std::string& description) {
-  if (app.get_option_no_throw(name) == nullptr) {
+  if (app.get_option_no_throw(name) == nullptr)
     app.add_option(name, value, description)->check(device())->type_name("");
-  }
 }
 
-/// --rig, and --camera, --imu and --range where `app` has no such option of its own. Those that it
-/// has take a sensor's name as well.
+/// Adds --rig, and --camera, --imu and --range unless the task has them. Those of a task accept
+/// both the name of a sensor and a device.
 void add_device_options(CLI::App& app, rig::DeviceArguments& arguments) {
-  const std::string real = std::string("Real devices instead of a coordinator: ");
   app.add_option("--rig", arguments.rig,
-                 real + "the file (TOML) that says of them what the catalogue says in simulation")
+                 "Use real devices instead of a coordinator: file that describes them (TOML)")
       ->type_name("FILE");
-  add_unless_there(app, "--camera", arguments.camera, std::string("A real camera: ") + kDevices);
+  add_unless_there(app, "--camera", arguments.camera, std::string("Real camera: ") + kDevices);
   add_unless_there(app, "--imu", arguments.imu,
-                   "A real IMU: a folder like iio:deviceN's, or iio:NAME");
+                   "Real IMU: a folder like that of iio:deviceN, or iio:NAME");
   add_unless_there(app, "--range", arguments.range,
-                   "A real rangefinder: a folder like iio:deviceN's, or iio:NAME");
+                   "Real rangefinder: a folder like that of iio:deviceN, or iio:NAME");
 }
 
 void add_link_options(CLI::App& app, CommandLine& line) {
   app.add_option("--address", line.address,
-                 "The coordinator, host:port (overrides TETHER_ADDRESS)");
-  app.add_option("--uav", line.uav, "Which UAV to fly (overrides TETHER_UAV)");
-  app.add_option("--clock", line.clock, "wall, cpu or cpu*FACTOR (overrides TETHER_CLOCK)");
+                 "Address of the coordinator, host:port (overrides TETHER_ADDRESS)");
+  app.add_option("--uav", line.uav, "UAV to control (overrides TETHER_UAV)");
+  app.add_option("--clock", line.clock,
+                 "Clock of the SUT: wall, cpu or cpu*FACTOR (overrides TETHER_CLOCK)");
 }
 
-/// What is written while parsing.
+/// The results of parsing.
 struct Words {
   CommandLine line;
   std::vector<rig::TaskSpec> tasks;  ///< of each kind of task, in order
@@ -305,7 +311,7 @@ CLI::App* add_subcommand(CLI::App& app, std::string_view name, std::string_view 
   return command;
 }
 
-/// CLI11's own words for --help and --version; one line for a mistake.
+/// CLI11's text for --help and --version; one line for an error.
 Refusal refusal(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) {
     std::ostringstream out;
@@ -327,30 +333,29 @@ void define_tasks(CLI::App& app, Words& words) {
     const rig::TaskKind& kind = rig::task_kinds()[i];
     add_subcommand(app, kind.name, kind.description, words, [&](CLI::App& command) {
       add_task_options(command, spec);
-      if (std::holds_alternative<tasks::RelativePositionOptions>(spec.options)) {
+      if (std::holds_alternative<tasks::RelativePositionOptions>(spec.options))
         add_real_row_options(command, words.line.real_row);
-      }
     });
   }
 }
 
 void define_subcommands(CLI::App& app, Words& words) {
   define_tasks(app, words);
-  add_subcommand(app, "mission", "Fly the tasks of a file, one after the other", words,
-                 [&](CLI::App& command) {
-                   command.add_option("file,--file", words.mission_file, "The mission file (TOML)")
-                       ->required();
-                 });
-  add_subcommand(app, "characterize", "Time each sensor's data, and write it as a profile", words,
+  add_subcommand(
+      app, "mission", "Run the tasks of a file in sequence", words, [&](CLI::App& command) {
+        command.add_option("file,--file", words.mission_file, "Mission file (TOML)")->required();
+      });
+  add_subcommand(app, "characterize", "Measure the timing of each sensor and write a profile",
+                 words,
                  [&](CLI::App& command) { add_characterize_options(command, words.characterize); });
   CLI::App* calibrate = app.add_subcommand(
-      "calibrate", "Measure how fast this machine is; with --against, how much slower another");
+      "calibrate", "Measure how fast this machine is; with --against, relative to another machine");
   add_calibrate_options(*calibrate, words.calibrate);
   calibrate->footer(kExamples);
 }
 
-/// What is to be flown, of what was parsed.
-Status take_mission(const CLI::App& app, Words& words) {
+/// Takes the selected command, and checks its options.
+Status take_command(const CLI::App& app, Words& words) {
   if (app.got_subcommand("calibrate")) {
     words.line.calibrate = words.calibrate;
     return check(words.calibrate);
@@ -362,9 +367,7 @@ Status take_mission(const CLI::App& app, Words& words) {
   }
   if (app.got_subcommand("mission")) {
     Result<rig::Mission> loaded = rig::load_mission(words.mission_file);
-    if (!loaded) {
-      return loaded.failure();
-    }
+    if (!loaded) return loaded.failure();
     words.line.mission = std::move(loaded).value();
     return ok_status();
   }
@@ -377,33 +380,28 @@ Status take_mission(const CLI::App& app, Words& words) {
   return ok_status();
 }
 
-/// Options that are about one of the two, a coordinator or real devices.
+/// Checks options that need either a coordinator or real devices.
 Status check_link(const CommandLine& line) {
   if (line.rig && (line.address || line.uav || line.clock)) {
     return Failure{Failure::Kind::kInvalid,
-                   "--address, --uav and --clock are about a coordinator, and real devices have "
-                   "none"};
+                   "--address, --uav and --clock need a coordinator; they cannot be used with real "
+                   "devices"};
   }
   if (!line.rig && is_given(line.real_row)) {
     return Failure{Failure::Kind::kInvalid,
-                   "--true-roi-px and --keep-image are for real devices (--rig, --camera DEVICE)"};
+                   "--true-roi-px and --keep-image need real devices (--rig, --camera DEVICE)"};
   }
   return ok_status();
 }
 
-/// The words that CLI11 could parse, as one command.
+/// The command line from what CLI11 has parsed.
 std::variant<CommandLine, Refusal> understand(const CLI::App& app, Words& words) {
-  if (const Status mission = take_mission(app, words); !mission) {
+  if (const Status mission = take_command(app, words); !mission)
     return refusal(mission.failure().message);
-  }
   Result<std::optional<devices::Rig>> rig = make_rig(words.devices, words.line.mission);
-  if (!rig) {
-    return refusal(rig.failure().message);
-  }
+  if (!rig) return refusal(rig.failure().message);
   words.line.rig = std::move(rig).value();
-  if (const Status link = check_link(words.line); !link) {
-    return refusal(link.failure().message);
-  }
+  if (const Status link = check_link(words.line); !link) return refusal(link.failure().message);
   return std::move(words.line);
 }
 

@@ -12,20 +12,20 @@
 
 namespace tether::sut {
 
-/// What was asked for on the command line. `address`, `uav` and `clock` override the environment.
+/// A parsed command line. `address`, `uav` and `clock` override the environment.
 struct CommandLine {
-  rig::Mission mission;  ///< without tasks, if to characterize
+  rig::Mission mission;  ///< empty for characterize and calibrate
   std::optional<calibration::CharacterizeOptions> characterize;  ///< instead of a mission
-  std::optional<calibration::CalibrateOptions> calibrate;        ///< instead of all else
-  rig::RealRowOptions real_row;     ///< of a lone relative_position with a rig
+  std::optional<calibration::CalibrateOptions> calibrate;        ///< instead of a mission
+  rig::RealRowOptions real_row;     ///< of a single relative_position task with real devices
   std::optional<devices::Rig> rig;  ///< real devices instead of a coordinator
   std::optional<std::string> address;
   std::optional<std::string> uav;
   std::optional<std::string> clock;
 };
 
-/// Nothing to fly: what to print instead, and the exit code (0 for --help and --version, 2 for
-/// wrong use, with one line).
+/// A text to print instead of running a command, and the exit code: 0 for --help and --version, 2
+/// for wrong use, with one line.
 struct Refusal {
   int exit_code = 2;
   std::string text;

@@ -18,9 +18,9 @@
 namespace tether::sut {
 namespace {
 
-/// Before the SUT's time begins: all that is slow only once. One thread, because the SUT's time may
-/// be the CPU time of this process; freed images stay with the allocator, because fetching fresh
-/// memory for each would be most of what handling one costs.
+/// Does everything that is slow only once, before the SUT's time begins. Vision uses one thread,
+/// because the SUT's time may be the CPU time of this process. The allocator keeps freed images,
+/// because new memory for each would take most of the time of handling it.
 void prepare() {
 #ifdef M_MMAP_THRESHOLD
   mallopt(M_MMAP_THRESHOLD, 64 << 20);
@@ -30,12 +30,10 @@ void prepare() {
   vision::warm_up(640, 480);
 }
 
-/// The command line's word counts for more than the environment's.
+/// Options override the environment.
 void override_environment(const CommandLine& line) {
   const auto set = [](const char* name, const std::optional<std::string>& value) {
-    if (value) {
-      setenv(name, value->c_str(), 1);
-    }
+    if (value) setenv(name, value->c_str(), 1);
   };
   set("TETHER_ADDRESS", line.address);
   set("TETHER_UAV", line.uav);
@@ -61,9 +59,7 @@ std::string clock_text(const client::TimeSource& time) {
 
 Result<Connection> open_devices(const devices::Rig& rig) {
   Result<std::unique_ptr<client::Vehicle>> vehicle = devices::open_rig(rig);
-  if (!vehicle) {
-    return Failure{Failure::Kind::kRefused, vehicle.failure().message};
-  }
+  if (!vehicle) return Failure{Failure::Kind::kRefused, vehicle.failure().message};
   rig::catch_interrupts();
   return Connection{rig::make_interruptible(std::move(vehicle).value(), rig::interrupted),
                     {"real sensor", calibration::host_name()},
@@ -74,13 +70,11 @@ Result<Connection> open_devices(const devices::Rig& rig) {
 
 std::string in_run_folder(const std::string& path) {
   const char* folder = std::getenv("TETHER_OUT");
-  if (path.empty() || folder == nullptr || *folder == '\0') {
-    return path;
-  }
+  if (path.empty() || folder == nullptr || *folder == '\0') return path;
   return (std::filesystem::path(folder) / path).string();
 }
 
-/// With the kind of machine, which is part of what a run rests on: "tether-sut 0.1.0 (aarch64)".
+/// With the kind of machine, for the record: "tether-sut 0.1.0 (aarch64)".
 std::string name_of_this_program() {
   utsname system{};
   ::uname(&system);
@@ -94,16 +88,12 @@ Result<Connection> connect_as(const CommandLine& line) {
   }
   override_environment(line);
   Result<client::ConnectOptions> options = client::options_from_environment();
-  if (!options) {
-    return options.failure();
-  }
+  if (!options) return options.failure();
   options->sut_name = name_of_this_program();
   const std::string location = calibration::host_name() + ", " + clock_text(*options->time);
   prepare();
   Result<std::unique_ptr<client::Vehicle>> vehicle = client::connect(std::move(options).value());
-  if (!vehicle) {
-    return vehicle.failure();
-  }
+  if (!vehicle) return vehicle.failure();
   return Connection{std::move(vehicle).value(), {"virtual", location}, false};
 }
 

@@ -10,20 +10,19 @@
 
 namespace tether::sut {
 
-/// What the SUT works with, and how the paper's tables name it.
+/// The vehicle of a command, and its name in the tables of the paper.
 struct Connection {
   std::unique_ptr<client::Vehicle> vehicle;
   calibration::Origin origin;
   bool is_real = false;
 };
 
-/// Opens the rig's devices, or connects to the coordinator that the command line or the environment
-/// names. With real devices an interrupt then ends the vehicle's calls (`make_interruptible`). A
-/// device that cannot be opened is kRefused: the set-up failed.
+/// Opens the devices of the rig, or connects to the coordinator of the command line or the
+/// environment. With real devices, an interrupt ends calls of the vehicle (`make_interruptible`).
+/// Fails with kRefused if a device cannot be opened.
 Result<Connection> connect_as(const CommandLine& line);
 
-/// Where a file is to be written: a relative path is below the folder of the run that started this
-/// program (TETHER_OUT), if one did.
+/// The path of an output file: a relative path is below TETHER_OUT, if that is set.
 std::string in_run_folder(const std::string& path);
 
 }  // namespace tether::sut

@@ -16,9 +16,7 @@ int run(int argc, char** argv) {
   }
   auto& line = std::get<CommandLine>(parsed);
   line.real_row.keep_image = in_run_folder(line.real_row.keep_image);
-  if (line.characterize) {
-    line.characterize->out = in_run_folder(line.characterize->out);
-  }
+  if (line.characterize) line.characterize->out = in_run_folder(line.characterize->out);
   return run_command(line, {std::cout, std::cerr});
 }
 

@@ -15,9 +15,7 @@ ProgressLine::ProgressLine()
     : is_terminal_(isatty(STDERR_FILENO) == 1), last_(std::chrono::steady_clock::now()) {}
 
 ProgressLine::~ProgressLine() {
-  if (is_shown_) {
-    std::cerr << "\r\x1b[K" << std::flush;
-  }
+  if (is_shown_) std::cerr << "\r\x1b[K" << std::flush;
 }
 
 void ProgressLine::show(const std::string& what) {

@@ -5,8 +5,8 @@
 
 namespace tether::sut {
 
-/// What goes on at the moment, on stderr: on a terminal one line that is written over itself;
-/// elsewhere a line at most every ten seconds, so that what takes long can be told from what hangs.
+/// The present activity on stderr: on a terminal a line that is overwritten, otherwise a line at
+/// most every ten seconds.
 class ProgressLine {
  public:
   ProgressLine();

@@ -1,5 +1,5 @@
 # cmake -DEXPECTED_CODE=N -DEXPECTED_WORDS=TEXT -DWORK_DIR=DIR -P expect_failure.cmake -- COMMAND...
-# The command must end with this exit code and one line that has these words, and leave no file.
+# The command must end with this exit code and one line that contains this text, and leave no file.
 set(command)
 set(is_command FALSE)
 math(EXPR last "${CMAKE_ARGC} - 1")

@@ -25,7 +25,7 @@ using namespace tether;
 /// Steps in which the tracker can follow.
 constexpr double kYaws_deg[] = {-24.0, -22.0, -20.0, -18.0, -16.0, -14.0};
 
-uav::CameraSample look(const std::filesystem::path& sources, double yaw_deg) {
+uav::CameraSample render(const std::filesystem::path& sources, double yaw_deg) {
   const sim::WorldRequest request{.world = sources / "data/worlds/room.sdf",
                                   .uavs = {{"uav1",
                                             sources / "data/models/hummingbird/model.sdf",
@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
     int number = 0;
     for (const double yaw_deg : kYaws_deg)
       write(std::filesystem::path(argv[2]) / ("frame" + std::to_string(++number) + ".jpg"),
-            look(argv[1], yaw_deg));
+            render(argv[1], yaw_deg));
   } catch (const Error& error) {
     std::cerr << error.what() << '\n';
     return exit_code(error.code());

@@ -1,4 +1,3 @@
-
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -26,7 +25,7 @@ double seconds_since(Steady::time_point start) {
   return std::chrono::duration<double>(Steady::now() - start).count();
 }
 
-/// Waits until the file has grown to so many bytes.
+/// Waits until the file has at least that size.
 bool wait_for_size(const std::filesystem::path& file, std::uintmax_t size) {
   const auto start = Steady::now();
   std::error_code ignored;
@@ -64,7 +63,7 @@ std::optional<double> median_round_trip(const SshConnection& connection) {
 std::optional<Bandwidth> probe_bandwidth(const SshConnection& connection) {
   const auto round_trip = median_round_trip(connection);
   if (!round_trip) return std::nullopt;
-  // What the transfer takes beyond that of nothing is the bytes' own.
+  // The time of an empty transfer is not that of the bytes.
   const std::string script = "exec cat >/dev/null";
   const os::Captured nothing = connection.run(script, kTransferLimit);
   const os::Captured bytes = connection.run(script, kTransferLimit, std::string(kBytes, 'x'));

@@ -1,4 +1,3 @@
-
 #include "board_scripts.h"
 #include "sut_script.h"
 
@@ -24,6 +23,10 @@
 #include <tether/os/memory_file.h>
 #include <tether/os/text_file.h>
 
+/// A board for one run. A shell on the board, the keeper (board_keeper.sh), takes the lock, and
+/// ends and removes everything of the run when this process or the connection ends; a heartbeat
+/// over its standard input shows that this process exists. SUTs and copies of files use further
+/// commands over the same connection.
 namespace tether::board {
 
 namespace {
@@ -32,13 +35,13 @@ using Steady = std::chrono::steady_clock;
 
 constexpr Duration kHoldLimit = std::chrono::seconds(20);
 constexpr Duration kCopyLimit = std::chrono::minutes(5);
-// Ending is a second of asking, a second of making, and the way there.
+// One second for SIGTERM, one for SIGKILL, and the round trip.
 constexpr Duration kEndLimit = std::chrono::seconds(8);
 constexpr Duration kHeartbeat = std::chrono::seconds(1);
-constexpr Duration kKeeperLook = std::chrono::milliseconds(5);
-// How long a connection that has ended may take to show it.
+constexpr Duration kKeeperPoll = std::chrono::milliseconds(5);
+// How long the end of a connection may take to show.
 constexpr Duration kShowLimit = std::chrono::milliseconds(300);
-// The keeper ends the SUTs before it ends itself, which takes it up to two seconds.
+// The keeper first ends the SUTs, which takes up to two seconds.
 constexpr Duration kKeeperLimit = std::chrono::milliseconds(2500);
 constexpr int kLargestReturn_KiB = 256 * 1024;
 constexpr int kNotStarted = 120, kSshFailed = 255;
@@ -59,12 +62,13 @@ os::Pipe open_pipe() {
   return pipe;
 }
 
-std::string who_runs() {
+/// Shown to other runs while the board is reserved.
+std::string describe_this_run() {
   const char* user = std::getenv("USER");
   char host[256] = "";
   gethostname(host, sizeof host - 1);
   return fmt::format(
-      "{}@{} (tether, pid {}), since {:%Y-%m-%d %H:%M:%S} UTC", user && *user ? user : "somebody",
+      "{}@{} (tether, pid {}), since {:%Y-%m-%d %H:%M:%S} UTC", user && *user ? user : "unknown",
       host, getpid(),
       fmt::gmtime(std::chrono::system_clock::to_time_t(std::chrono::system_clock::now())));
 }
@@ -74,18 +78,18 @@ std::string who_runs() {
 Board::Board(const scenario::SshAddress& address, std::stop_token stop)
     : connection_(address, std::move(stop)) {
   hold();
-  heart_ = std::jthread([this](const std::stop_token& ended) { beat(ended); });
+  heartbeat_ = std::jthread([this](const std::stop_token& ended) { send_heartbeat(ended); });
 }
 
 Board::~Board() {
-  heart_.request_stop();
-  heart_.join();
+  heartbeat_.request_stop();
+  heartbeat_.join();
   to_keeper_ = os::FileDescriptor();
   keeper_->wait(kEndLimit);
 }
 
-/// The keeper lets go of the board where this stays away.
-void Board::beat(const std::stop_token& stop) const {
+/// Without it, the keeper releases the board.
+void Board::send_heartbeat(const std::stop_token& stop) const {
   std::mutex mutex;
   std::unique_lock lock(mutex);
   std::condition_variable_any stopped;
@@ -94,25 +98,25 @@ void Board::beat(const std::stop_token& stop) const {
   } while (!stopped.wait_for(lock, stop, kHeartbeat, [&] { return stop.stop_requested(); }));
 }
 
-std::string Board::keeper_said() const {
+std::string Board::keeper_output() const {
   return os::read_whole(connection_.folder() / "keeper.out");
 }
 
 bool Board::wait_for_keeper(const std::string& word, Duration limit) {
   const auto started = Steady::now();
   while (Steady::now() - started < limit) {
-    const bool last_look = keeper_->poll().has_value();
-    const std::string said = keeper_said();
+    const bool has_ended = keeper_->poll().has_value();
+    const std::string said = keeper_output();
     const auto at = said.find(word);
     if (at != std::string::npos && said.find('\n', at) != std::string::npos) return true;
-    if (last_look) return false;
-    std::this_thread::sleep_for(kKeeperLook);
+    if (has_ended) return false;
+    std::this_thread::sleep_for(kKeeperPoll);
   }
   return false;
 }
 
 void Board::hold() {
-  const std::string script = assign("who", who_runs()) + std::string(kBoardKeeper);
+  const std::string script = assign("who", describe_this_run()) + std::string(kBoardKeeper);
   os::Pipe pipe = open_pipe();
   const auto& folder = connection_.folder();
   keeper_ = std::make_unique<os::ChildProcess>(
@@ -127,16 +131,18 @@ void Board::hold() {
 
   const bool answered = wait_for_keeper("held ", kHoldLimit);
   const std::string where = scenario::to_string(connection_.address());
-  const std::string said = os::last_line(keeper_said());
+  const std::string said = os::last_line(keeper_output());
   if (said.starts_with("busy "))
     throw Error(ErrorCode::kSetup,
                 fmt::format("{} is in use by {}; wait for that run to end, or end it", where,
-                            said.substr(5)));
+                            said.substr(5)))
+        .about(where);
   if (!answered)
     throw Error(
         ErrorCode::kSetup,
-        fmt::format("{} cannot be held: {}", where,
-                    said.empty() ? os::last_line(os::read_whole(folder / "keeper.err")) : said));
+        fmt::format("cannot reserve {}: {}", where,
+                    said.empty() ? os::last_line(os::read_whole(folder / "keeper.err")) : said))
+        .about(where);
   std::istringstream words(said);
   std::string held;
   words >> held >> host_address_ >> std::ws;
@@ -156,51 +162,51 @@ std::string Board::copy(const std::filesystem::path& file) {
   const os::Captured copied = connection_.run(script, kCopyLimit, bytes);
   if (copied.code != 0)
     throw Error(ErrorCode::kSetup,
-                fmt::format("{} cannot be copied to {}: {}", file.string(),
-                            scenario::to_string(connection_.address()), os::last_line(copied.err)));
+                fmt::format("cannot copy {} to {}: {}", file.string(),
+                            scenario::to_string(connection_.address()), os::last_line(copied.err)))
+        .about(file.string());
   return fmt::format("{}/files/{}/{}", folder_, number, name);
 }
 
 std::unique_ptr<os::ChildProcess> Board::start(const BoardSut& sut) {
   const std::string script = prologue() + sut_prologue(sut) + std::string(kBoardSut);
-  // A file on the disk would leave the token there.
+  // In memory, because the script contains the token.
   const os::MemoryFile input(script);
-  auto process = std::make_unique<os::ChildProcess>(
+  return std::make_unique<os::ChildProcess>(
       os::ChildCommand{.arguments = connection_.shell(script.size()),
                        .environment = {},
                        .log = sut.log,
                        .input = input.path()});
-  return process;
 }
 
-SutEnd Board::end_of(const os::ChildExit& exit, const std::string& last_words) {
+SutEnd Board::end_of(const os::ChildExit& exit, const std::string& last_line) {
   constexpr std::string_view kOwn = "tether: ";
   if (exit.code == kSshFailed)
     if (const auto why = connection_.lost(kShowLimit))
-      return {SutEndCause::kConnection, "was cut off: " + *why};
-  if (exit.code == kNotStarted && last_words.starts_with(kOwn))
-    return {SutEndCause::kNotStarted, "could not be started: " + last_words.substr(kOwn.size())};
+      return {SutEndCause::kConnection, "was disconnected: " + *why};
+  if (exit.code == kNotStarted && last_line.starts_with(kOwn))
+    return {SutEndCause::kNotStarted, "could not be started: " + last_line.substr(kOwn.size())};
   const int signal = exit.code - os::kSignalled;
   const bool may_be_keepers = signal == SIGTERM || signal == SIGKILL;
   if ((may_be_keepers || signal <= 0) && keeper_->wait(may_be_keepers ? kKeeperLimit : kShowLimit))
-    return {SutEndCause::kBoard, "was ended because " + let_go()};
+    return {SutEndCause::kBoard, "was ended because " + describe_release()};
   if (signal > 0 && signal < NSIG)
     return {SutEndCause::kItself, "was ended by " + name_of_signal(signal)};
   return {SutEndCause::kItself, exit.description};
 }
 
-std::string Board::let_go() const {
+std::string Board::describe_release() const {
   const std::string said = os::last_line(os::read_whole(connection_.folder() / "keeper.err"));
-  return fmt::format("{} is no longer held for this run: {}",
+  return fmt::format("{} is no longer reserved for this run: {}",
                      scenario::to_string(connection_.address()),
-                     said.empty() ? "the shell that held it there was ended" : said);
+                     said.empty() ? "its shell on the board was ended" : said);
 }
 
 std::optional<std::string> Board::lost() {
   const bool is_held = !keeper_->poll();
   if (const auto why = connection_.lost(is_held ? Duration(0) : kShowLimit)) return why;
   if (is_held) return std::nullopt;
-  return let_go();
+  return describe_release();
 }
 
 bool Board::end_suts() {
@@ -216,12 +222,13 @@ std::optional<std::string> Board::bring_back(const std::string& uav,
                              std::string(kReturnScript);
   const os::Captured files = connection_.run(script, kCopyLimit, {}, true);
   const auto failed = [&](const std::string& why) {
-    return fmt::format("what the SUT of UAV \"{}\" wrote into TETHER_OUT stays behind on {}: {}",
-                       uav, scenario::to_string(connection_.address()), why);
+    return fmt::format(
+        "cannot copy the files that the SUT of UAV \"{}\" wrote to TETHER_OUT from {}: {}", uav,
+        scenario::to_string(connection_.address()), why);
   };
   if (files.code != 0) return failed(os::last_line(files.err));
   if (files.out.empty()) return std::nullopt;
-  // What this machine writes into the folder is not the SUT's to replace.
+  // A SUT must not replace files that this machine writes to the folder.
   const os::Captured unpacked =
       os::run_captured({"tar", "-x", "-f", "-", "--no-same-owner", "--exclude=./record.mcap",
                         "--exclude=./result.json", "--exclude=./sut-*.log", "-C", folder.string()},

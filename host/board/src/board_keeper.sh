@@ -1,8 +1,7 @@
-# Holds a board for one run of Tether. POSIX sh, busybox will do; sent over SSH, nothing is installed.
+# Reserves a board for one run of Tether. Needs only a POSIX sh, such as busybox; sent over SSH.
 #
-# Given: who, a line that says who runs. Standard input: an empty line every second; "stop" ends the
-# SUTs. Once it ends, or nothing has come for some seconds, everything the run started here is ended
-# and removed.
+# Variable: who, a line that describes the run. Standard input: an empty line every second; "stop" ends the
+# SUTs. When the input ends, or has been silent for some seconds, all processes and files of the run are removed.
 # Prints one of: "held HOST FOLDER" (the host as seen from here), "busy WHO (pid N on the board)", "failed WHY"; and "stopped".
 set -u
 umask 077
@@ -18,17 +17,18 @@ give_up() {
   exit 1
 }
 
-# When the process started, so that a later one with its number is not taken for it.
+# When the process started, to distinguish it from a later one with the same number.
 started() { sed 's/^.*) //' "/proc/$1/stat" 2>/dev/null | cut -d ' ' -f 20; }
 
-# Whether the run that wrote the lock file is still there; sets pid and name.
+# Whether the run that wrote the lock file still exists; sets pid and name.
 lives() {
   pid= start= its_boot= name=
   { read -r pid start its_boot; IFS= read -r name; } <"$1" 2>/dev/null
   [ -n "$start" ] && [ "$its_boot" = "$boot" ] && [ "$(started "$pid")" = "$start" ]
 }
 
-# The file appears whole or not at all. Whoever takes a dead run's lock away looks at what he took.
+# The lock file appears complete or not at all. A lock that was moved away is checked again, because
+# another run may have taken it in between.
 take_lock() {
   printf '%s\n%s\n' "$$ $(started $$) $boot" "$who" >"$lock.$$" 2>/dev/null ||
     give_up "failed cannot write $lock.$$ on the board"
@@ -43,10 +43,10 @@ take_lock() {
     lives "$lock.$$.dead" && ln "$lock.$$.dead" "$lock" 2>/dev/null
     rm -f "$lock.$$.dead"
   done
-  give_up "failed cannot take $lock on the board; remove it if no run is on"
+  give_up "failed cannot take $lock on the board; remove it if no run is active"
 }
 
-# Processes of the run: the SUTs' groups, and whatever carries the run's folder in its environment.
+# Processes of the run: the groups of SUTs, and processes with the run's folder in their environment.
 of_the_run() {
   for file in "$folder"/pid.*; do
     [ -e "$file" ] && read -r group <"$file" && kill -0 "-$group" 2>/dev/null && echo "-$group"
@@ -75,7 +75,7 @@ end_run() {
   rm -rf "$folder"
 }
 
-# The host may have gone without a word.
+# Ends the run if the host is silent.
 watch() {
   missed=0
   while [ "$missed" -lt 5 ] && sleep 2; do

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// The scripts of this folder, as they are sent to a board.
+/// The scripts of this folder, which are sent to boards.
 namespace tether::board {
 
 extern const std::string_view kBoardKeeper, kBoardSut, kTargetProbe;

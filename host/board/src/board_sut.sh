@@ -1,9 +1,9 @@
-# Runs one SUT on a board. POSIX sh, busybox will do; sent over SSH, nothing is installed.
+# Runs one SUT on a board. Needs only a POSIX sh, such as busybox; sent over SSH.
 #
-# Given: folder (of the run), uav, program, supervisor (tether-exec, for a concurrent SUT; else empty),
-# launcher (the target's; may be empty); the functions join, which exports the SUT's environment, and
-# run_sut, which starts "$program" in a session of its own. Exits as the SUT does: with its code, or with 128 + the signal that ended it; with 120
-# and a line "tether: WHY" where it could not be started.
+# Variables: folder (of the run), uav, program, supervisor (tether-exec for a concurrent SUT; else empty),
+# launcher (of the target; may be empty). Functions: join exports the environment of the SUT, and run_sut
+# starts "$program" in a new session. Exit code: that of the SUT, or 128 + the signal that ended it; 120
+# after a line "tether: REASON" if it could not be started.
 set -u
 
 fail() {
@@ -11,7 +11,7 @@ fail() {
   exit 120
 }
 
-# Where the program is: a path as it is; where that is none of this board's, its name in PATH.
+# The path of the program. If it does not exist on this board, its name is searched for in PATH.
 found() {
   if [ -f "$1" ] && [ "${1#*/}" != "$1" ]; then
     printf '%s\n' "$1"
@@ -28,7 +28,7 @@ found() {
   return 1
 }
 
-# Class, byte order and machine of an ELF file; nothing of other files.
+# Class, byte order and machine of an ELF file; nothing for other files.
 machine() {
   bytes=$(dd if="$1" bs=20 count=1 2>/dev/null | od -A n -t x1 | tr -d ' \n')
   case $bytes in 7f454c46*) printf '%s\n' "$bytes" | cut -c 9-12,37-40 ;; esac
@@ -45,7 +45,7 @@ machine_name() {
   esac
 }
 
-# A shell would take another machine's program for a script of its own and run it word by word.
+# A shell would run a program for another machine as a script.
 require_machine() {
   its=$(machine "$1")
   ours=$(machine "/proc/$$/exe")
@@ -56,28 +56,28 @@ require_machine() {
 }
 
 command -v setsid >/dev/null || fail "the board has no program \"setsid\" (Debian: util-linux)"
-[ -d "$folder" ] || fail "the board is no longer held for this run"
+[ -d "$folder" ] || fail "the board is no longer reserved for this run"
 wanted=$program
 program=$(found "$wanted") ||
-  fail "the board has no program \"$wanted\" (nor ${wanted##*/} in PATH=$PATH); install it there, or name its folder as program_folder in a target file"
-[ -x "$program" ] || fail "$program may not be executed; on the board: chmod +x $program"
+  fail "the board has no program \"$wanted\" (nor ${wanted##*/} in PATH=$PATH). Install it there, or set program_folder in a target file"
+[ -x "$program" ] || fail "$program is not executable; on the board, type: chmod +x $program"
 [ -z "$supervisor" ] || command -v "$supervisor" >/dev/null ||
-  fail "the board has no program \"$supervisor\", under which a concurrent SUT runs (PATH=$PATH); install it there: it is in the package tether-sut"
+  fail "the board has no program \"$supervisor\", which a concurrent SUT needs (PATH=$PATH). Install the package tether-sut there"
 if [ -z "$launcher" ]; then
   require_machine "$program"
 else
-  command -v "$launcher" >/dev/null || fail "the board has no program \"$launcher\", which the target names as launcher"
+  command -v "$launcher" >/dev/null || fail "the board has no program \"$launcher\", the launcher of the target"
 fi
 
 join
 mkdir "$folder/out.$uav" || fail "cannot make $folder/out.$uav"
-# The shell's own remarks on how the SUT ended are none of the SUT's.
+# The shell's messages about the end of the SUT must not be in its output.
 exec 3>&2 2>/dev/null
 cd "$folder" || fail "cannot enter $folder"
 TETHER_OUT=$folder/out.$uav
 export TETHER_OUT
 run_sut </dev/null 2>&3
 code=$?
-# Children that it left would keep the connection open.
+# Its remaining children would keep the connection open.
 read -r group <"$folder/pid.$uav" && kill -KILL "-$group"
 exit "$code"

@@ -1,4 +1,3 @@
-
 #include <cctype>
 #include <charconv>
 #include <chrono>
@@ -15,15 +14,17 @@
 #include <tether/os/child_process.h>
 #include <tether/os/text_file.h>
 
+/// The connection is a master process of ssh, whose socket further ssh processes share. Failures
+/// are explained from the last line of its stderr.
 namespace tether::board {
 
 namespace {
 
 constexpr Duration kConnectLimit = std::chrono::seconds(40);
 constexpr Duration kForwardLimit = std::chrono::seconds(10);
-constexpr Duration kLook = std::chrono::milliseconds(10);
+constexpr Duration kPollPeriod = std::chrono::milliseconds(10);
 
-/// `ssh`, or what the user has it be.
+/// `ssh`, or the value of TETHER_SSH.
 std::vector<std::string> ssh_words() {
   const char* given = std::getenv("TETHER_SSH");
   std::istringstream text(given && *given ? given : "ssh");
@@ -34,10 +35,10 @@ std::vector<std::string> ssh_words() {
 }
 
 std::filesystem::path make_private_folder() {
-  // A socket's path must be short, so this is not in the run's folder.
+  // Not in the run's folder, because the path of a socket must be short.
   std::string name = "/tmp/tether-ssh-XXXXXX";
   if (!mkdtemp(name.data()))
-    throw Error(ErrorCode::kSetup, name + ": no folder for the connection can be made");
+    throw Error(ErrorCode::kSetup, {name}, "cannot create a folder for the connection");
   return name;
 }
 
@@ -45,37 +46,38 @@ void append(std::vector<std::string>& words, std::initializer_list<std::string> 
   words.insert(words.end(), more);
 }
 
-bool holds(const std::string& text, std::string_view part) {
+bool contains(const std::string& text, std::string_view part) {
   return text.find(part) != std::string::npos;
 }
 
-std::string advice(const std::string& said, const scenario::SshAddress& address) {
+std::string advice(const std::string& output, const scenario::SshAddress& address) {
   const std::string by_hand = fmt::format(
       "ssh {}{}", address.port ? fmt::format("-p {} ", address.port) : "", address.destination);
-  if (holds(said, "IDENTIFICATION HAS CHANGED") || holds(said, "has changed"))
+  if (contains(output, "IDENTIFICATION HAS CHANGED") || contains(output, "has changed"))
     return fmt::format(
-        "the board shows another key than before; if it was set up anew, type: "
-        "ssh-keygen -R {}",
+        "the key of the board has changed; if the board was reinstalled, type: ssh-keygen -R {}",
         address.destination.substr(address.destination.rfind('@') + 1));
-  if (holds(said, "Host key verification failed"))
-    return fmt::format("this machine does not know the board's key yet; connect once by hand: {}",
-                       by_hand);
-  if (holds(said, "Permission denied"))
-    return fmt::format("put your key there: ssh-copy-id {}{}",
+  if (contains(output, "Host key verification failed"))
+    return fmt::format("the key of the board is unknown; connect once manually: {}", by_hand);
+  if (contains(output, "Permission denied"))
+    return fmt::format("copy your key to the board: ssh-copy-id {}{}",
                        address.port ? fmt::format("-p {} ", address.port) : "",
                        address.destination);
-  if (holds(said, "Could not resolve")) return "check the board's name, or give its address";
-  if (holds(said, "Connection refused")) return "start an SSH server there, or give its port";
-  if (holds(said, "timed out") || holds(said, "No route"))
-    return "check that the board is on and on the same network";
-  return "try by hand: " + by_hand;
+  if (contains(output, "Could not resolve"))
+    return "check the name of the board, or use its address";
+  if (contains(output, "Connection refused"))
+    return "start an SSH server on the board, or pass its port";
+  if (contains(output, "timed out") || contains(output, "No route"))
+    return "check that the board is on and in the same network";
+  return "try: " + by_hand;
 }
 
 }  // namespace
 
-std::string explain_ssh(const std::string& said, const scenario::SshAddress& address) {
-  const std::string last = os::last_line(said);
-  return fmt::format("{}; {}", last.empty() ? "ssh said nothing" : last, advice(said, address));
+std::string explain_ssh(const std::string& output, const scenario::SshAddress& address) {
+  const std::string last = os::last_line(output);
+  return fmt::format("{}; {}", last.empty() ? "no message from ssh" : last,
+                     advice(output, address));
 }
 
 SshConnection::SshConnection(const scenario::SshAddress& address, std::stop_token stop)
@@ -117,21 +119,23 @@ void SshConnection::connect() {
   while (!std::filesystem::exists(folder_ / "socket")) {
     const std::string where = scenario::to_string(address_);
     if (stop_.stop_requested()) throw Error(ErrorCode::kSetup, "interrupted by the user");
-    if (master_->wait(kLook))
+    if (master_->wait(kPollPeriod))
       throw Error(ErrorCode::kSetup,
                   fmt::format("cannot reach {}: {}", where,
-                              explain_ssh(os::read_whole(folder_ / "master.err"), address_)));
+                              explain_ssh(os::read_whole(folder_ / "master.err"), address_)))
+          .about(where);
     if (std::chrono::steady_clock::now() - started > kConnectLimit)
       throw Error(
           ErrorCode::kSetup,
           fmt::format("cannot reach {}: no connection within {} s", where,
-                      std::chrono::duration_cast<std::chrono::seconds>(kConnectLimit).count()));
+                      std::chrono::duration_cast<std::chrono::seconds>(kConnectLimit).count()))
+          .about(where);
   }
 }
 
 std::vector<std::string> SshConnection::shell(std::size_t script_bytes) const {
   std::vector<std::string> command = words();
-  // Should the master be gone, ssh would connect anew by itself.
+  // Without the proxy command, ssh would open a new connection if the master has ended.
   append(command,
          {"-o", "ControlMaster=no", "-o", "ProxyCommand=false", "-o", "LogLevel=ERROR", "--",
           address_.destination,
@@ -140,9 +144,9 @@ std::vector<std::string> SshConnection::shell(std::size_t script_bytes) const {
 }
 
 os::Captured SshConnection::run(std::string_view script, Duration limit, std::string_view input,
-                                bool is_leaving) const {
+                                bool is_cleanup) const {
   return os::run_captured(shell(script.size()), std::string(script) + std::string(input), limit,
-                          is_leaving ? std::stop_token() : stop_);
+                          is_cleanup ? std::stop_token() : stop_);
 }
 
 std::optional<std::string> SshConnection::lost(Duration limit) {
@@ -164,9 +168,10 @@ std::uint16_t SshConnection::forward_back(std::uint16_t local_port) const {
     std::from_chars(said.out.data() + digits, said.out.data() + said.out.size(), port);
   if (said.code != 0 || port == 0)
     throw Error(ErrorCode::kSetup,
-                fmt::format("{} does not forward a port ({}); allow it there "
-                            "(AllowTcpForwarding in sshd_config), or leave out --tunnel",
-                            scenario::to_string(address_), os::last_line(said.err + said.out)));
+                fmt::format("{} does not forward a port ({}). Allow it with AllowTcpForwarding in "
+                            "sshd_config, or do not use --tunnel",
+                            scenario::to_string(address_), os::last_line(said.err + said.out)))
+        .about(scenario::to_string(address_));
   return port;
 }
 

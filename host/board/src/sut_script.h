@@ -6,10 +6,11 @@
 
 namespace tether::board {
 
-/// A line that gives a variable of a shell that value.
+/// A line of a shell script that assigns a variable.
 std::string assign(const std::string& name, const std::string& value);
 
-/// What board_sut.sh is given: who the SUT is, what joins it to the run, and what runs it.
+/// The variables and functions that board_sut.sh expects: the SUT, its environment, and its
+/// command.
 std::string sut_prologue(const BoardSut& sut);
 
 }  // namespace tether::board

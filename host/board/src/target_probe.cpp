@@ -1,4 +1,3 @@
-
 #include "board_scripts.h"
 
 #include <string>
@@ -25,7 +24,7 @@ std::string script_of(ProbeDepth depth) {
 record::Readings probe_here(ProbeDepth depth) try {
   return parse_readings(os::run_captured({"sh"}, script_of(depth), kProbeLimit).out);
 } catch (const Error& e) {
-  throw Error(e.code(), fmt::format("the state of this machine cannot be read: {}", e.what()));
+  throw Error(e.code(), fmt::format("cannot read the state of this machine: {}", e.what()));
 }
 
 record::Readings probe_board(const SshConnection& connection, ProbeDepth depth) {

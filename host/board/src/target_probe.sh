@@ -1,34 +1,34 @@
-# Tells what a machine is and how it is doing, a "key=value" line each. POSIX sh, busybox will do.
+# Prints the state of a machine as "key=value" lines. Needs only a POSIX sh, such as busybox.
 #
-# Given: depth, "brief" (around every run: files of /proc and /sys only) or "full". What cannot be
-# read has no line.
+# Variable: depth, "brief" (before and after every run: only files of /proc and /sys) or "full". Values
+# that cannot be read have no line.
 PATH=$PATH:/usr/local/sbin:/usr/sbin:/sbin
 
-tell() { [ -z "$2" ] || printf '%s=%s\n' "$1" "$2"; }
+emit() { [ -z "$2" ] || printf '%s=%s\n' "$1" "$2"; }
 # The first line of a file, without a fork.
 line() {
   text=
   [ -r "$1" ] && IFS= read -r text <"$1"
 } 2>/dev/null
-tell_line() {
+emit_file() {
   line "$2"
-  tell "$1" "$text"
+  emit "$1" "$text"
 }
 
-# ---- what may change from run to run
+# ---- What can change from run to run
 
 read -r load rest </proc/loadavg 2>/dev/null
-tell load_average "$load"
+emit load_average "$load"
 read -r uptime rest </proc/uptime 2>/dev/null
-tell uptime_s "$uptime"
+emit uptime_s "$uptime"
 while read -r key value rest; do
   case $key in
-    MemTotal:) tell memory_total_kib "$value" ;;
-    MemAvailable:) tell memory_available_kib "$value" ;;
+    MemTotal:) emit memory_total_kib "$value" ;;
+    MemAvailable:) emit memory_available_kib "$value" ;;
   esac
 done </proc/meminfo 2>/dev/null
 
-tell_line clock_source /sys/devices/system/clocksource/clocksource0/current_clocksource
+emit_file clock_source /sys/devices/system/clocksource/clocksource0/current_clocksource
 
 # Of all cores: the governor (each kind once), the lowest and the highest frequency now.
 governors= now_min= now_max=
@@ -41,12 +41,12 @@ for core in /sys/devices/system/cpu/cpu[0-9]*/cpufreq; do
     [ -n "$now_max" ] && [ "$now_max" -ge "$text" ] || now_max=$text
   fi
 done
-tell governor "$governors"
-tell frequency_now_min_khz "$now_min"
-tell frequency_now_max_khz "$now_max"
-tell_line frequency_min_khz /sys/devices/system/cpu/cpu0/cpufreq/scaling_min_freq
-tell_line frequency_max_khz /sys/devices/system/cpu/cpu0/cpufreq/scaling_max_freq
-tell_line frequency_hardware_max_khz /sys/devices/system/cpu/cpu0/cpufreq/cpuinfo_max_freq
+emit governor "$governors"
+emit frequency_now_min_khz "$now_min"
+emit frequency_now_max_khz "$now_max"
+emit_file frequency_min_khz /sys/devices/system/cpu/cpu0/cpufreq/scaling_min_freq
+emit_file frequency_max_khz /sys/devices/system/cpu/cpu0/cpufreq/scaling_max_freq
+emit_file frequency_hardware_max_khz /sys/devices/system/cpu/cpu0/cpufreq/cpuinfo_max_freq
 
 # The hottest of the zones.
 hottest=
@@ -54,7 +54,7 @@ for zone in /sys/class/thermal/thermal_zone*; do
   line "$zone/temp"
   [ -z "$text" ] || [ "$text" -le "${hottest:--1000000}" ] 2>/dev/null || hottest=$text
 done
-tell temperature_mc "$hottest"
+emit temperature_mc "$hottest"
 
 # How often the cores were slowed down for heat since the start (x86).
 count=
@@ -62,21 +62,21 @@ for core in /sys/devices/system/cpu/cpu[0-9]*/thermal_throttle; do
   line "$core/core_throttle_count"
   [ -z "$text" ] || count=$((${count:-0} + text))
 done
-tell throttle_count "$count"
+emit throttle_count "$count"
 
-# A Raspberry Pi's own word on its voltage and heat.
+# Voltage and heat of a Raspberry Pi.
 if command -v vcgencmd >/dev/null 2>&1; then
   throttled=$(vcgencmd get_throttled 2>/dev/null)
-  case $throttled in throttled=*) tell throttled "${throttled#throttled=}" ;; esac
+  case $throttled in throttled=*) emit throttled "${throttled#throttled=}" ;; esac
 fi
 [ "$depth" = full ] || exit 0
 
-# ---- what the machine is
+# ---- Properties of the machine
 
-tell architecture "$(uname -m)"
-tell kernel "$(uname -sr)"
+emit architecture "$(uname -m)"
+emit kernel "$(uname -sr)"
 while IFS='=' read -r key value; do
-  [ "$key" = PRETTY_NAME ] && value=${value#\"} && tell system "${value%\"}"
+  [ "$key" = PRETTY_NAME ] && value=${value#\"} && emit system "${value%\"}"
 done </etc/os-release 2>/dev/null
 model=
 while IFS=':' read -r key value; do
@@ -84,24 +84,24 @@ while IFS=':' read -r key value; do
     "model name"* | "Model"*) model=${value# } ;;
   esac
 done </proc/cpuinfo 2>/dev/null
-tell cpu_model "$model"
+emit cpu_model "$model"
 cores=0
 for core in /sys/devices/system/cpu/cpu[0-9]*; do
   [ -d "$core" ] && cores=$((cores + 1))
 done
-tell cores "$cores"
-tell online_cores "$(grep -c '^processor' /proc/cpuinfo 2>/dev/null)"
+emit cores "$cores"
+emit online_cores "$(grep -c '^processor' /proc/cpuinfo 2>/dev/null)"
 
 for program in tether-sut tether-exec; do
   if command -v "$program" >/dev/null 2>&1; then
-    said=$("$program" --version 2>&1 </dev/null | head -n 1)
-    tell "version_$program" "${said:-says nothing}"
+    printed=$("$program" --version 2>&1 </dev/null | head -n 1)
+    emit "version_$program" "${printed:-prints nothing}"
   else
-    tell "version_$program" none
+    emit "version_$program" none
   fi
 done
 
-# What tether-exec may stop a program with: a cgroup v2 below its own, else signals.
+# How tether-exec can stop a program: with a cgroup v2 below its own, or with signals.
 freezer=signals
 while read -r device folder type rest; do
   [ "$type" = cgroup2 ] || continue
@@ -110,17 +110,17 @@ while read -r device folder type rest; do
   done </proc/self/cgroup
   break
 done </proc/mounts 2>/dev/null
-tell freezer "$freezer"
+emit freezer "$freezer"
 
 if [ -r "${TETHER_BOARD_LOCK:-/tmp/tether-board.lock}" ]; then
   {
     read -r pid rest
     IFS= read -r name
   } <"${TETHER_BOARD_LOCK:-/tmp/tether-board.lock}"
-  [ -d "/proc/$pid" ] && tell held_by "$name"
+  [ -d "/proc/$pid" ] && emit held_by "$name"
 fi
 
-# Whoever takes a twentieth of a core or more, over a second; not what asks.
+# Programs that take 5 % of a core or more over a second, except this script.
 ticks() {
   for process in /proc/[0-9]*; do
     { IFS= read -r text <"$process/stat"; } 2>/dev/null || continue
@@ -138,4 +138,4 @@ busy=$({
     if ($1 == 1) before[pid] = ticks
     else if (pid in before && pid != own && ticks - before[pid] >= 5)
       if (n++ < 6) printf "%s%s %d%%", (n > 1 ? ", " : ""), name, ticks - before[pid] }')
-tell busy "${busy:-none}"
+emit busy "${busy:-none}"

@@ -8,15 +8,17 @@
 
 #include <tether/board/target_readings.h>
 
+/// One function per property of a machine makes its finding from the readings; evaluate() lists
+/// them. run_warnings() applies some of them to the readings before and after a run.
 namespace tether::board {
 namespace {
 
 using record::Readings;
 
-// A board that reaches this slows down soon, or has.
+// From these temperatures on, boards are about to slow down, or have.
 constexpr double kWarm_C = 75.0, kHot_C = 85.0;
-// Shares of one core that another program may take.
-constexpr int kBusyWarn_percent = 5, kBusyBad_percent = 20;
+// Shares of one core that other programs take.
+constexpr double kBusyWarn_percent = 5.0, kBusyBad_percent = 20.0;
 constexpr double kKibPerMib = 1024.0;
 
 std::string text(const Readings& readings, const std::string& name) {
@@ -32,7 +34,12 @@ std::optional<double> number(const Readings& readings, const std::string& name) 
   return parsed;
 }
 
-// ---- Voltage and heat, as a Raspberry Pi tells them
+Health graded(double value, double warn_from, double bad_from) {
+  if (value >= bad_from) return Health::kBad;
+  return value >= warn_from ? Health::kWarn : Health::kOk;
+}
+
+// ---- Voltage and heat, as reported by a Raspberry Pi
 
 constexpr std::uint32_t kNow = 0xF, kSinceStart = 0xF0000;
 constexpr const char* kThrottles[] = {"under-voltage", "frequency capped", "throttled",
@@ -60,7 +67,7 @@ std::string throttle_remedy(std::uint32_t bits) {
   return (bits & 1u) ? ((bits & ~1u) ? power + ", and " + heat : power) : heat;
 }
 
-Finding judge_throttled(const Readings& readings) {
+Finding check_throttled(const Readings& readings) {
   const std::uint32_t bits = throttle_bits(readings);
   const std::string value = text(readings, "throttled");
   if (bits & kNow)
@@ -75,21 +82,15 @@ Finding judge_throttled(const Readings& readings) {
 
 // ---- One subject each
 
-void add_plain(std::vector<Finding>& findings, const Readings& readings, const std::string& subject,
-               const std::string& reading) {
-  const std::string value = text(readings, reading);
-  if (!value.empty()) findings.push_back({subject, value, Health::kOk, ""});
-}
-
-Finding judge_clock(const Readings& readings) {
+Finding check_clock(const Readings& readings) {
   const std::string source = text(readings, "clock_source");
   if (source.empty()) return {"clock source", "cannot be read", Health::kWarn, ""};
   for (const char* slow : {"hpet", "acpi_pm", "refined-jiffies", "jiffies", "pit"})
     if (source == slow)
       return {"clock source", source,
               source.find("jiffies") == std::string::npos ? Health::kWarn : Health::kBad,
-              "reading this clock is slow or coarse; see why the kernel left the processor's own "
-              "(dmesg | grep -i clocksource)"};
+              "reading this clock is slow or coarse; to see why the kernel does not use the "
+              "processor's, type: dmesg | grep -i clocksource"};
   return {"clock source", source, Health::kOk, ""};
 }
 
@@ -104,7 +105,7 @@ bool has_fixed_frequency(const Readings& readings) {
   return least && most && *least == *most;
 }
 
-Finding judge_governor(const Readings& readings) {
+Finding check_governor(const Readings& readings) {
   const std::string governor = text(readings, "governor");
   if (governor.empty())
     return {"governor", "cannot be read", Health::kOk, "a virtual machine, or a fixed frequency"};
@@ -112,12 +113,13 @@ Finding judge_governor(const Readings& readings) {
     return {"governor", governor, Health::kOk, ""};
   return {
       "governor", governor, Health::kBad,
-      "the frequency sinks whenever the software is held; on the board: echo performance | sudo "
-      "tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"};
+      "the frequency drops whenever the software is held; on the board, type: echo performance | "
+      "sudo tee /sys/devices/system/cpu/cpu*/cpufreq/scaling_governor"};
 }
 
-/// Below its limit although the governor should keep it there, or limited below what it can do.
-std::optional<Finding> judge_frequency(const Readings& readings) {
+/// Bad if it is below its limit although the governor should keep it there; a warning if the limit
+/// is below that of the hardware.
+std::optional<Finding> check_frequency(const Readings& readings) {
   const auto now = number(readings, "frequency_now_min_khz"),
              fastest = number(readings, "frequency_now_max_khz"),
              least = number(readings, "frequency_min_khz"),
@@ -135,26 +137,24 @@ std::optional<Finding> judge_frequency(const Readings& readings) {
                   Health::kOk, ""};
   if (now && text(readings, "governor") == "performance" && *now < 0.9 * *most) {
     finding.health = Health::kBad;
-    finding.advice = "below its limit under the governor performance: heat or voltage hold it back";
+    finding.advice = "below its limit under the governor performance, because of heat or voltage";
   } else if (hardware && *most < 0.99 * *hardware) {
     finding.health = Health::kWarn;
-    finding.advice = fmt::format("limited below the {:.0f} MHz that it can do", mhz(*hardware));
+    finding.advice = fmt::format("limited below the {:.0f} MHz of the hardware", mhz(*hardware));
   }
   return finding;
 }
 
-std::optional<Finding> judge_temperature(const Readings& readings) {
+std::optional<Finding> check_temperature(const Readings& readings) {
   const auto milli = number(readings, "temperature_mc");
   if (!milli) return std::nullopt;
   const double degrees = *milli / 1000.0;
-  const Health health = degrees >= kHot_C    ? Health::kBad
-                        : degrees >= kWarm_C ? Health::kWarn
-                                             : Health::kOk;
+  const Health health = graded(degrees, kWarm_C, kHot_C);
   return Finding{"temperature", fmt::format("{:.1f} °C", degrees), health,
-                 health == Health::kOk ? "" : "boards slow down when hot: cool it"};
+                 health == Health::kOk ? "" : "boards slow down when they are hot; cool it"};
 }
 
-std::optional<Finding> judge_throttle_count(const Readings& readings) {
+std::optional<Finding> check_throttle_count(const Readings& readings) {
   const auto count = number(readings, "throttle_count");
   if (!count) return std::nullopt;
   const bool never = *count == 0.0;
@@ -163,13 +163,13 @@ std::optional<Finding> judge_throttle_count(const Readings& readings) {
                  never ? Health::kOk : Health::kWarn, never ? "" : "it may come again under load"};
 }
 
-std::optional<Finding> judge_load(const Readings& readings) {
+std::optional<Finding> check_load(const Readings& readings) {
   const auto load = number(readings, "load_average");
   if (!load) return std::nullopt;
   const bool is_idle = *load < 0.5;
   return Finding{"load average", fmt::format("{:.2f} over the last minute", *load),
                  is_idle ? Health::kOk : Health::kWarn,
-                 is_idle ? "" : "other programs were at work; wait until it falls below 0.5"};
+                 is_idle ? "" : "other programs are running; wait until it is below 0.5"};
 }
 
 /// The largest share in "name 12%, other name 7%".
@@ -184,18 +184,16 @@ int largest_percent(const std::string& busy) {
   return largest;
 }
 
-std::optional<Finding> judge_busy(const Readings& readings) {
+std::optional<Finding> check_busy(const Readings& readings) {
   const std::string busy = text(readings, "busy");
   if (busy.empty()) return std::nullopt;
   const int share = largest_percent(busy);
-  const Health health = share >= kBusyBad_percent    ? Health::kBad
-                        : share >= kBusyWarn_percent ? Health::kWarn
-                                                     : Health::kOk;
+  const Health health = graded(share, kBusyWarn_percent, kBusyBad_percent);
   return Finding{"busy programs", busy, health,
                  health == Health::kOk ? "" : "their time is charged to your software; end them"};
 }
 
-std::optional<Finding> judge_memory(const Readings& readings) {
+std::optional<Finding> check_memory(const Readings& readings) {
   const auto total = number(readings, "memory_total_kib"),
              available = number(readings, "memory_available_kib");
   if (!total || !available) return std::nullopt;
@@ -204,10 +202,10 @@ std::optional<Finding> judge_memory(const Readings& readings) {
       "memory",
       fmt::format("{:.0f} of {:.0f} MiB available", *available / kKibPerMib, *total / kKibPerMib),
       is_enough ? Health::kOk : Health::kWarn,
-      is_enough ? "" : "little is left: swapping would be charged to your software"};
+      is_enough ? "" : "too little; swapping would be charged to your software"};
 }
 
-Finding judge_version(const Readings& readings, const std::string& program,
+Finding check_version(const Readings& readings, const std::string& program,
                       std::string_view version) {
   const std::string there = text(readings, "version_" + program);
   if (there.empty() || there == "none")
@@ -216,13 +214,14 @@ Finding judge_version(const Readings& readings, const std::string& program,
         "needed only if your SUT's command names it; docs/guide/board.md says how to install it"};
   if (there.find(version) != std::string::npos) return {program, there, Health::kOk, ""};
   return {program, there, Health::kBad,
-          fmt::format("this is Tether {}; install the same version there", version)};
+          fmt::format("this machine has Tether {}; install the same version there", version)};
 }
 
-Finding judge_freezer(const Readings& readings) {
+Finding check_freezer(const Readings& readings) {
   if (text(readings, "freezer") == "cgroup")
-    return {"freezer", "cgroup v2", Health::kOk, "of tether-exec"};
-  return {"freezer", "signals (SIGSTOP)", Health::kOk, "of tether-exec: no cgroup of this user"};
+    return {"freezer", "cgroup v2", Health::kOk, "used by tether-exec"};
+  return {"freezer", "signals (SIGSTOP)", Health::kOk,
+          "used by tether-exec: this user has no cgroup"};
 }
 
 void add(std::vector<Finding>& findings, std::optional<Finding> finding) {
@@ -250,33 +249,36 @@ record::Readings parse_readings(std::string_view text) {
   return readings;
 }
 
-std::vector<Finding> judge(const Readings& readings, std::string_view version) {
+std::vector<Finding> evaluate(const Readings& readings, std::string_view version) {
   std::vector<Finding> findings;
   if (const std::string holder = text(readings, "held_by"); !holder.empty())
     findings.push_back({"in use", holder, Health::kBad, "wait for that run to end"});
-  add_plain(findings, readings, "system", "system");
-  add_plain(findings, readings, "kernel", "kernel");
-  add_plain(findings, readings, "architecture", "architecture");
-  add_plain(findings, readings, "processor", "cpu_model");
-  add_plain(findings, readings, "cores", "cores");
-  findings.push_back(judge_version(readings, "tether-sut", version));
-  findings.push_back(judge_version(readings, "tether-exec", version));
-  findings.push_back(judge_freezer(readings));
-  findings.push_back(judge_clock(readings));
-  findings.push_back(judge_governor(readings));
-  add(findings, judge_frequency(readings));
-  add(findings, judge_temperature(readings));
-  if (readings.contains("throttled")) findings.push_back(judge_throttled(readings));
-  add(findings, judge_throttle_count(readings));
-  add(findings, judge_load(readings));
-  add(findings, judge_busy(readings));
-  add(findings, judge_memory(readings));
+  constexpr std::pair<const char*, const char*> kPlain[] = {{"system", "system"},
+                                                            {"kernel", "kernel"},
+                                                            {"architecture", "architecture"},
+                                                            {"processor", "cpu_model"},
+                                                            {"cores", "cores"}};
+  for (const auto& [subject, reading] : kPlain)
+    if (const std::string value = text(readings, reading); !value.empty())
+      findings.push_back({subject, value, Health::kOk, ""});
+  findings.push_back(check_version(readings, "tether-sut", version));
+  findings.push_back(check_version(readings, "tether-exec", version));
+  findings.push_back(check_freezer(readings));
+  findings.push_back(check_clock(readings));
+  findings.push_back(check_governor(readings));
+  add(findings, check_frequency(readings));
+  add(findings, check_temperature(readings));
+  if (readings.contains("throttled")) findings.push_back(check_throttled(readings));
+  add(findings, check_throttle_count(readings));
+  add(findings, check_load(readings));
+  add(findings, check_busy(readings));
+  add(findings, check_memory(readings));
   return findings;
 }
 
 std::vector<RunWarning> run_warnings(const Readings& before, const Readings& after, bool is_board) {
   std::vector<RunWarning> warnings;
-  // Now, at either end, or for the first time since the start meanwhile.
+  // At either end of the run, or for the first time since the start of the machine.
   const std::uint32_t was = throttle_bits(before), is = throttle_bits(after);
   const std::uint32_t during = ((was | is) & kNow) | (((is & ~was) & kSinceStart) >> 16);
   if (during)
@@ -287,15 +289,16 @@ std::vector<RunWarning> run_warnings(const Readings& before, const Readings& aft
   const auto count_before = number(before, "throttle_count"),
              count_after = number(after, "throttle_count");
   if (count_before && count_after && *count_after > *count_before)
-    warnings.push_back({fmt::format("the target was throttled: its processor slowed down for heat "
-                                    "{:.0f} times during the run",
-                                    *count_after - *count_before),
-                        true});
+    warnings.push_back(
+        {fmt::format("the target was throttled: its processor slowed down because of "
+                     "heat {:.0f} times during the run",
+                     *count_after - *count_before),
+         true});
   if (!is_board) return warnings;
-  if (const Finding governor = judge_governor(after); governor.health == Health::kBad)
+  if (const Finding governor = check_governor(after); governor.health == Health::kBad)
     warnings.push_back(
         {fmt::format("the target's governor is {}: {}", governor.value, governor.advice), false});
-  for (const auto& finding : {judge_frequency(after), judge_temperature(after)})
+  for (const auto& finding : {check_frequency(after), check_temperature(after)})
     if (finding && finding->health == Health::kBad)
       warnings.push_back({fmt::format("the target's {} is {}: {}", finding->subject, finding->value,
                                       finding->advice),

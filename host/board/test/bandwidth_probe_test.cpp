@@ -7,7 +7,7 @@
 namespace tether::board {
 namespace {
 
-TEST(BandwidthProbe, MeasuresBothWays) {
+TEST(BandwidthProbe, MeasuresRoundTripAndBandwidth) {
   const FakeSsh ssh;
   const auto measured = probe_bandwidth(SshConnection(FakeSsh::address()));
   ASSERT_TRUE(measured);

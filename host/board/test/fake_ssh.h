@@ -8,8 +8,7 @@
 
 namespace tether::board {
 
-/// An `ssh` that stays on this machine: boards are this machine, with a lock and a folder of their
-/// own, while it lives.
+/// Replaces `ssh` while it exists: boards are this machine, with a separate lock and folder.
 class FakeSsh {
  public:
   FakeSsh() {

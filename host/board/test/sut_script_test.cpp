@@ -14,7 +14,7 @@ std::string said_by(const std::string& script) {
   return os::run_captured({"sh"}, script, kLong).out;
 }
 
-TEST(Assign, GivesAVariableAnyValue) {
+TEST(Assign, AssignsAnyValue) {
   for (const std::string value : {"plain", "", "two words", "it's $HOME `id`\n\"x\""})
     EXPECT_EQ(said_by(assign("name", value) + "printf %s \"$name\""), value);
 }
@@ -26,20 +26,20 @@ const BoardSut kSut{.uav = "uav 1",
                     .environment = {{"TETHER_TOKEN", "a 'b' $c"}},
                     .log = {}};
 
-TEST(SutPrologue, RunsTheProgramWithItsWordsAsTheyAre) {
+TEST(SutPrologue, RunsTheProgramWithUnchangedArguments) {
   const ScratchFolder folder;
   EXPECT_EQ(said_by(assign("folder", folder.path()) + sut_prologue(kSut) + "run_sut"),
             "it's|$HOME|two words|");
   EXPECT_TRUE(std::filesystem::exists(folder.path("pid.uav 1")));
 }
 
-TEST(SutPrologue, ExportsTheEnvironmentWhenItJoins) {
+TEST(SutPrologue, ExportsTheEnvironmentInJoin) {
   const std::string show = "sh -c 'printf %s \"${TETHER_TOKEN-none}\"'\n";
   EXPECT_EQ(said_by(sut_prologue(kSut) + show), "none");
   EXPECT_EQ(said_by(sut_prologue(kSut) + "join\n" + show), "a 'b' $c");
 }
 
-TEST(SutPrologue, NamesWhatStartsTheProgram) {
+TEST(SutPrologue, NamesProgramSupervisorAndLauncher) {
   const std::string show = "printf '%s|%s|%s' \"$program\" \"$supervisor\" \"$launcher\"\n";
   EXPECT_EQ(said_by(sut_prologue(kSut) + show), "printf||");
   BoardSut sut = kSut;

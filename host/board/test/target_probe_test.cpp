@@ -14,14 +14,14 @@ std::vector<std::string> names(const record::Readings& readings) {
   return names;
 }
 
-TEST(TargetProbe, ReadsTheSameOfThisMachineAndOfABoard) {
+TEST(TargetProbe, ReadsTheSameFromThisMachineAndABoard) {
   const FakeSsh ssh;
   const auto here = probe_here(ProbeDepth::kBrief);
   EXPECT_TRUE(here.contains("load_average"));
   EXPECT_EQ(names(probe_board(SshConnection(FakeSsh::address()), ProbeDepth::kBrief)), names(here));
 }
 
-TEST(TargetProbe, IsEmptyWhereTheConnectionIsGone) {
+TEST(TargetProbe, IsEmptyIfTheConnectionIsLost) {
   const FakeSsh ssh;
   const SshConnection connection(FakeSsh::address());
   ssh.scratch().write("ssh", "exit 255\n");

@@ -5,11 +5,13 @@
 
 #include <tether/board/target_readings.h>
 
-/// The probe's output as machines gave it.
+/// With the output of the probe on real machines.
 namespace tether::board {
 namespace {
 
 using record::Readings;
+using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -42,31 +44,6 @@ freezer=signals
 busy=apt-get 97%, systemd-journal 6%
 )";
 
-constexpr std::string_view kHealthyPi = R"(load_average=0.08
-uptime_s=912.10
-memory_total_kib=3884360
-memory_available_kib=3561724
-clock_source=arch_sys_counter
-governor=performance
-frequency_now_min_khz=1800000
-frequency_now_max_khz=1800000
-frequency_min_khz=600000
-frequency_max_khz=1800000
-frequency_hardware_max_khz=1800000
-temperature_mc=51121
-throttled=0x0
-architecture=aarch64
-kernel=Linux 6.1.0-rpi7-rpi-v8
-system=Debian GNU/Linux 12 (bookworm)
-cpu_model=Raspberry Pi 4 Model B Rev 1.4
-cores=4
-online_cores=4
-version_tether-sut=tether-sut 0.1.0
-version_tether-exec=tether-exec 0.1.0
-freezer=cgroup
-busy=none
-)";
-
 constexpr std::string_view kPc = R"(load_average=0.31
 memory_total_kib=32594044
 memory_available_kib=24113456
@@ -89,7 +66,7 @@ freezer=cgroup
 busy=firefox-esr 11%
 )";
 
-// A virtual machine that shows nothing of its processor.
+// A virtual machine without readings of its processor.
 constexpr std::string_view kVm = R"(load_average=0.00
 memory_total_kib=8123456
 memory_available_kib=7000000
@@ -102,141 +79,130 @@ freezer=signals
 busy=none
 )";
 
-Finding finding(const Readings& readings, const std::string& subject) {
-  for (const Finding& finding : judge(readings, kVersion)) {
-    if (finding.subject == subject) return finding;
+/// The readings with other values; "" removes one.
+Readings with(std::string_view output, const Readings& changes) {
+  Readings readings = parse_readings(output);
+  for (const auto& [name, value] : changes) {
+    readings.erase(name);
+    if (!value.empty()) readings[name] = value;
   }
+  return readings;
+}
+
+/// The same board with power, cooling and settings as they should be.
+Readings healthy_pi(Readings changes = {}) {
+  changes.merge(Readings{{"load_average", "0.08"},
+                         {"governor", "performance"},
+                         {"frequency_now_min_khz", "1800000"},
+                         {"frequency_now_max_khz", "1800000"},
+                         {"temperature_mc", "51121"},
+                         {"throttled", "0x0"},
+                         {"version_tether-sut", "tether-sut 0.1.0"},
+                         {"version_tether-exec", "tether-exec 0.1.0"},
+                         {"freezer", "cgroup"},
+                         {"busy", "none"}});
+  return with(kThrottledPi, changes);
+}
+
+Finding finding(const Readings& readings, const std::string& subject) {
+  for (const Finding& finding : evaluate(readings, kVersion))
+    if (finding.subject == subject) return finding;
   ADD_FAILURE() << "nothing on " << subject;
   return {};
 }
-Finding finding(std::string_view output, const std::string& subject) {
-  return finding(parse_readings(output), subject);
-}
 
-std::vector<std::string> subjects(std::string_view output, Health health) {
+std::vector<std::string> subjects(const Readings& readings, Health health) {
   std::vector<std::string> subjects;
-  for (const Finding& finding : judge(parse_readings(output), kVersion))
+  for (const Finding& finding : evaluate(readings, kVersion))
     if (finding.health == health) subjects.push_back(finding.subject);
   return subjects;
 }
 
-/// The reading with another value; "" takes it away.
-Readings with(std::string_view output, const std::string& name, const std::string& value) {
-  Readings readings = parse_readings(output);
-  readings.erase(name);
-  if (!value.empty()) readings[name] = value;
-  return readings;
-}
-
-TEST(ParseReadings, TakesLinesThatSaySomething) {
+TEST(ParseReadings, IgnoresLinesWithoutAValue) {
   const Readings readings = parse_readings("a=1\r\n\nno line\n=x\nb=\nc=x = y  \nd=last");
   EXPECT_EQ(readings, (Readings{{"a", "1"}, {"c", "x = y"}, {"d", "last"}}));
   EXPECT_THAT(parse_readings(""), IsEmpty());
 }
 
-TEST(Judge, FindsAllThatIsWrongWithAPi) {
-  EXPECT_THAT(
-      subjects(kThrottledPi, Health::kBad),
-      testing::ElementsAre("tether-sut", "governor", "temperature", "throttling", "busy programs"));
-  EXPECT_THAT(finding(kThrottledPi, "throttling").value,
+TEST(Evaluate, FindsEverythingThatIsWrongWithAPi) {
+  const Readings pi = parse_readings(kThrottledPi);
+  EXPECT_THAT(subjects(pi, Health::kBad),
+              ElementsAre("tether-sut", "governor", "temperature", "throttling", "busy programs"));
+  const Finding throttling = finding(pi, "throttling");
+  EXPECT_THAT(throttling.value,
               HasSubstr("under-voltage, throttled, soft temperature limit now (0xd000d)"));
-  EXPECT_THAT(finding(kThrottledPi, "throttling").advice, HasSubstr("power supply"));
-  EXPECT_THAT(finding(kThrottledPi, "throttling").advice, HasSubstr("cool"));
-  EXPECT_THAT(finding(kThrottledPi, "governor").advice, HasSubstr("echo performance"));
-  EXPECT_THAT(finding(kThrottledPi, "tether-sut").advice, HasSubstr("0.1.0"));
-  EXPECT_EQ(finding(kThrottledPi, "temperature").value, "86.2 °C");
-  EXPECT_EQ(finding(kThrottledPi, "load average").health, Health::kWarn);
+  EXPECT_THAT(throttling.advice, AllOf(HasSubstr("power supply"), HasSubstr("cool")));
+  EXPECT_THAT(finding(pi, "governor").advice, HasSubstr("echo performance"));
+  EXPECT_THAT(finding(pi, "tether-sut").advice, HasSubstr("0.1.0"));
+  EXPECT_EQ(finding(pi, "temperature").value, "86.2 °C");
+  EXPECT_EQ(finding(pi, "load average").health, Health::kWarn);
 }
 
-TEST(Judge, FindsNothingWrongWithAHealthyPi) {
-  EXPECT_THAT(subjects(kHealthyPi, Health::kBad), IsEmpty());
-  EXPECT_THAT(subjects(kHealthyPi, Health::kWarn), IsEmpty());
-  EXPECT_EQ(finding(kHealthyPi, "frequency").value, "now 1800, min 600, max 1800 MHz");
-  EXPECT_EQ(finding(kHealthyPi, "freezer").value, "cgroup v2");
+TEST(Evaluate, FindsNothingWrongWithAHealthyPi) {
+  const Readings pi = healthy_pi();
+  EXPECT_THAT(subjects(pi, Health::kBad), IsEmpty());
+  EXPECT_THAT(subjects(pi, Health::kWarn), IsEmpty());
+  EXPECT_EQ(finding(pi, "frequency").value, "now 1800, min 600, max 1800 MHz");
+  EXPECT_EQ(finding(pi, "freezer").value, "cgroup v2");
 }
 
-TEST(Judge, TellsAPcsGovernorAndPastHeat) {
-  EXPECT_THAT(subjects(kPc, Health::kBad), testing::ElementsAre("governor"));
-  EXPECT_EQ(finding(kPc, "slowed for heat").value, "12 times since the start");
-  EXPECT_EQ(finding(kPc, "slowed for heat").health, Health::kWarn);
-  EXPECT_EQ(finding(kPc, "busy programs").health, Health::kWarn);
-  EXPECT_EQ(finding(kPc, "tether-sut").health, Health::kWarn);
-  EXPECT_THAT(finding(kPc, "frequency").value, HasSubstr("now 800 to 4100"));
+TEST(Evaluate, FindsTheGovernorAndPastHeatOfAPc) {
+  const Readings pc = parse_readings(kPc);
+  EXPECT_THAT(subjects(pc, Health::kBad), ElementsAre("governor"));
+  EXPECT_THAT(subjects(pc, Health::kWarn),
+              ElementsAre("tether-sut", "tether-exec", "slowed for heat", "busy programs"));
+  EXPECT_EQ(finding(pc, "slowed for heat").value, "12 times since the start");
+  EXPECT_THAT(finding(pc, "frequency").value, HasSubstr("now 800 to 4100"));
 }
 
-TEST(Judge, BlamesNoMachineForWhatItCannotTell) {
-  EXPECT_THAT(subjects(kVm, Health::kBad), IsEmpty());
-  EXPECT_THAT(subjects(kVm, Health::kWarn), IsEmpty());
-  EXPECT_EQ(finding(kVm, "governor").value, "cannot be read");
-  EXPECT_THAT(subjects("", Health::kBad), IsEmpty());
+TEST(Evaluate, MissingReadingsAreNotBad) {
+  EXPECT_THAT(subjects(parse_readings(kVm), Health::kBad), IsEmpty());
+  EXPECT_THAT(subjects(parse_readings(kVm), Health::kWarn), IsEmpty());
+  EXPECT_THAT(subjects({}, Health::kBad), IsEmpty());
 }
 
-TEST(Judge, TakesAFixedFrequencyUnderAnyGovernor) {
-  EXPECT_EQ(finding(with(kThrottledPi, "frequency_min_khz", "1800000"), "governor").health,
-            Health::kOk);
+TEST(Evaluate, GradesSingleReadings) {
+  struct Case {
+    Readings readings;
+    const char* subject;
+    std::string_view health;
+  };
+  const Case cases[] = {{with(kThrottledPi, {{"frequency_min_khz", "1800000"}}), "governor", "ok"},
+                        {healthy_pi({{"frequency_now_min_khz", "1000000"}}), "frequency", "bad"},
+                        {healthy_pi({{"frequency_max_khz", "1500000"}}), "frequency", "warn"},
+                        {healthy_pi({{"held_by", "ada@host since noon"}}), "in use", "bad"},
+                        {with(kPc, {{"clock_source", "tsc"}}), "clock source", "ok"},
+                        {with(kPc, {{"clock_source", "hpet"}}), "clock source", "warn"},
+                        {with(kPc, {{"clock_source", "jiffies"}}), "clock source", "bad"}};
+  for (const Case& c : cases)
+    EXPECT_EQ(name(finding(c.readings, c.subject).health), c.health) << c.subject;
 }
 
-TEST(Judge, FindsAFrequencyThatIsHeldBack) {
-  EXPECT_EQ(finding(with(kHealthyPi, "frequency_now_min_khz", "1000000"), "frequency").health,
-            Health::kBad);
-  EXPECT_EQ(finding(with(kHealthyPi, "frequency_max_khz", "1500000"), "frequency").health,
-            Health::kWarn);
-}
-
-TEST(Judge, TellsWhoHoldsTheBoard) {
-  const auto findings = judge(with(kHealthyPi, "held_by", "ada@host since noon"), kVersion);
-  EXPECT_EQ(findings.front().subject, "in use");
-  EXPECT_EQ(findings.front().health, Health::kBad);
-  EXPECT_THAT(findings.front().value, HasSubstr("ada@host"));
-}
-
-TEST(Judge, KnowsSlowClocks) {
-  EXPECT_EQ(finding(with(kPc, "clock_source", "tsc"), "clock source").health, Health::kOk);
-  EXPECT_EQ(finding(with(kPc, "clock_source", "hpet"), "clock source").health, Health::kWarn);
-  EXPECT_EQ(finding(with(kPc, "clock_source", "jiffies"), "clock source").health, Health::kBad);
-}
-
-TEST(RunWarnings, AreNoneOfAHealthyBoard) {
-  const Readings healthy = parse_readings(kHealthyPi);
-  EXPECT_THAT(run_warnings(healthy, healthy, true), IsEmpty());
+TEST(RunWarnings, ThereAreNoneForAHealthyBoardOrAnEarlierProblem) {
+  EXPECT_THAT(run_warnings(healthy_pi(), healthy_pi(), true), IsEmpty());
   EXPECT_THAT(run_warnings({}, {}, true), IsEmpty());
-}
-
-TEST(RunWarnings, NameAPiThatWasThrottledMeanwhile) {
-  // Since the start, and not before the run; by its end all is well again.
-  const auto warnings =
-      run_warnings(parse_readings(kHealthyPi), with(kHealthyPi, "throttled", "0x40000"), true);
-  ASSERT_THAT(warnings, SizeIs(1));
-  EXPECT_TRUE(warnings[0].spoils);
-  EXPECT_THAT(warnings[0].text, HasSubstr("throttled (throttled; before 0x0, after 0x40000)"));
-  EXPECT_THAT(warnings[0].text, testing::Not(HasSubstr("\n")));
-}
-
-TEST(RunWarnings, DoNotBlameTheRunForWhatWasBefore) {
-  const Readings before = with(kHealthyPi, "throttled", "0x50000");
+  const Readings before = healthy_pi({{"throttled", "0x50000"}});
   EXPECT_THAT(run_warnings(before, before, true), IsEmpty());
 }
 
-TEST(RunWarnings, CountAProcessorsOwnSlowingDown) {
-  const auto warnings = run_warnings(parse_readings(kPc), with(kPc, "throttle_count", "15"), false);
-  ASSERT_THAT(warnings, SizeIs(1));
-  EXPECT_TRUE(warnings[0].spoils);
-  EXPECT_THAT(warnings[0].text, HasSubstr("3 times"));
+TEST(RunWarnings, NameAProcessorThatWasThrottledDuringTheRun) {
+  const auto pi = run_warnings(healthy_pi(), healthy_pi({{"throttled", "0x40000"}}), true);
+  ASSERT_THAT(pi, SizeIs(1));
+  EXPECT_TRUE(pi[0].spoils);
+  EXPECT_THAT(pi[0].text, HasSubstr("throttled; before 0x0, after 0x40000"));
+  const auto pc = run_warnings(parse_readings(kPc), with(kPc, {{"throttle_count", "15"}}), false);
+  ASSERT_THAT(pc, SizeIs(1));
+  EXPECT_TRUE(pc[0].spoils);
+  EXPECT_THAT(pc[0].text, HasSubstr("3 times"));
 }
 
-TEST(RunWarnings, LeaveTheHostItsGovernor) {
+TEST(RunWarnings, IgnoreTheGovernorOfTheHost) {
   const Readings pc = parse_readings(kPc);
   EXPECT_THAT(run_warnings(pc, pc, false), IsEmpty());
   const auto warnings = run_warnings(pc, pc, true);
   ASSERT_THAT(warnings, SizeIs(1));
   EXPECT_FALSE(warnings[0].spoils);
-  EXPECT_THAT(warnings[0].text, HasSubstr("governor is powersave"));
-}
-
-TEST(Health, HasNames) {
-  EXPECT_EQ(name(Health::kOk), "ok");
-  EXPECT_EQ(name(Health::kWarn), "warn");
-  EXPECT_EQ(name(Health::kBad), "bad");
+  EXPECT_THAT(warnings[0].text, HasSubstr("powersave"));
 }
 
 }  // namespace

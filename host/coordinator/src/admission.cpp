@@ -15,35 +15,33 @@ std::variant<std::size_t, Refusal> admit(const link::Hello& hello, const std::st
                                          const std::vector<std::string>& uavs,
                                          const std::vector<bool>& taken) {
   if (hello.protocol_version != link::kProtocolVersion)
-    return Refusal{Refusal::Reason::kVersion,
-                   fmt::format("this coordinator speaks link protocol {}, the SUT speaks {}; "
-                               "install the same version of Tether on both sides",
-                               link::kProtocolVersion, hello.protocol_version)};
+    return Refusal{
+        Refusal::Reason::kVersion,
+        fmt::format("this coordinator uses link protocol {}, the SUT {}; install the same "
+                    "version of Tether on both sides",
+                    link::kProtocolVersion, hello.protocol_version)};
   if (!link::tokens_equal(hello.token, token))
     return Refusal{Refusal::Reason::kToken,
                    "wrong token; pass the run's TETHER_TOKEN to the SUT unchanged"};
 
   std::size_t uav = 0;
   if (hello.uav.empty() && uavs.size() > 1)
-    return Refusal{
-        Refusal::Reason::kUav,
-        fmt::format("say which UAV to fly with TETHER_UAV; there are: {}", fmt::join(uavs, ", "))};
+    return Refusal{Refusal::Reason::kUav,
+                   fmt::format("the run has several UAVs ({}); select one with TETHER_UAV",
+                               fmt::join(uavs, ", "))};
   if (!hello.uav.empty()) {
     const auto found = std::find(uavs.begin(), uavs.end(), hello.uav);
     if (found == uavs.end())
-      return Refusal{Refusal::Reason::kUav, fmt::format("there is no UAV \"{}\"; there are: {}",
+      return Refusal{Refusal::Reason::kUav, fmt::format("unknown UAV \"{}\"; the run has: {}",
                                                         hello.uav, fmt::join(uavs, ", "))};
     uav = static_cast<std::size_t>(found - uavs.begin());
   }
   if (taken[uav])
-    return Refusal{Refusal::Reason::kUav,
-                   fmt::format("UAV \"{}\" is already flown by another SUT", uavs[uav])};
+    return Refusal{Refusal::Reason::kUav, fmt::format("UAV \"{}\" already has a SUT", uavs[uav])};
   return uav;
 }
 
-namespace {
-/// As TETHER_CLOCK has it.
-std::string text_of(const ClockSetting& setting) {
+std::string to_text(const ClockSetting& setting) {
   if (setting.kind == link::ClockKind::kCpu) return fmt::format("cpu*{}", setting.cpu_factor);
   if (setting.kind == link::ClockKind::kWall && setting.cpu_factor != 1.0)
     return fmt::format("wall*{}", setting.cpu_factor);
@@ -51,24 +49,23 @@ std::string text_of(const ClockSetting& setting) {
     return fmt::format("scripted*{}", static_cast<double>(setting.computing.count()) / 1e6);
   return std::string(link::name(setting.kind));
 }
-}  // namespace
 
 std::optional<std::string> clock_fault(const link::Hello& hello,
                                        const std::optional<ClockSetting>& wanted) {
   if (hello.concurrent &&
       (hello.clock == link::ClockKind::kCpu || hello.clock == link::ClockKind::kUnstamped))
     return fmt::format(
-        "a SUT of several threads cannot measure its time by \"{}\", which is no time line of all "
-        "of them; start it with TETHER_CLOCK='wall'",
+        "the clock \"{}\" does not work for several threads; start the SUT with "
+        "TETHER_CLOCK='wall'",
         link::name(hello.clock));
   const bool is_measured =
       hello.clock == link::ClockKind::kWall || hello.clock == link::ClockKind::kCpu;
   if (!wanted || !is_measured) return std::nullopt;
-  const std::string given = text_of({.kind = hello.clock, .cpu_factor = hello.cpu_factor});
-  const std::string asked = text_of(*wanted);
+  const std::string given = to_text({.kind = hello.clock, .cpu_factor = hello.cpu_factor});
+  const std::string asked = to_text(*wanted);
   if (given == asked) return std::nullopt;
   return fmt::format(
-      "the SUT measures its time by \"{}\", the condition by \"{}\"; start it with "
+      "the SUT's clock is \"{}\", but the condition requires \"{}\"; start the SUT with "
       "TETHER_CLOCK='{}'",
       given, asked, asked);
 }

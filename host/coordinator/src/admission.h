@@ -11,15 +11,16 @@
 
 namespace tether::coordinator {
 
-/// Who may join, decided from the Hello alone: the UAV's index, or why not. `taken[i]` says that
-/// UAV i has its SUT. Checks version, then token, then UAV, so that a stranger learns nothing about
-/// the run.
+/// Checks a Hello: the index of the UAV that its SUT controls, or the refusal. `taken[i]`: UAV i
+/// has its SUT. Checks the version, then the token, then the UAV, so that a client without the
+/// token learns nothing about the run.
 std::variant<std::size_t, link::Refusal> admit(const link::Hello& hello, const std::string& token,
                                                const std::vector<std::string>& uavs,
                                                const std::vector<bool>& taken);
 
-/// Why a SUT's clock is not the one that its condition asks for, or none that a concurrent SUT can
-/// have; none if it is, or is scripted or (of a serial SUT) unstamped.
+/// What is wrong with a SUT's clock: it is not that of its condition, or a concurrent SUT cannot
+/// use it. None if nothing is. Scripted clocks, and unstamped ones of serial SUTs, are always
+/// accepted.
 std::optional<std::string> clock_fault(const link::Hello& hello,
                                        const std::optional<ClockSetting>& wanted);
 

@@ -7,13 +7,13 @@
 
 namespace tether::coordinator {
 
-/// The captured states of one periodic sensor that may still be read: a handful, in the order of
-/// their indices. Storage is reused, so that steady use allocates nothing.
+/// The captured states of one periodic sensor that may still be read: a few, in the order of their
+/// indices. Storage is reused, so that steady use allocates nothing.
 class CaptureStore {
  public:
-  /// Room for the state of measurement `index`. @pre greater than every index before it.
+  /// The place for the state of measurement `index`. @pre greater than every earlier index.
   sim::Snapshot& add(std::uint64_t index);
-  /// nullptr where that state was not captured, or dropped.
+  /// nullptr if that state was not captured, or was dropped.
   const sim::Snapshot* find(std::uint64_t index) const;
   /// Drops the states of measurements before `index`.
   void drop_before(std::uint64_t index);

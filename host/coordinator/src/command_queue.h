@@ -10,7 +10,7 @@
 
 namespace tether::coordinator {
 
-/// A command on its way to the step boundary on which it acts.
+/// A command and the step boundary at which it takes effect.
 struct PendingCommand {
   SimTime effect_at;
   std::size_t uav = 0;
@@ -18,19 +18,19 @@ struct PendingCommand {
   uav::VelocityCommand command;
 };
 
-/// Commands in the order of their effect, those of one boundary in the order of their arrival.
+/// Commands in the order of their effect; those of one boundary in the order of arrival.
 class CommandQueue {
  public:
   void push(const PendingCommand& command);
-  /// How many of this UAV have not acted yet.
+  /// Commands of this UAV that are not in effect yet.
   std::size_t waiting(std::size_t uav) const;
-  /// The next boundary on which one acts; SimTime::max() if none waits.
+  /// The boundary of the next effect; SimTime::max() if the queue is empty.
   SimTime next_effect() const;
-  /// Takes the first command that acts at or before `st`.
+  /// Removes and returns the first command whose effect is at or before `st`.
   std::optional<PendingCommand> pop_due(SimTime st);
 
  private:
-  std::vector<PendingCommand> commands_;  // last acts first
+  std::vector<PendingCommand> commands_;  // the last takes effect first
   std::vector<std::size_t> waiting_;      // of each UAV
 };
 

@@ -6,44 +6,42 @@
 #include <tether/base/printable.h>
 #include <tether/coordinator/coordinator.h>
 
-/// The loop: start, pacing, limits of WT, and the end of a run.
+/// The loop of a run: its start, pacing, limits of WT, and its end. Each turn advances ST as far as
+/// the barrier, the pace and the next due event allow, and then handles the messages that have
+/// arrived. Messages are handled in incoming.cpp, replies in outgoing.cpp.
 namespace tether::coordinator {
 
 namespace {
 
-// Steps between two looks at the sockets: about half a millisecond of WT in the embedded simulator.
+// Steps between two polls of the sockets: about half a millisecond of WT in the embedded simulator.
 constexpr int kStepsPerTurn = 64;
 // How long the loop sleeps when there is nothing to do; a message wakes it at once.
 constexpr Duration kIdleWait = std::chrono::milliseconds(20);
 // A paced simulation may catch up this much ST after a late turn (rendering an image, say); two
 // steps at least.
 constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
-// How often the record goes to its file, so that a killed run leaves what it had.
+// How often the record is flushed, so that a killed run leaves most of it.
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
-/// How fast the clock can go that a SUT says it has; none where it is the coordinator's own, or a
-/// script's.
+/// How fast the SUT's clock can run; none if it is the coordinator's own or scripted.
 std::optional<sync::ClockBound> bound_of(const link::Hello& hello, int cores) {
   if (hello.clock == link::ClockKind::kWall) return sync::wall_bound(hello.cpu_factor);
   if (hello.clock == link::ClockKind::kCpu) return sync::cpu_bound(hello.cpu_factor, cores);
   return std::nullopt;
 }
 
-Sampler make_sampler(const sim::Uav& uav, const std::vector<uav::SensorTiming>& timings,
-                     const RunOptions& options, StepGrid grid) {
-  std::vector<Sampler::Sensor> sensors;
-  for (std::size_t i = 0; i < uav.sensors.size(); ++i) {
-    const std::string& name = uav.sensors[i].name;
-    sensors.push_back({name, {timings[i], options.seed, random_stream(uav.name, name, "delay")}});
-  }
-  return {std::move(sensors), grid, options.policy == sync::SyncPolicy::kConservativeBarrier};
-}
-
 std::vector<Sampler> make_samplers(const sim::Simulator& simulator, const RunOptions& options) {
-  const std::vector<sim::Uav>& uavs = simulator.world().uavs;
+  const bool synchronised = options.policy == sync::SyncPolicy::kConservativeBarrier;
   std::vector<Sampler> samplers;
-  for (std::size_t i = 0; i < uavs.size(); ++i)
-    samplers.push_back(make_sampler(uavs[i], options.uavs[i].timings, options, simulator.grid()));
+  for (const sim::Uav& uav : simulator.world().uavs) {
+    const auto& timings = options.uavs[samplers.size()].timings;
+    std::vector<Sampler::Sensor> sensors;
+    for (const sim::Sensor& sensor : uav.sensors)
+      sensors.push_back(
+          {sensor.name,
+           {timings[sensors.size()], options.seed, random_stream(uav.name, sensor.name, "delay")}});
+    samplers.emplace_back(std::move(sensors), simulator.grid(), synchronised);
+  }
   return samplers;
 }
 
@@ -59,7 +57,8 @@ std::vector<Session> make_sessions(const sim::World& world, const RunOptions& op
   return sessions;
 }
 
-void check_options(const RunOptions& options, const sim::World& world) {
+RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
+  const sim::World& world = simulator.world();
   const auto require = [](bool condition, const char* what) {
     if (!condition) throw Error(ErrorCode::kInternal, std::string("coordinator options: ") + what);
   };
@@ -68,17 +67,13 @@ void check_options(const RunOptions& options, const sim::World& world) {
     require(options.uavs[i].timings.size() == world.uavs[i].sensors.size(),
             "one timing per sensor is needed");
   for (const UavOptions& uav : options.uavs)
-    require(uav.cores >= 0 && uav.cores <= sync::kMostCores, "no machine has so many cores");
+    require(uav.cores >= 0 && uav.cores <= sync::kMostCores, "the number of cores is out of range");
   require(!options.token.empty(), "a token is needed");
   require(options.time_limit > Duration(0), "the time limit must be positive");
   require(options.ground_truth_period > Duration(0), "the ground truth's period must be positive");
   require(
       options.policy == sync::SyncPolicy::kConservativeBarrier || options.real_time_factor > 0.0,
       "free running needs a real-time factor");
-}
-
-RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
-  check_options(options, simulator.world());
   options.ground_truth_period = std::max(options.ground_truth_period, simulator.grid().dt());
   return options;
 }
@@ -114,7 +109,7 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
       started_(host_clock_()),
       flushed_(started_),
       watchdog_({time_limit_, options_.connect_limit, options_.hang_limit}, sessions_.size(),
-                tied(), started_) {}
+                is_synchronised(), started_) {}
 
 RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
   server_ = &server;
@@ -124,10 +119,8 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
     try {
       turn();
     } catch (const SimulatorFailure& e) {
-      // Unless the caller knows of a reason behind that.
-      const auto behind = hooks_.should_stop ? hooks_.should_stop() : std::nullopt;
-      end(behind ? Ending{behind->first, behind->second}
-                 : Ending{RunEnd::kSimulatorLost, e.what()});
+      stop_if_asked();  // the caller may know a cause of the failure
+      end({RunEnd::kSimulatorLost, e.what()});
     }
     watch();
   }
@@ -140,7 +133,7 @@ void Coordinator::Impl::turn() {
   for (const link::Event& event : server_->poll(moved ? Duration(0) : wait)) on_event(event);
 }
 
-// Every SUT has joined: ST and every ET begin at 0.
+// Called when every SUT has joined. ST and every ET begin at 0.
 void Coordinator::Impl::start() {
   stepper_.reset(options_.seed);
   started_ = host_clock_();
@@ -154,18 +147,18 @@ void Coordinator::Impl::start() {
                  session.is_concurrent() ? sync::SutKind::kConcurrent : sync::SutKind::kSerial);
     if (session.hello.clock == link::ClockKind::kUnstamped)
       session.timer.emplace(ExecTime{}, started_);
-    if (const auto bound = bound_of(session.hello, session.cores); bound && tied())
-      session.witness.emplace(*bound, ExecTime{}, started_);
+    if (const auto bound = bound_of(session.hello, session.cores); bound && is_synchronised())
+      session.plausibility.emplace(*bound, ExecTime{}, started_);
   }
   stepper_.act();
   for (const Session& session : sessions_)
     server_->send(session.peer, link::Welcome{.catalogue = sim::make_catalogue(
                                                   world(), world().uavs[session.uav]),
-                                              .free_running = !tied(),
+                                              .free_running = !is_synchronised(),
                                               .start = ExecTime{}});
 }
 
-// One turn of stepping; false if ST may not move now.
+// Advances ST; false if it must not advance now.
 bool Coordinator::Impl::advance() {
   const WallTime now = host_clock_();
   read_timers(now);
@@ -179,17 +172,17 @@ bool Coordinator::Impl::advance() {
   return true;
 }
 
-// An unstamped client's clock may let another SUT go on.
+// The time of an unstamped client that computes may let ST advance for another SUT.
 void Coordinator::Impl::read_timers(WallTime now) {
   for (const Session& session : sessions_)
     if (session.timer && is_computing(session))
       barrier_.progress(session.uav, session.timer->read(now));
 }
 
-// How far ST may go in this turn.
+// How far ST may advance in this turn.
 SimTime Coordinator::Impl::next_stop() const {
-  const SimTime horizon = tied() ? barrier_.horizon() : SimTime::max();
-  return std::min({horizon, time_limit_, stepper_.next_due(), st() + kStepsPerTurn * grid().dt()});
+  const SimTime bound = is_synchronised() ? barrier_.horizon() : SimTime::max();
+  return std::min({bound, time_limit_, stepper_.next_due(), st() + kStepsPerTurn * grid().dt()});
 }
 
 // How much of that the pace allows.
@@ -208,7 +201,7 @@ void Coordinator::Impl::end(const Ending& ending) {
   if (!ended_) ended_ = {ending.how, printable(ending.reason)};
 }
 
-// Limits of WT, the caller's wishes, the status: none of it reaches a decision of the barrier.
+// Limits of WT, status and requests of the caller. No decision of the barrier depends on them.
 void Coordinator::Impl::watch() {
   const WallTime now = host_clock_();
   if (!watchdog_.is_due(now)) return;
@@ -218,14 +211,18 @@ void Coordinator::Impl::watch() {
   }
   if (const auto overdue = watchdog_.overdue(parties(now), st())) end(*overdue);
   if (hooks_.on_status) hooks_.on_status(status(now));
-  if (hooks_.should_stop && !ended_)
-    if (const auto stop = hooks_.should_stop()) end({stop->first, stop->second});
+  stop_if_asked();
 }
 
-// It owes us the next word; a SUT that waits for a reply of ours does not.
+void Coordinator::Impl::stop_if_asked() {
+  if (ended_ || !hooks_.should_stop) return;
+  if (const auto stop = hooks_.should_stop()) end({stop->first, stop->second});
+}
+
+// Whether the coordinator waits for the next message of the SUT.
 bool Coordinator::Impl::is_computing(const Session& session) const {
   if (!running_ || session.left) return false;
-  return tied() ? !barrier_.is_held(session.uav) : session.open.empty();
+  return is_synchronised() ? !barrier_.is_held(session.uav) : session.open.empty();
 }
 
 Party Coordinator::Impl::party(const Session& session, WallTime now) const {
@@ -254,18 +251,17 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
                    .images = log_.images(),
                    .waiting_for = {},
                    .blocked = ended_ ? "" : watchdog_.blocked(parties(now), st(), now)};
-  for (const Session& session : sessions_) {
+  for (const Session& session : sessions_)
     if (session.joined()) ++status.joined;
-    if (running_ && tied())
-      status.et = std::max(status.et.value_or(ExecTime{}), barrier_.bound(session.uav));
-  }
-  if (running_ && tied())
-    if (const auto slowest = barrier_.slowest_computing())
-      status.waiting_for = sessions_[*slowest].uav_name;
+  if (!running_ || !is_synchronised()) return status;
+  for (const Session& session : sessions_)
+    status.et = std::max(status.et.value_or(ExecTime{}), barrier_.bound(session.uav));
+  if (const auto slowest = barrier_.slowest_computing())
+    status.waiting_for = sessions_[*slowest].uav_name;
   return status;
 }
 
-// Whoever is still there is told; then the record gets its end.
+// Notifies the SUTs that are still connected, then completes the record.
 RunReport Coordinator::Impl::close_run() {
   record::Footer& footer = log_.footer();
   RunReport report{.end = ended_->how,

@@ -18,9 +18,9 @@ namespace tether::coordinator {
 /// The loop of a run: receives messages of the SUTs (incoming.cpp), sends replies (outgoing.cpp),
 /// and advances ST in between (coordinator.cpp). The decisions are made by its parts:
 ///
-///     validator    whether a SUT may send what it sent
+///     validator    whether a message of a SUT is allowed
 ///     barrier      which replies are held until when, and how far ST may advance
-///     Stepper      what is due at each boundary; Sampler, in it: what sensors sample when
+///     Stepper      what is due at each boundary; its Samplers: what sensors sample, and when
 ///     Watchdog     whether the run takes too long, and who is blocked on whom
 class Coordinator::Impl {
  public:
@@ -40,9 +40,10 @@ class Coordinator::Impl {
   void read_timers(WallTime now);
   void watch();
   bool is_computing(const Session& session) const;
-  bool has_only_to_be_told(const Session& session) const;
+  bool awaits_only_confirmation(const Session& session) const;
   Party party(const Session& session, WallTime now) const;
   std::vector<Party> parties(WallTime now) const;
+  void stop_if_asked();
   void end(const Ending& ending);
   RunReport close_run();
   RunStatus status(WallTime now) const;
@@ -72,13 +73,13 @@ class Coordinator::Impl {
 
   // Outgoing.
   void release_ready();
-  void answer_untied();
+  void answer_free_running();
   void reply(Session& session, std::size_t open_index, SimTime st);
   void leave(Session& session);
   std::optional<uav::CameraSample> image_to_record(Session& session, const link::Request& request,
                                                    const link::Reply& reply) const;
 
-  bool tied() const { return options_.policy == sync::SyncPolicy::kConservativeBarrier; }
+  bool is_synchronised() const { return options_.policy == sync::SyncPolicy::kConservativeBarrier; }
   const sim::World& world() const { return simulator_->world(); }
   const StepGrid& grid() const { return stepper_.grid(); }
   SimTime st() const { return stepper_.st(); }
@@ -98,8 +99,8 @@ class Coordinator::Impl {
   std::optional<sync::RealTimeLimit> pace_;
 
   bool running_ = false;  // every SUT has joined
-  WallTime started_;      // construction, then the moment when every SUT had joined
-  WallTime flushed_;      // when the record last went to its file
+  WallTime started_;      // construction; later, when every SUT had joined
+  WallTime flushed_;      // last flush of the record
   Watchdog watchdog_;
   std::optional<Ending> ended_;
 };

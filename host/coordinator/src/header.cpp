@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-/// What rests under every number of a run's record.
+/// The header of a run's record: everything that its numbers depend on.
 namespace tether::coordinator {
 
 namespace {

@@ -9,15 +9,15 @@
 
 #include <tether/base/printable.h>
 
-/// What SUTs say: joining, requests, progress, annotations, leaving.
+/// Messages from SUTs: Hello, requests, progress, annotations, and the end of a connection. Each
+/// message is validated first; a protocol violation ends the run. A valid request is planned
+/// (accept), held at the barrier, and answered by release_ready() in outgoing.cpp.
 namespace tether::coordinator {
 
 namespace {
 
-std::string kind_of(const link::Request& request) {
-  constexpr const char* kKinds[] = {"sensor", "command", "sleep", "finish"};
-  return kKinds[request.body.index()];
-}
+/// In the order of Request's body.
+constexpr const char* kKinds[] = {"sensor", "command", "sleep", "finish"};
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void Coordinator::Impl::refuse(link::PeerId peer, link::Refusal::Reason reason,
     hooks_.on_refused(printable(fmt::format("refused {}: {}", remote_[peer], message)));
   server_->send(peer, link::Refusal{reason, printable(message)});
   server_->close(peer);
-  remote_.erase(peer);  // no event comes from it any more
+  remote_.erase(peer);  // no more events from it
 }
 
 void Coordinator::Impl::on_event(const link::Event& event) {
@@ -63,7 +63,7 @@ void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& messa
   break_off(*session, link::Refusal::Reason::kBadMessage, fault_of_other(message));
 }
 
-// It broke the protocol: it is told, and the run cannot go on without it.
+// Ends the run because of a protocol violation.
 void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason,
                                   const Fault& fault) {
   refuse(session.peer, reason, fault.what);
@@ -72,10 +72,9 @@ void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason
        fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)});
 }
 
-// Its Finish is here, and it stands still for it: whatever becomes of it, nothing that it could
-// still do makes a difference. The run does not depend then on whether ST catches up before or
-// after it leaves.
-bool Coordinator::Impl::has_only_to_be_told(const Session& session) const {
+// Its Finish has arrived, and it is stopped. Nothing that it still does can change the result, so
+// it may disconnect before or after ST has caught up.
+bool Coordinator::Impl::awaits_only_confirmation(const Session& session) const {
   return session.finish && !is_computing(session);
 }
 
@@ -85,9 +84,9 @@ void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
     hooks_.on_refused(fmt::format("refused {}: {}", remote_[peer], failure.message));
   remote_.erase(peer);
   if (!session || session->left) return;
-  if (failure.kind == Failure::Kind::kDisconnected && has_only_to_be_told(*session)) return;
+  if (failure.kind == Failure::Kind::kDisconnected && awaits_only_confirmation(*session)) return;
   const std::string where =
-      running_ && tied() ? "; " + whereabouts(party(*session, host_clock_())) : "";
+      running_ && is_synchronised() ? "; " + describe_state(party(*session, host_clock_())) : "";
   end({RunEnd::kSutLost,
        fmt::format("lost the SUT of UAV \"{}\": {}{}", session->uav_name, failure.message, where)});
 }
@@ -117,7 +116,7 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
 
 void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress,
                                     WallTime now) {
-  if (!running_ || !tied() || !is_stamp(progress.reached)) return;
+  if (!running_ || !is_synchronised() || !is_stamp(progress.reached)) return;
   if (const auto fault = fault_of(progress, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
   if (progress.stopped) return on_stop(session, progress.reached, now);
@@ -131,18 +130,17 @@ void Coordinator::Impl::on_annotation(Session& session, const link::Annotation& 
   log_.annotation(st(), {session.uav_name, note.at, note.topic, note.json});
 }
 
-// No reply leaves before the SUT has stopped for it, so what is open and due by now is what this
-// stop is for.
+// The timestamp of the reply that caused a stop. No reply is sent before the SUT has stopped for
+// it, so it is one of the open calls that are due.
 std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session, ExecTime at) {
   std::optional<ExecTime> earliest;
-  for (const PendingInteraction& pending : session.open) {
-    const ExecTime reply_at = pending.entry.reply_at;
-    if (reply_at <= at) earliest = std::min(earliest.value_or(reply_at), reply_at);
-  }
+  for (const PendingInteraction& pending : session.open)
+    if (const ExecTime reply_at = pending.entry.reply_at; reply_at <= at)
+      earliest = std::min(earliest.value_or(reply_at), reply_at);
   return earliest;
 }
 
-// All of a concurrent SUT stands still: replies that are due by then may leave.
+// A concurrent SUT is stopped: replies that are due by then can be sent.
 void Coordinator::Impl::on_stop(Session& session, ExecTime at, WallTime now) {
   log_.stop(st(), {session.uav_name, at, earliest_due(session, at), now});
   barrier_.stop(session.uav, at);
@@ -153,7 +151,7 @@ Standing Coordinator::Impl::standing(const Session& session) const {
   const bool adds_up_cores = session.hello.clock == link::ClockKind::kCpu;
   const int cores = session.cores > 0 ? session.cores : sync::kMostCores;
   return {.running = running_,
-          .tied = tied(),
+          .synchronised = is_synchronised(),
           .concurrent = session.is_concurrent(),
           .finished = session.finish.has_value(),
           .held = running_ && barrier_.is_held(session.uav),
@@ -164,12 +162,13 @@ Standing Coordinator::Impl::standing(const Session& session) const {
           .calls_in_step = st() > session.called_at ? 0 : session.calls_in_step,
           .waiting_commands = stepper_.waiting_commands(session.uav),
           .sensors = stepper_.sampler(session.uav),
-          .witness = session.witness ? &*session.witness : nullptr,
+          .plausibility = session.plausibility ? &*session.plausibility : nullptr,
           .clock_cores = adds_up_cores ? cores : 0};
 }
 
 void Coordinator::Impl::on_request(Session& session, const link::Request& request, WallTime now) {
-  // One thread of a concurrent SUT ends it for all; what the others still ask is dropped.
+  // The Finish of one thread ends a concurrent SUT; later requests of its other threads are
+  // dropped.
   if (session.is_concurrent() && session.finish) return;
   if (const auto fault = fault_of(request, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
@@ -179,8 +178,8 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   release_ready();
 }
 
-// From arrival to being held. A concurrent SUT is told at once when its reply is due, so that it
-// can run on until then.
+// Plans a request and holds its reply. A concurrent SUT receives the time of its reply at once, so
+// that its other threads can run until then.
 void Coordinator::Impl::begin(Session& session, const link::Request& request, WallTime now) {
   PendingInteraction pending{.request = request, .entry = make_entry(session, request, now)};
   record::Interaction& entry = pending.entry;
@@ -188,7 +187,7 @@ void Coordinator::Impl::begin(Session& session, const link::Request& request, Wa
   session.calls_in_step = st() > session.called_at ? 1 : session.calls_in_step + 1;
   session.called_at = st();
   entry.reply_at = accept(session, pending);
-  if (tied()) {
+  if (is_synchronised()) {
     barrier_.hold({session.uav, entry.reply_at, entry.sequence});
     if (session.is_concurrent())
       server_->send(session.peer, link::Due{entry.sequence, entry.reply_at});
@@ -202,22 +201,22 @@ record::Interaction Coordinator::Impl::make_entry(const Session& session,
   record::Interaction entry;
   entry.uav = session.uav_name;
   entry.sequence = request.sequence;
-  entry.kind = kind_of(request);
+  entry.kind = kKinds[request.body.index()];
   entry.st_at_arrival = st();
   entry.wall_at_arrival = now;
-  entry.stamped = !session.timer && tied();
-  // Calls of several threads overlap: a round trip less another call's hold says nothing.
+  entry.stamped = !session.timer && is_synchronised();
+  // Not for several threads: their calls overlap, so the last hold may belong to another call.
   if (!session.is_concurrent() && request.previous_round_trip > Duration(0) &&
       session.last_hold > Duration(0))
     entry.previous_link_time = request.previous_round_trip - session.last_hold;
   return entry;
 }
 
-// The timestamp of a request: the SUT's own; of an unstamped client the coordinator's timer; in
-// free running, ST.
+// The timestamp of a request: the SUT's, or the coordinator's timer for an unstamped client, or ST
+// in free running.
 ExecTime Coordinator::Impl::charge(Session& session, const link::Request& request,
                                    record::Interaction& entry) {
-  if (!tied()) return same_instant(st());
+  if (!is_synchronised()) return same_instant(st());
   const ExecTime stamp =
       session.timer ? session.timer->pause(entry.wall_at_arrival) : request.issued_at;
   const sync::Arrival arrival = barrier_.arrive(session.uav, stamp, st());
@@ -244,7 +243,7 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
   return pending.entry.request_at;
 }
 
-// The reply to a read that finds nothing is due at once.
+// The reply to a read without a measurement is due at once.
 ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pending,
                                         const link::ReadSensor& read) {
   record::Interaction& entry = pending.entry;
@@ -263,10 +262,10 @@ ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pe
 
 ExecTime Coordinator::Impl::accept_command(Session& session, PendingInteraction& pending,
                                            const link::SetVelocity& set) {
-  const SimTime acts = same_instant(pending.entry.request_at) + session.command_latency;
+  const SimTime effect = same_instant(pending.entry.request_at) + session.command_latency;
   pending.entry.effect_at =
-      stepper_.command(session.uav, pending.entry.sequence, set.command, acts);
-  pending.entry.grid_error = *pending.entry.effect_at - acts;
+      stepper_.command(session.uav, pending.entry.sequence, set.command, effect);
+  pending.entry.grid_error = *pending.entry.effect_at - effect;
   return pending.entry.request_at;
 }
 

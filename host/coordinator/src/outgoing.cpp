@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-/// What SUTs are told: replies, when the barrier lets them go.
+/// Replies to SUTs, sent when the barrier releases them.
 namespace tether::coordinator {
 
 void Coordinator::Impl::release_ready() {
-  if (!tied()) return answer_untied();
+  if (!is_synchronised()) return answer_free_running();
   while (const auto grant = barrier_.release(st())) {
     Session& session = sessions_[grant->sut];
     std::size_t i = 0;
@@ -15,8 +15,9 @@ void Coordinator::Impl::release_ready() {
   }
 }
 
-// In free running nothing is held but a read that waits for its sensor's next measurement.
-void Coordinator::Impl::answer_untied() {
+// In free running, only reads that wait for the next measurement of their sensor are not answered
+// at once.
+void Coordinator::Impl::answer_free_running() {
   for (Session& session : sessions_) {
     for (std::size_t i = 0; i < session.open.size();) {
       PendingInteraction& pending = session.open[i];
@@ -31,8 +32,7 @@ void Coordinator::Impl::answer_untied() {
   }
 }
 
-// The reply goes out first and is recorded afterwards, so that the record costs the SUT no wall
-// time.
+// Sends the reply before it is recorded, so that recording costs the SUT no wall time.
 void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime st) {
   const auto place = session.open.begin() + static_cast<std::ptrdiff_t>(open_index);
   PendingInteraction pending = std::move(*place);
@@ -52,7 +52,8 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   watchdog_.heard(session.uav, entry.wall_at_release);
   watchdog_.moved(entry.wall_at_release);
   if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
-  if (session.witness) session.witness->go_on(barrier_.bound(session.uav), entry.wall_at_release);
+  if (session.plausibility)
+    session.plausibility->go_on(barrier_.bound(session.uav), entry.wall_at_release);
   log_.interaction(st, entry);
   if (image) log_.image(st, session.uav_name, entry.sensor, *image);
   if (entry.kind == record::kFinish) leave(session);
@@ -69,7 +70,7 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
   return *image;
 }
 
-// What else a concurrent SUT has open ends with it.
+// Drops the other open calls of a concurrent SUT.
 void Coordinator::Impl::leave(Session& session) {
   session.left = true;
   session.open.clear();

@@ -12,7 +12,7 @@
 
 namespace tether::coordinator {
 
-/// Writes what happens to the record and keeps the figures.
+/// Writes the record of a run, and keeps the figures of its footer.
 class RunLog {
  public:
   explicit RunLog(record::Recorder& recorder) : recorder_(&recorder) {}
@@ -31,7 +31,7 @@ class RunLog {
   /// Writes the footer.
   void end() { recorder_->write(footer_); }
 
-  /// Its figures are kept up to date.
+  /// With the figures so far.
   record::Footer& footer() { return footer_; }
   const record::Footer& footer() const { return footer_; }
   std::uint64_t images() const { return images_; }

@@ -7,14 +7,14 @@
 
 namespace tether::coordinator {
 
-// A read that finds nothing marks nothing as read.
+// A read without a measurement marks none as read.
 std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSensor& read,
                                          SimTime t) {
   SensorSchedule& schedule = sensors_[read.sensor].schedule;
   const auto measurement = choose(schedule, read, t);
   if (!measurement) return std::nullopt;
   schedule.mark_read(*measurement);
-  const bool on_demand = !tied_ || !schedule.is_periodic();
+  const bool on_demand = !synchronised_ || !schedule.is_periodic();
   reads_.push_back({.call = call,
                     .sensor = read.sensor,
                     .measurement = *measurement,
@@ -26,9 +26,10 @@ std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSen
 std::optional<Measurement> Sampler::choose(const SensorSchedule& schedule,
                                            const link::ReadSensor& read, SimTime t) const {
   if (read.only_if_available)
-    return tied_ ? schedule.choose_available(t, read.latest)
-                 : schedule.choose_available_untied(t, read.latest);
-  return tied_ ? schedule.choose(t, read.latest) : schedule.choose_untied(t, read.latest);
+    return synchronised_ ? schedule.choose_available(t, read.latest)
+                         : schedule.choose_available_free_running(t, read.latest);
+  return synchronised_ ? schedule.choose(t, read.latest)
+                       : schedule.choose_free_running(t, read.latest);
 }
 
 sim::Snapshot Sampler::take_spare() {
@@ -43,7 +44,7 @@ SimTime Sampler::next_due() const {
   for (const Read& read : reads_)
     if (read.on_demand && !read.captured)
       due = std::min(due, grid_.floor(read.measurement.sampled_at));
-  if (!tied_ || closed_) return due;
+  if (!synchronised_ || closed_) return due;
   for (const Sensor& sensor : sensors_)
     if (const auto instant = sensor.schedule.sampling_instant(sensor.next_capture))
       due = std::min(due, grid_.floor(*instant));
@@ -57,7 +58,7 @@ void Sampler::sample(SimTime st, SimTime earliest, const Capture& capture) {
     capture(read.state);
     read.captured = true;
   }
-  if (!tied_ || closed_) return;
+  if (!synchronised_ || closed_) return;
   for (std::size_t i = 0; i < sensors_.size(); ++i) sample_periodic(i, st, earliest, capture);
 }
 
@@ -72,7 +73,7 @@ void Sampler::sample_periodic(std::size_t sensor, SimTime st, SimTime earliest,
   }
 }
 
-// By a read that has its measurement, or by one still to come.
+// First index that a planned or a later read needs.
 std::uint64_t Sampler::first_needed(std::size_t sensor, SimTime earliest) const {
   std::uint64_t first = sensors_[sensor].schedule.first_readable(earliest);
   for (const Read& read : reads_)

@@ -31,38 +31,38 @@ class Sampler {
   };
   using Capture = std::function<void(sim::Snapshot&)>;
 
-  /// `tied`: by the barrier; false: free running.
-  Sampler(std::vector<Sensor> sensors, StepGrid grid, bool tied)
-      : sensors_(std::move(sensors)), grid_(grid), tied_(tied) {}
+  /// `synchronised`: false in free running.
+  Sampler(std::vector<Sensor> sensors, StepGrid grid, bool synchronised)
+      : sensors_(std::move(sensors)), grid_(grid), synchronised_(synchronised) {}
 
   std::size_t size() const { return sensors_.size(); }
   const std::string& name(std::size_t sensor) const { return sensors_[sensor].name; }
   bool is_periodic(std::size_t sensor) const { return sensors_[sensor].schedule.is_periodic(); }
 
-  /// The measurement that the read `call` gets, whose request is stamped `t`; none if it does not
-  /// wait and nothing is there. @pre the sensor is there; periodic if the read does not wait.
+  /// The measurement for the read `call` with timestamp `t`. None if the read does not wait and no
+  /// measurement is available. @pre the sensor exists, and is periodic if the read does not wait.
   std::optional<Measurement> plan(std::uint64_t call, const link::ReadSensor& read, SimTime t);
-  /// The first boundary at which a state has to be captured; SimTime::max(): none.
+  /// The first boundary at which a state must be captured; SimTime::max(): none.
   SimTime next_due() const;
-  /// Captures what is due by `st`. No later read is stamped before `earliest`.
+  /// Captures what is due by `st`. @pre no later read has a timestamp before `earliest`.
   void sample(SimTime st, SimTime earliest, const Capture& capture);
 
-  /// A read that was planned and not yet answered.
+  /// A read that is planned and not yet answered.
   struct Read {
     std::uint64_t call = 0;
     std::uint32_t sensor = 0;
     Measurement measurement;
-    bool on_demand = false;  ///< its state is captured for it alone …
-    bool captured = false;   ///< … and has been, into `state`
+    bool on_demand = false;  ///< it has a state of its own …
+    bool captured = false;   ///< … which is captured in `state`
     sim::Snapshot state{};
   };
-  /// nullptr: this call reads nothing.
+  /// nullptr if this call is not a read.
   const Read* find(std::uint64_t call) const;
-  /// The state of which to measure. @throws Error(kInternal) if it is not there.
+  /// The state for the measurement. @throws Error(kInternal) if it was not captured.
   const sim::Snapshot& state_of(const Read& read) const;
-  /// It was answered.
+  /// Removes an answered read.
   void answered(std::uint64_t call);
-  /// The SUT has left: nothing is sampled any more.
+  /// Ends sampling, because the SUT has left.
   void close();
 
  private:
@@ -74,10 +74,10 @@ class Sampler {
 
   std::vector<Sensor> sensors_;
   StepGrid grid_;
-  bool tied_;
+  bool synchronised_;
   bool closed_ = false;
   std::vector<Read> reads_;            // in the order of their calls
-  std::vector<sim::Snapshot> spares_;  // storage for the next ones
+  std::vector<sim::Snapshot> spares_;  // storage to reuse
 };
 
 }  // namespace tether::coordinator

@@ -54,10 +54,10 @@ Measurement SensorSchedule::choose(SimTime t, bool latest) const {
   return {unread_, t, t + uav::draw(timing.delay, {seed_, stream_, unread_})};
 }
 
-Measurement SensorSchedule::choose_untied(SimTime t, bool latest) const {
+Measurement SensorSchedule::choose_free_running(SimTime t, bool latest) const {
   const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_);
   if (!timing) return {unread_, t, t};
-  if (const auto there = choose_available_untied(t, latest)) return *there;
+  if (const auto there = choose_available_free_running(t, latest)) return *there;
   const SimTime next = uav::sampling_instant(*timing, unread_);
   return {unread_, next, next};
 }
@@ -66,7 +66,8 @@ std::optional<Measurement> SensorSchedule::choose_available(SimTime t, bool late
   return newest_available(std::get<uav::PeriodicTiming>(timing_), t, latest ? 0 : unread_);
 }
 
-std::optional<Measurement> SensorSchedule::choose_available_untied(SimTime t, bool latest) const {
+std::optional<Measurement> SensorSchedule::choose_available_free_running(SimTime t,
+                                                                         bool latest) const {
   const auto newest = newest_sampled(std::get<uav::PeriodicTiming>(timing_), t);
   if (!newest || !(latest || *newest >= unread_)) return std::nullopt;
   return Measurement{*newest, t, t};

@@ -9,7 +9,7 @@
 
 namespace tether::coordinator {
 
-/// Which measurement a read gets, and when.
+/// The measurement that a read returns, and its times.
 struct Measurement {
   std::uint64_t index = 0;
   SimTime sampled_at;
@@ -17,32 +17,33 @@ struct Measurement {
   friend bool operator==(const Measurement&, const Measurement&) = default;
 };
 
-/// One sensor's timing model at work (DESIGN section 2, "Sensor timing"; paper, Fig. 8). Delays are
-/// keyed by the measurement's index, so what a read gets depends on its time and on what was read
-/// before, and on nothing else.
+/// Applies the timing model of one sensor (DESIGN section 2, "Sensor timing"; paper, Fig. 8).
+/// Delays are keyed by the measurement's index. Therefore the result of a read depends only on its
+/// time and on the earlier reads.
 class SensorSchedule {
  public:
   SensorSchedule(uav::SensorTiming timing, std::uint64_t seed, std::uint64_t stream);
 
-  /// The measurement that a read at `t` gets. Periodic: the newest that is available at t and was
-  /// not yet read (with `latest`: read or not), else the one available first after t. On demand:
-  /// sampled at t.
+  /// The measurement for a read at `t`. Periodic: the newest that is available at `t` and not yet
+  /// read (with `latest`: read or not), else the first that is available after `t`. On demand:
+  /// sampled at `t`.
   Measurement choose(SimTime t, bool latest) const;
-  /// The same in free running (DESIGN section 2, rule 8): the state of the moment, without delay.
-  /// Periodic: one reading per period, so that a read whose period's measurement was already read
-  /// (and is not asked for again with `latest`) waits for the next sampling instant.
-  Measurement choose_untied(SimTime t, bool latest) const;
-  /// What a read at `t` gets that does not wait; none where nothing is there. @pre periodic.
+  /// The same in free running (DESIGN section 2, rule 8): the state at `t`, without delay.
+  /// Periodic: one measurement per period. If that was already read, a read without `latest` waits
+  /// for the next sampling instant.
+  Measurement choose_free_running(SimTime t, bool latest) const;
+  /// The measurement for a read at `t` that does not wait; none if none is available. @pre
+  /// periodic.
   std::optional<Measurement> choose_available(SimTime t, bool latest) const;
   /// The same in free running.
-  std::optional<Measurement> choose_available_untied(SimTime t, bool latest) const;
-  /// It was read.
+  std::optional<Measurement> choose_available_free_running(SimTime t, bool latest) const;
+  /// Marks it as read.
   void mark_read(const Measurement& measurement);
 
   bool is_periodic() const { return std::holds_alternative<uav::PeriodicTiming>(timing_); }
-  /// Periodic: when measurement `index` is sampled. None for a sensor on demand.
+  /// When measurement `index` is sampled; none for a sensor on demand.
   std::optional<SimTime> sampling_instant(std::uint64_t index) const;
-  /// Periodic: no read at `t` or later gets a measurement before this one.
+  /// The first measurement that a read at `t` or later can return.
   std::uint64_t first_readable(SimTime t) const;
 
  private:
@@ -55,7 +56,7 @@ class SensorSchedule {
   uav::SensorTiming timing_;
   std::uint64_t seed_;
   std::uint64_t stream_;
-  std::uint64_t unread_ = 0;  ///< least index that was not passed over by a read
+  std::uint64_t unread_ = 0;  ///< first index after the last one that was read
 };
 
 }  // namespace tether::coordinator

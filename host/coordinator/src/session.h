@@ -20,33 +20,34 @@ namespace tether::coordinator {
 /// A request between its arrival and its reply.
 struct PendingInteraction {
   link::Request request;
-  record::Interaction entry;  ///< filled in as things happen
+  record::Interaction entry;  ///< complete when the reply is sent
 };
 
-/// One SUT and the UAV that it flies. Plain state; `Coordinator` acts on it.
+/// The state of one SUT and its UAV.
 struct Session {
-  std::size_t uav = 0;  ///< index in the world, and of the SUT in the barrier
+  std::size_t uav = 0;  ///< index of the UAV in the world, and of the SUT in the barrier
   std::string uav_name;
   Duration command_latency{0};
   int cores = 0;  ///< of the SUT's machine; 0: not known
-  /// Of each sensor, when the last image in the record was taken.
+  /// For each sensor, the sampling time of the last recorded image.
   std::vector<std::optional<SimTime>> recorded_image_at;
 
-  // From joining to leaving.
-  link::PeerId peer = 0;  ///< 0: nobody
+  // From the Hello on.
+  link::PeerId peer = 0;  ///< 0: not joined
   link::Hello hello;
   std::optional<sync::ExecutionTimer> timer;  ///< of an unstamped client
-  std::optional<sync::ClockWitness> witness;  ///< tied, of one that stamps by its own clock
+  std::optional<sync::ClockWitness>
+      plausibility;  ///< synchronised, if the SUT measures its own time
   std::uint64_t next_sequence = 1;
-  SimTime called_at{};            ///< ST when the last request came
-  std::size_t calls_in_step = 0;  ///< requests since ST came there
+  SimTime called_at{};            ///< ST of the last request
+  std::size_t calls_in_step = 0;  ///< requests at that ST
   AnnotationBudget annotations;
   std::optional<link::Finish> finish;
-  bool left = false;  ///< finished or sent away: nothing more is expected or told
+  bool left = false;  ///< finished or disconnected by the coordinator
 
-  /// Requests without their reply, in the order of their sequence: of a serial SUT one at most.
+  /// Requests without a reply, in order; at most one for a serial SUT.
   std::vector<PendingInteraction> open;
-  Duration last_hold{0};  ///< WT between the last request's arrival and its reply; 0: none yet
+  Duration last_hold{0};  ///< WT from the last request to its reply; 0: none yet
 
   bool joined() const { return peer != 0; }
   bool is_concurrent() const { return hello.concurrent; }

@@ -34,15 +34,14 @@ void Stepper::advance_to(SimTime to) {
   act();
 }
 
-// Samples come first: they show what the steps up to here have led to, so the commands that act
-// from here on make no difference to them, in whatever order SUTs were heard.
+// Samples come first, so that they do not depend on commands that take effect at this boundary.
 void Stepper::act() {
   sample();
   apply_commands();
   log_ground_truth();
 }
 
-// A SUT can stamp nothing before its bound.
+// No request of a SUT has a timestamp before its bound.
 void Stepper::sample() {
   const Sampler::Capture capture = [this](sim::Snapshot& snapshot) {
     ask([&](sim::Simulator& s) { s.capture(snapshot); });

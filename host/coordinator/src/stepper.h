@@ -17,17 +17,17 @@
 
 namespace tether::coordinator {
 
-/// The simulator threw: nothing may be asked of it any more.
+/// The simulator has failed and must not be used any more.
 struct SimulatorFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Drives the simulator: steps it, and at each boundary samples, applies commands and logs ground
-/// truth as they are due. The caller decides how far and when to step. Errors of the simulator are
-/// thrown as SimulatorFailure.
+/// Steps the simulator, and at each boundary samples, applies commands and logs ground truth as
+/// they are due. The caller decides how far and when to step. Errors of the simulator are thrown as
+/// SimulatorFailure.
 class Stepper {
  public:
-  /// `samplers`: one per UAV of the simulator's world. All but these must outlive it.
+  /// `samplers`: one per UAV of the world. The other arguments must outlive the Stepper.
   Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& barrier, RunLog& log,
           Duration ground_truth_period, std::vector<Sampler> samplers);
 
@@ -35,21 +35,21 @@ class Stepper {
   SimTime st() const { return st_; }
   const StepGrid& grid() const { return grid_; }
 
-  /// The first boundary after the present one at which something is due.
+  /// The first boundary at which something is due.
   SimTime next_due() const;
   /// @pre st() < `to` ≤ next_due(), on the grid.
   void advance_to(SimTime to);
-  /// Does what is due at the present ST, once each.
+  /// Does everything that is due at the present ST, once.
   void act();
 
-  /// Has the command act at the first boundary not before `t`, which it returns.
+  /// Queues a command for the first boundary at or after `t`; returns that boundary.
   SimTime command(std::size_t uav, std::uint64_t sequence, const uav::VelocityCommand& command,
                   SimTime t);
   std::size_t waiting_commands(std::size_t uav) const { return commands_.waiting(uav); }
 
   Sampler& sampler(std::size_t uav) { return samplers_[uav]; }
   const Sampler& sampler(std::size_t uav) const { return samplers_[uav]; }
-  /// What the read of this interaction gets, noted there; none if it reads nothing.
+  /// The sample for the read of this interaction, noted in it; none if it is not a read.
   std::optional<uav::Sample> measure(std::size_t uav, record::Interaction& entry);
 
  private:

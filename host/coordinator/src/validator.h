@@ -10,22 +10,22 @@
 #include <tether/link/messages.h>
 #include <tether/sync/clock_witness.h>
 
-/// Checks what a SUT sends against the protocol, given its earlier messages. Pure: times are
+/// Checks messages of a SUT against the protocol and its earlier messages. Pure: times are
 /// arguments.
 namespace tether::coordinator {
 
-/// Calls of a SUT between two steps of ST. Without a limit, a loop of calls that take next to no
-/// time would never end.
+/// Limit on the calls of a SUT between two steps of ST. Without it, a loop of calls that take
+/// almost no time would never end.
 inline constexpr std::size_t kMaxCallsInAStep = 10'000;
-/// Of one UAV: a latency of a second at a command every 15 us.
+/// Limit per UAV: a latency of one second with a command every 15 us.
 inline constexpr std::size_t kMaxWaitingCommands = 65'536;
-/// Of one SUT's annotations in a run: two hours of 1 kB for each of 30 images a second.
+/// Limit on the annotations of a SUT in a run: two hours of 1 kB for each of 30 images a second.
 inline constexpr std::size_t kMaxAnnotatedBytes = std::size_t{256} << 20;
 
-/// A breach of the protocol by a SUT.
+/// A protocol violation by a SUT.
 struct Fault {
   enum class Kind {
-    kWrongMessage,   ///< a message that a SUT must not send, or not twice
+    kWrongMessage,   ///< a message that a SUT must not send, or only once
     kTooEarly,       ///< a request before the Welcome
     kOutOfOrder,     ///< a request while it is held, after its Finish, or with a wrong number
     kTooMany,        ///< open calls, calls in a step, commands or annotations
@@ -36,37 +36,37 @@ struct Fault {
     kImpossibleStop  ///< a stop of a serial SUT, in the past, or while held
   };
   Kind kind;
-  std::string what;  ///< for people: the object of "the SUT of UAV … sent"
+  std::string what;  ///< for people: continues "the SUT of UAV … sent"
 };
 
 /// The state of a SUT that decides which messages it may send next.
 struct Standing {
-  bool running = false;     ///< every SUT has joined
-  bool tied = true;         ///< by the barrier; false: free running
-  bool concurrent = false;  ///< it has several threads
-  bool finished = false;    ///< its Finish has come
-  bool held = false;        ///< it is stopped until a reply
-  ExecTime bound;           ///< ET that it has reached; of a held one, of its reply
+  bool running = false;      ///< every SUT has joined
+  bool synchronised = true;  ///< false: free running
+  bool concurrent = false;   ///< it has several threads
+  bool finished = false;     ///< its Finish has arrived
+  bool held = false;         ///< it is stopped until a reply
+  ExecTime bound;            ///< ET that it has reached; the reply's if it is held
   std::size_t open_calls = 0;
   std::uint64_t next_sequence = 1;
   SimTime st;
-  std::size_t calls_in_step = 0;  ///< while ST was what it is
+  std::size_t calls_in_step = 0;  ///< at this ST
   std::size_t waiting_commands = 0;
   const Sampler& sensors;
-  const sync::ClockWitness* witness = nullptr;  ///< nullptr: its clock is not checked
-  int clock_cores = 0;  ///< cores that its CPU clock adds up; 0: it has none
+  const sync::ClockWitness* plausibility = nullptr;  ///< nullptr: its clock is not checked
+  int clock_cores = 0;  ///< cores whose time its CPU clock adds up; 0: another clock
 };
 
-/// Whether a time is in the range of stamps, where sums of stamps and delays stay within int64.
+/// Whether a time is in the range of timestamps. Sums of these and delays do not overflow int64.
 bool is_stamp(ExecTime t);
 /// What is wrong with a request received at `now`; none if nothing is.
 std::optional<Fault> fault_of(const link::Request& request, const Standing& sut, WallTime now);
-/// The same for progress and stops. @pre running, tied, is_stamp(progress.reached).
+/// The same for progress and stops. @pre running, synchronised, is_stamp(progress.reached).
 std::optional<Fault> fault_of(const link::Progress& progress, const Standing& sut, WallTime now);
 /// The fault of a message that is neither Request, Progress nor Annotation.
 Fault fault_of_other(const link::Message& message);
 
-/// Limits the annotations of one SUT: records are read into memory when a run is evaluated.
+/// Limits the annotations of one SUT, because a record is read into memory for evaluation.
 class AnnotationBudget {
  public:
   std::optional<Fault> spend(const link::Annotation& note);

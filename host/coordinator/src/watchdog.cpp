@@ -4,20 +4,20 @@
 #include <variant>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace tether::coordinator {
 
 namespace {
 
-// How often limits of WT are looked at.
+// How often limits of WT are checked.
 constexpr Duration kWatchPeriod = std::chrono::milliseconds(20);
-// A turn that took longer than this was not spent listening: we were stopped, say, or the whole
-// machine was.
+// A turn longer than this means that the process or the machine was stopped.
 constexpr Duration kLongestTurn = std::chrono::seconds(1);
-// How long nothing may move before it is said who waits for whom.
+// How long nothing may move before it is reported.
 constexpr Duration kStillPeriod = std::chrono::seconds(1);
 
-std::string missing(const std::vector<Party>& parties) {
+std::string describe_missing(const std::vector<Party>& parties) {
   std::vector<std::string> uavs;
   Duration waited{0};
   for (const Party& party : parties) {
@@ -25,13 +25,38 @@ std::string missing(const std::vector<Party>& parties) {
     uavs.push_back(party.uav);
     waited = std::max(waited, party.silence);
   }
-  return who_has_not_joined(uavs, waited);
+  return fmt::format("waiting for the SUT{} of \"{}\" to connect ({:.1f} s so far)",
+                     uavs.size() == 1 ? "" : "s", fmt::join(uavs, "\", \""), to_seconds(waited));
 }
 
 }  // namespace
 
+std::string describe_state(const Party& party) {
+  if (party.computing || !party.reply_at)
+    return fmt::format("it was computing; last message at ET {:.6f} s", to_seconds(party.bound));
+  return fmt::format("it was waiting for its reply at ET {:.6f} s", to_seconds(*party.reply_at));
+}
+
+// ST waits for the computing SUT with the smallest ET.
+std::string describe_blocking(SimTime st, const std::vector<Party>& parties) {
+  const Party* blocker = nullptr;
+  std::vector<std::string> waiting;
+  for (const Party& party : parties) {
+    if (party.computing && (!blocker || party.bound < blocker->bound)) blocker = &party;
+    if (!party.computing && party.reply_at)
+      waiting.push_back(fmt::format("UAV \"{}\" waits for its reply at ET {:.6f} s", party.uav,
+                                    to_seconds(*party.reply_at)));
+  }
+  if (!blocker) return "";
+  return fmt::format(
+      "ST {:.6f} s{}: blocked on SUT \"{}\" (UAV \"{}\"), which has been computing for {:.1f} s "
+      "without a message; last message at ET {:.6f} s",
+      to_seconds(st), waiting.empty() ? "" : fmt::format(" ({})", fmt::join(waiting, ", ")),
+      blocker->sut, blocker->uav, to_seconds(blocker->silence), to_seconds(blocker->bound));
+}
+
 bool shows_life(const link::Message& message, const Standing& sut, link::ClockKind clock) {
-  if (!sut.running || !sut.tied) return true;
+  if (!sut.running || !sut.synchronised) return true;
   if (std::holds_alternative<link::Annotation>(message)) return false;
   const auto* progress = std::get_if<link::Progress>(&message);
   if (!progress) return true;
@@ -39,8 +64,12 @@ bool shows_life(const link::Message& message, const Standing& sut, link::ClockKi
   return progress->reached > sut.bound;
 }
 
-Watchdog::Watchdog(const Limits& limits, std::size_t suts, bool tied, WallTime now)
-    : limits_(limits), tied_(tied), last_heard_(suts, now), moved_(now), looked_(now) {}
+Watchdog::Watchdog(const Limits& limits, std::size_t suts, bool synchronised, WallTime now)
+    : limits_(limits),
+      synchronised_(synchronised),
+      last_heard_(suts, now),
+      moved_(now),
+      checked_(now) {}
 
 void Watchdog::begin(WallTime now) {
   running_ = true;
@@ -49,18 +78,18 @@ void Watchdog::begin(WallTime now) {
 }
 
 bool Watchdog::is_due(WallTime now) {
-  if (now - looked_ < kWatchPeriod) return false;
-  pardon(now - looked_ - kLongestTurn, now);
-  looked_ = now;
+  if (now - checked_ < kWatchPeriod) return false;
+  discount(now - checked_ - kLongestTurn, now);
+  checked_ = now;
   return true;
 }
 
-// Messages that came meanwhile are still to be read, and SUTs that were stopped together with this
-// process had no time to send any.
-void Watchdog::pardon(Duration unheard, WallTime now) {
-  if (unheard <= Duration(0)) return;
-  moved_ = std::min(moved_ + unheard, now);
-  for (WallTime& heard : last_heard_) heard = std::min(heard + unheard, now);
+// Messages that arrived in that time are still to be read, and SUTs that were stopped together with
+// this process could not send any.
+void Watchdog::discount(Duration unwatched, WallTime now) {
+  if (unwatched <= Duration(0)) return;
+  moved_ = std::min(moved_ + unwatched, now);
+  for (WallTime& heard : last_heard_) heard = std::min(heard + unwatched, now);
 }
 
 std::optional<Ending> Watchdog::over_time(SimTime st) const {
@@ -71,29 +100,24 @@ std::optional<Ending> Watchdog::over_time(SimTime st) const {
 }
 
 std::optional<Ending> Watchdog::overdue(const std::vector<Party>& parties, SimTime st) const {
-  for (const Party& party : parties)
-    if (auto end = overdue(party, parties, st)) return end;
-  return std::nullopt;
-}
-
-std::optional<Ending> Watchdog::overdue(const Party& party, const std::vector<Party>& parties,
-                                        SimTime st) const {
-  if (!running_ && !party.joined && party.silence > limits_.connect)
-    return Ending{RunEnd::kSutLost, fmt::format("no SUT joined for UAV \"{}\" within {} s",
-                                                party.uav, to_seconds(limits_.connect))};
-  if (running_ && party.computing && party.silence > limits_.hang)
-    return Ending{
-        RunEnd::kSutHung,
-        fmt::format("SUT \"{}\" of UAV \"{}\" timed out: no message for {} s (hang_limit_s){}",
-                    party.sut, party.uav, to_seconds(limits_.hang),
-                    tied_ ? ": " + who_blocks_whom(st, parties) : "")};
+  for (const Party& party : parties) {
+    if (!running_ && !party.joined && party.silence > limits_.connect)
+      return Ending{RunEnd::kSutLost, fmt::format("no SUT joined for UAV \"{}\" within {} s",
+                                                  party.uav, to_seconds(limits_.connect))};
+    if (running_ && party.computing && party.silence > limits_.hang)
+      return Ending{
+          RunEnd::kSutHung,
+          fmt::format("SUT \"{}\" of UAV \"{}\" timed out: no message for {} s (hang_limit_s){}",
+                      party.sut, party.uav, to_seconds(limits_.hang),
+                      synchronised_ ? ": " + describe_blocking(st, parties) : "")};
+  }
   return std::nullopt;
 }
 
 std::string Watchdog::blocked(const std::vector<Party>& parties, SimTime st, WallTime now) const {
   if (now - moved_ < kStillPeriod) return "";
-  if (!running_) return missing(parties);
-  return tied_ ? who_blocks_whom(st, parties) : "";
+  if (!running_) return describe_missing(parties);
+  return synchronised_ ? describe_blocking(st, parties) : "";
 }
 
 }  // namespace tether::coordinator

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "diagnosis.h"
 #include "validator.h"
 
 #include <cstddef>
@@ -19,13 +18,30 @@ struct Ending {
   std::string reason;  ///< one line; names the cause
 };
 
+/// The state of one SUT, for messages.
+struct Party {
+  std::string sut;  ///< its name from the Hello
+  std::string uav;
+  bool joined = true;
+  bool computing = false;              ///< the coordinator waits for its next message
+  ExecTime bound;                      ///< ET that it is known to have reached
+  Duration silence{0};                 ///< WT since its last sign of life
+  std::optional<ExecTime> reply_at{};  ///< of its open calls the earliest
+};
+
+/// "it was computing; last message at ET 1.200000 s"
+std::string describe_state(const Party& party);
+/// Which SUT blocks the run, for how long, and which SUTs wait for it; one sentence. Empty if all
+/// wait for the simulator.
+std::string describe_blocking(SimTime st, const std::vector<Party>& parties);
+
 /// Whether a message is a sign of life. Under the barrier, progress is sent by a helper thread, and
 /// the SUT itself may be stuck. If it computes, its CPU time grows. A wall clock always grows, so
 /// it counts only while a call is open. Annotations do not count: a SUT could send them for ever.
 bool shows_life(const link::Message& message, const Standing& sut, link::ClockKind clock);
 
-/// Detects that a run takes too long or that a SUT is silent for too long, and describes who is
-/// blocked on whom. Pure: times are arguments. The barrier does not depend on it.
+/// Detects that a run takes too long or that a SUT is silent for too long, and describes which SUT
+/// is blocked on which. Pure: times are arguments. The barrier does not depend on it.
 class Watchdog {
  public:
   struct Limits {
@@ -34,7 +50,7 @@ class Watchdog {
     Duration hang;     ///< of WT without a sign of life from a SUT that computes
   };
 
-  Watchdog(const Limits& limits, std::size_t suts, bool tied, WallTime now);
+  Watchdog(const Limits& limits, std::size_t suts, bool synchronised, WallTime now);
 
   /// Every SUT has joined.
   void begin(WallTime now);
@@ -44,7 +60,7 @@ class Watchdog {
   void heard(std::size_t sut, WallTime now) { last_heard_[sut] = now; }
 
   /// Whether the limits have to be checked again; call it once per turn of the loop. Time in which
-  /// it was not called (the process was stopped, say) does not count as silence.
+  /// it was not called (because the process was stopped, for example) does not count as silence.
   bool is_due(WallTime now);
   /// Time since its last sign of life; before it has joined, since the start.
   Duration silence(std::size_t sut, WallTime now) const { return now - last_heard_[sut]; }
@@ -54,20 +70,18 @@ class Watchdog {
   /// The end of the run if a SUT has not joined in time or is hung. `parties`: all SUTs in the
   /// world's order.
   std::optional<Ending> overdue(const std::vector<Party>& parties, SimTime st) const;
-  /// If nothing has moved for a second: who is blocked on whom, or which SUTs have not joined.
+  /// If nothing has moved for a second: which SUT blocks the run, or which SUTs have not joined.
   std::string blocked(const std::vector<Party>& parties, SimTime st, WallTime now) const;
 
  private:
-  std::optional<Ending> overdue(const Party& party, const std::vector<Party>& parties,
-                                SimTime st) const;
-  void pardon(Duration unheard, WallTime now);
+  void discount(Duration unwatched, WallTime now);
 
   Limits limits_;
-  bool tied_;
+  bool synchronised_;
   bool running_ = false;
   std::vector<WallTime> last_heard_;  // of each SUT
   WallTime moved_;
-  WallTime looked_;
+  WallTime checked_;
 };
 
 }  // namespace tether::coordinator

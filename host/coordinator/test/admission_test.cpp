@@ -21,56 +21,48 @@ std::variant<std::size_t, Refusal> admit_to_two(const link::Hello& h,
   return admit(h, "secret", {"alpha", "beta"}, taken);
 }
 
-TEST(Admission, GivesTheUavAskedFor) {
+TEST(Admission, GivesTheRequestedOrTheOnlyUav) {
   EXPECT_EQ(std::get<std::size_t>(admit_to_two(hello("beta"))), 1u);
-}
-
-TEST(Admission, TheOnlyUavNeedsNoName) {
   EXPECT_EQ(std::get<std::size_t>(admit(hello(""), "secret", {"alpha"}, {false})), 0u);
 }
 
-struct RefusalCase {
-  link::Hello hello;
-  std::vector<bool> taken;
-  Refusal::Reason reason;
-  const char* text;
-};
-
-TEST(Admission, RefusesWithAReason) {
-  link::Hello old = hello("alpha");
-  old.protocol_version = link::kProtocolVersion + 1;
-  old.token = "wrong too";
-  link::Hello stranger = hello("nobody");
-  stranger.token = "Secret";
-  link::Hello without = hello("alpha");
-  without.token.clear();
-  const RefusalCase cases[] = {
-      {old, {false, false}, Refusal::Reason::kVersion, "same version"},
-      {stranger, {false, false}, Refusal::Reason::kToken, "TETHER_TOKEN"},
-      {without, {false, false}, Refusal::Reason::kToken, "TETHER_TOKEN"},
-      {hello("gamma"), {false, false}, Refusal::Reason::kUav, "alpha, beta"},
-      {hello(""), {false, false}, Refusal::Reason::kUav, "TETHER_UAV"},
-      {hello("beta"), {false, true}, Refusal::Reason::kUav, "already flown"},
+// A client without the token does not learn the names of UAVs.
+TEST(Admission, RejectsWithAReason) {
+  struct Case {
+    std::string uav;
+    std::string token = "secret";
+    bool beta_is_taken = false;
+    Refusal::Reason reason;
+    bool names_uavs = false;
   };
-  for (const auto& c : cases) {
-    const auto result = admit_to_two(c.hello, c.taken);
-    ASSERT_TRUE(std::holds_alternative<Refusal>(result)) << c.text;
-    EXPECT_EQ(std::get<Refusal>(result).reason, c.reason) << c.text;
-    EXPECT_THAT(std::get<Refusal>(result).message, HasSubstr(c.text));
+  const Case cases[] = {{.uav = "gamma", .token = "Secret", .reason = Refusal::Reason::kToken},
+                        {.uav = "alpha", .token = "", .reason = Refusal::Reason::kToken},
+                        {.uav = "gamma", .reason = Refusal::Reason::kUav, .names_uavs = true},
+                        {.uav = "", .reason = Refusal::Reason::kUav, .names_uavs = true},
+                        {.uav = "beta", .beta_is_taken = true, .reason = Refusal::Reason::kUav}};
+  for (const Case& c : cases) {
+    link::Hello h = hello(c.uav);
+    h.token = c.token;
+    const auto result = admit_to_two(h, {false, c.beta_is_taken});
+    ASSERT_TRUE(std::holds_alternative<Refusal>(result)) << c.uav;
+    EXPECT_EQ(std::get<Refusal>(result).reason, c.reason) << c.uav;
+    EXPECT_EQ(std::get<Refusal>(result).message.find("alpha") != std::string::npos, c.names_uavs);
+    h.protocol_version = link::kProtocolVersion + 1;
+    EXPECT_EQ(std::get<Refusal>(admit_to_two(h)).reason, Refusal::Reason::kVersion);
   }
 }
 
-TEST(Admission, AConcurrentSutNeedsOneTimeLine) {
+TEST(Admission, AConcurrentSutNeedsAClockForAllThreads) {
   for (const auto clock : {link::ClockKind::kCpu, link::ClockKind::kUnstamped}) {
     link::Hello threads = hello("alpha");
     threads.clock = clock;
     EXPECT_FALSE(clock_fault(threads, std::nullopt));
     threads.concurrent = true;
-    EXPECT_THAT(clock_fault(threads, std::nullopt).value_or(""), HasSubstr("no time line"));
+    EXPECT_TRUE(clock_fault(threads, std::nullopt));
   }
 }
 
-TEST(Admission, AScaledWallClockIsAnotherOne) {
+TEST(Admission, TheFactorOfTheClockMustMatch) {
   link::Hello sut = hello("alpha");
   sut.clock = link::ClockKind::kWall;
   sut.cpu_factor = 4.0;
@@ -79,12 +71,6 @@ TEST(Admission, AScaledWallClockIsAnotherOne) {
   EXPECT_THAT(clock_fault(sut, ClockSetting{}).value_or(""), HasSubstr("TETHER_CLOCK='wall'"));
   sut.cpu_factor = 1.0;
   EXPECT_THAT(clock_fault(sut, scaled).value_or(""), HasSubstr("TETHER_CLOCK='wall*4'"));
-}
-
-TEST(Admission, AStrangerLearnsNothingOfTheRun) {
-  link::Hello stranger = hello("gamma");
-  stranger.token = "guess";
-  EXPECT_THAT(std::get<Refusal>(admit_to_two(stranger)).message, testing::Not(HasSubstr("alpha")));
 }
 
 }  // namespace

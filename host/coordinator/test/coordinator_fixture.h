@@ -41,6 +41,10 @@ inline link::Hello hello(const std::string& uav = "",
   return h;
 }
 
+inline link::Request request(std::uint64_t sequence, ExecTime at,
+                             decltype(link::Request::body) body) {
+  return {.sequence = sequence, .issued_at = at, .body = std::move(body)};
+}
 inline Act read(Duration compute, std::uint32_t sensor, bool latest = false) {
   return {compute, link::ReadSensor{sensor, latest}};
 }
@@ -54,12 +58,34 @@ inline Act finish(Duration compute) {
   return {compute, link::Finish{true, "done", "{}"}};
 }
 
-/// A coordinator over a fake simulator of `uavs` UAVs, on a clock that moves a millisecond per
+/// Everything in a record that must not depend on wall time. The arrival of a concurrent SUT's
+/// requests may.
+inline std::string without_wall(const MemoryRecorder& recorder) {
+  std::string text;
+  const bool concurrent = recorder.header.suts.at(0).concurrent;
+  for (const auto& i : recorder.interactions) {
+    text += std::to_string(i.sequence) + ":" + i.sensor;
+    for (const std::int64_t v :
+         {to_ns(i.request_at), to_ns(i.reply_at), concurrent ? 0 : to_ns(i.st_at_arrival),
+          to_ns(i.st_at_release), to_ns(i.sample_state_at.value_or(SimTime::min())),
+          to_ns(i.effect_at.value_or(SimTime::min())), static_cast<std::int64_t>(i.sample_index)})
+      text += " " + std::to_string(v);
+  }
+  for (const auto& stop : recorder.stops)
+    text += "\n" + std::to_string(to_ns(stop.at)) + " " +
+            std::to_string(to_ns(stop.reply_at.value_or(ExecTime::min())));
+  for (const auto& g : recorder.ground_truth)
+    text += "\n" + std::to_string(g.p_WB_m[0]) + " " + std::to_string(to_ns(g.at));
+  return text;
+}
+
+/// A coordinator over a fake simulator of `uavs` UAVs, with a clock that advances by `tick_` per
 /// reading.
 class CoordinatorTest : public testing::Test {
  protected:
-  void make(std::size_t uavs = 1) {
-    simulator_ = std::make_unique<sim::FakeSimulator>(sim::make_fake_world(uavs));
+  void make(std::size_t uavs = 1, Duration step = std::chrono::milliseconds(1)) {
+    recorder_ = {};
+    simulator_ = std::make_unique<sim::FakeSimulator>(sim::make_fake_world(uavs, step));
     options_.token = "secret";
     options_.uavs.assign(uavs,
                          {{kCameraTiming, kImuTiming, kRangeTiming}, latency_, clock_, cores_});
@@ -67,10 +93,23 @@ class CoordinatorTest : public testing::Test {
                                                  [this] { return now_ += tick_; });
     server_ = std::make_unique<ScriptedServer>();
   }
+  void set_free_running(double real_time_factor) {
+    options_.policy = sync::SyncPolicy::kFreeRunning;
+    options_.real_time_factor = real_time_factor;
+  }
+  /// With the SUTs added so far.
+  RunReport run() { return coordinator_->run(*server_, hooks_); }
+  /// With one SUT; makes a coordinator if there is none.
   RunReport run(ScriptedServer::Script script) {
     if (!coordinator_) make();
     server_->add_sut(hello(), std::move(script));
-    return coordinator_->run(*server_, hooks_);
+    return run();
+  }
+  /// A SUT that sends only what the test delivers.
+  link::PeerId add_silent(bool concurrent = false, const std::string& uav = "") {
+    link::Hello h = hello(uav);
+    h.concurrent = concurrent;
+    return server_->add_sut(h, {});
   }
   const link::Refusal& refusal(link::PeerId peer) {
     return std::get<link::Refusal>(server_->sent.at(peer).back());

@@ -21,9 +21,9 @@ SimTime us(std::int64_t value) {
 /// A sampler of one sensor, over a simulator whose state is its instant.
 class Sampling : public testing::Test {
  protected:
-  void make(uav::SensorTiming timing, bool tied = true, std::uint64_t seed = 0) {
+  void make(uav::SensorTiming timing, bool synchronised = true, std::uint64_t seed = 0) {
     sampler_.emplace(std::vector<Sampler::Sensor>{{"sensor", {std::move(timing), seed, 0}}}, kGrid,
-                     tied);
+                     synchronised);
   }
   void sample(SimTime st, SimTime earliest) {
     sampler_->sample(st, earliest, [&](sim::Snapshot& snapshot) {
@@ -57,31 +57,13 @@ TEST_F(Sampling, CapturesAnOnDemandReadOnceAtTheBoundaryOfItsRequest) {
   EXPECT_EQ(sampler_->find(7), nullptr);
 }
 
-TEST_F(Sampling, CapturesPeriodicSensorsWhetherReadOrNotWhereTimeIsTied) {
+TEST_F(Sampling, CapturesPeriodicSensorsUnlessInFreeRunning) {
   make(kPeriodic);
   EXPECT_EQ(sampler_->next_due(), us(0));
   sample(us(0), us(0));
   EXPECT_EQ(sampler_->next_due(), us(10'000));
   make(kPeriodic, false);
   EXPECT_EQ(sampler_->next_due(), SimTime::max());
-}
-
-TEST_F(Sampling, InFreeRunningAPeriodicSensorIsReadOncePerPeriod) {
-  make(kPeriodic, false);
-  ASSERT_TRUE(sampler_->plan(1, {}, us(2'500)));
-  ASSERT_TRUE(sampler_->plan(2, {}, us(2'500)));
-  sample(us(2'000), us(0));
-  EXPECT_TRUE(sampler_->find(1)->captured);
-  EXPECT_FALSE(sampler_->find(2)->captured);
-  EXPECT_EQ(sampler_->next_due(), us(10'000));
-  sample(us(10'000), us(0));
-  EXPECT_EQ(sampler_->state_of(*sampler_->find(2)).at, us(10'000));
-}
-
-TEST_F(Sampling, AReadThatFindsNothingIsNotPlanned) {
-  make(kPeriodic);
-  EXPECT_FALSE(sampler_->plan(1, {0, false, true}, us(24'999)));
-  EXPECT_EQ(sampler_->find(1), nullptr);
 }
 
 TEST_F(Sampling, NothingIsDueOnceTheSutHasLeft) {
@@ -94,8 +76,8 @@ TEST_F(Sampling, NothingIsDueOnceTheSutHasLeft) {
 }
 
 // Delays of several periods reorder what becomes available, several reads are open at once, and ST
-// is behind when requests are stamped. Whatever a read is to get, its state is still there, and it
-// is that of the instant at which the sensor measured.
+// is behind the timestamps of requests. The state of each read is kept until its reply, and is that
+// of the sampling instant.
 TEST_F(Sampling, NoStateIsDroppedBeforeItIsRead) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     SCOPED_TRACE(seed);

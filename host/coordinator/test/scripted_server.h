@@ -14,20 +14,20 @@
 
 namespace tether::coordinator {
 
-/// A server whose peers are scripts: everything happens inside `poll`, in a fixed order, with no
-/// thread, socket or clock.
+/// A server whose peers are scripts. Everything happens in `poll` in a fixed order, without
+/// threads, sockets and clocks.
 class ScriptedServer final : public link::Server {
  public:
   using Script = coordinator::Script;
 
-  /// A peer that says `hello` and then follows its script; returns its id.
+  /// Adds a peer that sends `hello` and then follows its script; returns its id.
   link::PeerId add_sut(link::Hello hello, Script script) {
     const link::PeerId peer = ++last_peer_;
     suts_[peer] = {std::move(script), 0, ExecTime{}, 0};
     deliver(peer, std::move(hello));
     return peer;
   }
-  /// A peer of several threads, one per script.
+  /// Adds a peer of several threads, one per script.
   link::PeerId add_threads(link::Hello hello, std::vector<Script> scripts,
                            Duration overshoot = Duration(0)) {
     const link::PeerId peer = ++last_peer_;
@@ -44,7 +44,7 @@ class ScriptedServer final : public link::Server {
   void disconnect(link::PeerId peer) {
     queue_.push_back({peer, link::Closed{{Failure::Kind::kDisconnected, "connection closed"}}});
   }
-  /// It says no more, but may still read.
+  /// The peer closes only its sending side.
   void half_close(link::PeerId peer) {
     disconnect(peer);
     std::get<link::Closed>(queue_.back().what).may_still_read = true;

@@ -11,7 +11,7 @@
 
 namespace tether::coordinator {
 
-/// What a scripted SUT does next: computes for so long, then asks.
+/// A step of a scripted SUT: computes for so long, then sends a request.
 struct Act {
   Duration compute{0};
   std::variant<link::ReadSensor, link::SetVelocity, Duration /* sleep */, link::Finish> what;
@@ -32,8 +32,8 @@ inline link::Request make_request(const Act& act, std::uint64_t sequence, ExecTi
   return request;
 }
 
-/// A concurrent SUT under its supervisor: threads that follow a script each, on one ET that stands
-/// still for all of them, `overshoot` after the first of them asks or the first reply is due.
+/// A concurrent SUT under its supervisor: each thread follows a script. All threads have one ET,
+/// and are stopped `overshoot` after the first request or the time of the first reply.
 class ScriptedThreads {
  public:
   using Deliver = std::function<void(link::Message)>;
@@ -43,19 +43,19 @@ class ScriptedThreads {
     for (Script& script : scripts) threads_.push_back({.script = std::move(script)});
   }
 
-  /// What the coordinator sends.
+  /// Takes a message of the coordinator.
   void on_message(const link::Message& message) {
     if (const auto* welcome = std::get_if<link::Welcome>(&message)) begin(*welcome);
     if (const auto* due = std::get_if<link::Due>(&message)) of(due->sequence)->due = due->reply_at;
     if (const auto* reply = std::get_if<link::Reply>(&message)) on_reply(*reply);
-    if (!free_running_ && told_ && may_go_on()) go_on();
+    if (!free_running_ && stop_sent_ && may_resume()) resume();
   }
 
  private:
   struct Thread {
     Script script;
     std::size_t next = 0;
-    ExecTime asks_at{};             // while it computes
+    ExecTime requests_at{};         // while it computes
     std::uint64_t sequence = 0;     // of its open call; 0: none
     std::optional<ExecTime> due{};  // when that one's reply is
     bool answered = false;
@@ -86,7 +86,7 @@ class ScriptedThreads {
   }
 
   void compute(Thread& t) {
-    if (t.next < t.script.size()) t.asks_at = et_ + t.script[t.next].compute;
+    if (t.next < t.script.size()) t.requests_at = et_ + t.script[t.next].compute;
   }
 
   void ask(Thread& t, ExecTime at) {
@@ -97,11 +97,11 @@ class ScriptedThreads {
     deliver_(make_request(t.script[t.next++], t.sequence, at));
   }
 
-  // Runs until the first thread asks or the first reply is due, says so on the way, and stops.
+  // Runs until the first request or the time of the first reply, sends progress halfway, and stops.
   void run_to_stop() {
     ExecTime end = ExecTime::max();
     for (const Thread& t : threads_)
-      if (t.computes()) end = std::min(end, t.asks_at);
+      if (t.computes()) end = std::min(end, t.requests_at);
     for (const Thread& t : threads_)
       if (t.sequence > 0) end = std::min(end, *t.due);
     if (end == ExecTime::max()) return;
@@ -110,22 +110,23 @@ class ScriptedThreads {
 
     std::vector<Thread*> asking;
     for (Thread& t : threads_)
-      if (t.computes() && t.asks_at <= et_) asking.push_back(&t);
-    std::stable_sort(asking.begin(), asking.end(),
-                     [](const Thread* a, const Thread* b) { return a->asks_at < b->asks_at; });
-    for (Thread* t : asking) ask(*t, t->asks_at);
+      if (t.computes() && t.requests_at <= et_) asking.push_back(&t);
+    std::stable_sort(asking.begin(), asking.end(), [](const Thread* a, const Thread* b) {
+      return a->requests_at < b->requests_at;
+    });
+    for (Thread* t : asking) ask(*t, t->requests_at);
     deliver_(link::Progress{et_, true});
-    told_ = true;
+    stop_sent_ = true;
   }
 
-  bool may_go_on() const {
+  bool may_resume() const {
     return std::all_of(threads_.begin(), threads_.end(), [&](const Thread& t) {
       return t.sequence == 0 || t.answered || (t.due && *t.due > et_);
     });
   }
 
-  void go_on() {
-    told_ = false;
+  void resume() {
+    stop_sent_ = false;
     for (Thread& t : threads_) {
       if (!t.answered) continue;
       t.sequence = 0;
@@ -139,7 +140,7 @@ class ScriptedThreads {
   Deliver deliver_;
   std::vector<Thread> threads_;
   bool free_running_ = false;
-  bool told_ = false;  // the stop was delivered
+  bool stop_sent_ = false;  // the stop was delivered
   ExecTime et_;
   std::uint64_t last_sequence_ = 0;
 };

@@ -31,8 +31,8 @@ TEST(SensorSchedule, PeriodicReads) {
   schedule.mark_read({1, ms(33), ms(43)});
   const PeriodicCase cases[] = {
       {"nothing new: waits for the next", 44, false, {2, ms(66), ms(76)}},
-      {"the next is sampled but not yet there", 70, false, {2, ms(66), ms(76)}},
-      {"the next is there", 76, false, {2, ms(66), ms(76)}},
+      {"the next is sampled but not yet available", 70, false, {2, ms(66), ms(76)}},
+      {"the next is available", 76, false, {2, ms(66), ms(76)}},
       {"the newest is taken, the one between is skipped", 150, false, {4, ms(132), ms(142)}},
       {"latest: the last one again", 70, true, {1, ms(33), ms(43)}},
       {"latest: a newer one if there is one", 80, true, {2, ms(66), ms(76)}},
@@ -41,13 +41,7 @@ TEST(SensorSchedule, PeriodicReads) {
     EXPECT_EQ(schedule.choose(ms(c.read_ms), c.latest), c.expected) << c.what;
 }
 
-TEST(SensorSchedule, BeforeThePhaseTheFirstMeasurementIsWaitedFor) {
-  const SensorSchedule schedule = camera(milliseconds(10), milliseconds(5));
-  EXPECT_EQ(schedule.choose(ms(0), false), (Measurement{0, ms(5), ms(15)}));
-  EXPECT_EQ(schedule.choose(ms(0), true), (Measurement{0, ms(5), ms(15)}));
-}
-
-TEST(SensorSchedule, OnDemandMeasuresWhenAskedAndDeliversADelayLater) {
+TEST(SensorSchedule, OnDemandMeasuresAtTheRequestAndDeliversADelayLater) {
   SensorSchedule schedule(uav::OnDemandTiming{uav::ConstantDelay{milliseconds(98)}}, 0, 0);
   const auto t = from_ns<SimTime>(1'234'567);
   const Measurement first = schedule.choose(t, false);
@@ -58,34 +52,35 @@ TEST(SensorSchedule, OnDemandMeasuresWhenAskedAndDeliversADelayLater) {
 }
 
 // Free running: measurement 1 (of 33 ms) has been read.
-TEST(SensorSchedule, UntiedReadsAreOfTheMomentOncePerPeriod) {
+TEST(SensorSchedule, FreeRunningReadsGetTheStateAtOnceOncePerPeriod) {
   SensorSchedule schedule = camera(milliseconds(10));
   schedule.mark_read({1, ms(40), ms(40)});
   const PeriodicCase cases[] = {
-      {"its period's was read: waits for the next", 44, false, {2, ms(66), ms(66)}},
+      {"that of the period was read: waits for the next", 44, false, {2, ms(66), ms(66)}},
       {"latest: now, again", 44, true, {1, ms(44), ms(44)}},
       {"a new period: now", 70, false, {2, ms(70), ms(70)}},
       {"periods that passed by are not read later", 150, false, {4, ms(150), ms(150)}},
   };
   for (const auto& c : cases)
-    EXPECT_EQ(schedule.choose_untied(ms(c.read_ms), c.latest), c.expected) << c.what;
-  EXPECT_EQ(camera(Duration(0), milliseconds(5)).choose_untied(ms(0), true),
+    EXPECT_EQ(schedule.choose_free_running(ms(c.read_ms), c.latest), c.expected) << c.what;
+  EXPECT_EQ(camera(Duration(0), milliseconds(5)).choose_free_running(ms(0), true),
             (Measurement{0, ms(5), ms(5)}))
       << "before the phase";
   const SensorSchedule on_demand(uav::OnDemandTiming{uav::ConstantDelay{milliseconds(98)}}, 0, 0);
-  EXPECT_EQ(on_demand.choose_untied(ms(7), false), (Measurement{0, ms(7), ms(7)}));
+  EXPECT_EQ(on_demand.choose_free_running(ms(7), false), (Measurement{0, ms(7), ms(7)}));
 }
 
-// Both by the barrier and in free running: measurement 1 (of 33 ms, there at 43 ms) has been read.
-TEST(SensorSchedule, WhatIsAvailableWithoutWaiting) {
+// Synchronised and in free running; measurement 1 (of 33 ms, available at 43 ms) has been read.
+TEST(SensorSchedule, ReadsIfAvailableDoNotWait) {
   SensorSchedule schedule = camera(milliseconds(10));
   schedule.mark_read({1, ms(33), ms(43)});
   EXPECT_FALSE(schedule.choose_available(ms(75), false));
   EXPECT_EQ(schedule.choose_available(ms(75), true), (Measurement{1, ms(33), ms(43)}));
   EXPECT_EQ(schedule.choose_available(ms(76), false), (Measurement{2, ms(66), ms(76)}));
-  EXPECT_FALSE(schedule.choose_available_untied(ms(65), false));
-  EXPECT_EQ(schedule.choose_available_untied(ms(65), true), (Measurement{1, ms(65), ms(65)}));
-  EXPECT_EQ(schedule.choose_available_untied(ms(66), false), (Measurement{2, ms(66), ms(66)}));
+  EXPECT_FALSE(schedule.choose_available_free_running(ms(65), false));
+  EXPECT_EQ(schedule.choose_available_free_running(ms(65), true), (Measurement{1, ms(65), ms(65)}));
+  EXPECT_EQ(schedule.choose_available_free_running(ms(66), false),
+            (Measurement{2, ms(66), ms(66)}));
   EXPECT_FALSE(camera(Duration(0), milliseconds(5)).choose_available(ms(4), true));
 }
 

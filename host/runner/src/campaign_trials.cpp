@@ -16,10 +16,10 @@ namespace tether::runner {
 
 namespace {
 
-constexpr Duration kTrialLook = std::chrono::milliseconds(50);
+constexpr Duration kPollPeriod = std::chrono::milliseconds(50);
 
-/// Lays every condition's profiles over a world of its own, so that what is wrong with them shows
-/// before anything is written. What means nothing to any UAV is said once.
+/// Applies the profiles of each condition to a copy of the world, so that errors in them are found
+/// before anything is written. Collects each warning once.
 void try_profiles(const scenario::CampaignScenario& entry, const sim::World& world,
                   std::set<std::string>& warnings) {
   for (const std::string& name : entry.conditions) {
@@ -29,7 +29,7 @@ void try_profiles(const scenario::CampaignScenario& entry, const sim::World& wor
   }
 }
 
-/// What starts the SUTs here, under each condition.
+/// Adds the programs that start the SUTs of each condition here.
 void add_programs(const scenario::CampaignScenario& entry,
                   std::vector<std::filesystem::path>& files) {
   for (const std::string& name : entry.conditions) {
@@ -41,7 +41,7 @@ void add_programs(const scenario::CampaignScenario& entry,
   }
 }
 
-/// The second attempt leaves the first one's log alone.
+/// The second attempt keeps the log of the first.
 std::filesystem::path log_file(const campaign::TrialPlan& plan) {
   const std::filesystem::path first = plan.folder / campaign::kTrialLog;
   return std::filesystem::exists(first) ? plan.folder / "run-2.log" : first;
@@ -62,11 +62,11 @@ CampaignFiles files_of_trials(const scenario::Campaign& campaign,
   std::set<std::string> warnings;
   std::vector<std::filesystem::path> files = campaign::files_of(campaign);
   files.push_back(os::own_file());
-  const auto every_trial_says_it = [](const std::string&) {};
+  const auto ignore = [](const std::string&) {};  // each trial repeats the warning
   for (const auto& entry : campaign.scenarios) {
     add_programs(entry, files);
-    const sim::World world = sim::load_world(
-        scenario::world_request(entry.scenario, campaign.seeds.front()), every_trial_says_it);
+    const sim::World world =
+        sim::load_world(scenario::world_request(entry.scenario, campaign.seeds.front()), ignore);
     files.insert(files.end(), world.files.begin(), world.files.end());
     for (const std::string& name : entry.conditions)
       find_back_end(entry.scenario.find_condition(name)->simulator).require_readable(world);
@@ -89,12 +89,12 @@ campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
   if (!plan.profile.empty())
     arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
   if (plan.record_images) arguments.push_back("--images");
-  // It has processes of its own to end.
+  // The grace period lets it end its own processes.
   os::ChildProcess process({.arguments = std::move(arguments),
                             .environment = {},
                             .log = log,
                             .grace = std::chrono::seconds(10)});
-  while (!process.wait(kTrialLook)) {
+  while (!process.wait(kPollPeriod)) {
     if (stop.stop_requested()) process.terminate();
   }
   if (stop.stop_requested()) {

@@ -1,24 +1,34 @@
 #include "local_sut.h"
 
-#include "local_program.h"
-
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
 #include <tether/os/child_process.h>
 #include <tether/os/machine.h>
+#include <tether/os/program.h>
 
 namespace tether::runner {
 
 namespace {
 
-/// Where a SUT may leave files of its own: the whole path.
+/// The program of a SUT with a launcher, as an absolute path unless it is given with a folder.
+std::filesystem::path find_launched(const std::string& program, const scenario::Target& target) {
+  std::error_code ignored;
+  if (program.find('/') == std::string::npos) return os::find_program(program);
+  if (std::filesystem::is_regular_file(program, ignored)) return program;
+  throw Error(ErrorCode::kSetup, {target.file.string()},
+              fmt::format("target \"{}\": the program {} does not exist", target.name, program))
+      .about(program);
+}
+
+/// Creates the folder; returns its absolute path.
 std::string files_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw Error(ErrorCode::kSetup, folder.string() + ": " + error.message());
+  if (error) throw Error(ErrorCode::kSetup, {folder.string()}, error.message());
   return std::filesystem::absolute(folder).lexically_normal().string();
 }
 
@@ -26,12 +36,40 @@ void require_cores(const scenario::Scenario& scenario, const scenario::Condition
   const std::size_t allowed = os::allowed_cpus().size(), suts = scenario.uavs.size();
   const int cores = condition.target ? condition.target->cores : 0;
   if (static_cast<std::size_t>(cores) * suts <= allowed) return;
-  throw Error(ErrorCode::kBadFile, {condition.target->file.string()},
-              fmt::format("'cores' is {}, {}and this process may use {} of this machine's", cores,
-                          suts > 1 ? fmt::format("for each of {} SUTs, ", suts) : "", allowed));
+  throw Error(
+      ErrorCode::kBadFile, {condition.target->file.string()},
+      fmt::format("'cores' is too large ({} for each of {} SUTs). This process may use {} of "
+                  "this machine's",
+                  cores, suts, allowed))
+      .about("cores");
 }
 
 }  // namespace
+
+LocalSutCommand local_sut_command(const scenario::Sut& sut,
+                                  const std::optional<scenario::Target>& target) {
+  auto [words, program_at] = sut_command(sut, target);
+  const bool is_launched = target && !target->launcher.empty();
+  std::string& program = words[program_at];
+  const auto file = is_launched ? find_launched(program, *target) : os::find_program(program);
+  LocalSutCommand command{{}, {}};
+  if (program_at > 0) {
+    // tether-exec and launchers search for it in PATH only.
+    program = file.string();
+    command.programs.push_back(os::find_program(words.front()));
+    if (sut.concurrent && is_launched) command.programs.push_back(os::find_program(words[1]));
+  }
+  command.programs.push_back(file);
+  command.words = std::move(words);
+  return command;
+}
+
+std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_t index) {
+  const std::size_t count = static_cast<std::size_t>(cores), end = index * count;
+  if (end + count > allowed.size()) return {};
+  return {allowed.rbegin() + static_cast<std::ptrdiff_t>(end),
+          allowed.rbegin() + static_cast<std::ptrdiff_t>(end + count)};
+}
 
 std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenario,
                                                 const scenario::Condition& condition) {
@@ -42,7 +80,8 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
           programs.push_back(program);
     } catch (const Error& e) {
       throw Error(ErrorCode::kBadFile, {scenario.file.string()},
-                  fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()));
+                  fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()))
+          .about(uav.placement.name);
     }
   return programs;
 }

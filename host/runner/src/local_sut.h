@@ -2,7 +2,10 @@
 
 #include "sut_environment.h"
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <tether/os/child_process.h>
@@ -11,17 +14,32 @@
 /// SUTs as processes of this machine.
 namespace tether::runner {
 
-/// What starts the SUTs of a condition here, each program once.
-/// @throws Error(kBadFile) naming the scenario, the UAV and the program that cannot be found here.
+struct LocalSutCommand {
+  std::vector<std::string> words;
+  std::vector<std::filesystem::path> programs;  ///< that it runs: tether-exec, launcher, SUT
+};
+
+/// The command that starts a SUT on this machine. The program of a target with a launcher need not
+/// be one of this machine.
+/// @throws Error(kSetup) if a program does not exist.
+LocalSutCommand local_sut_command(const scenario::Sut& sut,
+                                  const std::optional<scenario::Target>& target);
+
+/// The CPUs for the SUT with that index: `cores` of those allowed, the last ones first, because the
+/// first ones are the busiest. Empty: all CPUs (`cores` is 0), or there are too few.
+std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_t index);
+
+/// All programs that start the SUTs of a condition here, each once.
+/// @throws Error(kBadFile) at the scenario's file, about the UAV whose program does not exist.
 std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenario,
                                                 const scenario::Condition& condition);
 
-/// @throws Error(kBadFile) as sut_programs, and where this machine has too few cores.
+/// Checks that the SUTs can run here. @throws Error(kBadFile) as sut_programs; at the target's
+/// file, about `cores`, if this machine has too few.
 void require_sut_programs(const scenario::Scenario& scenario, const scenario::Condition& condition);
 
-/// How to start the SUT of `uav` here, the run's SUT of that index. It may leave files in `out`;
-/// its output goes to `log`.
-/// @throws Error(kSetup) when `out` cannot be made.
+/// How to start the SUT of `uav`, the run's SUT with that index. Its TETHER_OUT is `out`, and its
+/// output goes to `log`. @throws Error(kSetup) if `out` cannot be created.
 os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
                            const std::filesystem::path& out, const std::filesystem::path& log);
 

@@ -9,25 +9,25 @@
 
 namespace tether::runner {
 
-/// Connections that a run did not let in. Whoever wants to fill a terminal, or the disk that its
-/// output goes to, could make a thousand a second.
+/// The connections that a run has rejected. Limits the lines about them: a client could make a
+/// thousand connections a second to fill a terminal or a disk.
 class Refusals {
  public:
   static constexpr std::size_t kMostShown = 20;
 
-  /// `show` gets a line for each of the first ones; it may be empty.
+  /// `show` gets a line for each of the first connections; it may be empty.
   explicit Refusals(std::function<void(const std::string&)> show) : show_(std::move(show)) {}
 
   void add(const std::string& text) {
     last_ = text;
     if (++count_ <= kMostShown && show_) show_(text);
   }
-  /// Shows how many others there were.
+  /// Shows the number of the other connections.
   void close() const {
     if (count_ > kMostShown && show_)
       show_(fmt::format("refused {} more connections", count_ - kMostShown));
   }
-  /// Empty: none so far.
+  /// The last line; empty if there is none.
   const std::string& last() const { return last_; }
 
  private:

@@ -16,7 +16,7 @@ namespace tether::runner {
 namespace {
 
 constexpr Duration kAskPeriod = std::chrono::seconds(1);
-// Looks come some tens of times a second.
+// Checks come some tens of times a second.
 constexpr Duration kLongestPause = std::chrono::seconds(2);
 // The two clocks cannot be read at the same instant.
 constexpr Duration kClockError = std::chrono::milliseconds(50);
@@ -27,7 +27,7 @@ WallTime read(clockid_t clock) {
   return WallTime(std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec));
 }
 
-// What follows the program's name, which may hold anything, in /proc/PID/stat.
+// The fields after the program's name, which may contain any character, in /proc/PID/stat.
 struct ProcessState {
   char state = '?';
   pid_t parent = 0;
@@ -72,10 +72,10 @@ std::optional<pid_t> stopped_process(pid_t group) {
 }
 
 StallWatch::StallWatch(std::function<std::optional<std::string>()> stopped_sut, HostClocks now)
-    : stopped_sut_(std::move(stopped_sut)), began_(now), last_look_(now.running) {}
+    : stopped_sut_(std::move(stopped_sut)), began_(now), last_check_(now.running) {}
 
-std::string StallWatch::look(const coordinator::RunStatus& status, HostClocks now) {
-  const Duration pause = now.running - std::exchange(last_look_, now.running);
+std::string StallWatch::check(const coordinator::RunStatus& status, HostClocks now) {
+  const Duration pause = now.running - std::exchange(last_check_, now.running);
   if (pause > kLongestPause)
     notes_.push_back(fmt::format(
         "the coordinator stalled for {:.1f} s up to ST {:.3f} s: stopped, short of processor "
@@ -86,12 +86,12 @@ std::string StallWatch::look(const coordinator::RunStatus& status, HostClocks no
   std::string stopped;
   if (stalled_ && (is_new || now.running - last_asked_ >= kAskPeriod)) {
     last_asked_ = now.running;
-    stopped = look_for_stopped_sut(status);
+    stopped = find_stopped_sut(status);
   }
   return is_new ? status.blocked + stopped : "";
 }
 
-std::string StallWatch::look_for_stopped_sut(const coordinator::RunStatus& status) {
+std::string StallWatch::find_stopped_sut(const coordinator::RunStatus& status) {
   const auto stopped = stopped_sut_();
   if (!stopped) return "";
   const std::string note = fmt::format("{} at ST {:.6f} s", *stopped, to_seconds(status.st));

@@ -10,22 +10,13 @@
 
 namespace tether::runner {
 
-namespace {
-
-/// As the client library takes it.
-std::string clock_of(const scenario::Condition& condition) {
-  switch (condition.clock) {
-    case scenario::Clock::kWall:
-      return condition.cpu_factor == 1.0 ? "wall" : fmt::format("wall*{}", condition.cpu_factor);
-    case scenario::Clock::kCpu:
-      return fmt::format("cpu*{}", condition.cpu_factor);
-    case scenario::Clock::kScripted:
-      return fmt::format("scripted*{}", static_cast<double>(condition.computing.count()) / 1e6);
-  }
-  return "wall";
+coordinator::ClockSetting clock_of(const scenario::Condition& condition) {
+  using link::ClockKind;
+  const ClockKind kind = condition.clock == scenario::Clock::kCpu        ? ClockKind::kCpu
+                         : condition.clock == scenario::Clock::kScripted ? ClockKind::kScripted
+                                                                         : ClockKind::kWall;
+  return {kind, condition.cpu_factor, condition.computing};
 }
-
-}  // namespace
 
 std::vector<std::string> command_line(const scenario::Sut& sut) {
   std::vector<std::string> words = sut.command;
@@ -57,7 +48,7 @@ os::Environment environment_of(const std::string& uav, const SutRun& run) {
   return {{"TETHER_ADDRESS", run.address},
           {"TETHER_TOKEN", run.token},
           {"TETHER_UAV", uav},
-          {"TETHER_CLOCK", clock_of(run.condition)}};
+          {"TETHER_CLOCK", to_text(clock_of(run.condition))}};
 }
 
 std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run) {

@@ -14,7 +14,7 @@ namespace tether::runner {
 
 namespace {
 
-/// The SUT as the board takes it. A parameter that names a file of the scenario is a file there.
+/// The command of a SUT on the board. Files of the scenario in its parameters are copied there.
 board::BoardSut board_sut(board::Board& board, const scenario::Scenario& scenario,
                           const scenario::UavSetup& uav, const SutRun& run,
                           const std::filesystem::path& log) {
@@ -32,8 +32,8 @@ board::BoardSut board_sut(board::Board& board, const scenario::Scenario& scenari
           .log = log};
 }
 
-/// The last line that is not empty; empty: none.
-std::string last_words(const std::filesystem::path& file) {
+/// The last line that is not empty; empty if there is none.
+std::string last_line(const std::filesystem::path& file) {
   std::ifstream log(file);
   std::string last;
   for (std::string line; std::getline(log, line);)
@@ -41,36 +41,34 @@ std::string last_words(const std::filesystem::path& file) {
   return last;
 }
 
-// How long a SUT that has finished may take to leave.
-constexpr Duration kLeaveLimit = std::chrono::seconds(2);
-// How long a lost SUT's process may take to end once its connection has.
+// How long a finished SUT may take to exit.
+constexpr Duration kExitLimit = std::chrono::seconds(2);
+// How long the process of a lost SUT may take to end after its connection.
 constexpr Duration kEndLimit = std::chrono::milliseconds(200);
 
 }  // namespace
 
 void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
-                         const std::filesystem::path& folder) {
+                         const std::filesystem::path& folder, board::Board* board) {
+  board_ = board;
   for (const scenario::UavSetup& uav : scenario.uavs) {
     const std::string& name = uav.placement.name;
-    const std::filesystem::path log = folder / fmt::format("sut-{}.log", name);
-    const std::filesystem::path out = scenario.uavs.size() > 1 ? folder / name : folder;
-    auto process = std::make_unique<os::ChildProcess>(local_sut(uav, run, suts_.size(), out, log));
-    const std::string program = process->program();
-    suts_.push_back({name, log, out, program, std::move(process)});
-  }
-}
-
-void SutProcesses::start_on(board::Board& board, const scenario::Scenario& scenario,
-                            const SutRun& run, const std::filesystem::path& folder) {
-  board_ = &board;
-  for (const scenario::UavSetup& uav : scenario.uavs) {
-    const std::string& name = uav.placement.name;
-    const std::filesystem::path log = folder / fmt::format("sut-{}.log", name);
-    const board::BoardSut sut = board_sut(board, scenario, uav, run, log);
-    suts_.push_back({name, log, scenario.uavs.size() > 1 ? folder / name : folder,
-                     fmt::format("{} on {}", sut.words[sut.program],
-                                 scenario::to_string(board.connection().address())),
-                     board.start(sut)});
+    Sut sut{.uav = name,
+            .log = folder / fmt::format("sut-{}.log", name),
+            .files = scenario.uavs.size() > 1 ? folder / name : folder,
+            .program = {},
+            .process = {}};
+    if (board) {
+      const board::BoardSut there = board_sut(*board, scenario, uav, run, sut.log);
+      sut.program = fmt::format("{} on {}", there.words[there.program],
+                                scenario::to_string(board->connection().address()));
+      sut.process = board->start(there);
+    } else {
+      sut.process =
+          std::make_unique<os::ChildProcess>(local_sut(uav, run, suts_.size(), sut.files, sut.log));
+      sut.program = sut.process->program();
+    }
+    suts_.push_back(std::move(sut));
   }
 }
 
@@ -82,8 +80,7 @@ std::optional<std::string> SutProcesses::early_end() {
 
 bool SutProcesses::has_failed_to_connect(const std::string& address) {
   return std::ranges::any_of(suts_, [&](const Sut& sut) {
-    return sut.process->poll() &&
-           last_words(sut.log).find("cannot connect to " + address) != std::string::npos;
+    return sut.process->poll() && last_line(sut.log).find(address) != std::string::npos;
   });
 }
 
@@ -108,14 +105,14 @@ std::optional<std::string> SutProcesses::stopped() const {
   return std::nullopt;
 }
 
-std::vector<std::string> SutProcesses::let_leave() {
+std::vector<std::string> SutProcesses::await_exit() {
   std::vector<std::string> notes;
   for (Sut& sut : suts_)
-    if (!sut.process->wait(kLeaveLimit))
-      notes.push_back(
-          fmt::format("the SUT of UAV \"{}\" ({}) had finished and did not leave for "
-                      "{} s; it was ended",
-                      sut.uav, sut.program, to_seconds(kLeaveLimit)));
+    if (!sut.process->wait(kExitLimit))
+      notes.push_back(fmt::format(
+          "the SUT of UAV \"{}\" ({}) had finished but did not exit within {} s; it was "
+          "ended",
+          sut.uav, sut.program, to_seconds(kExitLimit)));
     else if (sut.process->poll()->code > os::kSignalled)
       notes.push_back("after it had finished: " + describe_end(sut));
   return notes;
@@ -132,14 +129,14 @@ std::vector<std::string> SutProcesses::bring_back() {
 }
 
 std::string SutProcesses::describe_end(Sut& sut) const {
-  const std::string last = last_words(sut.log);
+  const std::string last = last_line(sut.log);
   const os::ChildExit& exit = *sut.process->poll();
   using board::SutEnd;
   const SutEnd end = board_ ? board_->end_of(exit, last) : SutEnd{{}, exit.description};
-  const bool is_told = last.empty() || end.cause == board::SutEndCause::kNotStarted;
+  const bool is_complete = last.empty() || end.cause == board::SutEndCause::kNotStarted;
   return fmt::format(
       "the SUT of UAV \"{}\" ({}) {}{}", sut.uav, sut.program, end.description,
-      is_told ? "" : fmt::format("; its last words in {}: {}", sut.log.string(), last));
+      is_complete ? "" : fmt::format("; last line of {}: {}", sut.log.string(), last));
 }
 
 }  // namespace tether::runner

@@ -14,42 +14,38 @@
 
 namespace tether::runner {
 
-/// The scenario's SUTs, here or on a board; they end with the object. Not thread-safe.
+/// The processes of a scenario's SUTs, here or on a board. They end with the object. Not
+/// thread-safe.
 class SutProcesses {
  public:
-  /// None yet.
-  SutProcesses() = default;
-  /// Starts them all, each with its output in `folder`/sut-UAV.log. TETHER_OUT tells each where to
-  /// leave files: `folder`, or `folder`/UAV where there are several. @throws Error(kSetup).
+  /// Starts all of them, here or on `board`, which must outlive them. The output of each goes to
+  /// `folder`/sut-UAV.log, and its TETHER_OUT is `folder`, or `folder`/UAV if there are several.
+  /// The scenario's files that parameters name are copied to the board. @throws Error(kSetup).
   void start(const scenario::Scenario& scenario, const SutRun& run,
-             const std::filesystem::path& folder);
-  /// The same on the board, which must outlive them. The scenario's files that their parameters
-  /// name are copied there.
-  void start_on(board::Board& board, const scenario::Scenario& scenario, const SutRun& run,
-                const std::filesystem::path& folder);
+             const std::filesystem::path& folder, board::Board* board = nullptr);
 
-  /// Before every SUT has joined: how the first one ended that did; none while all run.
+  /// How the first SUT that has ended did so; none while all run.
   std::optional<std::string> early_end();
-  /// Of those here: whose process a signal or a debugger has stopped; none where none is.
+  /// Which local SUT's process was stopped by a signal or a debugger; none if none was.
   std::optional<std::string> stopped() const;
-  /// Why the board with the SUTs is out of reach; none where there is none, or it is not.
+  /// Why the board is out of reach; none if it is not, or there is no board.
   std::optional<std::string> lost();
-  /// Whether the last words of one that has ended are that it cannot connect to that address.
+  /// Whether a SUT has ended with that address in the last line of its output.
   bool has_failed_to_connect(const std::string& address);
-  /// After a SUT was lost: how those that ended did so, "; " before each; empty: nothing is known.
+  /// After the loss of a SUT: how processes ended, each after "; ". Empty if nothing is known.
   std::string post_mortem();
-  /// Gives those that have finished the time to leave by themselves. A note for each that a signal
-  /// ended, or that did not leave.
-  std::vector<std::string> let_leave();
-  /// Ends those on a board, and brings their files into the run's folder; a warning for each whose
-  /// files stay there.
+  /// Waits until finished SUTs have exited. Returns a note for each that was ended by a signal, or
+  /// that did not exit.
+  std::vector<std::string> await_exit();
+  /// Ends SUTs on a board, and copies their files to the run's folder. Returns a warning for each
+  /// whose files could not be copied.
   std::vector<std::string> bring_back();
 
  private:
   struct Sut {
     std::string uav;
     std::filesystem::path log;
-    std::filesystem::path files;  // of TETHER_OUT, here
+    std::filesystem::path files;  // its TETHER_OUT on this machine
     std::string program;
     std::unique_ptr<os::ChildProcess> process;
   };

@@ -19,13 +19,16 @@
 #include <tether/runner/trial_folder.h>
 #include <tether/sim_sdf/load_world.h>
 
+/// One trial: checks options and files, claims the folder, starts the board and the simulator,
+/// conducts the run (TrialRun), and writes the result, which is evaluated from the record. Failures
+/// after the checks are results, too.
 namespace tether::runner {
 
 namespace {
 
 using coordinator::RunEnd;
 
-/// The board that the condition names, connected and held; none where the SUTs run here.
+/// Connects to the board of the condition and reserves it; none if the SUTs run here.
 std::unique_ptr<board::Board> hold_board(const TrialSpec& spec, const std::stop_token& stop) {
   const auto& target = spec.condition.target;
   if (spec.waits_for_sut || !target || !target->ssh) return nullptr;
@@ -40,18 +43,23 @@ std::vector<campaign::TaskEnd> task_ends(const coordinator::RunReport& report) {
   return ends;
 }
 
-/// A run that never began (no SUT joined) leaves no record worth reading.
-campaign::TrialResult judge(const TrialSpec& spec, const coordinator::RunReport& report) {
-  if (!report.began) {
-    std::filesystem::remove(spec.folder / kRecordFile);
-    auto result =
-        campaign::make_setup_failure(spec.scenario, spec.condition, spec.seed, report.reason);
-    if (report.end == RunEnd::kInterrupted) result.end = campaign::kEndInterrupted;
-    return result;
-  }
-  if (!std::filesystem::exists(spec.folder / kRecordFile))
-    throw Error(ErrorCode::kSetup, (spec.folder / kRecordFile).string() + " was removed meanwhile");
-  const record::Record record = record::read_record(spec.folder / kRecordFile);
+/// The result of a trial whose run did not begin; its record is removed.
+campaign::TrialResult setup_failure(const TrialSpec& spec, const std::string& reason,
+                                    bool is_interrupted) {
+  std::error_code ignored;
+  std::filesystem::remove(spec.folder / kRecordFile, ignored);
+  auto result = campaign::make_setup_failure(spec.scenario, spec.condition, spec.seed, reason);
+  if (is_interrupted) result.end = campaign::kEndInterrupted;
+  return result;
+}
+
+/// The result of a run, from its record. The record stays if there is too little memory to read it.
+campaign::TrialResult evaluate(const TrialSpec& spec, const coordinator::RunReport& report) try {
+  const std::filesystem::path file = spec.folder / kRecordFile;
+  if (!report.began) return setup_failure(spec, report.reason, report.end == RunEnd::kInterrupted);
+  if (!std::filesystem::exists(file))
+    throw Error(ErrorCode::kSetup, {file.string()}, "the record was removed during the run");
+  const record::Record record = record::read_record(file);
   auto result = campaign::make_result(spec.scenario, spec.condition, record, task_ends(report));
   const audit::Verdict verdict = audit::audit(record);
   result.audit = {verdict.passed(), audit::to_line(verdict)};
@@ -60,16 +68,11 @@ campaign::TrialResult judge(const TrialSpec& spec, const coordinator::RunReport&
   else if (!verdict.passed())
     campaign::invalidate(result, "the record breaks the rules of time: " + result.audit->summary);
   return result;
-}
-
-/// The record stays where the run has ended but cannot be judged.
-campaign::TrialResult judged(const TrialSpec& spec, const coordinator::RunReport& report) try {
-  return judge(spec, report);
 } catch (const std::bad_alloc&) {
   return campaign::make_setup_failure(
       spec.scenario, spec.condition, spec.seed,
-      fmt::format("too little memory is free to judge the run, which ended with: {}; `tether audit "
-                  "{}` reads its record where there is more",
+      fmt::format("out of memory while evaluating the run, which ended with: {}. With more memory, "
+                  "evaluate its record with: tether audit {}",
                   report.reason, (spec.folder / kRecordFile).string()));
 }
 
@@ -83,18 +86,8 @@ SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& obser
           .stop = stop};
 }
 
-/// A trial whose parts did not come together leaves no record.
-campaign::TrialResult setup_failure(const TrialSpec& spec, const std::string& reason,
-                                    const std::stop_token& stop) {
-  std::error_code ignored;
-  std::filesystem::remove(spec.folder / kRecordFile, ignored);
-  auto result = campaign::make_setup_failure(spec.scenario, spec.condition, spec.seed, reason);
-  if (stop.stop_requested()) result.end = campaign::kEndInterrupted;
-  return result;
-}
-
-/// @throws Error(kSetup) when simulator, board or SUTs cannot be had, or the simulator is lost
-/// before the run.
+/// @throws Error(kSetup) if the simulator, the board or a SUT cannot be started, or the simulator
+/// is lost before the run.
 campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::World world,
                           const Timings& timings, const TrialObserver& observer,
                           const std::stop_token& stop) {
@@ -103,7 +96,7 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
   try {
     const auto [report, notes] =
         TrialRun(spec, timings, *simulator, board.get(), observer, stop).conduct();
-    auto result = judged(spec, report);
+    auto result = evaluate(spec, report);
     result.this_run.notes = notes;
     result.versions["simulator"] = simulator->get().description();
     return result;
@@ -112,12 +105,12 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
   }
 }
 
-/// @throws Error(kSetup) that tells how the trial ended as well.
+/// Writes the result. @throws Error(kSetup) with the end of the run as well.
 void keep(const TrialSpec& spec, const campaign::TrialResult& result) try {
   campaign::write_result(spec.folder, result);
 } catch (const Error& e) {
   throw Error(ErrorCode::kSetup,
-              fmt::format("{}; the run itself ended with: {}", e.what(), result.reason));
+              fmt::format("{}; the run ended with: {}", e.what(), result.reason));
 }
 
 std::string utc_now() {
@@ -130,7 +123,7 @@ std::string utc_now() {
 
 campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_back_end,
                                 const TrialObserver& observer, const std::stop_token& stop) {
-  // Whatever is wrong with the user's words and files shows before anything is written.
+  // Errors in options and files are found before anything is written.
   const BackEnd back_end = find_back_end(spec.condition.simulator);
   scenario::require_clock(spec.scenario, spec.condition);
   sim::World world =
@@ -147,11 +140,12 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   try {
     result = fly(spec, back_end, std::move(world), timings, observer, stop);
   } catch (const Error& e) {
-    result = setup_failure(spec, e.what(), stop);
+    result = setup_failure(spec, e.what(), stop.stop_requested());
   } catch (const std::bad_alloc&) {
-    result = setup_failure(spec, "too little memory is free for this run", stop);
+    result = setup_failure(spec, "out of memory", stop.stop_requested());
   } catch (const std::exception& e) {
-    result = setup_failure(spec, fmt::format("internal error: {}", e.what()), stop);
+    result =
+        setup_failure(spec, fmt::format("internal error: {}", e.what()), stop.stop_requested());
   }
   result.versions["tether"] = version();
   result.this_run.started_at = started_at;

@@ -6,12 +6,12 @@
 
 #include <tether/coordinator/coordinator.h>
 
-/// How a trial's run ended, as data: what is asked afterwards depends on it.
+/// How a trial's run ended, as data. The search for causes afterwards depends on it.
 namespace tether::runner {
 
 /// Why the runner ends a run before the coordinator does.
 enum class StopCause {
-  kInterrupted,    ///< the user wants it
+  kInterrupted,    ///< requested by the user
   kSimulatorLost,  ///< one of the simulator's processes ended
   kBoardLost,      ///< the board with the SUTs is out of reach
   kSutEnded,       ///< a SUT's process ended before every SUT had joined
@@ -21,7 +21,7 @@ struct EarlyStop {
   StopCause cause;
   std::string reason;  ///< one line
 };
-/// As the coordinator takes it.
+/// In the coordinator's terms.
 std::pair<coordinator::RunEnd, std::string> to_run_end(const EarlyStop& stop);
 
 struct TrialEnd {
@@ -29,11 +29,11 @@ struct TrialEnd {
   std::optional<StopCause> cause{};  ///< none: the coordinator ended the run
 };
 
-/// A SUT gave no word: its process may be stopped.
+/// A SUT was silent, so its process may be stopped.
 bool may_have_stopped_sut(const TrialEnd& end);
-/// A SUT was lost, and its process has not been asked why.
+/// A SUT was lost, and it is not known how its process ended.
 bool has_unexplained_sut(const TrialEnd& end);
-/// A SUT was lost before the run began without having joined.
+/// The run did not begin because a SUT did not join.
 bool lacks_sut(const TrialEnd& end);
 
 }  // namespace tether::runner

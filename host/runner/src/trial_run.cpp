@@ -13,6 +13,9 @@
 #include <tether/runner/trial_folder.h>
 #include <tether/sync/clock_witness.h>
 
+/// Sets up the coordinator, its server and its record, and conducts the run. While it runs, hooks
+/// of the coordinator look for a reason to end it early. Causes that only processes show (an exit
+/// code, a stopped process) are added to the report afterwards.
 namespace tether::runner {
 
 namespace {
@@ -31,32 +34,22 @@ std::string token_of_run() {
   if (!given || !*given) return link::make_token();
   std::string token = given;
   if (token.size() > link::kMaxNameBytes)
-    throw Error(ErrorCode::kSetup,
-                fmt::format("TETHER_TOKEN is longer than {} bytes; leave it unset, and the run "
-                            "makes one of its own",
-                            link::kMaxNameBytes));
+    throw Error(
+        ErrorCode::kSetup,
+        fmt::format("TETHER_TOKEN is too long ({} bytes). At most {} bytes are allowed; if it "
+                    "is not set, the run generates a token",
+                    token.size(), link::kMaxNameBytes))
+        .about("TETHER_TOKEN");
   return token;
 }
 
-link::ClockKind kind_of(scenario::Clock clock) {
-  switch (clock) {
-    case scenario::Clock::kWall:
-      return link::ClockKind::kWall;
-    case scenario::Clock::kCpu:
-      return link::ClockKind::kCpu;
-    case scenario::Clock::kScripted:
-      return link::ClockKind::kScripted;
-  }
-  return link::ClockKind::kWall;
-}
-
-/// 0: not known, or more than a run can tell.
-int cores_for_witness() {
+/// 0: not known, or out of range.
+int known_cores() {
   const int cores = os::machine_cores();
   return cores <= sync::kMostCores ? cores : 0;
 }
 
-/// Where the SUTs' machine is read; who starts SUTs on another one by hand has to look himself.
+/// The state of the SUTs' machine; empty if the user starts the SUTs.
 record::Readings read_target(const TrialSpec& spec, board::Board* board) {
   if (spec.waits_for_sut) return {};
   return board ? board::probe_board(board->connection(), board::ProbeDepth::kBrief)
@@ -78,11 +71,10 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
   options.policy = spec.condition.policy == scenario::Policy::kFreeRunning
                        ? sync::SyncPolicy::kFreeRunning
                        : sync::SyncPolicy::kConservativeBarrier;
-  const coordinator::ClockSetting clock{kind_of(spec.condition.clock), spec.condition.cpu_factor,
-                                        spec.condition.computing};
+  const coordinator::ClockSetting clock = clock_of(spec.condition);
   for (std::size_t i = 0; i < timings.size(); ++i)
     options.uavs.push_back({timings[i], spec.scenario.uavs[i].command_latency, clock,
-                            is_local(spec) ? cores_for_witness() : 0});
+                            is_local(spec) ? known_cores() : 0});
   options.token = token;
   options.seed = spec.seed;
   options.real_time_factor = spec.condition.real_time_factor;
@@ -100,8 +92,8 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
   return options;
 }
 
-/// A camera's first image costs the most by far (GL start-up, shaders); it is made while the SUTs'
-/// processes start.
+/// Renders an image of each camera while the processes of the SUTs start, because the first one
+/// takes by far the longest (start of GL, shaders).
 void warm_up_cameras(sim::Simulator& simulator) {
   sim::Snapshot snapshot;
   simulator.capture(snapshot);
@@ -112,7 +104,7 @@ void warm_up_cameras(sim::Simulator& simulator) {
   }
 }
 
-/// Where to listen: a board that may not come through its SSH connection has to reach us.
+/// Where to listen. A board without a tunnel must be able to reach the address.
 link::Address listen_address(const TrialSpec& spec, const board::Board* board) {
   if (spec.listen) return *spec.listen;
   return {board && !spec.uses_tunnel ? board->host_address() : "127.0.0.1", 0};
@@ -122,12 +114,14 @@ std::unique_ptr<link::Server> listen(const TrialSpec& spec, const board::Board* 
   return link::listen_tcp(listen_address(spec, board), kHelloTimeout);
 } catch (const Error& e) {
   if (!board || spec.listen || spec.uses_tunnel) throw;
-  throw Error(e.code(), fmt::format("{}; the board sees this machine as {}, which is none of its "
-                                    "addresses: give --tunnel, or --listen ADDRESS:PORT",
-                                    e.what(), board->host_address()));
+  throw Error(e.code(),
+              fmt::format("{}; the board sees this machine at {}, which is not an address "
+                          "of this machine. Use --tunnel, or --listen ADDRESS:PORT",
+                          e.what(), board->host_address()))
+      .about(board->host_address());
 }
 
-/// The server as the SUTs reach it.
+/// The server's address for the SUTs.
 std::string sut_address(const TrialSpec& spec, board::Board* board, const link::Server& server) {
   link::Address address = server.address();
   if (!board) return link::to_string(address);
@@ -160,21 +154,14 @@ TrialRun::TrialRun(const TrialSpec& spec, const Timings& timings, RunningSimulat
       refusals_(observer.on_refused) {}
 
 Conducted TrialRun::conduct() {
-  start_suts();
+  if (board_ || !spec_.waits_for_sut) suts_.start(spec_.scenario, sut_run_, spec_.folder, board_);
   warm_up_cameras(simulator_.get());
   if (spec_.waits_for_sut && observer_.on_listening)
     observer_.on_listening(sut_instructions(spec_.scenario, sut_run_));
   TrialEnd end = fly();
   end.report.reason += explanation(end);
-  let_leave(end);
+  end_suts(end);
   return {std::move(end.report), std::move(notes_)};
-}
-
-void TrialRun::start_suts() {
-  if (board_)
-    suts_.start_on(*board_, spec_.scenario, sut_run_, spec_.folder);
-  else if (!spec_.waits_for_sut)
-    suts_.start(spec_.scenario, sut_run_, spec_.folder);
 }
 
 TrialEnd TrialRun::fly() {
@@ -209,13 +196,13 @@ std::optional<EarlyStop> TrialRun::early_stop() {
 void TrialRun::watch(const coordinator::RunStatus& status, StallWatch& stalls) {
   have_all_joined_ = status.joined == spec_.scenario.uavs.size();
   if (observer_.on_status) observer_.on_status(status);
-  const std::string stall = stalls.look(status, host_clocks());
-  // Who starts the SUTs himself has been told that they are waited for.
-  const bool is_told = spec_.waits_for_sut && status.joined == 0;
-  if (!stall.empty() && !is_told && observer_.on_blocked) observer_.on_blocked(stall);
+  const std::string stall = stalls.check(status, host_clocks());
+  // on_listening has already asked the user to start the SUTs.
+  const bool is_known = spec_.waits_for_sut && status.joined == 0;
+  if (!stall.empty() && !is_known && observer_.on_blocked) observer_.on_blocked(stall);
 }
 
-/// What else is known of the end, "; " before each.
+/// What else is known about the end, each part after "; ".
 std::string TrialRun::explanation(const TrialEnd& end) {
   std::string text;
   if (may_have_stopped_sut(end))
@@ -226,21 +213,21 @@ std::string TrialRun::explanation(const TrialEnd& end) {
   return text + reach_hint(end);
 }
 
-/// What to try when a board's SUT could not reach us.
+/// What to try if a SUT on a board could not reach this machine.
 std::string TrialRun::reach_hint(const TrialEnd& end) {
   if (!board_ || spec_.uses_tunnel || end.report.began) return "";
   const bool is_unreached = lacks_sut(end) || (end.report.end == RunEnd::kSutLost &&
                                                suts_.has_failed_to_connect(sut_run_.address));
   if (!is_unreached) return "";
   return fmt::format(
-      "; if the board cannot reach {} (a firewall on this machine?), open that port "
-      "and name it with --listen, or give --tunnel",
+      "; if the board cannot reach {} (a firewall on this machine?), open a port and pass it with "
+      "--listen, or use --tunnel",
       sut_run_.address);
 }
 
-void TrialRun::let_leave(const TrialEnd& end) {
+void TrialRun::end_suts(const TrialEnd& end) {
   if (end.report.end == RunEnd::kFinished)
-    for (std::string& note : suts_.let_leave()) notes_.push_back(std::move(note));
+    for (std::string& note : suts_.await_exit()) notes_.push_back(std::move(note));
   for (const std::string& warning : suts_.bring_back())
     if (observer_.warn) observer_.warn(warning);
 }

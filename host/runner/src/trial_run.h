@@ -23,36 +23,35 @@ namespace tether::runner {
 /// One list per UAV of the world, in the order of its sensors.
 using Timings = std::vector<std::vector<uav::SensorTiming>>;
 
-/// The condition's SUTs are started on this machine.
+/// Whether the SUTs are started on this machine.
 bool is_local(const TrialSpec& spec);
 
-/// A run's report, and what else is to be known of it.
+/// A run's report, and notes about it.
 struct Conducted {
   coordinator::RunReport report;
   std::vector<std::string> notes;
 };
 
-/// The coordinator's run with its SUTs: they are started, fly, are asked why they ended, and leave.
-/// The record is closed when the object goes. Not thread-safe.
+/// One run of the coordinator with its SUTs, in phases: start the SUTs, fly, find the cause of a
+/// failure, end the SUTs. The destructor closes the record. Not thread-safe.
 class TrialRun {
  public:
-  /// Opens the record and listens. What is given must outlive it; `board` is null where the SUTs
-  /// run here. @throws Error(kSetup).
+  /// Opens the record and the server. The arguments must outlive the object; `board` is null if the
+  /// SUTs run here. @throws Error(kSetup).
   TrialRun(const TrialSpec& spec, const Timings& timings, RunningSimulator& simulator,
            board::Board* board, const TrialObserver& observer, std::stop_token stop);
 
-  /// To be called once. @throws Error(kSetup) when a SUT cannot be started, or the simulator is
-  /// lost before the run.
+  /// Call it once. @throws Error(kSetup) if a SUT cannot be started, or the simulator is lost
+  /// before the run.
   Conducted conduct();
 
  private:
-  void start_suts();
   TrialEnd fly();
   std::optional<EarlyStop> early_stop();
   void watch(const coordinator::RunStatus& status, StallWatch& stalls);
   std::string explanation(const TrialEnd& end);
   std::string reach_hint(const TrialEnd& end);
-  void let_leave(const TrialEnd& end);
+  void end_suts(const TrialEnd& end);
 
   const TrialSpec& spec_;
   RunningSimulator& simulator_;

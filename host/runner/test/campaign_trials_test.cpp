@@ -35,7 +35,7 @@ TEST_F(CampaignTrials, NameEachSimulatorOnce) {
   EXPECT_THAT(simulators(campaign_), ElementsAre("another", "fake"));
 }
 
-TEST_F(CampaignTrials, RestOnTheirProgramsWorldAndSimulator) {
+TEST_F(CampaignTrials, DependOnProgramsWorldAndSimulator) {
   const auto files = files_of_trials(campaign_, fake_back_end()).files;
   EXPECT_THAT(files, Contains(os::own_file()).Times(1));
   EXPECT_THAT(files, Contains(os::find_program("sh")).Times(1));
@@ -43,10 +43,11 @@ TEST_F(CampaignTrials, RestOnTheirProgramsWorldAndSimulator) {
   EXPECT_EQ(files.back(), "/fake/simulator");
 }
 
-TEST_F(CampaignTrials, NeedASimulatorThatThereIs) {
+TEST_F(CampaignTrials, RejectAnUnknownSimulator) {
   campaign_.scenarios.front().scenario.conditions.front().simulator = "another";
-  EXPECT_EQ(error_message(ErrorCode::kUsage, [&] { files_of_trials(campaign_, fake_back_end()); }),
-            "no simulator \"another\"");
+  const Error error =
+      thrown_error(ErrorCode::kUsage, [&] { files_of_trials(campaign_, fake_back_end()); });
+  EXPECT_EQ(error.subject(), "another");
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace tether::runner {
 
-/// A simulator without physics, whose processes are up to the test.
+/// A simulator without physics; the test says whether its processes are lost.
 class FakeRunningSimulator final : public RunningSimulator {
  public:
   FakeRunningSimulator(sim::World world, std::optional<std::string> lost)
@@ -20,8 +20,8 @@ class FakeRunningSimulator final : public RunningSimulator {
 
   sim::Simulator& get() override { return simulator_; }
   std::optional<std::string> lost() override { return lost_; }
-  std::string post_mortem(const std::string& said) override {
-    return lost_ && said == *lost_ ? "; it said more" : "";
+  std::string post_mortem(const std::string& message) override {
+    return lost_ && message == *lost_ ? "; more" : "";
   }
 
  private:
@@ -29,10 +29,10 @@ class FakeRunningSimulator final : public RunningSimulator {
   std::optional<std::string> lost_;
 };
 
-/// The only one there is: "fake". `lost`: why it is lost from its start on.
+/// Finds only the simulator "fake". `lost`: why it is lost from its start on.
 inline FindBackEnd fake_back_end(std::optional<std::string> lost = std::nullopt) {
   return [lost](const std::string& name) -> BackEnd {
-    if (name != "fake") throw Error(ErrorCode::kUsage, "no simulator \"" + name + "\"");
+    if (name != "fake") throw Error(ErrorCode::kUsage, "unknown simulator").about(name);
     return {.require_readable = [](const sim::World&) {},
             .start =
                 [lost](sim::World world, const SimulatorSetup&) {

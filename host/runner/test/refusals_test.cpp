@@ -7,27 +7,21 @@
 namespace tether::runner {
 namespace {
 
-TEST(Refusals, OfAFewEachIsShown) {
+TEST(Refusals, ShowsTheFirstOnesAndTheNumberOfTheOthers) {
   std::vector<std::string> shown;
   Refusals refusals([&](const std::string& text) { shown.push_back(text); });
   EXPECT_EQ(refusals.last(), "");
   for (const char* text : {"a", "b"}) refusals.add(text);
   refusals.close();
   EXPECT_EQ(shown, (std::vector<std::string>{"a", "b"}));
-  EXPECT_EQ(refusals.last(), "b");
-}
-
-TEST(Refusals, OfManyTheRestIsCounted) {
-  std::vector<std::string> shown;
-  Refusals refusals([&](const std::string& text) { shown.push_back(text); });
-  for (int i = 0; i < 1000; ++i) refusals.add(std::to_string(i));
+  for (int i = 2; i < 1000; ++i) refusals.add(std::to_string(i));
   EXPECT_EQ(shown.size(), Refusals::kMostShown);
   refusals.close();
   EXPECT_EQ(shown.back(), "refused 980 more connections");
   EXPECT_EQ(refusals.last(), "999");
 }
 
-TEST(Refusals, NobodyNeedsToListen) {
+TEST(Refusals, NeedsNoCallback) {
   Refusals refusals({});
   refusals.add("a");
   refusals.close();

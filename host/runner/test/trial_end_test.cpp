@@ -7,17 +7,7 @@ namespace {
 
 using coordinator::RunEnd;
 
-/// Of a run with one SUT; without a name it never joined.
-TrialEnd end_of(RunEnd end, bool began, const std::string& sut = "fly",
-                std::optional<StopCause> cause = std::nullopt) {
-  coordinator::RunReport report;
-  report.end = end;
-  report.began = began;
-  report.suts = {{"uav1", sut, std::nullopt, ExecTime()}};
-  return {report, cause};
-}
-
-TEST(EarlyStop, IsAnEndOfTheCoordinatorsWithItsReason) {
+TEST(EarlyStop, MapsToTheEndOfARun) {
   const auto end_for = [](StopCause cause) { return to_run_end({cause, "why"}).first; };
   EXPECT_EQ(end_for(StopCause::kInterrupted), RunEnd::kInterrupted);
   EXPECT_EQ(end_for(StopCause::kSimulatorLost), RunEnd::kSimulatorLost);
@@ -26,28 +16,32 @@ TEST(EarlyStop, IsAnEndOfTheCoordinatorsWithItsReason) {
   EXPECT_EQ(to_run_end({StopCause::kSutEnded, "why"}).second, "why");
 }
 
-TEST(TrialEnd, AsksForAStoppedSutWhenOneWasSilent) {
-  EXPECT_TRUE(may_have_stopped_sut(end_of(RunEnd::kSutHung, true)));
-  EXPECT_TRUE(may_have_stopped_sut(end_of(RunEnd::kSutLost, false)));
-  EXPECT_FALSE(may_have_stopped_sut(end_of(RunEnd::kSutLost, true)));
-  EXPECT_FALSE(may_have_stopped_sut(end_of(RunEnd::kFinished, true)));
-  EXPECT_FALSE(may_have_stopped_sut(end_of(RunEnd::kInterrupted, false)));
-}
-
-TEST(TrialEnd, AsksHowALostSutEndedUnlessThatEndedTheRun) {
-  EXPECT_TRUE(has_unexplained_sut(end_of(RunEnd::kSutLost, true)));
-  EXPECT_TRUE(has_unexplained_sut(end_of(RunEnd::kSutLost, false)));
-  for (const StopCause cause : {StopCause::kBoardLost, StopCause::kSutEnded})
-    EXPECT_FALSE(has_unexplained_sut(end_of(RunEnd::kSutLost, true, "fly", cause)));
-  EXPECT_FALSE(has_unexplained_sut(end_of(RunEnd::kSutHung, true)));
-}
-
-TEST(TrialEnd, LacksASutThatNeverJoined) {
-  EXPECT_TRUE(lacks_sut(end_of(RunEnd::kSutLost, false, "")));
-  EXPECT_FALSE(lacks_sut(end_of(RunEnd::kSutLost, false, "fly")));
-  EXPECT_FALSE(lacks_sut(end_of(RunEnd::kSutLost, true, "")));
-  EXPECT_FALSE(lacks_sut(end_of(RunEnd::kSutLost, false, "", StopCause::kSutEnded)));
-  EXPECT_FALSE(lacks_sut(end_of(RunEnd::kInterrupted, false, "", StopCause::kInterrupted)));
+TEST(TrialEnd, TellsWhichCausesToLookFor) {
+  struct Case {
+    RunEnd end;
+    bool began, joined;
+    std::optional<StopCause> cause;
+    bool may_have_stopped, is_unexplained, lacks;
+  };
+  const Case cases[] = {
+      {RunEnd::kFinished, true, true, std::nullopt, false, false, false},
+      {RunEnd::kSutHung, true, true, std::nullopt, true, false, false},
+      {RunEnd::kSutLost, true, true, std::nullopt, false, true, false},
+      {RunEnd::kSutLost, false, true, std::nullopt, true, true, false},
+      {RunEnd::kSutLost, false, false, std::nullopt, true, true, true},
+      {RunEnd::kSutLost, true, true, StopCause::kBoardLost, false, false, false},
+      {RunEnd::kSutLost, false, false, StopCause::kSutEnded, true, false, false},
+      {RunEnd::kInterrupted, false, false, StopCause::kInterrupted, false, false, false}};
+  for (const Case& c : cases) {
+    SCOPED_TRACE(name(c.end));
+    TrialEnd end{{}, c.cause};
+    end.report.end = c.end;
+    end.report.began = c.began;
+    end.report.suts = {{"uav1", c.joined ? "fly" : "", std::nullopt, ExecTime()}};
+    EXPECT_EQ(may_have_stopped_sut(end), c.may_have_stopped);
+    EXPECT_EQ(has_unexplained_sut(end), c.is_unexplained);
+    EXPECT_EQ(lacks_sut(end), c.lacks);
+  }
 }
 
 }  // namespace

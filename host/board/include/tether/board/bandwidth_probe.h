@@ -6,14 +6,14 @@
 
 namespace tether::board {
 
-/// What the way to a board is like.
+/// Round trip and bandwidth of the connection to a board.
 struct Bandwidth {
-  double round_trip_s = 0.0;   ///< median of many, of one byte
-  double to_board_MB_s = 0.0;  ///< 10^6 bytes per second, the way that images go
+  double round_trip_s = 0.0;   ///< median, of one byte
+  double to_board_MB_s = 0.0;  ///< 10^6 bytes per second, in the direction of images
 };
 
-/// Tries the way to the board as SSH takes it, encryption included; a run's own link is plain TCP
-/// and no slower. None where the board does not answer.
+/// Measures the connection over SSH, with encryption. The TCP connection of a run is not slower.
+/// None if the board does not respond.
 std::optional<Bandwidth> probe_bandwidth(const SshConnection& connection);
 
 }  // namespace tether::board

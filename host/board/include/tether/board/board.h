@@ -20,17 +20,17 @@ namespace tether::board {
 /// A SUT to start on a board.
 struct BoardSut {
   std::string uav;
-  std::vector<std::string> words;  ///< as the board takes them
-  std::size_t program = 0;         ///< which of the words is the program
-  bool concurrent = false;         ///< the first of the words is tether-exec
+  std::vector<std::string> words;  ///< its command line on the board
+  std::size_t program = 0;         ///< index of the program in `words`
+  bool concurrent = false;         ///< `words` starts with tether-exec
   os::Environment environment;
-  std::filesystem::path log;  ///< on this machine; gets the SUT's stdout and stderr
+  std::filesystem::path log;  ///< on this machine; for stdout and stderr of the SUT
 };
 
-/// What ended a SUT's process.
+/// Why a SUT's process has ended.
 enum class SutEndCause {
-  kItself,      ///< its program ended, by itself or by a signal
-  kNotStarted,  ///< there was nothing to start
+  kItself,      ///< its program exited or was ended by a signal
+  kNotStarted,  ///< it could not be started
   kConnection,  ///< the connection to the board was lost
   kBoard,       ///< the board is no longer held
 };
@@ -39,52 +39,52 @@ struct SutEnd {
   std::string description;  ///< "was ended by signal 11 (Segmentation fault)"
 };
 
-/// A board that SSH reaches, held for one run: no other run of Tether uses it meanwhile. Whatever
-/// was started there ends with the object, and within seconds when this process or the connection
-/// is gone, however that came. Nothing of the run stays on the board. Not thread-safe.
+/// A board reached over SSH and reserved for one run: no other run of Tether can use it meanwhile.
+/// All processes that were started there end with the object, and within seconds if this process or
+/// the connection ends. No files of the run remain on the board. Not thread-safe.
 class Board {
  public:
-  /// Connects and holds it, until a stop is requested. @throws Error(kSetup) when it cannot be
-  /// reached, or another run, which is named, holds it.
+  /// Connects to the board and reserves it. A stop request ends waiting and commands. @throws
+  /// Error(kSetup) about the address if it cannot be reached, or is reserved by another run.
   explicit Board(const scenario::SshAddress& address, std::stop_token stop = {});
   ~Board();
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
 
   SshConnection& connection() { return connection_; }
-  /// This machine's address as the board sees it.
+  /// The address at which the board sees this machine.
   const std::string& host_address() const { return host_address_; }
 
-  /// Copies a file of this machine there; returns its path there. @throws Error(kSetup).
+  /// Copies a file to the board; returns its path there. @throws Error(kSetup) about the file.
   std::string copy(const std::filesystem::path& file);
-  /// Starts a SUT. The process is this machine's end of it, and ends when it does; `end_of` says
-  /// how it ended.
+  /// Starts a SUT. The returned process is ssh on this machine, which ends with the SUT; `end_of`
+  /// returns how the SUT ended.
   std::unique_ptr<os::ChildProcess> start(const BoardSut& sut);
-  /// What came of a SUT whose process has ended.
-  SutEnd end_of(const os::ChildExit& exit, const std::string& last_words);
+  /// How a SUT ended. `last_line`: of its log.
+  SutEnd end_of(const os::ChildExit& exit, const std::string& last_line);
 
-  /// Why the board is out of reach; none while it is not.
+  /// Why the board is out of reach; none if it is not.
   std::optional<std::string> lost();
-  /// Ends the SUTs. @return whether the board said so in time.
+  /// Ends the SUTs. @return whether the board confirmed it in time.
   bool end_suts();
-  /// Copies what the SUT left in its TETHER_OUT into `folder`; a warning if that was not possible.
+  /// Copies the files in the SUT's TETHER_OUT to `folder`; returns a warning if that failed.
   std::optional<std::string> bring_back(const std::string& uav,
                                         const std::filesystem::path& folder);
 
  private:
   void hold();
-  std::string keeper_said() const;
-  std::string let_go() const;  // once the keeper has ended
+  std::string keeper_output() const;
+  std::string describe_release() const;
   bool wait_for_keeper(const std::string& word, Duration limit);
   std::string prologue() const;
-  void beat(const std::stop_token& stop) const;
+  void send_heartbeat(const std::stop_token& stop) const;
 
   SshConnection connection_;
   std::string host_address_;
   std::string folder_;  // of the run, on the board
   os::FileDescriptor to_keeper_;
   std::unique_ptr<os::ChildProcess> keeper_;
-  std::jthread heart_;
+  std::jthread heartbeat_;
   int copies_ = 0;
 };
 

@@ -15,38 +15,38 @@
 
 namespace tether::board {
 
-/// One connection of OpenSSH to a board, over which any number of commands run: a master of its own
-/// with its socket in a private folder. Keys, names and jump hosts are those of the user's
-/// configuration; no question is ever asked. It ends with the object, and with this process however
-/// that ends. Not thread-safe.
+/// A connection of OpenSSH to a board over which any number of commands run: a master process with
+/// its socket in a private folder. Keys, host names and jump hosts come from the user's
+/// configuration; ssh asks no questions. It ends with the object and with this process. Not
+/// thread-safe.
 ///
-/// TETHER_SSH in the environment is the command to use for `ssh`, with its first options.
+/// TETHER_SSH in the environment replaces the command `ssh`; it can include options.
 class SshConnection {
  public:
-  /// Connects. Once a stop is requested, that and what runs over it ends. @throws Error(kSetup)
-  /// saying why that failed and what to do.
+  /// Connects. A stop request ends waiting and the commands that run over the connection. @throws
+  /// Error(kSetup) about the address, with advice.
   explicit SshConnection(const scenario::SshAddress& address, std::stop_token stop = {});
   ~SshConnection();
   SshConnection(const SshConnection&) = delete;
   SshConnection& operator=(const SshConnection&) = delete;
 
-  /// What runs a POSIX sh on the board that reads its own script, `script_bytes` long, from the
-  /// front of its standard input; the rest is the script's. So nothing of the script is seen in a
-  /// list of processes.
+  /// The command that runs a POSIX sh on the board. The shell reads its script, the first
+  /// `script_bytes` of its standard input; the rest is the input of the script. Therefore lists of
+  /// processes do not show the script.
   std::vector<std::string> shell(std::size_t script_bytes) const;
-  /// Runs the script there to its end; `input` is its standard input.
-  /// What is part of leaving goes on when a stop is requested.
+  /// Runs the script on the board to its end; `input` is its standard input. A stop request ends
+  /// it, unless it is part of the cleanup.
   os::Captured run(std::string_view script, Duration limit, std::string_view input = {},
-                   bool is_leaving = false) const;
+                   bool is_cleanup = false) const;
 
-  /// Why it has ended; none while it stands. Waits at most `limit` for that to show.
+  /// Why the connection has ended; none if it has not. Waits at most `limit` for its end.
   std::optional<std::string> lost(Duration limit = Duration(0));
-  /// A port of the board's loopback whose connections come out at that port of this machine's.
-  /// @throws Error(kSetup) when the board does not allow it.
+  /// Forwards a port of the board's 127.0.0.1 to `local_port` of this machine's; returns the
+  /// board's port. @throws Error(kSetup) about the address if the board does not allow it.
   std::uint16_t forward_back(std::uint16_t local_port) const;
 
   const scenario::SshAddress& address() const { return address_; }
-  /// Private to this process; goes with the connection.
+  /// A folder private to this process; removed with the connection.
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
@@ -59,7 +59,7 @@ class SshConnection {
   std::unique_ptr<os::ChildProcess> master_;
 };
 
-/// One line of what ssh said, with what to do about it.
-std::string explain_ssh(const std::string& said, const scenario::SshAddress& address);
+/// The last line of an output of ssh, with advice.
+std::string explain_ssh(const std::string& output, const scenario::SshAddress& address);
 
 }  // namespace tether::board

@@ -3,17 +3,18 @@
 #include <tether/board/ssh_connection.h>
 #include <tether/record/messages.h>
 
-/// What a machine tells of itself: the same script (src/target_probe.sh) here and on a board.
+/// Reads the state of a machine, with the same script (src/target_probe.sh) here and on a board.
 namespace tether::board {
 
 enum class ProbeDepth {
-  kBrief,  ///< what may change from run to run; some milliseconds
-  kFull,   ///< all of it; somewhat more than a second
+  kBrief,  ///< what can change from run to run; takes some milliseconds
+  kFull,   ///< everything; takes more than a second
 };
 
-/// Empty where the machine's shell does not answer within some seconds.
+/// Of this machine; empty if its shell does not respond. @throws Error(kSetup) if it cannot be
+/// started.
 record::Readings probe_here(ProbeDepth depth);
-/// The same of a board; empty also where the connection is gone.
+/// Of a board; empty if its shell does not respond or the connection is lost.
 record::Readings probe_board(const SshConnection& connection, ProbeDepth depth);
 
 }  // namespace tether::board

@@ -6,40 +6,40 @@
 
 #include <tether/record/messages.h>
 
-/// What a machine tells of itself (host/board/src/target_probe.sh), and what of it would spoil a
+/// Evaluates the state of a machine (host/board/src/target_probe.sh): what would disturb a
 /// measurement. Pure functions.
 namespace tether::board {
 
 enum class Health {
   kOk,
-  kWarn,  ///< may disturb, or cannot be told
-  kBad,   ///< would spoil a measurement
+  kWarn,  ///< may disturb a measurement, or is unknown
+  kBad,   ///< would disturb a measurement
 };
 /// "ok", "warn", "bad".
 std::string_view name(Health health);
 
-/// One line of a machine's state.
+/// One property of a machine.
 struct Finding {
   std::string subject;  ///< "governor"
   std::string value;    ///< for a person
   Health health = Health::kOk;
-  std::string advice;  ///< what it means and what to do; may be empty where all is well
+  std::string advice;  ///< what it means and what to do; may be empty if it is ok
 };
 
-/// The "key=value" lines of the probe's output; what is none is passed over.
+/// Parses the probe's output: "key=value" lines. Other lines are ignored.
 record::Readings parse_readings(std::string_view text);
 
-/// Judges a machine on which a SUT is to run, in the order of a screen. `version` is that of this
-/// program, which the machine's should have. What the machine could not tell is said to be so only
-/// where it matters.
-std::vector<Finding> judge(const record::Readings& readings, std::string_view version);
+/// Evaluates a machine on which a SUT will run, in the order of display. `version` is that of this
+/// program; the machine should have the same. Missing readings are findings only if they matter.
+std::vector<Finding> evaluate(const record::Readings& readings, std::string_view version);
 
-/// What the readings around a run say against it.
+/// A change of the machine's state that affected a run.
 struct RunWarning {
   std::string text;     ///< one line, naming the reading
-  bool spoils = false;  ///< the run's times are not those of the machine as it should be
+  bool spoils = false;  ///< the times of the run are not valid
 };
-/// On a board everything counts; of the host only that it slowed down.
+/// Compares the readings before and after a run. For the host, checks only whether it was
+/// throttled.
 std::vector<RunWarning> run_warnings(const record::Readings& before, const record::Readings& after,
                                      bool is_board);
 

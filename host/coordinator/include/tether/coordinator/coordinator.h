@@ -16,110 +16,115 @@
 #include <tether/sync/barrier_synchronizer.h>
 #include <tether/uav/sensor_timing.h>
 
-/// The program between simulator and SUTs (paper, Section II and Fig. 2): sessions, sensor timing,
-/// the barrier's decisions carried out, and the record of it all.
+/// The part between the simulator and the SUTs (paper, Section II and Fig. 2). It keeps the
+/// sessions of the SUTs, applies the timing of sensors and the decisions of the barrier, and writes
+/// the record.
 namespace tether::coordinator {
 
 struct ClockSetting {
   link::ClockKind kind = link::ClockKind::kWall;
-  double cpu_factor = 1.0;  ///< of link::ClockKind::kCpu and kWall: seconds of ET per second of it
-  Duration computing{0};    ///< of link::ClockKind::kScripted: for each phase of computing
+  double cpu_factor = 1.0;  ///< of kCpu and kWall: seconds of ET per second of the clock
+  Duration computing{0};    ///< of kScripted: for each phase of computing
 };
 
-/// How one UAV of the world meets its SUT.
+/// In the syntax of TETHER_CLOCK: "cpu*6".
+std::string to_text(const ClockSetting& setting);
+
+/// One UAV of the world and its SUT.
 struct UavOptions {
   std::vector<uav::SensorTiming> timings;  ///< one per sensor of the UAV, in the world's order
-  Duration command_latency{0};             ///< from a command's stamp to its effect; ≥ 0
-  /// How the condition measures this SUT's time. One that measures otherwise is refused; scripted
-  /// and unstamped ones are let in, and the record names them. None: any.
+  Duration command_latency{0};             ///< from a command's timestamp to its effect; ≥ 0
+  /// The clock by which the condition measures this SUT's time. A SUT with another clock is
+  /// rejected. Scripted and unstamped SUTs are accepted, and the record names them. None: any
+  /// clock.
   std::optional<ClockSetting> clock{};
-  /// Of the machine that its SUT runs on: how far its CPU time is believed. 0: not known.
+  /// Cores of the SUT's machine; they limit how fast its CPU time can grow. 0: not known.
   int cores = 0;
 };
 
 struct RunOptions {
   sync::SyncPolicy policy = sync::SyncPolicy::kConservativeBarrier;
-  std::vector<UavOptions>
-      uavs;                ///< one per UAV of the world, in its order; each is flown by one SUT
-  std::string token;       ///< without it nobody is let in; not empty
-  std::uint64_t seed = 0;  ///< of noise and delays
+  std::vector<UavOptions> uavs;   ///< one per UAV of the world, in its order
+  std::string token;              ///< every SUT must send it; not empty
+  std::uint64_t seed = 0;         ///< of noise and delays
   double real_time_factor = 0.0;  ///< limit on ST per WT; 0: none. Free running needs one
   Duration time_limit = std::chrono::minutes(10);     ///< of ST; > 0
   Duration connect_limit = std::chrono::seconds(30);  ///< of WT until every SUT has joined
   Duration hang_limit =
-      std::chrono::seconds(30);  ///< of WT without a word from a SUT that computes
+      std::chrono::seconds(30);  ///< of WT without a message from a SUT that computes
   Duration ground_truth_period = std::chrono::milliseconds(10);  ///< of ST; > 0
-  bool record_images = false;                                    ///< those that a SUT consumed
+  bool record_images = false;                                    ///< those that a SUT has read
   Duration image_period{0};  ///< least ST between two recorded images of one camera; 0: every one
-  record::Header header;  ///< what the caller knows; the coordinator adds policy, timing and SUTs
+  record::Header header;  ///< filled in by the caller; the coordinator adds policy, timing and SUTs
 };
 
 /// Why a run ended.
 enum class RunEnd {
-  kFinished,       ///< every SUT said that it is done
+  kFinished,       ///< every SUT has finished
   kTimeLimit,      ///< ST reached the limit first
   kSutLost,        ///< a SUT disconnected, broke the protocol, or never joined
-  kSutHung,        ///< a SUT gave no word for longer than its limit
+  kSutHung,        ///< no message from a SUT within the limit
   kSimulatorLost,  ///< the simulator failed
-  kInterrupted,    ///< the caller's `should_stop` said so
+  kInterrupted,    ///< `should_stop` of the caller requested it
 };
 std::string_view name(RunEnd end);
 
-/// What one SUT left behind.
+/// The result of one SUT.
 struct SutReport {
   std::string uav;
-  std::string sut;                     ///< the name it gave, printable; empty: never joined
-  std::optional<link::Finish> finish;  ///< what it said at its end; the outcome printable
+  std::string sut;                     ///< its name from the Hello, printable; empty: never joined
+  std::optional<link::Finish> finish;  ///< its own report; the outcome is printable
   ExecTime et;                         ///< its ET at the end of the run
 };
 
 struct RunReport {
   RunEnd end = RunEnd::kFinished;
-  std::string reason;  ///< one line; names the culprit
+  std::string reason;  ///< one line; names the cause
   SimTime st;          ///< at the end
-  bool began = false;  ///< every SUT had joined
-  Duration wall{0};    ///< from that moment on
+  bool began = false;  ///< whether every SUT has joined
+  Duration wall{0};    ///< since then
   std::uint64_t interactions = 0;
   std::uint64_t images = 0;  ///< rendered because a SUT read them
   std::uint64_t causality_violations = 0;
   Duration largest_lag{0};
   Duration largest_grid_error{0};
-  std::uint64_t stops = 0;        ///< of concurrent SUTs, in which all of one stood still
-  Duration largest_overshoot{0};  ///< by how much one of them came after the reply for which it was
+  std::uint64_t stops = 0;        ///< of concurrent SUTs
+  Duration largest_overshoot{0};  ///< of a stop beyond the timestamp of its reply
   std::vector<SutReport> suts;    ///< in the world's order of UAVs
 };
 
-/// What is going on, for a person who watches.
+/// Progress of a run, for display.
 struct RunStatus {
   std::size_t joined = 0;  ///< SUTs
   SimTime st;
-  std::optional<ExecTime> et;  ///< greatest of all SUTs; none where it is not tied to ST
+  std::optional<ExecTime> et;  ///< greatest of all SUTs; none in free running
   Duration wall{0};
   std::uint64_t interactions = 0;
   std::uint64_t images = 0;
-  std::string waiting_for;  ///< the SUT that ST waits for; empty: none
-  /// Nothing has moved for a second: who blocks whom, or whose SUT has not joined; else empty.
+  std::string waiting_for;  ///< name of the UAV whose SUT blocks ST; empty: none
+  /// If nothing has moved for a second: which SUT blocks the run, or which has not joined; else
+  /// empty.
   std::string blocked;
 };
 
-/// What the caller has a say in while a run goes on. Called from `run`; the first two some tens of
-/// times per second of WT.
+/// Callbacks of a run, called from `run`; the first two some tens of times per second of WT.
 struct RunHooks {
-  /// A reason to end the run now (the user's interrupt, a SUT's process that died); empty: go on.
+  /// A reason to end the run now, for example an interrupt or a SUT's process that died. None:
+  /// continue.
   std::function<std::optional<std::pair<RunEnd, std::string>>()> should_stop;
   std::function<void(const RunStatus&)> on_status;
-  /// Somebody was not let in, or sent what no SUT sends: whence, and why. One line.
+  /// A connection was rejected: its address and the reason, one line.
   std::function<void(const std::string&)> on_refused;
-  /// Once, when a run that had begun has ended and its SUTs have been told: how the machine that
-  /// they ran on is doing, for the record.
+  /// Reads the state of the SUTs' machine for the record. Called once after a run that had begun,
+  /// when its SUTs have been notified of the end.
   std::function<record::Readings()> read_target;
 };
 
 /// One run. Construct, call `run` once.
 ///
-/// Everything happens on the caller's thread: messages are handled, decisions taken and steps made
-/// in one loop, so that there is nothing to lock and no order left to chance. `host_clock` is read
-/// for the record, for limits of WT and for pacing; no decision of the barrier depends on it.
+/// Not thread-safe. One loop on the caller's thread handles messages, makes decisions and steps the
+/// simulator, so the order of events is deterministic. `host_clock` is read for the record, for
+/// limits of WT and for pacing; no decision of the barrier depends on it.
 class Coordinator {
  public:
   /// `simulator` and `recorder` must outlive the coordinator.
@@ -130,9 +135,8 @@ class Coordinator {
   Coordinator(const Coordinator&) = delete;
   Coordinator& operator=(const Coordinator&) = delete;
 
-  /// Waits for every UAV's SUT, runs until the end, tells the SUTs, and writes the record's footer.
-  /// Every way in which a run can fail is in the report. @throws Error(kSetup) only when the record
-  /// cannot be written.
+  /// Waits for the SUT of every UAV, runs until the end, notifies the SUTs, and writes the record's
+  /// footer. A failed run is a report, too. @throws Error(kSetup) if the record cannot be written.
   RunReport run(link::Server& server, const RunHooks& hooks = {});
 
  private:

@@ -11,43 +11,42 @@
 #include <tether/base/time.h>
 #include <tether/sim/simulator.h>
 
-/// What a trial needs of simulators. Which there are is up to the program.
+/// The interface between a trial and simulators. The program decides which simulators there are.
 namespace tether::runner {
 
-/// What a simulator is started with.
+/// Settings of a simulator.
 struct SimulatorSetup {
-  Duration answer_limit{0};   ///< how long one outside of this process may take for an answer
-  std::filesystem::path log;  ///< gets what processes of its own print
+  Duration answer_limit{0};   ///< maximum time for a reply of an external simulator
+  std::filesystem::path log;  ///< output of the simulator's processes
   sim::WarningSink warn;
-  std::function<void(const std::string&)> on_setup{};    ///< told what is being started
-  std::function<void(const std::string&)> on_silence{};  ///< told when an answer is long in coming
-  std::stop_token stop{};                                ///< ends all waiting for it
+  std::function<void(const std::string&)> on_setup{};    ///< called with what is being started
+  std::function<void(const std::string&)> on_silence{};  ///< called if a reply takes long
+  std::stop_token stop{};                                ///< a stop request ends all waiting for it
 };
 
-/// The simulator of one run, with the processes that it takes; they end with the object. Not
-/// thread-safe.
+/// The simulator of one run with its processes, which end with the object. Not thread-safe.
 class RunningSimulator {
  public:
   virtual ~RunningSimulator() = default;
 
   virtual sim::Simulator& get() = 0;
-  /// Why it is lost, as far as its processes show it; none: it is not.
+  /// Why its processes are lost; none if they are not.
   virtual std::optional<std::string> lost() { return std::nullopt; }
-  /// After it failed with `said`: what else is known of its end, with "; " before.
-  virtual std::string post_mortem(const std::string& /*said*/) { return ""; }
+  /// After it failed with `message`: what else is known about its end, starting with "; ".
+  virtual std::string post_mortem(const std::string& /*message*/) { return ""; }
 };
 
-/// A simulator that a condition may name.
+/// A simulator that a condition can select.
 struct BackEnd {
-  /// @throws Error(kBadFile) with file and line for what it cannot read.
+  /// Checks that it can read the world. @throws Error(kBadFile) with file and line.
   std::function<void(const sim::World&)> require_readable;
-  /// Starts it, or connects to it. @throws Error(kSetup) with the reason why it is not to be had.
+  /// Starts it, or connects to it. @throws Error(kSetup).
   std::function<std::unique_ptr<RunningSimulator>(sim::World, const SimulatorSetup&)> start;
-  /// Its own, which a result rests on. @throws Error(kSetup) when one is missing.
+  /// Files of the simulator that a result depends on. @throws Error(kSetup) if one is missing.
   std::function<std::vector<std::filesystem::path>()> files;
 };
 
-/// @throws Error(kUsage) for a name of none.
+/// Returns the simulator of that name. @throws Error(kUsage) if it is unknown.
 using FindBackEnd = std::function<BackEnd(const std::string& name)>;
 
 }  // namespace tether::runner

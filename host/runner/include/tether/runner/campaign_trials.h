@@ -10,25 +10,25 @@
 #include <tether/runner/back_end.h>
 #include <tether/scenario/campaign.h>
 
-/// What a campaign's trials rest on, and how each is run.
+/// The files that the trials of a campaign depend on, and how each trial is run.
 namespace tether::runner {
 
-/// Of the conditions that are flown.
+/// Names of the simulators of all conditions in the campaign.
 std::set<std::string> simulators(const scenario::Campaign& campaign);
 
 struct CampaignFiles {
   std::vector<std::filesystem::path> files;
-  std::set<std::string> warnings;  ///< of profiles that mean nothing to any UAV; each once
+  std::set<std::string> warnings;  ///< about profiles that apply to no UAV; each once
 };
-/// Everything that a trial's result rests on, as far as files go. Each is looked into, so that what
-/// is wrong with one shows before anything is written.
-/// @throws Error(kBadFile) naming the file; Error(kUsage) for a simulator that there is not;
-///   Error(kSetup) when something of a simulator is missing.
+/// All files that the result of a trial depends on. Reads each of them, so that errors in them are
+/// found before anything is written.
+/// @throws Error(kBadFile) with the file; Error(kUsage) for an unknown simulator; Error(kSetup) if
+/// a
+///   file of a simulator is missing.
 CampaignFiles files_of_trials(const scenario::Campaign& campaign, const FindBackEnd& find_back_end);
 
-/// Runs a trial as a `tether run` of its own, so that whatever happens in one leaves the others
-/// alone. A stop request ends it as an interrupted one.
-/// @throws Error(kSetup) when it leaves no result.
+/// Runs a trial as a separate `tether run` process, so that a failure cannot affect other trials. A
+/// stop request ends it as interrupted. @throws Error(kSetup) if it leaves no result.
 campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
                                         const std::stop_token& stop);
 

@@ -22,34 +22,33 @@ struct TrialSpec {
   scenario::Scenario scenario;
   scenario::Condition condition;
   std::uint64_t seed = 1;
-  std::filesystem::path folder;  ///< gets result.json, record.mcap and the SUTs' logs
-  /// None: a free port of loopback, or of the address at which the condition's board sees us.
+  std::filesystem::path folder;  ///< for result.json, record.mcap and the logs of SUTs
+  /// None: a free port of 127.0.0.1, or of the address at which the board sees this machine.
   std::optional<link::Address> listen{};
-  /// The board's SUTs come through its SSH connection.
+  /// Tunnel the connection of SUTs on the board through SSH.
   bool uses_tunnel = false;
-  /// The user starts the SUT; else the scenario's command is started where the condition says.
+  /// The user starts the SUT. Otherwise the command of the scenario is started on the target.
   bool waits_for_sut = false;
 };
 
-/// Who is told what while a trial runs.
+/// Callbacks of a trial.
 struct TrialObserver {
   std::function<void(const std::string&)> warn;  ///< one line each
   std::function<void(const coordinator::RunStatus&)> on_status;
-  /// Nothing moves: who waits for whom, or for whose SUT to join; one line, once each time.
+  /// Nothing advances: which SUT blocks the run or has not joined; one line, once per stall.
   std::function<void(const std::string&)> on_blocked;
-  /// What is being set up, before there is a status.
+  /// What is being set up, before the first status.
   std::function<void(const std::string&)> on_setup;
-  /// Somebody was not let in; one line. After twenty of them only their number, at the end.
+  /// A rejected connection; one line. After the first twenty, only their number at the end.
   std::function<void(const std::string&)> on_refused;
-  /// Waiting for the SUT: where to connect, and the environment that it needs.
+  /// If `waits_for_sut`: the command lines that start the SUTs, with their environment.
   std::function<void(const std::string& instructions)> on_listening;
 };
 
-/// Runs one trial and leaves its result in the folder, whatever it was. An earlier trial's files
-/// there are replaced. A stop request ends it as an interrupted one.
-/// @throws Error(kUsage) and Error(kBadFile) before anything is written, when world, models or
-/// profiles cannot be used; Error(kSetup) when the folder
-///   cannot be written.
+/// Runs one trial and writes its result to the folder, even if it fails. Replaces the files of an
+/// earlier trial there. A stop request ends it as interrupted.
+/// @throws Error(kUsage) and Error(kBadFile) before anything is written, if an option, the world, a
+///   model or a profile cannot be used; Error(kSetup) if the folder cannot be written.
 campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_back_end,
                                 const TrialObserver& observer, const std::stop_token& stop);
 

@@ -1,4 +1,4 @@
-#include "local_program.h"
+#include "local_sut.h"
 
 #include "sut_environment.h"
 
@@ -12,7 +12,6 @@ namespace tether::runner {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 const scenario::Sut kSut{{"fly", "task"}, {{"max_frames", "5"}, {"to", "box"}}};
@@ -26,12 +25,12 @@ scenario::Target target(const std::vector<std::string>& launcher, const std::str
   return target;
 }
 
-TEST(ProgramOnTarget, MakesParametersOptions) {
+TEST(SutCommand, TurnsParametersIntoOptions) {
   EXPECT_THAT(sut_command(kSut, {}).words,
               ElementsAre("fly", "task", "--max-frames", "5", "--to", "box"));
 }
 
-TEST(ProgramOnTarget, BeginsWithTheLauncherAndFindsTheProgramInTheTargetsFolder) {
+TEST(SutCommand, StartsWithTheLauncherAndUsesTheFolderOfTheTarget) {
   EXPECT_THAT(
       sut_command({{"fly", "task"}, {}}, target({"emulate", "-L", "/root"}, "/arm/bin")).words,
       ElementsAre("emulate", "-L", "/root", "/arm/bin/fly", "task"));
@@ -39,7 +38,7 @@ TEST(ProgramOnTarget, BeginsWithTheLauncherAndFindsTheProgramInTheTargetsFolder)
               ElementsAre("/own/fly"));
 }
 
-TEST(ProgramOnTarget, StartsAConcurrentProgramUnderTetherExecBeforeAnythingElse) {
+TEST(SutCommand, StartsAConcurrentProgramUnderTetherExec) {
   const scenario::Sut concurrent{{"fly", "task"}, {}, true};
   EXPECT_THAT(sut_command(concurrent, {}).words, ElementsAre("tether-exec", "fly", "task"));
   const auto command = sut_command(concurrent, target({"emulate"}, "/arm/bin"));
@@ -47,7 +46,7 @@ TEST(ProgramOnTarget, StartsAConcurrentProgramUnderTetherExecBeforeAnythingElse)
   EXPECT_EQ(command.words[command.program], "/arm/bin/fly");
 }
 
-TEST(LocalProgram, TakesProgramsThatAreNoneOfThisMachine) {
+TEST(LocalSut, AcceptsAProgramOfAnotherMachineWithALauncher) {
   const ScratchFolder scratch;
   const std::string program = scratch.write("bin/fly", "not for this machine");
   const auto command = local_sut_command({{"fly"}, {}}, target({"/bin/sh"}, scratch.path("bin")));
@@ -55,30 +54,51 @@ TEST(LocalProgram, TakesProgramsThatAreNoneOfThisMachine) {
   EXPECT_THAT(command.programs, ElementsAre("/bin/sh", program));
 }
 
-TEST(LocalProgram, GivesALauncherTheWholePath) {
+TEST(LocalSut, GivesALauncherTheAbsolutePath) {
   const auto command = local_sut_command({{"sh"}, {}}, target({"/bin/sh"}, ""));
   EXPECT_TRUE(std::filesystem::path(command.words[1]).is_absolute()) << command.words[1];
   EXPECT_THAT(local_sut_command({{"sh"}, {}}, {}).words, ElementsAre("sh")) << "as the user wrote";
 }
 
-TEST(LocalProgram, NamesTheProgramThatIsMissing) {
-  const auto error = [](const std::vector<std::string>& launcher, const std::string& folder) {
-    return error_message(ErrorCode::kSetup, [&] {
-      local_sut_command({{"fly"}, {}}, target(launcher, folder));
+TEST(LocalSut, NamesAProgramThatDoesNotExist) {
+  const auto expect_missing = [](const std::string& missing, const std::string& program,
+                                 const std::vector<std::string>& launcher,
+                                 const std::string& folder) {
+    const Error error = thrown_error(ErrorCode::kSetup, [&] {
+      local_sut_command({{program}, {}}, target(launcher, folder));
     });
+    EXPECT_THAT(error.what(), testing::HasSubstr(missing));
   };
-  EXPECT_THAT(error({"/bin/sh"}, "/nowhere/bin"),
-              HasSubstr("no program /nowhere/bin/fly, which the target \"t\" of /targets/t.toml"));
-  EXPECT_THAT(error({}, "/nowhere/bin"), HasSubstr("\"/nowhere/bin/fly\""));
-  EXPECT_THAT(error({"no-such-launcher"}, "/bin"), HasSubstr("/bin/fly"));
-  EXPECT_THAT(error_message(ErrorCode::kSetup,
-                            [&] {
-                              local_sut_command({{"sh"}, {}}, target({"no-such-launcher"}, ""));
-                            }),
-              HasSubstr("\"no-such-launcher\""));
+  expect_missing("/nowhere/bin/fly", "fly", {"/bin/sh"}, "/nowhere/bin");
+  expect_missing("/nowhere/bin/fly", "fly", {}, "/nowhere/bin");
+  expect_missing("/bin/fly", "fly", {"no-such-launcher"}, "/bin");
+  expect_missing("no-such-launcher", "sh", {"no-such-launcher"}, "");
 }
 
-TEST(CpusFor, TakesTheLastOnesAndGivesEachSutItsOwn) {
+// The error has the scenario's file, and that of `cores` the target's.
+TEST(LocalSut, ChecksTheProgramsAndCoresOfAScenario) {
+  scenario::Scenario scenario;
+  scenario.file = "/s.toml";
+  scenario.uavs.resize(2);
+  for (auto& uav : scenario.uavs) uav.sut.command = {"sh"};
+  EXPECT_EQ(sut_programs(scenario, {}).size(), 1u);
+  EXPECT_NO_THROW(require_sut_programs(scenario, {}));
+
+  scenario::Condition condition;
+  condition.target = target({}, "");
+  condition.target->cores = 1 << 20;
+  Error error = bad_file_error([&] { require_sut_programs(scenario, condition); });
+  EXPECT_EQ(error.where().file, "/targets/t.toml");
+  EXPECT_EQ(error.subject(), "cores");
+
+  scenario.uavs[1].placement.name = "uav2";
+  scenario.uavs[1].sut.command = {"no-such-program-of-tether"};
+  error = bad_file_error([&] { sut_programs(scenario, {}); });
+  EXPECT_EQ(error.where().file, "/s.toml");
+  EXPECT_EQ(error.subject(), "uav2");
+}
+
+TEST(CpusFor, TakesTheLastCpusAndDifferentOnesForEachSut) {
   const std::vector<int> allowed{0, 1, 4, 5, 9};
   EXPECT_THAT(cpus_for(allowed, 2, 0), ElementsAre(9, 5));
   EXPECT_THAT(cpus_for(allowed, 2, 1), ElementsAre(4, 1));
