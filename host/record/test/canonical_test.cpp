@@ -30,7 +30,7 @@ struct Change {
   std::function<void(Record&)> apply;
 };
 
-TEST(Canonical, WallTimeAndHeaderDoNotShow) {
+TEST(Canonical, LeavesOutWallTimeAndHeader) {
   Record changed = sample();
   changed.header.real_time_factor = 99;
   changed.interactions[0].message.wall_at_arrival += Duration(1);
@@ -42,7 +42,7 @@ TEST(Canonical, WallTimeAndHeaderDoNotShow) {
   EXPECT_EQ(canonical(changed, {.arrivals = true}), canonical(sample(), {.arrivals = true}));
 }
 
-TEST(Canonical, ArrivalsShowOnlyWhenAskedFor) {
+TEST(Canonical, HasArrivalsOnlyOnRequest) {
   const Change changes[] = {
       {"arrival", [](Record& r) { r.interactions[0].message.st_at_arrival += Duration(1); }},
       {"lag", [](Record& r) { r.interactions[0].message.lag += Duration(1); }},
@@ -59,7 +59,7 @@ TEST(Canonical, ArrivalsShowOnlyWhenAskedFor) {
   }
 }
 
-TEST(Canonical, EverythingElseShows) {
+TEST(Canonical, HasEverythingElse) {
   const Change changes[] = {
       {"request", [](Record& r) { r.interactions[0].message.request_at += Duration(1); }},
       {"reply", [](Record& r) { r.interactions[0].message.reply_at += Duration(1); }},
@@ -84,7 +84,7 @@ TEST(Canonical, EverythingElseShows) {
 }
 
 // Replies to two SUTs at one ST may leave in either order.
-TEST(Canonical, OrderBetweenUavsDoesNotShow) {
+TEST(Canonical, DoesNotDependOnTheOrderBetweenUavs) {
   Record swapped = sample();
   std::swap(swapped.interactions[0], swapped.interactions[1]);
   EXPECT_EQ(canonical(swapped), canonical(sample()));
