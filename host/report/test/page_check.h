@@ -6,7 +6,7 @@
 
 namespace tether::report {
 
-/// What stands between each `open` and the next `close`.
+/// The texts between each `open` and the next `close`.
 inline std::vector<std::string> between(const std::string& text, const std::string& open,
                                         const std::string& close) {
   std::vector<std::string> found;
@@ -19,7 +19,7 @@ inline std::vector<std::string> between(const std::string& text, const std::stri
   return found;
 }
 
-/// References to anything outside of the page.
+/// References to anything outside the page.
 inline std::vector<std::string> external_references(const std::string& page) {
   std::vector<std::string> found;
   for (const char* attribute : {" src=\"", " href=\"", " href='", "url(", "@import"}) {
@@ -31,7 +31,7 @@ inline std::vector<std::string> external_references(const std::string& page) {
   return found;
 }
 
-/// Ids that stand in the page more than once.
+/// Ids that occur more than once.
 inline std::vector<std::string> repeated_ids(const std::string& page) {
   std::vector<std::string> repeated;
   std::set<std::string> seen;
