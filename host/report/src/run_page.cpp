@@ -99,7 +99,10 @@ std::string run_page(const std::filesystem::path& folder) {
   std::string body = element("h1", title);
   body += "<p class=\"verdict\">" + escape_markup(outcome_sentences(trial)) + "</p>\n";
   body += problems_box(problems(results));
-  body += to_html(run_table(trial)) + record_part(folder);
+  Table metrics = run_table(trial);
+  metrics.title.clear();
+  std::erase(metrics.notes, trial.reason + ".");  // outcome_sentences has it
+  body += to_html(metrics) + record_part(folder);
   body += element("h2", "Setup and checks") + basis_html(results);
   return html_page(title, body);
 }

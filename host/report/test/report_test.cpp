@@ -1,10 +1,11 @@
+#include "campaign_fixture.h"
+
 #include <fstream>
 #include <iterator>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/campaign_testing/sample_campaign.h>
 #include <tether/report/report.h>
 
 namespace tether::report {
@@ -16,34 +17,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::Not;
 
-class Report : public testing::Test {
- protected:
-  Report() {
-    CampaignFolder folder(out_, campaign_, {{"tether", "0.1.0"}}, OpenMode::kFresh);
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      const double s = static_cast<double>(seed);
-      write(trial("host", seed, 0, 2.4 + 0.1 * s));
-      write(trial("target", seed, s - 1, 4.0 * s));
-      write(trial("target, no sync", seed, 0, 2.3 + 0.2 * s));
-    }
-  }
-  TrialResult trial(const std::string& condition, std::uint64_t seed, double oscillations,
-                    double time_s) const {
-    return make_trial(scenario(), condition, seed, oscillations, time_s);
-  }
-  void write(const TrialResult& result) const {
-    const auto folder = out_ / trial_folder("turn", result.condition, result.seed);
-    std::filesystem::create_directories(folder);
-    write_result(folder, result);
-  }
-  const scenario::Scenario& scenario() const { return campaign_.scenarios[0].scenario; }
-  CampaignResults all() const { return read_campaign_results(out_); }
-  ScenarioResults results() const { return all().scenarios[0]; }
-
-  ScratchFolder scratch_;
-  std::filesystem::path out_ = scratch_.path("out");
-  scenario::Campaign campaign_ = make_campaign(scratch_);
-};
+class Report : public CampaignFixture {};
 
 TEST_F(Report, HasTheTablesOfACampaign) {
   std::string text;

@@ -14,19 +14,6 @@ Table small_table() {
   return table;
 }
 
-TEST(ToText, AlignsColumns) {
-  EXPECT_EQ(to_text(small_table()),
-            "Table 1\n"
-            "\n"
-            "                 Time (s)\n"
-            "Where            mean    sd\n"
-            "───────────────────────────\n"
-            "host             2.48  0.03\n"
-            "target, no sync  10.5     –\n"
-            "\n"
-            "A note.\n");
-}
-
 TEST(ToText, MakesRoomForAWideHeading) {
   Table table;
   table.headings = {{{"", 1}, {"a wide heading", 2}}, {{"x", 1}, {"a", 1}, {"b", 1}}};

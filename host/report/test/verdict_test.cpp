@@ -1,5 +1,7 @@
 #include "verdict.h"
 
+#include "sample_results.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,37 +10,9 @@ namespace {
 
 using testing::ElementsAre;
 
-campaign::MetricValue metric(const std::string& label, const std::string& unit, double value) {
-  campaign::MetricValue result;
-  result.name = result.kind = label;
-  result.label = label;
-  result.unit = unit;
-  result.value = value;
-  return result;
-}
-
-campaign::ConditionResults condition(const std::string& name, const std::vector<double>& times) {
-  campaign::ConditionResults results;
-  results.condition = name;
-  results.planned = times.size();
-  for (const double time_s : times) {
-    campaign::TrialResult trial;
-    trial.condition = name;
-    trial.seed = results.trials.size() + 1;
-    trial.outcome = campaign::Outcome::kGoalReached;
-    trial.metrics = {metric("Time required", "s", time_s)};
-    results.trials.push_back(trial);
-  }
-  return results;
-}
-
 campaign::ScenarioResults scenario(const std::vector<double>& host,
                                    const std::vector<double>& target) {
-  campaign::ScenarioResults results;
-  results.scenario = "turn";
-  results.metrics = {"Time required"};
-  results.conditions = {condition("host", host), condition("target", target)};
-  return results;
+  return sample_results({{"host", host}, {"target", target}});
 }
 
 const std::vector<double> kFast = {1.8, 1.9, 2.0, 2.1, 2.2}, kSlow = {6.8, 6.9, 7.0, 7.1, 7.2};
@@ -78,7 +52,10 @@ std::string sentence(double difference, std::optional<campaign::Interval> interv
   comparison.b = "target, no sync";
   comparison.means.difference = difference;
   comparison.means.ci95 = interval;
-  return optimism_sentence(comparison, metric(label, unit, 0));
+  campaign::MetricValue metric;
+  metric.label = label;
+  metric.unit = unit;
+  return optimism_sentence(comparison, metric);
 }
 
 TEST(Optimism, IsANumberWithItsIntervalIfSignificant) {
