@@ -47,7 +47,7 @@ bool is_ahead(const Interaction& m) {
 bool is_off_grid_range(const Interaction& m) {
   return is_range(m) && beyond_grid(m.request_at) > Duration(10);
 }
-bool is_off_grid_reading(const Interaction& m) {
+bool is_off_grid(const Interaction& m) {
   return m.sampled_at && m.sample_state_at < m.sampled_at;
 }
 
@@ -104,10 +104,10 @@ const Planted kPlanted[] = {
      }},
     {"state_of_next_step",
      {0, 1},
-     [](Record& r) { *where(r, is_off_grid_reading).sample_state_at += kStep; }},
+     [](auto& r) { *where(r, is_off_grid).sample_state_at += kStep; }},
     {"state_of_earlier_step",
      {0, 1},
-     [](Record& r) { *where(r, is_off_grid_reading).sample_state_at -= kStep; }},
+     [](auto& r) { *where(r, is_off_grid).sample_state_at -= kStep; }},
     {"reply_before_data", {1}, [](Record& r) { *where(r, is_range).available_at += kNs; }},
     {"reply_after_data",
      {1},
@@ -193,9 +193,7 @@ const Planted kPlanted[] = {
            });
        std::swap(first->message, std::next(first)->message);
      }},
-    {"effect_twice",
-     {2},
-     [](Record& r) { r.commands.insert(r.commands.begin() + 5, r.commands[5]); }},
+    {"effect_twice", {2}, [](auto& r) { r.commands.insert(r.commands.begin(), r.commands[0]); }},
     {"command_without_effect_time",
      {0},
      [](Record& r) {
@@ -291,7 +289,7 @@ const Planted kPlanted[] = {
      }},
     {"sequence_with_gap",
      {0, 5},
-     [](Record& r) { r.interactions.erase(r.interactions.begin() + 5); }},
+     [](auto& r) { r.interactions.erase(r.interactions.begin() + 5); }},
     {"sequence_repeated", {5}, [](Record& r) { where(r, is_sleep, 10).sequence -= 1; }},
     {"wrong_lag", {5}, [](Record& r) { where(r, is_sleep).lag -= kNs; }},
     {"command_that_takes_time",
@@ -341,11 +339,9 @@ const Planted kPlanted[] = {
     {"truth_stops_early", {0}, [](Record& r) { r.ground_truth.pop_back(); }},
     {"truth_off_grid",
      {0},
-     [](Record& r) { r.ground_truth[9].at = r.ground_truth[9].message.at -= kNs; }},
+     [](auto& r) { r.ground_truth[9].at = r.ground_truth[9].message.at -= kNs; }},
     {"truth_logged_early", {0}, [](Record& r) { r.ground_truth[9].at -= kNs; }},
-    {"truth_not_finite",
-     {0},
-     [](Record& r) { r.ground_truth[9].message.p_WB_m[1] = std::nan(""); }},
+    {"truth_not_finite", {0}, [](auto& r) { r.ground_truth[9].message.p_WB_m[1] = std::nan(""); }},
     {"truth_not_a_rotation", {0}, [](Record& r) { r.ground_truth[9].message.q_WB[0] = 1.001; }},
     {"command_not_finite", {0}, [](Record& r) { r.commands[3].message.yaw_rate_rad_s = HUGE_VAL; }},
     {"annotation_out_of_order",
