@@ -1,11 +1,9 @@
-#include "bytes.h"
 #include "json_messages.h"
-#include "mcap_format.h"
+#include "raw_records.h"
 #include "sample_messages.h"
 
 #include <algorithm>
 #include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -20,65 +18,46 @@
 namespace tether::record {
 namespace {
 
-template <class Message>
-std::string line(SimTime at, const Message& message) {
-  std::string text = std::to_string(to_ns(at)) + " ns: ";
-  append_json(text, message);
-  return text;
-}
+constexpr std::size_t kChunks = 4;
+constexpr std::size_t kMessagesPerChunk = 6;
 
-struct Written {
-  std::string bytes;
-  std::vector<SimTime> times;
-  std::vector<std::string> lines;  // of every message, in the order of writing
-};
-
-// Four seconds in four chunks, so that something is left before a truncation.
-Written small_record() {
+// Four seconds, so that something is left before a truncation.
+std::string small_record() {
   const TemporaryFile file;
-  Written written;
   const auto recorder = make_mcap_recorder(file.path());
-  const auto write = [&](SimTime at, const auto& message) {
-    recorder->write(at, message);
-    written.times.push_back(at);
-    written.lines.push_back(line(at, message));
-  };
   recorder->write(header());
   for (std::int64_t ms = 0; ms < 4000; ms += 500) {
-    write(st_ms(ms), ground_truth(ms));
-    write(st_ms(ms), command_effect(static_cast<std::uint64_t>(ms)));
-    write(st_ms(ms), annotation());
+    recorder->write(st_ms(ms), ground_truth(ms));
+    recorder->write(st_ms(ms), command_effect(static_cast<std::uint64_t>(ms)));
+    recorder->write(st_ms(ms), annotation());
   }
   recorder->write(footer());
-  written.bytes = file.bytes();
-  return written;
+  return file.bytes();
 }
-
-constexpr std::size_t kMessages = 8;  // of ground truth
 
 struct Outcome {
   bool refused = false;
-  std::size_t messages = 0;  // of ground truth
-  std::map<std::uint64_t, std::string> lines;
+  std::vector<std::string> lines;  // of the messages, in the order of the file
   std::string damage;
   bool has_end = false;
 };
-
-template <class Message>
-void add_lines(Outcome& outcome, const std::vector<Logged<Message>>& topic) {
-  for (const Logged<Message>& logged : topic) {
-    EXPECT_TRUE(outcome.lines.emplace(logged.order, line(logged.at, logged.message)).second);
-  }
-}
 
 Outcome read(const TemporaryFile& file) {
   Outcome outcome;
   try {
     const Record record = read_record(file.path(), {.images = true});
-    outcome.messages = record.ground_truth.size();
-    add_lines(outcome, record.ground_truth);
-    add_lines(outcome, record.commands);
-    add_lines(outcome, record.annotations);
+    std::map<std::uint64_t, std::string> lines;
+    const auto add = [&](const auto& topic) {
+      for (const auto& [at, order, message] : topic) {
+        std::string text = std::to_string(to_ns(at)) + " ns: ";
+        append_json(text, message);
+        EXPECT_TRUE(lines.emplace(order, text).second);
+      }
+    };
+    add(record.ground_truth);
+    add(record.commands);
+    add(record.annotations);
+    for (const auto& [order, line] : lines) outcome.lines.push_back(line);
     outcome.damage = record.damage;
     outcome.has_end = record.footer.has_value();
   } catch (const Error& error) {
@@ -88,115 +67,70 @@ Outcome read(const TemporaryFile& file) {
   return outcome;
 }
 
-// A record of the container (https://mcap.dev/spec), and of a chunk its latest log time.
-struct Span {
-  Opcode opcode{};
-  std::size_t start = 0;
-  std::size_t end = 0;
-  SimTime latest{};
-};
-
-// Walks over opcodes and lengths alone. The magic at the end is the last span.
-std::vector<Span> spans_of(const std::string& file) {
-  std::vector<Span> spans;
-  std::size_t at = kMagic.size();
-  while (at + kMagic.size() < file.size()) {
-    FieldReader fields(std::string_view(file).substr(at));
-    Span span{static_cast<Opcode>(fields.u8()), at};
-    at += kRecordPrefixBytes + fields.u64();
-    span.end = at;
-    if (span.opcode == Opcode::kChunk) {
-      fields.u64();  // earliest log time
-      span.latest = from_ns<SimTime>(static_cast<std::int64_t>(fields.u64()));
-    }
-    spans.push_back(span);
-  }
-  EXPECT_EQ(at + kMagic.size(), file.size());
-  spans.push_back({Opcode{}, at, file.size()});
-  return spans;
-}
-
-// What is complete in the first `length` bytes of the file.
-struct Whole {
-  std::size_t messages = 0;
-  std::size_t metadata = 0;
-  std::size_t damaged_at = 0;  // start of the first record that is not complete
-};
-
-Whole whole_before(std::size_t length, const std::vector<Span>& spans, const Written& written) {
-  Whole whole;
-  for (const Span& span : spans) {
-    whole.damaged_at = span.start;
-    if (span.end > length) break;
-    whole.metadata += span.opcode == Opcode::kMetadata ? 1 : 0;
-    if (span.opcode != Opcode::kChunk) continue;
-    const auto& times = written.times;
-    const auto behind = std::upper_bound(times.begin(), times.end(), span.latest);
-    whole.messages = static_cast<std::size_t>(behind - times.begin());
-  }
-  return whole;
-}
-
-std::map<std::uint64_t, std::string> first_lines(const Written& written, std::size_t count) {
-  std::map<std::uint64_t, std::string> lines;
-  for (std::size_t i = 0; i < count; ++i) {
-    lines.emplace(i, written.lines[i]);
-  }
-  return lines;
+std::vector<std::string> first_of(const std::vector<std::string>& lines, std::size_t count) {
+  return {lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
 TEST(Damage, ATruncatedRecordGivesAllMessagesOfCompleteChunks) {
-  const Written written = small_record();
-  const std::vector<Span> spans = spans_of(written.bytes);
+  const std::string whole = small_record();
+  const std::vector<Raw> records = raw_records(whole);
+  const auto complete = [&](Opcode opcode, std::size_t length) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        records, [&](const Raw& raw) { return raw.opcode == opcode && raw.end() <= length; }));
+  };
+  ASSERT_EQ(complete(Opcode::kChunk, whole.size()), kChunks);
   const TemporaryFile file;
-  std::set<std::size_t> messages;
-  for (std::size_t length = 0; length <= written.bytes.size(); ++length) {
+  file.set_bytes(whole);
+  const Outcome all = read(file);
+  EXPECT_EQ(all.damage, "");
+  EXPECT_TRUE(all.has_end);
+  ASSERT_EQ(all.lines.size(), kChunks * kMessagesPerChunk);
+  for (std::size_t length = 0; length < whole.size(); ++length) {
     SCOPED_TRACE(length);
-    file.set_bytes(written.bytes.substr(0, length));
-    const Whole whole = whole_before(length, spans, written);
+    file.set_bytes(whole.substr(0, length));
     const Outcome outcome = read(file);
-    ASSERT_EQ(outcome.refused, whole.metadata == 0) << "needs the header and no more";
+    const std::size_t metadata = complete(Opcode::kMetadata, length);
+    ASSERT_EQ(outcome.refused, metadata == 0) << "needs the header and no more";
     if (outcome.refused) continue;
-    messages.insert(whole.messages);
-    ASSERT_EQ(outcome.lines, first_lines(written, whole.messages));
-    ASSERT_EQ(outcome.has_end, whole.metadata == 2);
-    const std::string place = "damaged at byte " + std::to_string(whole.damaged_at) + ": ";
-    if (length == written.bytes.size()) {
-      ASSERT_EQ(outcome.damage, "");
-    } else {
-      ASSERT_TRUE(outcome.damage.starts_with(place)) << outcome.damage;
-    }
+    ASSERT_EQ(outcome.lines,
+              first_of(all.lines, kMessagesPerChunk * complete(Opcode::kChunk, length)));
+    ASSERT_EQ(outcome.has_end, metadata == 2);
+    const auto damaged = std::ranges::upper_bound(records, length, {}, &Raw::end);
+    const std::size_t place = damaged == records.end() ? records.back().end() : damaged->offset;
+    ASSERT_TRUE(outcome.damage.starts_with("damaged at byte " + std::to_string(place) + ": "))
+        << outcome.damage;
   }
-  EXPECT_EQ(messages, (std::set<std::size_t>{0, 6, 12, 18, 24})) << "four chunks";
 }
 
-// Whether each message is one that was written, and they come in the order of writing.
-bool are_written(const Outcome& outcome, const Written& written) {
-  auto next = written.lines.begin();
-  return std::all_of(outcome.lines.begin(), outcome.lines.end(), [&](const auto& message) {
-    const auto found = std::find(next, written.lines.end(), message.second);
-    if (found == written.lines.end()) return false;
-    next = found + 1;
-    return true;
+// Whether the messages are some of those that were written, in the same order.
+bool are_written(const std::vector<std::string>& lines, const std::vector<std::string>& written) {
+  auto next = written.begin();
+  return std::ranges::all_of(lines, [&](const std::string& line) {
+    next = std::find(next, written.end(), line);
+    return next != written.end() && next++ != written.end();
   });
 }
 
 TEST(Damage, EveryFlippedBitIsDetectedAndChangesNoMessage) {
-  const Written whole = small_record();
+  const std::string whole = small_record();
   const TemporaryFile file;
-  for (std::size_t bit = 0; bit < whole.bytes.size() * 8; bit += 11) {
+  file.set_bytes(whole);
+  const std::vector<std::string> written = read(file).lines;
+  for (std::size_t bit = 0; bit < whole.size() * 8; bit += 11) {
     SCOPED_TRACE(bit);
-    std::string flipped = whole.bytes;
+    std::string flipped = whole;
     flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << (bit % 8)));
     file.set_bytes(flipped);
     const Outcome outcome = read(file);
     ASSERT_TRUE(outcome.refused || !outcome.damage.empty());
-    ASSERT_TRUE(are_written(outcome, whole));
-    // Messages are missing only behind the damage, or the damage says that they may be anywhere.
-    if (outcome.damage.find("CRC mismatch of the data section") == std::string::npos) {
-      ASSERT_EQ(outcome.lines, first_lines(whole, outcome.lines.size()));
+    ASSERT_TRUE(are_written(outcome.lines, written));
+    // Messages are missing only after the damage, or the damage may be anywhere.
+    if (!outcome.damage.ends_with("CRC mismatch of the data section")) {
+      ASSERT_EQ(outcome.lines, first_of(written, outcome.lines.size()));
     }
   }
+  file.set_bytes(whole + "x");
+  EXPECT_NE(read(file).damage, "");
 }
 
 TEST(Damage, APipeIsRejectedWithoutWaitingForAWriter) {
@@ -209,7 +143,7 @@ TEST(Damage, APipeIsRejectedWithoutWaitingForAWriter) {
 }
 
 TEST(Damage, RandomChangesNeverCrash) {
-  const std::string whole = small_record().bytes;
+  const std::string whole = small_record();
   const TemporaryFile file;
   KeyedRandom random({.seed = 11});
   for (int round = 0; round < 3000; ++round) {
@@ -231,7 +165,7 @@ TEST(Damage, RandomChangesNeverCrash) {
       }
     }
     file.set_bytes(changed);
-    EXPECT_LE(read(file).messages, kMessages * 2);
+    EXPECT_LE(read(file).lines.size(), 2 * kChunks * kMessagesPerChunk);
   }
 }
 

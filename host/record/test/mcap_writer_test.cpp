@@ -1,7 +1,7 @@
 #include "mcap_writer.h"
 
-#include "bytes.h"
 #include "mcap_reader.h"
+#include "raw_records.h"
 #include "sample_messages.h"
 
 #include <algorithm>
@@ -18,27 +18,6 @@
 
 namespace tether::record {
 namespace {
-
-struct Raw {
-  std::uint64_t offset;
-  Opcode opcode;
-  std::string_view content;
-};
-
-// All records of a file that is whole, top level only.
-std::vector<Raw> raw_records(std::string_view file) {
-  EXPECT_TRUE(file.starts_with(kMagic) && file.ends_with(kMagic));
-  std::vector<Raw> records;
-  std::size_t at = kMagic.size();
-  while (at < file.size() - kMagic.size()) {
-    FieldReader fields(file.substr(at));
-    const auto opcode = static_cast<Opcode>(fields.u8());
-    const std::string_view content = fields.bytes(fields.u64());
-    records.push_back({at, opcode, content});
-    at += kRecordPrefixBytes + content.size();
-  }
-  return records;
-}
 
 class Collector : public McapVisitor {
  public:

@@ -34,5 +34,10 @@ TEST(Png, DecodesToTheSamePixels) {
   }
 }
 
+TEST(Png, FileAsDataUri) {
+  const std::vector<std::uint8_t> file = {'f', 'o', 'o'};
+  EXPECT_EQ(to_data_uri(file, "image/jpeg"), "data:image/jpeg;base64,Zm9v");
+}
+
 }  // namespace
 }  // namespace tether::record

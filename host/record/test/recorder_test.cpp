@@ -2,9 +2,7 @@
 #include "mcap_writer.h"
 #include "sample_messages.h"
 
-#include <functional>
 #include <string>
-#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -17,7 +15,7 @@ namespace tether::record {
 namespace {
 
 // `canonical` has every member of every message, `to_metadata` those of header and footer.
-TEST(Recorder, WholeRecordReadsBackInTheFilesOrder) {
+TEST(Recorder, WholeRecordIsTheSameEachTimeAndReadBack) {
   Record written;
   written.header = header();
   written.interactions = {{st_ms(37), 0, sensor_interaction()},
@@ -32,6 +30,9 @@ TEST(Recorder, WholeRecordReadsBackInTheFilesOrder) {
   written.footer = footer();
   const TemporaryFile file;
   write_whole_record(file.path());
+  const TemporaryFile again;
+  write_whole_record(again.path());
+  EXPECT_EQ(again.bytes(), file.bytes());
   for (const bool images : {true, false}) {
     const Record read = read_record(file.path(), {.images = images});
     if (!images) written.images.clear();
@@ -39,38 +40,10 @@ TEST(Recorder, WholeRecordReadsBackInTheFilesOrder) {
     EXPECT_EQ(canonical(read, {.arrivals = true}), canonical(written, {.arrivals = true}));
     EXPECT_EQ(to_metadata(read.header), to_metadata(written.header));
     EXPECT_EQ(to_metadata(read.footer.value()), to_metadata(*written.footer));
-    const auto orders = [](const Record& record) {
-      std::vector<std::uint64_t> found;
-      const auto add = [&](const auto& topic) {
-        for (const auto& logged : topic) found.push_back(logged.order);
-      };
-      add(record.interactions);
-      add(record.annotations);
-      add(record.ground_truth);
-      add(record.commands);
-      add(record.images);
-      add(record.stops);
-      return found;
-    };
-    EXPECT_EQ(orders(read), orders(written));
+    EXPECT_EQ(read.ground_truth[0].order, 3U);
+    EXPECT_EQ(read.stops[0].order, 7U);
+    EXPECT_EQ(read.interactions[3].order, 8U) << "images count";
   }
-}
-
-TEST(Recorder, SameMessagesSameBytes) {
-  const TemporaryFile one;
-  const TemporaryFile two;
-  write_whole_record(one.path());
-  write_whole_record(two.path());
-  EXPECT_EQ(one.bytes(), two.bytes());
-}
-
-TEST(Recorder, WithoutFooterAllMessagesAreKept) {
-  const TemporaryFile file;
-  write_messages(*make_mcap_recorder(file.path()));
-  const Record record = read_record(file.path());
-  EXPECT_EQ(record.interactions.size(), 4U);
-  EXPECT_FALSE(record.footer.has_value());
-  EXPECT_NE(record.damage, "");
 }
 
 // After a kill, at most the last second is missing.
@@ -130,34 +103,23 @@ TEST(Recorder, TextsThatAreNotUtf8AreRepaired) {
   EXPECT_EQ(read_record(file.path()).footer->reason, "bad \xEF\xBF\xBD");
 }
 
-struct BadFile {
-  const char* what;
-  std::function<void(const TemporaryFile&)> write;
-};
-
-// What was written by others has no header of Tether.
-TEST(ReadRecord, RefusesFilesThatAreNotRecords) {
-  const BadFile cases[] = {
-      {"empty", [](const TemporaryFile& file) { file.set_bytes(""); }},
-      {"another format",
-       [](const TemporaryFile& file) { file.set_bytes("PK\x03\x04 a zip file"); }},
-      {"MCAP without a header",
-       [](const TemporaryFile& file) { McapWriter(file.path(), "other").finish(); }},
-      {"newer schema",
-       [](const TemporaryFile& file) {
-         McapWriter writer(file.path(), "tether");
-         writer.add_metadata("tether", {{"schema_version", "2"}});
-         writer.finish();
-       }},
-  };
-  for (const BadFile& bad : cases) {
-    const TemporaryFile file;
-    bad.write(file);
-    const Error error = bad_file_error([&] { read_record(file.path()); });
-    EXPECT_EQ(error.where().file, file.path()) << bad.what;
-  }
-  for (const std::string& path : {std::string("/nonexistent/record.mcap"), ::testing::TempDir()})
+TEST(ReadRecord, RejectsFilesThatAreNotRecords) {
+  const TemporaryFile file;
+  const auto expect_rejected = [](const std::filesystem::path& path) {
     EXPECT_EQ(bad_file_error([&] { read_record(path); }).where().file, path);
+  };
+  expect_rejected("/nonexistent/record.mcap");
+  expect_rejected(::testing::TempDir());
+  for (const char* bytes : {"", "PK\x03\x04 a zip file"}) {
+    file.set_bytes(bytes);
+    expect_rejected(file.path());
+  }
+  McapWriter(file.path(), "without a header").finish();
+  expect_rejected(file.path());
+  McapWriter newer(file.path(), "tether");
+  newer.add_metadata("tether", {{"schema_version", "2"}});
+  newer.finish();
+  expect_rejected(file.path());
 }
 
 TEST(ReadRecord, SkipsUnknownChannelsAndMetadata) {

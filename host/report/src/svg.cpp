@@ -11,7 +11,7 @@
 
 #include <tether/base/printable.h>
 
-// Two steps on gnuplot's SVG: finished_svg makes it a file of its own (inks instead of colours, a
+// Two steps on gnuplot's SVG: finished_svg makes it an independent file (inks instead of colours, a
 // title, a style sheet), and inline_svg makes a finished file part of an HTML page.
 namespace tether::report {
 namespace {
