@@ -119,7 +119,7 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"runner",
        {"audit", "base", "board", "campaign", "coordinator", "link", "os", "record", "scenario",
         "sim", "sim_sdf", "sync", "uav"}},
-      {"report", {"base", "stats", "uav", "record", "scenario", "campaign"}},
+      {"report", {"base", "os", "stats", "uav", "record", "scenario", "campaign"}},
   };
   return kArrows;
 }

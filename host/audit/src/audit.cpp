@@ -16,7 +16,7 @@ Verdict audit(const record::Record& record) {
     report.add("unknown policy \"" + record.header.policy + "\"");
   }
   if (record.header.step <= Duration(0)) {
-    report.add("the simulator's step is not positive");
+    report.add("the step of the simulator is not positive");
     return verdict;
   }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+// Each command is matched with its effect by UAV and sequence (rule 2). Then one pass over the
+// replies in the order of the file checks that every command that was due is in effect (rule 3).
 namespace tether::audit {
 namespace {
 
@@ -20,79 +22,66 @@ struct Row {
   bool concurrent = false;
 };
 
-// A command that should act, and where in the file it did.
+// A command with an effect time, and its effect in the file.
 struct Due {
   const Logged<Interaction>* command = nullptr;
-  const Logged<CommandEffect>* effect = nullptr;  // nullptr: never
+  const Logged<CommandEffect>* effect = nullptr;  // nullptr: none
   Wide effect_at = 0;
 };
 
-std::uint64_t sequence_of(const Logged<CommandEffect>* effect) {
-  return effect->message.sequence;
+template <class Message>
+std::uint64_t sequence_of(const Logged<Message>* entry) {
+  return entry->message.sequence;
 }
 
 // Rule 2: a SUT's commands take effect in the order in which it gave them, each once. Leaves the
 // effects sorted by sequence.
 void check_effect_order(Row& row, Report& report) {
   for (std::size_t i = 1; i < row.effects.size(); ++i) {
-    if (sequence_of(row.effects[i]) <= sequence_of(row.effects[i - 1])) {
-      report.add(2, *row.effects[i],
-                 "took effect after command " + std::to_string(sequence_of(row.effects[i - 1])) +
-                     " of the same SUT");
-    }
+    if (sequence_of(row.effects[i]) <= sequence_of(row.effects[i - 1]))
+      report.add(2, *row.effects[i], "effect after that of command {} of the same SUT",
+                 sequence_of(row.effects[i - 1]));
   }
-  std::ranges::stable_sort(row.effects, {}, sequence_of);
-}
-
-// Rule 2: an effect at the time that its command was given, as written.
-void check_effect(const Logged<Interaction>& command, const Logged<CommandEffect>& effect,
-                  Report& report) {
-  const Wide applied = wide(effect.message.applied_at);
-  if (command.message.effect_at && applied != wide(*command.message.effect_at)) {
-    report.add(
-        2, effect,
-        "took effect at ST " + ns(applied) + ", not at " + ns(wide(*command.message.effect_at)));
-  }
+  std::ranges::stable_sort(row.effects, {}, sequence_of<CommandEffect>);
 }
 
 std::vector<Due> match(Row& row, Report& report) {
   std::vector<Due> due;
   auto effect = row.effects.begin();
   for (const Logged<Interaction>* command : row.commands) {
-    effect = std::ranges::lower_bound(effect, row.effects.end(), command->message.sequence, {},
-                                      sequence_of);
-    Due item{command, nullptr, wide(command->message.effect_at.value_or(SimTime{}))};
-    if (effect != row.effects.end() && sequence_of(*effect) == command->message.sequence) {
+    effect = std::ranges::lower_bound(effect, row.effects.end(), sequence_of(command), {},
+                                      sequence_of<CommandEffect>);
+    const auto& effect_at = command->message.effect_at;
+    Due item{command, nullptr, wide(effect_at.value_or(SimTime{}))};
+    if (effect != row.effects.end() && sequence_of(*effect) == sequence_of(command)) {
       item.effect = *effect;
-      check_effect(*command, **effect, report);
+      if (effect_at && (*effect)->message.applied_at != *effect_at)
+        report.add(2, **effect, "effect at ST {} instead of ST {}",
+                   ns((*effect)->message.applied_at), ns(*effect_at));
     }
-    if (command->message.effect_at) {
-      due.push_back(item);
-    }
+    if (effect_at) due.push_back(item);
   }
   return due;
 }
 
 // Rule 2: no effect without its command. The one exception is a command whose reply was still held
-// when the record ended: of a serial SUT the one that follows its last; of a concurrent one any,
-// but only at the last ST, which goes no further while a reply is held.
+// when the record ended: for a serial SUT the one after its last; for a concurrent SUT any, but
+// only at the last ST, which does not advance while a reply is held.
 void check_orphans(const Row& row, bool finished, Wide end, Report& report) {
   for (const Logged<CommandEffect>* effect : row.effects) {
-    const bool has_command = std::ranges::binary_search(
-        row.commands, effect->message.sequence, {},
-        [](const Logged<Interaction>* command) { return command->message.sequence; });
+    const bool has_command =
+        std::ranges::binary_search(row.commands, sequence_of(effect), {}, sequence_of<Interaction>);
     const bool held_at_end =
         !finished && (row.concurrent ? wide(effect->message.applied_at) >= end
-                                     : effect->message.sequence == row.last_sequence + 1);
-    if (!has_command && !held_at_end) {
-      report.add(2, *effect, "took effect without a command of that number");
-    }
+                                     : sequence_of(effect) == row.last_sequence + 1);
+    if (!has_command && !held_at_end)
+      report.add(2, *effect, "effect without a command of that sequence number");
   }
 }
 
-// Rule 3: at a release every command stamped earlier that is due by then has been applied, and the
-// simulator was told before the reply left. One pass in file order; a command that is found missing
-// is reported at the first release that should have waited for it.
+// Rule 3: when a reply is released, every command with an earlier timestamp that is due has been
+// applied, and the simulator had it before the reply was sent. A missing command is reported at the
+// first release that should have waited for it.
 void check_releases(const record::Record& record, std::vector<Due>& due, Report& report) {
   std::ranges::stable_sort(due, {}, &Due::effect_at);
   std::vector<Due> outstanding;
@@ -100,45 +89,33 @@ void check_releases(const record::Record& record, std::vector<Due>& due, Report&
   Wide st = 0;
   for (const Logged<Interaction>& release : record.interactions) {
     st = std::max(st, wide(release.message.st_at_release));
-    for (; next != due.end() && next->effect_at <= st; ++next) {
-      outstanding.push_back(*next);
-    }
+    for (; next != due.end() && next->effect_at <= st; ++next) outstanding.push_back(*next);
     std::erase_if(outstanding, [&](const Due& item) {
-      if (item.effect != nullptr && item.effect->order < release.order) {
-        return true;
-      }
+      if (item.effect != nullptr && item.effect->order < release.order) return true;
       if (item.command->message.request_at >= release.message.reply_at ||
-          item.effect_at > wide(release.message.st_at_release)) {
+          item.effect_at > wide(release.message.st_at_release))
         return false;
-      }
       report.add(3, release,
-                 "replied at ST " + ns(wide(release.message.st_at_release)) + " before command " +
-                     std::to_string(item.command->message.sequence) + " of \"" +
-                     item.command->message.uav + "\", due at " + ns(item.effect_at) +
-                     ", was in effect");
+                 "reply at ST {} before command {} of \"{}\", due at ST {}, was applied",
+                 ns(release.message.st_at_release), sequence_of(item.command),
+                 item.command->message.uav, ns(item.effect_at));
       return true;
     });
   }
 }
 
-// Rule 2: a command whose time came within the run took effect.
+// Rule 2: every command that was due within the run took effect.
 void check_missing(const std::vector<Due>& due, Wide end, Report& report) {
   for (const Due& item : due) {
-    if (item.effect == nullptr && item.effect_at < end) {
-      report.add(2, *item.command,
-                 "command due at ST " + ns(item.effect_at) +
-                     " never took effect, although ST "
-                     "reached " +
-                     ns(end));
-    }
+    if (item.effect == nullptr && item.effect_at < end)
+      report.add(2, *item.command, "command due at ST {} has no effect, and ST reached {}",
+                 ns(item.effect_at), ns(end));
   }
 }
 
 // ST that the run is known to have reached.
 Wide end_of(const record::Record& record) {
-  if (record.footer) {
-    return wide(record.footer->st_at_end);
-  }
+  if (record.footer) return wide(record.footer->st_at_end);
   return record.interactions.empty() ? Wide{0} : wide(record.interactions.back().at);
 }
 
@@ -146,31 +123,24 @@ Wide end_of(const record::Record& record) {
 
 void check_commands(const record::Record& record, const Boundaries& grid, Report& report) {
   std::map<std::string, Row> rows;
-  for (const record::SutInfo& sut : record.header.suts) {
-    rows[sut.uav].concurrent = sut.concurrent;
-  }
+  for (const record::SutInfo& sut : record.header.suts) rows[sut.uav].concurrent = sut.concurrent;
   for (const Logged<Interaction>& entry : record.interactions) {
     Row& row = rows[entry.message.uav];
     row.last_sequence = std::max(row.last_sequence, entry.message.sequence);
-    if (entry.message.kind == record::kCommand) {
-      row.commands.push_back(&entry);
-    }
+    if (entry.message.kind == record::kCommand) row.commands.push_back(&entry);
   }
   for (const Logged<CommandEffect>& effect : record.commands) {
     rows[effect.message.uav].effects.push_back(&effect);
-    if (!grid.contain(wide(effect.message.applied_at))) {
-      report.add(2, effect,
-                 "took effect at " + ns(wide(effect.message.applied_at)) + ", no step boundary");
-    }
+    if (!grid.contain(wide(effect.message.applied_at)))
+      report.add(2, effect, "effect at ST {}, which is not a step boundary",
+                 ns(effect.message.applied_at));
   }
 
   std::vector<Due> due;
   const bool finished = record.footer && record.footer->end == "finished";
   for (auto& [uav, row] : rows) {
     check_effect_order(row, report);
-    std::ranges::stable_sort(row.commands, {}, [](const Logged<Interaction>* command) {
-      return command->message.sequence;
-    });
+    std::ranges::stable_sort(row.commands, {}, sequence_of<Interaction>);
     const std::vector<Due> matched = match(row, report);
     due.insert(due.end(), matched.begin(), matched.end());
     check_orphans(row, finished, end_of(record), report);

@@ -9,6 +9,8 @@
 #include <tuple>
 #include <utility>
 
+// Rule 0 for every message, in the order of the file: one `visit` for each kind of message. It also
+// checks the numbering of interactions (rule 5), and free-running records (rule 8).
 namespace tether::audit {
 namespace {
 
@@ -22,10 +24,10 @@ bool is_known_kind(std::string_view kind) {
          kind == record::kFinish;
 }
 
-// How far from 1 the length of a rotation may be.
+// Largest deviation of the length of a rotation from 1.
 constexpr double kRotationTolerance = 1e-6;
 
-// Calls of one SUT that may be open at once (DESIGN section 2).
+// Largest number of open calls of one SUT (DESIGN section 2).
 constexpr std::uint64_t kMostOpenCalls = 64;
 
 struct SutSequences {
@@ -38,124 +40,110 @@ class ConsistencyCheck {
  public:
   ConsistencyCheck(const record::Record& record, const Boundaries& grid, Report& report)
       : record_(record), grid_(grid), report_(report) {
-    for (const record::SutInfo& sut : record.header.suts) {
+    for (const record::SutInfo& sut : record.header.suts)
       suts_[sut.uav].concurrent = sut.concurrent;
-    }
   }
 
   void run() {
-    if (suts_.size() != record_.header.suts.size()) {
-      report_.add("two SUTs fly one UAV");
-    }
+    if (suts_.size() != record_.header.suts.size()) report_.add("two SUTs have the same UAV");
     for_each_in_file_order(record_, [&](const auto& entry) { visit(entry); });
-    for (const auto& [uav, sut] : suts_) {
-      check_missing(uav, sut);
-    }
+    for (const auto& [uav, sut] : suts_) check_missing(uav, sut);
   }
 
  private:
   void visit(const Logged<Interaction>& entry) {
     const Interaction& message = entry.message;
-    if (entry.at != message.st_at_release) {
-      report_.add(0, entry,
-                  "logged at ST " + ns(wide(entry.at)) + ", released at " +
-                      ns(wide(message.st_at_release)));
-    }
-    if (!is_known_kind(message.kind)) {
-      report_.add(0, entry, "unknown kind \"" + message.kind + "\"");
-    }
+    check_log_time(entry, message.st_at_release);
+    if (!is_known_kind(message.kind)) report_.add(0, entry, "unknown kind \"{}\"", message.kind);
+    // For synchronised records, check_order checks the order of log times.
     if (record_.header.policy == record::kFreeRunning) {
+      check_order(entry);
       check_free_running(entry);
     }
     const auto sut = suts_.find(message.uav);
-    if (sut == suts_.end()) {
-      return report_.add(0, entry, "no UAV \"" + message.uav + "\" in the record's header");
-    }
+    if (sut == suts_.end())
+      return report_.add(0, entry, "no UAV \"{}\" in the record's header", message.uav);
     check_sequence(entry, sut->second);
-    reached_ = std::max(reached_, wide(entry.at));
+    reached_ = std::max(reached_, entry.at);
   }
 
-  // Rule 5: a serial SUT's interactions follow each other; those of a concurrent one end in another
-  // order than they begin, each once.
+  template <class Message>
+  void check_log_time(const Logged<Message>& entry, SimTime at) {
+    if (entry.at != at)
+      report_.add(0, entry, "log time is ST {}, the message's time is ST {}", ns(entry.at), ns(at));
+  }
+  template <class Message>
+  void check_order(const Logged<Message>& entry) {
+    if (entry.at < reached_)
+      report_.add(0, entry, "log time ST {} follows ST {}", ns(entry.at), ns(reached_));
+  }
+
+  // Rule 5: a serial SUT's interactions follow each other. Those of a concurrent SUT can end in
+  // another order than they begin, each once.
   void check_sequence(const Logged<Interaction>& entry, SutSequences& sut) {
     const std::uint64_t sequence = entry.message.sequence;
     const bool is_new = sut.seen.insert(sequence).second;
     if (!sut.concurrent && sequence != sut.last + 1) {
-      report_.add(5, entry,
-                  "interaction " + std::to_string(sequence) + " follows interaction " +
-                      std::to_string(sut.last));
+      report_.add(5, entry, "interaction {} follows interaction {}", sequence, sut.last);
     } else if (sut.concurrent && !is_new) {
-      report_.add(5, entry, "interaction " + std::to_string(sequence) + " is there twice");
+      report_.add(5, entry, "interaction {} occurs twice", sequence);
     }
     sut.last = sequence;
   }
 
-  // Rule 5: of a concurrent SUT only calls that were open at its end are missing.
+  // Rule 5: only those calls of a concurrent SUT are missing that were open at its end.
   void check_missing(const std::string& uav, const SutSequences& sut) {
     if (!sut.concurrent || sut.seen.empty()) return;
     const std::uint64_t missing = *sut.seen.rbegin() - sut.seen.size();
-    if (missing > kMostOpenCalls) {
-      report_.add(
-          {5,
-           uav,
-           0,
-           {},
-           std::to_string(missing) + " interactions are missing, more than can be open at once"});
-    }
+    if (missing > kMostOpenCalls)
+      report_.add({5,
+                   uav,
+                   0,
+                   {},
+                   fmt::format("{} interactions are missing, but at most {} calls can be open",
+                               missing, kMostOpenCalls)});
   }
 
-  // Rule 8: nothing is held but a read that waits for its sensor's next measurement, and readings
-  // are of the state at release. (Of a synchronised record, check_order sees to the log times.)
+  // Rule 8: only a read that waits for its sensor's next measurement is held, and readings are of
+  // the state at release.
   void check_free_running(const Logged<Interaction>& entry) {
     const Interaction& message = entry.message;
-    if (wide(entry.at) < reached_) {
-      report_.add(0, entry, "logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_));
-    }
     if (message.kind == record::kSensor) {
       check_free_reading(entry);
     } else if (message.st_at_release != message.st_at_arrival) {
-      report_.add(8, entry,
-                  "held from ST " + ns(wide(message.st_at_arrival)) + " to " +
-                      ns(wide(message.st_at_release)) + " in a free-running record");
+      report_.add(8, entry, "held from ST {} to {} in a free-running record",
+                  ns(message.st_at_arrival), ns(message.st_at_release));
     }
   }
 
   void check_free_reading(const Logged<Interaction>& entry) {
     const Interaction& message = entry.message;
-    const Wide released = wide(message.st_at_release);
-    const Wide arrived = wide(message.st_at_arrival);
-    if (message.only_if_available && released != arrived) {
-      return report_.add(8, entry,
-                         "held from ST " + ns(arrived) + " to " + ns(released) +
-                             ", although it asked only for what was there");
-    }
-    if (message.only_if_available && !message.sampled_at) {
-      return;
-    }
-    if (!message.sample_state_at || !message.sampled_at) {
-      return report_.add(0, entry, "a sensor reading without its times");
-    }
-    if (wide(*message.sample_state_at) != grid_.at_or_before(released)) {
-      report_.add(8, entry,
-                  "released at ST " + ns(released) + " with the state of ST " +
-                      ns(wide(*message.sample_state_at)));
-    }
-    if (released != arrived && !has_waited_for_next(message)) {
-      report_.add(8, entry,
-                  "held from ST " + ns(arrived) + " to " + ns(released) +
-                      ", which is not when its sensor measured next");
-    }
+    const SimTime released = message.st_at_release, arrived = message.st_at_arrival;
+    if (message.only_if_available && released != arrived)
+      return report_.add(8, entry, "held from ST {} to {}, although the read must not wait",
+                         ns(arrived), ns(released));
+    if (message.only_if_available && !message.sampled_at) return;
+    if (!message.sample_state_at || !message.sampled_at)
+      return report_.add(0, entry, "sensor reading without its times");
+    if (wide(*message.sample_state_at) != grid_.at_or_before(wide(released)))
+      report_.add(8, entry, "released at ST {} with the state at ST {}", ns(released),
+                  ns(*message.sample_state_at));
+    if (released != arrived && !has_waited_for_next(message))
+      report_.add(8, entry, "held from ST {} to {}, which is not the sensor's next measurement",
+                  ns(arrived), ns(released));
     taken_by_.try_emplace({message.uav, message.sensor, message.sample_index}, message.sequence);
   }
 
-  // Whether a read was released just when the measurement that it says it got was due, and no
-  // earlier one after its arrival that was not another's. A measurement is there at the boundary of
-  // its instant: whoever read it may ask for the next one from there on.
+  // Whether a read was released when the measurement that it returned was due, and no earlier one
+  // after its arrival was left for it. A measurement is available from the boundary of its instant
+  // on, and the next read may wait from there.
   bool has_waited_for_next(const Interaction& message) const {
-    const record::SensorInfo* sensor = find_sensor(message.uav, message.sensor);
-    if (sensor == nullptr || !sensor->periodic || sensor->period <= Duration(0)) return false;
-    const Wide due =
-        wide(sensor->phase) + static_cast<Wide>(message.sample_index) * wide(sensor->period);
+    const auto& sensors = record_.header.sensors;
+    const auto sensor = std::ranges::find_if(sensors, [&](const record::SensorInfo& candidate) {
+      return candidate.uav == message.uav && candidate.name == message.sensor;
+    });
+    if (sensor == sensors.end() || !sensor->periodic || sensor->period <= Duration(0)) return false;
+    const Wide due = wide(sensor->phase) + Wide{message.sample_index} * wide(sensor->period);
     const bool is_next =
         grid_.at_or_before(due - wide(sensor->period)) <= wide(message.st_at_arrival) ||
         message.sample_index == 0 || has_earlier_request(message, message.sample_index - 1);
@@ -163,110 +151,74 @@ class ConsistencyCheck {
            grid_.at_or_before(due) == wide(message.st_at_release);
   }
 
-  // Of threads that wait for the same sensor, each gets a measurement of its own, in their order.
+  // Threads that wait for the same sensor get different measurements, in the order of requests.
   bool has_earlier_request(const Interaction& message, std::uint64_t index) const {
     const auto taken = taken_by_.find({message.uav, message.sensor, index});
     return taken != taken_by_.end() && taken->second < message.sequence;
   }
 
-  const record::SensorInfo* find_sensor(const std::string& uav, const std::string& name) const {
-    for (const record::SensorInfo& sensor : record_.header.sensors) {
-      if (sensor.uav == uav && sensor.name == name) return &sensor;
-    }
-    return nullptr;
-  }
-
   void visit(const Logged<CommandEffect>& entry) {
     const CommandEffect& message = entry.message;
-    if (entry.at != message.applied_at) {
-      report_.add(
-          0, entry,
-          "logged at ST " + ns(wide(entry.at)) + ", applied at " + ns(wide(message.applied_at)));
-    }
+    check_log_time(entry, message.applied_at);
     if (!std::isfinite(message.vx_H_m_s + message.vy_H_m_s + message.vz_H_m_s +
-                       message.yaw_rate_rad_s)) {
-      report_.add(0, entry, "a command that is not finite");
-    }
-    if (wide(entry.at) < reached_) {
-      report_.add(0, entry, "logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_));
-    }
-    reached_ = std::max(reached_, wide(entry.at));
+                       message.yaw_rate_rad_s))
+      report_.add(0, entry, "command that is not finite");
+    check_order(entry);
+    reached_ = std::max(reached_, entry.at);
   }
 
   void visit(const Logged<GroundTruth>& entry) {
     const GroundTruth& message = entry.message;
-    if (entry.at != message.at) {
-      report_.add(entry,
-                  "logged at ST " + ns(wide(entry.at)) + ", true at " + ns(wide(message.at)));
-    }
-    if (!suts_.contains(message.uav)) {
-      return report_.add(entry, "no UAV \"" + message.uav + "\" in the record's header");
-    }
-    if (wide(entry.at) < reached_) {
-      report_.add(entry, "logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_));
-    }
+    check_log_time(entry, message.at);
+    if (!suts_.contains(message.uav))
+      return report_.add(0, entry, "no UAV \"{}\" in the record's header", message.uav);
+    check_order(entry);
     check_instant(entry);
     check_state(entry);
-    reached_ = std::max(reached_, wide(entry.at));
+    reached_ = std::max(reached_, entry.at);
   }
 
   void visit(const Logged<record::Annotation>& entry) {
-    if (wide(entry.at) < reached_) {
-      report_.add({0, entry.message.uav, 0, entry.at,
-                   "annotation logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_)});
-    }
-    reached_ = std::max(reached_, wide(entry.at));
+    check_order(entry);
+    reached_ = std::max(reached_, entry.at);
   }
 
   void visit(const Logged<record::Stop>& entry) {
     const auto sut = suts_.find(entry.message.uav);
-    const auto finding = [&](std::string what) {
-      report_.add({0, entry.message.uav, 0, entry.at, std::move(what)});
-    };
-    if (sut == suts_.end() || !sut->second.concurrent) {
-      finding("a stop of a SUT that is not concurrent");
-    }
-    if (record_.header.policy == record::kFreeRunning) {
-      finding("a stop in a free-running record");
-    }
-    if (wide(entry.at) < reached_) {
-      finding("stop logged at ST " + ns(wide(entry.at)) + ", after " + ns(reached_));
-    }
-    reached_ = std::max(reached_, wide(entry.at));
+    if (sut == suts_.end() || !sut->second.concurrent)
+      report_.add(0, entry, "stop of a SUT that is not concurrent");
+    if (record_.header.policy == record::kFreeRunning)
+      report_.add(0, entry, "stop in a free-running record");
+    check_order(entry);
+    reached_ = std::max(reached_, entry.at);
   }
 
-  // Ground truth k is that of the first boundary from k·period on; without a period it only grows.
+  // Ground truth k is at the first boundary from k·period on; without a period, its times increase.
   void check_instant(const Logged<GroundTruth>& entry) {
     TruthRow& row = truth_[entry.message.uav];
     const Wide at = wide(entry.message.at);
     const Wide period = wide(record_.header.ground_truth_period);
+    const Wide expected = grid_.at_or_after(row.count * period);
     if (!grid_.contain(at)) {
-      report_.add(entry, "ground truth at " + ns(at) + ", no step boundary");
-    } else if (period > 0 && at != grid_.at_or_after(row.count * period)) {
-      report_.add(entry, "ground truth at " + ns(at) + ", expected at " +
-                             ns(grid_.at_or_after(row.count * period)));
+      report_.add(0, entry, "ground truth at {}, which is not a step boundary", ns(at));
+    } else if (period > 0 && at != expected) {
+      report_.add(0, entry, "ground truth at {}, expected at {}", ns(at), ns(expected));
     } else if (row.count > 0 && at <= row.last) {
-      report_.add(entry, "ground truth at " + ns(at) + " follows that at " + ns(row.last));
+      report_.add(0, entry, "ground truth at {} follows that at {}", ns(at), ns(row.last));
     }
     ++row.count;
     row.last = at;
   }
 
   void check_state(const Logged<GroundTruth>& entry) {
-    double sum = 0.0;
-    for (int i = 0; i < 3; ++i) {
-      sum += entry.message.p_WB_m[i] + entry.message.v_WB_m_s[i] + entry.message.w_WB_B_rad_s[i];
-    }
-    double square = 0.0;
-    for (const double q : entry.message.q_WB) {
-      square += q * q;
-    }
-    if (!std::isfinite(sum)) {
-      report_.add(entry, "ground truth that is not finite");
-    }
-    if (!(std::abs(std::sqrt(square) - 1.0) <= kRotationTolerance)) {
-      report_.add(entry, "a rotation of length " + std::to_string(std::sqrt(square)));
-    }
+    const GroundTruth& message = entry.message;
+    double sum = 0.0, square = 0.0;
+    for (int i = 0; i < 3; ++i)
+      sum += message.p_WB_m[i] + message.v_WB_m_s[i] + message.w_WB_B_rad_s[i];
+    for (const double q : message.q_WB) square += q * q;
+    if (!std::isfinite(sum)) report_.add(0, entry, "ground truth that is not finite");
+    if (!(std::abs(std::sqrt(square) - 1.0) <= kRotationTolerance))
+      report_.add(0, entry, "rotation of length {:.6f}", std::sqrt(square));
   }
 
   struct TruthRow {
@@ -279,9 +231,9 @@ class ConsistencyCheck {
   Report& report_;
   std::map<std::string, SutSequences> suts_;
   std::map<std::string, TruthRow> truth_;
-  // Of a free-running record: by whose request a measurement was first read.
+  // In a free-running record: the request that first read a measurement.
   std::map<std::tuple<std::string, std::string, std::uint64_t>, std::uint64_t> taken_by_;
-  Wide reached_ = 0;
+  SimTime reached_{};
 };
 
 }  // namespace

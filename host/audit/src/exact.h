@@ -4,7 +4,7 @@
 
 #include <tether/base/time.h>
 
-/// Arithmetic on times that no record, however damaged, can make overflow.
+/// Arithmetic on times that cannot overflow, whatever the record contains.
 namespace tether::audit {
 
 __extension__ typedef __int128 Wide;  ///< ns
@@ -17,7 +17,7 @@ inline Wide wide(Duration d) {
   return d.count();
 }
 
-/// What a clock that runs `factor` times as fast makes of a duration, rounded up.
+/// A duration on a clock that runs `factor` times as fast, rounded up.
 inline Wide scaled(Wide duration, double factor) {
   return factor == 1.0 ? duration
                        : static_cast<Wide>(static_cast<long double>(duration) *
@@ -25,7 +25,7 @@ inline Wide scaled(Wide duration, double factor) {
                              1;
 }
 
-/// Decimal digits and the unit.
+/// Decimal digits and the unit of a duration or a time.
 inline std::string ns(Wide value) {
   std::string digits;
   const bool negative = value < 0;
@@ -35,6 +35,14 @@ inline std::string ns(Wide value) {
     value /= 10;
   } while (value != 0);
   return (negative ? "-" : "") + digits + " ns";
+}
+
+template <class Time>
+requires requires(Time time) {
+  wide(time);
+}
+std::string ns(Time time) {
+  return ns(wide(time));
 }
 
 /// Step boundaries k·step, for any sign of the time. @pre step > 0.

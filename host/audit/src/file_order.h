@@ -9,8 +9,7 @@
 
 namespace tether::audit {
 
-/// Calls `visit` with every logged message (images apart), of whatever kind, in the order of the
-/// file.
+/// Calls `visit` with every logged message of any kind, except images, in the order of the file.
 template <class Visit>
 void for_each_in_file_order(const record::Record& record, Visit visit) {
   std::size_t i = 0, c = 0, g = 0, a = 0, s = 0;
@@ -22,9 +21,7 @@ void for_each_in_file_order(const record::Record& record, Visit visit) {
                                     order(record.ground_truth, g), order(record.annotations, a),
                                     order(record.stops, s)};
     const auto* first = std::ranges::min_element(orders);
-    if (*first == std::numeric_limits<std::uint64_t>::max()) {
-      return;
-    }
+    if (*first == std::numeric_limits<std::uint64_t>::max()) return;
     switch (first - orders) {
       case 0:
         visit(record.interactions[i++]);

@@ -14,61 +14,51 @@ using Entry = record::Logged<Interaction>;
 
 struct SensorHistory {
   const record::SensorInfo* info = nullptr;
-  std::optional<std::uint64_t> newest;  // greatest index read
+  std::optional<std::uint64_t> newest;  // largest index read
   std::uint64_t last_index = 0;
   Wide last_sampled_at = 0;
   Wide last_available_at = 0;
 };
 
-// A measurement is read once, in order, unless the last one was asked for again.
+// Each measurement is read once, in order. A read of the latest may repeat it.
 void check_index(const Entry& entry, SensorHistory& sensor, Report& report) {
   const Interaction& read = entry.message;
   const Wide sampled = wide(*read.sampled_at);
   const Wide available = wide(*read.available_at);
   const bool may_repeat = read.latest && sensor.info->periodic;
-  if (!may_repeat && sensor.newest && read.sample_index <= *sensor.newest) {
-    report.add(1, entry,
-               "measurement " + std::to_string(read.sample_index) + " of \"" + read.sensor +
-                   "\" after measurement " + std::to_string(*sensor.newest) + " had been read");
-  }
+  if (!may_repeat && sensor.newest && read.sample_index <= *sensor.newest)
+    report.add(1, entry, "measurement {} of \"{}\" was read after measurement {}",
+               read.sample_index, read.sensor, *sensor.newest);
   if (sensor.newest && read.sample_index == sensor.last_index &&
-      (sampled != sensor.last_sampled_at || available != sensor.last_available_at)) {
-    report.add(0, entry,
-               "measurement " + std::to_string(read.sample_index) +
-                   " has other times than when it was read before");
-  }
+      (sampled != sensor.last_sampled_at || available != sensor.last_available_at))
+    report.add(0, entry, "measurement {} has other times than in a previous reading",
+               read.sample_index);
   sensor.newest = std::max(sensor.newest.value_or(0), read.sample_index);
   sensor.last_index = read.sample_index;
   sensor.last_sampled_at = sampled;
   sensor.last_available_at = available;
 }
 
-// A read that found nothing missed nothing: by the greatest delay that the sensor can have, no
-// measurement was there for certain that would have done.
+// A read without a measurement is correct only if no suitable one was available for certain, even
+// with the sensor's largest delay.
 void check_missed(const Entry& entry, const SensorHistory& sensor, Report& report) {
   const record::SensorInfo& info = *sensor.info;
   const Wide period = wide(info.period);
-  if (!info.periodic || period <= 0 || info.delay_max == Duration::max()) {
-    return;
-  }
+  if (!info.periodic || period <= 0 || info.delay_max == Duration::max()) return;
   const Wide since_first = wide(entry.message.request_at) - wide(info.phase) - wide(info.delay_max);
-  if (since_first < 0) {
-    return;
-  }
-  const Wide newest_there = since_first / period;
+  if (since_first < 0) return;
+  const Wide newest_available = since_first / period;
   const Wide wanted = !entry.message.latest && sensor.newest ? Wide{*sensor.newest} + 1 : Wide{0};
-  if (newest_there >= wanted) {
-    report.add(1, entry,
-               "found nothing at " + ns(wide(entry.message.request_at)) + ", when measurement " +
-                   std::to_string(static_cast<std::uint64_t>(newest_there)) + " of \"" + info.name +
-                   "\" was there");
-  }
+  if (newest_available >= wanted)
+    report.add(1, entry, "no measurement at {}, although measurement {} of \"{}\" was available",
+               ns(entry.message.request_at), static_cast<std::uint64_t>(newest_available),
+               info.name);
 }
 
 }  // namespace
 
-// A measurement counts as read from the request on that got it. So of a concurrent SUT the order is
-// that of its requests.
+// A measurement counts as read at the request that returned it. For a concurrent SUT the order is
+// therefore that of its requests.
 void check_newness(const record::Record& record, Report& report) {
   auto rows = rows_of(record);
   for (auto& [uav, row] : rows) {

@@ -12,9 +12,9 @@ namespace {
 
 using Entry = record::Logged<record::Interaction>;
 
-// A reply that leaves at an ST below one that the file has shown before was stamped in the past of
-// the simulation: its request, if that is where the stamp comes from (rule 4), else the wait for
-// its reply ended too late (rule 3).
+// A reply at an ST below one that the file has shown before has a timestamp in the past of the
+// simulation. Either its request had that timestamp (rule 4), or the reply was sent too late
+// (rule 3).
 void check_file_order(const record::Record& record, Report& report) {
   Wide reached = 0;
   for_each_in_file_order(record, [&](const auto& entry) {
@@ -22,9 +22,8 @@ void check_file_order(const record::Record& record, Report& report) {
       const record::Interaction& message = entry.message;
       if (wide(message.st_at_release) < reached) {
         const bool immediate = message.reply_at == message.request_at;
-        report.add(immediate ? 4 : 3, entry,
-                   std::string(immediate ? "requested" : "replied") + " at " +
-                       ns(wide(message.reply_at)) + " when ST had already reached " + ns(reached));
+        report.add(immediate ? 4 : 3, entry, "{} at ET {} when ST had already reached {}",
+                   immediate ? "request" : "reply", ns(message.reply_at), ns(reached));
       }
     }
     reached = std::max(reached, wide(entry.at));
@@ -36,7 +35,7 @@ struct Release {
   Wide st = 0;
 };
 
-// Releases by wall time, each with the greatest ST up to then.
+// Releases by wall time, each with the largest ST so far.
 std::vector<Release> releases_by_wall(const record::Record& record) {
   std::vector<Release> releases;
   for (const Entry& entry : record.interactions) {
@@ -51,9 +50,8 @@ std::vector<Release> releases_by_wall(const record::Record& record) {
   return releases;
 }
 
-// A request that arrived after some reply had left met an ST at least as great as that reply's. So
-// a SUT that was computing while ST ran ahead of it shows, whatever ST the record claims for the
-// arrival.
+// When a request arrives after a reply was sent, ST is at least the ST of that reply. This shows
+// whether ST passed a computing SUT, independent of the recorded ST on arrival.
 void check_wall_order(const record::Record& record, const Boundaries& grid, Report& report) {
   const std::vector<Release> releases = releases_by_wall(record);
   for (const Entry& entry : record.interactions) {
@@ -66,12 +64,11 @@ void check_wall_order(const record::Record& record, const Boundaries& grid, Repo
     const Wide reached = std::prev(later)->st;
     if (reached > grid.at_or_before(wide(message.request_at))) {
       report.add(4, entry,
-                 "a reply had left at ST " + ns(reached) + " before the request stamped " +
-                     ns(wide(message.request_at)) + " arrived");
+                 "a reply was sent at ST {} before the request with timestamp ET {} arrived",
+                 ns(reached), ns(message.request_at));
     } else if (reached > wide(message.st_at_arrival)) {
-      report.add(4, entry,
-                 "arrived at ST " + ns(wide(message.st_at_arrival)) +
-                     ", although a reply had left at ST " + ns(reached) + " before");
+      report.add(4, entry, "arrived at ST {}, although a reply was sent before at ST {}",
+                 ns(message.st_at_arrival), ns(reached));
     }
   }
 }

@@ -1,15 +1,18 @@
 #pragma once
 
+#include "exact.h"
+
 #include <string>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include <tether/audit/audit.h>
 #include <tether/base/printable.h>
 
 namespace tether::audit {
 
-/// Takes findings as they come. Names in a record may hold anything; what is told of them is
-/// printable.
+/// Collects findings. Names in a record can contain any bytes; findings are printable.
 class Report {
  public:
   explicit Report(Verdict& verdict) : verdict_(verdict) {}
@@ -23,15 +26,15 @@ class Report {
     finding.what = printable(finding.what);
     verdict_.findings.push_back(std::move(finding));
   }
-  void add(int rule, const record::Logged<record::Interaction>& entry, std::string what) {
-    add({rule, entry.message.uav, entry.message.sequence, entry.at, std::move(what)});
+  /// A finding at a message. `what` and `parts` are fmt's; times as `ns` writes them.
+  template <class Message, class... Parts>
+  void add(int rule, const record::Logged<Message>& entry, fmt::format_string<const Parts&...> what,
+           const Parts&... parts) {
+    std::uint64_t sequence = 0;
+    if constexpr (requires { entry.message.sequence; }) sequence = entry.message.sequence;
+    add({rule, entry.message.uav, sequence, entry.at, fmt::format(what, parts...)});
   }
-  void add(int rule, const record::Logged<record::CommandEffect>& entry, std::string what) {
-    add({rule, entry.message.uav, entry.message.sequence, entry.at, std::move(what)});
-  }
-  void add(const record::Logged<record::GroundTruth>& entry, std::string what) {
-    add({0, entry.message.uav, 0, entry.at, std::move(what)});
-  }
+  /// Rule 0, of the whole record.
   void add(std::string what) { add({0, "", 0, {}, std::move(what)}); }
   void note(const std::string& what) { verdict_.notes.push_back(printable(what)); }
 

@@ -11,22 +11,17 @@ using Entry = record::Logged<record::Interaction>;
 
 struct History {
   WallTime last_wall_at_release;
-  Wide last_reply_at = 0;    // a SUT begins with ET 0 …
-  Wide last_release_at = 0;  // … at ST 0
+  ExecTime last_reply_at{};   // a SUT begins with ET 0
+  SimTime last_release_at{};  // at ST 0
   bool finished = false;
 };
 
 // Rule 5: between two interactions ET only grows.
 void check_et(const Entry& entry, const History& sut, Report& report) {
-  const Wide request = wide(entry.message.request_at);
-  if (sut.finished) {
-    report.add(5, entry, "a request after the SUT had finished");
-  }
-  if (request < sut.last_reply_at) {
-    report.add(5, entry,
-               "requested at ET " + ns(request) + ", before its previous reply at ET " +
-                   ns(sut.last_reply_at));
-  }
+  if (sut.finished) report.add(5, entry, "request after the SUT had finished");
+  if (entry.message.request_at < sut.last_reply_at)
+    report.add(5, entry, "request at ET {} is before the previous reply at ET {}",
+               ns(entry.message.request_at), ns(sut.last_reply_at));
 }
 
 void check_growth(const Entry& entry, const record::SutInfo& info, const History& sut,
@@ -34,37 +29,30 @@ void check_growth(const Entry& entry, const record::SutInfo& info, const History
   if (sut.last_wall_at_release == WallTime{} || entry.message.wall_at_arrival == WallTime{}) {
     return;
   }
-  const Wide grown = wide(entry.message.request_at) - sut.last_reply_at;
+  const Wide grown = wide(entry.message.request_at) - wide(sut.last_reply_at);
   const Wide elapsed = wide(entry.message.wall_at_arrival) - wide(sut.last_wall_at_release);
-  if (const auto fault = growth_fault(info, grown, elapsed)) {
-    report.add(5, entry, *fault);
-  }
+  if (const auto fault = growth_fault(info, grown, elapsed)) report.add(5, entry, "{}", *fault);
 }
 
 // Rule 4: ST on arrival is not before the SUT's last release.
 void check_arrival(const Entry& entry, const History& sut, Report& report) {
-  const Wide arrival = wide(entry.message.st_at_arrival);
-  if (arrival < sut.last_release_at) {
-    report.add(4, entry,
-               "arrived at ST " + ns(arrival) + ", before the SUT's previous reply left at ST " +
-                   ns(sut.last_release_at));
-  }
+  if (entry.message.st_at_arrival < sut.last_release_at)
+    report.add(4, entry, "arrived at ST {}, before the previous reply was sent at ST {}",
+               ns(entry.message.st_at_arrival), ns(sut.last_release_at));
 }
 
 }  // namespace
 
 void check_rows(const record::Record& record, Report& report) {
   for (const auto& [uav, row] : rows_of(record)) {
-    if (row.info->concurrent) {
-      continue;
-    }
+    if (row.info->concurrent) continue;
     History history{.last_wall_at_release = record.header.wall_at_start};
     for (const Entry* entry : row.interactions) {
       check_et(*entry, history, report);
       check_growth(*entry, *row.info, history, report);
       check_arrival(*entry, history, report);
-      history = {entry->message.wall_at_release, wide(entry->message.reply_at),
-                 wide(entry->message.st_at_release),
+      history = {entry->message.wall_at_release, entry->message.reply_at,
+                 entry->message.st_at_release,
                  history.finished || entry->message.kind == record::kFinish};
     }
   }

@@ -14,23 +14,19 @@ std::string headline(const Verdict& verdict) {
     return fmt::format("FAILED: {} finding{} in {} interactions\n", findings,
                        findings == 1 ? "" : "s", verdict.interactions);
   }
-  const char* how = verdict.complete ? "passed" : "INCOMPLETE, no finding up to where it stops";
+  const char* how = verdict.complete ? "passed" : "INCOMPLETE, no finding before the record ends";
   if (!verdict.synchronised) {
     return fmt::format("{}: {} interactions, not synchronised: rules 1 to 7 do not apply\n", how,
                        verdict.interactions);
   }
-  return fmt::format("{}: {} interactions keep the rules of time; largest grid error {:.6f} ms\n",
+  return fmt::format("{}: {} interactions follow the rules of time; largest grid error {:.6f} ms\n",
                      how, verdict.interactions, to_seconds(verdict.largest_grid_error) * 1e3);
 }
 
-std::string words(const Finding& finding) {
+std::string line_of(const Finding& finding) {
   std::string where = fmt::format("ST {:.6f} s", to_seconds(finding.at));
-  if (!finding.uav.empty()) {
-    where += fmt::format(", {}", finding.uav);
-  }
-  if (finding.sequence != 0) {
-    where += fmt::format(" #{}", finding.sequence);
-  }
+  if (!finding.uav.empty()) where += fmt::format(", {}", finding.uav);
+  if (finding.sequence != 0) where += fmt::format(" #{}", finding.sequence);
   const std::string rule = finding.rule == 0 ? "record" : fmt::format("rule {}", finding.rule);
   return fmt::format("{} ({}): {}", rule, where, finding.what);
 }
@@ -40,23 +36,18 @@ std::string words(const Finding& finding) {
 std::string to_line(const Verdict& verdict) {
   std::string text = headline(verdict);
   text.pop_back();
-  if (!verdict.findings.empty()) text += ": " + words(verdict.findings.front());
+  if (!verdict.findings.empty()) text += ": " + line_of(verdict.findings.front());
   return text;
 }
 
 std::string to_text(const Verdict& verdict, std::size_t max_findings) {
   std::string text = headline(verdict);
-  for (const std::string& note : verdict.notes) {
-    text += fmt::format("  note: {}\n", note);
-  }
+  for (const std::string& note : verdict.notes) text += fmt::format("  note: {}\n", note);
   const std::size_t shown = std::min(max_findings, verdict.findings.size());
-  for (std::size_t i = 0; i < shown; ++i) {
-    text += fmt::format("  {}\n", words(verdict.findings[i]));
-  }
+  for (std::size_t i = 0; i < shown; ++i)
+    text += fmt::format("  {}\n", line_of(verdict.findings[i]));
   const std::size_t more = verdict.findings.size() - shown + verdict.further_findings;
-  if (more > 0) {
-    text += fmt::format("  … and {} more\n", more);
-  }
+  if (more > 0) text += fmt::format("  … and {} more\n", more);
   return text;
 }
 

@@ -1,10 +1,10 @@
+#include "altered_record.h"
 #include "record_generator.h"
 
 #include <algorithm>
 #include <ctime>
 #include <functional>
 #include <limits>
-#include <set>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -17,21 +17,11 @@ namespace {
 
 using record::Interaction;
 using record::Record;
-using Entry = record::Logged<Interaction>;
-using Rules = std::set<int>;
+using std::chrono::milliseconds;
 
 constexpr Duration kStep{1'000'000};
-
-Rules rules_of(const Verdict& verdict) {
-  Rules rules;
-  for (const Finding& finding : verdict.findings) {
-    rules.insert(finding.rule);
-  }
-  return rules;
-}
-
-// ---- What keeps the rules passes
-// -----------------------------------------------------------------
+constexpr Duration kSecond{1'000'000'000};
+constexpr Duration kNs{1};
 
 class ValidRecord : public ::testing::TestWithParam<int> {};
 
@@ -41,9 +31,7 @@ TEST_P(ValidRecord, Passes) {
   options.suts = 1 + GetParam() % 4;
   options.step = Duration(GetParam() % 3 == 0 ? 4'000'000 : 1'000'000);
   options.wall_times = GetParam() % 5 != 0;
-  if (GetParam() % 2 == 0) {
-    options.stop_at = from_ns<SimTime>(1'000'000'000);
-  }
+  if (GetParam() % 2 == 0) options.stop_at = from_ns<SimTime>(1'000'000'000);
   const Record record = generate(options);
   ASSERT_GT(record.interactions.size(), 30U);
   ASSERT_FALSE(record.commands.empty());
@@ -57,10 +45,7 @@ TEST_P(ValidRecord, Passes) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, ValidRecord, ::testing::Range(1, 61));
 
-// ---- ET of a wall clock against the host's
-// ---------------------------------------------------------
-
-// One SUT that computes for `grown` of its ET while `elapsed` goes by on the host, twice.
+// One SUT that twice computes for `grown` of its ET in `elapsed` of the host's clock.
 Record wall_clocked(Duration grown, Duration elapsed) {
   Record record = generate({.seed = 4, .suts = 1, .interactions_per_sut = 3});
   record.header.suts[0].clock = "wall";
@@ -69,177 +54,133 @@ Record wall_clocked(Duration grown, Duration elapsed) {
   SimTime st{};
   record.commands.clear();
   for (Entry& entry : record.interactions) {
-    const bool last = entry.message.sequence == 3;
-    Interaction m;
-    m.uav = entry.message.uav;
-    m.sequence = entry.message.sequence;
-    m.kind = last ? record::kFinish : record::kSleep;
-    m.request_at = et += entry.message.sequence == 1 ? Duration(0) : grown;
+    const std::uint64_t sequence = entry.message.sequence;
+    Interaction& m = entry.message = {};
+    m.uav = record.header.suts[0].uav;
+    m.sequence = sequence;
+    m.kind = sequence == 3 ? record::kFinish : record::kSleep;
+    m.request_at = et += sequence == 1 ? Duration(0) : grown;
     m.wall_at_arrival = wall += elapsed;
-    m.reply_at = et += last ? Duration(0) : 7 * kStep;  // waiting costs no wall time
+    m.reply_at = et += sequence == 3 ? Duration(0) : 7 * kStep;  // waiting takes no wall time
     m.wall_at_release = wall += Duration(10);
     m.sleep_until = m.reply_at;
     m.st_at_arrival = st;
-    m.lag = lag(m.request_at, st);
-    st = SimTime(m.reply_at.time_since_epoch() / kStep * kStep);
-    m.st_at_release = st;
+    set_lag(m);
+    m.st_at_release = entry.at = st = SimTime(m.reply_at.time_since_epoch() / kStep * kStep);
     m.grid_error = same_instant(m.reply_at) - st;
-    entry.message = m;
-    entry.at = st;
   }
   record.footer->et_at_end = {et};
   return record;
 }
 
-// Counts rule 5 alone, which nothing but growth can break in such a record.
-std::size_t growth_findings(Record record) {
+// Only growth can breach rule 5 in such a record.
+std::ptrdiff_t growth_findings(const Record& record) {
   const Verdict verdict = audit(record);
-  return static_cast<std::size_t>(std::ranges::count_if(
-      verdict.findings, [](const Finding& finding) { return finding.rule == 5; }));
+  return std::ranges::count(verdict.findings, 5, &Finding::rule);
 }
 
-TEST(Audit, EtByAWallClockGrowsNoFasterThanTheHostsWallTime) {
-  using std::chrono::milliseconds;
-  const auto s = Duration(1'000'000'000);
-  EXPECT_EQ(growth_findings(wall_clocked(s, s)), 0U);
-  EXPECT_EQ(growth_findings(wall_clocked(s / 2, s)), 0U);  // the link takes time
-  // 1 ms and a thousandth are granted, not a nanosecond more.
-  EXPECT_EQ(growth_findings(wall_clocked(s + milliseconds(2), s)), 0U);
-  EXPECT_EQ(growth_findings(wall_clocked(s + milliseconds(2) + Duration(1), s)), 2U);
-  EXPECT_EQ(growth_findings(wall_clocked(milliseconds(1), Duration(0))), 0U);
-  EXPECT_EQ(growth_findings(wall_clocked(milliseconds(1) + Duration(1), Duration(0))), 2U);
+struct Growth {
+  const char* clock;
+  Duration grown, elapsed;
+  int findings;
+  int cores = 0;
+  double factor = 1.0;
+};
+
+// Wall clock: 1 ms and a thousandth of tolerance. CPU clock: on every core a tick of 10 ms and a
+// thousandth. With an unknown number of cores, as in records of Tether 0.1.0, 1024 are allowed.
+TEST(Audit, EtGrowsNoFasterThanTheHostsClockAllows) {
+  const Duration two_cores = 2 * (kSecond + milliseconds(1)) + milliseconds(20);
+  const Duration many_cores = 1024 * (kSecond + milliseconds(1)) + kSecond;
+  for (const Growth& c : {Growth{"wall", kSecond, kSecond, 0},
+                          {"wall", kSecond / 2, kSecond, 0},  // the link takes time
+                          {"wall", kSecond + milliseconds(2), kSecond, 0},
+                          {"wall", kSecond + milliseconds(2) + kNs, kSecond, 2},
+                          {"wall", milliseconds(1), Duration(0), 0},
+                          {"wall", milliseconds(1) + kNs, Duration(0), 2},
+                          {"cpu", two_cores, kSecond, 0, 2},
+                          {"cpu", two_cores + kNs, kSecond, 2, 2},
+                          {"cpu", two_cores + kNs, kSecond, 0, 3},
+                          {"cpu", 6 * two_cores, kSecond, 0, 2, 6.0},
+                          {"cpu", 6 * two_cores + 2 * kNs, kSecond, 2, 2, 6.0},
+                          {"cpu", many_cores, kSecond, 0},
+                          {"cpu", many_cores + kNs, kSecond, 2},
+                          {"scripted", 2 * kSecond, kSecond, 0}}) {
+    Record record = wall_clocked(c.grown, c.elapsed);
+    record.header.suts[0].clock = c.clock;
+    record.header.suts[0].cores = c.cores;
+    record.header.suts[0].cpu_factor = c.factor;
+    EXPECT_EQ(growth_findings(record), c.findings) << c.clock << " " << c.grown.count();
+  }
 }
 
-std::size_t too_much(const Record& record) {
-  const Verdict verdict = audit(record);
-  return static_cast<std::size_t>(
-      std::ranges::count_if(verdict.findings, [](const Finding& finding) {
-        return finding.what.find(" ns too much") != std::string::npos;
-      }));
-}
-
-// All SUTs go on when the run starts.
+// All SUTs are started at the start of the run.
 TEST(Audit, TheFirstRequestIsComparedWithTheStart) {
   Record record = wall_clocked(Duration(0), Duration(0));
   for (Entry& entry : record.interactions) {
     entry.message.request_at += std::chrono::hours(1);
     entry.message.reply_at += std::chrono::hours(1);
   }
-  EXPECT_EQ(too_much(record), 0U);
+  const auto without_start = growth_findings(record);
   record.header.wall_at_start = from_ns<WallTime>(4'999'000'000);
-  EXPECT_EQ(too_much(record), 1U);
+  EXPECT_EQ(growth_findings(record), without_start + 1);
   record.header.wall_at_start = from_ns<WallTime>(5'000'000'000) - std::chrono::hours(1);
-  EXPECT_EQ(too_much(record), 0U);
+  EXPECT_EQ(growth_findings(record), without_start);
 }
 
-Record cpu_clocked(Duration grown, Duration elapsed, int cores, double factor = 1.0) {
-  Record record = wall_clocked(grown, elapsed);
-  record.header.suts[0].clock = "cpu";
-  record.header.suts[0].cores = cores;
-  record.header.suts[0].cpu_factor = factor;
-  return record;
-}
-
-TEST(Audit, CpuTimeGrowsNoFasterThanOnAllCoresAtOnce) {
-  using std::chrono::milliseconds;
-  const auto s = Duration(1'000'000'000);
-  // A tick of each core and a thousandth are granted, not a nanosecond more.
-  const Duration most = 2 * (s + milliseconds(1)) + milliseconds(20);
-  EXPECT_EQ(growth_findings(cpu_clocked(most, s, 2)), 0U);
-  EXPECT_EQ(growth_findings(cpu_clocked(most + Duration(1), s, 2)), 2U);
-  EXPECT_EQ(growth_findings(cpu_clocked(most + Duration(1), s, 3)), 0U);
-  EXPECT_EQ(growth_findings(cpu_clocked(6 * most, s, 2, 6.0)), 0U);
-  EXPECT_EQ(growth_findings(cpu_clocked(6 * most + Duration(2), s, 2, 6.0)), 2U);
-}
-
-// So it is in records of Tether 0.1.0, and where somebody else starts the SUT.
-TEST(Audit, OfAnUnknownMachineManyCoresAreBelieved) {
-  const auto s = Duration(1'000'000'000);
-  const Duration most = 1024 * (s + Duration(1'000'000)) + s;
-  EXPECT_EQ(growth_findings(cpu_clocked(most, s, 0)), 0U);
-  EXPECT_EQ(growth_findings(cpu_clocked(most + Duration(1), s, 0)), 2U);
-}
-
-TEST(Audit, ALineNamesTheFirstFinding) {
-  Verdict verdict;
-  verdict.complete = true;
-  verdict.interactions = 3;
-  verdict.findings = {{5, "uav1", 2, {}, "ET grew by 3 ns too much"}, {4, "uav1", 3, {}, "b"}};
-  EXPECT_EQ(to_line(verdict),
-            "FAILED: 2 findings in 3 interactions: rule 5 (ST 0.000000 s, uav1 #2): ET grew by 3 "
-            "ns too much");
-  verdict.findings.clear();
-  EXPECT_EQ(to_line(verdict) + "\n", to_text(verdict));
-}
-
-TEST(Audit, EtIsComparedWithWallTimeOnlyWhereBothSayTheSame) {
-  const Duration s(1'000'000'000);
-  const Record fast = wall_clocked(2 * s, s);
-  for (const char* clock : {"cpu", "scripted"}) {
-    Record record = fast;
-    record.header.suts[0].clock = clock;
-    EXPECT_EQ(growth_findings(record), 0U) << clock;
-  }
-  Record record = fast;
+TEST(Audit, EtIsComparedOnlyWithKnownWallTimes) {
+  Record record = wall_clocked(2 * kSecond, kSecond);
   record.interactions[1].message.wall_at_arrival = WallTime{};
-  EXPECT_EQ(growth_findings(record), 1U);
+  EXPECT_EQ(growth_findings(record), 1);
   record.interactions[1].message.wall_at_release = WallTime{};
-  EXPECT_EQ(growth_findings(record), 0U);
+  EXPECT_EQ(growth_findings(record), 0);
 }
 
-// ---- Other verdicts
-// --------------------------------------------------------------------------------
-
-TEST(Audit, UnstampedIsANoteAndNoFinding) {
+TEST(Audit, UnstampedRequestsAreANote) {
   Record record = generate({.suts = 1});
   record.header.suts[0].clock = "unstamped";
-  for (Entry& entry : record.interactions) {
-    entry.message.stamped = false;
-  }
+  for (Entry& entry : record.interactions) entry.message.stamped = false;
   const Verdict verdict = audit(record);
   EXPECT_TRUE(verdict.passed()) << to_text(verdict);
-  ASSERT_EQ(verdict.notes.size(), 1U);
-  EXPECT_NE(verdict.notes[0].find("rule 6"), std::string::npos);
+  EXPECT_EQ(verdict.notes.size(), 1U);
 }
 
 TEST(Audit, WithoutItsEndARecordDoesNotPass) {
+  EXPECT_FALSE(audit(Record{}).passed());
   Record record = generate({});
   record.footer.reset();
-  record.damage = "damaged at byte 5: the file ends too early";
+  record.damage = "damaged at byte 5: the file is truncated";
   const Verdict verdict = audit(record);
   EXPECT_TRUE(verdict.findings.empty()) << to_text(verdict);
   EXPECT_FALSE(verdict.complete);
   EXPECT_FALSE(verdict.passed());
-  ASSERT_EQ(verdict.notes.size(), 1U);
-  EXPECT_NE(verdict.notes[0].find("byte 5"), std::string::npos);
+  EXPECT_EQ(verdict.notes, std::vector{"the record has no end: " + record.damage});
 }
 
 // A command whose reply is still held when the run ends has its effect but no interaction.
 TEST(Audit, CommandHeldAtTheEndIsNoOrphan) {
   Record record = generate({.stop_at = from_ns<SimTime>(1'000'000'000)});
   std::uint64_t last = 0;
-  for (const Entry& entry : record.interactions) {
+  for (const Entry& entry : record.interactions)
     last = entry.message.uav == "uav0" ? entry.message.sequence : last;
-  }
   record.commands.push_back({record.footer->st_at_end,
                              record.interactions.back().order + 1000,
                              {"uav0", last + 1, record.footer->st_at_end, 0, 0, 0, 0}});
-  EXPECT_TRUE(audit(record).passed()) << to_text(audit(record));
+  EXPECT_EQ(rules_of(record), Rules{});
   record.commands.back().message.sequence = last + 2;
-  EXPECT_EQ(rules_of(audit(record)), Rules{2});
+  EXPECT_EQ(rules_of(record), Rules{2});
 }
 
-TEST(Audit, TellsOfForeignNamesInPrintableLines) {
+TEST(Audit, FindingsArePrintableLines) {
   Record record = generate({});
   record.header.policy = "con\nser\x1b[2J";
   record.interactions.front().message.uav = "a\nb";
   const Verdict verdict = audit(record);
   ASSERT_FALSE(verdict.passed());
   EXPECT_EQ(verdict.findings.front().what, "unknown policy \"con?ser?[2J\"");
-  const std::string text = to_text(verdict);
-  for (std::size_t i = 0; i < text.size(); ++i)
-    EXPECT_TRUE(static_cast<unsigned char>(text[i]) >= 0x20 || text[i] == '\n') << i;
-  EXPECT_EQ(text.find("a\nb"), std::string::npos);
+  for (const Finding& finding : verdict.findings) {
+    for (const char c : finding.uav + finding.what) EXPECT_GE(static_cast<unsigned char>(c), 0x20);
+  }
 }
 
 Record free_running() {
@@ -248,9 +189,7 @@ Record free_running() {
   for (Entry& entry : record.interactions) {
     entry.message.st_at_arrival = entry.message.st_at_release;
     entry.message.lag = Duration(0);
-    if (entry.message.sample_state_at) {
-      entry.message.sample_state_at = entry.message.st_at_arrival;
-    }
+    if (entry.message.sample_state_at) entry.message.sample_state_at = entry.message.st_at_arrival;
   }
   record.footer->largest_lag = Duration(0);
   return record;
@@ -262,12 +201,6 @@ TEST(Audit, FreeRunningIsNotSynchronised) {
   EXPECT_TRUE(verdict.passed()) << to_text(verdict);
 }
 
-TEST(Audit, FreeRunningMustNotHold) {
-  Record record = free_running();
-  record.interactions[3].message.st_at_arrival -= kStep;
-  EXPECT_EQ(rules_of(audit(record)), Rules{8});
-}
-
 Interaction& first_reading(Record& record) {
   return std::ranges::find_if(
              record.interactions,
@@ -275,93 +208,81 @@ Interaction& first_reading(Record& record) {
       ->message;
 }
 
-TEST(Audit, FreeRunningReadsTheStateOnArrival) {
-  for (const Duration off : {kStep, -kStep, Duration(1)}) {
-    Record record = free_running();
-    *first_reading(record).sample_state_at += off;
-    const Verdict verdict = audit(record);
-    EXPECT_EQ(rules_of(verdict), Rules{8}) << to_text(verdict);
-    EXPECT_EQ(verdict.findings.size(), 1U);
-  }
-  Record record = free_running();
-  first_reading(record).sample_state_at.reset();
-  EXPECT_EQ(rules_of(audit(record)), Rules{0});
-}
-
-// A read that came a while before its periodic sensor measured.
+// A read that arrived before its periodic sensor measured.
 Record waiting_for_next(Duration wait) {
   Record record = free_running();
-  record.header.sensors = {{.uav = first_reading(record).uav,
-                            .name = first_reading(record).sensor,
-                            .kind = "imu",
-                            .periodic = true,
-                            .period = 10 * kStep,
-                            .phase = Duration(0)}};
   Interaction& read = first_reading(record);
-  read.sample_index =
-      static_cast<std::uint64_t>(read.st_at_release.time_since_epoch() / (10 * kStep));
-  record.header.sensors[0].phase =
-      read.st_at_release.time_since_epoch() - read.sample_index * 10 * kStep;
+  const Duration released = read.st_at_release.time_since_epoch(), period = 10 * kStep;
+  read.sample_index = static_cast<std::uint64_t>(released / period);
+  record.header.sensors = {{read.uav, read.sensor, "imu", true, period, released % period}};
   read.sampled_at = read.st_at_release;
   read.st_at_arrival = read.st_at_release - wait;
   return record;
 }
 
+// At 30 Hz, measurements are between the boundaries. The read after one that was released at its
+// boundary comes before the instant of that measurement.
+Record waiting_between_boundaries(Duration wait) {
+  Record record = waiting_for_next(wait);
+  record.header.sensors[0].phase += 2 * kStep / 3;
+  *first_reading(record).sampled_at += 2 * kStep / 3;
+  return record;
+}
+
 TEST(Audit, FreeRunningReadsMayWaitForTheNextMeasurement) {
-  const Verdict verdict = audit(waiting_for_next(9 * kStep));
-  EXPECT_TRUE(verdict.passed()) << to_text(verdict);
+  for (const Record& record : {waiting_for_next(9 * kStep), waiting_between_boundaries(10 * kStep)})
+    EXPECT_TRUE(audit(record).passed()) << to_text(audit(record));
 }
 
-// At 30 Hz the measurements lie between the boundaries. The read after one that was released at its
-// boundary comes before its instant.
-TEST(Audit, FreeRunningReadsMayFollowAMeasurementBetweenBoundaries) {
-  const auto between = [](Duration wait) {
-    Record record = waiting_for_next(wait);
-    constexpr Duration kBehind = 2 * kStep / 3;
-    record.header.sensors[0].phase += kBehind;
-    *first_reading(record).sampled_at += kBehind;
-    return record;
-  };
-  EXPECT_TRUE(audit(between(10 * kStep)).passed()) << to_text(audit(between(10 * kStep)));
-  EXPECT_EQ(rules_of(audit(between(11 * kStep))), Rules{8}) << "missed a measurement";
+TEST(Audit, BreachesInFreeRunningReadsAreFound) {
+  using Alter = std::function<void(Interaction&)>;
+  const std::pair<Record, std::vector<Alter>> cases[] = {
+      {free_running(),
+       {[](auto& m) { m.st_at_arrival -= kStep; }, [](auto& m) { *m.sample_state_at += kStep; },
+        [](auto& m) { *m.sample_state_at -= kStep; }, [](auto& m) { *m.sample_state_at += kNs; }}},
+      {waiting_for_next(9 * kStep),
+       {[](auto& m) { *m.sampled_at -= kNs; }, [](auto& m) { m.sample_index += 1; },
+        [](auto& m) { m.only_if_available = true; }}},
+      {waiting_for_next(11 * kStep), {[](auto&) {}}},  // missed a measurement
+      {waiting_between_boundaries(11 * kStep), {[](auto&) {}}}};
+  for (const auto& [sound, alterations] : cases) {
+    for (const Alter& alter : alterations) {
+      Record record = sound;
+      alter(first_reading(record));
+      EXPECT_EQ(rules_of(record), Rules{8}) << to_text(audit(record));
+    }
+  }
 }
 
-TEST(Audit, FreeRunningReadsMayNotWaitForAnythingElse) {
-  const auto altered = [](const std::function<void(Record&)>& alter) {
-    Record record = waiting_for_next(9 * kStep);
+TEST(Audit, BreachesInFreeRunningRecordsAreFound) {
+  const auto altered = [](Record record, auto alter) {
     alter(record);
-    return rules_of(audit(record));
+    return rules_of(record);
   };
-  EXPECT_EQ(rules_of(audit(waiting_for_next(11 * kStep))), Rules{8}) << "missed a measurement";
-  EXPECT_EQ(altered([](Record& r) { *first_reading(r).sampled_at -= Duration(1); }), Rules{8});
-  EXPECT_EQ(altered([](Record& r) { first_reading(r).sample_index += 1; }), Rules{8});
-  EXPECT_EQ(altered([](Record& r) { r.header.sensors[0].periodic = false; }), Rules{8});
-  EXPECT_EQ(altered([](Record& r) { r.header.sensors.clear(); }), Rules{8});
-}
-
-TEST(Audit, FreeRunningRecordsMustBeConsistent) {
-  Record record = free_running();
-  record.footer->interactions -= 1;
-  record.ground_truth.erase(record.ground_truth.begin());
-  EXPECT_EQ(rules_of(audit(record)), Rules{0});
-}
-
-TEST(Audit, EmptyRecordDoesNotPass) {
-  EXPECT_FALSE(audit(Record{}).passed());
+  const Record held = waiting_for_next(9 * kStep), immediate = free_running();
+  EXPECT_EQ(altered(held, [](auto& r) { r.header.sensors[0].periodic = false; }), Rules{8});
+  EXPECT_EQ(altered(held, [](auto& r) { r.header.sensors.clear(); }), Rules{8});
+  EXPECT_EQ(
+      altered(immediate, [](auto& r) { r.interactions.back().message.st_at_arrival -= kStep; }),
+      Rules{8})
+      << "a finish";
+  EXPECT_EQ(altered(immediate, [](auto& r) { r.footer->interactions -= 1; }), Rules{0});
+  EXPECT_EQ(altered(immediate, [](auto& r) { r.ground_truth.erase(r.ground_truth.begin()); }),
+            Rules{0});
+  EXPECT_EQ(altered(immediate, [](auto& r) { first_reading(r).sample_state_at.reset(); }),
+            Rules{0});
 }
 
 TEST(Audit, FindingsAreBounded) {
   Record record = generate({.interactions_per_sut = 5000});
-  for (Entry& entry : record.interactions) {
-    entry.message.lag -= Duration(1);
-  }
+  for (Entry& entry : record.interactions) entry.message.lag -= kNs;
   const Verdict verdict = audit(record);
   EXPECT_EQ(verdict.findings.size(), kMaxFindings);
   EXPECT_GT(verdict.further_findings, 0U);
 }
 
-// Any single time changed anywhere is noticed, and nothing that a record can say breaks the audit.
-TEST(Audit, RandomChangesOfTimesAreNoticed) {
+// Each change of a single time is found, and no value breaks the audit.
+TEST(Audit, RandomChangesOfTimesAreFound) {
   const Record valid = generate({.seed = 9, .interactions_per_sut = 60, .wall_times = false});
   KeyedRandom random({.seed = 2});
   constexpr std::int64_t kExtremes[] = {0, -1, std::numeric_limits<std::int64_t>::max(),
@@ -378,20 +299,11 @@ TEST(Audit, RandomChangesOfTimesAreNoticed) {
       time = extreme ? from_ns<Time>(value) : time - change;
       return time != before;
     };
-    bool changed = false;
-    switch (random.bits() % 4) {
-      case 0:
-        changed = alter(m.request_at);
-        break;
-      case 1:
-        changed = alter(m.reply_at);
-        break;
-      case 2:
-        changed = alter(m.st_at_release);
-        break;
-      default:
-        changed = alter(m.st_at_arrival);
-    }
+    const unsigned which = random.bits() % 4;
+    const bool changed = which == 0   ? alter(m.request_at)
+                         : which == 1 ? alter(m.reply_at)
+                         : which == 2 ? alter(m.st_at_release)
+                                      : alter(m.st_at_arrival);
     EXPECT_EQ(audit(record).findings.empty(), !changed) << "round " << round;
   }
 }

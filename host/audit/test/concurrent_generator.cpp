@@ -1,5 +1,7 @@
 #include "concurrent_generator.h"
 
+#include "altered_record.h"
+
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -22,13 +24,6 @@ constexpr std::int64_t kPeriod = 33'333'333;
 constexpr std::int64_t kPhase = 1'234'567;
 constexpr std::int64_t kDelay = 12'345'678;
 constexpr std::int64_t kMostRangeDelay = 60'000'000;
-
-std::int64_t floor_ns(std::int64_t t) {
-  return t / kStep * kStep;
-}
-std::int64_t ceil_ns(std::int64_t t) {
-  return floor_ns(t + kStep - 1);
-}
 
 class ConcurrentHost {
  public:
@@ -67,7 +62,7 @@ class ConcurrentHost {
   }
   std::int64_t compute(std::int64_t from) {
     const std::int64_t at = from + 1 + below(random_.bits() % 4 == 0 ? 20'000'000 : 900'000);
-    return random_.bits() % 8 == 0 ? ceil_ns(at) : at;
+    return random_.bits() % 8 == 0 ? ceil_ns(at, kStep) : at;
   }
 
   void run_to_stop() {
@@ -88,11 +83,11 @@ class ConcurrentHost {
 
   static std::int64_t reply_of(const Thread& thread) { return to_ns(thread.open->reply_at); }
 
-  // ST moves on by itself, at most to `limit` and to where a reply is due.
+  // ST advances by a random amount, at most to `limit` and to where a reply is due.
   void drift(std::int64_t limit) {
     for (const Thread& t : threads_)
-      if (t.open) limit = std::min(limit, floor_ns(reply_of(t)));
-    limit = floor_ns(limit);
+      if (t.open) limit = std::min(limit, floor_ns(reply_of(t), kStep));
+    limit = floor_ns(limit, kStep);
     advance(st_ + below((limit - st_) / kStep + 1) * kStep);
   }
   void advance(std::int64_t st) {
@@ -127,7 +122,7 @@ class ConcurrentHost {
       case 0:
       case 1:
         m.kind = record::kCommand;
-        m.effect_at = from_ns<SimTime>(ceil_ns(t + 1'700'000));
+        m.effect_at = from_ns<SimTime>(ceil_ns(t + 1'700'000, kStep));
         m.grid_error = *m.effect_at - from_ns<SimTime>(t + 1'700'000);
         effects_.emplace(to_ns(*m.effect_at), m.sequence);
         break;
@@ -140,7 +135,7 @@ class ConcurrentHost {
         m.kind = record::kSensor;
         m.sensor = "range";
         m.sample_index = range_index_++;
-        sample(m, t, t + below(kMostRangeDelay));
+        set_sample(m, t, t + below(kMostRangeDelay), kStep);
         break;
       default:
         camera(m, t);
@@ -158,15 +153,7 @@ class ConcurrentHost {
     const std::int64_t index = found ? there : unread_;
     m.sample_index = static_cast<std::uint64_t>(index);
     unread_ = std::max(unread_, index + 1);
-    sample(m, kPhase + index * kPeriod, kPhase + index * kPeriod + kDelay);
-  }
-
-  void sample(Interaction& m, std::int64_t sampled, std::int64_t available) {
-    m.sampled_at = from_ns<SimTime>(sampled);
-    m.sample_state_at = from_ns<SimTime>(floor_ns(sampled));
-    m.available_at = from_ns<SimTime>(available);
-    m.reply_at = std::max(m.request_at, from_ns<ExecTime>(available));
-    m.grid_error = Duration(sampled - floor_ns(sampled));
+    set_sample(m, kPhase + index * kPeriod, kPhase + index * kPeriod + kDelay, kStep);
   }
 
   void log_stop() {
@@ -193,7 +180,7 @@ class ConcurrentHost {
     Interaction m = *thread.open;
     thread.open.reset();
     thread.asks_at = compute(et_);
-    advance(floor_ns(to_ns(m.reply_at)));
+    advance(floor_ns(to_ns(m.reply_at), kStep));
     m.st_at_release = from_ns<SimTime>(st_);
     m.grid_error = std::max(m.grid_error, Duration(to_ns(m.reply_at) - st_));
     m.wall_at_release = tick();
@@ -208,17 +195,8 @@ class ConcurrentHost {
     footer.end = "finished";
     footer.st_at_end = from_ns<SimTime>(st_);
     footer.et_at_end = {from_ns<ExecTime>(et_)};
-    footer.interactions = record_.interactions.size();
-    footer.stops = record_.stops.size();
-    for (const auto& entry : record_.interactions) {
-      footer.largest_lag = std::max(footer.largest_lag, entry.message.lag);
-      footer.largest_grid_error = std::max(footer.largest_grid_error, entry.message.grid_error);
-    }
-    for (const auto& entry : record_.stops)
-      if (entry.message.reply_at)
-        footer.largest_overshoot =
-            std::max(footer.largest_overshoot, entry.message.at - *entry.message.reply_at);
     record_.footer = footer;
+    set_figures(record_);
   }
 
   const ConcurrentOptions& options_;

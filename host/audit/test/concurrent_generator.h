@@ -13,8 +13,9 @@ struct ConcurrentOptions {
   double wall_factor = 1.0;  ///< seconds of ET per second of the host's clock
 };
 
-/// A record of one concurrent SUT, on a wall clock, that keeps every rule by construction: its
-/// threads ask, all of them stand still, the simulation catches up, and they go on. Steps of 1 ms.
+/// A record of one concurrent SUT with a wall clock that keeps every rule by construction: its
+/// threads send requests, all of them are stopped, the simulation catches up, and they resume.
+/// Steps of 1 ms.
 record::Record generate_concurrent(const ConcurrentOptions& options);
 
 }  // namespace tether::audit

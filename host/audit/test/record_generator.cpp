@@ -1,5 +1,7 @@
 #include "record_generator.h"
 
+#include "altered_record.h"
+
 #include <algorithm>
 #include <map>
 #include <string>
@@ -20,13 +22,6 @@ constexpr Duration kCameraPhase{1'234'567};
 constexpr Duration kMostCameraDelay{50'000'000};  // drawn from 0 up to this
 constexpr Duration kMostRangeDelay{60'000'000};
 constexpr Duration kTruthPeriod{9'999'999};  // no multiple of any step
-
-std::int64_t floor_ns(std::int64_t t, std::int64_t step) {
-  return t / step * step;
-}
-std::int64_t ceil_ns(std::int64_t t, std::int64_t step) {
-  return (t + step - 1) / step * step;
-}
 
 // One SUT's life, in its own time.
 class Sut {
@@ -52,28 +47,16 @@ class Sut {
     message.uav = uav_;
     message.sequence = sequence;
     et_ += 1 + below(random_.bits() % 4 == 0 ? 20'000'000 : 700'000);
-    if (random_.bits() % 8 == 0) {
-      et_ = ceil_ns(et_, to_ns(options_.step));  // a stamp just on a boundary
-    }
+    if (random_.bits() % 8 == 0) et_ = ceil_ns(et_, to_ns(options_.step));  // on a boundary
     message.request_at = message.reply_at = from_ns<ExecTime>(et_);
     if (last) {
       message.kind = record::kFinish;
       return message;
     }
-    switch (random_.bits() % 5) {
-      case 0:
-      case 1:
-        command(message);
-        break;
-      case 2:
-        sleep(message);
-        break;
-      case 3:
-        camera(message);
-        break;
-      default:
-        range(message);
-    }
+    using Plan = void (Sut::*)(Interaction&);
+    constexpr Plan kPlans[] = {&Sut::command, &Sut::command, &Sut::sleep, &Sut::camera,
+                               &Sut::range};
+    (this->*kPlans[random_.bits() % 5])(message);
     return message;
   }
 
@@ -95,7 +78,7 @@ class Sut {
     message.kind = record::kSensor;
     message.sensor = "range";
     message.sample_index = range_index_++;
-    sample(message, et_, et_ + below(to_ns(kMostRangeDelay)));
+    set_sample(message, et_, et_ + below(to_ns(kMostRangeDelay)), to_ns(options_.step));
   }
 
   void camera(Interaction& message) {
@@ -103,23 +86,10 @@ class Sut {
     message.sensor = "camera";
     message.latest = random_.bits() % 4 == 0;
     std::uint64_t index = newest_available();
-    if (index < unread_ && !(message.latest && index != kNone)) {
-      index = next_available();
-    } else if (index == kNone) {
-      index = next_available();
-    }
+    if (index == kNone || (index < unread_ && !message.latest)) index = next_available();
     message.sample_index = index;
     unread_ = std::max(unread_, index + 1);
-    sample(message, sampled_at(index), available_at(index));
-  }
-
-  void sample(Interaction& message, std::int64_t sampled, std::int64_t available) {
-    const std::int64_t state = floor_ns(sampled, to_ns(options_.step));
-    message.sampled_at = from_ns<SimTime>(sampled);
-    message.sample_state_at = from_ns<SimTime>(state);
-    message.available_at = from_ns<SimTime>(available);
-    message.reply_at = from_ns<ExecTime>(std::max(et_, available));
-    message.grid_error = Duration(sampled - state);
+    set_sample(message, sampled_at(index), available_at(index), to_ns(options_.step));
   }
 
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
@@ -134,11 +104,8 @@ class Sut {
   }
   // The newest camera measurement that is available now, wherever it is in the order of reading.
   std::uint64_t newest_available() const {
-    for (auto k = static_cast<std::uint64_t>(et_ / to_ns(kCameraPeriod)) + 1; k-- > 0;) {
-      if (available_at(k) <= et_) {
-        return k;
-      }
-    }
+    for (auto k = static_cast<std::uint64_t>(et_ / to_ns(kCameraPeriod)) + 1; k-- > 0;)
+      if (available_at(k) <= et_) return k;
     return kNone;
   }
   // The one of those not yet read that is available first. Delays are below two periods.
@@ -161,9 +128,9 @@ class Sut {
   std::uint64_t range_index_ = 0;
 };
 
-// Something that happens on the host. Those of one ST come in the order of ET: ground truth and
-// effects first (phases 0, 1), then arrivals before releases of the same stamp (2, 3), last the
-// arrivals of requests that run ahead of ST (4).
+// An event on the host. Events of one ST are in the order of ET: ground truth and effects first
+// (phases 0, 1), then arrivals before releases of the same timestamp (2, 3), last the arrivals of
+// requests that are ahead of ST (4).
 struct Event {
   std::int64_t st = 0;
   std::int64_t key = 0;
@@ -181,18 +148,13 @@ class Host {
   Record run() {
     make_header();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      for (Interaction& interaction : rows_[i]) {
-        add_events(i, interaction);
-      }
+      for (Interaction& interaction : rows_[i]) add_events(i, interaction);
     }
     end_ = options_.stop_at != SimTime::max() ? to_ns(options_.stop_at) : last_release_;
     add_ground_truth();
     std::ranges::stable_sort(events_, {}, &Event::rank);
-    for (const Event& event : events_) {
-      if (event.st <= end_) {
-        happen(event);
-      }
-    }
+    for (const Event& event : events_)
+      if (event.st <= end_) happen(event);
     make_footer();
     return std::move(record_);
   }
@@ -234,27 +196,20 @@ class Host {
     previous = release;
     last_release_ = std::max(last_release_, release);
 
-    if (arrival == bound) {
-      events_.push_back({arrival, request, 2, sut, &message});
-    } else {
-      events_.push_back({arrival, arrival + step, 4, sut, &message});
-    }
+    const bool in_time = arrival == bound;
+    events_.push_back(
+        {arrival, in_time ? request : arrival + step, in_time ? 2 : 4, sut, &message});
     events_.push_back({release, reply, 3, sut, &message});
-    if (message.effect_at) {
-      events_.push_back({to_ns(*message.effect_at), 0, 1, sut, &message});
-    }
+    if (message.effect_at) events_.push_back({to_ns(*message.effect_at), 0, 1, sut, &message});
   }
 
   void add_ground_truth() {
-    for (std::int64_t k = 0;; ++k) {
-      const std::int64_t at = ceil_ns(k * to_ns(kTruthPeriod), to_ns(options_.step));
-      if (at > end_) {
-        return;
-      }
-      for (std::size_t sut = 0; sut < rows_.size(); ++sut) {
-        events_.push_back({at, 0, 0, sut, nullptr});
-      }
-    }
+    const auto instant = [&](std::int64_t k) {
+      return ceil_ns(k * to_ns(kTruthPeriod), to_ns(options_.step));
+    };
+    for (std::int64_t k = 0; instant(k) <= end_; ++k)
+      for (std::size_t sut = 0; sut < rows_.size(); ++sut)
+        events_.push_back({instant(k), 0, 0, sut, nullptr});
   }
 
   void happen(const Event& event) {
@@ -285,12 +240,9 @@ class Host {
     record::Footer footer;
     footer.end = options_.stop_at == SimTime::max() ? "finished" : "time_limit";
     footer.st_at_end = from_ns<SimTime>(end_);
-    footer.interactions = record_.interactions.size();
     std::map<std::string, ExecTime> et;
     std::map<std::string, bool> finished;
     for (const auto& entry : record_.interactions) {
-      footer.largest_lag = std::max(footer.largest_lag, entry.message.lag);
-      footer.largest_grid_error = std::max(footer.largest_grid_error, entry.message.grid_error);
       et[entry.message.uav] = entry.message.reply_at;
       finished[entry.message.uav] = entry.message.kind == record::kFinish;
     }
@@ -299,6 +251,7 @@ class Host {
       footer.et_at_end.push_back(finished[sut.uav] ? et[sut.uav] : std::max(et[sut.uav], reached));
     }
     record_.footer = footer;
+    set_figures(record_);
   }
 
   const GeneratorOptions& options_;

@@ -5,20 +5,18 @@
 namespace tether::audit {
 namespace {
 
-TEST(ToText, SaysThatARecordPassed) {
+TEST(ToText, WithoutFindingsIsOneLine) {
   Verdict verdict;
+  EXPECT_EQ(
+      to_text(verdict),
+      "INCOMPLETE, no finding before the record ends: 0 interactions, not synchronised: rules "
+      "1 to 7 do not apply\n");
   verdict.synchronised = verdict.complete = true;
   verdict.interactions = 42;
   verdict.largest_grid_error = Duration(999'999);
   EXPECT_EQ(to_text(verdict),
-            "passed: 42 interactions keep the rules of time; largest grid error 0.999999 ms\n");
-}
-
-TEST(ToText, SaysWhatDoesNotApplyAndWhatIsMissing) {
-  Verdict verdict;
-  EXPECT_EQ(to_text(verdict),
-            "INCOMPLETE, no finding up to where it stops: 0 interactions, not synchronised: rules "
-            "1 to 7 do not apply\n");
+            "passed: 42 interactions follow the rules of time; largest grid error 0.999999 ms\n");
+  EXPECT_EQ(to_line(verdict) + "\n", to_text(verdict));
 }
 
 TEST(ToText, ListsFindingsUpToTheLimit) {
@@ -34,6 +32,8 @@ TEST(ToText, ListsFindingsUpToTheLimit) {
             "  rule 3 (ST 1.500000 s, a #7): too late\n"
             "  record (ST 0.000000 s): wrong\n"
             "  … and 3 more\n");
+  EXPECT_EQ(to_line(verdict),
+            "FAILED: 5 findings in 0 interactions: rule 3 (ST 1.500000 s, a #7): too late");
 }
 
 }  // namespace

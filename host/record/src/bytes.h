@@ -57,11 +57,9 @@ class FieldReader {
   std::uint16_t u16() { return static_cast<std::uint16_t>(uint<2>()); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(uint<4>()); }
   std::uint64_t u64() { return uint<8>(); }
-  /// The next `length` bytes, still owned by whoever owns the whole.
+  /// The next `length` bytes, which the owner of the whole keeps.
   std::string_view bytes(std::uint64_t length) {
-    if (length > rest_.size()) {
-      throw Damage("a field runs past the end of its record");
-    }
+    if (length > rest_.size()) throw Damage("a field runs past the end of its record");
     const std::string_view taken = rest_.substr(0, static_cast<std::size_t>(length));
     rest_.remove_prefix(taken.size());
     return taken;

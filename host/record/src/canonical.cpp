@@ -67,9 +67,7 @@ void append_footer(std::string& out, const Footer& footer, const CanonicalOption
     object.integer("stops", footer.stops);
     object.integer("largest_overshoot_ns", to_ns(footer.largest_overshoot));
   }
-  if (options.arrivals) {
-    object.integer("largest_lag_ns", to_ns(footer.largest_lag));
-  }
+  if (options.arrivals) object.integer("largest_lag_ns", to_ns(footer.largest_lag));
   object.close();
   out += '\n';
 }
@@ -91,22 +89,16 @@ std::string canonical(const Record& record, const CanonicalOptions& options) {
     append_json(out, logged.message);
   });
   append_lines(out, "annotation", record.annotations, [&](const Logged<Annotation>& logged) {
-    if (options.arrivals) {
-      append_log_time(out, logged.at);
-    }
+    if (options.arrivals) append_log_time(out, logged.at);
     append_json(out, logged.message);
   });
   append_lines(out, "stop", record.stops, [&](const Logged<Stop>& logged) {
-    if (options.arrivals) {
-      append_log_time(out, logged.at);
-    }
+    if (options.arrivals) append_log_time(out, logged.at);
     append_json(out, logged.message, {.wall = false});
   });
   append_lines(out, "image", record.images,
                [&](const Logged<Image>& logged) { append_image(out, logged.message); });
-  if (record.footer) {
-    append_footer(out, *record.footer, options);
-  }
+  if (record.footer) append_footer(out, *record.footer, options);
   return out;
 }
 

@@ -5,8 +5,8 @@
 
 #include <tether/record/messages.h>
 
-/// The one place that knows how a message of the record looks as JSON. Times are integers [ns],
-/// members named as in messages.h with the unit behind; an absent optional has no member.
+/// Messages of the record as JSON. Times are integers [ns], members are named as in messages.h with
+/// the unit at the end; an absent optional has no member.
 namespace tether::record {
 
 /// Which members of a message to write; `schemas.cpp` describes the whole.
@@ -20,12 +20,12 @@ void append_json(std::string& out, const CommandEffect& message);
 void append_json(std::string& out, const GroundTruth& message);
 void append_json(std::string& out, const Annotation& message);
 void append_json(std::string& out, const Stop& message, JsonParts parts = {});
-/// As foxglove.CompressedImage, with members of our own.
+/// As foxglove.CompressedImage, with more members.
 void append_json(std::string& out, const Image& message);
 /// The pose of a ground truth message as foxglove.FrameTransform: "world" to the UAV's name.
 void append_frame_transform(std::string& out, const GroundTruth& message);
 
-/// The other way round. @throws Damage naming the member that is missing or wrong.
+/// The inverse. @throws Damage naming the member that is missing or wrong.
 Interaction interaction_from_json(std::string_view json);
 CommandEffect command_effect_from_json(std::string_view json);
 GroundTruth ground_truth_from_json(std::string_view json);

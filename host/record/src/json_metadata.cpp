@@ -2,208 +2,111 @@
 
 #include "damage.h"
 #include "json_fields.h"
+#include "json_members.h"
 #include "json_text.h"
+#include "members.h"
 
 #include <charconv>
+#include <concepts>
 
 #include <tether/base/json_depth.h>
 
+// Header and footer as MCAP metadata, a map of texts. Their members are listed once, in members.h:
+// MetadataWriter and MetadataReader put each into the map or take it out. Lists (SUTs, sensors,
+// anchors) are JSON arrays in one text. What the target reported of itself has a prefix.
 namespace tether::record {
 namespace {
 
-struct CameraNumber {
-  const char* name;
-  double CameraInfo::*member;
+class MetadataWriter {
+ public:
+  explicit MetadataWriter(StringMap& values) : values_(values) {}
+
+  bool has(const char*, bool condition) const { return condition; }
+  template <class Value>
+  void operator()(const char* name, const Value& value) {
+    std::string& text = values_[name];
+    if constexpr (std::integral<Value>) {
+      append_json_integer(text, value);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      append_json_number(text, value);
+    } else if constexpr (Time<Value>) {
+      append_json_integer(text, to_ns(value));
+    } else {
+      text = to_utf8(value);
+    }
+  }
+  template <class Item>
+  void list(const char* name, const std::vector<Item>& items) {
+    std::string& text = values_[name] = "[";
+    for (const Item& item : items) {
+      text += text.size() > 1 ? "," : "";
+      if constexpr (Time<Item>) {
+        append_json_integer(text, to_ns(item));
+      } else {
+        append_members(text, item);
+      }
+    }
+    text += "]";
+  }
+
+ private:
+  StringMap& values_;
 };
-constexpr CameraNumber kCameraNumbers[] = {
-    {"fx_px", &CameraInfo::fx_px}, {"fy_px", &CameraInfo::fy_px}, {"cx_px", &CameraInfo::cx_px},
-    {"cy_px", &CameraInfo::cy_px}, {"k1", &CameraInfo::k1},       {"k2", &CameraInfo::k2},
-    {"k3", &CameraInfo::k3},       {"p1", &CameraInfo::p1},       {"p2", &CameraInfo::p2}};
 
-const std::string& value(const StringMap& values, const std::string& name) {
-  const auto found = values.find(name);
-  if (found == values.end()) {
-    throw Damage("value \"" + name + "\" is missing");
+class MetadataReader {
+ public:
+  explicit MetadataReader(const StringMap& values) : values_(values) {}
+
+  bool has(const char* name, bool) const { return values_.contains(name); }
+  template <class Value>
+  void operator()(const char* name, Value& value) const {
+    if constexpr (std::integral<Value> || std::is_same_v<Value, double>) {
+      value = number<Value>(name);
+    } else if constexpr (Time<Value>) {
+      value = Value(Duration(number<std::int64_t>(name)));
+    } else {
+      value = text(name);
+    }
   }
-  return found->second;
-}
-
-template <class Number>
-Number number(const StringMap& values, const std::string& name) {
-  const std::string& text = value(values, name);
-  Number parsed{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    throw Damage("value \"" + name + "\" is no number that fits");
+  template <class Item>
+  void list(const char* name, std::vector<Item>& items) const {
+    const std::string& array = text(name);
+    const Json json =
+        json_depth(array) > kMaxJsonDepth ? Json() : Json::parse(array, nullptr, false);
+    if (!json.is_array()) fail(name, "is not a JSON array");
+    for (const Json& element : json) {
+      if constexpr (Time<Item>) {
+        if (!element.is_number_integer()) fail(name, "has an element that is not an integer");
+        items.push_back(from_ns<Item>(element.get<std::int64_t>()));
+      } else {
+        items.push_back(read_members<Item>(element));
+      }
+    }
   }
-  return parsed;
-}
 
-template <class Time>
-Time time(const StringMap& values, const std::string& name) {
-  return Time(Duration(number<std::int64_t>(values, name)));
-}
-
-std::string number_text(double number) {
-  std::string text;
-  append_json_number(text, number);
-  return text;
-}
-
-// A JSON array of what `append` writes for each item.
-template <class Item, class Append>
-std::string list_text(const std::vector<Item>& items, Append append) {
-  std::string text = "[";
-  for (const Item& item : items) {
-    text += text.size() > 1 ? "," : "";
-    append(text, item);
+  const std::string& text(const char* name) const {
+    const auto found = values_.find(name);
+    if (found == values_.end()) fail(name, "is missing");
+    return found->second;
   }
-  return text + "]";
-}
 
-template <class Item>
-std::vector<Item> list(const StringMap& values, const std::string& name,
-                       Item (*read)(const Json&)) {
-  const std::string& text = value(values, name);
-  const Json json = json_depth(text) > kMaxJsonDepth ? Json() : Json::parse(text, nullptr, false);
-  if (!json.is_array()) {
-    throw Damage("value \"" + name + "\" is no JSON array");
+ private:
+  [[noreturn]] static void fail(const char* name, const char* what) {
+    throw Damage("value", name, what);
   }
-  std::vector<Item> items;
-  for (const Json& element : json) {
-    items.push_back(read(element));
+
+  template <class Number>
+  Number number(const char* name) const {
+    const std::string& digits = text(name);
+    Number parsed{};
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), parsed);
+    if (error != std::errc() || end != digits.data() + digits.size())
+      fail(name, "is not a number in range");
+    return parsed;
   }
-  return items;
-}
 
-void append_sut(std::string& out, const SutInfo& sut) {
-  JsonObject object(out);
-  object.text("uav", sut.uav);
-  object.text("sut", sut.sut);
-  object.text("clock", sut.clock);
-  object.number("cpu_factor", sut.cpu_factor);
-  object.integer("command_latency_ns", to_ns(sut.command_latency));
-  if (sut.concurrent) {
-    object.boolean("concurrent", true);
-  }
-  if (sut.cores > 0) {
-    object.integer("cores", sut.cores);
-  }
-  object.close();
-}
-
-int cores_member(const Json& json) {
-  constexpr std::int64_t kMost = 1024;
-  const std::int64_t cores = integer_member(json, "cores");
-  if (cores < 1 || cores > kMost) {
-    throw Damage("\"cores\" is " + std::to_string(cores) + ", not from 1 to 1024");
-  }
-  return static_cast<int>(cores);
-}
-
-SutInfo read_sut(const Json& json) {
-  return {.uav = text_member(json, "uav"),
-          .sut = text_member(json, "sut"),
-          .clock = text_member(json, "clock"),
-          .cpu_factor = number_member(json, "cpu_factor"),
-          .command_latency = time_member<Duration>(json, "command_latency_ns"),
-          .concurrent = json.contains("concurrent") && boolean_member(json, "concurrent"),
-          .cores = json.contains("cores") ? cores_member(json) : 0};
-}
-
-void append_camera(JsonObject& sensor, const CameraInfo& camera) {
-  JsonObject object = sensor.object("camera");
-  object.numbers("p_BS_m", camera.p_BS_m);
-  object.numbers("q_BS", camera.q_BS);
-  object.integer("width_px", camera.width_px);
-  object.integer("height_px", camera.height_px);
-  for (const auto& [name, member] : kCameraNumbers) object.number(name, camera.*member);
-  object.close();
-}
-
-int image_side(const Json& json, const char* name) {
-  constexpr std::int64_t kLargest = 100'000;
-  const std::int64_t side_px = integer_member(json, name);
-  if (side_px < 1 || side_px > kLargest) {
-    throw Damage("member \"" + std::string(name) + "\" is no size of an image");
-  }
-  return static_cast<int>(side_px);
-}
-
-CameraInfo read_camera(const Json& json) {
-  CameraInfo camera;
-  numbers_member(json, "p_BS_m", camera.p_BS_m);
-  numbers_member(json, "q_BS", camera.q_BS);
-  camera.width_px = image_side(json, "width_px");
-  camera.height_px = image_side(json, "height_px");
-  for (const auto& [name, member] : kCameraNumbers) camera.*member = number_member(json, name);
-  if (!(camera.fx_px > 0.0) || !(camera.fy_px > 0.0)) {
-    throw Damage("a camera's focal length is not positive");
-  }
-  return camera;
-}
-
-void append_sensor(std::string& out, const SensorInfo& sensor) {
-  JsonObject object(out);
-  object.text("uav", sensor.uav);
-  object.text("name", sensor.name);
-  object.text("kind", sensor.kind);
-  object.boolean("periodic", sensor.periodic);
-  object.integer("period_ns", to_ns(sensor.period));
-  object.integer("phase_ns", to_ns(sensor.phase));
-  object.integer("delay_min_ns", to_ns(sensor.delay_min));
-  object.integer("delay_max_ns", to_ns(sensor.delay_max));
-  if (sensor.camera) {
-    append_camera(object, *sensor.camera);
-  }
-  object.close();
-}
-
-// A record need not bound the delay, nor describe its cameras.
-SensorInfo read_sensor(const Json& json) {
-  SensorInfo sensor;
-  sensor.uav = text_member(json, "uav");
-  sensor.name = text_member(json, "name");
-  sensor.kind = text_member(json, "kind");
-  sensor.periodic = boolean_member(json, "periodic");
-  sensor.period = time_member<Duration>(json, "period_ns");
-  sensor.phase = time_member<Duration>(json, "phase_ns");
-  sensor.delay_min =
-      optional_time_member<Duration>(json, "delay_min_ns").value_or(sensor.delay_min);
-  sensor.delay_max =
-      optional_time_member<Duration>(json, "delay_max_ns").value_or(sensor.delay_max);
-  if (json.contains("camera")) {
-    sensor.camera = read_camera(member(json, "camera"));
-  }
-  return sensor;
-}
-
-void append_anchor(std::string& out, const Anchor& anchor) {
-  JsonObject object(out);
-  object.text("name", anchor.name);
-  object.text("shape", anchor.shape);
-  object.numbers("size_m", anchor.size_m);
-  object.numbers("p_WA_m", anchor.p_WA_m);
-  object.numbers("q_WA", anchor.q_WA);
-  object.close();
-}
-
-Anchor read_anchor(const Json& json) {
-  Anchor anchor;
-  anchor.name = text_member(json, "name");
-  anchor.shape = text_member(json, "shape");
-  numbers_member(json, "size_m", anchor.size_m);
-  numbers_member(json, "p_WA_m", anchor.p_WA_m);
-  numbers_member(json, "q_WA", anchor.q_WA);
-  return anchor;
-}
-
-ExecTime read_exec_time(const Json& json) {
-  if (!json.is_number_integer()) {
-    throw Damage("a time in \"et_at_end_ns\" is no integer");
-  }
-  return from_ns<ExecTime>(json.get<std::int64_t>());
-}
+  const StringMap& values_;
+};
 
 constexpr std::string_view kReading = "target/";
 
@@ -223,98 +126,44 @@ Readings readings(const StringMap& values) {
 }  // namespace
 
 StringMap to_metadata(const Header& header) {
-  StringMap values = {
-      {"schema_version", std::to_string(header.schema_version)},
-      {"tether_version", to_utf8(header.tether_version)},
-      {"scenario", to_utf8(header.scenario)},
-      {"condition", to_utf8(header.condition)},
-      {"policy", to_utf8(header.policy)},
-      {"simulator", to_utf8(header.simulator)},
-      {"machine", to_utf8(header.machine)},
-      {"seed", std::to_string(header.seed)},
-      {"step_ns", std::to_string(to_ns(header.step))},
-      {"ground_truth_period_ns", std::to_string(to_ns(header.ground_truth_period))},
-      {"real_time_factor", number_text(header.real_time_factor)},
-      {"suts", list_text(header.suts, append_sut)},
-      {"sensors", list_text(header.sensors, append_sensor)},
-      {"anchors", list_text(header.anchors, append_anchor)},
-  };
-  if (header.wall_at_start != WallTime{})
-    values["wall_at_start_ns"] = std::to_string(to_ns(header.wall_at_start));
+  StringMap values;
+  MetadataWriter writer(values);
+  members(writer, header);
   if (header.target) {
-    values["target_name"] = to_utf8(header.target->name);
-    values["target_address"] = to_utf8(header.target->address);
+    writer("target_name", header.target->name);
+    writer("target_address", header.target->address);
     add_readings(values, header.target->before);
   }
   return values;
 }
 
 int schema_version(const StringMap& values) {
-  return number<int>(values, "schema_version");
+  int version = 0;
+  MetadataReader{values}("schema_version", version);
+  return version;
 }
 
 Header header_from_metadata(const StringMap& values) {
   Header header;
-  header.schema_version = schema_version(values);
-  header.tether_version = value(values, "tether_version");
-  header.scenario = value(values, "scenario");
-  header.condition = value(values, "condition");
-  header.policy = value(values, "policy");
-  header.simulator = value(values, "simulator");
-  header.machine = value(values, "machine");
-  header.seed = number<std::uint64_t>(values, "seed");
-  header.step = time<Duration>(values, "step_ns");
-  header.ground_truth_period = time<Duration>(values, "ground_truth_period_ns");
-  header.real_time_factor = number<double>(values, "real_time_factor");
-  header.suts = list(values, "suts", read_sut);
-  header.sensors = list(values, "sensors", read_sensor);
-  header.anchors = list(values, "anchors", read_anchor);
-  if (values.contains("wall_at_start_ns"))
-    header.wall_at_start = time<WallTime>(values, "wall_at_start_ns");
-  if (values.contains("target_name")) {
-    header.target = {value(values, "target_name"), value(values, "target_address"),
-                     readings(values)};
-  }
+  const MetadataReader reader(values);
+  members(reader, header);
+  if (values.contains("target_name"))
+    header.target = {reader.text("target_name"), reader.text("target_address"), readings(values)};
   return header;
 }
 
 StringMap to_metadata(const Footer& footer) {
-  StringMap values{
-      {"end", to_utf8(footer.end)},
-      {"reason", to_utf8(footer.reason)},
-      {"st_at_end_ns", std::to_string(to_ns(footer.st_at_end))},
-      {"et_at_end_ns",
-       list_text(footer.et_at_end,
-                 [](std::string& out, ExecTime et) { append_json_integer(out, to_ns(et)); })},
-      {"wall_ns", std::to_string(to_ns(footer.wall))},
-      {"interactions", std::to_string(footer.interactions)},
-      {"causality_violations", std::to_string(footer.causality_violations)},
-      {"largest_lag_ns", std::to_string(to_ns(footer.largest_lag))},
-      {"largest_grid_error_ns", std::to_string(to_ns(footer.largest_grid_error))},
-  };
-  if (footer.stops > 0) {
-    values["stops"] = std::to_string(footer.stops);
-    values["largest_overshoot_ns"] = std::to_string(to_ns(footer.largest_overshoot));
-  }
+  StringMap values;
+  MetadataWriter writer(values);
+  members(writer, footer);
   add_readings(values, footer.target_after);
   return values;
 }
 
 Footer footer_from_metadata(const StringMap& values) {
   Footer footer;
-  footer.end = value(values, "end");
-  footer.reason = value(values, "reason");
-  footer.st_at_end = time<SimTime>(values, "st_at_end_ns");
-  footer.et_at_end = list(values, "et_at_end_ns", read_exec_time);
-  footer.wall = time<Duration>(values, "wall_ns");
-  footer.interactions = number<std::uint64_t>(values, "interactions");
-  footer.causality_violations = number<std::uint64_t>(values, "causality_violations");
-  footer.largest_lag = time<Duration>(values, "largest_lag_ns");
-  footer.largest_grid_error = time<Duration>(values, "largest_grid_error_ns");
-  if (values.contains("stops")) {
-    footer.stops = number<std::uint64_t>(values, "stops");
-    footer.largest_overshoot = time<Duration>(values, "largest_overshoot_ns");
-  }
+  const MetadataReader reader(values);
+  members(reader, footer);
   footer.target_after = readings(values);
   return footer;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+// JSON and base64 as text. Strings are copied by runs of plain characters; everything else goes
+// through append_escaped (ASCII) or take_multibyte (UTF-8, where malformed bytes are replaced).
 namespace tether::record {
 namespace {
 
@@ -15,19 +17,15 @@ bool is_continuation(std::string_view text, std::size_t at) {
   return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
 }
 
-// Length of the UTF-8 sequence at the front of `text` that is no ASCII; 0 when it is malformed (RFC
-// 3629).
+// Length of the UTF-8 sequence at the front of `text`, which is not ASCII; 0 if it is malformed
+// (RFC 3629).
 std::size_t utf8_sequence(std::string_view text) {
   const auto lead = static_cast<unsigned char>(text[0]);
   const auto second = static_cast<unsigned char>(text.size() > 1 ? text[1] : '\0');
   const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-  if (lead < 0xC2 || lead > 0xF4) {
-    return 0;
-  }
+  if (lead < 0xC2 || lead > 0xF4) return 0;
   for (std::size_t i = 1; i < length; ++i) {
-    if (!is_continuation(text, i)) {
-      return 0;
-    }
+    if (!is_continuation(text, i)) return 0;
   }
   const bool overlong = (lead == 0xE0 && second < 0xA0) || (lead == 0xF0 && second < 0x90);
   const bool surrogate = lead == 0xED && second >= 0xA0;
@@ -37,20 +35,13 @@ std::size_t utf8_sequence(std::string_view text) {
 
 void append_escaped(std::string& out, unsigned char byte) {
   constexpr std::string_view kHex = "0123456789abcdef";
-  switch (byte) {
-    case '"':
-      out += "\\\"";
-      break;
-    case '\\':
-      out += "\\\\";
-      break;
-    case '\n':
-      out += "\\n";
-      break;
-    default:
-      out += "\\u00";
-      out += kHex[byte >> 4];
-      out += kHex[byte & 0xF];
+  if (byte == '"' || byte == '\\' || byte == '\n') {
+    out += '\\';
+    out += byte == '\n' ? 'n' : static_cast<char>(byte);
+  } else {
+    out += "\\u00";
+    out += kHex[byte >> 4];
+    out += kHex[byte & 0xF];
   }
 }
 
@@ -86,9 +77,7 @@ void append_json_string(std::string& out, std::string_view text) {
     }
     out += text.substr(0, plain);
     text.remove_prefix(plain);
-    if (text.empty()) {
-      break;
-    }
+    if (text.empty()) break;
     const auto byte = static_cast<unsigned char>(text[0]);
     if (byte < 0x80) {
       append_escaped(out, byte);
@@ -153,18 +142,14 @@ void append_base64(std::string& out, std::span<const std::uint8_t> bytes) {
 }
 
 bool decode_base64(std::string_view text, std::vector<std::uint8_t>& out) {
-  if (text.size() % 4 != 0) {
-    return false;
-  }
+  if (text.size() % 4 != 0) return false;
   const std::size_t padding = text.ends_with("==") ? 2 : text.ends_with("=") ? 1 : 0;
   out.reserve(out.size() + text.size() / 4 * 3);
   unsigned group = 0;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const bool pad = i >= text.size() - padding;
     const int value = pad ? 0 : kBase64Values[static_cast<unsigned char>(text[i])];
-    if (value < 0) {
-      return false;
-    }
+    if (value < 0) return false;
     group = group << 6 | static_cast<unsigned>(value);
     if (i % 4 == 3) {
       out.push_back(static_cast<std::uint8_t>(group >> 16 & 255));

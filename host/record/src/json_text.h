@@ -14,7 +14,7 @@ namespace tether::record {
 
 /// A quoted JSON string. Bytes that are not UTF-8 become U+FFFD.
 void append_json_string(std::string& out, std::string_view text);
-/// The same text with every byte that is not UTF-8 as U+FFFD.
+/// The text with each byte that is not UTF-8 replaced by U+FFFD.
 std::string to_utf8(std::string_view text);
 /// The shortest text that reads back as the same double; `null` when it is not finite.
 void append_json_number(std::string& out, double value);
@@ -61,9 +61,7 @@ class JsonObject {
   }
   /// Starts a member; its value is appended by the caller.
   std::string& begin(std::string_view name) {
-    if (!first_) {
-      out_ += ',';
-    }
+    if (!first_) out_ += ',';
     first_ = false;
     out_ += '"';
     out_ += name;
@@ -79,7 +77,7 @@ class JsonObject {
 
 /// Base64 (RFC 4648, with padding).
 void append_base64(std::string& out, std::span<const std::uint8_t> bytes);
-/// Appends what `text` stands for; false when it is not base64.
+/// Appends the decoded bytes; false if `text` is not base64.
 bool decode_base64(std::string_view text, std::vector<std::uint8_t>& out);
 
 }  // namespace tether::record

@@ -14,6 +14,10 @@
 #include <tether/base/error.h>
 #include <tether/base/printable.h>
 
+// Reads an MCAP file (https://mcap.dev/spec) from front to back, without its indices. InputFile
+// counts bytes and sums CRCs; Decompressor unpacks one chunk at a time; McapReader walks over the
+// records and hands channels, messages and metadata to the visitor. All of them throw Damage at the
+// first byte that is wrong, and McapReader::read adds the place.
 namespace tether::record {
 namespace {
 
@@ -34,7 +38,7 @@ class InputFile {
  public:
   explicit InputFile(const std::filesystem::path& path) {
     std::error_code error;
-    // Asked first: to open a pipe would wait for somebody to write into it.
+    // First, because opening a pipe blocks until somebody writes to it.
     if (std::filesystem::is_regular_file(path, error)) {
       stream_.open(path, std::ios::binary);
       size_ = std::filesystem::file_size(path, error);
@@ -42,7 +46,7 @@ class InputFile {
     if (!stream_.is_open() || error) {
       require_a_handle_for(path.string());
       throw Error(ErrorCode::kBadFile, FileLocation{path.string(), 0},
-                  "cannot read this record; give the record.mcap of a run");
+                  "cannot read this record. Give the record.mcap of a run");
     }
   }
 
@@ -56,15 +60,12 @@ class InputFile {
 
   // Replaces `out` by the next `length` bytes. Nothing is allocated for bytes that are not there.
   void read(std::string& out, std::uint64_t length) {
-    if (length > left()) {
-      throw Damage("the file ends too early (" + std::to_string(left()) + " of " +
-                   std::to_string(length) + " bytes are there)");
-    }
+    if (length > left())
+      throw Damage("the file is truncated (" + std::to_string(left()) + " of " +
+                   std::to_string(length) + " bytes)");
     out.resize(static_cast<std::size_t>(length));
     stream_.read(out.data(), static_cast<std::streamsize>(length));
-    if (!stream_) {
-      throw Damage("the file cannot be read any further");
-    }
+    if (!stream_) throw Damage("the rest of the file cannot be read");
     position_ += length;
     crc_ = crc32(out, crc_);
   }
@@ -76,7 +77,7 @@ class InputFile {
   std::uint32_t crc_ = 0;
 };
 
-// Unpacks zstd in steps, so that a lie about the size costs at most one step.
+// Unpacks zstd in steps, so that a wrong size costs at most one step.
 class Decompressor {
  public:
   std::string_view unpack(std::string_view packed, std::uint64_t size) {
@@ -92,14 +93,12 @@ class Decompressor {
       ZSTD_outBuffer output{output_.data(), output_.size(), written};
       const std::size_t before = input.pos;
       hint = ZSTD_decompressStream(context_.get(), &output, &input);
-      if (ZSTD_isError(hint) || (hint != 0 && output.pos == written && input.pos == before)) {
-        throw Damage("the chunk's compressed data is damaged");
-      }
+      if (ZSTD_isError(hint) || (hint != 0 && output.pos == written && input.pos == before))
+        throw Damage("the compressed data of a chunk is damaged");
       written = output.pos;
     }
-    if (written != size || input.pos != packed.size()) {
-      throw Damage("the chunk's size is not what it says");
-    }
+    if (written != size || input.pos != packed.size())
+      throw Damage("the size of a chunk differs from its header");
     return std::string_view(output_).substr(0, written);
   }
 
@@ -113,9 +112,7 @@ class Decompressor {
 
 std::string_view name_field(FieldReader& fields) {
   const std::string_view name = fields.string();
-  if (name.size() > kMaxNameBytes) {
-    throw Damage("a name is too long");
-  }
+  if (name.size() > kMaxNameBytes) throw Damage("a name is too long");
   return name;
 }
 
@@ -127,7 +124,7 @@ class McapReader {
     file_.read(magic, std::min<std::uint64_t>(kMagic.size(), file_.left()));
     if (magic != kMagic) {
       throw Error(ErrorCode::kBadFile, FileLocation{path.string(), 0},
-                  "not an MCAP file; give the record.mcap of a run");
+                  "not an MCAP file. Give the record.mcap of a run");
     }
   }
 
@@ -158,14 +155,10 @@ class McapReader {
       const RawRecord record = next_record();
       if (record.opcode == Opcode::kDataEnd) {
         const std::uint32_t crc = FieldReader(record.content).u32();
-        if (crc != 0 && crc != crc_before) {
-          throw Damage("CRC mismatch of the data section");
-        }
+        if (crc != 0 && crc != crc_before) throw Damage("CRC mismatch of the data section");
         return;
       }
-      if (record.opcode == Opcode::kFooter) {
-        throw Damage("the data section has no end");
-      }
+      if (record.opcode == Opcode::kFooter) throw Damage("the data section has no end");
       data_record(record);
     }
   }
@@ -181,8 +174,8 @@ class McapReader {
     }
   }
 
-  // A record that may be in a chunk or outside. Others (indices, attachments, later inventions) are
-  // passed over.
+  // A record that may be inside or outside a chunk. Others (indices, attachments, those of later
+  // versions) are skipped.
   void chunk_record(const RawRecord& record) {
     FieldReader fields(record.content);
     if (record.opcode == Opcode::kSchema) {
@@ -203,9 +196,7 @@ class McapReader {
     channel.message_encoding = name_field(fields);
     if (schema != 0) {
       const auto found = schemas_.find(schema);
-      if (found == schemas_.end()) {
-        throw Damage("a channel has an unknown schema");
-      }
+      if (found == schemas_.end()) throw Damage("a channel has an unknown schema");
       channel.schema_name = found->second;
     }
     known_channels_[channel.id] = true;
@@ -219,9 +210,7 @@ class McapReader {
     message.log_time_ns = fields.u64();
     message.publish_time_ns = fields.u64();
     message.data = fields.all();
-    if (!known_channels_[message.channel]) {
-      throw Damage("a message has an unknown channel");
-    }
+    if (!known_channels_[message.channel]) throw Damage("a message has an unknown channel");
     visitor_.message(message);
   }
 
@@ -243,9 +232,7 @@ class McapReader {
     const std::string_view compression = fields.string();
     const std::string_view packed = fields.bytes(fields.u64());
     const std::string_view records = unpack(compression, packed, size);
-    if (crc != 0 && crc != crc32(records)) {
-      throw Damage("CRC mismatch of a chunk");
-    }
+    if (crc != 0 && crc != crc32(records)) throw Damage("CRC mismatch of a chunk");
     read_chunk(records);
   }
 
@@ -253,19 +240,13 @@ class McapReader {
                           std::uint64_t size) {
     unpacked_bytes_ += std::min(size, kMaxChunkBytes);
     if (size > kMaxChunkBytes ||
-        unpacked_bytes_ > kUnpackAllowance + kMaxUnpackRatio * file_.size()) {
-      throw Damage("a chunk unpacks to more than a record holds");
-    }
-    if (compression == "zstd") {
-      return decompressor_.unpack(packed, size);
-    }
-    if (!compression.empty()) {
-      throw Damage("a chunk is compressed as \"" + std::string(compression.substr(0, 32)) +
-                   "\", not with zstd");
-    }
-    if (packed.size() != size) {
-      throw Damage("the chunk's size is not what it says");
-    }
+        unpacked_bytes_ > kUnpackAllowance + kMaxUnpackRatio * file_.size())
+      throw Damage("a chunk unpacks to more than the size limit");
+    if (compression == "zstd") return decompressor_.unpack(packed, size);
+    if (!compression.empty())
+      throw Damage("a chunk is compressed with \"" + std::string(compression.substr(0, 32)) +
+                   "\". Only zstd is supported");
+    if (packed.size() != size) throw Damage("the size of a chunk differs from its header");
     return packed;
   }
 
@@ -275,14 +256,12 @@ class McapReader {
       RawRecord record;
       record.opcode = static_cast<Opcode>(chunk.u8());
       record.content = chunk.bytes(chunk.u64());
-      if (record.opcode == Opcode::kChunk) {
-        throw Damage("a chunk lies in a chunk");
-      }
+      if (record.opcode == Opcode::kChunk) throw Damage("a chunk contains a chunk");
       chunk_record(record);
     }
   }
 
-  // Only to know that the file is whole: everything in the summary was read before.
+  // Only to check that the file is complete: all of the summary was read before.
   void read_summary() {
     file_.restart_crc();
     while (true) {
@@ -297,23 +276,18 @@ class McapReader {
   }
 
   void footer(std::string_view content, std::uint32_t crc_before) {
-    if (content.size() != 20) {
-      throw Damage("the footer's length is wrong");
-    }
+    if (content.size() != 20) throw Damage("the footer's length is wrong");
     std::string covered;
     append_u8(covered, static_cast<std::uint8_t>(Opcode::kFooter));
     append_u64(covered, content.size());
     covered += content.substr(0, 16);
     const std::uint32_t crc = FieldReader(content.substr(16)).u32();
-    if (crc != 0 && crc != crc32(covered, crc_before)) {
-      throw Damage("CRC mismatch of the summary");
-    }
+    if (crc != 0 && crc != crc32(covered, crc_before)) throw Damage("CRC mismatch of the summary");
     record_start_ = file_.position();
     std::string magic;
     file_.read(magic, kMagic.size());
-    if (magic != kMagic || !file_.at_end()) {
-      throw Damage("the file does not end as an MCAP file does");
-    }
+    if (magic != kMagic || !file_.at_end())
+      throw Damage("the file does not end with MCAP's magic bytes");
   }
 
   InputFile file_;

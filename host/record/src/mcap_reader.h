@@ -9,7 +9,7 @@
 
 namespace tether::record {
 
-/// What a record says of a channel.
+/// A channel of a file.
 struct McapChannel {
   std::uint16_t id = 0;
   std::string_view topic;
@@ -26,7 +26,7 @@ struct McapMessage {
   std::string_view data;
 };
 
-/// Gets the data section of an MCAP file, front to back. May throw `Damage` to stop: what it says
+/// Gets the data section of an MCAP file, front to back. It may throw `Damage` to stop: the message
 /// is reported with the place in the file.
 class McapVisitor {
  public:
@@ -36,8 +36,8 @@ class McapVisitor {
   virtual void metadata(std::string_view name, const StringMap& values) = 0;
 };
 
-/// Reads an MCAP file without using its indices, checking every length and CRC, and stops at the
-/// first damage. Returns where and what that is; empty when the file is whole.
+/// Reads an MCAP file without using its indices, checks every length and CRC, and stops at the
+/// first damage. Returns its place and kind; empty if the file is complete.
 /// @throws Error(kBadFile) when the file cannot be opened or does not begin as an MCAP file.
 std::string read_mcap(const std::filesystem::path& file, McapVisitor& visitor);
 

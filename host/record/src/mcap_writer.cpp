@@ -8,6 +8,9 @@
 
 #include <tether/base/error.h>
 
+// Messages and their schemas and channels are collected in `chunk_`. `flush` compresses it, writes
+// it with one index per channel, and starts a new one. Along the way the writer keeps what the
+// summary repeats at the end: schemas, channels, indices of chunks and metadata, and counts.
 namespace tether::record {
 namespace {
 
@@ -89,9 +92,7 @@ std::uint16_t McapWriter::add_channel(std::string_view topic, std::uint16_t sche
 }
 
 std::string& McapWriter::begin_message(std::uint16_t channel, std::uint64_t log_time_ns) {
-  if (!chunk_times_.empty && log_time_ns >= chunk_times_.first + limits_.span_ns) {
-    flush();
-  }
+  if (!chunk_times_.empty && log_time_ns >= chunk_times_.first + limits_.span_ns) flush();
   ChannelState& state = channel_states_[channel - 1U];
   state.index.push_back({log_time_ns, chunk_.size()});
   chunk_times_.include(log_time_ns);
@@ -111,9 +112,7 @@ void McapWriter::end_message() {
   patch_u64(chunk_, open_message_ + 1, chunk_.size() - open_message_ - kRecordPrefixBytes);
   ++channel_states_[open_channel_ - 1U].messages;
   ++message_count_;
-  if (chunk_.size() >= limits_.bytes) {
-    flush();
-  }
+  if (chunk_.size() >= limits_.bytes) flush();
 }
 
 void McapWriter::add_metadata(std::string_view name, const StringMap& values) {
@@ -137,9 +136,7 @@ void McapWriter::add_metadata(std::string_view name, const StringMap& values) {
 }
 
 void McapWriter::flush() {
-  if (chunk_.empty() || file_.failed()) {
-    return;
-  }
+  if (chunk_.empty() || file_.failed()) return;
   const std::string_view records = compressed_chunk();
   const std::uint64_t chunk_start = file_.position();
   write_chunk(records);
@@ -173,10 +170,9 @@ std::string_view McapWriter::compressed_chunk() {
   const std::size_t size =
       ZSTD_compressCCtx(compressor_->context.get(), output.data(), output.size(), chunk_.data(),
                         chunk_.size(), kCompressionLevel);
-  if (ZSTD_isError(size)) {
+  if (ZSTD_isError(size))
     throw Error(ErrorCode::kInternal,
                 std::string("zstd cannot compress a chunk: ") + ZSTD_getErrorName(size));
-  }
   return std::string_view(output).substr(0, size);
 }
 
@@ -201,9 +197,7 @@ std::map<std::uint16_t, std::uint64_t> McapWriter::write_message_indices() {
   std::string out;
   for (std::size_t i = 0; i < channel_states_.size(); ++i) {
     std::vector<IndexEntry>& index = channel_states_[i].index;
-    if (index.empty()) {
-      continue;
-    }
+    if (index.empty()) continue;
     const auto channel = static_cast<std::uint16_t>(i + 1);
     offsets[channel] = file_.position() + out.size();
     std::string content;
@@ -251,9 +245,7 @@ void McapWriter::write_summary() {
   std::string summary;
   std::string offsets;
   for (const auto& [opcode, records] : groups) {
-    if (records->empty()) {
-      continue;
-    }
+    if (records->empty()) continue;
     std::string content;
     append_u8(content, static_cast<std::uint8_t>(opcode));
     append_u64(content, start + summary.size());

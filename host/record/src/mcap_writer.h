@@ -21,11 +21,11 @@ struct ChunkLimits {
 };
 
 /// Writes an MCAP file: messages in zstd chunks with CRCs and message indices, metadata between
-/// them, summary and offsets at the end. Knows nothing of what the messages say. The same calls
+/// them, summary and offsets at the end. Knows nothing of the contents of messages. The same calls
 /// give the same bytes. Call order: channels after their schema, messages after their channel,
-/// `finish` last. Without `finish` (or after `flush` and a crash) the file is the front part of a
-/// valid one.
-/// @throws Error(kSetup) naming the file when it cannot be created or written. Not thread-safe.
+/// `finish` last. Without `finish` (or after `flush` and a crash) the file is the beginning of
+/// a valid one.
+/// @throws Error(kSetup) with the file if it cannot be created or written. Not thread-safe.
 class McapWriter {
  public:
   McapWriter(const std::filesystem::path& file, std::string_view library, ChunkLimits limits = {});
@@ -88,7 +88,7 @@ class McapWriter {
   std::string chunk_indices_;
   std::string metadata_indices_;
   std::uint16_t schema_count_ = 0;
-  std::vector<ChannelState> channel_states_;  ///< channel id − 1 is the place
+  std::vector<ChannelState> channel_states_;  ///< at channel id − 1
   TimeRange times_;
   std::uint64_t message_count_ = 0;
   std::uint32_t chunk_count_ = 0;

@@ -15,15 +15,11 @@ namespace tether::record {
 
 OutputFile::OutputFile(std::filesystem::path path) : path_(std::move(path)) {
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (descriptor_ < 0) {
-    fail("cannot create the record", errno);
-  }
+  if (descriptor_ < 0) fail("cannot create the record", errno);
 }
 
 OutputFile::~OutputFile() {
-  if (descriptor_ >= 0) {
-    ::close(descriptor_);
-  }
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void OutputFile::write(std::string_view bytes) {
@@ -39,7 +35,7 @@ void OutputFile::write(std::string_view bytes) {
   }
 }
 
-// A pipe or a device has nothing to flush and says EINVAL.
+// fsync fails with EINVAL on a pipe or a device, which have nothing to flush.
 void OutputFile::close() {
   const int descriptor = std::exchange(descriptor_, -1);
   if (descriptor < 0) return;
@@ -53,7 +49,7 @@ void OutputFile::fail(const char* what, int error_number) {
   failed_ = true;
   throw Error(ErrorCode::kSetup, FileLocation{path_.string(), 0},
               std::string(what) + ": " + std::generic_category().message(error_number) +
-                  "; choose another folder with --out, or make room");
+                  ". Choose another folder with --out, or free some space");
 }
 
 }  // namespace tether::record

@@ -6,9 +6,9 @@
 
 namespace tether::record {
 
-/// A file written from front to back, each write handed to the system at once, so that what was
-/// written outlives a killed process. Counts and sums (CRC-32) what it wrote.
-/// @throws Error(kSetup) naming the file when it cannot be created or written; nothing is written
+/// A file written from front to back, each write handed to the system at once, so that it
+/// survives a killed process. Counts and sums (CRC-32) the bytes.
+/// @throws Error(kSetup) with the file if it cannot be created or written; nothing is written
 /// after a failure.
 class OutputFile {
  public:
@@ -18,8 +18,8 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   void write(std::string_view bytes);
-  /// Flushes to the disk, so that what was written outlives a power cut as well, and reports what
-  /// only that or closing shows (a full network disk). Later calls do nothing.
+  /// Flushes to the disk, so that the file survives a power cut as well, and reports errors that
+  /// only this or closing shows (a full network disk). Later calls do nothing.
   void close();
 
   std::uint64_t position() const { return position_; }

@@ -19,7 +19,7 @@ namespace {
   throw Error(ErrorCode::kBadFile, FileLocation{file.string(), 0}, what);
 }
 
-// Sorts the messages of a record by what their schema says they are.
+// Sorts the messages of a file by their schemas.
 class RecordBuilder final : public McapVisitor {
  public:
   RecordBuilder(const std::filesystem::path& file, const ReadOptions& options)
@@ -32,13 +32,9 @@ class RecordBuilder final : public McapVisitor {
 
   void message(const McapMessage& message) override {
     const Appender append_to_topic = appenders_[message.channel];
-    if (append_to_topic == nullptr) {
-      return;
-    }
-    if (message.log_time_ns >
-        static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max())) {
+    if (append_to_topic == nullptr) return;
+    if (message.log_time_ns > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
       throw Damage("a log time is out of range");
-    }
     try {
       (this->*append_to_topic)(from_ns<SimTime>(static_cast<std::int64_t>(message.log_time_ns)),
                                message.data);
@@ -58,10 +54,9 @@ class RecordBuilder final : public McapVisitor {
   }
 
   Record finish(std::string damage) && {
-    if (!has_header_) {
-      fail(file_, "not a record of Tether's, or torn before its header's end" +
+    if (!has_header_)
+      fail(file_, "not a record of Tether, or truncated before the end of its header" +
                       (damage.empty() ? "" : " (" + damage + ")"));
-    }
     record_.damage = std::move(damage);
     return std::move(record_);
   }
@@ -70,25 +65,18 @@ class RecordBuilder final : public McapVisitor {
   using Appender = void (RecordBuilder::*)(SimTime, std::string_view);
 
   Appender appender(std::string_view schema) const {
-    if (schema == kInteractionSchema.name) {
+    if (schema == kInteractionSchema.name)
       return &RecordBuilder::append<&Record::interactions, interaction_from_json>;
-    }
-    if (schema == kCommandEffectSchema.name) {
+    if (schema == kCommandEffectSchema.name)
       return &RecordBuilder::append<&Record::commands, command_effect_from_json>;
-    }
-    if (schema == kGroundTruthSchema.name) {
+    if (schema == kGroundTruthSchema.name)
       return &RecordBuilder::append<&Record::ground_truth, ground_truth_from_json>;
-    }
-    if (schema == kAnnotationSchema.name) {
+    if (schema == kAnnotationSchema.name)
       return &RecordBuilder::append<&Record::annotations, annotation_from_json>;
-    }
-    if (schema == kStopSchema.name) {
-      return &RecordBuilder::append<&Record::stops, stop_from_json>;
-    }
-    if (schema == kCompressedImageSchema.name) {
+    if (schema == kStopSchema.name) return &RecordBuilder::append<&Record::stops, stop_from_json>;
+    if (schema == kCompressedImageSchema.name)
       return options_.images ? &RecordBuilder::append<&Record::images, image_from_json>
                              : &RecordBuilder::skip;
-    }
     return nullptr;
   }
 
@@ -99,11 +87,10 @@ class RecordBuilder final : public McapVisitor {
   void skip(SimTime, std::string_view) {}
 
   void read_header(const StringMap& values) {
-    if (schema_version(values) > kSchemaVersion) {
-      fail(file_, "written by a newer Tether (record schema " +
-                      std::to_string(schema_version(values)) + ", this one knows " +
-                      std::to_string(kSchemaVersion) + "); read it with that one");
-    }
+    if (schema_version(values) > kSchemaVersion)
+      fail(file_, "written by a newer version of Tether (record schema " +
+                      std::to_string(schema_version(values)) + ", this version reads up to " +
+                      std::to_string(kSchemaVersion) + "). Read it with that version");
     record_.header = header_from_metadata(values);
     has_header_ = true;
   }

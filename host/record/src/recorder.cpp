@@ -13,11 +13,11 @@
 namespace tether::record {
 namespace {
 
-// Fixed, so that equal runs give equal files; the version that wrote the record is in its header.
+// Fixed, so that equal runs give equal files. The version of Tether is in the header.
 constexpr std::string_view kLibrary = "tether";
 
-// Channels of one schema, one per topic, made when the first message comes. Looked up by the parts
-// of the topic, so that a message costs no concatenation.
+// Channels of one schema, one per topic, added with the first message. They are looked up by the
+// parts of the topic, so that a message needs no concatenation.
 class Channels {
  public:
   Channels(McapWriter& mcap, const Schema& schema) : mcap_(mcap), schema_(schema) {}
@@ -26,18 +26,14 @@ class Channels {
     const auto of_uav = ids_.find(uav);
     if (of_uav != ids_.end()) {
       const auto found = of_uav->second.find(sensor);
-      if (found != of_uav->second.end()) {
-        return found->second;
-      }
+      if (found != of_uav->second.end()) return found->second;
     }
     return add(prefix, uav, sensor);
   }
 
  private:
   std::uint16_t add(std::string_view prefix, std::string_view uav, std::string_view sensor) {
-    if (schema_id_ == 0) {
-      schema_id_ = mcap_.add_schema(schema_.name, "jsonschema", schema_.json);
-    }
+    if (schema_id_ == 0) schema_id_ = mcap_.add_schema(schema_.name, "jsonschema", schema_.json);
     std::string topic(prefix);
     for (const std::string_view part : {uav, sensor}) {
       topic += part.empty() ? "" : "/" + to_utf8(part);
@@ -58,12 +54,10 @@ class McapRecorder final : public Recorder {
  public:
   explicit McapRecorder(const std::filesystem::path& file) : mcap_(file, kLibrary) {}
 
-  // A run that broke off: what there is goes to the file; a second failure would say nothing new.
+  // The run was interrupted: writes the last chunk. A second failure would add no information.
   ~McapRecorder() override {
     try {
-      if (!finished_) {
-        mcap_.flush();
-      }
+      if (!finished_) mcap_.flush();
     } catch (const Error&) {
     }
   }

@@ -46,7 +46,7 @@ TEST(JsonText, EveryByteStringBecomesValidJson) {
   }
 }
 
-TEST(JsonText, KeepsUtf8AndReplacesWhatIsNot) {
+TEST(JsonText, KeepsUtf8AndReplacesOtherBytes) {
   for (const char* valid : {"é", "€", "😀", "\xF4\x8F\xBF\xBF", "\xED\x9F\xBF"}) {
     EXPECT_EQ(to_utf8(valid), valid);
   }
@@ -95,18 +95,12 @@ TEST(JsonText, Base64RoundTripsEveryLength) {
   }
 }
 
-TEST(JsonText, Base64OfKnownText) {
-  const std::string_view input = "foobar";
-  std::string text;
-  append_base64(text, std::vector<std::uint8_t>(input.begin(), input.end() - 2));
-  EXPECT_EQ(text, "Zm9vYg==");  // RFC 4648, section 10
-}
-
-TEST(JsonText, RefusesWhatIsNotBase64) {
+TEST(JsonText, RejectsWhatIsNotBase64) {
   std::vector<std::uint8_t> out;
-  for (const char* text : {"a", "ab", "abc", "a b=", "ab=c", "====", "=abc"}) {
+  for (const char* text : {"a", "ab", "abc", "a b=", "ab=c", "====", "=abc"})
     EXPECT_FALSE(decode_base64(text, out)) << text;
-  }
+  ASSERT_TRUE(decode_base64("Zm9vYg==", out));  // RFC 4648, section 10
+  EXPECT_EQ(std::string(out.begin(), out.end()), "foob");
 }
 
 }  // namespace

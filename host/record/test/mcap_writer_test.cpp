@@ -1,9 +1,11 @@
 #include "mcap_writer.h"
 
-#include "bytes.h"
 #include "mcap_reader.h"
+#include "raw_records.h"
 #include "sample_messages.h"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -12,31 +14,10 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/base/error.h>
+#include <tether/base_testing/thrown_error.h>
 
 namespace tether::record {
 namespace {
-
-struct Raw {
-  std::uint64_t offset;
-  Opcode opcode;
-  std::string_view content;
-};
-
-// All records of a file that is whole, top level only.
-std::vector<Raw> raw_records(std::string_view file) {
-  EXPECT_TRUE(file.starts_with(kMagic) && file.ends_with(kMagic));
-  std::vector<Raw> records;
-  std::size_t at = kMagic.size();
-  while (at < file.size() - kMagic.size()) {
-    FieldReader fields(file.substr(at));
-    const auto opcode = static_cast<Opcode>(fields.u8());
-    const std::string_view content = fields.bytes(fields.u64());
-    records.push_back({at, opcode, content});
-    at += kRecordPrefixBytes + content.size();
-  }
-  return records;
-}
 
 class Collector : public McapVisitor {
  public:
@@ -94,53 +75,31 @@ TEST(McapWriter, ReadsBack) {
   EXPECT_EQ(collector.all_metadata[0].second, (StringMap{{"a", "1"}, {"b", ""}}));
 }
 
-TEST(McapWriter, ChunkEverySecondOfLogTime) {
-  const TemporaryFile file;
-  write_file(file.path(), 250);
-  int chunks = 0;
-  for (const Raw& record : raw_records(file.bytes())) {
-    chunks += record.opcode == Opcode::kChunk ? 1 : 0;
-  }
-  EXPECT_EQ(chunks, 3);  // [0, 1 s), [1 s, 2 s), [2 s, 2.49 s]
+std::vector<Raw> of_kind(const std::vector<Raw>& records, Opcode opcode) {
+  std::vector<Raw> found;
+  std::ranges::copy_if(records, std::back_inserter(found),
+                       [&](const Raw& record) { return record.opcode == opcode; });
+  return found;
 }
 
-TEST(McapWriter, ChunkWhenFull) {
-  const TemporaryFile file;
-  write_file(file.path(), 50, {.bytes = 400, .span_ns = 1'000'000'000'000});
-  std::uint64_t largest = 0;
-  int chunks = 0;
-  const std::string bytes = file.bytes();
-  for (const Raw& record : raw_records(bytes)) {
-    if (record.opcode == Opcode::kChunk) {
-      FieldReader fields(record.content);
-      fields.bytes(16);
-      largest = std::max(largest, fields.u64());
-      ++chunks;
-    }
-  }
-  EXPECT_GT(chunks, 5);
-  EXPECT_LT(largest, 400U + 60U);  // one message more than the limit at most
-}
+// Of 250 messages: chunks of [0, 1 s), [1 s, 2 s) and [2 s, 2.49 s].
+class McapFile : public testing::Test {
+ protected:
+  TemporaryFile file_;
+  const std::string bytes_ = (write_file(file_.path(), 250), file_.bytes());
+  const std::vector<Raw> records_ = raw_records(bytes_);
+};
 
-TEST(McapWriter, ChunkIndicesPointAtChunksAndMessageIndices) {
-  const TemporaryFile file;
-  write_file(file.path(), 250);
-  const std::string bytes = file.bytes();
-  const auto records = raw_records(bytes);
+TEST_F(McapFile, ChunkIndicesPointAtChunksAndMessageIndices) {
   std::map<std::uint64_t, Raw> by_offset;
-  for (const Raw& record : records) {
-    by_offset.emplace(record.offset, record);
-  }
-  int indices = 0;
-  for (const Raw& record : records) {
-    if (record.opcode != Opcode::kChunkIndex) {
-      continue;
-    }
-    ++indices;
+  for (const Raw& record : records_) by_offset.emplace(record.offset, record);
+  const std::vector<Raw> indices = of_kind(records_, Opcode::kChunkIndex);
+  EXPECT_EQ(indices.size(), 3U);
+  EXPECT_EQ(of_kind(records_, Opcode::kChunk).size(), 3U);
+  for (const Raw& record : indices) {
     FieldReader fields(record.content);
     const std::uint64_t first = fields.u64();
-    const std::uint64_t last = fields.u64();
-    EXPECT_LE(first, last);
+    EXPECT_LE(first, fields.u64());
     const Raw chunk = by_offset.at(fields.u64());
     EXPECT_EQ(chunk.opcode, Opcode::kChunk);
     EXPECT_EQ(fields.u64(), chunk.content.size() + kRecordPrefixBytes);
@@ -151,13 +110,74 @@ TEST(McapWriter, ChunkIndicesPointAtChunksAndMessageIndices) {
       const Raw index = by_offset.at(map.u64());
       EXPECT_EQ(index.opcode, Opcode::kMessageIndex);
       index_bytes += index.content.size() + kRecordPrefixBytes;
-      FieldReader entries(index.content);
-      EXPECT_EQ(entries.u16(), channel);
+      EXPECT_EQ(FieldReader(index.content).u16(), channel);
     }
     EXPECT_EQ(fields.u64(), index_bytes);
     EXPECT_EQ(fields.string(), "zstd");
   }
-  EXPECT_EQ(indices, 3);
+}
+
+TEST_F(McapFile, StatisticsCountEverything) {
+  const std::vector<Raw> found = of_kind(records_, Opcode::kStatistics);
+  ASSERT_EQ(found.size(), 1U);
+  FieldReader fields(found[0].content);
+  EXPECT_EQ(fields.u64(), 250U + 84U);
+  EXPECT_EQ(fields.u16(), 1U);  // schemas
+  EXPECT_EQ(fields.u32(), 2U);  // channels
+  EXPECT_EQ(fields.u32(), 0U);  // attachments
+  EXPECT_EQ(fields.u32(), 2U);  // metadata
+  EXPECT_EQ(fields.u32(), 3U);  // chunks
+  EXPECT_EQ(fields.u64(), 0U);
+  EXPECT_EQ(fields.u64(), 2'490'000'000U);
+  FieldReader counts(fields.string());
+  for (const auto& [channel, messages] : {std::pair(1U, 250U), std::pair(2U, 84U)}) {
+    EXPECT_EQ(counts.u16(), channel);
+    EXPECT_EQ(counts.u64(), messages);
+  }
+}
+
+TEST_F(McapFile, SummaryOffsetsNameTheGroups) {
+  const Raw& footer = records_.back();
+  ASSERT_EQ(footer.opcode, Opcode::kFooter);
+  std::uint64_t next_group = FieldReader(footer.content).u64();
+  std::set<Opcode> groups;
+  for (const Raw& record : of_kind(records_, Opcode::kSummaryOffset)) {
+    FieldReader fields(record.content);
+    groups.insert(static_cast<Opcode>(fields.u8()));
+    EXPECT_EQ(fields.u64(), next_group);
+    next_group += fields.u64();
+  }
+  EXPECT_EQ(groups, (std::set{Opcode::kSchema, Opcode::kChannel, Opcode::kChunkIndex,
+                              Opcode::kMetadataIndex, Opcode::kStatistics}));
+}
+
+TEST_F(McapFile, MetadataIndicesPointAtMetadata) {
+  std::vector<std::string> names;
+  for (const Raw& record : of_kind(records_, Opcode::kMetadataIndex)) {
+    FieldReader fields(record.content);
+    const std::uint64_t offset = fields.u64();
+    FieldReader target(std::string_view(bytes_).substr(offset, fields.u64()));
+    EXPECT_EQ(target.u8(), static_cast<std::uint8_t>(Opcode::kMetadata));
+    const std::uint64_t content_length = target.u64();
+    EXPECT_EQ(content_length, target.size());
+    names.emplace_back(target.string());
+    EXPECT_EQ(fields.string(), names.back());
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"first", "last"}));
+}
+
+TEST(McapWriter, WritesAChunkWhenItIsFull) {
+  const TemporaryFile file;
+  write_file(file.path(), 50, {.bytes = 400, .span_ns = 1'000'000'000'000});
+  const std::string bytes = file.bytes();
+  const auto records = raw_records(bytes);
+  const std::vector<Raw> chunks = of_kind(records, Opcode::kChunk);
+  EXPECT_GT(chunks.size(), 5U);
+  for (const Raw& chunk : chunks) {
+    FieldReader fields(chunk.content);
+    fields.bytes(16);
+    EXPECT_LT(fields.u64(), 400U + 60U);  // one message more than the limit at most
+  }
 }
 
 TEST(McapWriter, MessageIndexPointsAtMessages) {
@@ -166,123 +186,25 @@ TEST(McapWriter, MessageIndexPointsAtMessages) {
   write_file(file.path(), 5);
   const std::string bytes = file.bytes();
   int entries = 0;
-  for (const Raw& record : raw_records(bytes)) {
-    if (record.opcode == Opcode::kMessageIndex) {
-      FieldReader fields(record.content);
-      const std::uint16_t channel = fields.u16();
-      FieldReader list(fields.string());
-      for (std::uint64_t previous = 0; !list.empty(); ++entries) {
-        EXPECT_EQ(list.u64() % (channel == 1 ? 10'000'000U : 30'000'000U), 0U);
-        const std::uint64_t offset = list.u64();
-        EXPECT_GT(offset, previous);
-        previous = offset;
-      }
+  for (const Raw& record : of_kind(raw_records(bytes), Opcode::kMessageIndex)) {
+    FieldReader fields(record.content);
+    const std::uint16_t channel = fields.u16();
+    FieldReader list(fields.string());
+    for (std::uint64_t previous = 0; !list.empty(); ++entries) {
+      EXPECT_EQ(list.u64() % (channel == 1 ? 10'000'000U : 30'000'000U), 0U);
+      const std::uint64_t offset = list.u64();
+      EXPECT_GT(offset, previous);
+      previous = offset;
     }
   }
   EXPECT_EQ(entries, 5 + 2);
 }
 
-TEST(McapWriter, StatisticsCountEverything) {
-  const TemporaryFile file;
-  write_file(file.path(), 250);
-  const std::string bytes = file.bytes();
-  int found = 0;
-  for (const Raw& record : raw_records(bytes)) {
-    if (record.opcode != Opcode::kStatistics) {
-      continue;
-    }
-    ++found;
-    FieldReader fields(record.content);
-    EXPECT_EQ(fields.u64(), 250U + 84U);
-    EXPECT_EQ(fields.u16(), 1U);  // schemas
-    EXPECT_EQ(fields.u32(), 2U);  // channels
-    EXPECT_EQ(fields.u32(), 0U);  // attachments
-    EXPECT_EQ(fields.u32(), 2U);  // metadata
-    EXPECT_EQ(fields.u32(), 3U);  // chunks
-    EXPECT_EQ(fields.u64(), 0U);
-    EXPECT_EQ(fields.u64(), 2'490'000'000U);
-    FieldReader counts(fields.string());
-    EXPECT_EQ(counts.u16(), 1U);
-    EXPECT_EQ(counts.u64(), 250U);
-    EXPECT_EQ(counts.u16(), 2U);
-    EXPECT_EQ(counts.u64(), 84U);
-  }
-  EXPECT_EQ(found, 1);
-}
-
-TEST(McapWriter, SummaryOffsetsNameTheGroups) {
-  const TemporaryFile file;
-  write_file(file.path(), 250);
-  const std::string bytes = file.bytes();
-  const auto records = raw_records(bytes);
-  const Raw& footer = records.back();
-  ASSERT_EQ(footer.opcode, Opcode::kFooter);
-  const std::uint64_t summary_start = FieldReader(footer.content).u64();
-
-  std::set<Opcode> groups;
-  std::uint64_t next_group = summary_start;
-  for (const Raw& record : records) {
-    if (record.opcode == Opcode::kSummaryOffset) {
-      FieldReader fields(record.content);
-      groups.insert(static_cast<Opcode>(fields.u8()));
-      EXPECT_EQ(fields.u64(), next_group);
-      next_group += fields.u64();
-    }
-  }
-  EXPECT_EQ(groups, (std::set{Opcode::kSchema, Opcode::kChannel, Opcode::kChunkIndex,
-                              Opcode::kMetadataIndex, Opcode::kStatistics}));
-}
-
-TEST(McapWriter, MetadataIndicesPointAtMetadata) {
-  const TemporaryFile file;
-  write_file(file.path(), 5);
-  const std::string bytes = file.bytes();
-  std::vector<std::string> names;
-  for (const Raw& record : raw_records(bytes)) {
-    if (record.opcode == Opcode::kMetadataIndex) {
-      FieldReader fields(record.content);
-      const std::uint64_t offset = fields.u64();
-      const std::uint64_t length = fields.u64();
-      FieldReader target(std::string_view(bytes).substr(offset, length));
-      EXPECT_EQ(target.u8(), static_cast<std::uint8_t>(Opcode::kMetadata));
-      const std::uint64_t content_length = target.u64();
-      EXPECT_EQ(content_length, target.size());
-      names.emplace_back(target.string());
-      EXPECT_EQ(fields.string(), names.back());
-    }
-  }
-  EXPECT_EQ(names, (std::vector<std::string>{"first", "last"}));
-}
-
-TEST(McapWriter, SameCallsSameBytes) {
-  const TemporaryFile one;
-  const TemporaryFile two;
-  write_file(one.path(), 300);
-  write_file(two.path(), 300);
-  EXPECT_EQ(one.bytes(), two.bytes());
-}
-
-TEST(McapWriter, NamesTheFileItCannotCreate) {
-  try {
-    McapWriter writer("/nonexistent/folder/record.mcap", "test");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kSetup);
-    EXPECT_NE(std::string(error.what()).find("/nonexistent/folder/record.mcap"), std::string::npos);
-  }
-}
-
-TEST(McapWriter, NamesTheFileWhenTheDiskIsFull) {
-  if (!std::filesystem::exists("/dev/full")) {
-    GTEST_SKIP() << "no /dev/full here";
-  }
-  try {
-    McapWriter writer("/dev/full", "test");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kSetup);
-    EXPECT_NE(std::string(error.what()).find("/dev/full"), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("No space left"), std::string::npos);
+// /dev/full refuses every write.
+TEST(McapWriter, NamesTheFileThatItCannotWrite) {
+  for (const char* path : {"/nonexistent/folder/record.mcap", "/dev/full"}) {
+    const Error error = thrown_error(ErrorCode::kSetup, [&] { McapWriter(path, "test"); });
+    EXPECT_EQ(error.where().file, path);
   }
 }
 

@@ -17,7 +17,7 @@ int flushes = 0;
 
 }  // namespace
 
-// Stands in for the C library's, to count.
+// Replaces the function of the C library, to count calls.
 extern "C" int fsync(int descriptor) {
   ++flushes;
   return static_cast<int>(syscall(SYS_fsync, descriptor));
@@ -26,7 +26,7 @@ extern "C" int fsync(int descriptor) {
 namespace tether::record {
 namespace {
 
-TEST(OutputFile, IsOnTheDiskOnceClosedAndIsFlushedNoMoreThanThat) {
+TEST(OutputFile, IsFlushedToTheDiskOnceWhenClosed) {
   const ScratchFolder folder;
   const std::filesystem::path path = folder.path("file");
   flushes = 0;
@@ -42,7 +42,7 @@ TEST(OutputFile, IsOnTheDiskOnceClosedAndIsFlushedNoMoreThanThat) {
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "first, second");
 }
 
-TEST(OutputFile, MayBeADeviceThatHasNothingToFlush) {
+TEST(OutputFile, AcceptsADeviceThatCannotBeFlushed) {
   OutputFile file("/dev/null");
   file.write("gone");
   EXPECT_NO_THROW(file.close());

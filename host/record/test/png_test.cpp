@@ -20,6 +20,7 @@ TEST(Png, DecodesToTheSamePixels) {
   for (const auto& [width_px, height_px] : {std::pair(1, 1), std::pair(33, 7), std::pair(64, 48)}) {
     const auto rgb = gradient(width_px, height_px);
     const auto encoded = encode_png(width_px, height_px, rgb);
+    EXPECT_EQ(encoded, encode_png(width_px, height_px, rgb));
 
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
@@ -33,9 +34,9 @@ TEST(Png, DecodesToTheSamePixels) {
   }
 }
 
-TEST(Png, SamePixelsSameBytes) {
-  const auto rgb = gradient(64, 48);
-  EXPECT_EQ(encode_png(64, 48, rgb), encode_png(64, 48, rgb));
+TEST(Png, FileAsDataUri) {
+  const std::vector<std::uint8_t> file = {'f', 'o', 'o'};
+  EXPECT_EQ(to_data_uri(file, "image/jpeg"), "data:image/jpeg;base64,Zm9v");
 }
 
 }  // namespace

@@ -45,11 +45,16 @@ inline Interaction sensor_interaction(std::uint64_t sequence = 1) {
   return message;
 }
 
-inline Interaction command_interaction(std::uint64_t sequence = 2) {
+inline Interaction interaction(std::string_view kind, std::uint64_t sequence) {
   Interaction message;
   message.uav = "a";
   message.sequence = sequence;
-  message.kind = kCommand;
+  message.kind = kind;
+  return message;
+}
+
+inline Interaction command_interaction(std::uint64_t sequence = 2) {
+  Interaction message = interaction(kCommand, sequence);
   message.request_at = message.reply_at = et_ns(40'000'001);
   message.effect_at = st_ms(41);
   message.st_at_release = st_ms(40);
@@ -57,19 +62,14 @@ inline Interaction command_interaction(std::uint64_t sequence = 2) {
 }
 
 inline Interaction sleep_interaction(std::uint64_t sequence = 3) {
-  Interaction message;
-  message.uav = "a";
-  message.sequence = sequence;
-  message.kind = kSleep;
+  Interaction message = interaction(kSleep, sequence);
   message.sleep_until = et_ns(50'000'000);
   return message;
 }
 
+/// A read that returned nothing.
 inline Interaction vain_interaction(std::uint64_t sequence = 4) {
-  Interaction message;
-  message.uav = "a";
-  message.sequence = sequence;
-  message.kind = kSensor;
+  Interaction message = interaction(kSensor, sequence);
   message.sensor = "camera";
   message.only_if_available = true;
   message.request_at = message.reply_at = et_ns(50'000'000);
@@ -159,7 +159,7 @@ inline Footer footer() {
   return footer;
 }
 
-/// A file that goes away with the test.
+/// A file that is deleted after the test.
 class TemporaryFile {
  public:
   const std::filesystem::path& path() const { return path_; }

@@ -11,8 +11,9 @@
 #include <tether/record/png.h>
 #include <tether/report/camera_frame.h>
 
+// The region of interest (ROI) that the SUT reported for an image, and the true one, are searched
+// in the record; frame_svg draws both over the image with a caption below.
 namespace tether::report {
-
 namespace {
 
 struct PixelSize {
@@ -20,7 +21,7 @@ struct PixelSize {
   std::uint32_t height = 0;
 };
 
-// Width and height stand big-endian at bytes 16 and 20 of every PNG file (RFC 2083, section 3.3).
+// A PNG file has its width and height at bytes 16 and 20, big-endian (RFC 2083, section 3.3).
 PixelSize size_of_png(std::span<const std::uint8_t> png) {
   constexpr std::size_t kWidthAt = 16, kHeightAt = 20, kHeaderBytes = 24;
   if (png.size() < kHeaderBytes) return {};
@@ -31,7 +32,7 @@ PixelSize size_of_png(std::span<const std::uint8_t> png) {
   return {number(kWidthAt), number(kHeightAt)};
 }
 
-// Of a note that names no camera, any image of that index may be meant.
+// An annotation without a camera applies to the images of all cameras with that index.
 std::optional<ReportedRoi> parse_roi(const std::string& text, const record::Image& image) {
   const auto json = nlohmann::json::parse(text, nullptr, false);
   if (!json.is_object() || json.value("image_index", nlohmann::json()) != image.index ||
@@ -48,7 +49,7 @@ std::optional<ReportedRoi> parse_roi(const std::string& text, const record::Imag
   return roi;
 }
 
-// What an "estimate" says of itself.
+// The part of an "estimate" annotation that is needed here.
 struct Estimate {
   std::string anchor;
   std::uint64_t image_index = 0;
@@ -63,8 +64,7 @@ std::optional<Estimate> parse_estimate(const std::string& text) {
   return Estimate{anchor->get<std::string>(), index->get<std::uint64_t>()};
 }
 
-std::optional<std::string> anchor_looked_for(const record::Record& record,
-                                             const record::Image& image) {
+std::optional<std::string> target_anchor(const record::Record& record, const record::Image& image) {
   std::optional<std::string> found;
   for (const auto& logged : record.annotations) {
     const record::Annotation& note = logged.message;
@@ -75,12 +75,6 @@ std::optional<std::string> anchor_looked_for(const record::Record& record,
   }
   if (!found && record.header.anchors.size() == 1) found = record.header.anchors.front().name;
   return found;
-}
-
-template <class Item, class Matches>
-const Item* find_if(const std::vector<Item>& items, const Matches& matches) {
-  const auto it = std::find_if(items.begin(), items.end(), matches);
-  return it != items.end() ? &*it : nullptr;
 }
 
 // Drawing.
@@ -104,7 +98,7 @@ std::string caption_line(unsigned y_px, const char* colour, bool dashed, const s
       y_px - 5, colour, dashed ? R"( stroke-dasharray="7 4")" : "", y_px, escape_markup(text));
 }
 
-// Pixel centres lie at whole coordinates in a ROI, at halves in the picture.
+// Pixel centres have whole coordinates in a ROI, and halves in the image.
 std::string framed(const campaign::PixelRect& rect, const char* colour, bool dashed) {
   return fmt::format(
       R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="none" stroke="{}" stroke-width="2.5"{}/>)"
@@ -136,15 +130,16 @@ std::optional<ReportedRoi> find_roi(const record::Record& record, const record::
 
 std::optional<campaign::PixelRect> find_true_roi(const record::Record& record,
                                                  const record::Image& image) {
-  const auto name = anchor_looked_for(record, image);
-  const auto* anchor = find_if(record.header.anchors, [&](const record::Anchor& candidate) {
-    return name && candidate.name == *name;
-  });
-  const auto* camera = find_if(record.header.sensors, [&](const record::SensorInfo& candidate) {
+  const auto name = target_anchor(record, image);
+  if (!name) return std::nullopt;
+  const auto& anchors = record.header.anchors;
+  const auto& sensors = record.header.sensors;
+  const auto anchor = std::ranges::find(anchors, *name, &record::Anchor::name);
+  const auto camera = std::ranges::find_if(sensors, [&](const record::SensorInfo& candidate) {
     return candidate.uav == image.uav && candidate.name == image.sensor && candidate.camera;
   });
   const auto X_WB = campaign::pose_at(record, image.uav, image.at);
-  if (anchor == nullptr || camera == nullptr || !X_WB) return std::nullopt;
+  if (anchor == anchors.end() || camera == sensors.end() || !X_WB) return std::nullopt;
   const auto whole = campaign::true_roi(*camera, *X_WB, *anchor);
   return whole ? campaign::visible_part(*camera, *whole) : std::nullopt;
 }
@@ -162,7 +157,7 @@ std::string frame_svg(const record::Image& image, const std::optional<ReportedRo
       "\n",
       size.width, size.height + caption_px, size.height, data_uri(image, quality),
       "Camera image, " + what);
-  // Where the two lie on each other, the dashes leave the line below to be seen.
+  // If the two coincide, the solid line is visible between the dashes.
   if (roi) svg += framed(rect_of(*roi), kTracked, false);
   if (true_roi) svg += framed(*true_roi, kTrue, true);
   unsigned y_px = size.height + kCaptionLine_px;
@@ -171,11 +166,11 @@ std::string frame_svg(const record::Image& image, const std::optional<ReportedRo
                      y_px, what);
   y_px += kCaptionLine_px;
   svg += caption_line(y_px, kTracked, false,
-                      roi ? "ROI that the SUT tracked, " + size_text(rect_of(*roi))
-                          : "the SUT reported no ROI for this image");
+                      roi ? "ROI tracked by the SUT, " + size_text(rect_of(*roi))
+                          : "no ROI reported by the SUT for this image");
   if (true_roi)
     svg += caption_line(y_px + kCaptionLine_px, kTrue, true,
-                        "true ROI, from ground truth, " + size_text(*true_roi));
+                        "true ROI (ground truth), " + size_text(*true_roi));
   return svg + "</svg>\n";
 }
 

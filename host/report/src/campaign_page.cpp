@@ -9,6 +9,8 @@
 #include <tether/report/paper_figures.h>
 #include <tether/report/report.h>
 
+// The page of a campaign: problems on top, then a section for each scenario, whose parts are built
+// by one function each in reading order, and the setup last. A part without data is empty.
 namespace tether::report {
 namespace {
 
@@ -25,14 +27,14 @@ std::string contents(const campaign::CampaignResults& results) {
     html += fmt::format("<li><a href=\"#scenario-{}\">{}</a></li>", i + 1,
                         escape_markup(heading_of(results.scenarios[i])));
   }
-  return html + "<li><a href=\"#basis\">What the numbers rest on</a></li></ul></nav>\n";
+  return html + "<li><a href=\"#basis\">Setup and checks</a></li></ul></nav>\n";
 }
 
 std::string optimism_part(const campaign::ScenarioResults& scenario) {
   const std::vector<Comparison> comparisons = optimism(scenario);
   if (comparisons.empty()) return "";
   std::string html =
-      element("h3", "What a test without synchronisation hides") + "<div class=\"optimism\">\n";
+      element("h3", "Optimism of the unsynchronised test") + "<div class=\"optimism\">\n";
   for (const Comparison& comparison : comparisons)
     html += element("p", optimism_sentence(comparison, *scenario.find_metric(comparison.metric)));
   return html + "</div>\n" + to_html(optimism_table(scenario));
@@ -43,9 +45,10 @@ std::string distributions_part(FigureMaker& figures, const campaign::ScenarioRes
   for (const std::string& metric : scenario.metrics)
     html += figures.plot(distribution_plot(scenario, metric), "");
   if (html.empty()) return "";
-  return element("h3", "Every trial") +
-         "<p class=\"soft\">A point for each trial; the box holds the middle half of them, the "
-         "thick line is the median.</p>\n" +
+  return element("h3", "All trials") +
+         "<p class=\"soft\">Each point is one trial. The box spans the quartiles, and the thick "
+         "line is "
+         "the median.</p>\n" +
          html;
 }
 
@@ -64,12 +67,10 @@ std::vector<PlottedRun> runs_of(const SeedRecords& records) {
 std::string path_part(FigureMaker& figures, const SeedRecords& records,
                       const std::vector<PlottedRun>& runs) {
   if (runs.empty()) return "";
-  const std::string plot =
-      figures.plot(path_plot(runs),
-                   fmt::format("Seed {}. Ticks point where the nose points; dashed, if any: the "
-                               "software's own dead reckoning, from the true start.",
-                               records.records.front().record.header.seed));
-  return plot.empty() ? "" : element("h3", "Path from above") + plot;
+  const std::string plot = figures.plot(
+      path_plot(runs),
+      fmt::format("Seed {}. {}", records.records.front().record.header.seed, kPathCaption));
+  return plot.empty() ? "" : element("h3", "Path, seen from above") + plot;
 }
 
 std::string timelines_part(FigureMaker& figures, const std::vector<PlottedRun>& runs) {
@@ -77,12 +78,12 @@ std::string timelines_part(FigureMaker& figures, const std::vector<PlottedRun>& 
   for (const PlottedRun& run : runs) {
     html += figures.plot(
         timeline_plot(run, Extent::kFirstInteractions),
-        fmt::format("“{}”, seed {}: the first interactions.", run.label, run.record->header.seed));
+        fmt::format("“{}”, seed {}: first interactions.", run.label, run.record->header.seed));
   }
-  return html.empty() ? "" : element("h3", "Time against time") + html;
+  return html.empty() ? "" : element("h3", "Simulated and execution time over wall time") + html;
 }
 
-// One condition's are enough: of the slowest synchronised software most is to be seen.
+// The images of one condition are enough: the last synchronised one, which is usually the slowest.
 const SeedRecords::OfCondition* with_images(const SeedRecords& records) {
   const SeedRecords::OfCondition* found = nullptr;
   for (const SeedRecords::OfCondition& one : records.records) {
@@ -96,7 +97,7 @@ std::string frames_part(FigureMaker& figures, const SeedRecords& records) {
   const SeedRecords::OfCondition* one = with_images(records);
   const std::string frames = one != nullptr ? figures.frames(one->record) : "";
   if (frames.empty()) return "";
-  return element("h3", "What the camera saw") +
+  return element("h3", "Camera images") +
          element("p", fmt::format("“{}”, seed {}.", one->condition, one->record.header.seed)) +
          frames;
 }
@@ -104,7 +105,7 @@ std::string frames_part(FigureMaker& figures, const SeedRecords& records) {
 std::string tables_part(const campaign::ScenarioResults& scenario) {
   std::string html = folded("All statistics", to_html(details_table(scenario)));
   if (!compare_conditions(scenario).empty())
-    html += folded("How the conditions differ", to_html(comparisons_table(scenario)));
+    html += folded("Differences between the conditions", to_html(comparisons_table(scenario)));
   return html;
 }
 
@@ -139,8 +140,8 @@ std::string campaign_page(const campaign::CampaignResults& results,
   std::size_t number = 0;
   for (const campaign::ScenarioResults& scenario : results.scenarios)
     body += scenario_section(figures, scenario, folder, ++number);
-  body += "<section id=\"basis\">\n" + element("h2", "What the numbers rest on") +
-          basis_html(results) + "</section>\n";
+  body += "<section id=\"basis\">\n" + element("h2", "Setup and checks") + basis_html(results) +
+          "</section>\n";
   return html_page(name, body);
 }
 

@@ -21,8 +21,8 @@ struct Row {
   std::vector<double> values;
 };
 
-// Trials in the same place must not hide each other: each has its own height, by the golden ratio
-// spread evenly, the same every time.
+// Points with the same value must not hide each other. The golden ratio spreads their heights
+// evenly and is the same every time.
 double jitter(std::size_t trial) {
   constexpr double kGoldenRatio = 0.6180339887498949, kSpread = 0.36;
   const double turns = kGoldenRatio * static_cast<double>(trial + 1);
@@ -65,13 +65,13 @@ std::string values_range(const std::vector<Row>& rows) {
   for (const Row& row : rows) all.insert(all.end(), row.values.begin(), row.values.end());
   const auto [least, largest] = std::minmax_element(all.begin(), all.end());
   double low = *least, high = *largest;
-  // Errors and times are read against zero where zero is not far.
+  // Errors and times are easier to compare if the axis begins at zero.
   if (low >= 0.0 && low < 0.5 * high) low = 0.0;
   const double span = high > low ? high - low : std::max(0.2 * std::abs(high), 0.5);
   return range_script("x", low - 0.03 * span, high + 0.05 * span);
 }
 
-// Letters of the terminal's font are about 7.5 px wide.
+// Letters of the font are about 7.5 px wide.
 int left_margin_px(const std::vector<Row>& rows) {
   std::size_t longest = 0;
   for (const Row& row : rows) longest = std::max(longest, row_label(row).size());
@@ -91,9 +91,8 @@ std::optional<Plot> distribution_plot(const campaign::ScenarioResults& scenario,
                                       const std::string& metric) {
   const campaign::MetricValue* value = scenario.find_metric(metric);
   const std::vector<Row> rows = rows_of(scenario, metric);
-  const bool any =
-      std::any_of(rows.begin(), rows.end(), [](const Row& row) { return !row.values.empty(); });
-  if (value == nullptr || !any) return std::nullopt;
+  if (value == nullptr || std::ranges::all_of(rows, &std::vector<double>::empty, &Row::values))
+    return std::nullopt;
   Frame frame{.left_px = left_margin_px(rows),
               .top_px = 10,
               .x_label = with_unit(value->label, value->unit)};
@@ -108,7 +107,7 @@ std::optional<Plot> distribution_plot(const campaign::ScenarioResults& scenario,
     drawing.add(points, "with points pointtype 7 pointsize 0.55", series_ink(i), "");
   }
   return Plot{script + drawing.script(),
-              fmt::format("{} of every trial, per condition, in {}",
+              fmt::format("{} of all trials of {}, by condition",
                           with_unit(value->label, value->unit), scenario.scenario)};
 }
 

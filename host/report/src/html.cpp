@@ -25,17 +25,14 @@ std::string heading_cell(const Heading& heading, bool of_words) {
                      spanned(heading), escape_markup(heading.text));
 }
 
-bool says_nothing(const std::vector<Heading>& row) {
-  for (const Heading& heading : row) {
-    if (!heading.text.empty()) return false;
-  }
-  return true;
+bool is_empty(const std::vector<Heading>& row) {
+  return std::ranges::all_of(row, [](const Heading& heading) { return heading.text.empty(); });
 }
 
 std::string head(const Table& table) {
   std::string html;
   for (const auto& row : table.headings) {
-    if (says_nothing(row)) continue;
+    if (is_empty(row)) continue;
     html += "<tr>";
     std::size_t column = 0;
     for (const Heading& heading : row) {
@@ -86,8 +83,8 @@ std::string list(const std::vector<std::string>& texts) {
 
 std::string problems_box(const std::vector<std::string>& lines) {
   if (lines.empty()) return "";
-  return "<section class=\"problems\" aria-label=\"Problems\">\n" +
-         element("h2", "What is missing or went wrong") + list(lines) + "</section>\n";
+  return "<section class=\"problems\" aria-label=\"Problems\">\n" + element("h2", "Problems") +
+         list(lines) + "</section>\n";
 }
 
 std::string folded(const std::string& summary, const std::string& inner) {
@@ -109,7 +106,7 @@ std::string basis_html(const campaign::CampaignResults& results) {
   std::copy_if(table.rows.begin(), table.rows.end(), std::back_inserter(files.rows), is_file);
   std::erase_if(table.rows, is_file);
   std::string html = to_html(table);
-  if (!files.rows.empty()) html += folded("Digests of every file", to_html(files));
+  if (!files.rows.empty()) html += folded("Digests of all files", to_html(files));
   return html;
 }
 

@@ -12,8 +12,8 @@ struct Shades {
   std::string_view light, dark;
 };
 
-// The series are Okabe and Ito's, which the colour-blind tell apart, moved as far from either
-// ground as their contrast needs.
+// The series are those of Okabe and Ito, which colour-blind people can distinguish, changed for
+// enough contrast with either background.
 constexpr std::array kShades = {
     Shades{"#1f2328", "#e6e8eb"},  // foreground
     Shades{"#c3c8ce", "#4a5058"},  // muted

@@ -40,8 +40,8 @@ std::vector<std::uint64_t> seeds_with_record(const campaign::ScenarioResults& sc
 std::optional<std::uint64_t> common_seed(const std::vector<std::vector<std::uint64_t>>& seeds) {
   std::optional<std::uint64_t> least;
   for (const std::uint64_t seed : seeds.empty() ? std::vector<std::uint64_t>{} : seeds.front()) {
-    const bool everywhere = std::all_of(seeds.begin(), seeds.end(), [&](const auto& of_condition) {
-      return std::find(of_condition.begin(), of_condition.end(), seed) != of_condition.end();
+    const bool everywhere = std::ranges::all_of(seeds, [&](const auto& of_condition) {
+      return std::ranges::find(of_condition, seed) != of_condition.end();
     });
     if (everywhere && (!least || seed < *least)) least = seed;
   }
@@ -55,7 +55,7 @@ void add_record(SeedRecords& all, std::size_t series, const std::string& conditi
     const std::string& damage = all.records.back().record.damage;
     if (!damage.empty())
       all.unreadable.push_back(
-          fmt::format("{}: shown up to where it is torn: {}", file.string(), damage));
+          fmt::format("{}: only the part before the damage is shown: {}", file.string(), damage));
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kBadFile) throw;
     all.unreadable.emplace_back(error.what());

@@ -10,18 +10,18 @@
 #include <tether/record/reader.h>
 #include <tether/report/plots.h>
 
-/// The figures of a page as HTML: drawn, made part of the page, captioned.
+/// The figures of a page as HTML.
 namespace tether::report {
 
-/// Draws for one page: ids that clash with no other figure's, and camera frames of so many bytes
-/// that the page stays below 8 MB.
+/// Draws for one page: ids are unique, and the size of camera frames is limited so that the page
+/// stays below 8 MB.
 class FigureMaker {
  public:
-  /// @param frame_groups how often `frames` will be called; each may take as much as the others.
+  /// @param frame_groups number of calls of `frames`, which share the limit equally.
   explicit FigureMaker(std::size_t frame_groups);
-  /// Empty where there is no plot.
+  /// Empty if there is no plot.
   std::string plot(const std::optional<Plot>& plot, const std::string& caption);
-  /// At most four of the record's images, evenly over the run; empty where it has none.
+  /// At most four of the record's images, evenly over the run; empty if it has none.
   std::string frames(const record::Record& record) const;
 
  private:
@@ -29,7 +29,7 @@ class FigureMaker {
   std::size_t bytes_per_group_;
 };
 
-/// The records of one seed, one for each condition that has one.
+/// The records of one seed: one for each condition that has a record.
 struct SeedRecords {
   struct OfCondition {
     std::size_t series = 0;  ///< the condition's place in its scenario
@@ -40,7 +40,8 @@ struct SeedRecords {
   std::vector<std::string> unreadable;  ///< one line each
 };
 
-/// Of the first seed that has a record under every condition; else each condition's first.
+/// Of the first seed that has a record under every condition; otherwise, the first of each
+/// condition.
 SeedRecords read_seed_records(const campaign::ScenarioResults& scenario,
                               const std::filesystem::path& folder);
 

@@ -48,7 +48,6 @@ figcaption{margin-top:.2rem}
 .frames{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,330px),1fr));gap:1rem}
 .frames figure{margin:0}
 .frames svg{width:100%;border-radius:6px}
-footer{margin-top:3rem;color:var(--soft);font-size:.9rem}
 @media print{main{max-width:none;padding:0}h2{break-after:avoid}.scroll{overflow:visible}
 .plot svg{min-width:0}table{font-size:8pt}th,td{padding:.15rem .35rem;white-space:normal}
 details{border:0;padding:0}}

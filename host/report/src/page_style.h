@@ -4,7 +4,7 @@
 
 namespace tether::report {
 
-/// The page's CSS, but for the inks of its plots.
+/// The page's CSS, except the inks of its plots.
 extern const std::string_view kPageStyle;
 
 }  // namespace tether::report

@@ -15,8 +15,8 @@ constexpr std::string_view kRealSensor = "target, real sensor";
 constexpr std::string_view kRange = "range_acquisition_time";
 constexpr std::string_view kCamera = "camera_acquisition_time";
 
-// The paper's virtual sensors had neither a model nor a barrier yet: what they took is what the
-// link took. Its real ones are what a target with a profile of them comes to.
+// The paper's virtual sensors had neither a delay model nor a barrier: their times are those of the
+// link. Its real sensors correspond to a target with a profile of these sensors.
 constexpr std::array kTableI = {
     PaperFigure{kTarget, "acquisition_time", 97.7, std::nullopt, kRange},
     PaperFigure{kTarget, "acquisition_time", 37.4, std::nullopt, kCamera},
@@ -93,32 +93,29 @@ bool is_of(const PaperFigure& figure, std::string_view metric_kind, std::string_
 
 const PaperFigure* PaperTable::find(std::string_view condition, std::string_view metric_kind,
                                     std::string_view metric_name) const {
-  for (const PaperFigure& figure : figures) {
-    if (figure.condition == condition && is_of(figure, metric_kind, metric_name)) return &figure;
-  }
-  return nullptr;
+  const auto found = std::ranges::find_if(figures, [&](const PaperFigure& figure) {
+    return figure.condition == condition && is_of(figure, metric_kind, metric_name);
+  });
+  return found != figures.end() ? &*found : nullptr;
 }
 
 bool PaperTable::has_metric(std::string_view metric_kind, std::string_view metric_name) const {
-  return std::any_of(figures.begin(), figures.end(), [&](const PaperFigure& figure) {
-    return is_of(figure, metric_kind, metric_name);
-  });
+  return std::ranges::any_of(
+      figures, [&](const PaperFigure& figure) { return is_of(figure, metric_kind, metric_name); });
 }
 
 std::vector<std::string_view> PaperTable::conditions() const {
   std::vector<std::string_view> names;
   for (const PaperFigure& figure : figures) {
-    if (std::find(names.begin(), names.end(), figure.condition) == names.end())
+    if (std::ranges::find(names, figure.condition) == names.end())
       names.push_back(figure.condition);
   }
   return names;
 }
 
 const PaperTable* find_paper_table(std::string_view number) {
-  for (const PaperTable& table : kTables) {
-    if (table.number == number) return &table;
-  }
-  return nullptr;
+  const auto* table = std::ranges::find(kTables, number, &PaperTable::number);
+  return table != kTables.end() ? table : nullptr;
 }
 
 }  // namespace tether::report

@@ -12,6 +12,8 @@
 
 #include <tether/uav/math.h>
 
+// The paths of several runs in one plot. Each run is reduced to a Way (path, yaw, dead reckoning).
+// The plot is as large as all ways and anchors need, with the same scale on both axes.
 namespace tether::report {
 namespace {
 
@@ -53,7 +55,7 @@ Point placed(const Point& origin, double yaw_rad, double x_m, double y_m) {
           origin.y_m + std::sin(yaw_rad) * x_m + std::cos(yaw_rad) * y_m};
 }
 
-// What the runs leave behind.
+// Data of the runs.
 
 std::optional<Point> odometry_of(const record::Annotation& note) {
   const auto json = nlohmann::json::parse(note.json, nullptr, false);
@@ -98,11 +100,8 @@ std::vector<Point> outline_of(const record::Anchor& anchor) {
       outline.push_back(placed(centre, yaw_of(anchor.q_WA), x * half_x_m, y * half_y_m));
     return outline;
   }
-  for (int i = 0; i <= kCirclePoints; ++i) {
-    const double angle_rad = 2.0 * std::numbers::pi * i / kCirclePoints;
-    outline.push_back(
-        {centre.x_m + half_x_m * std::cos(angle_rad), centre.y_m + half_x_m * std::sin(angle_rad)});
-  }
+  for (int i = 0; i <= kCirclePoints; ++i)
+    outline.push_back(placed(centre, 2.0 * std::numbers::pi * i / kCirclePoints, half_x_m, 0.0));
   return outline;
 }
 
@@ -123,7 +122,7 @@ DataBlock ticks_of(const std::string& name, const Way& way, double length_m) {
   return block;
 }
 
-// Runs that turn in one place would hide each other's ticks: each run's are longer than the last's.
+// The ticks get longer from run to run, because runs that turn in one place would hide each other.
 void add_way(Drawing& drawing, const PlottedRun& run, const Way& way, std::size_t index,
              double tick_m) {
   const Ink ink = series_ink(run.series);
@@ -181,7 +180,7 @@ Bounds bounds_of(const std::vector<Way>& ways, const std::vector<record::Anchor>
   return bounds;
 }
 
-// Widens what is drawn until a metre is as long to the right as upwards, with room around it.
+// Extends the ranges until a metre has the same length on both axes, with a margin.
 std::string scaled(Frame& frame, const Bounds& bounds) {
   constexpr double kLeast_m = 1.0, kRoom = 1.15, kLow_px = 190.0, kHigh_px = 520.0;
   const double inner_width_px = kPlotWidth_px - frame.left_px - frame.right_px;
@@ -200,7 +199,7 @@ std::string scaled(Frame& frame, const Bounds& bounds) {
          range_script("y", y_m - 0.5 * height_m, y_m + 0.5 * height_m);
 }
 
-// gnuplot sets the legend in columns as wide as its longest entry; letters are about 7.5 px wide.
+// gnuplot's legend has columns as wide as its longest entry; letters are about 7.5 px wide.
 int key_rows(std::span<const PlottedRun> runs, const std::vector<Way>& ways) {
   constexpr double kLetter_px = 7.5, kSample_px = 60.0;
   constexpr std::string_view kAfter = ", dead reckoning";
@@ -220,9 +219,8 @@ int key_rows(std::span<const PlottedRun> runs, const std::vector<Way>& ways) {
 std::optional<Plot> path_plot(std::span<const PlottedRun> runs) {
   std::vector<Way> ways;
   for (const PlottedRun& run : runs) ways.push_back(way_of(run));
-  const bool any =
-      std::any_of(ways.begin(), ways.end(), [](const Way& w) { return !w.path.empty(); });
-  if (!any) return std::nullopt;
+  if (std::ranges::all_of(ways, [](const Way& way) { return way.path.empty(); }))
+    return std::nullopt;
   const std::vector<record::Anchor>& anchors = runs.front().record->header.anchors;
   const Bounds bounds = bounds_of(ways, anchors);
   const int rows = key_rows(runs, ways);
@@ -237,7 +235,7 @@ std::optional<Plot> path_plot(std::span<const PlottedRun> runs) {
       anchors_script(drawing, anchors, 0.5 * (bounds.bottom_m + bounds.top_m));
   for (std::size_t i = 0; i < ways.size(); ++i) add_way(drawing, runs[i], ways[i], i, tick_m);
   add_ends(drawing, runs, ways);
-  std::string title = "Path from above";
+  std::string title = "Path, seen from above";
   for (const PlottedRun& run : runs) title += ", " + run.label;
   return Plot{frame_script(frame) + ranges + labels + drawing.script(), title};
 }

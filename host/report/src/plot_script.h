@@ -8,12 +8,12 @@
 
 #include <tether/report/plots.h>
 
-/// What all scripts for gnuplot share.
+/// Parts of gnuplot scripts.
 namespace tether::report {
 
 inline constexpr int kPlotWidth_px = 860;
 
-/// A text as gnuplot takes it literally: nothing in it is replaced, and it stays on its line.
+/// A text as a literal of gnuplot, on one line.
 std::string quoted(const std::string& text);
 
 /// Terminal, axes and grid; margins are those of the plotted area.
@@ -49,7 +49,7 @@ class DataBlock {
   std::string lines_;
 };
 
-/// The parts of gnuplot's `plot` command, with the blocks that they draw.
+/// The parts of gnuplot's `plot` command, with their data blocks.
 class Drawing {
  public:
   /// @param how e.g. "with lines linewidth 2"; @param title empty: not in the legend; @param fill

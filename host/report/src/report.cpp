@@ -8,6 +8,9 @@
 #include <tether/report/paper_figures.h>
 #include <tether/report/report.h>
 
+// The tables for people. A scenario has one in the paper's form with notes on each trial that is
+// missing or special, one with all statistics, one that compares its conditions, and one on the
+// optimism of the unsynchronised test. report_basis.cpp has the others.
 namespace tether::report {
 namespace {
 
@@ -60,12 +63,10 @@ void add_cells(std::vector<std::string>& row, const campaign::ConditionResults& 
   if (column.in_paper) add_paper_cells(row, results.condition, column, *paper);
 }
 
-// What the paper measured and the campaign did not, such as with real sensors.
-void add_rows_of_the_paper_alone(Table& table, const campaign::ScenarioResults& scenario,
-                                 const std::vector<Column>& columns, const PaperTable& paper) {
-  const bool any = std::any_of(columns.begin(), columns.end(),
-                               [](const Column& column) { return column.in_paper; });
-  if (!any) return;
+// Conditions of the paper that the campaign does not have, such as real sensors.
+void add_rows_of_paper_only(Table& table, const campaign::ScenarioResults& scenario,
+                            const std::vector<Column>& columns, const PaperTable& paper) {
+  if (std::ranges::none_of(columns, &Column::in_paper)) return;
   for (const std::string_view condition : paper.conditions()) {
     if (scenario.find_condition(condition) != nullptr) continue;
     std::vector<std::string> row = {fmt::format("{} (paper only)", condition)};
@@ -89,7 +90,7 @@ std::string trials_note(const campaign::ScenarioResults& scenario) {
   return note + ". Times are simulated time.";
 }
 
-// Why a trial has no value: said once per trial and reason.
+// Why a trial has no value: once per trial and reason.
 void add_missing_notes(Table& table, const campaign::ConditionResults& results,
                        const std::vector<Column>& columns) {
   for (const campaign::TrialResult& trial : results.trials) {
@@ -101,21 +102,22 @@ void add_missing_notes(Table& table, const campaign::ConditionResults& results,
       const std::string why = metric != nullptr ? metric->missing_because : "not computed";
       const std::string& reason = trial.outcome == campaign::Outcome::kFailed ? trial.reason : why;
       if (!reasons.insert(reason).second) continue;
-      table.notes.push_back(
-          fmt::format("Not in a mean: {}, seed {}: {}.", results.condition, trial.seed, reason));
+      table.notes.push_back(fmt::format("Excluded from means: {}, seed {}: {}.", results.condition,
+                                        trial.seed, reason));
     }
   }
   if (results.trials.size() == results.planned) return;
-  table.notes.push_back(fmt::format("Not run yet, or without a readable result: {} trials of {}.",
-                                    results.planned - results.trials.size(), results.condition));
+  table.notes.push_back(
+      fmt::format("No readable result for {} trials of {} (not run yet, or damaged).",
+                  results.planned - results.trials.size(), results.condition));
 }
 
 void add_second_attempt_notes(Table& table, const campaign::ConditionResults& results) {
   for (const campaign::TrialResult& trial : results.trials) {
-    if (trial.this_run.attempts < 2) continue;
-    table.notes.push_back(
-        fmt::format("Second attempt: {}, seed {}; the first could not be set up: {}.",
-                    results.condition, trial.seed, trial.this_run.first_failure));
+    if (trial.this_run.attempts > 1)
+      table.notes.push_back(
+          fmt::format("Second attempt: {}, seed {}. The first attempt failed during set-up: {}.",
+                      results.condition, trial.seed, trial.this_run.first_failure));
   }
 }
 
@@ -128,27 +130,24 @@ void add_target_notes(Table& table, const campaign::ConditionResults& results) {
   }
 }
 
-// A machine that is too busy may have something to say of every trial: the first few in full.
+// On a machine that is too busy, every trial can have notes. Only the first few are shown in full.
 constexpr std::size_t kTrialsNotedInFull = 3;
 
 void add_run_notes(Table& table, const campaign::ConditionResults& results) {
-  std::size_t in_full = 0;
+  std::size_t noted = 0;
   std::vector<std::uint64_t> others;
   for (const campaign::TrialResult& trial : results.trials) {
     if (trial.this_run.notes.empty()) continue;
-    if (in_full == kTrialsNotedInFull) {
+    if (++noted > kTrialsNotedInFull)
       others.push_back(trial.seed);
-      continue;
-    }
-    ++in_full;
-    table.notes.push_back(
-        fmt::format("Noted: {}, seed {}: {}.", results.condition, trial.seed, notes_of(trial)));
+    else
+      table.notes.push_back(
+          fmt::format("Note: {}, seed {}: {}.", results.condition, trial.seed, notes_of(trial)));
   }
   if (others.empty()) return;
-  table.notes.push_back(
-      fmt::format("Noted: {}, seed{} {} too ({} of {} trials): see their result.json.",
-                  results.condition, others.size() > 1 ? "s" : "", fmt::join(others, ", "),
-                  in_full + others.size(), results.trials.size()));
+  table.notes.push_back(fmt::format(
+      "Notes on {}, seed{} {} ({} of {} trials have notes): see result.json.", results.condition,
+      others.size() > 1 ? "s" : "", fmt::join(others, ", "), noted, results.trials.size()));
 }
 
 // Comparisons.
@@ -198,22 +197,20 @@ Table table_of(const campaign::ScenarioResults& scenario,
                const std::vector<Comparison>& comparisons) {
   Table table;
   table.text_columns = 2;
-  table.headings = {{{"Metric", 1},
-                     {"Conditions", 1},
-                     {"Difference of means", 1},
-                     {"95 % interval", 1},
-                     {"p", 1}}};
+  table.headings = {
+      single_headings({"Metric", "Conditions", "Difference of means", "95 % interval", "p"})};
   for (const Comparison& c : comparisons) {
     const campaign::MetricValue* metric = scenario.find_metric(c.metric);
     table.rows.push_back({with_unit(metric->label, c.unit), fmt::format("{} − {}", c.a, c.b),
                           decimals(c.means.difference), interval(c.means.ci95),
                           p_value(c.ranks.p_two_sided)});
   }
-  const bool all_exact = std::all_of(comparisons.begin(), comparisons.end(),
-                                     [](const Comparison& c) { return c.ranks.exact; });
-  table.notes = {fmt::format("Interval: Welch's t. p: Mann-Whitney U, two-sided, {}.",
-                             all_exact ? "exact" : "exact up to 100 trials, else approximate"),
-                 "p is not corrected for the number of comparisons."};
+  const bool all_exact =
+      std::ranges::all_of(comparisons, [](const Comparison& c) { return c.ranks.exact; });
+  table.notes = {
+      fmt::format("Interval of the difference: Welch's t. p: Mann-Whitney U, two-sided, {}.",
+                  all_exact ? "exact" : "exact up to 100 trials, else approximate"),
+      "p is not corrected for multiple comparisons."};
   return table;
 }
 
@@ -231,7 +228,7 @@ Table paper_form_table(const campaign::ScenarioResults& scenario) {
     for (const Column& column : columns) add_cells(row, results, column, paper);
     table.rows.push_back(std::move(row));
   }
-  if (paper != nullptr) add_rows_of_the_paper_alone(table, scenario, columns, *paper);
+  if (paper != nullptr) add_rows_of_paper_only(table, scenario, columns, *paper);
   table.notes.push_back(trials_note(scenario));
   if (paper != nullptr) table.notes.push_back(fmt::format("Paper: {}.", paper->source));
   for (const campaign::ConditionResults& results : scenario.conditions) {
@@ -247,15 +244,8 @@ Table details_table(const campaign::ScenarioResults& scenario) {
   Table table;
   table.title = fmt::format("Details of {}", scenario.scenario);
   table.text_columns = 2;
-  table.headings = {{{"Metric", 1},
-                     {"Condition", 1},
-                     {"n", 1},
-                     {"Mean", 1},
-                     {"95 % interval", 1},
-                     {"Std. dev.", 1},
-                     {"Median", 1},
-                     {"Min", 1},
-                     {"Max", 1}}};
+  table.headings = {single_headings(
+      {"Metric", "Condition", "n", "Mean", "95 % interval", "Std. dev.", "Median", "Min", "Max"})};
   for (const Column& column : columns_of(scenario)) {
     for (const campaign::ConditionResults& results : scenario.conditions) {
       const campaign::Summary s = campaign::summarise(results.values(column.name));
@@ -269,18 +259,18 @@ Table details_table(const campaign::ScenarioResults& scenario) {
       table.rows.push_back(std::move(row));
     }
   }
-  table.notes = {"Interval: of the mean, Student's t."};
+  table.notes = {"Interval of the mean: Student's t."};
   return table;
 }
 
 std::vector<Comparison> compare_conditions(const campaign::ScenarioResults& scenario) {
-  // Each pair once, the later minus the earlier.
+  // Each pair once: the later minus the earlier condition.
   return compare_where(scenario, [](std::size_t a, std::size_t b) { return a > b; });
 }
 
 Table comparisons_table(const campaign::ScenarioResults& scenario) {
   Table table = table_of(scenario, compare_conditions(scenario));
-  table.title = fmt::format("How the conditions of {} differ", scenario.scenario);
+  table.title = fmt::format("Differences between the conditions of {}", scenario.scenario);
   return table;
 }
 
@@ -292,9 +282,9 @@ std::vector<Comparison> optimism(const campaign::ScenarioResults& scenario) {
 
 Table optimism_table(const campaign::ScenarioResults& scenario) {
   Table table = table_of(scenario, optimism(scenario));
-  table.title = fmt::format("The optimism of an unsynchronised test of {}", scenario.scenario);
+  table.title = fmt::format("Optimism of the unsynchronised test of {}", scenario.scenario);
   table.notes.push_back(
-      "Positive: without synchronisation the same target looks better by this much than it is.");
+      "Positive: the unsynchronised test reports a value that is better by this amount.");
   return table;
 }
 

@@ -11,13 +11,13 @@
 #include <tether/report/paper_figures.h>
 #include <tether/report/report.h>
 
+// The table of a campaign's setup and checks, collected over all trials by `Basis`; the table of
+// one run; and the two tables for programs (CSV).
 namespace tether::report {
 namespace {
 
-std::string joined(const std::set<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : "; ") + word;
-  return text.empty() ? kNone : text;
+std::string joined(const std::set<std::string>& texts) {
+  return texts.empty() ? kNone : fmt::format("{}", fmt::join(texts, "; "));
 }
 
 std::string seeds_text(const std::vector<std::uint64_t>& seeds) {
@@ -38,26 +38,25 @@ void for_each_trial(const campaign::CampaignResults& results, const Visit& visit
 }
 
 std::size_t noted_trials(const campaign::ConditionResults& condition) {
-  return static_cast<std::size_t>(
-      std::count_if(condition.trials.begin(), condition.trials.end(),
-                    [](const auto& trial) { return !trial.this_run.notes.empty(); }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      condition.trials, [](const auto& trial) { return !trial.this_run.notes.empty(); }));
 }
 
-std::string tie_text(const campaign::TrialResult& trial) {
+std::string condition_text(const campaign::TrialResult& trial) {
   std::string text = fmt::format("{}: {}, {} clock", trial.condition, trial.policy, trial.clock);
   if (trial.clock == "cpu" || (trial.clock == "wall" && trial.cpu_factor != 1.0))
     text += fmt::format(" × {}", trial.cpu_factor);
   if (trial.computing > Duration{0})
-    text += fmt::format(", {} ms for each phase of computing", 1e3 * to_seconds(trial.computing));
+    text += fmt::format(", {} ms per computing phase", 1e3 * to_seconds(trial.computing));
   if (trial.real_time_factor > 0.0) {
-    text += fmt::format(", simulator at most {} × real time", trial.real_time_factor);
+    text += fmt::format(", real-time factor at most {}", trial.real_time_factor);
   }
   if (!trial.target.empty()) text += fmt::format(", target {}", trial.target);
   for (const std::string& profile : trial.profiles) text += fmt::format(", profile {}", profile);
   return text;
 }
 
-// Seconds of ST per second of wall time, under each condition.
+// Seconds of ST per second of wall time, least and largest for each condition.
 class Speeds {
  public:
   void add(const campaign::TrialResult& trial) {
@@ -84,13 +83,13 @@ class Speeds {
 struct Basis {
   Speeds speeds;
   std::size_t trials = 0, planned = 0;
-  std::set<std::string> ties, machines, suts;
+  std::set<std::string> conditions, machines, suts;
   std::size_t audited = 0, passed = 0, synchronised = 0;
   std::uint64_t violations = 0, interactions = 0;
   std::optional<campaign::StopFigures> stops;
 
   void add(const campaign::TrialResult& trial) {
-    ties.insert(tie_text(trial));
+    conditions.insert(condition_text(trial));
     speeds.add(trial);
     ++trials;
     if (!trial.this_run.machine.empty()) machines.insert(trial.this_run.machine);
@@ -122,23 +121,23 @@ Table basis_table(const campaign::CampaignResults& results) {
     for (const auto& condition : scenario.conditions) basis.planned += condition.planned;
   }
   Table table;
-  table.title = fmt::format("What the numbers of {} rest on", results.manifest.name);
+  table.title = fmt::format("Setup and checks of {}", results.manifest.name);
   table.text_columns = 2;
   table.headings = {{{"", 1}, {"", 1}}};
   table.rows = {{"Machine", joined(basis.machines)},
                 {"SUT", joined(basis.suts)},
                 {"Seeds", seeds_text(results.manifest.seeds)},
                 {"Trials", fmt::format("{} of {}", basis.trials, basis.planned)},
-                {"Speed achieved (× real time)", basis.speeds.text()},
+                {"Real-time factor achieved", basis.speeds.text()},
                 {"Interactions", std::to_string(basis.interactions)},
                 {"Causality violations", std::to_string(basis.violations)},
                 {"Audits passed", fmt::format("{} of {} ({} synchronised trials)", basis.passed,
                                               basis.audited, basis.synchronised)}};
   if (basis.stops)
     table.rows.push_back(
-        {"Stops of all threads", fmt::format("{}, at most {:.3f} ms late", basis.stops->count,
+        {"Stops of all threads", fmt::format("{}, largest overshoot {:.3f} ms", basis.stops->count,
                                              1e3 * to_seconds(basis.stops->largest_overshoot))});
-  for (const std::string& tie : basis.ties) table.rows.push_back({"Condition", tie});
+  for (const std::string& text : basis.conditions) table.rows.push_back({"Condition", text});
   for (const auto& [name, value] : results.manifest.settings) table.rows.push_back({name, value});
   table.notes = results.damaged;
   return table;
@@ -148,30 +147,24 @@ Table run_table(const campaign::TrialResult& trial) {
   Table table;
   table.title = fmt::format("{}, {}, seed {}: {}", trial.scenario, trial.condition, trial.seed,
                             name(trial.outcome));
-  table.headings = {{{"Metric", 1}, {"Value", 1}, {"At most", 1}}};
+  table.headings = {single_headings({"Metric", "Value", "Limit"})};
   for (const campaign::MetricValue& metric : trial.metrics) {
     table.rows.push_back({with_unit(metric.label, metric.unit), decimals(metric.value),
                           metric.max ? exact(*metric.max) : kNone});
     if (!metric.value)
-      table.notes.push_back(fmt::format("No {}: {}.", metric.label, metric.missing_because));
+      table.notes.push_back(
+          fmt::format("{}: no value ({}).", metric.label, metric.missing_because));
   }
   if (!trial.reason.empty()) table.notes.push_back(trial.reason + ".");
   if (!trial.this_run.notes.empty())
-    table.notes.push_back(fmt::format("Noted: {}.", notes_of(trial)));
+    table.notes.push_back(fmt::format("Note: {}.", notes_of(trial)));
   return table;
 }
 
 Table trials_table(const campaign::CampaignResults& results) {
   Table table;
-  table.headings = {{{"scenario", 1},
-                     {"condition", 1},
-                     {"seed", 1},
-                     {"outcome", 1},
-                     {"metric", 1},
-                     {"unit", 1},
-                     {"value", 1},
-                     {"reason", 1},
-                     {"notes", 1}}};
+  table.headings = {single_headings(
+      {"scenario", "condition", "seed", "outcome", "metric", "unit", "value", "reason", "notes"})};
   for_each_trial(
       results, [&](const campaign::ScenarioResults& scenario, const campaign::TrialResult& trial) {
         for (const campaign::MetricValue& metric : trial.metrics) {
@@ -185,20 +178,9 @@ Table trials_table(const campaign::CampaignResults& results) {
 
 Table summaries_table(const campaign::CampaignResults& results) {
   Table table;
-  table.headings = {{{"scenario", 1},
-                     {"condition", 1},
-                     {"metric", 1},
-                     {"unit", 1},
-                     {"planned", 1},
-                     {"n", 1},
-                     {"mean", 1},
-                     {"stddev", 1},
-                     {"median", 1},
-                     {"ci95_low", 1},
-                     {"ci95_high", 1},
-                     {"paper_mean", 1},
-                     {"paper_stddev", 1},
-                     {"noted", 1}}};
+  table.headings = {
+      single_headings({"scenario", "condition", "metric", "unit", "planned", "n", "mean", "stddev",
+                       "median", "ci95_low", "ci95_high", "paper_mean", "paper_stddev", "noted"})};
   for (const campaign::ScenarioResults& scenario : results.scenarios) {
     const PaperTable* paper = find_paper_table(scenario.paper_table);
     for (const std::string& name : scenario.metrics) {

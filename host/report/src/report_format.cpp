@@ -37,4 +37,10 @@ std::string notes_of(const campaign::TrialResult& trial) {
   return fmt::format("{}", fmt::join(trial.this_run.notes, "; "));
 }
 
+std::vector<Heading> single_headings(const std::vector<std::string>& texts) {
+  std::vector<Heading> headings;
+  for (const std::string& text : texts) headings.push_back({text, 1});
+  return headings;
+}
+
 }  // namespace tether::report

@@ -5,8 +5,9 @@
 
 #include <tether/campaign/result.h>
 #include <tether/campaign/statistics.h>
+#include <tether/report/table.h>
 
-/// How the numbers of a report are written.
+/// Formats of the numbers and headings of a report.
 namespace tether::report {
 
 inline constexpr const char* kNone = "–";
@@ -23,7 +24,9 @@ std::string exact(double value);
 std::string exact(const std::optional<double>& value);
 /// "Time required (s)"; counts have no unit.
 std::string with_unit(const std::string& label, const std::string& unit);
-/// What happened to a run and nobody meant to, in one line; empty: nothing.
+/// Unexpected events of a run, in one line; empty: none.
 std::string notes_of(const campaign::TrialResult& trial);
+/// A row with a heading for each column.
+std::vector<Heading> single_headings(const std::vector<std::string>& texts);
 
 }  // namespace tether::report

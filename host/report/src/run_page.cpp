@@ -17,7 +17,7 @@ const campaign::TrialResult& trial_of(const campaign::CampaignResults& results) 
   return results.scenarios.front().conditions.front().trials.front();
 }
 
-std::string outcome_words(campaign::Outcome outcome) {
+std::string outcome_text(campaign::Outcome outcome) {
   switch (outcome) {
     case campaign::Outcome::kGoalReached:
       return "Goal reached";
@@ -30,10 +30,9 @@ std::string outcome_words(campaign::Outcome outcome) {
 }
 
 std::string outcome_sentences(const campaign::TrialResult& trial) {
-  std::string text = fmt::format("{}: {}.", outcome_words(trial.outcome), trial.reason);
+  std::string text = fmt::format("{}: {}.", outcome_text(trial.outcome), trial.reason);
   for (const campaign::SutResult& sut : trial.suts) {
-    if (!sut.outcome.empty())
-      text += fmt::format(" The software of {} ended with: {}.", sut.uav, sut.outcome);
+    if (!sut.outcome.empty()) text += fmt::format(" SUT of {}: {}.", sut.uav, sut.outcome);
   }
   return text;
 }
@@ -44,17 +43,17 @@ std::string plots_part(FigureMaker& figures, const record::Record& record) {
   for (const record::SutInfo& sut : record.header.suts) {
     const PlottedRun run{&record, sut.uav, sut.uav, runs.size()};
     runs.push_back(run);
-    html += figures.plot(timeline_plot(run, Extent::kFirstInteractions),
-                         fmt::format("Time against time, {}: the first interactions.", sut.uav));
-    html += figures.plot(timeline_plot(run, Extent::kWhole),
-                         fmt::format("Time against time, {}: the whole run.", sut.uav));
     html += figures.plot(
-        lag_plot(run),
-        fmt::format("How far ST was behind ET when each request of {} arrived.", sut.uav));
+        timeline_plot(run, Extent::kFirstInteractions),
+        fmt::format("Simulated and execution time of {} over wall time: first interactions.",
+                    sut.uav));
+    html += figures.plot(
+        timeline_plot(run, Extent::kWhole),
+        fmt::format("Simulated and execution time of {} over wall time: whole run.", sut.uav));
+    html += figures.plot(lag_plot(run),
+                         fmt::format("Lag ε = ET − ST when each request of {} arrived.", sut.uav));
   }
-  html += figures.plot(path_plot(runs),
-                       "Path from above. Ticks point where the nose points; dashed, if any: the "
-                       "software's own dead reckoning, from the true start.");
+  html += figures.plot(path_plot(runs), fmt::format("Path, seen from above. {}", kPathCaption));
   return html;
 }
 
@@ -65,9 +64,10 @@ std::string record_part(const std::filesystem::path& folder) {
     FigureMaker figures(1);
     std::string html = plots_part(figures, record);
     const std::string frames = figures.frames(record);
-    if (!frames.empty()) html += element("h2", "What the camera saw") + frames;
+    if (!frames.empty()) html += element("h2", "Camera images") + frames;
     if (!record.damage.empty())
-      html += element("p", "The record is shown up to where it is torn: " + record.damage);
+      html +=
+          element("p", "Only the part of the record before the damage is shown: " + record.damage);
     return html;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kBadFile) throw;
@@ -99,8 +99,11 @@ std::string run_page(const std::filesystem::path& folder) {
   std::string body = element("h1", title);
   body += "<p class=\"verdict\">" + escape_markup(outcome_sentences(trial)) + "</p>\n";
   body += problems_box(problems(results));
-  body += to_html(run_table(trial)) + record_part(folder);
-  body += element("h2", "What the numbers rest on") + basis_html(results);
+  Table metrics = run_table(trial);
+  metrics.title.clear();
+  std::erase(metrics.notes, trial.reason + ".");  // outcome_sentences has it
+  body += to_html(metrics) + record_part(folder);
+  body += element("h2", "Setup and checks") + basis_html(results);
   return html_page(title, body);
 }
 

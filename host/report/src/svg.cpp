@@ -2,11 +2,17 @@
 
 #include "inks.h"
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include <fmt/format.h>
 #include <tinyxml2.h>
 
 #include <tether/base/printable.h>
 
+// Two steps on gnuplot's SVG: finished_svg makes it an independent file (inks instead of colours, a
+// title, a style sheet), and inline_svg makes a finished file part of an HTML page.
 namespace tether::report {
 namespace {
 
@@ -18,15 +24,15 @@ std::string printed(const tinyxml2::XMLNode& node) {
   return printer.CStr();
 }
 
-// What names the program that drew it, or does nothing: gnuplot opens a group per pen that it takes
-// up, drawn with or not.
+// Elements that name the drawing program or have no effect. gnuplot opens a group for each pen,
+// even if it draws nothing with it.
 bool is_dropped(const XMLElement& element) {
   const std::string_view name = element.Name();
   return name == "title" || name == "desc" || name == "filter" ||
          (name == "g" && element.NoChildren());
 }
 
-// Colours that stand for inks become the inks' classes, with their light colours beside.
+// Colours that stand for inks become the class of the ink, and its light colour.
 void put_inks(XMLElement& element) {
   std::string classes;
   for (const char* name : {"stroke", "fill", "color"}) {
@@ -42,7 +48,7 @@ void put_inks(XMLElement& element) {
   element.SetAttribute("class", (classes + (others != nullptr ? others : "")).c_str());
 }
 
-// SVG 2's name for it, which HTML knows as well.
+// The name in SVG 2, which HTML also supports.
 void rename_reference(XMLElement& element) {
   if (const char* target = element.Attribute("xlink:href")) {
     element.SetAttribute("href", target);
@@ -50,7 +56,7 @@ void rename_reference(XMLElement& element) {
   }
 }
 
-// From the innermost elements on: what is empty then is dropped from what is around it.
+// From the innermost elements outwards, so that groups that become empty are dropped too.
 void finish(XMLElement& element) {
   for (XMLElement* child = element.FirstChildElement(); child != nullptr;) {
     XMLElement* next = child->NextSiblingElement();
@@ -90,30 +96,15 @@ void prefix_ids(XMLElement& element, const std::string& prefix) {
 }  // namespace
 
 std::string escape_markup(std::string_view text) {
+  constexpr std::pair<char, std::string_view> kEntities[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
   std::string escaped;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\'':
-        escaped += "&#39;";
-        break;
-      case '\n':
-      case '\t':
-        escaped += c;
-        break;
-      default:
-        if (static_cast<unsigned char>(c) >= 0x20) escaped += c;
+    const auto* entity = std::ranges::find(kEntities, c, &std::pair<char, std::string_view>::first);
+    if (entity != std::end(kEntities)) {
+      escaped += entity->second;
+    } else if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') {
+      escaped += c;
     }
   }
   return escaped;

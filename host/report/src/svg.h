@@ -4,18 +4,18 @@
 #include <string>
 #include <string_view>
 
-/// What is done to gnuplot's SVG. Pure functions.
+/// Changes to gnuplot's SVG. Pure functions.
 namespace tether::report {
 
-/// Text as XML or HTML shows it: the five special characters escaped, control characters dropped.
+/// Text for XML or HTML: the five special characters escaped, control characters dropped.
 std::string escape_markup(std::string_view text);
 
-/// gnuplot's drawing with inks for colours, its title and no trace of the program that drew it, on
-/// one line. None if it is no whole XML document.
+/// gnuplot's drawing on one line, with inks instead of colours, with the title, and without the
+/// name of the drawing program. None if it is not a complete XML document.
 std::optional<std::string> finished_svg(std::string_view drawn, const std::string& title);
 
-/// A finished SVG to stand inside an HTML page that has `ink_css`: no prolog, no style, and every
-/// id begins with `prefix`.
+/// A finished SVG for an HTML page that has `ink_css`: without prolog and style, and every id
+/// begins with `prefix`.
 std::string inline_svg(std::string_view finished, const std::string& prefix);
 
 }  // namespace tether::report

@@ -3,16 +3,17 @@
 
 #include <tether/report/table.h>
 
+// Three forms of a table. Text is aligned by the widths of all columns; Markdown and CSV have one
+// row of headings, in which each joins all headings above its column.
 namespace tether::report {
 namespace {
 
 constexpr std::size_t kGap = 2;
 
-// Characters on the terminal: UTF-8 continuation bytes take no place of their own.
+// Characters on the terminal: UTF-8 continuation bytes do not count.
 std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u;
-  }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
 }
 
 std::string padding(const std::string& text, std::size_t width) {
@@ -44,7 +45,7 @@ std::size_t span_width(const std::vector<std::size_t>& widths, std::size_t first
   return sum + kGap * (columns - 1);
 }
 
-// Narrow headings first; then a wide one stretches the last column below it.
+// First by the cells and narrow headings; then a wide heading widens the last column below it.
 std::vector<std::size_t> column_widths(const Table& table) {
   std::vector<std::size_t> widths(column_count(table), 0);
   for (const auto& row : table.rows) {
@@ -142,7 +143,10 @@ std::string csv_row(const std::vector<std::string>& cells) {
 std::string to_text(const Table& table) {
   const std::vector<std::size_t> widths = column_widths(table);
   std::string text = table.title.empty() ? "" : table.title + "\n\n";
-  for (const auto& row : table.headings) text += heading_line(row, widths, table.text_columns);
+  for (const auto& row : table.headings) {
+    const std::string line = heading_line(row, widths, table.text_columns);
+    if (line != "\n") text += line;
+  }
   if (!widths.empty()) {
     for (std::size_t i = 0; i < span_width(widths, 0, widths.size()); ++i) text += "─";
     text += "\n";

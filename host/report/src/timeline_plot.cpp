@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kFirst = 20;
 constexpr std::size_t kDrawn = 400;    // of a whole run
-constexpr std::size_t kBuckets = 700;  // of the lag, a least and a largest each
+constexpr std::size_t kBuckets = 700;  // of the lag
 
 std::vector<const record::Interaction*> interactions_of(const PlottedRun& run) {
   std::vector<const record::Interaction*> found;
@@ -20,7 +20,7 @@ std::vector<const record::Interaction*> interactions_of(const PlottedRun& run) {
   return found;
 }
 
-bool is_tied(const PlottedRun& run) {
+bool is_synchronised(const PlottedRun& run) {
   return run.record->header.policy != record::kFreeRunning;
 }
 
@@ -44,8 +44,9 @@ struct Lines {
   double wall_end_s = 0.0, top_s = 0.0;
 };
 
-// ET stands still from a request until its reply, and goes on from the reply's timestamp.
-void add_interaction(Lines& lines, const record::Interaction& i, WallTime wall_zero, bool tied) {
+// ET does not advance between a request and its reply, and resumes with the reply's timestamp.
+void add_interaction(Lines& lines, const record::Interaction& i, WallTime wall_zero,
+                     bool synchronised) {
   const double arrival_s = to_seconds(i.wall_at_arrival - wall_zero);
   const double release_s = to_seconds(i.wall_at_release - wall_zero);
   const double request_s = to_seconds(i.request_at), reply_s = to_seconds(i.reply_at);
@@ -53,18 +54,19 @@ void add_interaction(Lines& lines, const record::Interaction& i, WallTime wall_z
   lines.st.add(release_s, to_seconds(i.st_at_release));
   lines.top_s = std::max(lines.top_s, to_seconds(i.st_at_release));
   lines.wall_end_s = std::max(lines.wall_end_s, release_s);
-  lines.marks.add(arrival_s, tied ? request_s : to_seconds(i.st_at_arrival));
-  if (!tied) return;
+  lines.marks.add(arrival_s, synchronised ? request_s : to_seconds(i.st_at_arrival));
+  if (!synchronised) return;
   lines.et.add(arrival_s, request_s);
   lines.et.add(release_s, request_s);
   lines.et.add(release_s, reply_s);
   lines.top_s = std::max(lines.top_s, reply_s);
 }
 
-Lines lines_of(const std::vector<const record::Interaction*>& interactions, bool tied) {
+Lines lines_of(const std::vector<const record::Interaction*>& interactions, bool synchronised) {
   Lines lines;
   const WallTime zero = interactions.front()->wall_at_arrival;
-  for (const auto* interaction : interactions) add_interaction(lines, *interaction, zero, tied);
+  for (const auto* interaction : interactions)
+    add_interaction(lines, *interaction, zero, synchronised);
   const double from_s = to_seconds(interactions.front()->st_at_arrival);
   lines.real_time.add(0.0, from_s);
   lines.real_time.add(lines.wall_end_s, from_s + lines.wall_end_s);
@@ -73,7 +75,7 @@ Lines lines_of(const std::vector<const record::Interaction*>& interactions, bool
 
 // Lag.
 
-// The least and the largest of each of `kBuckets` spans: no peak is lost.
+// The least and the largest value of each of `kBuckets` spans, so that all peaks are kept.
 DataBlock lag_block(const std::vector<const record::Interaction*>& all) {
   DataBlock block("lag");
   const std::size_t per_bucket = std::max<std::size_t>(1, (all.size() + kBuckets - 1) / kBuckets);
@@ -98,8 +100,8 @@ DataBlock lag_block(const std::vector<const record::Interaction*>& all) {
 std::optional<Plot> timeline_plot(const PlottedRun& run, Extent extent) {
   const auto interactions = chosen(run, extent);
   if (interactions.size() < 2) return std::nullopt;
-  const bool tied = is_tied(run);
-  const Lines lines = lines_of(interactions, tied);
+  const bool synchronised = is_synchronised(run);
+  const Lines lines = lines_of(interactions, synchronised);
   const bool first = extent == Extent::kFirstInteractions;
   Drawing drawing;
   drawing.add(lines.real_time, "with lines linewidth 1 dashtype '.'", Ink::kForeground,
@@ -114,18 +116,18 @@ std::optional<Plot> timeline_plot(const PlottedRun& run, Extent extent) {
   const double margin_s = std::max(1e-6, 0.04 * (lines.top_s - from_s));
   return Plot{frame_script({.height_px = first ? 340 : 300,
                             .x_label = "Wall time since the first interaction (s)",
-                            .y_label = tied ? "ST and ET (s)" : "ST (s)"}) +
+                            .y_label = synchronised ? "ST and ET (s)" : "ST (s)"}) +
                   range_script("x", 0.0, std::max(1e-6, 1.02 * lines.wall_end_s)) +
                   range_script("y", std::max(0.0, from_s - margin_s), lines.top_s + margin_s) +
                   drawing.script(),
               fmt::format("{} against wall time, {}, {}",
-                          tied ? "Simulated and execution time" : "Simulated time",
+                          synchronised ? "Simulated and execution time" : "Simulated time",
                           first ? "first interactions" : "whole run", run.label)};
 }
 
 std::optional<Plot> lag_plot(const PlottedRun& run) {
   const auto interactions = interactions_of(run);
-  if (!is_tied(run) || interactions.size() < 2) return std::nullopt;
+  if (!is_synchronised(run) || interactions.size() < 2) return std::nullopt;
   Drawing drawing;
   drawing.add(lag_block(interactions), "with points pointtype 7 pointsize 0.3",
               series_ink(run.series), run.label);

@@ -6,14 +6,13 @@
 
 #include <fmt/format.h>
 
+// The sentences of a report. A verdict consists of one sentence on how often the goal was reached,
+// one per other condition on how it differs from the first, and one on throttled boards. Numbers
+// are rounded by the width of their confidence interval.
 namespace tether::report {
 namespace {
 
 constexpr double kSignificant = 0.05;
-
-std::string in_quotes(const std::string& condition) {
-  return "“" + condition + "”";
-}
 
 // "Time required" → "time required"; "ROI error" stays.
 std::string in_a_sentence(std::string label) {
@@ -22,7 +21,7 @@ std::string in_a_sentence(std::string label) {
   return label;
 }
 
-std::string with_and(const std::vector<std::string>& parts) {
+std::string joined_with_and(const std::vector<std::string>& parts) {
   std::string text;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (i > 0) text += i + 1 == parts.size() ? " and " : ", ";
@@ -61,12 +60,12 @@ std::string interval_text(const std::optional<campaign::Interval>& interval, int
   return fmt::format("95 % interval {} to {}", number(low, places), number(high, places));
 }
 
-bool holds_zero(const std::optional<campaign::Interval>& interval) {
+bool contains_zero(const std::optional<campaign::Interval>& interval) {
   return interval && interval->low <= 0.0 && interval->high >= 0.0;
 }
 
-bool is_told_apart(const Comparison& comparison) {
-  return comparison.ranks.p_two_sided < kSignificant && !holds_zero(comparison.means.ci95);
+bool is_significant(const Comparison& comparison) {
+  return comparison.ranks.p_two_sided < kSignificant && !contains_zero(comparison.means.ci95);
 }
 
 // The verdict.
@@ -74,17 +73,17 @@ bool is_told_apart(const Comparison& comparison) {
 std::string goals_sentence(const campaign::ScenarioResults& scenario) {
   std::vector<std::string> parts;
   for (const campaign::ConditionResults& condition : scenario.conditions) {
-    parts.push_back(fmt::format("{} of {} trials on {}",
+    parts.push_back(fmt::format("{} of {} trials on “{}”",
                                 condition.count(campaign::Outcome::kGoalReached), condition.planned,
-                                in_quotes(condition.condition)));
+                                condition.condition));
   }
-  return fmt::format("The software reached its goal within the limits in {}.", with_and(parts));
+  return fmt::format("The SUT reached its goal within the limits in {}.", joined_with_and(parts));
 }
 
 std::string difference_text(const Comparison& c, const std::string& label) {
   const int places = decimals_for(c.means);
   const bool smaller = c.means.difference < 0.0;
-  return fmt::format("{} is {} by {} ({})", in_a_sentence(label), smaller ? "smaller" : "larger",
+  return fmt::format("{} ({} by {}, {})", in_a_sentence(label), smaller ? "smaller" : "larger",
                      amount(std::abs(c.means.difference), places, c.unit),
                      interval_text(c.means.ci95, places, smaller));
 }
@@ -97,57 +96,55 @@ std::string comparison_sentence(const campaign::ScenarioResults& scenario,
     const bool is_meant = c.a == other && c.b == first;
     if (!is_meant) continue;
     const std::string& label = scenario.find_metric(c.metric)->label;
-    if (is_told_apart(c)) {
+    if (is_significant(c)) {
       differences.push_back(difference_text(c, label));
     } else {
       alike.push_back(in_a_sentence(label));
     }
   }
-  if (differences.empty() && alike.empty()) return "";
-  const std::string start =
-      fmt::format(" Compared with {}, on {} ", in_quotes(first), in_quotes(other));
-  const std::string not_apart = with_and(alike) + " cannot be told apart by these trials";
-  if (differences.empty()) return start + not_apart + ".";
-  return start + with_and(differences) + (alike.empty() ? "." : "; " + not_apart + ".");
+  std::string text;
+  if (!differences.empty())
+    text += fmt::format(" “{}” differs significantly from “{}” in {}.", other, first,
+                        joined_with_and(differences));
+  if (!alike.empty())
+    text += fmt::format(" “{}” does not differ significantly from “{}” in {}.", other, first,
+                        joined_with_and(alike));
+  return text;
 }
 
-/// Boards that were slowed down; empty: none.
-std::string spoiled_sentence(const campaign::ScenarioResults& scenario) {
+// Boards that reduced their clock frequency; empty: none.
+std::string throttled_sentence(const campaign::ScenarioResults& scenario) {
   std::vector<std::string> parts;
   for (const campaign::ConditionResults& condition : scenario.conditions) {
-    const auto spoiled = std::ranges::count_if(condition.trials, [](const auto& trial) {
+    const auto throttled = std::ranges::count_if(condition.trials, [](const auto& trial) {
       return trial.this_run.target && trial.this_run.target->is_spoiled;
     });
-    if (spoiled > 0)
-      parts.push_back(fmt::format("{} of {} trials on {}", spoiled, condition.trials.size(),
-                                  in_quotes(condition.condition)));
+    if (throttled > 0)
+      parts.push_back(fmt::format("{} of {} trials on “{}”", throttled, condition.trials.size(),
+                                  condition.condition));
   }
   if (parts.empty()) return "";
-  return fmt::format(" The target was throttled in {}: their times are not those of the board.",
-                     with_and(parts));
+  return fmt::format(
+      " The board was throttled in {}: the times of these trials are not representative.",
+      joined_with_and(parts));
 }
 
 // Problems.
-
-std::string place(const campaign::ScenarioResults& scenario,
-                  const campaign::ConditionResults& condition) {
-  return fmt::format("{}, {}", scenario.scenario, condition.condition);
-}
 
 void add_trial_problems(std::vector<std::string>& lines, const std::string& where,
                         const campaign::TrialResult& trial) {
   const std::string which = fmt::format("{}, seed {}", where, trial.seed);
   if (trial.outcome == campaign::Outcome::kFailed) {
-    lines.push_back(fmt::format("{}: failed, and is in no mean: {}", which, trial.reason));
+    lines.push_back(fmt::format("{}: failed, excluded from all means: {}", which, trial.reason));
     return;
   }
   for (const campaign::MetricValue& metric : trial.metrics) {
     if (!metric.value)
-      lines.push_back(
-          fmt::format("{}: no {}: {}", which, in_a_sentence(metric.label), metric.missing_because));
+      lines.push_back(fmt::format("{}: no value of {}: {}", which, in_a_sentence(metric.label),
+                                  metric.missing_because));
   }
   if (trial.audit && !trial.audit->passed)
-    lines.push_back(fmt::format("{}: the audit found: {}", which, trial.audit->summary));
+    lines.push_back(fmt::format("{}: audit: {}", which, trial.audit->summary));
   if (trial.sync.causality_violations > 0)
     lines.push_back(
         fmt::format("{}: {} causality violations", which, trial.sync.causality_violations));
@@ -163,13 +160,13 @@ void add_missing_seeds(std::vector<std::string>& lines, const std::string& where
                        const campaign::ConditionResults& condition) {
   std::vector<std::string> missing;
   for (const std::uint64_t seed : seeds) {
-    const bool is_there = std::any_of(condition.trials.begin(), condition.trials.end(),
-                                      [&](const auto& trial) { return trial.seed == seed; });
-    if (!is_there) missing.push_back(std::to_string(seed));
+    if (std::ranges::find(condition.trials, seed, &campaign::TrialResult::seed) ==
+        condition.trials.end())
+      missing.push_back(std::to_string(seed));
   }
   if (!missing.empty())
-    lines.push_back(fmt::format("{}: not run yet, or without a readable result: seed{} {}", where,
-                                missing.size() > 1 ? "s" : "", with_and(missing)));
+    lines.push_back(fmt::format("{}: no readable result for seed{} {} (not run yet, or damaged)",
+                                where, missing.size() > 1 ? "s" : "", joined_with_and(missing)));
 }
 
 }  // namespace
@@ -181,37 +178,34 @@ std::string verdict(const campaign::ScenarioResults& scenario) {
   const std::string& first = scenario.conditions.front().condition;
   for (const campaign::ConditionResults& other : scenario.conditions)
     text += comparison_sentence(scenario, comparisons, first, other.condition);
-  return text + spoiled_sentence(scenario);
+  return text + throttled_sentence(scenario);
 }
 
 std::string optimism_sentence(const Comparison& comparison, const campaign::MetricValue& metric) {
   const double hidden = comparison.means.difference;
   const int places = decimals_for(comparison.means);
-  if (hidden == 0.0 || holds_zero(comparison.means.ci95)) {
-    return fmt::format(
-        "In {}, no optimism of the test without synchronisation can be told from the spread: {} "
-        "({}).",
-        in_a_sentence(metric.label), amount(hidden, places, metric.unit),
-        interval_text(comparison.means.ci95, places, false));
-  }
   const bool better = hidden > 0.0;
+  const std::string label = in_a_sentence(metric.label);
+  if (hidden == 0.0 || contains_zero(comparison.means.ci95))
+    return fmt::format(
+        "Without synchronisation, “{}” does not differ significantly in {}: {} ({}).", comparison.a,
+        label, amount(hidden, places, metric.unit),
+        interval_text(comparison.means.ci95, places, false));
   const std::string size = amount(std::abs(hidden), places, metric.unit);
   const std::string range = interval_text(comparison.means.ci95, places, !better);
-  const std::string start = fmt::format("Without synchronisation the {} ", comparison.a);
-  if (metric.unit == "s" || metric.unit == "ms") {
-    return start + fmt::format("looks {} {} than it is ({}; {}).", size,
-                               better ? "faster" : "slower", in_a_sentence(metric.label), range);
-  }
-  return start + fmt::format("looks {} than it is: {} {} by {} ({}).", better ? "better" : "worse",
-                             in_a_sentence(metric.label), better ? "smaller" : "larger", size,
-                             range);
+  const std::string start = fmt::format("Without synchronisation, “{}” appears ", comparison.a);
+  if (metric.unit == "s" || metric.unit == "ms")
+    return start + fmt::format("{} {} than it is ({}; {}).", size, better ? "faster" : "slower",
+                               label, range);
+  return start + fmt::format("{} than it is: {} {} by {} ({}).", better ? "better" : "worse", label,
+                             better ? "smaller" : "larger", size, range);
 }
 
 std::vector<std::string> problems(const campaign::CampaignResults& results) {
   std::vector<std::string> lines;
   for (const campaign::ScenarioResults& scenario : results.scenarios) {
     for (const campaign::ConditionResults& condition : scenario.conditions) {
-      const std::string where = place(scenario, condition);
+      const std::string where = fmt::format("{}, {}", scenario.scenario, condition.condition);
       for (const campaign::TrialResult& trial : condition.trials)
         add_trial_problems(lines, where, trial);
       add_missing_seeds(lines, where, results.manifest.seeds, condition);

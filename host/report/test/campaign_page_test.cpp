@@ -1,12 +1,12 @@
-#include "page_check.h"
+#include "campaign_fixture.h"
 #include "sample_record.h"
+
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <tinyxml2.h>
 
-#include <tether/campaign/campaign_folder.h>
-#include <tether/campaign_testing/sample_campaign.h>
 #include <tether/record/png.h>
 #include <tether/record/writer.h>
 #include <tether/report/page.h>
@@ -17,6 +17,43 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
+
+// The texts between each `open` and the next `close`.
+std::vector<std::string> between(const std::string& text, const std::string& open,
+                                 const std::string& close) {
+  std::vector<std::string> found;
+  for (auto at = text.find(open); at != std::string::npos; at = text.find(open, at + 1)) {
+    const auto begin = at + open.size();
+    const auto end = text.find(close, begin);
+    if (end == std::string::npos) break;
+    found.push_back(text.substr(begin, end - begin));
+  }
+  return found;
+}
+
+// References to anything outside the page.
+std::vector<std::string> external_references(const std::string& page) {
+  std::vector<std::string> found;
+  for (const char* attribute : {" src=\"", " href=\"", " href='", "url(", "@import"}) {
+    for (const std::string& target : between(page, attribute, "\n")) {
+      if (!target.starts_with("#") && !target.starts_with("data:"))
+        found.push_back(target.substr(0, 60));
+    }
+  }
+  return found;
+}
+
+// Ids that occur more than once.
+std::vector<std::string> repeated_ids(const std::string& page) {
+  std::vector<std::string> repeated;
+  std::set<std::string> seen;
+  for (const char* quote : {"\"", "'"}) {
+    for (const std::string& id : between(page, std::string(" id=") + quote, quote)) {
+      if (!seen.insert(id).second) repeated.push_back(id);
+    }
+  }
+  return repeated;
+}
 
 void write_record(const std::filesystem::path& file, const record::Record& record) {
   const auto recorder = record::make_mcap_recorder(file);
@@ -30,26 +67,8 @@ void write_record(const std::filesystem::path& file, const record::Record& recor
   recorder->write(record::Footer{});
 }
 
-class CampaignPage : public testing::Test {
+class CampaignPage : public CampaignFixture {
  protected:
-  CampaignPage() {
-    campaign::CampaignFolder folder(out_, campaign_, {{"tether", "0.1.0"}},
-                                    campaign::OpenMode::kFresh);
-    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      const double s = static_cast<double>(seed);
-      write(campaign::make_trial(scenario(), "host", seed, 0, 2.4 + 0.1 * s));
-      write(campaign::make_trial(scenario(), "target", seed, 2, 7.0 + 0.1 * s));
-      write(campaign::make_trial(scenario(), "target, no sync", seed, 0, 2.3 + 0.1 * s));
-    }
-  }
-  const scenario::Scenario& scenario() const { return campaign_.scenarios[0].scenario; }
-  std::filesystem::path folder_of(const std::string& condition, std::uint64_t seed) const {
-    return out_ / campaign::trial_folder("turn", condition, seed);
-  }
-  void write(const campaign::TrialResult& result) {
-    std::filesystem::create_directories(folder_of(result.condition, result.seed));
-    write_result(folder_of(result.condition, result.seed), result);
-  }
   void write_records() {
     for (const char* condition : {"host", "target"}) {
       record::Record record = sample_record(30);
@@ -63,126 +82,95 @@ class CampaignPage : public testing::Test {
       write_record(folder_of(condition, 1) / "record.mcap", record);
     }
   }
-  std::string page() const { return campaign_page(campaign::read_campaign_results(out_), out_); }
-
-  ScratchFolder scratch_;
-  std::filesystem::path out_ = scratch_.path("out");
-  scenario::Campaign campaign_ = campaign::make_campaign(scratch_);
+  std::string page() const { return campaign_page(all(), out_); }
+  // Of what every page has: valid drawings, unique ids, nothing outside the page.
+  static void check_page(const std::string& html, std::size_t drawings) {
+    const auto found = between(html, "<svg", "</svg>");
+    EXPECT_EQ(found.size(), drawings);
+    for (const std::string& drawing : found) {
+      tinyxml2::XMLDocument document;
+      EXPECT_EQ(document.Parse(("<svg" + drawing + "</svg>").c_str()), tinyxml2::XML_SUCCESS);
+      EXPECT_THAT(drawing, HasSubstr("aria-label="));
+    }
+    EXPECT_THAT(repeated_ids(html), IsEmpty());
+    EXPECT_THAT(external_references(html), IsEmpty());
+    EXPECT_THAT(html, Not(HasSubstr("<script")));
+    EXPECT_THAT(html, Not(HasSubstr("<link")));
+  }
+  static void expect_in_order(const std::string& html, const std::vector<std::string>& parts) {
+    std::size_t from = 0;
+    for (const std::string& part : parts) {
+      const auto at = html.find(part, from);
+      ASSERT_NE(at, std::string::npos) << part;
+      from = at;
+    }
+  }
 };
 
 TEST_F(CampaignPage, HasItsPartsInReadingOrder) {
   write_records();
   const std::string html = page();
-  std::size_t from = 0;
-  for (const char* part :
-       {"<h1>study</h1>", "turn (the paper&#39;s Table III)", "The software reached its goal",
-        "Table III: Performance of", "What a test without synchronisation hides",
-        "Without synchronisation the target looks", "The optimism of an unsynchronised test",
-        "Every trial", "Path from above", "Time against time", "What the camera saw",
-        "<summary>All statistics</summary>", "<summary>How the conditions differ</summary>",
-        "What the numbers rest on", "a machine"}) {
-    const auto at = html.find(part, from);
-    ASSERT_NE(at, std::string::npos) << part;
-    from = at;
-  }
-}
-
-TEST_F(CampaignPage, NeedsNothingBesideIt) {
-  write_records();
-  const std::string html = page();
-  EXPECT_THAT(external_references(html), IsEmpty());
-  EXPECT_THAT(html, Not(HasSubstr("<script")));
-  EXPECT_THAT(html, Not(HasSubstr("<link")));
-}
-
-TEST_F(CampaignPage, HasPlotsThatDoNotClash) {
-  write_records();
-  const std::string html = page();
-  const auto drawings = between(html, "<svg", "</svg>");
-  // Two metrics, the path, two timelines, four frames.
-  EXPECT_EQ(drawings.size(), 9u);
-  for (const std::string& drawing : drawings) {
-    tinyxml2::XMLDocument document;
-    const std::string svg = "<svg" + drawing + "</svg>";
-    EXPECT_EQ(document.Parse(svg.c_str()), tinyxml2::XML_SUCCESS);
-    EXPECT_THAT(svg, HasSubstr("aria-label="));
-  }
-  EXPECT_THAT(repeated_ids(html), IsEmpty());
+  expect_in_order(
+      html,
+      {"<h1>study</h1>", "turn (the paper&#39;s Table III)",
+       "<p class=\"verdict\">The SUT reached its goal", "<caption>Table III: Performance of",
+       "<h3>Optimism of the unsynchronised test</h3>",
+       "<p>Without synchronisation, “target” does not",
+       "<caption>Optimism of the unsynchronised test of turn</caption>", "<h3>All trials</h3>",
+       "<h3>Path, seen from above</h3>", "<h3>Simulated and execution time over wall time</h3>",
+       "<h3>Camera images</h3>", "<summary>All statistics</summary>",
+       "<summary>Differences between the conditions</summary>", "<h2>Setup and checks</h2>",
+       "a machine"});
+  check_page(html, 9);  // two metrics, the path, two timelines, four images
   EXPECT_THAT(html, HasSubstr("data:image/jpeg;base64,"));
+  EXPECT_EQ(html, page());
 }
 
-TEST_F(CampaignPage, IsTheSameEachTime) {
-  write_records();
-  EXPECT_EQ(page(), page());
-}
-
-TEST_F(CampaignPage, NamesAFailedTrialOnTop) {
+TEST_F(CampaignPage, ListsFailuresAndNotesOnTop) {
   write(campaign::make_setup_failure(scenario(), *scenario().find_condition("target"), 2,
                                      "no <free> port"));
-  const std::string html = page();
-  const auto at =
-      html.find("turn, target, seed 2: failed, and is in no mean: no &lt;free&gt; port");
-  ASSERT_NE(at, std::string::npos);
-  EXPECT_LT(at, html.find("The software reached its goal"));
-}
-
-TEST_F(CampaignPage, NamesWhatWasNotedOfARunOnTopAndBelowTheTable) {
-  campaign::TrialResult noted = campaign::make_trial(scenario(), "target", 2, 2, 7.2);
+  campaign::TrialResult noted = trial("target", 3, 2, 7.2);
   noted.this_run.notes = {"process <7> was stopped"};
   write(noted);
-  const std::string html = page();
-  const auto verdict = html.find("The software reached its goal");
-  const auto at = html.find("turn, target, seed 2: process &lt;7&gt; was stopped");
-  ASSERT_NE(at, std::string::npos);
-  EXPECT_LT(html.find("What is missing or went wrong"), at);
-  EXPECT_LT(at, verdict);
-  EXPECT_NE(html.find("Noted: target, seed 2: process &lt;7&gt; was stopped.", verdict),
-            std::string::npos);
-  EXPECT_THAT(run_page(folder_of("target", 2)),
-              HasSubstr("turn, target, seed 2: process &lt;7&gt; was stopped"));
+  expect_in_order(
+      page(), {"<h2>Problems</h2>",
+               "turn, target, seed 2: failed, excluded from all means: no &lt;free&gt; "
+               "port",
+               "turn, target, seed 3: process &lt;7&gt; was stopped", "The SUT reached its goal",
+               "Note: target, seed 3: process &lt;7&gt; was stopped."});
+  EXPECT_THAT(run_page(folder_of("target", 3)),
+              HasSubstr("turn, target, seed 3: process &lt;7&gt; was stopped"));
 }
 
 TEST_F(CampaignPage, WithoutRecordsHasTablesAndDistributions) {
   const std::string html = page();
-  EXPECT_THAT(html, HasSubstr("Every trial"));
-  EXPECT_THAT(html, Not(HasSubstr("Path from above")));
-  EXPECT_THAT(html, Not(HasSubstr("What is missing or went wrong")));
-}
-
-TEST_F(CampaignPage, NamesARecordThatCannotBeRead) {
+  EXPECT_THAT(html, Not(HasSubstr("<h2>Problems</h2>")));
+  check_page(html, 2);
   scratch_.write("out/turn/host/seed-0001/record.mcap", "no record");
-  const std::string html = page();
-  EXPECT_THAT(html, HasSubstr("What is missing or went wrong"));
-  EXPECT_THAT(html, HasSubstr("seed-0001/record.mcap"));
+  expect_in_order(page(), {"<h2>Problems</h2>", "seed-0001/record.mcap"});
 }
 
-TEST_F(CampaignPage, OfNothingRunYetIsAPage) {
+TEST_F(CampaignPage, BeforeTheFirstTrialIsAPage) {
   std::filesystem::remove_all(out_ / "turn");
   const std::string html = page();
   EXPECT_THAT(html, HasSubstr("seeds 1, 2 and 3"));
-  EXPECT_THAT(html, HasSubstr("</html>"));
+  check_page(html, 0);
 }
 
 TEST_F(CampaignPage, OfOneRunShowsItsOutcomeAndPlots) {
   write_records();
   const std::string html = run_page(folder_of("target", 1));
-  EXPECT_THAT(html, HasSubstr("<h1>turn, target, seed 1</h1>"));
-  EXPECT_THAT(html,
-              HasSubstr("Goal reached: every SUT reached its goal within the limits. The software "
-                        "of uav1 ended with: the anchor is in the middle."));
-  EXPECT_THAT(html, HasSubstr("Time required (s)"));
-  // Timeline twice, lag, path, four frames.
-  EXPECT_EQ(between(html, "<svg", "</svg>").size(), 8u);
-  EXPECT_THAT(repeated_ids(html), IsEmpty());
-  EXPECT_THAT(external_references(html), IsEmpty());
+  expect_in_order(html, {"<h1>turn, target, seed 1</h1>",
+                         "Goal reached: every SUT reached its goal within the limits. SUT of uav1: "
+                         "the anchor is in the middle.",
+                         "Time required (s)", "<h2>Camera images</h2>"});
+  check_page(html, 8);  // timeline twice, lag, path, four images
 }
 
-TEST_F(CampaignPage, OfARunWithoutARecordSaysSo) {
-  const std::string html = run_page(folder_of("target", 1));
-  EXPECT_THAT(html, HasSubstr("No plots: "));
-  EXPECT_THAT(html, HasSubstr("record.mcap"));
-  EXPECT_THAT(error_message(ErrorCode::kBadFile, [&] { run_page(out_); }),
-              HasSubstr("result.json"));
+TEST_F(CampaignPage, OfOneRunDoesNotNeedARecordButAResult) {
+  expect_in_order(run_page(folder_of("target", 1)),
+                  {"No plots: " + (folder_of("target", 1) / "record.mcap").string()});
+  EXPECT_EQ(bad_file_error([&] { run_page(out_); }).where().file, out_ / "result.json");
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include "sample_results.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,61 +11,33 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-campaign::TrialResult trial(double value) {
-  campaign::TrialResult result;
-  result.outcome = campaign::Outcome::kGoalReached;
-  campaign::MetricValue metric;
-  metric.name = metric.kind = "time_required";
-  metric.label = "Time required";
-  metric.unit = "s";
-  metric.value = value;
-  result.metrics = {metric};
-  return result;
+std::string script(const campaign::ScenarioResults& results) {
+  return distribution_plot(results, "time_required").value().script;
+}
+std::string script(const std::vector<double>& times_s) {
+  return script(sample_results({{"host", times_s}}));
 }
 
-campaign::ScenarioResults results(const std::vector<double>& host) {
-  campaign::ScenarioResults scenario;
-  scenario.scenario = "turn";
-  scenario.metrics = {"time_required"};
-  campaign::ConditionResults condition;
-  condition.condition = "host";
-  condition.planned = host.size();
-  for (const double value : host) condition.trials.push_back(trial(value));
-  scenario.conditions = {condition};
-  return scenario;
-}
-
+// Quartiles by linear interpolation, as R's quantile() by default.
 TEST(DistributionPlot, HasAPointForEachTrialAndABoxOfQuartiles) {
-  const auto plot = distribution_plot(results({4, 1, 2, 3, 5}), "time_required");
-  ASSERT_TRUE(plot);
-  // Quartiles by linear interpolation, as R's quantile() by default: 2, 3, 4.
-  EXPECT_THAT(plot->script, HasSubstr("set object rectangle from 2,0.7 to 4,1.3"));
-  EXPECT_THAT(plot->script, HasSubstr("set arrow from 3,0.7 to 3,1.3 nohead"));
-  EXPECT_THAT(plot->script, HasSubstr("$trials0 << END\n4 1.042492\n1 "));
-  EXPECT_THAT(plot->script, HasSubstr("'Time required (s)'"));
+  const std::string five = script({4, 1, 2, 3, 5});
+  EXPECT_THAT(five, HasSubstr("set object rectangle from 2,0.7 to 4,1.3"));
+  EXPECT_THAT(five, HasSubstr("set arrow from 3,0.7 to 3,1.3 nohead"));
+  EXPECT_THAT(five, HasSubstr("$trials0 << END\n4 1.042492\n1 "));
+  EXPECT_THAT(script({1, 2, 4, 8}), HasSubstr("from 1.75,0.7 to 5,1.3"));
+  EXPECT_THAT(script({1, 2}), Not(HasSubstr("rectangle")));
 }
 
-TEST(DistributionPlot, BetweenTrialsInterpolates) {
-  const auto plot = distribution_plot(results({1, 2, 4, 8}), "time_required");
-  EXPECT_THAT(plot->script, HasSubstr("from 1.75,0.7 to 5,1.3"));
-  EXPECT_THAT(plot->script, HasSubstr("set arrow from 3,0.7"));
-}
-
-TEST(DistributionPlot, OfTwoTrialsHasNoBox) {
-  const auto plot = distribution_plot(results({1, 2}), "time_required");
-  ASSERT_TRUE(plot);
-  EXPECT_THAT(plot->script, Not(HasSubstr("rectangle")));
-}
-
-TEST(DistributionPlot, SaysHowManyTrialsAreMissing) {
-  campaign::ScenarioResults scenario = results({1, 2, 3});
+TEST(DistributionPlot, LabelsHaveUnitAndNumberOfMissingTrials) {
+  campaign::ScenarioResults scenario = sample_results({{"host", {1, 2, 3}}});
   scenario.conditions[0].planned = 5;
   scenario.conditions[0].trials[1].metrics[0].value.reset();
-  EXPECT_THAT(distribution_plot(scenario, "time_required")->script, HasSubstr("'host (2 of 5)' 1"));
+  EXPECT_THAT(script(scenario), HasSubstr("'host (2 of 5)' 1"));
+  EXPECT_THAT(script(scenario), HasSubstr("'Time required (s)'"));
 }
 
 TEST(DistributionPlot, NeedsAValue) {
-  campaign::ScenarioResults scenario = results({1});
+  campaign::ScenarioResults scenario = sample_results({{"host", {1}}});
   EXPECT_FALSE(distribution_plot(scenario, "oscillations"));
   scenario.conditions[0].trials[0].metrics[0].value.reset();
   EXPECT_FALSE(distribution_plot(scenario, "time_required"));

@@ -6,9 +6,8 @@
 #include <gtest/gtest.h>
 #include <tinyxml2.h>
 
-#include <tether/base/error.h>
 #include <tether/base_testing/scratch_folder.h>
-#include <tether/campaign_testing/sample_campaign.h>
+#include <tether/base_testing/thrown_error.h>
 #include <tether/report/gnuplot.h>
 
 namespace tether::report {
@@ -44,32 +43,24 @@ TEST(Gnuplot, DrawsALongRecordSmall) {
     EXPECT_LT(draw_svg(plot.value()).size(), kMost);
 }
 
-TEST(Gnuplot, ThatIsMissingIsNamedWithItsPackage) {
-  const std::string message = error_message(ErrorCode::kSetup, [] {
-    draw_svg({"plot x\n", "a line"}, "no-such-gnuplot");
-  });
-  EXPECT_THAT(message, HasSubstr("'no-such-gnuplot' is not installed"));
-  EXPECT_THAT(message, HasSubstr("gnuplot-nox"));
-}
-
-TEST(Gnuplot, ThatRefusesSaysWhy) {
-  const std::string message = error_message(ErrorCode::kSetup, [] {
-    draw_svg({"plot $nothing\n", "a line"});
-  });
-  EXPECT_THAT(message, HasSubstr("could not draw \"a line\""));
-  EXPECT_THAT(message, HasSubstr("nothing"));
-}
-
-TEST(Gnuplot, ThatSaysNothingIsToldByItsEnd) {
-  const auto message_with = [](const std::string& program) {
-    return error_message(ErrorCode::kSetup, [&] { draw_svg({"plot x\n", "a line"}, program); });
-  };
+TEST(Gnuplot, ReportsMissingAndFailingPrograms) {
   const ScratchFolder folder;
   const std::string killed = folder.write("killed", "#!/bin/sh\nkill -9 $$\n");
   std::filesystem::permissions(killed, std::filesystem::perms::owner_all);
-  EXPECT_THAT(message_with("true"), HasSubstr("could not draw \"a line\": no whole picture"));
-  EXPECT_THAT(message_with("false"), HasSubstr("exit code 1"));
-  EXPECT_THAT(message_with(killed), HasSubstr("ended by signal 9 (Killed)"));
+  struct Case {
+    std::string program, subject, value;  ///< a value that the message has
+  };
+  for (const Case& c : {Case{"no-such-gnuplot", "no-such-gnuplot", "gnuplot-nox"},
+                        {"gnuplot", "a line", "$nothing"},
+                        {"true", "a line", ""},
+                        {"false", "a line", "1"},
+                        {killed, "a line", "signal 9 (Killed)"}}) {
+    const Error error = thrown_error(ErrorCode::kSetup, [&] {
+      draw_svg({"plot $nothing\n", "a line"}, c.program);
+    });
+    EXPECT_EQ(error.subject(), c.subject);
+    EXPECT_THAT(error.what(), HasSubstr(c.value)) << c.program;
+  }
 }
 
 }  // namespace

@@ -14,17 +14,17 @@ TEST(Inks, AreFoundAgainInADrawing) {
   EXPECT_EQ(find_ink("rgb(1,2,0)"), Ink::kForeground);
 }
 
-TEST(Inks, AreNoPlainColours) {
+TEST(Inks, OtherColoursAreNotInks) {
   for (const char* colour : {"rgb(1,2,200)", "rgb(2,2,3)", "rgb(1,3,3)", "black", "rgb(", "rgb(1)"})
     EXPECT_FALSE(find_ink(colour)) << colour;
 }
 
-TEST(Inks, OfSeriesComeAgain) {
+TEST(Inks, OfSeriesRepeat) {
   EXPECT_NE(series_ink(0), series_ink(1));
   EXPECT_EQ(series_ink(kSeriesInks), series_ink(0));
 }
 
-TEST(Inks, HaveAColourForEachGround) {
+TEST(Inks, HaveAColourForEachBackground) {
   const std::string css = ink_css();
   const auto dark = css.find("prefers-color-scheme:dark");
   ASSERT_NE(dark, std::string::npos);

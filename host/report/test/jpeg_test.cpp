@@ -17,7 +17,7 @@ std::vector<std::uint8_t> picture_png(int width_px, int height_px) {
   return record::encode_png(width_px, height_px, rgb);
 }
 
-TEST(Jpeg, IsAWholeFileOfTheSamePicture) {
+TEST(Jpeg, IsACompleteFileOfTheSameImage) {
   const auto jpeg = jpeg_from_png(picture_png(64, 48));
   ASSERT_TRUE(jpeg);
   ASSERT_GT(jpeg->size(), 300u);
@@ -30,12 +30,12 @@ TEST(Jpeg, IsAWholeFileOfTheSamePicture) {
   EXPECT_NE(jpeg, jpeg_from_png(picture_png(48, 64)));
 }
 
-TEST(Jpeg, OfWhatIsNoPngIsNone) {
+TEST(Jpeg, OfOtherBytesIsNone) {
   EXPECT_FALSE(jpeg_from_png(std::vector<std::uint8_t>(100, 1)));
   EXPECT_FALSE(jpeg_from_png({}));
-  std::vector<std::uint8_t> torn = picture_png(64, 48);
-  torn.resize(torn.size() / 2);
-  EXPECT_FALSE(jpeg_from_png(torn));
+  std::vector<std::uint8_t> truncated = picture_png(64, 48);
+  truncated.resize(truncated.size() / 2);
+  EXPECT_FALSE(jpeg_from_png(truncated));
 }
 
 }  // namespace

@@ -13,16 +13,14 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(PathPlot, HasPathTicksEndsAndAnchorToScale) {
+TEST(PathPlot, HasPathEndsAndAnchorToScale) {
   const record::Record record = sample_record(3);
-  const auto plot = path_plot({{{&record, "uav1", "target", 1}}});
-  ASSERT_TRUE(plot);
-  EXPECT_THAT(plot->script, HasSubstr("$path0 << END\n0 0\n0.1 0\n0.2 0\nEND\n"));
-  EXPECT_THAT(plot->script, HasSubstr("$starts << END\n0 0\nEND\n"));
-  EXPECT_THAT(plot->script, HasSubstr("$end0 << END\n0.2 0\nEND\n"));
-  EXPECT_THAT(plot->script,
-              HasSubstr("$anchor0 << END\n2.2 1.1\n1.8 1.1\n1.8 0.9\n2.2 0.9\n2.2 1.1\nEND\n"));
-  EXPECT_THAT(plot->script, HasSubstr("set label 'blue_box'"));
+  const std::string script = path_plot({{{&record, "uav1", "target", 1}}})->script;
+  for (const char* part : {"$path0 << END\n0 0\n0.1 0\n0.2 0\nEND\n", "$starts << END\n0 0\nEND\n",
+                           "$end0 << END\n0.2 0\nEND\n", "set label 'blue_box'",
+                           "$anchor0 << END\n2.2 1.1\n1.8 1.1\n1.8 0.9\n2.2 0.9\n2.2 1.1\nEND\n"})
+    EXPECT_THAT(script, HasSubstr(part));
+  EXPECT_FALSE(path_plot({{{&record, "uav2", "host", 0}}})) << "no ground truth";
 }
 
 TEST(PathPlot, TurnsAnchorAndTicksByTheirYaw) {
@@ -56,43 +54,39 @@ TEST(PathPlot, PlacesDeadReckoningAtTheTrueStart) {
   EXPECT_THAT(path_plot({{{&record, "uav1", "target", 1}}})->script, Not(HasSubstr("odometry")));
 }
 
-double span(const std::string& script, const std::string& axis) {
+// The numbers of the expression's groups.
+std::vector<double> numbers(const std::string& script, const std::string& expression) {
   std::smatch m;
-  std::regex_search(script, m, std::regex("set " + axis + "range \\[([-0-9.e]+):([-0-9.e]+)\\]"));
-  return std::stod(m[2]) - std::stod(m[1]);
+  std::regex_search(script, m, std::regex(expression));
+  std::vector<double> found;
+  for (std::size_t i = 1; i < m.size(); ++i) found.push_back(std::stod(m[i]));
+  return found;
 }
 
-double margin(const std::string& script, const std::string& side) {
-  std::smatch m;
-  std::regex_search(script, m, std::regex("set " + side + "margin at screen ([0-9.]+)"));
-  return std::stod(m[1]);
-}
-
-TEST(PathPlot, HasOneScale) {
+TEST(PathPlot, HasTheSameScaleOnBothAxes) {
   for (const double north_m : {0.0, 3.0, 40.0}) {
     record::Record record = sample_record(30);
     record.ground_truth.back().message.p_WB_m[1] = north_m;
     const std::string script = path_plot({{{&record, "uav1", "target", 1}}})->script;
-    std::smatch size;
-    std::regex_search(script, size, std::regex("size ([0-9]+),([0-9]+)"));
-    const double x_px = std::stod(size[1]) * (margin(script, "r") - margin(script, "l"));
-    const double y_px = std::stod(size[2]) * (margin(script, "t") - margin(script, "b"));
-    EXPECT_NEAR(span(script, "x") / x_px, span(script, "y") / y_px,
-                1e-3 * span(script, "x") / x_px);
+    const auto size = numbers(script, "size ([0-9]+),([0-9]+)");
+    const auto metres_per_px = [&](const std::string& axis, const std::string& low,
+                                   const std::string& high, double size_px) {
+      const auto range = numbers(script, "set " + axis + "range \\[([-0-9.e]+):([-0-9.e]+)\\]");
+      const auto from = numbers(script, "set " + low + "margin at screen ([0-9.]+)");
+      const auto to = numbers(script, "set " + high + "margin at screen ([0-9.]+)");
+      return (range[1] - range[0]) / (size_px * (to[0] - from[0]));
+    };
+    const double x = metres_per_px("x", "l", "r", size[0]);
+    EXPECT_NEAR(x, metres_per_px("y", "b", "t", size[1]), 1e-3 * x);
   }
 }
 
 TEST(PathPlot, OverlaysRunsInTheirColours) {
   const record::Record a = sample_record(3), b = sample_record(4);
-  const auto plot = path_plot({{{&a, "uav1", "host", 0}, {&b, "uav1", "target", 1}}});
-  ASSERT_TRUE(plot);
-  EXPECT_THAT(plot->script, HasSubstr("$path0 with lines linewidth 2 linecolor rgb '#010203'"));
-  EXPECT_THAT(plot->script, HasSubstr("$path1 with lines linewidth 2 linecolor rgb '#010204'"));
-}
-
-TEST(PathPlot, NeedsGroundTruth) {
-  const record::Record record = sample_record(3);
-  EXPECT_FALSE(path_plot({{{&record, "uav2", "host", 0}}}));
+  const std::string script =
+      path_plot({{{&a, "uav1", "host", 0}, {&b, "uav1", "target", 1}}})->script;
+  EXPECT_THAT(script, HasSubstr("$path0 with lines linewidth 2 linecolor rgb '#010203'"));
+  EXPECT_THAT(script, HasSubstr("$path1 with lines linewidth 2 linecolor rgb '#010204'"));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(PlotScript, TakesTextLiterally) {
+TEST(PlotScript, QuotesText) {
   EXPECT_EQ(quoted("it's `rm -rf` @x\n\"y\""), "'it''s `rm -rf` @x \"y\"'");
 }
 
@@ -26,7 +26,7 @@ TEST(PlotScript, ABlockHasALineForEachPoint) {
   EXPECT_EQ(block.script(), "$b << END\n1 2.5\n0.001 NaN 0.5 -4\nEND\n");
 }
 
-TEST(PlotScript, ADrawingLeavesOutWhatIsEmpty) {
+TEST(PlotScript, ADrawingLeavesOutEmptyBlocks) {
   Drawing drawing;
   drawing.add(DataBlock("none"), "with lines", Ink::kMuted, "none");
   EXPECT_TRUE(drawing.empty());

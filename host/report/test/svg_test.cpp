@@ -15,7 +15,7 @@ TEST(Svg, EscapesMarkup) {
   EXPECT_EQ(escape_markup("a<b> & \"c\" 'd'\x01"), "a&lt;b&gt; &amp; &quot;c&quot; &#39;d&#39;");
 }
 
-TEST(Svg, NamesItselfAndNotItsProgram) {
+TEST(Svg, HasItsTitleAndNotItsProgram) {
   const auto svg = finished_svg(
       "<?xml version=\"1.0\"?>\n<svg \n width=\"9\">\n<title>p</title>\n<desc>Produced by "
       "X</desc>\n</svg>\n",
@@ -42,23 +42,19 @@ TEST(Svg, PutsInksInPlaceOfColours) {
   EXPECT_THAT(*svg, HasSubstr("<g stroke=\"rgb(9,9,9)\">x</g>"));
 }
 
-TEST(Svg, KeepsTextAsItIs) {
-  const auto svg = finished_svg("<svg>\n<text> 0.5 &lt; a &amp; b</text>\n</svg>", "t");
-  EXPECT_THAT(svg.value(), HasSubstr("<text> 0.5 &lt; a &amp; b</text></svg>"));
-}
-
-TEST(Svg, DropsGroupsWithNothingInThem) {
+TEST(Svg, KeepsTextAndDropsEmptyGroups) {
   const auto svg = finished_svg(
-      "<svg ><g a='1'>\n</g>\n<g b='2'><path/></g>\n<g c='3'><g a='4'/></g></svg>", "t");
-  EXPECT_THAT(svg.value(), EndsWith("</style><g b=\"2\"><path/></g></svg>"));
+      "<svg ><g a='1'>\n</g>\n<g b='2'><text> 0.5 &lt; a</text></g>\n<g c='3'><g a='4'/></g></svg>",
+      "t");
+  EXPECT_THAT(svg.value(), EndsWith("</style><g b=\"2\"><text> 0.5 &lt; a</text></g></svg>"));
 }
 
-TEST(Svg, OfWhatIsNoWholeDocumentIsNone) {
+TEST(Svg, OfAnIncompleteDocumentIsNone) {
   for (const char* drawn : {"", "<?xml version='1.0'?>", "<svg><g></svg>", "<svg>"})
     EXPECT_FALSE(finished_svg(drawn, "t")) << drawn;
 }
 
-TEST(Svg, InAPageHasIdsOfItsOwn) {
+TEST(Svg, InAPageHasPrefixedIds) {
   const std::string svg = inline_svg(
       "<?xml?><svg ><style>.a{}</style><path id='p'/><g id=\"q\"/><use href='#p'/>"
       "<g fill='url(#q)'/></svg>",

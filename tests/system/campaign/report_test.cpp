@@ -9,6 +9,7 @@
 namespace tether::system_test {
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -50,7 +51,7 @@ TEST_F(ReportCommand, MakesOnePageOfACampaign) {
   const std::string page = read_text(out() / "report.html");
   EXPECT_EQ(drawings(page), 4u);  // one metric, the path, a timeline of each condition
   EXPECT_THAT(page, HasSubstr("2 of 2 trials on “host” and 2 of 2 trials on “slow”"));
-  EXPECT_THAT(page, Not(HasSubstr("What is missing or went wrong")));
+  EXPECT_THAT(page, Not(HasSubstr("class=\"problems\"")));
   EXPECT_EQ(run(tether({"campaign", *folder_ / "campaign.toml", "--out", out(), "--resume"})).code,
             0);
 }
@@ -65,7 +66,7 @@ TEST_F(ReportCommand, NamesAPlantedFailure) {
   write_text(result, json.dump());
   ASSERT_EQ(run(tether({"report", copy, "--format", "html"})).code, 0);
   EXPECT_THAT(read_text(copy / "report.html"),
-              HasSubstr("hover, host, seed 2: failed, and is in no mean: planted for the test"));
+              ContainsRegex("hover, host, seed 2: .*: planted for the test"));
 }
 
 TEST_F(ReportCommand, MakesAPageOfOneRun) {

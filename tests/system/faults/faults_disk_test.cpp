@@ -297,7 +297,7 @@ TEST_F(TornRecord, IsNamedOnTheRunsPage) {
     GTEST_SKIP() << "no gnuplot";
   tear_to(whole_.size() * 6 / 10);
   EXPECT_EQ(run(tether({"report", out_, "--format", "html"})).code, 0);
-  EXPECT_THAT(read_text(out_ / "report.html"), HasSubstr("torn: damaged at byte "));
+  EXPECT_THAT(read_text(out_ / "report.html"), HasSubstr("damaged at byte "));
   tear_to(200);
   EXPECT_EQ(run(tether({"report", out_, "--format", "html"})).code, 0);
   EXPECT_THAT(read_text(out_ / "report.html"),

@@ -7,16 +7,16 @@
 namespace tether::record {
 
 struct CanonicalOptions {
-  /// Also what depends on how fast the simulator ran beside the SUT: ST when a request, an
-  /// annotation or a stop arrived, and the lag. Two runs of one scripted SUT that sends no progress
-  /// agree even in these.
+  /// Include what depends on the speed of the simulator relative to the SUT: the ST at which a
+  /// request, an annotation or a stop arrived, and the lag. These are equal only for two runs of a
+  /// scripted SUT that sends no progress messages.
   bool arrivals = false;
 };
 
-/// What a run was, as text: a line per interaction, command, ground truth, annotation, stop and
-/// image (its checksum), then how it ended. Grouped by topic and UAV, each in file order. Two runs
-/// that differ only in wall time give the same text. Header, wall times and, unless asked for,
-/// arrivals are left out.
+/// A run as text, for comparison: a line per interaction, command, ground truth, annotation, stop
+/// and image (its checksum), then the end of the run. Grouped by topic and UAV, each in file order.
+/// Two runs that differ only in wall time give the same text. The text has no header, no wall times
+/// and, by default, no arrivals.
 std::string canonical(const Record& record, const CanonicalOptions& options = {});
 
 }  // namespace tether::record

@@ -9,10 +9,10 @@
 
 #include <tether/base/time.h>
 
-/// What a run's record holds (DESIGN section 5): plain data, one struct per kind of message. All
-/// times in a record are integer nanoseconds; a message's log time is the ST at which it was
-/// written. Texts are UTF-8 (a byte that is not is written as U+FFFD); a number that is not finite
-/// is written as null and read as NaN.
+/// The contents of a run's record (DESIGN section 5): plain data, one struct per kind of message.
+/// All times in a record are integer nanoseconds; a message's log time is the ST at which it was
+/// written. Texts are UTF-8 (other bytes are written as U+FFFD). A number that is not finite is
+/// written as null and read as NaN.
 namespace tether::record {
 
 inline constexpr int kSchemaVersion = 1;
@@ -30,55 +30,55 @@ inline constexpr std::string_view kFinish = "finish";
 /// One request of a SUT and its reply. Topic /interactions; log time = ST at release.
 struct Interaction {
   std::string uav;
-  /// 1, 2, 3, … of this SUT. Those of a concurrent SUT are in the order of their replies; a call
-  /// that was open when it finished has none.
+  /// 1, 2, 3, … for each SUT. The record has the interactions of a concurrent SUT in the order of
+  /// their replies, without calls that were still open when the SUT finished.
   std::uint64_t sequence = 0;
   std::string kind;     ///< kSensor, kCommand, kSleep or kFinish
-  ExecTime request_at;  ///< t_req as charged
+  ExecTime request_at;  ///< t_req
   ExecTime reply_at;    ///< t_rep
 
-  // Of kind "sensor". A read that found nothing has no times and no index.
+  // For kind "sensor". A read that returned nothing has no times and no index.
   std::string sensor;
   std::uint64_t sample_index = 0;
-  bool latest = false;                     ///< asked for the last measurement, had before or not
-  bool only_if_available = false;          ///< asked for what was there, without waiting
-  std::optional<SimTime> sampled_at;       ///< instant that the timing model asked for
+  bool latest = false;                ///< asked for the newest measurement, even if read before
+  bool only_if_available = false;     ///< asked for an available measurement, without waiting
+  std::optional<SimTime> sampled_at;  ///< time of the sample by the timing model
   std::optional<SimTime> sample_state_at;  ///< step boundary whose state was measured (its floor)
   std::optional<SimTime> available_at;     ///< sampled_at + delay
 
   std::optional<SimTime> effect_at;     ///< kind "command": first step boundary it acts on
-  std::optional<ExecTime> sleep_until;  ///< kind "sleep": when it asked to be woken
+  std::optional<ExecTime> sleep_until;  ///< kind "sleep": requested end of the sleep
 
   SimTime st_at_arrival;
   SimTime st_at_release;
   Duration lag{0};  ///< ε = request_at − st_at_arrival
-  /// The largest distance by which the step grid moved something: the sample (sampled_at −
-  /// sample_state_at), the effect (effect_at − (request_at + command latency)) or the release
-  /// (reply_at − st_at_release). Never negative, below one step.
+  /// The largest of the distances by which the step grid moved the sample (sampled_at −
+  /// sample_state_at), the effect (effect_at − (request_at + command latency)) and the release
+  /// (reply_at − st_at_release). From 0 to less than one step.
   Duration grid_error{0};
-  bool stamped = true;                   ///< request_at came from the SUT's side
-  std::optional<std::string> violation;  ///< causality violation, named
+  bool stamped = true;                   ///< request_at is a timestamp of the SUT
+  std::optional<std::string> violation;  ///< description of a causality violation
 
-  // Host clock; differs from run to run. 0: not taken.
-  WallTime wall_at_arrival;  ///< when the request was taken up
-  WallTime wall_at_release;  ///< just before the reply was handed to the link
-  /// Round trip of the previous interaction, less the time for which it was held.
+  // Host clock; differs between runs. 0: not measured.
+  WallTime wall_at_arrival;  ///< when the coordinator received the request
+  WallTime wall_at_release;  ///< just before the reply was sent
+  /// Round trip of the previous interaction, minus the time for which it was held.
   std::optional<Duration> previous_link_time;
 };
 
-/// All of a concurrent SUT stood still, under the barrier. Topic /stops/<uav>; log time = ST when
-/// it was known.
+/// All threads of a concurrent SUT were stopped by the barrier. Topic /stops/<uav>; log time = ST
+/// when the stop was reported.
 struct Stop {
   std::string uav;
-  ExecTime at;  ///< ET from which on it did, and with which it goes on
-  /// t_rep of the earliest reply that it had not had by then, of those due by `at`; none where it
-  /// stopped for requests whose replies are due later.
+  ExecTime at;  ///< ET of the stop, with which the SUT also resumes
+  /// t_rep of the earliest reply that was due by `at` and had not been sent; none if the stop was
+  /// for requests whose replies are due later.
   std::optional<ExecTime> reply_at;
-  WallTime wall;  ///< host clock, when it was known; 0: not taken
+  WallTime wall;  ///< host clock when the stop was reported; 0: not measured
 };
 
-/// A command taking effect: written when the simulator was told. Topic /commands/<uav>; log time =
-/// ST. Velocity in the heading frame H.
+/// A command takes effect: written when it is passed to the simulator. Topic /commands/<uav>; log
+/// time = ST. Velocity in the heading frame H.
 struct CommandEffect {
   std::string uav;
   std::uint64_t sequence = 0;
@@ -97,12 +97,12 @@ struct GroundTruth {
   double w_WB_B_rad_s[3] = {};
 };
 
-/// What the SUT had to say. Topic /task/<uav>; log time = ST when it arrived.
+/// A message of the SUT for the record. Topic /task/<uav>; log time = ST when it arrived.
 struct Annotation {
   std::string uav;
   ExecTime at;
   std::string topic;
-  std::string json;  ///< one JSON object; anything else is kept as {"text": …}
+  std::string json;  ///< one JSON object; other text is stored as {"text": …}
 };
 
 /// Topic /images/<uav>/<sensor>: foxglove.CompressedImage (PNG).
@@ -111,10 +111,10 @@ struct Image {
   std::string sensor;
   SimTime at;
   std::uint64_t index = 0;
-  std::vector<std::uint8_t> png;  ///< a whole PNG file
+  std::vector<std::uint8_t> png;  ///< a PNG file
 };
 
-/// An entity of the world known in advance (frame A) in the world frame W.
+/// An entity of the world that is known in advance (frame A), in the world frame W.
 struct Anchor {
   std::string name;
   std::string shape;
@@ -122,8 +122,7 @@ struct Anchor {
   double p_WA_m[3] = {};
   double q_WA[4] = {1, 0, 0, 0};
 };
-/// How a camera is mounted and what it makes of the world: whoever has the record can project into
-/// its images.
+/// Mounting and intrinsics of a camera, for projections into its images.
 struct CameraInfo {
   double p_BS_m[3] = {};  ///< mounting in the UAV's body B; S is body-style (x forward)
   double q_BS[4] = {1, 0, 0, 0};
@@ -140,31 +139,31 @@ struct SensorInfo {
   bool periodic = false;
   Duration period{0};
   Duration phase{0};
-  /// Bounds of what the delay model can draw (available_at − sampled_at), both inclusive.
+  /// Bounds of the delay model (available_at − sampled_at), both inclusive.
   Duration delay_min{0};
   Duration delay_max{Duration::max()};
-  std::optional<CameraInfo> camera{};  ///< of a camera; records of Tether 0.1.0 have none
+  std::optional<CameraInfo> camera{};  ///< none in records of Tether 0.1.0
 };
 struct SutInfo {
   std::string uav;
-  std::string sut;              ///< name and version it gave
+  std::string sut;              ///< name and version that the SUT reported
   std::string clock;            ///< "wall", "cpu", "scripted", "unstamped"
   double cpu_factor = 1.0;      ///< seconds of ET per second of what the clock measures
-  Duration command_latency{0};  ///< from a command's stamp to its effect, before the grid rounds up
-  bool concurrent = false;      ///< several threads, each with calls of its own
-  /// Clock "cpu": cores of the machine that it ran on, whose time may have added up; 0: not known.
+  Duration command_latency{0};  ///< from a command's timestamp to its effect, before rounding
+  bool concurrent = false;      ///< several threads with parallel calls
+  /// Clock "cpu": number of cores whose CPU time can add up; 0: unknown.
   int cores = 0;
 };
-/// What a machine told of itself, by name, as host/board/src/target_probe.sh has it: "governor",
-/// "temperature_mc", … What it could not tell is not there.
+/// Readings of a machine by name, see host/board/src/target_probe.sh: "governor",
+/// "temperature_mc", … Values that are not available are left out.
 using Readings = std::map<std::string, std::string>;
 /// The machine that the SUTs ran on.
 struct TargetInfo {
   std::string name;
   std::string address;  ///< "ssh://user@board"; empty: the host
-  Readings before;      ///< before a SUT was started
+  Readings before;      ///< before the first SUT was started
 };
-/// What rests under every number: written first (metadata record "tether"), as names and values.
+/// Configuration of the run: written first (metadata record "tether"), as names and values.
 struct Header {
   int schema_version = kSchemaVersion;
   std::string tether_version;
@@ -181,11 +180,10 @@ struct Header {
   std::vector<SensorInfo> sensors;
   std::vector<Anchor> anchors;
   std::optional<TargetInfo> target{};  ///< none in records of Tether 0.1.0
-  WallTime wall_at_start{};            ///< when the SUTs were let go, all at ET 0; 0: not known
+  WallTime wall_at_start{};            ///< when the SUTs were started, all at ET 0; 0: unknown
 };
 
-/// How the run ended: written last (metadata record "tether.end"). A record without it was cut
-/// short.
+/// End of the run: written last (metadata record "tether.end"). A record without it is incomplete.
 struct Footer {
   /// "finished", "time_limit", "sut_lost", "sut_hung", "simulator_lost", "interrupted".
   std::string end;
@@ -193,14 +191,14 @@ struct Footer {
   SimTime st_at_end;
   std::vector<ExecTime> et_at_end;  ///< per SUT, in the header's order
   Duration wall{0};
-  std::uint64_t interactions = 0;  ///< in the record
+  std::uint64_t interactions = 0;  ///< number in the record
   std::uint64_t causality_violations = 0;
   Duration largest_lag{0};  ///< 0 when none was positive
   Duration largest_grid_error{0};
-  Readings target_after{};  ///< of the machine that the SUTs ran on, once the run had ended
-  // Of concurrent SUTs.
-  std::uint64_t stops = 0;        ///< in the record
-  Duration largest_overshoot{0};  ///< Stop::at − Stop::reply_at: by how much a freeze came late
+  Readings target_after{};  ///< of the machine that the SUTs ran on, after the run
+  // For concurrent SUTs.
+  std::uint64_t stops = 0;        ///< number in the record
+  Duration largest_overshoot{0};  ///< largest Stop::at − Stop::reply_at
 };
 
 }  // namespace tether::record

@@ -12,7 +12,7 @@ namespace tether::record {
 std::vector<std::uint8_t> encode_png(int width_px, int height_px,
                                      std::span<const std::uint8_t> rgb);
 
-/// An image file as a data: URI, to embed it in SVG or HTML.
+/// An image file as a data: URI, for SVG or HTML.
 std::string to_data_uri(std::span<const std::uint8_t> file,
                         const std::string& media_type = "image/png");
 

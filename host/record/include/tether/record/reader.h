@@ -13,7 +13,7 @@ namespace tether::record {
 template <class Message>
 struct Logged {
   SimTime at;               ///< log time
-  std::uint64_t order = 0;  ///< place among all of Tether's messages in the file: 0, 1, 2, …
+  std::uint64_t order = 0;  ///< position among all of Tether's messages in the file: 0, 1, 2, …
   Message message;
 };
 
@@ -27,9 +27,9 @@ struct Record {
   std::vector<Logged<Stop>> stops;
   std::vector<Logged<Image>> images;
   std::optional<Footer> footer;
-  /// Where and why reading stopped early (torn or damaged file), in one printable line: "damaged at
-  /// byte N: …", N being where the first record of the container that is not whole begins (a chunk,
-  /// for messages). Empty: read to the end.
+  /// Where and why reading stopped early (truncated or damaged file), in one printable line:
+  /// "damaged at byte N: …". N is the start of the first damaged record of the container (for
+  /// messages: of their chunk). Empty: the file was read to its end.
   std::string damage;
 };
 
@@ -37,15 +37,14 @@ struct ReadOptions {
   bool images = false;  ///< also load images
 };
 
-/// Reads front to back, checks every length and every CRC, and stops at the first damage.
-/// Everything before it is had: each message of each chunk that is whole. A torn chunk gives
-/// nothing: its CRC is of the whole, and zstd unpacks by 128 KiB, which is more than most chunks
-/// have. How much a chunk is, `make_mcap_recorder` says. Damage to what lies between chunks may
-/// show only in the CRC at the end of the data section: `damage` then names that, and what is
-/// missing may be anywhere before. What is allocated is bounded by the file's size, whatever the
-/// file says.
-/// @throws Error(kBadFile) when the file does not exist, is no MCAP, is not Tether's, its schema is
-/// newer, or it is torn before its header's end.
+/// Reads from front to back, checks every length and every CRC, and stops at the first damage.
+/// The result has every message of every complete chunk before it (see `make_mcap_recorder` for the
+/// size of chunks). A truncated chunk gives no messages: its CRC covers the whole chunk, and zstd
+/// unpacks blocks of 128 KiB, which is more than most chunks have. Damage between chunks may show
+/// only in the CRC at the end of the data section. `damage` then names that CRC, and messages may
+/// be missing anywhere before it. Memory is bounded by the size of the file.
+/// @throws Error(kBadFile) with the file if it does not exist, is not an MCAP file, is not a record
+/// of Tether, has a newer schema, or is truncated before the end of its header.
 Record read_record(const std::filesystem::path& file, const ReadOptions& options = {});
 
 }  // namespace tether::record

@@ -7,8 +7,8 @@
 
 namespace tether::record {
 
-/// Where a run's messages go. Log times never decrease in what the coordinator writes. Not
-/// thread-safe.
+/// Receives the messages of a run: first the header, last the footer. The coordinator writes with
+/// log times that never decrease. Not thread-safe.
 class Recorder {
  public:
   virtual ~Recorder() = default;
@@ -19,21 +19,21 @@ class Recorder {
   virtual void write(SimTime at, const Annotation& message) = 0;
   virtual void write(SimTime at, const Stop& message) = 0;
   virtual void write(SimTime at, const Image& message) = 0;
-  /// Everything written so far reaches the file (the system; not necessarily the disk).
+  /// Passes everything written so far to the operating system (not necessarily to the disk).
   virtual void flush() = 0;
   /// The last call.
   virtual void write(const Footer& footer) = 0;
 };
 
 /// Writes an MCAP file (https://mcap.dev/spec): JSON messages with JSON schemas, zstd chunks with
-/// CRCs, summary and indices at the end. A chunk goes to the file every second of ST, every
-/// 1 MiB and when flushed, so that a killed run leaves a readable record. Without `write(Footer)`
-/// the destructor writes the last chunk, if it can, and leaves the file without its end. The same
-/// messages, flushed at the same places, give the same bytes.
-/// @throws Error(kSetup) naming the file when it cannot be created or written.
+/// CRCs, summary and indices at the end. A chunk is written every second of ST, every
+/// 1 MiB and on `flush`, so that a killed run leaves a readable record. Without `write(Footer)` the
+/// destructor writes the last chunk if possible, and the record has no end. The same messages,
+/// flushed at the same places, give the same bytes.
+/// @throws Error(kSetup) with the file if it cannot be created or written.
 std::unique_ptr<Recorder> make_mcap_recorder(const std::filesystem::path& file);
 
-/// Keeps nothing.
+/// Discards everything.
 std::unique_ptr<Recorder> make_null_recorder();
 
 }  // namespace tether::record

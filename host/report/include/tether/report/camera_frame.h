@@ -6,7 +6,7 @@
 #include <tether/campaign/true_roi.h>
 #include <tether/record/reader.h>
 
-/// Recorded camera images as a person looks at them (paper, Fig. 5).
+/// Recorded camera images with regions of interest, for people (paper, Fig. 5).
 namespace tether::report {
 
 /// The region of interest that a SUT reported for an image: its "roi" annotation.
@@ -17,23 +17,22 @@ struct ReportedRoi {
   double height_px = 0.0;
 };
 
-/// What `image.uav` reported for that image; none if it reported nothing that can be read.
+/// The ROI that the SUT of `image.uav` reported for that image; none if there is no readable one.
 std::optional<ReportedRoi> find_roi(const record::Record& record, const record::Image& image);
 
-/// Where the anchor that the SUT looked for really was in that image: the anchor of its "estimate"
-/// for it, else of its last estimate before, else of its first, else the record's only one. None
-/// where no anchor can be named, the record does not describe the camera, or nothing of the anchor
-/// is in the image.
+/// The true region of the anchor that the SUT searched for in that image. It is the anchor of the
+/// SUT's "estimate" for the image, else of its last estimate before, else of its first, else the
+/// only anchor of the record. None if there is no such anchor, the record does not describe the
+/// camera, or the anchor is not visible in the image.
 std::optional<campaign::PixelRect> find_true_roi(const record::Record& record,
                                                  const record::Image& image);
 
 enum class ImageQuality {
   kLossless,
-  kSmall,  ///< a tenth of the size
+  kSmall,  ///< JPEG of a tenth of the size
 };
 
-/// The image with both ROIs framed and a caption below that says which is which: one
-/// self-contained SVG.
+/// The image with frames for both ROIs and a caption: one self-contained SVG.
 std::string frame_svg(const record::Image& image, const std::optional<ReportedRoi>& roi,
                       const std::optional<campaign::PixelRect>& true_roi,
                       ImageQuality quality = ImageQuality::kLossless);

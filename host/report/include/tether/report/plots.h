@@ -8,45 +8,44 @@
 #include <tether/campaign/campaign_results.h>
 #include <tether/record/reader.h>
 
-/// Plots of runs and campaigns as gnuplot scripts with their data inline. Pure functions: equal
-/// arguments give equal scripts. Long records are thinned, so that each drawing stays below 300 kB.
+/// Plots of runs and campaigns as gnuplot scripts with inline data. Pure functions: equal arguments
+/// give equal scripts. Long records are thinned, so that each drawing stays below 300 kB.
 namespace tether::report {
 
-/// What gnuplot is to draw.
+/// A script for gnuplot.
 struct Plot {
   std::string script;
-  std::string title;  ///< one line; what a screen reader says
+  std::string title;  ///< one line; also for screen readers
 };
 
-/// One run among those of a plot.
+/// A run in a plot.
 struct PlottedRun {
   const record::Record* record = nullptr;
   std::string uav;
   std::string label;       ///< in the legend: the condition
-  std::size_t series = 0;  ///< chooses the colour: the condition's place in its scenario
+  std::size_t series = 0;  ///< selects the colour: index of the condition in its scenario
 };
 
 enum class Extent {
   kWhole,
-  kFirstInteractions,  ///< the first 20: a whole run is a straight line at a distance
+  kFirstInteractions,  ///< the first 20: the plot of a whole run is nearly a straight line
 };
 
-/// Simulated and execution time against wall time, interactions marked (paper, Fig. 4). Without the
-/// barrier ET is not tied to ST, and ST stands alone. None: fewer than two interactions of that UAV
-/// have wall times.
+/// Simulated and execution time over wall time, with marks for interactions (paper, Fig. 4). In
+/// free running, there is only ST. None if fewer than two interactions of that UAV have wall times.
 std::optional<Plot> timeline_plot(const PlottedRun& run, Extent extent);
 
-/// The lag ε = ET − ST of each request when it arrived, against ST. None: without the barrier
-/// nothing lags, or fewer than two interactions.
+/// The lag ε = ET − ST of each request when it arrived, over ST. None in free running, and with
+/// fewer than two interactions.
 std::optional<Plot> lag_plot(const PlottedRun& run);
 
-/// Paths from above with ticks in the direction of the nose, start and end, and the first run's
-/// anchors to scale (paper, Figs. 6, 7); dashed, where a SUT wrote it down, its own dead reckoning
-/// from the true start. Both axes have one scale. None: no run has ground truth.
+/// Paths, seen from above, with ticks for the heading, start and end, and the first run's anchors
+/// to scale (paper, Figs. 6, 7). A dashed line is the dead reckoning of the SUT from the true
+/// start, if the SUT recorded it. Both axes have the same scale. None if no run has ground truth.
 std::optional<Plot> path_plot(std::span<const PlottedRun> runs);
 
-/// Every trial's value of a metric, a row per condition, with the quartiles as a box and the median
-/// in it where there are at least three. None: no trial has a value.
+/// The values of a metric in all trials, with a row per condition. At least three trials have a box
+/// of their quartiles with the median. None if no trial has a value.
 std::optional<Plot> distribution_plot(const campaign::ScenarioResults& scenario,
                                       const std::string& metric);
 

@@ -8,19 +8,19 @@
 #include <tether/campaign/statistics.h>
 #include <tether/report/table.h>
 
-/// What a campaign showed, as tables. Pure functions of the results.
+/// Results of a campaign as tables. Pure functions.
 namespace tether::report {
 
-/// In the paper's form: a row per condition; mean and standard deviation per metric, the paper's
-/// figures beside ours where the scenario names one of its tables. The notes say how many trials
-/// each number rests on, name every trial that is missing from a mean, and why, and every trial in
-/// which something happened that nobody meant to.
+/// In the paper's form: a row per condition, with mean and standard deviation of each metric. If
+/// the scenario names a table of the paper, its values are beside ours. The notes give the number
+/// of trials, each trial that is excluded from a mean with the reason, and unexpected events in
+/// trials.
 Table paper_form_table(const campaign::ScenarioResults& scenario);
 
 /// A row per metric and condition: n, mean, 95 % interval, standard deviation, median, range.
 Table details_table(const campaign::ScenarioResults& scenario);
 
-/// How two conditions differ in one metric. @pre of both: at least one value each.
+/// Difference of two conditions in one metric. @pre both have at least one value.
 struct Comparison {
   std::string metric;
   std::string unit;
@@ -33,23 +33,24 @@ struct Comparison {
 std::vector<Comparison> compare_conditions(const campaign::ScenarioResults& scenario);
 Table comparisons_table(const campaign::ScenarioResults& scenario);
 
-/// The optimism of an unsynchronised test: per metric, the mean under the barrier minus the mean
-/// in free running, for conditions that are alike in clock, factor, target and profiles. All of our
-/// metrics are better when smaller, so a positive difference is what the unsynchronised test hides.
+/// The optimism of an unsynchronised test: for each metric, the mean under the barrier minus the
+/// mean in free running, for conditions with the same clock, factor, target and profiles. For all
+/// metrics smaller is better, so a positive difference means that the unsynchronised test is too
+/// optimistic.
 std::vector<Comparison> optimism(const campaign::ScenarioResults& scenario);
 Table optimism_table(const campaign::ScenarioResults& scenario);
 
-/// What the numbers rest on: settings and versions, machines, clocks, seeds, audit verdicts,
-/// causality violations.
+/// Setup and checks: settings and versions, machines, clocks, seeds, audit verdicts, causality
+/// violations.
 Table basis_table(const campaign::CampaignResults& results);
 
-/// One row per trial and metric, full precision, the trial's notes last: for other programs.
+/// One row per trial and metric, with full precision and the trial's notes: for programs.
 Table trials_table(const campaign::CampaignResults& results);
-/// One row per condition and metric, full precision, the paper's figures beside, and last how many
-/// of the condition's trials have notes: for programs.
+/// One row per condition and metric, with full precision, the paper's values and the number of
+/// trials that have notes: for programs.
 Table summaries_table(const campaign::CampaignResults& results);
 
-/// One run's metrics, each with its limit; below it the run's notes.
+/// The metrics of a run with their limits, and its notes.
 Table run_table(const campaign::TrialResult& trial);
 
 /// All tables for people, in reading order.

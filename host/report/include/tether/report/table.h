@@ -17,15 +17,15 @@ struct Table {
   std::string title;
   std::vector<std::vector<Heading>> headings;  ///< from the top; each row spans all columns
   std::vector<std::vector<std::string>> rows;  ///< each as wide as the headings
-  std::vector<std::string> notes;              ///< lines below it
-  std::size_t text_columns = 1;                ///< the first ones, of words; the others of numbers
+  std::vector<std::string> notes;              ///< lines below the table
+  std::size_t text_columns = 1;  ///< number of leading columns with text; the others have numbers
 };
 
-/// Columns aligned for a terminal: words to the left, numbers to the right. UTF-8 aware.
+/// Columns aligned for a terminal: text to the left, numbers to the right. Supports UTF-8.
 std::string to_text(const Table& table);
-/// GitHub's Markdown, the rows of headings joined into one.
+/// GitHub's Markdown. The rows of headings are joined into one.
 std::string to_markdown(const Table& table);
-/// RFC 4180, the rows of headings joined into one; no title, no notes.
+/// RFC 4180, without title and notes. The rows of headings are joined into one.
 std::string to_csv(const Table& table);
 
 }  // namespace tether::report

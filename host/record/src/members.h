@@ -1,0 +1,183 @@
+#pragma once
+
+#include <concepts>
+#include <type_traits>
+
+#include <tether/record/messages.h>
+
+/// The one list of the members of each message and each part of a record's metadata, for both
+/// directions. `io` is a writer or a reader: see json_members.h and json_metadata.cpp. It has
+/// - `io(name, value)`: writes or reads the member;
+/// - `io.has(name, condition)`: whether the member is there: writers return the condition;
+/// - `io.optional(name, value)`: a member that may be absent;
+/// - `io.within(name, value, least, most)`, `io.positive(name, value)`: checked when read;
+/// - `io.look_ahead(name, value)`: reads a member that comes later in the text;
+/// - `io.flag(name, value)`: a truth value that is written only if it is true;
+/// - `io.object(name, fields)`: a nested object, whose members `fields(io)` lists;
+/// - `io.list(name, items)`: a list of objects.
+/// The order is that of the text. Times are in nanoseconds; names carry the unit.
+namespace tether::record {
+
+template <class Message, class Plain>
+concept Maybe = std::same_as<std::remove_const_t<Message>, Plain>;
+
+inline bool found_nothing(const Interaction& read) {
+  return read.only_if_available && !read.sampled_at;
+}
+
+void members(auto& io, Maybe<Interaction> auto& m) {
+  io("uav", m.uav);
+  io("sequence", m.sequence);
+  io("kind", m.kind);
+  io("request_at_ns", m.request_at);
+  io("reply_at_ns", m.reply_at);
+  if (m.kind == kSensor) {
+    io("sensor", m.sensor);
+    // The index comes first in the text. Whether there is one follows from these.
+    io.look_ahead("only_if_available", m.only_if_available);
+    io.look_ahead("sampled_at_ns", m.sampled_at);
+    if (!found_nothing(m)) io("sample_index", m.sample_index);
+    io("latest", m.latest);
+    io.flag("only_if_available", m.only_if_available);
+  }
+  io.optional("sampled_at_ns", m.sampled_at);
+  io.optional("sample_state_at_ns", m.sample_state_at);
+  io.optional("available_at_ns", m.available_at);
+  io.optional("effect_at_ns", m.effect_at);
+  io.optional("sleep_until_ns", m.sleep_until);
+  if (io.arrivals()) {
+    io("st_at_arrival_ns", m.st_at_arrival);
+    io("lag_ns", m.lag);
+  }
+  io("st_at_release_ns", m.st_at_release);
+  io("grid_error_ns", m.grid_error);
+  io("stamped", m.stamped);
+  io.optional("violation", m.violation);
+  if (!io.wall()) return;
+  io.object("wall", [&](auto& wall) {
+    wall("arrival_ns", m.wall_at_arrival);
+    wall("release_ns", m.wall_at_release);
+    wall.optional("previous_link_ns", m.previous_link_time);
+  });
+}
+
+void members(auto& io, Maybe<CommandEffect> auto& m) {
+  io("uav", m.uav);
+  io("sequence", m.sequence);
+  io("applied_at_ns", m.applied_at);
+  io("vx_H_m_s", m.vx_H_m_s);
+  io("vy_H_m_s", m.vy_H_m_s);
+  io("vz_H_m_s", m.vz_H_m_s);
+  io("yaw_rate_rad_s", m.yaw_rate_rad_s);
+}
+
+void members(auto& io, Maybe<GroundTruth> auto& m) {
+  io("uav", m.uav);
+  io("at_ns", m.at);
+  io("p_WB_m", m.p_WB_m);
+  io("q_WB", m.q_WB);
+  io("v_WB_m_s", m.v_WB_m_s);
+  io("w_WB_B_rad_s", m.w_WB_B_rad_s);
+}
+
+void members(auto& io, Maybe<Stop> auto& m) {
+  io("uav", m.uav);
+  io("at_ns", m.at);
+  io.optional("reply_at_ns", m.reply_at);
+  if (io.wall()) io.object("wall", [&](auto& wall) { wall("arrival_ns", m.wall); });
+}
+
+/// All but "data", which is JSON of the SUT's.
+void members(auto& io, Maybe<Annotation> auto& m) {
+  io("uav", m.uav);
+  io("at_ns", m.at);
+  io("topic", m.topic);
+}
+
+void members(auto& io, Maybe<SutInfo> auto& m) {
+  constexpr int kMostCores = 1024;
+  io("uav", m.uav);
+  io("sut", m.sut);
+  io("clock", m.clock);
+  io("cpu_factor", m.cpu_factor);
+  io("command_latency_ns", m.command_latency);
+  io.flag("concurrent", m.concurrent);
+  if (io.has("cores", m.cores > 0)) io.within("cores", m.cores, 1, kMostCores);
+}
+
+void members(auto& io, Maybe<CameraInfo> auto& m) {
+  constexpr int kLargestSide_px = 100'000;
+  io("p_BS_m", m.p_BS_m);
+  io("q_BS", m.q_BS);
+  io.within("width_px", m.width_px, 1, kLargestSide_px);
+  io.within("height_px", m.height_px, 1, kLargestSide_px);
+  io.positive("fx_px", m.fx_px);
+  io.positive("fy_px", m.fy_px);
+  io("cx_px", m.cx_px);
+  io("cy_px", m.cy_px);
+  io("k1", m.k1);
+  io("k2", m.k2);
+  io("k3", m.k3);
+  io("p1", m.p1);
+  io("p2", m.p2);
+}
+
+/// Records of Tether 0.1.0 have neither bounds of the delay nor cameras.
+void members(auto& io, Maybe<SensorInfo> auto& m) {
+  io("uav", m.uav);
+  io("name", m.name);
+  io("kind", m.kind);
+  io("periodic", m.periodic);
+  io("period_ns", m.period);
+  io("phase_ns", m.phase);
+  if (io.has("delay_min_ns", true)) io("delay_min_ns", m.delay_min);
+  if (io.has("delay_max_ns", true)) io("delay_max_ns", m.delay_max);
+  if (!io.has("camera", m.camera.has_value())) return;
+  io.object("camera", [&](auto& camera) { members(camera, io.value_of(m.camera)); });
+}
+
+void members(auto& io, Maybe<Anchor> auto& m) {
+  io("name", m.name);
+  io("shape", m.shape);
+  io("size_m", m.size_m);
+  io("p_WA_m", m.p_WA_m);
+  io("q_WA", m.q_WA);
+}
+
+/// All but the target.
+void members(auto& io, Maybe<Header> auto& m) {
+  io("schema_version", m.schema_version);
+  io("tether_version", m.tether_version);
+  io("scenario", m.scenario);
+  io("condition", m.condition);
+  io("policy", m.policy);
+  io("simulator", m.simulator);
+  io("machine", m.machine);
+  io("seed", m.seed);
+  io("step_ns", m.step);
+  io("ground_truth_period_ns", m.ground_truth_period);
+  io("real_time_factor", m.real_time_factor);
+  io.list("suts", m.suts);
+  io.list("sensors", m.sensors);
+  io.list("anchors", m.anchors);
+  if (io.has("wall_at_start_ns", m.wall_at_start != WallTime{}))
+    io("wall_at_start_ns", m.wall_at_start);
+}
+
+/// All but the target's readings.
+void members(auto& io, Maybe<Footer> auto& m) {
+  io("end", m.end);
+  io("reason", m.reason);
+  io("st_at_end_ns", m.st_at_end);
+  io.list("et_at_end_ns", m.et_at_end);
+  io("wall_ns", m.wall);
+  io("interactions", m.interactions);
+  io("causality_violations", m.causality_violations);
+  io("largest_lag_ns", m.largest_lag);
+  io("largest_grid_error_ns", m.largest_grid_error);
+  if (!io.has("stops", m.stops > 0)) return;
+  io("stops", m.stops);
+  io("largest_overshoot_ns", m.largest_overshoot);
+}
+
+}  // namespace tether::record
