@@ -178,8 +178,7 @@ const Misdeed kMisdeeds[] = {
      },
      "violated the protocol"},
     {"AnotherAnswer",
-     [](Host& host, auto) { host.send(protocol::Reply(protocol::Distances{{1.0}})); },
-     "Distances"},
+     [](Host& host, auto) { host.send(protocol::Reply(protocol::Distances{{1.0}})); }, "Distances"},
     spoils(
         "NoNumber", [](auto& state) { state.bodies[0].p_WB.x = kNan; }, "State.bodies"),
     spoils(

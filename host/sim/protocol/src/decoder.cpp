@@ -46,7 +46,7 @@ Motion from_wire(const wire::Motion& m) {
 }
 using protocol::from_wire;
 
-/// The verifier does not look where the elements of a vector lie: they are copied, not read in
+/// The verifier does not check the alignment of a vector's elements: they are copied, not read in
 /// place.
 template <class T, class Wire>
 std::vector<T> list(const flatbuffers::Vector<const Wire*>& values) {

@@ -25,7 +25,7 @@ void require_few_moving_links(const SdfSource& source, const sdf::Model& model,
              " moving links of a world; make models that need not move <static>");
 }
 
-/// Adds a model and, behind it, the models nested in it, each as one of its own.
+/// Adds a model and, behind it, the models nested in it, each as a separate model.
 void add_model(const SdfSource& source, const sdf::Model& model, const Pose& X_WP,
                const std::string& prefix, bool parent_is_static, World& world) {
   Model result;

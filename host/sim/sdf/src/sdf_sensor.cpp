@@ -90,7 +90,7 @@ uav::Quat ray_attitude(double azimuth_rad, double elevation_rad) {
 }
 
 /// Where the middle of a scan points. The sensor's x axis is turned there, so that what a profile
-/// puts in place of the scan (a cone, another mounting) looks where the scan did.
+/// puts in place of the scan (a cone, another mounting) points where the scan did.
 uav::Quat scan_middle(const sdf::Lidar& lidar) {
   return ray_attitude(
       0.5 * (lidar.HorizontalScanMinAngle().Radian() + lidar.HorizontalScanMaxAngle().Radian()),

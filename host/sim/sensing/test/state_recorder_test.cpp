@@ -61,7 +61,7 @@ TEST(StateRecorderTest, ForgetsTheOldestStepFirst) {
   expect_past(recorder, captured(recorder, 5.0), {5.0, 4.0, 3.0, 2.0});
 }
 
-// A back end that is told of many steps at once need not tell of those that no shutter reaches.
+// A back end that receives many steps at once may skip those that no shutter reaches.
 TEST(StateRecorderTest, StepsBeyondTheShuttersMayBeLeftOut) {
   StateRecorder whole(shutter_world());
   StateRecorder last(shutter_world());
