@@ -41,9 +41,7 @@ class InGazebo final : public runner::RunningSimulator {
                 {setup.answer_limit, setup.log, setup.warn, setup.on_silence, setup.stop}) {}
   sim::Simulator& get() override { return gazebo_.get(); }
   std::optional<std::string> lost() override { return gazebo_.lost(); }
-  std::string post_mortem(const std::string& message) override {
-    return gazebo_.post_mortem(message);
-  }
+  std::string post_mortem() override { return gazebo_.post_mortem(); }
 
  private:
   sim::GazeboSimulator gazebo_;

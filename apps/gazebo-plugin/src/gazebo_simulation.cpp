@@ -1,3 +1,6 @@
+// Gazebo's world as the Simulation of a Session. `open` inserts the UAVs; `is_ready` waits until
+// Gazebo has made models and visuals, in steps without physics; drawing happens in the main thread.
+
 #include "gazebo_simulation.h"
 
 #include "scene.h"
@@ -16,7 +19,7 @@
 namespace tether::gazebo_plugin {
 namespace {
 
-// For models and visuals to appear.
+// Time limit for models and visuals to appear.
 constexpr std::chrono::seconds kWarmUpLimit{40};
 constexpr std::chrono::milliseconds kWarmUpPause{1};
 
@@ -43,17 +46,16 @@ void GazeboSimulation::check(const protocol::Open& open) const {
          "': start gzserver with " + open.world_file);
   }
   if (world_->Physics()->GetType() != "ode") {
-    fail(open.world_file + ": Gazebo moves it with '" + world_->Physics()->GetType() +
-         "', Tether's plugin only with ODE: write <physics type=\"ode\">");
+    fail(open.world_file + ": Gazebo uses the physics '" + world_->Physics()->GetType() +
+         "', but Tether's plugin requires ODE; write <physics type=\"ode\">");
   }
   for (const protocol::UavDescription& uav : open.uavs) {
     if (!world_->ModelByName(uav.name)) continue;
-    fail("the world has a model '" + uav.name + "' already: give the UAV another name");
+    fail("the world already has a model '" + uav.name + "'; give the UAV another name");
   }
   if (open.max_width_px > 0 && !can_draw()) {
     fail(
-        "no OpenGL: Gazebo cannot draw what cameras see; set DISPLAY to an X server with OpenGL, "
-        "such "
+        "no OpenGL: Gazebo cannot draw camera images; set DISPLAY to an X server with OpenGL, such "
         "as Xvfb");
   }
 }
@@ -95,7 +97,7 @@ bool GazeboSimulation::must_wait_for(const std::vector<std::string>& missing) co
   const std::size_t others = missing.size() - 1;
   fail("Gazebo has not made '" + missing.front() + "'" +
        (others > 0 ? " and " + std::to_string(others) + " more" : "") + " within " +
-       std::to_string(kWarmUpLimit.count()) + " s: see what gzserver says of it");
+       std::to_string(kWarmUpLimit.count()) + " s; see the output of gzserver");
 }
 
 std::vector<std::string> GazeboSimulation::missing_models() const {
@@ -123,7 +125,7 @@ bool GazeboSimulation::prepare_pictures() {
   for (const auto& body : open_.bodies) names.push_back(body.model + "::" + body.link);
   return warm_up_in_main_thread([&] {
     const auto scene = complete_scene(world_->Name());
-    apply_looks(scene, open_.looks);
+    apply_materials(scene, open_.materials);
     pictures_ = std::make_unique<Pictures>(scene, names, open_.max_width_px, open_.max_height_px);
   });
 }
@@ -136,7 +138,7 @@ void GazeboSimulation::reset(std::uint64_t seed) {
   const auto short_seed = static_cast<std::uint32_t>(seed ^ (seed >> 32U));
   ignition::math::Rand::Seed(short_seed);
   world_->Reset();
-  // Gazebo counts a step when it begins, and this one has.
+  // Gazebo counts a step at its beginning, and this one has begun.
   world_->SetSimTime(::gazebo::common::Time(to_seconds(open_.step)));
   world_->Physics()->SetSeed(short_seed);
   bodies_.reset();
@@ -163,7 +165,7 @@ protocol::Picture GazeboSimulation::render(const protocol::Render& view) {
   return picture;
 }
 
-// A rendering thread that is stuck must not keep the limit from ending the wait.
+// The limit must end the wait even if the rendering thread hangs.
 bool GazeboSimulation::warm_up_in_main_thread(const std::function<void()>& job) {
   return main_thread_.run(job, [this] { return give_up_() || Clock::now() >= deadline_; });
 }

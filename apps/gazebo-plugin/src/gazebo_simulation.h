@@ -19,10 +19,10 @@
 
 namespace tether::gazebo_plugin {
 
-/// The world that gzserver has loaded. Everything in the thread of its physics, before a step.
+/// The world that gzserver has loaded. All calls in the thread of its physics, before a step.
 class GazeboSimulation : public Simulation {
  public:
-  /// `main_thread` lives longer; it is given up waiting for when `give_up` says so.
+  /// `main_thread` must outlive it. Waiting for it ends when `give_up` returns true.
   GazeboSimulation(::gazebo::physics::WorldPtr world, MainThread& main_thread,
                    std::function<bool()> give_up);
   ~GazeboSimulation() override;
@@ -43,7 +43,7 @@ class GazeboSimulation : public Simulation {
   std::vector<std::string> missing_models() const;
   std::vector<std::string> missing_visuals();
   bool must_wait_for(const std::vector<std::string>& missing) const;
-  /// False: the main thread has not come to it.
+  /// False: the main thread has not begun it.
   bool prepare_pictures();
   bool warm_up_in_main_thread(const std::function<void()>& job);
   bool in_main_thread(const std::function<void()>& job);

@@ -31,7 +31,8 @@ dBodyID ode_body(const ::gazebo::physics::LinkPtr& link) {
   return ode ? ode->GetODEId() : nullptr;
 }
 
-// A free body then moves as Newton and Euler say: semi-implicit, with the exact rotation of a step.
+// A free body then follows the equations of Newton and Euler: semi-implicit, with the exact
+// rotation of a step.
 void let_fly(dBodyID id) {
   dBodySetAutoDisableFlag(id, 0);
   dBodySetLinearDamping(id, 0.0);
@@ -72,14 +73,14 @@ OdeBodies::Body OdeBodies::find_body(const ::gazebo::physics::WorldPtr& world,
       boost::dynamic_pointer_cast<::gazebo::physics::Link>(world->EntityByName(name));
   if (!found) {
     throw Error(ErrorCode::kSetup, "Gazebo's world has no link '" + name +
-                                       "': let gzserver load the world file of the scenario");
+                                       "'; load the world file of the scenario in gzserver");
   }
   const dBodyID id = ode_body(found);
   if (!id) {
     throw Error(ErrorCode::kSetup,
                 "link '" + name +
-                    "' does not move in Gazebo's world: let gzserver load "
-                    "the world file of the scenario, with <physics type=\"ode\">");
+                    "' does not move in Gazebo's world; load the world file of the scenario in "
+                    "gzserver, with <physics type=\"ode\">");
   }
   return {id, from_gazebo(found->GetInertial()->CoG())};
 }

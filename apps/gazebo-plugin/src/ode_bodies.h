@@ -13,11 +13,11 @@
 
 namespace tether::gazebo_plugin {
 
-/// What moves, as Gazebo's physics engine ODE has it.
+/// The moving bodies in Gazebo's physics engine ODE.
 class OdeBodies {
  public:
   OdeBodies() = default;
-  /// @throws Error naming a body of `open` that the world has not, or that cannot move.
+  /// @throws Error with the name of a body of `open` that the world lacks or that cannot move.
   OdeBodies(const ::gazebo::physics::WorldPtr& world, const sim::protocol::Open& open);
 
   std::size_t size() const { return bodies_.size(); }
@@ -25,10 +25,10 @@ class OdeBodies {
   uav::Pose pose(std::size_t body) const;
   /// On the centre of mass, during the next step.
   void push(std::size_t body, const uav::Vec3& force_W, const uav::Vec3& torque_W);
-  /// Which of them it is; none if it is another one.
+  /// The index of a body; none if it is not one of them.
   std::optional<std::size_t> find(dBodyID id) const;
 
-  /// Back to where the world's own reset has put it, to the last bit the same each time.
+  /// Back to the poses after the world's own reset, identical to the last bit each time.
   void reset();
 
  private:

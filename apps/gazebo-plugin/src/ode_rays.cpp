@@ -14,7 +14,7 @@ namespace tether::gazebo_plugin {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
-// A mesh may be met several times.
+// A ray may hit a mesh several times.
 constexpr int kMaxHits = 8;
 
 uav::Vec3 in_frame_of(dGeomID shape, const uav::Vec3& v_W) {
@@ -95,7 +95,7 @@ double OdeRays::distance_m(const Ray& ray, double max_m, const std::vector<dGeom
   return nearest_m <= max_m ? nearest_m : kNothing;
 }
 
-// ODE's own rays meet cylinders where there are none.
+// ODE's own rays report hits beside cylinders.
 double OdeRays::distance_m(const Ray& ray, double max_m, dGeomID shape) {
   switch (dGeomGetClass(shape)) {
     case dBoxClass:

@@ -13,10 +13,10 @@
 
 namespace tether::gazebo_plugin {
 
-/// Distances along rays to the collision shapes of a world. The world is not touched.
+/// Distances along rays to the collision shapes of a world. Does not change the world.
 class OdeRays {
  public:
-  /// `bodies` lives longer.
+  /// `bodies` must outlive it.
   OdeRays(const ::gazebo::physics::WorldPtr& world, const OdeBodies& bodies);
   ~OdeRays();
   OdeRays(const OdeRays&) = delete;
@@ -25,7 +25,7 @@ class OdeRays {
   sim::protocol::Distances cast(const sim::protocol::CastRays& rays);
 
  private:
-  /// The shapes of one body, or of all that does not move.
+  /// The shapes of one body, or of everything that does not move.
   struct Group {
     std::optional<std::size_t> body;
     std::vector<dGeomID> shapes;

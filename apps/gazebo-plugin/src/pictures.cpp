@@ -1,3 +1,7 @@
+// Draws pictures with OGRE into one texture, in the main thread: places the bodies, aims the
+// camera, and reads colours and depth while the texture is bound. Transparent objects need a second
+// pass for the depth.
+
 #include "pictures.h"
 
 #include "conversions.h"
@@ -24,7 +28,7 @@ Ogre::Vector3 to_ogre(const uav::Vec3& v) {
   return Ogre::Vector3(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
 }
 
-// Reads what is drawn into a texture's corner while that is still bound: the upper rows come first.
+// Reads the picture in a texture's corner while the texture is bound. The upper rows come first.
 class Reader : public Ogre::RenderTargetListener {
  public:
   Reader(Ogre::RenderTexture& texture, const Render& view) : texture_(texture), view_(view) {
@@ -47,7 +51,7 @@ class Reader : public Ogre::RenderTargetListener {
   }
 
  private:
-  // OGRE sets its frame buffers to be read from nowhere.
+  // OGRE disables reading from its frame buffers.
   void read_colours() {
     constexpr int kOgresAlignment = 4;
     rgb_.resize(3 * pixels());
@@ -75,8 +79,8 @@ class Reader : public Ogre::RenderTargetListener {
   std::vector<float> depth_;
 };
 
-// Sees whether transparent things are drawn, and may make them leave their depth: not while colours
-// are wanted, since it hides what is drawn later and lies behind them.
+// Detects transparent objects, and can make them write their depth. Not for a picture of colours:
+// the depth would hide what is drawn later behind them.
 class TransparentThings : public Ogre::RenderObjectListener {
  public:
   TransparentThings(Ogre::SceneManager& manager, bool leave_depth)
@@ -87,7 +91,7 @@ class TransparentThings : public Ogre::RenderObjectListener {
   TransparentThings(const TransparentThings&) = delete;
   TransparentThings& operator=(const TransparentThings&) = delete;
 
-  // The sky is none of the visuals, which leave a mark on what they draw.
+  // Visuals mark their entities; the sky has no mark.
   void notifyRenderSingleObject(Ogre::Renderable* thing, const Ogre::Pass* pass,
                                 const Ogre::AutoParamDataSource*, const Ogre::LightList*,
                                 bool) override {
@@ -137,7 +141,7 @@ void Pictures::make_canvas(int max_width_px, int max_height_px) {
   ::gazebo::rendering::RTShaderSystem::AttachViewport(viewport_, scene_);
 }
 
-// OGRE takes shares of the texture's sides and rounds down to pixels.
+// OGRE takes fractions of the texture's sides and rounds down to pixels.
 void Pictures::choose_size(int width_px, int height_px) {
   const auto share = [](int part, unsigned all) {
     return (static_cast<float>(part) + 0.5F) / static_cast<float>(all);
@@ -159,7 +163,7 @@ void Pictures::aim(const Render& view) {
   camera_->setFrustumExtents(at(-0.5, c.cx_px), at(c.width_px - 0.5, c.cx_px), -at(-0.5, c.cy_px),
                              -at(c.height_px - 0.5, c.cy_px));
   camera_->setPosition(to_ogre(view.X_WS.p));
-  // Ogre's cameras look along −z, with x to the right.
+  // Ogre's cameras point along −z, with x to the right.
   camera_->setOrientation(Ogre::Quaternion(to_ogre(rotate(view.X_WS.q, {0.0, -1.0, 0.0})),
                                            to_ogre(rotate(view.X_WS.q, {0.0, 0.0, 1.0})),
                                            to_ogre(rotate(view.X_WS.q, {-1.0, 0.0, 0.0}))));

@@ -15,11 +15,10 @@ class Viewport;
 
 namespace tether::gazebo_plugin {
 
-/// Draws pictures of a scene whose bodies are where a host says. In the main thread only.
+/// Draws pictures of a scene with its bodies at the poses of a request. Main thread only.
 class Pictures {
  public:
-  /// `body_visuals`: of each body, the visual that moves it. No view is larger than the sides
-  /// given.
+  /// `body_visuals`: the visual that moves each body. No view exceeds the given size.
   Pictures(::gazebo::rendering::ScenePtr scene, const std::vector<std::string>& body_visuals,
            int max_width_px, int max_height_px);
 
@@ -29,7 +28,7 @@ class Pictures {
   void make_canvas(int max_width_px, int max_height_px);
   void choose_size(int width_px, int height_px);
   void aim(const sim::protocol::Render& view);
-  /// Draws what has been aimed at. True: some of it is transparent.
+  /// Draws the view of the last `aim`. True: a part of it is transparent.
   bool update(bool transparent_leaves_depth);
 
   ::gazebo::rendering::ScenePtr scene_;

@@ -15,7 +15,7 @@ PlacedBodies::PlacedBodies(const std::vector<::gazebo::rendering::VisualPtr>& bo
     bodies[i]->SetWorldPose(to_gazebo(view.X_WB[i]));
   }
   if (!view.hidden || !bodies[*view.hidden]) return;
-  // Taken out rather than switched off: what is invisible in it stays so.
+  // Removed instead of made invisible, so that its invisible parts stay invisible.
   hidden_ = bodies[*view.hidden]->GetSceneNode();
   parent_of_hidden_ = hidden_->getParent();
   parent_of_hidden_->removeChild(hidden_);

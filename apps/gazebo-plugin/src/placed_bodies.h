@@ -14,7 +14,7 @@ class Node;
 
 namespace tether::gazebo_plugin {
 
-/// As long as it lives, bodies stand in the scene where a view has them, but for the hidden one.
+/// While it exists, the scene's bodies are at the poses of a view, and the hidden one is removed.
 class PlacedBodies {
  public:
   PlacedBodies(const std::vector<::gazebo::rendering::VisualPtr>& bodies,

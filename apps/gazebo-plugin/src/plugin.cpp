@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kEndpoint = "TETHER_SIMULATOR_ENDPOINT";
 
-// Gazebo catches nothing that a plugin throws, and goes on without it.
+// Gazebo catches no exception of a plugin, and continues without a plugin that fails to load.
 [[noreturn]] void give_up(const std::string& why) {
   std::fprintf(stderr, "tether: %s\n", why.c_str());
   std::fflush(nullptr);
@@ -39,7 +39,7 @@ std::unique_ptr<protocol::Listener> listen() {
   const char* text = std::getenv(kEndpoint);
   if (!text) {
     give_up(std::string(kEndpoint) +
-            " is not set: say where to wait for Tether, such as unix:/tmp/gazebo.sock");
+            " is not set; set it to the address for Tether, such as unix:/tmp/gazebo.sock");
   }
   auto listener = or_give_up(protocol::listen(or_give_up(protocol::parse_endpoint(text))));
   std::printf("tether: listening on %s\n", protocol::to_string(listener->endpoint()).c_str());
@@ -47,7 +47,7 @@ std::unique_ptr<protocol::Listener> listen() {
   return listener;
 }
 
-// Makes Gazebo's main thread leave its sleep, by a message that moves nothing.
+// Wakes Gazebo's main thread by a message without a pose.
 void wake_main_thread(const ::gazebo::physics::WorldPtr& world) {
   ::gazebo::msgs::PosesStamped nothing;
   ::gazebo::msgs::Set(nothing.mutable_time(), world->SimTime());
@@ -57,8 +57,8 @@ void wake_main_thread(const ::gazebo::physics::WorldPtr& world) {
 }  // namespace
 
 /// The simulator's end of the protocol, in gzserver: `gzserver --lockstep -s libtether_gazebo.so
-/// WORLD`, with TETHER_SIMULATOR_ENDPOINT saying where to listen. It attaches to the world that is
-/// loaded, whatever that is, so that users' world files need no change.
+/// WORLD`, with the address to listen on in TETHER_SIMULATOR_ENDPOINT. It attaches to any world
+/// that is loaded, so that users' world files need no change.
 class Plugin : public ::gazebo::SystemPlugin {
  public:
   void Load(int, char**) override {

@@ -9,7 +9,7 @@
 
 namespace tether::gazebo_plugin {
 
-// The first one of a link stands for the link, with nothing to see; it goes by the link's name.
+// The first visual of a link represents the link itself, shows nothing, and has the link's name.
 std::vector<std::string> expected_visuals(const ::gazebo::physics::WorldPtr& world) {
   std::vector<std::string> names;
   for_each_link(world, [&](const ::gazebo::physics::LinkPtr& link) {

@@ -13,13 +13,13 @@ namespace {
 
 constexpr std::chrono::seconds kPatience{5};
 
-// gzserver itself always ends with 0.
+// gzserver itself always exits with 0.
 void end_with_failure() {
   std::fflush(nullptr);
   std::_Exit(EXIT_FAILURE);
 }
 
-// Not before it runs its worlds.
+// False until gzserver runs its worlds.
 bool handles_interrupts() {
   struct sigaction now {};
   return ::sigaction(SIGINT, nullptr, &now) == 0 && now.sa_handler != SIG_DFL;

@@ -11,7 +11,7 @@ void SpaceOrder::remember(dSpaceID space) {
   }
 }
 
-// What is added comes first.
+// ODE adds at the front.
 void SpaceOrder::restore() const {
   for (const auto& [space, members] : spaces_) {
     for (const dGeomID member : members) dSpaceRemove(space, member);

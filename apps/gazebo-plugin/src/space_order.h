@@ -7,12 +7,12 @@
 
 namespace tether::gazebo_plugin {
 
-/// The order in which ODE looks at shapes, and so at contacts. It changes as things move; a world
-/// that is reset must begin with the same one each time.
+/// The order in which ODE processes shapes, and so contacts. It changes while bodies move; after a
+/// reset it must always be the same.
 class SpaceOrder {
  public:
   SpaceOrder() = default;
-  /// As it is now, of that space and those within it.
+  /// The current order in that space and those within it.
   explicit SpaceOrder(dSpaceID space) { remember(space); }
   void restore() const;
 

@@ -101,7 +101,7 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
     result.versions["simulator"] = simulator->get().description();
     return result;
   } catch (const Error& e) {
-    throw Error(e.code(), e.what() + simulator->post_mortem(e.what()));
+    throw Error(e.code(), e.what() + simulator->post_mortem());
   }
 }
 

@@ -208,8 +208,7 @@ std::string TrialRun::explanation(const TrialEnd& end) {
   if (may_have_stopped_sut(end))
     if (const auto stopped = suts_.stopped()) text += "; " + *stopped;
   if (has_unexplained_sut(end)) text += suts_.post_mortem();
-  if (end.report.end == RunEnd::kSimulatorLost)
-    text += simulator_.post_mortem(end.report.reason + text);
+  if (end.report.end == RunEnd::kSimulatorLost) text += simulator_.post_mortem();
   return text + reach_hint(end);
 }
 

@@ -20,9 +20,7 @@ class FakeRunningSimulator final : public RunningSimulator {
 
   sim::Simulator& get() override { return simulator_; }
   std::optional<std::string> lost() override { return lost_; }
-  std::string post_mortem(const std::string& message) override {
-    return lost_ && message == *lost_ ? "; more" : "";
-  }
+  std::string post_mortem() override { return lost_ ? "; more" : ""; }
 
  private:
   sim::FakeSimulator simulator_;

@@ -24,31 +24,27 @@ World mixed_world() {
   return world;
 }
 
-TEST(BodiesTest, MovingOnesAreTheUavsThenTheLinksOfDynamicModels) {
+TEST(BodiesTest, UavsAndLinksOfDynamicModelsMoveAndThoseOfStaticModelsDoNot) {
   const World world = mixed_world();
-  const std::vector<MovingBody> bodies = moving_bodies(world);
-  ASSERT_EQ(bodies.size(), 6U);
+  const std::vector<MovingBody> moving = moving_bodies(world);
+  const std::vector<FixedBody> fixed = fixed_bodies(world);
+  ASSERT_EQ(moving.size(), 6U);
+  ASSERT_EQ(fixed.size(), 4U);
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(bodies[i].uav, &world.uavs[i]);
-    EXPECT_EQ(bodies[i].link, &world.uavs[i].body);
-    EXPECT_EQ(bodies[i].X_WB, world.uavs[i].X_WB);
+    EXPECT_EQ(moving[i].uav, &world.uavs[i]);
+    EXPECT_EQ(moving[i].model, nullptr);
+    EXPECT_EQ(moving[i].link, &world.uavs[i].body);
+    EXPECT_EQ(moving[i].X_WB, world.uavs[i].X_WB);
   }
-  for (std::size_t i = 2; i < 6; ++i) {
-    const Model& model = world.models[i < 4 ? 1 : 3];
-    EXPECT_EQ(bodies[i].uav, nullptr);
-    EXPECT_EQ(bodies[i].link, &model.links[i % 2]);
-    EXPECT_EQ(bodies[i].X_WB, model.X_WM * model.links[i % 2].X_ML);
-  }
-}
-
-TEST(BodiesTest, FixedOnesAreTheLinksOfStaticModels) {
-  const World world = mixed_world();
-  const std::vector<FixedBody> bodies = fixed_bodies(world);
-  ASSERT_EQ(bodies.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {
-    const Model& model = world.models[i < 2 ? 0 : 2];
-    EXPECT_EQ(bodies[i].link, &model.links[i % 2]);
-    EXPECT_EQ(bodies[i].X_WB, model.X_WM * model.links[i % 2].X_ML);
+    const Model& dynamic = world.models[i < 2 ? 1 : 3];
+    EXPECT_EQ(moving[i + 2].uav, nullptr);
+    EXPECT_EQ(moving[i + 2].model, &dynamic);
+    EXPECT_EQ(moving[i + 2].link, &dynamic.links[i % 2]);
+    EXPECT_EQ(moving[i + 2].X_WB, dynamic.X_WM * dynamic.links[i % 2].X_ML);
+    const Model& still = world.models[i < 2 ? 0 : 2];
+    EXPECT_EQ(fixed[i].link, &still.links[i % 2]);
+    EXPECT_EQ(fixed[i].X_WB, still.X_WM * still.links[i % 2].X_ML);
   }
 }
 

@@ -6,7 +6,7 @@
 namespace tether::sim {
 namespace {
 
-TEST(Catalogue, ListsSensorsWithMountingRateAndProperties) {
+TEST(Catalogue, ListsSensorsAndAnchorsWithTheirProperties) {
   World world = make_fake_world(2);
   Sensor& camera = world.uavs[1].sensors[0];
   camera.X_BS = {{0.1, 0.0, 0.2}, uav::from_rpy(0.0, 0.3, 0.0)};
@@ -29,11 +29,6 @@ TEST(Catalogue, ListsSensorsWithMountingRateAndProperties) {
   const auto& range = std::get<uav::RangeProperties>(catalogue.sensors[2].properties);
   EXPECT_EQ(range.min_m, 0.25);
   EXPECT_EQ(range.max_m, 20.0);
-}
-
-TEST(Catalogue, TellsWhatAnchorsLookLike) {
-  const World world = make_fake_world(1);
-  const uav::Catalogue catalogue = make_catalogue(world, world.uavs[0]);
   ASSERT_EQ(catalogue.anchors.size(), 1u);
   EXPECT_EQ(catalogue.anchors[0].name, "blue_box");
   EXPECT_EQ(catalogue.anchors[0].shape, uav::AnchorShape::kBox);

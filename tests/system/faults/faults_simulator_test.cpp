@@ -86,7 +86,7 @@ TEST(StoppedSimulator, IsWaitedForAndSaid) {
       folder / "out", stand_in_gazebo(folder.path(), "stop_advancing"), mark);
   std::erase(command.arguments, "--quiet");
   Process process(command);
-  ASSERT_TRUE(process.wait_for_err("everything waits for", std::chrono::seconds(60)))
+  ASSERT_TRUE(process.wait_for_err("has not answered for 1 s", std::chrono::seconds(60)))
       << process.err();
   EXPECT_THAT(process.err(), HasSubstr("a stand-in, which has not answered for 1 s"));
   // The stand-in strikes at each step from there on.

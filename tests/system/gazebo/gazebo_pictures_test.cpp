@@ -19,14 +19,14 @@ constexpr int kWidth_px = 640;
 constexpr int kHeight_px = 480;
 
 // Black whatever the light, and however its texture looks.
-protocol::Look black_look(const std::string& visual, double alpha) {
-  protocol::Look look;
-  look.model = "panes";
-  look.link = "link";
-  look.visual = visual;
-  look.texture = (kSource / "data/models/textures/brick.png").string();
-  look.alpha = alpha;
-  return look;
+protocol::VisualMaterial black_material(const std::string& visual, double alpha) {
+  protocol::VisualMaterial material;
+  material.model = "panes";
+  material.link = "link";
+  material.visual = visual;
+  material.texture = (kSource / "data/models/textures/brick.png").string();
+  material.alpha = alpha;
+  return material;
 }
 
 protocol::Open open_glass() {
@@ -41,7 +41,7 @@ protocol::Open open_glass() {
                        uav::hummingbird()});
   open.max_width_px = kWidth_px;
   open.max_height_px = kHeight_px;
-  open.looks = {black_look("left", 1.0), black_look("middle", 0.5)};
+  open.materials = {black_material("left", 1.0), black_material("middle", 0.5)};
   return open;
 }
 

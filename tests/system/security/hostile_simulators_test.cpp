@@ -141,13 +141,13 @@ const Misdeed kMisdeeds[] = {
     {"Nothing", [](Host&, auto) {}, kSilent},
     {"Garbage",
      [](Host& host, auto) { host.send(std::string("\x20\0\0\0", 4) + std::string(32, 'x')); },
-     "answered what it must not"},
+     "violated the protocol"},
     {"GarbageWithoutEnd",
      [](Host& host, auto) {
        while (host.send(std::string(10'000, '\x01'))) {
        }
      },
-     "answered what it must not"},
+     "violated the protocol"},
     {"HalfAFrame",
      [](Host& host, const protocol::Reply& reply) {
        const std::string frame = host.frame_of(reply);
@@ -176,10 +176,9 @@ const Misdeed kMisdeeds[] = {
        while (host.send(reply)) {
        }
      },
-     "answered what it must not"},
+     "violated the protocol"},
     {"AnotherAnswer",
-     [](Host& host, auto) { host.send(protocol::Reply(protocol::Distances{{1.0}})); },
-     "answers no CastRays"},
+     [](Host& host, auto) { host.send(protocol::Reply(protocol::Distances{{1.0}})); }, "Distances"},
     spoils(
         "NoNumber", [](auto& state) { state.bodies[0].p_WB.x = kNan; }, "State.bodies"),
     spoils(

@@ -1,3 +1,5 @@
+// Finds gzserver and Tether's plugin: variables of the user first, then the folder of the builds,
+// then installed files. A Debian root's programs run with its own loader and libraries.
 
 #include <cstdlib>
 #include <optional>
@@ -17,21 +19,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kGetIt = "scripts/gazebo-root, of Tether's sources, gets it";
+constexpr const char* kGetIt = "scripts/gazebo-root of Tether's sources installs it";
 
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
   return value ? value : "";
 }
 
-/// The list with what the user has it be at its end.
+/// The list, followed by the user's value of the variable.
 std::string before_users(std::string list, const char* name) {
   const std::string given = variable(name);
   return given.empty() ? list : list + ":" + given;
 }
 
-[[noreturn]] void fail(const std::string& what) {
-  throw Error(ErrorCode::kSetup, what);
+[[noreturn]] void fail(const std::string& subject, const std::string& what) {
+  throw Error(ErrorCode::kSetup, what).about(subject);
 }
 
 fs::path own_folder() {
@@ -48,7 +50,7 @@ bool is_file(const fs::path& file) {
   return fs::is_regular_file(file, ignored);
 }
 
-/// The loader of the root's programs, which is where the libraries of its machine are; empty: none.
+/// The loader of the root's programs, in the folder of its machine's libraries; empty: none.
 fs::path find_loader(const fs::path& root) {
   std::error_code error;
   for (fs::directory_iterator machine(root / "lib", error), end; !error && machine != end;
@@ -61,7 +63,7 @@ fs::path find_loader(const fs::path& root) {
   return {};
 }
 
-/// Where Debian keeps libraries that are not in the loader's own folders.
+/// Debian's folders of libraries.
 std::string library_path(const fs::path& root, const fs::path& machine) {
   const fs::path libraries = root / "usr/lib" / machine;
   std::vector<std::string> folders = {libraries, root / "lib" / machine, root / "usr/lib"};
@@ -72,7 +74,7 @@ std::string library_path(const fs::path& root, const fs::path& machine) {
   return fmt::format("{}", fmt::join(folders, ":"));
 }
 
-/// The root's gzserver by the root's own loader, so that nothing of this system is mixed into it.
+/// The root's gzserver with the root's loader, so that it uses none of this system's libraries.
 GazeboInstall in_root(const fs::path& root, const fs::path& loader) {
   const fs::path gzserver = root / "usr/bin/gzserver", machine = loader.parent_path().filename();
   const fs::path libraries = root / "usr/lib" / machine;
@@ -104,19 +106,18 @@ GazeboInstall on_system(const std::vector<fs::path>& roots) try {
 } catch (const Error&) {
   std::vector<std::string> places;
   for (const auto& root : roots) places.push_back(root.string());
-  fail(
-      fmt::format("Gazebo 11 is not here: gzserver is not in PATH, and there is none in {}; {}, "
-                  "or TETHER_GAZEBO_ROOT names where it is",
-                  fmt::join(places, " or "), kGetIt));
+  fail("gzserver",
+       fmt::format("Gazebo 11 was not found: gzserver is neither in PATH nor in {}; {}, or set "
+                   "TETHER_GAZEBO_ROOT",
+                   fmt::join(places, " or "), kGetIt));
 }
 
 GazeboInstall find_gzserver() {
   if (const std::string given = variable("TETHER_GAZEBO_ROOT"); !given.empty()) {
     if (auto install = try_root(given)) return *install;
-    fail(
-        fmt::format("TETHER_GAZEBO_ROOT names {}, in which there is no Gazebo 11: no "
-                    "usr/bin/gzserver with its loader; {}",
-                    given, kGetIt));
+    fail("TETHER_GAZEBO_ROOT",
+         fmt::format("TETHER_GAZEBO_ROOT is {}, which has no usr/bin/gzserver with its loader; {}",
+                     given, kGetIt));
   }
   const std::vector<fs::path> roots = {builds() / "gazebo-root", "/var/lib/tether/gazebo-root"};
   for (const auto& root : roots)
@@ -128,15 +129,16 @@ fs::path find_plugin() {
   constexpr const char* kPlugin = "libtether_gazebo.so";
   const std::string given = variable("TETHER_GAZEBO_PLUGIN");
   if (!given.empty() && is_file(given)) return fs::absolute(given);
-  if (!given.empty()) fail(fmt::format("TETHER_GAZEBO_PLUGIN names {}: no such file", given));
+  if (!given.empty())
+    fail("TETHER_GAZEBO_PLUGIN",
+         fmt::format("TETHER_GAZEBO_PLUGIN is {}, which does not exist", given));
   const fs::path built = builds() / "gazebo/lib" / kPlugin;
   const fs::path installed = own_folder().parent_path() / "lib/tether" / kPlugin;
   if (is_file(built)) return built;
   if (is_file(installed)) return installed;
-  fail(
-      fmt::format("Tether's plugin for Gazebo is not here: neither {} nor {} exists; "
-                  "scripts/gazebo-root, of Tether's sources, builds it",
-                  built.string(), installed.string()));
+  fail(kPlugin,
+       fmt::format("Tether's plugin for Gazebo was not found: neither {} nor {} exists; {}",
+                   built.string(), installed.string(), kGetIt));
 }
 
 }  // namespace

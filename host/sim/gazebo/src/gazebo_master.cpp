@@ -1,13 +1,10 @@
 #include "gazebo_master.h"
 
 #include <array>
-#include <charconv>
-#include <cstdint>
 #include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string_view>
-#include <system_error>
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -16,21 +13,19 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/link/channel.h>
 
 namespace tether::sim {
 
 namespace {
 
 /// The HOST of http://HOST:PORT.
-std::optional<std::string> host_of(std::string_view uri) {
+std::optional<std::string> host_of(const std::string& uri) {
   constexpr std::string_view kScheme = "http://";
-  const auto colon = uri.rfind(':');
-  if (!uri.starts_with(kScheme) || colon <= kScheme.size()) return std::nullopt;
-  const std::string_view port = uri.substr(colon + 1);
-  std::uint16_t number = 0;
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), number);
-  if (error != std::errc() || end != port.data() + port.size() || number == 0) return std::nullopt;
-  return std::string(uri.substr(kScheme.size(), colon - kScheme.size()));
+  if (!uri.starts_with(kScheme)) return std::nullopt;
+  const auto address = link::parse_address(uri.substr(kScheme.size()));
+  if (!address || address->host.empty() || address->port == 0) return std::nullopt;
+  return address->host;
 }
 
 bool has_address(const std::string& host) {
@@ -64,7 +59,8 @@ std::string master_of_user() {
       ErrorCode::kSetup,
       fmt::format("GAZEBO_MASTER_URI is \"{}\", {}; set http://localhost:PORT, or unset it", uri,
                   host ? "another machine, but gzserver is started on this one"
-                       : "which is not http://HOST:PORT"));
+                       : "which is not http://HOST:PORT"))
+      .about("GAZEBO_MASTER_URI");
 }
 
 }  // namespace tether::sim

@@ -1,24 +1,24 @@
+// Starts gzserver and its X server for one run, waits for the plugin, and describes their end. All
+// decisions about their output use the typed parse of gazebo_log.h. `is_end_reported_` records
+// whether an end was reported, so that `post_mortem` does not repeat it.
+
 #include "gazebo_server.h"
 
 #include "gazebo_log.h"
 #include "gazebo_master.h"
 
-#include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <string_view>
 #include <system_error>
 #include <thread>
 #include <utility>
 
 #include <fmt/format.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/link/socket.h>
 #include <tether/os/child_process.h>
 #include <tether/os/text_file.h>
 
@@ -41,27 +41,22 @@ Duration start_limit_of_user() {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
   if (error != std::errc() || end != text.data() + text.size() || !(seconds > 0.0) || seconds > 1e6)
     throw Error(ErrorCode::kSetup,
-                fmt::format("{} is \"{}\": a number of seconds is expected", kStartLimit, text));
+                fmt::format("{} is \"{}\"; it must be a number of seconds, greater than 0 and at "
+                            "most 1e6",
+                            kStartLimit, text))
+        .about(kStartLimit);
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
 }
 
-/// A port that nobody listens on, as yet.
+/// A port that is free now.
 std::uint16_t free_port() {
-  const int descriptor = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  socklen_t size = sizeof address;
-  auto* generic = reinterpret_cast<sockaddr*>(&address);
-  const bool bound = descriptor >= 0 && bind(descriptor, generic, size) == 0 &&
-                     getsockname(descriptor, generic, &size) == 0;
-  const int why = errno;
-  if (descriptor >= 0) close(descriptor);
-  if (!bound)
-    throw Error(ErrorCode::kSetup, std::string("no free port for gzserver: ") + std::strerror(why));
-  return ntohs(address.sin_port);
+  const auto socket = link::listen_on_tcp({"127.0.0.1", 0});
+  if (!socket)
+    throw Error(ErrorCode::kSetup, "no free port for gzserver: " + socket.failure().message);
+  return link::local_address(socket->get()).port;
 }
 
-/// Where model:// leads, as sim::load_world has it.
+/// The folders of model:// URIs, as for sim::load_world.
 std::string model_path(const std::filesystem::path& world) {
   const auto folder = world.parent_path(), above = folder.parent_path();
   std::string path = fmt::format("{}:{}:{}:{}", (folder / "models").string(),
@@ -69,15 +64,6 @@ std::string model_path(const std::filesystem::path& world) {
   for (const char* name : {"GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH"})
     if (const char* given = std::getenv(name); given && *given) path += std::string(":") + given;
   return path;
-}
-
-void make_empty(const std::filesystem::path& log) {
-  std::error_code ignored;
-  std::filesystem::remove(log, ignored);
-}
-
-bool says(const std::string& text, std::string_view part) {
-  return text.find(part) != std::string::npos;
 }
 
 }  // namespace
@@ -88,7 +74,8 @@ GazeboServer::GazeboServer(GazeboRun run)
       users_master_(master_of_user()),
       started_(Steady::now()),
       folder_("tether-gazebo-") {
-  make_empty(run_.log);
+  std::error_code ignored;
+  std::filesystem::remove(run_.log, ignored);
   if (run_.draws) {
     x_server_ = std::make_unique<XServer>(folder_.path(), run_.log);
     wait_for_display();
@@ -96,7 +83,7 @@ GazeboServer::GazeboServer(GazeboRun run)
   start_gzserver();
 }
 
-// What uses the X server goes first.
+// gzserver uses the X server, so it ends first.
 GazeboServer::~GazeboServer() {
   gzserver_.reset();
   x_server_.reset();
@@ -111,7 +98,7 @@ void GazeboServer::wait_for_display() {
 }
 
 void GazeboServer::start_gzserver() {
-  said_before_ = os::read_whole(run_.log).size();
+  log_begin_ = os::read_whole(run_.log).size();
   master_ = users_master_;
   if (master_.empty()) master_ = fmt::format("http://127.0.0.1:{}", free_port());
   const std::string home = folder_.path();
@@ -119,7 +106,7 @@ void GazeboServer::start_gzserver() {
                            .environment = run_.install.environment,
                            .log = run_.log,
                            .appends = true,
-                           // Gazebo looks there for any relative path: nothing of the user's.
+                           // Gazebo searches there for relative paths: no files of the user.
                            .working_folder = home,
                            .end_signal = SIGINT};
   for (const std::string& word :
@@ -151,8 +138,9 @@ std::unique_ptr<protocol::Connection> GazeboServer::connect() {
     look();
     const auto why = why_not_up();
     if (!why) continue;
-    // Somebody took the port between our look at it and gzserver's.
-    if (!has_port_in_use() || !users_master_.empty() || ++attempt > kPortAttempts) fail(*why);
+    // Another process may have taken the port in between.
+    if (!new_log().has_port_in_use || !users_master_.empty() || ++attempt > kPortAttempts)
+      fail(*why);
     start_gzserver();
   }
 }
@@ -162,80 +150,83 @@ Duration GazeboServer::start_limit() const {
   return std::max(limit_ - passed, Duration(std::chrono::milliseconds(1)));
 }
 
-/// Whether to go on waiting.
+/// Ends the wait at its limit or at a stop.
 void GazeboServer::look() const {
   if (run_.stop.stop_requested()) throw Error(ErrorCode::kSetup, "interrupted by the user");
   if (Steady::now() - started_ < limit_) return;
   throw Error(ErrorCode::kSetup,
-              fmt::format("gzserver has not come up in {:g} s (see {}); where it needs longer, set "
-                          "{}",
+              fmt::format("gzserver has not come up in {:g} s (see {}); if it needs longer, set {}",
                           to_seconds(limit_), run_.log.string(), kStartLimit));
 }
 
-bool GazeboServer::has_port_in_use() {
-  return says(os::read_whole(run_.log).substr(said_before_), "Address already in use");
+GazeboLog GazeboServer::whole_log() const {
+  return parse_gazebo_log(os::read_whole(run_.log));
+}
+
+GazeboLog GazeboServer::new_log() const {
+  return parse_gazebo_log(os::read_whole(run_.log).substr(log_begin_));
 }
 
 std::optional<std::string> GazeboServer::why_not_up() {
-  const std::string log = os::read_whole(run_.log);
-  if (const std::string why = plugin_error(log); !why.empty())
-    return fmt::format("{} (see {})", why, run_.log.string());
-  if (const std::string why = drawing_error(log); x_server_ && !why.empty())
-    return fmt::format("it cannot draw for the cameras: {} (see {})", why, run_.log.string());
+  const GazeboLog log = whole_log();
+  if (!log.plugin_error.empty())
+    return fmt::format("{} (see {})", log.plugin_error, run_.log.string());
+  if (x_server_ && !log.drawing_error.empty())
+    return fmt::format("it cannot draw for the cameras: {} (see {})", log.drawing_error,
+                       run_.log.string());
   return lost();
 }
 
 std::optional<std::string> GazeboServer::lost() {
-  return end_beyond("");
+  auto end = describe_end(KnownReason::kNone);
+  is_end_reported_ = is_end_reported_ || end.has_value();
+  return end;
 }
 
-std::optional<std::string> GazeboServer::end_beyond(const std::string& said) {
+std::optional<std::string> GazeboServer::describe_end(KnownReason known) {
   if (x_server_)
     if (const auto end = x_server_->end())
       return fmt::format("{}; see {}", *end, run_.log.string());
   const auto& exit = gzserver_ ? gzserver_->poll() : std::nullopt;
   if (!exit) return std::nullopt;
-  if (has_port_in_use())
+  // Lines from before the world was open, or of a process that was killed, do not explain the end.
+  const GazeboLog log = new_log();
+  if (log.has_port_in_use)
     return fmt::format(
-        "gzserver {}, because the port of {} is in use (by another gzserver?); end "
-        "what uses it, or unset GAZEBO_MASTER_URI",
+        "gzserver {}, because the port of {} is in use (by another gzserver?); stop the process "
+        "that uses it, or unset GAZEBO_MASTER_URI",
         exit->description, master_);
-  const std::string last = last_words(*exit);
+  const bool is_known =
+      known == KnownReason::kOfPlugin && log.last_writer == GazeboLog::Writer::kPlugin;
   return fmt::format("gzserver {}; {}", exit->description,
-                     last.empty() || says(said, last)
+                     log.last_line.empty() || is_known || exit->code == os::kSignalled + SIGKILL
                          ? "see " + run_.log.string()
-                         : fmt::format("its last words in {}: {}", run_.log.string(), last));
+                         : fmt::format("last line in {}: {}", run_.log.string(), log.last_line));
 }
 
-/// Who is killed says nothing of it; nor does what was said before the world was open.
-std::string GazeboServer::last_words(const os::ChildExit& exit) const {
-  if (exit.code == 128 + SIGKILL) return "";
-  std::string last = last_words_of_gazebo(os::read_whole(run_.log).substr(said_before_));
-  constexpr std::string_view kOwn = "tether: ";
-  if (last.starts_with(kOwn)) last.erase(0, kOwn.size());
-  return last;
-}
-
-std::string GazeboServer::post_mortem(const std::string& said) {
+// When the simulator's session fails, the plugin has sent its reason to the host, or lost it.
+std::string GazeboServer::post_mortem() {
   gzserver_->wait(kEndLimit);
-  const auto errors = reading_errors(os::read_whole(run_.log));
-  if (!errors.empty() && !says(said, errors.front()))
-    return fmt::format("; Gazebo said, in {}: {}", run_.log.string(), errors.front());
-  const auto& exit = gzserver_->poll();
-  if (exit && says(said, "gzserver " + exit->description)) return "";
-  const auto end = end_beyond(said);
-  return end && !says(said, *end) ? "; " + *end : "";
+  const GazeboLog log = whole_log();
+  const bool is_quoted = is_end_reported_ && log.last_writer == GazeboLog::Writer::kSdfReader;
+  if (!log.reading_errors.empty() && !is_quoted)
+    return fmt::format("; Gazebo reported in {}: {}", run_.log.string(),
+                       log.reading_errors.front());
+  if (is_end_reported_) return "";
+  const auto end = describe_end(KnownReason::kOfPlugin);
+  return end ? "; " + *end : "";
 }
 
 void GazeboServer::check_world() {
-  const std::string log = os::read_whole(run_.log);
-  auto errors = reading_errors(log);
-  if (const std::string why = plugin_error(log); !why.empty()) errors.push_back(why);
+  const std::string text = os::read_whole(run_.log);
+  const GazeboLog log = parse_gazebo_log(text);
+  auto errors = log.reading_errors;
+  if (!log.plugin_error.empty()) errors.push_back(log.plugin_error);
   if (!errors.empty())
     throw Error(ErrorCode::kSetup,
                 fmt::format("Gazebo cannot read all of {}: {} (see {})", run_.world.string(),
                             errors.front(), run_.log.string()));
-  said_before_ = log.size();
+  log_begin_ = text.size();
 }
 
 void GazeboServer::fail(const std::string& what) const {

@@ -38,7 +38,7 @@ GazeboSimulator::GazeboSimulator(World world, const GazeboSetup& setup)
                                         .on_silence = setup.on_silence},
                                        setup.warn);
   } catch (const Error& e) {
-    throw Error(e.code(), e.what() + post_mortem(e.what()));
+    throw Error(e.code(), e.what() + post_mortem());
   }
   server_->check_world();
 }
@@ -54,8 +54,8 @@ std::optional<std::string> GazeboSimulator::why_give_up() {
   return simulator_ ? lost() : server_->why_not_up();
 }
 
-std::string GazeboSimulator::post_mortem(const std::string& said) {
-  return stop_.stop_requested() ? "" : server_->post_mortem(said);
+std::string GazeboSimulator::post_mortem() {
+  return stop_.stop_requested() ? "" : server_->post_mortem();
 }
 
 }  // namespace tether::sim

@@ -17,8 +17,10 @@ struct Place {
 };
 
 [[noreturn]] void refuse(const Place& place, const std::string& message) {
+  const std::string subject = std::string("<") + place.element.Name() + ">";
   throw Error(ErrorCode::kBadFile, {place.file, place.element.GetLineNum()},
-              message + ", or fly in another simulator");
+              subject + message + ", or use another simulator")
+      .about(subject);
 }
 
 std::string trimmed_text(const XMLElement& element) {
@@ -27,17 +29,17 @@ std::string trimmed_text(const XMLElement& element) {
   return begin == std::string_view::npos ? "" : std::string(text.substr(begin, end - begin + 1));
 }
 
-bool leads_to_one_place(std::string_view uri) {
+bool is_absolute(std::string_view uri) {
   return uri.starts_with("model://") || uri.starts_with("file:///") || uri.starts_with("/");
 }
 
-/// Gazebo looks for a relative path in its working folder and its own folders, not beside the file
-/// that names it, and may find another one there.
+/// Gazebo searches for a relative path in its working folder and its own folders, not beside the
+/// file that contains it, and may find another file.
 void check_uri(const Place& place, const std::string& what) {
   const std::string uri = trimmed_text(place.element);
-  if (leads_to_one_place(uri)) return;
-  refuse(place, "<uri> of " + what + " is '" + uri +
-                    "', which Gazebo 11 does not look for beside this file; write model:// with "
+  if (is_absolute(uri)) return;
+  refuse(place, " of " + what + " is '" + uri +
+                    "', which Gazebo 11 does not search for beside this file; write model:// with "
                     "the model's folder, or an absolute path");
 }
 
@@ -49,13 +51,12 @@ void check(const Place& place) {
   if (name == "uri" && above == "include") check_uri(place, "an <include>");
   if (name == "actor") {
     refuse(place,
-           "<actor>: Gazebo 11 draws actors as they are now, whatever instant a picture is of; "
-           "leave it out");
+           ": Gazebo 11 draws actors at its current time, not at the time of a picture; remove it");
   }
   const char* engine = name == "physics" ? place.element.Attribute("type") : nullptr;
   if (engine != nullptr && std::string_view(engine) != "ode") {
-    refuse(place, "<physics> is of type '" + std::string(engine) +
-                      "', and Tether's plugin for Gazebo works with ODE only; write type=\"ode\"");
+    refuse(place, " is of type '" + std::string(engine) +
+                      "', but Tether's plugin for Gazebo requires ODE; write type=\"ode\"");
   }
 }
 
@@ -74,7 +75,7 @@ void check_gazebo_world(const World& world) {
   for (const std::filesystem::path& file : world.sdf_files) {
     tinyxml2::XMLDocument xml;
     if (xml.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS || xml.RootElement() == nullptr) {
-      throw Error(ErrorCode::kBadFile, {file.string(), 0}, "cannot be read any more");
+      throw Error(ErrorCode::kBadFile, {file.string(), 0}, "can no longer be read");
     }
     check_all(file.string(), *xml.RootElement());
   }

@@ -22,31 +22,18 @@ namespace fs = std::filesystem;
 
 constexpr const char* kParent = "/tmp";
 
-int open_folder(const fs::path& folder) {
-  return open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+os::FileDescriptor open_folder(const fs::path& folder) {
+  return os::FileDescriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
 }
 
-bool is_ours(int descriptor) {
-  struct stat found {};
-  return fstat(descriptor, &found) == 0 && found.st_uid == geteuid();
-}
-
-/// Whether the folder of that name is still the one that was opened.
-bool is_still_there(const fs::path& folder, int descriptor) {
-  struct stat opened {
-  }, named{};
-  return fstat(descriptor, &opened) == 0 && lstat(folder.c_str(), &named) == 0 &&
-         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
-}
-
-/// Removes it if it is ours and nobody alive holds it.
+/// Removes it if it is this user's and no process holds it.
 void remove_if_left(const fs::path& folder) {
-  const int descriptor = open_folder(folder);
-  if (descriptor < 0) return;
+  const os::FileDescriptor opened = open_folder(folder);
+  struct stat found {};
   std::error_code ignored;
-  if (is_ours(descriptor) && flock(descriptor, LOCK_EX | LOCK_NB) == 0)
+  if (fstat(opened.get(), &found) == 0 && found.st_uid == geteuid() &&
+      flock(opened.get(), LOCK_EX | LOCK_NB) == 0)
     fs::remove_all(folder, ignored);
-  close(descriptor);
 }
 
 void remove_those_left(const std::string& prefix) {
@@ -58,34 +45,39 @@ void remove_those_left(const std::string& prefix) {
 
 [[noreturn]] void fail() {
   throw Error(ErrorCode::kSetup,
-              fmt::format("{}: no folder can be made there: {}", kParent, std::strerror(errno)));
+              fmt::format("{}: cannot make a folder: {}", kParent, std::strerror(errno)));
 }
 
-/// Makes a folder and locks it; −1 if another process took it for one that was left, and removed it
-/// in between.
-int make_and_lock(const std::string& prefix, fs::path& folder) {
+/// Whether the folder of that name is still the one that was opened.
+bool is_still_there(const fs::path& folder, int descriptor) {
+  struct stat opened {
+  }, named{};
+  return fstat(descriptor, &opened) == 0 && lstat(folder.c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
+}
+
+/// Makes a folder and locks it; none if another process removed it before it was locked.
+os::FileDescriptor make_and_lock(const std::string& prefix, fs::path& folder) {
   std::string name = fmt::format("{}/{}XXXXXX", kParent, prefix);
   if (!mkdtemp(name.data())) fail();
   folder = name;
-  const int descriptor = open_folder(folder);
-  if (descriptor < 0 && errno == ENOENT) return -1;
-  if (descriptor < 0 || flock(descriptor, LOCK_EX) != 0) fail();
-  if (is_still_there(folder, descriptor)) return descriptor;
-  close(descriptor);
-  return -1;
+  os::FileDescriptor opened = open_folder(folder);
+  if (!opened && errno == ENOENT) return {};
+  if (!opened || flock(opened.get(), LOCK_EX) != 0) fail();
+  if (!is_still_there(folder, opened.get())) return {};
+  return opened;
 }
 
 }  // namespace
 
 PrivateFolder::PrivateFolder(const std::string& prefix) {
   remove_those_left(prefix);
-  while (lock_ < 0) lock_ = make_and_lock(prefix, path_);
+  while (!lock_) lock_ = make_and_lock(prefix, path_);
 }
 
 PrivateFolder::~PrivateFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
-  close(lock_);
 }
 
 }  // namespace tether::sim

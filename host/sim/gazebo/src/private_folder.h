@@ -3,14 +3,16 @@
 #include <filesystem>
 #include <string>
 
+#include <tether/os/file_descriptor.h>
+
 namespace tether::sim {
 
-/// A folder for what a run needs only while it lasts: this user's alone (mode 0700), with a short
-/// path, so that it may hold sockets. It is removed with the object. One whose process was killed
-/// is removed by the next process of this user that makes one. Not thread-safe.
+/// A folder for the temporary files of a run: for this user only (mode 0700), with a path that is
+/// short enough for sockets. It is removed with the object. If a process is killed, the next
+/// process of this user that makes a folder removes it. Not thread-safe.
 class PrivateFolder {
  public:
-  /// "/tmp/<prefix>XXXXXX". @throws Error(kSetup) when it cannot be made.
+  /// "/tmp/<prefix>XXXXXX". @throws Error(kSetup) if it cannot be made.
   explicit PrivateFolder(const std::string& prefix);
   ~PrivateFolder();
   PrivateFolder(const PrivateFolder&) = delete;
@@ -20,7 +22,7 @@ class PrivateFolder {
 
  private:
   std::filesystem::path path_;
-  int lock_ = -1;  // of the folder, held while its owner lives
+  os::FileDescriptor lock_;  // of the folder, held while its owner lives
 };
 
 }  // namespace tether::sim

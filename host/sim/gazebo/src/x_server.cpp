@@ -20,8 +20,9 @@ constexpr const char* kProgram = "Xvfb";
 
 void require_xvfb() try { os::find_program(kProgram); } catch (const Error&) {
   throw Error(ErrorCode::kSetup,
-              "cameras in Gazebo need an X server, and there is no Xvfb in PATH; type: apt-get "
-              "install xvfb");
+              "cameras in Gazebo need an X server, but Xvfb is not in PATH; run: apt-get install "
+              "xvfb")
+      .about(kProgram);
 }
 
 /// A counted string of an Xauthority file.
@@ -30,7 +31,7 @@ std::string counted(std::string_view text) {
          std::string(text);
 }
 
-/// An Xauthority file (XSECURITY of X.Org, libXau's Xauth) that lets its reader into any display.
+/// An Xauthority file (XSECURITY of X.Org, libXau's Xauth) with the cookie of any display.
 void write_cookie(const std::filesystem::path& file) {
   constexpr std::string_view kAnyFamily = "\xff\xff";
   std::ofstream stream(file, std::ios::binary);
@@ -45,7 +46,7 @@ XServer::XServer(const std::filesystem::path& folder, const std::filesystem::pat
     : cookie_(folder / "cookie"), display_file_(folder / "display") {
   require_xvfb();
   write_cookie(cookie_);
-  // With SIGTERM for a death signal it takes its socket and its lock in /tmp with it.
+  // With SIGTERM as its death signal it removes its socket and its lock in /tmp.
   process_ = std::make_unique<os::ChildProcess>(
       os::ChildCommand{.arguments = {kProgram, "-displayfd", "1", "-screen", "0", "640x480x24",
                                      "-nolisten", "tcp", "-noreset", "-auth", cookie_.string()},

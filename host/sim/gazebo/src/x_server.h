@@ -9,18 +9,18 @@
 
 namespace tether::sim {
 
-/// An X server without a screen (Xvfb), for programs that draw: on a free display, reached through
-/// a local socket by those who have its cookie only. It ends with the object, and with this process
-/// however that ends. Not thread-safe.
+/// An X server without a screen (Xvfb), for programs that draw: on a free display, with a local
+/// socket that requires its cookie. It ends with the object, and with this process however that
+/// ends. Not thread-safe.
 class XServer {
  public:
   /// Starts it; `folder` is private, and gets the cookie. Its output goes to the end of `log`.
-  /// @throws Error(kSetup) when there is no Xvfb, saying how to get it.
+  /// @throws Error(kSetup) if there is no Xvfb, with how to install it.
   XServer(const std::filesystem::path& folder, const std::filesystem::path& log);
 
   /// Whether programs can connect yet.
   bool is_ready();
-  /// What a program needs to draw there. @pre is_ready().
+  /// The variables with which a program draws there. @pre is_ready().
   os::Environment environment() const;
   /// How it ended; none while it runs.
   std::optional<std::string> end();

@@ -52,44 +52,25 @@ std::string sdf_world(const World& world) {
          "</world></sdf>\n";
 }
 
-// ---- Gazebo in it
-// -----------------------------------------------------------------------------------
+// ---- Gazebo with it ----------------------------------------------------------------------------
 
-/// With all that it runs on.
-class InGazebo final : public Simulator {
- public:
-  explicit InGazebo(World world) {
-    for (Model& model : world.models) model.links.at(0).name = "link";
-    world.file = folder_.write("world.sdf", sdf_world(world));
-    running_ = std::make_unique<GazeboSimulator>(
-        world, GazeboSetup{std::chrono::seconds(30), folder_.path("simulator.log"),
-                           [](const std::string& line) { ADD_FAILURE() << line; }});
-  }
-
-  const World& world() const override { return it().world(); }
-  StepGrid grid() const override { return it().grid(); }
-  SimTime now() const override { return it().now(); }
-  void reset(std::uint64_t seed) override { it().reset(seed); }
-  void advance_to(SimTime t) override { it().advance_to(t); }
-  void apply(std::size_t uav, const uav::VelocityCommand& command) override {
-    it().apply(uav, command);
-  }
-  void capture(Snapshot& snapshot) const override { it().capture(snapshot); }
-  uav::Sample measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
-                      std::uint64_t index) override {
-    return it().measure(snapshot, uav, sensor, index);
-  }
-  GroundTruth ground_truth(std::size_t uav) const override { return it().ground_truth(uav); }
-  std::string description() const override { return it().description(); }
-
- private:
-  Simulator& it() const { return running_->get(); }
-
-  ScratchFolder folder_;
-  std::unique_ptr<GazeboSimulator> running_;
+struct InGazebo {
+  ScratchFolder folder;
+  std::unique_ptr<GazeboSimulator> running;
 };
 
-/// Skips all tests where there is no Gazebo or no plugin.
+std::shared_ptr<Simulator> make_in_gazebo(World world) {
+  auto gazebo = std::make_shared<InGazebo>();
+  for (Model& model : world.models) model.links.at(0).name = "link";
+  world.file = gazebo->folder.write("world.sdf", sdf_world(world));
+  gazebo->running = std::make_unique<GazeboSimulator>(
+      world, GazeboSetup{std::chrono::seconds(30), gazebo->folder.path("simulator.log"),
+                         [](const std::string& line) { ADD_FAILURE() << line; }});
+  Simulator& simulator = gazebo->running->get();
+  return {std::move(gazebo), &simulator};
+}
+
+/// Skips all tests without Gazebo or its plugin.
 class NeedsGazebo : public ::testing::Environment {
  public:
   void SetUp() override {
@@ -105,8 +86,6 @@ const auto* const kNeedsGazebo = ::testing::AddGlobalTestEnvironment(new NeedsGa
 }  // namespace
 
 INSTANTIATE_TEST_SUITE_P(Gazebo, SimulatorContract,
-                         ::testing::Values(SimulatorMaker([](World world) {
-                           return std::make_unique<InGazebo>(std::move(world));
-                         })));
+                         ::testing::Values(SimulatorMaker(make_in_gazebo)));
 
 }  // namespace tether::sim::testing

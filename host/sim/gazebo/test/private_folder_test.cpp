@@ -17,7 +17,7 @@ std::string prefix_of_test() {
   return "tether-private-test-" + std::to_string(getpid()) + "-";
 }
 
-TEST(PrivateFolder, IsThisUsersAloneAndGoesWithItsFiles) {
+TEST(PrivateFolder, IsForThisUserOnlyAndIsRemovedWithItsFiles) {
   fs::path path;
   {
     const PrivateFolder folder(prefix_of_test());
@@ -31,13 +31,6 @@ TEST(PrivateFolder, IsThisUsersAloneAndGoesWithItsFiles) {
     std::ofstream(path / "inner/file") << "text";
   }
   EXPECT_FALSE(fs::exists(path));
-}
-
-TEST(PrivateFolder, LeavesAloneThoseOfTheLiving) {
-  const PrivateFolder first(prefix_of_test()), second(prefix_of_test());
-  EXPECT_NE(first.path(), second.path());
-  EXPECT_TRUE(fs::exists(first.path()));
-  EXPECT_TRUE(fs::exists(second.path()));
 }
 
 /// Makes a folder in a process that is killed; returns it.
@@ -59,16 +52,18 @@ fs::path left_by_a_killed_process(const std::string& prefix) {
   return std::string(buffer, static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
 }
 
-TEST(PrivateFolder, OfAKilledProcessIsRemovedByTheNextOne) {
+TEST(PrivateFolder, OfAKilledProcessIsRemovedByTheNextProcess) {
   const fs::path left = left_by_a_killed_process(prefix_of_test());
   ASSERT_TRUE(fs::is_directory(left));
   const PrivateFolder other("tether-private-other-");
   EXPECT_TRUE(fs::exists(left));
-  const PrivateFolder folder(prefix_of_test());
+  const PrivateFolder first(prefix_of_test()), second(prefix_of_test());
   EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(first.path())) << "in use";
+  EXPECT_NE(first.path(), second.path());
 }
 
-// What has the name and is no folder is somebody else's.
+// A link of that name is not a folder of Tether.
 TEST(PrivateFolder, FollowsNoLinkWhenItCleansUp) {
   const fs::path file = "/tmp/" + prefix_of_test() + "target",
                  link = "/tmp/" + prefix_of_test() + "x";

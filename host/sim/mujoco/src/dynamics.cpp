@@ -54,7 +54,7 @@ void Dynamics::apply_rotors(std::size_t uav) {
   copy_to(rotate(body.q_WB, wrench.torque_B), out + 3);
 }
 
-// The engine restarts a world by itself when its state becomes unusable; a run must not go on so.
+// The engine resets a world when its state becomes unusable. A run must not continue then.
 void Dynamics::check_engine() const {
   const mjWarningStat* warnings = data_->warning;
   const int bad = warnings[mjWARN_BADQPOS].number + warnings[mjWARN_BADQVEL].number +

@@ -42,8 +42,8 @@ EglContext::EglContext() {
     if (display != EGL_NO_DISPLAY && open(display)) return;
   }
   throw Error(ErrorCode::kSetup,
-              "no OpenGL for camera images: install libegl1 and libgl1-mesa-dri (software) or the "
-              "GPU's driver; where they are installed, too little memory is free for them");
+              "no OpenGL for camera images; install libegl1 and libgl1-mesa-dri (software) or the "
+              "GPU's driver, or free memory if they are installed");
 }
 
 EglContext::~EglContext() {

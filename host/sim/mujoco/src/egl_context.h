@@ -6,10 +6,10 @@
 
 namespace tether::sim {
 
-/// A headless OpenGL context: on the first GPU that can, else in software. Needs no display.
+/// A headless OpenGL context: on the first suitable GPU, else in software. Needs no display.
 class EglContext {
  public:
-  /// @throws Error(kSetup) when there is no OpenGL at all.
+  /// @throws Error(kSetup) without OpenGL.
   EglContext();
   ~EglContext();
   EglContext(const EglContext&) = delete;

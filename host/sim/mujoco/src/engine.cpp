@@ -1,5 +1,6 @@
 #include "engine.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
@@ -10,9 +11,7 @@ namespace tether::sim {
 namespace {
 
 std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (c == '\n') c = ' ';
-  }
+  std::replace(text.begin(), text.end(), '\n', ' ');
   return text;
 }
 
@@ -20,7 +19,7 @@ std::string one_line(std::string text) {
   throw Error(ErrorCode::kInternal, "MuJoCo: " + one_line(message));
 }
 
-// What matters of the engine's warnings is counted in mjData, where the simulator looks.
+// The simulator checks the counters of warnings in mjData instead.
 void ignore_engine_warning(const char* /*message*/) {}
 
 // The engine's file system of fixed-size tables (2 MB).

@@ -21,8 +21,8 @@ struct RawImage {
   }
 };
 
-/// Rows from the top down, pixels R, G, B; `background` for pixels that are 0 (where nothing was
-/// drawn: what is drawn is not quite transparent). `rgb` holds height × width × 3 bytes.
+/// Rows from the top down, pixels R, G, B. Pixels that are 0, where nothing was drawn, become
+/// `background`. `rgb` holds height × width × 3 bytes.
 void convert_to_rgb(const RawImage& raw, std::uint32_t background, std::span<std::uint8_t> rgb);
 
 }  // namespace tether::sim

@@ -108,17 +108,18 @@ TriangleMesh load_mesh(const MeshGeometry& mesh, const TextureScale& scale,
   const aiScene* scene = importer.ReadFile(mesh.file.string(), kSteps);
   if (!scene || !scene->mRootNode) {
     throw Error(ErrorCode::kBadFile, {mesh.file.string(), 0},
-                std::string("not a mesh that can be read: ") + importer.GetErrorString());
+                std::string("cannot be read as a mesh: ") + importer.GetErrorString());
   }
   MeshCollector collector(*scene, mesh, scale);
   collector.visit(*scene->mRootNode, aiMatrix4x4(), false);
   if (collector.materials() > 1) {
-    warn(mesh.file.string() + ": materials inside mesh files are not used; the visual's one is");
+    warn(mesh.file.string() + ": materials in mesh files are not used; the visual's material is");
   }
   TriangleMesh out = collector.take();
   if (out.triangles.empty()) {
     throw Error(ErrorCode::kBadFile, {mesh.file.string(), 0},
-                mesh.submesh.empty() ? "has no triangle" : "has no submesh '" + mesh.submesh + "'");
+                mesh.submesh.empty() ? "has no triangle" : "has no submesh '" + mesh.submesh + "'")
+        .about(mesh.submesh);
   }
   return out;
 }

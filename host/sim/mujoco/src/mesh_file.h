@@ -6,9 +6,10 @@ namespace tether::sim {
 
 /// Reads an OBJ, STL or COLLADA file, scaled, in the file's own axes (a COLLADA "up" axis is not
 /// applied, as in Gazebo). Keeps the file's texture coordinates; where it has none, the texture is
-/// projected along the main axis of each face. The file's own materials are not used; `warn` says
-/// so where there are several.
-/// @throws Error(kBadFile) when the file cannot be read or has no such submesh or no triangle.
+/// projected along the main axis of each face. The file's own materials are not used; several ones
+/// cause a warning.
+/// @throws Error(kBadFile) with the file, about the submesh, if the file cannot be read or has no
+/// such submesh or no triangle.
 TriangleMesh load_mesh(const MeshGeometry& mesh, const TextureScale& scale,
                        const WarningSink& warn);
 

@@ -11,7 +11,7 @@
 namespace tether::sim {
 namespace {
 
-// What the sensors need of the embedded back end. The renderer takes the scene when it is made.
+// The back end for the sensors. The renderer takes the scene when it is made.
 SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, const WarningSink& warn) {
   Scene scene = make_scene(world, warn);
   std::vector<double> radii_m = body_radii_m(scene, moving_bodies(world).size());

@@ -3,9 +3,11 @@
 #include "mesh_file.h"
 #include "triangle_mesh.h"
 
+#include <array>
 #include <iterator>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tether/sim/world.h>
 
@@ -24,10 +26,7 @@ class PhysicsXml {
   // moving one.
   void add_collisions(const Link& link, const Pose& X, bool is_static) {
     for (const Collision& collision : link.collisions) {
-      const Pose X_C = X * collision.X_LC;
-      const std::string shape =
-          std::visit([&](const auto& g) { return describe(g, X_C, collision, is_static); },
-                     collision.geometry);
+      const std::string shape = describe(collision, X * collision.X_LC, is_static);
       if (shape.empty()) continue;
       append(R"(<geom {} contype="{}" conaffinity="1" friction="{} 0.005 0.0001"/>)", shape,
              is_static ? 0 : 1, collision.friction);
@@ -75,32 +74,36 @@ class PhysicsXml {
            inertia.y, inertia.z);
   }
 
-  std::string describe(const BoxGeometry& box, const Pose& X, const Collision&, bool) const {
-    return fmt::format(R"(type="box" {} size="{} {} {}")", place(X), 0.5 * box.size_m.x,
-                       0.5 * box.size_m.y, 0.5 * box.size_m.z);
-  }
-  std::string describe(const CylinderGeometry& cylinder, const Pose& X, const Collision&,
-                       bool) const {
-    return fmt::format(R"(type="cylinder" {} size="{} {}")", place(X), cylinder.radius_m,
-                       0.5 * cylinder.length_m);
-  }
-  std::string describe(const SphereGeometry& sphere, const Pose& X, const Collision&, bool) const {
-    return fmt::format(R"(type="sphere" {} size="{}")", place(X), sphere.radius_m);
-  }
-  std::string describe(const CapsuleGeometry& capsule, const Pose& X, const Collision&,
-                       bool) const {
-    return fmt::format(R"(type="capsule" {} size="{} {}")", place(X), capsule.radius_m,
-                       0.5 * capsule.length_m);
-  }
-  std::string describe(const EllipsoidGeometry& ellipsoid, const Pose& X, const Collision&,
-                       bool) const {
-    return fmt::format(R"(type="ellipsoid" {} size="{} {} {}")", place(X), ellipsoid.radii_m.x,
-                       ellipsoid.radii_m.y, ellipsoid.radii_m.z);
+  // The shape as attributes of a <geom>; empty: there is none.
+  std::string describe(const Collision& collision, const Pose& X, bool is_static) {
+    const auto shape = [&X](const char* type, const auto&... sizes) {
+      const std::array<double, sizeof...(sizes)> list{sizes...};
+      return fmt::format(R"(type="{}" {} size="{}")", type, place(X), fmt::join(list, " "));
+    };
+    return std::visit(
+        Visitor{
+            [&](const BoxGeometry& g) {
+              return shape("box", 0.5 * g.size_m.x, 0.5 * g.size_m.y, 0.5 * g.size_m.z);
+            },
+            [&](const CylinderGeometry& g) {
+              return shape("cylinder", g.radius_m, 0.5 * g.length_m);
+            },
+            [&](const SphereGeometry& g) { return shape("sphere", g.radius_m); },
+            [&](const CapsuleGeometry& g) {
+              return shape("capsule", g.radius_m, 0.5 * g.length_m);
+            },
+            [&](const EllipsoidGeometry& g) {
+              return shape("ellipsoid", g.radii_m.x, g.radii_m.y, g.radii_m.z);
+            },
+            [&](const PlaneGeometry& g) { return describe(g, X, collision, is_static); },
+            [&](const MeshGeometry& g) { return describe(g, X, collision); },
+        },
+        collision.geometry);
   }
 
-  // The engine's planes are without end, as SDF's collision planes are; and they cannot move.
+  // The engine's planes are infinite, as SDF's collision planes are, and cannot move.
   std::string describe(const PlaneGeometry& plane, const Pose& X, const Collision& collision,
-                       bool is_static) {
+                       bool is_static) const {
     if (!is_static) {
       warn_(
           fmt::format("collision '{}': a plane of a moving body does not collide", collision.name));
@@ -110,7 +113,7 @@ class PhysicsXml {
     return fmt::format(R"(type="plane" {} size="0 0 1")", place(X_P));
   }
 
-  std::string describe(const MeshGeometry& mesh, const Pose& X, const Collision& collision, bool) {
+  std::string describe(const MeshGeometry& mesh, const Pose& X, const Collision& collision) {
     warn_(fmt::format("{}: collision '{}' collides as the convex hull of its mesh",
                       mesh.file.string(), collision.name));
     const std::string name = fmt::format("m{}", meshes_++);

@@ -1,3 +1,7 @@
+// Draws views with MuJoCo's renderer in an EGL context. Each view sets the camera's frustum, adds
+// the visuals that it may contain to the engine's scene, renders off screen, and reads the pixels
+// back.
+
 #include "renderer.h"
 
 #include "conversions.h"
@@ -74,21 +78,19 @@ std::uint32_t sky_colour(const mjModel& model) {
   return std::bit_cast<std::uint32_t>(rgba);
 }
 
+EngineScenePtr make_engine_scene(std::size_t max_geoms) {
+  EngineScenePtr scene(new mjvScene{});
+  mjv_defaultScene(scene.get());
+  mjv_makeScene(nullptr, scene.get(), static_cast<int>(max_geoms));
+  return scene;
+}
+
 }  // namespace
-
-EngineScene::EngineScene(int max_geoms) {
-  mjv_defaultScene(&scene_);
-  mjv_makeScene(nullptr, &scene_, max_geoms);
-}
-
-EngineScene::~EngineScene() {
-  mjv_freeScene(&scene_);
-}
 
 Renderer::Renderer(Scene scene, int max_width_px, int max_height_px)
     : scene_(std::move(scene)),
       model_(make_scene_model(scene_, max_width_px, max_height_px)),
-      engine_scene_(static_cast<int>(scene_.items.size()) + 1),
+      engine_scene_(make_engine_scene(scene_.items.size() + 1)),
       background_(sky_colour(*model_)) {
   const EglBinding binding(egl_);
   mjr_defaultContext(&context_);

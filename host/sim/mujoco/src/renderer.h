@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,19 +17,13 @@
 
 namespace tether::sim {
 
-/// The engine's renderer with its scene, mjvScene, as a value with an owner.
-class EngineScene {
- public:
-  explicit EngineScene(int max_geoms);
-  ~EngineScene();
-  EngineScene(const EngineScene&) = delete;
-  EngineScene& operator=(const EngineScene&) = delete;
-  mjvScene* operator->() { return &scene_; }
-  mjvScene* get() { return &scene_; }
-
- private:
-  mjvScene scene_{};
+struct EngineSceneDeleter {
+  void operator()(mjvScene* scene) const {
+    mjv_freeScene(scene);
+    delete scene;
+  }
 };
+using EngineScenePtr = std::unique_ptr<mjvScene, EngineSceneDeleter>;
 
 /// Draws a scene headless. One thread at a time, any thread.
 ///
@@ -56,7 +51,7 @@ class Renderer final : public ViewRenderer {
   Scene scene_;
   EglContext egl_;
   ModelPtr model_;
-  EngineScene engine_scene_;
+  EngineScenePtr engine_scene_;
   std::uint32_t background_;  ///< a pixel of it
   mjrContext context_{};
   RawImage image_;

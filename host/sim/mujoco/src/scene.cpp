@@ -1,3 +1,7 @@
+// Converts a World into the renderer's Scene: one item with a mesh for each visual, lights, and
+// textures. Warns of everything that OpenGL's fixed lights and MuJoCo's renderer cannot show.
+// `make_scene_model` makes the engine model that allocates the textures and display lists.
+
 #include "scene.h"
 
 #include "conversions.h"
@@ -57,29 +61,19 @@ class SceneBuilder {
  private:
   TriangleMesh mesh_of(const Visual& visual) const {
     const TextureScale scale{visual.material.texture_repeat_x, visual.material.texture_repeat_y};
-    return std::visit([&](const auto& geometry) { return mesh_of(geometry, scale); },
-                      visual.geometry);
-  }
-  static TriangleMesh mesh_of(const BoxGeometry& g, const TextureScale& scale) {
-    return box_mesh(g.size_m, scale);
-  }
-  static TriangleMesh mesh_of(const CylinderGeometry& g, const TextureScale& scale) {
-    return cylinder_mesh(g.radius_m, g.length_m, scale);
-  }
-  static TriangleMesh mesh_of(const SphereGeometry& g, const TextureScale& scale) {
-    return ellipsoid_mesh({g.radius_m, g.radius_m, g.radius_m}, scale);
-  }
-  static TriangleMesh mesh_of(const CapsuleGeometry& g, const TextureScale& scale) {
-    return capsule_mesh(g.radius_m, g.length_m, scale);
-  }
-  static TriangleMesh mesh_of(const EllipsoidGeometry& g, const TextureScale& scale) {
-    return ellipsoid_mesh(g.radii_m, scale);
-  }
-  static TriangleMesh mesh_of(const PlaneGeometry& g, const TextureScale& scale) {
-    return plane_mesh(g, scale);
-  }
-  TriangleMesh mesh_of(const MeshGeometry& g, const TextureScale& scale) const {
-    return load_mesh(g, scale, warn_);
+    return std::visit(
+        Visitor{
+            [&](const BoxGeometry& g) { return box_mesh(g.size_m, scale); },
+            [&](const CylinderGeometry& g) { return cylinder_mesh(g.radius_m, g.length_m, scale); },
+            [&](const SphereGeometry& g) {
+              return ellipsoid_mesh({g.radius_m, g.radius_m, g.radius_m}, scale);
+            },
+            [&](const CapsuleGeometry& g) { return capsule_mesh(g.radius_m, g.length_m, scale); },
+            [&](const EllipsoidGeometry& g) { return ellipsoid_mesh(g.radii_m, scale); },
+            [&](const PlaneGeometry& g) { return plane_mesh(g, scale); },
+            [&](const MeshGeometry& g) { return load_mesh(g, scale, warn_); },
+        },
+        visual.geometry);
   }
 
   mjvGeom make_geom(const Material& material) {
@@ -110,8 +104,8 @@ class SceneBuilder {
     std::transform(type.begin(), type.end(), type.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
     if (type != ".png" || textures.size() == kMaxTextures) {
-      warn_(fmt::format("{}: texture not shown: {}", file.string(),
-                        type != ".png" ? "only PNG files are" : "more than 99 textures"));
+      warn_(fmt::format("{}: texture is not shown: {}", file.string(),
+                        type != ".png" ? "it is not a PNG file" : "there are more than 99"));
       return -1;
     }
     textures.push_back(file);
@@ -122,7 +116,7 @@ class SceneBuilder {
     const Material& m = visual.material;
     if (largest(m.ambient_rgb - m.diffuse_rgb) > kVisibleDifference) {
       warn_(
-          fmt::format("visual '{}': its ambient colour is not shown: the diffuse one stands for "
+          fmt::format("visual '{}': its ambient colour is not shown; the diffuse one is used for "
                       "both",
                       visual.name));
     }
@@ -173,7 +167,8 @@ void add_lights(Scene& scene, const World& world, const WarningSink& warn) {
   scene.lights.push_back(ambient_light(world.ambient_rgb));
   for (const Light& light : world.lights) {
     if (scene.lights.size() == kMaxLights) {
-      warn(fmt::format("light '{}' is not shown: {} lights at most", light.name, kMaxLights - 1));
+      warn(fmt::format("light '{}' is not shown: at most {} lights are", light.name,
+                       kMaxLights - 1));
       continue;
     }
     scene.lights.push_back(make_light(light));
@@ -184,7 +179,7 @@ void add_lights(Scene& scene, const World& world, const WarningSink& warn) {
 void warn_about_shadows(const Link& link, const WarningSink& warn) {
   for (const Visual& visual : link.visuals) {
     if (visual.cast_shadows) continue;
-    warn(fmt::format("visual '{}' casts a shadow all the same", visual.name));
+    warn(fmt::format("visual '{}' casts a shadow in spite of its <cast_shadows>", visual.name));
   }
 }
 

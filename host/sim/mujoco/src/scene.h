@@ -13,7 +13,7 @@
 
 namespace tether::sim {
 
-/// Where the engine keeps what it draws for mesh i; the next place is for the mesh's hull.
+/// The engine's display list of mesh i; the next one is for the mesh's hull.
 constexpr int mesh_list(std::size_t mesh) {
   return 2 * static_cast<int>(mesh);
 }
@@ -37,13 +37,13 @@ struct Scene {
   bool shadows = false;
 };
 
-/// Names through `warn` what the renderer cannot show: coloured specular light, an ambient colour
-/// of its own, lights beyond the eighth (ambient light counts as one), textures beyond the 99th or
-/// that are no PNG, visuals that should cast no shadow where others do.
+/// Warns of what the renderer cannot show: coloured specular light, an ambient colour that differs
+/// from the diffuse one, lights beyond the eighth (ambient light counts as one), textures beyond
+/// the 99th or that are not PNG files, visuals without a shadow if others have one.
 /// @throws Error(kBadFile) for a mesh or texture that cannot be read.
 Scene make_scene(const World& world, const WarningSink& warn);
 
-/// How far each of `bodies` moving bodies reaches from its origin [m].
+/// The drawn extent of each of `bodies` moving bodies from its origin [m].
 std::vector<double> body_radii_m(const Scene& scene, std::size_t bodies);
 
 /// The renderer's assets (textures, and one list per mesh to be filled by the renderer) as an

@@ -1,3 +1,7 @@
+// Triangle meshes of the primitive shapes. Boxes and planes consist of rectangles, all others of
+// surfaces of revolution given by their profile. Both are lattices of vertices, fine enough for
+// lighting by vertex.
+
 #include "triangle_mesh.h"
 
 #include "conversions.h"

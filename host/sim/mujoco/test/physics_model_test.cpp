@@ -3,16 +3,20 @@
 #include "test_simulator.h"
 
 #include <filesystem>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/base/error.h>
+#include <tether/base_testing/thrown_error.h>
 
 namespace tether::sim {
 namespace {
 
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using testing::no_warnings;
+using ::testing::Pair;
 using testing::test_world;
 
 Collision collision_of(const Geometry& geometry) {
@@ -58,38 +62,29 @@ TEST(PhysicsModelTest, EveryShapeIsSolid) {
   EXPECT_EQ(model->geom_size[3 + 1], 1.0) << "half the cylinder's length";
 }
 
-TEST(PhysicsModelTest, MeshesCollideAsHullsWithAWarning) {
-  World world = test_world();
-  world.models[0].links[0].collisions = {collision_of(MeshGeometry{
-      std::filesystem::path(TETHER_TEST_DIR) / "data/tetra.stl", "", {1.0, 1.0, 1.0}})};
+/// The warnings of a world, and the shapes of its model.
+std::pair<std::vector<std::string>, std::vector<int>> build(const World& world) {
   std::vector<std::string> warnings;
   const ModelPtr model =
       make_physics_model(world, [&](const std::string& line) { warnings.push_back(line); });
-  EXPECT_EQ(model->geom_type[0], mjGEOM_MESH);
-  EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::HasSubstr("convex hull")));
+  return {warnings, {model->geom_type, model->geom_type + model->ngeom}};
 }
 
-TEST(PhysicsModelTest, PlanesThatMoveAreNamed) {
+TEST(PhysicsModelTest, WarnsOfMeshesAndOfPlanesThatMove) {
   World world = test_world();
+  const auto tetra = std::filesystem::path(TETHER_TEST_DIR) / "data/tetra.stl";
+  world.models[0].links[0].collisions = {collision_of(MeshGeometry{tetra, "", {1.0, 1.0, 1.0}})};
+  EXPECT_THAT(build(world),
+              Pair(ElementsAre(HasSubstr(tetra.string())), ElementsAre(mjGEOM_MESH, mjGEOM_BOX)));
+  world = test_world();
   world.uavs[0].body.collisions = {collision_of(PlaneGeometry{{0.0, 0.0, 1.0}, 1.0, 1.0})};
-  std::vector<std::string> warnings;
-  const ModelPtr model =
-      make_physics_model(world, [&](const std::string& line) { warnings.push_back(line); });
-  EXPECT_EQ(model->ngeom, 1);
-  EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::HasSubstr("does not collide")));
+  EXPECT_THAT(build(world), Pair(ElementsAre(HasSubstr("'shape'")), ElementsAre(mjGEOM_BOX)));
 }
 
-TEST(PhysicsModelTest, ImpossibleInertiaIsAnError) {
+TEST(PhysicsModelTest, RefusesAnImpossibleInertia) {
   World world = test_world();
   world.uavs[0].airframe.inertia_kg_m2 = {1.0, 1.0, 3.0};
-  try {
-    make_physics_model(world, no_warnings());
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kSetup);
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("inertia"));
-    EXPECT_THAT(error.what(), ::testing::Not(::testing::HasSubstr("\n")));
-  }
+  thrown_error(ErrorCode::kSetup, [&] { make_physics_model(world, no_warnings()); });
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(SceneTest, BodiesReachAsFarAsTheirFarthestVisual) {
   EXPECT_NEAR(radii_m[1], 2.0 + norm(uav::Vec3{0.1, 0.1, 0.1}), 1e-6);
 }
 
-TEST(SceneTest, MaterialColoursThatCannotBeShownAreNamed) {
+TEST(SceneTest, WarnsOfMaterialColoursThatCannotBeShown) {
   World world = test_world();
   Material& material = world.models[0].links[0].visuals[0].material;
   material.specular_rgb = {0.2, 0.2, 0.2};
@@ -65,7 +65,7 @@ TEST(SceneTest, MaterialColoursThatCannotBeShownAreNamed) {
               ElementsAre(HasSubstr("ambient"), HasSubstr("specular"), HasSubstr("emissive")));
 }
 
-TEST(SceneTest, SevenLightsBesideTheAmbientOne) {
+TEST(SceneTest, HasSevenLightsBesideTheAmbientOne) {
   World world = test_world();
   for (int i = 0; i < 9; ++i) world.lights.push_back(light_named("l" + std::to_string(i)));
   EXPECT_THAT(warnings_of(world), ElementsAre(HasSubstr("'l7'"), HasSubstr("'l8'")));

@@ -1,3 +1,6 @@
+// The rules of a conversation beyond single messages: `note` keeps what the reply to a request must
+// match, `complaint` compares a request or reply with it.
+
 #include "conversation.h"
 
 #include <algorithm>
@@ -17,7 +20,7 @@ std::string size(std::int32_t width_px, std::int32_t height_px) {
   return std::to_string(width_px) + "x" + std::to_string(height_px);
 }
 
-/// "State.bodies are 2, not 3": empty if they are as many as expected.
+/// "State.bodies has 2 entries instead of 3"; empty if there are as many as expected.
 std::string unlike(const std::string& field, std::size_t is, std::size_t expected) {
   if (is == expected) return {};
   return field + " has " + number(is) + " entries instead of " + number(expected);
@@ -36,30 +39,28 @@ Status status_of(const Message& message, Complain complain) {
 
 Status Conversation::check(const Request& request) const {
   if (!is_open_ && !std::holds_alternative<Open>(request)) {
-    return Failure{Failure::Kind::kProtocol, "the first request is not Open"};
+    return Failure{Failure::Kind::kProtocol, "the first request must be Open"};
   }
   return status_of(request, [this](const auto& r) { return complaint(r); });
 }
 
 std::string Conversation::complaint(const Open& open) const {
-  if (is_open_) return "Open came a second time";
+  if (is_open_) return "Open was received twice";
   if (open.version == kVersion) return {};
-  return "the host speaks version " + std::to_string(open.version) +
+  return "the host uses version " + std::to_string(open.version) +
          " of the simulator protocol, the simulator version " + std::to_string(kVersion) +
          "; build both from the same release";
-}
-
-std::string Conversation::complaint(const Reset&) const {
-  return {};
 }
 
 std::string Conversation::complaint(const Advance& advance) const {
   if (advance.to < now_) return "Advance.to is " + in_ns(advance.to) + ", before " + in_ns(now_);
   if (to_ns(advance.to) % step_.count() != 0) {
-    return "Advance.to is " + in_ns(advance.to) + ", which is no step boundary";
+    return "Advance.to is " + in_ns(advance.to) + ", which is not a step boundary";
   }
   for (const Command& command : advance.commands) {
-    if (command.uav >= uavs_) return "Advance.commands have a UAV that is none";
+    if (command.uav >= uavs_) {
+      return "Advance.commands have the unknown UAV index " + number(command.uav);
+    }
   }
   return {};
 }
@@ -71,8 +72,8 @@ std::string Conversation::complaint(const CastRays& cast) const {
 std::string Conversation::complaint(const Render& render) const {
   const uav::CameraModel& camera = render.camera;
   if (camera.width_px > max_width_px_ || camera.height_px > max_height_px_) {
-    return "Render asks for " + size(camera.width_px, camera.height_px) +
-           " pixels, where Open said at most " + size(max_width_px_, max_height_px_);
+    return "Render requests " + size(camera.width_px, camera.height_px) +
+           " pixels; Open announced at most " + size(max_width_px_, max_height_px_);
   }
   return unlike("Render.X_WB", render.X_WB.size(), bodies_);
 }
@@ -91,16 +92,16 @@ void Conversation::note(const Open& open) {
   max_width_px_ = open.max_width_px;
   max_height_px_ = open.max_height_px;
   now_ = SimTime{};
-  asked_ = ForState{"Open", now_, 0};
+  asked_ = ForState{now_, 0};
 }
 void Conversation::note(const Reset&) {
   now_ = SimTime{};
-  asked_ = ForState{"Reset", now_, 0};
+  asked_ = ForState{now_, 0};
 }
 void Conversation::note(const Advance& advance) {
   const auto steps = static_cast<std::size_t>((advance.to - now_) / step_);
   now_ = advance.to;
-  asked_ = ForState{"Advance", now_, std::min(steps, past_steps_) * bodies_};
+  asked_ = ForState{now_, std::min(steps, past_steps_) * bodies_};
 }
 void Conversation::note(const CastRays& cast) {
   asked_ = ForRays{cast.rays_S.size()};
@@ -116,20 +117,19 @@ Status Conversation::check(const Reply& reply) const {
 }
 
 std::string Conversation::complaint(const Opened& opened) const {
-  if (!opening_) return "Opened answers no Open";
+  if (!opening_) return "Opened is not the reply to this request";
   return complaint_of_state(opened.state, *asked<ForState>());
 }
 
 std::string Conversation::complaint(const State& state) const {
   const auto* request = asked<ForState>();
-  if (request == nullptr || opening_) return "State answers neither Reset nor Advance";
+  if (request == nullptr || opening_) return "State is not the reply to this request";
   return complaint_of_state(state, *request);
 }
 
 std::string Conversation::complaint_of_state(const State& state, const ForState& asked) const {
   if (state.now != asked.to) {
-    return "State.now is " + in_ns(state.now) + ", where " + asked.request + " asked for " +
-           in_ns(asked.to);
+    return "State.now is " + in_ns(state.now) + " instead of " + in_ns(asked.to);
   }
   for (const std::string& wrong : {unlike("State.bodies", state.bodies.size(), bodies_),
                                    unlike("State.motions", state.motions.size(), uavs_),
@@ -141,19 +141,19 @@ std::string Conversation::complaint_of_state(const State& state, const ForState&
 
 std::string Conversation::complaint(const Distances& distances) const {
   const auto* request = asked<ForRays>();
-  if (request == nullptr) return "Distances answers no CastRays";
+  if (request == nullptr) return "Distances is not the reply to this request";
   return unlike("Distances.distance_m", distances.distance_m.size(), request->count);
 }
 
 std::string Conversation::complaint(const Picture& picture) const {
   const auto* request = asked<ForPicture>();
-  if (request == nullptr) return "Picture answers no Render";
+  if (request == nullptr) return "Picture is not the reply to this request";
   if (picture.width_px != request->width_px || picture.height_px != request->height_px) {
     return "Picture has " + size(picture.width_px, picture.height_px) + " pixels instead of " +
            size(request->width_px, request->height_px);
   }
   if (request->with_depth && picture.nearest_depth_m <= 0.0) {
-    return "Picture.nearest_depth_m is not told";
+    return "Picture.nearest_depth_m is missing";
   }
   return {};
 }

@@ -11,17 +11,16 @@
 
 namespace tether::sim::protocol {
 
-/// What has been said so far on one connection, and so what may come next: order, and sizes and
-/// times that follow from what was asked. Either end keeps one, and checks what it receives. A
-/// message must have passed `validate` before.
+/// The state of one connection, which decides the messages that may follow: their order, sizes and
+/// times. Each end has one, and checks what it receives. Messages must have passed `validate`.
 class Conversation {
  public:
-  /// On the simulator's end. Fail with kProtocol, naming the field.
+  /// At the simulator's end. Fail with kProtocol and the field.
   Status check(const Request& request) const;
-  /// On the host's end.
+  /// At the host's end.
   Status check(const Reply& reply) const;
 
-  /// The request has been sent, or has come and been checked.
+  /// After a request was sent, or received and checked.
   void ask(const Request& request);
 
  private:
@@ -29,9 +28,8 @@ class Conversation {
   const Member* asked() const {
     return asked_ ? std::get_if<Member>(&*asked_) : nullptr;
   }
-  /// Of what was asked for; only what matters to its answer.
+  /// What the reply to the last request must match.
   struct ForState {
-    const char* request;
     SimTime to;
     std::size_t past;
   };
@@ -50,7 +48,7 @@ class Conversation {
   void note(const Render& render);
 
   std::string complaint(const Open& open) const;
-  std::string complaint(const Reset& reset) const;
+  std::string complaint(const Reset&) const { return {}; }
   std::string complaint(const Advance& advance) const;
   std::string complaint(const CastRays& cast) const;
   std::string complaint(const Render& render) const;

@@ -1,3 +1,6 @@
+// Decodes frames: verifies the FlatBuffer, converts the tables of the schema into the structs of
+// messages.h, and validates the result. One `read` or `from_wire` for each table and struct.
+
 #include "wire_types.h"
 
 #include <cstdint>
@@ -12,9 +15,9 @@
 namespace tether::sim::protocol {
 namespace {
 
-/// Deeper or larger than anything that `validate` lets through.
+/// Above anything that `validate` accepts.
 constexpr flatbuffers::uoffset_t kMaxDepth = 8;
-constexpr flatbuffers::uoffset_t kMaxTables = 3 * kMaxBodies + kMaxLooks + 16;
+constexpr flatbuffers::uoffset_t kMaxTables = 3 * kMaxBodies + kMaxMaterials + 16;
 /// Length, root offset, identifier, and the least root table.
 constexpr std::size_t kMinFrameBytes = 16;
 
@@ -22,7 +25,7 @@ Failure protocol_failure(const std::string& what) {
   return {Failure::Kind::kProtocol, "bad message: " + what};
 }
 
-/// Too large ones are left to `validate`; any negative one but -1 is.
+/// `validate` refuses indices that are too large, and negative ones except -1.
 std::optional<std::uint32_t> index_from_wire(std::int32_t index) {
   if (index == -1) return std::nullopt;
   return static_cast<std::uint32_t>(index);
@@ -43,7 +46,7 @@ Motion from_wire(const wire::Motion& m) {
 }
 using protocol::from_wire;
 
-/// The verifier does not look where the elements of a vector lie: they are copied, not read in
+/// The verifier does not check the alignment of a vector's elements: they are copied, not read in
 /// place.
 template <class T, class Wire>
 std::vector<T> list(const flatbuffers::Vector<const Wire*>& values) {
@@ -80,8 +83,8 @@ uav::MultirotorParameters from_wire(const wire::Airframe& a) {
   return out;
 }
 
-Look from_wire(const wire::Look& look) {
-  Look out;
+VisualMaterial from_wire(const wire::Look& look) {
+  VisualMaterial out;
   out.model = look.model()->str();
   out.link = look.link()->str();
   out.visual = look.visual()->str();
@@ -113,7 +116,7 @@ Open read(const wire::Open& open) {
   out.past_steps = open.past_steps();
   out.max_width_px = open.max_width_px();
   out.max_height_px = open.max_height_px();
-  for (const wire::Look* look : *open.looks()) out.looks.push_back(from_wire(*look));
+  for (const wire::Look* look : *open.looks()) out.materials.push_back(from_wire(*look));
   return out;
 }
 
@@ -178,38 +181,16 @@ Failed read(const wire::Failed& failed) {
 
 // --- Envelope -----------------------------------------------------------------------------------
 
-Result<Request> read_request(const wire::Envelope& envelope) {
-  switch (envelope.content_type()) {
-    case wire::Content::Open:
-      return Request(read(*envelope.content_as_Open()));
-    case wire::Content::Reset:
-      return Request(read(*envelope.content_as_Reset()));
-    case wire::Content::Advance:
-      return Request(read(*envelope.content_as_Advance()));
-    case wire::Content::CastRays:
-      return Request(read(*envelope.content_as_CastRays()));
-    case wire::Content::Render:
-      return Request(read(*envelope.content_as_Render()));
-    default:
-      return protocol_failure("not a request of this version");
-  }
-}
-
-Result<Reply> read_reply(const wire::Envelope& envelope) {
-  switch (envelope.content_type()) {
-    case wire::Content::Opened:
-      return Reply(read(*envelope.content_as_Opened()));
-    case wire::Content::State:
-      return Reply(read(*envelope.content_as_State()));
-    case wire::Content::Distances:
-      return Reply(read(*envelope.content_as_Distances()));
-    case wire::Content::Picture:
-      return Reply(read(*envelope.content_as_Picture()));
-    case wire::Content::Failed:
-      return Reply(read(*envelope.content_as_Failed()));
-    default:
-      return protocol_failure("not a reply of this version");
-  }
+/// The content, which must be one of these tables.
+template <class Message, class... Tables>
+Result<Message> read_one_of(const wire::Envelope& envelope) {
+  std::optional<Message> message;
+  const auto take = [&message](const auto* table) {
+    if (table != nullptr) message = read(*table);
+  };
+  (take(envelope.content_as<Tables>()), ...);
+  if (!message) return protocol_failure("not a message of this direction and version");
+  return std::move(*message);
 }
 
 bool is_aligned(const std::uint8_t* p) {
@@ -228,7 +209,7 @@ Result<Message> decode(std::span<const std::uint8_t> frame, Read read_envelope) 
   }
   flatbuffers::Verifier verifier(frame.data(), frame.size(), kMaxDepth, kMaxTables);
   if (!wire::VerifySizePrefixedEnvelopeBuffer(verifier)) {
-    return protocol_failure("not of the simulator protocol, or damaged");
+    return protocol_failure("not a message of the simulator protocol, or corrupt");
   }
   Result<Message> message = read_envelope(*wire::GetSizePrefixedEnvelope(frame.data()));
   if (!message) return message;
@@ -241,11 +222,15 @@ Result<Message> decode(std::span<const std::uint8_t> frame, Read read_envelope) 
 }  // namespace
 
 Result<Request> decode_request(std::span<const std::uint8_t> frame) {
-  return decode<Request>(frame, read_request);
+  return decode<Request>(
+      frame,
+      read_one_of<Request, wire::Open, wire::Reset, wire::Advance, wire::CastRays, wire::Render>);
 }
 
 Result<Reply> decode_reply(std::span<const std::uint8_t> frame) {
-  return decode<Reply>(frame, read_reply);
+  return decode<Reply>(
+      frame,
+      read_one_of<Reply, wire::Opened, wire::State, wire::Distances, wire::Picture, wire::Failed>);
 }
 
 }  // namespace tether::sim::protocol

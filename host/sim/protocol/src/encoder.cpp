@@ -1,3 +1,6 @@
+// Encodes messages as FlatBuffers: the reverse of decoder.cpp, one `write` or `to_wire` for each
+// table and struct. A picture's pixels are left out of the buffer and sent as a separate piece.
+
 #include "wire_types.h"
 
 #include <optional>
@@ -53,6 +56,10 @@ Offset<Vector<Offset<Wire>>> tables(FlatBufferBuilder& b, const std::vector<T>& 
 struct Content {
   wire::Content kind;
   Offset<void> at;
+
+  template <class Table>
+  Content(Offset<Table> table)  // NOLINT: a table is a content
+      : kind(wire::ContentTraits<Table>::enum_value), at(table.Union()) {}
 };
 
 /// Where a picture belongs in the finished buffer.
@@ -86,7 +93,7 @@ Offset<wire::BodyName> write(FlatBufferBuilder& b, const BodyName& body) {
   return wire::CreateBodyName(b, model, b.CreateString(body.link));
 }
 
-Offset<wire::Look> write(FlatBufferBuilder& b, const Look& look) {
+Offset<wire::Look> write(FlatBufferBuilder& b, const VisualMaterial& look) {
   const auto model = b.CreateString(look.model);
   const auto link = b.CreateString(look.link);
   const auto visual = b.CreateString(look.visual);
@@ -105,39 +112,33 @@ Content write(FlatBufferBuilder& b, const Open& open, PictureSlot&) {
   const auto file = b.CreateString(open.world_file);
   const auto uavs = tables<wire::Uav>(b, open.uavs, kWrite);
   const auto bodies = tables<wire::BodyName>(b, open.bodies, kWrite);
-  const auto looks = tables<wire::Look>(b, open.looks, kWrite);
-  return {wire::Content::Open,
-          wire::CreateOpen(b, open.version, name, file, open.gravity_m_s2, open.step.count(), uavs,
-                           bodies, open.past_steps, open.max_width_px, open.max_height_px, looks)
-              .Union()};
+  const auto looks = tables<wire::Look>(b, open.materials, kWrite);
+  return wire::CreateOpen(b, open.version, name, file, open.gravity_m_s2, open.step.count(), uavs,
+                          bodies, open.past_steps, open.max_width_px, open.max_height_px, looks);
 }
 
 // --- the other requests -------------------------------------------------------------------------
 
 Content write(FlatBufferBuilder& b, const Reset& reset, PictureSlot&) {
-  return {wire::Content::Reset, wire::CreateReset(b, reset.seed).Union()};
+  return wire::CreateReset(b, reset.seed);
 }
 Content write(FlatBufferBuilder& b, const Advance& advance, PictureSlot&) {
   const auto commands = structs<wire::Command>(b, advance.commands);
-  return {wire::Content::Advance, wire::CreateAdvance(b, to_ns(advance.to), commands).Union()};
+  return wire::CreateAdvance(b, to_ns(advance.to), commands);
 }
 Content write(FlatBufferBuilder& b, const CastRays& cast, PictureSlot&) {
   const auto X_WB = structs<wire::Pose>(b, cast.X_WB);
   const auto rays_S = structs<wire::Vec3>(b, cast.rays_S);
   const wire::Pose X_WS = to_wire(cast.X_WS);
-  return {wire::Content::CastRays,
-          wire::CreateCastRays(b, X_WB, index_or_none(cast.carrier), &X_WS, rays_S, cast.max_m)
-              .Union()};
+  return wire::CreateCastRays(b, X_WB, index_or_none(cast.carrier), &X_WS, rays_S, cast.max_m);
 }
 Content write(FlatBufferBuilder& b, const Render& render, PictureSlot&) {
   const auto X_WB = structs<wire::Pose>(b, render.X_WB);
   const wire::Pose X_WS = to_wire(render.X_WS);
   const uav::CameraModel& c = render.camera;
-  return {
-      wire::Content::Render,
-      wire::CreateRender(b, c.width_px, c.height_px, c.fx_px, c.cx_px, c.cy_px, render.near_m,
-                         render.far_m, &X_WS, X_WB, index_or_none(render.hidden), render.with_depth)
-          .Union()};
+  return wire::CreateRender(b, c.width_px, c.height_px, c.fx_px, c.cx_px, c.cy_px, render.near_m,
+                            render.far_m, &X_WS, X_WB, index_or_none(render.hidden),
+                            render.with_depth);
 }
 
 // --- replies ------------------------------------------------------------------------------------
@@ -152,14 +153,14 @@ Offset<wire::State> write(FlatBufferBuilder& b, const State& state) {
 Content write(FlatBufferBuilder& b, const Opened& opened, PictureSlot&) {
   const auto description = b.CreateString(opened.description);
   const auto state = write(b, opened.state);
-  return {wire::Content::Opened, wire::CreateOpened(b, description, state).Union()};
+  return wire::CreateOpened(b, description, state);
 }
 Content write(FlatBufferBuilder& b, const State& state, PictureSlot&) {
-  return {wire::Content::State, write(b, state).Union()};
+  return write(b, state);
 }
 Content write(FlatBufferBuilder& b, const Distances& distances, PictureSlot&) {
   const auto distance_m = b.CreateVector(distances.distance_m);
-  return {wire::Content::Distances, wire::CreateDistances(b, distance_m).Union()};
+  return wire::CreateDistances(b, distance_m);
 }
 /// Leaves room for the pixels without touching it. Being written first, they lie at the end of the
 /// buffer (it grows downwards), so that a frame is one piece before them and, at most, padding
@@ -170,13 +171,11 @@ Content write(FlatBufferBuilder& b, const Picture& picture, PictureSlot& slot) {
       b.CreateUninitializedVector<std::uint8_t>(picture.rgb.size(), &room));
   slot = {picture.rgb, rgb.o};
   const auto renderer = b.CreateString(picture.renderer);
-  return {wire::Content::Picture, wire::CreatePicture(b, picture.width_px, picture.height_px, rgb,
-                                                      picture.nearest_depth_m, renderer)
-                                      .Union()};
+  return wire::CreatePicture(b, picture.width_px, picture.height_px, rgb, picture.nearest_depth_m,
+                             renderer);
 }
 Content write(FlatBufferBuilder& b, const Failed& failed, PictureSlot&) {
-  const auto message = b.CreateString(failed.message);
-  return {wire::Content::Failed, wire::CreateFailed(b, message).Union()};
+  return wire::CreateFailed(b, b.CreateString(failed.message));
 }
 
 }  // namespace

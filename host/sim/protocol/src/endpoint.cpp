@@ -23,7 +23,7 @@ Result<Endpoint> parse_endpoint(const std::string& text) {
   }
   return Failure{Failure::Kind::kInvalid,
                  "'" + text +
-                     "' is no address of a simulator; expected unix:/path/of/socket or "
+                     "' is not the address of a simulator; expected unix:/path/of/socket or "
                      "tcp://host:port"};
 }
 

@@ -24,7 +24,7 @@ class SocketListener final : public Listener {
  public:
   SocketListener(Descriptor socket, Descriptor closed, Endpoint endpoint)
       : socket_(std::move(socket)), closed_(std::move(closed)), endpoint_(std::move(endpoint)) {
-    // A host that hangs up between poll and accept must not make accept block.
+    // accept must not block if a host closes its connection between poll and accept.
     link::set_blocking(socket_.get(), false);
   }
   ~SocketListener() override {
@@ -37,7 +37,7 @@ class SocketListener final : public Listener {
   Endpoint endpoint() const override { return endpoint_; }
   void close() override {
     const std::uint64_t one = 1;
-    // Fails only if it is full, and then it has been written to.
+    // Fails only if the counter is full, which wakes the reader as well.
     [[maybe_unused]] const auto written = ::write(closed_.get(), &one, sizeof one);
   }
 
@@ -80,16 +80,11 @@ Result<std::unique_ptr<Listener>> listen(const Endpoint& endpoint) {
   Descriptor closed(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   if (!closed.is_open()) return cannot_listen(endpoint, std::system_category().message(errno));
   Endpoint bound = endpoint;
-  if (const auto* path = std::get_if<std::filesystem::path>(&endpoint)) {
-    auto socket = listen_on_unix(*path);
-    if (!socket) return cannot_listen(endpoint, socket.failure().message);
-    return std::unique_ptr<Listener>(
-        std::make_unique<SocketListener>(std::move(*socket), std::move(closed), std::move(bound)));
-  }
-  auto& address = std::get<link::Address>(bound);
-  auto socket = link::listen_on_tcp(address);
+  const auto* path = std::get_if<std::filesystem::path>(&endpoint);
+  auto socket = path ? listen_on_unix(*path) : link::listen_on_tcp(std::get<link::Address>(bound));
+  if (!socket && path) return cannot_listen(endpoint, socket.failure().message);
   if (!socket) return socket.failure();
-  address.port = link::local_address(socket->get()).port;
+  if (!path) std::get<link::Address>(bound).port = link::local_address(socket->get()).port;
   return std::unique_ptr<Listener>(
       std::make_unique<SocketListener>(std::move(*socket), std::move(closed), std::move(bound)));
 }

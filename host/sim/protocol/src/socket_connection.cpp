@@ -29,7 +29,7 @@ class SocketConnection final : public Connection {
   Status send_encoded(const Message& message);
 
   link::FrameSocket socket_;
-  std::mutex sending_;  // the receiving thread, too, sends: what is wrong with a request
+  std::mutex sending_;  // the receiving thread also sends, to refuse requests
   Encoder encoder_;
   Conversation conversation_;
 };
@@ -65,7 +65,7 @@ Result<Request> SocketConnection::receive_request() {
   if (request) {
     conversation_.ask(*request);
   } else if (request.failure().kind == Failure::Kind::kProtocol) {
-    // Whether it still arrives or not, there is no way on.
+    // The connection ends, whether this arrives or not.
     (void)send_encoded(Reply(Failed{request.failure().message}));
   }
   return request;
@@ -80,7 +80,7 @@ Result<Reply> SocketConnection::receive_reply(Duration limit) {
   return reply;
 }
 
-/// A simulator that hangs must not make the host hang as well.
+/// A hung simulator must not block the host.
 constexpr Duration kSendLimit = std::chrono::seconds(30);
 
 Result<std::unique_ptr<Connection>> made_by_host(link::Descriptor socket, std::string peer) {

@@ -9,14 +9,15 @@
 
 namespace tether::sim::protocol {
 
-/// A connection over a connected, blocking stream socket. Failures call the other end `peer`.
+/// A connection over a connected, blocking stream socket. `peer` names the other end in failures.
 std::unique_ptr<Connection> make_connection(link::Descriptor socket, std::string peer);
 
-/// A socket connected to the one at `path`. Fails with kDisconnected, kTimeout (so many wait there
-/// already that it cannot even wait) or, where the path cannot be that of a socket, kInvalid;
-/// without saying what of.
+/// A socket connected to the one at `path`. Fails with kDisconnected, kTimeout (the queue of
+/// waiting connections is full) or, if the path cannot be that of a socket, kInvalid; the message
+/// does not contain the path.
 Result<link::Descriptor> open_unix(const std::filesystem::path& path, Duration timeout);
-/// A socket that listens there, the owner's only. Fails with kInvalid; without saying what of.
+/// A socket that listens there, for its owner only. Fails with kInvalid; the message does not
+/// contain the path.
 Result<link::Descriptor> listen_on_unix(const std::filesystem::path& path);
 
 }  // namespace tether::sim::protocol

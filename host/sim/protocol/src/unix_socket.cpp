@@ -30,7 +30,7 @@ std::optional<sockaddr_un> address_of(const std::filesystem::path& path) {
 }
 
 Failure too_long() {
-  return {Failure::Kind::kInvalid, "the path of a socket has 1 to " +
+  return {Failure::Kind::kInvalid, "the path of a socket must have 1 to " +
                                        std::to_string(sizeof(sockaddr_un::sun_path) - 1) +
                                        " bytes; choose a shorter one"};
 }
@@ -44,7 +44,7 @@ int call_with(const Descriptor& socket, const sockaddr_un& address, Call call) {
   return call(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
 }
 
-/// Whether there is a socket that nobody listens on any more: of a simulator that crashed.
+/// Whether there is a socket without a listener, such as that of a simulator that crashed.
 bool is_abandoned(const sockaddr_un& address) {
   struct stat status {};
   if (::lstat(address.sun_path, &status) != 0 || !S_ISSOCK(status.st_mode)) return false;
@@ -60,7 +60,7 @@ Result<Descriptor> open_unix(const std::filesystem::path& path, Duration timeout
   Descriptor socket = stream_socket();
   link::limit_sending(socket.get(), timeout);  // connecting as well
   if (call_with(socket, *address, ::connect) == 0) return socket;
-  if (errno == EAGAIN) return Failure{Failure::Kind::kTimeout, "too many wait there already"};
+  if (errno == EAGAIN) return Failure{Failure::Kind::kTimeout, "too many connections are waiting"};
   return failure(Failure::Kind::kDisconnected, errno);
 }
 
@@ -69,7 +69,7 @@ Result<Descriptor> listen_on_unix(const std::filesystem::path& path) {
   if (!address) return too_long();
   if (is_abandoned(*address)) ::unlink(address->sun_path);
   Descriptor socket = stream_socket();
-  // The file gets the socket's own mode, so that there is no moment in which others may connect.
+  // The file gets the socket's mode, so that others can never connect.
   if (!socket.is_open() || ::fchmod(socket.get(), S_IRUSR | S_IWUSR) != 0 ||
       call_with(socket, *address, ::bind) != 0 || ::listen(socket.get(), SOMAXCONN) != 0) {
     return failure(Failure::Kind::kInvalid, errno);

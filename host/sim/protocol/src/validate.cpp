@@ -1,3 +1,6 @@
+// The rules of each message: one `check` for each type, with the name of the field that is wrong.
+// Both ends apply them before sending and after decoding.
+
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -18,7 +21,7 @@ void positive(Checker& c, double value, std::string_view field) {
 void not_negative(Checker& c, double value, std::string_view field) {
   c.require(std::isfinite(value) && value >= 0.0, field, "is not a number of at least 0");
 }
-/// Poses and attitudes are used as they come, so that they must be what they are taken for.
+/// Rotations are used without being normalised.
 void unit(Checker& c, double squared_norm, std::string_view field) {
   c.require(std::abs(squared_norm - 1.0) < 1e-6, field, "is not of unit length");
 }
@@ -41,12 +44,12 @@ void color(Checker& c, const uav::Vec3& rgb, std::string_view field) {
 }
 void body(Checker& c, const std::optional<std::uint32_t>& index, std::size_t bodies,
           std::string_view field) {
-  c.require(!index || *index < bodies, field, "is no body");
+  c.require(!index || *index < bodies, field, "is not the index of a body");
 }
 void size(Checker& c, std::int32_t width_px, std::int32_t height_px, std::int32_t least) {
   const bool within = width_px >= least && height_px >= least && width_px <= kMaxSidePx &&
                       height_px <= kMaxSidePx && std::int64_t{width_px} * height_px <= kMaxPixels;
-  c.require(within, "width_px, height_px", "are not the size of a picture");
+  c.require(within, "width_px, height_px", "are not a valid picture size");
 }
 
 void name(Checker& c, const std::string& value, std::string_view field) {
@@ -67,7 +70,8 @@ void check(Checker& c, const uav::MultirotorParameters& p) {
             "are not 1 to 8");
   for (const uav::Rotor& rotor : p.rotors) {
     c.finite(rotor.p_BR, "rotors");
-    c.require(rotor.direction == 1 || rotor.direction == -1, "rotors", "turn neither way");
+    c.require(rotor.direction == 1 || rotor.direction == -1, "rotors",
+              "have a direction other than 1 or -1");
   }
   for (const double value :
        {p.thrust_coefficient, p.moment_coefficient_m, p.drag_coefficient, p.linear_drag_N_s_m,
@@ -87,7 +91,7 @@ void check(Checker& c, const UavDescription& uav) {
   check(c, uav.airframe);
 }
 
-void check(Checker& c, const Look& look) {
+void check(Checker& c, const VisualMaterial& look) {
   c.in("Open.looks '" + look.model + "': ");
   name(c, look.model, "model");
   name(c, look.link, "link");
@@ -115,13 +119,14 @@ void check(Checker& c, const Open& open) {
   c.require(open.past_steps * bodies <= kMaxPastPoses, "past_steps",
             "makes more than " + std::to_string(kMaxPastPoses) + " past poses");
   size(c, open.max_width_px, open.max_height_px, 0);
-  c.require(open.looks.size() <= kMaxLooks, "looks", "are more than " + std::to_string(kMaxLooks));
+  c.require(open.materials.size() <= kMaxMaterials, "looks",
+            "are more than " + std::to_string(kMaxMaterials));
   for (const BodyName& body : open.bodies) {
     name(c, body.model, "bodies");
     name(c, body.link, "bodies");
   }
   for (const UavDescription& uav : open.uavs) check(c, uav);
-  for (const Look& look : open.looks) check(c, look);
+  for (const VisualMaterial& material : open.materials) check(c, material);
 }
 
 // --- the other requests -------------------------------------------------------------------------
@@ -132,8 +137,8 @@ void check(Checker& c, const Advance& advance) {
   c.timestamp(advance.to, "to");
   c.require(advance.commands.size() <= kMaxBodies, "commands", "are too many");
   for (const Command& command : advance.commands) {
-    c.require(command.uav < kMaxBodies, "commands", "have a UAV that is none");
-    c.require(is_valid(command.command), "commands", "ask for what no multirotor can do");
+    c.require(command.uav < kMaxBodies, "commands", "have an unknown UAV index");
+    c.require(is_valid(command.command), "commands", "are not valid velocity commands");
   }
 }
 void check(Checker& c, const CastRays& cast) {
@@ -152,7 +157,7 @@ void check(Checker& c, const Render& render) {
   size(c, camera.width_px, camera.height_px, 1);
   positive(c, camera.fx_px, "camera.fx_px");
   c.require(camera.fy_px == camera.fx_px && !camera.has_distortion(), "camera",
-            "is not an ideal one with square pixels");
+            "is not an ideal camera with square pixels");
   c.finite(camera.cx_px, "camera.cx_px");
   c.finite(camera.cy_px, "camera.cy_px");
   positive(c, render.near_m, "near_m");
@@ -190,8 +195,9 @@ void check(Checker& c, const Opened& opened) {
 void check(Checker& c, const Distances& distances) {
   c.in("Distances.");
   c.require(distances.distance_m.size() <= kMaxRays, "distance_m", "has too many rays");
-  // Not so for NaN.
-  for (const double m : distances.distance_m) c.require(m >= 0.0, "distance_m", "is no distance");
+  // False for NaN.
+  for (const double m : distances.distance_m)
+    c.require(m >= 0.0, "distance_m", "is not a distance");
 }
 void check(Checker& c, const Picture& picture) {
   c.in("Picture.");

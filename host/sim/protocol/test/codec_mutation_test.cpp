@@ -63,15 +63,5 @@ TEST(CodecMutation, TruncatedFramesWithMatchingLengthDoNotCrash) {
   }
 }
 
-TEST(CodecMutation, NoiseIsRefused) {
-  for (std::uint64_t i = 0; i < 20'000; ++i) {
-    KeyedRandom random({23, 1, i});
-    Bytes noise(random.bits() % 200);
-    for (auto& byte : noise) byte = static_cast<std::uint8_t>(random.bits());
-    ASSERT_FALSE(decode_request(noise).ok());
-    ASSERT_FALSE(decode_reply(noise).ok());
-  }
-}
-
 }  // namespace
 }  // namespace tether::sim::protocol

@@ -65,16 +65,6 @@ class ConnectionTest : public testing::TestWithParam<const char*> {
 INSTANTIATE_TEST_SUITE_P(Sockets, ConnectionTest, testing::Values("unix", "tcp"),
                          [](const auto& test) { return std::string(test.param); });
 
-TEST_P(ConnectionTest, CarriesRequestsAndReplies) {
-  open_both();
-  ASSERT_TRUE(host_->send(Request(Advance{SimTime(milliseconds(3)), {}})).ok());
-  const auto request = simulator_->receive_request();
-  EXPECT_EQ(std::get<Advance>(request.value()).to, SimTime(milliseconds(3)));
-  ASSERT_TRUE(simulator_->send(Reply(State{SimTime(milliseconds(3)), {}, {}, {}})).ok());
-  const auto reply = host_->receive_reply(seconds(10));
-  EXPECT_EQ(std::get<State>(reply.value()).now, SimTime(milliseconds(3)));
-}
-
 TEST_P(ConnectionTest, CarriesAPictureThatNoSocketBufferHolds) {
   open_both();
   Render render;
@@ -104,16 +94,16 @@ TEST_P(ConnectionTest, SendsNothingInvalid) {
   open_both();
 }
 
-TEST_P(ConnectionTest, TellsTheHostWhatCannotBeServed) {
+TEST_P(ConnectionTest, ReportsARefusedRequestToTheHost) {
   Open other = open();
   other.version = 99;
   ASSERT_TRUE(host_->send(Request(other)).ok());
   EXPECT_EQ(simulator_->receive_request().failure().kind, Kind::kProtocol);
   const auto reply = host_->receive_reply(seconds(10));
-  EXPECT_THAT(std::get<Failed>(reply.value()).message, HasSubstr("version 99"));
+  EXPECT_THAT(std::get<Failed>(reply.value()).message, HasSubstr("99"));
 }
 
-TEST_P(ConnectionTest, RefusesAnAnswerToSomethingElse) {
+TEST_P(ConnectionTest, RefusesAReplyToAnotherRequest) {
   ASSERT_TRUE(host_->send(Request(open())).ok());
   ASSERT_TRUE(simulator_->send(Reply(Distances{})).ok());
   EXPECT_EQ(host_->receive_reply(seconds(10)).failure().kind, Kind::kProtocol);
@@ -149,10 +139,9 @@ TEST_P(ConnectionTest, TakesHostsOneAfterTheOther) {
   open_both();
 }
 
-// ---- a peer that is no simulator
-// ---------------------------------------------------------------
+// ---- a peer that is not a simulator ------------------------------------------------------------
 
-/// A simulator that says what it likes, whatever the protocol.
+/// A peer that can send any bytes.
 class RawSimulator {
  public:
   RawSimulator() : listener_(link::listen_on_tcp({"127.0.0.1", 0}).value()) {
@@ -171,7 +160,7 @@ class RawSimulator {
   link::Descriptor listener_, socket_;
 };
 
-TEST(RawPeer, ThatHangsUpWithinAFrameIsGone) {
+TEST(RawPeer, ThatDisconnectsWithinAFrameIsGone) {
   RawSimulator simulator;
   Encoder encoder;
   const auto frame = frame_of(encoder, Reply(Failed{"some text"}));
@@ -191,21 +180,16 @@ TEST(RawPeer, ThatStopsWithinAFrameTimesOut) {
   EXPECT_EQ(std::get<Failed>(reply.value()).message, "some text");
 }
 
-TEST(RawPeer, ThatAnnouncesTooMuchIsRefused) {
-  RawSimulator simulator;
-  simulator.write(std::array<std::uint8_t, 4>{0xff, 0xff, 0xff, 0x7f});
-  EXPECT_EQ(simulator.host->receive_reply(seconds(10)).failure().kind, Kind::kProtocol);
+TEST(RawPeer, ThatSendsNoFrameIsRefused) {
+  for (const std::string bytes :
+       {"\xff\xff\xff\x7f", "SSH-2.0-OpenSSH_9.2p1 Debian-2\r\n"}) {  // too long; not a length
+    RawSimulator simulator;
+    simulator.write({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+    EXPECT_EQ(simulator.host->receive_reply(seconds(10)).failure().kind, Kind::kProtocol);
+  }
 }
 
-TEST(RawPeer, ThatSaysSomethingElseIsRefused) {
-  RawSimulator simulator;
-  const std::string greeting = "SSH-2.0-OpenSSH_9.2p1 Debian-2\r\n";
-  simulator.write({reinterpret_cast<const std::uint8_t*>(greeting.data()), greeting.size()});
-  EXPECT_EQ(simulator.host->receive_reply(seconds(10)).failure().kind, Kind::kProtocol);
-}
-
-// ---- where to listen
-// ---------------------------------------------------------------------------
+// ---- where to listen ---------------------------------------------------------------------------
 
 /// A Unix socket of a simulator that does nothing with it.
 link::Descriptor bound_to(const std::filesystem::path& path) {
@@ -217,7 +201,7 @@ link::Descriptor bound_to(const std::filesystem::path& path) {
   return socket;
 }
 
-TEST(UnixListener, IsTheOwnersOnlyAndTakesItsFileAway) {
+TEST(UnixListener, IsForItsOwnerOnlyAndRemovesItsFile) {
   const auto path = socket_path();
   auto listener = listen(Endpoint(path)).value();
   struct stat status {};
@@ -227,20 +211,15 @@ TEST(UnixListener, IsTheOwnersOnlyAndTakesItsFileAway) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST(UnixListener, TakesThePlaceOfOneThatIsGone) {
+TEST(UnixListener, ReplacesASocketWithoutAListenerOnly) {
   const auto path = socket_path();
   bound_to(path);  // and closed
   ASSERT_TRUE(std::filesystem::exists(path));
   const auto listener = listen(Endpoint(path)).value();
   EXPECT_TRUE(connect(Endpoint(path), seconds(10)).ok());
-}
-
-TEST(UnixListener, LeavesOneThatIsInUseAndWhatIsNoSocket) {
-  const auto path = socket_path();
-  const auto listener = listen(Endpoint(path)).value();
   const auto second = listen(Endpoint(path));
   EXPECT_EQ(second.failure().kind, Kind::kInvalid);
-  EXPECT_THAT(second.failure().message, HasSubstr(path.string() + ": Address already in use"));
+  EXPECT_THAT(second.failure().message, HasSubstr(path.string()));
   EXPECT_TRUE(connect(Endpoint(path), seconds(10)).ok());
 
   const auto file = socket_path();
@@ -250,26 +229,25 @@ TEST(UnixListener, LeavesOneThatIsInUseAndWhatIsNoSocket) {
   std::filesystem::remove(file);
 }
 
-TEST(UnixListener, SaysThatAPathIsTooLong) {
+TEST(UnixListener, RefusesAPathThatIsTooLong) {
   const Endpoint endpoint(std::filesystem::path("/tmp/" + std::string(200, 'x')));
-  EXPECT_THAT(listen(endpoint).failure().message, HasSubstr("107 bytes"));
-  EXPECT_THAT(connect(endpoint, seconds(1)).failure().message, HasSubstr("107 bytes"));
+  for (const Failure& failure :
+       {listen(endpoint).failure(), connect(endpoint, seconds(1)).failure()}) {
+    EXPECT_EQ(failure.kind, Kind::kInvalid);
+    EXPECT_THAT(failure.message, HasSubstr("107 bytes"));
+  }
 }
 
-TEST(Connect, SaysWhereNobodyListens) {
-  const Endpoint nobody(socket_path());
-  const auto unix_failure = connect(nobody, seconds(1)).failure();
-  EXPECT_EQ(unix_failure.kind, Kind::kDisconnected);
-  EXPECT_THAT(unix_failure.message, HasSubstr(to_string(nobody)));
-
-  Endpoint closed(link::Address{"127.0.0.1", 0});
-  closed = listen(closed).value()->endpoint();
-  const auto tcp_failure = connect(closed, seconds(10)).failure();
-  EXPECT_EQ(tcp_failure.kind, Kind::kDisconnected);
-  EXPECT_THAT(tcp_failure.message, HasSubstr("127.0.0.1:"));
+TEST(Connect, FailsWithoutAListener) {
+  const Endpoint tcp = listen(link::Address{"127.0.0.1", 0}).value()->endpoint();  // and closed
+  for (const Endpoint& nobody : {Endpoint(socket_path()), tcp}) {
+    const Failure failure = connect(nobody, seconds(10)).failure();
+    EXPECT_EQ(failure.kind, Kind::kDisconnected);
+    EXPECT_THAT(failure.message, HasSubstr(nobody.index() == 0 ? to_string(nobody) : "127.0.0.1:"));
+  }
 }
 
-TEST(Connect, TimesOutWhereTooManyWait) {
+TEST(Connect, TimesOutIfTooManyWait) {
   const auto path = socket_path();
   const link::Descriptor busy = bound_to(path);
   ASSERT_EQ(::listen(busy.get(), 0), 0);
@@ -279,11 +257,9 @@ TEST(Connect, TimesOutWhereTooManyWait) {
   std::filesystem::remove(path);
 }
 
-TEST(TcpListener, SaysThatAPortIsTaken) {
+TEST(TcpListener, RefusesAPortInUse) {
   const auto listener = listen(Endpoint(link::Address{"127.0.0.1", 0})).value();
-  const auto second = listen(listener->endpoint());
-  EXPECT_EQ(second.failure().kind, Kind::kInvalid);
-  EXPECT_THAT(second.failure().message, HasSubstr("already in use"));
+  EXPECT_EQ(listen(listener->endpoint()).failure().kind, Kind::kInvalid);
 }
 
 }  // namespace

@@ -77,22 +77,37 @@ class RandomMessage {
 
   uav::MultirotorParameters airframe() {
     uav::MultirotorParameters p = uav::hummingbird();
-    p.mass_kg = positive();
-    p.max_tilt_rad = number();
+    using P = uav::MultirotorParameters;
+    for (const auto member :
+         {&P::mass_kg, &P::thrust_coefficient, &P::moment_coefficient_m, &P::drag_coefficient,
+          &P::linear_drag_N_s_m, &P::max_rotor_speed_rad_s, &P::time_constant_up_s,
+          &P::time_constant_down_s, &P::max_tilt_rad, &P::max_horizontal_speed_m_s,
+          &P::max_vertical_speed_m_s, &P::max_yaw_rate_rad_s, &P::max_acceleration_m_s2,
+          &P::max_yaw_acceleration_rad_s2}) {
+      p.*member = positive();
+    }
+    p.inertia_kg_m2 = {positive(), positive(), positive()};
     p.rotors.push_back({vec3(), coin() ? 1 : -1});
     return p;
   }
   Open open() {
-    Open out{
-        random_.bits(), text(), text(), positive(), Duration(1 + random_.bits() % 1000000), {}, {},
-        1000,           640,    480,    {}};
+    const std::int32_t side_px = 1 + static_cast<std::int32_t>(random_.bits() % 4000);
+    Open out;
+    out.version = random_.bits();
+    out.world_name = text();
+    out.world_file = text();
+    out.gravity_m_s2 = positive();
+    out.step = Duration(1 + random_.bits() % 1000000);
+    out.past_steps = random_.bits() % 1000;
+    out.max_width_px = side_px;
+    out.max_height_px = side_px / 2;
     out.uavs = many<UavDescription>([this] {
       return UavDescription{"u" + text(), text(), pose(), airframe()};
     });
     out.bodies = many<BodyName>([this] { return BodyName{text(), text()}; });
-    out.looks = many<Look>([this] {
-      return Look{text(),  text(), text(),     color(),    color(),  color(),
-                  color(), text(), positive(), positive(), color().x};
+    out.materials = many<VisualMaterial>([this] {
+      return VisualMaterial{text(),  text(), text(),     color(),    color(),  color(),
+                            color(), text(), positive(), positive(), color().x};
     });
     return out;
   }

@@ -21,7 +21,7 @@ Open good_open() {
   Open open;
   open.step = std::chrono::milliseconds(1);
   open.uavs = {{"alpha", "<sdf/>", {}, uav::hummingbird()}};
-  open.looks = {Look{}};
+  open.materials = {VisualMaterial{}};
   return open;
 }
 Advance good_advance() {
@@ -43,14 +43,14 @@ Picture good_picture() {
   return {2, 1, {1, 2, 3, 4, 5, 6}, 1.0, ""};
 }
 
-template <class Any, class Message>
+template <class Message>
 struct Case {
   const char* field;
   std::function<void(Message&)> spoil;
 };
 
 template <class Any, class Message>
-void expect_refused(const Message& good, const std::vector<Case<Any, Message>>& cases) {
+void expect_refused(const Message& good, const std::vector<Case<Message>>& cases) {
   ASSERT_TRUE(validate(Any(good)).ok()) << validate(Any(good)).failure().message;
   for (const auto& [field, spoil] : cases) {
     Message bad = good;
@@ -74,10 +74,10 @@ TEST(Validate, OpenIsSane) {
        {"past_steps", [](Open& o) { o.past_steps = kMaxPastPoses + 1; }},
        {"width_px", [](Open& o) { o.max_width_px = -1; }},
        {"width_px", [](Open& o) { o.max_width_px = o.max_height_px = kMaxSidePx; }},
-       {"looks", [](Open& o) { o.looks.resize(kMaxLooks + 1); }},
-       {"diffuse_rgb", [](Open& o) { o.looks[0].diffuse_rgb.y = 1.5; }},
-       {"texture_repeat_x", [](Open& o) { o.looks[0].texture_repeat_x = kInf; }},
-       {"alpha", [](Open& o) { o.looks[0].alpha = 1.5; }}});
+       {"looks", [](Open& o) { o.materials.resize(kMaxMaterials + 1); }},
+       {"diffuse_rgb", [](Open& o) { o.materials[0].diffuse_rgb.y = 1.5; }},
+       {"texture_repeat_x", [](Open& o) { o.materials[0].texture_repeat_x = kInf; }},
+       {"alpha", [](Open& o) { o.materials[0].alpha = 1.5; }}});
 }
 
 TEST(Validate, UavsAreSane) {
@@ -111,10 +111,7 @@ TEST(Validate, RaysAreSane) {
                                      {"carrier", [](CastRays& c) { c.carrier = 1; }},
                                      {"X_WS", [](CastRays& c) { c.X_WS.p.z = kInf; }},
                                      {"rays_S", [](CastRays& c) { c.rays_S.clear(); }},
-                                     {"rays_S",
-                                      [](CastRays& c) {
-                                        c.rays_S[0] = {1.0, 0.1, 0.0};
-                                      }},
+                                     {"rays_S", [](CastRays& c) { c.rays_S[0].y = 0.1; }},
                                      {"rays_S", [](CastRays& c) { c.rays_S[0].x = kNaN; }},
                                      {"max_m", [](CastRays& c) { c.max_m = 0.0; }}});
 }
@@ -129,10 +126,7 @@ TEST(Validate, RendersAreSane) {
                       {"cx_px", [](Render& r) { r.camera.cx_px = kInf; }},
                       {"near_m", [](Render& r) { r.near_m = 0.0; }},
                       {"far_m", [](Render& r) { r.far_m = r.near_m; }},
-                      {"X_WS",
-                       [](Render& r) {
-                         r.X_WS.q = {0.0, 0.0, 0.0, 0.0};
-                       }},
+                      {"X_WS", [](Render& r) { r.X_WS.q.w = 0.0; }},
                       {"X_WB", [](Render& r) { r.X_WB[0].p.y = kNaN; }},
                       {"hidden", [](Render& r) { r.hidden = 5; }}});
 }

@@ -10,10 +10,10 @@
 namespace tether::sim {
 namespace {
 
-/// Of a length in a world's file, too.
+/// The same as for positions in a world's file.
 constexpr double kFarthestBody_m = 1e5;
 constexpr double kUavTolerance = 1e-6;
-/// What is in contact is pushed apart a little before the first state.
+/// Bodies in contact are pushed apart a little before the first state.
 constexpr double kBodyTolerance = 1e-3;
 
 std::string shown(const std::string& name, std::initializer_list<double> numbers) {
@@ -45,47 +45,32 @@ double difference(const uav::Quat& a, const uav::Quat& b) {
 
 std::vector<std::string> shown_names(const World& world) {
   std::vector<std::string> names;
-  for (const Uav& uav : world.uavs) names.push_back("UAV '" + uav.name + "'");
-  for (const Model& model : world.models) {
-    if (model.is_static) continue;
-    for (const Link& link : model.links)
-      names.push_back("link '" + link.name + "' of model '" + model.name + "'");
-  }
+  for (const MovingBody& body : moving_bodies(world))
+    names.push_back(body.uav
+                        ? "UAV '" + body.uav->name + "'"
+                        : "link '" + body.link->name + "' of model '" + body.model->name + "'");
   return names;
 }
 
-/// Where messages come from.
-struct Source {
-  const World& world;
-  const std::string& simulator;
-};
-
-[[noreturn]] void refuse(const Source& source, std::size_t body, const std::string& what) {
-  throw Error(ErrorCode::kSetup,
-              source.simulator + ": " + shown_names(source.world).at(body) + " " + what);
-}
-
-bool is_near(const uav::Vec3& p) {
-  return difference(p, {}) <= kFarthestBody_m;
+[[noreturn]] void refuse(const World& world, const std::string& simulator, std::size_t body,
+                         const std::string& what) {
+  const std::string name = shown_names(world).at(body);
+  throw Error(ErrorCode::kSetup, simulator + ": " + name + " " + what).about(name);
 }
 
 }  // namespace
 
 void check_reach(const World& world, const protocol::State& state, const std::string& simulator) {
-  const Source source{world, simulator};
-  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
-    const uav::Vec3& p_WB = state.bodies[i].p_WB;
-    if (!is_near(p_WB)) refuse(source, i, "is at " + shown(p_WB) + " m, beyond 1e5 m");
-  }
-  for (std::size_t i = 0; i < state.past.size(); ++i) {
-    const uav::Vec3& p_WB = state.past[i].p;
-    if (!is_near(p_WB))
-      refuse(source, i % state.bodies.size(), "was at " + shown(p_WB) + " m, beyond 1e5 m");
-  }
+  const auto check = [&](std::size_t body, const uav::Vec3& p_WB) {
+    if (difference(p_WB, {}) > kFarthestBody_m)
+      refuse(world, simulator, body, "is at " + shown(p_WB) + " m; at most 1e5 m are allowed");
+  };
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) check(i, state.bodies[i].p_WB);
+  for (std::size_t i = 0; i < state.past.size(); ++i)
+    check(i % state.bodies.size(), state.past[i].p);
 }
 
 void check_start(const World& world, const protocol::State& state, const std::string& simulator) {
-  const Source source{world, simulator};
   const std::vector<MovingBody> bodies = moving_bodies(world);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const uav::Pose& expected = bodies[i].X_WB;
@@ -95,14 +80,13 @@ void check_start(const World& world, const protocol::State& state, const std::st
     if (difference(got.p_WB, expected.p) > tolerance ||
         difference(got.q_WB, expected.q) > tolerance)
       refuse(
-          source, i,
-          "begins at " + shown(uav::Pose{got.p_WB, got.q_WB}) + " instead of " + shown(expected));
+          world, simulator, i,
+          "starts at " + shown(uav::Pose{got.p_WB, got.q_WB}) + " instead of " + shown(expected));
     if (!is_uav) continue;
     if (difference(got.v_WB, {}) > tolerance || difference(got.w_WB_B, {}) > tolerance)
-      refuse(source, i,
-             "does not begin at rest: it moves with " +
-                 shown("v_WB", {got.v_WB.x, got.v_WB.y, got.v_WB.z}) + " m/s, " +
-                 shown("w_WB_B", {got.w_WB_B.x, got.w_WB_B.y, got.w_WB_B.z}) + " rad/s");
+      refuse(world, simulator, i,
+             "does not start at rest: " + shown("v_WB", {got.v_WB.x, got.v_WB.y, got.v_WB.z}) +
+                 " m/s, " + shown("w_WB_B", {got.w_WB_B.x, got.w_WB_B.y, got.w_WB_B.z}) + " rad/s");
   }
 }
 

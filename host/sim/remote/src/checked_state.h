@@ -7,12 +7,12 @@
 
 namespace tether::sim {
 
-/// `simulator`: how messages begin. @throws Error(kSetup), naming the body, where one is farther
-/// from the origin than any world reaches.
+/// `simulator`: how messages begin. @throws Error(kSetup) about the body that is farther from the
+/// origin than positions of a world's file may be.
 void check_reach(const World& world, const protocol::State& state, const std::string& simulator);
 
-/// @throws Error(kSetup), with what was expected and what came, where a body does not begin where
-/// the world says, or a UAV not at rest.
+/// @throws Error(kSetup) about the body that is not at its start pose of the world, or the UAV that
+/// is not at rest.
 void check_start(const World& world, const protocol::State& state, const std::string& simulator);
 
 }  // namespace tether::sim

@@ -15,33 +15,14 @@
 namespace tether::sim {
 namespace {
 
-double radius_m(const BoxGeometry& g) {
-  return 0.5 * norm(g.size_m);
-}
-double radius_m(const CylinderGeometry& g) {
-  return std::hypot(g.radius_m, 0.5 * g.length_m);
-}
-double radius_m(const SphereGeometry& g) {
-  return g.radius_m;
-}
-double radius_m(const CapsuleGeometry& g) {
-  return g.radius_m + 0.5 * g.length_m;
-}
-double radius_m(const EllipsoidGeometry& g) {
-  return std::max({g.radii_m.x, g.radii_m.y, g.radii_m.z});
-}
-double radius_m(const PlaneGeometry& g) {
-  return 0.5 * std::hypot(g.size_x_m, g.size_y_m);
-}
-
-/// Of all that is in the file, whichever part is drawn.
-double radius_m(const MeshGeometry& g) {
+/// Of everything in the file, even if only a part is drawn.
+double mesh_radius_m(const MeshGeometry& g) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* scene = importer.ReadFile(g.file.string(), aiProcess_PreTransformVertices);
   if (scene == nullptr) {
     throw Error(ErrorCode::kBadFile, {g.file.string(), 0},
-                std::string("not a mesh that can be read: ") + importer.GetErrorString());
+                std::string("cannot be read as a mesh: ") + importer.GetErrorString());
   }
   double radius_m = 0.0;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
@@ -55,11 +36,26 @@ double radius_m(const MeshGeometry& g) {
   return radius_m;
 }
 
+double radius_m(const Geometry& geometry) {
+  return std::visit(
+      Visitor{
+          [](const BoxGeometry& g) { return 0.5 * norm(g.size_m); },
+          [](const CylinderGeometry& g) { return std::hypot(g.radius_m, 0.5 * g.length_m); },
+          [](const SphereGeometry& g) { return g.radius_m; },
+          [](const CapsuleGeometry& g) { return g.radius_m + 0.5 * g.length_m; },
+          [](const EllipsoidGeometry& g) {
+            return std::max({g.radii_m.x, g.radii_m.y, g.radii_m.z});
+          },
+          [](const PlaneGeometry& g) { return 0.5 * std::hypot(g.size_x_m, g.size_y_m); },
+          [](const MeshGeometry& g) { return mesh_radius_m(g); },
+      },
+      geometry);
+}
+
 double radius_m(const Link& link) {
   double reach_m = 0.0;
   for (const Visual& visual : link.visuals) {
-    const double own_m = std::visit([](const auto& g) { return radius_m(g); }, visual.geometry);
-    reach_m = std::max(reach_m, norm(visual.X_LV.p) + own_m);
+    reach_m = std::max(reach_m, norm(visual.X_LV.p) + radius_m(visual.geometry));
   }
   return reach_m;
 }

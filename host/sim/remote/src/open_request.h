@@ -7,12 +7,12 @@
 
 namespace tether::sim {
 
-/// What a simulator outside is told of the world, whose file it reads itself. `warn` is told of
-/// what it cannot have.
-/// @throws Error(kBadFile) for a world that comes from no file, and as `shutter_steps` does.
+/// The request with which an external simulator opens the world, whose file it reads itself. `warn`
+/// receives a line for each thing that it cannot represent.
+/// @throws Error(kBadFile) about a world that has no file, and as `shutter_steps` does.
 protocol::Open make_open(const World& world, const WarningSink& warn);
 
-/// How far each of `moving_bodies` reaches from its origin, as it is drawn [m]; rather too much.
+/// An upper bound of the drawn extent of each of `moving_bodies` from its origin [m].
 /// @throws Error(kBadFile) for a mesh that cannot be read.
 std::vector<double> drawn_radii_m(const World& world);
 

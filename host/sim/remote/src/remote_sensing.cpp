@@ -10,7 +10,7 @@
 namespace tether::sim {
 namespace {
 
-/// Stands for "however far": what a float of a simulator still counts metres in.
+/// In place of infinity: a float still resolves metres at this distance.
 constexpr double kFarthestRay_m = 1e6;
 
 std::optional<std::uint32_t> index(std::optional<std::size_t> body) {
@@ -27,7 +27,7 @@ void RemoteRays::cast(const RayBundle& bundle, std::span<double> distances_m) {
   request.X_WS = bundle.X_WS;
   request.rays_S.assign(bundle.rays_S.begin(), bundle.rays_S.end());
   request.max_m = std::min(bundle.max_m, kFarthestRay_m);
-  const protocol::Distances answer = session_.ask(request);
+  const auto answer = session_.ask<protocol::Distances>(request);
   assert(answer.distance_m.size() == distances_m.size());
   std::copy(answer.distance_m.begin(), answer.distance_m.end(), distances_m.begin());
 }
@@ -41,7 +41,7 @@ void RemoteRenderer::render(const View& view, std::span<std::uint8_t> rgb) {
   request.X_WB.assign(view.X_WB.begin(), view.X_WB.end());
   request.hidden = index(view.hidden);
   request.with_depth = view.with_depth;
-  protocol::Picture picture = session_.ask(request);
+  const auto picture = session_.ask<protocol::Picture>(request);
   assert(picture.rgb.size() == rgb.size());
   std::copy(picture.rgb.begin(), picture.rgb.end(), rgb.begin());
   nearest_depth_m_ = std::clamp(picture.nearest_depth_m, view.near_m, view.far_m);

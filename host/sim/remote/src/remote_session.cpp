@@ -10,10 +10,11 @@ namespace {
 
 using Kind = Failure::Kind;
 
-/// How long an answer is waited for before asking whether there is any use in it.
+/// Interval at which `why_give_up` is asked.
 constexpr Duration kPatience = std::chrono::milliseconds(100);
-/// How long before the caller is told that one is waited for.
+/// Time without an answer after which `on_silence` is called.
 constexpr Duration kSilence = std::chrono::seconds(1);
+const std::string kUnnamed = "the simulator";
 
 std::string in_s(Duration limit) {
   const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(limit).count();
@@ -27,7 +28,7 @@ RemoteSession::RemoteSession(std::unique_ptr<protocol::Connection> connection,
                              RemoteOptions options)
     : connection_(std::move(connection)),
       options_(std::move(options)),
-      name_(options_.address.empty() ? "" : " at " + options_.address) {}
+      name_(kUnnamed + (options_.address.empty() ? "" : " at " + options_.address)) {}
 
 RemoteSession::~RemoteSession() {
   connection_->close();
@@ -43,49 +44,53 @@ protocol::Reply RemoteSession::answer_to(const protocol::Request& request, Durat
   if (!reply) throw_lost(reply.failure(), limit);
   if (const auto* failed = std::get_if<protocol::Failed>(&*reply)) {
     const std::string why = printable(failed->message);
-    throw Error(ErrorCode::kSetup,
-                name() + " failed" + (why.empty() ? " without a reason" : ": " + why));
+    fail("failed" + (why.empty() ? " without a reason" : ": " + why));
   }
   return std::move(*reply);
 }
 
-// Counts the time that was spent listening: who was stopped together with us is not silent.
+// Counts the time spent listening only: a simulator that was stopped together with this process is
+// not silent.
 Result<protocol::Reply> RemoteSession::await(Duration limit) {
   Duration waited{0};
-  bool told = name_.empty() || !options_.on_silence;
+  bool reported = name_ == kUnnamed || !options_.on_silence;
   while (true) {
     const Duration patience = std::min(limit - waited, kPatience);
     auto reply = connection_->receive_reply(patience);
     const bool silent = !reply && reply.failure().kind == Kind::kTimeout;
     if (!silent || patience == Duration(0)) return reply;
-    give_up_if_told();
+    check_give_up();
     waited += patience;
-    if (told || waited < kSilence) continue;
-    told = true;
-    options_.on_silence("everything waits for " + name() + ", which has not answered for " +
-                        in_s(kSilence));
+    if (reported || waited < kSilence) continue;
+    reported = true;
+    options_.on_silence("blocked on " + name() + ", which has not answered for " + in_s(kSilence));
   }
 }
 
-void RemoteSession::give_up_if_told() {
+void RemoteSession::check_give_up() {
   if (!options_.why_give_up) return;
   if (const auto why = options_.why_give_up()) throw Error(ErrorCode::kSetup, *why);
 }
 
+void RemoteSession::fail(const std::string& what) const {
+  throw Error(ErrorCode::kSetup, name() + " " + what).about(name());
+}
+
 void RemoteSession::throw_lost(const Failure& failure, Duration limit) {
-  // Who started the simulator knows better why it is gone.
-  if (failure.kind == Kind::kDisconnected) give_up_if_told();
+  // The owner of the simulator's process knows a better reason why it is gone.
+  if (failure.kind == Kind::kDisconnected) check_give_up();
   switch (failure.kind) {
     case Kind::kInvalid:
       throw Error(ErrorCode::kBadFile,
-                  name() + " cannot be told of this world: " + failure.message);
+                  "this world cannot be sent to " + name() + ": " + failure.message)
+          .about(name());
     case Kind::kTimeout:
-      throw Error(ErrorCode::kSetup, name() + " has not answered for " + in_s(limit) +
-                                         "; see whether it still runs, and flies no other run");
+      fail("has not answered for " + in_s(limit) +
+           "; check that it still runs and serves no other run");
     case Kind::kProtocol:
-      throw Error(ErrorCode::kSetup, name() + " answered what it must not: " + failure.message);
+      fail("violated the protocol: " + failure.message);
     default:
-      throw Error(ErrorCode::kSetup, name() + " is lost: " + failure.message);
+      fail("is lost: " + failure.message);
   }
 }
 

@@ -11,8 +11,8 @@
 
 namespace tether::sim {
 
-/// The host's end of a connection to a simulator, with patience: sends a request and waits for its
-/// answer. One thread at a time. Once it has thrown, there is no way on.
+/// The host's end of a connection to a simulator: sends a request and waits for its answer, with a
+/// time limit. One thread at a time. Once it has thrown, it must not be used again.
 class RemoteSession {
  public:
   RemoteSession(std::unique_ptr<protocol::Connection> connection, RemoteOptions options);
@@ -20,33 +20,30 @@ class RemoteSession {
   RemoteSession(const RemoteSession&) = delete;
   RemoteSession& operator=(const RemoteSession&) = delete;
 
-  /// What the simulator calls itself, for messages.
-  void call_it(std::string name) { name_ = " " + std::move(name); }
-  std::string name() const { return "the simulator" + name_; }
+  /// The simulator's name for itself, for messages.
+  void set_name(const std::string& name) { name_ = "the simulator " + name; }
+  /// How messages begin.
+  const std::string& name() const { return name_; }
 
-  /// @throws Error(kSetup) naming the simulator and what it did, where it gave no answer.
+  /// @throws Error(kSetup) about `name()` if there is no valid answer, Error(kBadFile) if the
+  /// request cannot be sent.
   protocol::Opened open(const protocol::Open& request);
-  protocol::State ask(const protocol::Reset& request) { return ask<protocol::State>(request); }
-  protocol::State ask(const protocol::Advance& request) { return ask<protocol::State>(request); }
-  protocol::Distances ask(const protocol::CastRays& request) {
-    return ask<protocol::Distances>(request);
-  }
-  protocol::Picture ask(const protocol::Render& request) { return ask<protocol::Picture>(request); }
-
- private:
   template <class Expected>
   Expected ask(const protocol::Request& request) {
     return take<Expected>(answer_to(request, options_.answer_limit));
   }
+
+ private:
   template <class Expected>
   Expected take(protocol::Reply reply) {
     if (auto* expected = std::get_if<Expected>(&reply)) return std::move(*expected);
-    throw Error(ErrorCode::kSetup, name() + " gave an answer to something else");
+    fail("replied to another request");
   }
 
   protocol::Reply answer_to(const protocol::Request& request, Duration limit);
   Result<protocol::Reply> await(Duration limit);
-  void give_up_if_told();
+  void check_give_up();
+  [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void throw_lost(const Failure& failure, Duration limit);
 
   std::unique_ptr<protocol::Connection> connection_;

@@ -1,3 +1,7 @@
+// A Simulator whose dynamics run at the other end of a RemoteSession. Advances are split and sent
+// with pending commands; each returned state is checked and recorded. The sensing library makes the
+// samples from remote rays and pictures.
+
 #include "checked_state.h"
 #include "open_request.h"
 #include "remote_sensing.h"
@@ -20,8 +24,8 @@
 namespace tether::sim {
 namespace {
 
-/// Of a longer advance an answer comes each time so much ST has passed, so that a simulator that is
-/// slow can be told from one that hangs.
+/// Longer advances are split, so that a slow simulator answers in time and only a hung one does
+/// not.
 constexpr Duration kLongestAdvance = std::chrono::milliseconds(50);
 
 class RemoteSimulator final : public Simulator {
@@ -37,7 +41,7 @@ class RemoteSimulator final : public Simulator {
         commands_(world_.uavs.size()) {
     protocol::Opened opened = session_.open(make_open(world_, warn));
     description_ = printable(opened.description);
-    session_.call_it(description_);
+    session_.set_name(description_);
     start_at(std::move(opened.state));
   }
 
@@ -46,7 +50,7 @@ class RemoteSimulator final : public Simulator {
   SimTime now() const override { return state_.now; }
 
   void reset(std::uint64_t seed) override {
-    start_at(session_.ask(protocol::Reset{seed}));
+    start_at(session_.ask<protocol::State>(protocol::Reset{seed}));
     sensors_.reset(seed);
     std::fill(commands_.begin(), commands_.end(), std::nullopt);
   }
@@ -87,7 +91,7 @@ class RemoteSimulator final : public Simulator {
     return {rays_, std::move(make_renderer), drawn_radii_m(world_)};
   }
 
-  // At least one step; else as many as fit.
+  // At least one step.
   Duration longest_advance() const {
     return std::max<std::int64_t>(kLongestAdvance / grid_.dt(), 1) * grid_.dt();
   }
@@ -98,7 +102,7 @@ class RemoteSimulator final : public Simulator {
       if (commands_[i]) request.commands.push_back({static_cast<std::uint32_t>(i), *commands_[i]});
       commands_[i].reset();
     }
-    take(session_.ask(request));
+    take(session_.ask<protocol::State>(request));
     const std::size_t bodies = X_WB_.size();
     for (std::size_t i = 0; i < state_.past.size(); i += bodies) {
       recorder_.begin_step(std::span(state_.past).subspan(i, bodies));
@@ -144,7 +148,7 @@ class RemoteSimulator final : public Simulator {
   StateRecorder recorder_;
   SensorSuite sensors_;
   std::string description_;
-  /// Not told yet.
+  /// Not sent yet.
   std::vector<std::optional<uav::VelocityCommand>> commands_;
   protocol::State state_;
   std::vector<uav::Pose> X_WB_;

@@ -1,12 +1,13 @@
 #include "sdf_text.h"
 
-#include "outside_shapes.h"
+#include "sdf16_shapes.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <system_error>
 #include <variant>
 
@@ -21,7 +22,7 @@ namespace {
 std::string text(double value) {
   std::array<char, 32> digits{};
   const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc{}) throw Error(ErrorCode::kInternal, "a number of SDF is too long");
+  if (error != std::errc{}) throw Error(ErrorCode::kInternal, "a number in SDF is too long");
   return {digits.data(), end};
 }
 std::string text(const uav::Vec3& v) {
@@ -32,24 +33,12 @@ std::string text(const uav::Pose& X) {
 }
 
 std::string escaped(const std::string& raw) {
+  constexpr std::string_view kSpecial = "&<>'";
+  constexpr std::array<const char*, 4> kEntities{"&amp;", "&lt;", "&gt;", "&apos;"};
   std::string out;
   for (const char c : raw) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '\'':
-        out += "&apos;";
-        break;
-      default:
-        out += c;
-    }
+    const std::size_t at = kSpecial.find(c);
+    out += at == std::string_view::npos ? std::string(1, c) : kEntities[at];
   }
   return out;
 }
@@ -118,7 +107,7 @@ std::string sdf(const Collision& collision) {
                                                                              element("mu2", mu)))));
 }
 
-/// The centre of mass lies in B's origin (load_world sees to that).
+/// The centre of mass lies in B's origin: load_world requires it.
 std::string sdf_inertial(const uav::MultirotorParameters& airframe) {
   const uav::Vec3& i = airframe.inertia_kg_m2;
   return element("inertial",
@@ -132,8 +121,7 @@ std::string sdf_inertial(const uav::MultirotorParameters& airframe) {
 
 uav::Vec3 to_rpy_rad(const uav::Quat& q) {
   const double sin_pitch = 2.0 * (q.w * q.y - q.z * q.x);
-  // Straight up or down only the sum or difference of roll and yaw matters: it is all given to
-  // roll.
+  // Straight up or down, only the sum or difference of roll and yaw matters: all of it is roll.
   if (std::abs(sin_pitch) > 1.0 - 1e-12) {
     return {2.0 * std::atan2(q.x, q.w), std::copysign(std::numbers::pi / 2.0, sin_pitch), 0.0};
   }
@@ -144,8 +132,8 @@ uav::Vec3 to_rpy_rad(const uav::Quat& q) {
 
 std::string to_sdf(const Uav& uav, const WarningSink& warn) {
   std::string shapes;
-  for (const Visual& visual : outside_visuals(uav, warn)) shapes += sdf(visual);
-  for (const Collision& collision : outside_collisions(uav, warn)) shapes += sdf(collision);
+  for (const Visual& visual : sdf16_visuals(uav, warn)) shapes += sdf(visual);
+  for (const Collision& collision : sdf16_collisions(uav, warn)) shapes += sdf(collision);
   const std::string link =
       named("link", "base_link", sdf_inertial(uav.airframe) + "\n" + std::move(shapes));
   return "<?xml version='1.0'?>\n<sdf version='1.6'>\n" +

@@ -1,7 +1,7 @@
 #include <memory>
 
 #include <tether/sim_remote/remote_simulator.h>
-#include <tether/sim_remote_testing/fake_outside.h>
+#include <tether/sim_remote_testing/fake_external_simulator.h>
 #include <tether/sim_testing/simulator_contract.h>
 
 namespace tether::sim::testing {
@@ -9,11 +9,11 @@ namespace {
 
 std::unique_ptr<Simulator> make_served(World world) {
   world.file = "/worlds/test.sdf";
-  auto outside = std::make_shared<FakeOutside>(world);
-  auto connection = outside->take_connection();
+  auto external = std::make_shared<FakeExternalSimulator>(world);
+  auto connection = external->take_connection();
   RemoteOptions options;
-  // Lives as long as the simulator that it serves.
-  options.why_give_up = [outside] { return std::nullopt; };
+  // Shared, so that it lives as long as the simulator that it serves.
+  options.why_give_up = [external] { return std::nullopt; };
   return make_remote_simulator(std::move(world), std::move(connection), std::move(options),
                                [](const std::string& line) { ADD_FAILURE() << line; });
 }

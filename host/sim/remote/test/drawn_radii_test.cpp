@@ -5,15 +5,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/base/error.h>
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
 #include <tether/sim_testing/test_worlds.h>
 
 namespace tether::sim {
 namespace {
 
 using testing::box_model;
-using ::testing::HasSubstr;
 
 /// Of a body that shows one such shape in its origin.
 double radius_of(const Geometry& geometry) {
@@ -41,22 +40,17 @@ TEST(DrawnRadii, CountFromTheBodysOrigin) {
   EXPECT_THAT(drawn_radii_m(world), ::testing::ElementsAre(8.0));
 }
 
-TEST(DrawnRadii, MeasureMeshes) {
+TEST(DrawnRadii, OfMeshesNeedAReadableFile) {
   const ScratchFolder folder;
-  const auto file = folder.write("m.obj", "v 0 0 0\nv 3 0 0\nv 0 4 0\nf 1 2 3\n");
-  EXPECT_NEAR(radius_of(MeshGeometry{file, "", {2.0, 1.0, 1.0}}), 6.0, 1e-6);
-}
-
-TEST(DrawnRadii, NameAMeshThatCannotBeRead) {
-  const ScratchFolder folder;
-  const auto file = folder.write("m.obj", "no mesh");
-  try {
-    radius_of(MeshGeometry{file, "", {1.0, 1.0, 1.0}});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kBadFile);
-    EXPECT_THAT(error.what(), HasSubstr(file.string()));
-  }
+  const auto mesh = folder.write("m.obj", "v 0 0 0\nv 3 0 0\nv 0 4 0\nf 1 2 3\n");
+  EXPECT_NEAR(radius_of(MeshGeometry{mesh, "", {2.0, 1.0, 1.0}}), 6.0, 1e-6);
+  const auto bad = folder.write("bad.obj", "no mesh");
+  EXPECT_EQ(bad_file_error([&] {
+              radius_of(MeshGeometry{bad, "", {1.0, 1.0, 1.0}});
+            })
+                .where()
+                .file,
+            bad.string());
 }
 
 }  // namespace

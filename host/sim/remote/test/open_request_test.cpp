@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/base/error.h>
+#include <tether/base_testing/thrown_error.h>
 #include <tether/sim/bodies.h>
 #include <tether/sim_protocol/codec.h>
 #include <tether/sim_testing/busy_flight.h>
@@ -26,7 +26,7 @@ protocol::Open open_of(const World& world) {
   return make_open(world, [](const std::string& line) { ADD_FAILURE() << line; });
 }
 
-TEST(OpenRequest, TellsOfTheWorld) {
+TEST(OpenRequest, DescribesTheWorld) {
   World world = world_of_a_file();
   world.step = std::chrono::milliseconds(2);
   const protocol::Open open = open_of(world);
@@ -36,11 +36,6 @@ TEST(OpenRequest, TellsOfTheWorld) {
   EXPECT_EQ(open.gravity_m_s2, world.gravity_m_s2);
   EXPECT_EQ(open.step, world.step);
   EXPECT_TRUE(validate(protocol::Request(open)).ok());
-}
-
-TEST(OpenRequest, TellsOfTheUavs) {
-  const World world = world_of_a_file();
-  const protocol::Open open = open_of(world);
   ASSERT_EQ(open.uavs.size(), 2u);
   EXPECT_EQ(open.uavs[1].name, "beta");
   EXPECT_EQ(open.uavs[1].X_WB, world.uavs[1].X_WB);
@@ -59,7 +54,7 @@ TEST(OpenRequest, NamesTheMovingBodiesInTheirOrder) {
   EXPECT_EQ(open.bodies[1].link, "l");
 }
 
-TEST(OpenRequest, TellsOfTheLargestViewAndTheLongestShutter) {
+TEST(OpenRequest, HasTheLargestViewAndTheLongestShutter) {
   World world = world_of_a_file();
   const protocol::Open open = open_of(world);
   EXPECT_EQ(open.max_width_px, 160);
@@ -71,7 +66,7 @@ TEST(OpenRequest, TellsOfTheLargestViewAndTheLongestShutter) {
   EXPECT_EQ(blind.past_steps, 0u);
 }
 
-TEST(OpenRequest, HasTheLooksOfTexturedVisuals) {
+TEST(OpenRequest, HasTheMaterialsOfTexturedVisuals) {
   World world = world_of_a_file();
   Material painted;
   painted.diffuse_rgb = {0.1, 0.2, 0.3};
@@ -86,14 +81,14 @@ TEST(OpenRequest, HasTheLooksOfTexturedVisuals) {
   capsule.material = painted;
   world.uavs[0].body.visuals.push_back(capsule);
   const protocol::Open open = open_of(world);
-  ASSERT_EQ(open.looks.size(), 4u) << "three of the capsule, one of the floor";
+  ASSERT_EQ(open.materials.size(), 4u) << "three of the capsule, one of the floor";
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(open.looks[i].model, "alpha");
-    EXPECT_EQ(open.looks[i].link, "base_link");
+    EXPECT_EQ(open.materials[i].model, "alpha");
+    EXPECT_EQ(open.materials[i].link, "base_link");
     EXPECT_THAT(open.uavs[0].sdf,
-                ::testing::HasSubstr("<visual name='" + open.looks[i].visual + "'>"));
+                ::testing::HasSubstr("<visual name='" + open.materials[i].visual + "'>"));
   }
-  const protocol::Look& floor = open.looks[3];
+  const protocol::VisualMaterial& floor = open.materials[3];
   EXPECT_EQ(floor.model, "floor");
   EXPECT_EQ(floor.link, "ground");
   EXPECT_EQ(floor.visual, "box");
@@ -103,13 +98,8 @@ TEST(OpenRequest, HasTheLooksOfTexturedVisuals) {
   EXPECT_EQ(floor.diffuse_rgb, painted.diffuse_rgb);
 }
 
-TEST(OpenRequest, NeedsAWorldOfAFile) {
-  try {
-    open_of(busy_world());
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kBadFile);
-  }
+TEST(OpenRequest, NeedsAWorldWithAFile) {
+  EXPECT_EQ(bad_file_error([] { open_of(busy_world()); }).subject(), "test");
 }
 
 }  // namespace

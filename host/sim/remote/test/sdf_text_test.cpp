@@ -24,7 +24,7 @@ void expect_near(const ignition::math::Pose3d& actual, const uav::Pose& expected
   EXPECT_NEAR(std::abs(difference.w), 1.0, 1e-12);
 }
 
-/// What libsdformat makes of a UAV's text.
+/// A UAV's text as libsdformat reads it.
 class SdfText : public ::testing::Test {
  protected:
   const sdf::Model& read(const Uav& uav) {
@@ -61,23 +61,18 @@ TEST_F(SdfText, IsOneModelWithOneLink) {
   EXPECT_EQ(link.Name(), "base_link");
   expect_near(link.RawPose(), {});
   EXPECT_EQ(link.SensorCount(), 0u);
+  expect_near(link.Inertial().Pose(), {});
+  const auto& mass = link.Inertial().MassMatrix();
+  const uav::Vec3& inertia = uav.airframe.inertia_kg_m2;
+  EXPECT_EQ(mass.Mass(), uav.airframe.mass_kg);
+  EXPECT_EQ(mass.DiagonalMoments(), ignition::math::Vector3d(inertia.x, inertia.y, inertia.z));
+  EXPECT_EQ(mass.OffDiagonalMoments(), ignition::math::Vector3d::Zero);
 }
 
-TEST_F(SdfText, HasTheAirframesMassAndInertia) {
+TEST_F(SdfText, HasVisualsAndCollisions) {
   const Uav uav = turned_uav();
   const sdf::Link& link = *read(uav).LinkByIndex(0);
-  const auto& inertia = link.Inertial();
-  expect_near(inertia.Pose(), {});
-  EXPECT_EQ(inertia.MassMatrix().Mass(), uav.airframe.mass_kg);
-  EXPECT_EQ(inertia.MassMatrix().DiagonalMoments().X(), uav.airframe.inertia_kg_m2.x);
-  EXPECT_EQ(inertia.MassMatrix().DiagonalMoments().Y(), uav.airframe.inertia_kg_m2.y);
-  EXPECT_EQ(inertia.MassMatrix().DiagonalMoments().Z(), uav.airframe.inertia_kg_m2.z);
-  EXPECT_EQ(inertia.MassMatrix().OffDiagonalMoments(), ignition::math::Vector3d::Zero);
-}
-
-TEST_F(SdfText, ShowsTheBody) {
-  const Uav uav = turned_uav();
-  const sdf::Visual& visual = *read(uav).LinkByIndex(0)->VisualByIndex(0);
+  const sdf::Visual& visual = *link.VisualByIndex(0);
   expect_near(visual.RawPose(), uav.body.visuals[0].X_LV);
   EXPECT_EQ(visual.Geom()->BoxShape()->Size(), ignition::math::Vector3d(0.4, 0.4, 0.1));
   EXPECT_FALSE(visual.CastShadows());
@@ -86,11 +81,7 @@ TEST_F(SdfText, ShowsTheBody) {
   EXPECT_EQ(visual.Material()->Ambient(), ignition::math::Color(0.4F, 0.5F, 0.6F));
   EXPECT_EQ(visual.Material()->Specular(), ignition::math::Color(0.7F, 0.8F, 0.9F));
   EXPECT_EQ(visual.Material()->Emissive(), ignition::math::Color(0.05F, 0.15F, 0.25F));
-}
-
-TEST_F(SdfText, IsAsSolidAsTheBody) {
-  const Uav uav = turned_uav();
-  const sdf::Collision& collision = *read(uav).LinkByIndex(0)->CollisionByIndex(0);
+  const sdf::Collision& collision = *link.CollisionByIndex(0);
   expect_near(collision.RawPose(), uav.body.collisions[0].X_LC);
   EXPECT_EQ(collision.Geom()->BoxShape()->Size(), ignition::math::Vector3d(0.4, 0.4, 0.1));
   const auto ode =

@@ -17,23 +17,19 @@ std::string names_of(const std::vector<Model>& models) {
   sdf::ElementPtr model = source.root().WorldByIndex(0)->Element()->FindElement("model");
   while (model && name_attribute(model) != name) model = model->GetNextElement("model");
   const FileLocation where = model ? source.where(model) : FileLocation{source.file().string(), 0};
-  throw Error(ErrorCode::kBadFile, where, "anchor '" + name + "' " + message);
+  throw Error(ErrorCode::kBadFile, where, "anchor '" + name + "' " + message).about(name);
 }
 
-/// None if the shape is not one that a SUT can be told of.
+/// None if SUTs do not know the shape.
 std::optional<std::pair<uav::AnchorShape, uav::Vec3>> shape_and_size(const Geometry& geometry) {
-  if (const auto* box = std::get_if<BoxGeometry>(&geometry)) {
-    return std::pair(uav::AnchorShape::kBox, box->size_m);
-  }
-  if (const auto* cylinder = std::get_if<CylinderGeometry>(&geometry)) {
-    const double diameter = 2.0 * cylinder->radius_m;
-    return std::pair(uav::AnchorShape::kCylinder,
-                     uav::Vec3{diameter, diameter, cylinder->length_m});
-  }
-  if (const auto* sphere = std::get_if<SphereGeometry>(&geometry)) {
-    const double diameter = 2.0 * sphere->radius_m;
-    return std::pair(uav::AnchorShape::kSphere, uav::Vec3{diameter, diameter, diameter});
-  }
+  using uav::AnchorShape;
+  if (const auto* box = std::get_if<BoxGeometry>(&geometry))
+    return std::pair(AnchorShape::kBox, box->size_m);
+  if (const auto* c = std::get_if<CylinderGeometry>(&geometry))
+    return std::pair(AnchorShape::kCylinder,
+                     uav::Vec3{2.0 * c->radius_m, 2.0 * c->radius_m, c->length_m});
+  if (const auto* sphere = std::get_if<SphereGeometry>(&geometry))
+    return std::pair(AnchorShape::kSphere, 2.0 * sphere->radius_m * uav::Vec3{1.0, 1.0, 1.0});
   return std::nullopt;
 }
 
@@ -42,7 +38,8 @@ std::optional<std::pair<uav::AnchorShape, uav::Vec3>> shape_and_size(const Geome
 PlacedAnchor find_anchor(const SdfSource& source, const World& world, const std::string& name) {
   const auto model = std::ranges::find(world.models, name, &Model::name);
   if (model == world.models.end()) {
-    refuse_anchor(source, name, "is no model of the world; models are " + names_of(world.models));
+    refuse_anchor(source, name,
+                  "is not a model of the world; its models are " + names_of(world.models));
   }
   std::size_t visuals = 0;
   const Link* link = nullptr;
@@ -52,13 +49,13 @@ PlacedAnchor find_anchor(const SdfSource& source, const World& world, const std:
   }
   if (visuals != 1) {
     refuse_anchor(source, name,
-                  "has " + std::to_string(visuals) + " visuals; an anchor has exactly one");
+                  "has " + std::to_string(visuals) + " visuals; an anchor must have exactly one");
   }
   const Visual& visual = link->visuals.front();
   const auto shape = shape_and_size(visual.geometry);
-  if (!shape) refuse_anchor(source, name, "is neither a box nor a cylinder nor a sphere");
+  if (!shape) refuse_anchor(source, name, "is not a box, cylinder or sphere");
   if (!visual.material.albedo_map.empty()) {
-    refuse_anchor(source, name, "is textured; an anchor has one colour, its <diffuse>");
+    refuse_anchor(source, name, "has a texture; an anchor must have one colour, its <diffuse>");
   }
   return {{name, shape->first, shape->second, visual.material.diffuse_rgb},
           model->X_WM * link->X_ML * visual.X_LV};

@@ -1,3 +1,6 @@
+// Assembles a World from the parts that the other files of this library convert: models with their
+// links, lights, physics and scene from the world's file, then the UAVs, then the anchors.
+
 #include "sdf_convert.h"
 
 #include <cmath>
@@ -13,20 +16,16 @@ using uav::Pose;
 
 namespace {
 
-FileLocation whole_file(const SdfSource& source) {
-  return {source.file().string(), 0};
-}
-
 /// @param before the world's moving links so far
 void require_few_moving_links(const SdfSource& source, const sdf::Model& model,
                               std::size_t before) {
   if (before + model.LinkCount() <= kMaxMovingLinks) return;
   refuse(source, model.LinkByIndex(kMaxMovingLinks - before)->Element(),
-         "is one too many: a world may have " + std::to_string(kMaxMovingLinks) +
-             " links that move; make the models <static> that need not");
+         "exceeds the limit of " + std::to_string(kMaxMovingLinks) +
+             " moving links of a world; make models that need not move <static>");
 }
 
-/// Adds a model and, behind it, the models nested in it, each as one of its own.
+/// Adds a model and, behind it, the models nested in it, each as a separate model.
 void add_model(const SdfSource& source, const sdf::Model& model, const Pose& X_WP,
                const std::string& prefix, bool parent_is_static, World& world) {
   Model result;
@@ -53,14 +52,15 @@ void add_model(const SdfSource& source, const sdf::Model& model, const Pose& X_W
   }
 }
 
-/// Lights of moving links and nested models that would move with their parents.
+/// Warns of lights and nested models that would move with their parents.
 void warn_of_lost_motion(const SdfSource& source, const sdf::Model& model, bool parent_is_static,
                          const WarningSink& warn) {
   const bool is_static = parent_is_static || model.Static();
   for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
     const sdf::Model& nested = *model.ModelByIndex(i);
     if (!is_static) {
-      warn_at(source, nested.Element(), "is nested in a dynamic model; it moves on its own", warn);
+      warn_at(source, nested.Element(),
+              "is nested in a dynamic model; it moves independently of that model", warn);
     }
     warn_of_lost_motion(source, nested, is_static, warn);
   }
@@ -68,7 +68,7 @@ void warn_of_lost_motion(const SdfSource& source, const sdf::Model& model, bool 
     const sdf::Link& link = *model.LinkByIndex(i);
     for (std::uint64_t k = 0; k < link.LightCount(); ++k) {
       warn_at(source, link.LightByIndex(k)->Element(),
-              "is on a dynamic model; it stays where it is at the start", warn);
+              "is on a dynamic model; it stays at its start pose", warn);
     }
   }
 }
@@ -76,8 +76,7 @@ void warn_of_lost_motion(const SdfSource& source, const sdf::Model& model, bool 
 double read_gravity(const SdfSource& source, const sdf::World& world) {
   const auto gravity = world.Gravity();
   if (gravity.X() != 0.0 || gravity.Y() != 0.0 || gravity.Z() >= 0.0) {
-    refuse(source, world.Element()->FindElement("gravity"),
-           "must point down, along -z: UAVs fly in no other");
+    refuse(source, world.Element()->FindElement("gravity"), "must point down, along -z");
   }
   return -gravity.Z();
 }
@@ -103,9 +102,10 @@ void read_scene(const sdf::Scene* scene, World& world) {
 
 World read_world(const SdfSource& source, const WarningSink& warn) {
   if (source.root().WorldCount() != 1) {
-    throw Error(ErrorCode::kBadFile, whole_file(source),
+    throw Error(ErrorCode::kBadFile, {source.file().string(), 0},
                 "has " + std::to_string(source.root().WorldCount()) +
-                    " <world> elements; a world's file holds exactly one");
+                    " <world> elements; a world file must have exactly one")
+        .about("<world>");
   }
   const sdf::World& sdf_world = *source.root().WorldByIndex(0);
 
@@ -134,7 +134,8 @@ void add_uavs(const WorldRequest& request, const WarningSink& warn, World& world
   for (const UavPlacement& placement : request.uavs) {
     if (!names.insert(placement.name).second) {
       throw Error(ErrorCode::kBadFile,
-                  "two UAVs have the name '" + placement.name + "'; give each a name of its own");
+                  "two UAVs have the name '" + placement.name + "'; give each a unique name")
+          .about(placement.name);
     }
     const SdfSource source(placement.model);
     check_elements(source, SdfPurpose::kUav, warn);

@@ -1,6 +1,8 @@
 #include "sdf_convert.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 namespace tether::sim {
@@ -32,10 +34,8 @@ constexpr NumberElement kNumbers[] = {
 };
 
 const NumberElement* find_number(const std::string& name) {
-  for (const NumberElement& number : kNumbers) {
-    if (name == number.name) return &number;
-  }
-  return nullptr;
+  const auto* const found = std::ranges::find(kNumbers, name, &NumberElement::name);
+  return found == std::end(kNumbers) ? nullptr : found;
 }
 
 std::string allowed_elements() {
@@ -78,7 +78,8 @@ void read_children(const SdfSource& source, const sdf::ElementPtr& multirotor,
     } else if (const NumberElement* number = find_number(child->GetName())) {
       airframe.*number->member = read_number(source, child, number->may_be_zero);
     } else {
-      refuse(source, child, "is no parameter of a multirotor; allowed are " + allowed_elements());
+      refuse(source, child,
+             "is not a parameter of a multirotor; allowed are " + allowed_elements());
     }
   });
 }
@@ -89,8 +90,8 @@ void read_body(const SdfSource& source, const sdf::ElementPtr& model, const Link
   const uav::Pose& X_LI = body.X_LI;
   if (uav::norm(X_LI.p) > 1e-9 || std::abs(X_LI.q.w) < 1.0 - 1e-12) {
     refuse(source, model,
-           "has its centre of mass off the origin of link '" + body.name +
-               "', or principal axes turned against it; both must coincide");
+           "has a centre of mass or principal axes that differ from the frame of link '" +
+               body.name + "'; they must coincide with it");
   }
   airframe.mass_kg = body.mass_kg;
   airframe.inertia_kg_m2 = body.inertia_kg_m2;
@@ -103,7 +104,7 @@ MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPt
   const sdf::ElementPtr multirotor = model->FindElement("tether:multirotor");
   if (!multirotor) {
     refuse(source, model,
-           "has no <tether:multirotor>, the rotors and limits that make a model a UAV");
+           "has no <tether:multirotor>; a UAV needs one, with its rotors and limits");
   }
   MultirotorParameters airframe;
   for (const NumberElement& number : kNumbers) required(source, multirotor, number.name);
@@ -119,7 +120,7 @@ MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPt
                               airframe.thrust_coefficient * airframe.max_rotor_speed_rad_s *
                               airframe.max_rotor_speed_rad_s;
   if (max_thrust_N <= airframe.mass_kg * gravity_m_s2) {
-    refuse(source, multirotor, "cannot lift its own weight with all rotors at full speed");
+    refuse(source, multirotor, "has less thrust than weight with all rotors at full speed");
   }
   return airframe;
 }

@@ -1,3 +1,7 @@
+// Checks every element of a parsed SDF file before it is converted. Tables list the elements that
+// Tether represents; a walk over the file warns of all others and applies the rules of values
+// (sdf_rules.h). Some checks of lights and lenses need more than one element.
+
 #include "sdf_check.h"
 
 #include "sdf_numbers.h"
@@ -146,23 +150,24 @@ bool shows_inner_angle(const sdf::ElementPtr& light, const sdf::ElementPtr& angl
          falloff->Get<double>() > 0.0;
 }
 
-/// Warns of what other simulators would show of a light, and Tether does not. libsdformat adds
-/// these elements to lights without them; only those of the file have a line.
+/// Warns of what external simulators show of a light and the embedded one does not. libsdformat
+/// adds these elements to lights without them; only those of the file have a line.
 void check_light_shape(const SdfSource& source, const std::string& parent,
                        const sdf::ElementPtr& element, const WarningSink& warn) {
   if (!element->LineNumber()) return;
   const sdf::ElementPtr light = element->GetParent()->GetParent();
   if (parent == "attenuation" && element->GetName() == "range" && shows_range(light, element)) {
-    warn_at(source, element,
-            "is not represented in the embedded simulator, whose lights do not end; give at least "
-            "1000 m",
-            warn);
+    warn_at(
+        source, element,
+        "is not represented in the embedded simulator, whose lights have no range limit; use at "
+        "least 1000 m",
+        warn);
   }
   if (parent == "spot" && element->GetName() == "inner_angle" &&
       shows_inner_angle(light, element)) {
     warn_at(source, element,
-            "is not represented in the embedded simulator, whose lights fall off from their axis "
-            "on; give 0",
+            "is not represented in the embedded simulator, whose spot lights have no inner cone; "
+            "use 0",
             warn);
   }
 }
@@ -174,8 +179,8 @@ void check_distortion_center(const SdfSource& source, const std::string& parent,
   const auto center = element->Get<ignition::math::Vector2d>();
   if (center.X() == 0.5 && center.Y() == 0.5) return;
   warn_at(source, element,
-          "is not represented: the distortion is about the optical axis; give 0.5 0.5, and <cx> "
-          "and <cy> of <lens> for a principal point that is not in the middle",
+          "is not represented: the distortion is centred on the optical axis; use 0.5 0.5, and set "
+          "a principal point that is not in the middle by <cx> and <cy> of <lens>",
           warn);
 }
 
@@ -220,12 +225,12 @@ class Walk {
   std::string unrepresented(const std::string& parent, const sdf::ElementPtr& element) const {
     const std::string& name = element->GetName();
     if (name == "tether:multirotor") {
-      return "is ignored here: UAVs are placed by the scenario, not by the world";
+      return "is ignored: the scenario places the UAVs, not the world";
     }
     if (name.starts_with("tether:"))
-      return "is no element of Tether's in a <" + parent + ">; ignored";
-    if (name == "sensor") return "belongs to no UAV; left out";
-    // Another simulator reads the world itself, but has its UAVs from here.
+      return "is not an element that Tether knows in a <" + parent + ">; ignored";
+    if (name == "sensor") return "is not on a UAV; left out";
+    // External simulators read the world themselves, but receive the UAVs from here.
     const bool is_for_all = purpose_ == SdfPurpose::kUav;
     const std::string where = is_for_all ? "" : " in the embedded simulator";
     if (parent == "geometry") return "is a shape that is not represented" + where + "; left out";
@@ -245,7 +250,8 @@ void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const std:
 }
 
 void refuse(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message) {
-  throw Error(ErrorCode::kBadFile, source.where(element), describe(element) + " " + message);
+  const std::string subject = describe(element);
+  throw Error(ErrorCode::kBadFile, source.where(element), subject + " " + message).about(subject);
 }
 
 std::vector<double> read_numbers(const SdfSource& source, const sdf::ElementPtr& element,

@@ -17,7 +17,8 @@ void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSi
 /// Warns about an element: "file:line: <what> message".
 void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message,
              const WarningSink& warn);
-/// Refuses an element: the error says where, names the element, and adds `message`.
+/// Refuses an element. The error has the element's place, `describe(element)` as its subject, and
+/// `message`.
 [[noreturn]] void refuse(const SdfSource& source, const sdf::ElementPtr& element,
                          const std::string& message);
 

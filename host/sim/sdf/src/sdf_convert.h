@@ -9,7 +9,7 @@
 #include <tether/sim/world.h>
 
 /// From libsdformat's objects to ours, one part each. Values have been checked before
-/// (`check_elements`); what is found wrong here is what needs more than one element to see.
+/// (`check_elements`); errors found here involve more than one element.
 namespace tether::sim {
 
 uav::Vec3 to_vec3(const ignition::math::Vector3d& v);
@@ -45,7 +45,8 @@ Uav read_uav(const SdfSource& source, const UavPlacement& placement, double grav
              const WarningSink& warn);
 
 /// The model `name` of the world as an anchor.
-/// @throws Error(kBadFile) if it is no model, or not one plain box, cylinder or sphere.
+/// @throws Error(kBadFile) about `name`: not a model, or not one untextured box, cylinder or
+/// sphere.
 PlacedAnchor find_anchor(const SdfSource& source, const World& world, const std::string& name);
 
 }  // namespace tether::sim

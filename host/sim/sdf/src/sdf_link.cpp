@@ -20,7 +20,7 @@ sdf::ElementPtr find_path(sdf::ElementPtr element, std::initializer_list<const c
 
 MeshGeometry read_mesh(const SdfSource& source, const sdf::Mesh& mesh) {
   const sdf::ElementPtr uri = find_path(mesh.Element(), {"uri"});
-  if (!uri || mesh.Uri().empty()) refuse(source, mesh.Element(), "names no file in <uri>");
+  if (!uri || mesh.Uri().empty()) refuse(source, mesh.Element(), "has no file name in <uri>");
   MeshGeometry geometry{source.find_resource(uri, mesh.Uri()), mesh.Submesh(),
                         to_vec3(mesh.Scale())};
   std::string extension = geometry.file.extension().string();
@@ -33,26 +33,15 @@ MeshGeometry read_mesh(const SdfSource& source, const sdf::Mesh& mesh) {
 
 /// None for shapes that are not represented: the check of the elements has warned of them.
 std::optional<Geometry> read_geometry(const SdfSource& source, const sdf::Geometry& geometry) {
-  switch (geometry.Type()) {
-    case sdf::GeometryType::BOX:
-      return BoxGeometry{to_vec3(geometry.BoxShape()->Size())};
-    case sdf::GeometryType::CYLINDER:
-      return CylinderGeometry{geometry.CylinderShape()->Radius(),
-                              geometry.CylinderShape()->Length()};
-    case sdf::GeometryType::SPHERE:
-      return SphereGeometry{geometry.SphereShape()->Radius()};
-    case sdf::GeometryType::CAPSULE:
-      return CapsuleGeometry{geometry.CapsuleShape()->Radius(), geometry.CapsuleShape()->Length()};
-    case sdf::GeometryType::ELLIPSOID:
-      return EllipsoidGeometry{to_vec3(geometry.EllipsoidShape()->Radii())};
-    case sdf::GeometryType::PLANE:
-      return PlaneGeometry{to_vec3(geometry.PlaneShape()->Normal()),
-                           geometry.PlaneShape()->Size().X(), geometry.PlaneShape()->Size().Y()};
-    case sdf::GeometryType::MESH:
-      return read_mesh(source, *geometry.MeshShape());
-    default:
-      return std::nullopt;
-  }
+  if (const auto* box = geometry.BoxShape()) return BoxGeometry{to_vec3(box->Size())};
+  if (const auto* c = geometry.CylinderShape()) return CylinderGeometry{c->Radius(), c->Length()};
+  if (const auto* sphere = geometry.SphereShape()) return SphereGeometry{sphere->Radius()};
+  if (const auto* c = geometry.CapsuleShape()) return CapsuleGeometry{c->Radius(), c->Length()};
+  if (const auto* e = geometry.EllipsoidShape()) return EllipsoidGeometry{to_vec3(e->Radii())};
+  if (const auto* plane = geometry.PlaneShape())
+    return PlaneGeometry{to_vec3(plane->Normal()), plane->Size().X(), plane->Size().Y()};
+  if (const auto* mesh = geometry.MeshShape()) return read_mesh(source, *mesh);
+  return std::nullopt;
 }
 
 std::filesystem::path read_albedo_map(const SdfSource& source, const sdf::ElementPtr& material) {

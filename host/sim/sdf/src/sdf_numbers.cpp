@@ -1,3 +1,6 @@
+// Checks the text of every number in an SDF document against libsdformat's own description of the
+// element or attribute: the XML and the descriptions are walked in parallel.
+
 #include "sdf_numbers.h"
 
 #include "sdf_rules.h"
@@ -156,8 +159,7 @@ class NumberCheck {
     const std::string text = trimmed(text_of(xml));
     const bool is_identity = text.empty() && description->GetValue()->GetTypeName() == "pose";
     if (is_identity || is_complete(*type, text)) return;
-    refuse_text(xml,
-                describe_xml(xml) + " is '" + text + "'; it must be " + allowed_text(xml, *type));
+    refuse_text(xml, "is '" + text + "'; it must be " + allowed_text(xml, *type));
   }
 
   void check_attributes(const XMLElement& xml, const sdf::ElementPtr& description) const {
@@ -166,13 +168,15 @@ class NumberCheck {
       const NumericType* type = numeric_type(xml, description->GetAttribute(attribute->Name()));
       const std::string text = trimmed(attribute->Value());
       if (type == nullptr || is_complete(*type, text)) continue;
-      refuse_text(xml, describe_xml(xml) + " has " + attribute->Name() + "='" + text +
-                           "'; it must be " + type->words + ", without unit");
+      refuse_text(xml, std::string("has ") + attribute->Name() + "='" + text + "'; it must be " +
+                           type->words + ", without unit");
     }
   }
 
   [[noreturn]] void refuse_text(const XMLElement& xml, const std::string& message) const {
-    throw Error(ErrorCode::kBadFile, {file_, xml.GetLineNum()}, message);
+    const std::string subject = describe_xml(xml);
+    throw Error(ErrorCode::kBadFile, {file_, xml.GetLineNum()}, subject + " " + message)
+        .about(subject);
   }
 
   const std::string& file_;

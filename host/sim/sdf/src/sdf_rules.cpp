@@ -8,7 +8,7 @@ namespace tether::sim {
 
 namespace {
 
-/// Beyond what a scene can hold: single-precision rendering and contacts fail long before.
+/// Limits of what a scene can hold: single-precision rendering and contacts fail long before.
 constexpr double kMaxLength_m = 1e5;
 constexpr double kMaxMass_kg = 1e6;
 
@@ -18,26 +18,11 @@ bool is_positive(double value) {
 bool is_not_negative(double value) {
   return value >= 0.0;
 }
-bool is_fraction(double value) {
-  return value >= 0.0 && value <= 1.0;
-}
 bool is_length(double value) {
   return value > 0.0 && value <= kMaxLength_m;
 }
-bool is_distance(double value) {
-  return value >= 0.0 && value <= kMaxLength_m;
-}
 bool is_coordinate(double value) {
   return std::abs(value) <= kMaxLength_m;
-}
-bool is_mass(double value) {
-  return value > 0.0 && value <= kMaxMass_kg;
-}
-bool is_field_of_view(double value) {
-  return value > 0.0 && value < std::numbers::pi;
-}
-bool is_image_edge(double value) {
-  return value >= 1.0 && value <= 4096.0;
 }
 
 constexpr const char* kPositiveText = "it must be greater than 0";
@@ -50,14 +35,18 @@ const ValueRule kInertia{is_positive, kPositiveText, "kg m^2"};
 const ValueRule kNotNegative{is_not_negative, kNotNegativeText};
 const ValueRule kAngle{is_not_negative, kNotNegativeText, "radians"};
 const ValueRule kRate{is_not_negative, kNotNegativeText, "hertz"};
-const ValueRule kFraction{is_fraction, "it must be between 0 and 1"};
+const ValueRule kFraction{[](double v) { return v >= 0.0 && v <= 1.0; },
+                          "it must be between 0 and 1"};
 const ValueRule kLength{is_length, "it must be greater than 0 and at most 100000 m", "metres"};
-const ValueRule kDistance{is_distance, "it must not be negative, and at most 100000 m", "metres"};
+const ValueRule kDistance{[](double v) { return v >= 0.0 && v <= kMaxLength_m; },
+                          "it must be at least 0 and at most 100000 m", "metres"};
 const ValueRule kScale{is_length, "it must be greater than 0 and at most 100000"};
-const ValueRule kMass{is_mass, "it must be greater than 0 and at most 1000000 kg", "kilograms"};
-const ValueRule kFieldOfView{is_field_of_view, "it must be between 0 and pi radians, both excluded",
-                             "radians"};
-const ValueRule kImageEdge{is_image_edge, "it must be between 1 and 4096 pixels", "pixels"};
+const ValueRule kMass{[](double v) { return v > 0.0 && v <= kMaxMass_kg; },
+                      "it must be greater than 0 and at most 1000000 kg", "kilograms"};
+const ValueRule kFieldOfView{[](double v) { return v > 0.0 && v < std::numbers::pi; },
+                             "it must be greater than 0 and less than pi radians", "radians"};
+const ValueRule kImageEdge{[](double v) { return v >= 1.0 && v <= 4096.0; },
+                           "it must be at least 1 and at most 4096 pixels", "pixels"};
 const ValueRule kPose{is_coordinate, "it must be within 100000 m of its frame's origin",
                       "metres and radians", 3};
 const ValueRule kPosition{is_coordinate, "it must be within 100000 m of its frame's origin",

@@ -10,10 +10,10 @@ struct ValueRule {
   bool (*holds)(double value);
   const char* allowed;    ///< in words, to end an error message with
   const char* unit = "";  ///< in words; empty where the numbers have none
-  std::size_t count = 8;  ///< of how many numbers it speaks, from the first on
+  std::size_t count = 8;  ///< how many numbers it applies to, from the first on
 };
 
-/// The rule for the element `child` in `parent`; nullptr where any finite number will do.
+/// The rule for the element `child` in `parent`; nullptr if any finite number is allowed.
 const ValueRule* find_rule(const std::string& parent, const std::string& child);
 
 }  // namespace tether::sim

@@ -1,3 +1,6 @@
+// Converts SDF's cameras, IMUs and lidars, with their noise. A lidar becomes a rangefinder whose x
+// axis points to the middle of the scan.
+
 #include "sdf_convert.h"
 
 #include <cmath>
@@ -13,7 +16,7 @@ namespace {
 Noise read_noise(const SdfSource& source, const sdf::Noise& noise, const WarningSink& warn) {
   if (noise.Type() == sdf::NoiseType::NONE) return {};
   if (noise.Type() == sdf::NoiseType::GAUSSIAN_QUANTIZED) {
-    warn_at(source, noise.Element(), "is quantized, which is not simulated; taken as gaussian",
+    warn_at(source, noise.Element(), "is quantized, which is not simulated; treated as gaussian",
             warn);
   }
   return {noise.Mean(),
@@ -46,7 +49,7 @@ CameraModel read_camera(const SdfSource& source, const sdf::Camera& camera,
                         const WarningSink& warn) {
   if (camera.NearClip() >= camera.FarClip()) {
     refuse(source, camera.Element()->FindElement("clip"),
-           "has its near plane behind its far plane");
+           "has a near plane that is not in front of its far plane");
   }
   const sdf::PixelFormatType format = camera.PixelFormat();
   if (format != sdf::PixelFormatType::RGB_INT8 &&
@@ -87,7 +90,7 @@ uav::Quat ray_attitude(double azimuth_rad, double elevation_rad) {
 }
 
 /// Where the middle of a scan points. The sensor's x axis is turned there, so that what a profile
-/// puts in place of the scan (a cone, another mounting) looks where the scan did.
+/// puts in place of the scan (a cone, another mounting) points where the scan did.
 uav::Quat scan_middle(const sdf::Lidar& lidar) {
   return ray_attitude(
       0.5 * (lidar.HorizontalScanMinAngle().Radian() + lidar.HorizontalScanMaxAngle().Radian()),
@@ -104,7 +107,7 @@ std::vector<uav::Vec3> read_rays(const SdfSource& source, const sdf::Lidar& lida
   if (count > kMaxRays) {
     refuse(source, lidar.Element(),
            "has " + std::to_string(count) + " rays; at most " + std::to_string(kMaxRays) +
-               " are simulated: give it fewer <samples>");
+               " are simulated; reduce <samples>");
   }
   const uav::Quat to_middle = uav::inverse(scan_middle(lidar));
   std::vector<uav::Vec3> rays;

@@ -1,3 +1,7 @@
+// Reads one SDF file with libsdformat. tinyxml2 reads it first, for the lines of XML errors and of
+// custom elements, and for `check_numbers`. libsdformat's typed errors and warnings are collected
+// by its policies; its console is captured for those that version 12 reports only there.
+
 #include "sdf_source.h"
 
 #include "sdf_numbers.h"
@@ -40,7 +44,7 @@ class QuietConsole {
   std::ostringstream text_;
 };
 
-/// What no file system takes as a path, such as too long a name, is nothing either.
+/// False also for what cannot be a path, such as a name that is too long.
 bool is_folder(const fs::path& path) {
   std::error_code ignored;
   return fs::is_directory(path, ignored);
@@ -58,7 +62,7 @@ void add_folders_of_variable(const char* variable, std::vector<fs::path>& folder
   }
 }
 
-/// Where model:// leads: around the file first, then where Gazebo would look.
+/// Where model:// leads: around the file first, then Gazebo's own variables.
 std::vector<fs::path> model_folders(const fs::path& file) {
   const fs::path folder = file.parent_path();
   std::vector<fs::path> folders{folder / "models", folder.parent_path() / "models",
@@ -68,8 +72,8 @@ std::vector<fs::path> model_folders(const fs::path& file) {
   return folders;
 }
 
-/// Longer messages of libsdformat, which may quote a whole file, are cut: no person reads more, and
-/// std::regex needs stack for every character.
+/// Longer messages of libsdformat, which may quote a whole file, are cut: std::regex needs stack
+/// for every character.
 constexpr std::size_t kLongestMessage = 2000;
 
 /// One line, without trailing full stop.
@@ -82,7 +86,7 @@ std::string one_line(const std::string& text) {
 }
 
 /// What the value at the end of an XML path ("/sdf/.../link[@name="l"]/inertial/mass") must be, as
-/// the end of a message; empty where no rule speaks of it.
+/// the end of a message; empty where it has no rule.
 std::string allowed_value(const std::string& xml_path) {
   const std::size_t slash = xml_path.rfind('/');
   if (slash == std::string::npos) return "";
@@ -93,7 +97,7 @@ std::string allowed_value(const std::string& xml_path) {
   return rule != nullptr ? std::string("; ") + rule->allowed : "";
 }
 
-/// Where libsdformat goes on in spite of it.
+/// libsdformat continues after these.
 bool is_warning(const sdf::Error& error) {
   return error.Code() == sdf::ErrorCode::ATTRIBUTE_INCORRECT_TYPE ||
          error.Code() == sdf::ErrorCode::ELEMENT_DEPRECATED;
@@ -161,14 +165,14 @@ SdfSource::~SdfSource() = default;
 SdfSource::SdfSource(const fs::path& file) : file_(fs::absolute(file).lexically_normal()) {
   if (is_folder(file_)) {
     throw Error(ErrorCode::kBadFile, {file_.string(), 0},
-                "is a directory; name the SDF file in it, such as model.sdf");
+                "is a directory; give the SDF file in it, such as model.sdf");
   }
   if (!is_file(file_)) {
     throw Error(ErrorCode::kBadFile, {file_.string(), 0}, "there is no such file");
   }
   model_folders_ = model_folders(file_);
 
-  // XML first: libsdformat does not tell the line of an XML error.
+  // XML first: libsdformat does not report the line of an XML error.
   const tinyxml2::XMLDocument* xml = xml_of(file_.string());
   if (xml->Error()) {
     require_a_handle_for(file_.string());
@@ -177,12 +181,12 @@ SdfSource::SdfSource(const fs::path& file) : file_(fs::absolute(file).lexically_
   }
   if (xml->RootElement() == nullptr) {
     throw Error(ErrorCode::kBadFile, {file_.string(), 0},
-                "has no element; an SDF file begins with <sdf>");
+                "has no element; the outermost element of an SDF file must be <sdf>");
   }
   if (std::string(xml->RootElement()->Name()) != "sdf") {
     throw Error(ErrorCode::kBadFile, {file_.string(), xml->RootElement()->GetLineNum()},
                 "the outermost element is <" + std::string(xml->RootElement()->Name()) +
-                    ">; an SDF file begins with <sdf>");
+                    ">; it must be <sdf>");
   }
   check_numbers(file_.string(), *xml);
   parse();
@@ -214,7 +218,7 @@ void SdfSource::parse() {
     // Of the file or of one that it includes; libsdformat does not say which.
     throw Error(ErrorCode::kBadFile, {file_.string(), 0},
                 "libsdformat cannot read it (" + std::string(error.what()) +
-                    "); look at <sdf version='...'> here and in what it includes");
+                    "); check <sdf version='...'> here and in included files");
   }
   for (const sdf::Error& error : errors_)
     if (is_warning(error)) warnings_.push_back(located(where(error), one_line(error.Message())));
@@ -256,7 +260,7 @@ void SdfSource::throw_first_error() const {
   }
   if (first.Code() == sdf::ErrorCode::URI_LOOKUP) {
     reason +=
-        "; a model:// is looked for next to the file, in its models/ and ../models/, and in "
+        "; model:// is searched for next to the file, in its models/ and ../models/, and in "
         "GAZEBO_MODEL_PATH";
   }
   throw Error(ErrorCode::kBadFile, where(first), reason);
@@ -339,11 +343,12 @@ fs::path SdfSource::find_resource(const sdf::ElementPtr& element, const std::str
     if (is_file(candidate))
       return *resources_.insert(fs::absolute(candidate).lexically_normal()).first;
   }
+  const std::string subject = describe(element);
   throw Error(ErrorCode::kBadFile, where(element),
-              describe(element) + " names the file '" + uri +
-                  "', which does not exist (looked for " +
+              subject + " names the file '" + uri + "', which does not exist (searched " +
                   candidates.front().lexically_normal().string() +
-                  (candidates.size() > 1 ? " and in the model path)" : ")"));
+                  (candidates.size() > 1 ? " and the model path)" : ")"))
+      .about(subject);
 }
 
 }  // namespace tether::sim

@@ -25,9 +25,8 @@ namespace tether::sim {
 /// is read.
 class SdfSource {
  public:
-  /// @throws Error(kBadFile) where the file is missing or a directory, is no XML, no SDF, or has a
-  /// value
-  ///   that SDF does not allow or would read in part only ("1 kg").
+  /// @throws Error(kBadFile) if the file is missing, a directory, not XML or not SDF, or has a
+  /// value that SDF does not allow or would read in part only ("1 kg").
   explicit SdfSource(const std::filesystem::path& file);
   ~SdfSource();
   SdfSource(const SdfSource&) = delete;
@@ -45,7 +44,7 @@ class SdfSource {
   FileLocation where(const sdf::ElementPtr& element) const;
 
   /// The file that `uri` means at `element`: model://, file://, or relative to the element's file.
-  /// @throws Error(kBadFile) where there is none.
+  /// @throws Error(kBadFile) about the element if there is none.
   std::filesystem::path find_resource(const sdf::ElementPtr& element, const std::string& uri) const;
 
   /// Every file that this one was made of so far: itself, what it includes, and the resources

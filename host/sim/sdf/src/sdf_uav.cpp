@@ -29,7 +29,7 @@ void warn_of_moving_joints(const SdfSource& source, const sdf::Model& model,
   for (std::uint64_t i = 0; i < model.JointCount(); ++i) {
     const sdf::Joint& joint = *model.JointByIndex(i);
     if (joint.Type() == sdf::JointType::FIXED) continue;
-    warn_at(source, joint.Element(), "can move, which is not represented; ignored", warn);
+    warn_at(source, joint.Element(), "is a moving joint, which is not represented; ignored", warn);
   }
 }
 
@@ -92,7 +92,8 @@ Uav read_uav(const SdfSource& source, const UavPlacement& placement, double grav
   const sdf::Model* model = source.root().Model();
   if (model == nullptr) {
     throw Error(ErrorCode::kBadFile, {source.file().string(), 0},
-                "has no <model>; a UAV's file holds exactly one");
+                "has no <model>; a UAV's file must have exactly one")
+        .about("<model>");
   }
   const sdf::Link& body = find_body_link(source, *model);
 

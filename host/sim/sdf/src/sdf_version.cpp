@@ -31,8 +31,8 @@ struct Reading {
 [[noreturn]] void refuse(const Reading& reading, int line, const std::string& what,
                          const std::string& remedy) {
   throw Error(ErrorCode::kBadFile, {reading.file, line},
-              what + ", of which " + reading.reader + " reads up to " + to_string(reading.newest) +
-                  "; " + remedy + ", or fly in another simulator");
+              what + "; " + reading.reader + " reads SDF up to " + to_string(reading.newest) +
+                  ". " + remedy + ", or use another simulator");
 }
 
 void check_version(const Reading& reading, const tinyxml2::XMLElement& root) {
@@ -41,16 +41,16 @@ void check_version(const Reading& reading, const tinyxml2::XMLElement& root) {
   if (text == nullptr || std::sscanf(text, "%d.%d", &version.major, &version.minor) != 2) return;
   if (version <= reading.newest) return;
   refuse(reading, root.GetLineNum(), "is SDF " + to_string(version),
-         "write it as SDF " + to_string(reading.newest) +
-             " (often the version's number is all that has to change)");
+         "Write it as SDF " + to_string(reading.newest) +
+             " (often only the version number must change)");
 }
 
-/// A later libsdformat reads these whatever version the file says; an older one skips them.
+/// A later libsdformat reads these in files of any version; an older one skips them.
 void check_shapes(const Reading& reading, const tinyxml2::XMLElement& element) {
   const std::string name = element.Name();
   if (name == "capsule" || name == "ellipsoid") {
-    refuse(reading, element.GetLineNum(), "<" + name + "> came with SDF 1.8",
-           "use another shape or a mesh");
+    refuse(reading, element.GetLineNum(), "<" + name + "> was introduced in SDF 1.8",
+           "Use another shape or a mesh");
   }
   for (const auto* child = element.FirstChildElement(); child != nullptr;
        child = child->NextSiblingElement()) {
@@ -66,7 +66,7 @@ void check_sdf_version(const World& world, const SdfReader& reader) {
   for (const std::filesystem::path& file : world.sdf_files) {
     tinyxml2::XMLDocument xml;
     if (xml.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS || xml.RootElement() == nullptr) {
-      throw Error(ErrorCode::kBadFile, {file.string(), 0}, "cannot be read any more");
+      throw Error(ErrorCode::kBadFile, {file.string(), 0}, "can no longer be read");
     }
     const Reading reading{file.string(), reader.name, newest};
     check_version(reading, *xml.RootElement());

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <set>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/base/units.h>
-#include <tether/sim_sdf/load_world.h>
 
 /// The worlds and models that Tether ships with.
 namespace tether::sim {
@@ -22,34 +22,24 @@ using uav::Vec3;
 const std::filesystem::path kSource = TETHER_SOURCE_DIR;
 const std::filesystem::path kHummingbird = kSource / "data/models/hummingbird/model.sdf";
 
-Loaded load_shipped(const std::string& world, const Vec3& start) {
-  return load({kSource / "data/worlds" / (world + ".sdf"),
-               {{"uav", kHummingbird, start, 0.0}},
-               {"blue_box"}});
-}
-
-struct Shipped {
-  const char* world;
-  Vec3 start;
-};
-
 /// Each world is read once for all of its tests.
-const Loaded& load_once(const Shipped& shipped) {
+const Loaded& load_once(const std::string& world) {
   static std::map<std::string, Loaded> worlds;
-  const auto known = worlds.find(shipped.world);
+  const auto known = worlds.find(world);
   if (known != worlds.end()) return known->second;
-  return worlds[shipped.world] = load_shipped(shipped.world, shipped.start);
+  const Vec3 start{world == "room" ? 1.2 : 0.0, 0.0, 1.2};
+  return worlds[world] = load({kSource / "data/worlds" / (world + ".sdf"),
+                               {{"uav", kHummingbird, start, 0.0}},
+                               {"blue_box"}});
 }
 
-class ShippedWorld : public ::testing::TestWithParam<Shipped> {
+class ShippedWorld : public ::testing::TestWithParam<const char*> {
  protected:
   const Loaded& loaded_ = load_once(GetParam());
 };
 
-INSTANTIATE_TEST_SUITE_P(Worlds, ShippedWorld,
-                         ::testing::Values(Shipped{"room", {1.2, 0.0, 1.2}},
-                                           Shipped{"corridor", {0.0, 0.0, 1.2}}),
-                         [](const auto& given) { return std::string(given.param.world); });
+INSTANTIATE_TEST_SUITE_P(Worlds, ShippedWorld, ::testing::Values("room", "corridor"),
+                         [](const auto& given) { return std::string(given.param); });
 
 TEST_P(ShippedWorld, LoadsWithoutAWarning) {
   EXPECT_THAT(loaded_.warnings, IsEmpty());
@@ -114,15 +104,14 @@ TEST_P(ShippedWorld, HasNoOtherSaturatedBlueButHasBluishClutter) {
 }
 
 TEST(ShippedWorlds, CorridorHasTheAnchorOnTheLeftWallEightMetresAlong) {
-  const auto anchor = load_shipped("corridor", {0, 0, 1.2}).world.anchors.at(0);
+  const auto anchor = load_once("corridor").world.anchors.at(0);
   EXPECT_EQ(anchor.X_WA.p.x, 8.0);
   EXPECT_NEAR(anchor.X_WA.p.y + 0.5 * anchor.anchor.size_m.y, 1.2, 1e-9);
   EXPECT_EQ(anchor.X_WA.p.z, 1.2);
 }
 
 TEST(Hummingbird, IsTheAirframeOfTheUavLibrary) {
-  const auto loaded = load_shipped("room", {});
-  const uav::MultirotorParameters& file = loaded.world.uavs.at(0).airframe;
+  const uav::MultirotorParameters& file = load_once("room").world.uavs.at(0).airframe;
   const uav::MultirotorParameters code = uav::hummingbird();
   EXPECT_EQ(file.mass_kg, code.mass_kg);
   EXPECT_EQ(file.inertia_kg_m2, code.inertia_kg_m2);
@@ -146,61 +135,42 @@ TEST(Hummingbird, IsTheAirframeOfTheUavLibrary) {
 }
 
 TEST(Hummingbird, CarriesCameraImuAndRangefinder) {
-  const auto sensors = load_shipped("room", {}).world.uavs.at(0).sensors;
+  const auto& sensors = load_once("room").world.uavs.at(0).sensors;
   ASSERT_EQ(sensors.size(), 3u);
   EXPECT_EQ(sensors[0].name, "camera");
   EXPECT_EQ(sensors[0].update_rate_hz, 30.0);
   EXPECT_EQ(sensors[0].X_BS.p, (Vec3{0.1, 0, 0}));
   const auto& camera = std::get<CameraModel>(sensors[0].model);
   EXPECT_EQ(camera.intrinsics.width_px, 640);
-  EXPECT_EQ(camera.intrinsics.height_px, 480);
   EXPECT_NEAR(camera.intrinsics.horizontal_fov_rad(), rad_from_deg(80.0), 1e-6);
-  EXPECT_EQ(camera.pixel_noise.stddev, 0.007);
-
   EXPECT_EQ(sensors[1].name, "imu");
-  EXPECT_EQ(sensors[1].update_rate_hz, 20.0);
-  const auto& imu = std::get<ImuModel>(sensors[1].model);
-  EXPECT_GT(imu.angular_velocity[2].stddev, 0.0);
-  EXPECT_GT(imu.linear_acceleration[0].bias_stddev, 0.0);
-
+  EXPECT_GT(std::get<ImuModel>(sensors[1].model).angular_velocity[2].stddev, 0.0);
   EXPECT_EQ(sensors[2].name, "range");
-  const auto& range = std::get<RangeModel>(sensors[2].model);
-  EXPECT_EQ(range.min_m, 0.04);
-  EXPECT_EQ(range.max_m, 4.0);
-  EXPECT_EQ(range.resolution_m, 0.001);
+  EXPECT_EQ(std::get<RangeModel>(sensors[2].model).max_m, 4.0);
 }
 
-TEST(ShippedMeshes, HaveFewTriangles) {
+TEST(ShippedFiles, AreSmall) {
   for (const char* name : {"chair/chair.obj", "plant/leaves.obj"}) {
     std::ifstream file(kSource / "data/models" / name);
-    ASSERT_TRUE(file.is_open()) << name;
     int triangles = 0;
     for (std::string line; std::getline(file, line);) triangles += line.starts_with("f ") ? 1 : 0;
     EXPECT_GT(triangles, 0) << name;
     EXPECT_LT(triangles, 500) << name;
   }
-}
-
-TEST(ShippedTextures, AreSmall) {
   for (const auto& file : std::filesystem::directory_iterator(kSource / "data/models/textures")) {
     EXPECT_LT(file.file_size(), 100'000u) << file.path();
   }
 }
 
-TEST(ProjectWorlds, NameEveryFileThatTheyWereReadFrom) {
-  const std::filesystem::path root = TETHER_SOURCE_DIR;
-  const World world =
-      load_world({.world = root / "data/worlds/room.sdf", .uavs = {}, .anchors = {}},
-                 [](const std::string&) {});
-  EXPECT_TRUE(world.files.contains(root / "data/worlds/room.sdf"));
-  bool sdf_model = false, texture = false, mesh = false;
+TEST(ShippedFiles, AreAllNamedByTheirWorld) {
+  const World world = load({kSource / "data/worlds/room.sdf", {}, {}}).world;
+  EXPECT_TRUE(world.files.contains(kSource / "data/worlds/room.sdf"));
+  std::set<std::string> extensions;
   for (const auto& file : world.files) {
     EXPECT_TRUE(std::filesystem::is_regular_file(file)) << file;
-    sdf_model |= file.filename() == "model.sdf";
-    texture |= file.extension() == ".png";
-    mesh |= file.extension() == ".obj";
+    extensions.insert(file.extension().string());
   }
-  EXPECT_TRUE(sdf_model && texture && mesh);
+  EXPECT_THAT(extensions, ::testing::IsSupersetOf({".sdf", ".png", ".obj"}));
 }
 
 }  // namespace

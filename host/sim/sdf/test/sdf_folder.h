@@ -3,14 +3,16 @@
 #include <string>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/base/error.h>
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
 #include <tether/sim/world.h>
 #include <tether/sim_sdf/load_world.h>
 
-/// SDF files for a scratch folder, and what `load_world` says of them.
+/// SDF files for a scratch folder, and the results of `load_world` for them.
 namespace tether::sim {
 
 /// A world file: `content` begins on line 3.
@@ -36,16 +38,22 @@ inline Loaded load(const WorldRequest& request) {
       load_world(request, [&](const std::string& line) { loaded.warnings.push_back(line); });
   return loaded;
 }
+/// The same for a world file with that content from line 3 on.
+inline Loaded load_content(const std::string& content) {
+  const ScratchFolder folder;
+  return load({folder.write("w.sdf", world_sdf(content)), {}, {}});
+}
 
-/// The message with which `load_world` refuses, "" if it does not.
-inline std::string refusal(const WorldRequest& request) {
-  try {
-    load_world(request, nullptr);
-    return "";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::kBadFile);
-    return error.what();
-  }
+/// The error with which `load_world` refuses.
+inline Error refusal(const WorldRequest& request) {
+  return bad_file_error([&] { load_world(request, nullptr); });
+}
+
+inline void expect_error(const Error& error, const std::filesystem::path& file, int line,
+                         const std::string& subject) {
+  EXPECT_EQ(error.where().file, file.string()) << error.what();
+  EXPECT_EQ(error.where().line, line) << error.what();
+  EXPECT_EQ(error.subject(), subject) << error.what();
 }
 
 /// `text` with its one occurrence of `from` replaced.

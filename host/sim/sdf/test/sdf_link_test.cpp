@@ -59,14 +59,11 @@ TEST(SdfLink, ReadsShapesAndMaterials) {
 }
 
 TEST(SdfLink, ReadsInertiaAboutPrincipalAxes) {
-  const ScratchFolder folder;
-  const auto world = load({folder.write("w.sdf", world_sdf(R"(
+  const World world = load_content(R"(
       <model name='m'><link name='l'><inertial><mass>2</mass><pose>0 0 0.5 0 0 0</pose>
         <inertia><ixx>2</ixx><iyy>2</iyy><izz>3</izz><ixy>0.5</ixy><ixz>0</ixz><iyz>0</iyz></inertia>
-      </inertial></link></model>)")),
-                           {},
-                           {}})
-                         .world;
+      </inertial></link></model>)")
+                          .world;
   const Link& link = world.models.at(0).links.at(0);
   EXPECT_FALSE(world.models[0].is_static);
   EXPECT_EQ(link.mass_kg, 2.0);

@@ -1,3 +1,7 @@
+// Makes an image from views: the instants of the shutter are drawn (`draw`), as many as the motion
+// in the picture requires (`motion_px`), and their rows are mixed by weight (`mix`). A lens is
+// applied to each view by ImageWarp; pixel noise is added last.
+
 #include "image_maker.h"
 
 #include "sensor_noise.h"
@@ -168,8 +172,8 @@ const ImageMaker::Plan& ImageMaker::plan_of(const Sensor& sensor, const CameraMo
   const Plan& plan = plans_.try_emplace(&sensor, camera.intrinsics).first->second;
   if (const std::size_t blind = plan.warp ? plan.warp->blind_pixels() : 0; blind > 0) {
     warn_("camera '" + sensor.name + "': " + std::to_string(blind) +
-          " pixels of its image are black, because its distortion maps no direction to them: use "
-          "coefficients that hold for its whole field of view");
+          " pixels of its image are black, because its distortion maps no direction to them; use "
+          "coefficients that are valid for its whole field of view");
   }
   return plan;
 }

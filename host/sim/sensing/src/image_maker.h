@@ -22,19 +22,19 @@
 
 namespace tether::sim {
 
-/// Makes the images of a world's cameras: draws what the lens sees at each instant that the shutter
-/// needs, mixes the rows, adds the pixels' noise.
+/// Makes the images of a world's cameras: draws the view at each instant that the shutter needs,
+/// applies the lens, mixes the rows, and adds the pixel noise.
 class ImageMaker {
  public:
-  /// `world` must outlive this object. `body_radii_m` and `make_renderer` as SensorSuite::BackEnd
-  /// has them. Names through `warn` what cannot be shown, when an image is made.
+  /// `world` must outlive this object. `body_radii_m` and `make_renderer` as in
+  /// SensorSuite::BackEnd. Warns of what cannot be shown when an image is made.
   ImageMaker(const World& world, std::vector<double> body_radii_m,
              ViewRendererFactory make_renderer, const WarningSink& warn);
 
   /// The ideal camera whose view is drawn for `camera`.
   static uav::CameraModel rendered_camera(const uav::CameraModel& camera);
 
-  /// What a camera of the world sees, and when.
+  /// Which camera of the world makes which image.
   struct Request {
     const std::vector<double>& state;  ///< as StateRecorder captured it
     std::size_t uav;
@@ -47,7 +47,7 @@ class ImageMaker {
   std::string renderer_name() const { return renderer_ ? renderer_->name() : std::string(); }
 
  private:
-  // One camera: what must be rendered for it, and how its image comes out of that.
+  // One camera: the view to be rendered, and how its image is made from that.
   struct Plan {
     uav::CameraModel rendered;
     std::optional<ImageWarp> warp;

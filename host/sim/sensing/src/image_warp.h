@@ -9,9 +9,9 @@
 
 namespace tether::sim {
 
-/// Makes the image of a camera with lens distortion or oblong pixels out of one of an ideal camera
-/// with square pixels, which is all that renderers draw. Looks each pixel's viewing direction
-/// up in the ideal image (bilinear). A pixel to which the distortion maps no direction is black:
+/// Makes the image of a camera with lens distortion or oblong pixels from that of an ideal camera
+/// with square pixels, as renderers draw. Finds each pixel's viewing direction in the ideal image
+/// (bilinear). A pixel to which the distortion maps no direction is black:
 /// strong barrel distortion folds back on itself before it reaches the corners.
 class ImageWarp {
  public:

@@ -7,16 +7,15 @@
 
 namespace tether::sim {
 
-/// A weighted sum of images in linear light: what a sensor gathers is light, of which sRGB bytes
-/// are about the square root.
+/// A weighted sum of images in linear light, which is what a sensor collects. sRGB bytes are about
+/// its square root.
 class LightMix {
  public:
   /// Darkness, of `bytes` bytes.
   void clear(std::size_t bytes);
   /// Adds `weight` times the light of `rgb`, from byte `first` on.
   void add(std::size_t first, std::span<const std::uint8_t> rgb, double weight);
-  /// The nearest sRGB bytes. An image that was added with weights whose sum is 1 comes out as it
-  /// went in.
+  /// The nearest sRGB bytes. An image that was added with weights whose sum is 1 is unchanged.
   void encode(std::span<std::uint8_t> rgb) const;
 
  private:

@@ -10,13 +10,6 @@
 
 namespace tether::sim {
 
-struct SensorSuite::Request {
-  const Snapshot& snapshot;
-  std::size_t uav;
-  const Sensor& sensor;
-  MeasurementKey key;
-};
-
 SensorSuite::SensorSuite(const World& world, BackEnd back_end, const WarningSink& warn)
     : world_(world),
       layout_(world),
@@ -36,31 +29,32 @@ uav::Sample SensorSuite::measure(const Snapshot& snapshot, std::size_t uav, std:
   if (sensor >= carrier.sensors.size()) {
     throw Error(ErrorCode::kInternal, "simulator: no sensor " + std::to_string(sensor));
   }
-  const Sensor& description = carrier.sensors[sensor];
-  const Request request{
-      snapshot, uav, description, {seed_, carrier.name, description.name, index, snapshot.at}};
-  return std::visit([&](const auto& model) { return measure(model, request); }, description.model);
+  const Sensor& mounted = carrier.sensors[sensor];
+  const MeasurementKey key{seed_, carrier.name, mounted.name, index, snapshot.at};
+  return std::visit(Visitor{[&](const ImuModel& imu) -> uav::Sample {
+                              return measure_imu(
+                                  imu, mounted.X_BS, layout_.pose_of(snapshot.state, uav),
+                                  layout_.motion_of(snapshot.state, uav), world_.gravity_m_s2, key);
+                            },
+                            [&](const RangeModel& range) -> uav::Sample {
+                              cast(range, snapshot.state, uav, mounted.X_BS);
+                              return measure_range(range, distances_m_, key);
+                            },
+                            [&](const CameraModel& camera) -> uav::Sample {
+                              return images_->make(camera, {snapshot.state, uav, mounted, key});
+                            }},
+                    mounted.model);
 }
 
 std::string SensorSuite::renderer_name() const {
   return images_->renderer_name();
 }
 
-uav::Sample SensorSuite::measure(const ImuModel& imu, const Request& r) {
-  return measure_imu(imu, r.sensor.X_BS, layout_.pose_of(r.snapshot.state, r.uav),
-                     layout_.motion_of(r.snapshot.state, r.uav), world_.gravity_m_s2, r.key);
-}
-
-uav::Sample SensorSuite::measure(const RangeModel& range, const Request& r) {
-  for (std::size_t i = 0; i < X_WB_.size(); ++i) X_WB_[i] = layout_.pose_of(r.snapshot.state, i);
+void SensorSuite::cast(const RangeModel& range, const std::vector<double>& state, std::size_t uav,
+                       const uav::Pose& X_BS) {
+  for (std::size_t i = 0; i < X_WB_.size(); ++i) X_WB_[i] = layout_.pose_of(state, i);
   distances_m_.resize(range.rays_S.size());
-  const uav::Pose X_WS = X_WB_[r.uav] * r.sensor.X_BS;
-  rays_.cast({X_WS, range.rays_S, X_WB_, r.uav, farthest_read_m(range)}, distances_m_);
-  return measure_range(range, distances_m_, r.key);
-}
-
-uav::Sample SensorSuite::measure(const CameraModel& camera, const Request& r) {
-  return images_->make(camera, {r.snapshot.state, r.uav, r.sensor, r.key});
+  rays_.cast({X_WB_[uav] * X_BS, range.rays_S, X_WB_, uav, farthest_read_m(range)}, distances_m_);
 }
 
 }  // namespace tether::sim

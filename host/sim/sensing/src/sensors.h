@@ -9,10 +9,10 @@
 #include <tether/sim_sensing/state_layout.h>
 #include <tether/uav/samples.h>
 
-/// What sensors make of what is true, as pure functions.
+/// Samples from true values, as pure functions.
 namespace tether::sim {
 
-/// Which measurement is made.
+/// Identifies a measurement.
 struct MeasurementKey {
   std::uint64_t seed = 0;
   std::string_view uav;
@@ -21,17 +21,17 @@ struct MeasurementKey {
   SimTime at;
 };
 
-/// What an IMU mounted at `X_BS` measures: rotation rate, specific force of its own point (lever
+/// The sample of an IMU mounted at `X_BS`: rotation rate, specific force at its own origin (lever
 /// arm included) and attitude, the latter without error.
 uav::ImuSample measure_imu(const ImuModel& imu, const uav::Pose& X_BS, const uav::Pose& X_WB,
                            const BodyMotion& motion, double gravity_m_s2,
                            const MeasurementKey& key);
 
-/// How far away a thing may be and still be read as within the limits, whatever the noise [m].
+/// The largest distance that noise can turn into a reading within the limits [m].
 double farthest_read_m(const RangeModel& range);
 
-/// What a rangefinder reports for the true distances along its rays [m] (infinite: nothing there):
-/// the nearest of them, dropouts, noise, resolution, limits.
+/// The sample of a rangefinder from the true distances along its rays [m] (infinite: no hit): the
+/// nearest of them, with dropouts, noise, resolution and limits.
 uav::RangeSample measure_range(const RangeModel& range, std::span<const double> distances_m,
                                const MeasurementKey& key);
 

@@ -2,12 +2,11 @@
 
 #include <tether/sim/world.h>
 
-/// What a camera's shutter makes of a picture that changes while it is taken, as pure functions.
-/// The picture is known at evenly spaced instants of the window and taken to change linearly in
-/// between.
+/// The effect of a camera's shutter on a changing picture, as pure functions. The picture is known
+/// at evenly spaced instants of the window and is assumed to change linearly in between.
 namespace tether::sim {
 
-/// CameraModel's shutter, and the rows that it goes over.
+/// CameraModel's shutter, and the rows of its image.
 struct Shutter {
   double exposure_s = 0.0;
   double readout_s = 0.0;
@@ -18,14 +17,14 @@ struct Shutter {
   double window_s() const { return exposure_s + readout_s; }
 };
 
-/// The most instants that a picture is mixed of.
+/// Maximum number of instants that are mixed into an image.
 constexpr int kMaxInstants = 32;
 
-/// How many instants the picture must be known at when things move by `motion_px` within the
-/// window: about a pixel between two. 1 where the motion changes no byte.
+/// Number of instants for objects that move by `motion_px` within the window: about a pixel between
+/// two. 1 if the motion changes no byte.
 int count_instants(double motion_px);
 
-/// How much of row `row`'s light is that of instant `instant` of `instants`, the first at the
+/// The fraction of row `row`'s light from instant `instant` of `instants`, the first at the
 /// window's beginning, the last at its end. The weights of a row's instants are not negative and
 /// sum to 1.
 double row_weight(const Shutter& shutter, int row, int instant, int instants);

@@ -18,9 +18,11 @@ double checked_window_s(const Uav& uav, const Sensor& sensor, const CameraModel&
   if (camera.exposure_s >= 0.0 && camera.readout_s >= 0.0 && window_s <= kLongestWindow_s) {
     return window_s;
   }
-  throw Error(ErrorCode::kBadFile, "camera '" + sensor.name + "' of UAV '" + uav.name +
-                                       "': exposure and readout must not be negative, and take at "
-                                       "most 1 s together");
+  throw Error(ErrorCode::kBadFile,
+              "camera '" + sensor.name + "' of UAV '" + uav.name +
+                  "': exposure and readout must be at least 0, and at most 1 s "
+                  "together")
+      .about(sensor.name);
 }
 
 // Between two poses that are near each other, `share` of the way.

@@ -12,7 +12,7 @@
 /// A back end that makes everything up, and remembers what it was asked for.
 namespace tether::sim::testing {
 
-/// A view, with poses of its own.
+/// A view with a copy of its poses.
 struct SeenView {
   View view;
   std::vector<uav::Pose> X_WB;
@@ -38,7 +38,7 @@ ViewRendererFactory fake_renderers(RenderLog& log);
 /// Rays that meet something at the distances given, the first ray at the first.
 class FakeRays final : public RayCaster {
  public:
-  /// A bundle, with rays and poses of its own.
+  /// A bundle with copies of its rays and poses.
   struct Seen {
     RayBundle bundle;
     std::vector<uav::Vec3> rays_S;

@@ -43,7 +43,7 @@ void expect_each_pixel_sees_its_direction(const uav::CameraModel& camera) {
   }
 }
 
-TEST(ImageWarpTest, DistortedCamera) {
+TEST(ImageWarpTest, UndoesDistortion) {
   auto camera = uav::CameraModel::from_horizontal_fov(160, 120, 1.2);
   camera.k1 = -0.2;
   camera.k2 = 0.03;
@@ -54,7 +54,7 @@ TEST(ImageWarpTest, DistortedCamera) {
   expect_each_pixel_sees_its_direction(camera);
 }
 
-// Beyond 46° off the axis this lens folds back: the corners' pixels are met by nothing.
+// Beyond 46° off the axis this lens folds back: no direction maps to the corners.
 TEST(ImageWarpTest, PixelsWithoutADirectionAreBlack) {
   auto camera = uav::CameraModel::from_horizontal_fov(160, 120, 1.4);
   camera.k1 = -0.3;
@@ -87,16 +87,13 @@ TEST(ImageWarpTest, ALensThatSeesNothingIsBlackAltogether) {
   EXPECT_EQ(rgb, std::vector<std::uint8_t>(std::size_t{3} * 16 * 12, 0));
 }
 
-TEST(ImageWarpTest, OblongPixels) {
+TEST(ImageWarpTest, OblongPixelsNeedOneButIdealCamerasDoNot) {
   auto camera = uav::CameraModel::from_horizontal_fov(160, 120, 1.2);
+  EXPECT_FALSE(ImageWarp::is_needed(camera));
   camera.fy_px *= 1.5;
   camera.cx_px += 11.0;
   EXPECT_TRUE(ImageWarp::is_needed(camera));
   expect_each_pixel_sees_its_direction(camera);
-}
-
-TEST(ImageWarpTest, IdealCameraNeedsNone) {
-  EXPECT_FALSE(ImageWarp::is_needed(uav::CameraModel::from_horizontal_fov(640, 480, 1.0)));
 }
 
 }  // namespace

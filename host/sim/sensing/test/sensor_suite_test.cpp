@@ -94,8 +94,12 @@ TEST_F(SensorSuiteTest, ARangefinderReadsTheNearestOfItsRays) {
   EXPECT_EQ(sample.index, 4U);
 }
 
-TEST_F(SensorSuiteTest, ACameraSeesFromItsCarrier) {
+TEST_F(SensorSuiteTest, ACameraSeesFromItsCarrierWithALateRenderer) {
+  measure<uav::RangeSample>(0, kRange, 0);
+  EXPECT_EQ(log_.made, 0) << "no renderer without an image";
+  EXPECT_EQ(suite_.renderer_name(), "");
   const auto sample = measure<uav::CameraSample>(1, kCamera, 4);
+  EXPECT_EQ(suite_.renderer_name(), "fake");
   EXPECT_EQ(sample.rgb.size(), std::size_t{3} * 160 * 120);
   EXPECT_EQ(sample.sampled_at, kAt);
   EXPECT_EQ(sample.index, 4U);
@@ -117,16 +121,7 @@ TEST_F(SensorSuiteTest, TheSeedKeysTheNoise) {
   EXPECT_EQ(at_first, read(1));
 }
 
-TEST_F(SensorSuiteTest, NeedsNoRendererWithoutAnImage) {
-  measure<uav::ImuSample>(0, kImu, 0);
-  measure<uav::RangeSample>(0, kRange, 0);
-  EXPECT_EQ(log_.made, 0);
-  EXPECT_EQ(suite_.renderer_name(), "");
-  measure<uav::CameraSample>(0, kCamera, 0);
-  EXPECT_EQ(suite_.renderer_name(), "fake");
-}
-
-TEST_F(SensorSuiteTest, RefusesWhatTheWorldDoesNotHave) {
+TEST_F(SensorSuiteTest, RefusesUnknownUavsAndSensors) {
   EXPECT_THROW(suite_.measure(snapshot_, 2, kImu, 0), Error);
   EXPECT_THROW(suite_.measure(snapshot_, 0, 3, 0), Error);
 }

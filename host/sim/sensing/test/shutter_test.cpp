@@ -54,16 +54,6 @@ TEST(ShutterTest, EachRowIsSeenAtTheMiddleOfItsExposure) {
   }
 }
 
-TEST(ShutterTest, ExposureOfAWholeWindowIsSymmetric) {
-  const Shutter s = shutter(0.01, 0.0, 3);
-  for (int row = 0; row < 3; ++row) {
-    EXPECT_NEAR(row_weight(s, row, 0, 5), 0.125, 1e-12);
-    EXPECT_NEAR(row_weight(s, row, 1, 5), 0.25, 1e-12);
-    EXPECT_NEAR(row_weight(s, row, 2, 5), 0.25, 1e-12);
-    EXPECT_NEAR(row_weight(s, row, 4, 5), 0.125, 1e-12);
-  }
-}
-
 TEST(ShutterTest, RollingRowsAreInstants) {
   const Shutter s = shutter(0.0, 0.04, 5);
   for (int row = 0; row < 5; ++row) {
@@ -74,12 +64,8 @@ TEST(ShutterTest, RollingRowsAreInstants) {
   EXPECT_EQ(row_weight(s, 4, 31, 32), 1.0) << "the last row ends the window";
 }
 
-TEST(ShutterTest, WithoutTimeTheLastImageIsAll) {
-  EXPECT_EQ(row_weight(shutter(0.0, 0.0, 480), 17, 0, 1), 1.0);
-  EXPECT_EQ(count_instants(0.0), 1);
-}
-
 TEST(ShutterTest, AboutAPixelBetweenInstants) {
+  EXPECT_EQ(count_instants(0.0), 1);
   EXPECT_EQ(count_instants(1e-4), 1) << "moves no byte";
   EXPECT_EQ(count_instants(0.3), 2);
   EXPECT_EQ(count_instants(1.0), 2);

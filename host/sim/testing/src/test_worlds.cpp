@@ -3,28 +3,18 @@
 namespace tether::sim::testing {
 
 Visual box_visual(const uav::Vec3& size_m, const uav::Vec3& rgb) {
-  Visual visual;
-  visual.name = "box";
-  visual.geometry = BoxGeometry{size_m};
-  visual.material.diffuse_rgb = rgb;
-  visual.material.ambient_rgb = rgb;
+  Visual visual{"box", {}, BoxGeometry{size_m}, {}, true};
+  visual.material.diffuse_rgb = visual.material.ambient_rgb = rgb;
   return visual;
 }
 
 Collision box_collision(const uav::Vec3& size_m) {
-  Collision collision;
-  collision.name = "box";
-  collision.geometry = BoxGeometry{size_m};
-  return collision;
+  return {"box", {}, BoxGeometry{size_m}, 1.0};
 }
 
 Model box_model(const std::string& name, const uav::Vec3& p_WM, const uav::Vec3& size_m,
                 const uav::Vec3& rgb, bool is_static) {
-  Model model;
-  model.name = name;
-  model.X_WM.p = p_WM;
-  model.is_static = is_static;
-  model.links.resize(1);
+  Model model{name, {p_WM, {}}, is_static, {{}}};
   model.links[0].visuals.push_back(box_visual(size_m, rgb));
   model.links[0].collisions.push_back(box_collision(size_m));
   return model;
@@ -37,25 +27,7 @@ uav::CameraModel camera_intrinsics(int width_px, int height_px) {
 Sensor camera_sensor(const std::string& name, int width_px, int height_px) {
   CameraModel model;
   model.intrinsics = camera_intrinsics(width_px, height_px);
-  Sensor sensor;
-  sensor.name = name;
-  sensor.X_BS.p = {0.2, 0.0, 0.0};
-  sensor.model = model;
-  return sensor;
-}
-
-Sensor imu_sensor(const std::string& name) {
-  Sensor sensor;
-  sensor.name = name;
-  sensor.model = ImuModel{};
-  return sensor;
-}
-
-Sensor range_sensor(const std::string& name) {
-  Sensor sensor;
-  sensor.name = name;
-  sensor.model = RangeModel{};
-  return sensor;
+  return {name, {{0.2, 0.0, 0.0}, {}}, 0.0, model};
 }
 
 Uav test_uav(const std::string& name, const uav::Vec3& p_WB) {
@@ -66,7 +38,9 @@ Uav test_uav(const std::string& name, const uav::Vec3& p_WB) {
   uav.body.name = "body";
   uav.body.visuals.push_back(box_visual({0.4, 0.4, 0.1}, {0.2, 0.2, 0.2}));
   uav.body.collisions.push_back(box_collision({0.4, 0.4, 0.1}));
-  uav.sensors = {camera_sensor("camera", 160, 120), imu_sensor("imu"), range_sensor("range")};
+  uav.sensors = {camera_sensor("camera", 160, 120),
+                 {"imu", {}, 0.0, ImuModel{}},
+                 {"range", {}, 0.0, RangeModel{}}};
   return uav;
 }
 

@@ -32,8 +32,8 @@ class RunningSimulator {
   virtual sim::Simulator& get() = 0;
   /// Why its processes are lost; none if they are not.
   virtual std::optional<std::string> lost() { return std::nullopt; }
-  /// After it failed with `message`: what else is known about its end, starting with "; ".
-  virtual std::string post_mortem(const std::string& /*message*/) { return ""; }
+  /// After it failed: what no error has reported about its end yet, starting with "; ".
+  virtual std::string post_mortem() { return ""; }
 };
 
 /// A simulator that a condition can select.

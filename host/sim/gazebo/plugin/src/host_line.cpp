@@ -6,7 +6,7 @@
 namespace tether::gazebo_plugin {
 namespace {
 
-// How often a waiting thread looks whether a signal has stopped the line: handlers wake nobody.
+// Interval at which a waiting thread checks for a stop: signal handlers cannot wake it.
 constexpr std::chrono::milliseconds kLook{50};
 
 }  // namespace
@@ -33,7 +33,7 @@ void HostLine::listen() {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
       connection_ = std::move(*accepted);
-      // The destructor closes the connection that it finds; this one may have come after it looked.
+      // The destructor may have run before there was this connection to close.
       if (closing_) connection_->close();
     }
     wrong = converse(*connection_);
@@ -42,7 +42,7 @@ void HostLine::listen() {
   }
   stop();
   {
-    // The process may end before this object does; the listener's file must not stay.
+    // The process may end before this object does; the listener's file must be removed.
     const std::lock_guard<std::mutex> lock(mutex_);
     listener_.reset();
   }
@@ -59,7 +59,7 @@ std::string HostLine::converse(protocol::Connection& connection) {
       if (left && answered_) return {};
       return left ? "the host left while it was waiting for an answer" : request.failure().message;
     }
-    if (!answered_) return "the host asked again before it was answered";
+    if (!answered_) return "the host sent a request before the last answer";
     request_ = std::move(*request);
     answered_ = false;
     changed_.notify_all();
@@ -77,9 +77,8 @@ void HostLine::answer(const protocol::Reply& reply) {
   const Status sent = send(reply);
   if (sent) return;
   if (sent.failure().kind == Failure::Kind::kInvalid) {
-    // Physics that has come apart gives numbers that are none.
-    const protocol::Failed failed{"Gazebo's answer is not fit to be sent: " +
-                                  sent.failure().message};
+    // Unstable physics gives numbers that are not finite.
+    const protocol::Failed failed{"Gazebo's answer is invalid: " + sent.failure().message};
     if (!send(failed)) lose_host();
     stop();
   } else {

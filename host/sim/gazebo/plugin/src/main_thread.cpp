@@ -20,7 +20,7 @@ bool MainThread::run(const std::function<void()>& job, const std::function<bool(
       wake_();
       lock.lock();
     }
-    // A job that runs uses what its owner has, so it is waited for in any case.
+    // A running job uses its owner's data, so its end is always awaited.
     if (job_ || running_) done_.wait_for(lock, kJobLook);
     if (job_ && give_up()) {
       job_ = nullptr;

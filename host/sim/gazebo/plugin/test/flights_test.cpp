@@ -16,24 +16,13 @@ uav::BodyState at_rest() {
   return {{0, 0, 1}, {}, {}, {}};
 }
 
-TEST(Flights, HoverWithoutACommand) {
+TEST(Flights, HoverThenFollowTheLastCommandUntilAReset) {
   Flights flights(open_with_uav());
-  const uav::Wrench wrench = flights.step(0, at_rest());
-  EXPECT_NEAR(wrench.force_B.z, uav::hummingbird().mass_kg * 9.81, 1e-6);
-}
-
-TEST(Flights, FollowTheLastCommand) {
-  Flights flights(open_with_uav());
+  const uav::Wrench first = flights.step(0, at_rest());
+  EXPECT_NEAR(first.force_B.z, uav::hummingbird().mass_kg * 9.81, 1e-6);
   flights.set_command(0, {{0, 0, 1}, 0});
   for (int i = 0; i < 20; ++i) (void)flights.step(0, at_rest());
   EXPECT_GT(flights.step(0, at_rest()).force_B.z, uav::hummingbird().mass_kg * 9.9);
-}
-
-TEST(Flights, BeginAnewAfterAReset) {
-  Flights flights(open_with_uav());
-  const uav::Wrench first = flights.step(0, at_rest());
-  flights.set_command(0, {{1, 0, 1}, 1});
-  for (int i = 0; i < 20; ++i) (void)flights.step(0, at_rest());
   flights.reset();
   EXPECT_EQ(flights.step(0, at_rest()), first);
 }

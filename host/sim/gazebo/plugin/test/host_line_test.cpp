@@ -11,6 +11,14 @@ namespace {
 
 using namespace std::chrono_literals;
 
+protocol::Open open_request() {
+  protocol::Open open;
+  open.world_name = "w";
+  open.world_file = "/w.sdf";
+  open.step = 1ms;
+  return open;
+}
+
 class HostLineTest : public ::testing::Test {
  protected:
   HostLineTest() {
@@ -20,6 +28,11 @@ class HostLineTest : public ::testing::Test {
     host_ = protocol::connect(scratch_.path() / "s", 10s).value();
   }
 
+  /// The host opens the world and waits for the answer.
+  void open() {
+    ASSERT_TRUE(host_->send(protocol::Request(open_request())));
+    ASSERT_TRUE(line_->next());
+  }
   std::string how_it_ended() { return ended_.get_future().get().wrong; }
 
   ScratchFolder scratch_;
@@ -28,16 +41,8 @@ class HostLineTest : public ::testing::Test {
   std::unique_ptr<protocol::Connection> host_;
 };
 
-protocol::Open open() {
-  protocol::Open open;
-  open.world_name = "w";
-  open.world_file = "/w.sdf";
-  open.step = 1ms;
-  return open;
-}
-
 TEST_F(HostLineTest, CarriesRequestsAndAnswers) {
-  ASSERT_TRUE(host_->send(protocol::Request(open())));
+  ASSERT_TRUE(host_->send(protocol::Request(open_request())));
   const auto request = line_->next();
   ASSERT_TRUE(request);
   EXPECT_EQ(std::get<protocol::Open>(*request).world_name, "w");
@@ -54,25 +59,22 @@ TEST_F(HostLineTest, EndsInOrderWhenTheHostLeavesBetweenRequests) {
 }
 
 TEST_F(HostLineTest, NoticesAHostThatLeavesWhileTheWorldIsBusy) {
-  ASSERT_TRUE(host_->send(protocol::Request(open())));
-  ASSERT_TRUE(line_->next());
+  open();
   host_->close();
-  EXPECT_EQ(how_it_ended(), "the host left while it was waiting for an answer");
+  EXPECT_NE(how_it_ended(), "");
   EXPECT_TRUE(line_->is_stopped());
 }
 
-TEST_F(HostLineTest, EndsWithWhatTheHostWasTold) {
-  ASSERT_TRUE(host_->send(protocol::Request(open())));
-  ASSERT_TRUE(line_->next());
+TEST_F(HostLineTest, EndsWithTheReasonSentToTheHost) {
+  open();
   line_->answer(protocol::Failed{"another world"});
   ASSERT_TRUE(host_->receive_reply(10s));
   host_->close();
   EXPECT_EQ(how_it_ended(), "another world");
 }
 
-TEST_F(HostLineTest, SaysWhatOfAnAnswerIsNotFinite) {
-  ASSERT_TRUE(host_->send(protocol::Request(open())));
-  ASSERT_TRUE(line_->next());
+TEST_F(HostLineTest, RefusesAnAnswerThatIsNotFinite) {
+  open();
   protocol::Opened opened{"me", {}};
   opened.state.bodies.resize(1);
   opened.state.bodies[0].v_WB.x = std::nan("");
@@ -80,29 +82,26 @@ TEST_F(HostLineTest, SaysWhatOfAnAnswerIsNotFinite) {
   EXPECT_FALSE(line_->next());
   const auto reply = host_->receive_reply(10s);
   ASSERT_TRUE(reply);
-  const auto* failed = std::get_if<protocol::Failed>(&*reply);
-  ASSERT_TRUE(failed);
-  EXPECT_NE(failed->message.find("State.bodies is not finite"), std::string::npos)
-      << failed->message;
+  const std::string why = std::get<protocol::Failed>(*reply).message;
+  EXPECT_NE(why.find("State.bodies"), std::string::npos) << why;
   host_->close();
-  EXPECT_EQ(how_it_ended(), failed->message);
+  EXPECT_EQ(how_it_ended(), why);
 }
 
 TEST_F(HostLineTest, EndsWhenAnAnswerDoesNotReachTheHost) {
-  ASSERT_TRUE(host_->send(protocol::Request(open())));
-  ASSERT_TRUE(line_->next());
+  open();
   host_->close();
   line_->answer(protocol::Opened{"me", {}});
   (void)how_it_ended();
   EXPECT_FALSE(line_->next());
 }
 
-TEST_F(HostLineTest, EndsAtWhatMayNotCome) {
+TEST_F(HostLineTest, EndsAtARequestThatIsNotAllowed) {
   ASSERT_TRUE(host_->send(protocol::Request(protocol::Reset{})));
   EXPECT_NE(how_it_ended(), "");
 }
 
-TEST_F(HostLineTest, LetsNobodyWaitOnceItIsStopped) {
+TEST_F(HostLineTest, StopUnblocksTheWait) {
   auto waiting = std::async(std::launch::async, [this] { return line_->next(); });
   line_->stop();
   EXPECT_FALSE(waiting.get());

@@ -11,8 +11,9 @@ namespace tether::sim {
 /// number in every back end.
 struct MovingBody {
   const Link* link = nullptr;
-  const Uav* uav = nullptr;  ///< nullptr: not a UAV
-  uav::Pose X_WB;            ///< at ST 0
+  const Uav* uav = nullptr;      ///< nullptr: a link of `model`
+  const Model* model = nullptr;  ///< nullptr: a UAV
+  uav::Pose X_WB;                ///< at ST 0
 };
 
 /// The UAVs in order, then the links of the dynamic models in order. Refers into `world`.

@@ -14,8 +14,8 @@
 
 namespace tether::sim {
 
-/// Where everything of the scene is: the small state from which any sensor of that instant can be
-/// measured later. Opaque; reuse one object for many captures to avoid allocation.
+/// The state of the scene at one instant, from which every sensor can be measured later. Opaque;
+/// reuse one object for many captures to avoid allocation.
 struct Snapshot {
   SimTime at;
   std::vector<double> state;  ///< the back end's own layout
@@ -31,13 +31,12 @@ struct GroundTruth {
 ///
 /// Call order: construction through a back end's factory puts it at ST 0 of seed 0; then any number
 /// of `apply`, `advance_to`, `capture`, `measure`, `ground_truth`; `reset` starts again. Sensors
-/// and UAVs are addressed by their index in `world()`. Not thread-safe: one thread at a time. Every
-/// function may throw Error(kSetup) when the back end is lost; after that only destruction is
-/// allowed.
+/// and UAVs are addressed by their index in `world()`. One thread at a time. Every function may
+/// throw Error(kSetup) if the back end is lost; after that only destruction is allowed.
 ///
 /// Determinism: the same seed, and the same commands at the same ST, give the same bytes from
-/// `measure` and `ground_truth`, whatever else was measured, and however the advance was cut into
-/// calls.
+/// `measure` and `ground_truth`, independent of other measurements and of how the advance is split
+/// into calls.
 class Simulator {
  public:
   virtual ~Simulator() = default;

@@ -15,8 +15,8 @@
 #include <tether/uav/math.h>
 #include <tether/uav/multirotor.h>
 
-/// The scene as every back end sees it: what SDF files say, in our own types, with everything
-/// resolved (poses in W, files found, units SI).
+/// The scene for every back end: the content of the SDF files with everything resolved (poses in W,
+/// files found, units SI).
 namespace tether::sim {
 
 struct BoxGeometry {
@@ -49,8 +49,16 @@ struct MeshGeometry {
 using Geometry = std::variant<BoxGeometry, CylinderGeometry, SphereGeometry, CapsuleGeometry,
                               EllipsoidGeometry, PlaneGeometry, MeshGeometry>;
 
-/// How a surface looks. A texture is multiplied by the colours. On a flat face it begins in the
-/// upper left corner, seen from outside.
+/// A visitor of a Geometry, or of a sensor's model, that is made of one lambda for each type.
+template <class... Lambdas>
+struct Visitor : Lambdas... {
+  using Lambdas::operator()...;
+};
+template <class... Lambdas>
+Visitor(Lambdas...) -> Visitor<Lambdas...>;
+
+/// The material of a surface. A texture is multiplied by the colours. On a flat face it begins in
+/// the upper left corner, seen from outside.
 struct Material {
   uav::Vec3 diffuse_rgb{0.7, 0.7, 0.7};  ///< each 0..1
   uav::Vec3 ambient_rgb{0.7, 0.7, 0.7};
@@ -168,7 +176,7 @@ struct Uav {
   std::vector<Sensor> sensors;
 };
 
-/// An anchor: a model of the world that SUTs may know of.
+/// An anchor: a model of the world that SUTs receive in their catalogue.
 struct PlacedAnchor {
   uav::Anchor anchor;
   uav::Pose X_WA;  ///< its centre, at ST 0
@@ -186,12 +194,12 @@ struct World {
   std::vector<Uav> uavs;
   std::vector<PlacedAnchor> anchors;
   std::set<std::filesystem::path>
-      files;  ///< everything that it was read from: SDF, meshes, textures; absolute
+      files;  ///< all files that it was read from: SDF, meshes, textures; absolute
   /// Of these, `file` and the SDF files that it includes: not those of the UAVs.
   std::set<std::filesystem::path> sdf_files;
 };
 
-/// Which UAV to put where.
+/// A UAV and its start pose.
 struct UavPlacement {
   std::string name;
   std::filesystem::path model;  ///< SDF file with one <model>
@@ -205,18 +213,18 @@ struct WorldRequest {
   std::vector<std::string> anchors;  ///< names of models of the world
 };
 
-/// Where a warning goes: one printable line, with file (and line where known).
+/// Receives warnings: one printable line each, with file (and line if known).
 using WarningSink = std::function<void(const std::string&)>;
 
-/// A sink that makes the line printable, whatever names a file has, and passes it on; empty if
-/// `warn` is.
+/// A sink that passes each line to `warn` with its unprintable characters replaced; empty if `warn`
+/// is.
 WarningSink with_printable_lines(WarningSink warn);
 
-/// Links of dynamic models that one world may have. The engine's memory grows with the square of
-/// their number.
+/// Maximum number of links of dynamic models in a world. The engine's memory grows with the square
+/// of their number.
 inline constexpr std::size_t kMaxMovingLinks = 200;
 
-/// What a SUT flying `uav` is told.
+/// The catalogue that the SUT of `uav` receives.
 uav::Catalogue make_catalogue(const World& world, const Uav& uav);
 
 }  // namespace tether::sim

@@ -8,21 +8,21 @@
 
 namespace tether::sim {
 
-/// Gazebo 11 as this machine has it.
+/// The installation of Gazebo 11 on this machine.
 struct GazeboInstall {
-  std::vector<std::string> command;  ///< what starts gzserver, up to its own options
-  os::Environment environment;       ///< that it needs to find what is its own
+  std::vector<std::string> command;  ///< starts gzserver; its options follow
+  os::Environment environment;       ///< with which it finds its own files
   std::filesystem::path gzserver;
   std::filesystem::path plugin;
-  /// Both, for whoever asks what a result rests on.
+  /// The files that a result depends on.
   std::vector<std::filesystem::path> files() const { return {gzserver, plugin}; }
 };
 
-/// A Debian root with Gazebo in it (docs/guide/gazebo.md): TETHER_GAZEBO_ROOT, else gazebo-root in
-/// the folder of the builds, else /var/lib/tether/gazebo-root; programs of it run by its own
-/// loader. Where there is no root, this system's gzserver. The plugin: TETHER_GAZEBO_PLUGIN, else
-/// that of the builds, else the installed one.
-/// @throws Error(kSetup) saying what is missing, where it was looked for, and how to get it.
+/// Uses a Debian root with Gazebo (docs/guide/gazebo.md): TETHER_GAZEBO_ROOT, else gazebo-root in
+/// the folder of the builds, else /var/lib/tether/gazebo-root; its programs run with its own
+/// loader. Without a root, this system's gzserver. The plugin: TETHER_GAZEBO_PLUGIN, else that of
+/// the builds, else the installed one.
+/// @throws Error(kSetup) about the missing part, with the places searched and how to install it.
 GazeboInstall find_gazebo();
 
 }  // namespace tether::sim

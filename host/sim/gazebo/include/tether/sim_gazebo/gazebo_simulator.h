@@ -14,30 +14,31 @@ namespace tether::sim {
 
 class GazeboServer;
 
-/// What Gazebo is started with.
+/// How Gazebo is started.
 struct GazeboSetup {
-  Duration answer_limit{0};   ///< how long it may take for an answer
-  std::filesystem::path log;  ///< gets what its processes print
+  Duration answer_limit{0};   ///< time limit of an answer
+  std::filesystem::path log;  ///< for the output of its processes
   WarningSink warn;
-  std::function<void(const std::string&)> on_silence{};  ///< told when an answer is long in coming
-  std::stop_token stop{};                                ///< ends all waiting for it
+  std::function<void(const std::string&)> on_silence{};  ///< called while an answer is late
+  std::stop_token stop{};                                ///< ends all waiting
 };
 
 /// Gazebo 11 with a world open in it, for one run. Its processes end with the object. Not
 /// thread-safe.
 class GazeboSimulator {
  public:
-  /// Starts it. @throws Error(kSetup) with the reason why it is not to be had.
+  /// Starts it. @throws Error(kSetup) with the reason if it cannot be started.
   GazeboSimulator(World world, const GazeboSetup& setup);
   ~GazeboSimulator();
   GazeboSimulator(const GazeboSimulator&) = delete;
   GazeboSimulator& operator=(const GazeboSimulator&) = delete;
 
   Simulator& get() { return *simulator_; }
-  /// Why it is lost, as far as its processes show it; none: it is not.
+  /// How one of its processes ended; none while all run.
   std::optional<std::string> lost();
-  /// After it failed with `said`: what else is known of its end, with "; " before.
-  std::string post_mortem(const std::string& said);
+  /// After a failure: what is known of the end of its processes and was not reported by `lost` or
+  /// an error of the simulator, with "; " before.
+  std::string post_mortem();
 
  private:
   std::optional<std::string> why_give_up();

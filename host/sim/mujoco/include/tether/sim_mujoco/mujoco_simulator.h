@@ -10,14 +10,13 @@ namespace tether::sim {
 extern const bool kHasMujoco;
 
 /// The embedded simulator: MuJoCo for dynamics, its renderer on a headless EGL display for cameras
-/// (created when the first image is asked for, so that a run without a camera needs no GL at all).
+/// (created for the first image, so that a run without a camera needs no GL).
 /// Used from one thread at a time, any thread.
 ///
-/// What it does beside the world's words: a UAV's own body is not drawn for its own cameras and not
-/// met by its own rays; rays meet collision shapes, cameras see visuals; a mesh collides as its
-/// convex hull; a lens's distortion and oblong pixels are resampled from an ideal picture; the
-/// walking bias of a sensor is a function of seed and ST alone. `description()` names the OpenGL
-/// renderer after the first image.
+/// A UAV's cameras and rays do not see its own body. Rays meet collision shapes, cameras see
+/// visuals. A mesh collides as its convex hull. Distortion and oblong pixels are resampled from an
+/// ideal picture. The walking bias of a sensor is a function of seed and ST alone. `description()`
+/// includes the OpenGL renderer after the first image.
 ///
 /// `warn` receives one line for each thing of the world that MuJoCo cannot represent.
 /// @throws Error(kSetup) when the back end is not built in or the model does not compile.

@@ -13,7 +13,7 @@
 /// `Envelope` of `schema/simulator.fbs`).
 namespace tether::sim::protocol {
 
-/// Largest frame, either way: the largest picture and its envelope.
+/// Largest frame in either direction: the largest picture and its envelope.
 inline constexpr std::uint32_t kMaxFrameBytes = 64u << 20;
 
 /// Most moving bodies of a world, UAVs included.
@@ -24,8 +24,8 @@ inline constexpr std::size_t kMaxRays = 1u << 16;
 /// Of a picture's width and height; width × height is at most kMaxPixels.
 inline constexpr std::int32_t kMaxSidePx = 16384;
 inline constexpr std::int64_t kMaxPixels = 4096 * 4096;
-/// Most visuals that are told how to look.
-inline constexpr std::size_t kMaxLooks = 1u << 14;
+/// Most visuals of a world that have a material in Open.
+inline constexpr std::size_t kMaxMaterials = 1u << 14;
 /// Longest name [bytes].
 inline constexpr std::size_t kMaxNameBytes = 512;
 /// Longest path, description or message [bytes].
@@ -33,15 +33,16 @@ inline constexpr std::size_t kMaxTextBytes = 4096;
 /// Longest SDF document of a UAV [bytes].
 inline constexpr std::size_t kMaxSdfBytes = 1u << 20;
 
-/// Whether the message may go over the wire: every number finite (a distance may be +inf), times
-/// within bounds, quaternions and rays of unit length, indices within bounds, texts and lists no
-/// longer than the limits above, pictures of width × height × 3 bytes. Fails with kInvalid, naming
-/// the field. The version of an Open may be any.
+/// Whether the message may be sent: every number finite (a distance may be +inf), times within
+/// bounds, quaternions and rays of unit length, indices within bounds, texts and lists no longer
+/// than the limits above, pictures of width × height × 3 bytes. Fails with kInvalid and the field.
+/// An Open may have any version.
 Status validate(const Request& request);
 Status validate(const Reply& reply);
 
-/// Serialises messages into whole frames (length included). Keeps its buffer, so that all but Open
-/// and Opened allocates nothing in steady use. One thread at a time. @pre validate(message).ok()
+/// Serialises messages into whole frames (length included). Keeps its buffer, so that all messages
+/// except Open and Opened allocate nothing in steady use. One thread at a time.
+/// @pre validate(message).ok()
 class Encoder {
  public:
   Encoder();
@@ -49,8 +50,8 @@ class Encoder {
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;
 
-  /// Valid until the next call. A picture's pixels are not copied: the frame refers to them, so
-  /// that it is valid only as long as `message` stays as it is.
+  /// Valid until the next call. A picture's pixels are not copied: the frame refers to them and is
+  /// valid only while `message` is unchanged.
   link::FramePieces encode(const Request& message);
   link::FramePieces encode(const Reply& message);
 
@@ -59,8 +60,8 @@ class Encoder {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Decode one whole frame (length included). Verify every offset before use, then `validate`. Fail
-/// with kProtocol, whatever the bytes are; never read outside of them.
+/// Decode one whole frame (length included) of any bytes: verify every offset before use, then
+/// `validate`. Fail with kProtocol.
 Result<Request> decode_request(std::span<const std::uint8_t> frame);
 Result<Reply> decode_reply(std::span<const std::uint8_t> frame);
 

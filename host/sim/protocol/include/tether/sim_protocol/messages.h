@@ -13,18 +13,18 @@
 #include <tether/uav/multirotor.h>
 #include <tether/uav/samples.h>
 
-/// What the host and a simulator outside of its process say to each other
-/// (docs/guide/simulator-protocol.md). The host asks, the simulator answers each request with one
-/// reply, in order. SI units; W is ENU, B is FLU.
+/// The messages between the host and an external simulator (docs/guide/simulator-protocol.md). The
+/// simulator answers each request of the host with one reply, in order. SI units; W is ENU, B is
+/// FLU.
 ///
-/// The simulator provides what happens in the world: motion, distances along rays, ideal pictures.
-/// What sensors make of that (delays, lens, shutter, noise) is the host's.
+/// The simulator provides motion, distances along rays and ideal pictures. The host makes the
+/// samples from them (delays, lens, shutter, noise).
 namespace tether::sim::protocol {
 
-/// Of these messages. A simulator refuses an Open with another one.
+/// Version of these messages. A simulator refuses an Open of another version.
 inline constexpr std::uint32_t kVersion = 1;
 
-/// A UAV that the simulator adds to the world.
+/// A UAV that the simulator must add to the world.
 struct UavDescription {
   std::string name;
   /// An SDF 1.6 document with one <model> of that name with one <link> "base_link", whose frame is
@@ -40,9 +40,9 @@ struct BodyName {
   std::string link;
 };
 
-/// How a visual of the world looks where the simulator's own reading of SDF does not show it:
-/// Tether's textures (docs/guide/scenario.md).
-struct Look {
+/// The material of a visual with a texture, which simulators do not read from SDF as Tether does
+/// (docs/guide/scenario.md). `Look` in the schema.
+struct VisualMaterial {
   std::string model;
   std::string link;
   std::string visual;
@@ -50,11 +50,11 @@ struct Look {
   std::string texture;                                             ///< absolute path of a PNG
   double texture_repeat_x = 1.0;  ///< repetitions per metre of surface
   double texture_repeat_y = 1.0;
-  double alpha = 1.0;  ///< 0: not to be seen, 1: opaque
+  double alpha = 1.0;  ///< 0: invisible, 1: opaque
 };
 
-/// The first request. The simulator has the world loaded, or loads it now, adds the UAVs, and
-/// stands at ST 0. Answered by Opened.
+/// The first request. The simulator loads the world, unless it has it loaded, adds the UAVs, and
+/// stops at ST 0. Answered by Opened.
 struct Open {
   std::uint32_t version = kVersion;
   std::string world_name;
@@ -62,18 +62,18 @@ struct Open {
   double gravity_m_s2 = 9.81;
   Duration step{0};
   std::vector<UavDescription> uavs;
-  /// What moves beside the UAVs. Everywhere below, "body" is an index into the UAVs, then these.
+  /// Moving bodies other than the UAVs. Below, "body" is an index into the UAVs, then these.
   std::vector<BodyName> bodies;
-  /// State::past has at most so many.
+  /// Maximum number of steps in State::past.
   std::uint32_t past_steps = 0;
-  /// Whether Render is going to be asked for, and of which size at most; 0: it is not.
+  /// Maximum size of pictures; 0: there will be no Render.
   std::int32_t max_width_px = 0;
   std::int32_t max_height_px = 0;
-  std::vector<Look> looks;
+  std::vector<VisualMaterial> materials;  ///< `looks` in the schema
 };
 
-/// Back to ST 0, UAVs hovering at their start poses. `seed` is for what the simulator itself draws
-/// at random. Answered by State.
+/// Back to ST 0, UAVs hovering at their start poses. `seed` is for the simulator's own random
+/// numbers. Answered by State.
 struct Reset {
   std::uint64_t seed = 0;
 };
@@ -90,18 +90,18 @@ struct Advance {
   std::vector<Command> commands;
 };
 
-/// Casts rays from S in a world whose bodies are where `X_WB` says, whatever their poses are now.
-/// Rays meet collision shapes. Answered by Distances.
+/// Casts rays from S at collision shapes, with the bodies at the poses `X_WB` instead of their
+/// current ones. Answered by Distances.
 struct CastRays {
   std::vector<uav::Pose> X_WB;           ///< of each body
-  std::optional<std::uint32_t> carrier;  ///< a body that no ray meets
+  std::optional<std::uint32_t> carrier;  ///< a body that rays do not hit
   uav::Pose X_WS;
   std::vector<uav::Vec3> rays_S;  ///< unit vectors in S's frame
-  double max_m = 0.0;             ///< what is farther need not be found
+  double max_m = 0.0;             ///< objects farther away may be ignored
 };
 
-/// Draws the world with its bodies where `X_WB` says, as a pinhole camera without distortion sees
-/// it. Answered by Picture.
+/// Draws the world with its bodies at the poses `X_WB`, as seen by a pinhole camera without
+/// distortion. Answered by Picture.
 struct Render {
   uav::CameraModel camera;  ///< fx = fy; the principal point may be anywhere
   double near_m = 0.05;
@@ -114,7 +114,7 @@ struct Render {
 
 using Request = std::variant<Open, Reset, Advance, CastRays, Render>;
 
-/// What the UAV's IMU needs: the mean over the last step; 0 at ST 0.
+/// Accelerations for a UAV's IMU: means over the last step; 0 at ST 0.
 struct Motion {
   uav::Vec3 a_WB_W;      ///< acceleration of B's origin [m/s²]
   uav::Vec3 alpha_WB_B;  ///< angular acceleration [rad/s²]
@@ -125,7 +125,7 @@ struct State {
   SimTime now;
   std::vector<uav::BodyState> bodies;
   std::vector<Motion> motions;  ///< of each UAV
-  /// Poses of all bodies when each of the last steps of this advance began, oldest first:
+  /// Poses of all bodies at the beginning of each of the last steps of this advance, oldest first:
   /// min(steps, Open::past_steps) times the number of bodies.
   std::vector<uav::Pose> past;
 };
@@ -143,12 +143,12 @@ struct Picture {
   std::int32_t width_px = 0;
   std::int32_t height_px = 0;
   std::vector<std::uint8_t> rgb;  ///< rows from the top down, R, G, B in sRGB
-  /// Of the nearest thing in the picture, along the camera's axis; only `with_depth` [m].
+  /// Of the nearest object in the picture, along the camera's axis; only `with_depth` [m].
   double nearest_depth_m = 0.0;
   std::string renderer;  ///< name, for the record: "llvmpipe (LLVM 11.0.1, 256 bits)"
 };
 
-/// The request could not be served. There is no way on: the host hangs up.
+/// The request could not be served. The host then closes the connection.
 struct Failed {
   std::string message;  ///< one line
 };

@@ -11,28 +11,27 @@
 
 namespace tether::sim {
 
-/// How patient the host is with a simulator outside of its process.
+/// Time limits for an external simulator, and what is called while it does not answer.
 struct RemoteOptions {
-  /// Until the answer to Open; for any other answer.
+  /// Time limit of the answer to Open, and of any other answer.
   Duration open_limit = std::chrono::seconds(60);
   Duration answer_limit = std::chrono::seconds(30);
-  /// Asked some ten times a second while an answer is awaited. A text: give up, because of it ("the
-  /// simulator was ended by signal 9").
+  /// Called about ten times a second while waiting for an answer. If it returns a reason ("the
+  /// simulator was ended by signal 9"), the wait ends with an error of that text.
   std::function<std::optional<std::string>()> why_give_up;
-  /// Told, once for each answer, when it has not come for a second; of that to Open only where the
-  /// simulator has an address: one that we start ourselves takes its time.
+  /// Called, once for each answer, after a second without it; for Open only if `address` is set.
   std::function<void(const std::string&)> on_silence{};
-  /// Where it listens, for messages until it has said what it is called; may be empty.
+  /// Where the simulator listens, for messages before its name is known; may be empty.
   std::string address{};
 };
 
-/// A simulator at the other end of a connection, with the world's UAVs put into it. Dynamics, rays
-/// and ideal pictures are its own; sensors are made of them by the sensing library, as the embedded
-/// back end's are.
+/// A simulator at the other end of a connection, with the world's UAVs added to it. It provides
+/// dynamics, rays and ideal pictures; the sensing library makes the samples from them, as for the
+/// embedded back end.
 ///
-/// `world` is what load_world made of the SDF files that the simulator itself reads.
-/// @throws Error(kSetup) when the simulator is lost, silent for too long, or answers nonsense, at
-/// any call; Error(kBadFile) with file and line where the world cannot be sent.
+/// `world` is the result of load_world for the SDF files that the simulator itself reads.
+/// @throws Error(kSetup) if the simulator is lost, exceeds a time limit or violates the protocol,
+/// at any call; Error(kBadFile) if the world cannot be sent.
 std::unique_ptr<Simulator> make_remote_simulator(World world,
                                                  std::unique_ptr<protocol::Connection> connection,
                                                  RemoteOptions options, const WarningSink& warn);

@@ -8,13 +8,13 @@
 
 namespace tether::sim {
 
-/// Rays from one point, into the world with its moving bodies where they are told to be.
+/// Rays from one point into the world, with the moving bodies at given poses.
 struct RayBundle {
   uav::Pose X_WS;                     ///< of the sensor; the rays begin at its origin
   std::span<const uav::Vec3> rays_S;  ///< unit vectors
   std::span<const uav::Pose> X_WB;    ///< of each of `moving_bodies`, in its order
-  std::size_t ignored = 0;            ///< one of `moving_bodies` that no ray meets: the carrier
-  double max_m = std::numeric_limits<double>::infinity();  ///< what is farther need not be found
+  std::size_t ignored = 0;            ///< one of `moving_bodies` that rays do not hit: the carrier
+  double max_m = std::numeric_limits<double>::infinity();  ///< farther objects may be ignored
 };
 
 /// Measures distances to collision shapes: what a back end provides for rangefinders. A function of

@@ -17,28 +17,27 @@ namespace tether::sim {
 
 class ImageMaker;
 
-/// Of the largest views that the world's cameras need: what ViewRendererFactory is called with.
+/// The largest views that the world's cameras need, for ViewRendererFactory.
 struct ViewSize {
   int width_px = 0;  ///< 0: no camera
   int height_px = 0;
 };
 ViewSize largest_view(const World& world);
 
-/// All sensors of a world: makes the samples of `Simulator::measure` out of captured states and
-/// what a back end provides. Mounting, lever arms, lens, shutter, noise, limits and dropouts are
-/// the same for every back end. Used from one thread at a time.
+/// All sensors of a world: makes the samples of `Simulator::measure` from captured states, rays and
+/// views. Mounting, lever arms, lens, shutter, noise, limits and dropouts are the same for every
+/// back end. One thread at a time.
 class SensorSuite {
  public:
   struct BackEnd {
     RayCaster& rays;  ///< must outlive the suite
     ViewRendererFactory make_renderer;
-    /// How far each of `moving_bodies` reaches from its origin, as it is drawn; rather too much
-    /// than too little [m].
+    /// An upper bound of the drawn extent of each of `moving_bodies` from its origin [m].
     std::vector<double> body_radii_m;
   };
 
-  /// `world` must outlive the suite. Names through `warn` what a camera cannot show, when its first
-  /// image is made. @throws Error(kBadFile) as `shutter_steps` does.
+  /// `world` must outlive the suite. Warns of what a camera cannot show when its first image is
+  /// made. @throws Error(kBadFile) as `shutter_steps` does.
   SensorSuite(const World& world, BackEnd back_end, const WarningSink& warn);
   ~SensorSuite();
   SensorSuite(const SensorSuite&) = delete;
@@ -57,10 +56,8 @@ class SensorSuite {
   std::string renderer_name() const;
 
  private:
-  struct Request;
-  uav::Sample measure(const ImuModel& imu, const Request& r);
-  uav::Sample measure(const RangeModel& range, const Request& r);
-  uav::Sample measure(const CameraModel& camera, const Request& r);
+  void cast(const RangeModel& range, const std::vector<double>& state, std::size_t uav,
+            const uav::Pose& X_BS);
 
   const World& world_;
   StateLayout layout_;

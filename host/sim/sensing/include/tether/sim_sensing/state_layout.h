@@ -8,8 +8,7 @@
 
 namespace tether::sim {
 
-/// What an IMU needs of one UAV beside its pose: the motion of the body origin over the last step,
-/// constant within it.
+/// The motion of a UAV's body origin over the last step, constant within it, for its IMU.
 struct BodyMotion {
   uav::Vec3 w_WB_B;      ///< angular velocity now [rad/s]
   uav::Vec3 a_WB_W;      ///< acceleration of B's origin over the last step [m/s²]

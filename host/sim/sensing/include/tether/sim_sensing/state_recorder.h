@@ -9,8 +9,8 @@
 
 namespace tether::sim {
 
-/// Writes the states that StateLayout reads. A back end tells it the poses of its moving bodies, in
-/// the order of `moving_bodies`, before each step; it keeps as many as the shutters reach back to.
+/// Writes the states that StateLayout reads. A back end passes the poses of its moving bodies, in
+/// the order of `moving_bodies`, before each step; the recorder keeps those that the shutters need.
 /// Allocates at construction only. One thread at a time.
 class StateRecorder {
  public:

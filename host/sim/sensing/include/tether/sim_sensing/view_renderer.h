@@ -13,8 +13,7 @@
 
 namespace tether::sim {
 
-/// What to draw: the world with its moving bodies where they are told to be, as an ideal camera
-/// sees it.
+/// What to draw: the world with its moving bodies at given poses, as seen by an ideal camera.
 struct View {
   /// A pinhole without distortion and with square pixels (fx = fy). The principal point may be
   /// anywhere, outside of the image as well, and the size may change from view to view.
@@ -24,13 +23,12 @@ struct View {
   uav::Pose X_WS;                     ///< of the camera: x ahead, y left, z up
   std::span<const uav::Pose> X_WB;    ///< of each of `moving_bodies`, in its order
   std::optional<std::size_t> hidden;  ///< one of `moving_bodies` that is not drawn
-  /// Whether `nearest_depth_m()` is going to be asked for.
+  /// Whether `nearest_depth_m()` will be called.
   bool with_depth = false;
 };
 
-/// Draws pictures of the world: what a back end provides for cameras. Lens, shutter and noise are
-/// made from these by the sensing library. The same view gives the same bytes, whatever was drawn
-/// before. Used from one thread at a time.
+/// Draws pictures of the world: what a back end provides for cameras. The sensing library adds
+/// lens, shutter and noise. The same view always gives the same bytes. One thread at a time.
 class ViewRenderer {
  public:
   virtual ~ViewRenderer() = default;
@@ -41,12 +39,12 @@ class ViewRenderer {
   /// @throws Error(kSetup) when the back end is lost.
   virtual void render(const View& view, std::span<std::uint8_t> rgb) = 0;
 
-  /// How far ahead the nearest thing is that the last picture shows, along the camera's axis,
-  /// between the near plane and the far one [m]. Rather too near than too far: from it follows how
-  /// many pictures a moving camera's image is mixed of. @pre the last view was `with_depth`.
+  /// A lower bound of the distance to the nearest object in the last picture, along the camera's
+  /// axis, between the near and the far plane [m]. It decides how many pictures are mixed for a
+  /// moving camera. @pre the last view was `with_depth`.
   virtual double nearest_depth_m() = 0;
 
-  /// What draws, for the record: "llvmpipe (LLVM 15.0.6, 256 bits)".
+  /// The renderer's name, for the record: "llvmpipe (LLVM 15.0.6, 256 bits)".
   virtual std::string name() const = 0;
 
  protected:

@@ -14,7 +14,7 @@ namespace tether::sim {
 /// on demand), in this order. One anchor, "blue_box", at x = 8 m.
 World make_fake_world(std::size_t count, Duration step = std::chrono::milliseconds(1));
 
-/// A simulator without physics for the tests of whoever drives one: each UAV moves exactly as
+/// A simulator without physics, for tests of its users: each UAV moves exactly as
 /// commanded, and every sample tells which instant, UAV and index it was measured for. Keeps
 /// Simulator's promises on determinism; breaks of the call order (time backwards or off the grid,
 /// unknown UAV or sensor) throw Error(kInternal).

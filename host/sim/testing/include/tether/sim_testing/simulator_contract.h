@@ -13,21 +13,21 @@
 #include <tether/sim_testing/busy_flight.h>
 #include <tether/sim_testing/test_worlds.h>
 
-/// What every back end promises (tether/sim/simulator.h), as tests to be instantiated for each:
+/// The contract of every back end (tether/sim/simulator.h), as tests to be instantiated for each:
 ///
 ///   INSTANTIATE_TEST_SUITE_P(Name, SimulatorContract, ::testing::Values(SimulatorMaker(…)));
 namespace tether::sim::testing {
 
-/// Makes a back end for a world of boxes.
-using SimulatorMaker = std::function<std::unique_ptr<Simulator>(World world)>;
+/// Makes a back end for a world of boxes. Shared: it may be part of a larger object.
+using SimulatorMaker = std::function<std::shared_ptr<Simulator>(World world)>;
 
 class SimulatorContract : public ::testing::TestWithParam<SimulatorMaker> {
  protected:
   static SimTime at(Duration d) { return SimTime(d); }
-  static std::unique_ptr<Simulator> make(World world) { return GetParam()(std::move(world)); }
+  static std::shared_ptr<Simulator> make(World world) { return GetParam()(std::move(world)); }
 };
 
-TEST_P(SimulatorContract, SameSeedSameBytesHoweverTheRunWasCut) {
+TEST_P(SimulatorContract, SameSeedSameBytesHoweverTheRunIsSplit) {
   const auto a = make(busy_world());
   const auto b = make(busy_world());
   const Observation whole = fly_in_one_piece(*a, 5);
@@ -74,14 +74,14 @@ TEST_P(SimulatorContract, SamplesCarryInstantAndIndex) {
   EXPECT_EQ(camera.rgb.size(), 160U * 120U * 3U);
 }
 
-TEST_P(SimulatorContract, RaysEndAtTheNextThing) {
+TEST_P(SimulatorContract, RaysEndAtTheNextObject) {
   World world = test_world();
   world.models.push_back(box_model("wall", {5.0, 0.0, 1.0}, {0.2, 6.0, 2.0}, {0.8, 0.2, 0.2}));
   const auto simulator = make(std::move(world));
   EXPECT_NEAR(measure_now<uav::RangeSample>(*simulator, kRange).range_m, 4.9, 1e-6);
 }
 
-TEST_P(SimulatorContract, RefusesWhatBreaksTheContract) {
+TEST_P(SimulatorContract, RefusesInvalidCalls) {
   const auto simulator = make(test_world());
   simulator->advance_to(at(std::chrono::milliseconds(10)));
   EXPECT_THROW(simulator->advance_to(at(std::chrono::milliseconds(9))), Error);

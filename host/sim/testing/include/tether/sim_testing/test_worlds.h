@@ -12,14 +12,12 @@ namespace tether::sim::testing {
 
 Visual box_visual(const uav::Vec3& size_m, const uav::Vec3& rgb);
 Collision box_collision(const uav::Vec3& size_m);
-/// A model of one link with one box, seen and solid.
+/// A model of one link with one box, as visual and collision.
 Model box_model(const std::string& name, const uav::Vec3& p_WM, const uav::Vec3& size_m,
                 const uav::Vec3& rgb, bool is_static = true);
 
 uav::CameraModel camera_intrinsics(int width_px, int height_px);
 Sensor camera_sensor(const std::string& name, int width_px, int height_px);
-Sensor imu_sensor(const std::string& name);
-Sensor range_sensor(const std::string& name);
 
 /// A Hummingbird with a body of 0.4 × 0.4 × 0.1 m, carrying "camera" (160×120, 0.2 m ahead of the
 /// centre), "imu" and "range" (both at the centre).

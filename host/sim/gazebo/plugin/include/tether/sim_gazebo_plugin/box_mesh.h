@@ -20,9 +20,9 @@ struct BoxMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// A box that is going to be scaled to `size_m`, with a texture that begins in the upper left
-/// corner of each face, seen from outside (of top and bottom: at the ends of −x and of +y), and
-/// repeats so often per metre.
+/// A unit box to be scaled to `size_m`. Its texture begins in the upper left corner of each face,
+/// seen from outside (top and bottom: at the ends of −x and of +y), with the given repetitions per
+/// metre.
 BoxMesh textured_box(const uav::Vec3& size_m, double repeat_x_per_m, double repeat_y_per_m);
 
 }  // namespace tether::gazebo_plugin

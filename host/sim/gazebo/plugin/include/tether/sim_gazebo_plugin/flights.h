@@ -18,7 +18,7 @@ class Flights {
   /// Hovering at the start poses, without a command.
   void reset();
   void set_command(std::size_t uav, const uav::VelocityCommand& command);
-  /// One step of a UAV whose body is so at the step's beginning.
+  /// One step of a UAV, with its body at the beginning of the step.
   uav::Wrench step(std::size_t uav, const uav::BodyState& body);
 
  private:

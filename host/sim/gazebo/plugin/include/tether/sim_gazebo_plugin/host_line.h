@@ -14,13 +14,13 @@
 
 namespace tether::gazebo_plugin {
 
-/// How a conversation ended. `wrong` is empty when the host left between two requests.
+/// How a conversation ended. `wrong` is empty if the host left between two requests.
 struct End {
   std::string wrong;
 };
 
-/// The conversation with the one host that a world has. It is listened to on a thread of its own,
-/// so that a host that leaves is noticed whatever the world is busy with.
+/// The conversation with the only host of a world. A separate thread receives, so that a host that
+/// leaves is noticed while the world is busy.
 class HostLine : public Host {
  public:
   /// `on_end` is called once, on that thread, unless the line is destroyed before.
@@ -28,9 +28,9 @@ class HostLine : public Host {
   ~HostLine() override;
 
   std::optional<protocol::Request> next() override;
-  /// A reply that `validate` refuses becomes a Failed that says why, and ends the conversation.
+  /// A reply that `validate` refuses becomes a Failed with the reason, and ends the conversation.
   void answer(const protocol::Reply& reply) override;
-  /// From now on there is no `next`. Any thread, signal handlers too.
+  /// From now on `next` returns none. Any thread, also signal handlers.
   void stop() { stopped_ = true; }
   bool is_stopped() const { return stopped_; }
 
@@ -50,7 +50,7 @@ class HostLine : public Host {
   std::shared_ptr<protocol::Connection> connection_;  // shared: each thread uses it until its end
   std::optional<protocol::Request> request_;
   bool answered_ = true;
-  std::string failure_;  // of which the host was told
+  std::string failure_;  // that was sent to the host
 
   std::thread thread_;
 };

@@ -7,16 +7,16 @@
 
 namespace tether::gazebo_plugin {
 
-/// Work for the one thread that may draw, asked for by the thread of the physics.
+/// Jobs of the thread of the physics for the only thread that may draw.
 class MainThread {
  public:
-  /// `wake` makes the main thread call `do_jobs` soon; called again and again until it has.
+  /// `wake` makes the main thread call `do_jobs` soon; called repeatedly until it has.
   explicit MainThread(std::function<void()> wake) : wake_(std::move(wake)) {}
 
-  /// Runs `job` there and waits for its end. What it throws is thrown here. False: it has not been
-  /// begun when `give_up`, asked some ten times a second, said so.
+  /// Runs `job` there, waits for its end, and throws its exception. False: `give_up`, called about
+  /// ten times a second, returned true before the job began.
   bool run(const std::function<void()>& job, const std::function<bool()>& give_up);
-  /// In the main thread, whenever it may draw.
+  /// To be called in the main thread whenever it may draw.
   void do_jobs();
 
  private:

@@ -15,8 +15,8 @@ inline Ray ray_in_world(const uav::Pose& X_WS, const uav::Vec3& direction_S) {
   return {X_WS.p, rotate(X_WS.q, direction_S)};
 }
 
-/// The ray that meets a body where it is now as `ray` meets it where it is `given`: instead of
-/// moving the body there and back.
+/// The ray that hits a body at its current pose as `ray` hits it at its given pose, so that the
+/// body need not be moved.
 inline Ray ray_to_body_now(const Ray& ray, const uav::Pose& X_WB_given, const uav::Pose& X_WB_now) {
   const uav::Pose X = X_WB_now * inverse(X_WB_given);
   return {transform(X, ray.origin), rotate(X.q, ray.direction)};

@@ -11,14 +11,14 @@
 
 namespace tether::gazebo_plugin {
 
-/// Where requests come from, and answers go.
+/// Provides requests and receives the answers.
 class Host {
  public:
   virtual ~Host() = default;
   Host(const Host&) = delete;
   Host& operator=(const Host&) = delete;
 
-  /// Blocks until there is a request that fits the conversation. None: that is over.
+  /// Blocks until there is a request that fits the conversation. None: the conversation is over.
   virtual std::optional<protocol::Request> next() = 0;
   virtual void answer(const protocol::Reply& reply) = 0;
 
@@ -26,18 +26,18 @@ class Host {
   Host() = default;
 };
 
-/// What a host asks, done in step with a world that another program runs: it calls
-/// `at_step_boundary` before each step, and the world stands still until that returns.
+/// Serves a host's requests in step with a world that another program runs: it calls
+/// `at_step_boundary` before each step, and the world is stopped until that returns.
 ///
 /// One thread.
 class Session {
  public:
-  /// Both live longer.
+  /// Both must outlive it.
   Session(Host& host, Simulation& simulation) : host_(host), simulation_(simulation) {}
 
   /// Serves requests until one needs a step of the world.
   void at_step_boundary();
-  /// Nothing is going to be asked any more; the world may do as it likes.
+  /// There will be no more requests; the world may continue freely.
   bool is_over() const { return phase_ == Phase::kOver; }
 
  private:
@@ -67,7 +67,7 @@ class Session {
   SimTime now_;
   std::int64_t steps_left_ = 0;
   bool advancing_ = false;
-  /// When the last step began, and what came of it.
+  /// The bodies at the beginning of the last step, and the motion of that step.
   std::vector<uav::BodyState> before_;
   std::vector<protocol::Motion> motions_;
   /// The bodies' poses when the last steps began, all bodies of a step after one another.

@@ -3,8 +3,8 @@
 #include <tether/sim_gazebo_plugin/ray_frames.h>
 #include <tether/uav/math.h>
 
-/// How far along a ray, in the shape's own frame, a shape around the origin is met: its surface,
-/// also from inside. +inf where it is not [m].
+/// The distance along a ray, in the shape's frame, to the surface of a shape around the origin,
+/// also from inside; +inf: no hit [m].
 namespace tether::gazebo_plugin {
 
 double distance_to_box_m(const Ray& ray, const uav::Vec3& size_m);

@@ -10,8 +10,8 @@ namespace tether::gazebo_plugin {
 
 namespace protocol = sim::protocol;
 
-/// What a session needs of the simulator around it. Everything may throw Error, one line that goes
-/// to the host; after that nothing more is asked.
+/// The simulator of a session. Every function may throw Error, whose message is sent to the host;
+/// after that no function is called.
 class Simulation {
  public:
   virtual ~Simulation() = default;
@@ -20,14 +20,14 @@ class Simulation {
 
   /// Begins to put the UAVs into the world.
   virtual void open(const protocol::Open& open) = 0;
-  /// Whether the world is ready for `reset`. Asked before each of the steps that pass meanwhile.
+  /// Whether the world is ready for `reset`. Called before each step until it is.
   virtual bool is_ready() = 0;
   /// Name and version, for the record.
   virtual std::string description() const = 0;
 
-  /// Everything as it was before the first step.
+  /// Back to the state before the first step.
   virtual void reset(std::uint64_t seed) = 0;
-  /// Of the UAVs, then of what else moves.
+  /// Of the UAVs, then of the other moving bodies.
   virtual std::vector<uav::BodyState> bodies() const = 0;
   /// Force and torque on a UAV's centre of mass during the next step [N, N m].
   virtual void push(std::size_t uav, const uav::Vec3& force_W, const uav::Vec3& torque_W) = 0;

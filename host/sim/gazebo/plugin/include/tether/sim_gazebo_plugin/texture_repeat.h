@@ -10,9 +10,8 @@ struct TextureRepeat {
   double x = 1.0, y = 1.0;
 };
 
-/// How often a texture goes over one of Gazebo's unit shapes that is scaled to `size_m`, where it
-/// is to repeat so often per metre of surface. Once over any other mesh, whose own coordinates
-/// count.
+/// The repetitions of a texture over one of Gazebo's unit shapes that is scaled to `size_m`, for
+/// the given repetitions per metre of surface. 1 for any other mesh, which has its own coordinates.
 TextureRepeat texture_repeat(const std::string& mesh, const uav::Vec3& size_m,
                              double repeat_x_per_m, double repeat_y_per_m);
 

@@ -1,4 +1,4 @@
-#include "outside_shapes.h"
+#include "sdf16_shapes.h"
 
 #include <cmath>
 #include <utility>
@@ -6,7 +6,7 @@
 namespace tether::sim {
 namespace {
 
-/// One of the parts that a shape falls into.
+/// One of the parts that replace a shape.
 struct Part {
   std::string suffix;
   uav::Pose X;  ///< in the shape's own frame
@@ -28,14 +28,14 @@ std::vector<Part> parts_of(const Geometry& geometry) {
   return {{"", {}, geometry}};
 }
 
+/// Whether it is an ellipsoid that is not a ball.
 bool is_oblong(const Geometry& geometry) {
   const auto* ellipsoid = std::get_if<EllipsoidGeometry>(&geometry);
-  if (!ellipsoid) return false;
-  const uav::Vec3& r = ellipsoid->radii_m;
-  return r.x != r.y || r.y != r.z;
+  return ellipsoid && (ellipsoid->radii_m.x != ellipsoid->radii_m.y ||
+                       ellipsoid->radii_m.y != ellipsoid->radii_m.z);
 }
 
-/// Of what was merged from other links ("arm::box"), a name that no other shape of the UAV has.
+/// A unique name for a shape that was merged from another link ("arm::box").
 std::string plain_name(const std::string& name, std::size_t index) {
   const std::size_t colons = name.find("::");
   if (colons == std::string::npos) return name;
@@ -43,14 +43,14 @@ std::string plain_name(const std::string& name, std::size_t index) {
 }
 
 template <class Shape>
-std::vector<Shape> outside(const std::vector<Shape>& shapes, uav::Pose Shape::*pose,
-                           const std::string& uav, const WarningSink& warn) {
+std::vector<Shape> in_sdf16(const std::vector<Shape>& shapes, uav::Pose Shape::*pose,
+                            const std::string& uav, const WarningSink& warn) {
   std::vector<Shape> out;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const Shape& shape = shapes[i];
     if (is_oblong(shape.geometry)) {
-      warn("UAV '" + uav + "': the ellipsoid '" + shape.name +
-           "' is a sphere of the same volume in a simulator outside: SDF 1.6 has no ellipsoid");
+      warn("UAV '" + uav + "': external simulators receive the ellipsoid '" + shape.name +
+           "' as a sphere of the same volume, because SDF 1.6 has no ellipsoid");
     }
     for (Part& part : parts_of(shape.geometry)) {
       Shape& added = out.emplace_back(shape);
@@ -64,12 +64,12 @@ std::vector<Shape> outside(const std::vector<Shape>& shapes, uav::Pose Shape::*p
 
 }  // namespace
 
-std::vector<Visual> outside_visuals(const Uav& uav, const WarningSink& warn) {
-  return outside(uav.body.visuals, &Visual::X_LV, uav.name, warn);
+std::vector<Visual> sdf16_visuals(const Uav& uav, const WarningSink& warn) {
+  return in_sdf16(uav.body.visuals, &Visual::X_LV, uav.name, warn);
 }
 
-std::vector<Collision> outside_collisions(const Uav& uav, const WarningSink& warn) {
-  return outside(uav.body.collisions, &Collision::X_LC, uav.name, warn);
+std::vector<Collision> sdf16_collisions(const Uav& uav, const WarningSink& warn) {
+  return in_sdf16(uav.body.collisions, &Collision::X_LC, uav.name, warn);
 }
 
 }  // namespace tether::sim

@@ -4,62 +4,66 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string>
+#include <span>
 #include <thread>
+#include <utility>
 #include <vector>
 
-#include <tether/base/result.h>
 #include <tether/sim/world.h>
 #include <tether/sim_protocol/connection.h>
 #include <tether/sim_protocol/messages.h>
-#include <tether/sim_remote_testing/box_scene.h>
 #include <tether/uav/multirotor.h>
 
 namespace tether::sim::testing {
 
-/// A simulator outside: UAVs fly by uav::step as rigid bodies that touch nothing, every other
-/// moving body swings along x, rays and pictures know boxes only. Serves one host over TCP from a
-/// thread of its own, and checks nothing that it sends, so that any fault can be planted.
-class FakeOutside {
+/// An external simulator: UAVs approach their commanded velocity, every other moving body swings
+/// along x, rays and pictures show collision boxes only. Serves one host over TCP from its own
+/// thread. Does not check what it sends, so that any fault can be planted.
+class FakeExternalSimulator {
  public:
-  /// Stands in the place of an answer; nothing: hangs up without one.
+  /// Returns what is sent in place of an answer; nothing: closes the connection.
   using Fault = std::function<std::optional<protocol::Reply>(const protocol::Request& request,
                                                              protocol::Reply answer)>;
 
-  /// `world`: what the host has too. `fault` is asked before every answer, on the fake's thread.
-  explicit FakeOutside(const World& world, Fault fault = {});
-  ~FakeOutside();
-  FakeOutside(const FakeOutside&) = delete;
-  FakeOutside& operator=(const FakeOutside&) = delete;
+  /// `world`: that of the host. `fault` is called before every answer, on the fake's thread.
+  explicit FakeExternalSimulator(const World& world, Fault fault = {});
+  ~FakeExternalSimulator();
+  FakeExternalSimulator(const FakeExternalSimulator&) = delete;
+  FakeExternalSimulator& operator=(const FakeExternalSimulator&) = delete;
 
   /// The host's end. Once.
   std::unique_ptr<protocol::Connection> take_connection() { return std::move(connection_); }
 
-  /// All requests that have come so far. Any thread.
+  /// All requests received so far. Any thread.
   std::vector<protocol::Request> requests() const;
 
  private:
   struct Flight {
     uav::BodyState body;
-    uav::MultirotorState rotors;
     uav::VelocityCommand command;
     protocol::Motion motion;
   };
+  struct Box {
+    std::optional<std::size_t> body;  ///< that it moves with
+    uav::Pose X;                      ///< in its body; in W without one
+    uav::Vec3 half_m;
+  };
 
+  void add_boxes(const Link& link, std::optional<std::size_t> body, const uav::Pose& X_WL);
+  /// To the first box along the unit vector `ray_W`, but for those of body `without`.
+  double distance_m(const uav::Vec3& origin_W, const uav::Vec3& ray_W,
+                    std::span<const uav::Pose> X_WB, std::optional<std::uint32_t> without) const;
   void serve(int listening);
-  protocol::Reply answer(const protocol::Request& request);
   protocol::Reply answer(const protocol::Open& open);
   protocol::Reply answer(const protocol::Reset& reset);
   protocol::Reply answer(const protocol::Advance& advance);
   protocol::Reply answer(const protocol::CastRays& cast);
   protocol::Reply answer(const protocol::Render& render);
-  void step();
-  void step(std::size_t uav);
+  void step(Flight& flight) const;
   protocol::State state() const;
-  uav::BodyState swinging(std::size_t body) const;
 
   World world_;
-  BoxScene scene_;
+  std::vector<Box> boxes_;
   Fault fault_;
   protocol::Open open_;
   SimTime now_;

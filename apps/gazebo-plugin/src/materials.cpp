@@ -13,7 +13,7 @@
 namespace tether::gazebo_plugin {
 namespace {
 
-using sim::protocol::Look;
+using sim::protocol::VisualMaterial;
 
 constexpr const char* kGroup = "General";
 constexpr float kShininess = 32.0F;
@@ -23,8 +23,8 @@ Ogre::ColourValue colour(const uav::Vec3& rgb) {
                            static_cast<float>(rgb.z));
 }
 
-std::string name_of(const Look& look) {
-  return look.model + "::" + look.link + "::" + look.visual;
+std::string name_of(const VisualMaterial& wanted) {
+  return wanted.model + "::" + wanted.link + "::" + wanted.visual;
 }
 
 void load_texture(const std::string& file) {
@@ -36,14 +36,13 @@ void load_texture(const std::string& file) {
   try {
     image.load(stream, "png");
   } catch (const Ogre::Exception&) {
-    throw Error(ErrorCode::kSetup, file + ": texture is no PNG file");
+    throw Error(ErrorCode::kSetup, file + ": texture is not a PNG file");
   }
   Ogre::TextureManager::getSingleton().loadImage(file, kGroup, image);
 }
 
-// The texture darkens what light and colours have made, which is never lighter than white: so in
-// two passes, the second of which multiplies. In one, Gazebo's shaders would wash out what is well
-// lit.
+// The texture multiplies the lit colours, which are at most white, in a second pass. In a single
+// pass, Gazebo's shaders would wash out bright surfaces.
 Ogre::Pass* opaque_texture_pass(Ogre::Pass& lit) {
   Ogre::Pass* textured = lit.getParent()->createPass();
   textured->setLightingEnabled(false);
@@ -53,8 +52,8 @@ Ogre::Pass* opaque_texture_pass(Ogre::Pass& lit) {
   return textured;
 }
 
-// A second pass would multiply what lies behind as well. The embedded simulator, too, blends both
-// sides of what is transparent.
+// A second pass would multiply the background as well. As in the embedded simulator, both sides of
+// transparent surfaces are blended.
 Ogre::Pass* blended_texture_pass(Ogre::Pass& lit) {
   lit.setSceneBlending(Ogre::SBT_TRANSPARENT_ALPHA);
   lit.setDepthWriteEnabled(false);
@@ -62,20 +61,21 @@ Ogre::Pass* blended_texture_pass(Ogre::Pass& lit) {
   return &lit;
 }
 
-std::string make_material(const Look& look, const TextureRepeat& repeat) {
-  const std::string name = "tether/" + name_of(look);
+std::string make_material(const VisualMaterial& wanted, const TextureRepeat& repeat) {
+  const std::string name = "tether/" + name_of(wanted);
   Ogre::MaterialPtr material = Ogre::MaterialManager::getSingleton().create(name, kGroup);
   Ogre::Pass* lit = material->getTechnique(0)->getPass(0);
-  Ogre::ColourValue diffuse = colour(look.diffuse_rgb);
-  diffuse.a = static_cast<float>(look.alpha);
-  lit->setAmbient(colour(look.ambient_rgb));
+  Ogre::ColourValue diffuse = colour(wanted.diffuse_rgb);
+  diffuse.a = static_cast<float>(wanted.alpha);
+  lit->setAmbient(colour(wanted.ambient_rgb));
   lit->setDiffuse(diffuse);
-  lit->setSpecular(colour(look.specular_rgb));
-  lit->setSelfIllumination(colour(look.emissive_rgb));
+  lit->setSpecular(colour(wanted.specular_rgb));
+  lit->setSelfIllumination(colour(wanted.emissive_rgb));
   lit->setShininess(kShininess);
-  load_texture(look.texture);
-  Ogre::Pass* textured = look.alpha < 1.0 ? blended_texture_pass(*lit) : opaque_texture_pass(*lit);
-  Ogre::TextureUnitState* unit = textured->createTextureUnitState(look.texture);
+  load_texture(wanted.texture);
+  Ogre::Pass* textured =
+      wanted.alpha < 1.0 ? blended_texture_pass(*lit) : opaque_texture_pass(*lit);
+  Ogre::TextureUnitState* unit = textured->createTextureUnitState(wanted.texture);
   unit->setTextureFiltering(Ogre::TFO_TRILINEAR);
   unit->setTextureScale(static_cast<float>(1.0 / repeat.x), static_cast<float>(1.0 / repeat.y));
   return name;
@@ -103,11 +103,11 @@ Ogre::Entity* entity_of(Ogre::SceneNode& node) {
 }
 
 // Gazebo's own box has the texture once on each face. The node keeps scaling it.
-Ogre::Entity* replace_box(Ogre::SceneNode& node, Ogre::Entity& old, const Look& look,
+Ogre::Entity* replace_box(Ogre::SceneNode& node, Ogre::Entity& old, const VisualMaterial& wanted,
                           const uav::Vec3& size_m) {
-  const std::string name = "tether/" + name_of(look);
+  const std::string name = "tether/" + name_of(wanted);
   Ogre::SceneManager& manager = *node.getCreator();
-  make_mesh(name, textured_box(size_m, look.texture_repeat_x, look.texture_repeat_y));
+  make_mesh(name, textured_box(size_m, wanted.texture_repeat_x, wanted.texture_repeat_y));
   Ogre::Entity* entity = manager.createEntity(name, name);
   entity->setVisibilityFlags(old.getVisibilityFlags());
   entity->setCastShadows(old.getCastShadows());
@@ -118,28 +118,29 @@ Ogre::Entity* replace_box(Ogre::SceneNode& node, Ogre::Entity& old, const Look& 
   return entity;
 }
 
-void apply(const ::gazebo::rendering::VisualPtr& visual, const Look& look) {
+void apply(const ::gazebo::rendering::VisualPtr& visual, const VisualMaterial& wanted) {
   Ogre::SceneNode& node = *visual->GetSceneNode();
   Ogre::Entity* entity = entity_of(node);
   if (!entity) return;
   const Ogre::Vector3& scale = node.getScale();
   const uav::Vec3 size_m{scale.x, scale.y, scale.z};
   const std::string mesh = visual->GetMeshName();
-  if (mesh == "unit_box") entity = replace_box(node, *entity, look, size_m);
+  if (mesh == "unit_box") entity = replace_box(node, *entity, wanted, size_m);
   entity->setMaterialName(make_material(
-      look, texture_repeat(mesh, size_m, look.texture_repeat_x, look.texture_repeat_y)));
+      wanted, texture_repeat(mesh, size_m, wanted.texture_repeat_x, wanted.texture_repeat_y)));
 }
 
 }  // namespace
 
-void apply_looks(const ::gazebo::rendering::ScenePtr& scene, const std::vector<Look>& looks) {
-  for (const Look& look : looks) {
-    const ::gazebo::rendering::VisualPtr visual = scene->GetVisual(name_of(look));
+void apply_materials(const ::gazebo::rendering::ScenePtr& scene,
+                     const std::vector<VisualMaterial>& materials) {
+  for (const VisualMaterial& wanted : materials) {
+    const ::gazebo::rendering::VisualPtr visual = scene->GetVisual(name_of(wanted));
     if (!visual) {
-      throw Error(ErrorCode::kSetup, "Gazebo's world has no visual '" + name_of(look) +
-                                         "': let gzserver load the world file of the scenario");
+      throw Error(ErrorCode::kSetup, "Gazebo's world has no visual '" + name_of(wanted) +
+                                         "'; load the world file of the scenario in gzserver");
     }
-    apply(visual, look);
+    apply(visual, wanted);
   }
   ::gazebo::rendering::RTShaderSystem::Instance()->UpdateShaders();
 }
