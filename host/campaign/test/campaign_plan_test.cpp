@@ -67,7 +67,7 @@ TEST(TrialsSideBySide, AreAsManyAsDisturbNothing) {
     scenario::Scenario scenario;
     scenario.uavs.resize(static_cast<std::size_t>(c.uavs));
     const TrialPlan plan{&scenario, &condition, 1, "out", false};
-    EXPECT_EQ(trials_side_by_side(plan, c.jobs), c.expected) << c.what;
+    EXPECT_EQ(parallel_trials(plan, c.jobs), c.expected) << c.what;
   }
 }
 
@@ -77,9 +77,9 @@ TEST(TrialsSideBySide, AreOneOnATargetThatBindsItsSutsToCores) {
   scenario::Condition condition;
   condition.target.emplace();
   const TrialPlan plan{&scenario, &condition, 1, "out", false};
-  EXPECT_EQ(trials_side_by_side(plan, 4), 4);
+  EXPECT_EQ(parallel_trials(plan, 4), 4);
   condition.target->cores = 1;
-  EXPECT_EQ(trials_side_by_side(plan, 4), 1);
+  EXPECT_EQ(parallel_trials(plan, 4), 1);
 }
 
 TEST(TrialsSideBySide, RunFreeAloneWhereTheSimulatorsLoadIsUnknown) {
@@ -90,11 +90,11 @@ TEST(TrialsSideBySide, RunFreeAloneWhereTheSimulatorsLoadIsUnknown) {
   condition.cpu_factor = 6.0;
   condition.real_time_factor = 0.3;
   const TrialPlan plan{&scenario, &condition, 1, "out", false};
-  EXPECT_GT(trials_side_by_side(plan, 4), 1);
+  EXPECT_GT(parallel_trials(plan, 4), 1);
   condition.simulator = "gazebo";
-  EXPECT_EQ(trials_side_by_side(plan, 4), 1);
+  EXPECT_EQ(parallel_trials(plan, 4), 1);
   condition.policy = scenario::Policy::kConservativeBarrier;
-  EXPECT_EQ(trials_side_by_side(plan, 4), 4);
+  EXPECT_EQ(parallel_trials(plan, 4), 4);
 }
 
 TEST_F(CampaignPlan, RecordsTheImagesOfTheFirstSeedWhereAsked) {

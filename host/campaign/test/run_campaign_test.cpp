@@ -224,7 +224,7 @@ TEST_F(RunCampaign, RunsSideBySideWhatMayAndTheRestAlone) {
   std::atomic<int> inside{0};
   run(open(), [&](const TrialPlan& plan) {
     const int others = inside++;
-    if (trials_side_by_side(plan, options_.jobs) > 1) {
+    if (parallel_trials(plan, options_.jobs) > 1) {
       gate.pass();  // would wait for ever if it ran alone
     } else {
       EXPECT_EQ(others, 0);

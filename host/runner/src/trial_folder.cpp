@@ -16,25 +16,6 @@ namespace {
   throw Error(ErrorCode::kSetup, path.string() + ": " + why + "; choose another folder with --out");
 }
 
-void make(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) fail(folder, error.message());
-}
-
-/// Once it is locked, a campaign that starts now sees it.
-std::unique_ptr<campaign::PathLock> claim(const std::filesystem::path& folder) {
-  campaign::require_no_campaign(folder);
-  make(folder);
-  auto lock = std::make_unique<campaign::PathLock>(folder);
-  if (!lock->is_held())
-    throw Error(ErrorCode::kUsage,
-                folder.string() +
-                    ": another run writes there; give this one a folder of its own with --out");
-  campaign::require_no_campaign(folder);
-  return lock;
-}
-
 void drop(const std::filesystem::path& file) {
   std::error_code error;
   std::filesystem::remove(file, error);
@@ -43,7 +24,8 @@ void drop(const std::filesystem::path& file) {
 
 }  // namespace
 
-TrialFolder::TrialFolder(const std::filesystem::path& folder) : lock_(claim(folder)) {
+TrialFolder::TrialFolder(const std::filesystem::path& folder)
+    : claim_(folder, campaign::FolderClaim::By::kRun) {
   // Rather now than when there is a result to write.
   if (access(folder.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
   drop(folder / campaign::kResultFile);
