@@ -19,7 +19,7 @@ std::string_view trimmed(std::string_view line) {
   return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// What editors on Windows put before the first character (TOML's parser skips it as well).
+/// Some editors put this mark before the first character (TOML's parser skips it as well).
 std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
@@ -62,12 +62,13 @@ std::vector<Duration> read_inline_samples(const toml::Table& delay) {
 }
 
 uav::Delay read_empirical(const toml::Table& delay, std::vector<std::filesystem::path>& files) {
-  const auto given = std::count_if(kSampleKeys.begin(), kSampleKeys.end(),
-                                   [&](std::string_view key) { return delay.has(key); });
+  const auto given =
+      std::ranges::count_if(kSampleKeys, [&](std::string_view key) { return delay.has(key); });
   if (given != 1) {
     delay.fail(
-        "needs one of 'samples_ms' (an array of delays), 'file_ms' and 'file_s' (a file with one "
-        "delay per line in that unit)");
+        "needs exactly one of 'samples_ms' (an array of delays), 'file_ms' and 'file_s' (a file "
+        "with "
+        "one delay per line in that unit).");
   }
   if (delay.has("samples_ms")) return uav::EmpiricalDelay{read_inline_samples(delay)};
   const std::string_view key = delay.has("file_ms") ? "file_ms" : "file_s";
@@ -113,8 +114,8 @@ std::vector<Duration> read_delay_samples(const std::filesystem::path& file,
     begin = end + 1;
   }
   if (samples.empty()) {
-    throw Error(ErrorCode::kBadFile, FileLocation{file.string()},
-                "holds no delay; expected one number per line");
+    throw Error(ErrorCode::kBadFile, {file.string()},
+                "contains no delay. Expected one number per line.");
   }
   return samples;
 }

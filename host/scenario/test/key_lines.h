@@ -12,6 +12,7 @@ struct KeyLine {
   int header = 0;  // line of the table it is in; 0: the top of the file
   std::string key;
   std::string value;
+  bool is_parameter = false;  // of a table whose keys are free
 };
 
 inline std::vector<std::string> lines_of(const std::string& text) {
@@ -25,12 +26,15 @@ inline std::vector<std::string> lines_of(const std::string& text) {
 inline std::vector<KeyLine> key_lines(const std::string& text) {
   std::vector<KeyLine> keys;
   int number = 0, header = 0;
+  bool is_free = false;
   for (const std::string& line : lines_of(text)) {
     ++number;
-    if (line.starts_with("[")) header = number;
-    const auto equals = line.find(" = ");
-    if (line.starts_with("[") || equals == std::string::npos) continue;
-    keys.push_back({number, header, line.substr(0, equals), line.substr(equals + 3)});
+    if (line.starts_with("[")) {
+      header = number;
+      is_free = line.ends_with("sut.parameters]") || line.ends_with("sut.files]");
+    } else if (const auto equals = line.find(" = "); equals != std::string::npos) {
+      keys.push_back({number, header, line.substr(0, equals), line.substr(equals + 3), is_free});
+    }
   }
   return keys;
 }

@@ -11,12 +11,9 @@ TEST(MetricKinds, HaveDistinctNamesAndAllTheirTexts) {
   std::set<std::string_view> names;
   for (const MetricKind& kind : metric_kinds()) {
     EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
-    EXPECT_FALSE(kind.label.empty());
-    EXPECT_FALSE(kind.unit.empty());
-    EXPECT_FALSE(kind.help.empty());
-    EXPECT_EQ(find_metric_kind(kind.name), &kind);
+    EXPECT_FALSE(kind.label.empty() || kind.unit.empty() || kind.help.empty()) << kind.name;
   }
-  EXPECT_EQ(find_metric_kind("none"), nullptr);
+  EXPECT_FALSE(names.empty());
 }
 
 TEST(UnitSuffix, IsEmptyForCounts) {

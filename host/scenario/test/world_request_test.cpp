@@ -1,4 +1,4 @@
-#include "full_scenario.h"
+#include "test_files.h"
 
 #include <algorithm>
 

@@ -14,7 +14,7 @@
 #include <tether/record/reader.h>
 #include <tether/scenario/scenario.h>
 
-/// The result of one trial and its file, `result.json` (DESIGN section 5).
+/// The result of one trial and its file, `result.json` (docs/design.md section 5).
 namespace tether::campaign {
 
 inline constexpr int kResultSchemaVersion = 1;
