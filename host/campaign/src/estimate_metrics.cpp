@@ -19,16 +19,20 @@ using Details = nlohmann::json;
 
 // ---- Annotations: written by the SUT, so those that make no sense are skipped.
 
-std::optional<double> number_of(const Details& note, const char* member) {
+template <class T>
+std::optional<T> value_of(const Details& note, const char* member,
+                          bool (Details::*is_type)() const) {
   const auto found = note.find(member);
-  if (found == note.end() || !found->is_number()) return std::nullopt;
-  return found->get<double>();
+  if (found == note.end() || !((*found).*is_type)()) return std::nullopt;
+  return found->get<T>();
 }
 
-std::optional<std::string> text_of(const Details& note, const char* member) {
-  const auto found = note.find(member);
-  if (found == note.end() || !found->is_string()) return std::nullopt;
-  return found->get<std::string>();
+std::optional<double> number_of(const Details& note, const char* member) {
+  return value_of<double>(note, member, &Details::is_number);
+}
+
+std::optional<std::string> string_of(const Details& note, const char* member) {
+  return value_of<std::string>(note, member, &Details::is_string);
 }
 
 // The last annotation before the SUT finished for which `read` returns something.
@@ -58,13 +62,12 @@ struct Estimate {
 
 // Of the metric's anchor.
 std::optional<Estimate> read_estimate(const Details& note, const scenario::Metric& metric) {
-  const auto camera = text_of(note, "camera");
+  const auto camera = string_of(note, "camera");
   const auto bearing_rad = number_of(note, "bearing_rad");
-  const auto index = note.find("image_index");
-  if (text_of(note, "anchor") != metric.anchor || !camera || !bearing_rad) return std::nullopt;
-  if (index == note.end() || !index->is_number_unsigned()) return std::nullopt;
-  return Estimate{*camera, index->get<std::uint64_t>(), *bearing_rad,
-                  number_of(note, "distance_m")};
+  const auto index = value_of<std::uint64_t>(note, "image_index", &Details::is_number_unsigned);
+  const bool is_of_anchor = string_of(note, "anchor") == metric.anchor;
+  if (!is_of_anchor || !camera || !bearing_rad || !index) return std::nullopt;
+  return Estimate{*camera, *index, *bearing_rad, number_of(note, "distance_m")};
 }
 
 std::optional<uav::Vec3> read_displacement(const Details& note, const scenario::Metric&) {

@@ -29,14 +29,14 @@ std::vector<double> bearings_until_finish(const scenario::Metric& metric,
   return bearings_rad;
 }
 
+template <class Evaluate>
 MetricOutcome with_bearings(const scenario::Metric& metric, const record::Record& record,
-                            double (*evaluate)(const scenario::Metric&,
-                                               const std::vector<double>&)) {
+                            const Evaluate& evaluate) {
   const record::Anchor* anchor = find_anchor(record, metric.anchor);
   if (anchor == nullptr) return no_anchor(metric);
   const std::vector<double> bearings_rad = bearings_until_finish(metric, record, *anchor);
   if (bearings_rad.empty()) return no_ground_truth(metric);
-  return {evaluate(metric, bearings_rad), ""};
+  return {evaluate(bearings_rad), ""};
 }
 
 MetricOutcome time_required(const scenario::Metric& metric, const record::Record& record) {
@@ -45,18 +45,16 @@ MetricOutcome time_required(const scenario::Metric& metric, const record::Record
 }
 
 MetricOutcome oscillations(const scenario::Metric& metric, const record::Record& record) {
-  return with_bearings(metric, record,
-                       [](const scenario::Metric& m, const std::vector<double>& bearings_rad) {
-                         return double{1} * count_overshoots(bearings_rad, m.threshold_rad);
-                       });
+  return with_bearings(metric, record, [&](const std::vector<double>& bearings_rad) {
+    return double{1} * count_overshoots(bearings_rad, metric.threshold_rad);
+  });
 }
 
 MetricOutcome final_bearing_error(const scenario::Metric& metric, const record::Record& record) {
   if (!finish_time(record, metric.uav)) return no_finish(metric);
-  return with_bearings(metric, record,
-                       [](const scenario::Metric&, const std::vector<double>& bearings_rad) {
-                         return deg_from_rad(std::abs(bearings_rad.back()));
-                       });
+  return with_bearings(metric, record, [](const std::vector<double>& bearings_rad) {
+    return deg_from_rad(std::abs(bearings_rad.back()));
+  });
 }
 
 // ST per second of wall time, as achieved: at most the limit, less where the simulator was too

@@ -116,19 +116,8 @@ std::vector<uav::Vec3> outline_A(const record::Anchor& anchor, const uav::Vec3& 
 // Projection.
 
 uav::CameraModel model_of(const record::CameraInfo& camera) {
-  uav::CameraModel model;
-  model.width_px = camera.width_px;
-  model.height_px = camera.height_px;
-  model.fx_px = camera.fx_px;
-  model.fy_px = camera.fy_px;
-  model.cx_px = camera.cx_px;
-  model.cy_px = camera.cy_px;
-  model.k1 = camera.k1;
-  model.k2 = camera.k2;
-  model.k3 = camera.k3;
-  model.p1 = camera.p1;
-  model.p2 = camera.p2;
-  return model;
+  return {camera.width_px, camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px,
+          camera.k1,       camera.k2,        camera.k3,    camera.p1,    camera.p2};
 }
 
 // Far aside, the polynomials of a distortion fold back into the image; such a pixel is no image of

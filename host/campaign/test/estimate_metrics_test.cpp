@@ -27,20 +27,15 @@ Flight standing() {
   return flight;
 }
 
-TEST(BearingError, IsTheDistanceOfTwoAnglesInDegrees) {
-  for (const double off_deg : {0.0, 0.4, -1.5}) {
+TEST(Estimates, AreComparedWithTheBearingAndTheHorizontalDistanceFromTheCamera) {
+  for (const double off : {0.0, 0.4, -1.5}) {
     Flight flight = standing();
-    flight.note("estimate", estimate(kTrueBearing_deg + off_deg, "5")).finish(100);
-    EXPECT_NEAR(*flight.metric("bearing_error").value, std::abs(off_deg), 1e-4);
-  }
-}
-
-TEST(DistanceError, IsHorizontalFromTheCameraToTheCentre) {
-  for (const double said_m : {4.5, 5.25}) {
-    Flight flight = standing();
-    flight.record().header.anchors[0].p_WA_m[2] = 3.0;
-    flight.note("estimate", estimate(0.0, std::to_string(said_m))).finish(100);
-    EXPECT_NEAR(*flight.metric("distance_error").value, std::abs(said_m - kTrueDistance_m), 1e-12);
+    flight.record().header.anchors[0].p_WA_m[2] = 0.6;
+    flight.note("estimate", estimate(kTrueBearing_deg + off, std::to_string(4.5 + off)));
+    flight.finish(100);
+    EXPECT_NEAR(*flight.metric("bearing_error").value, std::abs(off), 1e-4);
+    EXPECT_NEAR(*flight.metric("distance_error").value, std::abs(4.5 + off - kTrueDistance_m),
+                1e-12);
   }
 }
 
@@ -60,30 +55,15 @@ TEST(BearingError, IsThatOfTheImageNotOfNow) {
               std::abs(4.0 - std::hypot(4.6 - camera_x_m, camera_y_m)), 1e-9);
 }
 
-TEST(Estimates, TheLastBeforeTheFinishCounts) {
+TEST(Estimates, CountIfTheyAreTheLastValidOfTheMetricsUavAndAnchorBeforeTheFinish) {
   Flight flight = standing();
   flight.note("estimate", estimate(kTrueBearing_deg + 9.0, "1"));
   flight.note("estimate", estimate(kTrueBearing_deg + 2.0, "5"));
   flight.note("roi", estimate(kTrueBearing_deg + 7.0, "3"));
-  flight.finish(100).note("estimate", estimate(kTrueBearing_deg, "2"));
-  EXPECT_NEAR(*flight.metric("bearing_error").value, 2.0, 1e-4);
-  EXPECT_NEAR(*flight.metric("distance_error").value, 5.0 - kTrueDistance_m, 1e-12);
-}
-
-TEST(Estimates, AreThoseOfTheMetricsUavAndAnchor) {
-  Flight flight = standing();
-  flight.note("estimate", estimate(kTrueBearing_deg + 2.0, "5"));
   flight.note("estimate", estimate(kTrueBearing_deg + 5.0, "5", 7, "red_box"));
   flight.note("estimate", estimate(kTrueBearing_deg + 7.0, "5"));
   flight.record().annotations.back().message.uav = "uav2";
-  flight.finish(100);
-  EXPECT_NEAR(*flight.metric("bearing_error").value, 2.0, 1e-4);
-}
-
-TEST(Estimates, InvalidOnesAreSkipped) {
-  Flight flight = standing();
-  flight.note("estimate", estimate(kTrueBearing_deg + 2.0, "5"));
-  for (const char* nonsense :
+  for (const char* invalid :
        {"", "{", "[]", "null", "\"text\"", "{}", R"({"text":"hello"})",
         R"({"anchor":"box","camera":"camera","image_index":7})",
         R"({"anchor":"box","camera":"camera","image_index":-1,"bearing_rad":0})",
@@ -92,9 +72,10 @@ TEST(Estimates, InvalidOnesAreSkipped) {
         R"({"anchor":"box","camera":"camera","image_index":7,"bearing_rad":1e999})",
         R"({"anchor":"box","camera":3,"image_index":7,"bearing_rad":0})",
         R"({"camera":"camera","image_index":7,"bearing_rad":0})"})
-    flight.note("estimate", nonsense);
-  flight.finish(100);
+    flight.note("estimate", invalid);
+  flight.finish(100).note("estimate", estimate(kTrueBearing_deg, "2"));
   EXPECT_NEAR(*flight.metric("bearing_error").value, 2.0, 1e-4);
+  EXPECT_NEAR(*flight.metric("distance_error").value, 5.0 - kTrueDistance_m, 1e-12);
 }
 
 // As a camera's images under free running and of an on-demand one: no grid, no state's instant.

@@ -77,10 +77,13 @@ TEST_F(Claim, OfACampaignExcludesOthersFromItsFolderAndAllBelowUntilItIsKilled) 
   {
     const OtherProcess campaign(out_, By::kCampaign);
     fs::create_directory_symlink(out_, scratch_.path("link"));
-    for (const By by : {By::kRun, By::kCampaign})
-      for (const fs::path& folder : {out_, out_ / "hover", out_ / "not/there/yet", out_ / "a/../b/",
-                                     scratch_.path("link") / "hover"})
-        EXPECT_THAT(refusal(folder, by).what(), HasSubstr("(process " + campaign.pid() + ")"));
+    const auto expect_refused = [&](const fs::path& folder, By by) {
+      EXPECT_THAT(refusal(folder, by).what(), HasSubstr("(process " + campaign.pid() + ")"));
+    };
+    expect_refused(out_, By::kCampaign);
+    for (const fs::path& folder :
+         {out_, out_ / "not/there/yet", out_ / "a/../b/", scratch_.path("link") / "hover"})
+      expect_refused(folder, By::kRun);
     EXPECT_FALSE(fs::exists(out_ / "not"));
     EXPECT_NO_THROW(claim(out_.parent_path(), By::kRun));
     EXPECT_NO_THROW(claim(out_.string() + "side", By::kRun));

@@ -39,10 +39,9 @@ TEST_F(Result, ReadsBackWithEverythingMissing) {
 }
 
 TEST_F(Result, KeepsEveryNanosecond) {
-  for (const std::int64_t ns :
-       {0L, 1L, 999'999'999L, 1'000'000'001L, 123'456'789'012'345'678L / 100}) {
+  for (const std::int64_t ns : {0L, 1L, 999'999'999L, 1'000'000'001L, 1'234'567'890'123'456L}) {
     trial_.sync.st_at_end = SimTime(Duration(ns));
-    EXPECT_EQ(result_from_json(to_json(trial_), "f").sync.st_at_end, trial_.sync.st_at_end) << ns;
+    EXPECT_EQ(result_from_json(to_json(trial_), "f"), trial_) << ns;
   }
 }
 
@@ -74,23 +73,15 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
                    .is_spoiled = true};
   const std::string text = to_json(trial_);
   EXPECT_EQ(result_from_json(text, "f"), trial_);
+  for (const char* documented :
+       {"\"outcome\": \"goal_reached\"", "\"exit_code\": 0", "\"st_at_end_s\": 2.481000001",
+        "\"value\": 9.242", "\"steps\": 12", "\"stops\": 1200", "\"largest_overshoot_s\": 7.3e-05",
+        "\"computing_s\": 0.0025"})
+    EXPECT_THAT(text, HasSubstr(documented));
   const auto begin = text.find("  \"profiles\""), end = text.find("  \"outcome\"");
   EXPECT_THAT(result_from_json(text.substr(0, begin) + text.substr(end), "f").profiles,
               testing::IsEmpty())
       << "of an older version";
-}
-
-// Other programs read these members.
-TEST_F(Result, HasTheDocumentedMembers) {
-  trial_.sync.stops = StopFigures{1200, Duration(73'000)};
-  trial_.clock = "scripted";
-  trial_.computing = Duration(2'500'000);
-  const std::string text = to_json(trial_);
-  for (const char* member :
-       {"\"outcome\": \"goal_reached\"", "\"exit_code\": 0", "\"st_at_end_s\": 2.481000001",
-        "\"value\": 9.242", "\"steps\": 12", "\"stops\": 1200", "\"largest_overshoot_s\": 7.3e-05",
-        "\"computing_s\": 0.0025"})
-    EXPECT_THAT(text, HasSubstr(member));
 }
 
 TEST_F(Result, KeepsTextOfAnyBytesReadable) {

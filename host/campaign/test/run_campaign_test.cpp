@@ -43,10 +43,11 @@ class RunCampaign : public testing::Test {
   std::vector<std::string> ended_;
 };
 
-TEST_F(RunCampaign, RunsEverythingOnce) {
-  const CampaignFolder folder = open();
+TEST_F(RunCampaign, RunsEverythingOnceInAnEmptyFolder) {
+  open();
+  scratch_.write("out/turn/host/seed-0001/record.mcap", "cut short");
   std::multiset<std::string> ran;
-  const CampaignOutcome outcome = run(folder, [&](const TrialPlan& plan) {
+  const CampaignOutcome outcome = run(open(), [&](const TrialPlan& plan) {
     EXPECT_TRUE(std::filesystem::is_empty(plan.folder));
     ran.insert(folder_of(plan));
     return good(plan);
@@ -79,15 +80,6 @@ TEST_F(RunCampaign, ResumesWithWhatIsMissing) {
   EXPECT_TRUE(open(OpenMode::kResume).missing().empty());
 }
 
-TEST_F(RunCampaign, EmptiesTheFolderOfATrialThatWasCutShort) {
-  open();
-  scratch_.write("out/turn/host/seed-0001/record.mcap", "cut short");
-  run(open(), [&](const TrialPlan& plan) {
-    EXPECT_TRUE(std::filesystem::is_empty(plan.folder));
-    return good(plan);
-  });
-}
-
 TEST_F(RunCampaign, RetriesASetUpFailureOnceAndKeepsItsLog) {
   const std::string log(kTrialLog);
   std::map<std::string, int> attempts;
@@ -111,27 +103,20 @@ TEST_F(RunCampaign, RetriesASetUpFailureOnceAndKeepsItsLog) {
   EXPECT_EQ(os::read_file(plan_trials(campaign_, out_)[3].folder / log), "no port");
 }
 
-TEST_F(RunCampaign, KeepsATrialThatFailedTwiceAsFailed) {
+TEST_F(RunCampaign, KeepsATrialThatFailedTwiceAndDoesNotRetryALostSut) {
+  int calls = 0;
   const CampaignOutcome outcome = run(open(), [&](const TrialPlan& plan) {
-    if (plan.seed != 2) return good(plan);
-    return make_setup_failure(*plan.scenario, *plan.condition, plan.seed, "no simulator");
+    ++calls;
+    if (plan.seed == 1) return good(plan);
+    auto failed = make_setup_failure(*plan.scenario, *plan.condition, plan.seed, "no simulator");
+    if (plan.seed == 3) failed.end = "sut_lost";
+    return failed;
   });
+  EXPECT_EQ(calls, 3 + 2 * 3 + 3);
   EXPECT_EQ(outcome.ran, 9u);
-  EXPECT_EQ(outcome.failed, 3u);
+  EXPECT_EQ(outcome.failed, 6u);
   EXPECT_EQ(result_of(3).reason, "no simulator");
   EXPECT_EQ(result_of(3).this_run.attempts, 2);
-}
-
-TEST_F(RunCampaign, DoesNotRetryALostSut) {
-  int calls = 0;
-  run(open(), [&](const TrialPlan& plan) {
-    ++calls;
-    TrialResult result = good(plan);
-    result.outcome = Outcome::kFailed;
-    result.end = "sut_lost";
-    return result;
-  });
-  EXPECT_EQ(calls, 9);
 }
 
 TEST_F(RunCampaign, DoesNotKeepATrialThatTheUserStopped) {
@@ -145,31 +130,22 @@ TEST_F(RunCampaign, DoesNotKeepATrialThatTheUserStopped) {
   EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
 }
 
-TEST_F(RunCampaign, EndsWithTheErrorOfTheCheckAndDoesNotKeepThatTrial) {
+TEST_F(RunCampaign, EndsWithAnErrorOfTheUsersFilesAndDoesNotKeepThatTrial) {
   int checks = 0;
   options_.check = [&] {
     if (++checks == 3) throw Error(ErrorCode::kBadFile, "changed").about("room.sdf");
   };
-  const Error error = bad_file_error([&] {
-    run(open(), [&](const TrialPlan& plan) {
-      write_result(plan.folder, good(plan));  // as a child process does
-      return good(plan);
-    });
-  });
-  EXPECT_EQ(error.subject(), "room.sdf");
+  const auto execute = [&](const TrialPlan& plan) {
+    if (checks == 4) throw Error(ErrorCode::kBadFile, "broken").about("mesh.obj");
+    write_result(plan.folder, good(plan));  // as a child process does
+    return good(plan);
+  };
+  EXPECT_EQ(bad_file_error([&] { run(open(), execute); }).subject(), "room.sdf");
   EXPECT_EQ(checks, 3);
   EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
-}
-
-TEST_F(RunCampaign, EndsWithTheErrorOfTheUsersFiles) {
-  const Error error = bad_file_error([&] {
-    run(open(), [&](const TrialPlan& plan) -> TrialResult {
-      if (plan.seed == 2) throw Error(ErrorCode::kBadFile, "broken").about("mesh.obj");
-      return good(plan);
-    });
-  });
-  EXPECT_EQ(error.subject(), "mesh.obj");
-  EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
+  const auto resume = [&] { run(open(OpenMode::kResume), execute); };
+  EXPECT_EQ(bad_file_error(resume).subject(), "mesh.obj");
+  EXPECT_EQ(open(OpenMode::kResume).finished(), 3u);
 }
 
 TEST_F(RunCampaign, RunsTrialsInParallelIfTheyMayAndOthersAlone) {

@@ -8,7 +8,6 @@
 
 #include <tether/base/units.h>
 #include <tether/scenario/scenario.h>
-#include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
 
 // Reads a scenario table by table: each function reads one table, checks it with what was read
@@ -22,29 +21,14 @@ constexpr std::array<std::string_view, 2> kSimulators = {"mujoco", "gazebo"};
 
 constexpr double kLongestRun_s = 7 * 24 * 3600.0;
 
-std::vector<std::string_view> views(const std::vector<std::string>& words) {
-  return {words.begin(), words.end()};
-}
-
-void require_one_of(const toml::Table& table, std::string_view key, const std::string& word,
-                    const std::vector<std::string>& allowed) {
-  if (std::find(allowed.begin(), allowed.end(), word) != allowed.end()) return;
-  table.fail(key, fmt::format("is \"{}\"; {}", word, toml::allowed_hint(word, views(allowed))));
-}
-
 // The SUT.
 
 using Parameters = std::vector<std::pair<std::string, std::string>>;
 
-// Keys become options of a command line.
-bool is_option_name(std::string_view key) {
-  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789_";
-  return !key.empty() && key.front() >= 'a' && key.front() <= 'z' &&
-         key.find_first_not_of(kAllowed) == std::string_view::npos;
-}
-
 void require_option_name(const toml::Table& table, const std::string& key) {
-  if (is_option_name(key)) return;
+  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  const bool starts_with_letter = !key.empty() && key.front() >= 'a' && key.front() <= 'z';
+  if (starts_with_letter && key.find_first_not_of(kAllowed) == std::string::npos) return;
   table.fail(
       key,
       "must be lower-case letters, digits and '_', starting with a letter, because it becomes "
@@ -67,10 +51,8 @@ void read_files(const toml::Table& sut, Parameters& parameters,
   const toml::Table table = sut.table("files");
   for (const std::string& key : table.keys()) {
     require_option_name(table, key);
-    const bool is_taken =
-        std::any_of(parameters.begin(), parameters.end(),
-                    [&](const auto& parameter) { return parameter.first == key; });
-    if (is_taken) table.fail(key, "is already a key of 'parameters'");
+    if (sut.has("parameters") && sut.table("parameters").has(key))
+      table.fail(key, "is already a key of 'parameters'");
     files.push_back(table.existing_file(key));
     parameters.emplace_back(key, files.back().string());
   }
@@ -308,9 +290,8 @@ std::vector<std::string> uav_names(const Scenario& scenario) {
 std::string choose(const toml::Table& table, std::string_view key,
                    const std::vector<std::string>& candidates) {
   if (!table.has(key) && candidates.size() == 1) return candidates.front();
-  const std::string word = table.text(key);
-  require_one_of(table, key, word, candidates);
-  return word;
+  const std::vector<std::string_view> allowed(candidates.begin(), candidates.end());
+  return candidates[table.choice(key, allowed)];
 }
 
 const MetricKind& read_metric_kind(const toml::Table& table) {

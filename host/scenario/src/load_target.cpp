@@ -1,9 +1,8 @@
-#include <algorithm>
 #include <array>
-#include <cctype>
 
 #include <fmt/format.h>
 
+#include <tether/scenario/scenario.h>
 #include <tether/scenario/target.h>
 #include <tether/toml/table.h>
 
@@ -12,11 +11,6 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kTargetClocks = {"wall", "cpu"};
 constexpr std::int64_t kMostCores = 4096;
-
-/// A name without a letter or digit cannot become the name of a folder.
-bool has_letter_or_digit(const std::string& name) {
-  return std::ranges::any_of(name, [](unsigned char c) { return std::isalnum(c) != 0; });
-}
 
 std::optional<SshAddress> read_address(const toml::Table& root) {
   if (!root.has("address")) return std::nullopt;
@@ -73,7 +67,9 @@ Target load_target(const std::filesystem::path& file) {
   const toml::Table root = document.root({"name", "description", "address", "clock", "cpu_factor",
                                           "cores", "launcher", "program_folder"});
   target.name = root.identifier("name");
-  if (!has_letter_or_digit(target.name)) root.fail("name", "must contain a letter or a digit.");
+  if (slug(target.name).empty()) {
+    root.fail("name", "must contain a letter or a digit, because it becomes the name of a folder.");
+  }
   target.description = root.text_or("description", "");
   target.ssh = read_address(root);
   if (root.has("clock")) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -20,7 +21,7 @@ std::string_view trimmed(std::string_view line) {
 }
 
 /// Some editors put this mark before the first character (TOML's parser skips it as well).
-std::string_view without_byte_order_mark(std::string_view text) {
+std::string without_byte_order_mark(const std::string& text) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
@@ -100,18 +101,14 @@ uav::Delay read_delay(const toml::Table& sensor, std::vector<std::filesystem::pa
 std::vector<Duration> read_delay_samples(const std::filesystem::path& file,
                                          double seconds_per_unit) {
   constexpr std::size_t kLargestFile = std::size_t{64} << 20;
-  const std::string whole = toml::read_text_file(file, kLargestFile);
-  const std::string_view text = without_byte_order_mark(whole);
+  std::istringstream text(without_byte_order_mark(toml::read_text_file(file, kLargestFile)));
   std::vector<Duration> samples;
-  int line_number = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = trimmed(text.substr(begin, end - begin));
-    const FileLocation at{file.string(), ++line_number};
-    if (!line.empty() && line.front() != '#') {
-      samples.push_back(parse_sample(line, seconds_per_unit, at));
-    }
-    begin = end + 1;
+  FileLocation at{file.string()};
+  for (std::string whole_line; std::getline(text, whole_line);) {
+    ++at.line;
+    const std::string_view line = trimmed(whole_line);
+    if (line.empty() || line.front() == '#') continue;
+    samples.push_back(parse_sample(line, seconds_per_unit, at));
   }
   if (samples.empty()) {
     throw Error(ErrorCode::kBadFile, {file.string()},

@@ -64,9 +64,8 @@ class ProfileLayer {
     if (candidates.size() > 1) refuse_choice(name, entry, {candidates.begin(), candidates.end()});
     LayeredSensor* only = candidates.empty() ? nullptr : candidates.front();
     const std::string* other = entry_of(only);
-    if (only == nullptr) return warn(no_sensor(name, entry));
-    if (other != nullptr && *other == only->sensor().name) {
-      return warn(taken_sensor(name, entry, *other));
+    if (only == nullptr || (other != nullptr && *other == only->sensor().name)) {
+      return warn(no_sensor(name, entry, other));
     }
     if (other != nullptr) refuse_second(name, entry, *other, only->sensor().name);
     sensor_of_[name] = only;
@@ -79,22 +78,17 @@ class ProfileLayer {
     return found == sensor_of_.end() ? nullptr : &found->first;
   }
 
-  std::string no_sensor(const std::string& name, const SensorProfile& entry) const {
-    return warning(entry, fmt::format("has no sensor of the kind \"{}\" for [sensors.{}]",
-                                      uav::name(*entry.kind), name));
-  }
-
-  std::string taken_sensor(const std::string& name, const SensorProfile& entry,
-                           const std::string& other) const {
-    return warning(entry, fmt::format("has only one sensor of the kind \"{}\", which matches "
-                                      "[sensors.{}] (line {}); it has none for [sensors.{}]",
-                                      uav::name(*entry.kind), other,
-                                      profile_.sensors.at(other).where.line, name));
-  }
-
-  std::string warning(const SensorProfile& entry, const std::string& text) const {
-    return fmt::format("{}:{}: the UAV '{}' {} of the profile '{}'", entry.where.file,
-                       entry.where.line, uav_.name, text, profile_.name);
+  /// `other` is the entry that matches the only sensor of the kind; nullptr: there is no sensor.
+  std::string no_sensor(const std::string& name, const SensorProfile& entry,
+                        const std::string* other) const {
+    const std::string reason = other == nullptr
+                                   ? ""
+                                   : fmt::format("; its only one matches [sensors.{}] (line {})",
+                                                 *other, profile_.sensors.at(*other).where.line);
+    return located(entry.where,
+                   fmt::format("the UAV '{}' has no sensor of the kind \"{}\" for [sensors.{}] of "
+                               "the profile '{}'{}",
+                               uav_.name, uav::name(*entry.kind), name, profile_.name, reason));
   }
 
   [[noreturn]] void refuse_choice(const std::string& name, const SensorProfile& entry,

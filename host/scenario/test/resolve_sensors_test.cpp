@@ -89,40 +89,26 @@ TEST_F(ResolveSensors, ALaterLayerOverridesAnEarlierOne) {
   EXPECT_THAT(warnings_, testing::IsEmpty());
 }
 
-TEST_F(ResolveSensors, TheScenariosOwnTableOverridesTheUavsProfile) {
-  const auto timings = resolve();
-  EXPECT_TRUE(std::holds_alternative<uav::PeriodicTiming>(timings[0][2]));
-  EXPECT_EQ(std::get<sim::CameraModel>(sensor(0, 2).model).pixel_noise.stddev, 0.02);
-}
-
-TEST_F(ResolveSensors, AConditionsDelayKeepsTheTimingBelow) {
+TEST_F(ResolveSensors, ALayerKeepsWhatItDoesNotSet) {
   const auto timings = resolve("scripted");
-  const auto& range = std::get<uav::OnDemandTiming>(timings[0][0]);
-  EXPECT_THAT(std::get<uav::EmpiricalDelay>(range.delay).samples,
-              ElementsAre(milliseconds(90), milliseconds(110)));
+  EXPECT_TRUE(std::holds_alternative<uav::PeriodicTiming>(timings[0][2])) << "of the scenario";
+  EXPECT_EQ(std::get<sim::CameraModel>(sensor(0, 2).model).pixel_noise.stddev, 0.02)
+      << "of the UAV's profile";
+  EXPECT_THAT(
+      std::get<uav::EmpiricalDelay>(std::get<uav::OnDemandTiming>(timings[0][0]).delay).samples,
+      ElementsAre(milliseconds(90), milliseconds(110)))
+      << "of the condition's profile";
 }
 
 // The sensor to which an entry of a profile applies.
 
-TEST_F(ResolveSensors, AnEntryAppliesToTheOnlySensorOfItsKind) {
-  lay("p.toml", "[sensors.tof]\nkind = \"range\"\nmax_m = 2\n");
-  resolve();
-  EXPECT_EQ(max_m(0, 0), 2.0);
-  EXPECT_EQ(max_m(1, 1), 2.0);
-}
-
-TEST_F(ResolveSensors, AnEntryAppliesToTheSensorOfItsName) {
-  world_.uavs[0].sensors.push_back(make_range("down"));
-  lay("p.toml", "[sensors.down]\nkind = \"range\"\nmax_m = 2\n");
-  resolve();
-  EXPECT_EQ(max_m(0, 0), 4.0);
-  EXPECT_EQ(max_m(0, 3), 2.0);
-}
-
-TEST_F(ResolveSensors, ANameOfAnotherKindIsNoMatch) {
+TEST_F(ResolveSensors, AnEntryAppliesToTheSensorOfItsNameAndKindOrTheOnlyOneOfItsKind) {
+  world_.uavs[1].sensors.push_back(make_range("camera"));
   lay("p.toml", "[sensors.camera]\nkind = \"range\"\nmax_m = 2\n");
   resolve();
-  EXPECT_EQ(max_m(0, 0), 2.0);
+  EXPECT_EQ(max_m(0, 0), 2.0) << "its camera is of another kind";
+  EXPECT_EQ(max_m(1, 1), 4.0);
+  EXPECT_EQ(max_m(1, 2), 2.0);
 }
 
 TEST_F(ResolveSensors, WarnsOfAKindThatTheUavLacks) {
