@@ -38,15 +38,9 @@ class Folder : public testing::Test {
   Settings settings_ = {{"file room.sdf", "abc"}, {"tether", "0.1.0"}};
 };
 
-TEST_F(Folder, IsMadeWithItsManifest) {
-  const CampaignFolder folder = open(OpenMode::kFresh);
-  EXPECT_EQ(folder.missing().size(), 9u);
-  EXPECT_EQ(folder.finished(), 0u);
+TEST_F(Folder, IsMadeWithItsManifestAndFindsWhatIsMissing) {
+  EXPECT_EQ(open(OpenMode::kFresh).missing().size(), 9u);
   EXPECT_EQ(read_manifest(out_), manifest_of(campaign_, settings_));
-}
-
-TEST_F(Folder, FindsWhatIsMissing) {
-  open(OpenMode::kFresh);
   keep(0);
   keep(4);
   const CampaignFolder folder = open(OpenMode::kResume);

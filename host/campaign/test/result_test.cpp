@@ -1,3 +1,5 @@
+#include "flight.h"
+
 #include <set>
 
 #include <gmock/gmock.h>
@@ -155,22 +157,12 @@ TEST_F(Result, IsRefusedIfASchemaOrAValueIsUnknown) {
 // make_result.
 
 record::Record finished_record() {
-  record::Record record;
+  record::Record record = Flight().anchor_at(4.0, 0.0).pose(0, 0.0, 0.0, 0.0).finish(3000).record();
   record.header.seed = 5;
-  record.header.policy = "conservative_barrier";
   record.header.tether_version = "0.1.0";
   record.header.simulator = "mujoco 2.2.2";
   record.header.machine = "a machine";
   record.header.suts = {{"uav1", "tether-sut 0.1.0", "cpu", 8.0, Duration{0}}};
-  record.header.anchors = {{"box", "box", {}, {4, 0, 1}, {1, 0, 0, 0}}};
-  record::GroundTruth truth;
-  truth.uav = "uav1";
-  record.ground_truth = {{SimTime{}, 0, truth}};
-  record::Interaction finish;
-  finish.uav = "uav1";
-  finish.kind = "finish";
-  finish.request_at = ExecTime(seconds(3));
-  record.interactions = {{SimTime(seconds(3)), 0, finish}};
   record.footer = record::Footer{.end = "finished",
                                  .reason = "",
                                  .st_at_end = SimTime(seconds(3)),
@@ -296,20 +288,15 @@ TEST_F(MakeResult, ALostPartIsAFailureWithoutMetrics) {
   }
 }
 
-TEST_F(MakeResult, ASutThatNeverDidAnythingWasNotSetUp) {
+TEST_F(MakeResult, ARecordWithoutInteractionsOrEndIsAFailure) {
   record::Record record = finished_record();
   record.footer->end = "sut_lost";
   record.footer->interactions = 0;
   EXPECT_EQ(make(record, {}).end, kEndSetupFailed);
-}
-
-TEST_F(MakeResult, ARecordWithoutItsEndIsAFailure) {
-  record::Record record = finished_record();
   record.footer.reset();
   record.damage = "truncated at byte 17";
-  const TrialResult result = make(record, kReached);
-  EXPECT_EQ(result.outcome, Outcome::kFailed);
-  EXPECT_THAT(result.reason, HasSubstr(record.damage));
+  EXPECT_EQ(make(record, kReached).outcome, Outcome::kFailed);
+  EXPECT_THAT(make(record, kReached).reason, HasSubstr(record.damage));
 }
 
 }  // namespace

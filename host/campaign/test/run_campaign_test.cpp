@@ -62,20 +62,21 @@ TEST_F(RunCampaign, RunsEverythingOnceInAnEmptyFolder) {
   EXPECT_EQ(ended_.back(), "turn/target-no-sync/seed-0003");
 }
 
-TEST_F(RunCampaign, ResumesWithWhatIsMissing) {
+TEST_F(RunCampaign, ResumesAfterAStopWithoutTheTrialThatWasStopped) {
   std::stop_source stop;
   options_.stop = stop.get_token();
   const CampaignOutcome first = run(open(), [&](const TrialPlan& plan) {
-    if (plan.seed == 2) stop.request_stop();
-    return good(plan);
+    TrialResult result = good(plan);
+    if (plan.seed == 2 && stop.request_stop()) result.end = kEndInterrupted;
+    return result;
   });
-  EXPECT_EQ(first.ran, 3u);
+  EXPECT_EQ(first.ran, 2u);
   EXPECT_TRUE(first.interrupted);
 
   options_.stop = {};
   progress_.clear();
-  EXPECT_EQ(run(open(OpenMode::kResume), good).ran, 6u);
-  EXPECT_EQ(progress_.front().done, 3u);
+  EXPECT_EQ(run(open(OpenMode::kResume), good).ran, 7u);
+  EXPECT_EQ(progress_.front().done, 2u);
   EXPECT_EQ(progress_.back().done, 9u);
   EXPECT_TRUE(open(OpenMode::kResume).missing().empty());
 }
@@ -117,17 +118,6 @@ TEST_F(RunCampaign, KeepsATrialThatFailedTwiceAndDoesNotRetryALostSut) {
   EXPECT_EQ(outcome.failed, 6u);
   EXPECT_EQ(result_of(3).reason, "no simulator");
   EXPECT_EQ(result_of(3).this_run.attempts, 2);
-}
-
-TEST_F(RunCampaign, DoesNotKeepATrialThatTheUserStopped) {
-  const CampaignOutcome outcome = run(open(), [&](const TrialPlan& plan) {
-    TrialResult result = good(plan);
-    if (plan.seed == 2) result.end = kEndInterrupted;
-    return result;
-  });
-  EXPECT_TRUE(outcome.interrupted);
-  EXPECT_EQ(outcome.ran, 2u);
-  EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
 }
 
 TEST_F(RunCampaign, EndsWithAnErrorOfTheUsersFilesAndDoesNotKeepThatTrial) {

@@ -127,15 +127,13 @@ TEST(TrueRoi, IsNoneWhereTheDistortionFoldsBack) {
 // ---- visible_part, is_cut
 
 TEST(VisiblePart, IsWithinTheImage) {
-  const PixelRect inside{10.0, 20.0, 30.0, 40.0};
+  const PixelRect inside{10.0, 20.0, 30.0, 40.0}, beside{640.0, 0.0, 700.0, 10.0};
+  const PixelRect across{-160.5, 79.5, 239.5, 700.0};
   EXPECT_EQ(visible_part(camera(), inside), inside);
+  EXPECT_EQ(visible_part(camera(), across), (PixelRect{-0.5, 79.5, 239.5, 479.5}));
+  EXPECT_FALSE(visible_part(camera(), beside));
   EXPECT_FALSE(is_cut(camera(), inside));
-  const PixelRect over{-160.5, 79.5, 239.5, 700.0};
-  EXPECT_EQ(visible_part(camera(), over), (PixelRect{-0.5, 79.5, 239.5, 479.5}));
-  EXPECT_TRUE(is_cut(camera(), over));
-  const PixelRect outside{640.0, 0.0, 700.0, 10.0};
-  EXPECT_FALSE(visible_part(camera(), outside));
-  EXPECT_TRUE(is_cut(camera(), outside));
+  EXPECT_TRUE(is_cut(camera(), across) && is_cut(camera(), beside));
 }
 
 // ---- roi_bearing_rad

@@ -13,7 +13,8 @@ namespace tether::runner {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& why) {
-  throw Error(ErrorCode::kSetup, path.string() + ": " + why + "; choose another folder with --out");
+  throw Error(ErrorCode::kSetup, {path.string()}, why + ". Choose another folder with --out.")
+      .about(path.string());
 }
 
 void drop(const std::filesystem::path& file) {
@@ -26,7 +27,7 @@ void drop(const std::filesystem::path& file) {
 
 TrialFolder::TrialFolder(const std::filesystem::path& folder)
     : claim_(folder, campaign::FolderClaim::By::kRun) {
-  // Rather now than when there is a result to write.
+  // Fail now, not when the result is written.
   if (access(folder.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
   drop(folder / campaign::kResultFile);
   drop(folder / kRecordFile);

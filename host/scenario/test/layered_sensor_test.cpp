@@ -98,9 +98,7 @@ TEST_F(Layered, EveryKeyOfARangefinderArrives) {
 
 TEST_F(Layered, WithoutALayerNothingChanges) {
   const sim::Sensor before = camera_;
-  const auto timing = std::get<uav::PeriodicTiming>(lay(camera_, {}));
-  EXPECT_EQ(timing.period, Duration(33'333'333));
-  EXPECT_EQ(std::get<uav::ConstantDelay>(timing.delay).value, Duration{0});
+  EXPECT_EQ(std::get<uav::PeriodicTiming>(lay(camera_, {})).period, Duration(33'333'333));
   EXPECT_EQ(camera_.X_BS, before.X_BS);
   EXPECT_EQ(camera_.update_rate_hz, before.update_rate_hz);
   EXPECT_EQ(lens().fx_px, std::get<sim::CameraModel>(before.model).intrinsics.fx_px);
@@ -132,27 +130,22 @@ TEST_F(Layered, ATimingReplacesTheWholeTimingBelow) {
   EXPECT_EQ(std::get<uav::ConstantDelay>(timing.delay).value, Duration{0});
 }
 
-TEST_F(Layered, ADelayAloneReplacesTheDelayAlone) {
+TEST_F(Layered, ADelayReplacesTheDelayOnly) {
   const std::string delay = "delay = { kind = \"constant\", ms = 5 }\n";
   const auto periodic =
       std::get<uav::PeriodicTiming>(lay(camera_, {full("camera"), layer("camera", delay)}));
   EXPECT_EQ(periodic.period, milliseconds(40));
   EXPECT_EQ(periodic.phase, milliseconds(4));
   EXPECT_EQ(std::get<uav::ConstantDelay>(periodic.delay).value, milliseconds(5));
-  const auto on_demand =
-      std::get<uav::OnDemandTiming>(lay(range_, {full("range"), layer("range", delay)}));
-  EXPECT_EQ(std::get<uav::ConstantDelay>(on_demand.delay).value, milliseconds(5));
   const auto of_sdf = std::get<uav::PeriodicTiming>(lay(imu_, {layer("imu", delay)}));
   EXPECT_EQ(of_sdf.period, milliseconds(50));
   EXPECT_EQ(std::get<uav::ConstantDelay>(of_sdf.delay).value, milliseconds(5));
-}
-
-TEST_F(Layered, ASensorWithoutARateIsOnDemand) {
   sim::Sensor range = make_range("range", 0.0);
-  EXPECT_TRUE(std::holds_alternative<uav::OnDemandTiming>(lay(range, {})));
+  const auto on_demand = std::get<uav::OnDemandTiming>(lay(range, {layer("range", delay)}));
+  EXPECT_EQ(std::get<uav::ConstantDelay>(on_demand.delay).value, milliseconds(5));
 }
 
-TEST_F(Layered, TheSensorKnowsTheRateThatItGot) {
+TEST_F(Layered, TheSensorGetsTheRateOfItsTiming) {
   lay(camera_, {layer("camera", "timing = \"periodic\"\nrate_hz = 30\n")});
   EXPECT_EQ(camera_.update_rate_hz, 30.0);
   lay(camera_, {layer("camera", "timing = \"periodic\"\nperiod_ms = 33.3\n")});
@@ -163,32 +156,29 @@ TEST_F(Layered, TheSensorKnowsTheRateThatItGot) {
 
 // The lens.
 
-TEST_F(Layered, ASizeAloneKeepsTheFieldOfViewAndTheDistortion) {
-  auto& below = std::get<sim::CameraModel>(camera_.model).intrinsics;
-  below.k1 = -0.2;
-  lay(camera_, {layer("camera", "size_px = [320, 240]\n")});
-  EXPECT_NEAR(lens().fx_px, 160.0 / std::tan(rad_from_deg(40)), 1e-9);
-  EXPECT_EQ(lens().cx_px, 159.5);
-  EXPECT_EQ(lens().cy_px, 119.5);
-  EXPECT_EQ(lens().k1, -0.2);
-}
-
-TEST_F(Layered, AFieldOfViewDropsTheLensOfSdf) {
-  auto& below = std::get<sim::CameraModel>(camera_.model).intrinsics;
-  below.fy_px = 700.0;
-  below.cx_px = 300.0;
-  lay(camera_, {layer("camera", "horizontal_fov_deg = 90\n")});
-  EXPECT_NEAR(lens().fx_px, 320.0, 1e-9);
-  EXPECT_EQ(lens().fy_px, lens().fx_px);
-  EXPECT_EQ(lens().cx_px, 319.5);
-  EXPECT_EQ(lens().width_px, 640);
-}
-
-TEST_F(Layered, ADistortionReplacesTheWholeDistortion) {
-  std::get<sim::CameraModel>(camera_.model).intrinsics.k2 = 0.5;
-  lay(camera_, {layer("camera", "distortion = { k1 = 0.1 }\n")});
-  EXPECT_EQ(lens().k1, 0.1);
-  EXPECT_EQ(lens().k2, 0.0);
+TEST_F(Layered, ALayerReplacesFieldOfViewSizeAndDistortionEachAsAWhole) {
+  const auto with = [&](const std::string& key, double cx_px) {
+    sim::Sensor camera = make_camera("camera");
+    auto& model = std::get<sim::CameraModel>(camera.model).intrinsics;
+    model.fy_px = 700.0;
+    model.cx_px = cx_px;
+    model.k2 = -0.2;
+    lay(camera, {layer("camera", key)});
+    return model;
+  };
+  const auto smaller = with("size_px = [320, 240]\n", 319.5);
+  const auto wider = with("horizontal_fov_deg = 90\n", 300.0);
+  EXPECT_NEAR(smaller.fx_px, 160.0 / std::tan(rad_from_deg(40)), 1e-9);
+  EXPECT_EQ(smaller.cx_px, 159.5);
+  EXPECT_EQ(smaller.cy_px, 119.5);
+  EXPECT_EQ(smaller.k2, -0.2);
+  EXPECT_NEAR(wider.fx_px, 320.0, 1e-9);
+  EXPECT_EQ(wider.fy_px, wider.fx_px);
+  EXPECT_EQ(wider.cx_px, 319.5);
+  EXPECT_EQ(wider.width_px, 640);
+  const auto distorted = with("distortion = { k1 = 0.1 }\n", 319.5);
+  EXPECT_EQ(distorted.k1, 0.1);
+  EXPECT_EQ(distorted.k2, 0.0);
 }
 
 // Values that exclude each other.

@@ -70,32 +70,23 @@ TEST_F(LoadScenario, ReadsUavsWithTheirSensors) {
             milliseconds(3));
 }
 
-TEST_F(LoadScenario, GivesEachUavItsSut) {
+TEST_F(LoadScenario, GivesEachUavItsOwnOrTheCommonSut) {
+  const auto common = [&](const std::string& anchor) {
+    return ElementsAre(Pair("anchor", anchor), Pair("mission", mission_),
+                       Pair("precision_deg", "2.5"), Pair("retries", "3"), Pair("verbose", "true"));
+  };
   const Scenario s = load(kFullScenario);
   EXPECT_THAT(s.uavs[0].sut.command, ElementsAre("own-sut", "--fast"));
   EXPECT_THAT(s.uavs[0].sut.parameters, ElementsAre(Pair("anchor", "red_box")));
   EXPECT_THAT(s.uavs[1].sut.command, ElementsAre("tether-sut", "face-anchor"));
-  EXPECT_THAT(
-      s.uavs[1].sut.parameters,
-      ElementsAre(Pair("anchor", "blue_box"), Pair("mission", mission_),
-                  Pair("precision_deg", "2.5"), Pair("retries", "3"), Pair("verbose", "true")));
-}
-
-TEST_F(LoadScenario, OverridesCommonParametersOfACommonCommand) {
-  const Scenario s = load_with("command = [\"own-sut\", \"--fast\"]\n", "");
-  EXPECT_THAT(s.uavs[0].sut.command, ElementsAre("tether-sut", "face-anchor"));
-  EXPECT_THAT(
-      s.uavs[0].sut.parameters,
-      ElementsAre(Pair("anchor", "red_box"), Pair("mission", mission_),
-                  Pair("precision_deg", "2.5"), Pair("retries", "3"), Pair("verbose", "true")));
-}
-
-TEST_F(LoadScenario, DistinguishesConcurrentFromSerialPrograms) {
-  const std::string common = "command = [\"tether-sut\", \"face-anchor\"]\n";
-  EXPECT_FALSE(load(kFullScenario).uavs[1].sut.concurrent);
-  const Scenario s = load_with(common, common + "concurrent = true\n");
-  EXPECT_TRUE(s.uavs[1].sut.concurrent);
-  EXPECT_FALSE(s.uavs[0].sut.concurrent) << "it has a command of its own";
+  EXPECT_THAT(s.uavs[1].sut.parameters, common("blue_box"));
+  EXPECT_FALSE(s.uavs[1].sut.concurrent);
+  const Scenario concurrent = load_with("[sut]\n", "[sut]\nconcurrent = true\n");
+  EXPECT_TRUE(concurrent.uavs[1].sut.concurrent);
+  EXPECT_FALSE(concurrent.uavs[0].sut.concurrent) << "it has its own command";
+  const Sut overriding = load_with("command = [\"own-sut\", \"--fast\"]\n", "").uavs[0].sut;
+  EXPECT_THAT(overriding.command, ElementsAre("tether-sut", "face-anchor"));
+  EXPECT_THAT(overriding.parameters, common("red_box"));
 }
 
 TEST_F(LoadScenario, GivesASutAbsolutePaths) {

@@ -16,10 +16,9 @@ Target slow(Clock clock) {
 
 TEST(PlaceOn, TheTargetsClockReplacesTheConditions) {
   Condition condition;
-  condition.name = "repeatable";
   condition.clock = Clock::kScripted;
-  condition.computing = std::chrono::milliseconds(2);
   condition.real_time_factor = 0.5;
+  condition.computing = std::chrono::milliseconds(2);
   place_on(condition, slow(Clock::kCpu));
   EXPECT_EQ(condition.clock, Clock::kCpu);
   EXPECT_EQ(condition.cpu_factor, 4.0);
@@ -32,13 +31,10 @@ TEST(PlaceOn, RefusesAScaledWallClockInFreeRunning) {
   Condition condition;
   condition.name = "no sync";
   condition.policy = Policy::kFreeRunning;
-  EXPECT_EQ(
-      thrown_error(ErrorCode::kUsage, [&] { place_on(condition, slow(Clock::kWall)); }).subject(),
-      "no sync");
+  const auto place = [&] { place_on(condition, slow(Clock::kWall)); };
+  EXPECT_EQ(thrown_error(ErrorCode::kUsage, place).subject(), "no sync");
   EXPECT_FALSE(condition.target);
-
-  place_on(condition, slow(Clock::kCpu));
-  EXPECT_TRUE(condition.target) << "CPU time can be stretched by stalls";
+  EXPECT_EQ(why_not_on(condition, slow(Clock::kCpu)), "");
   Target board = slow(Clock::kWall);
   board.cpu_factor = 1.0;
   EXPECT_EQ(why_not_on(condition, board), "");

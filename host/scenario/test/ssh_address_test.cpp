@@ -1,3 +1,5 @@
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
@@ -7,24 +9,19 @@ namespace tether::scenario {
 namespace {
 
 TEST(SshAddress, ParsesAndIsWrittenAgain) {
-  struct Case {
-    std::string text;
-    SshAddress expected;
-  };
-  for (const Case& c :
-       {Case{"ssh://board", {"board", 0}}, Case{"ssh://pi@board", {"pi@board", 0}},
-        Case{"ssh://pi@10.0.0.7:2222", {"pi@10.0.0.7", 2222}},
-        Case{"ssh://pi@[fe80::1%eth0]:22", {"pi@fe80::1%eth0", 22}},
-        Case{"ssh://[::1]", {"::1", 0}},
-        Case{"ssh://first.last@my-board.local:65535", {"first.last@my-board.local", 65535}}}) {
-    const SshAddress address = parse_ssh_address(c.text);
-    EXPECT_EQ(address.destination, c.expected.destination) << c.text;
-    EXPECT_EQ(address.port, c.expected.port) << c.text;
-    EXPECT_EQ(to_string(address), c.text);
+  const std::map<std::string, SshAddress> addresses = {
+      {"ssh://board", {"board", 0}},
+      {"ssh://pi@board", {"pi@board", 0}},
+      {"ssh://pi@10.0.0.7:2222", {"pi@10.0.0.7", 2222}},
+      {"ssh://pi@[fe80::1%eth0]:22", {"pi@fe80::1%eth0", 22}},
+      {"ssh://[::1]", {"::1", 0}},
+      {"ssh://first.last@my-board.local:65535", {"first.last@my-board.local", 65535}}};
+  for (const auto& [text, expected] : addresses) {
+    const SshAddress address = parse_ssh_address(text);
+    EXPECT_EQ(address.destination, expected.destination);
+    EXPECT_EQ(address.port, expected.port) << text;
+    EXPECT_EQ(to_string(address), text);
   }
-}
-
-TEST(SshAddress, MayEndWithASlash) {
   EXPECT_EQ(to_string(parse_ssh_address("ssh://pi@board/")), "ssh://pi@board");
 }
 

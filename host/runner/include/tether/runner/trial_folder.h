@@ -6,17 +6,17 @@
 
 namespace tether::runner {
 
-/// The record's file in a trial's folder.
+/// The record in a trial's folder.
 inline constexpr const char* kRecordFile = "record.mcap";
-/// What the simulator's own processes print.
+/// Output of the simulator's processes.
 inline constexpr const char* kSimulatorLog = "simulator.log";
 
-/// A trial's folder, made if need be, into which only this process writes results while the object
-/// lives. Nothing of an earlier trial is left in it that could be taken for this one's.
+/// The folder of a trial, created if necessary. While the object exists, no other process of Tether
+/// writes to it. Results of an earlier trial are removed.
 class TrialFolder {
  public:
-  /// @throws Error(kUsage) when another run writes there, or it is a campaign's; Error(kSetup) when
-  /// the file system refuses.
+  /// @throws Error(kUsage) if another run writes to it or it belongs to a campaign; Error(kSetup)
+  /// if the file system does not allow it. The subject is the path.
   explicit TrialFolder(const std::filesystem::path& folder);
 
  private:
