@@ -21,7 +21,9 @@ std::vector<std::uint64_t> consecutive(std::int64_t first, std::int64_t count) {
 
 std::vector<std::uint64_t> read_seeds(const toml::Table& root) {
   if (root.has("seeds") == root.has("trials")) {
-    root.fail("trials", "(a number, with 'first_seed') or 'seeds' (an array) is needed, not both.");
+    root.fail("trials",
+              "or 'seeds' must be given, not both: a number of trials (with 'first_seed'), or an "
+              "array of seeds.");
   }
   if (root.has("trials")) {
     const std::int64_t first = root.integer_or("first_seed", 0, 1'000'000'000'000, 1);
