@@ -49,8 +49,7 @@ TEST_F(LoadTarget, IsThisHostByDefault) {
   EXPECT_EQ(target.clock, Clock::kWall);
   EXPECT_EQ(target.cpu_factor, 1.0);
   EXPECT_EQ(target.cores, 0);
-  EXPECT_TRUE(target.launcher.empty());
-  EXPECT_EQ(target.program_folder, "");
+  EXPECT_TRUE(target.launcher.empty() && target.program_folder.empty());
 }
 
 TEST_F(LoadTarget, RefusesWrongValues) {
