@@ -8,10 +8,12 @@
 #include <tether/campaign/campaign_plan.h>
 #include <tether/os/text_file.h>
 
+// The order of a campaign's trials, which of them may run in parallel, and the settings that must
+// be the same for all of them.
 namespace tether::campaign {
 namespace {
 
-// Such as the script of ["python3", "sut.py"]. What runs them is looked for as programs are.
+// Such as the script of ["python3", "sut.py"]. The program itself is found as all programs are.
 void add_argument_files(std::vector<std::filesystem::path>& files, const scenario::Sut& sut) {
   for (std::size_t i = 1; i < sut.command.size(); ++i) {
     std::error_code ignored;
@@ -24,13 +26,13 @@ std::string name_in(const scenario::Campaign& campaign, const std::filesystem::p
   return file.lexically_proximate(campaign.file.parent_path()).string();
 }
 
-// One that this program neither brings nor starts: it listens somewhere, and has one run at a time.
+// An external simulator that is given by its address, which serves one run at a time.
 bool is_attached(const std::string& simulator) {
   return simulator != "mujoco" && simulator != "gazebo";
 }
 
 [[noreturn]] void refuse_jobs(int jobs, const std::string& why) {
-  throw Error(ErrorCode::kUsage, fmt::format("--jobs {}: {}", jobs, why));
+  throw Error(ErrorCode::kUsage, fmt::format("--jobs {}: {}", jobs, why)).about("--jobs");
 }
 
 std::string setting_name(const scenario::Campaign& campaign, const std::filesystem::path& file) {
@@ -61,9 +63,9 @@ std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
   return plans;
 }
 
-int trials_side_by_side(const TrialPlan& plan, int jobs) {
+int parallel_trials(const TrialPlan& plan, int jobs) {
   const scenario::Condition& condition = *plan.condition;
-  // SUTs that are bound to so many cores would be bound to the same ones.
+  // The SUTs of parallel trials would be bound to the same cores.
   const bool is_bound = condition.target && condition.target->cores > 0;
   if (condition.clock == scenario::Clock::kWall || is_bound || jobs == 1) return 1;
   if (condition.policy == scenario::Policy::kConservativeBarrier) return jobs;
@@ -80,10 +82,10 @@ int trials_side_by_side(const TrialPlan& plan, int jobs) {
 std::vector<Batch> make_batches(const std::vector<const TrialPlan*>& plans, int jobs) {
   std::map<std::pair<bool, int>, Batch> batches;
   for (const TrialPlan* plan : plans) {
-    const int side_by_side = trials_side_by_side(*plan, jobs);
+    const int parallel = parallel_trials(*plan, jobs);
     const bool is_free = plan->condition->policy == scenario::Policy::kFreeRunning;
-    Batch& batch = batches[{is_free, side_by_side}];
-    batch.jobs = side_by_side;
+    Batch& batch = batches[{is_free, parallel}];
+    batch.jobs = parallel;
     batch.plans.push_back(plan);
   }
   std::vector<Batch> in_order;
@@ -92,7 +94,7 @@ std::vector<Batch> make_batches(const std::vector<const TrialPlan*>& plans, int 
 }
 
 void require_jobs_allowed(const scenario::Campaign& campaign, int jobs) {
-  if (jobs < 1) refuse_jobs(jobs, "must be at least 1");
+  if (jobs < 1) refuse_jobs(jobs, "must be at least 1.");
   if (jobs == 1) return;
   for (const scenario::CampaignScenario& entry : campaign.scenarios) {
     for (const std::string& name : entry.conditions) {
@@ -100,13 +102,13 @@ void require_jobs_allowed(const scenario::Campaign& campaign, int jobs) {
       const std::string where =
           fmt::format("condition '{}' of {}", name, entry.scenario.file.string());
       if (is_attached(condition.simulator))
-        refuse_jobs(jobs, fmt::format("{} flies in the simulator at {}, which has one run at a "
-                                      "time; use --jobs 1",
+        refuse_jobs(jobs, fmt::format("{} uses the simulator at {}, which serves one run at a "
+                                      "time. Use --jobs 1.",
                                       where, condition.simulator));
       if (condition.clock == scenario::Clock::kWall)
-        refuse_jobs(jobs, fmt::format("{} measures its SUT by the wall clock, which trials side by "
-                                      "side would disturb; use --jobs 1, or clock = \"cpu\" or "
-                                      "\"scripted\"",
+        refuse_jobs(jobs, fmt::format("{} measures its SUT by the wall clock, which parallel "
+                                      "trials would distort. Use --jobs 1, or clock = \"cpu\" or "
+                                      "\"scripted\".",
                                       where));
     }
   }
@@ -141,11 +143,12 @@ void require_unchanged(const scenario::Campaign& campaign, const Settings& setti
     std::error_code ignored;
     const bool exists = std::filesystem::is_regular_file(file, ignored);
     if (exists && os::digest_of_file(file) == settings.at(setting_name(campaign, file))) continue;
-    throw Error(
-        ErrorCode::kBadFile, FileLocation{file.string()},
-        fmt::format("was {} while the campaign ran, so the trial that has just ended is not "
-                    "kept; put it back and go on with --resume, or choose another folder",
-                    exists ? "changed" : "removed"));
+    throw Error(ErrorCode::kBadFile, {file.string()},
+                fmt::format("was {} while the campaign ran, so the trial that has just ended is "
+                            "not kept. Restore the file and continue with --resume, or choose "
+                            "another folder.",
+                            exists ? "changed" : "removed"))
+        .about(file.string());
   }
 }
 

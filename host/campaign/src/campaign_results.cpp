@@ -35,16 +35,12 @@ std::vector<double> ConditionResults::values(std::string_view metric) const {
 }
 
 std::size_t ConditionResults::count(Outcome outcome) const {
-  return static_cast<std::size_t>(
-      std::count_if(trials.begin(), trials.end(),
-                    [&](const TrialResult& trial) { return trial.outcome == outcome; }));
+  return static_cast<std::size_t>(std::ranges::count(trials, outcome, &TrialResult::outcome));
 }
 
 const ConditionResults* ScenarioResults::find_condition(std::string_view condition) const {
-  for (const ConditionResults& results : conditions) {
-    if (results.condition == condition) return &results;
-  }
-  return nullptr;
+  const auto found = std::ranges::find(conditions, condition, &ConditionResults::condition);
+  return found == conditions.end() ? nullptr : &*found;
 }
 
 const MetricValue* ScenarioResults::find_metric(std::string_view metric) const {

@@ -9,27 +9,33 @@
 #include <tether/base/units.h>
 #include <tether/campaign/true_roi.h>
 
-/// What the SUT made of what it saw, against ground truth (paper, Tables II and V).
+/// The SUT's own estimates against ground truth (paper, Tables II and V): each metric reads the
+/// last annotation of a topic, finds the image from which it was made, and compares it with the
+/// true pose.
 namespace tether::campaign {
 namespace {
 
 using Details = nlohmann::json;
 
-// ---- Annotations: a stranger's words, of which those that make no sense are passed over.
+// ---- Annotations: written by the SUT, so those that make no sense are skipped.
+
+template <class T>
+std::optional<T> value_of(const Details& note, const char* member,
+                          bool (Details::*is_type)() const) {
+  const auto found = note.find(member);
+  if (found == note.end() || !((*found).*is_type)()) return std::nullopt;
+  return found->get<T>();
+}
 
 std::optional<double> number_of(const Details& note, const char* member) {
-  const auto found = note.find(member);
-  if (found == note.end() || !found->is_number()) return std::nullopt;
-  return found->get<double>();
+  return value_of<double>(note, member, &Details::is_number);
 }
 
-std::optional<std::string> text_of(const Details& note, const char* member) {
-  const auto found = note.find(member);
-  if (found == note.end() || !found->is_string()) return std::nullopt;
-  return found->get<std::string>();
+std::optional<std::string> string_of(const Details& note, const char* member) {
+  return value_of<std::string>(note, member, &Details::is_string);
 }
 
-// What `read` makes of the last annotation before the SUT finished that it can read.
+// The last annotation before the SUT finished for which `read` returns something.
 template <class Note>
 std::optional<Note> last_note(const record::Record& record, const std::string& uav,
                               const std::string& topic,
@@ -56,13 +62,12 @@ struct Estimate {
 
 // Of the metric's anchor.
 std::optional<Estimate> read_estimate(const Details& note, const scenario::Metric& metric) {
-  const auto camera = text_of(note, "camera");
+  const auto camera = string_of(note, "camera");
   const auto bearing_rad = number_of(note, "bearing_rad");
-  const auto index = note.find("image_index");
-  if (text_of(note, "anchor") != metric.anchor || !camera || !bearing_rad) return std::nullopt;
-  if (index == note.end() || !index->is_number_unsigned()) return std::nullopt;
-  return Estimate{*camera, index->get<std::uint64_t>(), *bearing_rad,
-                  number_of(note, "distance_m")};
+  const auto index = value_of<std::uint64_t>(note, "image_index", &Details::is_number_unsigned);
+  const bool is_of_anchor = string_of(note, "anchor") == metric.anchor;
+  if (!is_of_anchor || !camera || !bearing_rad || !index) return std::nullopt;
+  return Estimate{*camera, *index, *bearing_rad, number_of(note, "distance_m")};
 }
 
 std::optional<uav::Vec3> read_displacement(const Details& note, const scenario::Metric&) {
@@ -71,7 +76,7 @@ std::optional<uav::Vec3> read_displacement(const Details& note, const scenario::
   return uav::Vec3{*x_m, *y_m, 0.0};
 }
 
-// ---- The image that an estimate rests on.
+// ---- The image from which an estimate was made.
 
 const record::SensorInfo* find_camera(const record::Record& record, const std::string& uav,
                                       const std::string& name) {
@@ -93,7 +98,7 @@ std::optional<SimTime> instant_of_image(const record::Record& record, const std:
   return std::nullopt;
 }
 
-// The SUT's last estimate, with the truth of its image.
+// The SUT's last estimate, with the ground truth of its image.
 struct Look {
   Estimate estimate;
   const record::SensorInfo* camera = nullptr;
@@ -101,48 +106,39 @@ struct Look {
   uav::Pose X_WB;
 };
 
-using Evaluate = MetricOutcome (*)(const Look&);
-
-MetricOutcome with_image(const scenario::Metric& metric, const record::Record& record, Look look,
-                         Evaluate evaluate) {
-  const Estimate& estimate = look.estimate;
-  look.camera = find_camera(record, metric.uav, estimate.camera);
-  if (look.camera == nullptr) {
-    return missing(fmt::format("the record does not describe a camera '{}' of '{}'",
-                               estimate.camera, metric.uav));
-  }
-  const auto instant = instant_of_image(record, metric.uav, estimate);
-  if (!instant) {
-    return missing(
-        fmt::format("the SUT of '{}' estimated from image {} of '{}', which it never got",
-                    metric.uav, estimate.image_index, estimate.camera));
-  }
-  const auto X_WB = pose_at(record, metric.uav, *instant);
-  if (!X_WB) return no_ground_truth(metric);
-  look.X_WB = *X_WB;
-  return evaluate(look);
-}
-
 MetricOutcome with_last_look(const scenario::Metric& metric, const record::Record& record,
-                             Evaluate evaluate) {
-  Look look;
-  look.anchor = find_anchor(record, metric.anchor);
-  if (look.anchor == nullptr) return no_anchor(metric);
+                             MetricOutcome (*evaluate)(const Look&)) {
+  const record::Anchor* anchor = find_anchor(record, metric.anchor);
+  if (anchor == nullptr) return no_anchor(metric);
   if (find_finish(record, metric.uav) == nullptr) return no_finish(metric);
   const auto estimate = last_note(record, metric.uav, "estimate", read_estimate, metric);
   if (!estimate) {
     return missing(
         fmt::format("the SUT of '{}' left no estimate of '{}'", metric.uav, metric.anchor));
   }
-  look.estimate = *estimate;
-  return with_image(metric, record, look, evaluate);
+  const record::SensorInfo* camera = find_camera(record, metric.uav, estimate->camera);
+  if (camera == nullptr) {
+    return missing(fmt::format("the record does not describe a camera '{}' of '{}'",
+                               estimate->camera, metric.uav));
+  }
+  const auto instant = instant_of_image(record, metric.uav, *estimate);
+  if (!instant) {
+    return missing(
+        fmt::format("the SUT of '{}' estimated from image {} of '{}', which it never "
+                    "received",
+                    metric.uav, estimate->image_index, estimate->camera));
+  }
+  const auto X_WB = pose_at(record, metric.uav, *instant);
+  if (!X_WB) return no_ground_truth(metric);
+  return evaluate({*estimate, camera, anchor, *X_WB});
 }
 
 MetricOutcome bearing_error_of(const Look& look) {
   const auto roi = true_roi(*look.camera, look.X_WB, *look.anchor);
   if (!roi) {
-    return missing(fmt::format("'{}' is not before the camera '{}' at the image of the estimate",
-                               look.anchor->name, look.camera->name));
+    return missing(
+        fmt::format("'{}' is not in front of the camera '{}' in the image of the estimate",
+                    look.anchor->name, look.camera->name));
   }
   const double true_rad = roi_bearing_rad(*look.camera, *roi);
   return {deg_from_rad(std::abs(wrap_angle_rad(look.estimate.bearing_rad - true_rad))), ""};

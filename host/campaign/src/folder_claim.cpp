@@ -1,8 +1,7 @@
-#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <chrono>
-#include <cstring>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -13,185 +12,147 @@
 #include <unistd.h>
 
 #include <tether/base/error.h>
+#include <tether/base/system_reason.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/folder_claim.h>
 
+// A run locks its folder. A campaign locks its folder too, and alone the lock file in it. A run or
+// campaign in or below a campaign's folder shares that lock file, so that the campaign cannot start
+// meanwhile; while it runs, only the trials that it started itself are let in.
 namespace tether::campaign {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A killed process is gone by then, however much memory it had.
-constexpr auto kPatience = std::chrono::seconds(2);
-/// Whoever only looks is gone by then, however little of the processor he gets.
-constexpr auto kLookersStay = std::chrono::milliseconds(200);
-
-[[noreturn]] void fail(const fs::path& path, const char* what) {
-  const std::string why = std::strerror(errno);
+[[noreturn]] void fail(const fs::path& path, const std::string& what, int error) {
   require_a_handle_for(path.string());
-  throw Error(ErrorCode::kSetup,
-              fmt::format("{}: cannot be {}: {}; choose another folder with --out", path.string(),
-                          what, why));
-}
-
-/// What is to be known of a lock without taking it.
-struct Holder {
-  bool is_there = false;
-  pid_t process = 0;  ///< as it wrote; 0: it wrote nothing
-};
-
-pid_t written_process(int descriptor) {
-  char text[16] = {};
-  const ssize_t size = ::pread(descriptor, text, sizeof text, 0);
-  pid_t process = 0;
-  if (size > 0) std::from_chars(text, text + size, process);
-  return std::max(process, 0);
-}
-
-/// A lock that is shared for a moment disturbs nobody who looks as well; PathLock waits. Where
-/// there is nothing, and where nobody may look, nobody of ours is.
-Holder holder_of(const fs::path& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) {
-    if (errno == ENOENT || errno == ENOTDIR || errno == EACCES || errno == EPERM) return {};
-    fail(path, "opened");
-  }
-  Holder holder;
-  if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-    holder = {true, written_process(descriptor)};
-  ::close(descriptor);
-  return holder;
-}
-
-/// Written before it looks for others itself: of two who come at once, one sees the other.
-Holder campaign_in(const fs::path& folder) {
-  const Holder holder = holder_of(folder / kLockFile);
-  return holder.process > 0 ? holder : Holder{};
-}
-
-bool is_trial_of(const CampaignManifest& campaign, const fs::path& folder) {
-  for (const CampaignManifest::Entry& entry : campaign.scenarios)
-    for (const std::string& condition : entry.conditions)
-      for (const std::uint64_t seed : campaign.seeds)
-        if (folder == trial_folder(entry.scenario, condition, seed)) return true;
-  return false;
-}
-
-bool has_trial(const fs::path& campaign, const fs::path& folder) try {
-  return fs::exists(campaign / kCampaignFile) &&
-         is_trial_of(read_manifest(campaign), folder.lexically_relative(campaign));
-} catch (const std::exception&) {
-  return false;  // no campaign that could be reported on
+  throw Error(ErrorCode::kSetup, {path.string()},
+              fmt::format("{}: {}. Choose another folder with --out.", what, reason_of(error)))
+      .about(path.string());
 }
 
 [[noreturn]] void refuse_claim(const fs::path& folder, const std::string& why) {
-  throw Error(ErrorCode::kUsage, folder.string() + ": " + why);
+  throw Error(ErrorCode::kUsage, {folder.string()}, why).about(folder.string());
 }
 
-[[noreturn]] void refuse_busy(const fs::path& folder, const std::string& what) {
-  refuse_claim(folder, what + "; wait for it, or choose another folder with --out");
+[[noreturn]] void refuse_busy(const fs::path& folder, const std::string& who) {
+  refuse_claim(folder, who + ". Wait for it, or choose another folder with --out.");
 }
 
-[[noreturn]] void refuse_running(const fs::path& folder, const fs::path& campaign,
-                                 const fs::path& whole) {
-  const std::string where =
-      campaign == whole ? "this folder" : campaign.string() + ", to which this folder belongs";
-  refuse_busy(folder, "a campaign is running in " + where);
+/// The absolute path without symbolic links; what is at its end need not exist.
+fs::path whole_path(const fs::path& folder) {
+  std::error_code failed;
+  const fs::path absolute = fs::absolute(folder, failed);
+  if (failed == std::errc::no_such_file_or_directory)
+    throw Error(ErrorCode::kSetup, {folder.string()},
+                "the working directory no longer exists. Change to another one, or give an "
+                "absolute path with --out.")
+        .about(folder.string());
+  const fs::path whole = failed ? absolute : fs::weakly_canonical(absolute, failed);
+  if (failed) fail(folder, "cannot be found", failed.value());
+  return whole;
 }
 
-void require_not_in(const fs::path& campaign, const fs::path& folder, const fs::path& whole) {
-  const Holder holder = campaign_in(campaign);
-  if (holder.is_there && (holder.process == ::getppid() || holder.process == ::getpid())) return;
-  if (holder.is_there) refuse_running(folder, campaign, whole);
-  if (has_trial(campaign, whole))
-    refuse_claim(folder,
-                 fmt::format("is a trial of the campaign in {}, whose results must be of one "
-                             "kind; choose another folder with --out, or remove this one and "
-                             "run the campaign with --resume",
-                             campaign.string()));
-}
-
-/// Whether that is still so after this time, and has been all along.
-template <class Question>
-bool stays(const Question& is_so, std::chrono::milliseconds limit) {
-  const auto deadline = std::chrono::steady_clock::now() + limit;
-  while (is_so()) {
-    if (std::chrono::steady_clock::now() >= deadline) return true;
+/// False: another process has held the lock for all of half a second. A killed one is gone by then.
+bool lock(const os::FileDescriptor& file, int how, const fs::path& path) {
+  constexpr int kAttempts = 100;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (::flock(file.get(), how | LOCK_NB) == 0) return true;
+    if (errno != EWOULDBLOCK) fail(path, "cannot be locked", errno);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   return false;
 }
 
-/// Whoever is just being killed is waited for.
-void require_free(const fs::path& place, const fs::path& folder) {
-  const bool is_own = place == folder;
-  if (!is_own && stays([&] { return campaign_in(place).is_there; }, kPatience))
-    refuse_busy(folder, "a campaign is running in " + place.string());
-  if (stays([&] { return holder_of(place).is_there; }, kPatience))
-    refuse_busy(folder, "another run writes in " + place.string());
+os::FileDescriptor open_own(const fs::path& path, int how) {
+  os::FileDescriptor file(::open(path.c_str(), how | O_CLOEXEC, 0644));
+  if (!file) fail(path, "cannot be opened", errno);
+  return file;
 }
 
-/// From the root on, without links.
-fs::path whole_path(const fs::path& folder) {
-  std::error_code failed;
-  const fs::path absolute = fs::absolute(folder, failed);
-  if (failed == std::errc::no_such_file_or_directory)
-    throw Error(ErrorCode::kSetup, folder.string() +
-                                       ": the working directory is not there any more; change to "
-                                       "one that is, or give a whole path with --out");
-  const fs::path whole = failed ? absolute : fs::weakly_canonical(absolute, failed);
-  if (!failed) return whole;
-  errno = failed.value();
-  fail(folder, "found");
+/// 0: none is written.
+pid_t process_in(const os::FileDescriptor& file) {
+  std::array<char, 16> text{};
+  const ssize_t size = ::pread(file.get(), text.data(), text.size(), 0);
+  pid_t process = 0;
+  if (size > 0) std::from_chars(text.data(), text.data() + size, process);
+  return process;
+}
+
+void write_process(const os::FileDescriptor& file, const fs::path& path) {
+  const std::string text = std::to_string(::getpid());
+  const auto size = static_cast<ssize_t>(text.size());
+  if (::ftruncate(file.get(), 0) != 0 || ::pwrite(file.get(), text.data(), text.size(), 0) != size)
+    fail(path, "cannot be written", errno);
+}
+
+bool has_trial(const fs::path& campaign, const fs::path& folder) try {
+  if (!fs::exists(campaign / kCampaignFile)) return false;
+  const CampaignManifest manifest = read_manifest(campaign);
+  const fs::path relative = folder.lexically_relative(campaign);
+  for (const CampaignManifest::Entry& entry : manifest.scenarios)
+    for (const std::string& condition : entry.conditions)
+      for (const std::uint64_t seed : manifest.seeds)
+        if (relative == trial_folder(entry.scenario, condition, seed)) return true;
+  return false;
+} catch (const std::exception&) {
+  return false;  // no campaign that could be reported on
+}
+
+/// Shares the lock of the campaign in `root`, if there is one. None: the campaign started us.
+void share_campaign(const fs::path& root, const fs::path& whole, const fs::path& folder,
+                    std::vector<os::FileDescriptor>& locks) {
+  const fs::path path = root / kLockFile;
+  os::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  const bool is_absent = errno == ENOENT || errno == ENOTDIR || errno == EACCES || errno == EPERM;
+  if (!file && !is_absent) fail(path, "cannot be opened", errno);
+  if (file) {
+    const bool is_held = ::flock(file.get(), LOCK_SH | LOCK_NB) != 0;
+    const pid_t process = process_in(file);
+    if (is_held && process == ::getppid()) return;
+    if (!lock(file, LOCK_SH, path))
+      refuse_busy(folder, fmt::format("a campaign is running in {}{}",
+                                      root == whole ? "this folder" : root.string(),
+                                      process > 0 ? fmt::format(" (process {})", process) : ""));
+    locks.push_back(std::move(file));
+  }
+  if (has_trial(root, whole))
+    refuse_claim(folder,
+                 fmt::format("is a trial of the campaign in {}, whose results must be of one "
+                             "kind. Choose another folder with --out, or remove this one and "
+                             "run the campaign with --resume.",
+                             root.string()));
+}
+
+/// Of the campaigns in `innermost` and in every folder above it.
+std::vector<os::FileDescriptor> share_campaigns(const fs::path& innermost, const fs::path& whole,
+                                                const fs::path& folder) {
+  std::vector<os::FileDescriptor> locks;
+  for (fs::path root = innermost;; root = root.parent_path()) {
+    share_campaign(root, whole, folder, locks);
+    if (root == root.parent_path()) return locks;
+  }
 }
 
 }  // namespace
 
-PathLock::PathLock(const fs::path& path, bool makes_file)
-    : path_(path),
-      descriptor_(
-          ::open(path.c_str(), O_CLOEXEC | (makes_file ? O_RDWR | O_CREAT : O_RDONLY), 0644)) {
-  if (descriptor_ < 0) fail(path, "opened");
-  const auto is_busy = [this] {
-    is_held_ = ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
-    return !is_held_ && errno == EWOULDBLOCK;
-  };
-  if (stays(is_busy, kLookersStay) || is_held_) return;
-  const int why = errno;
-  ::close(descriptor_);
-  errno = why;
-  fail(path, "locked");
-}
-
-PathLock::~PathLock() {
-  ::close(descriptor_);
-}
-
-void PathLock::write(std::string_view text) const {
-  const auto size = static_cast<ssize_t>(text.size());
-  if (::pwrite(descriptor_, text.data(), text.size(), 0) != size ||
-      ::ftruncate(descriptor_, size) != 0)
-    fail(path_, "written");
-}
-
-void require_no_campaign(const fs::path& folder) {
+FolderClaim::FolderClaim(const fs::path& folder, By by) {
   const fs::path whole = whole_path(folder);
-  for (fs::path above = whole; !above.empty(); above = above.parent_path()) {
-    require_not_in(above, folder, whole);
-    if (above == above.root_path()) return;
-  }
-}
-
-void require_nobody_in(const fs::path& folder) {
-  require_free(folder, folder);
+  (void)share_campaigns(whole, whole, folder);  // makes nothing where it is refused
   std::error_code failed;
-  constexpr auto kHow = fs::directory_options::skip_permission_denied;
-  for (fs::recursive_directory_iterator entry(folder, kHow, failed), end; entry != end && !failed;
-       entry.increment(failed))
-    if (entry->is_directory() && !entry->is_symlink()) require_free(entry->path(), folder);
-  if (!failed) return;
-  errno = failed.value();
-  fail(folder, "read");
+  fs::create_directories(folder, failed);
+  if (failed) fail(folder, "cannot be made", failed.value());
+  os::FileDescriptor own = open_own(folder, O_RDONLY);
+  if (!lock(own, LOCK_EX, folder)) refuse_busy(folder, "another run writes there");
+  // Of two processes that come at once, one finds the other's lock now.
+  locks_ = share_campaigns(by == By::kRun ? whole : whole.parent_path(), whole, folder);
+  locks_.push_back(std::move(own));
+  if (by == By::kRun) return;
+  const fs::path path = folder / kLockFile;
+  os::FileDescriptor file = open_own(path, O_RDWR | O_CREAT);
+  if (!lock(file, LOCK_EX, path)) refuse_busy(folder, "another run writes in a folder below");
+  write_process(file, path);
+  locks_.push_back(std::move(file));
 }
 
 }  // namespace tether::campaign

@@ -11,24 +11,26 @@ namespace tether::campaign {
 
 Json parse_json(const std::string& text, const std::filesystem::path& file) {
   if (json_depth(text) > kMaxJsonDepth) {
-    throw Error(ErrorCode::kBadFile, FileLocation{file.string()},
-                fmt::format("is nested deeper than {} levels", kMaxJsonDepth));
+    throw Error(ErrorCode::kBadFile, {file.string()},
+                fmt::format("is nested deeper than {} levels.", kMaxJsonDepth));
   }
   Json document = Json::parse(text, nullptr, false);
   if (document.is_discarded()) {
-    throw Error(ErrorCode::kBadFile, FileLocation{file.string()},
-                "is torn or damaged: it is no whole JSON document");
+    throw Error(ErrorCode::kBadFile, {file.string()},
+                "is truncated or corrupt: it is not a complete JSON document.");
   }
   return document;
 }
 
 JsonReader::JsonReader(const Json& object, std::filesystem::path file)
     : object_(&object), file_(std::move(file)) {
-  if (!object.is_object()) fail("expected a JSON object");
+  if (!object.is_object()) fail("", "must contain JSON objects");
 }
 
-void JsonReader::fail(const std::string& problem) const {
-  throw Error(ErrorCode::kBadFile, FileLocation{file_.string()}, problem);
+void JsonReader::fail(std::string_view key, const std::string& problem) const {
+  throw Error(ErrorCode::kBadFile, {file_.string()},
+              key.empty() ? problem : fmt::format("'{}' {}", key, problem))
+      .about(std::string(key));
 }
 
 bool JsonReader::has(std::string_view key) const {
@@ -37,26 +39,26 @@ bool JsonReader::has(std::string_view key) const {
 
 const Json& JsonReader::member(std::string_view key) const {
   const auto found = object_->find(key);
-  if (found == object_->end()) fail(fmt::format("lacks the member '{}'", key));
+  if (found == object_->end()) fail(key, "is missing");
   return *found;
 }
 
-std::string JsonReader::text(std::string_view key) const {
+const Json& JsonReader::member(std::string_view key, IsType is_type, std::string_view type) const {
   const Json& value = member(key);
-  if (!value.is_string()) fail(fmt::format("'{}' must be a string", key));
-  return value.get<std::string>();
+  if (!(value.*is_type)()) fail(key, fmt::format("must be {}", type));
+  return value;
+}
+
+std::string JsonReader::text(std::string_view key) const {
+  return member(key, &Json::is_string, "a string").get<std::string>();
 }
 
 bool JsonReader::boolean(std::string_view key) const {
-  const Json& value = member(key);
-  if (!value.is_boolean()) fail(fmt::format("'{}' must be true or false", key));
-  return value.get<bool>();
+  return member(key, &Json::is_boolean, "true or false").get<bool>();
 }
 
 double JsonReader::number(std::string_view key) const {
-  const Json& value = member(key);
-  if (!value.is_number()) fail(fmt::format("'{}' must be a number", key));
-  return value.get<double>();
+  return member(key, &Json::is_number, "a number").get<double>();
 }
 
 std::optional<double> JsonReader::optional_number(std::string_view key) const {
@@ -65,51 +67,45 @@ std::optional<double> JsonReader::optional_number(std::string_view key) const {
 }
 
 std::uint64_t JsonReader::count(std::string_view key) const {
-  const Json& value = member(key);
-  if (!value.is_number_unsigned()) fail(fmt::format("'{}' must be a whole number", key));
-  return value.get<std::uint64_t>();
+  return member(key, &Json::is_number_unsigned, "a non-negative integer").get<std::uint64_t>();
 }
 
 Duration JsonReader::seconds(std::string_view key) const {
   const double seconds = number(key);
-  if (!is_representable_seconds(seconds)) fail(fmt::format("'{}' is out of range", key));
+  if (!is_representable_seconds(seconds)) fail(key, fmt::format("is out of range ({})", seconds));
   return duration_from_seconds(seconds);
 }
 
 JsonReader JsonReader::object(std::string_view key) const {
-  const Json& value = member(key);
-  if (!value.is_object()) fail(fmt::format("'{}' must be an object", key));
-  return JsonReader(value, file_);
-}
-
-const Json& JsonReader::array(std::string_view key) const {
-  const Json& value = member(key);
-  if (!value.is_array()) fail(fmt::format("'{}' must be an array", key));
-  return value;
+  return JsonReader(member(key, &Json::is_object, "an object"), file_);
 }
 
 std::vector<JsonReader> JsonReader::objects(std::string_view key) const {
   std::vector<JsonReader> objects;
-  for (const Json& element : array(key)) objects.emplace_back(element, file_);
+  for (const Json& element : member(key, &Json::is_array, "an array")) {
+    objects.emplace_back(element, file_);
+  }
   return objects;
 }
 
-std::vector<std::string> JsonReader::texts(std::string_view key) const {
-  std::vector<std::string> texts;
-  for (const Json& element : array(key)) {
-    if (!element.is_string()) fail(fmt::format("'{}' must be an array of strings", key));
-    texts.push_back(element.get<std::string>());
+template <class T>
+std::vector<T> JsonReader::elements(std::string_view key, IsType is_type,
+                                    std::string_view type) const {
+  std::vector<T> elements;
+  for (const Json& element : member(key, &Json::is_array, type)) {
+    if (!(element.*is_type)()) fail(key, fmt::format("must be {}", type));
+    elements.push_back(element.get<T>());
   }
-  return texts;
+  return elements;
+}
+
+std::vector<std::string> JsonReader::texts(std::string_view key) const {
+  return elements<std::string>(key, &Json::is_string, "an array of strings");
 }
 
 std::vector<std::uint64_t> JsonReader::counts(std::string_view key) const {
-  std::vector<std::uint64_t> counts;
-  for (const Json& element : array(key)) {
-    if (!element.is_number_unsigned()) fail(fmt::format("'{}' must be whole numbers", key));
-    counts.push_back(element.get<std::uint64_t>());
-  }
-  return counts;
+  return elements<std::uint64_t>(key, &Json::is_number_unsigned,
+                                 "an array of non-negative integers");
 }
 
 std::map<std::string, std::string> JsonReader::all_texts() const {
@@ -121,7 +117,7 @@ std::map<std::string, std::string> JsonReader::all_texts() const {
 void JsonReader::require_schema(int newest) const {
   const std::uint64_t schema = count("schema");
   if (schema >= 1 && schema <= static_cast<std::uint64_t>(newest)) return;
-  fail(fmt::format("has schema {}, but this version of Tether reads up to {}", schema, newest));
+  fail("schema", fmt::format("is {}, but this version of Tether reads up to {}", schema, newest));
 }
 
 }  // namespace tether::campaign

@@ -16,12 +16,13 @@ namespace tether::campaign {
 
 using Json = nlohmann::ordered_json;
 
-/// @throws Error(kBadFile) when the text is no whole JSON document, or deeper than kMaxJsonDepth.
+/// @throws Error(kBadFile) if the text is not a complete JSON document, or deeper than
+/// kMaxJsonDepth.
 Json parse_json(const std::string& text, const std::filesystem::path& file);
 
 /// One object of a JSON file that Tether wrote, read with full checking: every function throws
-/// Error(kBadFile) that names file and member when the member is missing or of another type. A
-/// view: the document must outlive it.
+/// Error(kBadFile) about the member if that is missing or of another type. A view: the document
+/// must outlive it.
 class JsonReader {
  public:
   JsonReader(const Json& object, std::filesystem::path file);
@@ -43,10 +44,14 @@ class JsonReader {
 
   /// Checks the member "schema".
   void require_schema(int newest) const;
-  [[noreturn]] void fail(const std::string& problem) const;
+  /// Throws the error about the member `key`.
+  [[noreturn]] void fail(std::string_view key, const std::string& problem) const;
 
  private:
-  const Json& array(std::string_view key) const;
+  using IsType = bool (Json::*)() const;
+  const Json& member(std::string_view key, IsType is_type, std::string_view type) const;
+  template <class T>
+  std::vector<T> elements(std::string_view key, IsType is_type, std::string_view type) const;
 
   const Json* object_;
   std::filesystem::path file_;

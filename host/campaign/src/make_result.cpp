@@ -5,6 +5,8 @@
 #include <tether/board/target_readings.h>
 #include <tether/campaign/result.h>
 
+// A result is assembled from the scenario (what was asked for), the record (what happened) and what
+// the SUTs reported at their end. `settle` decides the outcome and its reason.
 namespace tether::campaign {
 namespace {
 
@@ -28,14 +30,11 @@ std::vector<SutResult> sut_results(const record::Record& record,
                                    const std::vector<TaskEnd>& task_ends) {
   std::vector<SutResult> suts;
   for (const record::SutInfo& info : record.header.suts) {
-    SutResult sut;
-    sut.uav = info.uav;
-    sut.sut = info.sut;
-    sut.clock = info.clock;
-    sut.cpu_factor = info.cpu_factor;
+    SutResult sut{
+        .uav = info.uav, .sut = info.sut, .clock = info.clock, .cpu_factor = info.cpu_factor};
     const std::size_t index = suts.size();
-    const bool tied = record.header.policy == record::kConservativeBarrier;
-    if (tied && record.footer && index < record.footer->et_at_end.size()) {
+    const bool is_synchronised = record.header.policy == record::kConservativeBarrier;
+    if (is_synchronised && record.footer && index < record.footer->et_at_end.size()) {
       sut.et_at_end = record.footer->et_at_end[index];
     }
     for (const TaskEnd& end : task_ends) {
@@ -50,14 +49,19 @@ std::vector<SutResult> sut_results(const record::Record& record,
   return suts;
 }
 
-// A task that was given up measures nothing of what it is for: an UAV that never set out ends where
-// it began, and at once.
+// Empty: it was reached.
+std::string why_missed(const SutResult& sut) {
+  if (!sut.finished) return fmt::format("the SUT of '{}' did not finish", sut.uav);
+  if (sut.reached_goal) return "";
+  return fmt::format("the SUT of '{}' did not reach its goal: {}", sut.uav, sut.outcome);
+}
+
+// The metrics of an abandoned task are meaningless: a UAV that never set out ends where it began,
+// and at once.
 void drop_metrics_of_missed_tasks(TrialResult& result, const scenario::Scenario& scenario) {
   for (const SutResult& sut : result.suts) {
-    if (sut.reached_goal) continue;
-    const std::string why = sut.finished ? fmt::format("the SUT of '{}' did not reach its goal: {}",
-                                                       sut.uav, sut.outcome)
-                                         : fmt::format("the SUT of '{}' did not finish", sut.uav);
+    const std::string why = why_missed(sut);
+    if (why.empty()) continue;
     for (std::size_t i = 0; i < result.metrics.size(); ++i) {
       if (scenario.metrics[i].uav != sut.uav) continue;
       result.metrics[i].value.reset();
@@ -70,13 +74,9 @@ std::string text_of(double value, const std::string& unit) {
   return unit == "1" ? fmt::format("{:.6g}", value) : fmt::format("{:.6g} {}", value, unit);
 }
 
-// Why the goal was missed; empty: it was reached.
 std::string why_missed(const TrialResult& result) {
   for (const SutResult& sut : result.suts) {
-    if (!sut.finished) return fmt::format("the SUT of '{}' did not finish", sut.uav);
-    if (!sut.reached_goal) {
-      return fmt::format("the SUT of '{}' did not reach its goal: {}", sut.uav, sut.outcome);
-    }
+    if (std::string why = why_missed(sut); !why.empty()) return why;
   }
   for (const MetricValue& metric : result.metrics) {
     if (metric.is_met()) continue;
@@ -89,12 +89,13 @@ std::string why_missed(const TrialResult& result) {
 
 std::optional<StopFigures> stop_figures(const record::Record& record) {
   const auto& suts = record.header.suts;
-  const bool tied = record.header.policy == record::kConservativeBarrier;
-  if (!tied || std::ranges::none_of(suts, &record::SutInfo::concurrent)) return std::nullopt;
+  const bool is_synchronised = record.header.policy == record::kConservativeBarrier;
+  if (!is_synchronised || std::ranges::none_of(suts, &record::SutInfo::concurrent))
+    return std::nullopt;
   return StopFigures{record.footer->stops, record.footer->largest_overshoot};
 }
 
-// A SUT that was lost before it did anything never came to be: a matter of the set-up.
+// A SUT that was lost before it did anything was never set up.
 std::string end_of(const record::Footer& footer) {
   const bool nothing_happened = footer.interactions == 0 && footer.end == "sut_lost";
   return nothing_happened ? std::string(kEndSetupFailed) : footer.end;
@@ -110,7 +111,7 @@ void settle(TrialResult& result, const std::string& reason_of_end) {
                           : (missed.empty() ? "the time limit was reached" : missed);
 }
 
-// A board that was slowed down is part of why the trial came out as it did.
+// If a board was throttled, the reason of the result says so.
 void take_target(TrialResult& result, const record::Record& record) {
   if (!record.header.target) return;
   const record::TargetInfo& info = *record.header.target;

@@ -36,14 +36,12 @@ CampaignManifest manifest_of(const scenario::Campaign& campaign, Settings settin
 std::string to_json(const CampaignManifest& manifest) {
   Json scenarios = Json::array();
   for (const auto& entry : manifest.scenarios) scenarios.push_back(json_of(entry));
-  Json settings = Json::object();
-  for (const auto& [name, value] : manifest.settings) settings[name] = value;
   const Json json{{"schema", kCampaignSchemaVersion},
                   {"campaign", manifest.name},
                   {"description", manifest.description},
                   {"seeds", manifest.seeds},
                   {"scenarios", scenarios},
-                  {"settings", settings}};
+                  {"settings", manifest.settings}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -7,10 +7,10 @@
 #include <tether/scenario/metric.h>
 #include <tether/uav/math.h>
 
-/// What the files that compute metrics share.
+/// Shared by the sources that compute metrics.
 namespace tether::campaign {
 
-/// A value in the unit of its kind, or why there is none.
+/// A value in the unit of its kind, or the reason why there is none.
 struct MetricOutcome {
   std::optional<double> value;
   std::string missing_because;
@@ -21,7 +21,7 @@ MetricOutcome no_finish(const scenario::Metric& metric);
 MetricOutcome no_anchor(const scenario::Metric& metric);
 MetricOutcome no_ground_truth(const scenario::Metric& metric);
 
-/// nullptr where there is none of that name.
+/// nullptr if there is none of that name.
 const record::Anchor* find_anchor(const record::Record& record, const std::string& name);
 /// The request with which the SUT of `uav` finished; nullptr: it did not.
 const record::Logged<record::Interaction>* find_finish(const record::Record& record,
@@ -32,13 +32,13 @@ struct StartAndEnd {
   uav::Pose start;
   uav::Pose end;
 };
-/// None where the SUT did not finish, or ground truth lacks one of the two.
+/// None if the SUT did not finish, or ground truth lacks one of the two.
 std::optional<StartAndEnd> start_and_end(const record::Record& record, const std::string& uav);
 
-// Kinds (scenario::metric_kinds()). Of where the UAV went:
+// Kinds (scenario::metric_kinds()). Of the UAV's path:
 MetricOutcome abeam_error(const scenario::Metric& metric, const record::Record& record);
 MetricOutcome return_error(const scenario::Metric& metric, const record::Record& record);
-// Of what the SUT made of what it saw:
+// Of the SUT's own estimates:
 MetricOutcome bearing_error(const scenario::Metric& metric, const record::Record& record);
 MetricOutcome distance_error(const scenario::Metric& metric, const record::Record& record);
 MetricOutcome estimate_error(const scenario::Metric& metric, const record::Record& record);

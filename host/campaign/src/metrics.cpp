@@ -1,5 +1,6 @@
 #include "metric_outcome.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -10,6 +11,7 @@
 #include <tether/campaign/metrics.h>
 #include <tether/uav/math.h>
 
+// The metrics of time and bearing, what all metrics share, and the table of all kinds.
 namespace tether::campaign {
 namespace {
 
@@ -27,14 +29,14 @@ std::vector<double> bearings_until_finish(const scenario::Metric& metric,
   return bearings_rad;
 }
 
+template <class Evaluate>
 MetricOutcome with_bearings(const scenario::Metric& metric, const record::Record& record,
-                            double (*evaluate)(const scenario::Metric&,
-                                               const std::vector<double>&)) {
+                            const Evaluate& evaluate) {
   const record::Anchor* anchor = find_anchor(record, metric.anchor);
   if (anchor == nullptr) return no_anchor(metric);
   const std::vector<double> bearings_rad = bearings_until_finish(metric, record, *anchor);
   if (bearings_rad.empty()) return no_ground_truth(metric);
-  return {evaluate(metric, bearings_rad), ""};
+  return {evaluate(bearings_rad), ""};
 }
 
 MetricOutcome time_required(const scenario::Metric& metric, const record::Record& record) {
@@ -43,18 +45,16 @@ MetricOutcome time_required(const scenario::Metric& metric, const record::Record
 }
 
 MetricOutcome oscillations(const scenario::Metric& metric, const record::Record& record) {
-  return with_bearings(metric, record,
-                       [](const scenario::Metric& m, const std::vector<double>& bearings_rad) {
-                         return double{1} * count_overshoots(bearings_rad, m.threshold_rad);
-                       });
+  return with_bearings(metric, record, [&](const std::vector<double>& bearings_rad) {
+    return double{1} * count_overshoots(bearings_rad, metric.threshold_rad);
+  });
 }
 
 MetricOutcome final_bearing_error(const scenario::Metric& metric, const record::Record& record) {
   if (!finish_time(record, metric.uav)) return no_finish(metric);
-  return with_bearings(metric, record,
-                       [](const scenario::Metric&, const std::vector<double>& bearings_rad) {
-                         return deg_from_rad(std::abs(bearings_rad.back()));
-                       });
+  return with_bearings(metric, record, [](const std::vector<double>& bearings_rad) {
+    return deg_from_rad(std::abs(bearings_rad.back()));
+  });
 }
 
 // ST per second of wall time, as achieved: at most the limit, less where the simulator was too
@@ -65,9 +65,9 @@ double pace(const record::Record& record) {
   return to_seconds(record.footer->st_at_end) / to_seconds(record.footer->wall);
 }
 
-// What the SUT waited for its data: by its own clock, which the barrier holds to ST. Without the
-// barrier by the wall clock, at the pace of ST: the coordinator's part and the link's, which the
-// SUT tells with its next request.
+// How long the SUT waited for its data: under the barrier by its own clock, which is synchronised
+// with ST; without the barrier by the wall clock, at the pace of ST. That is the coordinator's part
+// and the link's, which the SUT reports with its next request.
 Duration waited(const record::Interaction& read, const record::Interaction* next,
                 const record::Record& record) {
   if (record.header.policy != record::kFreeRunning) return read.reply_at - read.request_at;
@@ -85,7 +85,8 @@ std::vector<const record::Interaction*> interactions_of(const std::string& uav,
   return own;
 }
 
-// The first read turns the sensor on, which Algorithm 1 does before it takes the time.
+// Without the first read, which turns the sensor on: Algorithm 1 does that before it takes the
+// time.
 MetricOutcome acquisition_time(const scenario::Metric& metric, const record::Record& record) {
   const auto own = interactions_of(metric.uav, record);
   Duration sum{0};
@@ -118,9 +119,8 @@ constexpr std::array kKinds = {
 };
 
 MetricOutcome compute(const scenario::Metric& metric, const record::Record& record) {
-  for (const Kind& kind : kKinds) {
-    if (kind.name == metric.kind) return kind.compute(metric, record);
-  }
+  const auto* kind = std::ranges::find(kKinds, metric.kind, &Kind::name);
+  if (kind != kKinds.end()) return kind->compute(metric, record);
   return missing(fmt::format("there is no metric of the kind '{}'", metric.kind));
 }
 
@@ -136,14 +136,12 @@ MetricOutcome no_anchor(const scenario::Metric& metric) {
   return missing(fmt::format("the record has no anchor '{}'", metric.anchor));
 }
 MetricOutcome no_ground_truth(const scenario::Metric& metric) {
-  return missing(fmt::format("the record has no ground truth of '{}' for it", metric.uav));
+  return missing(fmt::format("the record has no ground truth of '{}' at that time", metric.uav));
 }
 
 const record::Anchor* find_anchor(const record::Record& record, const std::string& name) {
-  for (const record::Anchor& anchor : record.header.anchors) {
-    if (anchor.name == name) return &anchor;
-  }
-  return nullptr;
+  const auto found = std::ranges::find(record.header.anchors, name, &record::Anchor::name);
+  return found == record.header.anchors.end() ? nullptr : &*found;
 }
 
 const record::Logged<record::Interaction>* find_finish(const record::Record& record,
@@ -190,7 +188,7 @@ std::vector<MetricValue> compute_metrics(std::span<const scenario::Metric> metri
   for (const scenario::Metric& metric : metrics) {
     MetricOutcome outcome = compute(metric, record);
     if (outcome.value && !std::isfinite(*outcome.value)) {
-      outcome = missing("what the record says is not finite");
+      outcome = missing("the value from the record is not finite");
     }
     values.push_back({metric.name, metric.kind, metric.label, metric.unit, outcome.value,
                       outcome.missing_because, metric.max});

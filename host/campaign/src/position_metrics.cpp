@@ -5,7 +5,7 @@
 #include <tether/campaign/metrics.h>
 #include <tether/campaign/true_roi.h>
 
-/// Where the UAV was in the end, against where it should have been (paper, Tables IV and V).
+/// The UAV's final position against the intended one (paper, Tables IV and V).
 namespace tether::campaign {
 namespace {
 

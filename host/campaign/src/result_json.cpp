@@ -1,8 +1,7 @@
 #include "json_reader.h"
 
+#include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include <tether/campaign/result.h>
 #include <tether/os/text_file.h>
 
+// `result.json`: first how each part of a result is written, then how it is read.
 namespace tether::campaign {
 namespace {
 
@@ -44,8 +44,8 @@ Json json_of(const MetricValue& metric) {
   return json;
 }
 
-// A SUT's details are an object of its own making; what is none, or too deep to be read again, is
-// kept as the text it is.
+// A SUT's details are an object that the SUT defines. What is not an object, or is nested too
+// deeply to be read again, is kept as text.
 Json json_of_details(const std::string& details) {
   if (details.empty()) return nullptr;
   const bool is_deep = json_depth(details) > kMaxSutJsonDepth;
@@ -89,19 +89,10 @@ Json json_of(const std::optional<AuditVerdict>& audit) {
   return Json{{"passed", audit->passed}, {"summary", audit->summary}};
 }
 
-Json json_of(const std::map<std::string, std::string>& texts) {
-  Json json = Json::object();
-  for (const auto& [key, text] : texts) json[key] = text;
-  return json;
-}
-
 Json json_of(const TargetReport& target) {
-  return Json{{"name", target.name},
-              {"address", target.address},
-              {"before", json_of(target.before)},
-              {"after", json_of(target.after)},
-              {"warnings", target.warnings},
-              {"is_spoiled", target.is_spoiled}};
+  return Json{{"name", target.name},         {"address", target.address},
+              {"before", target.before},     {"after", target.after},
+              {"warnings", target.warnings}, {"is_spoiled", target.is_spoiled}};
 }
 
 Json json_of(const ThisRun& run) {
@@ -174,7 +165,7 @@ ThisRun read_this_run(const JsonReader& json) {
   run.wall = json.seconds("wall_s");
   run.largest_lag = json.seconds("largest_lag_s");
   const std::uint64_t attempts = json.count("attempts");
-  if (attempts < 1 || attempts > 1000) json.fail("'attempts' is out of range");
+  if (attempts < 1 || attempts > 1000) json.fail("attempts", "must be 1 to 1000");
   run.attempts = static_cast<int>(attempts);
   if (json.has("first_failure")) run.first_failure = json.text("first_failure");
   if (json.has("target")) run.target = read_target(json.object("target"));
@@ -184,10 +175,9 @@ ThisRun read_this_run(const JsonReader& json) {
 
 Outcome read_outcome(const JsonReader& json) {
   const std::string word = json.text("outcome");
-  for (std::size_t i = 0; i < kOutcomes.size(); ++i) {
-    if (kOutcomes[i] == word) return static_cast<Outcome>(i);
-  }
-  json.fail(fmt::format("'outcome' is \"{}\"", word));
+  const auto found = std::ranges::find(kOutcomes, word);
+  if (found == kOutcomes.end()) json.fail("outcome", fmt::format("is \"{}\"", word));
+  return static_cast<Outcome>(found - kOutcomes.begin());
 }
 
 void read_trial(const JsonReader& json, TrialResult& result) {
@@ -218,10 +208,8 @@ int exit_code(Outcome outcome) {
 }
 
 const MetricValue* TrialResult::find_metric(std::string_view metric) const {
-  for (const MetricValue& value : metrics) {
-    if (value.name == metric) return &value;
-  }
-  return nullptr;
+  const auto found = std::ranges::find(metrics, metric, &MetricValue::name);
+  return found == metrics.end() ? nullptr : &*found;
 }
 
 std::string to_json(const TrialResult& result) {
@@ -241,7 +229,7 @@ std::string to_json(const TrialResult& result) {
                    {"suts", json_of(result.suts)},
                    {"sync", json_of(result.sync)},
                    {"audit", json_of(result.audit)},
-                   {"versions", json_of(result.versions)},
+                   {"versions", result.versions},
                    {"this_run", json_of(result.this_run)}});
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

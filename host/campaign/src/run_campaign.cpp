@@ -12,6 +12,8 @@
 #include <tether/campaign/run_campaign.h>
 #include <tether/os/text_file.h>
 
+// `Run` executes the batches one after the other, each with as many threads as it has jobs. A
+// thread takes the next trial, attempts it up to twice in an empty folder, and writes its result.
 namespace tether::campaign {
 namespace {
 
@@ -21,10 +23,12 @@ Duration machine_wall() {
 
 void require_made(const std::filesystem::path& folder, const std::error_code& failed) {
   if (!failed) return;
-  throw Error(ErrorCode::kSetup, FileLocation{folder.string()},
-              "the trial's folder cannot be made: " + failed.message());
+  throw Error(ErrorCode::kSetup, {folder.string()},
+              "the trial's folder cannot be made or emptied: " + failed.message() + ".")
+      .about(folder.string());
 }
 
+// A new folder: a trial that is just being killed with an earlier campaign may have locked the old.
 void empty_folder(const std::filesystem::path& folder) {
   std::error_code failed;
   std::filesystem::remove_all(folder, failed);
@@ -32,7 +36,7 @@ void empty_folder(const std::filesystem::path& folder) {
   require_made(folder, failed);
 }
 
-// For a second attempt: the log says why the first one failed.
+// For a second attempt: the log shows why the first one failed.
 void empty_but_for_log(const std::filesystem::path& folder) {
   std::error_code failed;
   std::vector<std::filesystem::path> others;
@@ -70,7 +74,7 @@ TrialResult attempt_twice(const TrialPlan& plan, const TrialExecutor& execute,
   return second;
 }
 
-// The trials of one run: hands them out, keeps their results, tells of them.
+// The trials of one run: hands them to threads, keeps their results, reports progress.
 class Run {
  public:
   Run(const CampaignFolder& folder, const TrialExecutor& execute, const CampaignOptions& options,
@@ -114,11 +118,11 @@ class Run {
     const bool over = error_ || outcome_.interrupted || options_.stop.stop_requested();
     if (over || next == queue.size()) return nullptr;
     ++running_;
-    tell(*queue[next], nullptr);
+    report(*queue[next], nullptr);
     return queue[next++];
   }
 
-  // What is thrown in a thread is kept for the caller; it ends the run.
+  // An exception in a thread ends the run, and is thrown to the caller at its end.
   void run_one(const TrialPlan& plan) {
     const Duration start = wall_();
     try {
@@ -133,7 +137,7 @@ class Run {
     }
   }
 
-  // The executor may have left a result of its own, which must not be taken for one that was kept.
+  // If the check fails, a result that the executor wrote must not count as kept.
   void keep(const TrialPlan& plan, const TrialResult& result) const {
     try {
       if (options_.check) options_.check();
@@ -155,11 +159,11 @@ class Run {
     ++outcome_.ran;
     if (result->outcome == Outcome::kFailed) ++outcome_.failed;
     finished_.push_back({&plan, took});
-    tell(plan, result);
+    report(plan, result);
   }
 
   // @pre mutex_ held.
-  void tell(const TrialPlan& plan, const TrialResult* result) const {
+  void report(const TrialPlan& plan, const TrialResult* result) const {
     if (!progress_) return;
     CampaignProgress now;
     now.done = done_before_ + outcome_.ran;

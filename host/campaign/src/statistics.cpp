@@ -8,6 +8,7 @@
 
 #include <tether/campaign/statistics.h>
 
+// Means with Student's and Welch's intervals, and the Mann-Whitney test, exact for small samples.
 namespace tether::campaign {
 namespace {
 

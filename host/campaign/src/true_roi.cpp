@@ -7,6 +7,8 @@
 #include <tether/campaign/true_roi.h>
 #include <tether/uav/camera_model.h>
 
+// An anchor's outline is sampled in its own frame, projected point by point with the camera's lens,
+// and bounded by a rectangle. Poses between two ground truths are interpolated.
 namespace tether::campaign {
 namespace {
 
@@ -52,7 +54,7 @@ uav::Pose between(const record::GroundTruth& before, const record::GroundTruth& 
   return {a.p + fraction * (b.p - a.p), slerp(a.q, b.q, fraction)};
 }
 
-// What of an anchor bounds its image, in its own frame A.
+// The points that bound the image of an anchor, in its own frame A.
 
 void add_circle(std::vector<uav::Vec3>& points, const uav::Vec3& centre, const uav::Vec3& u,
                 const uav::Vec3& v) {
@@ -114,23 +116,12 @@ std::vector<uav::Vec3> outline_A(const record::Anchor& anchor, const uav::Vec3& 
 // Projection.
 
 uav::CameraModel model_of(const record::CameraInfo& camera) {
-  uav::CameraModel model;
-  model.width_px = camera.width_px;
-  model.height_px = camera.height_px;
-  model.fx_px = camera.fx_px;
-  model.fy_px = camera.fy_px;
-  model.cx_px = camera.cx_px;
-  model.cy_px = camera.cy_px;
-  model.k1 = camera.k1;
-  model.k2 = camera.k2;
-  model.k3 = camera.k3;
-  model.p1 = camera.p1;
-  model.p2 = camera.p2;
-  return model;
+  return {camera.width_px, camera.height_px, camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px,
+          camera.k1,       camera.k2,        camera.k3,    camera.p1,    camera.p2};
 }
 
-// Far aside, the polynomials of a distortion fold back into the image; such a pixel shows something
-// else.
+// Far aside, the polynomials of a distortion fold back into the image; such a pixel is no image of
+// the point.
 std::optional<uav::Pixel> project(const uav::CameraModel& model, const uav::Vec3& p_C) {
   const std::optional<uav::Pixel> pixel = model.project(p_C);
   if (!pixel || !model.has_distortion()) return pixel;

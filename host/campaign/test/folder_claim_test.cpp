@@ -1,178 +1,139 @@
-#include <atomic>
-#include <thread>
-
-#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/file.h>
+#include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <tether/campaign/campaign_folder.h>
-#include <tether/campaign/folder_claim.h>
 #include <tether/campaign_testing/sample_campaign.h>
-#include <tether/os/text_file.h>
+#include <tether/os/pipe.h>
 
-/// With whole processes: tests/system/faults/faults_campaign_test.cpp.
+/// With whole programs: tests/system/faults/faults_campaign_test.cpp.
 namespace tether::campaign {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::HasSubstr;
+using By = FolderClaim::By;
+
+/// Another process that holds a claim until the object is destroyed, which kills it.
+class OtherProcess {
+ public:
+  OtherProcess(const fs::path& folder, By by) {
+    os::Pipe ready = os::make_pipe();
+    pid_ = fork();
+    if (pid_ == 0) hold(folder, by, ready.write_end);
+    ready.write_end = {};
+    char byte = 0;
+    EXPECT_EQ(read(ready.read_end.get(), &byte, 1), 1);
+  }
+  ~OtherProcess() {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  OtherProcess(const OtherProcess&) = delete;
+  OtherProcess& operator=(const OtherProcess&) = delete;
+
+  std::string pid() const { return std::to_string(pid_); }
+
+ private:
+  [[noreturn]] static void hold(const fs::path& folder, By by,
+                                const os::FileDescriptor& ready) try {
+    const FolderClaim claim(folder, by);
+    os::write_all(ready, "!");
+    for (;;) pause();
+  } catch (...) {
+    _exit(1);
+  }
+
+  pid_t pid_ = -1;
+};
 
 class Claim : public testing::Test {
  protected:
-  void make(const std::filesystem::path& folder) const {
-    std::filesystem::create_directories(folder);
-  }
-  /// As a campaign of another process holds its folder.
-  std::unique_ptr<PathLock> run_campaign_in(const std::filesystem::path& folder) const {
-    make(folder);
-    auto lock = std::make_unique<PathLock>(folder / kLockFile, true);
-    lock->write("1");
-    return lock;
-  }
-  std::string refusal(const std::filesystem::path& folder) const {
-    return error_message(ErrorCode::kUsage, [&] { require_no_campaign(folder); });
+  static void claim(const fs::path& folder, By by) { const FolderClaim held(folder, by); }
+  static Error refusal(const fs::path& folder, By by) {
+    const Error error = thrown_error(ErrorCode::kUsage, [&] { claim(folder, by); });
+    EXPECT_EQ(error.where().file, folder);
+    EXPECT_EQ(error.subject(), folder);
+    return error;
   }
 
   ScratchFolder scratch_;
-  const std::filesystem::path out_ = scratch_.path("out");
+  const fs::path out_ = scratch_.path("out");
 };
 
-TEST_F(Claim, OfARunIsItsAlone) {
-  make(out_);
+TEST_F(Claim, OfARunExcludesOthersUntilItEnds) {
   {
-    const PathLock first(out_);
-    EXPECT_TRUE(first.is_held());
-    EXPECT_FALSE(PathLock(out_).is_held());
+    const FolderClaim first(out_, By::kRun);
+    refusal(out_, By::kRun);
+    refusal(out_, By::kCampaign);
+    EXPECT_NO_THROW(claim(out_ / "below", By::kRun));
   }
-  EXPECT_TRUE(PathLock(out_).is_held());
+  EXPECT_NO_THROW(claim(out_, By::kRun));
 }
 
-TEST_F(Claim, OfACampaignIsOfAllBelowIt) {
-  const auto running = run_campaign_in(out_);
-  EXPECT_THAT(refusal(out_), HasSubstr(out_.string() + ": a campaign is running in this folder;"));
-  for (const auto& below : {out_ / "hover", out_ / "not/there/yet", out_ / "a/../b/"})
-    EXPECT_THAT(refusal(below),
-                HasSubstr(below.string() + ": a campaign is running in " + out_.string()));
-  EXPECT_FALSE(std::filesystem::exists(out_ / "not"));
-  EXPECT_NO_THROW(require_no_campaign(out_.parent_path()));
-  EXPECT_NO_THROW(require_no_campaign(out_.string() + "side"));
-}
-
-TEST_F(Claim, IsSeenThroughALink) {
-  const auto running = run_campaign_in(out_);
-  const auto link = scratch_.path("link");
-  std::filesystem::create_directory_symlink(out_, link);
-  EXPECT_THAT(refusal(link / "hover"), HasSubstr("a campaign is running in"));
-}
-
-TEST_F(Claim, IsNotAgainstWhomTheCampaignStarted) {
-  const auto running = run_campaign_in(out_);
-  running->write(std::to_string(getppid()));
-  EXPECT_NO_THROW(require_no_campaign(out_ / "hover"));
-}
-
-TEST_F(Claim, IsNotWhateverElseIsLocked) {
-  make(out_);
-  const PathLock foreign(out_ / ".lock", true);
-  const PathLock own(out_ / kLockFile, true);
-  ASSERT_TRUE(foreign.is_held() && own.is_held());
-  for (const std::string text : {"", "0", "-1", "soon"}) {
-    own.write(text);
-    EXPECT_NO_THROW(require_no_campaign(out_ / "hover")) << text;
-    EXPECT_NO_THROW(require_nobody_in(out_.parent_path())) << text;
+TEST_F(Claim, OfACampaignExcludesOthersFromItsFolderAndAllBelowUntilItIsKilled) {
+  {
+    const OtherProcess campaign(out_, By::kCampaign);
+    fs::create_directory_symlink(out_, scratch_.path("link"));
+    const auto expect_refused = [&](const fs::path& folder, By by) {
+      EXPECT_THAT(refusal(folder, by).what(), HasSubstr("(process " + campaign.pid() + ")"));
+    };
+    expect_refused(out_, By::kCampaign);
+    for (const fs::path& folder :
+         {out_, out_ / "not/there/yet", out_ / "a/../b/", scratch_.path("link") / "hover"})
+      expect_refused(folder, By::kRun);
+    EXPECT_FALSE(fs::exists(out_ / "not"));
+    EXPECT_NO_THROW(claim(out_.parent_path(), By::kRun));
+    EXPECT_NO_THROW(claim(out_.string() + "side", By::kRun));
   }
+  for (const fs::path& folder : {out_, out_ / "hover"}) EXPECT_NO_THROW(claim(folder, By::kRun));
+  EXPECT_NO_THROW(claim(out_, By::kCampaign));
 }
 
-/// Somebody who looks whether the file is locked, again and again.
-class Looker {
- public:
-  explicit Looker(const std::filesystem::path& file)
-      : descriptor_(open(file.c_str(), O_RDONLY | O_CLOEXEC)) {}
-  ~Looker() {
-    is_done_ = true;
-    thread_.join();
-    close(descriptor_);
-  }
-  Looker(const Looker&) = delete;
-  Looker& operator=(const Looker&) = delete;
-
-  int looks() const { return looks_; }
-
- private:
-  void look() {
-    while (!is_done_) {
-      if (flock(descriptor_, LOCK_SH | LOCK_NB) == 0) ++looks_;
-      flock(descriptor_, LOCK_UN);
-    }
-  }
-
-  int descriptor_;
-  std::atomic<int> looks_ = 0;
-  std::atomic<bool> is_done_ = false;
-  std::thread thread_{[this] { look(); }};
-};
-
-TEST_F(Claim, IsNotHinderedByWhoLooks) {
-  make(out_);
-  const Looker looker(out_);
-  for (int i = 0; i < 50; ++i) {
-    const int before = looker.looks();
-    while (looker.looks() == before) std::this_thread::yield();
-    EXPECT_TRUE(PathLock(out_).is_held()) << i;
-  }
+TEST_F(Claim, OfACampaignAdmitsTheProcessesThatItStarts) {
+  const FolderClaim campaign(out_, By::kCampaign);
+  const OtherProcess trial(out_ / "hover", By::kRun);
 }
 
-/// In a working directory that is removed, while this lives.
-class Nowhere {
- public:
-  explicit Nowhere(const std::filesystem::path& gone) {
-    std::filesystem::create_directory(gone);
-    std::filesystem::current_path(gone);
-    std::filesystem::remove(gone);
+TEST_F(Claim, OfARunInACampaignsFolderExcludesTheCampaign) {
+  claim(out_, By::kCampaign);
+  {
+    const FolderClaim run(out_ / "aside", By::kRun);
+    refusal(out_, By::kCampaign);
+    EXPECT_NO_THROW(claim(out_ / "another", By::kRun));
   }
-  ~Nowhere() { std::filesystem::current_path(before_); }
-  Nowhere(const Nowhere&) = delete;
-  Nowhere& operator=(const Nowhere&) = delete;
-
- private:
-  std::filesystem::path before_ = std::filesystem::current_path();
-};
-
-TEST_F(Claim, NeedsToKnowWhereItIs) {
-  std::filesystem::create_directory_symlink("round", scratch_.path("round"));
-  const auto round = scratch_.path("round") / "out";
-  EXPECT_THAT(error_message(ErrorCode::kSetup, [&] { require_no_campaign(round); }),
-              HasSubstr(round.string() + ": cannot be found: Too many levels"));
-
-  const Nowhere nowhere(scratch_.path("gone"));
-  EXPECT_THAT(error_message(ErrorCode::kSetup, [&] { require_no_campaign("out"); }),
-              HasSubstr("out: the working directory is not there any more; change to one"));
-  EXPECT_NO_THROW(require_no_campaign(out_));
+  EXPECT_NO_THROW(claim(out_, By::kCampaign));
 }
 
-TEST_F(Claim, EndsWithItsHolder) {
-  run_campaign_in(out_);
-  EXPECT_TRUE(std::filesystem::exists(out_ / kLockFile));
-  EXPECT_NO_THROW(require_no_campaign(out_ / "hover"));
-}
-
-TEST_F(Claim, OfACampaignOnItsTrialsStays) {
+TEST_F(Claim, OfACampaignOnItsTrialsOutlivesIt) {
   const scenario::Campaign campaign = make_campaign(scratch_);
-  const TrialPlan trial = plan_trials(campaign, out_).front();
+  const fs::path trial = plan_trials(campaign, out_).front().folder;
   { const CampaignFolder folder(out_, campaign, {}, OpenMode::kFresh); }
-  EXPECT_THAT(refusal(trial.folder),
-              HasSubstr("is a trial of the campaign in " + out_.string() + ", whose results"));
-  EXPECT_NO_THROW(require_no_campaign(out_));
-  EXPECT_NO_THROW(require_no_campaign(trial.folder.parent_path()));
-  EXPECT_NO_THROW(require_no_campaign(out_ / "another"));
+  EXPECT_THAT(refusal(trial, By::kRun).what(), HasSubstr(out_.string() + ", "));
+  EXPECT_FALSE(fs::exists(trial));
+  for (const fs::path& folder : {out_, trial.parent_path(), out_ / "another"})
+    EXPECT_NO_THROW(claim(folder, By::kRun));
+  scratch_.write("out/campaign.json", "{");
+  EXPECT_NO_THROW(claim(trial, By::kRun)) << "no campaign that could be reported on";
 }
 
-TEST_F(Claim, OfACampaignNeedsNobodyBelow) {
-  make(out_ / "a/b");
-  EXPECT_NO_THROW(require_nobody_in(out_));
-  const auto own = run_campaign_in(out_);
-  EXPECT_NO_THROW(require_nobody_in(out_));
+TEST_F(Claim, NeedsAFolderThatCanBeFoundAndMade) {
+  fs::create_directory_symlink("round", scratch_.path("round"));
+  const fs::path file = scratch_.write("file", "text");
+  for (const fs::path& folder : {scratch_.path("round") / "out", file / "out", file}) {
+    const Error error = thrown_error(ErrorCode::kSetup, [&] { claim(folder, By::kRun); });
+    EXPECT_EQ(error.subject(), folder);
+  }
+
+  const fs::path before = fs::current_path(), gone = scratch_.path("gone");
+  fs::create_directory(gone);
+  fs::current_path(gone);
+  fs::remove(gone);
+  EXPECT_EQ(thrown_error(ErrorCode::kSetup, [&] { claim("out", By::kRun); }).subject(), "out");
+  EXPECT_NO_THROW(claim(out_, By::kRun));
+  fs::current_path(before);
 }
 
 }  // namespace

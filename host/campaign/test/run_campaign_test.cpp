@@ -1,10 +1,8 @@
 #include <atomic>
-#include <condition_variable>
+#include <barrier>
 #include <map>
-#include <mutex>
 #include <set>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/campaign/run_campaign.h>
@@ -15,9 +13,7 @@ namespace tether::campaign {
 namespace {
 
 using std::chrono::seconds;
-using testing::HasSubstr;
 
-// What a trial did, by its folder below the campaign's.
 class RunCampaign : public testing::Test {
  protected:
   CampaignFolder open(OpenMode mode = OpenMode::kFresh) const {
@@ -47,10 +43,11 @@ class RunCampaign : public testing::Test {
   std::vector<std::string> ended_;
 };
 
-TEST_F(RunCampaign, RunsEverythingOnce) {
-  const CampaignFolder folder = open();
+TEST_F(RunCampaign, RunsEverythingOnceInAnEmptyFolder) {
+  open();
+  scratch_.write("out/turn/host/seed-0001/record.mcap", "cut short");
   std::multiset<std::string> ran;
-  const CampaignOutcome outcome = run(folder, [&](const TrialPlan& plan) {
+  const CampaignOutcome outcome = run(open(), [&](const TrialPlan& plan) {
     EXPECT_TRUE(std::filesystem::is_empty(plan.folder));
     ran.insert(folder_of(plan));
     return good(plan);
@@ -65,38 +62,36 @@ TEST_F(RunCampaign, RunsEverythingOnce) {
   EXPECT_EQ(ended_.back(), "turn/target-no-sync/seed-0003");
 }
 
-TEST_F(RunCampaign, ResumesWithWhatIsMissing) {
+TEST_F(RunCampaign, ResumesAfterAStopWithoutTheTrialThatWasStopped) {
   std::stop_source stop;
   options_.stop = stop.get_token();
   const CampaignOutcome first = run(open(), [&](const TrialPlan& plan) {
-    if (plan.seed == 2) stop.request_stop();
-    return good(plan);
+    TrialResult result = good(plan);
+    if (plan.seed == 2 && stop.request_stop()) result.end = kEndInterrupted;
+    return result;
   });
-  EXPECT_EQ(first.ran, 3u);
+  EXPECT_EQ(first.ran, 2u);
   EXPECT_TRUE(first.interrupted);
 
   options_.stop = {};
   progress_.clear();
-  EXPECT_EQ(run(open(OpenMode::kResume), good).ran, 6u);
-  EXPECT_EQ(progress_.front().done, 3u);
+  EXPECT_EQ(run(open(OpenMode::kResume), good).ran, 7u);
+  EXPECT_EQ(progress_.front().done, 2u);
   EXPECT_EQ(progress_.back().done, 9u);
   EXPECT_TRUE(open(OpenMode::kResume).missing().empty());
 }
 
-TEST_F(RunCampaign, ClearsAwayWhatATornTrialLeft) {
-  open();
-  scratch_.write("out/turn/host/seed-0001/record.mcap", "torn");
-  run(open(), [&](const TrialPlan& plan) {
-    EXPECT_TRUE(std::filesystem::is_empty(plan.folder));
-    return good(plan);
-  });
-}
-
-TEST_F(RunCampaign, TriesASetUpFailureOnceMore) {
+TEST_F(RunCampaign, RetriesASetUpFailureOnceAndKeepsItsLog) {
+  const std::string log(kTrialLog);
   std::map<std::string, int> attempts;
   const CampaignOutcome outcome = run(open(), [&](const TrialPlan& plan) {
-    const bool first = ++attempts[folder_of(plan)] == 1;
-    if (plan.seed == 2 && first) throw Error(ErrorCode::kSetup, "the port was taken");
+    const std::string folder = folder_of(plan);
+    if (++attempts[folder] == 1 && plan.seed == 2) {
+      scratch_.write("out/" + folder + "/" + log, "no port");
+      scratch_.write("out/" + folder + "/record.mcap", "cut short");
+      throw Error(ErrorCode::kSetup, "the port was taken");
+    }
+    EXPECT_FALSE(std::filesystem::exists(plan.folder / "record.mcap"));
     return good(plan);
   });
   EXPECT_EQ(outcome.failed, 0u);
@@ -106,126 +101,54 @@ TEST_F(RunCampaign, TriesASetUpFailureOnceMore) {
   EXPECT_EQ(result_of(3).this_run.attempts, 2);
   EXPECT_EQ(result_of(3).this_run.first_failure, "the port was taken");
   EXPECT_EQ(result_of(3).outcome, Outcome::kGoalReached);
-}
-
-TEST_F(RunCampaign, KeepsTheLogOfTheFirstAttemptAlone) {
-  const std::string log(kTrialLog);
-  int attempts = 0;
-  run(open(), [&](const TrialPlan& plan) {
-    if (plan.seed != 2 || plan.condition->name != "host") return good(plan);
-    const auto at = [&](const std::string& name) {
-      return folder_of(plan).insert(0, "out/") + "/" + name;
-    };
-    if (++attempts == 1) {
-      scratch_.write(at(log), "no port");
-      scratch_.write(at("record.mcap"), "torn");
-      throw Error(ErrorCode::kSetup, "the port was taken");
-    }
-    EXPECT_FALSE(std::filesystem::exists(plan.folder / "record.mcap"));
-    return good(plan);
-  });
-  EXPECT_EQ(attempts, 2);
   EXPECT_EQ(os::read_file(plan_trials(campaign_, out_)[3].folder / log), "no port");
 }
 
-TEST_F(RunCampaign, EndsWithoutKeepingTheTrialThatTheCheckRefuses) {
-  int checks = 0;
-  options_.check = [&] {
-    if (++checks == 3) throw Error(ErrorCode::kBadFile, "room.sdf was changed");
-  };
-  const std::string message = error_message(ErrorCode::kBadFile, [&] {
-    run(open(), [&](const TrialPlan& plan) {
-      write_result(plan.folder, good(plan));  // as a child does
-      return good(plan);
-    });
-  });
-  EXPECT_EQ(message, "room.sdf was changed");
-  EXPECT_EQ(checks, 3);
-  EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
-}
-
-TEST_F(RunCampaign, KeepsATrialThatFailedTwiceAsFailed) {
-  std::map<std::string, int> attempts;
+TEST_F(RunCampaign, KeepsATrialThatFailedTwiceAndDoesNotRetryALostSut) {
+  int calls = 0;
   const CampaignOutcome outcome = run(open(), [&](const TrialPlan& plan) {
-    ++attempts[folder_of(plan)];
-    if (plan.seed != 2) return good(plan);
-    return make_setup_failure(*plan.scenario, *plan.condition, plan.seed, "no simulator");
+    ++calls;
+    if (plan.seed == 1) return good(plan);
+    auto failed = make_setup_failure(*plan.scenario, *plan.condition, plan.seed, "no simulator");
+    if (plan.seed == 3) failed.end = "sut_lost";
+    return failed;
   });
+  EXPECT_EQ(calls, 3 + 2 * 3 + 3);
   EXPECT_EQ(outcome.ran, 9u);
-  EXPECT_EQ(outcome.failed, 3u);
-  EXPECT_EQ(attempts["turn/host/seed-0002"], 2);
+  EXPECT_EQ(outcome.failed, 6u);
   EXPECT_EQ(result_of(3).reason, "no simulator");
   EXPECT_EQ(result_of(3).this_run.attempts, 2);
 }
 
-TEST_F(RunCampaign, DoesNotRetryASutThatCrashedInMidRun) {
-  int calls = 0;
-  run(open(), [&](const TrialPlan& plan) {
-    ++calls;
-    TrialResult result = good(plan);
-    result.outcome = Outcome::kFailed;
-    result.end = "sut_lost";
-    return result;
-  });
-  EXPECT_EQ(calls, 9);
-}
-
-TEST_F(RunCampaign, DoesNotKeepATrialThatTheUserStopped) {
-  const CampaignOutcome outcome = run(open(), [&](const TrialPlan& plan) {
-    TrialResult result = good(plan);
-    if (plan.seed == 2) result.end = kEndInterrupted;
-    return result;
-  });
-  EXPECT_TRUE(outcome.interrupted);
-  EXPECT_EQ(outcome.ran, 2u);
+TEST_F(RunCampaign, EndsWithAnErrorOfTheUsersFilesAndDoesNotKeepThatTrial) {
+  int checks = 0;
+  options_.check = [&] {
+    if (++checks == 3) throw Error(ErrorCode::kBadFile, "changed").about("room.sdf");
+  };
+  const auto execute = [&](const TrialPlan& plan) {
+    if (checks == 4) throw Error(ErrorCode::kBadFile, "broken").about("mesh.obj");
+    write_result(plan.folder, good(plan));  // as a child process does
+    return good(plan);
+  };
+  EXPECT_EQ(bad_file_error([&] { run(open(), execute); }).subject(), "room.sdf");
+  EXPECT_EQ(checks, 3);
   EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
+  const auto resume = [&] { run(open(OpenMode::kResume), execute); };
+  EXPECT_EQ(bad_file_error(resume).subject(), "mesh.obj");
+  EXPECT_EQ(open(OpenMode::kResume).finished(), 3u);
 }
 
-TEST_F(RunCampaign, EndsWithTheErrorOfTheUsersFiles) {
-  const std::string message = error_message(ErrorCode::kBadFile, [&] {
-    run(open(), [&](const TrialPlan& plan) -> TrialResult {
-      if (plan.seed == 2) throw Error(ErrorCode::kBadFile, "the mesh is broken");
-      return good(plan);
-    });
-  });
-  EXPECT_EQ(message, "the mesh is broken");
-  EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
-}
-
-// A gate that opens only when as many trials are inside as should run at once.
-class Gate {
- public:
-  explicit Gate(int together) : together_(together) {}
-  void pass() {
-    std::unique_lock lock(mutex_);
-    if (++inside_ % together_ == 0) {
-      ++generation_;
-      changed_.notify_all();
-      return;
-    }
-    const int mine = generation_;
-    changed_.wait(lock, [&] { return generation_ != mine; });
-  }
-
- private:
-  int together_;
-  int inside_ = 0;
-  int generation_ = 0;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-};
-
-TEST_F(RunCampaign, RunsSideBySideWhatMayAndTheRestAlone) {
+TEST_F(RunCampaign, RunsTrialsInParallelIfTheyMayAndOthersAlone) {
   options_.jobs = 2;
   // A free-running SUT that is always busy.
   campaign_.scenarios[0].scenario.conditions[2].cpu_factor = 1.0;
   campaign_.scenarios[0].scenario.conditions[2].real_time_factor = 1.0;
-  Gate gate(2);
+  std::barrier both(2);
   std::atomic<int> inside{0};
   run(open(), [&](const TrialPlan& plan) {
     const int others = inside++;
-    if (trials_side_by_side(plan, options_.jobs) > 1) {
-      gate.pass();  // would wait for ever if it ran alone
+    if (parallel_trials(plan, options_.jobs) > 1) {
+      both.arrive_and_wait();  // would wait for ever if it ran alone
     } else {
       EXPECT_EQ(others, 0);
     }
@@ -235,21 +158,16 @@ TEST_F(RunCampaign, RunsSideBySideWhatMayAndTheRestAlone) {
   EXPECT_TRUE(open(OpenMode::kResume).missing().empty());
 }
 
-TEST_F(RunCampaign, RefusesJobsBesideAWallClockBeforeAnythingRuns) {
-  options_.jobs = 2;
-  campaign_.scenarios[0].scenario.conditions[0].clock = scenario::Clock::kWall;
-  const CampaignFolder folder = open();
-  EXPECT_THAT(error_message(ErrorCode::kUsage,
-                            [&] {
-                              run(folder, [](const TrialPlan& plan) {
-                                ADD_FAILURE();
-                                return good(plan);
-                              });
-                            }),
-              HasSubstr("by the wall clock"));
+TEST_F(RunCampaign, RefusesJobsBeforeAnythingRuns) {
+  options_.jobs = 0;
+  const auto execute = [](const TrialPlan& plan) {
+    ADD_FAILURE();
+    return good(plan);
+  };
+  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { run(open(), execute); }).subject(), "--jobs");
 }
 
-TEST_F(RunCampaign, TellsHowFarItIs) {
+TEST_F(RunCampaign, ReportsItsProgress) {
   Duration now{0};
   options_.wall = [&] { return now; };
   run(open(), [&](const TrialPlan& plan) {

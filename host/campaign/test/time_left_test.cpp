@@ -21,11 +21,8 @@ class TimeLeft : public testing::Test {
   std::vector<TrialPlan> plans_ = plan_trials(campaign_, "out");
 };
 
-TEST_F(TimeLeft, IsUnknownAtFirst) {
-  EXPECT_FALSE(estimate_time_left({}, batches(2)));
-}
-
-TEST_F(TimeLeft, SharesOutWhatRunsSideBySide) {
+TEST_F(TimeLeft, DividesByTheJobsOfEachBatch) {
+  EXPECT_FALSE(estimate_time_left({}, batches(2))) << "unknown at the start";
   // One trial each of host, target and the free-running one, of three.
   const std::vector<FinishedTrial> finished = {
       {&plans_[0], seconds(2)}, {&plans_[1], seconds(6)}, {&plans_[2], seconds(10)}};

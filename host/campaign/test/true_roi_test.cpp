@@ -30,10 +30,6 @@ record::Anchor cube_at(double x_m, double y_m, double z_m = 0.0) {
   return anchor("box", {1.0, 1.0, 1.0}, {x_m, y_m, z_m});
 }
 
-uav::Pose yawed(double yaw_rad, const uav::Vec3& p_WB = {}) {
-  return {p_WB, uav::from_rpy(0.0, 0.0, yaw_rad)};
-}
-
 void expect_rect(const std::optional<PixelRect>& roi, const PixelRect& expected,
                  double within_px = 1e-9) {
   ASSERT_TRUE(roi);
@@ -45,29 +41,21 @@ void expect_rect(const std::optional<PixelRect>& roi, const PixelRect& expected,
 
 // ---- true_roi
 
-// The front face is 4 m from the camera: slopes of 0.5 / 4, 40 px.
-TEST(TrueRoi, OfABoxStraightAheadIsItsFrontFace) {
-  expect_rect(true_roi(camera(), {}, cube_at(4.6, 0.0)), {279.5, 199.5, 359.5, 279.5});
-}
-
-// Left: the near corner, 2.5 / 4, 200 px. Right: the far corner, 1.5 / 5, 96 px.
-TEST(TrueRoi, OfABoxAsideReachesFromANearToAFarCorner) {
+TEST(TrueRoi, OfABoxReachesFromEdgeToEdge) {
+  // Ahead, the front face is 4 m from the camera: slopes of 0.5 / 4, 40 px.
+  const PixelRect ahead{279.5, 199.5, 359.5, 279.5};
+  expect_rect(true_roi(camera(), {}, cube_at(4.6, 0.0)), ahead);
+  // Left: the near corner, 2.5 / 4, 200 px. Right: the far corner, 1.5 / 5, 96 px.
   expect_rect(true_roi(camera(), {}, cube_at(4.6, 2.0)), {119.5, 199.5, 223.5, 279.5});
-}
-
-// Above: from the far lower corner, 1.5 / 5, to the near upper one, 2.5 / 4.
-TEST(TrueRoi, IsAboveTheMiddleOfWhatIsHigher) {
+  // Above: from the far lower corner, 1.5 / 5, to the near upper one, 2.5 / 4.
   expect_rect(true_roi(camera(), {}, cube_at(4.6, 0.0, 2.0)), {279.5, 39.5, 359.5, 143.5});
-}
-
-TEST(TrueRoi, TurnsWithTheUav) {
-  expect_rect(true_roi(camera(), yawed(rad_from_deg(90.0), {7.0, -3.0, 0.0}), cube_at(7.0, 1.6)),
-              {279.5, 199.5, 359.5, 279.5});
-}
-
-TEST(TrueRoi, TurnsWithTheMounting) {
-  const record::SensorInfo left = camera_turned(rad_from_deg(90.0));
-  expect_rect(true_roi(left, {}, cube_at(0.1, 4.5)), {279.5, 199.5, 359.5, 279.5});
+  // Turned with the UAV, and with the mounting.
+  const uav::Pose north{{7.0, -3.0, 0.0}, uav::from_rpy(0.0, 0.0, rad_from_deg(90.0))};
+  expect_rect(true_roi(camera(), north, cube_at(7.0, 1.6)), ahead);
+  expect_rect(true_roi(camera_turned(rad_from_deg(90.0)), {}, cube_at(0.1, 4.5)), ahead);
+  // Beyond the image.
+  expect_rect(true_roi(camera(), {}, cube_at(1.6, 1.0)),
+              {319.5 - 480.0, 79.5, 319.5 - 80.0, 399.5});
 }
 
 // Turned by 45 degrees about its z, a cube of 1 m shows an edge, 0.7071 m nearer than its centre,
@@ -118,12 +106,7 @@ TEST(TrueRoi, FollowsTheLens) {
   expect_rect(true_roi(barrel, {}, cube_at(4.6, 0.0)), {279.625, 199.625, 359.375, 279.375});
 }
 
-TEST(TrueRoi, ReachesBeyondTheImage) {
-  expect_rect(true_roi(camera(), {}, cube_at(1.6, 1.0)),
-              {319.5 - 480.0, 79.5, 319.5 - 80.0, 399.5});
-}
-
-TEST(TrueRoi, IsNoneOfWhatHasNoImage) {
+TEST(TrueRoi, IsNoneIfThereIsNoImage) {
   EXPECT_FALSE(true_roi(camera(), {}, cube_at(-4.0, 0.0)));
   EXPECT_FALSE(true_roi(camera(), {}, cube_at(0.4, 2.0)));  // half behind
   EXPECT_FALSE(true_roi(camera(), {}, anchor("sphere", {1, 1, 1}, {0.3, 0.0, 0.0})));  // within it
@@ -141,18 +124,16 @@ TEST(TrueRoi, IsNoneWhereTheDistortionFoldsBack) {
   EXPECT_TRUE(true_roi(barrel, {}, anchor("box", {0.1, 0.1, 0.1}, {2.1, 0.4, 0.0})));
 }
 
-// ---- What is seen of it
+// ---- visible_part, is_cut
 
-TEST(VisiblePart, IsWhatLiesInTheImage) {
-  const PixelRect inside{10.0, 20.0, 30.0, 40.0};
+TEST(VisiblePart, IsWithinTheImage) {
+  const PixelRect inside{10.0, 20.0, 30.0, 40.0}, beside{640.0, 0.0, 700.0, 10.0};
+  const PixelRect across{-160.5, 79.5, 239.5, 700.0};
   EXPECT_EQ(visible_part(camera(), inside), inside);
+  EXPECT_EQ(visible_part(camera(), across), (PixelRect{-0.5, 79.5, 239.5, 479.5}));
+  EXPECT_FALSE(visible_part(camera(), beside));
   EXPECT_FALSE(is_cut(camera(), inside));
-  const PixelRect over{-160.5, 79.5, 239.5, 700.0};
-  EXPECT_EQ(visible_part(camera(), over), (PixelRect{-0.5, 79.5, 239.5, 479.5}));
-  EXPECT_TRUE(is_cut(camera(), over));
-  const PixelRect outside{640.0, 0.0, 700.0, 10.0};
-  EXPECT_FALSE(visible_part(camera(), outside));
-  EXPECT_TRUE(is_cut(camera(), outside));
+  EXPECT_TRUE(is_cut(camera(), across) && is_cut(camera(), beside));
 }
 
 // ---- roi_bearing_rad
@@ -163,7 +144,7 @@ TEST(RoiBearing, IsHalfwayAsAnAngle) {
   EXPECT_NEAR(roi_bearing_rad(camera(), *roi), 0.5 * (std::atan(0.625) + std::atan(0.3)), 1e-12);
 }
 
-TEST(RoiBearing, CountsFromTheBodysNose) {
+TEST(RoiBearing, IsRelativeToTheBodysHeading) {
   const PixelRect middle{309.5, 229.5, 329.5, 249.5};
   EXPECT_NEAR(roi_bearing_rad(camera_turned(rad_from_deg(30.0)), middle), rad_from_deg(30.0),
               1e-12);
@@ -174,7 +155,7 @@ TEST(RoiBearing, CountsFromTheBodysNose) {
 }
 
 // Looking down by 30 degrees, a ray of slope 0.5 to the left has components (cos 30°, 0.5).
-TEST(RoiBearing, IsTheHorizontalAngleOfACameraThatLooksDown) {
+TEST(RoiBearing, IsTheHorizontalAngleOfAPitchedCamera) {
   const record::SensorInfo down = camera_turned(0.0, rad_from_deg(30.0));
   const PixelRect thin{159.5, 229.5, 159.5, 249.5};
   EXPECT_NEAR(roi_bearing_rad(down, thin), std::atan2(0.5, std::cos(rad_from_deg(30.0))), 1e-12);
@@ -182,58 +163,41 @@ TEST(RoiBearing, IsTheHorizontalAngleOfACameraThatLooksDown) {
 
 // ---- pose_at
 
-record::GroundTruth truth(const std::string& uav, std::int64_t ms, double x_m, double yaw_rad) {
-  record::GroundTruth truth;
-  truth.uav = uav;
-  truth.at = SimTime(milliseconds(ms));
-  truth.p_WB_m[0] = x_m;
-  truth.q_WB[0] = std::cos(yaw_rad / 2);
-  truth.q_WB[3] = std::sin(yaw_rad / 2);
-  return truth;
-}
-
 record::Record flight() {
-  record::Record record;
-  record.header.ground_truth_period = milliseconds(10);
-  for (const auto& message :
-       {truth("uav1", 10, 1.0, rad_from_deg(170.0)), truth("uav2", 12, 50.0, 0.0),
-        truth("uav1", 20, 2.0, rad_from_deg(-170.0)), truth("uav1", 30, 2.0, rad_from_deg(-90.0))})
-    record.ground_truth.push_back({message.at, 0, message});
-  return record;
+  Flight flight;
+  flight.pose(10, 1.0, 0.0, 170.0).pose(12, 50.0, 0.0, 0.0).pose(20, 2.0, 0.0, -170.0);
+  flight.pose(30, 2.0, 0.0, -90.0);
+  flight.record().ground_truth[1].message.uav = "uav2";
+  flight.record().header.ground_truth_period = milliseconds(10);
+  return flight.record();
 }
 
 std::optional<uav::Pose> pose_at_ms(const record::Record& record, double ms) {
   return pose_at(record, "uav1", SimTime(duration_from_seconds(ms * 1e-3)));
 }
 
-TEST(PoseAt, IsTheRecordedOneAtItsInstant) {
-  const auto pose = pose_at_ms(flight(), 20);
-  ASSERT_TRUE(pose);
-  EXPECT_EQ(pose->p, (uav::Vec3{2.0, 0.0, 0.0}));
-  EXPECT_EQ(pose->q.w, std::cos(rad_from_deg(-85.0)));
-}
-
-TEST(PoseAt, LiesBetweenTwoTheShortWayRound) {
-  const auto pose = pose_at_ms(flight(), 12.5);
+TEST(PoseAt, IsInterpolatedTheShortWayRound) {
+  record::Record record = flight();
+  const auto pose = pose_at_ms(record, 12.5);
   ASSERT_TRUE(pose);
   EXPECT_NEAR(pose->p.x, 1.25, 1e-12);
   EXPECT_NEAR(uav::yaw_rad(pose->q), rad_from_deg(175.0), 1e-12);
-  EXPECT_NEAR(uav::yaw_rad(pose_at_ms(flight(), 25)->q), rad_from_deg(-130.0), 1e-12);
-}
-
-TEST(PoseAt, TakesQAndMinusQForOneAttitude) {
-  record::Record record = flight();
-  for (double& value : record.ground_truth.back().message.q_WB) value = -value;
+  EXPECT_EQ(pose_at_ms(record, 20)->p.x, 2.0);
+  EXPECT_EQ(pose_at_ms(record, 20)->q.w, std::cos(rad_from_deg(-85.0)));
   EXPECT_NEAR(uav::yaw_rad(pose_at_ms(record, 25)->q), rad_from_deg(-130.0), 1e-12);
+  for (double& value : record.ground_truth.back().message.q_WB) value = -value;
+  EXPECT_NEAR(uav::yaw_rad(pose_at_ms(record, 25)->q), rad_from_deg(-130.0), 1e-12)
+      << "q and -q are one attitude";
 }
 
-TEST(PoseAt, OfAUavThatStandsStillIsThatPose) {
+TEST(PoseAt, OfAStationaryUavIsThatPose) {
   record::Record record = flight();
-  record.ground_truth.push_back({{}, 0, truth("uav1", 40, 2.0, rad_from_deg(-90.0))});
+  record.ground_truth.push_back(record.ground_truth.back());
+  record.ground_truth.back().message.at += milliseconds(10);
   EXPECT_NEAR(uav::yaw_rad(pose_at_ms(record, 33)->q), rad_from_deg(-90.0), 1e-12);
 }
 
-TEST(PoseAt, KnowsNothingFurtherThanAPeriodOutside) {
+TEST(PoseAt, IsNoneFurtherThanAPeriodFromGroundTruth) {
   EXPECT_EQ(pose_at_ms(flight(), 0)->p.x, 1.0);
   EXPECT_EQ(pose_at_ms(flight(), 40)->p.x, 2.0);
   EXPECT_FALSE(pose_at_ms(flight(), -0.001));

@@ -13,27 +13,8 @@ namespace tether::runner {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& why) {
-  throw Error(ErrorCode::kSetup, {path.string()}, why + "; choose another folder with --out")
+  throw Error(ErrorCode::kSetup, {path.string()}, why + ". Choose another folder with --out.")
       .about(path.string());
-}
-
-void make(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) fail(folder, error.message());
-}
-
-/// Checks for a campaign again once the lock is held; a campaign that starts later sees the lock.
-std::unique_ptr<campaign::PathLock> claim(const std::filesystem::path& folder) {
-  campaign::require_no_campaign(folder);
-  make(folder);
-  auto lock = std::make_unique<campaign::PathLock>(folder);
-  if (!lock->is_held())
-    throw Error(ErrorCode::kUsage, {folder.string()},
-                "another run writes to this folder; choose another one with --out")
-        .about(folder.string());
-  campaign::require_no_campaign(folder);
-  return lock;
 }
 
 void drop(const std::filesystem::path& file) {
@@ -44,7 +25,8 @@ void drop(const std::filesystem::path& file) {
 
 }  // namespace
 
-TrialFolder::TrialFolder(const std::filesystem::path& folder) : lock_(claim(folder)) {
+TrialFolder::TrialFolder(const std::filesystem::path& folder)
+    : claim_(folder, campaign::FolderClaim::By::kRun) {
   // Fail now, not when the result is written.
   if (access(folder.c_str(), W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
   drop(folder / campaign::kResultFile);

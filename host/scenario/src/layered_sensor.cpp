@@ -9,6 +9,8 @@
 
 #include <tether/sim/range_rays.h>
 
+// Each layer replaces what it sets. Values that exclude each other are found at the end, because a
+// later layer may still change one of them.
 namespace tether::scenario {
 namespace {
 
@@ -34,8 +36,7 @@ void note(FileLocation& at, const SensorProfile& layer,
   }
 }
 
-/// The rate that a person would write for this period: whole thousandths of a hertz where they give
-/// it.
+/// The rate that a person would write for this period: a multiple of 0.001 Hz if one gives it.
 double rate_hz(Duration period) {
   const double exact = 1.0 / to_seconds(period);
   const double written = std::round(exact * 1e3) / 1e3;
@@ -127,33 +128,36 @@ uav::SensorTiming LayeredSensor::finish() {
   return timing_;
 }
 
-// A row gathers light once per image, so it cannot do so for longer than from image to image; nor
-// can the rows of an image be read for longer, since those of the next one follow.
+// A row is exposed once per image, so its exposure cannot be longer than the period; nor can the
+// readout, since the rows of the next image follow.
 void LayeredSensor::check(const sim::CameraModel& camera) const {
   constexpr double kLongest_s = 1.0;
   const auto refuse = [&](const std::string& problem) {
     throw Error(
         ErrorCode::kBadFile, shutter_at_,
-        fmt::format("the camera '{}' has exposure_ms = {:.6g} and readout_ms = {:.6g}; {}",
-                    sensor_->name, camera.exposure_s * 1e3, camera.readout_s * 1e3, problem));
+        fmt::format("the camera '{}' has exposure_ms = {:.6g} and readout_ms = {:.6g}. {}.",
+                    sensor_->name, camera.exposure_s * 1e3, camera.readout_s * 1e3, problem))
+        .about(sensor_->name);
   };
   if (camera.exposure_s + camera.readout_s > kLongest_s) {
-    refuse(fmt::format("together they must be at most {:.6g}", kLongest_s * 1e3));
+    refuse(fmt::format("Their sum must be at most {:.6g}", kLongest_s * 1e3));
   }
   const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing_);
   if (periodic == nullptr) return;
   const double period_s = to_seconds(periodic->period);
   if (camera.exposure_s > period_s || camera.readout_s > period_s) {
-    refuse(fmt::format("each must be at most its period, {:.6g}", period_s * 1e3));
+    refuse(fmt::format("Each must be at most the period, {:.6g}", period_s * 1e3));
   }
 }
 
 void LayeredSensor::check(const sim::RangeModel& range) const {
   if (range.min_m < range.max_m) return;
-  throw Error(ErrorCode::kBadFile, limits_at_,
-              fmt::format("the rangefinder '{}' has min_m = {:.6g} and max_m = {:.6g}; min_m must "
-                          "be less than max_m",
-                          sensor_->name, range.min_m, range.max_m));
+  throw Error(
+      ErrorCode::kBadFile, limits_at_,
+      fmt::format("the rangefinder '{}' has min_m = {:.6g} and max_m = {:.6g}. min_m must be "
+                  "less than max_m.",
+                  sensor_->name, range.min_m, range.max_m))
+      .about(sensor_->name);
 }
 
 }  // namespace tether::scenario

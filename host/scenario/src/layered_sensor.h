@@ -7,18 +7,19 @@
 
 namespace tether::scenario {
 
-/// A sensor of the world while layers are laid over it, the lowest first.
+/// A sensor of the world to which layers are applied, the lowest first.
 class LayeredSensor {
  public:
-  /// As SDF has it: periodic at its update rate without delay, or on demand without delay where SDF
-  /// gives no rate. @pre `sensor` outlives the object.
+  /// Initially as in SDF: periodic at its update rate without delay, or on demand without delay if
+  /// SDF gives no rate. @pre `sensor` outlives the object.
   explicit LayeredSensor(sim::Sensor& sensor);
 
   const sim::Sensor& sensor() const { return *sensor_; }
-  /// @throws Error(kBadFile) at a key of `layer` that means nothing to a sensor of this kind.
+  /// @throws Error(kBadFile) at a key of `layer` that a sensor of this kind does not support.
   void lay(const SensorProfile& layer);
-  /// After the last layer: its timing. Tells the sensor its rate.
-  /// @throws Error(kBadFile) at the layer that made values that exclude each other.
+  /// After the last layer: sets the sensor's update rate and returns its timing.
+  /// @throws Error(kBadFile), about the sensor, at the last layer that set one of two values that
+  ///   exclude each other.
   uav::SensorTiming finish();
 
  private:
@@ -32,8 +33,8 @@ class LayeredSensor {
 
   sim::Sensor* sensor_;
   uav::SensorTiming timing_;
-  FileLocation limits_at_;   // what last changed a limit of a rangefinder
-  FileLocation shutter_at_;  // what last changed a camera's shutter or period
+  FileLocation limits_at_;   // where a limit of a rangefinder was last set
+  FileLocation shutter_at_;  // where a camera's shutter or period was last set
   bool is_timed_ = false;    // by a layer
 };
 

@@ -21,17 +21,19 @@ std::vector<std::uint64_t> consecutive(std::int64_t first, std::int64_t count) {
 
 std::vector<std::uint64_t> read_seeds(const toml::Table& root) {
   if (root.has("seeds") == root.has("trials")) {
-    root.fail("needs either 'trials' (a number, with 'first_seed') or 'seeds' (an array)");
+    root.fail("trials",
+              "or 'seeds' must be given, not both: a number of trials (with 'first_seed'), or an "
+              "array of seeds.");
   }
   if (root.has("trials")) {
     const std::int64_t first = root.integer_or("first_seed", 0, 1'000'000'000'000, 1);
     return consecutive(first, root.integer_or("trials", 1, kMostTrials, 1));
   }
-  if (root.has("first_seed")) root.fail("first_seed", "goes with 'trials', not with 'seeds'");
+  if (root.has("first_seed")) root.fail("first_seed", "can be used with 'trials' only.");
   const std::vector<std::int64_t> seeds = root.integers("seeds", 0);
-  if (seeds.empty()) root.fail("seeds", "must not be empty");
+  if (seeds.empty()) root.fail("seeds", "must not be empty.");
   if (std::set<std::int64_t>(seeds.begin(), seeds.end()).size() < seeds.size()) {
-    root.fail("seeds", "has one seed twice: the same trial twice is no second sample");
+    root.fail("seeds", "contains a seed twice. The same trial twice is not a second sample.");
   }
   return {seeds.begin(), seeds.end()};
 }
@@ -42,7 +44,8 @@ std::vector<std::string> read_conditions(const toml::Table& table, const Scenari
   if (!table.has("conditions")) return all;
 
   const std::vector<std::string> conditions = table.texts("conditions");
-  if (conditions.empty()) table.fail("conditions", "must not be empty; leave it out for all");
+  if (conditions.empty())
+    table.fail("conditions", "must not be empty. Omit the key to run all conditions.");
   const std::vector<std::string_view> allowed(all.begin(), all.end());
   std::set<std::string> seen;
   for (const std::string& name : conditions) {
@@ -52,7 +55,7 @@ std::vector<std::string> read_conditions(const toml::Table& table, const Scenari
                              scenario.file.string(), toml::allowed_hint(name, allowed)));
     }
     if (!seen.insert(name).second) {
-      table.fail("conditions", fmt::format("names \"{}\" twice", name));
+      table.fail("conditions", fmt::format("names \"{}\" twice.", name));
     }
   }
   return conditions;
@@ -89,8 +92,9 @@ Campaign load_campaign(const std::filesystem::path& file) {
     campaign.scenarios.push_back(read_scenario(table));
     const std::string& name = campaign.scenarios.back().scenario.name;
     if (!names.insert(name).second) {
-      table.fail("file",
-                 fmt::format("is a second scenario with the name \"{}\"; names must differ", name));
+      table.fail(
+          "file",
+          fmt::format("is a second scenario with the name \"{}\". Names must be unique.", name));
     }
   }
   return campaign;

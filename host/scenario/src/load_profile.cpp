@@ -15,7 +15,7 @@ Profile load_profile(const std::filesystem::path& file) {
   profile.description = root.text_or("description", "");
   const toml::Table sensors = root.table("sensors");
   if (sensors.keys().empty()) {
-    root.fail("sensors", "names no sensor; add a table [sensors.NAME] for each");
+    root.fail("sensors", "names no sensor. Add a table [sensors.NAME] for each.");
   }
   for (const std::string& name : sensors.keys()) {
     profile.sensors.emplace(name,

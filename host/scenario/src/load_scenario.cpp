@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
 
 #include <tether/base/units.h>
 #include <tether/scenario/scenario.h>
-#include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
 
+// Reads a scenario table by table: each function reads one table, checks it with what was read
+// before it, and adds the files that the table names to the scenario's.
 namespace tether::scenario {
 namespace {
 
@@ -21,32 +21,18 @@ constexpr std::array<std::string_view, 2> kSimulators = {"mujoco", "gazebo"};
 
 constexpr double kLongestRun_s = 7 * 24 * 3600.0;
 
-std::vector<std::string_view> views(const std::vector<std::string>& words) {
-  return {words.begin(), words.end()};
-}
-
-void require_one_of(const toml::Table& table, std::string_view key, const std::string& word,
-                    const std::vector<std::string>& allowed) {
-  if (std::find(allowed.begin(), allowed.end(), word) != allowed.end()) return;
-  table.fail(key, fmt::format("is \"{}\"; {}", word, toml::allowed_hint(word, views(allowed))));
-}
-
 // The SUT.
 
 using Parameters = std::vector<std::pair<std::string, std::string>>;
 
-// Keys become options of a command line, so they are what an option's name can be.
-bool is_option_name(std::string_view key) {
-  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789_";
-  return !key.empty() && key.front() >= 'a' && key.front() <= 'z' &&
-         key.find_first_not_of(kAllowed) == std::string_view::npos;
-}
-
 void require_option_name(const toml::Table& table, const std::string& key) {
-  if (is_option_name(key)) return;
-  table.fail(key,
-             "must be lower-case letters, digits and '_', starting with a letter: it becomes an "
-             "option of the SUT's command line");
+  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789_";
+  const bool starts_with_letter = !key.empty() && key.front() >= 'a' && key.front() <= 'z';
+  if (starts_with_letter && key.find_first_not_of(kAllowed) == std::string::npos) return;
+  table.fail(
+      key,
+      "must be lower-case letters, digits and '_', starting with a letter, because it becomes "
+      "an option of the SUT's command line");
 }
 
 void read_values(const toml::Table& sut, Parameters& parameters) {
@@ -58,17 +44,15 @@ void read_values(const toml::Table& sut, Parameters& parameters) {
   }
 }
 
-// The SUT's working folder is not the scenario's, so that its files go by their whole path.
+// The SUT's working folder is not the scenario's, so its files are given by their absolute paths.
 void read_files(const toml::Table& sut, Parameters& parameters,
                 std::vector<std::filesystem::path>& files) {
   if (!sut.has("files")) return;
   const toml::Table table = sut.table("files");
   for (const std::string& key : table.keys()) {
     require_option_name(table, key);
-    const bool is_taken =
-        std::any_of(parameters.begin(), parameters.end(),
-                    [&](const auto& parameter) { return parameter.first == key; });
-    if (is_taken) table.fail(key, "is one of the parameters already");
+    if (sut.has("parameters") && sut.table("parameters").has(key))
+      table.fail(key, "is already a key of 'parameters'");
     files.push_back(table.existing_file(key));
     parameters.emplace_back(key, files.back().string());
   }
@@ -82,10 +66,10 @@ Parameters read_parameters(const toml::Table& sut, std::vector<std::filesystem::
   return parameters;
 }
 
-// Whether the program is there shows when the run starts: it may be one of a board only.
+// Whether the program exists is checked when the run starts: it may exist on a board only.
 std::vector<std::string> read_command(const toml::Table& sut, const std::filesystem::path& folder) {
   std::vector<std::string> command = sut.texts("command");
-  if (command.empty()) sut.fail("command", "must name a program, but is empty");
+  if (command.empty()) sut.fail("command", "is empty. Name a program.");
   std::string& program = command.front();
   if (program.find('/') == std::string::npos) return command;
   program = (folder / program).lexically_normal().string();
@@ -99,13 +83,13 @@ Sut read_program(const toml::Table& sut, const std::filesystem::path& folder) {
   return {read_command(sut, folder), {}, sut.boolean_or("concurrent", false)};
 }
 
-// Two supervisors, one in the other, would wait for each other.
+// Nested supervisors would wait for each other.
 void require_one_supervisor(const toml::Table& table, const Sut& sut) {
   const std::filesystem::path program = sut.command.front();
   if (!sut.concurrent || program.filename() != "tether-exec") return;
   table.fail(table.has("concurrent") ? "concurrent" : "command",
-             "has the command started under tether-exec already; leave the word \"tether-exec\" "
-             "and its options out of 'command'");
+             "starts the command under tether-exec, which 'command' does already. Remove "
+             "\"tether-exec\" and its options from 'command'.");
 }
 
 std::optional<Sut> read_default_sut(const toml::Table& root, Scenario& scenario) {
@@ -126,7 +110,7 @@ Parameters merged(const Parameters& defaults, const Parameters& own) {
 Sut read_sut(const toml::Table& uav, const std::optional<Sut>& fallback, Scenario& scenario) {
   if (!uav.has("sut")) {
     if (!fallback)
-      uav.fail("has no SUT: add a table [sut] for all UAVs, or [uav.sut] for this one");
+      uav.fail("has no SUT. Add a table [sut] for all UAVs, or [uav.sut] for this one.");
     return *fallback;
   }
   const toml::Table own = uav.table("sut", kSutKeys);
@@ -198,43 +182,47 @@ void read_uavs(const toml::Table& root, Scenario& scenario) {
     scenario.uavs.push_back(read_uav(table, default_sut, scenario));
     const std::string& name = scenario.uavs.back().placement.name;
     if (!names.insert(name).second) {
-      table.fail("name", fmt::format("is \"{}\", as that of another UAV; names must differ", name));
+      table.fail(
+          "name",
+          fmt::format("is \"{}\", which is also the name of another UAV. Names must be unique.",
+                      name));
     }
   }
 }
 
 // Conditions.
 
-// What goes with one clock or policy only.
+// Some keys and values need a certain clock or policy.
 void read_clock(const toml::Table& table, Condition& condition) {
   constexpr toml::Range kFactor{.min = 1e-3, .max = 1e4};
   constexpr toml::Range kComputing_ms{.min = 1e-3, .max = 60'000.0};
   if (!table.has("clock")) {
-    table.fail("lacks the key 'clock', or a 'target' whose file says how time is measured there");
+    table.fail("clock", "is missing. Add it, or a 'target' whose file specifies the clock.");
   }
   condition.clock = static_cast<Clock>(table.choice("clock", kClocks));
   condition.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
   if (condition.clock != Clock::kCpu && table.has("cpu_factor")) {
-    table.fail("cpu_factor", "scales CPU time, so it needs clock = \"cpu\"");
+    table.fail("cpu_factor", "scales CPU time, so it needs clock = \"cpu\".");
   }
   if (condition.clock != Clock::kScripted) {
     if (!table.has("computing_ms")) return;
     table.fail("computing_ms",
-               "stands in for the measured time of computing, so it needs clock = \"scripted\"");
+               "replaces the measured computing time, so it needs clock = \"scripted\".");
   }
   condition.computing = table.duration("computing_ms", kComputing_ms);
   if (condition.policy == Policy::kFreeRunning) {
     table.fail(
         "clock",
-        "is \"scripted\", which needs policy = \"conservative_barrier\": free running goes by "
-        "the wall clock");
+        "is \"scripted\", which needs policy = \"conservative_barrier\", because free running uses "
+        "the wall clock.");
   }
 }
 
-// A target says how its SUTs' time is measured.
+// The target's file specifies how the time of its SUTs is measured.
 void read_target(const toml::Table& table, Condition& condition, Scenario& scenario) {
   for (const char* key : {"clock", "cpu_factor", "computing_ms"}) {
-    if (table.has(key)) table.fail(key, "is the target's to say; leave it out, or 'target'");
+    if (table.has(key))
+      table.fail(key, "is specified by the target's file. Remove this key, or 'target'.");
   }
   Target target = load_target(table.existing_file("target"));
   if (const std::string why = why_not_on(condition, target); !why.empty()) {
@@ -249,7 +237,8 @@ Condition read_condition(const toml::Table& table, Scenario& scenario) {
   Condition condition;
   condition.name = table.text("name");
   if (slug(condition.name).empty()) {
-    table.fail("name", "must contain a letter or a digit: it becomes the name of a folder");
+    table.fail("name",
+               "must contain a letter or a digit, because it becomes the name of a folder.");
   }
   condition.description = table.text_or("description", "");
   condition.policy = static_cast<Policy>(table.choice("policy", kPolicies));
@@ -261,8 +250,9 @@ Condition read_condition(const toml::Table& table, Scenario& scenario) {
   condition.real_time_factor = table.number_or("real_time_factor", kFactor, 0.0);
   if (condition.policy == Policy::kFreeRunning && condition.real_time_factor == 0.0) {
     table.fail(
-        "lacks the key 'real_time_factor': with policy = \"free_running\" the simulator "
-        "runs at that many seconds of ST per second of wall time");
+        "real_time_factor",
+        "is missing. policy = \"free_running\" needs it: the seconds of ST per second of wall "
+        "time.");
   }
   if (table.has("simulator"))
     condition.simulator = kSimulators[table.choice("simulator", kSimulators)];
@@ -281,8 +271,8 @@ void read_conditions(const toml::Table& root, Scenario& scenario) {
     const std::string& name = scenario.conditions.back().name;
     const auto [other, is_new] = slugs.emplace(slug(name), name);
     if (!is_new) {
-      table.fail("name", fmt::format("is \"{}\", too like the condition \"{}\": names must differ "
-                                     "in their letters and digits",
+      table.fail("name", fmt::format("is \"{}\", too similar to the condition \"{}\". Names must "
+                                     "differ in their letters and digits.",
                                      name, other->second));
     }
   }
@@ -300,9 +290,8 @@ std::vector<std::string> uav_names(const Scenario& scenario) {
 std::string choose(const toml::Table& table, std::string_view key,
                    const std::vector<std::string>& candidates) {
   if (!table.has(key) && candidates.size() == 1) return candidates.front();
-  const std::string word = table.text(key);
-  require_one_of(table, key, word, candidates);
-  return word;
+  const std::vector<std::string_view> allowed(candidates.begin(), candidates.end());
+  return candidates[table.choice(key, allowed)];
 }
 
 const MetricKind& read_metric_kind(const toml::Table& table) {
@@ -311,20 +300,19 @@ const MetricKind& read_metric_kind(const toml::Table& table) {
   return metric_kinds()[table.choice("kind", names)];
 }
 
-void reject_meaningless(const toml::Table& table, const MetricKind& kind) {
-  if (table.has("anchor") && !kind.needs_anchor) {
-    table.fail("anchor", fmt::format("means nothing to the kind \"{}\"", kind.name));
-  }
-  if (table.has("sensor") && !kind.needs_sensor) {
-    table.fail("sensor", fmt::format("means nothing to the kind \"{}\"", kind.name));
-  }
-  if (table.has("threshold_deg") && !kind.default_threshold_deg) {
-    table.fail("threshold_deg", fmt::format("means nothing to the kind \"{}\"", kind.name));
+void reject_unsupported(const toml::Table& table, const MetricKind& kind) {
+  const std::pair<std::string_view, bool> supported[] = {
+      {"anchor", kind.needs_anchor},
+      {"sensor", kind.needs_sensor},
+      {"threshold_deg", kind.default_threshold_deg.has_value()}};
+  for (const auto& [key, is_supported] : supported) {
+    if (is_supported || !table.has(key)) continue;
+    table.fail(key, fmt::format("is not supported by metric kind \"{}\".", kind.name));
   }
   const std::string limit = "max" + unit_suffix(kind.unit);
   for (const std::string& key : table.keys()) {
     if (!key.starts_with("max") || key == limit) continue;
-    table.fail(key, fmt::format("has the wrong unit for the kind \"{}\"; did you mean '{}'?",
+    table.fail(key, fmt::format("has the wrong unit for metric kind \"{}\". Did you mean '{}'?",
                                 kind.name, limit));
   }
 }
@@ -333,7 +321,7 @@ Metric read_metric(const toml::Table& table, const Scenario& scenario) {
   constexpr toml::Range kLimit{.min = 0.0, .max = 1e9};
   constexpr toml::Range kThreshold_deg{.min = 0.0, .max = 180.0};
   const MetricKind& kind = read_metric_kind(table);
-  reject_meaningless(table, kind);
+  reject_unsupported(table, kind);
   Metric metric;
   metric.kind = kind.name;
   metric.unit = kind.unit;
@@ -362,7 +350,7 @@ void read_metrics(const toml::Table& root, Scenario& scenario) {
     const std::string& name = scenario.metrics.back().name;
     if (!names.insert(name).second) {
       table.fail(table.has("name") ? "name" : "kind",
-                 fmt::format("makes a second metric \"{}\"; give it a 'name' of its own", name));
+                 fmt::format("makes a second metric \"{}\". Give it another 'name'.", name));
     }
   }
 }
@@ -372,7 +360,7 @@ void read_metrics(const toml::Table& root, Scenario& scenario) {
 void read_anchors(const toml::Table& root, Scenario& scenario) {
   scenario.anchors = root.texts_or_none("anchors");
   const std::set<std::string> distinct(scenario.anchors.begin(), scenario.anchors.end());
-  if (distinct.size() < scenario.anchors.size()) root.fail("anchors", "names one anchor twice");
+  if (distinct.size() < scenario.anchors.size()) root.fail("anchors", "names an anchor twice.");
 }
 
 void read_record(const toml::Table& root, Scenario& scenario) {
@@ -418,8 +406,7 @@ std::string slug(std::string_view name) {
 }
 
 const Condition* Scenario::find_condition(std::string_view condition) const {
-  const auto found = std::find_if(conditions.begin(), conditions.end(),
-                                  [&](const Condition& c) { return c.name == condition; });
+  const auto found = std::ranges::find(conditions, condition, &Condition::name);
   return found == conditions.end() ? nullptr : &*found;
 }
 

@@ -1,9 +1,8 @@
-#include <algorithm>
 #include <array>
-#include <cctype>
 
 #include <fmt/format.h>
 
+#include <tether/scenario/scenario.h>
 #include <tether/scenario/target.h>
 #include <tether/toml/table.h>
 
@@ -12,12 +11,6 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kTargetClocks = {"wall", "cpu"};
 constexpr std::int64_t kMostCores = 4096;
-
-/// What a name must have to become a folder's.
-bool has_letter_or_digit(const std::string& name) {
-  return std::any_of(name.begin(), name.end(),
-                     [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; });
-}
 
 std::optional<SshAddress> read_address(const toml::Table& root) {
   if (!root.has("address")) return std::nullopt;
@@ -29,18 +22,14 @@ std::optional<SshAddress> read_address(const toml::Table& root) {
   }
 }
 
-/// A board is measured, not made slower, and its cores are its own.
-void reject_what_a_board_has_itself(const toml::Table& root, const Target& target) {
+/// A board is measured, not slowed down, and uses all of its cores.
+void reject_keys_of_virtual_targets(const toml::Table& root, const Target& target) {
   if (target.clock == Clock::kCpu) {
-    root.fail("clock",
-              "is \"cpu\", which is for virtual targets; with an address the board's own \"wall\" "
-              "clock counts");
+    root.fail("clock", "is \"cpu\", but a target with an address needs the clock \"wall\".");
   }
-  if (root.has("cpu_factor")) {
-    root.fail("cpu_factor", "makes a virtual target, and so does not go with an address");
-  }
-  if (root.has("cores")) {
-    root.fail("cores", "is of this host, and so does not go with an address");
+  for (const char* key : {"cpu_factor", "cores"}) {
+    if (root.has(key))
+      root.fail(key, "is for targets on this host. Remove this key, or 'address'.");
   }
 }
 
@@ -52,7 +41,7 @@ std::string beside(const Target& target, const std::string& path) {
 std::vector<std::string> read_launcher(const toml::Table& root, const Target& target) {
   std::vector<std::string> words = root.texts_or_none("launcher");
   if (root.has("launcher") && words.empty()) {
-    root.fail("launcher", "must name a program, but is empty");
+    root.fail("launcher", "is empty. Name a program.");
   }
   for (std::string& word : words) {
     const bool is_relative = word.starts_with("./") || word.starts_with("../");
@@ -61,8 +50,8 @@ std::vector<std::string> read_launcher(const toml::Table& root, const Target& ta
   return words;
 }
 
-/// What is on a board shows when it is asked. Of this host it need not be there yet either: what
-/// builds the programs may come after the file.
+/// On a board, the folder is checked when a run starts. On this host it need not exist yet: the
+/// programs may be built after the file is written.
 std::string read_program_folder(const toml::Table& root, const Target& target) {
   const std::string folder = root.text_or("program_folder", "");
   return folder.empty() || target.ssh ? folder : beside(target, folder);
@@ -78,13 +67,15 @@ Target load_target(const std::filesystem::path& file) {
   const toml::Table root = document.root({"name", "description", "address", "clock", "cpu_factor",
                                           "cores", "launcher", "program_folder"});
   target.name = root.identifier("name");
-  if (!has_letter_or_digit(target.name)) root.fail("name", "must contain a letter or a digit");
+  if (slug(target.name).empty()) {
+    root.fail("name", "must contain a letter or a digit, because it becomes the name of a folder.");
+  }
   target.description = root.text_or("description", "");
   target.ssh = read_address(root);
   if (root.has("clock")) {
     target.clock = root.choice("clock", kTargetClocks) == 0 ? Clock::kWall : Clock::kCpu;
   }
-  if (target.ssh) reject_what_a_board_has_itself(root, target);
+  if (target.ssh) reject_keys_of_virtual_targets(root, target);
   target.cpu_factor = root.number_or("cpu_factor", kFactor, 1.0);
   target.cores = static_cast<int>(root.integer_or("cores", 1, kMostCores, 0));
   target.launcher = read_launcher(root, target);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <array>
 
 #include <tether/scenario/metric.h>
@@ -10,7 +9,7 @@ constexpr std::array kMetricKinds = {
     MetricKind{.name = "time_required",
                .label = "Time required",
                .unit = "s",
-               .help = "ST at which the SUT said that it had finished"},
+               .help = "ST at which the SUT reported that it had finished"},
     MetricKind{.name = "oscillations",
                .label = "Oscillations",
                .unit = "1",
@@ -47,24 +46,18 @@ constexpr std::array kMetricKinds = {
     MetricKind{.name = "estimate_error",
                .label = "Estimate error",
                .unit = "m",
-               .help = "the SUT's own estimate of end minus start against the true one"},
+               .help = "the SUT's own estimate of its displacement against the true one"},
     MetricKind{.name = "acquisition_time",
                .label = "Acquisition time",
                .unit = "ms",
                .needs_sensor = true,
-               .help = "mean time from asking for the sensor's data to having it"},
+               .help = "mean time from requesting the sensor's data to receiving it"},
 };
 
 }  // namespace
 
 std::span<const MetricKind> metric_kinds() {
   return kMetricKinds;
-}
-
-const MetricKind* find_metric_kind(std::string_view kind) {
-  const auto found = std::find_if(kMetricKinds.begin(), kMetricKinds.end(),
-                                  [&](const MetricKind& k) { return k.name == kind; });
-  return found == kMetricKinds.end() ? nullptr : &*found;
 }
 
 std::string unit_suffix(std::string_view unit) {

@@ -8,8 +8,8 @@ std::string why_not_on(const Condition& condition, const Target& target) {
   const bool is_scaled_wall = target.clock == Clock::kWall && target.cpu_factor != 1.0;
   if (condition.policy == Policy::kFreeRunning && is_scaled_wall) {
     return fmt::format(
-        "the target \"{}\" scales the wall clock, which needs policy = \"conservative_barrier\": "
-        "free running goes by the wall clock as it is",
+        "the target \"{}\" scales the wall clock, which needs policy = \"conservative_barrier\", "
+        "because free running uses the real wall clock.",
         target.name);
   }
   return "";
@@ -17,7 +17,8 @@ std::string why_not_on(const Condition& condition, const Target& target) {
 
 void place_on(Condition& condition, Target target) {
   if (const std::string why = why_not_on(condition, target); !why.empty()) {
-    throw Error(ErrorCode::kUsage, fmt::format("condition \"{}\": {}", condition.name, why));
+    throw Error(ErrorCode::kUsage, fmt::format("condition \"{}\": {}", condition.name, why))
+        .about(condition.name);
   }
   condition.clock = target.clock;
   condition.cpu_factor = target.cpu_factor;

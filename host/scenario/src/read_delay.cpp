@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -19,8 +20,8 @@ std::string_view trimmed(std::string_view line) {
   return line.substr(first, line.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// What editors on Windows put before the first character (TOML's parser skips it as well).
-std::string_view without_byte_order_mark(std::string_view text) {
+/// Some editors put this mark before the first character (TOML's parser skips it as well).
+std::string without_byte_order_mark(const std::string& text) {
   constexpr std::string_view kMark = "\xEF\xBB\xBF";
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
@@ -62,12 +63,13 @@ std::vector<Duration> read_inline_samples(const toml::Table& delay) {
 }
 
 uav::Delay read_empirical(const toml::Table& delay, std::vector<std::filesystem::path>& files) {
-  const auto given = std::count_if(kSampleKeys.begin(), kSampleKeys.end(),
-                                   [&](std::string_view key) { return delay.has(key); });
+  const auto given =
+      std::ranges::count_if(kSampleKeys, [&](std::string_view key) { return delay.has(key); });
   if (given != 1) {
     delay.fail(
-        "needs one of 'samples_ms' (an array of delays), 'file_ms' and 'file_s' (a file with one "
-        "delay per line in that unit)");
+        "needs exactly one of 'samples_ms' (an array of delays), 'file_ms' and 'file_s' (a file "
+        "with "
+        "one delay per line in that unit).");
   }
   if (delay.has("samples_ms")) return uav::EmpiricalDelay{read_inline_samples(delay)};
   const std::string_view key = delay.has("file_ms") ? "file_ms" : "file_s";
@@ -99,22 +101,18 @@ uav::Delay read_delay(const toml::Table& sensor, std::vector<std::filesystem::pa
 std::vector<Duration> read_delay_samples(const std::filesystem::path& file,
                                          double seconds_per_unit) {
   constexpr std::size_t kLargestFile = std::size_t{64} << 20;
-  const std::string whole = toml::read_text_file(file, kLargestFile);
-  const std::string_view text = without_byte_order_mark(whole);
+  std::istringstream text(without_byte_order_mark(toml::read_text_file(file, kLargestFile)));
   std::vector<Duration> samples;
-  int line_number = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = trimmed(text.substr(begin, end - begin));
-    const FileLocation at{file.string(), ++line_number};
-    if (!line.empty() && line.front() != '#') {
-      samples.push_back(parse_sample(line, seconds_per_unit, at));
-    }
-    begin = end + 1;
+  FileLocation at{file.string()};
+  for (std::string whole_line; std::getline(text, whole_line);) {
+    ++at.line;
+    const std::string_view line = trimmed(whole_line);
+    if (line.empty() || line.front() == '#') continue;
+    samples.push_back(parse_sample(line, seconds_per_unit, at));
   }
   if (samples.empty()) {
-    throw Error(ErrorCode::kBadFile, FileLocation{file.string()},
-                "holds no delay; expected one number per line");
+    throw Error(ErrorCode::kBadFile, {file.string()},
+                "contains no delay. Expected one number per line.");
   }
   return samples;
 }

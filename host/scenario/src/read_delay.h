@@ -9,13 +9,13 @@
 
 namespace tether::scenario {
 
-/// The key 'delay' of a sensor's table; names of sample files are added to `files`.
+/// The key 'delay' of a sensor's table; adds sample files to `files`.
 uav::Delay read_delay(const toml::Table& sensor, std::vector<std::filesystem::path>& files);
 
 /// Measured delays: one number per line, in units of `seconds_per_unit`; blank lines and
 /// lines that start with '#' are skipped.
-/// @throws Error(kBadFile) with the line of what is no number, negative or too large, and when
-///   there is no number at all.
+/// @throws Error(kBadFile) at a line that is not a number, negative or too large, or if there is no
+///   number at all.
 std::vector<Duration> read_delay_samples(const std::filesystem::path& file,
                                          double seconds_per_unit);
 

@@ -9,12 +9,12 @@
 #include <tether/base/units.h>
 #include <tether/toml/suggest.h>
 
+// The table of one sensor. `kKeys` lists which kind of sensor supports which key; the functions
+// below read keys of timing, mounting and measuring, each only if it is there.
 namespace tether::scenario {
 namespace {
 
 using uav::SensorKind;
-
-// Which keys there are.
 
 /// In the order of SensorKind.
 constexpr std::array<std::string_view, 3> kSensorKinds = {"camera", "imu", "range"};
@@ -49,7 +49,7 @@ constexpr std::array kKeys = {
     KeyRule{"noise_m", SensorKind::kRange},
 };
 
-/// Of a sensor of that kind; without one, all.
+/// The keys for a sensor of that kind; without a kind, all.
 std::vector<std::string_view> keys_of(std::optional<SensorKind> kind) {
   std::vector<std::string_view> keys;
   for (const KeyRule& rule : kKeys) {
@@ -63,13 +63,13 @@ std::optional<SensorKind> read_kind(const toml::Table& sensor) {
   return static_cast<SensorKind>(sensor.choice("kind", kSensorKinds));
 }
 
-// When it measures.
+// Timing.
 
 constexpr std::array<std::string_view, 3> kPeriodicKeys = {"rate_hz", "period_ms", "phase_ms"};
 
 Duration read_period(const toml::Table& sensor) {
   if (sensor.has("rate_hz") == sensor.has("period_ms")) {
-    sensor.fail("needs either 'rate_hz' or 'period_ms', because its timing is \"periodic\"");
+    sensor.fail("needs either 'rate_hz' or 'period_ms', because its timing is \"periodic\".");
   }
   constexpr toml::Range kRate_hz{.min = 1e-3, .max = 1e5};
   constexpr toml::Range kPeriod_ms{.min = 1e-2, .max = 1e6};
@@ -94,15 +94,16 @@ void read_timing(const toml::Table& sensor, std::vector<std::filesystem::path>& 
   for (const std::string_view key : kPeriodicKeys) {
     if (!sensor.has(key)) continue;
     if (!sensor.has("timing")) {
-      sensor.fail(fmt::format(
-          "lacks the key 'timing': '{}' goes with timing = \"periodic\" in the same table", key));
+      sensor.fail("timing", fmt::format("is missing. '{}' needs timing = \"periodic\" in the same "
+                                        "table.",
+                                        key));
     }
-    sensor.fail(key, "goes with timing = \"periodic\", but the timing is \"on_demand\"");
+    sensor.fail(key, "needs timing = \"periodic\", but the timing is \"on_demand\".");
   }
   if (sensor.has("timing")) profile.timing = uav::OnDemandTiming{delay};
 }
 
-// Where it is mounted.
+// Mounting.
 
 void read_mounting(const toml::Table& sensor, SensorProfile& profile) {
   constexpr toml::Range kPosition_m{.min = -100.0, .max = 100.0};
@@ -117,7 +118,7 @@ void read_mounting(const toml::Table& sensor, SensorProfile& profile) {
   }
 }
 
-// How it measures.
+// Measuring.
 
 std::optional<double> scaled(const std::optional<double>& value, double factor) {
   return value ? std::optional(*value * factor) : std::nullopt;
@@ -139,9 +140,8 @@ std::optional<sim::Noise> read_noise(const toml::Table& sensor, std::string_view
   noise.dynamic_bias_correlation_time_s =
       table.number_or("dynamic_bias_correlation_time_s", kSpread, 0.0);
   if (noise.dynamic_bias_stddev > 0.0 && noise.dynamic_bias_correlation_time_s == 0.0) {
-    table.fail(
-        "lacks the key 'dynamic_bias_correlation_time_s', greater than 0: without it no bias "
-        "walks");
+    table.fail("dynamic_bias_correlation_time_s",
+               "must be greater than 0, because 'dynamic_bias_stddev' is.");
   }
   return noise;
 }
@@ -235,10 +235,11 @@ void require_kind(const SensorProfile& profile, std::string_view sensor, SensorK
   for (const KeyRule& rule : kKeys) {
     if (!rule.kind || rule.kind == kind || !profile.lines.contains(rule.key)) continue;
     throw Error(ErrorCode::kBadFile, profile.at(rule.key),
-                fmt::format("'{}' goes with the kind \"{}\", but the sensor '{}' is of the kind "
+                fmt::format("'{}' is a key of the kind \"{}\", but the sensor '{}' is of the kind "
                             "\"{}\"; {}",
                             rule.key, uav::name(*rule.kind), sensor, uav::name(kind),
-                            toml::allowed_hint(rule.key, keys_of(kind))));
+                            toml::allowed_hint(rule.key, keys_of(kind))))
+        .about(std::string(rule.key));
   }
 }
 

@@ -9,6 +9,8 @@
 #include <tether/scenario/scenario.h>
 #include <tether/toml/suggest.h>
 
+// Each sensor of the world is wrapped in a LayeredSensor, to which the layers are applied in order:
+// the UAV's profile, the scenario's own tables, the condition's profiles.
 namespace tether::scenario {
 namespace {
 
@@ -32,15 +34,15 @@ LayeredSensor* find_sensor(Sensors& sensors, std::string_view name) {
   return found == sensors.end() ? nullptr : &*found;
 }
 
-// A profile: its author need not have known the UAV.
+// Profiles. Their authors need not know the UAV, so an entry is matched to a sensor.
 
-/// One profile on its way to one UAV's sensors.
+/// One profile, applied to the sensors of one UAV.
 class ProfileLayer {
  public:
   ProfileLayer(const Profile& profile, const sim::Uav& uav, Sensors& sensors)
       : profile_(profile), uav_(uav), sensors_(sensors) {}
 
-  /// By name first, so that no other entry is taken for a sensor that is named.
+  /// By name first, so that a named sensor is not matched by another entry.
   void lay(const sim::WarningSink& warn) {
     for (const auto& [name, entry] : profile_.sensors) {
       LayeredSensor* sensor = find_sensor(sensors_, name);
@@ -62,9 +64,8 @@ class ProfileLayer {
     if (candidates.size() > 1) refuse_choice(name, entry, {candidates.begin(), candidates.end()});
     LayeredSensor* only = candidates.empty() ? nullptr : candidates.front();
     const std::string* other = entry_of(only);
-    if (only == nullptr) return warn(no_sensor(name, entry));
-    if (other != nullptr && *other == only->sensor().name) {
-      return warn(taken_sensor(name, entry, *other));
+    if (only == nullptr || (other != nullptr && *other == only->sensor().name)) {
+      return warn(no_sensor(name, entry, other));
     }
     if (other != nullptr) refuse_second(name, entry, *other, only->sensor().name);
     sensor_of_[name] = only;
@@ -77,41 +78,39 @@ class ProfileLayer {
     return found == sensor_of_.end() ? nullptr : &found->first;
   }
 
-  std::string no_sensor(const std::string& name, const SensorProfile& entry) const {
-    return warning(entry, fmt::format("has no sensor of the kind \"{}\" for [sensors.{}]",
-                                      uav::name(*entry.kind), name));
-  }
-
-  std::string taken_sensor(const std::string& name, const SensorProfile& entry,
-                           const std::string& other) const {
-    return warning(entry, fmt::format("has one sensor of the kind \"{}\" only, and that is "
-                                      "[sensors.{}] (line {}); it has none for [sensors.{}]",
-                                      uav::name(*entry.kind), other,
-                                      profile_.sensors.at(other).where.line, name));
-  }
-
-  std::string warning(const SensorProfile& entry, const std::string& text) const {
-    return fmt::format("{}:{}: the UAV '{}' {} of the profile '{}'", entry.where.file,
-                       entry.where.line, uav_.name, text, profile_.name);
+  /// `other` is the entry that matches the only sensor of the kind; nullptr: there is no sensor.
+  std::string no_sensor(const std::string& name, const SensorProfile& entry,
+                        const std::string* other) const {
+    const std::string reason = other == nullptr
+                                   ? ""
+                                   : fmt::format("; its only one matches [sensors.{}] (line {})",
+                                                 *other, profile_.sensors.at(*other).where.line);
+    return located(entry.where,
+                   fmt::format("the UAV '{}' has no sensor of the kind \"{}\" for [sensors.{}] of "
+                               "the profile '{}'{}",
+                               uav_.name, uav::name(*entry.kind), name, profile_.name, reason));
   }
 
   [[noreturn]] void refuse_choice(const std::string& name, const SensorProfile& entry,
                                   const std::vector<const LayeredSensor*>& candidates) const {
     throw Error(ErrorCode::kBadFile, entry.where,
-                fmt::format("the UAV '{}' has no sensor '{}' of the kind \"{}\", but {}; name the "
-                            "one that is meant",
+                fmt::format("the UAV '{}' has no sensor '{}' of the kind \"{}\", but {}. Name one "
+                            "of them.",
                             uav_.name, name, uav::name(*entry.kind),
-                            toml::quoted_list(names_of(candidates))));
+                            toml::quoted_list(names_of(candidates))))
+        .about(name);
   }
 
   [[noreturn]] void refuse_second(const std::string& name, const SensorProfile& entry,
                                   const std::string& other, const std::string& sensor) const {
-    throw Error(ErrorCode::kBadFile, entry.where,
-                fmt::format("[sensors.{}] and [sensors.{}] (line {}) would both be of '{}', the "
-                            "only sensor of the kind \"{}\" of the UAV '{}'; call the one that is "
-                            "meant [sensors.{}]",
-                            name, other, profile_.sensors.at(other).where.line, sensor,
-                            uav::name(*entry.kind), uav_.name, sensor));
+    throw Error(
+        ErrorCode::kBadFile, entry.where,
+        fmt::format("[sensors.{}] and [sensors.{}] (line {}) would both apply to '{}', "
+                    "the only sensor of the kind \"{}\" of the UAV '{}'. Rename one of them "
+                    "to [sensors.{}].",
+                    name, other, profile_.sensors.at(other).where.line, sensor,
+                    uav::name(*entry.kind), uav_.name, sensor))
+        .about(name);
   }
 
   const Profile& profile_;
@@ -120,7 +119,7 @@ class ProfileLayer {
   std::map<std::string, LayeredSensor*> sensor_of_;  // by the entry's name
 };
 
-// The scenario's own words: its author knows the UAV.
+// The scenario's own settings. Its author knows the UAV, so names must match.
 
 [[noreturn]] void refuse_name(const UavSetup& setup, const Sensors& sensors,
                               const std::string& name, const FileLocation& at) {
@@ -128,7 +127,8 @@ class ProfileLayer {
   for (const LayeredSensor& sensor : sensors) all.push_back(&sensor);
   throw Error(ErrorCode::kBadFile, at,
               fmt::format("the UAV '{}' has no sensor '{}' ({}); {}", setup.placement.name, name,
-                          setup.placement.model.string(), toml::allowed_hint(name, names_of(all))));
+                          setup.placement.model.string(), toml::allowed_hint(name, names_of(all))))
+      .about(name);
 }
 
 void lay_setup(const UavSetup& setup, Sensors& sensors) {
@@ -140,7 +140,8 @@ void lay_setup(const UavSetup& setup, Sensors& sensors) {
       throw Error(ErrorCode::kBadFile, layer.at("kind"),
                   fmt::format("'kind' is \"{}\", but the sensor '{}' of the UAV '{}' is of the "
                               "kind \"{}\"",
-                              uav::name(*layer.kind), name, setup.placement.name, uav::name(kind)));
+                              uav::name(*layer.kind), name, setup.placement.name, uav::name(kind)))
+          .about("kind");
     }
     sensor->lay(layer);
   }
@@ -159,7 +160,7 @@ const UavSetup& setup_of(const Scenario& scenario, const std::string& uav) {
     if (setup.placement.name == uav) return setup;
   }
   throw Error(ErrorCode::kInternal,
-              fmt::format("the world has a UAV '{}' that its scenario does not know", uav));
+              fmt::format("the world has a UAV '{}' that is not in its scenario", uav));
 }
 
 std::vector<uav::SensorTiming> resolve(const Scenario& scenario, const Condition& condition,

@@ -8,8 +8,8 @@
 #include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
 
-// Shipped files are found by the folder and the extension of their kind; what describes them is in
-// the file itself.
+// Shipped files are found by the folder and the extension of their kind; each contains its own
+// description.
 namespace tether::scenario {
 namespace {
 
@@ -96,11 +96,13 @@ fs::path ShippedFiles::find(ShippedKind kind, const std::string& given) const {
   std::vector<std::string_view> names;
   for (const ShippedFile& file : files) names.push_back(file.name);
   const std::string_view near = toml::nearest(given, names);
-  throw Error(ErrorCode::kUsage,
-              fmt::format("'{}' is neither a file nor a shipped {}{} Run `tether list` to see what "
-                          "is shipped",
-                          given, place_of(kind).name,
-                          near.empty() ? "." : fmt::format("; did you mean '{}'?", near)));
+  throw Error(
+      ErrorCode::kUsage,
+      fmt::format("'{}' is neither a file nor a shipped {}{} Run `tether list` for a list of "
+                  "shipped files.",
+                  given, place_of(kind).name,
+                  near.empty() ? "." : fmt::format("; did you mean '{}'?", near)))
+      .about(given);
 }
 
 }  // namespace tether::scenario

@@ -1,4 +1,3 @@
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
@@ -6,8 +5,6 @@
 
 namespace tether::scenario {
 namespace {
-
-using testing::HasSubstr;
 
 Target slow(Clock clock) {
   Target target;
@@ -17,12 +14,11 @@ Target slow(Clock clock) {
   return target;
 }
 
-TEST(PlaceOn, TheTargetSaysHowTimeIsMeasured) {
+TEST(PlaceOn, TheTargetsClockReplacesTheConditions) {
   Condition condition;
-  condition.name = "repeatable";
   condition.clock = Clock::kScripted;
-  condition.computing = std::chrono::milliseconds(2);
   condition.real_time_factor = 0.5;
+  condition.computing = std::chrono::milliseconds(2);
   place_on(condition, slow(Clock::kCpu));
   EXPECT_EQ(condition.clock, Clock::kCpu);
   EXPECT_EQ(condition.cpu_factor, 4.0);
@@ -31,16 +27,14 @@ TEST(PlaceOn, TheTargetSaysHowTimeIsMeasured) {
   EXPECT_EQ(condition.target->name, "slow");
 }
 
-TEST(PlaceOn, FreeRunningTakesTheWallClockAsItIs) {
+TEST(PlaceOn, RefusesAScaledWallClockInFreeRunning) {
   Condition condition;
   condition.name = "no sync";
   condition.policy = Policy::kFreeRunning;
-  EXPECT_THAT(error_message(ErrorCode::kUsage, [&] { place_on(condition, slow(Clock::kWall)); }),
-              HasSubstr("condition \"no sync\": the target \"slow\" scales the wall clock"));
+  const auto place = [&] { place_on(condition, slow(Clock::kWall)); };
+  EXPECT_EQ(thrown_error(ErrorCode::kUsage, place).subject(), "no sync");
   EXPECT_FALSE(condition.target);
-
-  place_on(condition, slow(Clock::kCpu));
-  EXPECT_TRUE(condition.target) << "CPU time can be stalled for";
+  EXPECT_EQ(why_not_on(condition, slow(Clock::kCpu)), "");
   Target board = slow(Clock::kWall);
   board.cpu_factor = 1.0;
   EXPECT_EQ(why_not_on(condition, board), "");

@@ -1,12 +1,22 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <tether/base/units.h>
 #include <tether/sim/world.h>
 
 /// Sensors as SDF could have them, each with something that a profile may change.
 namespace tether::scenario {
+
+inline std::vector<double> values_of(const sim::Noise& n) {
+  return {n.mean,
+          n.stddev,
+          n.bias_mean,
+          n.bias_stddev,
+          n.dynamic_bias_stddev,
+          n.dynamic_bias_correlation_time_s};
+}
 
 inline sim::Sensor make_camera(const std::string& name, double update_rate_hz = 30.0) {
   sim::CameraModel model;

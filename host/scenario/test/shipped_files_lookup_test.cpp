@@ -1,10 +1,8 @@
-#include <fstream>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <tether/base/error.h>
 #include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
 #include <tether/scenario/shipped_files.h>
 
 namespace tether::scenario {
@@ -17,16 +15,6 @@ using testing::IsEmpty;
 
 class ShippedFilesLookup : public testing::Test {
  protected:
-  std::string refusal(const std::string& given) const {
-    try {
-      shipped_.find(ShippedKind::kScenario, given);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::kUsage);
-      return error.what();
-    }
-    return "none";
-  }
-
   const ScratchFolder folder_;
   const std::filesystem::path hover_ =
       folder_.write("data/scenarios/hover.toml", "description = \"Hover for a while\"\n");
@@ -34,25 +22,23 @@ class ShippedFilesLookup : public testing::Test {
   const ShippedFiles shipped_{folder_.path("data")};
 };
 
-TEST_F(ShippedFilesLookup, FindsAShippedFileByItsName) {
+TEST_F(ShippedFilesLookup, FindsAPathOrElseAShippedFileOfThatName) {
   EXPECT_EQ(shipped_.find(ShippedKind::kScenario, "hover"), hover_);
-}
-
-TEST_F(ShippedFilesLookup, PrefersAnExistingPath) {
   const auto own = folder_.write("hover", "");
-  EXPECT_EQ(shipped_.find(ShippedKind::kScenario, own), own);
+  for (const std::string& path :
+       {own.string(), std::string("hover.toml"), std::string("own/hover")})
+    EXPECT_EQ(shipped_.find(ShippedKind::kScenario, path), path);
 }
 
-TEST_F(ShippedFilesLookup, LeavesAPathThatDoesNotExistToItsReader) {
-  EXPECT_EQ(shipped_.find(ShippedKind::kScenario, "hover.toml"), "hover.toml");
-  EXPECT_EQ(shipped_.find(ShippedKind::kScenario, "own/hover"), "own/hover");
-}
-
-TEST_F(ShippedFilesLookup, NamesTheNearestNameOfTheSameKind) {
-  EXPECT_THAT(refusal("hovr"), HasSubstr("neither a file nor a shipped scenario; did you mean "
-                                         "'hover'? Run `tether list`"));
-  EXPECT_THAT(refusal("xyzzy_quux"), Not(HasSubstr("did you mean")));
-  EXPECT_THROW(shipped_.find(ShippedKind::kCampaign, "hover"), Error);
+TEST_F(ShippedFilesLookup, RefusesANameOfNoFileAndNamesTheNearestOfTheSameKind) {
+  const auto refusal = [&](ShippedKind kind, const std::string& given) {
+    const Error error = thrown_error(ErrorCode::kUsage, [&] { shipped_.find(kind, given); });
+    EXPECT_EQ(error.subject(), given);
+    return std::string(error.what());
+  };
+  EXPECT_THAT(refusal(ShippedKind::kScenario, "hovr"), HasSubstr("'hover'"));
+  EXPECT_THAT(refusal(ShippedKind::kScenario, "xyzzy_quux"), Not(HasSubstr("'hover'")));
+  EXPECT_THAT(refusal(ShippedKind::kCampaign, "hovr"), Not(HasSubstr("'hover'")));
 }
 
 TEST_F(ShippedFilesLookup, ListsNamesWithDescriptionsInOrder) {

@@ -1,6 +1,6 @@
-// Every scenario, campaign, profile and target in the repository loads, and comes to what it says.
-#include <algorithm>
-#include <map>
+// Every scenario, campaign, profile and target in the repository loads, with the expected timings.
+
+#include "sensor_world.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,131 +11,86 @@
 namespace tether::scenario {
 namespace {
 
-std::vector<std::filesystem::path> toml_files(const std::string& folder) {
-  std::vector<std::filesystem::path> files;
+template <class Load>
+void expect_named_as_their_files(const std::string& folder, const Load& load) {
+  int files = 0;
   const auto path = std::filesystem::path(TETHER_SOURCE_DIR) / "data" / folder;
   for (const auto& entry : std::filesystem::directory_iterator(path)) {
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+    if (entry.path().extension() != ".toml") continue;
+    EXPECT_EQ(load(entry.path()).name, entry.path().stem());
+    ++files;
   }
-  std::sort(files.begin(), files.end());
-  return files;
+  EXPECT_GT(files, 0) << folder;
 }
 
-TEST(ShippedFiles, EveryScenarioLoadsAndIsNamedAsItsFile) {
-  const auto files = toml_files("scenarios");
-  EXPECT_FALSE(files.empty());
-  for (const auto& file : files) {
-    SCOPED_TRACE(file.string());
-    EXPECT_EQ(load_scenario(file).name, file.stem());
-  }
-}
-
-TEST(ShippedFiles, EveryCampaignLoadsAndIsNamedAsItsFile) {
-  const auto files = toml_files("campaigns");
-  EXPECT_FALSE(files.empty());
-  for (const auto& file : files) {
-    SCOPED_TRACE(file.string());
-    EXPECT_EQ(load_campaign(file).name, file.stem());
-  }
-}
-
-TEST(ShippedFiles, EveryProfileLoadsAndIsNamedAsItsFile) {
-  const auto files = toml_files("profiles");
-  EXPECT_FALSE(files.empty());
-  for (const auto& file : files) {
-    SCOPED_TRACE(file.string());
-    EXPECT_EQ(load_profile(file).name, file.stem());
-  }
-}
-
-TEST(ShippedFiles, EveryTargetLoadsAndIsNamedAsItsFile) {
-  const auto files = toml_files("profiles/targets");
-  EXPECT_FALSE(files.empty());
-  for (const auto& file : files) {
-    SCOPED_TRACE(file.string());
-    EXPECT_EQ(load_target(file).name, file.stem());
-  }
+TEST(ShippedFiles, LoadAndAreNamedAsTheirFiles) {
+  expect_named_as_their_files("scenarios", load_scenario);
+  expect_named_as_their_files("campaigns", load_campaign);
+  expect_named_as_their_files("profiles", load_profile);
+  expect_named_as_their_files("profiles/targets", load_target);
 }
 
 std::filesystem::path source(const std::string& file) {
   return std::filesystem::path(TETHER_SOURCE_DIR) / "data" / file;
 }
 
-/// A world with one UAV, and its timings, after all layers. No warning is expected.
+/// A world with one UAV, and its timings after all layers, as "33333333 + 0, 37400000 ns late". No
+/// warning is expected.
 struct Resolved {
   sim::World world;
-  std::vector<uav::SensorTiming> timings;
+  std::vector<std::string> timings;  ///< camera, imu, range
 
-  const sim::Sensor& sensor(std::size_t index) const { return world.uavs.at(0).sensors.at(index); }
+  const auto& model(std::size_t index) const { return world.uavs.at(0).sensors.at(index).model; }
 };
+
+std::string text_of(const uav::SensorTiming& timing) {
+  const auto delay = [](const uav::Delay& d) {
+    return ", " + std::to_string(std::get<uav::ConstantDelay>(d).value.count()) + " ns late";
+  };
+  const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing);
+  if (!periodic) return "on demand" + delay(std::get<uav::OnDemandTiming>(timing).delay);
+  return std::to_string(periodic->period.count()) + " + " +
+         std::to_string(periodic->phase.count()) + delay(periodic->delay);
+}
+
 Resolved resolved(const Scenario& scenario) {
   const auto no_warning = [](const std::string& text) { ADD_FAILURE() << text; };
   Resolved result{sim::load_world(world_request(scenario, 1), no_warning), {}};
-  result.timings =
-      resolve_sensors(scenario, scenario.conditions.front(), result.world, no_warning).at(0);
+  const auto timings =
+      resolve_sensors(scenario, scenario.conditions.front(), result.world, no_warning);
+  for (const uav::SensorTiming& timing : timings.at(0)) result.timings.push_back(text_of(timing));
   return result;
 }
 
-/// "33333333 ns + 0 ns, 37400000 ns late".
-std::string text_of(const uav::SensorTiming& timing) {
-  const auto delay = [](const uav::Delay& d) {
-    return std::to_string(std::get<uav::ConstantDelay>(d).value.count()) + " ns late";
-  };
-  const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing);
-  if (!periodic) return "on demand, " + delay(std::get<uav::OnDemandTiming>(timing).delay);
-  return std::to_string(periodic->period.count()) + " ns + " +
-         std::to_string(periodic->phase.count()) + " ns, " + delay(periodic->delay);
-}
-
 TEST(ShippedFiles, EveryScenarioHasTheTimingsOfItsTask) {
-  using Texts = std::vector<std::string>;  // camera, imu, range
-  const std::string imu = "50000000 ns + 0 ns, 0 ns late";
-  const Texts streaming = {"33333333 ns + 0 ns, 37400000 ns late", imu,
-                           "33333333 ns + 0 ns, 0 ns late"};
-  const std::map<std::string, Texts> expected = {
-      {"closed_path", streaming},
-      {"face_anchor", streaming},
-      {"mission", streaming},
-      {"move_forward", streaming},
-      {"relative_position", streaming},
-      {"sensor_characterization",
-       {"on demand, 37400000 ns late", imu, "on demand, 97700000 ns late"}},
+  using Texts = std::vector<std::string>;
+  const std::string imu = "50000000 + 0, 0 ns late";
+  const Texts streaming = {"33333333 + 0, 37400000 ns late", imu, "33333333 + 0, 0 ns late"};
+  const Texts on_demand = {"on demand, 37400000 ns late", imu, "on demand, 97700000 ns late"};
+  const auto timings = [](const std::string& name) {
+    return resolved(load_scenario(source("scenarios/" + name + ".toml"))).timings;
   };
-  for (const auto& [name, timings] : expected) {
-    SCOPED_TRACE(name);
-    const Resolved r = resolved(load_scenario(source("scenarios/" + name + ".toml")));
-    Texts texts;
-    for (const uav::SensorTiming& timing : r.timings) texts.push_back(text_of(timing));
-    EXPECT_EQ(texts, timings);
-  }
-}
-
-std::vector<double> values_of(const sim::Noise& noise) {
-  return {noise.mean,
-          noise.stddev,
-          noise.bias_mean,
-          noise.bias_stddev,
-          noise.dynamic_bias_stddev,
-          noise.dynamic_bias_correlation_time_s};
+  for (const char* name :
+       {"closed_path", "face_anchor", "mission", "move_forward", "relative_position"})
+    EXPECT_EQ(timings(name), streaming) << name;
+  EXPECT_EQ(timings("sensor_characterization"), on_demand);
 }
 
 TEST(ShippedFiles, TheIdealProfileLeavesNoErrorAndNoDelay) {
   Scenario scenario = load_scenario(source("scenarios/sensor_characterization.toml"));
   lay_profile(scenario, load_profile(source("profiles/ideal.toml")));
   const Resolved r = resolved(scenario);
-  EXPECT_EQ(text_of(r.timings[0]), "on demand, 0 ns late");
-  EXPECT_EQ(text_of(r.timings[1]), "50000000 ns + 0 ns, 0 ns late");
-  EXPECT_EQ(text_of(r.timings[2]), "on demand, 0 ns late");
-
+  EXPECT_THAT(r.timings, testing::ElementsAre("on demand, 0 ns late", "50000000 + 0, 0 ns late",
+                                              "on demand, 0 ns late"));
   const auto none = testing::Each(0.0);
-  const auto& camera = std::get<sim::CameraModel>(r.sensor(0).model);
+  const auto& camera = std::get<sim::CameraModel>(r.model(0));
   EXPECT_THAT(values_of(camera.pixel_noise), none);
   EXPECT_EQ(camera.exposure_s + camera.readout_s, 0.0);
   EXPECT_FALSE(camera.intrinsics.has_distortion());
-  const auto& imu = std::get<sim::ImuModel>(r.sensor(1).model);
+  const auto& imu = std::get<sim::ImuModel>(r.model(1));
   for (const auto& noise : imu.angular_velocity) EXPECT_THAT(values_of(noise), none);
   for (const auto& noise : imu.linear_acceleration) EXPECT_THAT(values_of(noise), none);
-  const auto& range = std::get<sim::RangeModel>(r.sensor(2).model);
+  const auto& range = std::get<sim::RangeModel>(r.model(2));
   EXPECT_THAT(values_of(range.noise), none);
   EXPECT_EQ(range.resolution_m, 0.0);
   EXPECT_EQ(range.dropout_probability, 0.0);

@@ -1,4 +1,4 @@
-#include "full_scenario.h"
+#include "test_files.h"
 
 #include <algorithm>
 
@@ -11,26 +11,18 @@
 namespace tether::scenario {
 namespace {
 
-class WorldRequest : public testing::Test {
- protected:
-  ScratchFolder scratch_;
-  Scenario scenario_ = load_scenario(write_project(scratch_, kFullScenario));
-};
-
-TEST_F(WorldRequest, PlacesTheUavs) {
-  const sim::WorldRequest request = world_request(scenario_, 1);
-  EXPECT_EQ(request.world, scenario_.world);
-  ASSERT_EQ(request.uavs.size(), 2u);
-  EXPECT_EQ(request.uavs[1].name, "uav2");
-  EXPECT_THAT(request.anchors, testing::ElementsAre("blue_box", "red_box"));
-}
-
-TEST_F(WorldRequest, TheStartYawIsDrawnFromItsSpreadBySeed) {
+TEST(WorldRequest, PlacesTheUavsWithAStartYawFromItsSpreadBySeed) {
+  const ScratchFolder scratch;
+  const Scenario scenario = load_scenario(write_project(scratch, kFullScenario));
+  EXPECT_EQ(world_request(scenario, 1).world, scenario.world);
+  EXPECT_THAT(world_request(scenario, 1).anchors, testing::ElementsAre("blue_box", "red_box"));
   double least = 1e9, greatest = -1e9;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    const sim::WorldRequest request = world_request(scenario_, seed);
-    EXPECT_EQ(request.uavs[0].yaw_rad, world_request(scenario_, seed).uavs[0].yaw_rad);
-    EXPECT_EQ(request.uavs[1].yaw_rad, scenario_.uavs[1].placement.yaw_rad);
+    const sim::WorldRequest request = world_request(scenario, seed);
+    ASSERT_EQ(request.uavs.size(), 2u);
+    EXPECT_EQ(request.uavs[0].yaw_rad, world_request(scenario, seed).uavs[0].yaw_rad);
+    EXPECT_EQ(request.uavs[1].name, "uav2");
+    EXPECT_EQ(request.uavs[1].yaw_rad, scenario.uavs[1].placement.yaw_rad);
     least = std::min(least, deg_from_rad(request.uavs[0].yaw_rad));
     greatest = std::max(greatest, deg_from_rad(request.uavs[0].yaw_rad));
   }

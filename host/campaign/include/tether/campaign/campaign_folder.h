@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,8 +10,8 @@
 #include <tether/campaign/folder_claim.h>
 #include <tether/campaign/result.h>
 
-/// A campaign's folder on the disk: `campaign.json` says what was planned and under which
-/// settings; each finished trial has a folder of its own with `result.json` and its record.
+/// A campaign's folder on the disk: `campaign.json` contains the plan and the settings; the folder
+/// of each finished trial contains `result.json` and its record.
 namespace tether::campaign {
 
 inline constexpr int kCampaignSchemaVersion = 1;
@@ -39,35 +38,34 @@ struct CampaignManifest {
 };
 CampaignManifest manifest_of(const scenario::Campaign& campaign, Settings settings);
 std::string to_json(const CampaignManifest& manifest);
-/// @throws Error(kBadFile) when the folder has no usable campaign.json.
+/// @throws Error(kBadFile) if the folder has no usable campaign.json.
 CampaignManifest read_manifest(const std::filesystem::path& folder);
 
 enum class OpenMode {
-  kFresh,   ///< the folder must hold no results yet
-  kResume,  ///< go on with what is there
+  kFresh,   ///< the folder must not contain results yet
+  kResume,  ///< continue with the results that exist
 };
 
-/// A campaign's folder, held by this process alone while the object lives. Not thread-safe.
+/// A campaign's folder, claimed by this process while the object lives. Not thread-safe.
 class CampaignFolder {
  public:
-  /// Makes the folder or opens it again, and finds out which trials are missing: those without a
-  /// result, with a torn or damaged one, and those that failed to be set up or were interrupted.
-  /// @throws Error(kUsage), changing nothing, when the folder holds something else, results of
-  ///   other settings or versions (named), a campaign with more seeds, conditions or scenarios
-  ///   (named: their trials would drop out of every mean), results although `mode` is kFresh, or
-  ///   somebody else writes in it; Error(kSetup) when the file system refuses.
+  /// Makes the folder or opens it again, and determines which trials are missing: those without a
+  /// result, with a truncated or corrupt one, and those whose set-up failed or that were
+  /// interrupted.
+  /// @throws Error(kUsage), about the folder and without a change, if the folder contains something
+  ///   else, results with other settings or versions (about the setting), a campaign with more
+  ///   seeds, conditions or scenarios (whose trials would be missing from every mean), or results
+  ///   although `mode` is kFresh; as FolderClaim if another process writes in it. Error(kSetup) if
+  ///   the file system refuses.
   /// @pre `campaign` outlives the object.
   CampaignFolder(std::filesystem::path folder, const scenario::Campaign& campaign,
                  const Settings& settings, OpenMode mode);
-  ~CampaignFolder();
-  CampaignFolder(const CampaignFolder&) = delete;
-  CampaignFolder& operator=(const CampaignFolder&) = delete;
 
   const std::filesystem::path& path() const { return folder_; }
   /// In the order of `plan_trials`.
   const std::vector<TrialPlan>& missing() const { return missing_; }
   std::size_t finished() const { return finished_; }
-  /// One line for each result that was there and cannot be used.
+  /// One line for each existing result that cannot be used; begins with its file or folder.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
@@ -76,7 +74,7 @@ class CampaignFolder {
   bool has_usable_result(const TrialPlan& plan);
 
   std::filesystem::path folder_;
-  std::unique_ptr<PathLock> lock_;
+  FolderClaim claim_;
   std::vector<TrialPlan> missing_;
   std::size_t finished_ = 0;
   std::vector<std::string> warnings_;

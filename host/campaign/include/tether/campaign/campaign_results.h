@@ -14,7 +14,7 @@ namespace tether::campaign {
 struct ConditionResults {
   std::string condition;
   std::vector<TrialResult> trials;  ///< those that have a result, in order of the seeds
-  std::size_t planned = 0;          ///< trials that the campaign asks for
+  std::size_t planned = 0;          ///< trials in the campaign's plan
 
   /// The values of a metric over those trials that have one.
   std::vector<double> values(std::string_view metric) const;
@@ -29,17 +29,17 @@ struct ScenarioResults {
   std::vector<ConditionResults> conditions;
 
   const ConditionResults* find_condition(std::string_view condition) const;
-  /// Label, kind and unit of a metric, from any trial; nullptr where there is no trial.
+  /// Label, kind and unit of a metric, from any trial; nullptr if there is no trial.
   const MetricValue* find_metric(std::string_view metric) const;
 };
 
 struct CampaignResults {
   CampaignManifest manifest;
   std::vector<ScenarioResults> scenarios;
-  std::vector<std::string> damaged;  ///< one line for each result that is there and unreadable
+  std::vector<std::string> damaged;  ///< one line for each result that exists but is unreadable
 };
 
-/// @throws Error(kBadFile) when the folder holds no campaign.
+/// @throws Error(kBadFile) if the folder contains no campaign.
 CampaignResults read_campaign_results(const std::filesystem::path& folder);
 
 }  // namespace tether::campaign

@@ -14,7 +14,7 @@
 #include <tether/record/reader.h>
 #include <tether/scenario/scenario.h>
 
-/// The result of one trial and its file, `result.json` (DESIGN section 5).
+/// The result of one trial and its file, `result.json` (docs/design.md section 5).
 namespace tether::campaign {
 
 inline constexpr int kResultSchemaVersion = 1;
@@ -23,45 +23,45 @@ inline constexpr std::string_view kResultFile = "result.json";
 enum class Outcome {
   kGoalReached,  ///< exit 0: every SUT finished with its goal reached, every metric within its
                  ///< limit
-  kGoalMissed,   ///< exit 1: the trial ran, and that is not so
+  kGoalMissed,   ///< exit 1: the trial ran, but missed that
   kFailed,       ///< exit 3: simulator, link or SUT could not be set up, was lost or hung
 };
 /// "goal_reached", "goal_missed", "failed".
 std::string_view name(Outcome outcome);
 int exit_code(Outcome outcome);
 
-/// `end` of a trial whose parts never came together (also: a SUT lost before its first
-/// interaction); else as in record::Footer.
+/// `end` of a trial that was not set up, or whose SUT was lost before its first interaction; other
+/// ends are as in record::Footer.
 inline constexpr std::string_view kEndSetupFailed = "setup_failed";
-/// `end` of a trial that the user stopped: no result of anything.
+/// `end` of a trial that the user stopped. It does not count as a result.
 inline constexpr std::string_view kEndInterrupted = "interrupted";
 inline constexpr std::string_view kEndFinished = "finished";
 inline constexpr std::string_view kEndTimeLimit = "time_limit";
 
-/// One SUT: who it was and what it said of its task.
+/// One SUT: its name and version, and what it reported about its task.
 struct SutResult {
   std::string uav;
   std::string sut;  ///< name and version
   std::string clock;
   double cpu_factor = 1.0;
-  std::optional<ExecTime> et_at_end;  ///< none where ET was not tied to ST
+  std::optional<ExecTime> et_at_end{};  ///< none if ET was not synchronised with ST
   bool finished = false;
   bool reached_goal = false;
-  std::string outcome;  ///< one line: why
-  std::string details;  ///< one JSON object, or empty
+  std::string outcome{};  ///< one line: why
+  std::string details{};  ///< one JSON object, or empty
 
   friend bool operator==(const SutResult&, const SutResult&) = default;
 };
 
-/// Where concurrent SUTs stood still.
+/// The stops of concurrent SUTs.
 struct StopFigures {
   std::uint64_t count = 0;
-  Duration largest_overshoot{0};  ///< by how much one came after the reply for which it was
+  Duration largest_overshoot{0};  ///< by which a stop came after the reply that it was for
 
   friend bool operator==(const StopFigures&, const StopFigures&) = default;
 };
 
-/// What the barrier did; the same in every run with the same execution times.
+/// The figures of the barrier; equal in every run with the same execution times.
 struct SyncFigures {
   std::uint64_t interactions = 0;
   std::uint64_t causality_violations = 0;
@@ -79,27 +79,27 @@ struct AuditVerdict {
   friend bool operator==(const AuditVerdict&, const AuditVerdict&) = default;
 };
 
-/// The machine that the SUTs ran on, as it was around the run.
+/// The state of the machine that the SUTs ran on, before and after the run.
 struct TargetReport {
   std::string name;
   std::string address;  ///< "ssh://user@board"; empty: the host
   record::Readings before{}, after{};
   std::vector<std::string> warnings{};  ///< one line each
-  bool is_spoiled = false;              ///< one of them says that its times are not to be trusted
+  bool is_spoiled = false;              ///< according to a warning, its times cannot be trusted
 
   friend bool operator==(const TargetReport&, const TargetReport&) = default;
 };
 
-/// Whatever may differ between two runs of the same trial with the same execution times.
+/// Everything that may differ between two runs of the same trial with the same execution times.
 struct ThisRun {
   std::string started_at;  ///< ISO 8601, UTC
   std::string machine;
   Duration wall{0};
-  Duration largest_lag{0};               ///< depends on how far the simulator had come on its own
+  Duration largest_lag{0};               ///< depends on how far the simulator had advanced
   int attempts = 1;                      ///< 2: the first one failed to set up
   std::string first_failure;             ///< its reason
-  std::optional<TargetReport> target{};  ///< none where nobody read it
-  std::vector<std::string> notes{};      ///< where the run stood still and nobody meant it to
+  std::optional<TargetReport> target{};  ///< none if it was not read
+  std::vector<std::string> notes{};      ///< unintended stalls of the run, one line each
 
   friend bool operator==(const ThisRun&, const ThisRun&) = default;
 };
@@ -114,7 +114,7 @@ struct TrialResult {
   Duration computing{0};  ///< of clock "scripted": charged for each phase of computing
   double real_time_factor = 0.0;
   std::string target{};  ///< its name; empty: the host as it is
-  /// Names of the profiles in use, in the order of their layers: the later goes over the earlier.
+  /// Names of the profiles in use, in the order of their layers: a later one overrides an earlier.
   std::vector<std::string> profiles;
   Outcome outcome = Outcome::kFailed;
   std::string end;     ///< see kEnd…
@@ -126,13 +126,13 @@ struct TrialResult {
   std::map<std::string, std::string> versions;  ///< of everything that took part, by its name
   ThisRun this_run;
 
-  /// nullptr where there is none of that name.
+  /// nullptr if there is no metric of that name.
   const MetricValue* find_metric(std::string_view metric) const;
 
   friend bool operator==(const TrialResult&, const TrialResult&) = default;
 };
 
-/// What a SUT said when it finished; not part of the record's header.
+/// What a SUT reported when it finished; not part of the record's header.
 struct TaskEnd {
   std::string uav;
   bool reached_goal = false;
@@ -141,31 +141,32 @@ struct TaskEnd {
 };
 
 /// The result of a trial from its record: metrics, figures and the outcome with its reason. A
-/// record without a footer is a failed trial. Metrics have values only where the trial did not fail
+/// record without a footer is a failed trial. Metrics have values only if the trial did not fail
 /// and the SUT reached its own goal. The caller adds audit, more versions, `started_at`.
 TrialResult make_result(const scenario::Scenario& scenario, const scenario::Condition& condition,
                         const record::Record& record, const std::vector<TaskEnd>& task_ends);
 
-/// The trial ran, and its numbers cannot be trusted: it counts as failed for `reason`, and no
-/// metric keeps a value that a mean could take up.
+/// For a trial that ran but whose numbers cannot be trusted: it counts as failed for `reason`, and
+/// no metric keeps its value.
 void invalidate(TrialResult& result, const std::string& reason);
 
-/// The result of a trial that left no record because it could not be set up.
+/// The result of a trial without a record, because it could not be set up.
 TrialResult make_setup_failure(const scenario::Scenario& scenario,
                                const scenario::Condition& condition, std::uint64_t seed,
                                const std::string& reason);
 
-/// As `result.json` holds it. Equal results give equal text; everything that may differ from run
-/// to run stands in the member "this_run".
+/// The content of `result.json`. Equal results give equal text; everything that may differ from run
+/// to run is in the member "this_run".
 std::string to_json(const TrialResult& result);
-/// @throws Error(kBadFile), located at `file`, when the text is no complete result (torn, wrong
-///   types, newer schema).
+/// @throws Error(kBadFile), located at `file`, if the text is not a complete result (truncated,
+/// wrong
+///   types, newer schema); about the member, if one is wrong.
 TrialResult result_from_json(const std::string& text, const std::filesystem::path& file);
 
-/// Writes `folder`/result.json whole or not at all, also across a power cut.
-/// @throws Error(kSetup) when the file system refuses.
+/// Writes `folder`/result.json completely or not at all, even if the machine loses power.
+/// @throws Error(kSetup) if the file system refuses.
 void write_result(const std::filesystem::path& folder, const TrialResult& result);
-/// @throws Error(kBadFile) as `result_from_json`, or when there is no file.
+/// @throws Error(kBadFile) as `result_from_json`, or if there is no file.
 TrialResult read_result(const std::filesystem::path& folder);
 
 }  // namespace tether::campaign

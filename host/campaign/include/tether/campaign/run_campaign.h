@@ -11,14 +11,14 @@
 
 namespace tether::campaign {
 
-/// What a trial's program says, in the trial's folder.
+/// The output of a trial's program, in the trial's folder.
 inline constexpr std::string_view kTrialLog = "run.log";
 
 /// Runs one trial, leaves its record in `plan.folder` (which exists and is empty; at a second
-/// attempt it holds the first one's kTrialLog), and returns its result; writing it is the
-/// campaign's business. Called from several threads at once when there
-/// are several jobs. A result whose `end` is kEndSetupFailed, or an Error other than kUsage and
-/// kBadFile, says that the trial could not be set up; kEndInterrupted, that the user stopped it.
+/// attempt it contains the first one's kTrialLog), and returns its result, which run_campaign
+/// writes. Called from several threads at once if there are several jobs. A result whose `end` is
+/// kEndSetupFailed, or an Error other than kUsage and kBadFile, means that the trial could not be
+/// set up; kEndInterrupted, that the user stopped it.
 using TrialExecutor = std::function<TrialResult(const TrialPlan& plan)>;
 
 struct CampaignProgress {
@@ -26,20 +26,20 @@ struct CampaignProgress {
   std::size_t total = 0;
   std::size_t running = 0;
   std::size_t failed = 0;               ///< of this run: trials whose outcome is kFailed
-  std::optional<Duration> time_left;    ///< of wall time, estimated from the trials so far
-  const TrialPlan* latest = nullptr;    ///< whose start or end this tells; nullptr: none yet
+  std::optional<Duration> time_left;    ///< wall time, estimated from the trials so far
+  const TrialPlan* latest = nullptr;    ///< the trial that started or ended
   const TrialResult* result = nullptr;  ///< its result at its end; valid during the call
 };
 /// Called at each start and end of a trial, never from two threads at once.
 using ProgressCallback = std::function<void(const CampaignProgress&)>;
 
 struct CampaignOptions {
-  int jobs = 1;          ///< cores for trials side by side, see trials_side_by_side()
+  int jobs = 1;          ///< cores for parallel trials, see parallel_trials()
   std::stop_token stop;  ///< no further trial starts once requested
   /// Monotonic wall time, for the time left only. Default: the machine's.
   std::function<Duration()> wall;
-  /// Called after each trial, before its result is kept, from several threads at once when there
-  /// are several jobs. What it throws ends the run, and that trial counts as not run.
+  /// Called after each trial, before its result is kept, from several threads at once if there are
+  /// several jobs. An exception ends the run, and that trial counts as not run.
   std::function<void()> check;
 };
 
@@ -49,12 +49,12 @@ struct CampaignOutcome {
   bool interrupted = false;
 };
 
-/// Runs what the folder misses, batch after batch (see make_batches). Each result is on the disk
-/// before the next trial of its thread starts. A trial that could not be set up is tried once
-/// more, then kept as a failed one with its reason; nothing is left out.
-/// @throws Error(kUsage) as `require_jobs_allowed`; and whatever else a trial threw as kUsage or
-///   kBadFile, `options.check` threw, or the file system refused, after the trials under way have
-///   ended.
+/// Runs the missing trials of the folder, batch after batch (see make_batches). Each result is on
+/// the disk before the next trial of its thread starts. A trial that could not be set up is tried
+/// once more, then kept as a failed one with its reason.
+/// @throws Error(kUsage) as `require_jobs_allowed`; after the running trials have ended, also any
+///   kUsage or kBadFile of a trial, the exception of `options.check`, or Error(kSetup) if the file
+///   system refuses.
 CampaignOutcome run_campaign(const CampaignFolder& folder, const scenario::Campaign& campaign,
                              const TrialExecutor& execute, const CampaignOptions& options,
                              const ProgressCallback& progress);

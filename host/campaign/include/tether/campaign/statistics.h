@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-/// Statistics of few trials. Pure functions; all values must be finite.
+/// Statistics of small samples. Pure functions; all values must be finite.
 namespace tether::campaign {
 
 struct Interval {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 
 #include <tether/campaign/folder_claim.h>
 
@@ -21,7 +20,7 @@ class TrialFolder {
   explicit TrialFolder(const std::filesystem::path& folder);
 
  private:
-  std::unique_ptr<campaign::PathLock> lock_;  // on the folder
+  campaign::FolderClaim claim_;
 };
 
 }  // namespace tether::runner

@@ -13,10 +13,9 @@ namespace tether::scenario {
 struct CampaignScenario {
   Scenario scenario;
   std::vector<std::string> conditions;  ///< names, in the table's order; each exists in `scenario`
-  /// The paper's table that these results go beside: "I" to "V"; empty: none.
+  /// The paper's table with which these results are compared: "I" to "V"; empty: none.
   std::string paper_table;
-  /// Laid on top of all that the scenario says (it is part of `scenario` already); absolute; empty:
-  /// none.
+  /// Overrides the scenario's sensors (already part of `scenario`); absolute; empty: none.
   std::filesystem::path profile{};
 };
 

@@ -4,7 +4,7 @@
 
 namespace tether::scenario {
 
-/// How a SUT's time is measured (DESIGN section 2).
+/// How a SUT's time is measured (docs/design.md section 2).
 enum class Clock { kWall, kCpu, kScripted };
 /// As written in files: "wall", "cpu", "scripted".
 std::string_view name(Clock clock);

@@ -14,9 +14,9 @@
 #include <tether/uav/math.h>
 #include <tether/uav/sensor_timing.h>
 
-/// Profiles (TOML): what a sensor is like and what it costs in time (paper, Section IV), laid over
-/// what SDF says (docs/guide/scenario.md). All values here are in their ranges; whether they fit
-/// the sensor and each other shows when they are laid over it.
+/// Profiles (TOML): the properties and the timing of sensors (paper, Section IV), which override
+/// SDF (docs/guide/scenario.md). All values here are in their ranges; whether they fit the sensor
+/// and each other is checked when they are applied to it.
 namespace tether::scenario {
 
 struct ImageSize {
@@ -24,18 +24,18 @@ struct ImageSize {
   int height_px = 0;
 };
 
-/// As uav::CameraModel has it.
+/// The coefficients of uav::CameraModel.
 struct Distortion {
   double k1 = 0.0, k2 = 0.0, k3 = 0.0, p1 = 0.0, p2 = 0.0;
 };
 
-/// What one table says of a sensor: [sensors.NAME] of a profile, [uav.sensors.NAME] of a scenario.
-/// What is empty stays as the layer below has it.
+/// One table about a sensor: [sensors.NAME] of a profile, [uav.sensors.NAME] of a scenario. An
+/// empty member leaves the layer below unchanged.
 struct SensorProfile {
   FileLocation where;                             ///< of the table's header
   std::map<std::string, int, std::less<>> lines;  ///< of each of its keys
 
-  std::optional<uav::SensorKind> kind;  ///< a profile always says it
+  std::optional<uav::SensorKind> kind;  ///< always set in a profile
 
   /// Replaces the timing below as a whole, its delay included.
   std::optional<uav::SensorTiming> timing;
@@ -65,7 +65,7 @@ struct SensorProfile {
   std::optional<double> dropout_probability;
   std::optional<sim::Noise> range_noise;
 
-  /// Where the key stands; the table's header if it is not there.
+  /// The line of the key; of the table's header if the key is missing.
   FileLocation at(std::string_view key) const;
 };
 
@@ -79,8 +79,7 @@ struct Profile {
 };
 
 /// Reads and checks a profile. Paths in it are relative to its own folder.
-/// @throws Error(kBadFile) with file and line, saying what is wrong and what is allowed, as
-/// `load_scenario`.
+/// @throws Error(kBadFile) as `load_scenario`.
 Profile load_profile(const std::filesystem::path& file);
 
 }  // namespace tether::scenario

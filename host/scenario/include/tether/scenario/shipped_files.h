@@ -6,7 +6,7 @@
 
 namespace tether::scenario {
 
-/// What Tether ships by name.
+/// The kinds of files that Tether ships.
 enum class ShippedKind { kScenario, kCampaign, kWorld, kProfile, kTarget };
 
 /// "scenario", ...
@@ -34,7 +34,7 @@ class ShippedFiles {
 
   /// What a command line means by `given`: a path, if there is such a file or if it looks like a
   /// path (it has a folder or an extension), else the shipped file of that name.
-  /// @throws Error(kUsage) with the nearest name, if there is neither.
+  /// @throws Error(kUsage), about `given`, with the nearest name, if there is neither.
   std::filesystem::path find(ShippedKind kind, const std::string& given) const;
 
  private:

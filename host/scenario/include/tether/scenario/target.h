@@ -11,10 +11,10 @@
 /// Where the SUT runs: this host, a virtual target on it, or a board (profiles/targets/*.toml).
 namespace tether::scenario {
 
-/// A machine that OpenSSH reaches, as its own command line takes it.
+/// A machine that OpenSSH can reach.
 struct SshAddress {
   std::string destination;  ///< "user@board", or a name from the user's ssh_config
-  int port = 0;             ///< 0: what ssh_config says
+  int port = 0;             ///< 0: as in ssh_config
 };
 
 struct Target {
@@ -23,24 +23,23 @@ struct Target {
   std::string description;        ///< one line; may be empty
   std::optional<SshAddress> ssh;  ///< none: this host
   Clock clock = Clock::kWall;
-  /// Of a virtual target: seconds of ET per second of what the clock measures.
+  /// Of a virtual target: seconds of ET per second that the clock measures.
   double cpu_factor = 1.0;
-  int cores = 0;                      ///< the SUT may use so many; 0: all
+  int cores = 0;                      ///< that the SUT may use; 0: all
   std::vector<std::string> launcher;  ///< before the SUT's command, e.g. {"qemu-aarch64", …}
   /// Where SUT programs named without '/' are: on the board, or on this host (absolute). Empty:
   /// in the PATH there; on this host, beside `tether` first.
   std::string program_folder;
 };
 
-/// "ssh://[user@]host[:port]". @throws Error(kUsage) saying what is expected.
+/// "ssh://[user@]host[:port]". @throws Error(kUsage) about the text.
 SshAddress parse_ssh_address(std::string_view text);
-/// As parse_ssh_address takes it.
+/// The inverse of parse_ssh_address.
 std::string to_string(const SshAddress& address);
 
-/// Reads and checks a target file (docs/guide/target.md). Paths in it that are of this host are
-/// relative to its own folder; words of `launcher` count as such when they begin with "./" or
-/// "../".
-/// @throws Error(kBadFile) with file and line, saying what is wrong and what is allowed.
+/// Reads and checks a target file (docs/guide/target.md). Paths in it that are on this host are
+/// relative to its own folder; words of `launcher` are such paths if they begin with "./" or "../".
+/// @throws Error(kBadFile) as `load_scenario`.
 Target load_target(const std::filesystem::path& file);
 
 }  // namespace tether::scenario
