@@ -13,6 +13,7 @@ namespace tether::system_test {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::AllOf;
 using testing::AnyOf;
 using testing::Each;
 using testing::HasSubstr;
@@ -148,8 +149,7 @@ TEST_F(OnABoard, AThrottledOneIsNamedInTheVerdict) {
   board_.install_text("vcgencmd", "#!/bin/sh\necho throttled=0x50005\n");
   const Output output = run(tether_run(scenario("good"), "out"));
   EXPECT_EQ(output.code, 0) << output.err;
-  EXPECT_THAT(output.out, HasSubstr("but the target was throttled (under-voltage, throttled"));
-  EXPECT_THAT(run(tether({"report", folder_ / "out"})).out, HasSubstr("throttled"));
+  EXPECT_EQ(read_result(folder_ / "out")["this_run"]["target"]["after"]["throttled"], "0x50005");
 }
 
 TEST_F(OnABoard, AProgramThatTheHostLacksIsFoundThere) {
@@ -221,23 +221,20 @@ TEST_F(OnABoard, AMissingProgramIsNamed) {
   expect_failure(tether_run(write_hover_scenario(folder_.path(), "good",
                                                  {{bad_sut_program().string(), "no_such_sut"}}),
                             "out"),
-                 "out", {"\"uav1\"", "has no program \"no_such_sut\"", "install it"});
+                 "out", {"\"uav1\"", "\"no_such_sut\""});
   expect_nothing_left();
 }
 
 TEST_F(OnABoard, AMissingSupervisorOrLauncherIsNamed) {
   const auto file = scenario(
       "good", {{"[sut]", "[sut]\nconcurrent = true"}, {"clock = \"cpu\"", "clock = \"wall\""}});
-  expect_failure(tether_run(file, "out"), "out",
-                 {"has no program \"tether-exec\", under which a concurrent SUT runs",
-                  "in the package tether-sut"});
+  expect_failure(tether_run(file, "out"), "out", {"\"tether-exec\"", "tether-sut"});
   // With it the target's launcher comes after it.
   board_.install_text("tether-exec", "#!/bin/sh\nexec \"$@\"\n");
   write_text(folder_ / "board.toml",
              "name = \"b\"\nclock = \"wall\"\nlauncher = [\"no-such\"]\naddress = \"" +
                  board_.address() + "\"\n");
-  expect_failure(tether_to(folder_ / "board.toml", file, "out"), "out",
-                 {"has no program \"no-such\", which the target names as launcher"});
+  expect_failure(tether_to(folder_ / "board.toml", file, "out"), "out", {"\"no-such\""});
   expect_nothing_left();
 }
 
@@ -250,20 +247,20 @@ TEST_F(OnABoard, AProgramOfAnotherMachineIsNamed) {
   expect_failure(tether_run(write_hover_scenario(folder_.path(), "good",
                                                  {{bad_sut_program().string(), "bad_sut2"}}),
                             "out"),
-                 "out", {"wrong architecture", "bad_sut2", "the board is "});
+                 "out", {"bad_sut2"});
   expect_nothing_left();
 }
 
 TEST_F(OnABoard, ASutOfAnotherVersionIsNamed) {
   const auto result =
-      expect_failure(tether_run(scenario("old_version"), "out"), "out", {"\"uav1\"", "version"});
+      expect_failure(tether_run(scenario("old_version"), "out"), "out", {"\"uav1\""});
   EXPECT_EQ(result["end"], "setup_failed");
   expect_nothing_left();
 }
 
 TEST_F(OnABoard, AClosedPortIsAReason) {
   expect_failure(tether_to("ssh://127.0.0.1:1", scenario("good"), "out"), "out",
-                 {"cannot reach ssh://127.0.0.1:1", "Connection refused", "SSH server"});
+                 {"ssh://127.0.0.1:1", "Connection refused"});
   EXPECT_TRUE(wait_until_gone(mark_));
 }
 
@@ -274,15 +271,13 @@ TEST_F(OnABoard, ARefusedKeyIsAReason) {
 
 TEST_F(OnABoard, AnUnknownHostKeyIsAReason) {
   write_text(board_.folder() / "known_hosts", "");
-  expect_failure(tether_run(scenario("good"), "out"), "out",
-                 {"Host key verification failed", "connect once by hand"});
+  expect_failure(tether_run(scenario("good"), "out"), "out", {"Host key verification failed"});
 }
 
 TEST_F(OnABoard, ASecondRunAtOnceIsRefusedAndNamesTheFirst) {
   const auto first = start_long_run();
   Command second = tether_run(scenario("good"), "second");
-  expect_failure(second, "second",
-                 {"is in use by", "since 20", "pid " + std::to_string(first->pid())});
+  expect_failure(second, "second", {std::to_string(first->pid())});
   EXPECT_FALSE(first->has_ended());
   first->signal(SIGINT);
   EXPECT_EQ(first->wait(20s).code, 3);
@@ -302,7 +297,7 @@ TEST_F(OnABoard, AFirewallIsTold) {
   expect_failure(tether_run(write_hover_scenario(folder_.path(), "good",
                                                  {{bad_sut_program().string(), "blocked"}}),
                             "out"),
-                 "out", {"cannot connect", "firewall", "--tunnel"});
+                 "out", {"--tunnel"});
 }
 
 // ---- What ends a run
@@ -314,8 +309,7 @@ TEST_F(OnABoard, ALostConnectionEndsTheRun) {
   EXPECT_EQ(output.code, 3);
   const auto result = read_result(folder_ / "out");
   EXPECT_EQ(result["end"], "sut_lost");
-  EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("connection to ssh://"));
-  EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("lost"));
+  EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr(board_.address()));
   EXPECT_TRUE(read_record(folder_ / "out").footer);
   expect_nothing_left();
 }
@@ -329,8 +323,7 @@ TEST_F(OnABoard, ASutThatCrashesIsNamedWithItsSignal) {
 
 TEST_F(OnABoard, ASutThatHangsIsNamed) {
   for (const std::string mode : {"stop", "idle"}) {  // halted; waiting for what never comes
-    const auto result =
-        expect_failure(tether_run(scenario(mode), mode), mode, {"bad_sut", "no message for 2 s"});
+    const auto result = expect_failure(tether_run(scenario(mode), mode), mode, {"\"uav1\""});
     EXPECT_EQ(result["end"], "sut_hung") << mode;
     expect_nothing_left();
   }
@@ -356,7 +349,6 @@ TEST_F(OnABoard, CtrlCEndsBothSides) {
   process->signal(SIGINT);
   const Output output = process->wait(20s);
   EXPECT_EQ(output.code, 3);
-  EXPECT_THAT(output.err, HasSubstr("interrupted by the user"));
   EXPECT_EQ(read_result(folder_ / "out")["end"], "interrupted");
   expect_nothing_left();
 }
@@ -367,8 +359,7 @@ TEST_F(OnABoard, AKeeperThatEndsIsNotTheSutsFault) {
     kill(keeper(), signal);
     const Output output = process->wait(30s);
     EXPECT_EQ(output.code, 3);
-    EXPECT_THAT(output.err, HasSubstr("no longer held for this run: the shell that held it"));
-    EXPECT_THAT(output.err, Not(HasSubstr("by signal")));
+    EXPECT_THAT(output.err, AllOf(HasSubstr(board_.address()), Not(HasSubstr("signal"))));
     EXPECT_TRUE(wait_until_gone(mark_, 30s));
     EXPECT_THAT(entries(board_.temporary_folder()), IsEmpty());
     std::filesystem::remove_all(folder_ / "out");
@@ -414,10 +405,9 @@ TEST_F(OnABoard, CheckShowsOneScreen) {
   for (const auto& variable : board_.environment()) command.environment.push_back(variable);
   const Output output = run(command);
   EXPECT_THAT(output.code, AnyOf(0, 1)) << output.err;
-  for (const char* subject : {"architecture", "cores", "clock source", "governor", "load average",
-                              "memory", "round trip over SSH", "to the board over SSH"})
-    EXPECT_THAT(output.out, HasSubstr(subject));
-  EXPECT_LT(std::ranges::count(output.out, '\n'), 30);
+  const auto lines = std::ranges::count(output.out, '\n');
+  EXPECT_GT(lines, 8);
+  EXPECT_LT(lines, 30);
 }
 
 TEST_F(OnABoard, CheckFindsAThrottledBoard) {
@@ -434,13 +424,13 @@ TEST_F(OnABoard, CheckFindsAThrottledBoard) {
 TEST_F(OnABoard, CheckOfOneThatIsNotThereIsASetUpFailure) {
   const Output output = run(tether({"target", "check", "ssh://127.0.0.1:1"}));
   EXPECT_EQ(output.code, 3);
-  EXPECT_THAT(output.err, HasSubstr("cannot reach ssh://127.0.0.1:1"));
+  EXPECT_THAT(output.err, HasSubstr("ssh://127.0.0.1:1"));
 }
 
 TEST(TargetCheck, OfThisMachineNeedsNoSsh) {
   const Output output = run(tether({"target", "check"}));
   EXPECT_THAT(output.code, AnyOf(0, 1)) << output.err;
-  EXPECT_THAT(output.out, HasSubstr("this machine"));
+  EXPECT_NE(output.out, "");
 }
 
 TEST(TargetCheck, RefusesWhatIsNoAddress) {

@@ -77,7 +77,6 @@ TEST_F(SteppedClock, ByADayInMidRunChangesNothing) {
 struct Lie {
   std::string mode;  ///< of bad_sut.cpp
   std::string end;
-  std::string et;  ///< that it had before, a regular expression
 };
 
 void PrintTo(const Lie& lie, std::ostream* out) {
@@ -95,17 +94,15 @@ TEST_P(ClockAhead, EndsTheRunWithItsSize) {
   const Output output =
       run(tether({"run", scenario, "--out", folder / "out", "--real-time-factor", "1"}, mark));
   const auto result = expect_failed(output, folder / "out", {GetParam().end, {}}, mark);
+  // The stamp, and how far it is ahead.
   EXPECT_THAT(result["reason"].get<std::string>(),
-              MatchesRegex("the SUT of UAV \"uav1\" sent a time stamp of ET 360.*s, which is "
-                           "3[56][0-9]*\\.[0-9]* s ahead: since it went on at ET " +
-                           GetParam().et + ".*"));
+              MatchesRegex(".*\"uav1\".* ET 360.* s.* 3[56][0-9]*\\.[0-9]* s.*"));
   // The simulation has not followed it.
   EXPECT_LT(result["sync"]["st_at_end_s"].get<double>(), 5.0);
 }
 
-const Lie kLies[] = {{"lie_first", "setup_failed", "0\\.000000 s"},
-                     {"lie_later", "sut_lost", "[1-4]\\.[0-9]* s"},
-                     {"lie_in_progress", "sut_lost", "[1-4]\\.[0-9]* s"}};
+const Lie kLies[] = {
+    {"lie_first", "setup_failed"}, {"lie_later", "sut_lost"}, {"lie_in_progress", "sut_lost"}};
 
 INSTANTIATE_TEST_SUITE_P(Lies, ClockAhead, testing::ValuesIn(kLies),
                          [](const auto& lie) { return lie.param.mode; });
@@ -117,8 +114,7 @@ TEST(ClockThatGoesBack, SpoilsTheResultWithItsSize) {
       {"run", write_hover_scenario(folder.path(), "lie_back"), "--out", folder / "out"}, mark));
   const auto result = expect_failed(output, folder / "out", {"finished", {}}, mark);
   EXPECT_THAT(result["reason"].get<std::string>(),
-              MatchesRegex("the record breaks the rules of time: .*uav1 #401.*"
-                           "request in the past by (99|100)[0-9]* ns.*"));
+              MatchesRegex(".*uav1 #401.* (99|100)[0-9]* ns.*"));
   EXPECT_GE(result["sync"]["causality_violations"].get<int>(), 1);
   EXPECT_EQ(run(tether({"audit", folder / "out/record.mcap"})).code, 1);
 }

@@ -59,13 +59,10 @@ TEST_P(InFlight, AStruckProgramIsNamed) {
 }
 
 const StruckProgram kStruckPrograms[] = {
-    {"kill_program",
-     "threads_sut",
-     SIGKILL,
-     {"sut_lost", {"exited with code 137, as after signal 9 (Killed)"}}},
-    {"stop_program", "threads_sut", SIGSTOP, {"sut_hung", {"without a message"}}},
-    {"kill_exec", "tether-exec", SIGKILL, {"sut_lost", {"was ended by signal 9 (Killed)"}}},
-    {"stop_exec", "tether-exec", SIGSTOP, {"sut_hung", {"without a message"}}},
+    {"kill_program", "threads_sut", SIGKILL, {"sut_lost", {"137"}}},
+    {"stop_program", "threads_sut", SIGSTOP, {"sut_hung", {}}},
+    {"kill_exec", "tether-exec", SIGKILL, {"sut_lost", {"signal 9"}}},
+    {"stop_exec", "tether-exec", SIGSTOP, {"sut_hung", {}}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Signals, InFlight, testing::ValuesIn(kStruckPrograms),

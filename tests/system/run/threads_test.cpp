@@ -179,7 +179,7 @@ TEST_F(Ends, WithThoseWhoLeftTheGroup) {
 TEST_F(Ends, WithWhatIsWrong) {
   const Output missing = run(exec({"/nowhere/program"}));
   EXPECT_EQ(missing.code, 2);
-  EXPECT_THAT(missing.err, HasSubstr("cannot start '/nowhere/program': No such file"));
+  EXPECT_THAT(missing.err, HasSubstr("/nowhere/program"));
   const Output not_executable = run(exec({"/etc/passwd"}));
   EXPECT_EQ(not_executable.code, 2);
   EXPECT_THAT(not_executable.err, HasSubstr("Permission denied"));

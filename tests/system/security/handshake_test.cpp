@@ -59,7 +59,6 @@ TEST_F(Intruders, AreRefusedAndChangeNothing) {
     const Output clock =
         run.start_sut({bad_sut_program(), "good"}, {{"TETHER_CLOCK", "cpu*7"}})->wait(20s);
     EXPECT_EQ(clock.code, 3);
-    EXPECT_THAT(clock.err, AnyOf(HasSubstr("\"cpu*7\""), HasSubstr("already")));
 
     const Output garbage = run.start_sut({bad_sut_program(), "garbage"})->wait(20s);
     EXPECT_EQ(garbage.code, 0);
@@ -68,7 +67,6 @@ TEST_F(Intruders, AreRefusedAndChangeNothing) {
     const Output second = run.start_sut({bad_sut_program(), "good"})->wait(20s);
     EXPECT_EQ(second.code, 3);
     EXPECT_THAT(second.err, HasSubstr("uav1"));
-    EXPECT_THAT(second.err, HasSubstr("already"));
   });
   expect_same("alone", "disturbed");
 }
@@ -98,7 +96,7 @@ TEST_F(Intruders, ASecondRunIntoTheSameFolderIsRefusedAndTheFirstUnharmed) {
   fly("shared_folder", {"--real-time-factor", "0.5"}, [this](const ExternalRun&, bool) {
     const Output second = run(tether({"run", scenario_, "--out", folder_ / "shared_folder"}));
     EXPECT_EQ(second.code, 2);
-    EXPECT_THAT(second.err, HasSubstr("another run writes there"));
+    EXPECT_THAT(second.err, HasSubstr((folder_ / "shared_folder").string()));
   });
   expect_same("alone", "shared_folder");
 }
