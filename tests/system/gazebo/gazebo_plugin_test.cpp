@@ -235,14 +235,8 @@ void expect_alike(sim::Simulator& gazebo, const Start& start) {
   EXPECT_LT(mean_difference(theirs, ours), 5.0);
 }
 
-TEST_F(GazeboPluginTest, ShowsTheRoomAsTheEmbeddedSimulatorDoes) {
-  const auto gazebo = this->gazebo(kRoom, true);
-  expect_alike(*gazebo, kRoom);
-}
-
-TEST_F(GazeboPluginTest, ShowsTheCorridorAsTheEmbeddedSimulatorDoes) {
-  const auto gazebo = this->gazebo(kCorridor, true);
-  expect_alike(*gazebo, kCorridor);
+TEST_F(GazeboPluginTest, ShowsTheShippedWorldsAsTheEmbeddedSimulatorDoes) {
+  for (const Start& start : {kRoom, kCorridor}) expect_alike(*gazebo(start, true), start);
 }
 
 // The mean of 60 × 60 pixels about the middle row.
@@ -352,14 +346,6 @@ TEST_F(GazeboPluginTest, SaysThatItHasAnotherWorld) {
   EXPECT_EQ(server.process().wait(20s).code, 1);
 }
 
-TEST_F(GazeboPluginTest, SaysWhichBodyItHasNot) {
-  Gzserver server(kRoom.world, "");
-  const auto connection = server.connect();
-  protocol::Open open = open_room();
-  open.bodies.push_back({"ball", "link"});
-  EXPECT_THAT(refusal(*connection, open), HasSubstr("'ball::link'"));
-}
-
 TEST_F(GazeboPluginTest, SaysThatItCannotDraw) {
   Gzserver server(kRoom.world, "");
   const auto connection = server.connect();
@@ -367,20 +353,6 @@ TEST_F(GazeboPluginTest, SaysThatItCannotDraw) {
   open.max_width_px = 64;
   open.max_height_px = 48;
   EXPECT_THAT(refusal(*connection, open), HasSubstr("OpenGL"));
-}
-
-TEST_F(GazeboPluginTest, SaysThatItCannotListen) {
-  Gzserver first(kRoom.world, "");
-  const auto connection = first.connect();
-  const Command again{
-      {(kSource / "scripts/lib/gzserver").string(), (kSource / "build/gazebo/lib").string(), "--",
-       "-s", "libtether_gazebo.so", kRoom.world},
-      {{"TETHER_SIMULATOR_ENDPOINT", "unix:" + first.socket().string()},
-       {"GAZEBO_MASTER_URI", "http://127.0.0.1:19999"}},
-      {}};
-  const Output output = run(again);
-  EXPECT_EQ(output.code, 1);
-  EXPECT_THAT(output.err, HasSubstr("unix:" + first.socket().string()));
 }
 
 }  // namespace

@@ -6,15 +6,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include <sys/types.h>
 
 /// Runs in Gazebo, real or not.
 namespace tether::system_test {
-
-using Variables = std::vector<std::pair<std::string, std::string>>;
 
 /// What has `tether` take stand_in_simulator, which fails as its mode says, for gzserver; the root
 /// for that is made in `folder`.
