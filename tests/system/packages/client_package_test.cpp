@@ -117,9 +117,7 @@ TEST_F(ClientPackage, CMakeChecksTheVersion) {
             " REQUIRED)\n"
             "if(NOT TARGET tether::client)\n  message(FATAL_ERROR \"no target\")\nendif()\n");
     return run({{TETHER_CMAKE, "-S", project, "-B", project / ("build-" + version),
-                 "-DCMAKE_PREFIX_PATH=" + prefix_.string()},
-                {},
-                {}})
+                 "-DCMAKE_PREFIX_PATH=" + prefix_.string()}})
         .code;
   };
   EXPECT_EQ(configure(kVersion), 0);
