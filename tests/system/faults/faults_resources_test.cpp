@@ -17,7 +17,7 @@ using testing::StartsWith;
 /// Flies under limits that get looser and looser.
 class Limits : public RunTest {
  protected:
-  /// Whether the run came through; if not, expects a reason that holds one of these words.
+  /// Whether the run came through; if not, expects this reason.
   bool fly(const std::filesystem::path& scenario, const std::string& limits,
            const testing::Matcher<std::string>& reason) {
     std::filesystem::remove_all(out_);

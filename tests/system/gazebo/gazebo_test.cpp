@@ -66,7 +66,7 @@ TEST_F(Gazebo, FliesTwoRunsAtOnce) {
 
 struct Blow {
   std::string name;
-  std::string process;  ///< a word of its command line
+  std::string process;  ///< part of its command line
   int signal;
   std::string named;  ///< in the reason
   int hang_limit_s = 30;

@@ -104,7 +104,7 @@ TEST_F(ClientPackage, IsRightWhereverItIsMoved) {
   }
 }
 
-/// A program that wants a later one is told so, and not built.
+/// A program that needs a later one is not configured.
 TEST_F(ClientPackage, CMakeChecksTheVersion) {
   const auto project = folder_ / "project";
   std::filesystem::create_directory(project);

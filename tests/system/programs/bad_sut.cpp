@@ -1,4 +1,4 @@
-// A SUT that behaves as its argument says: bad_sut MODE
+// A SUT that behaves well or badly: bad_sut MODE
 //
 // Every mode but those of the start first flies in small steps for 1.5 s of its time.
 // kill_PHASE and stop_PHASE: SIGKILL or SIGSTOP strikes it there.
@@ -36,17 +36,17 @@ std::atomic<std::int64_t> g_ahead_ns{0};  // of what it truly measures
 
 class LyingSource final : public tether::client::TimeSource {
  public:
-  explicit LyingSource(std::unique_ptr<TimeSource> honest) : honest_(std::move(honest)) {}
-  tether::link::ClockKind kind() const override { return honest_->kind(); }
-  double factor() const override { return honest_->factor(); }
+  explicit LyingSource(std::unique_ptr<TimeSource> right) : right_(std::move(right)) {}
+  tether::link::ClockKind kind() const override { return right_->kind(); }
+  double factor() const override { return right_->factor(); }
   tether::Duration elapsed() const override {
-    return honest_->elapsed() + tether::Duration(g_ahead_ns.load());
+    return right_->elapsed() + tether::Duration(g_ahead_ns.load());
   }
-  void exclude_calling_thread() override { honest_->exclude_calling_thread(); }
-  void release_calling_thread() override { honest_->release_calling_thread(); }
+  void exclude_calling_thread() override { right_->exclude_calling_thread(); }
+  void release_calling_thread() override { right_->release_calling_thread(); }
 
  private:
-  std::unique_ptr<TimeSource> honest_;
+  std::unique_ptr<TimeSource> right_;
 };
 
 void lie_by(tether::Duration ahead) {
@@ -282,7 +282,7 @@ const std::map<std::string, std::function<int(Vehicle&)>> kFlyingModes = {
        require(v.sleep_for(10ms));
        return finish(v, true);
      }},
-    // Only what it says beside its calls shows it.
+    // Only its progress messages show it.
     {"lie_in_progress",
      [](Vehicle&) -> int {
        lie_by(1h);

@@ -1,7 +1,7 @@
 // A SUT of several threads: threads_sut MODE SECONDS [CORE]
 //
 //   count  one thread reads the camera, three count iterations of a fixed kernel, until ET has
-//          reached SECONDS; the details of its end say how many per second of ET
+//          reached SECONDS; the details of its end have the number per second of ET
 //   apart  the same with a child process that has left the process group and computes; it must not
 //          get more CPU time than ET passes
 //   spawn  the same while a thread starts one program after another
@@ -151,7 +151,7 @@ Duration own_cpu_time() {
   std::uint64_t state = 1;
   while (own->now() < end) work(state);
   const Duration charged = own->now() - begin;
-  if (2 * (own_cpu_time() - before) > 3 * charged) fail("computed while it should stand still");
+  if (2 * (own_cpu_time() - before) > 3 * charged) fail("computed while it should be stopped");
   std::_Exit(0);
 }
 

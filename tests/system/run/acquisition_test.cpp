@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-/// What a virtual sensor costs is what its profile says, whatever the wire or the simulator took
+/// A virtual sensor costs what its profile states, whatever the link or the simulator took
 /// (paper, Section IV and Fig. 8).
 namespace tether::system_test {
 namespace {
@@ -132,8 +132,8 @@ TEST(Acquisition, TakesWhatItsProfileSaysWhateverTheLinkAndTheSimulator) {
   EXPECT_GT(wire_s, kAcquisitions * 0.04) << "the wire was not slow";
 }
 
-// The round trip of a profile: what a sensor with it measures is written as a profile that says the
-// same.
+// The round trip of a profile: what a sensor with it measures is written as an equal
+// profile.
 TEST(Acquisition, IsCharacterizedIntoAProfileThatSaysTheSame) {
   const TempFolder folder;
   const auto scenario = write_shipped_scenario(folder.path(), "sensor_characterization",

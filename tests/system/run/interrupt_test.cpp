@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A run at real time whose SUT flies 400 interactions in 1.5 s, and then as its mode says.
+/// A run at real time whose SUT flies 400 interactions in 1.5 s, and then behaves by its mode.
 class InMidRun : public RunTest {
  protected:
   Output signalled(int signal, const std::string& mode, std::size_t interactions) {

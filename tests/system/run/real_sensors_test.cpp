@@ -99,7 +99,12 @@ TEST_F(RealSensors, AnInterruptLeavesNoProfile) {
   const auto profile = folder_ / "half.toml";
   Process process({{sut_program(), "characterize", "--camera", bench_.video, "--acquisitions", "70",
                     "--out", profile}});
-  std::this_thread::sleep_for(1s);  // of the video's 2.5
+  ASSERT_TRUE(wait_until([&] {  // it handles the signal
+    const std::string status = read_text("/proc/" + std::to_string(process.pid()) + "/status");
+    const auto at = status.find("SigCgt:\t");
+    return at != std::string::npos && (std::stoull(status.substr(at + 8), nullptr, 16) & 2u) != 0;
+  }));
+  std::this_thread::sleep_for(500ms);  // of the video's 2.5 s
   process.signal(SIGINT);
   const Output output = process.wait(10s);
   EXPECT_EQ(output.code, 1) << output.err;

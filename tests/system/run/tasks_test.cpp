@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Tasks, ShippedScenario,
                                          "face_anchor", "move_forward", "closed_path", "mission"),
                          [](const auto& one) { return std::string(one.param); });
 
-// What the paper's Table IV says.
+// The paper's Table IV.
 TEST(MoveForward, AComputerThatIsTooSlowMissesItsGoal) {
   const TempFolder folder;
   const auto result = fly(folder, "move_forward", 60, 1);

@@ -21,7 +21,7 @@
 #include <tether/sim_protocol/codec.h>
 
 /// A simulator outside that breaks the protocol: its run ends with a reason in bounded time, and
-/// nothing that it said looks like a result.
+/// nothing that it sent becomes a result.
 namespace tether::system_test {
 namespace {
 
@@ -29,7 +29,7 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 namespace protocol = sim::protocol;
 
-// ---- A simulator that may say what it likes
+// ---- A simulator that may send anything
 
 constexpr SimTime kFailsAt = from_ns<SimTime>(500'000'000);
 

@@ -19,7 +19,7 @@
 #include <tether/link/codec.h>
 
 /// A SUT that has the token and breaks the rules: the run ends with a reason that names it, and
-/// nothing that it did looks like a result.
+/// nothing that it did becomes a result.
 namespace tether::system_test {
 namespace {
 
@@ -27,7 +27,7 @@ using namespace std::chrono_literals;
 using testing::AllOf;
 using testing::HasSubstr;
 
-// ---- What a SUT says
+// ---- What a SUT sends
 
 link::Hello hello_for(const std::string& uav) {
   link::Hello hello;
@@ -65,8 +65,8 @@ std::string deep_json() {
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
 
-/// A second of honest flying: 100 requests, each with its reply. Returns the next sequence number.
-std::uint64_t fly_honestly(RawPeer& sut) {
+/// A second of correct flying: 100 requests, each with its reply. Returns the next sequence number.
+std::uint64_t fly_correctly(RawPeer& sut) {
   std::uint64_t sequence = 1;
   for (; sequence <= 100; ++sequence) {
     const auto t = static_cast<std::int64_t>(sequence) * 10 * kMs;
@@ -78,7 +78,7 @@ std::uint64_t fly_honestly(RawPeer& sut) {
 }
 constexpr std::int64_t kFlown = 1000 * kMs;
 
-// ---- Each misdeed, and what is said of it
+// ---- Each violation, and what the reason names
 
 struct Misdeed {
   std::string name;
@@ -201,7 +201,7 @@ TEST_P(HostileSut, EndsItsRunByName) {
   ExternalRun run(write_hover_scenario(folder_.path(), "good"), folder_ / "out");
   RawPeer sut(run.address());
   join(sut);
-  const std::uint64_t next = fly_honestly(sut);
+  const std::uint64_t next = fly_correctly(sut);
 
   const MemoryWatch memory(run.process().pid());
   const long flown_KiB = memory.most_KiB();
@@ -238,7 +238,7 @@ TEST_P(LeavingSut, HasFinished) {
   ExternalRun run(write_hover_scenario(folder.path(), "good"), folder / "out");
   std::optional<RawPeer> sut(std::in_place, run.address());
   join(*sut);
-  sut->write(request(fly_honestly(*sut), 4 * kFlown, link::Finish{true, "done", "{}"}));
+  sut->write(request(fly_correctly(*sut), 4 * kFlown, link::Finish{true, "done", "{}"}));
   if (GetParam() == "Half") {
     sut->shut(SHUT_WR);
     const auto confirmed = sut->read(30s);
@@ -259,10 +259,10 @@ TEST_P(LeavingSut, HasFinished) {
 INSTANTIATE_TEST_SUITE_P(Closing, LeavingSut, testing::Values("Half", "Whole", "ByAReset"),
                          [](const auto& how) { return how.param; });
 
-// ---- Beside an honest one
+// ---- Beside a correct one
 
-/// Who ended the run is told from who only was in it.
-TEST(HostileSutBesideAnHonestOne, EndsTheRunInItsOwnName) {
+/// The reason names the SUT that ended the run.
+TEST(HostileSutBesideAnother, EndsTheRunInItsOwnName) {
   const TempFolder folder;
   const std::string second =
       "[[uav]]\nname = \"uav2\"\nmodel = \"" TETHER_SOURCE_DIR
@@ -272,18 +272,18 @@ TEST(HostileSutBesideAnHonestOne, EndsTheRunInItsOwnName) {
           folder.path(), "fly_on",
           {{"[sut]", second}, {"\"time_required\"", "\"time_required\"\nuav = \"uav1\""}}),
       folder / "out");
-  const auto honest = run.start_sut({bad_sut_program(), "fly_on"}, {{"TETHER_UAV", "uav1"}});
+  const auto other = run.start_sut({bad_sut_program(), "fly_on"}, {{"TETHER_UAV", "uav1"}});
   RawPeer sut(run.address());
   join(sut, "uav2");
-  const std::uint64_t next = fly_honestly(sut);
+  const std::uint64_t next = fly_correctly(sut);
   sut.write(command(next + 7, kFlown));
 
   EXPECT_EQ(run.wait(20s).code, 3);
   const std::string reason = read_result(folder / "out")["reason"];
   EXPECT_THAT(reason, AllOf(HasSubstr("\"uav2\""), HasSubstr("108")));
-  const Output told = honest->wait(10s);
-  EXPECT_EQ(told.code, 3);
-  EXPECT_THAT(told.err, HasSubstr("uav2"));
+  const Output ended = other->wait(10s);
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_THAT(ended.err, HasSubstr("uav2"));
 }
 
 }  // namespace

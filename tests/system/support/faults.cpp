@@ -74,9 +74,9 @@ bool HeldResult::is_reached() const {
 }
 
 void HeldResult::tear() const {
-  const auto torn = out_ / "torn";
-  write_text(torn, "{\n  \"schema\": 1,\n  \"outc");
-  std::filesystem::rename(torn, part_);
+  const auto truncated = out_ / "truncated";
+  write_text(truncated, "{\n  \"schema\": 1,\n  \"outc");
+  std::filesystem::rename(truncated, part_);
 }
 
 void expect_not_in_ci() {

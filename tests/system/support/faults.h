@@ -34,7 +34,7 @@ class RunTest : public testing::Test {
   /// `tether run` with the SUT in that mode, into out_.
   Command flight(const std::string& mode = "good", const std::vector<std::string>& options = {},
                  const std::vector<Substitution>& changes = {}) const;
-  /// What every failed run must show: exit code 3, a result that says so with a reason of one line,
+  /// What every failed run must show: exit code 3, a failed result with a reason of one line,
   /// the same reason on stderr, and no process left. Returns the result.
   nlohmann::json expect_failed(const Output& output, const Failure& failure) const {
     return expect_failed(output, failure, out_);

@@ -40,9 +40,9 @@ EndlessFlight::EndlessFlight(const fs::path& folder, const Variables& environmen
   wait_until_recorded(*process_, out_);
 }
 
-std::optional<pid_t> find_process(const std::string& mark, const std::string& word) {
+std::optional<pid_t> find_process(const std::string& mark, const std::string& part) {
   for (const pid_t pid : processes_with_mark(mark))
-    if (read_text("/proc/" + std::to_string(pid) + "/cmdline").find(word) != std::string::npos)
+    if (read_text("/proc/" + std::to_string(pid) + "/cmdline").find(part) != std::string::npos)
       return pid;
   return std::nullopt;
 }

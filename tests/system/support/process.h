@@ -26,7 +26,7 @@ Command with(Command command, const std::vector<std::string>& arguments,
 /// The same started by another program, such as {"nice", "-n", "5"}.
 Command started_by(const std::vector<std::string>& launcher, Command command);
 
-/// How a program ended and what it said.
+/// How a program ended and what it printed.
 struct Output {
   int code = -1;           ///< exit code; 128 + signal where a signal ended it
   bool timed_out = false;  ///< it was killed because it took too long

@@ -69,7 +69,7 @@ std::string timeless_record(const std::filesystem::path& folder);
 /// Two runs left the same result and the same record, whatever they took.
 void expect_same_runs(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// Writes the record as a file that says the same.
+/// Writes the record as a file that reads back the same.
 void write_record(const std::filesystem::path& file, const record::Record& record);
 
 /// One run whose SUTs are started by the test, so that they can have a scripted clock and a wire of
