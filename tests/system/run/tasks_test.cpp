@@ -12,7 +12,7 @@ nlohmann::json fly(const TempFolder& folder, const std::string& scenario, int co
   const auto file = write_shipped_scenario(folder.path(), scenario, {scripted_host(computing_ms)});
   const auto out = folder / "out";
   const Output output = run(tether({"run", file, "--quiet", "--condition", "host", "--out", out}),
-                            std::chrono::seconds(100));
+                            std::chrono::seconds(240));
   EXPECT_EQ(output.code, expected_code) << output.err;
   return read_result(out);
 }
