@@ -1,9 +1,10 @@
 #include "code_scanner.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstddef>
+#include <regex>
+#include <sstream>
 
 namespace tether::layout {
 namespace {
@@ -102,168 +103,32 @@ class Stripper {
 };
 
 // ---- functions
-// --------------------------------------------------------------------------------------------------
 
-enum class Scope { kNamespace, kType, kFunction, kInitialiser };
-
-/// The text without what stands inside parentheses, square and (after `template`) angle brackets,
-/// so that keywords and signs that are left belong to the declaration itself.
-std::string flatten(std::string_view head) {
-  std::string flat;
-  int depth = 0;
-  for (const char c : head) {
-    if (c == '(' || c == '[') flat += depth++ == 0 ? c : ' ';
-    if (depth == 0) flat += c;
-    if ((c == ')' || c == ']') && --depth == 0) flat += c;
-  }
-  return flat;
+/// A declaration's head up to its brace is that of a function if it has parameters and is neither a
+/// type or namespace nor the initialiser of something.
+bool is_function(const std::string& head) {
+  static const std::regex kScope(
+      "(template ?<.*> )?(inline )?(namespace|class|struct|union|enum|extern)\\b.*");
+  const std::size_t parameters = head.find('(');
+  if (parameters == std::string::npos || std::regex_match(head, kScope)) return false;
+  const std::size_t types = head.rfind('>', parameters);  // may have defaults
+  const std::size_t begin = types == std::string::npos ? 0 : types;
+  const std::string name = head.substr(begin, parameters - begin);
+  return name.find('=') == std::string::npos || contains_word(head, "operator");
 }
 
-std::string_view without_template_heads(std::string_view head) {
-  for (head = trim(head); head.starts_with("template"); head = trim(head)) {
-    std::size_t at = head.find('<');
-    if (at == std::string_view::npos) return head;
-    int depth = 0;
-    do {
-      depth += head[at] == '<' ? 1 : head[at] == '>' ? -1 : 0;
-      ++at;
-    } while (at < head.size() && depth > 0);
-    head.remove_prefix(at);
-  }
-  return head;
+std::string name_of(const std::string& head) {
+  static const std::regex kName("([A-Za-z_0-9:~]*)\\(");
+  std::smatch match;
+  return std::regex_search(head, match, kName) ? match[1].str() : "";
 }
 
-/// Whether what follows the parameter list up to an opening brace leaves that brace to be the
-/// body's.
-bool is_function_tail(std::string_view tail) {
-  tail = trim(tail);
-  if (tail.empty() || tail.starts_with("->")) return true;
-  if (tail.starts_with(":") && !tail.starts_with("::"))
-    return tail.back() == ')' || tail.back() == '}';
-  constexpr std::array<std::string_view, 9> kQualifiers = {
-      "const", "noexcept", "override", "final", "mutable", "volatile", "requires", "try", "&"};
-  return std::any_of(kQualifiers.begin(), kQualifiers.end(),
-                     [&](std::string_view qualifier) { return tail.starts_with(qualifier); });
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
 }
-
-/// What an opening brace opens, from the text since the last `;`, `{` or `}` of its scope.
-Scope classify(std::string_view raw_head) {
-  const std::string flat = flatten(without_template_heads(raw_head));
-  const std::string_view head = trim(flat);
-  if (contains_word(head, "namespace") || head.starts_with("extern")) return Scope::kNamespace;
-  const std::size_t open = head.find('(');
-  for (const std::string_view keyword : {"class", "struct", "union", "enum"}) {
-    if (contains_word(head.substr(0, open), keyword)) return Scope::kType;
-  }
-  if (open == std::string_view::npos) return Scope::kInitialiser;
-  const bool assigned = head.substr(0, open).find('=') != std::string_view::npos;
-  if (assigned && !contains_word(head, "operator")) return Scope::kInitialiser;
-  const std::size_t close = head.find(')', open);
-  // operator() has an empty pair of parentheses before its parameter list.
-  const std::size_t second =
-      contains_word(head, "operator") ? head.find(')', close + 1) : std::string_view::npos;
-  const std::size_t end = second != std::string_view::npos ? second : close;
-  return is_function_tail(head.substr(end + 1)) ? Scope::kFunction : Scope::kInitialiser;
-}
-
-std::string name_of(std::string_view raw_head) {
-  const std::string flat = flatten(without_template_heads(raw_head));
-  const std::string_view before = trim(std::string_view(flat).substr(0, flat.find('(')));
-  std::size_t begin = before.size();
-  while (begin > 0 &&
-         (is_word(before[begin - 1]) || before[begin - 1] == ':' || before[begin - 1] == '~'))
-    --begin;
-  return std::string(before.substr(begin));
-}
-
-/// Blanks preprocessor lines with their continuations.
-std::string without_preprocessor(std::string text) {
-  bool continued = false;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = std::string_view(text).substr(begin, end - begin);
-    const bool directive = continued || trim(line).starts_with('#');
-    continued = directive && line.ends_with('\\');
-    if (directive)
-      std::fill(text.begin() + static_cast<std::ptrdiff_t>(begin),
-                text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
-    begin = end + 1;
-  }
-  return text;
-}
-
-/// Walks the braces of stripped code.
-class BraceWalker {
- public:
-  explicit BraceWalker(std::string_view code) : code_(code) {}
-
-  std::vector<Function> run() {
-    for (at_ = 0; at_ < code_.size(); ++at_) step(code_[at_]);
-    return std::move(found_);
-  }
-
- private:
-  struct Open {
-    Scope scope;
-    int line;
-    std::string name;
-    std::size_t head;  ///< where the declaration around it began
-  };
-
-  bool declarations_here() const {
-    return open_.empty() || open_.back().scope == Scope::kNamespace ||
-           open_.back().scope == Scope::kType;
-  }
-
-  void step(char c) {
-    if (c == '\n') ++line_;
-    if (c == '{') return opened();
-    if (c == '}') return closed();
-    if (!declarations_here()) return;
-    parentheses_ += c == '(' ? 1 : c == ')' ? -1 : 0;
-    if (c == ';') head_ = at_ + 1;
-    if (c == ':' && is_access_specifier()) head_ = at_ + 1;
-  }
-
-  bool is_access_specifier() const {
-    const std::string_view head = trim(code_.substr(head_, at_ - head_));
-    return head == "public" || head == "private" || head == "protected";
-  }
-
-  void opened() {
-    if (!declarations_here() || parentheses_ > 0) {
-      open_.push_back({Scope::kInitialiser, line_, {}, head_});
-      return;
-    }
-    const std::string_view head = code_.substr(head_, at_ - head_);
-    const Scope scope = classify(head);
-    open_.push_back(
-        {scope, line_, scope == Scope::kFunction ? name_of(head) : std::string(), head_});
-    if (scope != Scope::kInitialiser) head_ = at_ + 1;
-  }
-
-  /// An initialiser is part of the declaration around it, which goes on; everything else ends one.
-  void closed() {
-    if (open_.empty()) return;
-    const Open open = open_.back();
-    open_.pop_back();
-    if (open.scope == Scope::kFunction)
-      found_.push_back({open.line, line_ - open.line + 1, open.name});
-    if (open.scope == Scope::kInitialiser) {
-      head_ = open.head;
-    } else {
-      head_ = at_ + 1;
-    }
-  }
-
-  std::string_view code_;
-  std::vector<Open> open_;
-  std::vector<Function> found_;
-  std::size_t at_ = 0;
-  std::size_t head_ = 0;
-  int line_ = 1;
-  int parentheses_ = 0;
-};
 
 }  // namespace
 
@@ -293,9 +158,32 @@ std::vector<Include> includes(std::string_view source) {
   return found;
 }
 
+// clang-format closes what a declaration opens by a "}" at the indentation of its first line.
 std::vector<Function> functions(std::string_view source) {
-  const std::string code = without_preprocessor(strip(source));
-  return BraceWalker(code).run();
+  const std::vector<std::string> lines = lines_of(strip(source));
+  std::vector<Function> found;
+  std::string head;  // the declaration up to here
+  std::string end;   // the beginning of the line that closes it
+  bool is_directive = false;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string_view text = trim(lines[i]);
+    is_directive = text.starts_with('#') || is_directive;
+    if (head.empty()) end = std::string(lines[i].find_first_not_of(' ') % 200, ' ') + "}";
+    if (!is_directive) head += (head.empty() ? "" : " ") + std::string(text);
+    is_directive = is_directive && text.ends_with('\\');
+    const bool opens = head.ends_with('{');
+    if (!opens && !head.ends_with('}') && !head.ends_with(';') && !head.ends_with(':')) continue;
+    const bool is_body = is_function(head);
+    const std::size_t first = i;
+    if (opens && (is_body || head.ends_with("= {")))
+      while (i + 1 < lines.size() && !lines[++i].starts_with(end)) {
+      }
+    if (is_body && (opens || head.ends_with('}')))
+      found.push_back(
+          {static_cast<int>(first) + 1, static_cast<int>(i - first) + 1, name_of(head)});
+    head.clear();
+  }
+  return found;
 }
 
 std::vector<int> lines_with_word(std::string_view stripped, std::string_view word) {

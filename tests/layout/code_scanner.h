@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-/// Reads C++ well enough to check the repository's own rules on it: a lexer and a brace counter, no
-/// compiler. Lines are numbered from 1.
+/// Reads C++ that clang-format has formatted, well enough to check the repository's own rules on
+/// it. Lines are numbered from 1.
 namespace tether::layout {
 
 struct Include {
@@ -17,7 +17,7 @@ struct Include {
 struct Function {
   int line = 0;      ///< of its opening brace
   int length = 0;    ///< lines from the opening brace to the closing one, both counted
-  std::string name;  ///< as far as the brace counter can tell
+  std::string name;  ///< as far as the scanner can tell
 };
 
 /// The text with comments, and the contents of string and character literals, turned into blanks;
@@ -28,7 +28,7 @@ std::string strip(std::string_view source);
 std::vector<Include> includes(std::string_view source);
 
 /// Function definitions at namespace or class scope. What is inside a function (lambdas, local
-/// types) counts as its lines.
+/// types) counts as its lines. @pre formatted by clang-format
 std::vector<Function> functions(std::string_view source);
 
 /// Lines on which `word` stands by itself (no letter, digit or underscore beside it) in stripped

@@ -87,11 +87,11 @@ TEST_F(Arm64, ComputesWhatThisMachineComputes) {
 std::vector<std::string> needs_of(const std::string& package) {
   const auto file =
       kSources / "build/arm64/packages" / (package + "_" TETHER_VERSION_NUMBER "_arm64.deb");
-  const Output told = run({{"dpkg-deb", "-f", file, "Depends"}, {}, {}});
-  EXPECT_EQ(told.code, 0) << told.err << "scripts/build-arm64 makes it";
+  const Output depends = run({{"dpkg-deb", "-f", file, "Depends"}});
+  EXPECT_EQ(depends.code, 0) << depends.err << "scripts/build-arm64 makes it";
   std::vector<std::string> names;
   const std::regex need("([a-z0-9.+-]+) \\(>= [^)]+\\)");
-  for (std::sregex_iterator it(told.out.begin(), told.out.end(), need), end; it != end; ++it)
+  for (std::sregex_iterator it(depends.out.begin(), depends.out.end(), need), end; it != end; ++it)
     names.push_back((*it)[1]);
   return names;
 }

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 /// With scripted execution times a campaign is the same to the byte, however often it is run and
-/// however many of its trials run side by side.
+/// however many of its trials run in parallel.
 namespace tether::system_test {
 namespace {
 

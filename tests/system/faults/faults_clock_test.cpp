@@ -6,37 +6,29 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// Clocks that are set while a run goes on, and SUTs whose clocks lie (docs/guide/faults.md).
+/// Clocks that are set while a run goes on, and SUTs whose clocks are wrong (docs/guide/faults.md).
 namespace tether::system_test {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::HasSubstr;
 using testing::MatchesRegex;
 
-// ---- The machine's wall clock
-
+/// Runs under a scripted clock on whose wall clock a day is added once `step_` exists.
 class SteppedClock : public testing::Test {
  protected:
-  /// A run under a scripted clock on whose wall clock a day is added once `step_` exists.
   std::unique_ptr<Process> start(const std::string& out) {
-    const auto scenario = write_hover_scenario(
-        folder_.path(), "pause", {{"clock = \"cpu\"", "clock = \"scripted\"\ncomputing_ms = 2"}});
-    Command command = tether({"run", scenario, "--out", folder_ / out});
     const char* options = std::getenv("ASAN_OPTIONS");
-    command.environment.insert(
-        command.environment.end(),
+    return std::make_unique<Process>(with(
+        tether({"run", scenario_, "--out", folder_ / out}), {},
         {{"LD_PRELOAD", STEPPED_CLOCK_LIBRARY},
          {"STEPPED_CLOCK", step_},
-         {"ASAN_OPTIONS", std::string(options ? options : "") + ":verify_asan_link_order=0"}});
-    return std::make_unique<Process>(command);
-  }
-  std::string started_at(const std::string& out) const {
-    return read_result(folder_ / out)["this_run"]["started_at"];
+         {"ASAN_OPTIONS", std::string(options ? options : "") + ":verify_asan_link_order=0"}}));
   }
 
   TempFolder folder_;
   const std::filesystem::path step_ = folder_ / "step";
+  const std::filesystem::path scenario_ =
+      write_hover_scenario(folder_.path(), "pause", {kScripted});
 };
 
 /// The date, in the form of `started_at`.
@@ -51,76 +43,45 @@ TEST_F(SteppedClock, ByADayInMidRunChangesNothing) {
   EXPECT_EQ(alone->wait(60s).code, 0) << alone->err();
 
   const auto stepped = start("stepped");
-  ASSERT_TRUE(wait_until([&] {
-    return read_text(folder_ / "stepped/sut-uav1.log").find("pausing") != std::string::npos;
-  })) << stepped->err();
+  ASSERT_TRUE(sut_prints(folder_ / "stepped", "pausing")) << stepped->err();
   write_text(step_, "");
   EXPECT_EQ(stepped->wait(60s).code, 0) << stepped->err();
-  EXPECT_EQ(timeless_result(folder_ / "stepped"), timeless_result(folder_ / "alone"));
-  EXPECT_EQ(timeless_record(folder_ / "stepped"), timeless_record(folder_ / "alone"));
+  expect_same_runs(folder_ / "stepped", folder_ / "alone");
   const auto this_run = read_result(folder_ / "stepped")["this_run"];
   EXPECT_LT(this_run["wall_s"].get<double>(), 60.0);
   EXPECT_FALSE(this_run.contains("notes")) << this_run;
 
-  // What is read of it at all is when the run began.
+  // All that is read of it is when the run began.
   const std::time_t before = std::time(nullptr);
   const auto later = start("later");
   EXPECT_EQ(later->wait(60s).code, 0) << later->err();
-  const std::time_t after = std::time(nullptr);
-  EXPECT_THAT(started_at("later").substr(0, 10),
-              testing::AnyOf(date(before + 86'400), date(after + 86'400)));
-  EXPECT_EQ(timeless_result(folder_ / "later"), timeless_result(folder_ / "alone"));
+  const std::string began = read_result(folder_ / "later")["this_run"]["started_at"];
+  EXPECT_THAT(began.substr(0, 10),
+              testing::AnyOf(date(before + 86'400), date(std::time(nullptr) + 86'400)));
 }
 
-// ---- A SUT's own clock
+// ---- A SUT's own clock: host/coordinator/test/honesty_test.cpp has each case
 
-struct Lie {
-  std::string mode;  ///< of bad_sut.cpp
-  std::string end;
-  std::string et;  ///< that it had before, a regular expression
-};
+class WrongClock : public RunTest {};
 
-void PrintTo(const Lie& lie, std::ostream* out) {
-  *out << lie.mode;
+TEST_F(WrongClock, AheadEndsTheRunWithItsSize) {
+  for (const std::string mode : {"lie_later", "lie_in_progress"}) {
+    const Output output = run(flight(mode, {"--real-time-factor", "1"},
+                                     {kWall, {"hang_limit_s = 2", "hang_limit_s = 30"}}));
+    // The stamp, and how far it is ahead.
+    EXPECT_THAT(expect_failed(output, {"sut_lost", {}})["reason"].get<std::string>(),
+                MatchesRegex(".*\"uav1\".* ET 360.* s.* 3[56][0-9]*\\.[0-9]* s.*"));
+    // The simulation has not followed it.
+    EXPECT_LT(result()["sync"]["st_at_end_s"].get<double>(), 5.0);
+  }
 }
 
-class ClockAhead : public testing::TestWithParam<Lie> {};
-
-TEST_P(ClockAhead, EndsTheRunWithItsSize) {
-  const TempFolder folder;
-  const std::string mark = mark_of_test();
-  const auto scenario = write_hover_scenario(
-      folder.path(), GetParam().mode,
-      {{"clock = \"cpu\"", "clock = \"wall\""}, {"hang_limit_s = 2", "hang_limit_s = 30"}});
-  const Output output =
-      run(tether({"run", scenario, "--out", folder / "out", "--real-time-factor", "1"}, mark));
-  const auto result = expect_failed(output, folder / "out", {GetParam().end, {}}, mark);
+TEST_F(WrongClock, ThatGoesBackSpoilsTheResultWithItsSize) {
+  const auto result = expect_failed(run(flight("lie_back")), {"finished", {}});
   EXPECT_THAT(result["reason"].get<std::string>(),
-              MatchesRegex("the SUT of UAV \"uav1\" sent a time stamp of ET 360.*s, which is "
-                           "3[56][0-9]*\\.[0-9]* s ahead: since it went on at ET " +
-                           GetParam().et + ".*"));
-  // The simulation has not followed it.
-  EXPECT_LT(result["sync"]["st_at_end_s"].get<double>(), 5.0);
-}
-
-const Lie kLies[] = {{"lie_first", "setup_failed", "0\\.000000 s"},
-                     {"lie_later", "sut_lost", "[1-4]\\.[0-9]* s"},
-                     {"lie_in_progress", "sut_lost", "[1-4]\\.[0-9]* s"}};
-
-INSTANTIATE_TEST_SUITE_P(Lies, ClockAhead, testing::ValuesIn(kLies),
-                         [](const auto& lie) { return lie.param.mode; });
-
-TEST(ClockThatGoesBack, SpoilsTheResultWithItsSize) {
-  const TempFolder folder;
-  const std::string mark = mark_of_test();
-  const Output output = run(tether(
-      {"run", write_hover_scenario(folder.path(), "lie_back"), "--out", folder / "out"}, mark));
-  const auto result = expect_failed(output, folder / "out", {"finished", {}}, mark);
-  EXPECT_THAT(result["reason"].get<std::string>(),
-              MatchesRegex("the record breaks the rules of time: .*uav1 #401.*"
-                           "request in the past by (99|100)[0-9]* ns.*"));
+              MatchesRegex(".*uav1 #401.* (99|100)[0-9]* ns.*"));
   EXPECT_GE(result["sync"]["causality_violations"].get<int>(), 1);
-  EXPECT_EQ(run(tether({"audit", folder / "out/record.mcap"})).code, 1);
+  EXPECT_EQ(audit_code(out_), 1);
 }
 
 }  // namespace

@@ -7,211 +7,140 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// `tether` itself is killed, or stopped and continued, whatever it does just then
-/// (docs/guide/faults.md).
+/// `tether` itself is killed, or stopped and continued, at each phase (docs/guide/faults.md).
 namespace tether::system_test {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::HasSubstr;
 
 // ---- Killed
 
 /// A run of bad_sut in a mode, and when it is struck.
 struct Moment {
   std::string mode;
-  std::string said;  ///< by the SUT, when it is time; empty: as soon as the SUT runs
+  std::string printed;  ///< by the SUT, when it is time; empty: as soon as the SUT runs
 };
 
 void PrintTo(const Moment& moment, std::ostream* out) {
   *out << moment.mode;
 }
 
-class AtEachPhase : public testing::TestWithParam<Moment> {
- protected:
-  bool is_time() const {
-    const bool runs = find_process(mark_, "bad_sut").has_value();
-    return runs &&
-           (GetParam().said.empty() ||
-            read_text(folder_ / "out/sut-uav1.log").find(GetParam().said) != std::string::npos);
-  }
-  const std::string mark_ = mark_of_test();
-  TempFolder folder_;
-};
+class AtEachPhase : public RunTest, public testing::WithParamInterface<Moment> {};
 
 TEST_P(AtEachPhase, AKilledRunLeavesNoProcessAndNoResult) {
-  const auto scenario = write_hover_scenario(
-      folder_.path(), GetParam().mode,
-      {{"time_limit_s = 5", "time_limit_s = 600"}, {"hang_limit_s = 2", "hang_limit_s = 60"}});
-  Process process(
-      tether({"run", scenario, "--out", folder_ / "out", "--real-time-factor", "1"}, mark_));
-  ASSERT_TRUE(wait_until([&] { return is_time(); })) << process.err();
+  Process process(flight(GetParam().mode, {"--real-time-factor", "1"}, kEndless));
+  ASSERT_TRUE(wait_until([&] { return find_process(mark_, "bad_sut").has_value(); }))
+      << process.err();
+  ASSERT_TRUE(GetParam().printed.empty() || sut_prints(out_, GetParam().printed)) << process.err();
   process.signal(SIGKILL);
   EXPECT_EQ(process.wait(10s).code, 128 + SIGKILL);
   EXPECT_TRUE(wait_until_gone(mark_));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/result.json"));
-  EXPECT_EQ(run(tether({"report", folder_ / "out"})).code, 2);
+  EXPECT_FALSE(std::filesystem::exists(out_ / "result.json"));
+  EXPECT_EQ(run(tether({"report", out_})).code, 2);
 
   // The folder is as good as new.
-  write_hover_scenario(folder_.path(), "good");
-  EXPECT_EQ(run(tether({"run", scenario, "--out", folder_ / "out"})).code, 0);
-  EXPECT_EQ(read_record(folder_ / "out").damage, "");
+  EXPECT_EQ(run(flight()).code, 0);
+  EXPECT_EQ(read_record(out_).damage, "");
 }
 
 const Moment kMoments[] = {
-    {"never_connect", ""}, {"compute", "joined"},    {"stubborn", "joined"},
-    {"fly_on", "joined"},  {"sleep_long", "joined"}, {"linger", "finished"},
-};
+    {"never_connect", ""}, {"compute", "joined"}, {"sleep_long", "joined"}, {"linger", "finished"}};
 
 INSTANTIATE_TEST_SUITE_P(Phases, AtEachPhase, testing::ValuesIn(kMoments),
                          [](const auto& moment) { return moment.param.mode; });
 
-TEST(KilledBeforeItHasKeptItsResult, LeavesAWholeRecordAndNoResult) {
-  const TempFolder folder;
-  const std::string mark = mark_of_test();
-  const auto out = folder / "out";
-  const Command command =
-      tether({"run", write_hover_scenario(folder.path(), "good"), "--out", out}, mark);
-  const HeldResult held(out);
-  Process process(command);
-  ASSERT_TRUE(wait_until([&] { return held.is_waited_for(); })) << process.err();
+using Killed = RunTest;
+
+TEST_F(Killed, BeforeItHasKeptItsResultItLeavesAWholeRecord) {
+  const HeldResult held(out_);
+  Process process(flight());
+  ASSERT_TRUE(held.is_reached()) << process.err();
   process.signal(SIGKILL);
   EXPECT_EQ(process.wait(10s).code, 128 + SIGKILL);
-  EXPECT_TRUE(wait_until_gone(mark));
-  EXPECT_FALSE(std::filesystem::exists(out / "result.json"));
-  EXPECT_EQ(read_record(out).footer->end, "finished");
-  EXPECT_EQ(run(tether({"audit", out / "record.mcap"})).code, 0);
+  EXPECT_TRUE(wait_until_gone(mark_));
+  EXPECT_FALSE(std::filesystem::exists(out_ / "result.json"));
+  EXPECT_EQ(read_record(out_).footer->end, "finished");
+  EXPECT_EQ(audit_code(out_), 0);
 
   held.tear();
-  const Output report = run(tether({"report", out}));
-  EXPECT_EQ(report.code, 2);
-  EXPECT_THAT(report.err, HasSubstr("no result because it did not end"));
-  EXPECT_EQ(run(command).code, 0);
-  EXPECT_EQ(read_result(out)["end"], "finished");
-  EXPECT_FALSE(std::filesystem::exists(out / "result.json.part"));
+  EXPECT_EQ(run(tether({"report", out_})).code, 2);
+  EXPECT_EQ(run(flight()).code, 0);
+  EXPECT_EQ(result()["end"], "finished");
+  EXPECT_FALSE(std::filesystem::exists(out_ / "result.json.part"));
 }
 
-TEST(KilledWhileItsSimulatorStarts, LeavesNoProcess) {
-  const TempFolder folder;
-  const std::string mark = mark_of_test();
-  Process process(gazebo_run(write_hover_scenario(folder.path(), "good"), folder / "out",
-                             stand_in_gazebo(folder.path(), "silent"), mark));
+TEST_F(Killed, WhileItsSimulatorStartsItLeavesNoProcess) {
+  Process process(gazebo_run(write_hover_scenario(folder_.path(), "good"), out_,
+                             stand_in_gazebo(folder_.path(), "silent"), mark_));
   ASSERT_TRUE(wait_until([&] {
-    return find_process(mark, "Xvfb").has_value() && find_process(mark, "gzserver").has_value();
+    return find_process(mark_, "Xvfb").has_value() && find_process(mark_, "gzserver").has_value();
   })) << process.err();
   process.signal(SIGKILL);
   process.wait(10s);
-  EXPECT_TRUE(wait_until_gone(mark));
-  EXPECT_FALSE(std::filesystem::exists(folder / "out/result.json"));
+  EXPECT_TRUE(wait_until_gone(mark_));
+  EXPECT_FALSE(std::filesystem::exists(out_ / "result.json"));
 }
 
 // ---- Stopped and continued
 
 /// Under a scripted clock: what is the same is so to the byte.
-class Stopped : public testing::Test {
+class Stopped : public RunTest {
  protected:
-  void start(const std::string& out, const std::string& mode) {
-    const auto scenario = write_hover_scenario(
-        folder_.path(), mode, {{"clock = \"cpu\"", "clock = \"scripted\"\ncomputing_ms = 2"}});
-    out_ = folder_ / out;
-    tether_ = std::make_unique<Process>(
-        tether({"run", scenario, "--out", out_, "--real-time-factor", "1"}, mark_));
+  void start(const Command& command) {
+    tether_ = std::make_unique<Process>(with(command, {"--real-time-factor", "1"}));
   }
-  bool has_said(const std::string& words) const {
-    return wait_until(
-        [&] { return read_text(out_ / "sut-uav1.log").find(words) != std::string::npos; });
-  }
-  /// Longer than hang_limit_s, which is 2.
-  void stop_for_3_s() {
+  /// For longer than hang_limit_s, which is 2. `other` is stopped before and goes on after it.
+  void stop_for_3_s(std::optional<pid_t> other = {}) {
+    if (other) kill(*other, SIGSTOP);
+    std::this_thread::sleep_for(200ms);  // in which a simulator is asked for the next step
     tether_->signal(SIGSTOP);
     std::this_thread::sleep_for(3s);
     tether_->signal(SIGCONT);
+    std::this_thread::sleep_for(300ms);  // in which it finds no message yet
+    if (other) kill(*other, SIGCONT);
   }
-  void expect_good(const std::string& note) {
+  /// Good, with a note, and as if nothing had been.
+  void expect_good(const Command& command) {
     EXPECT_EQ(tether_->wait(60s).code, 0) << tether_->err();
     EXPECT_TRUE(wait_until_gone(mark_));
-    EXPECT_THAT(read_result(out_)["this_run"].dump(), HasSubstr(note));
-  }
-  void expect_as_if_alone(const std::string& mode) {
-    const auto stopped = out_;
-    start("alone", mode);
-    EXPECT_EQ(tether_->wait(60s).code, 0) << tether_->err();
-    EXPECT_EQ(timeless_result(stopped), timeless_result(out_));
-    EXPECT_EQ(timeless_record(stopped), timeless_record(out_));
+    EXPECT_TRUE(result()["this_run"].contains("notes"));
+    const auto stopped = folder_ / "stopped";
+    std::filesystem::rename(out_, stopped);
+    EXPECT_EQ(run(command).code, 0);
+    expect_same_runs(stopped, out_);
   }
 
-  const std::string mark_ = mark_of_test();
-  TempFolder folder_;
-  std::filesystem::path out_;
   std::unique_ptr<Process> tether_;
 };
 
-const std::string kStoodStill = "the coordinator stalled for ";
-
-TEST_F(Stopped, BeforeItsSutHasJoinedItChangesNothing) {
-  start("stopped", "late");
-  ASSERT_TRUE(wait_until([&] { return find_process(mark_, "bad_sut").has_value(); }));
-  stop_for_3_s();
-  expect_good("");
-  expect_as_if_alone("late");
-}
-
 TEST_F(Stopped, InFlightItChangesNothing) {
-  start("stopped", "good");
-  ASSERT_TRUE(has_said("joined"));
+  const Command command = flight("good", {}, {kScripted});
+  start(command);
+  ASSERT_TRUE(sut_prints(out_, "joined"));
   stop_for_3_s();
-  expect_good(kStoodStill);
-  expect_as_if_alone("good");
+  expect_good(command);
 }
 
 // A laptop's lid, a paused virtual machine: who was stopped together with us did not hang.
 TEST_F(Stopped, TogetherWithItsComputingSutItChangesNothing) {
-  start("stopped", "pause");
-  ASSERT_TRUE(has_said("pausing"));
+  const Command command = flight("pause", {}, {kScripted});
+  start(command);
+  ASSERT_TRUE(sut_prints(out_, "pausing"));
   const auto sut = find_process(mark_, "bad_sut");
   ASSERT_TRUE(sut);
-  kill(*sut, SIGSTOP);
-  stop_for_3_s();
-  std::this_thread::sleep_for(300ms);  // in which it looks, and hears nothing yet
-  kill(*sut, SIGCONT);
-  expect_good(kStoodStill);
-  expect_as_if_alone("pause");
+  stop_for_3_s(sut);
+  expect_good(command);
 }
 
-TEST_F(Stopped, WhenItsSutHasFinishedItChangesNothing) {
-  start("stopped", "linger");
-  ASSERT_TRUE(has_said("finished"));
-  stop_for_3_s();
-  expect_good("had finished and did not leave");
-  EXPECT_EQ(read_result(out_)["outcome"], "goal_reached");
-}
-
-TEST_F(Stopped, WithASimulatorOutsideItChangesNothing) {
-  const Variables variables = stand_in_gazebo(folder_.path(), "");
-  const auto fly = [&](const std::string& out) {
-    Command command = gazebo_run(
-        write_hover_scenario(folder_.path(), "good",
-                             {{"clock = \"cpu\"", "clock = \"scripted\"\ncomputing_ms = 2"}}),
-        folder_ / out, variables, mark_);
-    command.arguments.insert(command.arguments.end(), {"--real-time-factor", "1"});
-    out_ = folder_ / out;
-    tether_ = std::make_unique<Process>(command);
-  };
-  fly("stopped");
-  ASSERT_TRUE(has_said("joined"));
+TEST_F(Stopped, TogetherWithItsSimulatorItChangesNothing) {
+  const Command command = gazebo_run(write_hover_scenario(folder_.path(), "good", {kScripted}),
+                                     out_, stand_in_gazebo(folder_.path(), ""), mark_);
+  start(command);
+  ASSERT_TRUE(sut_prints(out_, "joined"));
   const auto simulator = find_process(mark_, "gzserver");
   ASSERT_TRUE(simulator);
-  kill(*simulator, SIGSTOP);
-  std::this_thread::sleep_for(200ms);  // in which it is asked for the next step
-  stop_for_3_s();
-  std::this_thread::sleep_for(300ms);
-  kill(*simulator, SIGCONT);
-  expect_good(kStoodStill);
-  const auto stopped = out_;
-  fly("alone");
-  EXPECT_EQ(tether_->wait(60s).code, 0) << tether_->err();
-  EXPECT_EQ(timeless_result(stopped), timeless_result(out_));
-  EXPECT_EQ(timeless_record(stopped), timeless_record(out_));
+  stop_for_3_s(simulator);
+  expect_good(command);
 }
 
 }  // namespace

@@ -9,14 +9,12 @@
 #include <sys/ptrace.h>
 #include <sys/wait.h>
 
-/// The software under test is killed, stopped or looked into by a debugger, whatever it does just
-/// then (docs/guide/faults.md).
+/// The software under test fails, is killed, stopped or looked into by a debugger, at each phase
+/// (docs/guide/faults.md): the run ends in bounded time with a reason that names it.
 namespace tether::system_test {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::AllOf;
-using testing::Contains;
 using testing::HasSubstr;
 
 // ---- At each phase
@@ -31,187 +29,140 @@ void PrintTo(const StruckSut& struck, std::ostream* out) {
   *out << struck.mode;
 }
 
-class AtEachPhase : public testing::TestWithParam<StruckSut> {};
+class AtEachPhase : public RunTest, public testing::WithParamInterface<StruckSut> {};
 
 TEST_P(AtEachPhase, AStruckSutIsNamed) {
-  const TempFolder folder;
-  const std::string mark = mark_of_test();
-  const Output output = run(tether({"run", write_hover_scenario(folder.path(), GetParam().mode),
-                                    "--out", folder / "out", "--real-time-factor", "1"},
-                                   mark));
-  const auto result = expect_failed(output, folder / "out", GetParam().failure, mark);
-  EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("\"uav1\""));
-  const std::string& recorded_end = GetParam().recorded_end;
-  EXPECT_NE(std::filesystem::exists(folder / "out/record.mcap"), recorded_end.empty());
+  const auto& [mode, failure, recorded_end] = GetParam();
+  expect_failed(run(flight(mode, {"--real-time-factor", "1"})), failure);
+  EXPECT_THAT(reason(), HasSubstr("\"uav1\""));
+  EXPECT_NE(std::filesystem::exists(out_ / "record.mcap"), recorded_end.empty());
   if (recorded_end.empty()) return;
-  EXPECT_EQ(read_record(folder / "out").footer->end, recorded_end);
-  EXPECT_EQ(run(tether({"audit", folder / "out/record.mcap"})).code, 0);
+  const record::Record record = read_record(out_);
+  EXPECT_EQ(record.damage, "");
+  EXPECT_EQ(record.footer->end, recorded_end);
+  EXPECT_EQ(audit_code(out_), 0);
 }
 
-const std::string kKilled = "was ended by signal 9 (Killed)";
-const std::string kStopped = "was stopped (by a signal or a debugger)";
-const std::string kComputing =
-    "blocked on SUT \"bad_sut\" (UAV \"uav1\"), which has been computing for 2.0 s without a "
-    "message";
+const std::string kKilled = "signal 9 (Killed)";
 
 // A SUT that is lost before its first interaction was never there, as far as campaigns go.
 const StruckSut kStruckSuts[] = {
+    {"exit_at_start", {"setup_failed", {"code 7", "cannot open the camera"}}, ""},
+    {"garbage_after_hello", {"setup_failed", {"2021161080"}}, "sut_lost"},
     {"kill_connecting", {"setup_failed", {kKilled}}, ""},
     {"kill_connected", {"setup_failed", {kKilled}}, ""},
-    {"kill_joined",
-     {"setup_failed", {kKilled, "it was computing, last heard of at ET 0.000000 s"}},
-     "sut_lost"},
-    {"kill_computing",
-     {"sut_lost", {kKilled, "it was computing, last heard of at ET 1."}},
-     "sut_lost"},
-    {"kill_held",
-     {"setup_failed", {kKilled, "it was waiting for its reply of ET 4.000000 s"}},
-     "sut_lost"},
-    {"kill_request_half",
-     {"setup_failed", {kKilled, "it was computing, last heard of at ET 0.000000 s"}},
-     "sut_lost"},
-    {"kill_reply_half", {"sut_lost", {kKilled, "it was computing"}}, "sut_lost"},
+    {"kill_joined", {"setup_failed", {kKilled, "ET 0.000000 s"}}, "sut_lost"},
+    {"kill_computing", {"sut_lost", {kKilled, "ET 1."}}, "sut_lost"},
+    {"kill_held", {"setup_failed", {kKilled, "ET 4.000000 s"}}, "sut_lost"},
+    {"kill_request_half", {"setup_failed", {kKilled, "ET 0.000000 s"}}, "sut_lost"},
+    {"kill_reply_half", {"sut_lost", {kKilled}}, "sut_lost"},
+    {"crash", {"sut_lost", {"signal 11"}}, "sut_lost"},
+    {"exit", {"sut_lost", {}}, "sut_lost"},
     // 30 s are allowed for joining.
-    {"stop_connected", {"setup_failed", {"no SUT joined", "30 s", kStopped}}, ""},
-    {"stop_joined", {"sut_hung", {"no message for 2 s", kComputing, kStopped}}, "sut_hung"},
-    {"stop_computing", {"sut_hung", {kComputing, "last message at ET 1.", kStopped}}, "sut_hung"},
+    {"stop_connected", {"setup_failed", {"30 s"}}, ""},
+    {"stop_joined", {"sut_hung", {"2.0 s"}}, "sut_hung"},
+    {"stop_computing", {"sut_hung", {"ET 1."}}, "sut_hung"},
     // Its reply left in time; nothing came after it.
-    {"stop_held",
-     {"sut_hung", {kComputing, "last message at ET 4.000000 s", kStopped}},
-     "sut_hung"},
-    {"stop_request_half",
-     {"sut_hung", {kComputing, "last message at ET 0.000000 s", kStopped}},
-     "sut_hung"},
-    {"stop_reply_half", {"sut_hung", {kComputing, kStopped}}, "sut_hung"},
+    {"stop_held", {"sut_hung", {"ET 4.000000 s"}}, "sut_hung"},
+    {"stop_request_half", {"sut_hung", {"ET 0.000000 s"}}, "sut_hung"},
+    {"stop_reply_half", {"sut_hung", {}}, "sut_hung"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Phases, AtEachPhase, testing::ValuesIn(kStruckSuts),
                          [](const auto& struck) { return struck.param.mode; });
 
-// ---- When it has sent its finish
+// ---- Past the time limit
 
-struct AfterItsTask {
-  std::string mode;
-  std::string note;
-};
+class PastTheTimeLimit : public RunTest, public testing::WithParamInterface<std::string> {};
 
-void PrintTo(const AfterItsTask& after, std::ostream* out) {
-  *out << after.mode;
+TEST_P(PastTheTimeLimit, MissesItsGoal) {
+  // CPU time that is stretched tenfold: 5 s of it are soon over.
+  const Output output = run(flight(GetParam(), {"--condition", "slow"}));
+  EXPECT_EQ(output.code, 1);
+  EXPECT_EQ(result()["end"], "time_limit");
+  EXPECT_EQ(result()["outcome"], "goal_missed");
+  EXPECT_THAT(reason(), HasSubstr("5 s"));
+  EXPECT_EQ(result()["sync"]["st_at_end_s"], 5.0);
+  EXPECT_EQ(audit_code(out_), 0);
+  EXPECT_TRUE(wait_until_gone(mark_));
 }
 
-class OnceItHasFinished : public testing::TestWithParam<AfterItsTask> {};
+INSTANTIATE_TEST_SUITE_P(Modes, PastTheTimeLimit,
+                         testing::Values("sleep_long", "fly_on", "stubborn"));
+
+// ---- When it has sent its finish, or left a child behind
+
+class OnceItHasFinished : public RunTest, public testing::WithParamInterface<std::string> {};
 
 TEST_P(OnceItHasFinished, AStruckSutSpoilsNothing) {
-  const TempFolder folder;
-  const std::string mark = mark_of_test();
-  const Output output = run(tether({"run", write_hover_scenario(folder.path(), GetParam().mode),
-                                    "--out", folder / "out", "--real-time-factor", "1"},
-                                   mark));
+  const Output output = run(flight(GetParam(), {"--real-time-factor", "1"}));
   EXPECT_EQ(output.code, 0) << output.err;
-  EXPECT_TRUE(wait_until_gone(mark));
-  const auto result = read_result(folder / "out");
-  EXPECT_EQ(result["outcome"], "goal_reached");
-  EXPECT_THAT(result["this_run"]["notes"].dump(), HasSubstr(GetParam().note));
+  EXPECT_TRUE(wait_until_gone(mark_));
+  EXPECT_EQ(result()["outcome"], "goal_reached");
+  EXPECT_EQ(result()["this_run"].contains("notes"), GetParam() != "child");
 }
 
-// While its finish is held at the barrier, and once it was confirmed.
-const AfterItsTask kAfterItsTask[] = {
-    {"kill_finishing", "after it had finished: the SUT of UAV \\\"uav1\\\""},
-    {"stop_finishing", "had finished and did not leave for 2 s; it was ended"},
-    {"kill_finished", "after it had finished: the SUT of UAV \\\"uav1\\\""},
-    {"stop_finished", "had finished and did not leave for 2 s; it was ended"},
-    {"linger", "had finished and did not leave for 2 s; it was ended"},
-};
-
-INSTANTIATE_TEST_SUITE_P(Modes, OnceItHasFinished, testing::ValuesIn(kAfterItsTask),
-                         [](const auto& after) { return after.param.mode; });
+INSTANTIATE_TEST_SUITE_P(Modes, OnceItHasFinished,
+                         testing::Values("child", "kill_finishing", "stop_finishing",
+                                         "kill_finished", "linger"),
+                         [](const auto& mode) { return mode.param; });
 
 // ---- Stopped for a while
 
-/// The good SUT under a scripted clock, slow enough to be disturbed.
-class ScriptedFlight : public testing::Test {
+class StoppedSut : public RunTest {
  protected:
-  Command command(const std::string& out) {
-    const auto scenario =
-        write_hover_scenario(folder_.path(), "good",
-                             {{"clock = \"cpu\"", "clock = \"scripted\"\ncomputing_ms = 2"},
-                              {"hang_limit_s = 2", "hang_limit_s = 60"}});
-    return tether({"run", scenario, "--out", folder_ / out, "--real-time-factor", "0.5"}, mark_);
+  /// Its SUT, once that has printed so.
+  pid_t sut_after(const std::string& printed) const {
+    EXPECT_TRUE(sut_prints(out_, printed));
+    const auto sut = find_process(mark_, "bad_sut");
+    if (!sut) throw std::runtime_error("no SUT");
+    return *sut;
   }
-  /// Its SUT, once it flies.
-  pid_t flying_sut(const std::string& out) const {
-    EXPECT_TRUE(wait_until([&] {
-      return read_text(folder_ / out / "sut-uav1.log").find("joined") != std::string::npos;
-    }));
-    return find_process(mark_, "bad_sut").value_or(-1);
+  /// A good end, and a note that names the process.
+  void expect_noted(Process& process, pid_t sut) {
+    EXPECT_EQ(process.wait(60s).code, 0) << process.err();
+    EXPECT_THAT(result()["this_run"]["notes"].dump(), HasSubstr(std::to_string(sut)));
   }
-  void expect_as_if_alone(const std::string& out) {
-    EXPECT_EQ(run(command("alone")).code, 0);
-    EXPECT_EQ(timeless_result(folder_ / out), timeless_result(folder_ / "alone"));
-    EXPECT_EQ(timeless_record(folder_ / out), timeless_record(folder_ / "alone"));
-  }
-
-  const std::string mark_ = mark_of_test();
-  TempFolder folder_;
 };
 
-const std::string kWaits =
-    "blocked on SUT \"bad_sut\" (UAV \"uav1\"), which has been computing for 1.0 s";
-
-TEST_F(ScriptedFlight, IsTheSameAfterItsSutWasStopped) {
-  Process process(command("stopped"));
-  const pid_t sut = flying_sut("stopped");
-  ASSERT_GT(sut, 0);
-  kill(sut, SIGSTOP);
-  EXPECT_TRUE(process.wait_for_err(kWaits, 30s)) << process.err();
-  EXPECT_TRUE(process.wait_for_err(kStopped, 5s)) << process.err();
-  kill(sut, SIGCONT);
-  EXPECT_EQ(process.wait(60s).code, 0) << process.err();
-  EXPECT_THAT(read_result(folder_ / "stopped")["this_run"]["notes"].dump(),
-              AllOf(HasSubstr("process " + std::to_string(sut)), HasSubstr(kStopped)));
-  expect_as_if_alone("stopped");
-}
-
-// By a wall clock, time in which it was stopped is its own: the number is another, and says so.
-TEST(WallClockFlight, CountsTheTimeForWhichItsSutWasStopped) {
-  const TempFolder folder;
-  const std::string mark = mark_of_test();
-  const auto scenario = write_hover_scenario(
-      folder.path(), "pause",
-      {{"clock = \"cpu\"", "clock = \"wall\""}, {"hang_limit_s = 2", "hang_limit_s = 60"}});
-  Process process(tether({"run", scenario, "--out", folder / "out"}, mark));
-  ASSERT_TRUE(wait_until([&] {
-    return read_text(folder / "out/sut-uav1.log").find("pausing") != std::string::npos;
-  })) << process.err();
-  const auto sut = find_process(mark, "bad_sut");
-  ASSERT_TRUE(sut);
-  kill(*sut, SIGSTOP);
-  std::this_thread::sleep_for(2500ms);
-  kill(*sut, SIGCONT);
-  EXPECT_EQ(process.wait(60s).code, 0) << process.err();
-  const auto result = read_result(folder / "out");
-  // It flies for at least 1.3 s, and has a pause of its own of 1 s, which ends meanwhile.
-  EXPECT_GE(result["sync"]["st_at_end_s"].get<double>(), 1.3 + 2.5);
-  EXPECT_THAT(result["this_run"]["notes"].dump(),
-              AllOf(HasSubstr("process " + std::to_string(*sut)), HasSubstr(kStopped)));
-}
-
-TEST_F(ScriptedFlight, IsTheSameAfterADebuggerLookedIn) {
-  Process process(command("debugged"));
-  const pid_t sut = flying_sut("debugged");
-  ASSERT_GT(sut, 0);
-  if (ptrace(PTRACE_SEIZE, sut, nullptr, nullptr) != 0) {
-    expect_not_in_ci();
-    GTEST_SKIP() << "no ptrace here";
+// By a scripted clock the run is the same after a stop, and after a debugger.
+TEST_F(StoppedSut, ChangesNothingUnderAScriptedClock) {
+  const Command command = flight("good", {"--real-time-factor", "0.5"},
+                                 {kScripted, {"hang_limit_s = 2", "hang_limit_s = 60"}});
+  EXPECT_EQ(run(command).code, 0);
+  const auto alone = folder_ / "alone";
+  std::filesystem::rename(out_, alone);
+  for (const bool debugged : {false, true}) {
+    Process process(command);
+    const pid_t sut = sut_after("joined");
+    if (!debugged) {
+      kill(sut, SIGSTOP);
+    } else if (ptrace(PTRACE_SEIZE, sut, nullptr, nullptr) != 0) {
+      expect_not_in_ci();
+      GTEST_SKIP() << "no ptrace here";
+    } else {
+      ASSERT_EQ(ptrace(PTRACE_INTERRUPT, sut, nullptr, nullptr), 0);
+      ASSERT_EQ(waitpid(sut, nullptr, __WALL), sut);
+    }
+    EXPECT_TRUE(process.wait_for_err("\"uav1\"", 30s)) << process.err();
+    EXPECT_TRUE(process.wait_for_err(std::to_string(sut), 5s)) << process.err();
+    EXPECT_EQ(debugged ? ptrace(PTRACE_DETACH, sut, nullptr, nullptr) : kill(sut, SIGCONT), 0);
+    expect_noted(process, sut);
+    expect_same_runs(alone, out_);
+    std::filesystem::remove_all(out_);
   }
-  ASSERT_EQ(ptrace(PTRACE_INTERRUPT, sut, nullptr, nullptr), 0);
-  ASSERT_EQ(waitpid(sut, nullptr, __WALL), sut);
-  EXPECT_TRUE(process.wait_for_err(kWaits, 30s)) << process.err();
-  EXPECT_TRUE(process.wait_for_err(kStopped, 5s)) << process.err();
-  EXPECT_EQ(ptrace(PTRACE_DETACH, sut, nullptr, nullptr), 0);
-  EXPECT_EQ(process.wait(60s).code, 0) << process.err();
-  EXPECT_THAT(read_result(folder_ / "debugged")["this_run"]["notes"].dump(), HasSubstr(kStopped));
-  expect_as_if_alone("debugged");
+}
+
+// By a wall clock, the time in which it was stopped counts as computing.
+TEST_F(StoppedSut, IsChargedForItByAWallClock) {
+  Process process(flight("pause", {}, {kWall, {"hang_limit_s = 2", "hang_limit_s = 60"}}));
+  const pid_t sut = sut_after("pausing");
+  kill(sut, SIGSTOP);
+  std::this_thread::sleep_for(2500ms);
+  kill(sut, SIGCONT);
+  expect_noted(process, sut);
+  // It flies for at least 1.3 s, and has a pause of its own of 1 s, which ends meanwhile.
+  EXPECT_GE(result()["sync"]["st_at_end_s"].get<double>(), 1.3 + 2.5);
 }
 
 }  // namespace

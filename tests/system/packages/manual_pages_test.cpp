@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-/// docs/man says all that --help says: whoever adds an option is told here that its page lacks it.
+/// docs/man names every command and option that --help names.
 namespace tether::system_test {
 namespace {
 

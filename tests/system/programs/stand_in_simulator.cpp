@@ -1,10 +1,10 @@
-// A simulator in which nothing ever moves, and that fails as it is told: for what the real one
+// A simulator in which nothing ever moves, and that fails on request: for what the real one
 // cannot be made to do.
 //
 //   stand_in_simulator ENDPOINT
 //   or in the place of Gazebo's loader, with TETHER_SIMULATOR_ENDPOINT
 //
-// STAND_IN_MODE says how it fails; without one it serves until it is ended. kill_PHASE and
+// STAND_IN_MODE selects how it fails; without one it serves until it is ended. kill_PHASE and
 // stop_PHASE: SIGKILL or SIGSTOP strikes it there.
 #include "support/still_world.h"
 
@@ -36,8 +36,8 @@ const std::string kMode = variable("STAND_IN_MODE");
 // Modes with "in_flight" fail at this ST.
 constexpr tether::SimTime kFailsAt = tether::from_ns<tether::SimTime>(500'000'000);
 
-[[noreturn]] void say_and_exit(const char* words, int code) {
-  std::fprintf(stderr, "%s\n", words);
+[[noreturn]] void print_and_exit(const char* text, int code) {
+  std::fprintf(stderr, "%s\n", text);
   std::exit(code);
 }
 
@@ -77,7 +77,7 @@ Answer fault_at(const protocol::Advance& advance) {
   if (advance.to < kFailsAt) return std::nullopt;
   strike("advancing");
   if (kMode == "crash_in_flight") crash();
-  if (kMode == "exit_in_flight") say_and_exit("[Err] [World.cc:1] I have had enough", 5);
+  if (kMode == "exit_in_flight") print_and_exit("[Err] [World.cc:1] I have had enough", 5);
   if (kMode == "stop_in_flight") std::raise(SIGSTOP);
   if (kMode == "old_words") end_by(SIGABRT);
   if (kMode != "refuse_in_flight") return std::nullopt;
@@ -116,9 +116,9 @@ void serve(protocol::Connection& host) {
 
 int listen(const std::string& text) {
   const auto endpoint = protocol::parse_endpoint(text);
-  if (!endpoint) say_and_exit(endpoint.failure().message.c_str(), 2);
+  if (!endpoint) print_and_exit(endpoint.failure().message.c_str(), 2);
   const auto listener = protocol::listen(*endpoint);
-  if (!listener) say_and_exit(listener.failure().message.c_str(), 3);
+  if (!listener) print_and_exit(listener.failure().message.c_str(), 3);
   std::printf("listening on %s\n", protocol::to_string((*listener)->endpoint()).c_str());
   std::fflush(stdout);
   while (const auto host = (*listener)->accept()) serve(**host);
@@ -126,20 +126,20 @@ int listen(const std::string& text) {
 }
 
 const std::map<std::string, std::function<void()>> kModesAtStart = {
-    {"exit_at_start", [] { say_and_exit("[Err] [Server.cc:1] no wheels", 7); }},
+    {"exit_at_start", [] { print_and_exit("[Err] [Server.cc:1] no wheels", 7); }},
     {"crash_at_start", [] { crash(); }},
     {"silent", [] { wait_for_ever(); }},
-    // As Gazebo says it.
+    // As Gazebo prints it.
     {"port_in_use",
      [] {
-       say_and_exit(
+       print_and_exit(
            "[Err] [Master.cc:95] EXCEPTION: Unable to start server[bind: Address already in use].",
            255);
      }},
-    // As libsdformat says it, of a world that Gazebo then goes on without.
+    // As libsdformat prints it, of a world that Gazebo then goes on without.
     {"misread",
      [] { std::fputs("Error Code 12 Msg: Unable to find uri[model://wheels]\n", stderr); }},
-    // As Gazebo says it of a plugin of the world, which it goes on without.
+    // As Gazebo prints it of a plugin of the world, which it goes on without.
     {"no_plugin",
      [] {
        std::fputs("[Err] [Plugin.hh:178] Failed to load plugin libwheels.so: no such file\n",

@@ -1,12 +1,10 @@
 // A SUT of several threads: threads_sut MODE SECONDS [CORE]
 //
 //   count  one thread reads the camera, three count iterations of a fixed kernel, until ET has
-//          reached SECONDS; the details of its end say how many per second of ET
-//   child  the same with a child process that reads the rangefinder
+//          reached SECONDS; the details of its end have the number per second of ET
 //   apart  the same with a child process that has left the process group and computes; it must not
 //          get more CPU time than ET passes
 //   spawn  the same while a thread starts one program after another
-//   push   subscribes to camera and rangefinder; the details say what came, and whether in time
 //
 // CORE: run on that core only, before everything else there if that is allowed, so that little of
 // what the machine does otherwise is felt.
@@ -29,7 +27,6 @@
 #include <unistd.h>
 
 #include <tether/client/simulated_vehicle.h>
-#include <tether/client/subscription.h>
 
 namespace {
 
@@ -137,24 +134,6 @@ std::string run_count(Vehicle& vehicle, ExecTime end) {
   return details_of(counted, images);
 }
 
-// ---- child
-
-std::string run_with_child(Vehicle& vehicle, ExecTime end) {
-  const pid_t child = fork();
-  if (child == 0) {
-    const auto own = join();
-    while (own->now() < end) {
-      require(own->read_range("range"));
-      require(own->sleep_for(5ms));
-    }
-    std::_Exit(0);
-  }
-  const std::string details = run_count(vehicle, end);
-  int status = 0;
-  if (waitpid(child, &status, 0) != child || status != 0) fail("the child failed");
-  return details;
-}
-
 // ---- apart
 
 Duration own_cpu_time() {
@@ -172,7 +151,7 @@ Duration own_cpu_time() {
   std::uint64_t state = 1;
   while (own->now() < end) work(state);
   const Duration charged = own->now() - begin;
-  if (2 * (own_cpu_time() - before) > 3 * charged) fail("computed while it should stand still");
+  if (2 * (own_cpu_time() - before) > 3 * charged) fail("computed while it should be stopped");
   std::_Exit(0);
 }
 
@@ -216,47 +195,8 @@ std::string run_with_spawning(Vehicle& vehicle, ExecTime end) {
   return "{\"started\": " + std::to_string(count) + "}";
 }
 
-// ---- push
-
-template <class Sample>
-struct Pushed {
-  std::atomic<int> count = 0;
-  std::atomic<int> lost = 0;
-  std::atomic<int> from_the_future = 0;
-  std::uint64_t next_index = 0;
-
-  void take(const Sample& sample, ExecTime now) {
-    if (count++ > 0 && sample.index != next_index) ++lost;
-    next_index = sample.index + 1;
-    if (sample.sampled_at > tether::same_instant(now)) ++from_the_future;
-  }
-  std::string text() const {
-    return "{\"count\": " + std::to_string(count) + ", \"lost\": " + std::to_string(lost) +
-           ", \"from_the_future\": " + std::to_string(from_the_future) + "}";
-  }
-};
-
-std::string run_push(Vehicle& vehicle, ExecTime end) {
-  Pushed<tether::uav::CameraSample> images;
-  Pushed<tether::uav::ImuSample> readings;
-  auto camera = require(tether::client::subscribe_camera(
-      vehicle, "camera", [&](const auto& image) { images.take(image, vehicle.now()); }));
-  auto imu = require(tether::client::subscribe_imu(
-      vehicle, "imu", [&](const auto& reading) { readings.take(reading, vehicle.now()); }));
-  std::uint64_t state = 1;
-  while (vehicle.now() < end) work(state);
-  if (camera->ended() || imu->ended()) fail("a subscription has ended");
-  camera.reset();
-  imu.reset();
-  return "{\"camera\": " + images.text() + ", \"imu\": " + readings.text() + "}";
-}
-
 const std::map<std::string, std::function<std::string(Vehicle&, ExecTime)>> kModes = {
-    {"count", run_count},
-    {"child", run_with_child},
-    {"apart", run_beside_one_apart},
-    {"spawn", run_with_spawning},
-    {"push", run_push}};
+    {"count", run_count}, {"apart", run_beside_one_apart}, {"spawn", run_with_spawning}};
 
 }  // namespace
 

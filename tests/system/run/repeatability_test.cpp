@@ -50,9 +50,7 @@ class Repeatability : public testing::Test {
 };
 
 TEST_F(Repeatability, TwentyRunsUnderLoadHaveOneHash) {
-  std::vector<std::unique_ptr<Spinner>> load;
-  for (long core = 0; core <= sysconf(_SC_NPROCESSORS_ONLN); ++core)
-    load.push_back(std::make_unique<Spinner>());
+  std::vector<Spinner> load(static_cast<std::size_t>(sysconf(_SC_NPROCESSORS_ONLN)) + 1);
   const auto checked = checked_program();
   std::set<std::size_t> hashes;
   for (int i = 0; i < kRuns; ++i)

@@ -12,7 +12,7 @@ nlohmann::json fly(const TempFolder& folder, const std::string& scenario, int co
   const auto file = write_shipped_scenario(folder.path(), scenario, {scripted_host(computing_ms)});
   const auto out = folder / "out";
   const Output output = run(tether({"run", file, "--quiet", "--condition", "host", "--out", out}),
-                            std::chrono::seconds(100));
+                            std::chrono::seconds(240));
   EXPECT_EQ(output.code, expected_code) << output.err;
   return read_result(out);
 }
@@ -27,6 +27,12 @@ TEST_P(ShippedScenario, ReachesItsGoalOnAFastComputer) {
   for (const auto& metric : result["metrics"]) EXPECT_TRUE(metric["value"].is_number()) << metric;
   const auto& details = result["suts"][0]["details"];
   EXPECT_EQ(details["status"], "reached") << details;
+  if (GetParam() != std::string("mission")) return;
+  const auto& tasks = details["tasks"];
+  ASSERT_EQ(tasks.size(), 3u);
+  EXPECT_EQ(tasks[1]["task"], "face_anchor");
+  for (const auto& task : tasks) EXPECT_EQ(task["status"], "reached") << task;
+  EXPECT_LE(std::abs(tasks[2]["results"]["bearing_rad"].get<double>()), 0.07);
 }
 
 INSTANTIATE_TEST_SUITE_P(Tasks, ShippedScenario,
@@ -34,16 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Tasks, ShippedScenario,
                                          "face_anchor", "move_forward", "closed_path", "mission"),
                          [](const auto& one) { return std::string(one.param); });
 
-TEST(Missions, EachTasksOutcomeLandsInTheResult) {
-  const TempFolder folder;
-  const auto tasks = fly(folder, "mission", 2, 0)["suts"][0]["details"]["tasks"];
-  ASSERT_EQ(tasks.size(), 3u);
-  EXPECT_EQ(tasks[1]["task"], "face_anchor");
-  for (const auto& task : tasks) EXPECT_EQ(task["status"], "reached") << task;
-  EXPECT_LE(std::abs(tasks[2]["results"]["bearing_rad"].get<double>()), 0.07);
-}
-
-// What the paper's Table IV says.
+// The paper's Table IV.
 TEST(MoveForward, AComputerThatIsTooSlowMissesItsGoal) {
   const TempFolder folder;
   const auto result = fly(folder, "move_forward", 60, 1);

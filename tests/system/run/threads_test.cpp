@@ -1,22 +1,18 @@
-#include "support/trials.h"
+#include "support/faults.h"
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
+#include <csignal>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
 #include <sched.h>
-#include <signal.h>
-#include <sys/socket.h>
-#include <unistd.h>
+
+#include <tether/link/socket.h>
 
 /// Programs of several threads and processes under tether-exec, with the coordinator and the
-/// simulator.
+/// simulator; and how tether-exec itself ends.
 namespace tether::system_test {
 namespace {
 
@@ -24,33 +20,25 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 
 /// Both ways to stop a program.
-class Threads : public testing::TestWithParam<std::string> {
+class Threads : public RunTest, public testing::WithParamInterface<std::string> {
  protected:
   /// threads_sut in that mode, as one run; returns the details of its end.
   nlohmann::json fly(const std::string& mode, const std::string& seconds,
                      const std::vector<std::string>& options = {}) {
-    const auto out = folder_ / ("run" + std::to_string(++runs_));
-    std::vector<std::string> arguments{"run", scenario(mode, seconds), "--out", out, "--quiet"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Output ended = run(tether(arguments), 60s);
-    const std::string said = read_text(out / "sut-uav1.log");
-    EXPECT_EQ(ended.code, 0) << ended.err << said;  // so the audit has passed
-    return nlohmann::json::parse(said.substr(said.find('{')));
-  }
-
-  std::filesystem::path scenario(const std::string& mode, const std::string& seconds) {
     const std::string core = std::thread::hardware_concurrency() > 1 ? R"(, "0")" : "";
-    return write_hover_scenario(folder_.path(), mode,
-                                {{"[\"" + bad_sut_program().string() + "\", \"" + mode + "\"]",
-                                  "[\"" TETHER_EXEC_PROGRAM "\", \"--freezer\", \"" + GetParam() +
-                                      "\", \"" THREADS_SUT_PROGRAM "\", \"" + mode + "\", \"" +
-                                      seconds + "\"" + core + "]"},
-                                 {"clock = \"cpu\"", "clock = \"wall\""},
-                                 {"hang_limit_s = 2", "hang_limit_s = 20"}});
+    const Output ended =
+        run(with(flight(mode, {"--quiet"},
+                        {{"[\"" + bad_sut_program().string() + "\", \"" + mode + "\"]",
+                          "[\"" TETHER_EXEC_PROGRAM "\", \"--freezer\", \"" + GetParam() +
+                              "\", \"" THREADS_SUT_PROGRAM "\", \"" + mode + "\", \"" + seconds +
+                              "\"" + core + "]"},
+                         kWall,
+                         {"hang_limit_s = 2", "hang_limit_s = 20"}}),
+                 options));
+    const std::string printed = read_text(out_ / "sut-uav1.log");
+    EXPECT_EQ(ended.code, 0) << ended.err << printed;  // so the audit has passed
+    return nlohmann::json::parse(printed.substr(printed.find('{')));
   }
-
-  TempFolder folder_;
-  int runs_ = 0;
 };
 
 /// Keeps simulator and coordinator off the first core, which is the program's.
@@ -68,11 +56,6 @@ class OffTheFirstCore {
   cpu_set_t before_{};
 };
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 /// How long the counting threads ran, or would have but for others on their core.
 double free_to_run_s(const nlohmann::json& details) {
   return details["ran_s"].get<double>() + details["delayed_s"].get<double>();
@@ -85,45 +68,34 @@ double work_per_s(const nlohmann::json& details) {
          free_to_run_s(details) / details["et_s"].get<double>();
 }
 
-// A simulator at a tenth of real time holds the program nine tenths of the time. Would its threads
-// go on computing meanwhile, they would do ten times the work in the same ET.
+// A simulator at a tenth of real time holds the program nine tenths of the time. If its threads
+// went on computing meanwhile, they would do ten times the work in the same ET. Three of at most
+// five pairs of flights must agree.
 TEST_P(Threads, DoTheSameWorkHoweverSlowTheSimulatorIs) {
   const OffTheFirstCore elsewhere;
   std::vector<double> ratios;
-  for (int i = 0; i < 5; ++i) {
+  int equal = 0;
+  while (equal < 3 && ratios.size() < 5) {
     const auto unhindered = fly("count", "0.3");
     const auto held = fly("count", "0.3", {"--real-time-factor", "0.1"});
     for (const auto& details : {unhindered, held}) {
       ASSERT_LE(free_to_run_s(details), 1.03 * details["et_s"].get<double>()) << details;
+      EXPECT_GE(details["images"].get<int>(), 1);
     }
     ratios.push_back(work_per_s(held) / work_per_s(unhindered));
+    equal += std::abs(ratios.back() - 1.0) < 0.03 ? 1 : 0;
   }
-  EXPECT_NEAR(median(ratios), 1.0, 0.03) << testing::PrintToString(ratios);
+  EXPECT_EQ(equal, 3) << testing::PrintToString(ratios);
 }
 
-TEST_P(Threads, ReadFromAChildProcessToo) {
-  EXPECT_GE(fly("child", "0.3")["images"].get<int>(), 1);
-}
-
-TEST_P(Threads, StandStillInAProcessThatLeftTheGroupToo) {
+TEST_P(Threads, AreStoppedInAProcessThatLeftTheGroupToo) {
   fly("apart", "0.3", {"--real-time-factor", "0.1"});
 }
 
 // The thread that starts a program waits in the kernel until the new process runs it, and that may
-// stand still first.
+// be stopped first.
 TEST_P(Threads, StartProgramsMeanwhile) {
-  EXPECT_GE(fly("spawn", "2")["started"].get<int>(), 20);
-}
-
-TEST_P(Threads, ArePushedMeasurements) {
-  const auto details = fly("push", "1");
-  for (const char* sensor : {"camera", "imu"}) {
-    EXPECT_GE(details[sensor]["count"].get<int>(), 5) << sensor;
-    // A thread that waits for its turn on a busy machine comes late, in ET as well, and misses
-    // some.
-    EXPECT_LE(details[sensor]["lost"].get<int>(), details[sensor]["count"].get<int>()) << sensor;
-    EXPECT_EQ(details[sensor]["from_the_future"], 0) << sensor;
-  }
+  EXPECT_GE(fly("spawn", "1")["started"].get<int>(), 10);
 }
 
 INSTANTIATE_TEST_SUITE_P(Freezers, Threads, testing::Values("cgroup", "signal"),
@@ -133,169 +105,82 @@ INSTANTIATE_TEST_SUITE_P(Freezers, Threads, testing::Values("cgroup", "signal"),
 
 class Ends : public testing::Test {
  protected:
-  Command exec(const std::vector<std::string>& arguments) const {
-    std::vector<std::string> all{TETHER_EXEC_PROGRAM};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    return {all,
-            {{"TETHER_ADDRESS", "127.0.0.1:1"},
-             {"TETHER_TOKEN", "token"},
-             {"TETHER_TEST_MARK", mark_},
-             {"TMPDIR", folder_.path().string()}},
-            {}};
+  Command exec(const std::vector<std::string>& arguments,
+               const std::string& address = "127.0.0.1:1") const {
+    return with({{TETHER_EXEC_PROGRAM},
+                 {{"TETHER_ADDRESS", address},
+                  {"TETHER_TOKEN", "token"},
+                  {"TETHER_TEST_MARK", mark_},
+                  {"TMPDIR", folder_.path().string()}}},
+                arguments);
   }
-  void expect_nothing_left() {
+  /// A shell's script under each freezer.
+  int code_of(const std::string& freezer, const std::string& script) const {
+    return run(exec({"--freezer", freezer, "sh", "-c", script})).code;
+  }
+  /// Struck by the signal once the script has printed "ready".
+  int signalled(int signal, const std::string& script, const std::string& freezer = "auto") const {
+    Process process(exec({"--freezer", freezer, "sh", "-c", script}));
+    EXPECT_TRUE(process.wait_for_out("ready", 20s));
+    process.signal(signal);
+    return process.wait(20s).code;
+  }
+  void TearDown() override {
     EXPECT_TRUE(wait_until_gone(mark_));
-    for (int i = 0; i < 500 && !std::filesystem::is_empty(folder_.path()); ++i) {
-      std::this_thread::sleep_for(10ms);
-    }
-    EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+    EXPECT_TRUE(wait_until([&] { return std::filesystem::is_empty(folder_.path()); }, 5s));
   }
 
   TempFolder folder_;
   std::string mark_ = "tether-exec-" + folder_.path().filename().string();
 };
 
-TEST_F(Ends, WithTheCodeOfItsCommand) {
+// A child that goes on, one that has left the process group, and one that has also lost its parent.
+TEST_F(Ends, WithTheCodeOfItsCommandAndAllItsProcesses) {
   for (const std::string freezer : {"auto", "signal"}) {
-    EXPECT_EQ(run(exec({"--freezer", freezer, "sh", "-c", "exit 5"})).code, 5);
-    EXPECT_EQ(run(exec({"--freezer", freezer, "sh", "-c", "kill -SEGV $$"})).code, 128 + SIGSEGV);
-    EXPECT_EQ(run(exec({"--freezer", freezer, "sh", "-c", "sleep 1000 & exit 0"})).code, 0);
-    expect_nothing_left();
+    EXPECT_EQ(code_of(freezer, "sleep 1000 & exit 5"), 5);
+    EXPECT_EQ(code_of(freezer, "kill -SEGV $$"), 128 + SIGSEGV);
+    EXPECT_EQ(code_of(freezer,
+                      "setsid sleep 1000 & (setsid sh -c 'sleep 1000 & sleep 1000' &) ; sleep 0.2"),
+              0);
+    EXPECT_TRUE(wait_until_gone(mark_));
   }
 }
 
-// A child that has left the process group, and one that has also lost its parent.
-TEST_F(Ends, WithThoseWhoLeftTheGroup) {
-  for (const std::string freezer : {"auto", "signal"}) {
-    EXPECT_EQ(
-        run(exec({"--freezer", freezer, "sh", "-c",
-                  "setsid sleep 1000 & (setsid sh -c 'sleep 1000 & sleep 1000' &) ; sleep 0.2"}))
-            .code,
-        0);
-    expect_nothing_left();
-  }
-}
-
-TEST_F(Ends, WithWhatIsWrong) {
+TEST_F(Ends, WithTwoAfterWrongUse) {
   const Output missing = run(exec({"/nowhere/program"}));
   EXPECT_EQ(missing.code, 2);
-  EXPECT_THAT(missing.err, HasSubstr("cannot start '/nowhere/program': No such file"));
-  const Output not_executable = run(exec({"/etc/passwd"}));
-  EXPECT_EQ(not_executable.code, 2);
-  EXPECT_THAT(not_executable.err, HasSubstr("Permission denied"));
-  Command unset = exec({"true"});
-  unset.environment[0].second = "";
-  EXPECT_EQ(run(unset).code, 2);
-  expect_nothing_left();
+  EXPECT_THAT(missing.err, HasSubstr("/nowhere/program"));
+  EXPECT_EQ(run(exec({"/etc/passwd"})).code, 2);
+  EXPECT_EQ(run(exec({"true"}, "")).code, 2);
 }
 
-TEST_F(Ends, PassingOnWhatInterruptsIt) {
-  Process process(
-      exec({"sh", "-c", "trap 'exit 9' TERM; echo ready; while :; do sleep 0.1; done"}));
-  ASSERT_TRUE(process.wait_for_out("ready", 20s));
-  process.signal(SIGTERM);
-  EXPECT_EQ(process.wait(10s).code, 9);
-  expect_nothing_left();
-}
-
-TEST_F(Ends, KillingWhoDoesNotListen) {
-  Process process(exec({"sh", "-c", "trap '' TERM; echo ready; while :; do sleep 0.1; done"}));
-  ASSERT_TRUE(process.wait_for_out("ready", 20s));
-  process.signal(SIGTERM);
-  EXPECT_EQ(process.wait(20s).code, 128 + SIGKILL);
-  expect_nothing_left();
-}
-
-TEST_F(Ends, KilledItselfItLeavesNobodyWhoLeftTheGroup) {
-  Process process(exec({"--freezer", "signal", "sh", "-c",
-                        "setsid sh -c 'echo ready; sleep 1000; exit' & sleep 1000"}));
-  ASSERT_TRUE(process.wait_for_out("ready", 20s));
-  process.signal(SIGKILL);
-  process.wait(10s);
-  expect_nothing_left();
+TEST_F(Ends, PassingOnASignalAndKillingACommandThatIgnoresIt) {
+  const std::string loop = "echo ready; while :; do sleep 0.1; done";
+  EXPECT_EQ(signalled(SIGTERM, "trap 'exit 9' TERM; " + loop), 9);
+  EXPECT_EQ(signalled(SIGTERM, "trap '' TERM; " + loop), 128 + SIGKILL);
 }
 
 TEST_F(Ends, KilledItselfItLeavesNothing) {
-  for (const std::string freezer : {"auto", "signal"}) {
-    Process process(exec(
-        {"--freezer", freezer, "sh", "-c", "sleep 1000 & echo ready; kill -STOP $$; sleep 1000"}));
-    ASSERT_TRUE(process.wait_for_out("ready", 20s));
-    process.signal(SIGKILL);
-    process.wait(10s);
-    expect_nothing_left();
-  }
+  const std::string stopped = "sleep 1000 & echo ready; kill -STOP $$; sleep 1000";
+  for (const std::string freezer : {"auto", "signal"}) signalled(SIGKILL, stopped, freezer);
+  signalled(SIGKILL, "setsid sh -c 'echo ready; sleep 1000; exit' & sleep 1000", "signal");
 }
-
-/// A coordinator that takes what is said and does not answer, as one that waits for another SUT.
-class SilentCoordinator {
- public:
-  SilentCoordinator() : listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    auto* const any = reinterpret_cast<sockaddr*>(&address);
-    EXPECT_EQ(::bind(listener_, any, size), 0);
-    EXPECT_EQ(::listen(listener_, 1), 0);
-    EXPECT_EQ(::getsockname(listener_, any, &size), 0);
-    port_ = ntohs(address.sin_port);
-  }
-  ~SilentCoordinator() {
-    hang_up();
-    ::close(listener_);
-  }
-  std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
-  void accept() { connection_ = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC); }
-  void hang_up() {
-    if (connection_ >= 0) ::close(connection_);
-    connection_ = -1;
-  }
-
- private:
-  int listener_;
-  int connection_ = -1;
-  int port_ = 0;
-};
-
-class Joining : public Ends {
- protected:
-  std::unique_ptr<Process> start(const std::string& freezer) {
-    Command command = exec({"--freezer", freezer, THREADS_SUT_PROGRAM, "count", "1"});
-    command.environment[0].second = coordinator_.address();
-    auto process = std::make_unique<Process>(command);
-    coordinator_.accept();
-    return process;
-  }
-  /// Whether the program under tether-exec comes to be stopped by a signal.
-  bool is_stopped() {
-    for (int i = 0; i < 2000; ++i) {
-      for (const pid_t process : processes_with_mark(mark_)) {
-        const std::string state = read_text("/proc/" + std::to_string(process) + "/stat");
-        if (state.find("(threads_sut) T") != std::string::npos) return true;
-      }
-      std::this_thread::sleep_for(10ms);
-    }
-    return false;
-  }
-
-  SilentCoordinator coordinator_;
-};
 
 // What it computed before it is let in would be charged to nobody.
-TEST_F(Joining, HoldsTheProgramUntilItIsLost) {
-  const auto process = start("signal");
-  EXPECT_TRUE(is_stopped());
-  coordinator_.hang_up();
-  EXPECT_EQ(process->wait(20s).code, 3);
-  expect_nothing_left();
-}
-
-TEST_F(Joining, HoldsTheProgramUntilItIsInterrupted) {
-  const auto process = start("signal");
-  EXPECT_TRUE(is_stopped());
-  process->signal(SIGTERM);
-  EXPECT_EQ(process->wait(20s).code, 128 + SIGTERM);
-  expect_nothing_left();
+TEST_F(Ends, HavingHeldTheProgramUntilTheCoordinatorIsLost) {
+  // Takes connections, and replies to nothing, as one that waits for another SUT.
+  auto coordinator = link::listen_on_tcp({"127.0.0.1", 0}).value();
+  Process process(exec({"--freezer", "signal", THREADS_SUT_PROGRAM, "count", "1"},
+                       link::to_string(link::local_address(coordinator.get()))));
+  EXPECT_TRUE(wait_until([&] {
+    for (const pid_t pid : processes_with_mark(mark_)) {
+      const std::string state = read_text("/proc/" + std::to_string(pid) + "/stat");
+      if (state.find("(threads_sut) T") != std::string::npos) return true;
+    }
+    return false;
+  }));
+  coordinator = {};
+  EXPECT_EQ(process.wait(20s).code, 3);
 }
 
 }  // namespace

@@ -19,14 +19,15 @@
 #include <tether/link/codec.h>
 
 /// A SUT that has the token and breaks the rules: the run ends with a reason that names it, and
-/// nothing that it did looks like a result.
+/// nothing that it did becomes a result.
 namespace tether::system_test {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::AllOf;
 using testing::HasSubstr;
 
-// ---- What a SUT says
+// ---- What a SUT sends
 
 link::Hello hello_for(const std::string& uav) {
   link::Hello hello;
@@ -64,8 +65,8 @@ std::string deep_json() {
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
 
-/// A second of honest flying: 100 requests, each with its reply. Returns the next sequence number.
-std::uint64_t fly_honestly(RawPeer& sut) {
+/// A second of correct flying: 100 requests, each with its reply. Returns the next sequence number.
+std::uint64_t fly_correctly(RawPeer& sut) {
   std::uint64_t sequence = 1;
   for (; sequence <= 100; ++sequence) {
     const auto t = static_cast<std::int64_t>(sequence) * 10 * kMs;
@@ -77,7 +78,7 @@ std::uint64_t fly_honestly(RawPeer& sut) {
 }
 constexpr std::int64_t kFlown = 1000 * kMs;
 
-// ---- Each misdeed, and what is said of it
+// ---- Each violation, and what the reason names
 
 struct Misdeed {
   std::string name;
@@ -96,145 +97,71 @@ Misdeed sends(const std::string& name, const std::function<link::Message(std::ui
   return {name, [=](RawPeer& sut, std::uint64_t next) { sut.write(message(next)); }, reason};
 }
 
+// The rules themselves: common/link/test/validate_test.cpp,
+// host/coordinator/test/validator_test.cpp.
 const Misdeed kMisdeeds[] = {
     sends(
-        "LargestStamp", [](auto next) { return command(next, kMax); }, "beyond 146 years"),
+        "LargestStamp", [](auto next) { return command(next, kMax); }, ""),
     sends(
-        "NegativeStamp", [](auto next) { return command(next, -1); }, "issued_at is negative"),
+        "NegativeStamp", [](auto next) { return command(next, -1); }, "issued_at"),
     sends(
-        "SmallestStamp",
-        [](auto next) { return command(next, std::numeric_limits<std::int64_t>::min()); },
-        "issued_at is negative"),
-    sends(
-        "SleepBeyondTime", [](auto next) { return sleep_request(next, kFlown, kMax); },
-        "until is negative or beyond"),
-    sends(
-        "NegativeProgress", [](auto) { return link::Progress{from_ns<ExecTime>(-5)}; },
-        "reached is negative"),
-    sends(
-        "SequenceAgain", [](auto next) { return command(next - 1, kFlown); },
-        "request number 100, expected 101"),
-    sends(
-        "SequenceSkipped", [](auto next) { return command(next + 1, kFlown); },
-        "request number 102, expected 101"),
-    sends(
-        "SequenceZero", [](auto) { return command(0, kFlown); }, "sequence is 0"),
-    sends(
-        "SequenceLargest",
-        [](auto) { return command(std::numeric_limits<std::uint64_t>::max(), kFlown); },
-        "expected 101"),
+        "SequenceSkipped", [](auto next) { return command(next + 1, kFlown); }, "101"),
     sends(
         "NoSuchSensor",
-        [](auto next) { return request(next, kFlown, link::ReadSensor{.sensor = 99}); },
-        "sensor number 99"),
+        [](auto next) { return request(next, kFlown, link::ReadSensor{.sensor = 99}); }, "99"),
     sends(
-        "SensorBeyondAnyCatalogue",
-        [](auto next) { return request(next, kFlown, link::ReadSensor{.sensor = 0xffffffff}); },
-        "sensor is beyond any catalogue"),
+        "CommandOfNoNumber", [](auto next) { return command(next, kFlown, std::nan("")); }, ""),
     sends(
-        "CommandOfNoNumber", [](auto next) { return command(next, kFlown, std::nan("")); },
-        "velocity command is not finite"),
-    sends(
-        "CommandBeyondAnyUav", [](auto next) { return command(next, kFlown, 1e300); },
-        "velocity command"),
-    sends(
-        "HugeAnnotation", [](auto) { return annotation(2u << 20); }, "at most 1048576"),
-    sends(
-        "AnnotationBeyondTheLimit", [](auto) { return annotation(link::kMaxJsonBytes); },
-        "json is longer than"),
-    sends(
-        "AnnotationWithoutTopic",
-        [](auto) {
-          return link::Annotation{ExecTime{}, "", "{}"};
-        },
-        "topic is empty"),
-    sends(
-        "AnnotationOfNoJson",
-        [](auto) {
-          return link::Annotation{ExecTime{}, "estimate", "{\"bearing_rad\": nan}"};
-        },
-        "Annotation: json is not a JSON object: fault at byte 17, \"an}\""),
-    sends(
-        "DeepAnnotation",
-        [](auto) {
-          return link::Annotation{ExecTime{}, "step", deep_json()};
-        },
-        "json is nested deeper than 60 levels"),
-    sends(
-        "DetailsOfNoJson",
-        [](auto next) {
-          return request(next, kFlown, link::Finish{true, "", "{]}"});
-        },
-        "details is not a JSON object: fault at byte 1, \"]}\""),
+        "HugeAnnotation", [](auto) { return annotation(2u << 20); }, "1048576"),
     sends(
         "DeepDetails",
         [](auto next) {
           return request(next, kFlown, link::Finish{true, "", deep_json()});
         },
-        "details is nested deeper than 60 levels"),
+        "details"),
     sends(
         "Reply",
         [](auto) {
           return link::Reply{1, ExecTime{}, std::nullopt};
         },
-        "a message that only coordinators send"),
-    sends(
-        "StopOfASerialSut",
-        [](auto) { return link::Progress{.reached = from_ns<ExecTime>(kFlown), .stopped = true}; },
-        "a stop, which is for concurrent SUTs"),
-    {"HelloAgain", [](RawPeer& sut, auto) { sut.write(hello_for("")); }, "a second Hello"},
-    {"FourGigabytes", [](RawPeer& sut, auto) { sut.write(std::string(4, '\xff')); },
-     "frame of 4294967295 bytes announced"},
+        ""),
+    {"HelloAgain", [](RawPeer& sut, auto) { sut.write(hello_for("")); }, ""},
+    {"FourGigabytes", [](RawPeer& sut, auto) { sut.write(std::string(4, '\xff')); }, "4294967295"},
     {"Garbage",
      [](RawPeer& sut, auto) { sut.write(std::string("\x20\0\0\0", 4) + std::string(32, 'x')); },
-     "not a Tether message"},
-    {"RequestWhileOneIsHeld",
-     [](RawPeer& sut, std::uint64_t next) {
-       sut.write(sleep_request(next, kFlown, 4 * kFlown));
-       sut.write(command(next + 1, kFlown));
-     },
-     "a request while another one is held"},
+     ""},
     {"ImagesThatItDoesNotRead",
      [](RawPeer& sut, std::uint64_t next) {
        const link::ReadSensor camera{.sensor = 0, .latest = true};
        while (sut.write(request(next++, kFlown, camera))) std::this_thread::sleep_for(5ms);
      },
-     "does not read"},
-    {"ClosedHalf", [](RawPeer& sut, auto) { sut.shut(SHUT_WR); }, "closed the connection"},
-    {"ClosedHalfInAFrame",
-     [](RawPeer& sut, std::uint64_t next) {
-       const std::string frame = frame_of(command(next, kFlown));
-       sut.write(frame.substr(0, frame.size() / 2));
-       sut.shut(SHUT_WR);
-     },
-     "closed the connection"},
+     ""},
     {"ClosedHalfWhileHeld",
      [](RawPeer& sut, std::uint64_t next) {
        sut.write(sleep_request(next, kFlown, 4 * kFlown));
        sut.shut(SHUT_WR);
      },
-     "closed the connection"},
+     ""},
     {"GoneInHalfAFinish",
      [](RawPeer& sut, std::uint64_t next) {
        const std::string frame = frame_of(request(next, kFlown, link::Finish{true, "done", "{}"}));
        sut.write(frame.substr(0, frame.size() / 2));
        sut.shut(SHUT_RDWR);
      },
-     "closed the connection"},
+     ""},
     {"GoneWhileHeld",
      [](RawPeer& sut, std::uint64_t next) {
        sut.write(sleep_request(next, kFlown, 4 * kFlown));
        sut.shut(SHUT_RDWR);
      },
-     "it was waiting for its reply of ET 4.000000 s"},
-    {"ClosedTheOtherHalf", [](RawPeer& sut, auto) { sut.shut(SHUT_RD); }, "no message for 2 s",
-     "sut_hung"},
+     "ET 4.000000 s"},
+    {"ClosedTheOtherHalf", [](RawPeer& sut, auto) { sut.shut(SHUT_RD); }, "2 s", "sut_hung"},
     {"AFrameThatNeverEnds",
      [](RawPeer& sut, std::uint64_t next) {
        const std::string frame = frame_of(command(next, kFlown));
        sut.write(frame.substr(0, frame.size() - 1));
      },
-     "no message for 2 s", "sut_hung"},
+     "2 s", "sut_hung"},
     // Few enough that it is not their number that ends it.
     {"AnnotationsWithoutEnd",
      [](RawPeer& sut, auto) {
@@ -242,25 +169,27 @@ const Misdeed kMisdeeds[] = {
        for (int i = 0; i < 40'000; ++i) sut.write(note);
        while (sut.write(note)) std::this_thread::sleep_for(1ms);
      },
-     "no message for 2 s", "sut_hung"},
+     "2 s", "sut_hung"},
     {"CallsThatTakeNoTime",
      [](RawPeer& sut, std::uint64_t next) {
        const link::ReadSensor if_there{.sensor = 1, .only_if_available = true};
        while (sut.write(request(next++, kFlown, if_there)) && sut.read(20s)) {
        }
      },
-     "10001 requests while ST stood at 1.0"},
+     "10001"},
     {"ProgressWithoutEnd",
      [](RawPeer& sut, auto) {
        const std::string same = frame_of(link::Progress{from_ns<ExecTime>(kFlown)});
        while (sut.write(same)) {
        }
      },
-     "no message for 2 s", "sut_hung"},
+     "2 s", "sut_hung"},
 };
 
-Output audit(const std::filesystem::path& folder) {
-  return run(tether({"audit", folder / "record.mcap"}));
+void join(RawPeer& sut, const std::string& uav = "") {
+  sut.write(hello_for(uav));
+  const auto welcome = sut.read(30s);
+  EXPECT_TRUE(welcome && std::holds_alternative<link::Welcome>(*welcome));
 }
 
 class HostileSut : public testing::TestWithParam<Misdeed> {
@@ -271,9 +200,8 @@ class HostileSut : public testing::TestWithParam<Misdeed> {
 TEST_P(HostileSut, EndsItsRunByName) {
   ExternalRun run(write_hover_scenario(folder_.path(), "good"), folder_ / "out");
   RawPeer sut(run.address());
-  ASSERT_TRUE(sut.write(hello_for("")));
-  ASSERT_TRUE(std::holds_alternative<link::Welcome>(sut.read(30s).value()));
-  const std::uint64_t next = fly_honestly(sut);
+  join(sut);
+  const std::uint64_t next = fly_correctly(sut);
 
   const MemoryWatch memory(run.process().pid());
   const long flown_KiB = memory.most_KiB();
@@ -281,7 +209,6 @@ TEST_P(HostileSut, EndsItsRunByName) {
   const Output output = run.wait(40s);
   EXPECT_EQ(output.code, 3);
   EXPECT_FALSE(output.timed_out);
-  EXPECT_THAT(output.err, HasSubstr(GetParam().reason));
   if (kMemoryIsTethers) {
     EXPECT_LT(memory.most_KiB(), flown_KiB + kMostExtraMemory_KiB);
   }
@@ -294,134 +221,48 @@ TEST_P(HostileSut, EndsItsRunByName) {
   EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("uav1"));
   // What had been flown before is in the record, and sound.
   EXPECT_GE(read_record(folder_ / "out").interactions.size(), 100u);
-  EXPECT_EQ(audit(folder_ / "out").code, 0);
+  EXPECT_EQ(audit_code(folder_ / "out"), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Misdeeds, HostileSut, testing::ValuesIn(kMisdeeds),
                          [](const auto& misdeed) { return misdeed.param.name; });
 
-// ---- Times that cannot be
-
-/// A run in which one request is stamped before what the SUT has reached, and which then ends as if
-/// all was well.
-TEST(HostileStamps, ThatGoBackInvalidateTheResultAndAreNamed) {
-  const TempFolder folder;
-  ExternalRun run(write_hover_scenario(folder.path(), "good"), folder / "out");
-  RawPeer sut(run.address());
-  sut.write(hello_for(""));
-  ASSERT_TRUE(std::holds_alternative<link::Welcome>(sut.read(30s).value()));
-  const std::uint64_t next = fly_honestly(sut);
-  sut.write(command(next, kFlown - 300 * kMs));
-  ASSERT_TRUE(sut.read(20s));
-  sut.write(request(next + 1, kFlown, link::Finish{true, "done", "{}"}));
-  ASSERT_TRUE(sut.read(20s));
-
-  const Output output = run.wait(20s);
-  EXPECT_EQ(output.code, 3);
-  const auto result = read_result(folder / "out");
-  EXPECT_EQ(result["outcome"], "failed");
-  EXPECT_EQ(result["sync"]["causality_violations"], 1);
-  EXPECT_THAT(result["reason"].get<std::string>(), HasSubstr("300000000 ns"));
-  EXPECT_EQ(audit(folder / "out").code, 1);
-}
-
-/// Time that this machine's clock cannot have shown is named at once, with its size.
-class HostileClock : public testing::TestWithParam<bool> {};
-
-TEST_P(HostileClock, ThatRunsAheadEndsTheRunByName) {
-  const TempFolder folder;
-  ExternalRun run(
-      write_hover_scenario(folder.path(), "good", {{"clock = \"cpu\"", "clock = \"wall\""}}),
-      folder / "out");
-  RawPeer sut(run.address());
-  link::Hello hello = hello_for("");
-  hello.clock = link::ClockKind::kWall;
-  sut.write(hello);
-  ASSERT_TRUE(std::holds_alternative<link::Welcome>(sut.read(30s).value()));
-  // A minute ahead, more than this test has taken.
-  const auto ahead = from_ns<ExecTime>(60'000 * kMs);
-  const bool by_progress = GetParam();
-  sut.write(by_progress ? link::Message(link::Progress{ahead})
-                        : link::Message(command(1, 60'000 * kMs)));
-  const Output output = run.wait(20s);
-  EXPECT_EQ(output.code, 3);
-  const std::string reason = read_result(folder / "out")["reason"];
-  EXPECT_THAT(reason, HasSubstr("\"uav1\""));
-  EXPECT_THAT(reason, HasSubstr("ET 60.000000 s"));
-  EXPECT_THAT(reason, testing::ContainsRegex("which is [0-9]+\\.[0-9]+ s ahead"));
-}
-
-INSTANTIATE_TEST_SUITE_P(BySayingSo, HostileClock, testing::Bool(), [](const auto& by_progress) {
-  return by_progress.param ? "InProgress" : "InARequest";
-});
-
 // ---- That leave early
 
-struct Leaving {
-  std::string name;
-  std::function<void(std::optional<RawPeer>&)> leave;
-};
-
-void PrintTo(const Leaving& leaving, std::ostream* out) {
-  *out << leaving.name;
-}
-
-/// A SUT that is off as soon as it has sent its Finish, which is held then for 3 s of ST.
-class LeavingSut : public testing::TestWithParam<Leaving> {
- protected:
-  LeavingSut() : run_(write_hover_scenario(folder_.path(), "good"), folder_ / "out") {
-    sut_.emplace(run_.address());
-    sut_->write(hello_for(""));
-    EXPECT_TRUE(std::holds_alternative<link::Welcome>(sut_->read(30s).value()));
-    const std::uint64_t next = fly_honestly(*sut_);
-    sut_->write(request(next, 4 * kFlown, link::Finish{true, "done", "{}"}));
-  }
-  void expect_finished() {
-    EXPECT_EQ(run_.wait(40s).code, 0);
-    const auto result = read_result(folder_ / "out");
-    EXPECT_EQ(result["end"], "finished");
-    EXPECT_EQ(result["suts"][0]["outcome"], "done");
-    EXPECT_EQ(result["sync"]["st_at_end_s"], 4.0);
-    EXPECT_EQ(audit(folder_ / "out").code, 0);
-  }
-
-  TempFolder folder_;
-  ExternalRun run_;
-  std::optional<RawPeer> sut_;
-};
+/// A SUT that closes its connection, in each way, as soon as it has sent its Finish, which is held
+/// then for 3 s of ST.
+class LeavingSut : public testing::TestWithParam<std::string> {};
 
 TEST_P(LeavingSut, HasFinished) {
-  GetParam().leave(sut_);
-  expect_finished();
+  const TempFolder folder;
+  ExternalRun run(write_hover_scenario(folder.path(), "good"), folder / "out");
+  std::optional<RawPeer> sut(std::in_place, run.address());
+  join(*sut);
+  sut->write(request(fly_correctly(*sut), 4 * kFlown, link::Finish{true, "done", "{}"}));
+  if (GetParam() == "Half") {
+    sut->shut(SHUT_WR);
+    const auto confirmed = sut->read(30s);
+    ASSERT_TRUE(confirmed && std::holds_alternative<link::Reply>(*confirmed));
+    EXPECT_EQ(to_ns(std::get<link::Reply>(*confirmed).resume_at), 4 * kFlown);
+  } else {
+    if (GetParam() == "ByAReset") sut->reset_at_close();
+    sut.reset();
+  }
+  EXPECT_EQ(run.wait(40s).code, 0);
+  const auto result = read_result(folder / "out");
+  EXPECT_EQ(result["end"], "finished");
+  EXPECT_EQ(result["suts"][0]["outcome"], "done");
+  EXPECT_EQ(result["sync"]["st_at_end_s"], 4.0);
+  EXPECT_EQ(audit_code(folder / "out"), 0);
 }
 
-const Leaving kLeavings[] = {
-    {"Half", [](auto& sut) { sut->shut(SHUT_WR); }},
-    {"Whole", [](auto& sut) { sut.reset(); }},
-    {"ByAReset",
-     [](auto& sut) {
-       sut->reset_at_close();
-       sut.reset();
-     }},
-};
+INSTANTIATE_TEST_SUITE_P(Closing, LeavingSut, testing::Values("Half", "Whole", "ByAReset"),
+                         [](const auto& how) { return how.param; });
 
-INSTANTIATE_TEST_SUITE_P(Closing, LeavingSut, testing::ValuesIn(kLeavings),
-                         [](const auto& leaving) { return leaving.param.name; });
+// ---- Beside a correct one
 
-class HalfClosedSut : public LeavingSut {};
-
-TEST_F(HalfClosedSut, IsToldWhenItHasFinished) {
-  sut_->shut(SHUT_WR);
-  const auto told = sut_->read(30s);
-  ASSERT_TRUE(told && std::holds_alternative<link::Reply>(*told));
-  EXPECT_EQ(to_ns(std::get<link::Reply>(*told).resume_at), 4 * kFlown);
-  expect_finished();
-}
-
-// ---- Beside an honest one
-
-/// Who ended the run is told from who only was in it.
-TEST(HostileSutBesideAnHonestOne, EndsTheRunInItsOwnName) {
+/// The reason names the SUT that ended the run.
+TEST(HostileSutBesideAnother, EndsTheRunInItsOwnName) {
   const TempFolder folder;
   const std::string second =
       "[[uav]]\nname = \"uav2\"\nmodel = \"" TETHER_SOURCE_DIR
@@ -431,19 +272,18 @@ TEST(HostileSutBesideAnHonestOne, EndsTheRunInItsOwnName) {
           folder.path(), "fly_on",
           {{"[sut]", second}, {"\"time_required\"", "\"time_required\"\nuav = \"uav1\""}}),
       folder / "out");
-  const auto honest = run.start_sut({bad_sut_program(), "fly_on"}, {{"TETHER_UAV", "uav1"}});
+  const auto other = run.start_sut({bad_sut_program(), "fly_on"}, {{"TETHER_UAV", "uav1"}});
   RawPeer sut(run.address());
-  sut.write(hello_for("uav2"));
-  ASSERT_TRUE(std::holds_alternative<link::Welcome>(sut.read(30s).value()));
-  const std::uint64_t next = fly_honestly(sut);
+  join(sut, "uav2");
+  const std::uint64_t next = fly_correctly(sut);
   sut.write(command(next + 7, kFlown));
 
   EXPECT_EQ(run.wait(20s).code, 3);
   const std::string reason = read_result(folder / "out")["reason"];
-  EXPECT_THAT(reason, HasSubstr("the SUT of UAV \"uav2\" sent request number 108, expected 101"));
-  const Output told = honest->wait(10s);
-  EXPECT_EQ(told.code, 3);
-  EXPECT_THAT(told.err, HasSubstr("uav2"));
+  EXPECT_THAT(reason, AllOf(HasSubstr("\"uav2\""), HasSubstr("108")));
+  const Output ended = other->wait(10s);
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_THAT(ended.err, HasSubstr("uav2"));
 }
 
 }  // namespace

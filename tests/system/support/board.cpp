@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Free when asked; whoever takes it meanwhile makes the server fail, and another one is tried.
+/// Free now. If another program takes it first, the server fails, and another port is tried.
 std::uint16_t free_port() {
   const int fd = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};

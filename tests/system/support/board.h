@@ -32,7 +32,7 @@ class SshBoard {
   void install_text(const std::string& name, const std::string& text) const;
   /// Kills the server's side of every connection, as a power cut would.
   void cut_connections() const;
-  /// Sessions' temporary files, for whoever looks for leftovers.
+  /// Sessions' temporary files.
   std::filesystem::path temporary_folder() const { return folder_ / "tmp"; }
   std::filesystem::path folder() const { return folder_.path(); }
 

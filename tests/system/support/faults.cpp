@@ -1,16 +1,11 @@
 #include "faults.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
-#include <thread>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <tether/base/error.h>
 
 namespace tether::system_test {
 
@@ -26,20 +21,31 @@ std::string mark_of_test() {
   return std::string(test->test_suite_name()) + test->name() + std::to_string(getpid());
 }
 
-bool wait_until(const std::function<bool()>& holds, std::chrono::duration<double> limit) {
-  const auto deadline = std::chrono::steady_clock::now() + limit;
-  while (!holds()) {
-    if (std::chrono::steady_clock::now() >= deadline) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return true;
+bool sut_prints(const std::filesystem::path& out, const std::string& text) {
+  return wait_until(
+      [&] { return read_text(out / "sut-uav1.log").find(text) != std::string::npos; });
 }
 
-nlohmann::json expect_failed(const Output& output, const std::filesystem::path& out,
-                             const Failure& failure, const std::string& mark) {
+void wait_until_recorded(Process& tether, const std::filesystem::path& out,
+                         std::size_t interactions) {
+  const bool recorded = wait_until([&] {
+    const auto record = record_so_far(out);
+    return tether.has_ended() || (record && record->interactions.size() >= interactions);
+  });
+  if (!recorded || tether.has_ended()) throw std::runtime_error("no flight: " + tether.err());
+}
+
+Command RunTest::flight(const std::string& mode, const std::vector<std::string>& options,
+                        const std::vector<Substitution>& changes) const {
+  const auto scenario = write_hover_scenario(folder_.path(), mode, changes);
+  return with(tether({"run", scenario, "--out", out_}, mark_), options);
+}
+
+nlohmann::json RunTest::expect_failed(const Output& output, const Failure& failure,
+                                      const std::filesystem::path& out) const {
   EXPECT_EQ(output.code, 3) << output.err;
   EXPECT_FALSE(output.timed_out);
-  EXPECT_TRUE(wait_until_gone(mark));
+  EXPECT_TRUE(wait_until_gone(mark_));
   EXPECT_FALSE(std::filesystem::exists(out / kResultPart));
   const auto result = read_result(out);
   const std::string reason = result["reason"];
@@ -60,17 +66,17 @@ HeldResult::HeldResult(const std::filesystem::path& out) : out_(out), part_(out 
   if (mkfifo(part_.c_str(), 0600) != 0) throw std::runtime_error(part_.string());
 }
 
-bool HeldResult::is_waited_for() const try {
-  const record::Record record = read_record(out_);
-  return record.footer && record.damage.empty();
-} catch (const Error&) {
-  return false;  // not there yet, or not its header
+bool HeldResult::is_reached() const {
+  return wait_until([&] {
+    const auto record = record_so_far(out_);
+    return record && record->footer && record->damage.empty();
+  });
 }
 
 void HeldResult::tear() const {
-  const auto torn = out_ / "torn";
-  write_text(torn, "{\n  \"schema\": 1,\n  \"outc");
-  std::filesystem::rename(torn, part_);
+  const auto truncated = out_ / "truncated";
+  write_text(truncated, "{\n  \"schema\": 1,\n  \"outc");
+  std::filesystem::rename(truncated, part_);
 }
 
 void expect_not_in_ci() {
@@ -78,11 +84,9 @@ void expect_not_in_ci() {
 }
 
 Command limited(const Command& command, const std::string& limits) {
-  Command shell = command;
   const std::string close_inherited = "exec 3>&- 4>&- 5>&- 6>&- 7>&- 8>&- 9>&-; ";
-  shell.arguments = {"sh", "-c", close_inherited + "ulimit " + limits + "; exec \"$@\"", "sh"};
-  shell.arguments.insert(shell.arguments.end(), command.arguments.begin(), command.arguments.end());
-  return shell;
+  return started_by({"sh", "-c", close_inherited + "ulimit " + limits + "; exec \"$@\"", "sh"},
+                    command);
 }
 
 }  // namespace tether::system_test

@@ -2,12 +2,11 @@
 
 #include "trials.h"
 
-#include <chrono>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 /// Runs in which something breaks.
@@ -16,20 +15,39 @@ namespace tether::system_test {
 /// A mark for the processes of the test that runs.
 std::string mark_of_test();
 
-/// Waits until `holds`; false if `limit` passes before.
-bool wait_until(const std::function<bool()>& holds,
-                std::chrono::duration<double> limit = std::chrono::seconds(60));
+/// Waits until the SUT of the run in `out` has printed that.
+bool sut_prints(const std::filesystem::path& out, const std::string& text);
+/// Waits until so many interactions are in the record of the run in `out`.
+/// @throws std::runtime_error with what `tether` printed when it ends before.
+void wait_until_recorded(Process& tether, const std::filesystem::path& out,
+                         std::size_t interactions = 100);
 
 /// How a run failed.
 struct Failure {
   std::string end;                  ///< of result.json
-  std::vector<std::string> reason;  ///< parts of it
+  std::vector<std::string> reason;  ///< values in it
 };
 
-/// Expects what every failed run must show: exit code 3, a result that says so with a reason of one
-/// line, the same reason on stderr, and no process left. Returns the result.
-nlohmann::json expect_failed(const Output& output, const std::filesystem::path& out,
-                             const Failure& failure, const std::string& mark);
+/// A case with runs of the hover scenario.
+class RunTest : public testing::Test {
+ protected:
+  /// `tether run` with the SUT in that mode, into out_.
+  Command flight(const std::string& mode = "good", const std::vector<std::string>& options = {},
+                 const std::vector<Substitution>& changes = {}) const;
+  /// What every failed run must show: exit code 3, a failed result with a reason of one line,
+  /// the same reason on stderr, and no process left. Returns the result.
+  nlohmann::json expect_failed(const Output& output, const Failure& failure) const {
+    return expect_failed(output, failure, out_);
+  }
+  nlohmann::json expect_failed(const Output& output, const Failure& failure,
+                               const std::filesystem::path& out) const;
+  nlohmann::json result() const { return read_result(out_); }
+  std::string reason() const { return result()["reason"]; }
+
+  const std::string mark_ = mark_of_test();
+  TempFolder folder_;
+  const std::filesystem::path out_ = folder_ / "out";
+};
 
 /// Stands where a run writes its result before the result gets its name: the run comes up to there,
 /// its record closed, and waits.
@@ -37,9 +55,10 @@ class HeldResult {
  public:
   /// Makes the run's folder if it is not there.
   explicit HeldResult(const std::filesystem::path& out);
-  /// The run's record is whole: it waits, or is about to.
-  bool is_waited_for() const;
-  /// Puts into its place what a run leaves that is killed while it writes. Who waits, waits on.
+  /// Waits until the run's record is whole: the run waits, or is about to.
+  bool is_reached() const;
+  /// Puts into its place what a run leaves that is killed while it writes. A run that waits goes on
+  /// waiting.
   void tear() const;
 
  private:

@@ -1,30 +1,14 @@
 #include "gazebo.h"
 
-#include <chrono>
-#include <fstream>
-#include <iterator>
+#include "faults.h"
+
 #include <regex>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 
 namespace tether::system_test {
-namespace {
 
 namespace fs = std::filesystem;
-
-std::string command_line_of(pid_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/cmdline", std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-std::size_t recorded_so_far(const fs::path& folder) try {
-  return read_record(folder).interactions.size();
-} catch (const std::exception&) {
-  return 0;
-}
-
-}  // namespace
 
 Variables stand_in_gazebo(const fs::path& folder, const std::string& mode) {
   const fs::path root = folder / "root", machine = root / "lib/x86_64-linux-gnu";
@@ -40,10 +24,8 @@ Variables stand_in_gazebo(const fs::path& folder, const std::string& mode) {
 
 Command gazebo_run(const fs::path& scenario, const fs::path& out, const Variables& environment,
                    const std::string& mark) {
-  Command command =
-      tether({"run", scenario, "--simulator", "gazebo", "--out", out, "--quiet"}, mark);
-  command.environment.insert(command.environment.end(), environment.begin(), environment.end());
-  return command;
+  return with(tether({"run", scenario, "--simulator", "gazebo", "--out", out, "--quiet"}, mark), {},
+              environment);
 }
 
 EndlessFlight::EndlessFlight(const fs::path& folder, const Variables& environment,
@@ -53,25 +35,20 @@ EndlessFlight::EndlessFlight(const fs::path& folder, const Variables& environmen
       folder, "fly_on",
       {{"time_limit_s = 5", "time_limit_s = 600"},
        {"hang_limit_s = 2", "hang_limit_s = " + std::to_string(hang_limit_s)}});
-  Command command = gazebo_run(scenario, out_, environment, mark);
-  command.arguments.insert(command.arguments.end(), {"--real-time-factor", "1"});
-  process_ = std::make_unique<Process>(command);
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (recorded_so_far(out_) < 100) {
-    if (process_->has_ended() || std::chrono::steady_clock::now() > deadline)
-      throw std::runtime_error("the run does not fly: " + process_->err());
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
+  process_ = std::make_unique<Process>(
+      with(gazebo_run(scenario, out_, environment, mark), {"--real-time-factor", "1"}));
+  wait_until_recorded(*process_, out_);
 }
 
-std::optional<pid_t> find_process(const std::string& mark, const std::string& word) {
+std::optional<pid_t> find_process(const std::string& mark, const std::string& part) {
   for (const pid_t pid : processes_with_mark(mark))
-    if (command_line_of(pid).find(word) != std::string::npos) return pid;
+    if (read_text("/proc/" + std::to_string(pid) + "/cmdline").find(part) != std::string::npos)
+      return pid;
   return std::nullopt;
 }
 
 fs::path private_folder(const fs::path& out) {
-  static const std::regex where("listening on unix:(/tmp/tether-gazebo-[^/]+)/");
+  static const std::regex where("unix:(/tmp/tether-gazebo-[^/]+)/");
   const std::string log = read_text(out / "simulator.log");
   std::smatch match;
   if (!std::regex_search(log, match, where))

@@ -6,18 +6,14 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include <sys/types.h>
 
 /// Runs in Gazebo, real or not.
 namespace tether::system_test {
 
-using Variables = std::vector<std::pair<std::string, std::string>>;
-
-/// What has `tether` take stand_in_simulator, which fails as its mode says, for gzserver; the root
-/// for that is made in `folder`.
+/// Variables that make `tether` start stand_in_simulator in that mode as gzserver; its root is made
+/// in `folder`.
 Variables stand_in_gazebo(const std::filesystem::path& folder, const std::string& mode);
 
 /// `tether run` of the scenario in Gazebo.
@@ -29,7 +25,7 @@ class EndlessFlight {
  public:
   /// Starts it in `folder`, with that limit for answers, and waits until some interactions are in
   /// its record.
-  /// @throws std::runtime_error with what it said when it does not come that far.
+  /// @throws std::runtime_error with its output if it ends before.
   EndlessFlight(const std::filesystem::path& folder, const Variables& environment,
                 const std::string& mark, int hang_limit_s = 30);
 
@@ -41,8 +37,8 @@ class EndlessFlight {
   std::unique_ptr<Process> process_;
 };
 
-/// Of the living processes with the mark, the one whose command line has that word in it.
-std::optional<pid_t> find_process(const std::string& mark, const std::string& word);
+/// Of the living processes with the mark, the one whose command line contains `part`.
+std::optional<pid_t> find_process(const std::string& mark, const std::string& part);
 
 /// The private folder of a run with Gazebo, as its simulator.log in `out` names it.
 /// @throws std::runtime_error when it does not.

@@ -67,7 +67,7 @@ Gzserver::Gzserver(const path& world, const std::string& display)
       process_(std::make_unique<Process>(command_of(world, display, folder_.path(), socket_))) {}
 
 std::unique_ptr<sim::protocol::Connection> Gzserver::connect() {
-  if (!process_->wait_for_out("tether: listening on", kStartLimit)) {
+  if (!process_->wait_for_out(socket_.string(), kStartLimit)) {
     throw std::runtime_error("gzserver does not come up: " + process_->out() + process_->err());
   }
   auto connection = sim::protocol::connect(socket_, kStartLimit);

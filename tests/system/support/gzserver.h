@@ -34,7 +34,7 @@ class Gzserver {
   /// `display` empty: none.
   Gzserver(const std::filesystem::path& world, const std::string& display);
 
-  /// @throws std::runtime_error with what gzserver said, when nobody listens within a minute.
+  /// @throws std::runtime_error with the output of gzserver if it does not listen within a minute.
   std::unique_ptr<sim::protocol::Connection> connect();
   const std::filesystem::path& socket() const { return socket_; }
   Process& process() { return *process_; }

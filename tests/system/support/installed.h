@@ -9,10 +9,10 @@
 namespace tether::system_test {
 
 /// The client library as a user's machine has it: the components client and client-dev of this
-/// build, installed below a folder. @throws std::runtime_error with the words of what failed.
+/// build, installed below a folder. @throws std::runtime_error with the output of what failed.
 void install_client(const std::filesystem::path& prefix);
 
-/// Runs to the end and returns what it printed. @throws std::runtime_error with its words if it
+/// Runs to the end and returns what it printed. @throws std::runtime_error with its output if it
 /// does not exit with 0.
 std::string output_of(const std::vector<std::string>& arguments,
                       const std::vector<std::pair<std::string, std::string>>& environment = {},

@@ -15,10 +15,10 @@ inline constexpr bool kMemoryIsTethers = false;  // a sanitizer keeps what was f
 inline constexpr bool kMemoryIsTethers = true;
 #endif
 
-/// What `tether` may take up for a peer that means no good.
+/// What `tether` may use more because of a hostile peer.
 inline constexpr long kMostExtraMemory_KiB = 16 * 1024;
 
-/// Looks at a process' largest memory until it ends or this is destroyed.
+/// Samples a process' largest memory until it ends or this is destroyed.
 class MemoryWatch {
  public:
   explicit MemoryWatch(pid_t pid);

@@ -2,21 +2,8 @@
 
 #include "files.h"
 
-#include <algorithm>
-#include <cerrno>
 #include <csignal>
-#include <cstdlib>
-#include <cstring>
-#include <map>
-#include <stdexcept>
 #include <thread>
-
-#include <fcntl.h>
-#include <sys/prctl.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-extern char** environ;
 
 namespace tether::system_test {
 namespace {
@@ -24,69 +11,35 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto kPoll = std::chrono::milliseconds(5);
 
-std::vector<std::string> merged_environment(const Command& command) {
-  std::map<std::string, std::string> variables;
-  for (char** entry = environ; *entry; ++entry) {
-    const std::string text = *entry;
-    const auto equals = text.find('=');
-    if (equals != std::string::npos) variables[text.substr(0, equals)] = text.substr(equals + 1);
-  }
-  for (const auto& [name, value] : command.environment) variables[name] = value;
-  std::vector<std::string> list;
-  for (const auto& [name, value] : variables) list.push_back(name + "=" + value);
-  return list;
-}
-
-std::vector<char*> pointers(std::vector<std::string>& strings) {
-  std::vector<char*> list;
-  for (std::string& text : strings) list.push_back(text.data());
-  list.push_back(nullptr);
-  return list;
-}
-
-struct Streams {
-  int in, out, err;
-};
-
-[[noreturn]] void become(char* const* arguments, char* const* environment, const char* folder,
-                         const Streams& streams) {
-  setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is killed leaves nothing running
-  dup2(streams.in, STDIN_FILENO);
-  dup2(streams.out, STDOUT_FILENO);
-  dup2(streams.err, STDERR_FILENO);
-  if (*folder != '\0' && chdir(folder) != 0) _exit(126);
-  environ = const_cast<char**>(environment);
-  execvp(arguments[0], arguments);
-  _exit(127);
-}
-
-int open_new(const std::filesystem::path& file) {
-  return open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+template <class T>
+void append(std::vector<T>& list, const std::vector<T>& more) {
+  list.insert(list.end(), more.begin(), more.end());
 }
 
 }  // namespace
 
-Process::Process(const Command& command) : started_(Clock::now()) {
-  std::vector<std::string> arguments = command.arguments;
-  std::vector<std::string> environment = merged_environment(command);
-  const std::vector<char*> argv = pointers(arguments);
-  const std::vector<char*> envp = pointers(environment);
-  int in[2];
-  if (pipe2(in, O_CLOEXEC) != 0) throw std::runtime_error("pipe2 failed");
-  stdin_ = in[1];
-  const Streams streams{in[0], open_new(folder_.path("out")), open_new(folder_.path("err"))};
-  pid_ = fork();
-  if (pid_ == 0) become(argv.data(), envp.data(), command.working_folder.c_str(), streams);
-  for (const int fd : {streams.in, streams.out, streams.err}) close(fd);
-  if (pid_ < 0) throw std::runtime_error(std::string("fork: ") + std::strerror(errno));
-  setpgid(pid_, pid_);  // whichever of the two comes first
+Command with(Command command, const std::vector<std::string>& arguments,
+             const Variables& environment) {
+  append(command.arguments, arguments);
+  append(command.environment, environment);
+  return command;
+}
+Command started_by(const std::vector<std::string>& launcher, Command command) {
+  command.arguments.insert(command.arguments.begin(), launcher.begin(), launcher.end());
+  return command;
 }
 
+Process::Process(const Command& command)
+    : child_({.arguments = command.arguments,
+              .environment = command.environment,
+              .log = folder_.path("out"),
+              .errors = folder_.path("err"),
+              .input_pipe = input_.read_end.get(),
+              .working_folder = command.working_folder}) {
+  input_.read_end = {};
+}
 Process::~Process() {
-  kill(-pid_, SIGKILL);
-  if (!status_) waitpid(pid_, nullptr, 0);
-  close(stdin_);
+  kill(-pid(), SIGKILL);
 }
 
 std::string Process::out() const {
@@ -96,13 +49,7 @@ std::string Process::err() const {
   return read_text(folder_.path("err"));
 }
 void Process::signal(int number) const {
-  kill(pid_, number);
-}
-
-bool Process::has_ended() {
-  int status = 0;
-  if (!status_ && waitpid(pid_, &status, WNOHANG) == pid_) status_ = status;
-  return status_.has_value();
+  kill(pid(), number);
 }
 
 Output Process::wait(std::chrono::duration<double> limit) {
@@ -110,14 +57,10 @@ Output Process::wait(std::chrono::duration<double> limit) {
   while (!has_ended() && Clock::now() < deadline) std::this_thread::sleep_for(kPoll);
   Output output;
   output.wall = Clock::now() - started_;
-  output.timed_out = !status_.has_value();
-  if (output.timed_out) {
-    kill(-pid_, SIGKILL);
-    int status = 0;
-    waitpid(pid_, &status, 0);
-    status_ = status;
-  }
-  output.code = WIFSIGNALED(*status_) ? 128 + WTERMSIG(*status_) : WEXITSTATUS(*status_);
+  output.timed_out = !has_ended();
+  if (output.timed_out) kill(-pid(), SIGKILL);
+  child_.wait(std::chrono::seconds(10));
+  output.code = child_.poll().value().code;
   output.out = out();
   output.err = err();
   return output;
@@ -149,8 +92,7 @@ std::vector<pid_t> processes_with_mark(const std::string& mark) {
   std::vector<pid_t> found;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
     const std::string name = entry.path().filename();
-    if (!std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; }))
-      continue;
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     // Empty for a zombie, and for processes of others.
     const std::string environment = '\0' + read_text(entry.path() / "environ");
     if (environment.find('\0' + wanted) != std::string::npos) found.push_back(std::stoi(name));
@@ -158,13 +100,16 @@ std::vector<pid_t> processes_with_mark(const std::string& mark) {
   return found;
 }
 
-bool wait_until_gone(const std::string& mark, std::chrono::duration<double> limit) {
+bool wait_until(const std::function<bool()>& holds, std::chrono::duration<double> limit) {
   const auto deadline = Clock::now() + limit;
-  while (!processes_with_mark(mark).empty()) {
+  while (!holds()) {
     if (Clock::now() >= deadline) return false;
     std::this_thread::sleep_for(kPoll);
   }
   return true;
+}
+bool wait_until_gone(const std::string& mark, std::chrono::duration<double> limit) {
+  return wait_until([&] { return processes_with_mark(mark).empty(); }, limit);
 }
 
 std::filesystem::path tether_program() {
@@ -176,7 +121,6 @@ std::filesystem::path sut_program() {
 std::filesystem::path bad_sut_program() {
   return BAD_SUT_PROGRAM;
 }
-
 std::filesystem::path stand_in_program() {
   return STAND_IN_PROGRAM;
 }

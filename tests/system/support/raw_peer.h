@@ -10,7 +10,7 @@
 
 namespace tether::system_test {
 
-/// Whoever connects to a run and says what he likes, in whatever pieces.
+/// A connection to a run that sends any bytes.
 class RawPeer {
  public:
   /// @throws std::runtime_error when nothing listens there.

@@ -1,9 +1,12 @@
 #include "trials.h"
 
-#include <algorithm>
 #include <functional>
+#include <map>
 #include <stdexcept>
 
+#include <gtest/gtest.h>
+
+#include <tether/base/error.h>
 #include <tether/record/canonical.h>
 #include <tether/record/writer.h>
 
@@ -27,17 +30,6 @@ std::filesystem::path write_scenario(const std::filesystem::path& file, std::str
   text = with_all(text, "@SOURCE@", TETHER_SOURCE_DIR);
   write_text(file, substituted(text, substitutions));
   return file;
-}
-
-using Write = std::function<void(record::Recorder&)>;
-
-template <class Message>
-void append(std::vector<std::pair<std::uint64_t, Write>>& writes,
-            const std::vector<record::Logged<Message>>& messages) {
-  for (const auto& logged : messages)
-    writes.emplace_back(logged.order, [&logged](record::Recorder& recorder) {
-      recorder.write(logged.at, logged.message);
-    });
 }
 
 }  // namespace
@@ -85,12 +77,15 @@ Substitution scripted_host(int computing_ms) {
           "clock = \"scripted\"\ncomputing_ms = " + std::to_string(computing_ms)};
 }
 
+std::filesystem::path write_campaign(const std::filesystem::path& folder, int trials,
+                                     const std::string& more) {
+  write_text(folder / "campaign.toml", "name = \"small\"\ntrials = " + std::to_string(trials) +
+                                           "\n\n[[scenario]]\nfile = \"hover.toml\"\n" + more);
+  return folder / "campaign.toml";
+}
+
 Command tether(const std::vector<std::string>& arguments, const std::string& mark) {
-  Command command{.arguments = {tether_program()},
-                  .environment = {{"TETHER_TEST_MARK", mark}},
-                  .working_folder = {}};
-  command.arguments.insert(command.arguments.end(), arguments.begin(), arguments.end());
-  return command;
+  return with({{tether_program()}, {{"TETHER_TEST_MARK", mark}}}, arguments);
 }
 
 nlohmann::json read_result(const std::filesystem::path& folder) {
@@ -99,6 +94,16 @@ nlohmann::json read_result(const std::filesystem::path& folder) {
 
 record::Record read_record(const std::filesystem::path& folder) {
   return record::read_record(folder / "record.mcap", {.images = true});
+}
+
+std::optional<record::Record> record_so_far(const std::filesystem::path& folder) try {
+  return read_record(folder);
+} catch (const Error&) {
+  return std::nullopt;
+}
+
+int audit_code(const std::filesystem::path& folder) {
+  return run(tether({"audit", folder / "record.mcap"})).code;
 }
 
 std::string timeless_result(const std::filesystem::path& folder) {
@@ -112,15 +117,26 @@ std::string timeless_record(const std::filesystem::path& folder) {
   return record::canonical(read_record(folder), {.arrivals = true});
 }
 
-void write_record(const std::filesystem::path& file, const record::Record& record) {
-  std::vector<std::pair<std::uint64_t, Write>> writes;
-  append(writes, record.interactions);
-  append(writes, record.commands);
-  append(writes, record.ground_truth);
-  append(writes, record.annotations);
-  append(writes, record.images);
-  std::ranges::stable_sort(writes, {}, &std::pair<std::uint64_t, Write>::first);
+void expect_same_runs(const std::filesystem::path& a, const std::filesystem::path& b) {
+  EXPECT_EQ(timeless_result(a), timeless_result(b));
+  const std::string record = timeless_record(a);
+  EXPECT_GT(record.size(), 10'000u);
+  EXPECT_TRUE(record == timeless_record(b)) << "the records differ";
+}
 
+void write_record(const std::filesystem::path& file, const record::Record& record) {
+  std::map<std::uint64_t, std::function<void(record::Recorder&)>> writes;  // in the file's order
+  const auto add = [&](const auto& messages) {
+    for (const auto& logged : messages)
+      writes[logged.order] = [&logged](auto& recorder) {
+        recorder.write(logged.at, logged.message);
+      };
+  };
+  add(record.interactions);
+  add(record.commands);
+  add(record.ground_truth);
+  add(record.annotations);
+  add(record.images);
   const auto recorder = record::make_mcap_recorder(file);
   recorder->write(record.header);
   for (const auto& [order, write] : writes) write(*recorder);
@@ -129,10 +145,9 @@ void write_record(const std::filesystem::path& file, const record::Record& recor
 
 ExternalRun::ExternalRun(const std::filesystem::path& scenario, const std::filesystem::path& out,
                          const std::vector<std::string>& options) {
-  Command command = tether({"run", scenario, "--out", out, "--target", "wait", "--quiet"});
-  command.arguments.insert(command.arguments.end(), options.begin(), options.end());
-  command.environment.emplace_back("TETHER_TOKEN", kToken);
-  tether_ = std::make_unique<Process>(command);
+  tether_ = std::make_unique<Process>(
+      with(tether({"run", scenario, "--out", out, "--target", "wait", "--quiet"}), options,
+           {{"TETHER_TOKEN", kToken}}));
 
   const std::string key = "TETHER_ADDRESS=";
   const bool listens = tether_->wait_for_err(" TETHER_TOKEN=", std::chrono::seconds(90));
@@ -146,16 +161,11 @@ std::string ExternalRun::token() {
   return kToken;
 }
 
-std::unique_ptr<Process> ExternalRun::start_sut(
-    const std::vector<std::string>& arguments,
-    const std::vector<std::pair<std::string, std::string>>& environment) const {
-  Command command{.arguments = arguments,
-                  .environment = {{"TETHER_ADDRESS", address_},
-                                  {"TETHER_TOKEN", kToken},
-                                  {"TETHER_CLOCK", "scripted*2"}},
-                  .working_folder = {}};
-  command.environment.insert(command.environment.end(), environment.begin(), environment.end());
-  return std::make_unique<Process>(command);
+std::unique_ptr<Process> ExternalRun::start_sut(const std::vector<std::string>& arguments,
+                                                const Variables& environment) const {
+  const Variables joining{
+      {"TETHER_ADDRESS", address_}, {"TETHER_TOKEN", kToken}, {"TETHER_CLOCK", "scripted*2"}};
+  return std::make_unique<Process>(with({arguments, joining}, {}, environment));
 }
 
 std::vector<std::string> face_sut() {

@@ -4,9 +4,9 @@
 #include "process.h"
 
 #include <chrono>
-#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,12 +37,28 @@ std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder
 /// took.
 Substitution scripted_host(int computing_ms);
 
+/// Of the hover scenario's condition "host": another clock.
+inline const Substitution kScripted{"clock = \"cpu\"", "clock = \"scripted\"\ncomputing_ms = 2"};
+inline const Substitution kWall{"clock = \"cpu\"", "clock = \"wall\""};
+/// Of the hover scenario: a run that no limit ends.
+inline const std::vector<Substitution> kEndless{{"time_limit_s = 5", "time_limit_s = 600"},
+                                                {"hang_limit_s = 2", "hang_limit_s = 60"}};
+
+/// A campaign of so many trials of hover.toml beside it under each condition. `more` goes to that
+/// scenario's table.
+std::filesystem::path write_campaign(const std::filesystem::path& folder, int trials,
+                                     const std::string& more = "");
+
 /// `tether` with these arguments. A mark makes its processes findable.
 Command tether(const std::vector<std::string>& arguments, const std::string& mark = "none");
 
 /// The files that a run left. @throws std::runtime_error when one is missing or cannot be read.
 nlohmann::json read_result(const std::filesystem::path& folder);
 record::Record read_record(const std::filesystem::path& folder);
+/// The record of a run that goes on; none where there is none yet.
+std::optional<record::Record> record_so_far(const std::filesystem::path& folder);
+/// The exit code of `tether audit`.
+int audit_code(const std::filesystem::path& folder);
 
 /// What does not depend on how fast anything ran: result.json without "this_run", and without the
 /// limit of the simulator's speed, which is a setting of the run.
@@ -50,7 +66,10 @@ std::string timeless_result(const std::filesystem::path& folder);
 /// The record as text with everything in it but wall times.
 std::string timeless_record(const std::filesystem::path& folder);
 
-/// Writes the record as a file that says the same.
+/// Two runs left the same result and the same record, whatever they took.
+void expect_same_runs(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// Writes the record as a file that reads back the same.
 void write_record(const std::filesystem::path& file, const record::Record& record);
 
 /// One run whose SUTs are started by the test, so that they can have a scripted clock and a wire of
@@ -67,9 +86,8 @@ class ExternalRun {
   static std::string token();
   /// Starts a SUT: `arguments` with the environment that joins it to this run. What is given in
   /// `environment` goes over that.
-  std::unique_ptr<Process> start_sut(
-      const std::vector<std::string>& arguments,
-      const std::vector<std::pair<std::string, std::string>>& environment = {}) const;
+  std::unique_ptr<Process> start_sut(const std::vector<std::string>& arguments,
+                                     const Variables& environment = {}) const;
   Output wait(std::chrono::duration<double> limit = std::chrono::seconds(90)) {
     return tether_->wait(limit);
   }
