@@ -100,7 +100,7 @@ const std::map<std::string, std::set<std::string>>& allowed_dependencies() {
       {"devices", {"base", "uav", "client"}},
       {"vision", {"base", "uav"}},
       {"tasks", {"base", "stats", "uav", "client", "vision"}},
-      {"calibration", {"base", "stats", "toml", "uav", "client", "vision", "tasks"}},
+      {"calibration", {"base", "os", "stats", "toml", "uav", "client", "vision", "tasks"}},
       {"rig", {"base", "stats", "toml", "uav", "client", "vision", "tasks", "devices"}},
       {"record", {"base"}},
       {"audit", {"base", "record"}},
