@@ -24,7 +24,7 @@ constexpr int F_SEAL_FUTURE_WRITE = 0x0010;  // Linux 5.1
 
 Failure failed(const std::string& what) {
   return {Failure::Kind::kInvalid,
-          "no shared memory for the clock: " + what + ": " + std::strerror(errno)};
+          "cannot share the memory of the clock: " + what + ": " + std::strerror(errno)};
 }
 
 }  // namespace
@@ -105,8 +105,8 @@ Result<MappedClockPage> map_clock_page(const FileDescriptor& descriptor) {
   struct stat status {};
   if (::fstat(descriptor.get(), &status) != 0 || status.st_size != off_t{kPageBytes}) {
     return Failure{Failure::Kind::kProtocol,
-                   "tether-exec's clock is of another size; use the tether-exec that belongs to "
-                   "this program's library"};
+                   "the clock page of tether-exec has another size. Use a tether-exec of the same "
+                   "version as this program's library"};
   }
   void* const memory = ::mmap(nullptr, kPageBytes, PROT_READ, MAP_SHARED, descriptor.get(), 0);
   if (memory == MAP_FAILED) return failed("mmap");

@@ -77,7 +77,7 @@ Result<link::Reply> SimulatedVehicle::ask(const link::Request& request) {
   if (!sent) return sent.failure();
   if (!message) return message.failure();
   auto* reply = std::get_if<link::Reply>(&*message);
-  if (reply == nullptr) return protocol_failure("it is another kind of message");
+  if (reply == nullptr) return protocol_failure("it is not a Reply");
   if (const Status good = check(*reply, request, free_running_ != nullptr); !good)
     return good.failure();
   return std::move(*reply);
