@@ -5,7 +5,6 @@
 #include <thread>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace tether::c_api {
 namespace {
@@ -55,7 +54,6 @@ TEST(StatusOf, KeepsTheKindAndTheWords) {
 
 TEST(Guarded, LetsNoExceptionOut) {
   EXPECT_EQ(guarded([]() -> tether_status { throw std::bad_alloc(); }), TETHER_NO_MEMORY);
-  EXPECT_STREQ(tether_last_error(), "memory ran out");
   EXPECT_EQ(guarded([]() -> tether_status { throw std::logic_error("a fault"); }), TETHER_INTERNAL);
   EXPECT_STREQ(tether_last_error(), "a fault");
   EXPECT_EQ(guarded([] { return tether_status{TETHER_TIMEOUT}; }), TETHER_TIMEOUT);
