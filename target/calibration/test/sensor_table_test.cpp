@@ -27,9 +27,7 @@ SensorTimes times_of(const std::string& name, uav::SensorKind kind,
 
 TEST(Summarize, InterpolatesQuantiles) {
   std::vector<Duration> times;
-  for (int i = 100; i >= 0; --i) {
-    times.push_back(milliseconds(10 * i));
-  }
+  for (int i = 100; i >= 0; --i) times.push_back(milliseconds(10 * i));
   times.push_back(milliseconds(1010));
   const TimeSummary of = summarize(times);
   EXPECT_EQ(of.n, 102u);
