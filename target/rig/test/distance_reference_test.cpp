@@ -11,6 +11,9 @@
 namespace tether::rig {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
 constexpr double kNothing_m = std::numeric_limits<double>::infinity();
 
 uav::SensorDescription mounted_at(const uav::Vec3& p_B, double yaw_rad = 0.0) {
@@ -51,9 +54,7 @@ TEST(ReferenceFrom, IsNoneBesideTheAnchor) {
   EXPECT_TRUE(reference_from(2.0, sensor, sensor, kBox, std::asin(0.29 / 2.0)).distance_m);
   const auto beside = reference_from(2.0, sensor, sensor, kBox, std::asin(0.31 / 2.0));
   EXPECT_FALSE(beside.distance_m);
-  EXPECT_EQ(beside.why_none,
-            "the rangefinder's beam ends 0.31 m beside the line of sight, but half the anchor's "
-            "width is 0.30 m");
+  EXPECT_THAT(beside.why_none, AllOf(HasSubstr("0.31 m"), HasSubstr("0.30 m")));
 }
 
 TEST(TakeDistanceReference, ReadsTheRangefinder) {
@@ -69,16 +70,11 @@ TEST(TakeDistanceReference, ReadsTheRangefinder) {
   const auto nothing = take_distance_reference(vehicle, camera, anchor, 0.0);
   ASSERT_TRUE(nothing);
   EXPECT_FALSE(nothing->distance_m);
-  EXPECT_THAT(nothing->why_none, ::testing::HasSubstr("fewer than half of 10 readings"));
-}
-
-TEST(TakeDistanceReference, FailsWithTheDevice) {
-  tasks::testing::PlanarVehicle vehicle({.disconnect_at = 4});
-  const auto& camera = *vehicle.catalogue().find_sensor("camera");
-  const auto reference =
-      take_distance_reference(vehicle, camera, *vehicle.catalogue().find_anchor("blue_box"), 0.0);
-  ASSERT_FALSE(reference);
-  EXPECT_EQ(reference.failure().kind, Failure::Kind::kDisconnected);
+  EXPECT_THAT(nothing->why_none, HasSubstr("10"));
+  tasks::testing::PlanarVehicle lost({.disconnect_at = 4});
+  const auto failed = take_distance_reference(lost, camera, anchor, 0.0);
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.failure().kind, Failure::Kind::kDisconnected);
 }
 
 }  // namespace

@@ -21,7 +21,6 @@ TEST(InterruptibleVehicle, EndsEveryInteractionOnceInterrupted) {
   const auto reading = vehicle->read_range("range");
   ASSERT_FALSE(reading);
   EXPECT_EQ(reading.failure().kind, Failure::Kind::kRunEnded);
-  EXPECT_EQ(reading.failure().message, "interrupted");
   EXPECT_FALSE(vehicle->read_camera("camera"));
   EXPECT_FALSE(vehicle->read_imu("imu"));
   EXPECT_FALSE(vehicle->command_velocity({}));
