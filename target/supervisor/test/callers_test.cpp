@@ -69,27 +69,22 @@ TEST_F(CallersTest, AnswerTheOneThatAsked) {
   EXPECT_FALSE(second.receive(Duration(0)));
 }
 
-TEST_F(CallersTest, ReportWhoHungUp) {
+TEST_F(CallersTest, ReportWhoHungUpAndNotWhomTheyDrop) {
+  LocalSocket dropped = call();
   {
     LocalSocket caller = call();
-    ASSERT_TRUE(caller.send(link::Progress{ExecTime(Duration(1))}));
+    for (LocalSocket* socket : {&dropped, &caller}) {
+      ASSERT_TRUE(socket->send(link::Progress{ExecTime(Duration(1))}));
+    }
     receive();
     EXPECT_TRUE(heard_.gone.empty());
   }
-  receive();
-  ASSERT_EQ(heard_.gone.size(), 1u);
-  EXPECT_EQ(heard_.gone[0], heard_.messages.at(0).first);
-}
-
-TEST_F(CallersTest, DropWithoutAReport) {
-  LocalSocket caller = call();
-  ASSERT_TRUE(caller.send(link::Progress{ExecTime(Duration(1))}));
-  receive();
   callers_.drop(heard_.messages.at(0).first);
   receive();
-  EXPECT_TRUE(heard_.gone.empty());
-  ASSERT_TRUE(caller.receive(Duration(0))) << "the clock page";
-  EXPECT_EQ(caller.receive(Duration(0)).failure().kind, Failure::Kind::kDisconnected);
+  ASSERT_EQ(heard_.gone.size(), 1u);
+  EXPECT_EQ(heard_.gone[0], heard_.messages.at(1).first);
+  ASSERT_TRUE(dropped.receive(Duration(0))) << "the clock page";
+  EXPECT_EQ(dropped.receive(Duration(0)).failure().kind, Failure::Kind::kDisconnected);
 }
 
 }  // namespace

@@ -78,19 +78,6 @@ TEST_F(SupervisionTest, RunsUntilTheReplyIsDueAndWaitsForIt) {
   EXPECT_EQ(group_.stopped_at(), et(48ms));
 }
 
-TEST_F(SupervisionTest, AReplyThatIsEarlyWaitsUntilItIsDue) {
-  group_.asked(7, request(10ms));
-  group_.stopped(et(11ms));
-  ASSERT_TRUE(group_.heard(Due{1, et(12ms)}).ok());
-  ASSERT_TRUE(group_.heard(Reply{1, et(12ms), std::nullopt}).ok());
-  group_.go_on();
-  EXPECT_TRUE(group_.take_answers().empty());
-  EXPECT_TRUE(group_.must_stop(et(12ms)));
-  group_.stopped(et(12ms));
-  group_.go_on();
-  EXPECT_EQ(group_.take_answers().size(), 1u);
-}
-
 TEST_F(SupervisionTest, OrdersRequestsAndRaisesWhatWasSaidTooLate) {
   group_.progressed(et(20ms));
   group_.asked(1, request(22ms));
@@ -152,21 +139,12 @@ TEST_F(SupervisionTest, FinishSucceedsThoughTheCoordinatorHasGoneAtOnce) {
   }
 }
 
-TEST_F(SupervisionTest, AFinishThatIsNotConfirmedIsNone) {
+TEST_F(SupervisionTest, RunsAndHangsUpOnceTheCoordinatorIsGone) {
   group_.asked(1, request(10ms, link::Finish{true, "done", ""}));
   group_.stopped(et(12ms));
   ASSERT_TRUE(group_.heard(Due{1, et(10ms)}).ok());
   group_.end(std::nullopt);
-  EXPECT_FALSE(group_.is_finished());
-  const auto answers = group_.take_answers();
-  ASSERT_EQ(answers.size(), 1u);
-  EXPECT_FALSE(answers[0].message);
-}
-
-TEST_F(SupervisionTest, WithoutACoordinatorItRunsAndHangsUp) {
-  group_.asked(1, request(10ms));
-  group_.stopped(et(12ms));
-  group_.end(std::nullopt);
+  EXPECT_FALSE(group_.is_finished()) << "the finish was not confirmed";
   ASSERT_TRUE(group_.may_go_on());
   group_.go_on();
   group_.asked(2, request(13ms));
