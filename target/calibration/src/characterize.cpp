@@ -6,6 +6,8 @@
 #include <tether/calibration/sensor_table.h>
 #include <tether/tasks/task_context.h>
 
+// Runs the task of Algorithm 1 for each chosen sensor and experiment, within one time limit per
+// sensor, and adds the statistics of the times to the outcome.
 namespace tether::calibration {
 namespace {
 

@@ -3,6 +3,8 @@
 #include <tether/base/version.h>
 #include <tether/calibration/profile_text.h>
 
+// Writes a profile as TOML. Names and descriptions can contain any bytes, so they are made valid
+// UTF-8 and escaped; passwords in URLs are removed.
 namespace tether::calibration {
 namespace {
 

@@ -6,6 +6,8 @@
 #include <tether/base/text_table.h>
 #include <tether/calibration/profile_text.h>
 
+// The tables and the target file of `tether-sut calibrate`: one machine's speed, the comparison of
+// two, and the doubts about both.
 namespace tether::calibration {
 namespace {
 

@@ -8,6 +8,8 @@
 #include <tether/base/text_table.h>
 #include <tether/stats/sample_statistics.h>
 
+// Compares two machines block by block: the factor of the medians, with an interval from order
+// statistics. `doubts` lists signs that a measurement was disturbed.
 namespace tether::calibration {
 namespace {
 

@@ -5,6 +5,9 @@
 
 #include <tether/calibration/timing_model.h>
 
+// Derives a sensor's period and delays from its acquisitions. Steps between timestamps give the
+// period; a regression of the delays over time shows whether timestamps and clock run at the same
+// speed; the last checks reject timestamps that are in the future or only times of arrival.
 namespace tether::calibration {
 namespace {
 

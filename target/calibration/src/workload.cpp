@@ -14,6 +14,9 @@
 #include <tether/vision/relative_position.h>
 #include <tether/vision/runtime.h>
 
+// Computes the measured work: each round runs every block of the vision tasks on every embedded
+// image, and BlockClock adds the time of each block. The result of the whole step is compared with
+// the expected one, so that only equal work is compared between machines.
 namespace tether::calibration {
 namespace {
 

@@ -6,6 +6,9 @@
 #include <utility>
 #include <variant>
 
+// The vehicle of a program under tether-exec. Each call takes a connection from a pool, or makes
+// one, so that threads do not wait for each other; ET is read from the shared clock page. The
+// first failure that ends the run is kept for all later calls.
 namespace tether::client {
 namespace {
 

@@ -9,6 +9,8 @@
 #include <tether/base/printable.h>
 #include <tether/link/codec.h>
 
+// What serial and concurrent vehicles have in common: making requests, checking arguments against
+// the catalogue, and checking replies against the rules of time (docs/design.md section 2).
 namespace tether::client {
 namespace {
 

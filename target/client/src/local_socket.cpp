@@ -15,6 +15,9 @@
 
 #include <tether/client/exec/local_socket.h>
 
+// Packets between a program and tether-exec. A frame of the link is one packet; a longer one is
+// sent as a sealed memory file, whose descriptor travels in a packet with its length. The seals
+// ensure that the sender cannot truncate the memory while the receiver maps it.
 namespace tether::client {
 namespace {
 

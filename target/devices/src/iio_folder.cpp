@@ -63,7 +63,7 @@ std::string iio_name(System& system, Clock& clock, const std::string& folder) {
 
 Result<std::string> find_iio_folder(System& system, Clock& clock, const std::string& label,
                                     const std::string& device, const std::string& root) {
-  // A folder below the present one may be called "iio:device0" too; whoever means that writes
+  // A folder below the present one may be called "iio:device0" too; write
   // "./iio:device0".
   if (!device.starts_with(kPrefix)) return by_path(system, label, device);
   return by_name(system, clock, label, device.substr(kPrefix.size()), root);

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <utility>
 
+// An IMU from six channels of the kernel's IIO interface: two triads, each rotated by the mounting
+// matrix of its quantity or of the device.
 namespace tether::devices {
 namespace {
 

@@ -7,6 +7,9 @@
 #include <utility>
 #include <variant>
 
+// Opens a camera by the form of its name: a number or device node with Video4Linux, a file, or a
+// URL. Live cameras must deliver one image at once, because some errors occur only then. On
+// failure the driver is asked for the reason, which OpenCV does not report.
 namespace tether::devices {
 namespace {
 

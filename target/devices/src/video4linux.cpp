@@ -57,7 +57,7 @@ std::string capability_fault(System& system, int descriptor) {
 }
 
 /// Asks for the format that the device already has, and for a buffer: what a driver refuses while
-/// somebody else has the device.
+/// another program uses the device.
 std::string capture_fault(System& system, int descriptor, const std::string& path) {
   v4l2_format format{};
   format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;

@@ -10,6 +10,8 @@
 #include <tether/rig/rig_file.h>
 #include <tether/toml/table.h>
 
+// Reads rig files: first the sensors with their mounting and, by kind, lens or limits, then the
+// anchors. toml::Table checks types and ranges; the checks here concern several keys at once.
 namespace tether::rig {
 namespace {
 

@@ -18,6 +18,8 @@
 
 #include <tether/client/exec/file_descriptor.h>
 
+// Finds the cgroup v2 of this process, makes one for the command below it, and stops the command
+// with cgroup.freeze. The guardian removes the cgroup at the end.
 namespace tether::supervisor {
 namespace {
 

@@ -4,6 +4,9 @@
 #include <string>
 #include <utility>
 
+// The rules for a group of threads as pure logic: instants and messages in, decisions out. A
+// request stops the group; it continues when the coordinator has announced the reply times of all
+// requests, and stops again at the earliest of them. No caller receives a reply before its time.
 namespace tether::supervisor {
 namespace {
 

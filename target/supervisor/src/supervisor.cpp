@@ -11,6 +11,11 @@
 
 #include <tether/client/simulated_vehicle.h>
 
+// The loop of tether-exec, on one thread. Each round waits for signals, the coordinator, the
+// program's connections or the next due time; passes messages to Supervision, which decides when
+// the program must stop and may continue; and carries that out with the freezer and the shared
+// clock page. While the program is stopped, its connections are not read, except once after each
+// stop.
 namespace tether::supervisor {
 namespace {
 
@@ -281,7 +286,7 @@ void Supervisor::refuse_all(link::Refusal refusal) {
 // --- stopping and going on ----------------------------------------------------------------------
 
 void Supervisor::hold_while_joining() {
-  const bool must_hold = joining_.must_stand_still(read_monotonic());
+  const bool must_hold = joining_.must_be_stopped(read_monotonic());
   if (must_hold == held_) return;
   held_ = must_hold;
   if (!held_) return freezer_->thaw();

@@ -9,6 +9,10 @@
 #include <tether/tasks/closed_path_task.h>
 #include <tether/tasks/task_context.h>
 
+// Algorithm 5 as a state machine: a rest before the start, in which the IMU's bias is measured and
+// the anchor located; four legs by dead reckoning; turning back to the start heading; a pause to
+// come to rest; and a second look at the anchor, whose difference to the first one is the
+// displacement.
 namespace tether::tasks {
 namespace {
 

@@ -102,7 +102,7 @@ Progress MoveForwardTask::update_yaw(TaskContext& context) {
 }
 
 /// Comes to rest: by the instants of the IMU's readings, which are simulated time under every
-/// policy. Fails (kInvalid) where they stand still.
+/// policy. Fails (kInvalid) if the timestamps do not advance.
 Status MoveForwardTask::settle(TaskContext& context, const TaskOutcome& outcome) {
   const bool is_needed =
       outcome.status != TaskStatus::kFailed && options_.settle_time > Duration::zero();

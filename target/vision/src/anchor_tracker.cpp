@@ -11,6 +11,9 @@
 #include <tether/base/units.h>
 #include <tether/vision/anchor_tracker.h>
 
+// Tracks one anchor in three steps: prefilter, back-projection of its colour, location. Location
+// runs CamShift from the last window and, if that loses the anchor, searches the whole image among
+// the candidates of region.h.
 namespace tether::vision {
 namespace {
 

@@ -6,6 +6,9 @@
 
 #include <opencv2/imgproc.hpp>
 
+// Geometry of the tracked region in the probability map: candidates by connected components, a
+// rectangle that is fitted to the mass, its score by shape, fill and colour, and its edges to a
+// fraction of a pixel.
 namespace tether::vision {
 namespace {
 
