@@ -48,7 +48,7 @@ class Calibrate : public ::testing::Test {
   CalibrateOptions options_;
 };
 
-TEST_F(Calibrate, ComparesBlockByBlockAndSaysHowGoodOneFactorIs) {
+TEST_F(Calibrate, ReportsFactorOfEachBlockAndErrorOfSingleFactor) {
   EXPECT_THAT(text(),
               AllOf(HasSubstr("CPU time on bench pi (model of bench pi, aarch64)\nagainst desk"),
                     HasSubstr("\nprefilter                 5.00    5.00 to 5.00\n"),
@@ -57,7 +57,7 @@ TEST_F(Calibrate, ComparesBlockByBlockAndSaysHowGoodOneFactorIs) {
                     HasSubstr("off by up to 67 % for one of its blocks")));
 }
 
-TEST_F(Calibrate, SaysThatBlocksAgreeAndEachDoubtOnceWhenAMachineIsComparedWithItself) {
+TEST_F(Calibrate, ReportsAgreementAndEachDoubtOnceForEqualMachines) {
   Calibration doubtful = machine("desk", 8.0, 2.0);
   doubtful.machine.mhz_before = 1000.0;
   doubtful.machine.mhz_after = 2000.0;
@@ -70,7 +70,7 @@ TEST_F(Calibrate, SaysThatBlocksAgreeAndEachDoubtOnceWhenAMachineIsComparedWithI
   EXPECT_EQ(said.find("Doubtful on desk", first + 1), std::string::npos) << said;
 }
 
-TEST_F(Calibrate, WritesATargetThatSaysWhereItComesFrom) {
+TEST_F(Calibrate, WritesTargetWithItsOrigin) {
   options_.target = path("pi.toml");
   EXPECT_THAT(text(), HasSubstr("--target " + options_.target));
   const ::toml::table target = ::toml::parse_file(options_.target);
@@ -114,7 +114,7 @@ TEST_F(Calibrate, RefusesOptionsThatExcludeEachOther) {
 }
 
 // The least that can be measured for real: what it finds, not how long it takes.
-TEST(MeasureMachine, SaysWhatItMeasuredOnAndHasEveryBlock) {
+TEST(MeasureMachine, ReportsTheMachineAndEveryBlock) {
   CalibrateOptions options;
   options.rounds = 1;
   const auto measured = measure_machine(options);

@@ -75,14 +75,14 @@ TEST(Characterize, AllAcquisitionsFitAProfile) {
   EXPECT_FALSE(check_extent(options, 1));
 }
 
-TEST(Characterize, OneSensorThatFailsFailsTheWhole) {
+TEST(Characterize, FailsIfOneSensorFails) {
   PlanarVehicle vehicle({.disconnect_at = 6});
   const Characterization result = characterize(vehicle, few());
   EXPECT_EQ(result.outcome.failure, Failure::Kind::kDisconnected);
   EXPECT_FALSE(result.outcome.results.contains("camera_mean_s"));
 }
 
-TEST(Characterize, TheTimeLimitIsEachSensors) {
+TEST(Characterize, TimeLimitAppliesToEachSensor) {
   PlanarVehicle vehicle({.range_delays = {milliseconds(300)}});
   CharacterizeOptions options = few({"camera", "range"});
   options.experiments = 3;

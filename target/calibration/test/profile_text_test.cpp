@@ -118,7 +118,7 @@ TEST(ProfileText, KeepsNoPassword) {
   EXPECT_EQ(source_line("/dev/video@0"), "/dev/video@0");
 }
 
-TEST(ProfileText, ADelayThatNoReaderTakesIsTold) {
+TEST(ProfileText, RefusesDelayAboveTheMaximum) {
   const auto checked = [](Duration delay) {
     return check_delays(profile_of(
         {{"c", uav::SensorKind::kCamera, "x", {std::nullopt, {Duration(5), delay, Duration(6)}}}}));

@@ -37,7 +37,7 @@ SensorTimes watch(const Camera& camera, int experiments = 1) {
   return times;
 }
 
-TEST(OnDemandTiming, IsFromAskingToHaving) {
+TEST(OnDemandTiming, IsFromRequestToResult) {
   const TimingModel model = on_demand_timing(watch({.samples = 3}));
   EXPECT_FALSE(model.period);
   EXPECT_THAT(model.delays,
@@ -66,7 +66,7 @@ TEST(PeriodicTiming, ThePeriodIsFinerThanTheGridOfItsInstants) {
   EXPECT_NEAR(to_seconds(*model->period), 0.0333333, 0.04e-3);
 }
 
-TEST(PeriodicTiming, AGapIsNoPartOfThePeriod) {
+TEST(PeriodicTiming, IgnoresGaps) {
   SensorTimes times = watch({.samples = 10});
   for (std::size_t i = 5; i < 10; ++i) {
     times.experiments[0][i].sampled_at += milliseconds(200);
@@ -87,7 +87,7 @@ SensorTimes watch_unsynchronised(double real_time_factor, const Camera& camera) 
   return times;
 }
 
-TEST(PeriodicTiming, RefusesInstantsOfAnotherPace) {
+TEST(PeriodicTiming, RefusesTimestampsOfAnotherSpeed) {
   const std::vector<std::pair<double, int>> factors_and_samples = {
       {0.3, 5}, {0.3, 100}, {0.8, 20}, {0.8, 100}, {0.95, 100}, {1.05, 100}, {3.0, 20}};
   for (const auto& [factor, samples] : factors_and_samples) {
@@ -99,7 +99,7 @@ TEST(PeriodicTiming, RefusesInstantsOfAnotherPace) {
 }
 
 // A delay that jitters by more than a period is no other pace, however short the span.
-TEST(PeriodicTiming, JitterIsNoOtherPace) {
+TEST(PeriodicTiming, AcceptsJitter) {
   for (const int samples : {4, 10, 100}) {
     for (unsigned seed = 0; seed < 20; ++seed) {
       SensorTimes times = watch({.delay = milliseconds(60), .samples = samples});
@@ -113,7 +113,7 @@ TEST(PeriodicTiming, JitterIsNoOtherPace) {
   }
 }
 
-TEST(ChooseTiming, IsPeriodicWhereASensorTellsARateAndAllowsIt) {
+TEST(ChooseTiming, IsPeriodicIfTheSensorHasARateAndFits) {
   SensorTimes times = watch({});
   EXPECT_FALSE(choose_timing(times, Timing::kAuto, true)->model.period) << "it tells no rate";
   EXPECT_TRUE(choose_timing(times, Timing::kPeriodic, true)->model.period);

@@ -56,7 +56,7 @@ TEST(Workload, TimesEveryBlockOncePerRoundAndImage) {
                                  kWholeStep));
 }
 
-TEST(Workload, NoticesAMachineThatSeesSomethingElse) {
+TEST(Workload, DetectsDifferentResults) {
   const View expected = expected_views().front();
   EXPECT_EQ(difference(expected, expected), "");
   View other = expected;

@@ -16,7 +16,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(ConcurrentVehicle, ThreadsCallEachOnAConnectionOfItsOwn) {
+TEST(ConcurrentVehicle, EachThreadUsesItsOwnConnection) {
   FakeExec exec(grant);
   const auto vehicle = exec.connect();
   EXPECT_TRUE(vehicle->is_concurrent());
@@ -60,7 +60,7 @@ TEST(ConcurrentVehicle, WaitingCallBlocksNoOtherAndEndsWithTheConnection) {
 
 // The end may come together with a reply: the call has succeeded then, on a connection that has
 // just been shut down.
-TEST(ConcurrentVehicle, ASubscriptionThatEndsSpoilsNoOtherCall) {
+TEST(ConcurrentVehicle, EndOfSubscriptionDoesNotAffectOtherCalls) {
   FakeExec exec(grant);
   const auto vehicle = exec.connect();
   for (int i = 0; i < 100; ++i) {
@@ -73,7 +73,7 @@ TEST(ConcurrentVehicle, ASubscriptionThatEndsSpoilsNoOtherCall) {
   }
 }
 
-TEST(ConcurrentVehicle, AForkedChildConnectsByItself) {
+TEST(ConcurrentVehicle, ForkedChildMustConnectForItself) {
   FakeExec exec(grant);
   const auto vehicle = exec.connect();
   const pid_t child = ::fork();

@@ -57,7 +57,7 @@ TEST_F(Environment, KnowsClocks) {
   }
 }
 
-TEST_F(Environment, TetherExecStandsBefore) {
+TEST_F(Environment, TetherExecCountsForMore) {
   set("TETHER_EXEC", "/tmp/tether-exec-1/socket");
   set("TETHER_CLOCK", "wall*4");
   const auto options = options_from_environment();

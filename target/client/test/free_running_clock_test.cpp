@@ -53,7 +53,7 @@ TEST_F(FreeRunning, SleepsOnTheWallClockAfterStalling) {
   EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 20ms);
 }
 
-TEST_F(FreeRunning, ShowsTheStallThatIsOwed) {
+TEST_F(FreeRunning, EtIncludesThePendingStall) {
   compute(10ms);
   EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 40ms);
   compute(1ms);
@@ -82,7 +82,7 @@ TEST_F(FreeRunning, ShowsTheSameTimeBeforeDuringAndAfterAStall) {
   EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 40ms);
 }
 
-TEST_F(FreeRunning, OwesNothingWhereTheTargetIsThisMachine) {
+TEST_F(FreeRunning, DoesNotStallWithoutAFactor) {
   ManualTimeSource source(link::ClockKind::kWall);
   FreeRunningClock clock(source, wall_, ExecTime{});
   source.advance(5ms);
@@ -92,7 +92,7 @@ TEST_F(FreeRunning, OwesNothingWhereTheTargetIsThisMachine) {
   EXPECT_EQ(wall_.slept(), 0ms);
 }
 
-TEST_F(FreeRunning, GivesSignsOfLifeButWhileItWaitsForAReply) {
+TEST_F(FreeRunning, SendsHeartbeatsExceptWhileAReplyIsPending) {
   compute(10ms);
   EXPECT_EQ(clock_.while_computing(), from_ns<ExecTime>(100) + 40ms);
   int sleeps = 0;

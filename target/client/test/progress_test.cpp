@@ -50,7 +50,7 @@ void expect_monotone(const std::vector<link::Message>& heard) {
   }
 }
 
-TEST(Progress, TellsHowFarComputingHasCome) {
+TEST(Progress, ReportsEtWhileComputing) {
   ManualTimeSource source(link::ClockKind::kWall);
   ScriptedCoordinator coordinator(link::Welcome{});
   const auto vehicle = connect_with(coordinator, source);
@@ -62,7 +62,7 @@ TEST(Progress, TellsHowFarComputingHasCome) {
   expect_monotone(coordinator.heard());
 }
 
-TEST(Progress, KeepsItsPlaceBetweenRequests) {
+TEST(Progress, IsMonotoneBetweenRequests) {
   ManualTimeSource source(link::ClockKind::kWall);
   ScriptedCoordinator coordinator(link::Welcome{}, [](const Request& r) {
     return std::vector<link::Message>{link::Reply{r.sequence, r.issued_at + 7us, {}}};
@@ -129,7 +129,7 @@ bool wait_for_two_more(ScriptedCoordinator& coordinator) {
       [before](const auto& heard) { return count_progress(heard) >= before + 2; });
 }
 
-TEST(Heartbeat, OfEveryClockInFreeRunning) {
+TEST(Heartbeat, IsSentWithEveryClockInFreeRunning) {
   for (const auto kind :
        {link::ClockKind::kWall, link::ClockKind::kCpu, link::ClockKind::kScripted}) {
     ScriptedCoordinator coordinator(free_running());
@@ -169,7 +169,7 @@ TEST(Heartbeat, IsNotSentUnderTheBarrierNorWhereItIsOff) {
   }
 }
 
-TEST(ProgressReporter, StopsWhenToldAndWhenTheReportFails) {
+TEST(ProgressReporter, StopsOnDestructionAndAfterAFailedReport) {
   ManualTimeSource source;
   std::atomic<int> calls = 0;
   {

@@ -152,7 +152,7 @@ TEST_F(SimulatedVehicleTest, AnnotationsAreStampedAndFree) {
   EXPECT_EQ(std::get<Request>(heard.at(1)).issued_at, ExecTime(4ms));
 }
 
-TEST_F(SimulatedVehicleTest, TellsTheLastRoundTrip) {
+TEST_F(SimulatedVehicleTest, ReportsTheLastRoundTrip) {
   start([this](const Request& r) {
     wall_->advance(Duration(1000) * r.sequence);
     return ScriptedCoordinator::grant_at_once(r);
@@ -223,7 +223,7 @@ TEST_F(SimulatedVehicleTest, RefusesRepliesThatBreakTheRules) {
   }
 }
 
-TEST_F(SimulatedVehicleTest, FreeRunningHoldsNothing) {
+TEST_F(SimulatedVehicleTest, DoesNotHoldEtInFreeRunning) {
   start(
       [this](const Request& r) {
         wall_->advance(5ms);

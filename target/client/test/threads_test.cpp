@@ -66,7 +66,7 @@ TEST(SerialVehicle, CallsOfSeveralThreadsWaitForOneAnother) {
 }
 
 // Both would speak on one connection, and the parent's sequence would be broken.
-TEST(SerialVehicle, IsItsOwnProcessesAlone) {
+TEST(SerialVehicle, ForkedChildCannotUseIt) {
   const link::Welcome welcome = welcome_with_sensors();
   ScriptedCoordinator coordinator(welcome, answer);
   auto vehicle = std::make_unique<SimulatedVehicle>(

@@ -68,7 +68,7 @@ TEST_F(OpenCameraTest, VideoFileGivesItsImagesAndEnds) {
   EXPECT_THAT(end.message, StartsWith("camera " + sensor_.device));
 }
 
-TEST_F(OpenCameraTest, TheDeviceFillsInWhatTheRigLeavesOpen) {
+TEST_F(OpenCameraTest, DeviceCompletesTheDescription) {
   sensor_.horizontal_fov_rad = rad_from_deg(60.0);
   model().k1 = 0.1;
   ASSERT_TRUE(open(video()));
@@ -96,7 +96,7 @@ TEST_F(OpenCameraTest, ValuesOfTheRigStay) {
   EXPECT_EQ(sensor_.description.rate_hz, 10.0);
 }
 
-TEST_F(OpenCameraTest, AnotherSizeThanTheRigSaysIsRefused) {
+TEST_F(OpenCameraTest, RefusesAnotherSizeThanTheRigs) {
   model() = uav::CameraModel::from_horizontal_fov(640, 480, 1.0);
   EXPECT_THAT(refusal(video()), AllOf(HasSubstr("64 x 48"), HasSubstr("640 x 480")));
 }

@@ -99,7 +99,7 @@ TEST_F(OpencvSourceTest, ACutFileIsSilent) {
 }
 
 // In a process of its own, since the level is asked for once.
-TEST(OpencvSource, WhoeverAsksForFfmpegsLogGetsIt) {
+TEST(OpencvSource, KeepsFfmpegsLogIfTheUserAsksForIt) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto refused_with = [](const char* variable, const char* value) {
     ::unsetenv("OPENCV_FFMPEG_LOGLEVEL");  // an earlier test's

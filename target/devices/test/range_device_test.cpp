@@ -59,7 +59,7 @@ TEST_F(RangeDeviceTest, MeasuresWheneverItIsRead) {
   EXPECT_EQ(second->sampled_at, SimTime(std::chrono::milliseconds(75)));
 }
 
-TEST_F(RangeDeviceTest, ASampleIsFromWhenTheReadReturned) {
+TEST_F(RangeDeviceTest, TimestampIsTheReturnOfTheRead) {
   const auto device = opened();
   // The driver is not ready twice, which takes two milliseconds.
   system_.read_errors[scratch_.path("in_distance_raw")] = {EAGAIN, EAGAIN, 0};
@@ -130,7 +130,7 @@ TEST_F(Vl53l1xTest, GivesEachMeasurementToAFastReader) {
   EXPECT_EQ(system_.reads, 4);
 }
 
-TEST_F(Vl53l1xTest, GivesNoMeasurementFromLongBefore) {
+TEST_F(Vl53l1xTest, DropsOldMeasurement) {
   EXPECT_EQ(read_ms(), 50);
   clock_.advance(1020 * kMs);  // the one of 100 ms is waiting all the while
   EXPECT_EQ(read_ms(), 1100);

@@ -62,7 +62,7 @@ TEST_F(MakeRig, WithoutAFileOnlyTheDevicesAreKnown) {
   EXPECT_EQ(rig.sensors[1].device, "iio:vl53l0x");
 }
 
-TEST_F(MakeRig, ADeviceOfTheCommandLineCountsForMoreThanTheFiles) {
+TEST_F(MakeRig, DeviceOfTheCommandLineReplacesThatOfTheFile) {
   Mission mission = mission_of(tasks::ClosedPathOptions{});
   mission.tasks[0].vision.camera = "/dev/video7";
   std::get<tasks::ClosedPathOptions>(mission.tasks[0].options).imu = "iio:bmi160";
@@ -79,7 +79,7 @@ TEST_F(MakeRig, ADeviceOfTheCommandLineCountsForMoreThanTheFiles) {
   EXPECT_EQ(std::get<tasks::ClosedPathOptions>(mission.tasks[0].options).imu, "gyro");
 }
 
-TEST_F(MakeRig, OfSeveralTheOneThatIsNamedLikeItsKind) {
+TEST_F(MakeRig, PrefersSensorNamedAsItsKind) {
   const std::string two = "[sensors.a]\nkind = \"imu\"\n[sensors.b]\nkind = \"imu\"\n";
   Mission mission = mission_of(tasks::SensorCharacterizationOptions{});
   mission.tasks[0].sensor = "imu";

@@ -22,7 +22,7 @@ uav::SensorDescription mounted_at(const uav::Vec3& p_B, double yaw_rad = 0.0) {
 
 const uav::Anchor kBox{"blue_box", uav::AnchorShape::kBox, {0.4, 0.6, 0.8}, {0, 0, 1}};
 
-TEST(MedianOfFinite, LeavesOutWhatFoundNothing) {
+TEST(MedianOfFinite, IgnoresInfiniteReadings) {
   EXPECT_EQ(median_of_finite_m({3.0, 1.0, 2.0}), 2.0);
   EXPECT_EQ(median_of_finite_m({kNothing_m, 1.0, -kNothing_m, 2.0}), 1.5);
   EXPECT_FALSE(median_of_finite_m({kNothing_m, 1.0, kNothing_m}));
@@ -49,7 +49,7 @@ TEST(ReferenceFrom, GoesAlongTheLineOfSight) {
   EXPECT_NEAR(reference.distance_m.value(), 2.0 + 0.1 * std::cos(bearing_rad) + 0.2, 1e-12);
 }
 
-TEST(ReferenceFrom, IsNoneBesideTheAnchor) {
+TEST(ReferenceFrom, IsMissingBesideTheAnchor) {
   const auto sensor = mounted_at({0, 0, 0});
   EXPECT_TRUE(reference_from(2.0, sensor, sensor, kBox, std::asin(0.29 / 2.0)).distance_m);
   const auto beside = reference_from(2.0, sensor, sensor, kBox, std::asin(0.31 / 2.0));

@@ -81,7 +81,7 @@ TEST(RealRow, WithoutAnEstimateThereIsNothingToCompare) {
             Failure::Kind::kDisconnected);
 }
 
-TEST(Table2, StandsAboveThePapersRow) {
+TEST(Table2, IncludesThePapersRow) {
   RealRow row;
   row.outcome.results = {{"angle_error_deg", 0.12345}, {"duration_s", 0.4567}};
   EXPECT_EQ(
@@ -97,7 +97,7 @@ TEST(Table2, StandsAboveThePapersRow) {
       "(paper, Table II: means of ten experiments)\n");
 }
 
-TEST(PixelBox, IsWhatWasTracked) {
+TEST(PixelBox, IsTheTrackedRegion) {
   vision::Roi roi;
   roi.center = {79.5, 53.5};
   roi.width_px = 8.0;

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@ namespace tether::rig {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -24,7 +26,7 @@ const uav::CameraModel& camera_of(const devices::RigSensor& sensor) {
   return std::get<uav::CameraProperties>(sensor.description.properties).model;
 }
 
-TEST(RigFile, SaysOfSensorsAndAnchorsWhatACatalogueSays) {
+TEST(RigFile, DescribesSensorsAndAnchors) {
   const devices::Rig rig = parsed(R"(
 uav = "bench"
 [sensors.camera]
@@ -61,18 +63,11 @@ color_rgb = [1, 0, 0]
   EXPECT_EQ(camera.description.X_BS.p, (uav::Vec3{0.1, 0, 0.05}));
   EXPECT_NEAR(uav::yaw_rad(camera.description.X_BS.q), rad_from_deg(90), 1e-12);
   const uav::CameraModel& model = camera_of(camera);
-  EXPECT_EQ(model.width_px, 640);
-  EXPECT_EQ(model.height_px, 480);
-  EXPECT_EQ(model.fx_px, 500.0);
-  EXPECT_EQ(model.fy_px, 501.5);
-  EXPECT_EQ(model.cx_px, 320.0);
-  EXPECT_EQ(model.cy_px, 240.0);
-  EXPECT_EQ(model.k1, -0.1);
-  EXPECT_EQ(model.k2, 0.02);
-  EXPECT_EQ(model.k3, 0.003);
-  EXPECT_EQ(model.p1, 0.001);
-  EXPECT_EQ(model.p2, -0.002);
-
+  EXPECT_EQ(std::pair(model.width_px, model.height_px), std::pair(640, 480));
+  EXPECT_THAT((std::array{model.fx_px, model.fy_px, model.cx_px, model.cy_px}),
+              ElementsAre(500.0, 501.5, 320.0, 240.0));
+  EXPECT_THAT((std::array{model.k1, model.k2, model.k3, model.p1, model.p2}),
+              ElementsAre(-0.1, 0.02, 0.003, 0.001, -0.002));
   EXPECT_EQ(rig.sensors[1].description.kind(), uav::SensorKind::kImu);
   EXPECT_EQ(rig.sensors[1].device, "");
   EXPECT_EQ(rig.sensors[2].device, "iio:vl53l0x");
@@ -88,7 +83,7 @@ color_rgb = [1, 0, 0]
   EXPECT_EQ(rig.anchors[1].shape, uav::AnchorShape::kSphere);
 }
 
-TEST(RigFile, WhatItDoesNotSayIsLeftOpen) {
+TEST(RigFile, MissingKeysHaveDefaults) {
   const devices::Rig rig =
       parsed("[sensors.eye]\nkind = \"camera\"\n[sensors.range]\nkind = \"range\"\n");
   EXPECT_EQ(rig.uav, "rig");

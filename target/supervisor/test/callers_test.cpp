@@ -42,7 +42,7 @@ class CallersTest : public testing::Test {
   Heard heard_;
 };
 
-TEST_F(CallersTest, GiveEachConnectionTheClockAndAnIdentity) {
+TEST_F(CallersTest, GivesEachConnectionTheClockAndAnIdentity) {
   LocalSocket first = call(), second = call();
   ASSERT_TRUE(first.send(link::Progress{ExecTime(Duration(1))}));
   ASSERT_TRUE(second.send(link::Progress{ExecTime(Duration(2))}));
@@ -56,7 +56,7 @@ TEST_F(CallersTest, GiveEachConnectionTheClockAndAnIdentity) {
   }
 }
 
-TEST_F(CallersTest, AnswerTheOneThatAsked) {
+TEST_F(CallersTest, AnswersTheCallerOfTheRequest) {
   LocalSocket first = call(), second = call();
   ASSERT_TRUE(first.send(link::Progress{ExecTime(Duration(1))}));
   receive();
@@ -69,7 +69,7 @@ TEST_F(CallersTest, AnswerTheOneThatAsked) {
   EXPECT_FALSE(second.receive(Duration(0)));
 }
 
-TEST_F(CallersTest, ReportWhoHungUpAndNotWhomTheyDrop) {
+TEST_F(CallersTest, ReportsClosedConnectionsButNotDroppedOnes) {
   LocalSocket dropped = call();
   {
     LocalSocket caller = call();

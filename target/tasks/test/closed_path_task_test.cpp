@@ -57,7 +57,7 @@ TEST(ClosedPathTask, FliesASquareAheadAndToTheLeft) {
 }
 
 /// A bias that the task was not told of takes it elsewhere; its estimate by vision says where.
-TEST(ClosedPathTask, SeesHowFarFromItsStartItEnded) {
+TEST(ClosedPathTask, MeasuresItsDisplacementByVision) {
   ClosedPathOptions options;
   options.rest_time = Duration(0);
   const PlanarVehicle::Options world{.anchor_bearing_rad = rad_from_deg(-10),

@@ -116,7 +116,7 @@ TEST(MoveForwardTask, EndsWithTheReasonWhyItDidNotReachItsGoal) {
   EXPECT_LT(norm(searched.vehicle.position()), 0.2);
 }
 
-TEST(MoveForwardTask, AnAnchorThatHidesForAMomentIsLookedForOnItsSide) {
+TEST(MoveForwardTask, SearchesForHiddenAnchorOnItsSide) {
   int searches = 0;
   for (const auto hidden_from : {milliseconds(1500), milliseconds(2500), milliseconds(4000)}) {
     PlanarVehicle::Options world = wall_on_the_left();

@@ -97,7 +97,7 @@ TEST(TaskSequence, AFailureEndsItRequiredOrNot) {
   }
 }
 
-TEST(TaskSequence, ComposesTheTasksEachWithItsOwnEyes) {
+TEST(TaskSequence, ComposesTasksWithTheirOwnVisionOptions) {
   Fixture f;
   FaceAnchorOptions face;
   face.convergence.tolerance_px = 2.0;

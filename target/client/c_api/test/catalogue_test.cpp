@@ -39,7 +39,7 @@ TEST(Catalogue, HasNothingBeyondItsEnd) {
   EXPECT_EQ(tether_find_anchor(flown.vehicle, ""), nullptr);
 }
 
-TEST(Catalogue, TakesNullForNothing) {
+TEST(Catalogue, AcceptsNull) {
   EXPECT_STREQ(tether_uav_name(nullptr), "");
   EXPECT_EQ(tether_sensor_count(nullptr), 0u);
   EXPECT_EQ(tether_sensor_at(nullptr, 0), nullptr);

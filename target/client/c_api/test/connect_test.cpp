@@ -106,7 +106,7 @@ class Environment : public testing::Test {
   static void set(const char* name, const char* value) { setenv(name, value, 1); }
 };
 
-TEST_F(Environment, IsWhatIsFlownByUnlessSetOtherwise) {
+TEST_F(Environment, OptionsReplaceTheEnvironment) {
   const Coordinator coordinator;
   set("TETHER_ADDRESS", coordinator.address().c_str());
   set("TETHER_TOKEN", "word");

@@ -73,11 +73,14 @@ TEST_F(CppApi, ReadsSensors) {
   EXPECT_EQ(rgb[23], 9);
   EXPECT_EQ(fake_->reads.back().second, client::Read::kLatest);
   EXPECT_EQ(api::sampled_at(*vehicle_.read_imu("imu")), api::SimTime(12ns));
-  EXPECT_EQ(vehicle_.read_range("down", api::Read::kIfAvailable)->range_m, 1.5);
+  const auto range = vehicle_.read_range("down", api::Read::kIfAvailable);
+  EXPECT_EQ(range->range_m, 1.5);
+  EXPECT_EQ(range->index, 5u);
+  EXPECT_EQ(api::sampled_at(*range), api::SimTime(13ns));
   EXPECT_EQ(fake_->reads.back().second, client::Read::kIfAvailable);
 }
 
-TEST_F(CppApi, FliesWaitsAndTells) {
+TEST_F(CppApi, FliesWaitsAndAnnotates) {
   EXPECT_TRUE(vehicle_.command_velocity({1, 2, 3}, 0.5));
   EXPECT_EQ(fake_->commands.at(0), (uav::VelocityCommand{{1, 2, 3}, 0.5}));
   EXPECT_TRUE(vehicle_.sleep_until(api::ExecTime(2s)));
@@ -126,7 +129,7 @@ TEST_F(CppApi, SubscribesWithAnyCallable) {
   EXPECT_EQ(refused.failure().code(), api::Code::kInvalid);
 }
 
-TEST_F(CppApi, FailuresKeepTheirWordsBeyondTheNextCall) {
+TEST_F(CppApi, FailuresKeepTheirMessageAfterTheNextCall) {
   fake_->failure = Failure{Failure::Kind::kRunEnded, "time limit"};
   const api::Status ended = vehicle_.sleep_for(1ms);
   const auto image = vehicle_.read_camera("camera");
@@ -138,12 +141,12 @@ TEST_F(CppApi, FailuresKeepTheirWordsBeyondTheNextCall) {
   EXPECT_STREQ(image.failure().message(), "time limit");
 }
 
-TEST(CppFailure, CutsWhatIsTooLong) {
+TEST(CppFailure, TruncatesLongMessage) {
   const api::Failure failure(api::Code::kInternal, std::string(600, 'a').c_str());
   EXPECT_EQ(failure.message(), std::string(511, 'a'));
 }
 
-TEST(CppOptions, AreCheckedOneByOne) {
+TEST(CppOptions, ChecksEachOption) {
   auto options = api::Options::make();
   ASSERT_TRUE(options.ok());
   EXPECT_TRUE(options->set_address("127.0.0.1:1"));
@@ -154,7 +157,7 @@ TEST(CppOptions, AreCheckedOneByOne) {
   const api::Status clock = options->set_clock("sundial");
   ASSERT_FALSE(clock);
   EXPECT_EQ(clock.failure().code(), api::Code::kInvalid);
-  // Nobody listens on port 1.
+  // There is no listener on port 1.
   const auto vehicle = api::connect(*options);
   ASSERT_FALSE(vehicle.ok());
   EXPECT_EQ(vehicle.failure().code(), api::Code::kDisconnected) << vehicle.failure().message();

@@ -38,7 +38,7 @@ TEST(StatusName, KnowsEachAndNoOther) {
   EXPECT_STREQ(tether_status_name(-1), "unknown");
 }
 
-TEST(StatusOf, KeepsTheKindAndTheWords) {
+TEST(StatusOf, KeepsTheKindAndTheMessage) {
   using Kind = Failure::Kind;
   for (const auto& [kind, status] :
        {std::pair{Kind::kRefused, TETHER_REFUSED},
@@ -60,7 +60,7 @@ TEST(Guarded, LetsNoExceptionOut) {
 }
 
 /// Callers that were compiled with a later header: their struct is larger.
-TEST(Put, ClearsWhatALaterCallerKnowsMore) {
+TEST(Put, ClearsMembersOfALaterVersion) {
   struct {
     tether_range_sample known;
     double later = 5.0;
@@ -82,7 +82,7 @@ TEST(CanTake, RefusesWhatIsTooSmall) {
 }
 
 /// This library is the first: nothing has grown yet.
-TEST(FirstSize, IsThatOfToday) {
+TEST(FirstSize, IsCurrentSize) {
   EXPECT_EQ(kFirstSize<tether_camera_model>, sizeof(tether_camera_model));
   EXPECT_EQ(kFirstSize<tether_image_info>, sizeof(tether_image_info));
   EXPECT_EQ(kFirstSize<tether_imu_sample>, sizeof(tether_imu_sample));

@@ -32,7 +32,7 @@ TEST_F(Options, KeepWhatTheyAreGiven) {
   EXPECT_EQ(options_->welcome_timeout, Duration(7));
 }
 
-TEST_F(Options, SayWhatTheyDoNotTakeAndKeepTheOld) {
+TEST_F(Options, RefuseBadValuesAndKeepTheOldOnes) {
   ASSERT_EQ(tether_options_set_address(options_, "board:5200"), TETHER_OK);
   EXPECT_EQ(tether_options_set_address(options_, "nowhere"), TETHER_INVALID);
   EXPECT_THAT(tether_last_error(), HasSubstr("nowhere"));
