@@ -77,8 +77,7 @@ Result<link::Message> decode_memory(const FileDescriptor& memory) {
     return broken("the memory of a packet is not sealed");
   }
   const auto size = static_cast<std::size_t>(status.st_size);
-  if (size < link::kFrameHeaderBytes || size > link::kMaxReplyBytes)
-    return broken("the length of a packet");
+  if (size < link::kFrameHeaderBytes || size > link::kMaxReplyBytes) return broken("bad length");
   void* const data = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, memory.get(), 0);
   if (data == MAP_FAILED) return broken("the memory of a packet cannot be mapped");
   auto message = link::decode({static_cast<const std::uint8_t*>(data), size});
