@@ -104,7 +104,8 @@ class Simulator {
     FlatBufferBuilder b;
     try {
       const bool opens = request.content_type() == wire::Content::Open;
-      if (opens == is_open_) throw std::runtime_error("Open comes first, and once");
+      if (opens == is_open_)
+        throw std::runtime_error("Open must be the first message, and the only one of its kind");
       switch (request.content_type()) {
         case wire::Content::Open:
           return open(b, *request.content_as_Open());
@@ -133,13 +134,14 @@ class Simulator {
   }
 
   FlatBufferBuilder open(FlatBufferBuilder& b, const wire::Open& open) {
-    if (open.version() != 1) throw std::runtime_error("own_simulator speaks version 1");
+    if (open.version() != 1)
+      throw std::runtime_error("unsupported protocol version; own_simulator has version 1");
     if (open.world_name()->str() != "yard")
       throw std::runtime_error("own_simulator knows the yard only");
     if (open.uavs()->size() != 1 || open.bodies()->size() != 0) {
-      throw std::runtime_error("own_simulator flies one UAV, and nothing else moves");
+      throw std::runtime_error("own_simulator simulates one UAV and no other moving body");
     }
-    if (open.step_ns() < 1) throw std::runtime_error("a step takes time");
+    if (open.step_ns() < 1) throw std::runtime_error("step_ns must be at least 1");
     dt_ns_ = open.step_ns();
     past_steps_ = open.past_steps();
     const wire::Pose& start = *open.uavs()->Get(0)->x_wb();
@@ -184,7 +186,7 @@ class Simulator {
 
   FlatBufferBuilder render(FlatBufferBuilder& b, const wire::Render& r) {
     if (std::min(r.width_px(), r.height_px()) < 1 || std::max(r.width_px(), r.height_px()) > 4096) {
-      throw std::runtime_error("not the size of a picture");
+      throw std::runtime_error("wrong size of a picture");
     }
     std::uint8_t* rgb = nullptr;
     const auto pixels = b.CreateUninitializedVector<std::uint8_t>(

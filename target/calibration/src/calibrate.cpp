@@ -22,12 +22,8 @@ constexpr double kLeastFactor = 1e-3, kGreatestFactor = 1e4;
 
 Status check_files(const CalibrateOptions& options) {
   for (const std::string& file : {options.out, options.target}) {
-    if (file.empty()) {
-      continue;
-    }
-    if (Status writable = check_writable(file); !writable) {
-      return writable;
-    }
+    if (file.empty()) continue;
+    if (Status writable = check_writable(file); !writable) return writable;
   }
   return ok_status();
 }
@@ -45,17 +41,13 @@ std::string target_name(const CalibrateOptions& options, const Calibration& ther
 Result<std::string> compared(const CalibrateOptions& options, const Calibration& here,
                              const Calibration& there) {
   const Result<Comparison> comparison = compare(here, there);
-  if (!comparison) {
-    return invalid(options.against + ": " + comparison.failure().message);
-  }
+  if (!comparison) return invalid(options.against + ": " + comparison.failure().message);
   std::string text = comparison_table(here, there, *comparison);
-  if (options.target.empty()) {
-    return text;
-  }
+  if (options.target.empty()) return text;
   const double factor = comparison->whole.value;
   if (!(factor >= kLeastFactor && factor <= kGreatestFactor)) {
-    return invalid("a factor of " + std::to_string(factor) +
-                   " is beyond what a target may have (0.001 to 10000)");
+    return invalid("the factor is " + std::to_string(factor) +
+                   "; a target's factor must be from 0.001 to 10000");
   }
   const std::string target = target_text(target_name(options, there), here, there, *comparison);
   if (const Status written = write_whole(options.target, target); !written) {
@@ -73,8 +65,7 @@ Status check(const CalibrateOptions& options) {
         "--write-target and --name need --against, the measurement of the other machine");
   }
   if (!options.measured.empty() && (options.cpu_index || !options.out.empty())) {
-    return invalid(
-        "--measured takes a measurement that was made; --cpu and --out are of a new one");
+    return invalid("--measured excludes --cpu and --out, which belong to a new measurement");
   }
   return ok_status();
 }
@@ -83,9 +74,7 @@ Result<Calibration> measure_machine(const CalibrateOptions& options, const TellR
   Calibration calibration;
   calibration.machine = read_machine();  // while it still has all its cores
   const Result<int> core = bind_to_core(options.cpu_index);
-  if (!core) {
-    return core.failure();
-  }
+  if (!core) return core.failure();
   calibration.program = "tether-sut " + std::string(version());
   calibration.opencv = CV_VERSION;
   calibration.when = utc_now();
@@ -93,43 +82,31 @@ Result<Calibration> measure_machine(const CalibrateOptions& options, const TellR
   read_governor(*core, calibration.machine);
   calibration.machine.mhz_before = read_mhz(*core);
   auto blocks = run_workload({.rounds = options.rounds}, system_stopwatch(), tell);
-  if (!blocks) {
-    return blocks.failure();
-  }
+  if (!blocks) return blocks.failure();
   calibration.machine.mhz_after = read_mhz(*core);
   calibration.blocks = std::move(blocks).value();
   return calibration;
 }
 
 Result<std::string> calibrate(const CalibrateOptions& options, const TellRound& tell) {
-  if (const Status writable = check_files(options); !writable) {
-    return writable.failure();
-  }
+  if (const Status writable = check_files(options); !writable) return writable.failure();
   std::optional<Calibration> there;
   if (!options.against.empty()) {
     Result<Calibration> loaded = load_calibration(options.against);
-    if (!loaded) {
-      return loaded.failure();
-    }
+    if (!loaded) return loaded.failure();
     there = std::move(loaded).value();
   }
   const Result<Calibration> here = this_machine(options, tell);
-  if (!here) {
-    return here.failure();
-  }
+  if (!here) return here.failure();
   std::string text = speed_table(*here);
   if (!options.out.empty()) {
     if (const Status written = write_whole(options.out, calibration_text(*here)); !written) {
       return written.failure();
     }
   }
-  if (!there) {
-    return text;
-  }
+  if (!there) return text;
   const Result<std::string> more = compared(options, *here, *there);
-  if (!more) {
-    return more.failure();
-  }
+  if (!more) return more.failure();
   return text + "\n" + *more;
 }
 

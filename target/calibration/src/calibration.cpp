@@ -59,7 +59,7 @@ std::vector<BlockTimes> read_blocks(const Table& file) {
     const std::size_t rounds = blocks.front().cpu_ms.size();
     if (blocks.back().cpu_ms.size() != rounds || blocks.back().wall_ms.size() != rounds) {
       throw Error(ErrorCode::kBadFile, table.where(),
-                  "the blocks differ in their number of rounds");
+                  "the blocks have different numbers of rounds");
     }
   }
   return blocks;
@@ -71,9 +71,9 @@ Calibration read_calibration(const toml::Document& document) {
   calibration.workload = integer_of(file, "workload", 0);
   if (calibration.workload != kWorkloadVersion) {
     throw Error(ErrorCode::kBadFile, file.where("workload"),
-                "the workload is " + std::to_string(calibration.workload) +
-                    ", and this program's is " + std::to_string(kWorkloadVersion) +
-                    "; measure that machine again with the same tether-sut");
+                "the workload has version " + std::to_string(calibration.workload) +
+                    ", but this program has version " + std::to_string(kWorkloadVersion) +
+                    ". Measure that machine again with the same tether-sut");
   }
   calibration.program = file.any_text("program");
   calibration.opencv = file.any_text("opencv");

@@ -6,6 +6,8 @@
 #include <tether/calibration/sensor_table.h>
 #include <tether/tasks/task_context.h>
 
+// Runs the task of Algorithm 1 for each chosen sensor and experiment, within one time limit per
+// sensor, and adds the statistics of the times to the outcome.
 namespace tether::calibration {
 namespace {
 
@@ -13,17 +15,13 @@ using tasks::TaskOutcome;
 
 std::vector<std::string> names_of(const uav::Catalogue& catalogue) {
   std::vector<std::string> names;
-  for (const uav::SensorDescription& sensor : catalogue.sensors) {
-    names.push_back(sensor.name);
-  }
+  for (const uav::SensorDescription& sensor : catalogue.sensors) names.push_back(sensor.name);
   return names;
 }
 
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
-  for (const std::string& name : names) {
-    text += (text.empty() ? "" : ", ") + name;
-  }
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
 }
 
@@ -38,21 +36,17 @@ Result<std::vector<const uav::SensorDescription*>> choose_sensors(
       return invalid("there is no sensor \"" + name + "\"; there are " + listed(all));
     }
     if (std::find(chosen.begin(), chosen.end(), sensor) != chosen.end()) {
-      return invalid("sensor \"" + name + "\" is named twice");
+      return invalid("sensor \"" + name + "\" is given twice");
     }
     if (options.timing == Timing::kPeriodic && sensor->rate_hz <= 0.0) {
       return invalid("sensor \"" + name +
-                     "\" tells no rate, as one that measures when asked; leave it out with "
-                     "--sensors, or use --timing on_demand");
+                     "\" has no rate: it measures on demand. Exclude it with --sensors, or use "
+                     "--timing on_demand");
     }
     chosen.push_back(sensor);
   }
-  if (chosen.empty()) {
-    return invalid("there is no sensor to characterize");
-  }
-  if (const Status fits = check_extent(options, chosen.size()); !fits) {
-    return fits.failure();
-  }
+  if (chosen.empty()) return invalid("there is no sensor to characterize");
+  if (const Status fits = check_extent(options, chosen.size()); !fits) return fits.failure();
   return chosen;
 }
 
@@ -65,18 +59,14 @@ class Measurement {
   /// Says how it ended, if not well.
   tasks::Progress measure(SensorTimes& times) {
     end_ = context_.vehicle().now() + options_.time_limit;
-    if (tasks::Progress failed = turn_on(times)) {
-      return failed;
-    }
+    if (tasks::Progress failed = turn_on(times)) return failed;
     for (int number = 1; number <= options_.experiments; ++number) {
       if (tell_) {
         tell_(times.sensor + ": experiment " + std::to_string(number) + " of " +
               std::to_string(options_.experiments));
       }
       const TaskOutcome outcome = acquire(times, options_.acquisitions);
-      if (!outcome.reached()) {
-        return ended(outcome, times, number);
-      }
+      if (!outcome.reached()) return ended(outcome, times, number);
     }
     return std::nullopt;
   }
@@ -97,9 +87,7 @@ class Measurement {
   /// measurement, which is not counted.
   tasks::Progress turn_on(SensorTimes& times) {
     const TaskOutcome outcome = acquire(times, 1);
-    if (!outcome.reached()) {
-      return ended(outcome, times, 0);
-    }
+    if (!outcome.reached()) return ended(outcome, times, 0);
     times.experiments.clear();
     return std::nullopt;
   }
@@ -132,9 +120,7 @@ void add_results(const SensorTimes& times, std::map<std::string, double>& result
   results[prefix + "p95_s"] = of.p95_s;
   results[prefix + "p99_s"] = of.p99_s;
   results[prefix + "max_s"] = of.max_s;
-  if (of.stddev_s) {
-    results[prefix + "stddev_s"] = *of.stddev_s;
-  }
+  if (of.stddev_s) results[prefix + "stddev_s"] = *of.stddev_s;
   if (const auto between_s = stddev_between_experiments_s(times)) {
     results[prefix + "stddev_between_experiments_s"] = *between_s;
   }
@@ -143,16 +129,12 @@ void add_results(const SensorTimes& times, std::map<std::string, double>& result
 TaskOutcome measure_all(tasks::TaskContext& context, const CharacterizeOptions& options,
                         const TellProgress& tell, std::vector<SensorTimes>& all) {
   const auto chosen = choose_sensors(context.vehicle().catalogue(), options);
-  if (!chosen) {
-    return TaskOutcome::failed(chosen.failure());
-  }
+  if (!chosen) return TaskOutcome::failed(chosen.failure());
   Measurement measurement(context, options, tell);
   TaskOutcome whole = TaskOutcome::goal_reached();
   for (const uav::SensorDescription* sensor : *chosen) {
     all.push_back({sensor->name, sensor->kind(), {}, sensor->rate_hz});
-    if (tasks::Progress end = measurement.measure(all.back())) {
-      return *std::move(end);
-    }
+    if (tasks::Progress end = measurement.measure(all.back())) return *std::move(end);
     add_results(all.back(), whole.results);
   }
   return whole;
@@ -173,9 +155,7 @@ std::vector<Duration> SensorTimes::taken() const {
 Status check_extent(const CharacterizeOptions& options, std::size_t sensors) {
   const std::int64_t all =
       std::int64_t{options.acquisitions} * options.experiments * static_cast<std::int64_t>(sensors);
-  if (all <= kMostAcquisitions) {
-    return ok_status();
-  }
+  if (all <= kMostAcquisitions) return ok_status();
   return invalid("--acquisitions times --experiments of " + std::to_string(sensors) +
                  (sensors == 1 ? " sensor is " : " sensors is ") + std::to_string(all) +
                  "; at most " + std::to_string(kMostAcquisitions) + " fit a profile");

@@ -44,7 +44,7 @@ Result<uav::CameraSample> read_frame(std::size_t number) {
   const cv::Mat bgr = cv::imdecode(file_bytes, cv::IMREAD_COLOR);
   if (bgr.cols != kWidth_px || bgr.rows != kHeight_px) {
     return Failure{Failure::Kind::kInvalid,
-                   "OpenCV cannot read the images of the calibration, which are JPEG"};
+                   "this OpenCV cannot decode JPEG, the format of the calibration images"};
   }
   uav::CameraSample sample;
   sample.index = number;
@@ -63,9 +63,7 @@ Result<std::vector<uav::CameraSample>> calibration_frames() {
   std::vector<uav::CameraSample> frames;
   for (std::size_t i = 0; i < kEmbeddedFrameCount; ++i) {
     Result<uav::CameraSample> frame = read_frame(i);
-    if (!frame) {
-      return frame.failure();
-    }
+    if (!frame) return frame.failure();
     frames.push_back(std::move(frame).value());
   }
   return frames;

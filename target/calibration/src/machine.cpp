@@ -26,9 +26,7 @@ std::string cpuinfo(const std::string& root, const std::string& key) {
   std::ifstream file(root + "/proc/cpuinfo");
   for (std::string line; std::getline(file, line);) {
     const std::size_t colon = line.find(": ");
-    if (line.rfind(key, 0) == 0 && colon != std::string::npos) {
-      return line.substr(colon + 2);
-    }
+    if (line.rfind(key, 0) == 0 && colon != std::string::npos) return line.substr(colon + 2);
   }
   return "";
 }
@@ -36,9 +34,7 @@ std::string cpuinfo(const std::string& root, const std::string& key) {
 /// A board's own name says more than its cores'.
 std::string cpu_model(const std::string& root) {
   std::string model = first_line(root + "/proc/device-tree/model");
-  if (model.empty()) {
-    model = cpuinfo(root, "model name");
-  }
+  if (model.empty()) model = cpuinfo(root, "model name");
   return model.empty() ? cpuinfo(root, "Model") : model;
 }
 
@@ -60,9 +56,7 @@ std::optional<cpu_set_t> allowed() {
 
 int last_of(const cpu_set_t& set) {
   int cpu = CPU_SETSIZE - 1;
-  while (cpu > 0 && !CPU_ISSET(static_cast<std::size_t>(cpu), &set)) {
-    --cpu;
-  }
+  while (cpu > 0 && !CPU_ISSET(static_cast<std::size_t>(cpu), &set)) --cpu;
   return cpu;
 }
 
@@ -81,9 +75,7 @@ Machine read_machine(const std::string& root) {
   machine.name = host_name();
   machine.cpu = cpu_model(root);
   machine.architecture = system.machine;
-  if (const auto set = allowed()) {
-    machine.cores = CPU_COUNT(&*set);
-  }
+  if (const auto set = allowed()) machine.cores = CPU_COUNT(&*set);
   return machine;
 }
 
@@ -99,17 +91,15 @@ void read_governor(int cpu_index, Machine& machine, const std::string& root) {
 Result<int> bind_to_core(std::optional<int> cpu_index) {
   const auto set = allowed();
   if (!set) {
-    return Failure{Failure::Kind::kInvalid, "this machine does not tell which cores may be used"};
+    return Failure{Failure::Kind::kInvalid, "cannot read which cores this program can use"};
   }
   const int cpu = cpu_index.value_or(last_of(*set));
   cpu_set_t one;
   CPU_ZERO(&one);
-  if (cpu >= 0 && cpu < CPU_SETSIZE) {
-    CPU_SET(static_cast<std::size_t>(cpu), &one);
-  }
+  if (cpu >= 0 && cpu < CPU_SETSIZE) CPU_SET(static_cast<std::size_t>(cpu), &one);
   if (sched_setaffinity(0, sizeof one, &one) != 0) {
     return Failure{Failure::Kind::kInvalid,
-                   "core " + std::to_string(cpu) + " cannot be used by this program"};
+                   "core " + std::to_string(cpu) + " is not available to this program"};
   }
   return cpu;
 }

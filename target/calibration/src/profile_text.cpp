@@ -3,6 +3,8 @@
 #include <tether/base/version.h>
 #include <tether/calibration/profile_text.h>
 
+// Writes a profile as TOML. Names and descriptions can contain any bytes, so they are made valid
+// UTF-8 and escaped; passwords in URLs are removed.
 namespace tether::calibration {
 namespace {
 
@@ -32,19 +34,13 @@ std::size_t utf8_length(std::string_view text) {
                              : lead < 0xE0 ? 2
                              : lead < 0xF0 ? 3
                                            : 4;
-  if (length < 2) {
-    return length;
-  }
+  if (length < 2) return length;
   // Neither longer than needed, nor a surrogate, nor beyond U+10FFFF.
   const unsigned least = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80;
   const unsigned most = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
-  if (lead > 0xF4 || at(1) < least || at(1) > most) {
-    return 0;
-  }
+  if (lead > 0xF4 || at(1) < least || at(1) > most) return 0;
   for (std::size_t i = 2; i < length; ++i) {
-    if (at(i) < 0x80 || at(i) > 0xBF) {
-      return 0;
-    }
+    if (at(i) < 0x80 || at(i) > 0xBF) return 0;
   }
   return length;
 }
@@ -68,15 +64,11 @@ bool is_control(char c) {
 /// A URL's "user:password@" is for the device alone.
 std::string without_user(std::string url) {
   const std::size_t scheme = url.find("://");
-  if (scheme == std::string::npos) {
-    return url;
-  }
+  if (scheme == std::string::npos) return url;
   const std::size_t begin = scheme + 3;
   const std::size_t end = std::min(url.find_first_of("/?#", begin), url.size());
   const std::size_t at = std::string_view(url).substr(0, end).rfind('@');
-  if (at != std::string::npos && at >= begin) {
-    url.erase(begin, at + 1 - begin);
-  }
+  if (at != std::string::npos && at >= begin) url.erase(begin, at + 1 - begin);
   return url;
 }
 
@@ -154,8 +146,8 @@ Status check_delays(const MeasuredProfile& profile) {
     if (longest != delays.end() && *longest > kLongestDelay) {
       return Failure{Failure::Kind::kInvalid, "sensor \"" + sensor.name + "\": a delay of " +
                                                   in_ms(*longest) +
-                                                  " ms was measured; a profile takes at most "
-                                                  "60000 ms, so none is written"};
+                                                  " ms was measured; a profile can have at "
+                                                  "most 60000 ms, so none is written"};
     }
   }
   return ok_status();
@@ -174,9 +166,7 @@ std::string profile_text(const MeasuredProfile& profile) {
   text += "# The paper's Algorithm 1: " + extent + ".\n";
   text += "name = " + toml_string(profile.name) + "\n";
   text += "description = " + toml_string(plain(names + " as measured on " + profile.where)) + "\n";
-  for (const ProfiledSensor& sensor : profile.sensors) {
-    text += sensor_text(sensor);
-  }
+  for (const ProfiledSensor& sensor : profile.sensors) text += sensor_text(sensor);
   return text;
 }
 

@@ -6,6 +6,8 @@
 #include <tether/base/text_table.h>
 #include <tether/calibration/profile_text.h>
 
+// The tables and the target file of `tether-sut calibrate`: one machine's speed, the comparison of
+// two, and the doubts about both.
 namespace tether::calibration {
 namespace {
 
@@ -50,7 +52,7 @@ std::string core_line(const Machine& machine) {
     text += "; " + fixed(machine.mhz_before, 0) + " MHz before, " + fixed(machine.mhz_after, 0) +
             " MHz after";
   } else {
-    text += "; the clock rate is not told";
+    text += "; clock rate unknown";
   }
   return text;
 }
@@ -62,9 +64,7 @@ std::string doubts_text(const Calibration& calibration, const std::string& begin
   for (const std::string& doubt : doubts(calibration)) {
     const std::string line =
         begin + "Doubtful on " + machine_line(calibration.machine) + ": " + doubt + ".\n";
-    if (told.find(line) == std::string::npos) {
-      text += line;
-    }
+    if (told.find(line) == std::string::npos) text += line;
   }
   return text;
 }
@@ -109,9 +109,7 @@ std::string machine_line(const Machine& machine) {
 std::string speed_table(const Calibration& calibration) {
   std::vector<std::vector<std::string>> rows = {
       {"block", "rounds", "CPU [ms]", "spread", "wall [ms]", "spread", "per CPU second"}};
-  for (const BlockTimes& block : calibration.blocks) {
-    rows.push_back(speed_row(block));
-  }
+  for (const BlockTimes& block : calibration.blocks) rows.push_back(speed_row(block));
   return machine_line(calibration.machine) + ", " + plain(calibration.when) + "\n" +
          core_line(calibration.machine) + "\n\n" + text_table(rows) +
          "Medians per image of 640 x 480 pixels; spread: distance of the quartiles.\n" +

@@ -15,9 +15,7 @@ using Row = std::vector<std::string>;
 
 std::vector<double> in_seconds(const std::vector<Duration>& times) {
   std::vector<double> times_s;
-  for (const Duration time : times) {
-    times_s.push_back(to_seconds(time));
-  }
+  for (const Duration time : times) times_s.push_back(to_seconds(time));
   return times_s;
 }
 
@@ -81,9 +79,7 @@ TimeSummary summarize(std::vector<Duration> times) {
 
 std::optional<double> stddev_between_experiments_s(const SensorTimes& times) {
   std::vector<double> means_s;
-  for (const auto& experiment : times.experiments) {
-    means_s.push_back(mean_s(experiment));
-  }
+  for (const auto& experiment : times.experiments) means_s.push_back(mean_s(experiment));
   return sample_stddev(means_s);
 }
 
@@ -95,9 +91,7 @@ std::string table_1(const Origin& origin, const std::vector<SensorTimes>& sensor
     measured.push_back(fixed(summarize(sensor.taken()).mean_s, 4));
   }
   std::vector<Row> rows = {head, measured, {"paper:"}};
-  for (const PaperRow& paper : kPaper) {
-    rows.push_back(cells_of(paper, sensors));
-  }
+  for (const PaperRow& paper : kPaper) rows.push_back(cells_of(paper, sensors));
   return "Table I: mean time to acquire a sensor's data [s]\n" + text_table(rows) +
          "(paper, Table I: means of ten experiments, spread not published)\n";
 }
@@ -109,13 +103,9 @@ std::string distribution_table(const std::vector<NamedTimes>& rows) {
   });
   for (const NamedTimes& row : rows) {
     cells.push_back(distribution_row(row));
-    if (has_means) {
-      cells.back().push_back(in_ms(row.stddev_between_experiments_s));
-    }
+    if (has_means) cells.back().push_back(in_ms(row.stddev_between_experiments_s));
   }
-  if (has_means) {
-    cells.front().push_back("sd of experiments' means");
-  }
+  if (has_means) cells.front().push_back("sd of experiments' means");
   return text_table(cells);
 }
 

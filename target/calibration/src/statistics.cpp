@@ -8,6 +8,8 @@
 #include <tether/base/text_table.h>
 #include <tether/stats/sample_statistics.h>
 
+// Compares two machines block by block: the factor of the medians, with an interval from order
+// statistics. `doubts` lists signs that a measurement was disturbed.
 namespace tether::calibration {
 namespace {
 
@@ -55,9 +57,7 @@ Factor geometric_mean(const std::vector<Factor>& factors) {
   double value = 0.0, low = 0.0, high = 0.0;
   int count = 0;
   for (const Factor& factor : factors) {
-    if (is_whole(factor)) {
-      continue;
-    }
+    if (is_whole(factor)) continue;
     value += std::log(factor.value);
     low += std::log(factor.interval.low);
     high += std::log(factor.interval.high);
@@ -80,15 +80,13 @@ void doubt_load(const BlockTimes& whole, std::vector<std::string>& doubts) {
   const double excess = median(whole.wall_ms) / median(whole.cpu_ms) - 1.0;
   if (excess > 0.1) {
     doubts.push_back("wall time is " + whole_percent(excess) +
-                     " above CPU time: other programs had this core meanwhile");
+                     " above CPU time: other programs used this core");
   }
 }
 
 void doubt_drift(const BlockTimes& whole, std::vector<std::string>& doubts) {
   const auto third = static_cast<std::ptrdiff_t>(whole.cpu_ms.size() / 3);
-  if (third == 0) {
-    return;
-  }
+  if (third == 0) return;
   const double first = median({whole.cpu_ms.begin(), whole.cpu_ms.begin() + third});
   const double last = median({whole.cpu_ms.end() - third, whole.cpu_ms.end()});
   if (last > 1.05 * first) {
@@ -103,7 +101,7 @@ void doubt_drift(const BlockTimes& whole, std::vector<std::string>& doubts) {
 void doubt_scatter(const BlockTimes& whole, std::vector<std::string>& doubts) {
   const double spread = quartiles(whole.cpu_ms).spread();
   if (spread > 0.1) {
-    doubts.push_back("times scatter: half of the rounds lie " + whole_percent(spread) + " apart");
+    doubts.push_back("times scatter: the quartiles are " + whole_percent(spread) + " apart");
   }
 }
 
@@ -144,7 +142,7 @@ Result<Comparison> compare(const Calibration& here, const Calibration& there) {
   for (const BlockTimes& block : here.blocks) {
     const BlockTimes* other = find_block(there, block.name);
     if (other == nullptr || here.blocks.size() != there.blocks.size()) {
-      return invalid("the two measurements have not the same blocks");
+      return invalid("the two measurements have different blocks");
     }
     comparison.blocks.push_back(factor_of(block, *other));
   }

@@ -5,6 +5,9 @@
 
 #include <tether/calibration/timing_model.h>
 
+// Derives a sensor's period and delays from its acquisitions. Steps between timestamps give the
+// period; a regression of the delays over time shows whether timestamps and clock run at the same
+// speed; the last checks reject timestamps that are in the future or only times of arrival.
 namespace tether::calibration {
 namespace {
 
@@ -48,9 +51,7 @@ std::vector<Step> steps_of(const SensorTimes& times) {
 
 Duration median_of_one(const std::vector<Step>& steps) {
   std::vector<Duration> all;
-  for (const Step& step : steps) {
-    all.push_back(step.of_one());
-  }
+  for (const Step& step : steps) all.push_back(step.of_one());
   return median(std::move(all));
 }
 
@@ -130,9 +131,7 @@ Drift drift_of(const SensorTimes& times) {
     td += (at - t) * (delay - d);
     dd += (delay - d) * (delay - d);
   }
-  if (tt <= 0.0) {
-    return {};
-  }
+  if (tt <= 0.0) return {};
   const double slope = td / tt;
   const double span_s = points.back().first - points.front().first;
   const double residuals = std::max(dd - slope * td, 0.0);
@@ -158,30 +157,26 @@ TimingModel on_demand_timing(const SensorTimes& times) {
 
 Result<TimingModel> periodic_timing(const SensorTimes& times, bool may_stamp_arrival) {
   const std::vector<Step> steps = steps_of(times);
-  if (steps.size() < kFewestSteps) {
-    return refuse(times, "too few samples to tell its period");
-  }
+  if (steps.size() < kFewestSteps) return refuse(times, "too few samples to determine its period");
   const Duration middle = median_of_one(steps);
   if (middle <= Duration::zero() || !is_steady(steps, middle)) {
-    return refuse(times, "its samples come too irregularly to tell a period");
+    return refuse(times, "its samples are too irregular to determine a period");
   }
   TimingModel model{mean_of_near(steps, middle), delays(times)};
   if (*model.period < kShortestPeriod || *model.period > kLongestPeriod) {
-    return refuse(times, "its period is not between 0.01 ms and 1000 s, as a profile's must be");
+    return refuse(times, "its period must be from 0.01 ms to 1000 s for a profile");
   }
   if (!runs_at_our_pace(times, *model.period)) {
     return refuse(times,
-                  "its instants and this program's clock do not run at one pace, as in a run "
+                  "its timestamps and this program's clock run at different speeds, as in a run "
                   "without synchronisation");
   }
   if (*std::min_element(model.delays.begin(), model.delays.end()) < Duration::zero()) {
     return refuse(times,
-                  "some samples are from the future of this program's clock, so that it is not the "
-                  "one of their instants");
+                  "some timestamps are in the future, so they are not from this program's clock");
   }
   if (may_stamp_arrival && median(model.delays) < kShortestLiveDelay) {
-    return refuse(times,
-                  "the device gives no instants of its own, it seems, only those of arrival");
+    return refuse(times, "the device seems to give the time of arrival instead of a timestamp");
   }
   return model;
 }
@@ -193,13 +188,9 @@ Result<ChosenTiming> choose_timing(const SensorTimes& times, Timing timing,
     return ChosenTiming{on_demand_timing(times), ""};
   }
   Result<TimingModel> model = periodic_timing(times, may_stamp_arrival);
-  if (model) {
-    return ChosenTiming{std::move(model).value(), ""};
-  }
+  if (model) return ChosenTiming{std::move(model).value(), ""};
   const std::string& why = model.failure().message;
-  if (is_periodic) {
-    return Failure{model.failure().kind, why + "; use --timing on_demand"};
-  }
+  if (is_periodic) return Failure{model.failure().kind, why + "; use --timing on_demand"};
   return ChosenTiming{on_demand_timing(times), why + "; its model is on_demand"};
 }
 

@@ -14,6 +14,9 @@
 #include <tether/vision/relative_position.h>
 #include <tether/vision/runtime.h>
 
+// Computes the measured work: each round runs every block of the vision tasks on every embedded
+// image, and BlockClock adds the time of each block. The result of the whole step is compared with
+// the expected one, so that only equal work is compared between machines.
 namespace tether::calibration {
 namespace {
 
@@ -87,31 +90,25 @@ class Workload {
         perception_(stopwatch, kWholeStep) {}
 
   Status run_round(bool counts) {
-    for (std::size_t i = 0; i < frames_.size(); ++i) {
-      step_by_step(frames_[i]);
-    }
+    for (std::size_t i = 0; i < frames_.size(); ++i) step_by_step(frames_[i]);
     tracker_.reset();
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       std::optional<View> view;
       perception_.time([&] { view = perceive(frames_[i]); });
       if (const std::string wrong = difference(view, expected_views()[i]); !wrong.empty()) {
         return Failure{Failure::Kind::kInvalid,
-                       "this machine computes something else, so that its times compare with "
-                       "nobody's: in image " +
+                       "this machine computes other results, so its times cannot be compared: in "
+                       "image " +
                            std::to_string(i + 1) + ", " + wrong};
       }
     }
-    for (BlockClock* clock : clocks()) {
-      clock->end_round(frames_.size(), counts);
-    }
+    for (BlockClock* clock : clocks()) clock->end_round(frames_.size(), counts);
     return ok_status();
   }
 
   std::vector<BlockTimes> take() {
     std::vector<BlockTimes> times;
-    for (BlockClock* clock : clocks()) {
-      times.push_back(clock->take());
-    }
+    for (BlockClock* clock : clocks()) times.push_back(clock->take());
     return times;
   }
 
@@ -127,9 +124,7 @@ class Workload {
     tracker_.reset();
     search_.time([&] { roi = tracker_.locate(); });
     tracking_.time([&] { roi = tracker_.locate(); });
-    if (!roi) {
-      return;
-    }
+    if (!roi) return;
     position_.time([&] {
       for (int n = 0; n < kPositionsPerImage; ++n) {
         // Written where the compiler must leave it.
@@ -140,9 +135,7 @@ class Workload {
 
   std::optional<View> perceive(const uav::CameraSample& frame) {
     const std::optional<vision::Roi> roi = tracker_.track(frame);
-    if (!roi) {
-      return std::nullopt;
-    }
+    if (!roi) return std::nullopt;
     const vision::RelativePosition position = vision::relative_position(camera_, anchor_, *roi);
     return View{roi->center.u_px,
                 roi->center.v_px,
@@ -164,9 +157,7 @@ class Workload {
 
 std::string difference(const std::optional<View>& seen, const View& expected) {
   constexpr double kTolerance_px = 0.05, kTolerance_deg = 0.02, kTolerance_m = 0.01;
-  if (!seen) {
-    return "the anchor was not found";
-  }
+  if (!seen) return "the anchor was not found";
   const auto is_near = [](double a, double b, double tolerance) {
     return std::abs(a - b) <= tolerance;
   };
@@ -188,22 +179,16 @@ Result<std::vector<BlockTimes>> run_workload(const WorkloadOptions& options,
                                              const Stopwatch& stopwatch, const TellRound& tell) {
   vision::set_threads(1);
   Result<std::vector<uav::CameraSample>> frames = calibration_frames();
-  if (!frames) {
-    return frames.failure();
-  }
+  if (!frames) return frames.failure();
   auto tracker = vision::AnchorTracker::create(calibration_anchor(), tracker_options());
-  if (!tracker) {
-    return tracker.failure();
-  }
+  if (!tracker) return tracker.failure();
   Workload workload(std::move(frames).value(), std::move(tracker).value(), stopwatch);
   for (int round = 1 - options.warm_up; round <= options.rounds; ++round) {
     if (tell) {
       tell(round > 0 ? "round " + std::to_string(round) + " of " + std::to_string(options.rounds)
                      : "warming up");
     }
-    if (const Status same = workload.run_round(round > 0); !same) {
-      return same.failure();
-    }
+    if (const Status same = workload.run_round(round > 0); !same) return same.failure();
   }
   return workload.take();
 }

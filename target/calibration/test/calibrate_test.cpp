@@ -14,6 +14,7 @@ namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 Calibration machine(const std::string& name, double prefilter_ms, double tracking_ms) {
   Calibration calibration;
@@ -42,17 +43,12 @@ class Calibrate : public ::testing::Test {
     EXPECT_TRUE(made) << made.failure().message;
     return made ? *made : "";
   }
-  std::string error() const {
-    const auto made = calibrate(options_);
-    EXPECT_FALSE(made);
-    return made ? "" : made.failure().message;
-  }
 
   ScratchFolder folder_;
   CalibrateOptions options_;
 };
 
-TEST_F(Calibrate, ComparesBlockByBlockAndSaysHowGoodOneFactorIs) {
+TEST_F(Calibrate, ReportsFactorOfEachBlockAndErrorOfSingleFactor) {
   EXPECT_THAT(text(),
               AllOf(HasSubstr("CPU time on bench pi (model of bench pi, aarch64)\nagainst desk"),
                     HasSubstr("\nprefilter                 5.00    5.00 to 5.00\n"),
@@ -61,7 +57,7 @@ TEST_F(Calibrate, ComparesBlockByBlockAndSaysHowGoodOneFactorIs) {
                     HasSubstr("off by up to 67 % for one of its blocks")));
 }
 
-TEST_F(Calibrate, SaysThatBlocksAgreeAndEachDoubtOnceWhenAMachineIsComparedWithItself) {
+TEST_F(Calibrate, ReportsAgreementAndEachDoubtOnceForEqualMachines) {
   Calibration doubtful = machine("desk", 8.0, 2.0);
   doubtful.machine.mhz_before = 1000.0;
   doubtful.machine.mhz_after = 2000.0;
@@ -74,7 +70,7 @@ TEST_F(Calibrate, SaysThatBlocksAgreeAndEachDoubtOnceWhenAMachineIsComparedWithI
   EXPECT_EQ(said.find("Doubtful on desk", first + 1), std::string::npos) << said;
 }
 
-TEST_F(Calibrate, WritesATargetThatSaysWhereItComesFrom) {
+TEST_F(Calibrate, WritesTargetWithItsOrigin) {
   options_.target = path("pi.toml");
   EXPECT_THAT(text(), HasSubstr("--target " + options_.target));
   const ::toml::table target = ::toml::parse_file(options_.target);
@@ -89,38 +85,36 @@ TEST_F(Calibrate, WritesATargetThatSaysWhereItComesFrom) {
   EXPECT_EQ(::toml::parse_file(options_.target)["name"].value<std::string>(), "mine");
 }
 
-TEST_F(Calibrate, FailsBeforeItMeasures) {
+TEST_F(Calibrate, RefusesUnusableFilesBeforeItMeasures) {
   options_.measured.clear();
   const auto tell = [](const std::string&) { ADD_FAILURE() << "it measures"; };
   options_.out = path("none/out.toml");
-  EXPECT_THAT(calibrate(options_, tell).failure().message, HasSubstr("cannot be written"));
+  EXPECT_THAT(calibrate(options_, tell).failure().message, StartsWith(options_.out));
   options_.out.clear();
   options_.against = path("none.toml");
-  EXPECT_THAT(calibrate(options_, tell).failure().message,
-              HasSubstr("none.toml: there is no such file"));
+  EXPECT_THAT(calibrate(options_, tell).failure().message, StartsWith(options_.against));
 }
 
-TEST_F(Calibrate, AFactorThatNoTargetTakesIsNotWritten) {
+TEST_F(Calibrate, RefusesFactorThatNoTargetCanHave) {
   options_.against = folder_.write("slug.toml", calibration_text(machine("slug", 1e6, 1e6)));
   options_.target = path("slug_target.toml");
-  EXPECT_THAT(error(), HasSubstr("beyond what a target may have"));
+  EXPECT_EQ(calibrate(options_).failure().kind, Failure::Kind::kInvalid);
   EXPECT_FALSE(fs::exists(options_.target));
 }
 
-TEST_F(Calibrate, OptionsThatMeanNothingTogether) {
+TEST_F(Calibrate, RefusesOptionsThatExcludeEachOther) {
   EXPECT_TRUE(check(options_));
-  CalibrateOptions alone;
-  alone.target = "t.toml";
-  EXPECT_THAT(check(alone).failure().message, HasSubstr("need --against"));
-  alone = {};
-  alone.name = "t";
-  EXPECT_FALSE(check(alone));
+  CalibrateOptions target_alone, name_alone;
+  target_alone.target = "t.toml";
+  name_alone.name = "t";
+  EXPECT_THAT(check(target_alone).failure().message, HasSubstr("--against"));
+  EXPECT_THAT(check(name_alone).failure().message, HasSubstr("--against"));
   options_.cpu_index = 1;
   EXPECT_THAT(check(options_).failure().message, HasSubstr("--measured"));
 }
 
 // The least that can be measured for real: what it finds, not how long it takes.
-TEST(MeasureMachine, SaysWhatItMeasuredOnAndHasEveryBlock) {
+TEST(MeasureMachine, ReportsTheMachineAndEveryBlock) {
   CalibrateOptions options;
   options.rounds = 1;
   const auto measured = measure_machine(options);
@@ -132,7 +126,7 @@ TEST(MeasureMachine, SaysWhatItMeasuredOnAndHasEveryBlock) {
   const auto read = parse_calibration(calibration_text(*measured), "m.toml");
   EXPECT_TRUE(read) << read.failure().message;
   options.cpu_index = 100'000;
-  EXPECT_THAT(measure_machine(options).failure().message, HasSubstr("core 100000 cannot be used"));
+  EXPECT_THAT(measure_machine(options).failure().message, HasSubstr("100000"));
 }
 
 }  // namespace

@@ -50,46 +50,39 @@ TEST(Characterize, RepeatsExperiments) {
   EXPECT_NEAR(result.outcome.results.at("range_stddev_between_experiments_s"), 0.01414, 1e-5);
 }
 
-TEST(Characterize, KnowsItsSensorsBeforeItMeasures) {
+TEST(Characterize, RefusesBeforeItMeasures) {
   PlanarVehicle vehicle({});
-  const Characterization unknown = characterize(vehicle, few({"camera", "gps"}));
-  EXPECT_EQ(unknown.outcome.failure, Failure::Kind::kInvalid);
-  EXPECT_EQ(unknown.outcome.reason, "there is no sensor \"gps\"; there are camera, imu, range");
-  EXPECT_EQ(characterize(vehicle, few({"imu", "imu"})).outcome.reason,
-            "sensor \"imu\" is named twice");
-  CharacterizeOptions periodic = few({"camera", "range"});
+  CharacterizeOptions periodic = few({"camera", "range"}), many;
   periodic.timing = Timing::kPeriodic;
-  const Characterization on_demand = characterize(vehicle, periodic);
-  EXPECT_EQ(on_demand.outcome.failure, Failure::Kind::kInvalid);
-  EXPECT_THAT(on_demand.outcome.reason, HasSubstr("sensor \"range\" tells no rate"));
-  EXPECT_EQ(vehicle.now(), ExecTime());
+  many.acquisitions = kMostAcquisitions / 2;
+  for (const auto& [options, name] :
+       {std::pair(few({"camera", "gps"}), "\"gps\""), std::pair(few({"imu", "imu"}), "\"imu\""),
+        std::pair(periodic, "\"range\""), std::pair(many, "90000")}) {
+    const Characterization refused = characterize(vehicle, options);
+    EXPECT_EQ(refused.outcome.failure, Failure::Kind::kInvalid);
+    EXPECT_THAT(refused.outcome.reason, HasSubstr(name));
+    EXPECT_EQ(vehicle.now(), ExecTime());
+  }
 }
 
 // 1 MiB of TOML, with 14 bytes for the longest delay: "59999.999999, ".
-TEST(Characterize, AllItsAcquisitionsFitAProfile) {
+TEST(Characterize, AllAcquisitionsFitAProfile) {
   EXPECT_LT(kMostAcquisitions * 14, 1 << 20);
-  PlanarVehicle vehicle({});
   CharacterizeOptions options;
   options.acquisitions = kMostAcquisitions / 2;
-  const Characterization result = characterize(vehicle, options);
-  EXPECT_EQ(result.outcome.failure, Failure::Kind::kInvalid);
-  EXPECT_EQ(
-      result.outcome.reason,
-      "--acquisitions times --experiments of 3 sensors is 90000; at most 60000 fit a profile");
-  EXPECT_EQ(vehicle.now(), ExecTime());
   EXPECT_TRUE(check_extent(options, 2));
   options.acquisitions = options.experiments = kMostAcquisitions;
   EXPECT_FALSE(check_extent(options, 1));
 }
 
-TEST(Characterize, OneSensorThatFailsFailsTheWhole) {
+TEST(Characterize, FailsIfOneSensorFails) {
   PlanarVehicle vehicle({.disconnect_at = 6});
   const Characterization result = characterize(vehicle, few());
   EXPECT_EQ(result.outcome.failure, Failure::Kind::kDisconnected);
   EXPECT_FALSE(result.outcome.results.contains("camera_mean_s"));
 }
 
-TEST(Characterize, TheTimeLimitIsEachSensors) {
+TEST(Characterize, TimeLimitAppliesToEachSensor) {
   PlanarVehicle vehicle({.range_delays = {milliseconds(300)}});
   CharacterizeOptions options = few({"camera", "range"});
   options.experiments = 3;

@@ -22,7 +22,7 @@ TEST(Machine, IsReadFromProcAndSys) {
   EXPECT_EQ(machine.governor, "ondemand");
 }
 
-TEST(Machine, TellsNothingOfWhatItDoesNotTell) {
+TEST(Machine, UnknownValuesAreEmpty) {
   const ScratchFolder folder;
   const std::string root = folder.path().string();
   Machine machine = read_machine(root);

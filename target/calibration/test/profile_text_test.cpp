@@ -8,6 +8,7 @@
 namespace tether::calibration {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -31,9 +32,7 @@ std::vector<Duration> delays_of(const ::toml::node_view<::toml::node>& sensor) {
 TEST(ProfileText, KeepsEverySampleToTheNanosecond) {
   std::vector<Duration> delays = {Duration(0), Duration(1), Duration(33'100'000),
                                   Duration(1'000'000), Duration(999'999)};
-  for (std::int64_t i = 1; i < 2000; ++i) {
-    delays.emplace_back(i * 7'919'311 % 1'000'000'007);
-  }
+  for (std::int64_t i = 1; i < 2000; ++i) delays.emplace_back(i * 7'919'311 % 1'000'000'007);
   delays.emplace_back(std::chrono::hours(1) + Duration(1));
   ::toml::table file = ::toml::parse(profile_text(
       profile_of({{"range", uav::SensorKind::kRange, "iio:vl53l0x", {std::nullopt, delays}}})));
@@ -63,21 +62,16 @@ TEST(ProfileText, SaysWhereItIsFrom) {
   EXPECT_THAT(text, HasSubstr("# /dev/video0, 1 measured\n"));
 }
 
-TEST(ProfileText, NamesCannotBreakIt) {
-  ::toml::table file = ::toml::parse(profile_text(profile_of({{"my \"eye\"\\ 2.0",
-                                                               uav::SensorKind::kCamera,
-                                                               "/dev/a\nkind = 3",
-                                                               {std::nullopt, {Duration(5)}}}})));
-  EXPECT_EQ(file["sensors"].as_table()->size(), 1u);
-  EXPECT_TRUE(file["sensors"]["my \"eye\"\\ 2.0"].is_table());
-}
-
 // Paths may have any bytes, and a text of TOML must be UTF-8 without control characters.
 TEST(ProfileText, NoBytesCanBreakIt) {
-  const std::vector<std::string> texts = {
-      "\xFF/video0",      "a\xC3",        "\xC0\xAF",         "\xE0\x80\x80",      "\xED\xA0\x80",
-      "\xF4\x90\x80\x80", "\xF0\x9F\x98", "\x80\x80",         "a\tb\r\nc",         "\x7F\x1B[0m",
-      "\xC2\x85",         "\xE2\x80\xA8", "\xEF\xBB\xBF\xFE", std::string("\0", 1)};
+  const std::vector<std::string> texts = {"\xFF/video0",      "a\xC3",
+                                          "\xC0\xAF",         "\xE0\x80\x80",
+                                          "\xED\xA0\x80",     "\xF4\x90\x80\x80",
+                                          "\xF0\x9F\x98",     "\x80\x80",
+                                          "a\tb\r\nc",        "\x7F\x1B[0m",
+                                          "\xC2\x85",         "\xE2\x80\xA8",
+                                          "\xEF\xBB\xBF\xFE", std::string("\0", 1),
+                                          "/dev/a\nkind = 3"};
   for (const std::string& text : texts) {
     MeasuredProfile profile =
         profile_of({{text, uav::SensorKind::kCamera, text, {std::nullopt, {Duration(5)}}}});
@@ -100,11 +94,13 @@ TEST(ProfileText, GoodTextStaysAsItIs) {
   const std::string name = "\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80";  // é, €, a smiley
   const std::string text = profile_text(
       profile_of({{name, uav::SensorKind::kCamera, name, {std::nullopt, {Duration(5)}}},
+                  {"my \"eye\"\\ 2.0", uav::SensorKind::kImu, "x", {std::nullopt, {Duration(5)}}},
                   {"a\x01", uav::SensorKind::kImu, "x", {std::nullopt, {Duration(5)}}},
                   {"a\x02", uav::SensorKind::kImu, "x", {std::nullopt, {Duration(5)}}}}));
   EXPECT_THAT(text, HasSubstr("# " + name + ", 1 measured\n"));
   ::toml::table file = ::toml::parse(text);
   EXPECT_TRUE(file["sensors"][name].is_table());
+  EXPECT_TRUE(file["sensors"]["my \"eye\"\\ 2.0"].is_table());
   EXPECT_TRUE(file["sensors"]["a\x01"].is_table() && file["sensors"]["a\x02"].is_table());
 }
 
@@ -122,22 +118,18 @@ TEST(ProfileText, KeepsNoPassword) {
   EXPECT_EQ(source_line("/dev/video@0"), "/dev/video@0");
 }
 
-TEST(ProfileText, ADelayThatNoReaderTakesIsTold) {
+TEST(ProfileText, RefusesDelayAboveTheMaximum) {
   const auto checked = [](Duration delay) {
     return check_delays(profile_of(
         {{"c", uav::SensorKind::kCamera, "x", {std::nullopt, {Duration(5), delay, Duration(6)}}}}));
   };
   EXPECT_TRUE(checked(std::chrono::seconds(60)));
-  EXPECT_EQ(
-      checked(std::chrono::milliseconds(60'001)).failure().message,
-      "sensor \"c\": a delay of 60001.0 ms was measured; a profile takes at most 60000 ms, so "
-      "none is written");
+  EXPECT_THAT(checked(std::chrono::milliseconds(60'001)).failure().message,
+              AllOf(HasSubstr("\"c\""), HasSubstr("60001.0 ms")));
 }
 
 TEST(ProfileName, IsAnIdentifier) {
-  for (const char* good : {"pi", "pi-4_b.1", "0"}) {
-    EXPECT_TRUE(is_profile_name(good)) << good;
-  }
+  for (const char* good : {"pi", "pi-4_b.1", "0"}) EXPECT_TRUE(is_profile_name(good)) << good;
   for (const std::string& bad : {std::string(), std::string(".pi"), std::string("my pi"),
                                  std::string(65, 'a'), std::string("pi\n")}) {
     EXPECT_FALSE(is_profile_name(bad)) << bad;

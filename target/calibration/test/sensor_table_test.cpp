@@ -27,9 +27,7 @@ SensorTimes times_of(const std::string& name, uav::SensorKind kind,
 
 TEST(Summarize, InterpolatesQuantiles) {
   std::vector<Duration> times;
-  for (int i = 100; i >= 0; --i) {
-    times.push_back(milliseconds(10 * i));
-  }
+  for (int i = 100; i >= 0; --i) times.push_back(milliseconds(10 * i));
   times.push_back(milliseconds(1010));
   const TimeSummary of = summarize(times);
   EXPECT_EQ(of.n, 102u);
@@ -49,14 +47,14 @@ TEST(Summarize, SpreadIsThatOfASample) {
   EXPECT_EQ(single.p99_s, 0.007);
 }
 
-TEST(Experiments, SpreadOfTheirMeans) {
+TEST(Experiments, HaveSpreadOfTheirMeans) {
   const auto kind = uav::SensorKind::kImu;
   EXPECT_FALSE(stddev_between_experiments_s(times_of("imu", kind, {{1, 5}})));
   const auto two = stddev_between_experiments_s(times_of("imu", kind, {{1, 3}, {2, 6}}));
   EXPECT_NEAR(*two, std::sqrt(2.0) * 1e-3, 1e-12);
 }
 
-TEST(Table1, StandsAboveThePapersRows) {
+TEST(Table1, IncludesThePapersRows) {
   const std::vector<SensorTimes> sensors = {
       times_of("camera", uav::SensorKind::kCamera, {{30, 40}, {35}}),
       times_of("imu", uav::SensorKind::kImu, {{1}}),
@@ -72,7 +70,7 @@ TEST(Table1, StandsAboveThePapersRows) {
             "(paper, Table I: means of ten experiments, spread not published)\n");
 }
 
-TEST(DistributionTable, HasWhatTheMeansDoNotShow) {
+TEST(DistributionTable, ShowsDistributionOfEachRow) {
   EXPECT_EQ(distribution_table({{"camera", {milliseconds(30), milliseconds(40)}, std::nullopt},
                                 {"imu", {Duration(1'500'000)}, std::nullopt}}),
             "[ms]    n    mean     sd     min  median     p95     p99     max\n"

@@ -10,10 +10,12 @@
 namespace tether::calibration {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 /// Times about a median, with a long tail above, as interrupts make it.
 std::vector<double> times(double median_ms, double scatter, std::uint64_t stream, int rounds = 30) {
@@ -28,9 +30,7 @@ std::vector<double> times(double median_ms, double scatter, std::uint64_t stream
 
 Calibration machine(const std::vector<std::pair<std::string, std::vector<double>>>& blocks) {
   Calibration calibration;
-  for (const auto& [name, values] : blocks) {
-    calibration.blocks.push_back({name, values, values});
-  }
+  for (const auto& [name, values] : blocks) calibration.blocks.push_back({name, values, values});
   return calibration;
 }
 
@@ -53,9 +53,7 @@ TEST(Quartiles, LieBetweenTheTimes) {
 // Ranks from the binomial distribution: of 30 values the 9th and the 22nd, P(X <= 8) = 0.0081.
 TEST(MedianInterval, IsTakenFromTheRanks) {
   std::vector<double> values;
-  for (int i = 1; i <= 30; ++i) {
-    values.push_back(i);
-  }
+  for (int i = 1; i <= 30; ++i) values.push_back(i);
   const Interval of = median_interval(values);
   EXPECT_EQ(of.low, 9.0);
   EXPECT_EQ(of.high, 22.0);
@@ -63,24 +61,6 @@ TEST(MedianInterval, IsTakenFromTheRanks) {
   values.resize(10);
   EXPECT_EQ(median_interval(values).low, 2.0);
   EXPECT_EQ(median_interval(values).high, 9.0);
-}
-
-TEST(MedianInterval, HoldsTheTrueMedianAsOftenAsItSays) {
-  int held = 0;
-  constexpr int kSamples = 2000;
-  for (int sample = 0; sample < kSamples; ++sample) {
-    std::vector<double> values;
-    for (int i = 0; i < 25; ++i) {
-      KeyedRandom random({.seed = 3,
-                          .stream = static_cast<std::uint64_t>(sample),
-                          .index = static_cast<std::uint64_t>(i)});
-      values.push_back(-std::log(1.0 - random.uniform()));  // exponential: median ln 2
-    }
-    const Interval of = median_interval(values);
-    held += of.low <= std::log(2.0) && std::log(2.0) <= of.high ? 1 : 0;
-  }
-  EXPECT_GE(held, kSamples * 0.97);
-  EXPECT_LT(held, kSamples) << "an interval that always holds says nothing";
 }
 
 TEST(Compare, GivesTheFactorOfEachBlockAndTheirMean) {
@@ -95,17 +75,6 @@ TEST(Compare, GivesTheFactorOfEachBlockAndTheirMean) {
   EXPECT_EQ(of->greatest().block, "tracking");
 }
 
-TEST(Compare, IsTheInverseTheOtherWayRound) {
-  const Calibration a = machine({{"x", times(3.0, 0.05, 1)}, {kWholeStep, times(5.0, 0.05, 2)}});
-  const Calibration b = machine({{"x", times(9.0, 0.02, 3)}, {kWholeStep, times(40.0, 0.1, 4)}});
-  const auto forth = compare(a, b), back = compare(b, a);
-  ASSERT_TRUE(forth && back);
-  for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_NEAR(forth->blocks[i].value * back->blocks[i].value, 1.0, 1e-12);
-    EXPECT_NEAR(forth->blocks[i].interval.low * back->blocks[i].interval.high, 1.0, 1e-12);
-  }
-}
-
 TEST(Compare, FindsAFactorThatIsThere) {
   for (const double factor : {0.2, 1.0, 6.5, 80.0}) {
     const Calibration here =
@@ -118,61 +87,50 @@ TEST(Compare, FindsAFactorThatIsThere) {
     EXPECT_LE(of->whole.interval.low, factor);
     EXPECT_GE(of->whole.interval.high, factor);
     EXPECT_LT(of->whole.interval.high / of->whole.interval.low, 1.15);
+    const auto back = compare(there, here);
+    EXPECT_NEAR(of->whole.value * back->whole.value, 1.0, 1e-12);
+    EXPECT_NEAR(of->whole.interval.low * back->whole.interval.high, 1.0, 1e-12);
   }
 }
 
-TEST(Compare, RefusesWhatDoesNotCompare) {
+TEST(Compare, RefusesFewRoundsAndDifferentBlocks) {
   const Calibration whole = steady(1.0, 1.0, 1.0);
-  Calibration other = whole;
-  other.blocks[0].name = "another";
-  EXPECT_THAT(compare(whole, other).failure().message, HasSubstr("not the same blocks"));
-  other = whole;
-  other.blocks.pop_back();
-  EXPECT_FALSE(compare(other, other)) << "without the whole step";
-  EXPECT_FALSE(compare(whole, other));
-  other = whole;
-  other.blocks[1].cpu_ms.resize(9);
-  EXPECT_THAT(compare(whole, other).failure().message, HasSubstr("at least 10 rounds"));
+  Calibration renamed = whole, shorter = whole, few = whole;
+  renamed.blocks[0].name = "another";
+  shorter.blocks.pop_back();
+  few.blocks[1].cpu_ms.resize(9);
+  for (const auto& comparison : {compare(whole, renamed), compare(whole, shorter),
+                                 compare(shorter, shorter), compare(whole, few)}) {
+    ASSERT_FALSE(comparison);
+    EXPECT_EQ(comparison.failure().kind, Failure::Kind::kInvalid);
+  }
 }
 
-TEST(Doubts, AreNoneOfASteadyMachine) {
+TEST(Doubts, ReportLoadDriftScatterAndChangedClockRate) {
   Calibration calibration = machine({{kWholeStep, times(8.0, 0.01, 1)}});
   calibration.machine.mhz_before = 1500.0;
   calibration.machine.mhz_after = 1510.0;
   EXPECT_THAT(doubts(calibration), IsEmpty());
-}
-
-TEST(Doubts, NameALoadedMachine) {
-  Calibration calibration = steady(1.0, 1.0, 8.0);
-  for (double& wall_ms : calibration.blocks.back().wall_ms) {
-    wall_ms = 12.0;
-  }
-  EXPECT_THAT(doubts(calibration), ElementsAre(HasSubstr("wall time is 50 % above CPU time")));
-}
-
-TEST(Doubts, NameAMachineThatBecomesSlowerOrFaster) {
-  Calibration calibration = steady(1.0, 1.0, 8.0);
-  auto& cpu_ms = calibration.blocks.back().cpu_ms;
-  for (std::size_t i = 14; i < cpu_ms.size(); ++i) {
-    cpu_ms[i] = 9.6;
-  }
-  calibration.blocks.back().wall_ms = cpu_ms;
-  EXPECT_THAT(doubts(calibration),
-              Contains(HasSubstr("last rounds took 20 % longer than the first")));
-  std::reverse(cpu_ms.begin(), cpu_ms.end());
-  calibration.blocks.back().wall_ms = cpu_ms;
-  EXPECT_THAT(doubts(calibration),
-              Contains(HasSubstr("first rounds took 20 % longer than the last")));
-}
-
-TEST(Doubts, NameScatterAndAChangedClockRate) {
-  Calibration calibration = machine({{kWholeStep, times(8.0, 0.3, 1)}});
-  EXPECT_THAT(doubts(calibration), Contains(HasSubstr("times scatter")));
-  calibration = steady(1.0, 1.0, 8.0);
-  calibration.machine.mhz_before = 1500.0;
-  EXPECT_THAT(doubts(calibration), IsEmpty()) << "not told afterwards";
+  calibration.machine.mhz_after = 0.0;  // not known
+  EXPECT_THAT(doubts(calibration), IsEmpty());
   calibration.machine.mhz_after = 600.0;
-  EXPECT_THAT(doubts(calibration), ElementsAre(HasSubstr("1500 MHz before and 600 MHz after")));
+  EXPECT_THAT(doubts(calibration), ElementsAre(AllOf(HasSubstr("1500"), HasSubstr("600"))));
+
+  Calibration loaded = steady(1.0, 1.0, 8.0);
+  for (double& wall_ms : loaded.blocks.back().wall_ms) wall_ms = 12.0;
+  EXPECT_THAT(doubts(loaded), ElementsAre(HasSubstr("50 %")));
+
+  Calibration drifting = steady(1.0, 1.0, 8.0);
+  auto& cpu_ms = drifting.blocks.back().cpu_ms;
+  for (std::size_t i = 14; i < cpu_ms.size(); ++i) cpu_ms[i] = 9.6;
+  drifting.blocks.back().wall_ms = cpu_ms;
+  const auto slower = doubts(drifting);
+  EXPECT_THAT(slower, Contains(HasSubstr("20 %")));
+  std::reverse(cpu_ms.begin(), cpu_ms.end());
+  drifting.blocks.back().wall_ms = cpu_ms;
+  EXPECT_THAT(doubts(drifting), AllOf(Contains(HasSubstr("20 %")), Not(Contains(slower.front()))));
+
+  EXPECT_THAT(doubts(machine({{kWholeStep, times(8.0, 0.3, 1)}})), Contains(HasSubstr("scatter")));
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ SensorTimes watch(const Camera& camera, int experiments = 1) {
   return times;
 }
 
-TEST(OnDemandTiming, IsFromAskingToHaving) {
+TEST(OnDemandTiming, IsFromRequestToResult) {
   const TimingModel model = on_demand_timing(watch({.samples = 3}));
   EXPECT_FALSE(model.period);
   EXPECT_THAT(model.delays,
@@ -66,7 +66,7 @@ TEST(PeriodicTiming, ThePeriodIsFinerThanTheGridOfItsInstants) {
   EXPECT_NEAR(to_seconds(*model->period), 0.0333333, 0.04e-3);
 }
 
-TEST(PeriodicTiming, AGapIsNoPartOfThePeriod) {
+TEST(PeriodicTiming, IgnoresGaps) {
   SensorTimes times = watch({.samples = 10});
   for (std::size_t i = 5; i < 10; ++i) {
     times.experiments[0][i].sampled_at += milliseconds(200);
@@ -75,24 +75,8 @@ TEST(PeriodicTiming, AGapIsNoPartOfThePeriod) {
   EXPECT_EQ(periodic_timing(times, true)->period, milliseconds(25));
 }
 
-TEST(PeriodicTiming, RefusesArrivalsStampedAsInstants) {
-  const auto stamped = periodic_timing(watch({.delay = milliseconds(3)}), true);
-  ASSERT_FALSE(stamped);
-  EXPECT_EQ(stamped.failure().kind, Failure::Kind::kInvalid);
-  EXPECT_THAT(stamped.failure().message, HasSubstr("no instants of its own"));
-  EXPECT_TRUE(periodic_timing(watch({.delay = milliseconds(6)}), true));
-  // A virtual camera may have no delay at all, and its instants are its own.
-  EXPECT_TRUE(periodic_timing(watch({.delay = Duration(0)}), false));
-}
-
-TEST(PeriodicTiming, RefusesSamplesFromTheFuture) {
-  const auto early = periodic_timing(watch({.delay = milliseconds(-5)}), false);
-  ASSERT_FALSE(early);
-  EXPECT_THAT(early.failure().message, HasSubstr("from the future"));
-}
-
 /// The simulation runs at its own pace, as in a run without synchronisation.
-SensorTimes watch_untied(double real_time_factor, const Camera& camera) {
+SensorTimes watch_unsynchronised(double real_time_factor, const Camera& camera) {
   SensorTimes times = watch(camera);
   for (auto& acquisition : times.experiments[0]) {
     const double instant_s = to_seconds(acquisition.sampled_at) / real_time_factor;
@@ -103,22 +87,19 @@ SensorTimes watch_untied(double real_time_factor, const Camera& camera) {
   return times;
 }
 
-TEST(PeriodicTiming, RefusesInstantsOfAnotherPace) {
+TEST(PeriodicTiming, RefusesTimestampsOfAnotherSpeed) {
   const std::vector<std::pair<double, int>> factors_and_samples = {
       {0.3, 5}, {0.3, 100}, {0.8, 20}, {0.8, 100}, {0.95, 100}, {1.05, 100}, {3.0, 20}};
   for (const auto& [factor, samples] : factors_and_samples) {
-    const auto model = periodic_timing(watch_untied(factor, {.samples = samples}), false);
+    const auto model = periodic_timing(watch_unsynchronised(factor, {.samples = samples}), false);
     ASSERT_FALSE(model) << factor << " with " << samples;
     EXPECT_EQ(model.failure().kind, Failure::Kind::kInvalid);
-    EXPECT_EQ(model.failure().message,
-              "sensor \"camera\": its instants and this program's clock do not run at one pace, as "
-              "in a run without synchronisation");
   }
-  EXPECT_TRUE(periodic_timing(watch_untied(1.0, {.samples = 100}), false));
+  EXPECT_TRUE(periodic_timing(watch_unsynchronised(1.0, {.samples = 100}), false));
 }
 
 // A delay that jitters by more than a period is no other pace, however short the span.
-TEST(PeriodicTiming, JitterIsNoOtherPace) {
+TEST(PeriodicTiming, AcceptsJitter) {
   for (const int samples : {4, 10, 100}) {
     for (unsigned seed = 0; seed < 20; ++seed) {
       SensorTimes times = watch({.delay = milliseconds(60), .samples = samples});
@@ -132,14 +113,7 @@ TEST(PeriodicTiming, JitterIsNoOtherPace) {
   }
 }
 
-TEST(PeriodicTiming, RefusesAPeriodThatNoProfileCanHave) {
-  for (const Duration period : {Duration(microseconds(9)), Duration(std::chrono::seconds(1001))}) {
-    EXPECT_THAT(periodic_timing(watch({.period = period}), false).failure().message,
-                HasSubstr("its period is not between"));
-  }
-}
-
-TEST(ChooseTiming, IsPeriodicWhereASensorTellsARateAndAllowsIt) {
+TEST(ChooseTiming, IsPeriodicIfTheSensorHasARateAndFits) {
   SensorTimes times = watch({});
   EXPECT_FALSE(choose_timing(times, Timing::kAuto, true)->model.period) << "it tells no rate";
   EXPECT_TRUE(choose_timing(times, Timing::kPeriodic, true)->model.period);
@@ -150,33 +124,35 @@ TEST(ChooseTiming, IsPeriodicWhereASensorTellsARateAndAllowsIt) {
   EXPECT_FALSE(choose_timing(times, Timing::kOnDemand, true)->model.period);
 }
 
-TEST(ChooseTiming, SaysWhyItFallsBack) {
+TEST(ChooseTiming, FallsBackToOnDemandWithANote) {
   SensorTimes stamped = watch({.delay = milliseconds(3)});
   stamped.rate_hz = 40.0;
   const auto chosen = choose_timing(stamped, Timing::kAuto, true);
   ASSERT_TRUE(chosen);
   EXPECT_EQ(chosen->model.delays, stamped.taken());
-  EXPECT_EQ(chosen->note,
-            "sensor \"camera\": the device gives no instants of its own, it seems, only those of "
-            "arrival; its model is on_demand");
+  EXPECT_THAT(chosen->note, HasSubstr("\"camera\""));
   const auto refused = choose_timing(stamped, Timing::kPeriodic, true);
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.failure().message, ::testing::EndsWith("; use --timing on_demand"));
+  EXPECT_THAT(refused.failure().message, HasSubstr("--timing on_demand"));
 }
 
-TEST(PeriodicTiming, RefusesWhatHasNoPeriod) {
-  EXPECT_THAT(periodic_timing(watch({.samples = 3}), true).failure().message,
-              HasSubstr("sensor \"camera\": too few samples"));
-  SensorTimes erratic = watch({.samples = 7});
-  for (std::size_t i : {2u, 3u, 5u}) {
-    erratic.experiments[0][i].sampled_at -= milliseconds(7);
+TEST(PeriodicTiming, RefusesSamplesWithoutAPeriodOrInstantsOfTheirOwn) {
+  EXPECT_TRUE(periodic_timing(watch({.delay = milliseconds(6)}), true));
+  // A virtual camera can have no delay at all, and its instants are its own.
+  EXPECT_TRUE(periodic_timing(watch({.delay = Duration(0)}), false));
+  SensorTimes erratic = watch({.samples = 7}), still = erratic;
+  for (std::size_t i : {2u, 3u, 5u}) erratic.experiments[0][i].sampled_at -= milliseconds(7);
+  for (auto& acquisition : still.experiments[0]) acquisition.sampled_at = SimTime();
+  for (const auto& model : {periodic_timing(watch({.delay = milliseconds(3)}), true),
+                            periodic_timing(watch({.delay = milliseconds(-5)}), false),
+                            periodic_timing(watch({.period = microseconds(9)}), false),
+                            periodic_timing(watch({.period = std::chrono::seconds(1001)}), false),
+                            periodic_timing(watch({.samples = 3}), true),
+                            periodic_timing(erratic, true), periodic_timing(still, true)}) {
+    ASSERT_FALSE(model);
+    EXPECT_EQ(model.failure().kind, Failure::Kind::kInvalid);
+    EXPECT_THAT(model.failure().message, HasSubstr("\"camera\""));
   }
-  EXPECT_THAT(periodic_timing(erratic, true).failure().message, HasSubstr("irregularly"));
-  SensorTimes still = watch({.samples = 7});
-  for (auto& acquisition : still.experiments[0]) {
-    acquisition.sampled_at = SimTime();
-  }
-  EXPECT_THAT(periodic_timing(still, true).failure().message, HasSubstr("irregularly"));
 }
 
 }  // namespace

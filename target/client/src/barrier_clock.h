@@ -8,7 +8,7 @@
 
 namespace tether::client {
 
-/// Time under the barrier: ET stands still during an interaction.
+/// Time under the barrier: ET is stopped during an interaction.
 class BarrierClock final : public InteractionClock {
  public:
   BarrierClock(const TimeSource& source, ExecTime start) : clock_(source, start) {}

@@ -24,7 +24,7 @@ constexpr int F_SEAL_FUTURE_WRITE = 0x0010;  // Linux 5.1
 
 Failure failed(const std::string& what) {
   return {Failure::Kind::kInvalid,
-          "no shared memory for the clock: " + what + ": " + std::strerror(errno)};
+          "cannot share the memory of the clock: " + what + ": " + std::strerror(errno)};
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ ExecTime ClockState::at(Duration mono) const {
 
 Duration ClockState::mono_at(ExecTime et) const {
   const double left_ns = static_cast<double>((et - base_et).count()) / factor;
-  // Whoever waits for the end of time waits this long.
+  // The longest wait.
   constexpr double kYear_ns = 365.0 * 24 * 3600 * 1e9;
   return base_mono + Duration(static_cast<std::int64_t>(std::ceil(std::min(left_ns, kYear_ns))));
 }
@@ -93,7 +93,7 @@ Result<SharedClockPage> make_clock_page() {
   if (memory == MAP_FAILED) return failed("mmap");
   std::unique_ptr<ClockPage, SharedClockPage::Unmap> page(new (memory) ClockPage);
   const int sizes = F_SEAL_SHRINK | F_SEAL_GROW;
-  // Kernels before 5.1 cannot keep others from writing; nobody does by mistake.
+  // Kernels before 5.1 cannot prevent writes by others.
   if (::fcntl(descriptor.get(), F_ADD_SEALS, sizes | F_SEAL_FUTURE_WRITE) != 0 &&
       ::fcntl(descriptor.get(), F_ADD_SEALS, sizes) != 0) {
     return failed("F_ADD_SEALS");
@@ -105,8 +105,8 @@ Result<MappedClockPage> map_clock_page(const os::FileDescriptor& descriptor) {
   struct stat status {};
   if (::fstat(descriptor.get(), &status) != 0 || status.st_size != off_t{kPageBytes}) {
     return Failure{Failure::Kind::kProtocol,
-                   "tether-exec's clock is of another size; use the tether-exec that belongs to "
-                   "this program's library"};
+                   "the clock page of tether-exec has another size. Use a tether-exec of the same "
+                   "version as this program's library"};
   }
   void* const memory = ::mmap(nullptr, kPageBytes, PROT_READ, MAP_SHARED, descriptor.get(), 0);
   if (memory == MAP_FAILED) return failed("mmap");

@@ -6,14 +6,18 @@
 #include <utility>
 #include <variant>
 
+// The vehicle of a program under tether-exec. Each call takes a connection from a pool, or makes
+// one, so that threads do not wait for each other; ET is read from the shared clock page. The
+// first failure that ends the run is kept for all later calls.
 namespace tether::client {
 namespace {
 
-const Failure kCancelled{Failure::Kind::kInvalid, "the call was given up with its subscription"};
+const Failure kCancelled{Failure::Kind::kInvalid, "the subscription of this call has ended"};
 
 Failure unexpected(const std::string& what) {
-  return {Failure::Kind::kProtocol, "tether-exec answered with " + what +
-                                        "; use the one that belongs to this program's library"};
+  return {Failure::Kind::kProtocol,
+          "tether-exec answered with " + what +
+              ". Use a tether-exec of the same version as this program's library"};
 }
 
 Result<link::Welcome> welcome_from(Result<LocalSocket::Packet> packet) {
@@ -128,7 +132,7 @@ Result<link::Reply> ConcurrentVehicle::ask(Connection& connection, Body body) {
   if (!sent) return sent.failure();
   if (!packet) return packet.failure();
   auto* reply = packet->message ? std::get_if<link::Reply>(&*packet->message) : nullptr;
-  if (reply == nullptr) return protocol_failure("it is another kind of message");
+  if (reply == nullptr) return protocol_failure("it is not a Reply");
   if (const Status good = check(*reply, request, free_running_); !good) return good.failure();
   connection.sequence = request.sequence;
   return std::move(*reply);

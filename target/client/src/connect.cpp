@@ -28,8 +28,7 @@ Result<link::Welcome> shake_hands(link::Channel& channel, const ConnectOptions& 
   if (const auto* refusal = std::get_if<link::Refusal>(&*message)) return to_failure(*refusal);
   if (auto* welcome = std::get_if<link::Welcome>(&*message)) return std::move(*welcome);
   return Failure{Failure::Kind::kProtocol,
-                 "the coordinator answered the Hello with neither "
-                 "Welcome nor Refusal"};
+                 "the coordinator answered Hello with neither Welcome nor Refusal"};
 }
 
 /// In free running a virtual target is imitated by stalling.
@@ -37,20 +36,20 @@ Status check_free_running(const link::Welcome& welcome, const TimeSource& time) 
   if (!welcome.free_running) return ok_status();
   if (time.kind() == link::ClockKind::kWall && time.factor() != 1.0) {
     return Failure{Failure::Kind::kInvalid,
-                   "wall*FACTOR cannot be used in free running, where the wall clock is ST's too; "
-                   "use cpu*FACTOR"};
+                   "wall*FACTOR is not allowed in free-running mode, where ST follows the wall "
+                   "clock. Use cpu*FACTOR"};
   }
   if (time.factor() >= 1.0) return ok_status();
   return Failure{Failure::Kind::kInvalid,
-                 "a CPU clock factor below 1 cannot be used in free running: a machine faster "
-                 "than this one cannot be imitated by stalling"};
+                 "a CPU clock factor below 1 is not allowed in free-running mode: stalling cannot "
+                 "imitate a machine that is faster than this one"};
 }
 
 Result<std::unique_ptr<Vehicle>> connect_to_exec(const ConnectOptions& options) {
   const TimeSource* const time = options.time.get();
   if (time != nullptr && (time->kind() != link::ClockKind::kWall || time->factor() != 1.0)) {
     return Failure{Failure::Kind::kInvalid,
-                   "a program under tether-exec has no clock of its own; set TETHER_CLOCK for "
+                   "under tether-exec, the program cannot choose its clock. Set TETHER_CLOCK for "
                    "tether-exec"};
   }
   return ConcurrentVehicle::make(options);

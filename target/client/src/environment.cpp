@@ -18,8 +18,8 @@ std::optional<std::string> variable(const char* name) {
 
 Failure not_set(const std::string& name, const std::string& meaning) {
   return {Failure::Kind::kInvalid, name +
-                                       " is not set: start this program through `tether run`, "
-                                       "or set it to " +
+                                       " is not set. Start this program with `tether run`, or "
+                                       "set the variable to " +
                                        meaning};
 }
 
@@ -62,10 +62,11 @@ std::unique_ptr<TimeSource> make_source(const std::string& text) {
 
 Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text) {
   if (auto source = make_source(text)) return source;
-  return Failure{Failure::Kind::kInvalid,
-                 "'" + text +
-                     "'; allowed are wall, cpu, wall*FACTOR or cpu*FACTOR (e.g. cpu*4: a target "
-                     "four times slower; 1e-6 to 1e6) and scripted*MILLISECONDS"};
+  return Failure{
+      Failure::Kind::kInvalid,
+      "'" + text +
+          "' is not a clock. Allowed: wall, cpu, wall*FACTOR or cpu*FACTOR (cpu*4: a target "
+          "that is four times slower; 1e-6 to 1e6), scripted*MILLISECONDS"};
 }
 
 Result<ConnectOptions> options_from_environment() {
@@ -90,7 +91,7 @@ Result<ConnectOptions> options_from_environment() {
   options.uav = variable("TETHER_UAV").value_or("");
 
   auto time = parse_time_source(variable("TETHER_CLOCK").value_or("wall"));
-  if (!time) return Failure{Failure::Kind::kInvalid, "TETHER_CLOCK is " + time.failure().message};
+  if (!time) return Failure{Failure::Kind::kInvalid, "TETHER_CLOCK: " + time.failure().message};
   options.time = std::move(*time);
   return options;
 }

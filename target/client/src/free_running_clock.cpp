@@ -6,7 +6,7 @@
 namespace tether::client {
 
 namespace {
-// Whoever sleeps until the end of time sleeps this long; sums with the wall clock stay within
+// The longest sleep; sums with the wall clock stay within
 // int64.
 constexpr Duration kLongestSleep = std::chrono::hours(24 * 365);
 }  // namespace

@@ -9,6 +9,8 @@
 #include <tether/base/printable.h>
 #include <tether/link/codec.h>
 
+// What serial and concurrent vehicles have in common: making requests, checking arguments against
+// the catalogue, and checking replies against the rules of time (docs/design.md section 2).
 namespace tether::client {
 namespace {
 
@@ -28,7 +30,7 @@ Status check_size(const uav::Sample& sample, const uav::SensorDescription& senso
   if (image->width_px == camera->model.width_px && image->height_px == camera->model.height_px) {
     return ok_status();
   }
-  return protocol_failure("its image is not of the size that the catalogue gives for '" +
+  return protocol_failure("its image has another size than the catalogue gives for '" +
                           sensor.name + "'");
 }
 
@@ -38,15 +40,15 @@ Failure to_failure(const link::Refusal& refusal) {
   const bool ended = refusal.reason == link::Refusal::Reason::kRunEnded;
   const std::string why = printable(refusal.message);
   return {ended ? Failure::Kind::kRunEnded : Failure::Kind::kRefused,
-          why.empty() ? "the coordinator refused without a reason" : why};
+          why.empty() ? "the coordinator refused the connection without giving a reason" : why};
 }
 
 Failure protocol_failure(const std::string& what) {
-  return {Failure::Kind::kProtocol, "the coordinator's reply cannot be used: " + what};
+  return {Failure::Kind::kProtocol, "protocol violation in the coordinator's reply: " + what};
 }
 
 Failure mission_finished() {
-  return {Failure::Kind::kInvalid, "the mission is finished; no call is possible"};
+  return {Failure::Kind::kInvalid, "the mission is finished; no more calls are possible"};
 }
 
 Status check(const link::Reply& reply, const link::Request& request, bool free_running) {
@@ -55,9 +57,10 @@ Status check(const link::Reply& reply, const link::Request& request, bool free_r
                             std::to_string(request.sequence));
   }
   if (free_running) return ok_status();
-  if (reply.resume_at < request.issued_at) return protocol_failure("it is from before the request");
+  if (reply.resume_at < request.issued_at)
+    return protocol_failure("its time is before the request");
   if (reply.sample && uav::sampled_at(*reply.sample) > same_instant(reply.resume_at)) {
-    return protocol_failure("it carries data from the future");
+    return protocol_failure("its sample is from the future");
   }
   return ok_status();
 }
@@ -83,7 +86,7 @@ Status InteractingVehicle::usable() const {
   if (!is_of_this_process()) {
     return Failure{Failure::Kind::kInvalid, "this vehicle belongs to process " +
                                                 std::to_string(process_) +
-                                                "; a child that was forked connects by itself"};
+                                                "; a forked child must make its own connection"};
   }
   const std::lock_guard lock(mutex_);
   return over_ ? Status(*over_) : ok_status();
@@ -100,8 +103,8 @@ Result<Sample> InteractingVehicle::read(std::string_view sensor, Read read) {
   if (read == Read::kIfAvailable && found->rate_hz <= 0.0) {
     return Failure{Failure::Kind::kInvalid,
                    "'" + found->name +
-                       "' measures on demand: nothing is ever available of it before it is asked; "
-                       "use a read that waits"};
+                       "' measures on demand, so no measurement is available before the call. "
+                       "Read it with kNext or kLatest"};
   }
   const auto index = static_cast<std::uint32_t>(found - catalogue_.sensors.data());
   auto reply = interact(link::ReadSensor{index, read == Read::kLatest, read == Read::kIfAvailable});
@@ -113,12 +116,11 @@ template <class Sample>
 Result<Sample> InteractingVehicle::take_sample(link::Reply reply,
                                                const uav::SensorDescription& sensor, Read read) {
   if (!reply.sample && read == Read::kIfAvailable) {
-    return Failure{Failure::Kind::kNothingYet,
-                   "'" + sensor.name + "' has measured nothing new yet"};
+    return Failure{Failure::Kind::kNothingYet, "'" + sensor.name + "' has no new measurement yet"};
   }
   auto* const sample = reply.sample ? std::get_if<Sample>(&*reply.sample) : nullptr;
   if (sample == nullptr) {
-    return give_up(protocol_failure("it carries no sample of sensor '" + sensor.name + "'"));
+    return give_up(protocol_failure("it has no sample of sensor '" + sensor.name + "'"));
   }
   if (const Status good = check_size(*reply.sample, sensor); !good) return give_up(good.failure());
   return std::move(*sample);

@@ -15,6 +15,9 @@
 
 #include <tether/client/exec/local_socket.h>
 
+// Packets between a program and tether-exec. A frame of the link is one packet; a longer one is
+// sent as a sealed memory file, whose descriptor travels in a packet with its length. The seals
+// ensure that the sender cannot truncate the memory while the receiver maps it.
 namespace tether::client {
 namespace {
 
@@ -26,13 +29,14 @@ constexpr std::array<std::uint8_t, 4> kFrameInMemory{0, 0, 0, 0};
 constexpr std::array<std::uint8_t, 4> kClockPage{0xff, 0xff, 0xff, 0xff};
 
 Failure lost(const std::string& why) {
-  return {Failure::Kind::kDisconnected, "the connection to tether-exec was lost: " + why};
+  return {Failure::Kind::kDisconnected, "lost the connection to tether-exec: " + why};
 }
 Failure lost() {
   return lost(std::strerror(errno));
 }
 Failure broken(const std::string& why) {
-  return {Failure::Kind::kProtocol, "a packet between the program and tether-exec: " + why};
+  return {Failure::Kind::kProtocol,
+          "protocol violation between the program and tether-exec: " + why};
 }
 
 template <class Call>
@@ -70,12 +74,12 @@ Result<link::Message> decode_memory(const os::FileDescriptor& memory) {
   struct stat status {};
   const int seals = ::fcntl(memory.get(), F_GET_SEALS);
   if (seals < 0 || (seals & F_SEAL_SHRINK) == 0 || ::fstat(memory.get(), &status) != 0) {
-    return broken("its memory is not sealed");
+    return broken("the memory of a packet is not sealed");
   }
   const auto size = static_cast<std::size_t>(status.st_size);
-  if (size < link::kFrameHeaderBytes || size > link::kMaxReplyBytes) return broken("its length");
+  if (size < link::kFrameHeaderBytes || size > link::kMaxReplyBytes) return broken("bad length");
   void* const data = ::mmap(nullptr, size, PROT_READ, MAP_SHARED | MAP_POPULATE, memory.get(), 0);
-  if (data == MAP_FAILED) return broken("its memory cannot be mapped");
+  if (data == MAP_FAILED) return broken("the memory of a packet cannot be mapped");
   auto message = link::decode({static_cast<const std::uint8_t*>(data), size});
   ::munmap(data, size);
   return message;
@@ -167,7 +171,7 @@ Status LocalSocket::send_packet(const std::uint8_t* data, std::size_t bytes, int
 
 Result<LocalSocket::Packet> LocalSocket::receive(std::optional<Duration> timeout) {
   if (timeout && !wait_readable(descriptor(), *timeout)) {
-    return Failure{Failure::Kind::kTimeout, "no answer from tether-exec within the limit"};
+    return Failure{Failure::Kind::kTimeout, "timed out: no answer from tether-exec"};
   }
   input_.resize(kLongestInline);
   iovec part{input_.data(), input_.size()};
@@ -179,13 +183,12 @@ Result<LocalSocket::Packet> LocalSocket::receive(std::optional<Duration> timeout
   header.msg_controllen = control.bytes.size();
   const ssize_t received =
       uninterrupted([&] { return ::recvmsg(socket_.get(), &header, MSG_CMSG_CLOEXEC); });
-  if (received < 0 && errno == EAGAIN) {
-    return Failure{Failure::Kind::kTimeout, "nothing has come"};
-  }
+  if (received < 0 && errno == EAGAIN)
+    return Failure{Failure::Kind::kTimeout, "no message is available"};
   if (received < 0) return lost();
   os::FileDescriptor descriptor = take_descriptor(header);
-  if (received == 0) return lost("it was closed");
-  if ((header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) != 0) return broken("it is too long");
+  if (received == 0) return lost("it was closed by the peer");
+  if ((header.msg_flags & (MSG_TRUNC | MSG_CTRUNC)) != 0) return broken("a packet is too long");
   return understand({input_.data(), static_cast<std::size_t>(received)}, std::move(descriptor));
 }
 
@@ -200,8 +203,8 @@ Result<LocalSocket> connect_local(const std::string& path) {
   if (!socket || ::connect(socket.get(), generic(*address), sizeof *address) != 0) {
     return Failure{Failure::Kind::kDisconnected, "cannot connect to tether-exec at " + path + ": " +
                                                      std::strerror(errno) +
-                                                     " (has it ended, or has TETHER_EXEC been kept "
-                                                     "from an earlier run?)"};
+                                                     ". Check that it runs, and that TETHER_EXEC "
+                                                     "is not left over from an earlier run"};
   }
   return LocalSocket(std::move(socket));
 }

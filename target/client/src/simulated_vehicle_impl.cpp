@@ -77,7 +77,7 @@ Result<link::Reply> SimulatedVehicle::ask(const link::Request& request) {
   if (!sent) return sent.failure();
   if (!message) return message.failure();
   auto* reply = std::get_if<link::Reply>(&*message);
-  if (reply == nullptr) return protocol_failure("it is another kind of message");
+  if (reply == nullptr) return protocol_failure("it is not a Reply");
   if (const Status good = check(*reply, request, free_running_ != nullptr); !good)
     return good.failure();
   return std::move(*reply);
@@ -120,7 +120,7 @@ Status SimulatedVehicle::annotate(std::string_view topic, std::string_view json)
   if (const Status good = usable(); !good) return good;
   const std::lock_guard lock(calls_);
   if (const Status good = usable(); !good) return good;  // others were first
-  // The clock stands still meanwhile. In free running it does not; nothing is charged there.
+  // Under the barrier the clock is stopped. In free-running mode no time is charged.
   const ExecTime at = free_running_ == nullptr ? clock_->begin() : clock_->now();
   Status sent = ok_status();
   {

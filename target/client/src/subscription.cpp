@@ -75,11 +75,11 @@ Status check(const Vehicle& vehicle, std::string_view sensor, uav::SensorKind ki
   };
   const auto* found = vehicle.catalogue().find_sensor(sensor);
   if (found == nullptr || found->kind() != kind) {
-    return failure("this UAV has no " + std::string(uav::name(kind)) + " of that name");
+    return failure("the UAV has no " + std::string(uav::name(kind)) + " of that name");
   }
-  if (found->rate_hz <= 0.0) return failure("it measures only when it is read");
+  if (found->rate_hz <= 0.0) return failure("it measures on demand only");
   if (vehicle.is_concurrent()) return ok_status();
-  return failure("this program's calls wait for one another; start the program with tether-exec");
+  return failure("subscriptions need tether-exec; start this program with it");
 }
 
 template <class Sample>

@@ -16,7 +16,7 @@ ExecTime et(Duration since_start) {
   return ExecTime(since_start);
 }
 
-TEST(ClockState, GoesItsFactorAsFast) {
+TEST(ClockState, AdvancesFactorTimesAsFast) {
   const ClockState state{et(10ms), 100ms, 4.0, true};
   EXPECT_EQ(state.at(100ms), et(10ms));
   EXPECT_EQ(state.at(101ms), et(14ms));
@@ -25,7 +25,7 @@ TEST(ClockState, GoesItsFactorAsFast) {
   EXPECT_EQ((ClockState{et(10ms), 100ms, 4.0, false}.at(200ms)), et(10ms));
 }
 
-TEST(ClockState, HasReachedAnInstantWhenItSays) {
+TEST(ClockState, ReachesAnInstantAtThePredictedTime) {
   KeyedRandom random(RandomKey{5, 0, 0});
   for (int i = 0; i < 10'000; ++i) {
     const double factor = i % 2 == 0 ? 1.0 : 0.01 + 20.0 * random.uniform();
@@ -39,7 +39,7 @@ TEST(ClockState, HasReachedAnInstantWhenItSays) {
 
 /// A run of freezes and thaws on a manual clock, as tether-exec makes them: ET stops where the
 /// machine's clock has brought it, and goes on from there.
-TEST(ClockPage, ReadersNeverSeeETGoBackOrLeapOverAFreeze) {
+TEST(ClockPage, ReadersSeeMonotoneEtWithoutFreezes) {
   constexpr Duration kRun = 1us;
   constexpr Duration kFreeze = 1h;  // a reading that takes a freeze for ET cannot be overlooked
   ClockPage page;
@@ -74,7 +74,7 @@ TEST(ClockPage, ReadersNeverSeeETGoBackOrLeapOverAFreeze) {
   EXPECT_EQ(page.now(read_mono), et(20'000 * kRun));
 }
 
-TEST(ClockPage, IsReadInAnotherMappingAndNotWrittenThere) {
+TEST(ClockPage, IsReadableInAnotherMapping) {
   auto made = make_clock_page();
   ASSERT_TRUE(made.ok()) << made.failure().message;
   const auto mapped = map_clock_page(made->descriptor);

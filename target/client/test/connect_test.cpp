@@ -41,25 +41,17 @@ TEST(Connect, SaysHelloAndStartsWithTheWelcome) {
   EXPECT_EQ(hello.cpu_factor, 2.0);
 }
 
-TEST(Connect, ReportsTheCoordinatorsRefusal) {
-  ScriptedCoordinator coordinator(link::Refusal{link::Refusal::Reason::kToken, "wrong token"});
-  const auto vehicle = connect(coordinator.connect(), options_with());
-  ASSERT_FALSE(vehicle.ok());
-  EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kRefused);
-  EXPECT_EQ(vehicle.failure().message, "wrong token");
-}
-
-TEST(Connect, ARefusalWithoutAReasonIsStillTold) {
-  ScriptedCoordinator coordinator(link::Refusal{link::Refusal::Reason::kToken, " "});
-  EXPECT_EQ(connect(coordinator.connect(), options_with()).failure().message,
-            "the coordinator refused without a reason");
-}
-
-TEST(Connect, RefusesAnotherAnswer) {
-  ScriptedCoordinator coordinator(link::Reply{1, ExecTime{}, std::nullopt});
-  const auto vehicle = connect(coordinator.connect(), options_with());
-  ASSERT_FALSE(vehicle.ok());
-  EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kProtocol);
+TEST(Connect, ReportsAnAnswerOtherThanWelcome) {
+  const auto failure_after = [](link::Message answer) {
+    ScriptedCoordinator coordinator(std::move(answer));
+    return connect(coordinator.connect(), options_with()).failure();
+  };
+  constexpr auto kToken = link::Refusal::Reason::kToken;
+  const Failure refused = failure_after(link::Refusal{kToken, "wrong token"});
+  EXPECT_EQ(refused.kind, Failure::Kind::kRefused);
+  EXPECT_EQ(refused.message, "wrong token");
+  EXPECT_GT(failure_after(link::Refusal{kToken, " "}).message.size(), 1u);
+  EXPECT_EQ(failure_after(link::Reply{1, ExecTime{}, std::nullopt}).kind, Failure::Kind::kProtocol);
 }
 
 TEST(Connect, DoesNotWaitForeverForAWelcome) {
@@ -72,23 +64,17 @@ TEST(Connect, DoesNotWaitForeverForAWelcome) {
   EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kTimeout);
 }
 
-TEST(Connect, AFasterMachineCannotBeImitatedInFreeRunning) {
+TEST(Connect, RefusesUnusableOptions) {
   link::Welcome welcome;
-  welcome.free_running = true;
-  ScriptedCoordinator coordinator(welcome);
-  const auto vehicle = connect(coordinator.connect(), options_with(0.5));
-  ASSERT_FALSE(vehicle.ok());
-  EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kInvalid);
-  EXPECT_NE(vehicle.failure().message.find("faster"), std::string::npos);
-}
-
-TEST(Connect, UnusableOptionsAreNotSent) {
-  ScriptedCoordinator coordinator(link::Welcome{});
-  ConnectOptions options = options_with();
-  options.token = std::string(1000, 'x');
-  const auto vehicle = connect(coordinator.connect(), std::move(options));
-  ASSERT_FALSE(vehicle.ok());
-  EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kInvalid);
+  welcome.free_running = true;  // where a faster machine cannot be imitated
+  for (const bool is_faster : {true, false}) {
+    ScriptedCoordinator coordinator(welcome);
+    ConnectOptions options = options_with(is_faster ? 0.5 : 1.0);
+    if (!is_faster) options.token = std::string(1000, 'x');
+    const auto vehicle = connect(coordinator.connect(), std::move(options));
+    ASSERT_FALSE(vehicle.ok());
+    EXPECT_EQ(vehicle.failure().kind, Failure::Kind::kInvalid);
+  }
 }
 
 }  // namespace

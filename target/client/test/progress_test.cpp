@@ -1,13 +1,12 @@
-#include "fake_wall_timer.h"
 #include "progress_reporter.h"
 #include "scripted_coordinator.h"
-#include "simulated_vehicle_impl.h"
 
 #include <algorithm>
 #include <chrono>
 #include <optional>
 
 #include <gtest/gtest.h>
+#include <poll.h>
 
 #include <tether/base/random.h>
 #include <tether/client/simulated_vehicle.h>
@@ -51,7 +50,7 @@ void expect_monotone(const std::vector<link::Message>& heard) {
   }
 }
 
-TEST(Progress, TellsHowFarComputingHasCome) {
+TEST(Progress, ReportsEtWhileComputing) {
   ManualTimeSource source(link::ClockKind::kWall);
   ScriptedCoordinator coordinator(link::Welcome{});
   const auto vehicle = connect_with(coordinator, source);
@@ -63,7 +62,7 @@ TEST(Progress, TellsHowFarComputingHasCome) {
   expect_monotone(coordinator.heard());
 }
 
-TEST(Progress, KeepsItsPlaceBetweenRequests) {
+TEST(Progress, IsMonotoneBetweenRequests) {
   ManualTimeSource source(link::ClockKind::kWall);
   ScriptedCoordinator coordinator(link::Welcome{}, [](const Request& r) {
     return std::vector<link::Message>{link::Reply{r.sequence, r.issued_at + 7us, {}}};
@@ -84,66 +83,32 @@ TEST(Progress, KeepsItsPlaceBetweenRequests) {
   expect_monotone(coordinator.heard());
 }
 
-/// The coordinator holds a reply back while time passes at the SUT's source: not a word comes from
-/// the client.
-TEST(Progress, IsSilentWhileTheSutIsHeld) {
+TEST(Progress, IsNotSentWhileAReplyIsPending) {
   ManualTimeSource source(link::ClockKind::kWall);
-  struct Held {
-    void poll(link::Server& server, Duration max_wait) {
-      for (const link::Event& event : server.poll(max_wait)) {
-        closed = closed || std::holds_alternative<link::Closed>(event.what);
-        if (const auto* said = std::get_if<link::Message>(&event.what)) take(event.peer, *said);
-      }
+  ScriptedCoordinator coordinator(link::Welcome{}, [&source](const Request& r) {
+    for (int i = 0; i < 20; ++i) {
+      source.advance(1ms);
+      ::poll(nullptr, 0, 1);  // many periods of the reporter
     }
-    void take(link::PeerId peer_id, const link::Message& message) {
-      peer = peer_id;
-      if (const auto* request = std::get_if<Request>(&message)) held = *request;
-      if (held && std::holds_alternative<Progress>(message)) ++words_while_held;
-      said_hello = said_hello || std::holds_alternative<link::Hello>(message);
-    }
-    link::PeerId peer = 0;
-    bool said_hello = false;
-    bool closed = false;
-    std::optional<Request> held;
-    int words_while_held = 0;
-  } held;
-  const auto server = link::listen_tcp({"127.0.0.1", 0}, 20s);
-  std::thread sut([&source, channel = link::connect_tcp(server->address(), 20s).value()]() mutable {
-    ConnectOptions options;
-    options.time = std::make_unique<ManualTimeSource>(source);
-    options.progress_period = 20us;
-    const auto vehicle = connect(std::move(channel), std::move(options)).value();
-    ASSERT_TRUE(vehicle->command_velocity({}).ok());
+    return std::vector<link::Message>{link::Reply{r.sequence, r.issued_at + 1h, {}}};
   });
-  while (!held.said_hello) held.poll(*server, 100ms);
-  server->send(held.peer, link::Welcome{});
-  while (!held.held) held.poll(*server, 100ms);
-  for (int i = 0; i < 50; ++i) {
-    source.advance(1ms);
-    held.poll(*server, 200us);  // many periods
-  }
-  EXPECT_EQ(held.words_while_held, 0);
-  const Request request = *std::exchange(held.held, std::nullopt);
-  server->send(held.peer, link::Reply{request.sequence, request.issued_at, {}});
-  while (!held.closed) held.poll(*server, 100ms);
-  sut.join();
-}
-
-TEST(Progress, ScriptedClocksReportNone) {
-  ManualTimeSource source(link::ClockKind::kScripted);
-  ScriptedCoordinator coordinator(link::Welcome{});
-  const auto vehicle = connect_with(coordinator, source);
-  for (int i = 0; i < 200; ++i) {
-    source.advance(1ms);
+  {
+    const auto vehicle = connect_with(coordinator, source);
     ASSERT_TRUE(vehicle->command_velocity({}).ok());
   }
-  for (const auto& message : coordinator.heard()) {
-    EXPECT_FALSE(std::holds_alternative<Progress>(message));
+  coordinator.wait_for_end();
+  const ExecTime resumed = coordinator.requests().at(0).issued_at + 1h;
+  const auto heard = coordinator.heard();
+  auto message = std::find_if(heard.begin(), heard.end(), [](const link::Message& m) {
+    return std::holds_alternative<Request>(m);
+  });
+  for (; message != heard.end(); ++message) {
+    const auto* progress = std::get_if<Progress>(&*message);
+    EXPECT_TRUE(progress == nullptr || progress->reached >= resumed);
   }
 }
 
-// --- signs of life in free running
-// ---------------------------------------------------------------
+// ---- signs of life in free running
 
 link::Welcome free_running() {
   link::Welcome welcome;
@@ -164,7 +129,7 @@ bool wait_for_two_more(ScriptedCoordinator& coordinator) {
       [before](const auto& heard) { return count_progress(heard) >= before + 2; });
 }
 
-TEST(Heartbeat, OfEveryClockInFreeRunning) {
+TEST(Heartbeat, IsSentWithEveryClockInFreeRunning) {
   for (const auto kind :
        {link::ClockKind::kWall, link::ClockKind::kCpu, link::ClockKind::kScripted}) {
     ScriptedCoordinator coordinator(free_running());
@@ -180,14 +145,21 @@ TEST(Heartbeat, OfEveryClockInFreeRunning) {
   }
 }
 
-TEST(Heartbeat, IsNoneUnderTheBarrierAndNoneWhenNotWanted) {
-  for (const bool free : {false, true}) {
-    ManualTimeSource source(link::ClockKind::kWall);
-    ScriptedCoordinator coordinator(free ? free_running() : link::Welcome{});
+TEST(Heartbeat, IsNotSentUnderTheBarrierNorWhereItIsOff) {
+  struct Case {
+    bool free;
+    link::ClockKind clock;
+    Duration progress_period, heartbeat_period;
+  };
+  for (const Case& c : {Case{false, link::ClockKind::kWall, 0us, 20us},
+                        Case{true, link::ClockKind::kWall, 20us, 0us},
+                        Case{false, link::ClockKind::kScripted, 20us, 20us}}) {
+    ManualTimeSource source(c.clock);
+    ScriptedCoordinator coordinator(c.free ? free_running() : link::Welcome{});
     ConnectOptions options;
     options.time = std::make_unique<ManualTimeSource>(source);
-    options.progress_period = free ? 20us : 0us;
-    options.heartbeat_period = free ? 0us : 20us;
+    options.progress_period = c.progress_period;
+    options.heartbeat_period = c.heartbeat_period;
     const auto vehicle = connect(coordinator.connect(), std::move(options)).value();
     for (int i = 0; i < 200; ++i) {
       source.advance(1ms);
@@ -197,27 +169,7 @@ TEST(Heartbeat, IsNoneUnderTheBarrierAndNoneWhenNotWanted) {
   }
 }
 
-/// The stall before a call and a sleep each last until the coordinator has heard from the SUT.
-TEST(Heartbeat, GoesOnDuringStallsAndSleeps) {
-  ManualTimeSource source(link::ClockKind::kCpu, 4.0);
-  ScriptedCoordinator coordinator(free_running());
-  auto wall = std::make_unique<FakeWallTimer>();
-  int sleeps = 0;
-  wall->during_sleep([&] {
-    EXPECT_TRUE(wait_for_two_more(coordinator));
-    ++sleeps;
-  });
-  SimulatedVehicle vehicle(coordinator.connect(), free_running(),
-                           std::make_unique<ManualTimeSource>(source), std::move(wall), 20us);
-  source.advance(40ms);
-  ASSERT_TRUE(vehicle.command_velocity({}).ok());
-  EXPECT_EQ(sleeps, 1);
-  ASSERT_TRUE(vehicle.sleep_for(20ms).ok());
-  EXPECT_EQ(sleeps, 2);
-  expect_monotone(coordinator.heard());
-}
-
-TEST(ProgressReporter, StopsWhenToldAndWhenTheReportFails) {
+TEST(ProgressReporter, StopsOnDestructionAndAfterAFailedReport) {
   ManualTimeSource source;
   std::atomic<int> calls = 0;
   {

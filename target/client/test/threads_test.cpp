@@ -53,9 +53,7 @@ TEST(SerialVehicle, CallsOfSeveralThreadsWaitForOneAnother) {
                            std::make_unique<ManualTimeSource>(source),
                            std::make_unique<FakeWallTimer>(), Duration::zero());
   std::vector<std::thread> threads;
-  for (int i = 0; i < kThreads; ++i) {
-    threads.emplace_back([&] { call_a_lot(vehicle, source); });
-  }
+  for (int i = 0; i < kThreads; ++i) threads.emplace_back([&] { call_a_lot(vehicle, source); });
   for (auto& thread : threads) thread.join();
 
   const auto requests = coordinator.requests();
@@ -68,7 +66,7 @@ TEST(SerialVehicle, CallsOfSeveralThreadsWaitForOneAnother) {
 }
 
 // Both would speak on one connection, and the parent's sequence would be broken.
-TEST(SerialVehicle, IsItsOwnProcessesAlone) {
+TEST(SerialVehicle, ForkedChildCannotUseIt) {
   const link::Welcome welcome = welcome_with_sensors();
   ScriptedCoordinator coordinator(welcome, answer);
   auto vehicle = std::make_unique<SimulatedVehicle>(
@@ -91,26 +89,6 @@ TEST(SerialVehicle, IsItsOwnProcessesAlone) {
   EXPECT_EQ(status, 0);
   EXPECT_TRUE(vehicle->command_velocity({}).ok());
   EXPECT_EQ(coordinator.requests().size(), 2u);
-}
-
-TEST(SerialVehicle, AThreadFinishesWhileOthersCall) {
-  const link::Welcome welcome = welcome_with_sensors();
-  ScriptedCoordinator coordinator(welcome, answer);
-  SimulatedVehicle vehicle(coordinator.connect(), welcome,
-                           std::make_unique<ManualTimeSource>(link::ClockKind::kCpu),
-                           std::make_unique<FakeWallTimer>(), 1ms);
-  std::vector<std::thread> threads;
-  for (int i = 0; i < kThreads; ++i) {
-    threads.emplace_back([&] {
-      while (vehicle.command_velocity({}).ok()) {
-      }
-    });
-  }
-  EXPECT_TRUE(vehicle.finish(true, "done", "").ok());
-  for (auto& thread : threads) thread.join();
-  EXPECT_TRUE(std::holds_alternative<link::Finish>(coordinator.requests().back().body));
-  EXPECT_EQ(vehicle.command_velocity({}).failure().message,
-            "the mission is finished; no call is possible");
 }
 
 }  // namespace

@@ -40,8 +40,7 @@ Result<uav::CameraSample> CameraDevice::read(client::Read read) {
   if (!again) taken_at_ = next();
   if (!taken_at_) return stop(why_stopped());
   uav::CameraSample sample;
-  if (!source_->retrieve(sample))
-    return stop("an image that cannot be decoded, or of another size");
+  if (!source_->retrieve(sample)) return stop("an image could not be decoded, or had another size");
   sample.sampled_at = time_.at(*taken_at_);
   sample.index = grabbed_ - 1;
   return sample;
@@ -102,8 +101,8 @@ Result<std::unique_ptr<PlayedVideo>> PlayedVideo::create(const Timeline& time, s
   if (source->format().rate_hz <= 0.0) {
     return Failure{Failure::Kind::kInvalid,
                    label +
-                       ": the file does not say at which rate to play it; convert it, for "
-                       "instance by `ffmpeg -i " +
+                       ": the file has no frame rate. Convert it, for example with "
+                       "`ffmpeg -i " +
                        path + " -r 30 video.avi`"};
   }
   // make_unique cannot reach the constructor.

@@ -53,7 +53,7 @@ class CameraDevice {
 
 /// A camera, or a stream from one.
 ///
-/// Images wait in the driver's buffers for whoever reads slowly, and the first of them are old.
+/// If the program reads slowly, images wait in the driver's buffers, and the first of them are old.
 /// Those that were due since the last read are therefore skipped, as long as they are there at
 /// once: an image that had to be waited for, or whose timestamp is recent, is the newest.
 class LiveCamera final : public CameraDevice {

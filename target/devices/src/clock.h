@@ -4,8 +4,8 @@
 
 namespace tether::devices {
 
-/// The clock by which devices are waited for and their samples dated. A parameter, so that tests
-/// neither sleep nor depend on when they run.
+/// The clock for waiting for devices and for timestamps. A parameter, so that tests do not sleep or
+/// depend on the time at which they run.
 class Clock {
  public:
   virtual ~Clock() = default;

@@ -6,11 +6,11 @@
 
 namespace tether::devices {
 
-/// What a camera device says of its images.
+/// The image format of a camera.
 struct ImageFormat {
   int width_px = 0;
   int height_px = 0;
-  double rate_hz = 0.0;  ///< 0: it does not say
+  double rate_hz = 0.0;  ///< 0: unknown
 };
 
 /// Images in their order, as a video library gives them. Throws nothing.

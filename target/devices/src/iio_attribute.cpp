@@ -22,17 +22,18 @@ std::string_view trim(std::string_view text) {
 std::string advice(int error) {
   switch (error) {
     case ENOENT:
-      return "is the sensor's driver loaded?";
+      return "check that the sensor's driver is loaded";
     case EACCES:
     case EPERM:
-      return "this user may not read it; run as root, or allow it by a udev rule";
+      return "this user cannot read it; run as root, or add a udev rule";
     case EBUSY:
-      return "another program has the device's buffer enabled; end it, or write 0 to buffer/enable";
+      return "another program has enabled the device's buffer; stop it, or write 0 to "
+             "buffer/enable";
     case ENODEV:
     case ENXIO:
-      return "the device is gone; is it still connected, and its driver loaded?";
+      return "the device was removed; check its connection and its driver";
     default:
-      return "look at the wiring, and at what `dmesg` says of the driver";
+      return "check the wiring, and the driver's messages in `dmesg`";
   }
 }
 
@@ -67,9 +68,7 @@ std::optional<std::string> Attribute::read_text(Clock& clock, int& error) const 
   const Duration give_up = clock.now() + kRetryFor;
   for (;;) {
     const long count = file_.system().read_again(file_.number(), buffer.data(), buffer.size());
-    if (count >= 0) {
-      return std::string(trim({buffer.data(), static_cast<std::size_t>(count)}));
-    }
+    if (count >= 0) return std::string(trim({buffer.data(), static_cast<std::size_t>(count)}));
     error = static_cast<int>(-count);
     if ((error != EAGAIN && error != EINTR) || clock.now() >= give_up) return std::nullopt;
     clock.sleep_until(clock.now() + kRetryEvery);
@@ -82,9 +81,7 @@ Reading Attribute::read(Clock& clock) const {
   const std::optional<std::string> text = read_text(clock, error);
   if (!text) return {0.0, error, iio_fault(path_, error)};
   const std::optional<double> value = parse_number(*text);
-  if (!value) {
-    return {0.0, 0, path_ + ": holds '" + text->substr(0, 40) + "', which is no number"};
-  }
+  if (!value) return {0.0, 0, path_ + ": not a number (\"" + text->substr(0, 40) + "\")"};
   return {*value, 0, {}};
 }
 

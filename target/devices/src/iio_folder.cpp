@@ -15,10 +15,10 @@ Result<std::string> by_path(System& system, const std::string& label, const std:
   const int status = system.stat(path, kind);
   if (status < 0) {
     return invalid(label + ": " + error_text(-status) + "; `ls " + kIioRoot +
-                   "` lists the sensors that the kernel sees");
+                   "` lists the sensors of the kernel");
   }
   if (kind != FileKind::kFolder) {
-    return invalid(label + ": not a folder; wanted is one such as " + kIioRoot + "/iio:device0");
+    return invalid(label + ": not a folder. Give one such as " + kIioRoot + "/iio:device0");
   }
   return path;
 }
@@ -43,14 +43,14 @@ Result<std::string> by_name(System& system, Clock& clock, const std::string& lab
   }
   if (matches.size() == 1) return matches.front();
   if (matches.size() > 1) {
-    return invalid(label + ": several sensors have this name: " + joined(matches) +
-                   "; give the folder instead");
+    return invalid(label + ": several sensors have this name (" + joined(matches) +
+                   "). Give the folder instead");
   }
   if (seen.empty()) {
-    return invalid(label + ": the kernel shows no sensor below " + root +
-                   "; is the sensor's driver loaded?");
+    return invalid(label + ": the kernel has no sensor in " + root +
+                   "; check that the sensor's driver is loaded");
   }
-  return invalid(label + ": no sensor of this name below " + root + "; there is " + joined(seen));
+  return invalid(label + ": no sensor of this name in " + root + "; it has " + joined(seen));
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ std::string iio_name(System& system, Clock& clock, const std::string& folder) {
 
 Result<std::string> find_iio_folder(System& system, Clock& clock, const std::string& label,
                                     const std::string& device, const std::string& root) {
-  // A folder below the present one may be called "iio:device0" too; whoever means that writes
+  // A folder below the present one may be called "iio:device0" too; write
   // "./iio:device0".
   if (!device.starts_with(kPrefix)) return by_path(system, label, device);
   return by_name(system, clock, label, device.substr(kPrefix.size()), root);

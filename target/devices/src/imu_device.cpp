@@ -6,6 +6,8 @@
 #include <sstream>
 #include <utility>
 
+// An IMU from six channels of the kernel's IIO interface: two triads, each rotated by the mounting
+// matrix of its quantity or of the device.
 namespace tether::devices {
 namespace {
 
@@ -72,7 +74,7 @@ std::optional<Triad> Triad::open(System& system, Clock& clock, const std::string
     if (rows) {
       triad.rows_ = *rows;
     } else {
-      triad.fault_ = text ? file.path() + ": holds '" + *text + "', which is no 3 × 3 matrix"
+      triad.fault_ = text ? file.path() + ": not a 3 × 3 matrix (\"" + *text + "\")"
                           : iio_fault(file.path(), error);
     }
     break;
@@ -111,7 +113,7 @@ Result<std::unique_ptr<ImuDevice>> ImuDevice::open(System& system, const Timelin
     const std::string missing = accelerometer ? "gyroscope (in_anglvel_x, _y and _z"
                                               : "accelerometer (in_accel_x, _y and _z";
     return invalid(label + ": no " + missing +
-                   ", each with _raw or _input); where the driver shows two devices, give both as "
+                   ", each with _raw or _input). If the driver has two devices, give both as "
                    "ONE,OTHER");
   }
   for (const Triad* triad : {&*accelerometer, &*gyroscope}) {

@@ -7,6 +7,9 @@
 #include <utility>
 #include <variant>
 
+// Opens a camera by the form of its name: a number or device node with Video4Linux, a file, or a
+// URL. Live cameras must deliver one image at once, because some errors occur only then. On
+// failure the driver is asked for the reason, which OpenCV does not report.
 namespace tether::devices {
 namespace {
 
@@ -59,9 +62,8 @@ Result<Camera> open_device(const Request& request, const std::string& path) {
   if (!source) return request.refuse(video4linux_fault(request.system, path));
   const auto why_stopped = [&system = request.system, path] {
     FileKind kind{};
-    return system.stat(path, kind) < 0
-               ? std::string("the device is gone; was it unplugged?")
-               : std::string("it gave no image for 10 s; `dmesg` may say why");
+    return system.stat(path, kind) < 0 ? std::string("the device was removed")
+                                       : std::string("timed out: no image for 10 s; see `dmesg`");
   };
   Result<Camera> camera = try_out(std::make_unique<LiveCamera>(
       request.time, request.label, std::move(source), true, why_stopped));
@@ -73,8 +75,8 @@ Result<Camera> open_device(const Request& request, const std::string& path) {
 Result<Camera> open_url(const Request& request, const std::string& url) {
   auto source = open_stream(url, kStreamTimeoutMs);
   if (!source) {
-    return request.refuse("OpenCV gets no stream from there within 10 s; `ffprobe " + url +
-                          "` may say why");
+    return request.refuse("timed out: OpenCV got no image from the stream for 10 s. `ffprobe " +
+                          url + "` can show why");
   }
   Result<Camera> camera = try_out(std::make_unique<LiveCamera>(
       request.time, request.label, std::move(source), false,
@@ -94,11 +96,11 @@ Result<Camera> open_file(const Request& request, const std::string& path) {
   auto source = open_video_file(path);
   if (!source) {
     return request.refuse(
-        "not a video file that OpenCV can read; convert it, for instance by `ffmpeg -i " + path +
+        "not a video file that OpenCV can read. Convert it, for example with `ffmpeg -i " + path +
         " -c:v mjpeg video.avi`");
   }
   if (!holds_image(path)) {
-    return request.refuse("holds no image that can be read; was it cut short? Record it anew");
+    return request.refuse("has no readable image; the file is possibly truncated. Record it again");
   }
   const ImageFormat format = source->format();
   auto video = PlayedVideo::create(request.time, request.label, std::move(source), path);
@@ -145,8 +147,9 @@ Status complete(const Request& request, const ImageFormat& format, RigSensor& se
   }
   if (model.width_px != width_px || model.height_px != height_px) {
     return request.refuse("its images have " + size_text(width_px, height_px) +
-                          " px, but the rig says " + size_text(model.width_px, model.height_px) +
-                          "; change the rig, and its calibration with it");
+                          " px, but the rig file has " +
+                          size_text(model.width_px, model.height_px) +
+                          ". Correct size_px and the calibration in the rig file");
   }
   double& rate_hz = sensor.description.rate_hz;
   if (rate_hz <= 0.0) rate_hz = format.rate_hz;

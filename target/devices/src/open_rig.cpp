@@ -83,9 +83,9 @@ Result<std::unique_ptr<client::Vehicle>> open_rig(Rig rig) {
   std::vector<Device> devices;
   for (RigSensor& sensor : rig.sensors) {
     if (catalogue.find_sensor(sensor.description.name) != nullptr) {
-      return Failure{Failure::Kind::kInvalid, label_of(sensor) + ": the rig has two sensors '" +
+      return Failure{Failure::Kind::kInvalid, label_of(sensor) + ": the rig has two sensors \"" +
                                                   sensor.description.name +
-                                                  "'; give each a name of its own"};
+                                                  "\"; names must be unique"};
     }
     Result<Device> device = opener.open(sensor);
     if (!device) return device.failure();

@@ -29,7 +29,7 @@ class QuietLog {
 };
 
 /// FFmpeg's log: OpenCV asks the environment for its level once per process, when it first uses it.
-/// Whoever sets one of these variables wants to see something, and does.
+/// If the user has set one of these variables, the log is kept.
 void quiet_ffmpeg() {
   constexpr const char* kLevel = "OPENCV_FFMPEG_LOGLEVEL";
   constexpr const char* kQuiet = "-8";  // AV_LOG_QUIET

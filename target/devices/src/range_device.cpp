@@ -53,7 +53,7 @@ Result<std::unique_ptr<RangeDevice>> RangeDevice::open(System& system, const Tim
                                                        const uav::RangeProperties& limits) {
   std::optional<Channel> channel = Channel::open(system, time.clock(), folder, "in_distance", "");
   if (!channel) {
-    return invalid(label + ": no rangefinder: " + folder +
+    return invalid(label + ": not a rangefinder: " + folder +
                    " has neither in_distance_input nor in_distance_raw");
   }
   if (!channel->fault().empty()) return invalid(label + ": " + channel->fault());

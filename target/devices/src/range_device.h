@@ -17,14 +17,14 @@ namespace tether::devices {
 /// A rangefinder of the kernel's IIO interface: in_distance_input, or in_distance_raw with scale
 /// and offset [m]. Measures whenever it is read.
 ///
-/// A sample is from the instant at which the read returned: the sensor gathers light for some time
-/// before, the kernel does not say when, and what is known for certain is that nothing later is in
-/// the value (DESIGN section 2, rule 1). A driver whose sensor measures of its own accord may have
-/// a measurement waiting since shortly after the last read; such a one is dropped for the next.
+/// The timestamp of a sample is the instant at which the read returned: the kernel does not report
+/// the time of the exposure, but nothing later can be in the value (docs/design.md section 2, rule
+/// 1). A driver of a sensor that measures continuously can return an old measurement; it is dropped
+/// for the next one.
 class RangeDevice {
  public:
   /// Opens the channel in `folder`, and measures once, so that a sensor that does not answer is
-  /// told at once. `label` begins each message. Fails with kInvalid.
+  /// reported at once. `label` begins each message. Fails with kInvalid.
   static Result<std::unique_ptr<RangeDevice>> open(System& system, const Timeline& time,
                                                    std::string label, const std::string& folder,
                                                    const uav::RangeProperties& limits);

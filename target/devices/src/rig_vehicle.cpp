@@ -13,8 +13,7 @@ constexpr Duration kLongest{std::numeric_limits<std::int64_t>::max() / 2};
 
 Status check(client::Read read) {
   if (read != client::Read::kIfAvailable) return ok_status();
-  return Failure{Failure::Kind::kInvalid,
-                 "the devices of a rig wait for what they measure; read with kNext or kLatest"};
+  return Failure{Failure::Kind::kInvalid, "reads of a rig always wait; use kNext or kLatest"};
 }
 
 }  // namespace
@@ -39,10 +38,10 @@ Failure RigVehicle::no_such_sensor(std::string_view sensor, uav::SensorKind kind
   std::string there_is;
   for (const auto& s : catalogue_.sensors) {
     there_is +=
-        (there_is.empty() ? "" : ", ") + std::string(uav::name(s.kind())) + " '" + s.name + "'";
+        (there_is.empty() ? "" : ", ") + std::string(uav::name(s.kind())) + " \"" + s.name + "\"";
   }
-  return {Failure::Kind::kInvalid, "the rig has no " + std::string(uav::name(kind)) + " '" +
-                                       std::string(sensor) + "'; it has " +
+  return {Failure::Kind::kInvalid, "the rig has no " + std::string(uav::name(kind)) + " \"" +
+                                       std::string(sensor) + "\"; it has " +
                                        (there_is.empty() ? "no sensor" : there_is)};
 }
 
@@ -71,8 +70,7 @@ Result<uav::RangeSample> RigVehicle::read_range(std::string_view sensor, client:
 }
 
 Status RigVehicle::command_velocity(const uav::VelocityCommand&) {
-  return Failure{Failure::Kind::kInvalid,
-                 "a rig of sensors cannot fly; run this task with `tether run`"};
+  return Failure{Failure::Kind::kInvalid, "a rig cannot fly; run this task with `tether run`"};
 }
 
 Status RigVehicle::sleep_for(Duration duration) {

@@ -11,14 +11,14 @@ namespace {
 constexpr const char* kListDevices = "`v4l2-ctl --list-devices` lists the cameras";
 
 std::string busy(const std::string& path) {
-  return "busy: another program holds it; `fuser -v " + path + "` names it";
+  return "busy: another program uses it; `fuser -v " + path + "` shows which one";
 }
 
 std::string open_fault(const std::string& path, int error) {
   switch (error) {
     case EACCES:
     case EPERM:
-      return "not allowed to open it; add the user to the group video (`sudo usermod -aG video "
+      return "permission denied; add the user to the group video (`sudo usermod -aG video "
              "$USER`), then log in again";
     case EBUSY:
       return busy(path);
@@ -27,7 +27,7 @@ std::string open_fault(const std::string& path, int error) {
     case ENXIO:
       return error_text(error) + std::string("; ") + kListDevices;
     default:
-      return error_text(error) + "; what `dmesg` says of it may help";
+      return error_text(error) + "; see `dmesg`";
   }
 }
 
@@ -51,13 +51,13 @@ std::string capability_fault(System& system, int descriptor) {
   const std::uint32_t can = own ? capability.device_caps : capability.capabilities;
   if ((can & (V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_VIDEO_CAPTURE_MPLANE)) != 0) return {};
   return std::string(
-             "a video device that takes no images; a camera often has several, and the "
-             "lowest number is the one; ") +
+             "a video device without images; a camera often has several devices, of which the one "
+             "with the lowest number has the images; ") +
          kListDevices;
 }
 
 /// Asks for the format that the device already has, and for a buffer: what a driver refuses while
-/// somebody else has the device.
+/// another program uses the device.
 std::string capture_fault(System& system, int descriptor, const std::string& path) {
   v4l2_format format{};
   format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
@@ -73,8 +73,7 @@ std::string capture_fault(System& system, int descriptor, const std::string& pat
     request.count = 0;
     system.ioctl(descriptor, VIDIOC_REQBUFS, &request);
   }
-  return "OpenCV gets no images of its picture format '" +
-         four_characters(format.fmt.pix.pixelformat) +
+  return "OpenCV cannot read its pixel format '" + four_characters(format.fmt.pix.pixelformat) +
          "'; a camera at the CSI port of a Raspberry Pi needs `libcamerify` before the command";
 }
 
@@ -87,7 +86,7 @@ std::string video4linux_fault(System& system, const std::string& path) {
   std::string fault = capability_fault(system, descriptor.number());
   if (fault.empty()) fault = capture_fault(system, descriptor.number(), path);
   if (fault.empty()) {
-    fault = "OpenCV gets no images of it; `v4l2-ctl -d " + path + " --all` says what it offers";
+    fault = "OpenCV gets no images from it; `v4l2-ctl -d " + path + " --all` shows its formats";
   }
   return fault;
 }

@@ -6,7 +6,6 @@
 #include <random>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace tether::devices {
 namespace {
@@ -14,7 +13,6 @@ namespace {
 using client::Read;
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
-using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr Duration kPeriod = milliseconds(40);
@@ -31,7 +29,6 @@ class FakeCamera final : public FrameSource {
   double rate_hz = 25.0;
   bool is_on_epoch = false;     // timestamps of another clock
   bool is_stuck_clock = false;  // the first timestamp for ever
-  int* decoded = nullptr;
   bool breaks_images = false;
 
   explicit FakeCamera(ManualClock& manual) : clock(&manual) {}
@@ -49,7 +46,6 @@ class FakeCamera final : public FrameSource {
     return true;
   }
   bool retrieve(uav::CameraSample& into) override {
-    if (decoded != nullptr) ++*decoded;
     into.width_px = into.height_px = 1;
     into.rgb.assign(3, static_cast<std::uint8_t>(grabbed_));
     return !breaks_images;
@@ -96,30 +92,6 @@ TEST_F(LiveCameraTest, DatesAnImageByTheDevicesTimestampOnTheEtAxis) {
   EXPECT_EQ(image->index, 0u);
 }
 
-TEST_F(LiveCameraTest, DatesAnImageByItsArrivalWhereTheTimestampIsNotPlausible) {
-  source_->is_on_epoch = true;
-  LiveCamera camera = make();
-  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime(milliseconds(25)));
-}
-
-TEST_F(LiveCameraTest, DoesNotBelieveAnOldTimestamp) {
-  source_->latency = std::chrono::seconds(6);
-  LiveCamera camera = make();
-  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime(std::chrono::seconds(6)));
-}
-
-TEST_F(LiveCameraTest, DoesNotBelieveATimestampThatStandsStill) {
-  source_->is_stuck_clock = true;
-  LiveCamera camera = make();
-  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime{});
-  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime(milliseconds(65)));
-}
-
-TEST_F(LiveCameraTest, DatesAStreamsImageByItsArrival) {
-  LiveCamera camera = make(false);
-  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime(milliseconds(25)));
-}
-
 TEST_F(LiveCameraTest, AFastReaderGetsEveryImage) {
   LiveCamera camera = make();
   for (int i = 0; i < 20; ++i) {
@@ -131,34 +103,51 @@ TEST_F(LiveCameraTest, AFastReaderGetsEveryImage) {
   }
 }
 
-/// Whatever the reader does meanwhile, and however many images wait in the driver: what it gets is
-/// newer than what it had, and no older than two periods and the transfer.
-void expect_fresh_images(ManualClock& clock, LiveCamera& camera, const Timeline& time) {
-  std::mt19937 random(7);
-  std::uniform_int_distribution<int> pause_ms(0, 300);
-  SimTime last(-std::chrono::hours(1));
-  for (int i = 0; i < 40; ++i) {
-    const auto image = camera.read(Read::kNext);
-    ASSERT_TRUE(image);
-    EXPECT_GT(image->sampled_at, last);
-    EXPECT_EQ(image->sampled_at, SimTime(image->rgb[0] * kPeriod));
-    EXPECT_LT(same_instant(time.now()) - image->sampled_at, 2 * kPeriod);
-    last = image->sampled_at;
-    clock.advance(milliseconds(pause_ms(random)));
+TEST_F(LiveCameraTest, DatesImagesByArrivalWithoutPlausibleTimestamps) {
+  struct Case {
+    bool is_on_epoch;
+    bool has_timestamps;
+    Duration latency;
+  };
+  for (const Case& c : {Case{true, true, milliseconds(25)}, Case{false, false, milliseconds(25)},
+                        Case{false, true, milliseconds(6000)}}) {
+    source_ = std::make_unique<FakeCamera>(clock_);
+    time_ = Timeline(clock_);
+    source_->is_on_epoch = c.is_on_epoch;
+    source_->latency = c.latency;
+    LiveCamera camera = make(c.has_timestamps);
+    EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime(c.latency));
   }
 }
 
-TEST_F(LiveCameraTest, ASlowReaderGetsFreshImages) {
-  source_->last_image = 400;
+TEST_F(LiveCameraTest, IgnoresTimestampThatDoesNotAdvance) {
+  source_->is_stuck_clock = true;
   LiveCamera camera = make();
-  expect_fresh_images(clock_, camera, time_);
+  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime{});
+  EXPECT_EQ(camera.read(Read::kNext)->sampled_at, SimTime(milliseconds(65)));
 }
 
-TEST_F(LiveCameraTest, ASlowReaderGetsFreshImagesHoweverManyTheDriverBuffers) {
-  source_->buffers = 9;
-  source_->last_image = 400;
-  LiveCamera camera = make();
-  expect_fresh_images(clock_, camera, time_);
+// Each image is newer than the one before, and no older than two periods and the transfer.
+TEST_F(LiveCameraTest, SlowReaderGetsFreshImagesHoweverManyTheDriverBuffers) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> pause_ms(0, 300);
+  for (const std::size_t buffers : {2u, 9u}) {
+    source_ = std::make_unique<FakeCamera>(clock_);
+    time_ = Timeline(clock_);
+    source_->buffers = buffers;
+    source_->last_image = 400;
+    LiveCamera camera = make();
+    SimTime last(-std::chrono::hours(1));
+    for (int i = 0; i < 40; ++i) {
+      const auto image = camera.read(Read::kNext);
+      ASSERT_TRUE(image);
+      EXPECT_GT(image->sampled_at, last);
+      EXPECT_EQ(image->sampled_at, SimTime(image->rgb[0] * kPeriod));
+      EXPECT_LT(same_instant(time_.now()) - image->sampled_at, 2 * kPeriod);
+      last = image->sampled_at;
+      clock_.advance(milliseconds(pause_ms(random)));
+    }
+  }
 }
 
 TEST_F(LiveCameraTest, ASlowReaderGetsFreshImagesWithoutTimestampsToo) {
@@ -196,24 +185,20 @@ TEST_F(LiveCameraTest, LatestGivesTheSameImageUntilANewerOneIsDue) {
   EXPECT_GT(camera.read(Read::kLatest)->sampled_at, first->sampled_at);
 }
 
-TEST_F(LiveCameraTest, SaysForGoodThatItStopped) {
-  source_->last_image = 1;
-  LiveCamera camera = make();
-  EXPECT_TRUE(camera.read(Read::kNext));
-  EXPECT_TRUE(camera.read(Read::kNext));
-  for (const Read read : {Read::kNext, Read::kLatest}) {
-    const auto none = camera.read(read);
-    ASSERT_FALSE(none);
-    EXPECT_EQ(none.failure().kind, Failure::Kind::kDisconnected);
-    EXPECT_EQ(none.failure().message,
-              "camera /dev/video3 stopped after 2 images (the device is gone)");
+TEST_F(LiveCameraTest, FailsForGoodWhenTheSourceEndsOrAnImageIsUnusable) {
+  for (const bool breaks_images : {false, true}) {
+    source_ = std::make_unique<FakeCamera>(clock_);
+    source_->last_image = 1;
+    source_->breaks_images = breaks_images;
+    LiveCamera camera = make();
+    for (int i = 0; i < 2; ++i) EXPECT_NE(camera.read(Read::kNext).ok(), breaks_images);
+    for (const Read read : {Read::kNext, Read::kLatest}) {
+      const auto none = camera.read(read);
+      ASSERT_FALSE(none);
+      EXPECT_EQ(none.failure().kind, Failure::Kind::kDisconnected);
+      EXPECT_THAT(none.failure().message, HasSubstr("camera /dev/video3"));
+    }
   }
-}
-
-TEST_F(LiveCameraTest, StopsAtAnImageThatCannotBeDecoded) {
-  source_->breaks_images = true;
-  LiveCamera camera = make();
-  EXPECT_THAT(camera.read(Read::kNext).failure().message, HasSubstr("cannot be decoded"));
 }
 
 // ---- played video
@@ -263,48 +248,22 @@ class PlayedVideoTest : public testing::Test {
   std::unique_ptr<PlayedVideo> video_;
 };
 
-TEST_F(PlayedVideoTest, PlaysAtItsRateFromTheFirstReadOn) {
+TEST_F(PlayedVideoTest, PlaysAtItsRateAndSkipsImagesWithoutDecodingThem) {
   open(100, 25.0);
   expect_image(Read::kNext, 0, milliseconds(500), milliseconds(500));
   expect_image(Read::kNext, 1, milliseconds(540), milliseconds(540));
   clock_.advance(milliseconds(15));
   expect_image(Read::kNext, 2, milliseconds(580), milliseconds(580));
-}
-
-TEST_F(PlayedVideoTest, ASlowReaderMissesImagesWithoutDecodingThem) {
-  open(100, 25.0);
-  expect_image(Read::kNext, 0, milliseconds(500), milliseconds(500));
-  clock_.advance(milliseconds(210));
+  clock_.advance(milliseconds(130));
   expect_image(Read::kNext, 5, milliseconds(700), milliseconds(710));
-  clock_.advance(milliseconds(10));
-  expect_image(Read::kNext, 6, milliseconds(740), milliseconds(740));
-  EXPECT_EQ(source_->decoded, 3);
-}
-
-TEST_F(PlayedVideoTest, LatestGivesTheImageThatIsOn) {
-  open(100, 25.0);
-  expect_image(Read::kLatest, 0, milliseconds(500), milliseconds(500));
-  clock_.advance(milliseconds(39));
-  expect_image(Read::kLatest, 0, milliseconds(500), milliseconds(539));
+  EXPECT_EQ(source_->decoded, 4);
+  clock_.advance(milliseconds(29));
+  expect_image(Read::kLatest, 5, milliseconds(700), milliseconds(739));
   clock_.advance(milliseconds(1));
-  expect_image(Read::kLatest, 1, milliseconds(540), milliseconds(540));
-  clock_.advance(milliseconds(90));
-  expect_image(Read::kLatest, 3, milliseconds(620), milliseconds(630));
+  expect_image(Read::kLatest, 6, milliseconds(740), milliseconds(740));
 }
 
-TEST_F(PlayedVideoTest, ARateThatIsNoWholeNumberDoesNotDrift) {
-  open(4000, 30000.0 / 1001.0);
-  ASSERT_TRUE(video_->read(Read::kNext));
-  for (std::uint64_t k = 1; k < 3000; ++k) {
-    const auto image = video_->read(Read::kNext);
-    ASSERT_TRUE(image);
-    ASSERT_EQ(image->index, k);
-    const Duration exact = milliseconds(500) + nanoseconds(k * 1'001'000'000'000ULL / 30'000);
-    ASSERT_LE(std::chrono::abs(image->sampled_at.time_since_epoch() - exact), nanoseconds(1));
-  }
-}
-
-TEST_F(PlayedVideoTest, AnImageIsOnFromItsVeryNanosecondToThatOfTheNext) {
+TEST_F(PlayedVideoTest, ImageIsCurrentFromItsDueTimeToTheNextOnes) {
   constexpr double kRateHz = 30000.0 / 1001.0;
   const auto due = [this](std::uint64_t k) {
     const Duration played = duration_from_seconds(static_cast<double>(k) / kRateHz);
@@ -320,22 +279,16 @@ TEST_F(PlayedVideoTest, AnImageIsOnFromItsVeryNanosecondToThatOfTheNext) {
   }
 }
 
-TEST_F(PlayedVideoTest, ItsEndIsADeviceThatStopped) {
-  open(3, 25.0);
+TEST_F(PlayedVideoTest, FailsForGoodAtTheEndOfTheFile) {
+  open(4, 25.0);
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(video_->read(Read::kNext));
+  clock_.advance(std::chrono::seconds(1));
   for (int i = 0; i < 2; ++i) {
     const auto none = video_->read(Read::kNext);
     ASSERT_FALSE(none);
     EXPECT_EQ(none.failure().kind, Failure::Kind::kDisconnected);
-    EXPECT_EQ(none.failure().message, "camera a.avi stopped after 3 images (end of the file)");
+    EXPECT_THAT(none.failure().message, HasSubstr("camera a.avi"));
   }
-}
-
-TEST_F(PlayedVideoTest, IsOverForWhoeverReadsTooLate) {
-  open(3, 25.0);
-  EXPECT_TRUE(video_->read(Read::kNext));
-  clock_.advance(std::chrono::seconds(1));
-  EXPECT_FALSE(video_->read(Read::kNext));
 }
 
 TEST_F(PlayedVideoTest, RefusesAFileThatSaysNoRate) {
@@ -343,8 +296,6 @@ TEST_F(PlayedVideoTest, RefusesAFileThatSaysNoRate) {
       PlayedVideo::create(time_, "camera a.avi", std::make_unique<FakeVideo>(3, 0.0), "a.avi");
   ASSERT_FALSE(none);
   EXPECT_EQ(none.failure().kind, Failure::Kind::kInvalid);
-  EXPECT_THAT(none.failure().message,
-              AllOf(HasSubstr("camera a.avi: "), HasSubstr("rate"), HasSubstr("ffmpeg -i a.avi")));
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <tether/base_testing/scratch_folder.h>
 
@@ -73,23 +72,13 @@ TEST_F(ImuDeviceTest, MeasuresInSiUnits) {
   EXPECT_EQ(sample->sampled_at, SimTime(std::chrono::milliseconds(3)));
   EXPECT_EQ(sample->index, 0u);
   EXPECT_EQ(device->read()->index, 1u);
-}
-
-TEST_F(ImuDeviceTest, ItsAttitudeIsNotKnown) {
-  const uav::Quat q_WS = opened()->read()->q_WS;
+  const uav::Quat& q_WS = sample->q_WS;
   for (const double part : {q_WS.w, q_WS.x, q_WS.y, q_WS.z}) EXPECT_TRUE(std::isnan(part));
 }
 
-TEST_F(ImuDeviceTest, TheMountingMatrixTurnsBothQuantities) {
+TEST_F(ImuDeviceTest, MountingMatrixRotatesEachQuantityItsOwnFirst) {
   scratch_.write("in_mount_matrix", "0, -1, 0; 1, 0, 0; 0, 0, 1\n");
-  const auto sample = opened()->read();
-  ASSERT_TRUE(sample);
-  expect_near(sample->specific_force_m_s2, {1.1971, 0.59855, 9.8066432});
-  expect_near(sample->angular_velocity_rad_s, {-0.02129448, 0.01064724, -0.03194172});
-}
-
-TEST_F(ImuDeviceTest, AQuantitysOwnMountingMatrixGoesFirst) {
-  scratch_.write("in_mount_matrix", "0, -1, 0; 1, 0, 0; 0, 0, 1\n");
+  expect_near(opened()->read()->specific_force_m_s2, {1.1971, 0.59855, 9.8066432});
   scratch_.write("in_accel_mount_matrix", "1, 0, 0; 0, -1, 0; 0, 0, -1\n");
   const auto sample = opened()->read();
   ASSERT_TRUE(sample);
@@ -101,13 +90,13 @@ TEST_F(ImuDeviceTest, AccelerometerAndGyroscopeMayBeTwoDevices) {
   for (const char* axis : {"x", "y", "z"}) {
     std::filesystem::remove(scratch_.path(std::string("in_anglvel_") + axis + "_raw"));
   }
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("no gyroscope"), HasSubstr("ONE,OTHER")));
+  EXPECT_THAT(refusal(), HasSubstr("in_anglvel"));
   write("in_anglvel", "1", "2", "3", "0.5", "gyro/");
   folders_.push_back(scratch_.path("gyro"));
   expect_near(opened()->read()->angular_velocity_rad_s, {0.5, 1.0, 1.5});
 }
 
-TEST_F(ImuDeviceTest, SaysForGoodThatItStopped) {
+TEST_F(ImuDeviceTest, FailsForGoodWithItsFirstError) {
   const auto device = opened();
   ASSERT_TRUE(device->read());
   for (const int error : {EIO, ENODEV}) {
@@ -115,28 +104,24 @@ TEST_F(ImuDeviceTest, SaysForGoodThatItStopped) {
     const auto none = device->read();
     ASSERT_FALSE(none);
     EXPECT_EQ(none.failure().kind, Failure::Kind::kDisconnected);
-    // The first of the errors is what stays.
-    EXPECT_THAT(none.failure().message,
-                AllOf(StartsWith("IMU iio:x stopped after 1 measurements ("),
-                      HasSubstr("in_anglvel_y_raw"), HasSubstr(error_text(EIO))));
+    EXPECT_THAT(
+        none.failure().message,
+        AllOf(StartsWith("IMU iio:x "), HasSubstr("in_anglvel_y_raw"), HasSubstr(error_text(EIO))));
   }
 }
 
-TEST_F(ImuDeviceTest, IsRefusedWhereAnAxisIsMissing) {
-  std::filesystem::remove(scratch_.path("in_accel_z_raw"));
-  EXPECT_THAT(refusal(), HasSubstr("no accelerometer"));
-}
-
-TEST_F(ImuDeviceTest, IsRefusedWhereItCannotBeRead) {
+TEST_F(ImuDeviceTest, RefusalNamesTheFileOrQuantity) {
   scratch_.write("in_mount_matrix", "upside down\n");
-  EXPECT_THAT(refusal(), HasSubstr("in_mount_matrix: holds 'upside down'"));
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("in_mount_matrix"), HasSubstr("upside down")));
   std::filesystem::remove(scratch_.path("in_mount_matrix"));
-  scratch_.write("in_accel_x_raw", "x\n");
-  EXPECT_THAT(refusal(), HasSubstr("in_accel_x_raw: holds 'x'"));
-  system_.read_errors[scratch_.path("in_accel_x_raw")] = {EBUSY};
-  EXPECT_THAT(refusal(), HasSubstr("buffer"));
-  system_.open_errors[scratch_.path("in_accel_x_raw")] = EACCES;
-  EXPECT_THAT(refusal(), HasSubstr("Permission denied"));
+  const std::string axis = scratch_.path("in_accel_x_raw");
+  system_.read_errors[axis] = {EBUSY};
+  EXPECT_THAT(refusal(), HasSubstr(axis));
+  system_.open_errors[axis] = EACCES;
+  EXPECT_THAT(refusal(), HasSubstr(axis));
+  std::filesystem::remove(scratch_.path("in_accel_z_raw"));
+  system_.open_errors.clear();
+  EXPECT_THAT(refusal(), HasSubstr("in_accel_x, _y and _z"));
 }
 
 }  // namespace

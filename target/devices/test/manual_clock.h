@@ -6,7 +6,7 @@
 
 namespace tether::devices {
 
-/// Stands still until it is told to move; sleeping moves it.
+/// Advances only by `advance` and by sleeping.
 class ManualClock final : public Clock {
  public:
   Duration now() const override { return now_; }

@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <linux/videodev2.h>
 #include <sys/stat.h>
 
@@ -33,7 +32,7 @@ class OpenCameraTest : public testing::Test {
   /// The message, which begins with the device and is one line.
   std::string refusal(const std::string& device) {
     const auto camera = open(device);
-    if (camera) return "opened";
+    EXPECT_FALSE(camera) << device;
     EXPECT_EQ(camera.failure().kind, Failure::Kind::kInvalid);
     const std::string& message = camera.failure().message;
     EXPECT_THAT(message, StartsWith("camera " + device + ": "));
@@ -55,24 +54,21 @@ class OpenCameraTest : public testing::Test {
   RigSensor sensor_{{"front", {}, 0.0, uav::CameraProperties{}}, ""};
 };
 
-TEST_F(OpenCameraTest, AVideoFileGivesItsImages) {
+TEST_F(OpenCameraTest, VideoFileGivesItsImagesAndEnds) {
   auto camera = open(video());
   ASSERT_TRUE(camera) << camera.failure().message;
-  const auto image = (*camera)->read(client::Read::kNext);
-  ASSERT_TRUE(image);
-  EXPECT_EQ(image->width_px, 64);
-  EXPECT_GT(image->rgb[0], 230);
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const auto image = (*camera)->read(client::Read::kNext);
+    ASSERT_TRUE(image);
+    EXPECT_EQ(image->width_px, 64);
+    EXPECT_GT(image->rgb[0], 230);
+  }
+  const Failure end = (*camera)->read(client::Read::kNext).failure();
+  EXPECT_EQ(end.kind, Failure::Kind::kDisconnected);
+  EXPECT_THAT(end.message, StartsWith("camera " + sensor_.device));
 }
 
-TEST_F(OpenCameraTest, ItsEndNamesTheDevice) {
-  auto camera = open(video());
-  ASSERT_TRUE(camera);
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE((*camera)->read(client::Read::kNext));
-  EXPECT_EQ((*camera)->read(client::Read::kNext).failure().message,
-            "camera " + sensor_.device + " stopped after 3 images (end of the file)");
-}
-
-TEST_F(OpenCameraTest, TheDeviceFillsInWhatTheRigLeavesOpen) {
+TEST_F(OpenCameraTest, DeviceCompletesTheDescription) {
   sensor_.horizontal_fov_rad = rad_from_deg(60.0);
   model().k1 = 0.1;
   ASSERT_TRUE(open(video()));
@@ -87,14 +83,11 @@ TEST_F(OpenCameraTest, TheDeviceFillsInWhatTheRigLeavesOpen) {
   EXPECT_NEAR(sensor_.description.rate_hz, 25.0, 1e-3);
 }
 
-TEST_F(OpenCameraTest, WithoutAFieldOfViewFocalLengthsStayAsTheyAre) {
+TEST_F(OpenCameraTest, ValuesOfTheRigStay) {
   model().fx_px = 55.0;
   ASSERT_TRUE(open(video()));
-  EXPECT_EQ(model().fx_px, 55.0);
+  EXPECT_EQ(model().fx_px, 55.0) << "without a field of view";
   EXPECT_EQ(model().fy_px, 0.0);
-}
-
-TEST_F(OpenCameraTest, WhatTheRigSaysStays) {
   model() = uav::CameraModel::from_horizontal_fov(64, 48, 1.0);
   model().cx_px = 30.0;
   sensor_.description.rate_hz = 10.0;
@@ -103,51 +96,36 @@ TEST_F(OpenCameraTest, WhatTheRigSaysStays) {
   EXPECT_EQ(sensor_.description.rate_hz, 10.0);
 }
 
-TEST_F(OpenCameraTest, AnotherSizeThanTheRigSaysIsRefused) {
+TEST_F(OpenCameraTest, RefusesAnotherSizeThanTheRigs) {
   model() = uav::CameraModel::from_horizontal_fov(640, 480, 1.0);
   EXPECT_THAT(refusal(video()), AllOf(HasSubstr("64 x 48"), HasSubstr("640 x 480")));
 }
 
-TEST_F(OpenCameraTest, AStreamPlaysAndEnds) {
+TEST_F(OpenCameraTest, StreamPlaysAndEnds) {
   auto camera = open("file://" + video());
   ASSERT_TRUE(camera) << camera.failure().message;
   EXPECT_EQ(model().width_px, 64);
-  // The first image was taken to see whether there is one.
+  // Opening the stream has taken its first image.
   EXPECT_EQ((*camera)->read(client::Read::kNext)->index, 1u);
   EXPECT_TRUE((*camera)->read(client::Read::kNext));
-  EXPECT_THAT((*camera)->read(client::Read::kNext).failure().message,
-              HasSubstr("the stream ended"));
+  EXPECT_EQ((*camera)->read(client::Read::kNext).failure().kind, Failure::Kind::kDisconnected);
 }
 
-TEST_F(OpenCameraTest, MissingDevicesAndFiles) {
-  EXPECT_THAT(refusal("/dev/video63999"), HasSubstr("No such file or directory"));
-  EXPECT_THAT(refusal("63999"), HasSubstr("No such file or directory"));
-  EXPECT_THAT(refusal(scratch_.path("a.avi")), HasSubstr("No such file or directory"));
-}
-
-TEST_F(OpenCameraTest, WhatIsNoVideo) {
-  EXPECT_THAT(refusal("/dev/null"), HasSubstr("not a video device"));
-  EXPECT_THAT(refusal(scratch_.write("a.txt", "text")), HasSubstr("not a video file"));
-  EXPECT_THAT(refusal(scratch_.path()), HasSubstr("neither a video device nor a video file"));
-}
-
-TEST_F(OpenCameraTest, AVideoThatIsCutBeforeItsFirstImage) {
-  const std::string path = video();
-  std::filesystem::resize_file(path, 4200);  // the first image begins at 4104
-  EXPECT_THAT(refusal(path), HasSubstr("holds no image that can be read"));
-}
-
-TEST_F(OpenCameraTest, APipeIsRefusedWithoutWaitingForItsOtherEnd) {
+TEST_F(OpenCameraTest, RefusesWhatIsNoCamera) {
+  const std::string cut = video();
+  std::filesystem::resize_file(cut, 4200);  // the first image begins at 4104
   ASSERT_EQ(::mkfifo(scratch_.path("pipe").c_str(), 0600), 0);
-  EXPECT_THAT(refusal(scratch_.path("pipe")), HasSubstr("neither a video device nor a video file"));
-}
-
-TEST_F(OpenCameraTest, AStreamThatIsNotThere) {
-  EXPECT_THAT(refusal("file:///no/such/file"), HasSubstr("no stream"));
+  for (const std::string& device :
+       {std::string("/dev/video63999"), std::string("63999"), scratch_.path("none.avi").string(),
+        std::string("/dev/null"), scratch_.write("a.txt", "text").string(),
+        scratch_.path().string(), cut, scratch_.path("pipe").string(),
+        std::string("file:///no/such/file")}) {
+    refusal(device);
+  }
 }
 
 // OpenCV fails for these because there is no such node; the driver that is asked why is planted.
-TEST_F(OpenCameraTest, ADeviceThatIsBusy) {
+TEST_F(OpenCameraTest, RefusalGivesTheDriversReason) {
   system_.nodes["/dev/video63999"] = FileKind::kCharacterDevice;
   system_.on_ioctl = [](unsigned long request, void* argument) {
     if (request == VIDIOC_QUERYCAP) {
@@ -155,13 +133,7 @@ TEST_F(OpenCameraTest, ADeviceThatIsBusy) {
     }
     return request == VIDIOC_S_FMT ? -EBUSY : 0;
   };
-  EXPECT_THAT(refusal("63999"), HasSubstr("busy: another program holds it"));
-}
-
-TEST_F(OpenCameraTest, ADeviceThatIsNotAllowed) {
-  system_.nodes["/dev/video63999"] = FileKind::kCharacterDevice;
-  system_.open_errors["/dev/video63999"] = EACCES;
-  EXPECT_THAT(refusal("/dev/video63999"), HasSubstr("group video"));
+  EXPECT_THAT(refusal("63999"), HasSubstr("busy"));
 }
 
 }  // namespace

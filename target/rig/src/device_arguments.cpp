@@ -6,6 +6,9 @@
 #include <tether/rig/device_arguments.h>
 #include <tether/rig/rig_file.h>
 
+// Combines the rig's file with devices of the command line: assigns each device to a sensor of its
+// kind, removes sensors without a device, and checks that the sensors of each task have a device
+// and, for tasks with an anchor, a lens.
 namespace tether::rig {
 namespace {
 
@@ -16,9 +19,7 @@ std::string* imu_of(TaskSpec& spec) {
   if (auto* forward = std::get_if<tasks::MoveForwardOptions>(&spec.options)) {
     return &forward->face.imu;
   }
-  if (auto* path = std::get_if<tasks::ClosedPathOptions>(&spec.options)) {
-    return &path->imu;
-  }
+  if (auto* path = std::get_if<tasks::ClosedPathOptions>(&spec.options)) return &path->imu;
   return nullptr;
 }
 
@@ -28,9 +29,7 @@ bool has_anchor(const TaskSpec& spec) {
 
 /// A device stands here until the rig says the sensor's name.
 void take(std::string& name, std::string& device) {
-  if (devices::is_device(name)) {
-    device = std::exchange(name, "");
-  }
+  if (devices::is_device(name)) device = std::exchange(name, "");
 }
 
 std::string option_of(SensorKind kind) {
@@ -40,9 +39,7 @@ std::string option_of(SensorKind kind) {
 std::vector<devices::RigSensor*> sensors_of(devices::Rig& rig, SensorKind kind) {
   std::vector<devices::RigSensor*> sensors;
   for (devices::RigSensor& sensor : rig.sensors) {
-    if (sensor.description.kind() == kind) {
-      sensors.push_back(&sensor);
-    }
+    if (sensor.description.kind() == kind) sensors.push_back(&sensor);
   }
   return sensors;
 }
@@ -61,26 +58,19 @@ Result<devices::RigSensor*> sensor_for(devices::Rig& rig, SensorKind kind,
   const std::string plain_name(uav::name(kind));
   const std::vector<devices::RigSensor*> sensors = sensors_of(rig, kind);
   devices::RigSensor* named = find(rig, plain_name);
-  if (named != nullptr && named->description.kind() == kind) {
-    return named;
-  }
-  if (sensors.size() == 1) {
-    return sensors.front();
-  }
-  return invalid(file + ": " + option_of(kind) + " DEVICE needs one sensor of the kind " +
-                 plain_name + ", or one of that name; here are " + std::to_string(sensors.size()));
+  if (named != nullptr && named->description.kind() == kind) return named;
+  if (sensors.size() == 1) return sensors.front();
+  return invalid(file + ": " + option_of(kind) + " DEVICE needs exactly one sensor of kind " +
+                 plain_name + ", or one of that name; the file has " +
+                 std::to_string(sensors.size()));
 }
 
 /// The name of the sensor that got the device.
 Result<std::string> give(devices::Rig& rig, SensorKind kind, const std::string& device,
                          const std::string& file) {
-  if (file.empty()) {
-    rig.sensors.push_back(plain_sensor(kind, std::string(uav::name(kind))));
-  }
+  if (file.empty()) rig.sensors.push_back(plain_sensor(kind, std::string(uav::name(kind))));
   const Result<devices::RigSensor*> sensor = sensor_for(rig, kind, file);
-  if (!sensor) {
-    return sensor.failure();
-  }
+  if (!sensor) return sensor.failure();
   (*sensor)->device = device;
   return (*sensor)->description.name;
 }
@@ -88,9 +78,7 @@ Result<std::string> give(devices::Rig& rig, SensorKind kind, const std::string& 
 void fill_in(Mission& mission, SensorKind kind, const std::string& name) {
   for (TaskSpec& spec : mission.tasks) {
     std::string* const place = kind == SensorKind::kCamera ? &spec.vision.camera : imu_of(spec);
-    if (kind != SensorKind::kRange && place != nullptr && place->empty()) {
-      *place = name;
-    }
+    if (kind != SensorKind::kRange && place != nullptr && place->empty()) *place = name;
   }
 }
 
@@ -100,13 +88,9 @@ Status give_all(devices::Rig& rig, const DeviceArguments& arguments, Mission& mi
       {SensorKind::kImu, &arguments.imu},
       {SensorKind::kRange, &arguments.range}};
   for (const auto& [kind, device] : given) {
-    if (device->empty()) {
-      continue;
-    }
+    if (device->empty()) continue;
     const Result<std::string> name = give(rig, kind, *device, arguments.rig);
-    if (!name) {
-      return name.failure();
-    }
+    if (!name) return name.failure();
     fill_in(mission, kind, *name);
   }
   return ok_status();
@@ -120,7 +104,7 @@ Status check_device(devices::Rig& rig, const std::string& sensor, const std::str
   if (found != nullptr && found->device.empty()) {
     const std::string option = option_of(found->description.kind());
     return invalid(file + ": sensor \"" + sensor + "\" has no device; give " + option +
-                   " DEVICE, or device = in the file");
+                   " DEVICE, or set device in the file");
   }
   return ok_status();
 }
@@ -132,45 +116,37 @@ Status check_lens(devices::Rig& rig, const std::string& camera, const std::strin
                                : nullptr;
   if (properties != nullptr && properties->model.fx_px == 0.0 && found->horizontal_fov_rad == 0.0) {
     return invalid(file + ": camera \"" + camera +
-                   "\" needs horizontal_fov_deg (or size_px and intrinsics), because a task with "
-                   "an anchor turns pixels into angles");
+                   "\" needs horizontal_fov_deg (or size_px and intrinsics): a task with an "
+                   "anchor computes angles from pixels");
   }
   return ok_status();
 }
 
 Status check_task(devices::Rig& rig, TaskSpec& spec, const std::string& file) {
-  if (!has_anchor(spec)) {
-    return check_device(rig, spec.sensor, file);
-  }
+  if (!has_anchor(spec)) return check_device(rig, spec.sensor, file);
   if (file.empty()) {
     return invalid(
-        "a task with an anchor needs --rig FILE besides its devices, because only a rig file says "
-        "what the anchor looks like and which lens the camera has");
+        "a task with an anchor needs --rig FILE as well: only a rig file describes the anchor and "
+        "the camera's lens");
   }
-  if (Status lens = check_lens(rig, spec.vision.camera, file); !lens) {
-    return lens;
-  }
+  if (Status lens = check_lens(rig, spec.vision.camera, file); !lens) return lens;
   if (const std::string* imu = imu_of(spec); imu != nullptr) {
-    if (Status device = check_device(rig, *imu, file); !device) {
-      return device;
-    }
+    if (Status device = check_device(rig, *imu, file); !device) return device;
   }
   return check_device(rig, spec.vision.camera, file);
 }
 
 Status check_rig(devices::Rig& rig, Mission& mission, const std::string& file) {
   for (TaskSpec& spec : mission.tasks) {
-    if (Status status = check_task(rig, spec, file); !status) {
-      return status;
-    }
+    if (Status status = check_task(rig, spec, file); !status) return status;
   }
   const auto unused = std::remove_if(rig.sensors.begin(), rig.sensors.end(),
                                      [](const auto& sensor) { return sensor.device.empty(); });
   rig.sensors.erase(unused, rig.sensors.end());
   if (rig.sensors.empty()) {
     return invalid(file +
-                   ": no sensor has a device; give --camera, --imu or --range DEVICE, or "
-                   "device = in the file");
+                   ": no sensor has a device; give --camera, --imu or --range DEVICE, or set "
+                   "device in the file");
   }
   return ok_status();
 }
@@ -178,34 +154,22 @@ Status check_rig(devices::Rig& rig, Mission& mission, const std::string& file) {
 }  // namespace
 
 void take_devices(TaskSpec& spec, DeviceArguments& arguments) {
-  if (has_anchor(spec)) {
-    take(spec.vision.camera, arguments.camera);
-  }
-  if (std::string* imu = imu_of(spec)) {
-    take(*imu, arguments.imu);
-  }
+  if (has_anchor(spec)) take(spec.vision.camera, arguments.camera);
+  if (std::string* imu = imu_of(spec)) take(*imu, arguments.imu);
 }
 
 Result<std::optional<devices::Rig>> make_rig(const DeviceArguments& arguments, Mission& mission) {
   const bool is_real =
       !(arguments.rig + arguments.camera + arguments.imu + arguments.range).empty();
-  if (!is_real) {
-    return std::optional<devices::Rig>();
-  }
+  if (!is_real) return std::optional<devices::Rig>();
   devices::Rig rig{"rig", {}, {}};
   if (!arguments.rig.empty()) {
     Result<devices::Rig> loaded = load_rig(arguments.rig);
-    if (!loaded) {
-      return loaded.failure();
-    }
+    if (!loaded) return loaded.failure();
     rig = std::move(loaded).value();
   }
-  if (const Status given = give_all(rig, arguments, mission); !given) {
-    return given.failure();
-  }
-  if (const Status good = check_rig(rig, mission, arguments.rig); !good) {
-    return good.failure();
-  }
+  if (const Status given = give_all(rig, arguments, mission); !given) return given.failure();
+  if (const Status good = check_rig(rig, mission, arguments.rig); !good) return good.failure();
   return std::optional<devices::Rig>(std::move(rig));
 }
 

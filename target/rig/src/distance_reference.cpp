@@ -30,9 +30,7 @@ std::optional<double> median_of_finite_m(std::vector<double> readings_m) {
   const auto is_nothing = [](double reading_m) { return !std::isfinite(reading_m); };
   readings_m.erase(std::remove_if(readings_m.begin(), readings_m.end(), is_nothing),
                    readings_m.end());
-  if (readings_m.empty() || 2 * readings_m.size() < made) {
-    return std::nullopt;
-  }
+  if (readings_m.empty() || 2 * readings_m.size() < made) return std::nullopt;
   std::sort(readings_m.begin(), readings_m.end());
   return stats::quantile(readings_m, 0.5);
 }
@@ -45,8 +43,8 @@ DistanceReference reference_from(double range_m, const uav::SensorDescription& r
   const double aside_m = std::abs(cross(sight, beam_end).z);
   const double half_width_m = 0.5 * anchor.size_m.y;
   if (aside_m > half_width_m) {
-    return none("the rangefinder's beam ends " + fixed(aside_m, 2) +
-                " m beside the line of sight, but half the anchor's width is " +
+    return none("the rangefinder's beam passes " + fixed(aside_m, 2) +
+                " m beside the line of sight; half the anchor's width is " +
                 fixed(half_width_m, 2) + " m");
   }
   return {dot(sight, beam_end) + 0.5 * anchor.size_m.x, ""};
@@ -56,21 +54,17 @@ Result<DistanceReference> take_distance_reference(client::Vehicle& vehicle,
                                                   const uav::SensorDescription& camera,
                                                   const uav::Anchor& anchor, double bearing_rad) {
   const uav::SensorDescription* range = find_rangefinder(vehicle.catalogue());
-  if (range == nullptr) {
-    return none("there is no rangefinder (--range DEVICE)");
-  }
+  if (range == nullptr) return none("there is no rangefinder (--range DEVICE)");
   std::vector<double> readings_m;
   for (int i = 0; i < kReadings; ++i) {
     const Result<uav::RangeSample> reading = vehicle.read_range(range->name);
-    if (!reading) {
-      return reading.failure();
-    }
+    if (!reading) return reading.failure();
     readings_m.push_back(reading->range_m);
   }
   const std::optional<double> range_m = median_of_finite_m(readings_m);
   if (!range_m) {
-    return none("fewer than half of " + std::to_string(kReadings) + " readings of sensor \"" +
-                range->name + "\" found something within its range");
+    return none("more than half of " + std::to_string(kReadings) + " readings of sensor \"" +
+                range->name + "\" found nothing within range");
   }
   return reference_from(*range_m, *range, camera, anchor, bearing_rad);
 }

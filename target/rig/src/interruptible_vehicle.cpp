@@ -51,13 +51,9 @@ class InterruptibleVehicle : public client::Vehicle {
  private:
   template <class Call>
   auto unless_interrupted(Call call) -> decltype(call()) {
-    if (is_interrupted_()) {
-      return Failure{Failure::Kind::kRunEnded, "interrupted"};
-    }
+    if (is_interrupted_()) return Failure{Failure::Kind::kRunEnded, "interrupted"};
     auto result = call();
-    if (!result && is_interrupted_()) {
-      return Failure{Failure::Kind::kRunEnded, "interrupted"};
-    }
+    if (!result && is_interrupted_()) return Failure{Failure::Kind::kRunEnded, "interrupted"};
     return result;
   }
 

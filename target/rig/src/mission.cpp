@@ -35,9 +35,7 @@ TaskPointer make_task(const TaskSpec& spec) {
 }
 
 TaskPointer make_task(const Mission& mission) {
-  if (!mission.is_sequence) {
-    return make_task(mission.tasks.front());
-  }
+  if (!mission.is_sequence) return make_task(mission.tasks.front());
   std::vector<tasks::SequenceItem> items;
   for (const TaskSpec& spec : mission.tasks) {
     items.push_back({make_task(spec), spec.vision, spec.required});
@@ -48,9 +46,7 @@ TaskPointer make_task(const Mission& mission) {
 }  // namespace
 
 tasks::TaskOutcome finish(const tasks::TaskOutcome& outcome, client::Vehicle& vehicle) {
-  if (outcome.failure) {
-    return outcome;
-  }
+  if (outcome.failure) return outcome;
   const Status finished =
       vehicle.finish(outcome.reached(), outcome.reason, tasks::details_json(outcome));
   return finished ? outcome : tasks::TaskOutcome::failed(finished.failure());
@@ -63,9 +59,7 @@ tasks::TaskOutcome fly(const Mission& mission, client::Vehicle& vehicle) {
 }
 
 int exit_code(const tasks::TaskOutcome& outcome) {
-  if (outcome.failure) {
-    return exit_code(Failure{*outcome.failure, outcome.reason});
-  }
+  if (outcome.failure) return exit_code(Failure{*outcome.failure, outcome.reason});
   return outcome.reached() ? 0 : 1;
 }
 

@@ -86,7 +86,8 @@ std::vector<Table> read_common(const Table& file) {
 Mission read_mission(const toml::Document& document, const std::string& path) {
   const Table file = document.root();
   if (!file.has("task")) {
-    throw Error(ErrorCode::kBadFile, {path, 1}, "a mission needs a [[task]] or more");
+    throw Error(ErrorCode::kBadFile, {path, 1},
+                "the mission has no task; add at least one [[task]]");
   }
   const std::vector<Table> tasks = file.tables("task");
   const std::vector<Table> common = read_common(file);

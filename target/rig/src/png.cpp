@@ -16,7 +16,7 @@ Result<std::string> png_of(const uav::CameraSample& image) {
   cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
   std::vector<unsigned char> png;
   if (!cv::imencode(".png", bgr, png)) {
-    return Failure{Failure::Kind::kInvalid, "the image cannot be made a PNG"};
+    return Failure{Failure::Kind::kInvalid, "the image cannot be encoded as PNG"};
   }
   return std::string(png.begin(), png.end());
 }

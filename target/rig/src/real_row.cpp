@@ -54,9 +54,7 @@ RealRow measure_real_row(const TaskSpec& spec, const std::optional<PixelBox>& tr
   tasks::RelativePositionTask task(spec.anchor,
                                    std::get<tasks::RelativePositionOptions>(spec.options));
   RealRow row{tasks::run(task, context), task.sighting(), {}};
-  if (row.outcome.failure || !task.estimate()) {
-    return row;
-  }
+  if (row.outcome.failure || !task.estimate()) return row;
   // Both are there, or the task would have failed.
   const uav::SensorDescription& camera = *vehicle.catalogue().find_sensor(spec.vision.camera);
   const uav::Anchor& anchor = *vehicle.catalogue().find_anchor(spec.anchor);

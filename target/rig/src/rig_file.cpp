@@ -10,6 +10,8 @@
 #include <tether/rig/rig_file.h>
 #include <tether/toml/table.h>
 
+// Reads rig files: first the sensors with their mounting and, by kind, lens or limits, then the
+// anchors. toml::Table checks types and ranges; the checks here concern several keys at once.
 namespace tether::rig {
 namespace {
 
@@ -46,9 +48,7 @@ void read_distortion(const Table& table, uav::CameraModel& model) {
 }
 
 void read_intrinsics(const Table& table, uav::CameraModel& model) {
-  if (!table.has("size_px")) {
-    table.fail("intrinsics", "needs size_px beside it");
-  }
+  if (!table.has("size_px")) table.fail("intrinsics", "needs size_px as well");
   const Table intrinsics = table.table("intrinsics", {"fx_px", "fy_px", "cx_px", "cy_px"});
   constexpr Range kFocal_px{.min = 1e-3, .max = 1e6};
   constexpr Range kPlace_px{.min = -1e5, .max = 1e5};
@@ -80,11 +80,11 @@ void read_fov(const Table& table, uav::CameraModel& model, double& horizontal_fo
 void read_lens(const Table& table, uav::CameraModel& model, double& horizontal_fov_rad) {
   const bool has_fov = table.has("horizontal_fov_deg");
   if (has_fov && table.has("intrinsics")) {
-    table.fail("intrinsics", "and horizontal_fov_deg say the same; give one of them");
+    table.fail("intrinsics", "and horizontal_fov_deg exclude each other; give only one of them");
   }
   if (!has_fov && !table.has("intrinsics")) {
     if (table.has("distortion")) {
-      table.fail("distortion", "needs horizontal_fov_deg or intrinsics beside it");
+      table.fail("distortion", "needs horizontal_fov_deg or intrinsics as well");
     }
     return;
   }
@@ -93,16 +93,12 @@ void read_lens(const Table& table, uav::CameraModel& model, double& horizontal_f
   } else {
     read_intrinsics(table, model);
   }
-  if (table.has("distortion")) {
-    read_distortion(table, model);
-  }
+  if (table.has("distortion")) read_distortion(table, model);
 }
 
 void read_camera(const Table& table, devices::RigSensor& camera) {
   uav::CameraModel model;
-  if (table.has("size_px")) {
-    read_size(table, model);
-  }
+  if (table.has("size_px")) read_size(table, model);
   read_lens(table, model, camera.horizontal_fov_rad);
   camera.description.properties = uav::CameraProperties{model};
 }
@@ -110,17 +106,13 @@ void read_camera(const Table& table, devices::RigSensor& camera) {
 uav::RangeProperties read_range(const Table& table) {
   const double min_m = table.number_or("min_m", {.min = 0.0, .max = 1e6}, 0.0);
   const double max_m = table.number_or("max_m", kPositive_m, kInfinity);
-  if (max_m <= min_m) {
-    table.fail("max_m", "must be more than min_m");
-  }
+  if (max_m <= min_m) table.fail("max_m", "must be greater than min_m");
   return {min_m, max_m};
 }
 
 uav::Pose read_mounting(const Table& table) {
   uav::Pose X_BS;
-  if (table.has("position_m")) {
-    X_BS.p = vector(table, "position_m", kAny_m);
-  }
+  if (table.has("position_m")) X_BS.p = vector(table, "position_m", kAny_m);
   if (table.has("rpy_deg")) {
     const uav::Vec3 rpy_deg = vector(table, "rpy_deg", {.min = -360.0, .max = 360.0});
     X_BS.q =
@@ -132,15 +124,13 @@ uav::Pose read_mounting(const Table& table) {
 std::string read_device(const Table& table, const std::string& path) {
   const std::string device = table.text("device");
   if (!devices::is_device(device)) {
-    table.fail("device", "is \"" + device + "\", which is no device: a path with a '/' (./" +
+    table.fail("device", "is not a device (\"" + device + "\"). Allowed: a path with a '/' (./" +
                              device +
-                             " for a file beside this one), a number N for /dev/videoN, a "
-                             "stream's URL, or iio:NAME");
+                             " for a file in the folder of this file), a number N for "
+                             "/dev/videoN, the URL of a stream, iio:NAME");
   }
   const bool is_path = device.find('/') != std::string::npos;
-  if (!is_path || device.find("://") != std::string::npos) {
-    return device;
-  }
+  if (!is_path || device.find("://") != std::string::npos) return device;
   return (std::filesystem::path(path).parent_path() / device).lexically_normal().string();
 }
 
@@ -171,24 +161,19 @@ devices::RigSensor read_sensor(const Table& sensors, const std::string& name,
   } else if (kind == uav::SensorKind::kRange) {
     sensor.description.properties = read_range(table);
   }
-  if (table.has("device")) {
-    sensor.device = read_device(table, path);
-  }
+  if (table.has("device")) sensor.device = read_device(table, path);
   return sensor;
 }
 
 std::vector<devices::RigSensor> read_sensors(const Table& file, const std::string& path) {
   if (!file.has("sensors")) {
-    throw Error(ErrorCode::kBadFile, {path, 1}, "a rig needs a [sensors.NAME] or more");
+    throw Error(ErrorCode::kBadFile, {path, 1},
+                "the rig has no sensor; add at least one [sensors.NAME]");
   }
   const Table table = file.table("sensors");
   std::vector<devices::RigSensor> sensors;
-  for (const std::string& name : table.keys()) {
-    sensors.push_back(read_sensor(table, name, path));
-  }
-  if (sensors.empty()) {
-    table.fail("needs a [sensors.NAME] or more");
-  }
+  for (const std::string& name : table.keys()) sensors.push_back(read_sensor(table, name, path));
+  if (sensors.empty()) table.fail("has no sensor; add at least one [sensors.NAME]");
   return sensors;
 }
 
@@ -200,9 +185,10 @@ void check_proportions(const Table& table, const uav::Anchor& anchor) {
   const bool is_round = anchor.shape != uav::AnchorShape::kBox;
   if ((is_round && size.x != size.y) ||
       (anchor.shape == uav::AnchorShape::kSphere && size.x != size.z)) {
-    table.fail("size_m",
-               "is [diameter, diameter, length] of a cylinder, and three times the diameter of a "
-               "sphere");
+    table.fail(
+        "size_m",
+        "must be [diameter, diameter, length] for a cylinder, and three times the diameter for "
+        "a sphere");
   }
 }
 
@@ -225,7 +211,7 @@ std::vector<uav::Anchor> read_anchors(const Table& file) {
     anchors.push_back(read_anchor(table));
     const auto same = [&](const uav::Anchor& other) { return other.name == anchors.back().name; };
     if (std::count_if(anchors.begin(), anchors.end(), same) > 1) {
-      table.fail("is the second of two of the name \"" + anchors.back().name + "\"");
+      table.fail("has the same name as another anchor (\"" + anchors.back().name + "\")");
     }
   }
   return anchors;

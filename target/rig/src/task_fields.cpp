@@ -4,6 +4,9 @@
 #include <tether/base/units.h>
 #include <tether/rig/task_fields.h>
 
+// The arguments of each task as data. Helper functions make fields in the units of an argument
+// (degrees, seconds) that write to the options in SI units; one function per task lists its
+// fields.
 namespace tether::rig {
 namespace {
 
@@ -43,29 +46,27 @@ Fields joined(std::vector<Fields> groups) {
 // Arguments that several tasks have ---------------------------------------------------------------
 
 Field time_limit(Duration& value) {
-  return {"time_limit_s", "Gives up after this time of its own clock", seconds(value)};
+  return {"time_limit_s", "Time limit of the task, on its own clock", seconds(value)};
 }
 
 Field settling(Duration& value) {
-  return {"settle_s", "By the IMU's readings, after the final stop, while the UAV comes to rest",
-          seconds(value, 0.0)};
+  return {"settle_s", "Pause after the final stop, by the IMU's timestamps", seconds(value, 0.0)};
 }
 
 Field speed(double& value) {
-  return {"speed_m_s", "Of moving", plain(value, 0.001, 5.0)};
+  return {"speed_m_s", "Speed of the motion", plain(value, 0.001, 5.0)};
 }
 
 /// When an estimate has converged.
 Fields convergence_fields(tasks::ConvergenceOptions& options) {
   return {
-      {"tolerance_px",
-       "An estimate has converged when the ROI is where it was expected within this ...",
+      {"tolerance_px", "Converged: the ROI is within this distance of its prediction ...",
        plain(options.tolerance_px, 1e-6, 1e6)},
-      {"stable_frames", "... for so many images in a row",
+      {"stable_frames", "... in this number of consecutive images",
        IntegerField{&options.stable_frames, 1, 1000}},
-      {"max_frames", "Images after which an estimate is given up",
+      {"max_frames", "Maximum number of images for an estimate",
        IntegerField{&options.max_frames, 2, 100'000}},
-      {"max_unseen_frames", "Images in a row without the anchor after which it is given up",
+      {"max_unseen_frames", "Maximum number of consecutive images without the anchor",
        IntegerField{&options.max_unseen_frames, 1, 100'000}},
   };
 }
@@ -73,14 +74,14 @@ Fields convergence_fields(tasks::ConvergenceOptions& options) {
 /// How "face anchor" turns; neither its precision nor its time limit.
 Fields turning_fields(tasks::FaceAnchorOptions& options) {
   return joined(
-      {{{"yaw_rate_deg_s", "Rotation at first", degrees(options.yaw_rate_rad_s, 0.01, 720.0)},
-        {"slowdown", "Factor of the rotation at each overshoot",
+      {{{"yaw_rate_deg_s", "Initial yaw rate", degrees(options.yaw_rate_rad_s, 0.01, 720.0)},
+        {"slowdown", "Factor of the yaw rate at each overshoot",
          plain(options.slowdown, 0.01, 1.0)},
-        {"min_yaw_rate_deg_s", "Never slower than this",
+        {"min_yaw_rate_deg_s", "Minimum yaw rate",
          degrees(options.min_yaw_rate_rad_s, 0.01, 720.0)},
-        {"search_clockwise", "true or false: which way to turn while the anchor was never seen",
+        {"search_clockwise", "true or false: direction of the turn until the anchor is first seen",
          BooleanField{&options.search_clockwise}},
-        {"lost_limit_s", "Gives up so long after the last sight", seconds(options.lost_limit)}},
+        {"lost_limit_s", "Maximum time without seeing the anchor", seconds(options.lost_limit)}},
        convergence_fields(options.convergence)});
 }
 
@@ -88,7 +89,8 @@ Fields turning_fields(tasks::FaceAnchorOptions& options) {
 
 Fields fields(tasks::SensorCharacterizationOptions& options, TaskSpec& spec) {
   return {{"sensor", "Name of the sensor, of any kind", TextField{&spec.sensor, true}},
-          {"acquisitions", "How many", IntegerField{&options.acquisitions, 1, 10'000'000}},
+          {"acquisitions", "Number of acquisitions",
+           IntegerField{&options.acquisitions, 1, 10'000'000}},
           time_limit(options.time_limit)};
 }
 
@@ -100,7 +102,7 @@ Fields fields(tasks::RelativePositionOptions& options, TaskSpec& spec) {
 
 Fields fields(tasks::FaceAnchorOptions& options, TaskSpec& spec) {
   return joined({vision_fields(spec),
-                 {{"precision_deg", "The goal: bearing at most this",
+                 {{"precision_deg", "Goal: maximum bearing of the anchor",
                    degrees(options.precision_rad, 0.001, 90.0)}},
                  turning_fields(options),
                  {time_limit(options.time_limit)}});
@@ -109,16 +111,16 @@ Fields fields(tasks::FaceAnchorOptions& options, TaskSpec& spec) {
 Fields fields(tasks::MoveForwardOptions& options, TaskSpec& spec) {
   return joined({vision_fields(spec),
                  {speed(options.speed_m_s),
-                  {"precision_deg", "Faces the anchor when its bearing is more than this",
+                  {"precision_deg", "Turns to the anchor if its bearing exceeds this",
                    degrees(options.precision_rad, 0.001, 90.0)},
-                  {"face_precision_deg", "Facing it: until its bearing is at most this",
+                  {"face_precision_deg", "While turning: maximum bearing at the end",
                    degrees(options.face.precision_rad, 0.001, 90.0)},
-                  {"face_time_limit_s", "Facing it: moves on after this time",
+                  {"face_time_limit_s", "While turning: time limit, after which it moves on",
                    seconds(options.face.time_limit)},
                   {"stop_to_face", "true or false: stop while turning towards the anchor",
                    BooleanField{&options.stop_to_face}}},
                  turning_fields(options.face),
-                 {{"imu", "Name of the IMU that tells the heading, or a real one's device",
+                 {{"imu", "Name of the IMU for the heading, or the device of a real one",
                    TextField{&options.face.imu}},
                   settling(options.settle_time),
                   time_limit(options.time_limit)}});
@@ -129,17 +131,17 @@ Fields fields(tasks::ClosedPathOptions& options, TaskSpec& spec) {
       {vision_fields(spec),
        {{"distance_m", "Length of each of the four legs", plain(options.distance_m, 0.01, 1000.0)},
         speed(options.speed_m_s),
-        {"imu", "Name of the IMU, or a real one's device", TextField{&options.imu}},
-        {"rest_s", "By the IMU's readings, before the start; its bias is taken from them",
+        {"imu", "Name of the IMU, or the device of a real one", TextField{&options.imu}},
+        {"rest_s", "Pause before the start, in which the IMU's bias is measured",
          seconds(options.rest_time, 0.0)},
-        {"turn_rate_deg_s", "Turning back to the start heading: at most this fast",
+        {"turn_rate_deg_s", "Turn back to the start heading: maximum yaw rate",
          degrees(options.turn_rate_rad_s, 0.01, 720.0)},
-        {"turn_tolerance_deg", "... until the heading is off by at most this",
+        {"turn_tolerance_deg", "... and maximum heading error at its end",
          degrees(options.turn_tolerance_rad, 0.01, 90.0)},
         settling(options.settle_time)},
        convergence_fields(options.convergence),
-       {{"turn_limit_s", "Gives up turning back after this", seconds(options.turn_limit)},
-        {"leg_slack_s", "Gives up a leg after five times its time and this",
+       {{"turn_limit_s", "Time limit of turning back", seconds(options.turn_limit)},
+        {"leg_slack_s", "Time limit of a leg: five times its duration plus this",
          seconds(options.leg_slack)},
         time_limit(options.time_limit)}});
 }
@@ -148,7 +150,7 @@ Fields fields(tasks::ClosedPathOptions& options, TaskSpec& spec) {
 
 std::span<const TaskKind> task_kinds() {
   static const std::array kKinds = {
-      TaskKind{"sensor_characterization", "Time the acquisition of a sensor's data",
+      TaskKind{"sensor_characterization", "Measure the time to acquire a sensor's data",
                tasks::SensorCharacterizationOptions{}},
       TaskKind{"relative_position", "Measure bearing and distance of the anchor",
                tasks::RelativePositionOptions{}},
@@ -156,7 +158,8 @@ std::span<const TaskKind> task_kinds() {
                tasks::FaceAnchorOptions{}},
       TaskKind{"move_forward", "Move ahead facing the anchor until it is abeam",
                tasks::MoveForwardOptions{}},
-      TaskKind{"closed_path", "Fly a square by the IMU and see how far from its start it ends",
+      TaskKind{"closed_path",
+               "Fly a square by dead reckoning and measure the distance to its start",
                tasks::ClosedPathOptions{}}};
   return kKinds;
 }
@@ -172,15 +175,18 @@ std::vector<Field> vision_fields(TaskSpec& spec) {
   vision::TrackerOptions& tracker = spec.vision.tracker;
   return {
       {"anchor", "Name of the anchor", TextField{&spec.anchor, true}},
-      {"camera", "Name of the camera, or a real one's device", TextField{&spec.vision.camera}},
+      {"camera", "Name of the camera, or the device of a real one", TextField{&spec.vision.camera}},
       {"prefilter", "Smoothing of each image: none, gaussian (default) or median",
        ChoiceField{{"none", "gaussian", "median"},
                    [&tracker](std::size_t index) { tracker.prefilter = kPrefilters[index]; }}},
       {"prefilter_size_px", "Odd, 1 to 31", IntegerField{&tracker.prefilter_size_px, 1, 31, true}},
-      {"hue_tolerance_deg", "About the anchor's hue", plain(tracker.hue_tolerance_deg, 0.1, 90.0)},
-      {"min_saturation", "Of the anchor's pixels, 0 to 1", share(tracker.min_saturation)},
-      {"min_value", "Of the anchor's pixels, 0 to 1", share(tracker.min_value)},
-      {"min_score", "Below it the anchor is lost, 0 to 1", share(tracker.min_score)},
+      {"hue_tolerance_deg", "Tolerance around the anchor's hue",
+       plain(tracker.hue_tolerance_deg, 0.1, 90.0)},
+      {"min_saturation", "Minimum saturation of the anchor's pixels, 0 to 1",
+       share(tracker.min_saturation)},
+      {"min_value", "Minimum value of the anchor's pixels, 0 to 1", share(tracker.min_value)},
+      {"min_score", "Score below which the anchor counts as lost, 0 to 1",
+       share(tracker.min_score)},
   };
 }
 

@@ -30,9 +30,7 @@ devices::Rig made(const DeviceArguments& arguments, Mission& mission) {
 std::string refused(const DeviceArguments& arguments, Mission mission) {
   const auto rig = make_rig(arguments, mission);
   EXPECT_FALSE(rig);
-  if (rig) {
-    return "";
-  }
+  if (rig) return "";
   EXPECT_EQ(rig.failure().kind, Failure::Kind::kInvalid);
   return rig.failure().message;
 }
@@ -64,7 +62,7 @@ TEST_F(MakeRig, WithoutAFileOnlyTheDevicesAreKnown) {
   EXPECT_EQ(rig.sensors[1].device, "iio:vl53l0x");
 }
 
-TEST_F(MakeRig, ADeviceOfTheCommandLineCountsForMoreThanTheFiles) {
+TEST_F(MakeRig, DeviceOfTheCommandLineReplacesThatOfTheFile) {
   Mission mission = mission_of(tasks::ClosedPathOptions{});
   mission.tasks[0].vision.camera = "/dev/video7";
   std::get<tasks::ClosedPathOptions>(mission.tasks[0].options).imu = "iio:bmi160";
@@ -81,60 +79,43 @@ TEST_F(MakeRig, ADeviceOfTheCommandLineCountsForMoreThanTheFiles) {
   EXPECT_EQ(std::get<tasks::ClosedPathOptions>(mission.tasks[0].options).imu, "gyro");
 }
 
-TEST_F(MakeRig, OfSeveralTheOneThatIsNamedLikeItsKind) {
+TEST_F(MakeRig, PrefersSensorNamedAsItsKind) {
   const std::string two = "[sensors.a]\nkind = \"imu\"\n[sensors.b]\nkind = \"imu\"\n";
   Mission mission = mission_of(tasks::SensorCharacterizationOptions{});
   mission.tasks[0].sensor = "imu";
   const DeviceArguments arguments{.rig = rig_file(two), .camera = "", .imu = "./x", .range = ""};
-  EXPECT_THAT(refused(arguments, mission),
-              HasSubstr("--imu DEVICE needs one sensor of the kind imu, or one of that name; here "
-                        "are 2"));
+  EXPECT_THAT(refused(arguments, mission), HasSubstr("--imu"));
   rig_file(two + "[sensors.imu]\nkind = \"imu\"\n");
   const devices::Rig rig = made(arguments, mission);
   ASSERT_EQ(rig.sensors.size(), 1u);
   EXPECT_EQ(rig.sensors[0].description.name, "imu");
 }
 
-TEST_F(MakeRig, ATaskWithAnAnchorNeedsAFile) {
-  const DeviceArguments camera{.rig = "", .camera = "/dev/video0", .imu = "", .range = ""};
-  EXPECT_THAT(refused(camera, mission_of(tasks::RelativePositionOptions{})),
-              HasSubstr("needs --rig FILE"));
-  const DeviceArguments file{.rig = rig_file("[sensors.camera]\nkind = \"camera\"\n"),
-                             .camera = "/dev/video0",
-                             .imu = "",
-                             .range = ""};
-  EXPECT_THAT(refused(file, mission_of(tasks::RelativePositionOptions{})),
-              HasSubstr("camera \"camera\" needs horizontal_fov_deg"));
-  Mission mission = mission_of(tasks::SensorCharacterizationOptions{});
-  EXPECT_EQ(made(file, mission).sensors.size(), 1u) << "to time it no lens is needed";
+TEST_F(MakeRig, TaskWithAnAnchorNeedsTheLens) {
+  DeviceArguments arguments{.rig = "", .camera = "/dev/video0", .imu = "", .range = ""};
+  EXPECT_THAT(refused(arguments, mission_of(tasks::RelativePositionOptions{})), HasSubstr("--rig"));
+  const std::string camera = "[sensors.camera]\nkind = \"camera\"\n";
+  arguments.rig = rig_file(camera);
+  EXPECT_THAT(refused(arguments, mission_of(tasks::RelativePositionOptions{})),
+              HasSubstr("horizontal_fov_deg"));
+  Mission timing = mission_of(tasks::SensorCharacterizationOptions{});
+  EXPECT_EQ(made(arguments, timing).sensors.size(), 1u) << "which needs no lens";
+  rig_file(camera + "horizontal_fov_deg = 60\n");
+  Mission position = mission_of(tasks::RelativePositionOptions{});
+  EXPECT_GT(made(arguments, position).sensors.at(0).horizontal_fov_rad, 1.0);
 }
 
-TEST_F(MakeRig, AFieldOfViewIsALensWithoutASize) {
-  Mission mission = mission_of(tasks::RelativePositionOptions{});
-  const devices::Rig rig =
-      made({.rig = rig_file("[sensors.camera]\nkind = \"camera\"\nhorizontal_fov_deg = 60\n"),
-            .camera = "/dev/video0",
-            .imu = "",
-            .range = ""},
-           mission);
-  EXPECT_GT(rig.sensors.at(0).horizontal_fov_rad, 1.0);
-}
-
-TEST_F(MakeRig, WhatATaskUsesNeedsADevice) {
-  const std::string path = rig_file(std::string("[sensors.camera]\nkind = \"camera\"\n") + kLens +
-                                    "[sensors.imu]\nkind = \"imu\"\n");
-  const DeviceArguments none{.rig = path, .camera = "", .imu = "", .range = ""};
-  EXPECT_THAT(refused(none, mission_of(tasks::RelativePositionOptions{})),
-              HasSubstr("sensor \"camera\" has no device; give --camera DEVICE"));
-  EXPECT_THAT(refused(none, {}), HasSubstr("no sensor has a device"));
-  const DeviceArguments camera{.rig = path, .camera = "0", .imu = "", .range = ""};
-  EXPECT_THAT(refused(camera, mission_of(tasks::ClosedPathOptions{})),
-              HasSubstr("sensor \"imu\" has no device; give --imu DEVICE"));
-}
-
-TEST_F(MakeRig, ABadFileIsNamed) {
-  const DeviceArguments nowhere{.rig = "/nowhere/r.toml", .camera = "", .imu = "", .range = ""};
-  EXPECT_THAT(refused(nowhere, {}), HasSubstr("/nowhere/r.toml: there is no such file"));
+TEST_F(MakeRig, SensorOfATaskNeedsADevice) {
+  DeviceArguments arguments;
+  arguments.rig = rig_file(std::string("[sensors.camera]\nkind = \"camera\"\n") + kLens +
+                           "[sensors.imu]\nkind = \"imu\"\n");
+  EXPECT_THAT(refused(arguments, mission_of(tasks::RelativePositionOptions{})),
+              HasSubstr("--camera"));
+  refused(arguments, {});
+  arguments.camera = "0";
+  EXPECT_THAT(refused(arguments, mission_of(tasks::ClosedPathOptions{})), HasSubstr("--imu"));
+  arguments.rig = "/nowhere/r.toml";
+  EXPECT_THAT(refused(arguments, {}), HasSubstr(arguments.rig));
 }
 
 }  // namespace

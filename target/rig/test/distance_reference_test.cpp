@@ -11,6 +11,9 @@
 namespace tether::rig {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
 constexpr double kNothing_m = std::numeric_limits<double>::infinity();
 
 uav::SensorDescription mounted_at(const uav::Vec3& p_B, double yaw_rad = 0.0) {
@@ -19,7 +22,7 @@ uav::SensorDescription mounted_at(const uav::Vec3& p_B, double yaw_rad = 0.0) {
 
 const uav::Anchor kBox{"blue_box", uav::AnchorShape::kBox, {0.4, 0.6, 0.8}, {0, 0, 1}};
 
-TEST(MedianOfFinite, LeavesOutWhatFoundNothing) {
+TEST(MedianOfFinite, IgnoresInfiniteReadings) {
   EXPECT_EQ(median_of_finite_m({3.0, 1.0, 2.0}), 2.0);
   EXPECT_EQ(median_of_finite_m({kNothing_m, 1.0, -kNothing_m, 2.0}), 1.5);
   EXPECT_FALSE(median_of_finite_m({kNothing_m, 1.0, kNothing_m}));
@@ -46,14 +49,12 @@ TEST(ReferenceFrom, GoesAlongTheLineOfSight) {
   EXPECT_NEAR(reference.distance_m.value(), 2.0 + 0.1 * std::cos(bearing_rad) + 0.2, 1e-12);
 }
 
-TEST(ReferenceFrom, IsNoneBesideTheAnchor) {
+TEST(ReferenceFrom, IsMissingBesideTheAnchor) {
   const auto sensor = mounted_at({0, 0, 0});
   EXPECT_TRUE(reference_from(2.0, sensor, sensor, kBox, std::asin(0.29 / 2.0)).distance_m);
   const auto beside = reference_from(2.0, sensor, sensor, kBox, std::asin(0.31 / 2.0));
   EXPECT_FALSE(beside.distance_m);
-  EXPECT_EQ(beside.why_none,
-            "the rangefinder's beam ends 0.31 m beside the line of sight, but half the anchor's "
-            "width is 0.30 m");
+  EXPECT_THAT(beside.why_none, AllOf(HasSubstr("0.31 m"), HasSubstr("0.30 m")));
 }
 
 TEST(TakeDistanceReference, ReadsTheRangefinder) {
@@ -69,16 +70,11 @@ TEST(TakeDistanceReference, ReadsTheRangefinder) {
   const auto nothing = take_distance_reference(vehicle, camera, anchor, 0.0);
   ASSERT_TRUE(nothing);
   EXPECT_FALSE(nothing->distance_m);
-  EXPECT_THAT(nothing->why_none, ::testing::HasSubstr("fewer than half of 10 readings"));
-}
-
-TEST(TakeDistanceReference, FailsWithTheDevice) {
-  tasks::testing::PlanarVehicle vehicle({.disconnect_at = 4});
-  const auto& camera = *vehicle.catalogue().find_sensor("camera");
-  const auto reference =
-      take_distance_reference(vehicle, camera, *vehicle.catalogue().find_anchor("blue_box"), 0.0);
-  ASSERT_FALSE(reference);
-  EXPECT_EQ(reference.failure().kind, Failure::Kind::kDisconnected);
+  EXPECT_THAT(nothing->why_none, HasSubstr("10"));
+  tasks::testing::PlanarVehicle lost({.disconnect_at = 4});
+  const auto failed = take_distance_reference(lost, camera, anchor, 0.0);
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.failure().kind, Failure::Kind::kDisconnected);
 }
 
 }  // namespace

@@ -21,7 +21,6 @@ TEST(InterruptibleVehicle, EndsEveryInteractionOnceInterrupted) {
   const auto reading = vehicle->read_range("range");
   ASSERT_FALSE(reading);
   EXPECT_EQ(reading.failure().kind, Failure::Kind::kRunEnded);
-  EXPECT_EQ(reading.failure().message, "interrupted");
   EXPECT_FALSE(vehicle->read_camera("camera"));
   EXPECT_FALSE(vehicle->read_imu("imu"));
   EXPECT_FALSE(vehicle->command_velocity({}));
@@ -31,7 +30,7 @@ TEST(InterruptibleVehicle, EndsEveryInteractionOnceInterrupted) {
   EXPECT_EQ(vehicle->now(), at) << "nothing reached the vehicle";
 }
 
-TEST(InterruptibleVehicle, WhatIsDoneStaysDone) {
+TEST(InterruptibleVehicle, FinishSucceedsAfterInterrupt) {
   auto inner = std::make_unique<PlanarVehicle>(PlanarVehicle::Options{});
   const PlanarVehicle& told = *inner;
   const auto vehicle = make_interruptible(std::move(inner), [] { return true; });
@@ -40,7 +39,7 @@ TEST(InterruptibleVehicle, WhatIsDoneStaysDone) {
   EXPECT_TRUE(told.finished()->reached_goal);
 }
 
-TEST(InterruptibleVehicle, NamesAFailureThatTheInterruptBroughtAbout) {
+TEST(InterruptibleVehicle, ReportsFailureCausedByInterruptAsInterrupt) {
   int asked = 0;
   const auto vehicle = make_interruptible(
       std::make_unique<PlanarVehicle>(PlanarVehicle::Options{.disconnect_at = 0}),

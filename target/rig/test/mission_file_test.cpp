@@ -4,12 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <tether/base/units.h>
-#include <tether/base_testing/scratch_folder.h>
 #include <tether/rig/mission_file.h>
 
 namespace tether::rig {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -70,78 +70,49 @@ distance_m = 1.5
   EXPECT_EQ(std::get<tasks::ClosedPathOptions>(third.options).distance_m, 1.5);
 }
 
-TEST(MissionFile, VisionCountsForMoreThanTheTop) {
+TEST(MissionFile, VisionTableCountsForMoreThanTheTop) {
   const Mission mission = parsed(
       "camera = \"a\"\n[vision]\ncamera = \"b\"\n"
       "[[task]]\ntask = \"relative_position\"\nanchor = \"x\"\n");
   EXPECT_EQ(mission.tasks.at(0).vision.camera, "b");
 }
 
-struct Mistake {
-  const char* text;
-  int line;
-  const char* says;
-};
-
-TEST(MissionFile, MistakesNameFileAndLine) {
-  const std::vector<Mistake> mistakes = {
-      {"", 1, "[[task]]"},
-      {"[task]\ntask = \"face_anchor\"\n", 1, "[[task]]"},
-      {"task = []\n", 1, "[[task]]"},
-      {"\n[[task]\n", 2, "no valid TOML"},
-      {"[[task]]\nanchor = \"b\"\n", 1, "[task] lacks the key 'task'"},
-      {"[[task]]\ntask = 3\n", 2, "'task' of [task] must be a string"},
-      {"[[task]]\ntask = \"land\"\n", 2,
-       "'task' of [task] is \"land\"; Allowed: 'sensor_characterization', "},
-      {"\n\n[[task]]\ntask = \"face_anchor\"\n", 3, "[task] lacks the key 'anchor'"},
-      {"height_m = 3\n[[task]]\ntask = \"face_anchor\"\nanchor = \"b\"\n", 1,
-       "unknown key 'height_m' in the file"},
-      {"[vision]\nspeed_m_s = 1\n[[task]]\ntask = \"face_anchor\"\n", 2,
-       "unknown key 'speed_m_s' in [vision]"},
-      {"vision = 1\n[[task]]\ntask = \"face_anchor\"\n", 1, "'vision' of the file must be a table"},
-      {"precision_deg = 0\n[[task]]\ntask = \"face_anchor\"\nanchor = \"b\"\n", 1,
-       "'precision_deg' of the file must be at least 0.001 and at most 90, but is 0"},
+TEST(MissionFile, RefusalNamesLineAndKey) {
+  struct Case {
+    std::string text;
+    int line;
+    const char* key;
   };
-  for (const Mistake& mistake : mistakes) {
-    const Result<Mission> mission = parse_mission(mistake.text, "m.toml");
-    ASSERT_FALSE(mission) << mistake.text;
+  const std::string face = "[[task]]\ntask = \"face_anchor\"\nanchor = \"b\"\n";
+  for (const Case& c :
+       std::vector<Case>{{"", 1, "[[task]]"},
+                         {"[task]\ntask = \"face_anchor\"\n", 1, "[[task]]"},
+                         {"task = []\n", 1, "[[task]]"},
+                         {"\n[[task]\n", 2, ""},
+                         {"[[task]]\nanchor = \"b\"\n", 1, "'task'"},
+                         {"[[task]]\ntask = \"land\"\n", 2, "\"land\""},
+                         {"\n\n[[task]]\ntask = \"face_anchor\"\n", 3, "'anchor'"},
+                         {"height_m = 3\n" + face, 1, "'height_m'"},
+                         {"[vision]\nspeed_m_s = 1\n" + face, 2, "'speed_m_s'"},
+                         {"vision = 1\n" + face, 1, "'vision'"},
+                         {"precision_deg = 0\n" + face, 1, "'precision_deg'"},
+                         {face + "precision_deg = nan", 4, "'precision_deg'"},
+                         {face + "yaw_rate_deg_s = \"fast\"", 4, "'yaw_rate_deg_s'"},
+                         {face + "speed_m_s = 1", 4, "'speed_m_s'"},
+                         {face + "precision-deg = 1", 4, "'precision_deg'"},
+                         {face + "prefilter = \"sharpen\"", 4, "'prefilter'"},
+                         {face + "prefilter_size_px = 4", 4, "'prefilter_size_px'"},
+                         {face + "required = \"no\"", 4, "'required'"},
+                         {face + "stable_frames = 1.5", 4, "'stable_frames'"}}) {
+    const Result<Mission> mission = parse_mission(c.text, "m.toml");
+    ASSERT_FALSE(mission) << c.text;
     EXPECT_EQ(mission.failure().kind, Failure::Kind::kInvalid);
     EXPECT_THAT(mission.failure().message,
-                StartsWith("m.toml:" + std::to_string(mistake.line) + ": "));
-    EXPECT_THAT(mission.failure().message, HasSubstr(mistake.says));
-    EXPECT_THAT(mission.failure().message, ::testing::Not(HasSubstr("\n")));
+                AllOf(StartsWith("m.toml:" + std::to_string(c.line) + ": "), HasSubstr(c.key)));
   }
-}
-
-TEST(MissionFile, WrongValuesNameTheirOwnLine) {
-  const std::string start = "[[task]]\ntask = \"face_anchor\"\nanchor = \"b\"\n";
-  const std::vector<std::pair<std::string, std::string>> wrong = {
-      {"precision_deg = 0", "'precision_deg' of [task] must be at least 0.001"},
-      {"precision_deg = nan", "and at most 90, but is nan"},
-      {"yaw_rate_deg_s = \"fast\"", "'yaw_rate_deg_s' of [task] must be a number"},
-      {"min_value = [1, 2]", "'min_value' of [task] must be a number"},
-      {"speed_m_s = 1", "unknown key 'speed_m_s' in [task]"},
-      {"precision-deg = 1", "unknown key 'precision-deg' in [task]; did you mean 'precision_deg'?"},
-      {"help = true", "unknown key 'help'"},
-      {"prefilter = \"sharpen\"", "Allowed: 'none', 'gaussian' and 'median'"},
-      {"prefilter_size_px = 4", "'prefilter_size_px' of [task] must be odd"},
-      {"required = \"no\"", "'required' of [task] must be true or false"},
-      {"stable_frames = 1.5", "'stable_frames' of [task] must be an integer"},
-  };
-  for (const auto& [line, says] : wrong) {
-    const Result<Mission> mission = parse_mission(start + "slowdown = 0.5\n" + line, "m.toml");
-    ASSERT_FALSE(mission) << line;
-    EXPECT_THAT(mission.failure().message, StartsWith("m.toml:5: "));
-    EXPECT_THAT(mission.failure().message, HasSubstr(says));
+  for (const std::string path : {"/nowhere/m.toml", "/"}) {
+    EXPECT_THAT(load_mission(path).failure().message, StartsWith(path));
   }
-}
-
-TEST(MissionFile, WhatCannotBeReadIsNamed) {
-  const ScratchFolder folder;
-  EXPECT_EQ(load_mission("/nowhere/m.toml").failure().message,
-            "/nowhere/m.toml: there is no such file");
-  const std::string path = folder.path().string();
-  EXPECT_EQ(load_mission(path).failure().message, path + ": that is no regular file");
 }
 
 TEST(MissionFile, TheProjectsMissionsAreGood) {

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -10,6 +11,8 @@
 namespace tether::rig {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -23,7 +26,7 @@ const uav::CameraModel& camera_of(const devices::RigSensor& sensor) {
   return std::get<uav::CameraProperties>(sensor.description.properties).model;
 }
 
-TEST(RigFile, SaysOfSensorsAndAnchorsWhatACatalogueSays) {
+TEST(RigFile, DescribesSensorsAndAnchors) {
   const devices::Rig rig = parsed(R"(
 uav = "bench"
 [sensors.camera]
@@ -60,18 +63,11 @@ color_rgb = [1, 0, 0]
   EXPECT_EQ(camera.description.X_BS.p, (uav::Vec3{0.1, 0, 0.05}));
   EXPECT_NEAR(uav::yaw_rad(camera.description.X_BS.q), rad_from_deg(90), 1e-12);
   const uav::CameraModel& model = camera_of(camera);
-  EXPECT_EQ(model.width_px, 640);
-  EXPECT_EQ(model.height_px, 480);
-  EXPECT_EQ(model.fx_px, 500.0);
-  EXPECT_EQ(model.fy_px, 501.5);
-  EXPECT_EQ(model.cx_px, 320.0);
-  EXPECT_EQ(model.cy_px, 240.0);
-  EXPECT_EQ(model.k1, -0.1);
-  EXPECT_EQ(model.k2, 0.02);
-  EXPECT_EQ(model.k3, 0.003);
-  EXPECT_EQ(model.p1, 0.001);
-  EXPECT_EQ(model.p2, -0.002);
-
+  EXPECT_EQ(std::pair(model.width_px, model.height_px), std::pair(640, 480));
+  EXPECT_THAT((std::array{model.fx_px, model.fy_px, model.cx_px, model.cy_px}),
+              ElementsAre(500.0, 501.5, 320.0, 240.0));
+  EXPECT_THAT((std::array{model.k1, model.k2, model.k3, model.p1, model.p2}),
+              ElementsAre(-0.1, 0.02, 0.003, 0.001, -0.002));
   EXPECT_EQ(rig.sensors[1].description.kind(), uav::SensorKind::kImu);
   EXPECT_EQ(rig.sensors[1].device, "");
   EXPECT_EQ(rig.sensors[2].device, "iio:vl53l0x");
@@ -87,7 +83,7 @@ color_rgb = [1, 0, 0]
   EXPECT_EQ(rig.anchors[1].shape, uav::AnchorShape::kSphere);
 }
 
-TEST(RigFile, WhatItDoesNotSayIsLeftOpen) {
+TEST(RigFile, MissingKeysHaveDefaults) {
   const devices::Rig rig =
       parsed("[sensors.eye]\nkind = \"camera\"\n[sensors.range]\nkind = \"range\"\n");
   EXPECT_EQ(rig.uav, "rig");
@@ -100,24 +96,18 @@ TEST(RigFile, WhatItDoesNotSayIsLeftOpen) {
   EXPECT_TRUE(rig.anchors.empty());
 }
 
-TEST(RigFile, AFieldOfViewIsALens) {
-  const devices::Rig rig = parsed(
-      "[sensors.eye]\nkind = \"camera\"\nsize_px = [640, 480]\nhorizontal_fov_deg = 80\n"
-      "distortion = { k1 = 0.1 }\n");
-  const uav::CameraModel& model = camera_of(rig.sensors[0]);
-  EXPECT_NEAR(model.fx_px, 320.0 / std::tan(rad_from_deg(40)), 1e-9);
-  EXPECT_EQ(model.cx_px, 319.5);
-  EXPECT_EQ(model.k1, 0.1);
-}
-
-TEST(RigFile, AFieldOfViewIsOfAnySize) {
-  const devices::Rig rig = parsed(
-      "[sensors.eye]\nkind = \"camera\"\nhorizontal_fov_deg = 80\ndistortion = { k1 = 0.1 }\n");
-  EXPECT_DOUBLE_EQ(rig.sensors[0].horizontal_fov_rad, rad_from_deg(80));
-  const uav::CameraModel& model = camera_of(rig.sensors[0]);
-  EXPECT_EQ(model.width_px, 0) << "the device's";
-  EXPECT_EQ(model.fx_px, 0.0);
-  EXPECT_EQ(model.k1, 0.1);
+TEST(RigFile, FieldOfViewGivesFocalLengthsForAGivenSize) {
+  const std::string eye =
+      "[sensors.eye]\nkind = \"camera\"\nhorizontal_fov_deg = 80\ndistortion = { k1 = 0.1 }\n";
+  const devices::Rig sized = parsed(eye + "size_px = [640, 480]\n");
+  EXPECT_NEAR(camera_of(sized.sensors[0]).fx_px, 320.0 / std::tan(rad_from_deg(40)), 1e-9);
+  EXPECT_EQ(camera_of(sized.sensors[0]).cx_px, 319.5);
+  EXPECT_EQ(camera_of(sized.sensors[0]).k1, 0.1);
+  const devices::Rig open = parsed(eye);  // the size is the device's
+  EXPECT_DOUBLE_EQ(open.sensors[0].horizontal_fov_rad, rad_from_deg(80));
+  EXPECT_EQ(camera_of(open.sensors[0]).width_px, 0);
+  EXPECT_EQ(camera_of(open.sensors[0]).fx_px, 0.0);
+  EXPECT_EQ(camera_of(open.sensors[0]).k1, 0.1);
 }
 
 TEST(RigFile, ARelativeDeviceIsBesideTheFile) {
@@ -133,86 +123,59 @@ TEST(RigFile, ARelativeDeviceIsBesideTheFile) {
   EXPECT_EQ(device("2"), "2");
 }
 
-struct Mistake {
-  const char* text;
-  int line;
-  const char* says;
-};
-
-TEST(RigFile, MistakesNameFileAndLine) {
-  const std::vector<Mistake> mistakes = {
-      {"", 1, "needs a [sensors.NAME]"},
-      {"sensors = 3\n", 1, "'sensors' of the file must be a table"},
-      {"[sensors]\n", 1, "needs a [sensors.NAME]"},
-      {"[sensors]\ncamera = 3\n", 2, "'camera' of [sensors] must be a table"},
-      {"[sensors.c\n", 1, "no valid TOML"},
-      {"speed = 1\n[sensors.c]\nkind = \"imu\"\n", 1, "unknown key 'speed' in the file"},
-      {"[sensors.c]\nposition_m = [0, 0, 0]\n", 1, "[sensors.c] lacks the key 'kind'"},
-      {"[sensors.c]\nkind = \"radar\"\n", 2, "Allowed: 'camera', 'imu' and 'range'"},
-      {"[sensors.c]\nkind = \"imu\"\nsize_px = [1, 1]\n", 3,
-       "unknown key 'size_px' in [sensors.c]"},
-      {"[sensors.c]\nkind = \"imu\"\ndevice = \"imu0\"\n", 3, "is \"imu0\", which is no device"},
-      {"[sensors.c]\nkind = \"imu\"\ndevice = 0\n", 3, "'device' of [sensors.c] must be a string"},
-      {"[sensors.c]\nkind = \"imu\"\nposition_m = [0, 0]\n", 3,
-       "must be an array of 3 numbers, but has 2 elements"},
-      {"[sensors.c]\nkind = \"imu\"\nposition_m = [0, 0, nan]\n", 3,
-       "must be at least -1000 and at most 1000, but is nan"},
-      {"[sensors.c]\nkind = \"imu\"\nrpy_deg = [0, 0, 400]\n", 3,
-       "must be at least -360 and at most 360, but is 400"},
-      {"[sensors.c]\nkind = \"camera\"\nsize_px = [0, 480]\n", 3,
-       "must be at least 1 and at most 16384, but is 0"},
-      {"[sensors.c]\nkind = \"camera\"\nsize_px = [1.5, 480]\n", 3, "whole numbers"},
-      {"[sensors.c]\nkind = \"camera\"\nintrinsics = { fx_px = 1, fy_px = 1 }\n", 3,
-       "needs size_px"},
-      {"[sensors.c]\nkind = \"camera\"\nsize_px = [4, 4]\nhorizontal_fov_deg = 180\n", 4,
-       "must be at least 1 and at most 179, but is 180"},
-      {"[sensors.c]\nkind = \"camera\"\nsize_px = [4, 4]\nhorizontal_fov_deg = 60\n"
-       "intrinsics = { fx_px = 1, fy_px = 1 }\n",
-       5, "say the same"},
-      {"[sensors.c]\nkind = \"camera\"\nsize_px = [4, 4]\nintrinsics = { fx_px = 1 }\n", 4,
-       "[sensors.c.intrinsics] lacks the key 'fy_px'"},
-      {"[sensors.c]\nkind = \"camera\"\ndistortion = { k1 = 0.1 }\n", 3,
-       "needs horizontal_fov_deg"},
-      {"[sensors.c]\nkind = \"range\"\nmin_m = -1\n", 3, "must be at least 0"},
-      {"[sensors.c]\nkind = \"range\"\nmin_m = 2\nmax_m = 1\n", 4, "more than min_m"},
-      {"[[anchor]]\nname = \"a\"\n", 1, "needs a [sensors.NAME]"},
+TEST(RigFile, RefusalNamesLineAndKey) {
+  struct Case {
+    std::string text;
+    int line;
+    const char* key;
   };
-  for (const Mistake& mistake : mistakes) {
-    const Result<devices::Rig> rig = parse_rig(mistake.text, "r.toml");
-    ASSERT_FALSE(rig) << mistake.text;
+  const std::string imu = "[sensors.c]\nkind = \"imu\"\n",
+                    range = "[sensors.c]\nkind = \"range\"\n",
+                    camera = "[sensors.c]\nkind = \"camera\"\n",
+                    sized = camera + "size_px = [4, 4]\n",
+                    anchor = imu + "[[anchor]]\nname = \"a\"\n",
+                    box = "shape = \"box\"\nsize_m = [1, 1, 1]\ncolor_rgb = [0, 0, 1]\n";
+  for (const Case& c : std::vector<Case>{
+           {"", 1, "[sensors.NAME]"},
+           {"sensors = 3\n", 1, "'sensors'"},
+           {"[sensors]\n", 1, "[sensors.NAME]"},
+           {"[sensors]\ncamera = 3\n", 2, "'camera'"},
+           {"[sensors.c\n", 1, ""},
+           {"speed = 1\n" + imu, 1, "'speed'"},
+           {"[sensors.c]\nposition_m = [0, 0, 0]\n", 1, "'kind'"},
+           {"[sensors.c]\nkind = \"radar\"\n", 2, "\"radar\""},
+           {imu + "size_px = [1, 1]\n", 3, "'size_px'"},
+           {imu + "device = \"imu0\"\n", 3, "\"imu0\""},
+           {imu + "position_m = [0, 0]\n", 3, "'position_m'"},
+           {imu + "position_m = [0, 0, nan]\n", 3, "1000"},
+           {imu + "rpy_deg = [0, 0, 400]\n", 3, "360"},
+           {camera + "size_px = [0, 480]\n", 3, "16384"},
+           {camera + "size_px = [1.5, 480]\n", 3, "'size_px'"},
+           {camera + "intrinsics = { fx_px = 1, fy_px = 1 }\n", 3, "size_px"},
+           {camera + "distortion = { k1 = 0.1 }\n", 3, "horizontal_fov_deg"},
+           {sized + "horizontal_fov_deg = 180\n", 4, "179"},
+           {sized + "horizontal_fov_deg = 60\nintrinsics = { fx_px = 1, fy_px = 1 }\n", 5,
+            "intrinsics"},
+           {sized + "intrinsics = { fx_px = 1 }\n", 4, "'fy_px'"},
+           {range + "min_m = -1\n", 3, "'min_m'"},
+           {range + "min_m = 2\nmax_m = 1\n", 4, "min_m"},
+           {anchor, 3, "'shape'"},
+           {anchor + "shape = \"cone\"\n", 5, "\"cone\""},
+           {anchor + "shape = \"box\"\nsize_m = [1, 1, 0]\n", 6, "1e-06"},
+           {anchor + "shape = \"box\"\nsize_m = [1, 1, 1]\ncolor_rgb = [0, 0, 255]\n", 7, "255"},
+           {anchor + "shape = \"cylinder\"\nsize_m = [1, 2, 1]\ncolor_rgb = [0, 0, 1]\n", 6,
+            "size_m"},
+           {anchor + "shape = \"sphere\"\nsize_m = [1, 1, 2]\ncolor_rgb = [0, 0, 1]\n", 6,
+            "size_m"},
+           {anchor + box + "[[anchor]]\nname = \"a\"\n" + box, 8, "\"a\""}}) {
+    const Result<devices::Rig> rig = parse_rig(c.text, "r.toml");
+    ASSERT_FALSE(rig) << c.text;
     EXPECT_EQ(rig.failure().kind, Failure::Kind::kInvalid);
-    EXPECT_THAT(rig.failure().message, StartsWith("r.toml:" + std::to_string(mistake.line) + ": "));
-    EXPECT_THAT(rig.failure().message, HasSubstr(mistake.says));
-    EXPECT_THAT(rig.failure().message, ::testing::Not(HasSubstr("\n")));
+    EXPECT_THAT(rig.failure().message,
+                AllOf(StartsWith("r.toml:" + std::to_string(c.line) + ": "), HasSubstr(c.key)))
+        << c.text;
   }
-}
-
-TEST(RigFile, MistakesOfAnchors) {
-  const std::string start = "[sensors.c]\nkind = \"imu\"\n[[anchor]]\nname = \"a\"\n";
-  const std::vector<Mistake> mistakes = {
-      {"", 3, "[anchor] lacks the key 'shape'"},
-      {"shape = \"cone\"\n", 5, "Allowed: 'box', 'cylinder' and 'sphere'"},
-      {"shape = \"box\"\nsize_m = [1, 1, 0]\n", 6, "must be at least 1e-06"},
-      {"shape = \"box\"\nsize_m = [1, 1, 1]\ncolor_rgb = [0, 0, 255]\n", 7,
-       "must be at least 0 and at most 1, but is 255"},
-      {"shape = \"cylinder\"\nsize_m = [1, 2, 1]\ncolor_rgb = [0, 0, 1]\n", 6, "diameter"},
-      {"shape = \"sphere\"\nsize_m = [1, 1, 2]\ncolor_rgb = [0, 0, 1]\n", 6, "diameter"},
-      {"shape = \"box\"\nsize_m = [1, 1, 1]\ncolor_rgb = [0, 0, 1]\n[[anchor]]\nname = \"a\"\n"
-       "shape = \"box\"\nsize_m = [1, 1, 1]\ncolor_rgb = [0, 0, 1]\n",
-       8, "two of the name"},
-  };
-  for (const Mistake& mistake : mistakes) {
-    const Result<devices::Rig> rig = parse_rig(start + mistake.text, "r.toml");
-    ASSERT_FALSE(rig) << mistake.text;
-    EXPECT_THAT(rig.failure().message, StartsWith("r.toml:" + std::to_string(mistake.line) + ": "));
-    EXPECT_THAT(rig.failure().message, HasSubstr(mistake.says));
-  }
-}
-
-TEST(RigFile, WhatCannotBeReadIsNamed) {
-  const Result<devices::Rig> rig = load_rig("/nowhere/r.toml");
-  ASSERT_FALSE(rig);
-  EXPECT_EQ(rig.failure().message, "/nowhere/r.toml: there is no such file");
+  EXPECT_THAT(load_rig("/nowhere/r.toml").failure().message, StartsWith("/nowhere/r.toml"));
 }
 
 TEST(RigFile, TheShippedBenchHasTheRoomsBlueBox) {

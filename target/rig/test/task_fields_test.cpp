@@ -32,7 +32,7 @@ TEST(TaskFields, AreOfTheTasksInThePapersOrder) {
                                             "face_anchor", "move_forward", "closed_path"));
 }
 
-TEST(TaskFields, HaveOneNameEachAndATask) {
+TEST(TaskFields, HaveUniqueNamesAndDescriptions) {
   for (const TaskKind& kind : task_kinds()) {
     TaskSpec spec = spec_of(kind.name);
     std::set<std::string_view> names;

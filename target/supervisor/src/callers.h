@@ -25,11 +25,11 @@ class Callers {
     std::function<void(CallerId)> on_gone;
   };
 
-  /// Adds what there is to poll for.
+  /// Adds the descriptors to poll.
   void add_to(std::vector<pollfd>& entries) const;
-  /// Takes in everything that has come.
+  /// Receives all messages that have arrived.
   void receive_all(const Events& events);
-  /// Takes in what is there of new connections and of those that `entries` says have something.
+  /// Receives from new connections, and from those that are readable according to `entries`.
   void receive(const std::vector<pollfd>& entries, const Events& events);
 
   void send(CallerId caller, const link::Message& message);

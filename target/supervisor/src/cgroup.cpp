@@ -18,13 +18,15 @@
 
 #include <tether/os/file_descriptor.h>
 
+// Finds the cgroup v2 of this process, makes one for the command below it, and stops the command
+// with cgroup.freeze. The guardian removes the cgroup at the end.
 namespace tether::supervisor {
 namespace {
 
 using os::FileDescriptor;
 
 Failure no_cgroup(const std::string& why) {
-  return {Failure::Kind::kInvalid, "no cgroup of its own for the command: " + why};
+  return {Failure::Kind::kInvalid, "cannot create a cgroup for the command: " + why};
 }
 
 /// Where a cgroup v2 file system is mounted, and which cgroup is its root there.
@@ -79,7 +81,7 @@ class CgroupFreezer final : public Freezer {
     if (const Status done = write_state('1'); !done) return done;
     // The kernel tells of changes at most every 10 ms; asking is faster.
     if (wait_until([this] { return is_frozen(); }, kLongestFreeze)) return ok_status();
-    return Failure{Failure::Kind::kTimeout, "a thread of the command does not stop"};
+    return Failure{Failure::Kind::kTimeout, "a thread of the command could not be stopped"};
   }
   void thaw() override { static_cast<void>(write_state('0')); }
 
@@ -129,7 +131,7 @@ Result<Cgroup> Cgroup::make() {
     return no_cgroup("mkdir " + cgroup.path_ + ": " + std::strerror(errno));
   }
   if (::access((cgroup.path_ + "/cgroup.freeze").c_str(), W_OK) == 0) return cgroup;
-  const Failure failure = no_cgroup("the kernel has no cgroup.freeze (Linux 5.2 has)");
+  const Failure failure = no_cgroup("the kernel has no cgroup.freeze (needs Linux 5.2 or later)");
   ::rmdir(cgroup.path_.c_str());
   return failure;
 }

@@ -58,7 +58,7 @@ Result<pid_t> start_command(const std::vector<std::string>& command, const std::
     static_cast<void>(!::write(writing.get(), &error, sizeof error));
     ::_exit(127);
   }
-  ::setpgid(child, child);  // whoever is first
+  ::setpgid(child, child);  // both do it, whichever is first
   writing = FileDescriptor();
   int error = 0;
   if (child > 0 && ::read(reading.get(), &error, sizeof error) <= 0) return child;

@@ -6,19 +6,19 @@
 
 namespace tether::supervisor {
 
-/// Whether the command must stand still because it has asked to join and not been answered: what
-/// its threads computed meanwhile would be charged to nobody. Pure; instants on one clock.
+/// Whether the command must be stopped because its request to join is not yet answered: its
+/// threads' computation would not count as ET. Pure logic; all instants are of one clock.
 class Joining {
  public:
-  /// No answer within `limit`: the command goes on, and its own time-outs decide.
+  /// Without an answer within `limit` the command continues, and its own timeouts apply.
   explicit Joining(Duration limit) : limit_(limit) {}
 
   void asked(Duration now) { asked_at_ = now; }
-  /// Welcome, refusal, a lost connection or an interrupt: for good.
+  /// After Welcome, refusal, a lost connection or an interrupt; permanent.
   void over() { over_ = true; }
 
-  bool must_stand_still(Duration now) const { return until() && now < *until(); }
-  /// The latest instant until which it stands still, if it does.
+  bool must_be_stopped(Duration now) const { return until() && now < *until(); }
+  /// Until when it must be stopped at most, if at all.
   std::optional<Duration> until() const {
     if (!asked_at_ || over_) return std::nullopt;
     return *asked_at_ + limit_;

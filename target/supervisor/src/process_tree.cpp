@@ -20,6 +20,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+// The processes below this one, read from /proc. `at_rest` decides from their states whether a
+// freeze is complete. A thread in vfork() does not react to signals, but counts as stopped while
+// the child that uses its memory is stopped.
 namespace tether::supervisor {
 namespace {
 

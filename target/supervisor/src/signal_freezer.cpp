@@ -28,7 +28,7 @@ class SignalFreezer final : public Freezer {
     ::kill(-group_, SIGSTOP);
     if (wait_until([this] { return all_stand_still(); }, kLongestFreeze)) return ok_status();
     return Failure{Failure::Kind::kTimeout,
-                   "a thread of the command does not stop for SIGSTOP (--freezer cgroup stops "
+                   "a thread of the command does not stop on SIGSTOP (--freezer cgroup stops "
                    "more)"};
   }
   void thaw() override {

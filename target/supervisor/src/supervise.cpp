@@ -87,7 +87,7 @@ int supervise_in(const std::string& folder, const Settings& settings,
   guardian.watch(*command);
   auto freezer = make_freezer(cgroup, *command, guardian.process());
   if (!freezer) return fail(say, 3, freezer.failure().message);
-  say("stops the command by " + (*freezer)->name());
+  say("stopping the command by " + (*freezer)->name());
   const char* const priority = raise_priority();
 
   Supervisor supervisor(settings, *command, std::move(*clock), std::move(*listener),
@@ -105,11 +105,11 @@ int supervise(const Settings& settings, const Say& say) {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   const std::string folder = make_private_folder();
   if (folder.empty())
-    return fail(say, 3, std::string("no private folder: ") + std::strerror(errno));
+    return fail(say, 3, std::string("cannot create a private folder: ") + std::strerror(errno));
   const auto cgroup = choose_cgroup(settings.freezer, say);
   Guardian guardian(folder, cgroup && *cgroup ? (*cgroup)->path() : "");
   if (!cgroup) return fail(say, 3, cgroup.failure().message);
-  if (!guardian.is_there()) return fail(say, 3, "the process that clears up cannot be started");
+  if (!guardian.is_there()) return fail(say, 3, "cannot start the clean-up process");
   return supervise_in(folder, settings, *cgroup, guardian, std::move(signals), say);
 }
 

@@ -4,12 +4,15 @@
 #include <string>
 #include <utility>
 
+// The rules for a group of threads as pure logic: instants and messages in, decisions out. A
+// request stops the group; it continues when the coordinator has announced the reply times of all
+// requests, and stops again at the earliest of them. No caller receives a reply before its time.
 namespace tether::supervisor {
 namespace {
 
 Failure wrong(const std::string& what, std::uint64_t sequence) {
-  return {Failure::Kind::kProtocol,
-          "the coordinator sent " + what + " for request " + std::to_string(sequence)};
+  return {Failure::Kind::kProtocol, "protocol violation: the coordinator sent " + what +
+                                        " for request " + std::to_string(sequence)};
 }
 
 }  // namespace
@@ -58,9 +61,10 @@ void Supervision::forward(Asked asked, ExecTime latest) {
 Status Supervision::heard(const link::Due& due) {
   const auto found = open_.find(due.sequence);
   if (found == open_.end() || found->second.due || free_running_) {
-    return wrong("a time that was not asked for", due.sequence);
+    return wrong("an unexpected reply time", due.sequence);
   }
-  if (due.reply_at < found->second.issued_at) return wrong("a time in its past", due.sequence);
+  if (due.reply_at < found->second.issued_at)
+    return wrong("a reply time before the request", due.sequence);
   found->second.due = due.reply_at;
   return ok_status();
 }
@@ -68,13 +72,13 @@ Status Supervision::heard(const link::Due& due) {
 Status Supervision::heard(link::Reply reply) {
   const auto found = open_.find(reply.sequence);
   if (found == open_.end() || found->second.reply) {
-    return wrong("a reply that was not asked for", reply.sequence);
+    return wrong("an unexpected reply", reply.sequence);
   }
   Open& open = found->second;
   if (!free_running_) {
-    if (!open.due) return wrong("a reply without saying before when it was due", reply.sequence);
+    if (!open.due) return wrong("a reply before its reply time", reply.sequence);
     if (*open.due != reply.resume_at) {
-      return wrong("a reply of another time than it was due", reply.sequence);
+      return wrong("a reply with another time than announced", reply.sequence);
     }
   }
   reply.sequence = open.callers_sequence;
@@ -124,7 +128,7 @@ void Supervision::hand_out(Open open) {
   if (!open.finishes) return;
   finished_ = true;
   link::Refusal why{link::Refusal::Reason::kRunEnded,
-                    "another thread of the program has finished the mission"};
+                    "another thread of the program finished the mission"};
   if (over_) {
     why_over_ = std::move(why);
   } else {

@@ -58,21 +58,22 @@ class Supervision {
   bool is_finished() const { return finished_; }
   /// @pre is_running()
   bool must_stop(ExecTime now) const;
-  /// The next instant at which the group must stand still, as far as is known.
+  /// The next instant at which the group must stop, as far as known.
   std::optional<ExecTime> stop_at() const;
-  /// All threads stand still since `at`, and all they had asked before is in. @pre is_running()
+  /// All threads are stopped since `at`, and their earlier requests were passed on. @pre
+  /// is_running()
   void stopped(ExecTime at);
   /// @pre !is_running()
   bool may_go_on() const;
-  /// The group runs from here, ET going on from `stopped_at`. @pre may_go_on()
+  /// The group continues; ET continues from `stopped_at`. @pre may_go_on()
   void go_on();
   ExecTime stopped_at() const { return stopped_at_; }
 
-  /// ET has come so far: worth a Progress. Nothing while stopped.
+  /// Reports the ET reached so far with a Progress. Does nothing while stopped.
   void progressed(ExecTime now);
 
   std::vector<link::Message> take_outgoing();
-  /// Under the barrier of replies, only while the group stands still.
+  /// Under the barrier, replies only while the group is stopped.
   std::vector<Answer> take_answers();
 
  private:

@@ -11,6 +11,11 @@
 
 #include <tether/client/simulated_vehicle.h>
 
+// The loop of tether-exec, on one thread. Each round waits for signals, the coordinator, the
+// program's connections or the next due time; passes messages to Supervision, which decides when
+// the program must stop and may continue; and carries that out with the freezer and the shared
+// clock page. While the program is stopped, its connections are not read, except once after each
+// stop.
 namespace tether::supervisor {
 namespace {
 
@@ -22,7 +27,7 @@ constexpr Duration kProgressPeriod = std::chrono::milliseconds(2);
 /// In free running, where it is only a sign of life.
 constexpr Duration kHeartbeatPeriod = std::chrono::milliseconds(500);
 constexpr Duration kConnectTimeout = std::chrono::seconds(10);
-/// A command that is told to end may take so long before it is killed, half of it standing still.
+/// A command that is told to end may take so long before it is killed, half of it stopped.
 constexpr Duration kGrace = std::chrono::seconds(2);
 
 int exit_code_from(int status) {
@@ -70,7 +75,7 @@ std::string Supervisor::statistics() const {
 void Supervisor::wait() {
   entries_.assign({{signals_.get(), POLLIN, 0}});
   entries_.push_back({channel_ ? channel_->descriptor() : -1, POLLIN, 0});
-  // While the group stands still, nothing comes from it.
+  // While the group is stopped, it sends nothing.
   if (group_runs()) callers_.add_to(entries_);
   timespec timeout{};
   const auto wake = next_wake();
@@ -164,8 +169,8 @@ void Supervisor::on_hello(CallerId caller, const link::Hello& hello) {
   using Reason = link::Refusal::Reason;
   if (hello.protocol_version != link::kProtocolVersion) {
     return callers_.send(caller, link::Refusal{Reason::kVersion,
-                                               "tether-exec and the program's library are of "
-                                               "different versions of the protocol"});
+                                               "tether-exec and the program's library have "
+                                               "different protocol versions"});
   }
   if (!settings_.uav.empty() && !hello.uav.empty() && hello.uav != settings_.uav) {
     return callers_.send(
@@ -222,9 +227,7 @@ void Supervisor::hear_coordinator() {
 
 void Supervisor::on_message(link::Message message) {
   Status good = ok_status();
-  if (auto* refusal = std::get_if<link::Refusal>(&message)) {
-    return refuse_all(std::move(*refusal));
-  }
+  if (auto* refusal = std::get_if<link::Refusal>(&message)) return refuse_all(std::move(*refusal));
   auto* const welcome = std::get_if<link::Welcome>(&message);
   if (welcome != nullptr && !supervision_) return on_welcome(std::move(*welcome));
   const auto* const due = std::get_if<link::Due>(&message);
@@ -234,7 +237,8 @@ void Supervisor::on_message(link::Message message) {
   } else if (supervision_ && reply != nullptr) {
     good = supervision_->heard(std::move(*reply));
   } else {
-    good = Failure{Failure::Kind::kProtocol, "the coordinator sent a message out of turn"};
+    good = Failure{Failure::Kind::kProtocol,
+                   "protocol violation: unexpected message from the coordinator"};
   }
   if (!good) lose_coordinator(good.failure());
 }
@@ -242,8 +246,8 @@ void Supervisor::on_message(link::Message message) {
 void Supervisor::on_welcome(link::Welcome welcome) {
   if (welcome.free_running && settings_.factor != 1.0) {
     return refuse_all({link::Refusal::Reason::kBadRequest,
-                       "TETHER_CLOCK wall*FACTOR cannot be used in free running, where the wall "
-                       "clock is ST's too"});
+                       "TETHER_CLOCK wall*FACTOR is not allowed in free-running mode, where ST "
+                       "follows the wall clock"});
   }
   progress_period_ = welcome.free_running ? kHeartbeatPeriod : kProgressPeriod;
   next_progress_ = read_monotonic() + progress_period_;
@@ -282,7 +286,7 @@ void Supervisor::refuse_all(link::Refusal refusal) {
 // --- stopping and going on ----------------------------------------------------------------------
 
 void Supervisor::hold_while_joining() {
-  const bool must_hold = joining_.must_stand_still(read_monotonic());
+  const bool must_hold = joining_.must_be_stopped(read_monotonic());
   if (must_hold == held_) return;
   held_ = must_hold;
   if (!held_) return freezer_->thaw();
@@ -312,7 +316,7 @@ void Supervisor::stop() {
 // The coordinator hears nothing more: from how far ET has come meanwhile it would conclude that the
 // program was slow, not that it is lost.
 void Supervisor::give_up(const Failure& failure) {
-  say_(failure.message + "; it is killed");
+  say_(failure.message + "; the command is killed");
   failed_ = true;
   ::kill(-command_, SIGKILL);
   channel_.reset();

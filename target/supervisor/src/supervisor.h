@@ -21,7 +21,7 @@
 namespace tether::supervisor {
 
 /// The loop around Supervision: one thread that waits for the command's threads, the coordinator,
-/// signals and the next instant at which the command must stand still.
+/// signals and the next instant at which the command must be stopped.
 class Supervisor {
  public:
   /// `signals` is a signalfd of SIGCHLD, SIGINT, SIGTERM and SIGHUP.
@@ -79,7 +79,7 @@ class Supervisor {
   std::unique_ptr<link::Channel> channel_;  // to the coordinator, from the first Hello on
   std::vector<CallerId> waiting_;           // for the Welcome
   Joining joining_;
-  bool held_ = false;  // stands still for that
+  bool held_ = false;  // stopped for joining
   std::optional<link::Welcome> welcome_;
   std::optional<link::Refusal> refusal_;    // no Welcome will come any more
   std::optional<Supervision> supervision_;  // from the Welcome on

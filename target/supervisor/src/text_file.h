@@ -8,8 +8,8 @@
 
 namespace tether::supervisor {
 
-/// Writes to a file of the kernel's that is there. False: not allowed. Allocates nothing, so that
-/// it may be called between fork and exec.
+/// Writes to an existing file of the kernel; false if that fails. Allocates nothing, so that it can
+/// be called between fork and exec.
 inline bool write_file(const std::string& path, std::string_view text) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
   if (file < 0) return false;

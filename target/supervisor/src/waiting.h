@@ -8,8 +8,8 @@
 
 namespace tether::supervisor {
 
-/// Asks again and again until `done` holds; false: it did not within `limit`. Sleeps in between,
-/// since whoever is waited for may need this very core, and longer as time goes on.
+/// Polls until `done` holds; false if it does not within `limit`. Sleeps in between, for increasing
+/// times, because the process that it waits for can need this core.
 template <class Done>
 bool wait_until(Done done, Duration limit) {
   const auto end = std::chrono::steady_clock::now() + limit;

@@ -42,7 +42,7 @@ class CallersTest : public testing::Test {
   Heard heard_;
 };
 
-TEST_F(CallersTest, GiveEachConnectionTheClockAndAnIdentity) {
+TEST_F(CallersTest, GivesEachConnectionTheClockAndAnIdentity) {
   LocalSocket first = call(), second = call();
   ASSERT_TRUE(first.send(link::Progress{ExecTime(Duration(1))}));
   ASSERT_TRUE(second.send(link::Progress{ExecTime(Duration(2))}));
@@ -56,7 +56,7 @@ TEST_F(CallersTest, GiveEachConnectionTheClockAndAnIdentity) {
   }
 }
 
-TEST_F(CallersTest, AnswerTheOneThatAsked) {
+TEST_F(CallersTest, AnswersTheCallerOfTheRequest) {
   LocalSocket first = call(), second = call();
   ASSERT_TRUE(first.send(link::Progress{ExecTime(Duration(1))}));
   receive();
@@ -69,27 +69,22 @@ TEST_F(CallersTest, AnswerTheOneThatAsked) {
   EXPECT_FALSE(second.receive(Duration(0)));
 }
 
-TEST_F(CallersTest, ReportWhoHungUp) {
+TEST_F(CallersTest, ReportsClosedConnectionsButNotDroppedOnes) {
+  LocalSocket dropped = call();
   {
     LocalSocket caller = call();
-    ASSERT_TRUE(caller.send(link::Progress{ExecTime(Duration(1))}));
+    for (LocalSocket* socket : {&dropped, &caller}) {
+      ASSERT_TRUE(socket->send(link::Progress{ExecTime(Duration(1))}));
+    }
     receive();
     EXPECT_TRUE(heard_.gone.empty());
   }
-  receive();
-  ASSERT_EQ(heard_.gone.size(), 1u);
-  EXPECT_EQ(heard_.gone[0], heard_.messages.at(0).first);
-}
-
-TEST_F(CallersTest, DropWithoutAReport) {
-  LocalSocket caller = call();
-  ASSERT_TRUE(caller.send(link::Progress{ExecTime(Duration(1))}));
-  receive();
   callers_.drop(heard_.messages.at(0).first);
   receive();
-  EXPECT_TRUE(heard_.gone.empty());
-  ASSERT_TRUE(caller.receive(Duration(0))) << "the clock page";
-  EXPECT_EQ(caller.receive(Duration(0)).failure().kind, Failure::Kind::kDisconnected);
+  ASSERT_EQ(heard_.gone.size(), 1u);
+  EXPECT_EQ(heard_.gone[0], heard_.messages.at(1).first);
+  ASSERT_TRUE(dropped.receive(Duration(0))) << "the clock page";
+  EXPECT_EQ(dropped.receive(Duration(0)).failure().kind, Failure::Kind::kDisconnected);
 }
 
 }  // namespace

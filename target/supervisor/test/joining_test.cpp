@@ -7,29 +7,19 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Joining, HoldsTheCommandFromTheQuestionToTheAnswer) {
+TEST(Joining, HoldsTheCommandFromTheRequestToTheAnswerOrItsLimit) {
   Joining joining(10s);
-  EXPECT_FALSE(joining.must_stand_still(1s));
+  EXPECT_FALSE(joining.must_be_stopped(1s));
   joining.asked(2s);
-  EXPECT_TRUE(joining.must_stand_still(2s));
+  EXPECT_TRUE(joining.must_be_stopped(2s));
+  EXPECT_TRUE(joining.must_be_stopped(11s));
+  EXPECT_FALSE(joining.must_be_stopped(12s));
   EXPECT_EQ(joining.until(), Duration(12s));
   joining.over();
-  EXPECT_FALSE(joining.must_stand_still(3s));
+  EXPECT_FALSE(joining.must_be_stopped(3s));
   EXPECT_FALSE(joining.until());
-}
-
-TEST(Joining, HoldsItNoLongerThanItsLimit) {
-  Joining joining(10s);
-  joining.asked(2s);
-  EXPECT_TRUE(joining.must_stand_still(11s));
-  EXPECT_FALSE(joining.must_stand_still(12s));
-}
-
-TEST(Joining, NeverHoldsItAfterAnInterrupt) {
-  Joining joining(10s);
-  joining.over();
-  joining.asked(2s);
-  EXPECT_FALSE(joining.must_stand_still(3s));
+  joining.asked(4s);
+  EXPECT_FALSE(joining.must_be_stopped(5s)) << "it is over, as after an interrupt";
 }
 
 }  // namespace

@@ -22,12 +22,12 @@ std::vector<bool> rest(const std::vector<ProcessState>& processes, const Pairs& 
 
 using Rest = std::vector<bool>;
 
-TEST(AtRest, IsWhatHasNoThreadThatMayRun) {
+TEST(AtRest, ProcessWithoutRunnableThreadsIsAtRest) {
   EXPECT_EQ(rest({{10, 1, 10, 0, 0}, {11, 10, 10, 1, 0}}), (Rest{true, false}));
   EXPECT_EQ(rest({{10, 1, 10, 0, 1}}), (Rest{false}));
 }
 
-TEST(AtRest, IsWhoWaitsForAStoppedChildToGiveBackItsMemory) {
+TEST(AtRest, ParentInVforkOfStoppedChildIsAtRest) {
   const std::vector<ProcessState> stopped = {{10, 1, 10, 0, 1}, {11, 10, 10, 0, 0}};
   EXPECT_EQ(rest(stopped, {{10, 11}}), (Rest{true, true}));
   EXPECT_EQ(rest(stopped), (Rest{false, true}));  // the child runs a program of its own
@@ -35,13 +35,13 @@ TEST(AtRest, IsWhoWaitsForAStoppedChildToGiveBackItsMemory) {
   EXPECT_EQ(rest({{10, 1, 10, 1, 1}, {11, 10, 10, 0, 0}}, {{10, 11}}), (Rest{false, true}));
 }
 
-TEST(AtRest, NeedsAChildForEachThreadThatWaitsSo) {
+TEST(AtRest, EachThreadInVforkNeedsAStoppedChild) {
   EXPECT_EQ(rest({{10, 1, 10, 0, 2}, {11, 10, 10, 0, 0}}, {{10, 11}}), (Rest{false, true}));
   EXPECT_EQ(rest({{10, 1, 10, 0, 2}, {11, 10, 10, 0, 0}, {12, 10, 10, 0, 0}}, {{10, 11}, {10, 12}}),
             (Rest{true, true, true}));
 }
 
-TEST(AtRest, GoesDownToTheChildOfAChild) {
+TEST(AtRest, FollowsVforkThroughSeveralGenerations) {
   const Pairs sharing = {{10, 11}, {11, 12}};
   EXPECT_EQ(rest({{10, 1, 10, 0, 1}, {11, 10, 10, 0, 1}, {12, 11, 10, 0, 0}}, sharing),
             (Rest{true, true, true}));

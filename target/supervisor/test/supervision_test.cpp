@@ -43,7 +43,7 @@ class SupervisionTest : public testing::Test {
   Supervision group_{false, et(0ms)};
 };
 
-TEST_F(SupervisionTest, StopsForARequestAndTellsSo) {
+TEST_F(SupervisionTest, StopsForARequestAndAgainForItsReply) {
   EXPECT_FALSE(group_.must_stop(et(10ms)));
   group_.asked(7, request(10ms));
   EXPECT_TRUE(group_.must_stop(et(10ms)));
@@ -55,15 +55,9 @@ TEST_F(SupervisionTest, StopsForARequestAndTellsSo) {
   EXPECT_EQ(std::get<Progress>(sent[1]).reached, et(11ms));
   EXPECT_TRUE(std::get<Progress>(sent[1]).stopped);
   EXPECT_FALSE(group_.may_go_on());
-}
-
-TEST_F(SupervisionTest, RunsUntilTheReplyIsDueAndWaitsForIt) {
-  group_.asked(7, request(10ms));
-  group_.stopped(et(11ms));
   ASSERT_TRUE(group_.heard(Due{1, et(47ms)}).ok());
   ASSERT_TRUE(group_.may_go_on());
   group_.go_on();
-  EXPECT_TRUE(group_.take_answers().empty());
   EXPECT_EQ(group_.stop_at(), et(47ms));
   EXPECT_FALSE(group_.must_stop(et(46ms)));
   EXPECT_TRUE(group_.must_stop(et(47ms)));
@@ -78,20 +72,7 @@ TEST_F(SupervisionTest, RunsUntilTheReplyIsDueAndWaitsForIt) {
   EXPECT_EQ(group_.stopped_at(), et(48ms));
 }
 
-TEST_F(SupervisionTest, AReplyThatIsEarlyWaitsUntilItIsDue) {
-  group_.asked(7, request(10ms));
-  group_.stopped(et(11ms));
-  ASSERT_TRUE(group_.heard(Due{1, et(12ms)}).ok());
-  ASSERT_TRUE(group_.heard(Reply{1, et(12ms), std::nullopt}).ok());
-  group_.go_on();
-  EXPECT_TRUE(group_.take_answers().empty());
-  EXPECT_TRUE(group_.must_stop(et(12ms)));
-  group_.stopped(et(12ms));
-  group_.go_on();
-  EXPECT_EQ(group_.take_answers().size(), 1u);
-}
-
-TEST_F(SupervisionTest, OrdersRequestsAndRaisesWhatWasSaidTooLate) {
+TEST_F(SupervisionTest, OrdersRequestsAndRaisesLateTimestamps) {
   group_.progressed(et(20ms));
   group_.asked(1, request(22ms));
   group_.asked(2, request(19ms));  // frozen between stamping and handing over
@@ -125,7 +106,7 @@ TEST_F(SupervisionTest, FinishEndsEveryOtherCall) {
 }
 
 // The coordinator closes once it has answered a finish: both may be heard in one go.
-TEST_F(SupervisionTest, FinishSucceedsThoughTheCoordinatorHasGoneAtOnce) {
+TEST_F(SupervisionTest, FinishSucceedsIfTheCoordinatorClosesAtOnce) {
   group_.asked(1, request(10ms));
   group_.asked(2, request(11ms, link::Finish{true, "done", ""}));
   group_.asked(3, request(12ms));
@@ -152,21 +133,12 @@ TEST_F(SupervisionTest, FinishSucceedsThoughTheCoordinatorHasGoneAtOnce) {
   }
 }
 
-TEST_F(SupervisionTest, AFinishThatIsNotConfirmedIsNone) {
+TEST_F(SupervisionTest, RunsAndHangsUpOnceTheCoordinatorIsGone) {
   group_.asked(1, request(10ms, link::Finish{true, "done", ""}));
   group_.stopped(et(12ms));
   ASSERT_TRUE(group_.heard(Due{1, et(10ms)}).ok());
   group_.end(std::nullopt);
-  EXPECT_FALSE(group_.is_finished());
-  const auto answers = group_.take_answers();
-  ASSERT_EQ(answers.size(), 1u);
-  EXPECT_FALSE(answers[0].message);
-}
-
-TEST_F(SupervisionTest, WithoutACoordinatorItRunsAndHangsUp) {
-  group_.asked(1, request(10ms));
-  group_.stopped(et(12ms));
-  group_.end(std::nullopt);
+  EXPECT_FALSE(group_.is_finished()) << "the finish was not confirmed";
   ASSERT_TRUE(group_.may_go_on());
   group_.go_on();
   group_.asked(2, request(13ms));
@@ -176,7 +148,7 @@ TEST_F(SupervisionTest, WithoutACoordinatorItRunsAndHangsUp) {
   EXPECT_FALSE(answers[1].message);
 }
 
-TEST_F(SupervisionTest, ACallerThatHasGoneGetsNothingAndHoldsNobody) {
+TEST_F(SupervisionTest, DisconnectedCallerGetsNoReplyAndBlocksNoOther) {
   group_.asked(1, request(10ms));
   group_.stopped(et(12ms));
   group_.gone(1);
@@ -186,7 +158,7 @@ TEST_F(SupervisionTest, ACallerThatHasGoneGetsNothingAndHoldsNobody) {
   EXPECT_TRUE(group_.take_answers().empty());
 }
 
-TEST_F(SupervisionTest, ACoordinatorThatTalksNonsenseIsFoundOut) {
+TEST_F(SupervisionTest, RefusesMessagesThatBreakTheProtocol) {
   EXPECT_FALSE(group_.heard(Due{1, et(5ms)}).ok());
   EXPECT_FALSE(group_.heard(Reply{1, et(5ms), std::nullopt}).ok());
   group_.asked(1, request(10ms));
@@ -315,7 +287,7 @@ class World {
       open_calls_.erase(answer.caller);
       replied_.erase(answer.caller);
     }
-    // Nobody runs who should have had a reply.
+    // The group does not run while a reply is due.
     ASSERT_TRUE(undated_.empty());
     for (const auto& [sequence, due] : unanswered_) ASSERT_GT(due, at) << sequence;
   }

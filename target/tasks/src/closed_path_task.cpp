@@ -9,6 +9,10 @@
 #include <tether/tasks/closed_path_task.h>
 #include <tether/tasks/task_context.h>
 
+// Algorithm 5 as a state machine: a rest before the start, in which the IMU's bias is measured and
+// the anchor located; four legs by dead reckoning; turning back to the start heading; a pause to
+// come to rest; and a second look at the anchor, whose difference to the first one is the
+// displacement.
 namespace tether::tasks {
 namespace {
 
@@ -57,28 +61,18 @@ Progress ClosedPathTask::initialise(TaskContext& context) {
   limit_.start(context.vehicle().now());
   flight_ = std::make_unique<Flight>();
   const auto imu = context.sensor(options_.imu, uav::SensorKind::kImu);
-  if (!imu) {
-    return TaskOutcome::failed(imu.failure());
-  }
+  if (!imu) return TaskOutcome::failed(imu.failure());
   flight_->reckoning = DeadReckoning((*imu)->X_BS.q);
-  if (Progress end = see_anchor(context, "at the start", flight_->p_H0A)) {
-    return end;
-  }
-  if (Progress end = rest(context)) {
-    return end;
-  }
+  if (Progress end = see_anchor(context, "at the start", flight_->p_H0A)) return end;
+  if (Progress end = rest(context)) return end;
   return start_leg(context);
 }
 
 /// Algorithm 2, as a place: what is not sure to be right is no basis for an estimate.
 Progress ClosedPathTask::see_anchor(TaskContext& context, std::string_view when, uav::Vec3& p_HA) {
   TaskOutcome outcome = run(relative_position_, context);
-  if (outcome.status == TaskStatus::kFailed) {
-    return outcome;
-  }
-  if (!outcome.reached()) {
-    return TaskOutcome::not_reached(outcome.reason + " " + std::string(when));
-  }
+  if (outcome.status == TaskStatus::kFailed) return outcome;
+  if (!outcome.reached()) return TaskOutcome::not_reached(outcome.reason + " " + std::string(when));
   if (!relative_position_.estimate()->distance_m) {
     return TaskOutcome::not_reached("no distance to the anchor " + std::string(when));
   }
@@ -95,9 +89,7 @@ Progress ClosedPathTask::rest(TaskContext& context) {
       return TaskOutcome::not_reached(end->reason + " at rest before the start");
     }
     const auto reading = context.vehicle().read_imu(options_.imu);
-    if (!reading) {
-      return TaskOutcome::failed(reading.failure());
-    }
+    if (!reading) return TaskOutcome::failed(reading.failure());
     began_at = began_at.value_or(reading->sampled_at);
     if (reading->sampled_at - *began_at >= options_.rest_time) {
       reckon(context, *reading);
@@ -109,9 +101,7 @@ Progress ClosedPathTask::rest(TaskContext& context) {
 
 Progress ClosedPathTask::read_imu(TaskContext& context) {
   const auto reading = context.vehicle().read_imu(options_.imu);
-  if (!reading) {
-    return TaskOutcome::failed(reading.failure());
-  }
+  if (!reading) return TaskOutcome::failed(reading.failure());
   reckon(context, *reading);
   return std::nullopt;
 }
@@ -171,16 +161,10 @@ Progress ClosedPathTask::follow_leg(TaskContext& context) {
   if (context.vehicle().now() - flight_->phase_started_at > limit) {
     return TaskOutcome::not_reached("time limit " + place());
   }
-  if (Progress end = read_imu(context)) {
-    return end;
-  }
+  if (Progress end = read_imu(context)) return end;
   const uav::Vec3 flown_m = flight_->reckoning.position_m() - flight_->leg_start_m;
-  if (dot(flown_m, level(direction_rad(flight_->leg))) < options_.distance_m) {
-    return std::nullopt;
-  }
-  if (++flight_->leg < kLegs) {
-    return start_leg(context);
-  }
+  if (dot(flown_m, level(direction_rad(flight_->leg))) < options_.distance_m) return std::nullopt;
+  if (++flight_->leg < kLegs) return start_leg(context);
   enter(context, Phase::kTurnBack);
   const Status stopped = stop(context);
   return stopped ? std::nullopt : Progress(TaskOutcome::failed(stopped.failure()));
@@ -190,17 +174,13 @@ Progress ClosedPathTask::turn_back(TaskContext& context) {
   if (context.vehicle().now() - flight_->phase_started_at > options_.turn_limit) {
     return TaskOutcome::not_reached("time limit " + place());
   }
-  if (Progress end = read_imu(context)) {
-    return end;
-  }
+  if (Progress end = read_imu(context)) return end;
   const double left_rad = -flight_->reckoning.yaw_rad();
   const bool is_back = std::abs(left_rad) <= options_.turn_tolerance_rad;
   const double rate =
       std::clamp(kTurnGain_per_s * left_rad, -options_.turn_rate_rad_s, options_.turn_rate_rad_s);
   const Status turning = turn(context, is_back ? 0.0 : rate);
-  if (!turning) {
-    return TaskOutcome::failed(turning.failure());
-  }
+  if (!turning) return TaskOutcome::failed(turning.failure());
   if (is_back) {
     flight_->stopped_at = flight_->read_at;
     enter(context, Phase::kSettle);
@@ -209,18 +189,14 @@ Progress ClosedPathTask::turn_back(TaskContext& context) {
 }
 
 Progress ClosedPathTask::settle(TaskContext& context) {
-  if (flight_->read_at - flight_->stopped_at >= options_.settle_time) {
-    return measure(context);
-  }
+  if (flight_->read_at - flight_->stopped_at >= options_.settle_time) return measure(context);
   return read_imu(context);
 }
 
 /// Where the UAV is from its start, by where it saw the anchor from either.
 Progress ClosedPathTask::measure(TaskContext& context) {
   uav::Vec3 p_HA;
-  if (Progress end = see_anchor(context, "at the end", p_HA)) {
-    return end;
-  }
+  if (Progress end = see_anchor(context, "at the end", p_HA)) return end;
   flight_->displacement_m = flight_->p_H0A - rotate(about_z(flight_->reckoning.yaw_rad()), p_HA);
   context.note_displacement(*flight_->displacement_m);
   return TaskOutcome::goal_reached();

@@ -30,9 +30,7 @@ void DeadReckoning::update(const uav::ImuSample& reading) {
     return;
   }
   const double dt_s = to_seconds(reading.sampled_at - last_->sampled_at);
-  if (dt_s <= 0.0) {
-    return;
-  }
+  if (dt_s <= 0.0) return;
   const uav::Vec3 a = acceleration_H0(reading);
   const uav::Vec3 v = v_ + (0.5 * dt_s) * (last_->a_H0 + a);
   const uav::Vec3 step = (0.5 * dt_s) * (v_ + v);

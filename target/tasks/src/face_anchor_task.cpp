@@ -31,13 +31,9 @@ Progress FaceAnchorTask::initialise(TaskContext& context) {
   lost_ = false;
   in_sight_ = true;
 
-  if (const Status still = turn(context, 0.0); !still) {
-    return TaskOutcome::failed(still.failure());
-  }
+  if (const Status still = turn(context, 0.0); !still) return TaskOutcome::failed(still.failure());
   std::optional<double> bearing;
-  if (Progress end = look(context, bearing)) {
-    return end;
-  }
+  if (Progress end = look(context, bearing)) return end;
   if (!bearing) {
     return turn_to(context, "initialise", options_.search_clockwise ? -1.0 : 1.0, "search");
   }
@@ -46,16 +42,10 @@ Progress FaceAnchorTask::initialise(TaskContext& context) {
 }
 
 Progress FaceAnchorTask::step(TaskContext& context) {
-  if (Progress end = limit_.next_round(context.vehicle().now())) {
-    return end;
-  }
+  if (Progress end = limit_.next_round(context.vehicle().now())) return end;
   std::optional<double> bearing;
-  if (Progress end = look(context, bearing)) {
-    return end;
-  }
-  if (!bearing) {
-    return keep_searching(context);
-  }
+  if (Progress end = look(context, bearing)) return end;
+  if (!bearing) return keep_searching(context);
   const bool overshot = bearing_rad_ && sign_of(*bearing_rad_) != sign_of(*bearing);
   bearing_rad_ = bearing;
   if (overshot) {
@@ -63,9 +53,7 @@ Progress FaceAnchorTask::step(TaskContext& context) {
     yaw_rate_rad_s_ = std::max(yaw_rate_rad_s_ * options_.slowdown, options_.min_yaw_rate_rad_s);
     return turn_to(context, "loop", sign_of(*bearing), "reverse");
   }
-  if (direction_ != sign_of(*bearing)) {
-    return turn_to(context, "loop", sign_of(*bearing), "rotate");
-  }
+  if (direction_ != sign_of(*bearing)) return turn_to(context, "loop", sign_of(*bearing), "rotate");
   return hold_course(context);
 }
 
@@ -74,13 +62,9 @@ Progress FaceAnchorTask::step(TaskContext& context) {
 Progress FaceAnchorTask::look(TaskContext& context, std::optional<double>& bearing_rad) {
   const TaskOutcome outcome = run(relative_position_, context);
   ++looks_;
-  if (outcome.status == TaskStatus::kFailed) {
-    return outcome;
-  }
+  if (outcome.status == TaskStatus::kFailed) return outcome;
   in_sight_ = relative_position_.estimate().has_value();
-  if (!in_sight_) {
-    return std::nullopt;
-  }
+  if (!in_sight_) return std::nullopt;
   bearing_rad = relative_position_.estimate()->bearing_rad;
   last_seen_at_ = context.vehicle().now();
   if (outcome.reached() && std::abs(*bearing_rad) <= options_.precision_rad) {
@@ -93,9 +77,7 @@ Progress FaceAnchorTask::look(TaskContext& context, std::optional<double>& beari
 Progress FaceAnchorTask::turn_to(TaskContext& context, std::string_view phase, double direction,
                                  std::string_view event) {
   direction_ = direction;
-  if (Progress end = keep_turning(context)) {
-    return end;
-  }
+  if (Progress end = keep_turning(context)) return end;
   context.note_event(name(), phase, event, {{"yaw_rate_rad_s", direction_ * yaw_rate_rad_s_}});
   return std::nullopt;
 }
@@ -132,9 +114,7 @@ void FaceAnchorTask::finalise(TaskContext& context, TaskOutcome& outcome) {
   outcome.results["looks"] = looks_;
   outcome.results["duration_s"] = to_seconds(limit_.elapsed(context.vehicle().now()));
   outcome.results["yaw_rate_rad_s"] = yaw_rate_rad_s_;
-  if (bearing_rad_) {
-    outcome.results["bearing_rad"] = *bearing_rad_;
-  }
+  if (bearing_rad_) outcome.results["bearing_rad"] = *bearing_rad_;
 }
 
 }  // namespace tether::tasks

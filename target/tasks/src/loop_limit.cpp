@@ -8,12 +8,8 @@ void LoopLimit::start(ExecTime now) {
 }
 
 Progress LoopLimit::next_round(ExecTime now) {
-  if (elapsed(now) > time_limit_) {
-    return TaskOutcome::not_reached("time limit");
-  }
-  if (++rounds_ > max_rounds_) {
-    return TaskOutcome::not_reached("round limit");
-  }
+  if (elapsed(now) > time_limit_) return TaskOutcome::not_reached("time limit");
+  if (++rounds_ > max_rounds_) return TaskOutcome::not_reached("round limit");
   return std::nullopt;
 }
 

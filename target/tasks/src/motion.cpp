@@ -24,9 +24,7 @@ Status turn(TaskContext& context, double yaw_rate_rad_s) {
 Status turn_on_course(TaskContext& context, double yaw_rate_rad_s, const Course& course,
                       std::string_view imu) {
   const Result<double> yaw = get_yaw(context, imu);
-  if (!yaw) {
-    return yaw.failure();
-  }
+  if (!yaw) return yaw.failure();
   return context.vehicle().command_velocity(
       {course.speed_m_s * level(course.yaw_rad - *yaw), yaw_rate_rad_s});
 }
@@ -41,21 +39,15 @@ uav::Quat attitude(const uav::SensorDescription& imu, const uav::ImuSample& read
 
 Result<double> get_yaw(TaskContext& context, std::string_view imu) {
   const auto sensor = context.sensor(imu, uav::SensorKind::kImu);
-  if (!sensor) {
-    return sensor.failure();
-  }
+  if (!sensor) return sensor.failure();
   const Result<uav::ImuSample> reading = context.vehicle().read_imu(imu, client::Read::kLatest);
-  if (!reading) {
-    return reading.failure();
-  }
+  if (!reading) return reading.failure();
   return uav::yaw_rad(attitude(**sensor, *reading));
 }
 
 Status pause(TaskContext& context, const std::string& imu, Duration time) {
   Result<uav::ImuSample> reading = context.vehicle().read_imu(imu, client::Read::kLatest);
-  if (!reading) {
-    return reading.failure();
-  }
+  if (!reading) return reading.failure();
   const SimTime began_at = reading->sampled_at;
   SimTime latest = began_at;
   for (int without_progress = 0; latest - began_at < time; ++without_progress) {
@@ -64,9 +56,7 @@ Status pause(TaskContext& context, const std::string& imu, Duration time) {
                      "the readings of IMU \"" + imu + "\" are all from the same instant"};
     }
     reading = context.vehicle().read_imu(imu);
-    if (!reading) {
-      return reading.failure();
-    }
+    if (!reading) return reading.failure();
     if (reading->sampled_at > latest) {
       latest = reading->sampled_at;
       without_progress = -1;
@@ -76,9 +66,7 @@ Status pause(TaskContext& context, const std::string& imu, Duration time) {
 }
 
 void fail_on(const Status& status, TaskOutcome& outcome) {
-  if (status || outcome.status == TaskStatus::kFailed) {
-    return;
-  }
+  if (status || outcome.status == TaskStatus::kFailed) return;
   outcome.status = TaskStatus::kFailed;
   outcome.reason = status.failure().message;
   outcome.failure = status.failure().kind;

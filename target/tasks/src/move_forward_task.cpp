@@ -33,9 +33,7 @@ Progress MoveForwardTask::initialise(TaskContext& context) {
   overshoots_ = 0.0;
 
   const Result<double> yaw = get_yaw(context, options_.face.imu);
-  if (!yaw) {
-    return TaskOutcome::failed(yaw.failure());
-  }
+  if (!yaw) return TaskOutcome::failed(yaw.failure());
   starting_yaw_rad_ = *yaw;
   if (const Status moving = move_direction(context, 0.0, options_.speed_m_s); !moving) {
     return TaskOutcome::failed(moving.failure());
@@ -47,21 +45,13 @@ Progress MoveForwardTask::step(TaskContext& context) {
   if (in_sight_ && std::abs(yaw_turned_rad_) >= 0.5 * std::numbers::pi) {
     return TaskOutcome::goal_reached();
   }
-  if (Progress end = limit_.next_round(context.vehicle().now())) {
-    return end;
-  }
+  if (Progress end = limit_.next_round(context.vehicle().now())) return end;
   bool is_ahead = false;
-  if (Progress end = look(context, is_ahead)) {
-    return end;
-  }
+  if (Progress end = look(context, is_ahead)) return end;
   if (!is_ahead) {
-    if (Progress end = face_anchor(context)) {
-      return end;
-    }
+    if (Progress end = face_anchor(context)) return end;
   }
-  if (Progress end = update_yaw(context)) {
-    return end;
-  }
+  if (Progress end = update_yaw(context)) return end;
   const Status moving = move_direction(context, -yaw_turned_rad_, options_.speed_m_s);
   return moving ? std::nullopt : Progress(TaskOutcome::failed(moving.failure()));
 }
@@ -71,9 +61,7 @@ Progress MoveForwardTask::step(TaskContext& context) {
 Progress MoveForwardTask::look(TaskContext& context, bool& is_ahead) {
   const TaskOutcome outcome = run(relative_position_, context);
   ++looks_;
-  if (outcome.status == TaskStatus::kFailed) {
-    return outcome;
-  }
+  if (outcome.status == TaskStatus::kFailed) return outcome;
   in_sight_ = relative_position_.estimate().has_value();
   if (const auto& estimate = relative_position_.estimate()) {
     bearing_rad_ = estimate->bearing_rad;
@@ -89,9 +77,7 @@ Progress MoveForwardTask::face_anchor(TaskContext& context) {
   if (bearing_rad_) {
     options.search_clockwise = wrap_angle_rad(yaw_turned_rad_ + *bearing_rad_) < 0.0;
   }
-  if (!options_.stop_to_face) {
-    options.course = Course{starting_yaw_rad_, options_.speed_m_s};
-  }
+  if (!options_.stop_to_face) options.course = Course{starting_yaw_rad_, options_.speed_m_s};
   options.time_limit = std::min(options.time_limit, limit_.left(context.vehicle().now()));
   FaceAnchorTask face(anchor_, options);
   const TaskOutcome outcome = run(face, context);
@@ -99,12 +85,8 @@ Progress MoveForwardTask::face_anchor(TaskContext& context) {
   looks_ += face.looks();
   in_sight_ = face.is_in_sight();
   overshoots_ += outcome.results.at("overshoots");
-  if (face.bearing_rad()) {
-    bearing_rad_ = face.bearing_rad();
-  }
-  if (outcome.status == TaskStatus::kFailed) {
-    return outcome;
-  }
+  if (face.bearing_rad()) bearing_rad_ = face.bearing_rad();
+  if (outcome.status == TaskStatus::kFailed) return outcome;
   if (face.has_lost_anchor()) {
     return TaskOutcome::not_reached(bearing_rad_ ? "anchor lost" : "anchor never seen");
   }
@@ -114,15 +96,13 @@ Progress MoveForwardTask::face_anchor(TaskContext& context) {
 
 Progress MoveForwardTask::update_yaw(TaskContext& context) {
   const Result<double> yaw = get_yaw(context, options_.face.imu);
-  if (!yaw) {
-    return TaskOutcome::failed(yaw.failure());
-  }
+  if (!yaw) return TaskOutcome::failed(yaw.failure());
   yaw_turned_rad_ = wrap_angle_rad(*yaw - starting_yaw_rad_);
   return std::nullopt;
 }
 
 /// Comes to rest: by the instants of the IMU's readings, which are simulated time under every
-/// policy. Fails (kInvalid) where they stand still.
+/// policy. Fails (kInvalid) if the timestamps do not advance.
 Status MoveForwardTask::settle(TaskContext& context, const TaskOutcome& outcome) {
   const bool is_needed =
       outcome.status != TaskStatus::kFailed && options_.settle_time > Duration::zero();
@@ -137,9 +117,7 @@ void MoveForwardTask::finalise(TaskContext& context, TaskOutcome& outcome) {
   outcome.results["face_anchors_missed"] = missed_;
   outcome.results["looks"] = looks_;
   outcome.results["overshoots"] = overshoots_;
-  if (bearing_rad_) {
-    outcome.results["bearing_rad"] = *bearing_rad_;
-  }
+  if (bearing_rad_) outcome.results["bearing_rad"] = *bearing_rad_;
   fail_on(settle(context, outcome), outcome);
 }
 

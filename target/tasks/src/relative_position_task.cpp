@@ -34,34 +34,22 @@ Progress RelativePositionTask::initialise(TaskContext& context) {
 
 Progress RelativePositionTask::prepare(TaskContext& context) {
   const auto camera = context.camera();
-  if (!camera) {
-    return TaskOutcome::failed(camera.failure());
-  }
+  if (!camera) return TaskOutcome::failed(camera.failure());
   const auto anchor = context.anchor(anchor_);
-  if (!anchor) {
-    return TaskOutcome::failed(anchor.failure());
-  }
+  if (!anchor) return TaskOutcome::failed(anchor.failure());
   const auto tracker = context.tracker(anchor_);
-  if (!tracker) {
-    return TaskOutcome::failed(tracker.failure());
-  }
+  if (!tracker) return TaskOutcome::failed(tracker.failure());
   loop_ = std::make_unique<Loop>(
       Loop{*camera, *anchor, *tracker, ConvergenceMonitor(options_.convergence), 0, 0});
   return std::nullopt;
 }
 
 Progress RelativePositionTask::step(TaskContext& context) {
-  if (Progress end = limit_.next_round(context.vehicle().now())) {
-    return end;
-  }
+  if (Progress end = limit_.next_round(context.vehicle().now())) return end;
   Result<uav::CameraSample> image = context.vehicle().read_camera(loop_->camera->name);
-  if (!image) {
-    return TaskOutcome::failed(image.failure());
-  }
+  if (!image) return TaskOutcome::failed(image.failure());
   ++loop_->frames;
-  if (Progress progress = look(context, std::move(image).value())) {
-    return progress;
-  }
+  if (Progress progress = look(context, std::move(image).value())) return progress;
   if (loop_->frames >= options_.convergence.max_frames) {
     return TaskOutcome::not_reached(estimate_ ? "did not converge" : "anchor not seen");
   }
@@ -70,9 +58,7 @@ Progress RelativePositionTask::step(TaskContext& context) {
 
 Progress RelativePositionTask::look(TaskContext& context, uav::CameraSample image) {
   const std::optional<vision::Roi> roi = loop_->tracker->track(image);
-  if (!roi) {
-    return miss();
-  }
+  if (!roi) return miss();
   loop_->unseen_in_a_row = 0;
   loop_->convergence.see(image.sampled_at, *roi);
   const bool converged = loop_->convergence.has_converged();
@@ -94,13 +80,9 @@ Progress RelativePositionTask::miss() {
 void RelativePositionTask::finalise(TaskContext& context, TaskOutcome& outcome) {
   outcome.results["duration_s"] = to_seconds(limit_.elapsed(context.vehicle().now()));
   outcome.results["frames"] = loop_ ? loop_->frames : 0;
-  if (!estimate_) {
-    return;
-  }
+  if (!estimate_) return;
   outcome.results["bearing_rad"] = estimate_->bearing_rad;
-  if (estimate_->distance_m) {
-    outcome.results["distance_m"] = *estimate_->distance_m;
-  }
+  if (estimate_->distance_m) outcome.results["distance_m"] = *estimate_->distance_m;
 }
 
 }  // namespace tether::tasks

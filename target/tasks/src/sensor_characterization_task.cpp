@@ -16,9 +16,7 @@ struct Place {
 
 template <class Sample>
 Result<Place> place_of(const Result<Sample>& sample) {
-  if (!sample) {
-    return sample.failure();
-  }
+  if (!sample) return sample.failure();
   return Place{sample->sampled_at, sample->index};
 }
 
@@ -56,22 +54,16 @@ Progress SensorCharacterizationTask::initialise(TaskContext& context) {
   limit_.start(context.vehicle().now());
   acquisitions_.clear();
   const auto sensor = context.sensor(sensor_);
-  if (!sensor) {
-    return TaskOutcome::failed(sensor.failure());
-  }
+  if (!sensor) return TaskOutcome::failed(sensor.failure());
   kind_ = (*sensor)->kind();
   return std::nullopt;
 }
 
 Progress SensorCharacterizationTask::step(TaskContext& context) {
   const ExecTime before = context.vehicle().now();
-  if (Progress end = limit_.next_round(before)) {
-    return end;
-  }
+  if (Progress end = limit_.next_round(before)) return end;
   const Result<Place> place = acquire(context.vehicle(), sensor_, kind_);
-  if (!place) {
-    return TaskOutcome::failed(place.failure());
-  }
+  if (!place) return TaskOutcome::failed(place.failure());
   acquisitions_.push_back({before, context.vehicle().now(), place->sampled_at, place->index});
   const bool is_last = acquisitions_.size() >= static_cast<std::size_t>(options_.acquisitions);
   return is_last ? Progress(TaskOutcome::goal_reached()) : std::nullopt;
@@ -80,17 +72,13 @@ Progress SensorCharacterizationTask::step(TaskContext& context) {
 void SensorCharacterizationTask::finalise(TaskContext& context, TaskOutcome& outcome) {
   outcome.results["duration_s"] = to_seconds(limit_.elapsed(context.vehicle().now()));
   outcome.results["acquisitions"] = static_cast<double>(acquisitions_.size());
-  if (acquisitions_.empty()) {
-    return;
-  }
+  if (acquisitions_.empty()) return;
   const std::vector<double> taken_s = sorted_times_s(acquisitions_);
   outcome.results["mean_s"] = stats::mean(taken_s);
   outcome.results["min_s"] = taken_s.front();
   outcome.results["median_s"] = stats::quantile(taken_s, 0.5);
   outcome.results["max_s"] = taken_s.back();
-  if (const auto stddev_s = stats::sample_stddev(taken_s)) {
-    outcome.results["stddev_s"] = *stddev_s;
-  }
+  if (const auto stddev_s = stats::sample_stddev(taken_s)) outcome.results["stddev_s"] = *stddev_s;
 }
 
 }  // namespace tether::tasks

@@ -48,12 +48,8 @@ std::string details_json(const TaskOutcome& outcome) {
 TaskOutcome run(Task& task, TaskContext& context) {
   context.note_event(task.name(), "initialise", "start");
   Progress progress = task.initialise(context);
-  if (!progress) {
-    context.note_event(task.name(), "loop", "start");
-  }
-  while (!progress) {
-    progress = task.step(context);
-  }
+  if (!progress) context.note_event(task.name(), "loop", "start");
+  while (!progress) progress = task.step(context);
   context.note_event(task.name(), "finalise", "start");
   task.finalise(context, *progress);
   progress->task = task.name();

@@ -31,18 +31,14 @@ void TaskContext::look_with(VisionOptions vision) {
 
 Result<const uav::SensorDescription*> TaskContext::sensor(std::string_view name) const {
   const uav::SensorDescription* sensor = vehicle_.catalogue().find_sensor(name);
-  if (sensor == nullptr) {
-    return no_such("sensor", name);
-  }
+  if (sensor == nullptr) return no_such("sensor", name);
   return sensor;
 }
 
 Result<const uav::SensorDescription*> TaskContext::sensor(std::string_view name,
                                                           uav::SensorKind kind) const {
   const uav::SensorDescription* sensor = vehicle_.catalogue().find_sensor(name);
-  if (sensor == nullptr || sensor->kind() != kind) {
-    return no_such(uav::name(kind), name);
-  }
+  if (sensor == nullptr || sensor->kind() != kind) return no_such(uav::name(kind), name);
   return sensor;
 }
 
@@ -52,9 +48,7 @@ Result<const uav::SensorDescription*> TaskContext::camera() const {
 
 Result<const uav::Anchor*> TaskContext::anchor(std::string_view name) const {
   const uav::Anchor* anchor = vehicle_.catalogue().find_anchor(name);
-  if (anchor == nullptr) {
-    return no_such("anchor", name);
-  }
+  if (anchor == nullptr) return no_such("anchor", name);
   return anchor;
 }
 
@@ -63,22 +57,16 @@ Result<vision::AnchorTracker*> TaskContext::tracker(std::string_view anchor_name
     return &known->second;
   }
   const Result<const uav::Anchor*> anchor = this->anchor(anchor_name);
-  if (!anchor) {
-    return anchor.failure();
-  }
+  if (!anchor) return anchor.failure();
   Result<vision::AnchorTracker> tracker = vision::AnchorTracker::create(**anchor, vision_.tracker);
-  if (!tracker) {
-    return tracker.failure();
-  }
+  if (!tracker) return tracker.failure();
   return &trackers_.emplace(anchor_name, std::move(tracker).value()).first->second;
 }
 
 void TaskContext::note_event(std::string_view task, std::string_view phase, std::string_view event,
                              const Values& values) {
   json note = {{"task", task}, {"phase", phase}, {"event", event}};
-  for (const auto& [key, value] : values) {
-    note[std::string(key)] = value;
-  }
+  for (const auto& [key, value] : values) note[std::string(key)] = value;
   annotate(vehicle_, "task", note);
 }
 

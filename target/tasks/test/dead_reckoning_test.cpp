@@ -30,7 +30,7 @@ uav::Quat heading(double yaw_rad) {
   return uav::from_rpy(0, 0, yaw_rad);
 }
 
-TEST(DeadReckoning, StandsStillAtRest) {
+TEST(DeadReckoning, StaysAtOriginAtRest) {
   DeadReckoning reckoning;
   for (int i = 0; i < 200; ++i) {
     reckoning.update(reading(0.05 * i, {}, uav::from_rpy(0.1, -0.2, 0.5)));

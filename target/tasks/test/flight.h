@@ -22,9 +22,7 @@ struct Flight {
   std::vector<nlohmann::json> notes(std::string_view topic) const {
     std::vector<nlohmann::json> notes;
     for (const auto& annotation : vehicle.annotations()) {
-      if (annotation.topic == topic) {
-        notes.push_back(nlohmann::json::parse(annotation.json));
-      }
+      if (annotation.topic == topic) notes.push_back(nlohmann::json::parse(annotation.json));
     }
     return notes;
   }

@@ -29,9 +29,7 @@ TEST(LoopLimit, EndsWhileTheClockStandsStill) {
   LoopLimit limit(seconds(2), 3);
   for (int run = 0; run < 2; ++run) {
     limit.start(at(seconds(1)));
-    for (int round = 0; round < 3; ++round) {
-      EXPECT_FALSE(limit.next_round(at(seconds(1))));
-    }
+    for (int round = 0; round < 3; ++round) EXPECT_FALSE(limit.next_round(at(seconds(1))));
     const Progress end = limit.next_round(at(seconds(1)));
     ASSERT_TRUE(end);
     EXPECT_EQ(end->reason, "round limit");

@@ -53,7 +53,7 @@ TEST(Motion, YawNeedsAnImu) {
   }
 }
 
-TEST(Motion, APauseIsOfTheInstantsOfTheImusReadings) {
+TEST(Motion, PauseFollowsTheImusTimestamps) {
   // Of several seconds at 1 kHz: more readings than those after which standing still is told.
   for (const auto period : {std::chrono::milliseconds(1), std::chrono::milliseconds(50)}) {
     Fixture f({.clock_stands_still = true, .imu_period = period});

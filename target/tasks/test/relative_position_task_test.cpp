@@ -20,9 +20,7 @@ struct Fixture {
   }
   int count(std::string_view topic) const {
     int n = 0;
-    for (const auto& annotation : vehicle.annotations()) {
-      n += annotation.topic == topic ? 1 : 0;
-    }
+    for (const auto& annotation : vehicle.annotations()) n += annotation.topic == topic ? 1 : 0;
     return n;
   }
   testing::PlanarVehicle vehicle;
@@ -39,6 +37,10 @@ TEST(RelativePositionTask, MeasuresBearingAndDistance) {
   EXPECT_EQ(outcome.results.at("frames"), 3);
   ASSERT_TRUE(f.task->estimate());
   EXPECT_EQ(f.task->estimate()->bearing_rad, outcome.results.at("bearing_rad"));
+  EXPECT_TRUE(f.vehicle.commands().empty());
+  EXPECT_EQ(f.count("roi"), 3);
+  EXPECT_EQ(f.count("estimate"), 3);
+  EXPECT_EQ(run(*f.task, f.context).results.at("bearing_rad"), outcome.results.at("bearing_rad"));
 }
 
 TEST(RelativePositionTask, KeepsWhatItsLastEstimateWasMadeFrom) {
@@ -58,15 +60,6 @@ TEST(RelativePositionTask, KeepsWhatItsLastEstimateWasMadeFrom) {
   EXPECT_EQ(again.bearing_rad, f.task->estimate()->bearing_rad);
 }
 
-TEST(RelativePositionTask, MovesNothingAndNotesEachImage) {
-  Fixture f;
-  f.run_task();
-  EXPECT_TRUE(f.vehicle.commands().empty());
-  EXPECT_EQ(f.vehicle.images_read(), 3);
-  EXPECT_EQ(f.count("roi"), 3);
-  EXPECT_EQ(f.count("estimate"), 3);
-}
-
 TEST(RelativePositionTask, ConvergesWhileTurning) {
   for (const auto compute : {milliseconds(2), milliseconds(150)}) {
     Fixture f({.anchor_bearing_rad = rad_from_deg(25), .compute_per_image = compute});
@@ -78,42 +71,36 @@ TEST(RelativePositionTask, ConvergesWhileTurning) {
   }
 }
 
-TEST(RelativePositionTask, NotSeenIsAnOutcome) {
-  Fixture f({.anchor_is_there = false});
-  const TaskOutcome outcome = f.run_task();
-  EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
-  EXPECT_EQ(outcome.reason, "anchor not seen");
-  EXPECT_FALSE(f.task->estimate());
-  EXPECT_FALSE(f.task->sighting());
-  EXPECT_EQ(f.vehicle.images_read(), kOptions.convergence.max_unseen_frames);
-}
-
-TEST(RelativePositionTask, DoesNotConvergeForEver) {
-  Fixture f;
-  RelativePositionOptions impossible = kOptions;
+TEST(RelativePositionTask, EndsWithTheReasonWhyItDidNotReachItsGoal) {
+  RelativePositionOptions impossible = kOptions, hurried = kOptions;
   impossible.convergence.tolerance_px = -1;
-  RelativePositionTask task("blue_box", impossible);
-  const TaskOutcome outcome = run(task, f.context);
-  EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
-  EXPECT_EQ(outcome.reason, "did not converge");
-  EXPECT_EQ(f.vehicle.images_read(), impossible.convergence.max_frames);
-  EXPECT_TRUE(task.estimate());
-}
-
-TEST(RelativePositionTask, EndsAtItsTimeLimit) {
-  Fixture f({.compute_per_image = milliseconds(400)});
-  RelativePositionOptions hurried = kOptions;
   hurried.time_limit = milliseconds(500);
-  RelativePositionTask task("blue_box", hurried);
-  const TaskOutcome outcome = run(task, f.context);
-  EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
-  EXPECT_EQ(outcome.reason, "time limit");
-  EXPECT_NEAR(outcome.results.at("duration_s"), 0.8, 0.1);
-}
-
-TEST(RelativePositionTask, EndsWhileTheClockStandsStill) {
-  Fixture f({.anchor_is_there = false, .clock_stands_still = true});
-  EXPECT_EQ(f.run_task().reason, "anchor not seen");
+  struct Case {
+    testing::PlanarVehicle::Options world;
+    RelativePositionOptions options;
+    std::string reason;
+    int images;
+    bool has_estimate;
+  };
+  const int unseen = kOptions.convergence.max_unseen_frames;
+  for (const Case& c : std::vector<Case>{
+           {{.anchor_is_there = false}, kOptions, "anchor not seen", unseen, false},
+           {{.anchor_is_there = false, .clock_stands_still = true},
+            kOptions,
+            "anchor not seen",
+            unseen,
+            false},
+           {{}, impossible, "did not converge", impossible.convergence.max_frames, true},
+           {{.compute_per_image = milliseconds(400)}, hurried, "time limit", 2, true}}) {
+    Fixture f(c.world);
+    RelativePositionTask task("blue_box", c.options);
+    const TaskOutcome outcome = run(task, f.context);
+    EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
+    EXPECT_EQ(outcome.reason, c.reason);
+    EXPECT_EQ(f.vehicle.images_read(), c.images);
+    EXPECT_EQ(task.estimate().has_value(), c.has_estimate);
+    EXPECT_EQ(task.sighting().has_value(), c.has_estimate);
+  }
 }
 
 TEST(RelativePositionTask, AShortLossCostsImagesOnly) {
@@ -130,15 +117,6 @@ TEST(RelativePositionTask, FailsWithItsReason) {
   const TaskOutcome outcome = cut.run_task();
   EXPECT_EQ(outcome.status, TaskStatus::kFailed);
   EXPECT_EQ(outcome.failure, Failure::Kind::kDisconnected);
-}
-
-TEST(RelativePositionTask, MayRunAgain) {
-  Fixture f;
-  RelativePositionTask task("blue_box", kOptions);
-  const TaskOutcome first = run(task, f.context);
-  const TaskOutcome second = run(task, f.context);
-  EXPECT_TRUE(first.reached() && second.reached());
-  EXPECT_EQ(first.results.at("bearing_rad"), second.results.at("bearing_rad"));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-TEST(TaskContext, FindsCameraAndAnchor) {
+TEST(TaskContext, FindsWhatTheCatalogueHas) {
   testing::PlanarVehicle vehicle({});
   TaskContext context(vehicle);
   ASSERT_TRUE(context.camera());
@@ -19,38 +19,31 @@ TEST(TaskContext, FindsCameraAndAnchor) {
   EXPECT_EQ((*context.anchor("blue_box"))->size_m.z, 0.5);
   ASSERT_TRUE(context.sensor("imu", uav::SensorKind::kImu));
   EXPECT_EQ((*context.sensor("imu", uav::SensorKind::kImu))->name, "imu");
-}
-
-TEST(TaskContext, SaysWhatTheCatalogueLacks) {
-  testing::PlanarVehicle vehicle({});
-  EXPECT_THAT(TaskContext(vehicle, {"eye", {}}).camera().failure().message,
-              HasSubstr("camera \"eye\""));
-  EXPECT_FALSE(TaskContext(vehicle, {"imu", {}}).camera()) << "not a camera";
-  EXPECT_THAT(TaskContext(vehicle).sensor("gps", uav::SensorKind::kImu).failure().message,
-              HasSubstr("imu \"gps\""));
-  TaskContext context(vehicle);
-  EXPECT_THAT(context.anchor("door").failure().message, HasSubstr("anchor \"door\""));
-  EXPECT_THAT(context.tracker("door").failure().message, HasSubstr("anchor \"door\""));
-  EXPECT_THAT(context.tracker("grey_box").failure().message, HasSubstr("hue"));
-}
-
-TEST(TaskContext, KeepsOneTrackerForEachAnchor) {
-  testing::PlanarVehicle vehicle({});
-  TaskContext context(vehicle);
   const auto first = context.tracker("blue_box");
   const auto again = context.tracker("blue_box");
   ASSERT_TRUE(first && again);
-  EXPECT_EQ(*first, *again);
+  EXPECT_EQ(*first, *again) << "one tracker for each anchor";
 }
 
-TEST(TaskContext, LooksWithWhatItIsTold) {
+TEST(TaskContext, NamesWhatTheCatalogueLacks) {
   testing::PlanarVehicle vehicle({});
   TaskContext context(vehicle);
+  const auto expect_missing = [](const auto& found, const std::string& name) {
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.failure().kind, Failure::Kind::kInvalid);
+    EXPECT_THAT(found.failure().message, HasSubstr("\"" + name + "\""));
+  };
+  expect_missing(TaskContext(vehicle, {"eye", {}}).camera(), "eye");
+  expect_missing(TaskContext(vehicle, {"imu", {}}).camera(), "imu");
+  expect_missing(context.sensor("gps", uav::SensorKind::kImu), "gps");
+  expect_missing(context.anchor("door"), "door");
+  expect_missing(context.tracker("door"), "door");
+  expect_missing(context.tracker("grey_box"), "grey_box");
   VisionOptions unusable{"eye", {}};
   unusable.tracker.prefilter_size_px = 4;
   ASSERT_TRUE(context.tracker("blue_box"));
   context.look_with(unusable);
-  EXPECT_THAT(context.camera().failure().message, HasSubstr("camera \"eye\""));
+  expect_missing(context.camera(), "eye");
   EXPECT_FALSE(context.tracker("blue_box")) << "the old options were kept";
 }
 

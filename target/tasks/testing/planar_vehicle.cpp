@@ -12,6 +12,9 @@ constexpr Duration kStep = std::chrono::milliseconds(1);
 constexpr double kStep_s = 1e-3;
 constexpr double kGravity_m_s2 = 9.81;
 constexpr double kWall_m = 10.0;
+constexpr Duration kImagePeriod = std::chrono::nanoseconds(33'333'333);
+constexpr double kMaxAcceleration_m_s2 = 3.0;
+constexpr double kMaxYawAcceleration_rad_s2 = 6.0;
 
 uav::Catalogue make_catalogue(const PlanarVehicle::Options& options) {
   uav::Catalogue catalogue;
@@ -56,9 +59,7 @@ PlanarVehicle::PlanarVehicle(const Options& options)
 }
 
 ExecTime PlanarVehicle::now() const {
-  if (options_.clock_stands_still) {
-    return ExecTime();
-  }
+  if (options_.clock_stands_still) return ExecTime();
   return ExecTime(
       duration_from_seconds(options_.clock_factor * to_seconds(now_.time_since_epoch())));
 }
@@ -69,23 +70,19 @@ double PlanarVehicle::bearing() const {
 }
 
 Status PlanarVehicle::begin_interaction(std::string_view sensor, std::string_view expected) {
-  if (options_.disconnect_at && interactions_ >= *options_.disconnect_at) {
-    return disconnected();
-  }
+  if (options_.disconnect_at && interactions_ >= *options_.disconnect_at) return disconnected();
   ++interactions_;
-  if (sensor != expected) {
-    return Failure{Failure::Kind::kRefused, "no such sensor of this kind"};
-  }
+  if (sensor != expected) return Failure{Failure::Kind::kRefused, "no such sensor of this kind"};
   return ok_status();
 }
 
 PlanarVehicle::State PlanarVehicle::next(const State& state) const {
   State after = state;
-  const double turn = options_.max_yaw_acceleration_rad_s2 * kStep_s;
+  const double turn = kMaxYawAcceleration_rad_s2 * kStep_s;
   after.yaw_rate_rad_s += std::clamp(command_.yaw_rate_rad_s - state.yaw_rate_rad_s, -turn, turn);
   after.yaw_rad += after.yaw_rate_rad_s * kStep_s;
   const Vec3 wanted = rotate(about_z(state.yaw_rad), command_.velocity_H_m_s);
-  after.v_W = towards(state.v_W, wanted, options_.max_acceleration_m_s2 * kStep_s);
+  after.v_W = towards(state.v_W, wanted, kMaxAcceleration_m_s2 * kStep_s);
   after.a_W = (1.0 / kStep_s) * (after.v_W - state.v_W);
   after.p_W = state.p_W + kStep_s * after.v_W;
   return after;
@@ -103,20 +100,16 @@ const PlanarVehicle::State& PlanarVehicle::at(Duration since_start) const {
 }
 
 Result<uav::CameraSample> PlanarVehicle::read_camera(std::string_view sensor, client::Read) {
-  if (const Status status = begin_interaction(sensor, "camera"); !status) {
-    return status.failure();
-  }
+  if (const Status status = begin_interaction(sensor, "camera"); !status) return status.failure();
   // The newest image that is there, or the next one to come.
   const Duration since_start = now_.time_since_epoch() - options_.image_delay;
   std::uint64_t index = 0;
   if (since_start > Duration::zero()) {
-    index = static_cast<std::uint64_t>(since_start / options_.image_period);
+    index = static_cast<std::uint64_t>(since_start / kImagePeriod);
   }
-  if (last_image_ && index <= *last_image_) {
-    index = *last_image_ + 1;
-  }
+  if (last_image_ && index <= *last_image_) index = *last_image_ + 1;
   last_image_ = index;
-  const Duration sampled = static_cast<std::int64_t>(index) * options_.image_period;
+  const Duration sampled = static_cast<std::int64_t>(index) * kImagePeriod;
   simulate_until(std::max(now_, ExecTime(sampled + options_.image_delay)));
 
   const auto [hidden_from, hidden_until] = options_.anchor_hidden;
@@ -134,13 +127,9 @@ Result<uav::CameraSample> PlanarVehicle::read_camera(std::string_view sensor, cl
 }
 
 Result<uav::ImuSample> PlanarVehicle::read_imu(std::string_view sensor, client::Read read) {
-  if (const Status status = begin_interaction(sensor, "imu"); !status) {
-    return status.failure();
-  }
+  if (const Status status = begin_interaction(sensor, "imu"); !status) return status.failure();
   auto index = static_cast<std::uint64_t>(now_.time_since_epoch() / options_.imu_period);
-  if (read == client::Read::kNext && last_imu_ && index <= *last_imu_) {
-    index = *last_imu_ + 1;
-  }
+  if (read == client::Read::kNext && last_imu_ && index <= *last_imu_) index = *last_imu_ + 1;
   last_imu_ = index;
   const Duration sampled = static_cast<std::int64_t>(index) * options_.imu_period;
   simulate_until(std::max(now_, ExecTime(sampled)));
@@ -158,24 +147,18 @@ Result<uav::ImuSample> PlanarVehicle::read_imu(std::string_view sensor, client::
 }
 
 Result<uav::RangeSample> PlanarVehicle::read_range(std::string_view sensor, client::Read) {
-  if (const Status status = begin_interaction(sensor, "range"); !status) {
-    return status.failure();
-  }
+  if (const Status status = begin_interaction(sensor, "range"); !status) return status.failure();
   uav::RangeSample reading;
   reading.sampled_at = SimTime(now_.time_since_epoch());
   reading.index = ranges_read_++;
   const double ahead = std::cos(yaw());
-  if (ahead > 0.0) {
-    reading.range_m = (kWall_m - position().x) / ahead;
-  }
+  if (ahead > 0.0) reading.range_m = (kWall_m - position().x) / ahead;
   simulate_until(now_ + options_.range_delays[reading.index % options_.range_delays.size()]);
   return reading;
 }
 
 Status PlanarVehicle::command_velocity(const uav::VelocityCommand& command) {
-  if (Status status = begin_interaction(); !status) {
-    return status;
-  }
+  if (Status status = begin_interaction(); !status) return status;
   command_ = command;
   commands_.push_back(command);
   return ok_status();
@@ -186,9 +169,7 @@ Status PlanarVehicle::sleep_for(Duration duration) {
 }
 
 Status PlanarVehicle::sleep_until(ExecTime until) {
-  if (Status status = begin_interaction(); !status) {
-    return status;
-  }
+  if (Status status = begin_interaction(); !status) return status;
   simulate_until(until);
   return ok_status();
 }
@@ -200,9 +181,7 @@ Status PlanarVehicle::annotate(std::string_view topic, std::string_view json) {
 
 Status PlanarVehicle::finish(bool reached_goal, std::string_view outcome,
                              std::string_view details_json) {
-  if (Status status = begin_interaction(); !status) {
-    return status;
-  }
+  if (Status status = begin_interaction(); !status) return status;
   finish_ = Finish{reached_goal, std::string(outcome), std::string(details_json)};
   return ok_status();
 }

@@ -11,6 +11,9 @@
 #include <tether/base/units.h>
 #include <tether/vision/anchor_tracker.h>
 
+// Tracks one anchor in three steps: prefilter, back-projection of its colour, location. Location
+// runs CamShift from the last window and, if that loses the anchor, searches the whole image among
+// the candidates of region.h.
 namespace tether::vision {
 namespace {
 
@@ -24,17 +27,17 @@ bool is_share(double value) {
 std::string fault_of(const TrackerOptions& o) {
   if (o.prefilter != Prefilter::kNone &&
       (o.prefilter_size_px < 1 || o.prefilter_size_px > 31 || o.prefilter_size_px % 2 == 0)) {
-    return "the pre-filter's size must be odd and between 1 and 31 px";
+    return "prefilter_size_px must be odd and from 1 to 31";
   }
   if (!(o.hue_tolerance_deg > 0.0 && o.hue_tolerance_deg <= 90.0)) {
-    return "the hue tolerance must be above 0 and at most 90 degrees";
+    return "hue_tolerance_deg must be greater than 0 and at most 90";
   }
   if (!is_share(o.min_saturation) || !is_share(o.min_value) || !is_share(o.max_value) ||
       !is_share(o.min_score)) {
-    return "saturation, value and score limits must lie between 0 and 1";
+    return "min_saturation, min_value and min_score must be from 0 to 1";
   }
   if (o.min_area_px < 1 || !(o.max_area_change > 1.0)) {
-    return "the least area must be at least 1 px and the largest change of area above 1";
+    return "min_area_px must be at least 1, and max_area_change greater than 1";
   }
   return "";
 }
@@ -102,20 +105,14 @@ bool AnchorTracker::Impl::has_jumped(const Roi& roi, const cv::Rect& from) const
 
 std::optional<Roi> AnchorTracker::Impl::follow_window() {
   const cv::Rect last = *window & cv::Rect({0, 0}, probability.size());
-  if (last.empty() || cv::countNonZero(probability(last)) == 0) {
-    return std::nullopt;
-  }
+  if (last.empty() || cv::countNonZero(probability(last)) == 0) return std::nullopt;
   cv::Rect shifted = last;
   const cv::TermCriteria criteria(cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 10, 1.0);
   const cv::RotatedRect box = cv::CamShift(probability, shifted, criteria);
   const std::optional<cv::Rect> rectangle = fit_rectangle(probability, shifted);
-  if (!rectangle) {
-    return std::nullopt;
-  }
+  if (!rectangle) return std::nullopt;
   Roi roi = measure(probability, *rectangle, proportions);
-  if (!is_plausible(roi) || has_jumped(roi, last)) {
-    return std::nullopt;
-  }
+  if (!is_plausible(roi) || has_jumped(roi, last)) return std::nullopt;
   // CamShift's angle is that of the box's height, and its height is the longer side.
   roi.angle_rad = std::remainder(rad_from_deg(box.angle + 90.0), rad_from_deg(180.0));
   window = rectangle;
@@ -136,13 +133,9 @@ std::optional<Roi> AnchorTracker::Impl::search() {
       window = blob;
     }
   }
-  if (!best) {
-    return std::nullopt;
-  }
+  if (!best) return std::nullopt;
   // From there as in any other image, so that a ROI means the same however it was found.
-  if (std::optional<Roi> followed = follow_window()) {
-    best = followed;
-  }
+  if (std::optional<Roi> followed = follow_window()) best = followed;
   best->searched_for = true;
   return best;
 }
@@ -156,7 +149,7 @@ Result<AnchorTracker> AnchorTracker::create(const uav::Anchor& anchor,
   if (color.saturation < options.min_saturation || color.value < options.min_value) {
     return Failure{
         Failure::Kind::kInvalid,
-        "anchor \"" + anchor.name + "\" is too pale or too dark to be tracked by its hue"};
+        "anchor \"" + anchor.name + "\" is too pale or too dark to be tracked by its colour"};
   }
   if (!(anchor.size_m.x > 0.0 && anchor.size_m.y > 0.0 && anchor.size_m.z > 0.0)) {
     return Failure{Failure::Kind::kInvalid, "anchor \"" + anchor.name + "\" has no size"};
@@ -190,12 +183,8 @@ void AnchorTracker::back_project() {
 
 std::optional<Roi> AnchorTracker::locate() {
   std::optional<Roi> roi;
-  if (impl_->window) {
-    roi = impl_->follow_window();
-  }
-  if (!roi) {
-    roi = impl_->search();
-  }
+  if (impl_->window) roi = impl_->follow_window();
+  if (!roi) roi = impl_->search();
   if (roi) {
     const Edges edges = find_edges(impl_->hsv, *impl_->window, impl_->color);
     roi->center = {0.5 * (edges.left_px + edges.right_px), 0.5 * (edges.top_px + edges.bottom_px)};

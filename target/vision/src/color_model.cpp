@@ -32,9 +32,7 @@ HueSaturationValue hsv_from_rgb(const uav::Vec3& rgb) {
   const double high = std::max({rgb.x, rgb.y, rgb.z});
   const double low = std::min({rgb.x, rgb.y, rgb.z});
   const double chroma = high - low;
-  if (chroma <= 0.0) {
-    return {0.0, 0.0, high};
-  }
+  if (chroma <= 0.0) return {0.0, 0.0, high};
   double sextant = 0.0;
   if (high == rgb.x) {
     sextant = (rgb.y - rgb.z) / chroma;

@@ -6,6 +6,9 @@
 
 #include <opencv2/imgproc.hpp>
 
+// Geometry of the tracked region in the probability map: candidates by connected components, a
+// rectangle that is fitted to the mass, its score by shape, fill and colour, and its edges to a
+// fraction of a pixel.
 namespace tether::vision {
 namespace {
 
@@ -45,9 +48,7 @@ double fit_of(double value, double least, double most) {
 
 double score_of(const cv::Mat& mass, const Roi& roi, const Proportions& expected) {
   const int count = cv::countNonZero(mass);
-  if (count == 0) {
-    return 0.0;
-  }
+  if (count == 0) return 0.0;
   const double color = cv::sum(mass)[0] / (255.0 * count);
   const double fill = count / (roi.width_px * roi.height_px);
   // What is cut off by a border may look narrower or lower than it is.
@@ -84,9 +85,7 @@ double column_height_px(const cv::Mat& chroma, const cv::Rect& inner) {
   for (int u = inner.x; u < inner.br().x; ++u) {
     const double all = cv::sum(chroma.col(u))[0];
     const double within = cv::sum(chroma.col(u).rowRange(middle))[0];
-    if (within > 0.0) {
-      heights.push_back(all * middle.size() / within);
-    }
+    if (within > 0.0) heights.push_back(all * middle.size() / within);
   }
   return heights.empty() ? inner.height : median(std::move(heights));
 }
@@ -98,9 +97,7 @@ double rising_edge(const std::vector<float>& profile, int first, int width) {
   const float half = 0.5F * median(std::vector<float>(begin, begin + (width + 1) / 2));
   const auto high =
       std::find_if(profile.begin(), profile.end(), [half](float value) { return value >= half; });
-  if (high == profile.begin() || high == profile.end()) {
-    return -0.5;
-  }
+  if (high == profile.begin() || high == profile.end()) return -0.5;
   const float low = *(high - 1);
   return static_cast<double>(high - profile.begin()) - (*high - half) / (*high - low);
 }
@@ -143,16 +140,12 @@ std::optional<cv::Rect> fit_rectangle(const cv::Mat& probability, const cv::Rect
   for (int round = 0; round < kMaxRounds; ++round) {
     const int margin = 4 + std::max(fitted.width, fitted.height) / 4;
     const cv::Rect area = inflated(fitted, margin, probability.size());
-    if (area.empty() || cv::countNonZero(probability(area)) == 0) {
-      return std::nullopt;
-    }
+    if (area.empty() || cv::countNonZero(probability(area)) == 0) return std::nullopt;
     const cv::Range columns = run_around_peak(profile_of(probability(area), Along::kColumns));
     const cv::Mat upright = probability(area).colRange(columns);
     const cv::Range rows = run_around_peak(profile_of(upright, Along::kRows));
     const cv::Rect next(area.x + columns.start, area.y + rows.start, columns.size(), rows.size());
-    if (next == fitted) {
-      break;
-    }
+    if (next == fitted) break;
     fitted = next;
   }
   return fitted;
@@ -194,9 +187,7 @@ std::vector<cv::Rect> find_blobs(const cv::Mat& probability, int min_area_px, st
 
   std::vector<int> blobs;
   for (int label = 1; label < count; ++label) {
-    if (stats.at<int>(label, cv::CC_STAT_AREA) >= min_area_px) {
-      blobs.push_back(label);
-    }
+    if (stats.at<int>(label, cv::CC_STAT_AREA) >= min_area_px) blobs.push_back(label);
   }
   std::stable_sort(blobs.begin(), blobs.end(), [&stats](int a, int b) {
     return stats.at<int>(a, cv::CC_STAT_AREA) > stats.at<int>(b, cv::CC_STAT_AREA);

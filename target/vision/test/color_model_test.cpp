@@ -29,15 +29,11 @@ TEST(Hsv, OfKnownColors) {
   }
 }
 
-TEST(ColorModel, LikesItsColorInAnyShade) {
+TEST(ColorModel, FindsItsColorInAnyShadeAndNoOther) {
   ColorModel blue({0.1, 0.2, 0.9}, {});
   EXPECT_GT(probability_of(blue, 25, 51, 230), 240);
   EXPECT_GT(probability_of(blue, 12, 25, 115), 240);
   EXPECT_GT(probability_of(blue, 80, 98, 230), 200);
-}
-
-TEST(ColorModel, RejectsOtherHuesAndWhatHasNone) {
-  ColorModel blue({0.1, 0.2, 0.9}, {});
   EXPECT_EQ(probability_of(blue, 230, 30, 30), 0);
   EXPECT_EQ(probability_of(blue, 30, 230, 200), 0);
   EXPECT_EQ(probability_of(blue, 110, 112, 125), 0) << "pale";

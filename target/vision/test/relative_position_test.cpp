@@ -43,9 +43,7 @@ std::optional<RelativePosition> look(const uav::SensorDescription& camera, const
       scene.render(model_of(camera), testing::level_camera({0, 0, view.above_m}, 0.0));
   Result<AnchorTracker> tracker = AnchorTracker::create(kBox);
   const auto roi = tracker->track(image);
-  if (!roi) {
-    return std::nullopt;
-  }
+  if (!roi) return std::nullopt;
   return relative_position(camera, kBox, *roi);
 }
 
@@ -54,25 +52,17 @@ double half_pixel_rad(const uav::SensorDescription& camera) {
   return std::atan(0.5 / model_of(camera).fx_px);
 }
 
-TEST(RelativePosition, BearingWithinHalfAPixel) {
-  for (const double bearing : {-30.0, -12.0, 0.0, 3.3, 20.0, 28.0}) {
-    for (const double distance : {2.0, 4.0, 8.0}) {
-      const auto p = look(camera(), {bearing, distance, 0, 0});
-      ASSERT_TRUE(p) << bearing << " " << distance;
-      EXPECT_NEAR(p->bearing_rad, rad_from_deg(bearing), half_pixel_rad(camera()))
-          << bearing << " " << distance;
-    }
-  }
-}
-
-TEST(RelativePosition, DistanceWithinAFewPercentFromAnySide) {
-  for (const double bearing : {-25.0, 0.0, 30.0}) {
+TEST(RelativePosition, IsWithinHalfAPixelAndAFewPercentFromAnySide) {
+  for (const double bearing : {-30.0, -12.0, 3.3, 28.0}) {
     for (const double turned : {0.0, 20.0, 45.0}) {
       for (const double distance : {2.0, 4.0, 8.0}) {
+        SCOPED_TRACE(::testing::Message() << bearing << " " << turned << " " << distance);
         const auto p = look(camera(), {bearing, distance, turned, 0});
         ASSERT_TRUE(p && p->distance_m);
-        EXPECT_NEAR(*p->distance_m, distance, 0.05 + 0.025 * distance)
-            << bearing << " " << turned << " " << distance;
+        EXPECT_NEAR(*p->distance_m, distance, 0.05 + 0.025 * distance);
+        // Turned, its silhouette is not symmetric about its centre.
+        if (turned != 0.0) continue;
+        EXPECT_NEAR(p->bearing_rad, rad_from_deg(bearing), half_pixel_rad(camera()));
       }
     }
   }

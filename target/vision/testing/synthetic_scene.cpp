@@ -48,9 +48,7 @@ Hit intersect(const Vec3& direction_W, const SeenBox& box) {
     }
     leave = std::min(leave, std::max(a, b));
   }
-  if (enter > 0.0 && enter < leave) {
-    hit.at = enter;
-  }
+  if (enter > 0.0 && enter < leave) hit.at = enter;
   return hit;
 }
 

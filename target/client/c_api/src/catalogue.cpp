@@ -80,7 +80,7 @@ tether_status tether_sensor_camera_model(const tether_sensor* sensor, tether_cam
                                          size_t size) noexcept {
   if (!tether::c_api::can_take(out, size) || !are_given(sensor)) return TETHER_INVALID;
   const auto* camera = std::get_if<tether::uav::CameraProperties>(&from_c(sensor)->properties);
-  if (camera == nullptr) return fail(TETHER_INVALID, "the sensor is no camera");
+  if (camera == nullptr) return fail(TETHER_INVALID, "the sensor is not a camera");
   tether::c_api::put(to_c(camera->model), out, size);
   return TETHER_OK;
 }
@@ -91,7 +91,7 @@ tether_status tether_sensor_range_limits(const tether_sensor* sensor, double* mi
   *min_m = *max_m = 0.0;
   if (!are_given(sensor)) return TETHER_INVALID;
   const auto* range = std::get_if<tether::uav::RangeProperties>(&from_c(sensor)->properties);
-  if (range == nullptr) return fail(TETHER_INVALID, "the sensor is no rangefinder");
+  if (range == nullptr) return fail(TETHER_INVALID, "the sensor is not a rangefinder");
   *min_m = range->min_m;
   *max_m = range->max_m;
   return TETHER_OK;

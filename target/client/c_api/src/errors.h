@@ -26,7 +26,7 @@ tether_status status_of(const Result<T>& result) noexcept {
 template <class... Pointers>
 bool are_given(Pointers... pointers) noexcept {
   if ((... && (pointers != nullptr))) return true;
-  fail(TETHER_INVALID, "an argument is NULL that may not be");
+  fail(TETHER_INVALID, "an argument must not be NULL");
   return false;
 }
 
@@ -36,7 +36,7 @@ tether_status guarded(Body&& body) noexcept {
   try {
     return body();
   } catch (const std::bad_alloc&) {
-    return fail(TETHER_NO_MEMORY, "memory ran out");
+    return fail(TETHER_NO_MEMORY, "out of memory");
   } catch (const std::exception& e) {
     return fail(TETHER_INTERNAL, e.what());
   }
@@ -59,7 +59,7 @@ template <class T>
 bool can_take(T* out, std::size_t size) noexcept {
   if (!are_given(out)) return false;
   if (size < kFirstSize<T>) {
-    fail(TETHER_INVALID, "the size of the struct is wrong; hand over sizeof *out");
+    fail(TETHER_INVALID, "the size of the struct is too small; pass sizeof *out");
     return false;
   }
   std::memset(out, 0, size);

@@ -74,7 +74,7 @@ tether_status tether_options_set_sut_name(tether_options* options, const char* n
 tether_status tether_options_set_clock(tether_options* options, const char* clock) noexcept {
   return set(options, clock, [&](std::string text) {
     const auto source = tether::client::parse_time_source(text);
-    if (!source) return fail(TETHER_INVALID, "the clock is " + source.failure().message);
+    if (!source) return fail(TETHER_INVALID, source.failure().message);
     options->clock = std::move(text);
     return tether_status{TETHER_OK};
   });
@@ -83,7 +83,8 @@ tether_status tether_options_set_clock(tether_options* options, const char* cloc
 tether_status tether_options_set_timeouts(tether_options* options, int64_t connect_ns,
                                           int64_t welcome_ns) noexcept {
   if (!are_given(options)) return TETHER_INVALID;
-  if (connect_ns <= 0 || welcome_ns <= 0) return fail(TETHER_INVALID, "a timeout is not above 0");
+  if (connect_ns <= 0 || welcome_ns <= 0)
+    return fail(TETHER_INVALID, "a timeout must be greater than 0");
   options->connect_timeout = tether::Duration(connect_ns);
   options->welcome_timeout = tether::Duration(welcome_ns);
   return TETHER_OK;

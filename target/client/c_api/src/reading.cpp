@@ -29,7 +29,7 @@ template <class Method, class Take>
 tether_status read(tether_vehicle* vehicle, const char* sensor, tether_read_mode mode,
                    Method method, Take take) {
   const auto wanted = from_c(mode);
-  if (!wanted) return fail(TETHER_INVALID, "the mode of reading is none of TETHER_READ_...");
+  if (!wanted) return fail(TETHER_INVALID, "unknown read mode; use one of TETHER_READ_...");
   return guarded([&] {
     auto sample = (vehicle->vehicle.get()->*method)(sensor, *wanted);
     return sample ? take(std::move(*sample)) : fail(sample.failure());

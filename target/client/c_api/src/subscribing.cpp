@@ -35,7 +35,7 @@ bool can_subscribe(const tether_vehicle* vehicle, const char* sensor, bool has_c
                    tether_subscription** out) {
   if (!are_given(out)) return false;
   *out = nullptr;
-  if (!has_callback) fail(TETHER_INVALID, "the callback is NULL");
+  if (!has_callback) fail(TETHER_INVALID, "the callback must not be NULL");
   return has_callback && are_given(vehicle, sensor);
 }
 

@@ -1,80 +1,45 @@
 #include "fake_vehicle.h"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace tether::c_api {
 namespace {
 
-using testing::HasSubstr;
-
-TEST(Sensors, AreFoundByIndexAndByName) {
-  const Flown flown;
-  EXPECT_STREQ(tether_uav_name(flown.vehicle), "uav1");
-  ASSERT_EQ(tether_sensor_count(flown.vehicle), 4u);
-  const auto* camera = tether_sensor_at(flown.vehicle, 0);
-  EXPECT_EQ(camera, tether_find_sensor(flown.vehicle, "camera"));
-  EXPECT_STREQ(tether_sensor_name(camera), "camera");
-  EXPECT_EQ(tether_sensor_get_kind(camera), TETHER_CAMERA);
-  EXPECT_EQ(tether_sensor_rate_hz(camera), 30.0);
-  EXPECT_EQ(tether_sensor_get_kind(tether_sensor_at(flown.vehicle, 1)), TETHER_IMU);
-  EXPECT_EQ(tether_sensor_get_kind(tether_sensor_at(flown.vehicle, 2)), TETHER_RANGE);
-  EXPECT_EQ(tether_sensor_at(flown.vehicle, 4), nullptr);
-  EXPECT_EQ(tether_find_sensor(flown.vehicle, "nose"), nullptr);
-}
-
-TEST(Sensors, TellMountingAndLens) {
+// cpp_api_test has the rest, through the C++ API.
+TEST(Sensors, HaveTheirPropertiesAndNoOthers) {
   const Flown flown;
   const auto* camera = tether_find_sensor(flown.vehicle, "camera");
+  EXPECT_EQ(camera, tether_sensor_at(flown.vehicle, 0));
+  EXPECT_EQ(tether_sensor_get_kind(tether_sensor_at(flown.vehicle, 1)), TETHER_IMU);
   tether_pose X_BS;
   ASSERT_EQ(tether_sensor_mounting(camera, &X_BS), TETHER_OK);
-  EXPECT_EQ(X_BS.position_m.y, 0.2);
   EXPECT_EQ(X_BS.attitude.y, -0.5);
   tether_camera_model model;
   ASSERT_EQ(tether_sensor_camera_model(camera, &model, sizeof model), TETHER_OK);
-  EXPECT_EQ(model.width_px, 4);
-  EXPECT_EQ(model.height_px, 2);
   EXPECT_EQ(model.cx_px, 1.5);
   EXPECT_EQ(model.k2, 0.2);
   EXPECT_EQ(model.k3, 0.3);
   EXPECT_EQ(model.p1, 0.4);
   EXPECT_EQ(model.p2, 0.5);
-}
-
-TEST(Sensors, TellWhatTheyAreNot) {
-  const Flown flown;
   const auto* range = tether_find_sensor(flown.vehicle, "down");
   double min_m = 0.0, max_m = 0.0;
   ASSERT_EQ(tether_sensor_range_limits(range, &min_m, &max_m), TETHER_OK);
   EXPECT_EQ(min_m, 0.1);
-  EXPECT_EQ(max_m, 8.0);
-  tether_camera_model model{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
   EXPECT_EQ(tether_sensor_camera_model(range, &model, sizeof model), TETHER_INVALID);
-  EXPECT_THAT(tether_last_error(), HasSubstr("no camera"));
   EXPECT_EQ(model.width_px, 0);
-  const auto* camera = tether_find_sensor(flown.vehicle, "camera");
   EXPECT_EQ(tether_sensor_range_limits(camera, &min_m, &max_m), TETHER_INVALID);
   EXPECT_EQ(max_m, 0.0);
 }
 
-TEST(Anchors, AreWhatTheSutMayKnow) {
+TEST(Catalogue, HasNothingBeyondItsEnd) {
   const Flown flown;
-  ASSERT_EQ(tether_anchor_count(flown.vehicle), 2u);
-  const auto* box = tether_find_anchor(flown.vehicle, "blue_box");
-  EXPECT_EQ(box, tether_anchor_at(flown.vehicle, 0));
-  EXPECT_STREQ(tether_anchor_name(box), "blue_box");
-  EXPECT_EQ(tether_anchor_get_shape(box), TETHER_BOX);
+  EXPECT_EQ(tether_sensor_at(flown.vehicle, 4), nullptr);
   EXPECT_EQ(tether_anchor_get_shape(tether_anchor_at(flown.vehicle, 1)), TETHER_SPHERE);
-  tether_vec3 size_m, color;
-  ASSERT_EQ(tether_anchor_size(box, &size_m), TETHER_OK);
-  ASSERT_EQ(tether_anchor_color(box, &color), TETHER_OK);
-  EXPECT_EQ(size_m.z, 0.6);
-  EXPECT_EQ(color.z, 0.85);
   EXPECT_EQ(tether_anchor_at(flown.vehicle, 2), nullptr);
   EXPECT_EQ(tether_find_anchor(flown.vehicle, ""), nullptr);
 }
 
-TEST(Catalogue, TakesNullForNothing) {
+TEST(Catalogue, AcceptsNull) {
   EXPECT_STREQ(tether_uav_name(nullptr), "");
   EXPECT_EQ(tether_sensor_count(nullptr), 0u);
   EXPECT_EQ(tether_sensor_at(nullptr, 0), nullptr);

@@ -5,7 +5,6 @@
 #include <thread>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace tether::c_api {
 namespace {
@@ -39,7 +38,7 @@ TEST(StatusName, KnowsEachAndNoOther) {
   EXPECT_STREQ(tether_status_name(-1), "unknown");
 }
 
-TEST(StatusOf, KeepsTheKindAndTheWords) {
+TEST(StatusOf, KeepsTheKindAndTheMessage) {
   using Kind = Failure::Kind;
   for (const auto& [kind, status] :
        {std::pair{Kind::kRefused, TETHER_REFUSED},
@@ -55,14 +54,13 @@ TEST(StatusOf, KeepsTheKindAndTheWords) {
 
 TEST(Guarded, LetsNoExceptionOut) {
   EXPECT_EQ(guarded([]() -> tether_status { throw std::bad_alloc(); }), TETHER_NO_MEMORY);
-  EXPECT_STREQ(tether_last_error(), "memory ran out");
   EXPECT_EQ(guarded([]() -> tether_status { throw std::logic_error("a fault"); }), TETHER_INTERNAL);
   EXPECT_STREQ(tether_last_error(), "a fault");
   EXPECT_EQ(guarded([] { return tether_status{TETHER_TIMEOUT}; }), TETHER_TIMEOUT);
 }
 
 /// Callers that were compiled with a later header: their struct is larger.
-TEST(Put, ClearsWhatALaterCallerKnowsMore) {
+TEST(Put, ClearsMembersOfALaterVersion) {
   struct {
     tether_range_sample known;
     double later = 5.0;
@@ -84,7 +82,7 @@ TEST(CanTake, RefusesWhatIsTooSmall) {
 }
 
 /// This library is the first: nothing has grown yet.
-TEST(FirstSize, IsThatOfToday) {
+TEST(FirstSize, IsCurrentSize) {
   EXPECT_EQ(kFirstSize<tether_camera_model>, sizeof(tether_camera_model));
   EXPECT_EQ(kFirstSize<tether_image_info>, sizeof(tether_image_info));
   EXPECT_EQ(kFirstSize<tether_imu_sample>, sizeof(tether_imu_sample));

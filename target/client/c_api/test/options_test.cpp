@@ -3,7 +3,6 @@
 #include <string>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace tether::c_api {
 namespace {
@@ -33,13 +32,13 @@ TEST_F(Options, KeepWhatTheyAreGiven) {
   EXPECT_EQ(options_->welcome_timeout, Duration(7));
 }
 
-TEST_F(Options, SayWhatTheyDoNotTakeAndKeepTheOld) {
+TEST_F(Options, RefuseBadValuesAndKeepTheOldOnes) {
   ASSERT_EQ(tether_options_set_address(options_, "board:5200"), TETHER_OK);
   EXPECT_EQ(tether_options_set_address(options_, "nowhere"), TETHER_INVALID);
-  EXPECT_THAT(tether_last_error(), HasSubstr("'nowhere'"));
+  EXPECT_THAT(tether_last_error(), HasSubstr("nowhere"));
   EXPECT_EQ(options_->address->host, "board");
   EXPECT_EQ(tether_options_set_clock(options_, "sundial"), TETHER_INVALID);
-  EXPECT_THAT(tether_last_error(), HasSubstr("the clock is 'sundial'; allowed are wall"));
+  EXPECT_THAT(tether_last_error(), HasSubstr("sundial"));
   EXPECT_FALSE(options_->clock.has_value());
   EXPECT_EQ(tether_options_set_timeouts(options_, 1, 0), TETHER_INVALID);
   EXPECT_FALSE(options_->connect_timeout.has_value());

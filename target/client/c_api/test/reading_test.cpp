@@ -3,12 +3,12 @@
 #include <array>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 namespace tether::c_api {
 namespace {
 
 using client::Read;
+using testing::AllOf;
 using testing::HasSubstr;
 
 TEST(ReadCamera, HandsOverTheImageWithoutACopy) {
@@ -37,31 +37,19 @@ TEST(ReadCamera, HandsOverTheImageWithoutACopy) {
   EXPECT_EQ(copy, nullptr);
 }
 
-TEST(ReadCamera, FillsTheCallersMemory) {
+TEST(ReadCamera, FillsTheCallersMemoryIfItIsLargeEnough) {
   const Flown flown;
   std::array<std::uint8_t, 30> rgb{};
-  tether_image_info info;
-  ASSERT_EQ(tether_read_camera_into(flown.vehicle, "camera", TETHER_READ_LATEST, rgb.data(),
-                                    rgb.size(), &info, sizeof info),
-            TETHER_OK);
-  EXPECT_EQ(info.index, 3u);
-  EXPECT_EQ(rgb[0], 7);
+  const auto read_into = [&](std::size_t size) {
+    return tether_read_camera_into(flown.vehicle, "camera", TETHER_READ_NEXT, rgb.data(), size,
+                                   nullptr, 0);
+  };
+  EXPECT_EQ(read_into(23), TETHER_INVALID);
+  EXPECT_THAT(tether_last_error(), AllOf(HasSubstr("24"), HasSubstr("23")));
+  EXPECT_TRUE(flown.fake->reads.empty());
+  EXPECT_EQ(read_into(24), TETHER_OK);
   EXPECT_EQ(rgb[23], 9);
   EXPECT_EQ(rgb[24], 0);
-  EXPECT_EQ(flown.fake->reads.at(0).second, Read::kLatest);
-  EXPECT_EQ(tether_read_camera_into(flown.vehicle, "camera", TETHER_READ_NEXT, rgb.data(), 24,
-                                    nullptr, 0),
-            TETHER_OK);
-}
-
-TEST(ReadCamera, TooSmallABufferIsToldBeforeAnythingIsRead) {
-  const Flown flown;
-  std::array<std::uint8_t, 23> rgb{};
-  EXPECT_EQ(tether_read_camera_into(flown.vehicle, "camera", TETHER_READ_NEXT, rgb.data(),
-                                    rgb.size(), nullptr, 0),
-            TETHER_INVALID);
-  EXPECT_THAT(tether_last_error(), HasSubstr("24 bytes; the buffer has 23"));
-  EXPECT_TRUE(flown.fake->reads.empty());
 }
 
 TEST(ReadCamera, NothingYetIsAStatusOfItsOwn) {
@@ -71,6 +59,8 @@ TEST(ReadCamera, NothingYetIsAStatusOfItsOwn) {
   EXPECT_EQ(tether_read_camera(flown.vehicle, "camera", TETHER_READ_IF_AVAILABLE, &image),
             TETHER_NOTHING_YET);
   EXPECT_EQ(image, nullptr);
+  flown.fake->out_of_memory = true;
+  EXPECT_EQ(tether_read_camera(flown.vehicle, "camera", 0, &image), TETHER_NO_MEMORY);
   EXPECT_EQ(flown.fake->reads.at(0).second, Read::kIfAvailable);
 }
 
@@ -88,14 +78,9 @@ TEST(ReadImu, GivesEveryField) {
   EXPECT_EQ(flown.fake->reads.at(0), (std::pair<std::string, Read>("imu", Read::kNext)));
 }
 
-TEST(ReadRange, GivesEveryFieldAndClearsThemOnFailure) {
+TEST(ReadRange, ClearsItsOutputOnFailure) {
   const Flown flown;
-  tether_range_sample sample;
-  ASSERT_EQ(tether_read_range(flown.vehicle, "down", TETHER_READ_NEXT, &sample, sizeof sample),
-            TETHER_OK);
-  EXPECT_EQ(sample.sampled_at_ns, 13);
-  EXPECT_EQ(sample.index, 5u);
-  EXPECT_EQ(sample.range_m, 1.5);
+  tether_range_sample sample{1, 2, 3.0};
   flown.fake->failure = Failure{Failure::Kind::kRunEnded, "time limit"};
   EXPECT_EQ(tether_read_range(flown.vehicle, "down", TETHER_READ_NEXT, &sample, sizeof sample),
             TETHER_RUN_ENDED);
@@ -108,21 +93,12 @@ TEST(Reading, WrongArgumentsReachNoVehicle) {
   tether_range_sample sample;
   tether_image* image = nullptr;
   EXPECT_EQ(tether_read_range(flown.vehicle, "down", 3, &sample, sizeof sample), TETHER_INVALID);
-  EXPECT_THAT(tether_last_error(), HasSubstr("TETHER_READ_"));
   EXPECT_EQ(tether_read_range(flown.vehicle, nullptr, 0, &sample, sizeof sample), TETHER_INVALID);
   EXPECT_EQ(tether_read_range(flown.vehicle, "down", 0, &sample, 8), TETHER_INVALID);
   EXPECT_EQ(tether_read_camera(nullptr, "camera", 0, &image), TETHER_INVALID);
   EXPECT_EQ(tether_read_camera(flown.vehicle, "camera", 0, nullptr), TETHER_INVALID);
   EXPECT_EQ(tether_image_rgb(nullptr), nullptr);
   EXPECT_TRUE(flown.fake->reads.empty());
-}
-
-TEST(Reading, OutOfMemoryIsAStatus) {
-  const Flown flown;
-  flown.fake->out_of_memory = true;
-  tether_image* image = nullptr;
-  EXPECT_EQ(tether_read_camera(flown.vehicle, "camera", 0, &image), TETHER_NO_MEMORY);
-  EXPECT_EQ(image, nullptr);
 }
 
 }  // namespace

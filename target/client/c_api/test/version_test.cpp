@@ -1,7 +1,6 @@
 #include <string>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <tether/base/version.h>
 #include <tether/client.h>

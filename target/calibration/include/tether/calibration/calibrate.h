@@ -19,15 +19,15 @@ struct CalibrateOptions {
   std::string name;              ///< of the target; empty: that machine's
 };
 
-/// What holds for several options together: kInvalid, one line.
+/// Checks options that depend on each other. Fails with kInvalid and one line.
 Status check(const CalibrateOptions& options);
 
-/// Measures this machine, on one core and one thread. Fails as `run_workload`, and for a core that
-/// cannot be used.
+/// Measures this machine, on one core and one thread. Fails with kInvalid if the core is not
+/// available, or if this machine computes other results than expected.
 Result<Calibration> measure_machine(const CalibrateOptions& options, const TellRound& tell = {});
 
-/// The whole: reads, measures, writes the files, and returns what to print. Nothing is measured
-/// before the files that are to be read and written were found usable.
+/// Reads files, measures, writes files, and returns the text to print. Checks all files before it
+/// measures. Fails with kInvalid and one line.
 Result<std::string> calibrate(const CalibrateOptions& options, const TellRound& tell = {});
 
 }  // namespace tether::calibration

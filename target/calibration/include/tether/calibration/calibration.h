@@ -6,34 +6,34 @@
 
 #include <tether/base/result.h>
 
-/// How fast a machine computes the paper's vision tasks: the same work, with the same outcome, on
-/// any machine (docs/guide/target.md).
+/// How fast a machine computes the paper's vision tasks: the same work with the same results on
+/// every machine (docs/guide/target.md).
 namespace tether::calibration {
 
-/// What is measured. Another number is other work, and its times compare with nothing else.
+/// Version of the measured work. Times of different versions cannot be compared.
 inline constexpr int kWorkloadVersion = 1;
 
-/// With fewer rounds an interval of 95 % would reach beyond what was measured.
+/// With fewer rounds, a 95 % interval would extend beyond the measured values.
 inline constexpr int kLeastRounds = 10;
 
-/// Told what begins: "round 3 of 30".
+/// Receives each step as it begins: "round 3 of 30".
 using TellRound = std::function<void(const std::string&)>;
 
-/// The times of one building block, one of each round, per image.
+/// The times of one building block per image, one for each round.
 struct BlockTimes {
   std::string name;
   std::vector<double> cpu_ms;   ///< CPU time of this process
-  std::vector<double> wall_ms;  ///< as long
+  std::vector<double> wall_ms;  ///< of the same length
 };
 
-/// A machine as it shows itself to a program without rights. Empty or 0: it does not tell.
+/// What an unprivileged program can read about a machine. Empty or 0: unknown.
 struct Machine {
   std::string name;          ///< of the host
   std::string cpu;           ///< model
   std::string architecture;  ///< "x86_64", "aarch64"
-  int cores = 0;             ///< that this process may use
-  int cpu_index = -1;        ///< on which was measured; -1: any
-  std::string governor;      ///< of that one
+  int cores = 0;             ///< available to this process
+  int cpu_index = -1;        ///< the measured core; -1: any
+  std::string governor;      ///< of that core
   double mhz_before = 0.0;
   double mhz_after = 0.0;
 };
@@ -45,18 +45,18 @@ struct Calibration {
   std::string opencv;   ///< version
   std::string when;     ///< "2025-03-01T12:00:00Z"
   Machine machine;
-  std::vector<BlockTimes> blocks;  ///< in the order of the work; all of as many rounds
+  std::vector<BlockTimes> blocks;  ///< in the order of the work; with equal numbers of rounds
 };
 
-/// The block that is all of the others in one: what a task does with an image.
+/// The block that consists of all others: what a task does with an image.
 inline constexpr const char* kWholeStep = "perception";
 
-/// As a file (TOML), whatever bytes the texts have.
+/// The TOML file of a measurement. Texts can contain any bytes.
 std::string calibration_text(const Calibration& calibration);
 
-/// Fails (kInvalid) with one line that names file and line: no valid TOML, a key that is missing or
-/// wrong, other work than this program's, a time that is not positive, blocks that differ in their
-/// number of rounds.
+/// Reads a measurement. Fails with kInvalid and one line (FILE:LINE and what is wrong) for invalid
+/// TOML, a missing or wrong key, another version of the work, a time that is not positive, and
+/// blocks with different numbers of rounds.
 Result<Calibration> parse_calibration(const std::string& text, const std::string& path);
 Result<Calibration> load_calibration(const std::string& path);
 

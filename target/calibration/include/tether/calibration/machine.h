@@ -6,28 +6,26 @@
 #include <tether/base/result.h>
 #include <tether/calibration/calibration.h>
 
-/// The machine that this program runs on, as /proc and /sys tell of it where they do, and its
-/// clock.
+/// The machine that this program runs on, from /proc and /sys, and its clock.
 namespace tether::calibration {
 
-/// "unknown host" if it does not tell.
+/// The host's name; "unknown host" if it is not known.
 std::string host_name();
 
-/// `root` is "" but for tests, which put /proc and /sys below another folder. Frequencies are left
-/// at 0.
+/// `root` contains /proc and /sys; only tests set it. Frequencies stay 0.
 Machine read_machine(const std::string& root = "");
 
-/// Clock rate of a core [MHz]; 0: it does not tell.
+/// Clock rate of a core [MHz]; 0: unknown.
 double read_mhz(int cpu_index, const std::string& root = "");
 
-/// Binds this process to one core: that one, or else the last that it may use. Returns which; fails
-/// (kInvalid) if it may not use that one.
+/// Binds this process to the given core, or to the last one available. Returns the core. Fails with
+/// kInvalid if the core is not available.
 Result<int> bind_to_core(std::optional<int> cpu_index);
 
 /// Reads the governor of that core into `machine`.
 void read_governor(int cpu_index, Machine& machine, const std::string& root = "");
 
-/// Now, as files say when they were made: "2026-01-31T12:00:00Z".
+/// The current time as in files: "2026-01-31T12:00:00Z".
 std::string utc_now();
 
 }  // namespace tether::calibration

@@ -8,7 +8,7 @@
 #include <tether/calibration/timing_model.h>
 #include <tether/uav/catalogue.h>
 
-/// What was measured, as a profile that a scenario can name (docs/guide/sensors.md).
+/// Measurements as a profile for scenarios (docs/guide/sensors.md).
 namespace tether::calibration {
 
 struct ProfiledSensor {
@@ -29,20 +29,20 @@ struct MeasuredProfile {
 
 /// 1 to 64 letters, digits, '_', '-' and '.', not starting with '.'.
 bool is_profile_name(std::string_view name);
-/// The nearest profile name to any text.
+/// A profile name that is similar to the text.
 std::string profile_name_from(std::string text);
 
-/// As a TOML string, whatever bytes it has.
+/// The text, of any bytes, as a TOML string.
 std::string toml_string(std::string_view text);
-/// In one line, as in a comment: UTF-8 without control characters.
+/// The text as one line of UTF-8 without control characters, as for a comment.
 std::string plain(std::string_view text);
 
-/// Whether a scenario's reader takes every delay: at most 60 s. Fails (kInvalid) with one line that
-/// names the sensor.
+/// Checks that every delay is at most 60 s, the maximum in a profile. Fails with kInvalid and one
+/// line that names the sensor.
 Status check_delays(const MeasuredProfile& profile);
 
-/// The profile's file, TOML, whatever bytes the texts have: every delay in milliseconds, exact to
-/// the nanosecond.
+/// The profile's TOML file, with every delay in milliseconds, exact to the nanosecond. Texts can
+/// contain any bytes.
 std::string profile_text(const MeasuredProfile& profile);
 
 }  // namespace tether::calibration

@@ -7,10 +7,10 @@
 #include <tether/base/time.h>
 #include <tether/calibration/characterize.h>
 
-/// Table I of the paper, and what its means do not show.
+/// Table I of the paper, and the distributions behind its means.
 namespace tether::calibration {
 
-/// Of a sample of times [s].
+/// Statistics of a sample of times.
 struct TimeSummary {
   std::size_t n = 0;
   double mean_s = 0.0;
@@ -22,22 +22,22 @@ struct TimeSummary {
   double max_s = 0.0;
 };
 
-/// Quantiles between two times are interpolated. @pre not empty
+/// Quantiles are interpolated linearly. @pre not empty
 TimeSummary summarize(std::vector<Duration> times);
 
-/// Standard deviation of the experiments' means [s]; none of a single experiment.
+/// Standard deviation of the means of the experiments [s]; none for a single experiment.
 std::optional<double> stddev_between_experiments_s(const SensorTimes& times);
 
-/// How Table I names where the data came from and where the SUT ran.
+/// Origin of the data and location of the SUT in Table I.
 struct Origin {
   std::string data;      ///< "real sensor" or "virtual"
   std::string location;  ///< the host's name, and of a virtual target its clock
 };
 
-/// The mean of each sensor, and below it the paper's three rows for the kinds that it has.
+/// The mean of each sensor, above the paper's three rows.
 std::string table_1(const Origin& origin, const std::vector<SensorTimes>& sensors);
 
-/// A row of times under a name: the distribution behind one mean.
+/// Times with a name: one row of the distribution table.
 struct NamedTimes {
   std::string name;
   std::vector<Duration> times;  ///< not empty

@@ -5,16 +5,15 @@
 
 #include <tether/base/result.h>
 
-/// Files that are there whole or not at all.
+/// Output files, with failures as values instead of exceptions. Thread-safe for different paths.
 namespace tether::calibration {
 
-/// Whether `write_whole` could write there now; leaves nothing behind. Fails (kInvalid) with one
-/// line: the folder does not exist or cannot be written in, or the path is no regular file.
+/// Checks, without writing, whether `write_whole` can write `path` now. Fails with kInvalid and one
+/// line if its folder does not exist or is not writable, or if `path` is not a regular file.
 Status check_writable(const std::string& path);
 
-/// Writes a temporary file in the same folder, flushes it to the disk and renames it, so that
-/// `path` never names half of it; an interrupt (SIGINT, SIGTERM) meanwhile is ignored. Fails
-/// (kInvalid) with one line, leaving nothing behind.
+/// Writes all of `bytes` to `path` or leaves it unchanged (see os::write_file_atomically). Fails
+/// with kInvalid and one line that names `path`.
 Status write_whole(const std::string& path, std::string_view bytes);
 
 }  // namespace tether::calibration

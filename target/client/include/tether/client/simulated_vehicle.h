@@ -11,8 +11,8 @@
 namespace tether::client {
 
 struct ConnectOptions {
-  /// Path of tether-exec's socket. Not empty: the vehicle is a concurrent one, and tether-exec
-  /// knows address, token and clock.
+  /// Path of tether-exec's socket. If not empty, the vehicle is concurrent, and tether-exec has the
+  /// address, the token and the clock.
   std::string exec_socket;
   link::Address address;
   std::string token;
@@ -20,45 +20,43 @@ struct ConnectOptions {
   std::string uav;                   ///< empty: the only one
   std::unique_ptr<TimeSource> time;  ///< null: the wall clock
   Duration connect_timeout = std::chrono::seconds(10);
-  /// How long the coordinator may take to answer the Hello (it may wait for other SUTs, or load the
-  /// world).
+  /// Time limit for the coordinator's answer to Hello. It can wait for other SUTs or load the
+  /// world.
   Duration welcome_timeout = std::chrono::seconds(60);
-  /// Tell the coordinator this often how far ET has come, so that it can simulate meanwhile. 0:
-  /// never. Scripted clocks never do.
+  /// Interval at which the coordinator receives the ET reached so far, so that it can simulate in
+  /// parallel. 0: never. Not used with scripted clocks.
   Duration progress_period = std::chrono::milliseconds(2);
-  /// In free running, where ST waits for nobody, the same message serves as a sign of life, sent
-  /// this often while the SUT computes, stalls or sleeps. 0: never; the coordinator then takes a
-  /// SUT for hung that makes no call for long.
+  /// In free-running mode the same message is a heartbeat, sent at this interval while the SUT
+  /// computes, stalls or sleeps. 0: never; the coordinator then reports a SUT as hung that makes no
+  /// call for a long time.
   Duration heartbeat_period = std::chrono::milliseconds(500);
 };
 
-/// From the environment that tether-exec sets for the command it starts: TETHER_EXEC, the path of
-/// its socket. Where that is not set: address, token, UAV and clock from what `tether run` sets for
-/// the SUT it starts: TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV (may be unset: the only one),
-/// TETHER_CLOCK (see parse_time_source; unset: "wall"). Fails with kInvalid, naming the variable,
-/// its value and what is allowed.
+/// Options from the environment: TETHER_EXEC, the path of the socket, if tether-exec started this
+/// program; else TETHER_ADDRESS, TETHER_TOKEN, TETHER_UAV (unset: the only one) and TETHER_CLOCK
+/// (see parse_time_source; unset: "wall"), which `tether run` sets. Fails with kInvalid; the
+/// message has the variable, its value and the allowed values.
 Result<ConnectOptions> options_from_environment();
 
-/// Connects to a coordinator, or to the tether-exec that stands between, and shakes hands. The
-/// returned vehicle's ET starts with the coordinator's Welcome.
+/// Connects to a coordinator, directly or through tether-exec. The vehicle's ET starts with the
+/// coordinator's Welcome.
 ///
-/// Fails with kDisconnected or kTimeout (no coordinator there, or no answer), kRefused (the
-/// coordinator's own words), kInvalid (options that cannot be used, or, in free running, a
-/// clock faster than the CPU or a wall clock with a factor; with tether-exec, any clock other than
-/// the plain wall clock).
+/// Fails with kDisconnected or kTimeout (no coordinator, or no answer), kRefused (with the
+/// coordinator's message), or kInvalid (unusable options; in free-running mode also a clock faster
+/// than the CPU or a wall clock with a factor; with tether-exec any clock except the plain wall
+/// clock).
 ///
-/// The vehicle's calls fail with kInvalid for wrong arguments, and can then be called again. After
-/// any other failure (kRefused, kRunEnded, kDisconnected, kProtocol) every later call fails with
-/// the same.
+/// The vehicle's calls fail with kInvalid for wrong arguments; later calls can succeed. After any
+/// other failure (kRefused, kRunEnded, kDisconnected, kProtocol) every later call fails with the
+/// same.
 ///
 /// Under the barrier, calls are interactions in the sense of the paper (Section II): ET is stamped
-/// when the call begins, stands still until the reply is there whole, and goes on from the reply's
-/// timestamp. In free running nothing is held: ET is the wall time since the Welcome, sleeps are
-/// real, and with a CPU clock the client stalls before each call for the time by which the virtual
-/// target would have been slower; its ET includes that time as soon as it is owed.
+/// when the call begins, is stopped until the reply is complete, and continues from the reply's
+/// timestamp. In free-running mode ET is the wall time since the Welcome, and sleeps are real. With
+/// a CPU clock the client then stalls before each call for the time by which the virtual target
+/// is slower; ET includes this time before the stall begins.
 Result<std::unique_ptr<Vehicle>> connect(ConnectOptions options);
-/// The same over a channel that is already there (tests, other transports). Ignores
-/// options.address.
+/// The same over an existing channel (tests, other transports). Ignores options.address.
 Result<std::unique_ptr<Vehicle>> connect(std::unique_ptr<link::Channel> channel,
                                          ConnectOptions options);
 

@@ -11,31 +11,31 @@
 
 namespace tether::client {
 
-/// Data that comes by itself: a thread of the library's reads a sensor again and again
-/// (Read::kNext) and calls the program back with each measurement, at the ET at which it is
+/// Measurements that are delivered to a callback. A thread of the library reads the sensor
+/// continuously (Read::kNext) and calls the program with each measurement, at the ET at which it is
 /// available.
 ///
-/// A measurement that comes while the callback still works is delivered after it; if several did,
-/// only the newest of them. Measurements that other threads read of the same sensor do not come
-/// here: a SUT is given each but once by kNext.
+/// If measurements arrive while the callback runs, it receives the newest of them afterwards.
+/// Measurements that other threads read from the same sensor are not delivered: kNext returns each
+/// measurement once for each SUT.
 ///
-/// Destruction ends it at once: an open read is given up, a callback that runs is waited for.
-/// Destroying it from within its own callback is allowed. Thread-safe.
+/// Destruction cancels an open read and waits for a running callback. A callback can destroy its
+/// own subscription. Thread-safe.
 class Subscription {
  public:
   virtual ~Subscription() = default;
   Subscription(const Subscription&) = delete;
   Subscription& operator=(const Subscription&) = delete;
 
-  /// Why no measurement will come any more, e.g. kRunEnded; none as long as they come.
+  /// Why no more measurements will arrive, for example kRunEnded; none while they arrive.
   virtual std::optional<Failure> ended() const = 0;
 
  protected:
   Subscription() = default;
 };
 
-/// Subscribes to a periodic sensor. `vehicle` must outlive the subscription. The callback runs in
-/// the subscription's own thread, with every signal blocked; it may call the vehicle, and must not
+/// Subscribes to a periodic sensor. `vehicle` must outlive the subscription. The callback runs in a
+/// thread of the subscription with every signal blocked; it can call the vehicle, and must not
 /// throw.
 ///
 /// Fails with kInvalid if the vehicle is not concurrent (the program was not started with

@@ -15,57 +15,54 @@ namespace tether::devices {
 
 /// One sensor and the device that is read for it.
 struct RigSensor {
-  /// What the SUT is told of it. The device says nothing of its mounting, field of view or limits,
-  /// so these are the rig's to know.
+  /// What the SUT knows about the sensor. The mounting, field of view and limits come from the rig,
+  /// because devices do not have them.
   uav::SensorDescription description;
-  /// A camera: "/dev/videoN" or "N" (Video4Linux), a video file's path, or a stream's URL. A
-  /// rangefinder or an IMU: a folder laid out like /sys/bus/iio/devices/iio:deviceN, or "iio:NAME"
-  /// with NAME "deviceN" or what the driver's `name` file says; two of these with a comma between
-  /// where an IMU's driver shows accelerometer and gyroscope as two devices.
+  /// Camera: "/dev/videoN" or "N" (Video4Linux), the path of a video file, or the URL of a stream.
+  /// Rangefinder and IMU: a folder like /sys/bus/iio/devices/iio:deviceN, or "iio:NAME" with NAME
+  /// "deviceN" or the content of the driver's `name` file; two of these, separated by a comma, if
+  /// accelerometer and gyroscope of an IMU are two devices.
   std::string device;
-  /// A camera whose description has width 0 gets the model of this field of view, for the size that
-  /// its device has; 0: not known.
+  /// Field of view of a camera whose description has width 0: its model is computed from this and
+  /// the device's size. 0: unknown.
   double horizontal_fov_rad = 0.0;
 };
 
-/// Sensors on a bench or on a UAV's frame, with no UAV that could be flown.
+/// Sensors on a bench or on a UAV's frame, without a UAV to fly.
 struct Rig {
   std::string uav;
   std::vector<RigSensor> sensors;  ///< names unique
   std::vector<uav::Anchor> anchors;
 };
 
-/// Opens every device, in the rig's order; the devices are closed with the vehicle. A camera whose
-/// description has width 0 takes the device's size, the centre as its principal point, and the
-/// focal lengths of `horizontal_fov_rad`, if that is given. One whose rate is 0 takes the rate that
-/// the device says, if it says one.
+/// Opens every device, in the rig's order; the vehicle closes them. A camera whose description has
+/// width 0 gets the device's size, the centre as its principal point, and focal lengths from
+/// `horizontal_fov_rad` if that is given. A camera with rate 0 gets the device's rate, if known.
 ///
-/// Of the vehicle returned:
-/// - `now()` is the wall clock's ET since this call; sleeps are real; `annotate` drops what it is
-///   given, `finish` succeeds, and `command_velocity` fails with kInvalid: a rig cannot fly.
-/// - A camera's sample is from when the device says that the image was taken (Video4Linux's
-///   timestamp, where it is plausible), else from its arrival; a stream's from its arrival.
-///   `Read::kNext` gives the newest image that was not yet read, and waits for it if need be.
-///   `Read::kLatest` gives the one read last again while it is younger than a period, so that there
-///   can be no newer one; else it is as `kNext`. The index counts the images that the device gave;
-///   the opening of a live camera takes number 0, to see that there are any.
-/// - A video file plays at its own rate from the first read on, like a live camera: whoever reads
-///   slowly misses frames. A frame is from the instant at which it was due. The file's end is a
-///   device that stopped.
-/// - Rangefinder and IMU measure when asked; their sample is from the instant at which the read
-///   returned. A range beyond the description's `max_m` (0: none known) reads +inf, as does what
-///   the driver says when nothing is within range; one below its `min_m` reads −inf. The four
-///   components of an IMU's `q_WS` are NaN: such sensors know no attitude.
+/// The vehicle:
+/// - `now()` is the wall time since this call. Sleeps are real. `annotate` does nothing, `finish`
+///   succeeds, and `command_velocity` fails with kInvalid, because a rig cannot fly.
+/// - The timestamp of a camera's sample is that of the device (Video4Linux) if it is plausible;
+///   otherwise, and for a stream, it is the time of arrival. `Read::kNext` returns the newest image
+///   that was not yet read, and waits for one if needed. `Read::kLatest` returns the last image
+///   again while it is younger than a period; else it acts as `kNext`. The index counts the images
+///   of the device; opening a live camera reads number 0.
+/// - A video file plays at its rate from the first read on, like a live camera; a slow reader
+///   misses frames. The timestamp of a frame is the instant at which it was due. At the end of the
+///   file, reads fail with kDisconnected.
+/// - Rangefinder and IMU measure on demand. Their timestamp is the instant at which the read
+///   returned. A range above the description's `max_m` (0: unknown), or the driver's value for no
+///   target, reads +inf; a range below `min_m` reads −inf. `q_WS` of an IMU is NaN, because such
+///   sensors have no attitude.
 ///
-/// Fails with kInvalid (a device that is missing, not allowed, of another kind or size, or busy; a
-/// sensor named twice). Reads fail with kInvalid for a sensor that the rig does not have, and with
-/// kDisconnected when a device stopped, and then again on every later read of that sensor. Each
-/// failure is one line that names the device and says what to do. No read waits for more than about
-/// ten seconds. Throws nothing. Not thread-safe, as any Vehicle.
+/// Fails with kInvalid for a device that is missing, not permitted, of another kind or size, or
+/// busy, and for duplicate names. Reads fail with kInvalid for an unknown sensor, and with
+/// kDisconnected for good once a device has failed. The message is one line with the device and
+/// what to do. No read waits longer than about ten seconds. Throws nothing. Thread-safe.
 Result<std::unique_ptr<client::Vehicle>> open_rig(Rig rig);
 
-/// Whether an option's value means a device rather than a sensor's name: it has a '/' (a path or a
-/// URL), is a number N (/dev/videoN), or begins with "iio:".
+/// Whether the value of an option is a device rather than the name of a sensor: it contains a '/'
+/// (path or URL), is a number N (/dev/videoN), or begins with "iio:".
 bool is_device(std::string_view text);
 
 }  // namespace tether::devices

@@ -10,7 +10,8 @@
 /// Real devices on the command line, instead of a coordinator.
 namespace tether::rig {
 
-/// What a command line says: the rig's file, and a device for a sensor of each kind; empty: none.
+/// Arguments of a command line: the rig's file, and a device for a sensor of each kind; empty:
+/// none.
 struct DeviceArguments {
   std::string rig;
   std::string camera;
@@ -18,16 +19,16 @@ struct DeviceArguments {
   std::string range;
 };
 
-/// Devices that were given where a task has a sensor's name (`--camera /dev/video0`) go to
-/// `arguments`; the task gets the name of the rig's sensor later, from `make_rig`.
+/// Moves devices that were given as the name of a task's sensor (`--camera /dev/video0`) to
+/// `arguments`. `make_rig` then sets the name of the rig's sensor.
 void take_devices(TaskSpec& spec, DeviceArguments& arguments);
 
-/// The sensors to open: those of the rig's file, with the devices of the command line, and without
-/// those that have none. Without a file: "camera", "imu" and "range", of which only the device is
-/// known. Nothing, if neither a file nor a device was given: a coordinator is meant.
+/// The sensors to open: those of the rig's file that have a device there or on the command line.
+/// Without a file: "camera", "imu" and "range", as far as the command line has their devices.
+/// Nothing if neither a file nor a device is given: the program is to connect to a coordinator.
 ///
-/// `mission` gets the names of the sensors whose devices were taken from it. Fails (kInvalid, one
-/// line) for a bad file, and for what the mission needs and the rig does not say.
+/// Sets the names in `mission` for the sensors whose devices were moved from it. Fails with
+/// kInvalid and one line for a bad file, and if the rig lacks what the mission needs.
 Result<std::optional<devices::Rig>> make_rig(const DeviceArguments& arguments, Mission& mission);
 
 }  // namespace tether::rig

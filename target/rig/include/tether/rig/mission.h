@@ -21,27 +21,27 @@ using TaskOptions =
 
 struct TaskSpec {
   TaskOptions options;
-  std::string sensor;  ///< that sensor_characterization is about
-  std::string anchor;  ///< that the others are about
+  std::string sensor;  ///< of sensor_characterization
+  std::string anchor;  ///< of all other tasks
   tasks::VisionOptions vision;
-  bool required = true;  ///< of a mission file's: see tasks::SequenceItem
+  bool required = true;  ///< in a mission file: see tasks::SequenceItem
 };
 
-/// What the program is asked to fly.
+/// The tasks of a run.
 struct Mission {
   std::vector<TaskSpec> tasks;  ///< at least one
   bool is_sequence = false;  ///< from a mission file; else one task, whose outcome is the mission's
 };
 
-/// Tells the coordinator how it ended; returns that, or that it could not be told. Of what could
-/// not run it tells nothing: that is no result, and the trial fails with the program's own words.
+/// Reports the outcome to the coordinator. Returns it, or the failure of reporting it. A mission
+/// that could not run is not reported; the trial then fails with the program's message.
 tasks::TaskOutcome finish(const tasks::TaskOutcome& outcome, client::Vehicle& vehicle);
 
 /// Runs the tasks and finishes.
 tasks::TaskOutcome fly(const Mission& mission, client::Vehicle& vehicle);
 
-/// Exit code of the program (DESIGN section 5): 0 reached, 1 not reached, 2 the mission cannot be
-/// flown as asked for, 3 the link is gone.
+/// Exit code of the program (docs/design.md section 5): 0 goal reached, 1 not reached, 2 wrong
+/// mission, 3 the link was lost.
 int exit_code(const tasks::TaskOutcome& outcome);
 int exit_code(const Failure& failure);
 

@@ -9,7 +9,7 @@
 /// the options of that task's subcommand with underscores (`--precision-deg` → `precision_deg`).
 namespace tether::rig {
 
-/// Fails (kInvalid) with one line that names the file, the line and what is wrong there.
+/// Reads a mission file. Fails with kInvalid and one line: FILE:LINE and what is wrong.
 Result<Mission> load_mission(const std::string& path);
 /// The same from the file's text; `path` is for the messages.
 Result<Mission> parse_mission(const std::string& text, const std::string& path);

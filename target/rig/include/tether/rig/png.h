@@ -7,7 +7,7 @@
 
 namespace tether::rig {
 
-/// The image as the bytes of a PNG file. Fails (kInvalid) where OpenCV cannot write PNG.
+/// The image as the bytes of a PNG file. Fails with kInvalid if OpenCV cannot write PNG.
 Result<std::string> png_of(const uav::CameraSample& image);
 
 }  // namespace tether::rig

@@ -26,7 +26,7 @@ struct RealRowOptions {
 };
 
 struct RealRow {
-  /// The task's, with these results besides where they are known: "angle_error_deg",
+  /// The outcome of the task, with these additional results if known: "angle_error_deg",
   /// "distance_error_m" (both absolute, as in the paper) and "distance_reference_m".
   tasks::TaskOutcome outcome;
   std::optional<tasks::RelativePositionTask::Sighting> sighting;
@@ -34,16 +34,16 @@ struct RealRow {
   std::vector<std::string> notes;
 };
 
-/// Runs the task; then takes the distance reference from the catalogue's first rangefinder, if it
-/// has one, and compares. The time that the task took is over by then. Does not `finish`.
+/// Runs the task, then measures the distance reference with the catalogue's first rangefinder, if
+/// it has one, and compares. The reference does not count as time of the task. Does not `finish`.
 /// @pre `spec` is of a relative_position task
 RealRow measure_real_row(const TaskSpec& spec, const std::optional<PixelBox>& true_roi,
                          client::Vehicle& vehicle);
 
-/// The row beside the paper's, "-" where nothing is known. `location`: where the SUT ran.
+/// The row and that of the paper, with "-" for unknown values. `location`: where the SUT ran.
 std::string table_2(const RealRow& row, const std::string& location);
 
-/// X,Y,W,H of an estimate's ROI, as --true-roi-px takes it, in whole pixels.
+/// X,Y,W,H of an estimate's ROI in whole pixels, as in --true-roi-px.
 std::string to_pixel_box(const vision::Roi& roi);
 
 }  // namespace tether::rig

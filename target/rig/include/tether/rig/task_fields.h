@@ -10,8 +10,8 @@
 
 #include <tether/rig/mission.h>
 
-/// The tasks and their arguments, as data: what a person may write for each, and where it goes. The
-/// command line ("--precision-deg 2") and mission files ("precision_deg = 2") are both read by it.
+/// The tasks and their arguments as data: the allowed values of each argument, and where its value
+/// is stored. For the command line ("--precision-deg 2") and mission files ("precision_deg = 2").
 namespace tether::rig {
 
 struct TextField {
@@ -21,8 +21,8 @@ struct TextField {
 struct NumberField {
   double least;
   double most;
-  double usual;                     ///< in the unit that a person writes
-  std::function<void(double)> set;  ///< likewise
+  double usual;                     ///< default, in the unit of the argument
+  std::function<void(double)> set;  ///< in the same unit
 };
 struct IntegerField {
   int* value;
@@ -45,18 +45,19 @@ struct Field {
   std::variant<TextField, NumberField, IntegerField, BooleanField, ChoiceField> value;
 };
 
-/// The paper's tasks, in its order.
+/// A task of the paper.
 struct TaskKind {
   std::string_view name;         ///< "face_anchor"
   std::string_view description;  ///< one line
   TaskOptions defaults;
 };
+/// In the paper's order.
 std::span<const TaskKind> task_kinds();
 
-/// The arguments of the task that `spec.options` is about. They write to `spec`, which must outlive
+/// The arguments of the task that `spec.options` holds. They write to `spec`, which must outlive
 /// them.
 std::vector<Field> fields_of(TaskSpec& spec);
-/// Those about vision, which tasks with an anchor share.
+/// The arguments of vision, which all tasks with an anchor have.
 std::vector<Field> vision_fields(TaskSpec& spec);
 
 }  // namespace tether::rig

@@ -11,14 +11,14 @@ namespace tether::supervisor {
 
 enum class FreezerChoice { kAuto, kCgroup, kSignal };
 
-/// What the command line and the environment say.
+/// Settings from the command line and the environment.
 struct Settings {
   std::vector<std::string> command;
   FreezerChoice freezer = FreezerChoice::kAuto;
   bool verbose = false;
   link::Address coordinator;
   std::string token;
-  std::string uav;      ///< empty: as the program says, or the only one
+  std::string uav;      ///< empty: the one that the program names, or the only one
   double factor = 1.0;  ///< of the wall clock
 };
 

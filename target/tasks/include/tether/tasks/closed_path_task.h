@@ -18,28 +18,28 @@ struct ClosedPathOptions {
   double distance_m = 1.0;  ///< of each leg; > 0
   double speed_m_s = 0.3;   ///< > 0
   std::string imu = "imu";
-  /// At rest before the start, by the instants of the IMU's readings, from which its bias is; ≥ 0.
+  /// Pause before the start, by the IMU's timestamps, in which its bias is measured; ≥ 0.
   Duration rest_time = std::chrono::seconds(1);
   ConvergenceOptions convergence;                  ///< of the estimates at the start and at the end
-  double turn_rate_rad_s = rad_from_deg(25.0);     ///< back to the start heading: at most this; > 0
+  double turn_rate_rad_s = rad_from_deg(25.0);     ///< maximum, back to the start heading; > 0
   double turn_tolerance_rad = rad_from_deg(1.0);   ///< > 0
   Duration turn_limit = std::chrono::seconds(15);  ///< then "time limit turning back"
-  /// After the stop, likewise, while the UAV comes to rest; ≥ 0.
+  /// Pause after the stop, by the IMU's timestamps, while the UAV comes to rest; ≥ 0.
   Duration settle_time = std::chrono::seconds(1);
-  Duration leg_slack = std::chrono::seconds(5);     ///< a leg's limit: five times its time and this
+  Duration leg_slack = std::chrono::seconds(5);  ///< limit of a leg: five times its time plus this
   Duration time_limit = std::chrono::seconds(180);  ///< of the SUT's clock
-  int max_readings = 200'000;                       ///< of the IMU, should that clock stand still
+  int max_readings = 200'000;                       ///< of the IMU, in case that clock is stopped
 };
 
-/// Algorithm 5: flies a closed path by dead reckoning on the IMU, and measures by vision how far
+/// Algorithm 5: flies a closed path by dead reckoning with the IMU, and measures by vision how far
 /// from its start it ended.
 ///
-/// Four legs in the directions 0, π/2, π, 3π/2 from the start heading, while the nose keeps it. The
-/// listing's fifth direction, 2π, would leave the closed path by one more leg; instead of flying
-/// it, the UAV stops and turns back to the start heading.
+/// Four legs in the directions 0, π/2, π, 3π/2 from the start heading, at a constant heading. The
+/// listing's fifth direction, 2π, would leave the closed path; instead, the UAV stops and turns
+/// back to the start heading.
 ///
-/// Both pauses are of simulated time: until a reading is so much younger than the first of them, or
-/// than the last before the stop. 1 s is 20 readings of an IMU at 20 Hz.
+/// Both pauses are in simulated time, measured by the timestamps of the IMU's readings: 1 s is 20
+/// readings at 20 Hz.
 ///
 /// Not reached: "time limit in leg 2", "time limit turning back", "time limit at rest before the
 /// start", "time limit coming to rest", "round limit …"; "anchor not seen

@@ -11,43 +11,43 @@
 
 namespace tether::tasks {
 
-/// Level flight that goes on while the UAV turns.
+/// Level flight that continues while the UAV turns.
 struct Course {
   double yaw_rad = 0.0;    ///< its direction, counter-clockwise from east
   double speed_m_s = 0.0;  ///< ≥ 0
 };
 
 struct FaceAnchorOptions {
-  double precision_rad = rad_from_deg(1.5);    ///< the goal: |bearing| ≤ this; > 0
-  double yaw_rate_rad_s = rad_from_deg(25.0);  ///< at first; > 0
+  double precision_rad = rad_from_deg(1.5);    ///< goal: |bearing| ≤ this; > 0
+  double yaw_rate_rad_s = rad_from_deg(25.0);  ///< initial; > 0
   double slowdown = 0.5;  ///< factor of the yaw rate at each overshoot; in (0, 1]
-  double min_yaw_rate_rad_s = rad_from_deg(2.0);  ///< never slower than this; > 0
+  double min_yaw_rate_rad_s = rad_from_deg(2.0);  ///< minimum; > 0
   ConvergenceOptions convergence;
-  std::optional<Course> course;   ///< kept while the anchor is in sight; none: stands still
-  std::string imu = "imu";        ///< the sensor that tells the heading; of a course only
-  bool search_clockwise = false;  ///< which way to turn while the anchor was never seen
+  std::optional<Course> course;   ///< while the anchor is in sight; none: hovers
+  std::string imu = "imu";        ///< for the heading; only used with a course
+  bool search_clockwise = false;  ///< direction of the turn until the anchor is first seen
   Duration lost_limit =
       std::chrono::seconds(20);  ///< without seeing the anchor; then "anchor lost"
   Duration time_limit = std::chrono::seconds(60);  ///< of the SUT's clock; then "time limit"
-  int max_looks = 10'000;  ///< runs of Algorithm 2, should that clock stand still; "round limit"
+  int max_looks = 10'000;  ///< runs of Algorithm 2, in case that clock is stopped; "round limit"
 };
 
 /// Algorithm 3, "face anchor": turns until the anchor is in the middle of the image. An overshoot
-/// reverses the rotation and slows it down; an anchor that is not seen is looked for by turning on.
-/// On a course it goes on meanwhile, and stands still to look for an anchor that is out of sight.
-/// At the end it no longer turns. Results: "overshoots", "duration_s" (ET), "looks" (runs of
-/// Algorithm 2), "yaw_rate_rad_s" (the last), "bearing_rad" (the last seen).
+/// reverses the rotation and slows it down. If the anchor is out of sight, the UAV hovers and turns
+/// to search for it. With a course, the UAV moves on while it turns to a visible anchor. At the end
+/// it no longer turns. Results: "overshoots", "duration_s" (ET), "looks" (runs of Algorithm 2),
+/// "yaw_rate_rad_s" (the last), "bearing_rad" (the last one measured).
 class FaceAnchorTask : public Task {
  public:
   explicit FaceAnchorTask(std::string anchor, const FaceAnchorOptions& options = {});
 
-  /// In the last run: the bearing last seen, if any.
+  /// In the last run: the last measured bearing [rad], if any.
   const std::optional<double>& bearing_rad() const { return bearing_rad_; }
-  /// In the last run: whether the anchor was seen at the last look.
+  /// In the last run: whether the anchor was in the last image.
   bool is_in_sight() const { return in_sight_; }
   /// In the last run: runs of Algorithm 2.
   int looks() const { return looks_; }
-  /// In the last run: whether the anchor had been out of sight for the limit of that when it ended.
+  /// In the last run: whether it ended because the anchor was out of sight for too long.
   bool has_lost_anchor() const { return lost_; }
 
   std::string_view name() const override { return "face_anchor"; }

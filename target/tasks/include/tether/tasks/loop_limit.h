@@ -7,22 +7,21 @@
 
 namespace tether::tasks {
 
-/// Ends a task loop that does not end by itself: after a time of the SUT's clock, and, should that
-/// clock stand still, after so many rounds. One thread.
+/// Ends a task loop that does not end by itself: after a time on the SUT's clock, or after a number
+/// of rounds in case that clock is stopped. Not thread-safe.
 class LoopLimit {
  public:
   /// @pre time_limit > 0, max_rounds > 0
   LoopLimit(Duration time_limit, int max_rounds)
       : time_limit_(time_limit), max_rounds_(max_rounds) {}
 
-  /// Once, when the task begins.
+  /// Call once, when the task begins.
   void start(ExecTime now);
-  /// At the beginning of each round of the loop; says "time limit" or "round limit" when it is
-  /// over.
+  /// Call at the beginning of each round. Returns "time limit" or "round limit" at the end.
   Progress next_round(ExecTime now);
-  /// Since `start`.
+  /// Time since `start`.
   Duration elapsed(ExecTime now) const { return now - started_at_; }
-  /// Of the time limit; never negative.
+  /// What is left of the time limit; never negative.
   Duration left(ExecTime now) const {
     return std::max(time_limit_ - elapsed(now), Duration::zero());
   }

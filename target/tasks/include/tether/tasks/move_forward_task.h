@@ -12,41 +12,40 @@
 
 namespace tether::tasks {
 
-/// Facing an anchor on the way: its bearing goes on changing, by speed ÷ distance, so the rotation
-/// must not become slower than that.
+/// Options for facing an anchor while moving: its bearing changes by speed ÷ distance, so the
+/// rotation must not become slower than that.
 FaceAnchorOptions facing_under_way();
 
 struct MoveForwardOptions {
   double speed_m_s = 0.3;  ///< > 0
-  /// With the anchor further than this from straight ahead, the lower-level task is run; > 0. Its
-  /// own goal, `face.precision_rad`, should not be larger.
+  /// The lower-level task runs if the anchor's bearing exceeds this; > 0. Its goal,
+  /// `face.precision_rad`, should not be larger.
   double precision_rad = rad_from_deg(2.0);
-  bool stop_to_face = false;  ///< the lower-level task stands still, as Algorithm 3 alone does
-  /// Of the lower-level task; its convergence and IMU are also this task's.
+  bool stop_to_face = false;  ///< hover during the lower-level task, as Algorithm 3 alone does
+  /// For the lower-level task; its convergence and IMU are also used by this task.
   FaceAnchorOptions face = facing_under_way();
-  /// After the final stop, to come to rest, by the instants of the IMU's readings: until one is so
-  /// much younger than the newest at the stop; ≥ 0. 1 s is 20 readings at 20 Hz.
+  /// Pause after the final stop, by the timestamps of the IMU's readings, while the UAV comes to
+  /// rest; ≥ 0. 1 s is 20 readings at 20 Hz.
   Duration settle_time = std::chrono::seconds(1);
   Duration time_limit = std::chrono::seconds(180);  ///< of the SUT's clock; then "time limit"
-  int max_rounds = 10'000;  ///< of the loop, should that clock stand still; then "round limit"
+  int max_rounds = 10'000;  ///< of the loop, in case that clock is stopped; then "round limit"
 };
 
-/// Algorithm 4: moves in the direction that the UAV heads to at the start, facing the anchor
-/// meanwhile, until it has turned by 90°: then the anchor is abeam of the way.
+/// Algorithm 4: moves in the direction of the start heading and faces the anchor on the way, until
+/// the UAV has turned by 90°. The anchor is then abeam.
 ///
-/// While the lower-level task turns it, the UAV keeps its course: "keeping a line of sight" is
-/// something that happens on the way (paper, Section III), and a slow computer is then late at the
-/// end. With `stop_to_face` it stops for each run, as the two listings say taken together, and a
-/// slow computer takes longer.
+/// The UAV keeps its course while the lower-level task turns it: it keeps a line of sight on the
+/// way (paper, Section III), and overshoots if the computer is slow. With `stop_to_face` it stops
+/// for each run, as the two listings together do, and takes longer if the computer is slow.
 ///
-/// An anchor that is not seen is looked for by the lower-level task, standing still; when that
-/// gives up, so does this one ("anchor lost", "anchor never seen"). One that cannot be faced within
-/// the lower-level task's limits is moved on from.
+/// If the anchor is not seen, the lower-level task hovers and searches for it; if that fails, this
+/// task ends ("anchor lost", "anchor never seen"). If the anchor cannot be faced within the limits
+/// of the lower-level task, the UAV moves on.
 ///
 /// Results: "duration_s" (ET, until the final stop), "yaw_turned_rad", "face_anchors" (runs of the
 /// lower-level task), "face_anchors_missed" (those that did not reach their goal), "looks" (runs of
 /// Algorithm 2, also those of the lower-level task), "overshoots" (of all its runs), "bearing_rad"
-/// (the last seen).
+/// (the last one measured).
 class MoveForwardTask : public Task {
  public:
   explicit MoveForwardTask(std::string anchor, const MoveForwardOptions& options = {});

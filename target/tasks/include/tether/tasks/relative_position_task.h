@@ -13,13 +13,12 @@
 
 namespace tether::tasks {
 
-/// When the tracking counts as converged: for `stable_frames` images in a row the ROI was where it
-/// was expected, and as large as before, each within `tolerance_px`.
+/// Tracking has converged when the ROI was at its predicted position and had its previous size,
+/// within `tolerance_px`, in `stable_frames` consecutive images.
 ///
-/// Expected is where the ROI would be had it gone on with its last speed (so the first image after
-/// a start expects a ROI at rest). So a UAV that turns does not keep the estimate from converging:
-/// one with a fast computer moves the ROI by less than the tolerance between two images and needs
-/// `stable_frames` + 1 of them; a slow one needs one more, and each takes longer.
+/// The prediction continues the ROI's last speed (at first 0), so that an estimate converges while
+/// the UAV turns. With a fast computer the ROI moves by less than the tolerance between two images,
+/// and `stable_frames` + 1 images are enough; a slow computer needs one more, and longer for each.
 struct ConvergenceOptions {
   double tolerance_px = 8.0;
   int stable_frames = 2;
@@ -33,8 +32,8 @@ struct RelativePositionOptions {
   Duration time_limit = std::chrono::seconds(60);  ///< of the SUT's clock; then "time limit"
 };
 
-/// Algorithm 2, "compute relative position": looks at images until the estimate converges. Moves
-/// nothing. Results: "duration_s" (ET), "bearing_rad", "distance_m" (if known), "frames".
+/// Algorithm 2, "compute relative position": reads images until the estimate converges. Sends no
+/// command. Results: "duration_s" (ET), "bearing_rad", "distance_m" (if known), "frames".
 class RelativePositionTask : public Task {
  public:
   explicit RelativePositionTask(std::string anchor, const RelativePositionOptions& options = {});
@@ -45,11 +44,11 @@ class RelativePositionTask : public Task {
   Progress step(TaskContext& context) override;
   void finalise(TaskContext& context, TaskOutcome& outcome) override;
 
-  /// From the newest image of the last run in which the anchor was seen, converged or not; none:
-  /// not seen at all.
+  /// From the last image of the last run in which the anchor was seen, converged or not; none if it
+  /// was never seen.
   const std::optional<vision::RelativePosition>& estimate() const { return estimate_; }
 
-  /// What that estimate was made from.
+  /// The image and region of that estimate.
   struct Sighting {
     uav::CameraSample image;
     vision::Roi roi;

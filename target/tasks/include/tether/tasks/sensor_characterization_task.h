@@ -16,23 +16,23 @@ struct SensorCharacterizationOptions {
   Duration time_limit = std::chrono::seconds(60);  ///< of the SUT's clock; then "time limit"
 };
 
-/// One reading of a sensor, with the instants that its time is made of.
+/// One reading of a sensor and its times.
 struct Acquisition {
   ExecTime asked_at;
   ExecTime had_at;          ///< ≥ asked_at; the difference is what Algorithm 1 measures
-  SimTime sampled_at;       ///< of the sample, as the sensor says
+  SimTime sampled_at;       ///< timestamp of the sample
   std::uint64_t index = 0;  ///< of the sample
 };
 
-/// Algorithm 1: acquires one sensor's data again and again, each time waiting for what was not read
-/// yet, and times it on the SUT's own clock. Moves nothing.
+/// Algorithm 1: acquires one sensor's data repeatedly, waiting each time for a new measurement, and
+/// measures the time on the SUT's clock. Sends no command.
 ///
-/// Results: "duration_s" (ET, of all acquisitions: what the listing returns), "acquisitions"
-/// (made), and of one acquisition "mean_s", "min_s", "median_s", "max_s" and, from two on,
+/// Results: "duration_s" (ET of all acquisitions, which the listing returns), "acquisitions" (their
+/// number), and of one acquisition "mean_s", "min_s", "median_s", "max_s" and, with two or more,
 /// "stddev_s" (of a sample).
 class SensorCharacterizationTask : public Task {
  public:
-  /// `sensor`: any of the UAV's, whatever its kind.
+  /// `sensor`: the name of a sensor of any kind.
   explicit SensorCharacterizationTask(std::string sensor,
                                       const SensorCharacterizationOptions& options = {});
 
@@ -41,7 +41,7 @@ class SensorCharacterizationTask : public Task {
   Progress step(TaskContext& context) override;
   void finalise(TaskContext& context, TaskOutcome& outcome) override;
 
-  /// Those of the last run, in the order in which they were made, whatever the run's end was.
+  /// All acquisitions of the last run in their order, even if it failed.
   const std::vector<Acquisition>& acquisitions() const { return acquisitions_; }
 
  private:

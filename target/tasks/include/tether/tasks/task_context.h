@@ -14,39 +14,38 @@
 
 namespace tether::tasks {
 
-/// How a task looks at the world.
+/// The camera and tracker of a task.
 struct VisionOptions {
-  std::string camera = "camera";  ///< a sensor's name
+  std::string camera = "camera";  ///< name of the sensor
   vision::TrackerOptions tracker;
 };
 
-/// What tasks that run in one another share: the UAV, and the trackers, so that a task that is run
-/// in a loop goes on tracking where it stopped. `vehicle` must outlive it. One thread.
+/// What nested tasks share: the UAV, and the trackers, so that a task in a loop continues to track.
+/// `vehicle` must outlive it. Not thread-safe.
 class TaskContext {
  public:
   explicit TaskContext(client::Vehicle& vehicle, VisionOptions vision = {});
 
   client::Vehicle& vehicle() { return vehicle_; }
 
-  /// From now on; forgets what was tracked. Not while a task is looking.
+  /// Sets the options and resets all trackers. Must not be called while a task tracks an anchor.
   void look_with(VisionOptions vision);
 
   /// Fails (kInvalid) if the UAV has no sensor of this name.
   Result<const uav::SensorDescription*> sensor(std::string_view name) const;
   /// Fails (kInvalid) if the UAV has no sensor of this name and kind.
   Result<const uav::SensorDescription*> sensor(std::string_view name, uav::SensorKind kind) const;
-  /// Fails (kInvalid) if the UAV has no camera of the name that it looks with.
+  /// The camera of the vision options. Fails (kInvalid) if the UAV does not have it.
   Result<const uav::SensorDescription*> camera() const;
   /// Fails (kInvalid) if there is no such anchor.
   Result<const uav::Anchor*> anchor(std::string_view name) const;
-  /// The one tracker of this anchor. Fails (kInvalid) if there is no such anchor, or its colour
-  /// cannot be tracked. The pointer stays valid until
-  /// `look_with`.
+  /// The tracker of this anchor, valid until `look_with`. Fails (kInvalid) if there is no such
+  /// anchor, or its colour cannot be tracked.
   Result<vision::AnchorTracker*> tracker(std::string_view anchor);
 
-  /// @name Notes for the record (topics "task", "roi", "estimate", "odometry", "displacement"). An
-  /// annotation that cannot be sent is no failure of its own: the link's next interaction tells.
-  /// Which camera a ROI or an estimate is of is the one that it looks with.
+  /// @name Annotations in the record (topics "task", "roi", "estimate", "odometry",
+  /// "displacement"). If sending fails, the next interaction reports it. The camera of a ROI or an
+  /// estimate is that of the vision options.
   /// @{
   using Values = std::vector<std::pair<std::string_view, double>>;
   void note_event(std::string_view task, std::string_view phase, std::string_view event,
@@ -55,10 +54,10 @@ class TaskContext {
   void note_roi(const vision::Roi& roi, std::uint64_t image_index);
   void note_estimate(std::string_view anchor, std::uint64_t image_index,
                      const vision::RelativePosition& estimate, bool converged);
-  /// Where dead reckoning has the UAV, in the start-heading frame H0 (x ahead at the start, y left,
-  /// origin at the start) [m, rad].
+  /// Position and yaw by dead reckoning in the start-heading frame H0 (x ahead at the start, y
+  /// left, origin at the start) [m, rad].
   void note_odometry(const uav::Vec3& p_H0B, double yaw_rad);
-  /// Algorithm 5's own estimate of end minus start, in H0 [m].
+  /// Algorithm 5's estimate of end minus start, in H0 [m].
   void note_displacement(const uav::Vec3& p_H0B);
   /// @}
 

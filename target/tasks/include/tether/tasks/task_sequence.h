@@ -11,13 +11,13 @@ namespace tether::tasks {
 
 struct SequenceItem {
   std::unique_ptr<Task> task;  ///< not null
-  VisionOptions vision;        ///< with which it looks
-  bool required = true;        ///< the sequence ends where a required task does not reach its goal
+  VisionOptions vision;        ///< of this task
+  bool required = true;        ///< the sequence ends if a required task does not reach its goal
 };
 
-/// Tasks one after the other, as one task: "a task can also include lower-level tasks" (paper,
-/// Section III). Reaches its goal if all required tasks reach theirs; ends with the first that does
-/// not ("task 2 (face_anchor): anchor lost"), and with any that failed, required or not.
+/// Runs tasks one after the other, as one task: "a task can also include lower-level tasks" (paper,
+/// Section III). Reaches its goal if all required tasks reach theirs. Ends with the first required
+/// task that does not ("task 2 (face_anchor): anchor lost"), and with any task that fails.
 ///
 /// Its outcome has a part for each task that ran. Results: "duration_s" (ET), "tasks_run",
 /// "tasks_reached".

@@ -27,7 +27,7 @@ struct Roi {
   bool searched_for = false;  ///< found by a search of the whole image, not from the last window
 };
 
-/// Smoothing of the image before its colours are looked at.
+/// Smoothing of the image before its colours are evaluated.
 enum class Prefilter { kNone, kGaussian, kMedian };
 
 struct TrackerOptions {
@@ -35,7 +35,7 @@ struct TrackerOptions {
   int prefilter_size_px = 5;        ///< odd
   double hue_tolerance_deg = 14.0;  ///< about the anchor's hue
   double min_saturation = 0.30;     ///< 0..1; paler pixels have no reliable hue
-  double min_value = 0.12;          ///< 0..1; nor have darker ones
+  double min_value = 0.12;          ///< 0..1; darker pixels have no reliable hue
   double max_value = 1.0;           ///< 0..1
   int min_area_px = 30;             ///< smaller regions are noise
   double min_score = 0.40;          ///< below it the anchor counts as lost
@@ -47,28 +47,27 @@ struct TrackerOptions {
 /// 1998; the paper's reference 29): back-projection of a hue histogram, masked by saturation and
 /// value.
 ///
-/// The histogram is made from the anchor's colour, so nobody has to select anything. The whole
-/// image is searched at first and whenever the window has lost the anchor; else CamShift goes on
-/// from the last window. Every image is filtered, converted and back-projected whole.
+/// The histogram is computed from the anchor's colour, without a manual selection. The whole image
+/// is searched at first and whenever the anchor was lost; else CamShift continues from the last
+/// window. Every image is filtered, converted and back-projected as a whole.
 ///
-/// Movable; one thread at a time. Its result depends on the images alone. Throws nothing but
-/// bad_alloc.
+/// Movable; not thread-safe. The result depends on the images only. Throws only bad_alloc.
 class AnchorTracker {
  public:
-  /// Fails if the anchor's colour has no hue to speak of (grey, or too dark), or for an unusable
-  /// option.
+  /// Fails with kInvalid if the anchor's colour has no reliable hue (grey or too dark), if its size
+  /// is 0, or for an unusable option.
   static Result<AnchorTracker> create(const uav::Anchor& anchor,
                                       const TrackerOptions& options = {});
   AnchorTracker(AnchorTracker&&) noexcept;
   AnchorTracker& operator=(AnchorTracker&&) noexcept;
   ~AnchorTracker();
 
-  /// Nothing, if the anchor is not seen. @pre image.rgb holds width × height × 3 bytes (else:
-  /// nothing).
+  /// The anchor's region in the image [px]; none if the anchor is not seen, or if image.rgb does
+  /// not have width × height × 3 bytes.
   std::optional<Roi> track(const uav::CameraSample& image);
 
-  // What `track` does, step by step, so that the time of each can be measured. In this order; the
-  // image must outlive them. @pre image.rgb holds width × height × 3 bytes
+  // The steps of `track` in this order, to measure the time of each. The image must outlive them.
+  // @pre image.rgb has width × height × 3 bytes
   void prefilter(const uav::CameraSample& image);
   void back_project();
   std::optional<Roi> locate();

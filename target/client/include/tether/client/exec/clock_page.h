@@ -11,7 +11,8 @@
 
 namespace tether::client {
 
-/// How ET goes at present: from `base_et` at `base_mono`, `factor` as fast; or it stands still.
+/// The current course of ET: `base_et` at `base_mono`, then `factor` times as fast as the machine's
+/// clock; or stopped.
 struct ClockState {
   ExecTime base_et;
   Duration base_mono{0};  ///< of CLOCK_MONOTONIC
@@ -19,17 +20,17 @@ struct ClockState {
   bool running = false;
 
   ExecTime at(Duration mono) const;
-  /// When ET will be, or was, `et` (rounded up). @pre running
+  /// The time at which ET is `et`, rounded up. @pre running
   Duration mono_at(ExecTime et) const;
   friend bool operator==(const ClockState&, const ClockState&) = default;
 };
 
-/// The ET of a group of processes, in memory that they share: one process writes it, any number
-/// read it, without locks, and no reader ever waits for the writer.
+/// The ET of a group of processes in shared memory: one process writes it, any number read it
+/// without locks. No reader waits for the writer.
 ///
-/// The writer fills the slot that is not in use and then publishes it. A reader takes the slot in
-/// use, reads the machine's clock, and starts again if another slot has been published meanwhile.
-/// So a reader that is frozen between the two readings does not take the freeze for ET.
+/// The writer fills the unused slot and publishes it. A reader takes the published slot, reads the
+/// machine's clock, and repeats if another slot was published in between. So a reader that is
+/// frozen between the two steps does not count the freeze as ET.
 class ClockPage {
  public:
   ClockPage() = default;
@@ -38,9 +39,9 @@ class ClockPage {
 
   /// One writer at a time.
   void publish(const ClockState& state);
-  /// Of the last state published. For the writer, and for tests.
+  /// The last published state. For the writer, and for tests.
   ClockState state() const;
-  /// ET now, if `monotonic` reads the clock that the states refer to.
+  /// ET now; `monotonic` reads the clock of the states.
   template <class Monotonic>
   ExecTime now(Monotonic monotonic) const {
     while (true) {
@@ -53,8 +54,8 @@ class ClockPage {
   ExecTime now() const;
 
  private:
-  // Of a slot, stores release and loads acquire: whoever sees part of a later state also sees that
-  // the one before it was published.
+  // Stores to a slot release and loads acquire: a reader that sees part of a later state also sees
+  // that the state before it was published.
   struct Slot {
     std::atomic<std::int64_t> base_et_ns{0};
     std::atomic<std::int64_t> base_mono_ns{0};
@@ -73,8 +74,8 @@ class ClockPage {
 /// This machine's CLOCK_MONOTONIC.
 Duration read_monotonic();
 
-/// A page in memory of its own, which `descriptor` shares with other processes: they can read it
-/// and cannot change it. Fails with kInvalid, saying what the system refused.
+/// A page in new memory, which other processes can map read-only through `descriptor`. Fails with
+/// kInvalid and the error of the system.
 struct SharedClockPage {
   struct Unmap {
     void operator()(ClockPage* page) const;
@@ -84,7 +85,7 @@ struct SharedClockPage {
 };
 Result<SharedClockPage> make_clock_page();
 
-/// The same page in another process. Fails with kProtocol if it cannot be one.
+/// The same page in another process. Fails with kProtocol if `descriptor` is not a clock page.
 struct MappedClockPage {
   struct Unmap {
     void operator()(const ClockPage* page) const;

@@ -14,28 +14,27 @@
 
 namespace tether::client {
 
-/// What goes between a program and its tether-exec: the frames of the link, one per packet of a
-/// Unix socket, and once a descriptor (the clock page). A frame too long for a packet goes as a
-/// sealed piece of memory, so that whatever is sent is there whole at once, also for a receiver
-/// that is frozen. One thread may send while another receives; `shut_down` may come from any.
+/// The connection between a program and its tether-exec: a Unix socket with one frame of the link
+/// in each packet, and once a descriptor (the clock page). A frame too long for a packet is sent as
+/// sealed memory, so that a message is complete at once even if the receiver is frozen. One thread
+/// can send while another receives; any thread can call `shut_down`.
 class LocalSocket {
  public:
   explicit LocalSocket(os::FileDescriptor socket) : socket_(std::move(socket)) {}
 
   int descriptor() const { return socket_.get(); }
 
-  /// Fails with kInvalid (the message breaks `validate`) or kDisconnected (also: the receiver has
-  /// not read what it was sent before, and the socket does not block).
+  /// Fails with kInvalid (the message is invalid) or kDisconnected (also if the receiver has not
+  /// read earlier messages and the socket does not block).
   Status send(const link::Message& message);
   Status send_clock(const os::FileDescriptor& clock_page);
 
-  /// One packet: a message, or else the clock page.
+  /// One packet: a message or the clock page.
   struct Packet {
     std::optional<link::Message> message;
     os::FileDescriptor clock_page;
   };
-  /// Fails with kTimeout (nothing there within `timeout`; none: blocks), kDisconnected or
-  /// kProtocol.
+  /// Fails with kTimeout (no packet within `timeout`; none: blocks), kDisconnected or kProtocol.
   Result<Packet> receive(std::optional<Duration> timeout = std::nullopt);
 
   /// Ends the connection; unblocks `receive`.
@@ -54,10 +53,10 @@ class LocalSocket {
 /// Connects to the socket at `path`. Fails with kDisconnected.
 Result<LocalSocket> connect_local(const std::string& path);
 
-/// A listening socket at `path`, which no other user can connect to if the folder is private.
-/// Fails with kInvalid, saying what the system refused.
+/// A listening socket at `path`. Other users cannot connect if its folder is private. Fails with
+/// kInvalid and the error of the system.
 Result<os::FileDescriptor> listen_local(const std::string& path);
-/// The next connection that waits, not blocking; none: there is none.
-os::FileDescriptor accept_local(const os::FileDescriptor& listener);
+/// Accepts a waiting connection without blocking; an empty descriptor if there is none.
+FileDescriptor accept_local(const os::FileDescriptor& listener);
 
 }  // namespace tether::client

@@ -31,14 +31,11 @@ class PlanarVehicle : public client::Vehicle {
     uav::Vec3 imu_bias_m_s2{};    ///< of the specific force
     bool imu_is_stuck = false;    ///< it reports a UAV that never moves
     Duration compute_per_image{0};
-    Duration image_period = std::chrono::nanoseconds(33'333'333);
-    Duration image_delay = std::chrono::milliseconds(20);
     /// What a rangefinder's measurement takes, in turn.
     std::vector<Duration> range_delays{std::chrono::milliseconds(30)};
-    double max_acceleration_m_s2 = 3.0;
-    double max_yaw_acceleration_rad_s2 = 6.0;
+    Duration image_delay = std::chrono::milliseconds(20);
     bool clock_stands_still = false;  ///< `now` always says 0, whatever happens
-    /// `now` passes so many times as fast as the samples' instants, as without synchronisation.
+    /// Speed of `now` relative to the samples' timestamps; other than 1 without synchronisation.
     double clock_factor = 1.0;
     Duration imu_period = std::chrono::milliseconds(5);
     bool imu_instants_stand_still = false;  ///< its readings go on, their `sampled_at` does not
