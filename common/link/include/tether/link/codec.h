@@ -57,6 +57,8 @@ class Encoder {
  public:
   Encoder();
   ~Encoder();
+  Encoder(Encoder&&) noexcept;
+  Encoder& operator=(Encoder&&) noexcept;
 
   /// The frame; valid until the next call.
   std::span<const std::uint8_t> encode(const Message& message);

@@ -57,6 +57,6 @@ Result<LocalSocket> connect_local(const std::string& path);
 /// kInvalid and the error of the system.
 Result<os::FileDescriptor> listen_local(const std::string& path);
 /// Accepts a waiting connection without blocking; an empty descriptor if there is none.
-FileDescriptor accept_local(const os::FileDescriptor& listener);
+os::FileDescriptor accept_local(const os::FileDescriptor& listener);
 
 }  // namespace tether::client
