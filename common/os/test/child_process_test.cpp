@@ -16,7 +16,7 @@
 namespace tether::os {
 namespace {
 
-constexpr Duration kLong = std::chrono::seconds(60);
+constexpr Duration kPatience = std::chrono::seconds(60);
 
 class Child : public testing::Test {
  protected:
@@ -26,7 +26,7 @@ class Child : public testing::Test {
   /// How it ended.
   ChildExit run(const ChildCommand& command) const {
     ChildProcess process(command);
-    EXPECT_TRUE(process.wait(kLong));
+    EXPECT_TRUE(process.wait(kPatience));
     return process.poll().value_or(ChildExit{});
   }
   std::string output_of(const ChildCommand& command) const {
@@ -121,7 +121,7 @@ TEST_F(Child, GetsItsEndSignalAndIsKilledAfterItsGrace) {
     process.terminate();
     return process.poll()->code;
   };
-  EXPECT_EQ(terminated("trap 'exit 7' INT", SIGINT, kLong), 7);
+  EXPECT_EQ(terminated("trap 'exit 7' INT", SIGINT, kPatience), 7);
   EXPECT_EQ(terminated("trap '' TERM", SIGTERM, std::chrono::milliseconds(1)),
             kSignalled + SIGKILL);
 }

@@ -15,6 +15,9 @@ namespace tether::audit {
 using Entry = record::Logged<record::Interaction>;
 using Rules = std::set<int>;
 
+inline constexpr Duration kStep{1'000'000};
+inline constexpr Duration kNs{1};
+
 inline std::int64_t floor_ns(std::int64_t t, std::int64_t step) {
   return t / step * step;
 }

@@ -19,9 +19,7 @@ using record::Interaction;
 using record::Record;
 using std::chrono::milliseconds;
 
-constexpr Duration kStep{1'000'000};
 constexpr Duration kSecond{1'000'000'000};
-constexpr Duration kNs{1};
 
 class ValidRecord : public ::testing::TestWithParam<int> {};
 

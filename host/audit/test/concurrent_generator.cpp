@@ -19,11 +19,11 @@ namespace {
 using record::Interaction;
 using record::Record;
 
-constexpr std::int64_t kStep = 1'000'000;
-constexpr std::int64_t kPeriod = 33'333'333;
+constexpr std::int64_t kStep_ns = 1'000'000;
+constexpr std::int64_t kPeriod_ns = 33'333'333;
 constexpr std::int64_t kPhase = 1'234'567;
 constexpr std::int64_t kDelay = 12'345'678;
-constexpr std::int64_t kMostRangeDelay = 60'000'000;
+constexpr std::int64_t kMostRangeDelay_ns = 60'000'000;
 
 class ConcurrentHost {
  public:
@@ -48,13 +48,13 @@ class ConcurrentHost {
 
   void make_header() {
     record_.header.policy = record::kConservativeBarrier;
-    record_.header.step = Duration(kStep);
+    record_.header.step = Duration(kStep_ns);
     record_.header.seed = options_.seed;
     record_.header.suts = {{"a", "test", "wall", options_.wall_factor, Duration(1'700'000), true}};
     record_.header.sensors = {
-        {"a", "camera", "camera", true, Duration(kPeriod), Duration(kPhase), Duration(kDelay),
+        {"a", "camera", "camera", true, Duration(kPeriod_ns), Duration(kPhase), Duration(kDelay),
          Duration(kDelay)},
-        {"a", "range", "range", false, {}, {}, {}, Duration(kMostRangeDelay)}};
+        {"a", "range", "range", false, {}, {}, {}, Duration(kMostRangeDelay_ns)}};
   }
 
   std::int64_t below(std::int64_t bound) {
@@ -62,7 +62,7 @@ class ConcurrentHost {
   }
   std::int64_t compute(std::int64_t from) {
     const std::int64_t at = from + 1 + below(random_.bits() % 4 == 0 ? 20'000'000 : 900'000);
-    return random_.bits() % 8 == 0 ? ceil_ns(at, kStep) : at;
+    return random_.bits() % 8 == 0 ? ceil_ns(at, kStep_ns) : at;
   }
 
   void run_to_stop() {
@@ -86,9 +86,9 @@ class ConcurrentHost {
   // ST advances by a random amount, at most to `limit` and to where a reply is due.
   void drift(std::int64_t limit) {
     for (const Thread& t : threads_)
-      if (t.open) limit = std::min(limit, floor_ns(reply_of(t), kStep));
-    limit = floor_ns(limit, kStep);
-    advance(st_ + below((limit - st_) / kStep + 1) * kStep);
+      if (t.open) limit = std::min(limit, floor_ns(reply_of(t), kStep_ns));
+    limit = floor_ns(limit, kStep_ns);
+    advance(st_ + below((limit - st_) / kStep_ns + 1) * kStep_ns);
   }
   void advance(std::int64_t st) {
     st_ = st;
@@ -122,7 +122,7 @@ class ConcurrentHost {
       case 0:
       case 1:
         m.kind = record::kCommand;
-        m.effect_at = from_ns<SimTime>(ceil_ns(t + 1'700'000, kStep));
+        m.effect_at = from_ns<SimTime>(ceil_ns(t + 1'700'000, kStep_ns));
         m.grid_error = *m.effect_at - from_ns<SimTime>(t + 1'700'000);
         effects_.emplace(to_ns(*m.effect_at), m.sequence);
         break;
@@ -135,7 +135,7 @@ class ConcurrentHost {
         m.kind = record::kSensor;
         m.sensor = "range";
         m.sample_index = range_index_++;
-        set_sample(m, t, t + below(kMostRangeDelay), kStep);
+        set_sample(m, t, t + below(kMostRangeDelay_ns), kStep_ns);
         break;
       default:
         camera(m, t);
@@ -147,13 +147,13 @@ class ConcurrentHost {
     m.sensor = "camera";
     m.latest = random_.bits() % 4 == 0;
     m.only_if_available = random_.bits() % 2 == 0;
-    const std::int64_t there = t < kPhase + kDelay ? -1 : (t - kPhase - kDelay) / kPeriod;
+    const std::int64_t there = t < kPhase + kDelay ? -1 : (t - kPhase - kDelay) / kPeriod_ns;
     const bool found = there >= (m.latest ? 0 : unread_);
     if (!found && m.only_if_available) return;
     const std::int64_t index = found ? there : unread_;
     m.sample_index = static_cast<std::uint64_t>(index);
     unread_ = std::max(unread_, index + 1);
-    set_sample(m, kPhase + index * kPeriod, kPhase + index * kPeriod + kDelay, kStep);
+    set_sample(m, kPhase + index * kPeriod_ns, kPhase + index * kPeriod_ns + kDelay, kStep_ns);
   }
 
   void log_stop() {
@@ -180,7 +180,7 @@ class ConcurrentHost {
     Interaction m = *thread.open;
     thread.open.reset();
     thread.asks_at = compute(et_);
-    advance(floor_ns(to_ns(m.reply_at), kStep));
+    advance(floor_ns(to_ns(m.reply_at), kStep_ns));
     m.st_at_release = from_ns<SimTime>(st_);
     m.grid_error = std::max(m.grid_error, Duration(to_ns(m.reply_at) - st_));
     m.wall_at_release = tick();

@@ -15,9 +15,6 @@ using record::Interaction;
 using record::Logged;
 using record::Record;
 
-constexpr Duration kStep{1'000'000};
-constexpr Duration kNs{1};
-
 template <class Time>
 Duration beyond_grid(Time time) {
   return time.time_since_epoch() % kStep;

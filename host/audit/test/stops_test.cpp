@@ -67,7 +67,7 @@ bool is_finish(const Interaction& m) {
   return m.kind == record::kFinish;
 }
 
-const Planted kPlanted[] = {
+const Planted kPlantedStops[] = {
     {"timestamp_decreases",
      {5},
      [](Record& r) {
@@ -224,7 +224,7 @@ TEST_P(PlantedStop, IsFound) {
   EXPECT_EQ(rules_of(verdict), GetParam().rules) << to_text(verdict);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, PlantedStop, testing::ValuesIn(kPlanted),
+INSTANTIATE_TEST_SUITE_P(All, PlantedStop, testing::ValuesIn(kPlantedStops),
                          [](const auto& planted) { return std::string(planted.param.what); });
 
 // A read that returned a measurement is changed to have none. This is found for reads of a new

@@ -13,13 +13,13 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr Duration kLong = std::chrono::seconds(60);
+constexpr Duration kPatience = std::chrono::seconds(60);
 
 TEST(SshConnection, RunsScriptsWithTheirInput) {
   const FakeSsh ssh;
   const SshConnection connection(FakeSsh::address());
   const os::Captured said =
-      connection.run("read -r first\necho \"$first\"\ncat\nexit 5\n", kLong, "one\ntwo\n");
+      connection.run("read -r first\necho \"$first\"\ncat\nexit 5\n", kPatience, "one\ntwo\n");
   EXPECT_EQ(said.out, "one\ntwo\n");
   EXPECT_EQ(said.code, 5);
 }
@@ -28,7 +28,7 @@ TEST(SshConnection, DoesNotShowScriptsInCommandLines) {
   const FakeSsh ssh;
   const SshConnection connection(FakeSsh::address());
   const os::Captured said = connection.run(
-      "# secret-token\ngrep -c secret-token /proc/$$/cmdline /proc/$PPID/cmdline\n", kLong);
+      "# secret-token\ngrep -c secret-token /proc/$$/cmdline /proc/$PPID/cmdline\n", kPatience);
   EXPECT_THAT(said.out, testing::AllOf(HasSubstr(":0"), testing::Not(HasSubstr(":1"))));
 }
 
@@ -61,8 +61,8 @@ TEST(SshConnection, AStopRequestEndsCommandsExceptCleanup) {
   std::stop_source stop;
   const SshConnection connection(FakeSsh::address(), stop.get_token());
   stop.request_stop();
-  EXPECT_TRUE(connection.run("exec sleep 60", kLong).timed_out);
-  EXPECT_EQ(connection.run("echo text", kLong, {}, true).out, "text\n");
+  EXPECT_TRUE(connection.run("exec sleep 60", kPatience).timed_out);
+  EXPECT_EQ(connection.run("echo text", kPatience, {}, true).out, "text\n");
 }
 
 TEST(SshConnection, AStopRequestEndsConnecting) {

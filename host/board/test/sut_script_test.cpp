@@ -8,10 +8,10 @@
 namespace tether::board {
 namespace {
 
-constexpr Duration kLong = std::chrono::seconds(60);
+constexpr Duration kScriptLimit = std::chrono::seconds(60);
 
 std::string said_by(const std::string& script) {
-  return os::run_captured({"sh"}, script, kLong).out;
+  return os::run_captured({"sh"}, script, kScriptLimit).out;
 }
 
 TEST(Assign, AssignsAnyValue) {

@@ -9,7 +9,7 @@ namespace {
 using link::Refusal;
 using testing::HasSubstr;
 
-link::Hello hello(const std::string& uav) {
+link::Hello hello_for(const std::string& uav) {
   link::Hello h;
   h.uav = uav;
   h.token = "secret";
@@ -22,8 +22,8 @@ std::variant<std::size_t, Refusal> admit_to_two(const link::Hello& h,
 }
 
 TEST(Admission, GivesTheRequestedOrTheOnlyUav) {
-  EXPECT_EQ(std::get<std::size_t>(admit_to_two(hello("beta"))), 1u);
-  EXPECT_EQ(std::get<std::size_t>(admit(hello(""), "secret", {"alpha"}, {false})), 0u);
+  EXPECT_EQ(std::get<std::size_t>(admit_to_two(hello_for("beta"))), 1u);
+  EXPECT_EQ(std::get<std::size_t>(admit(hello_for(""), "secret", {"alpha"}, {false})), 0u);
 }
 
 // A client without the token does not learn the names of UAVs.
@@ -41,7 +41,7 @@ TEST(Admission, RejectsWithAReason) {
                         {.uav = "", .reason = Refusal::Reason::kUav, .names_uavs = true},
                         {.uav = "beta", .beta_is_taken = true, .reason = Refusal::Reason::kUav}};
   for (const Case& c : cases) {
-    link::Hello h = hello(c.uav);
+    link::Hello h = hello_for(c.uav);
     h.token = c.token;
     const auto result = admit_to_two(h, {false, c.beta_is_taken});
     ASSERT_TRUE(std::holds_alternative<Refusal>(result)) << c.uav;
@@ -54,7 +54,7 @@ TEST(Admission, RejectsWithAReason) {
 
 TEST(Admission, AConcurrentSutNeedsAClockForAllThreads) {
   for (const auto clock : {link::ClockKind::kCpu, link::ClockKind::kUnstamped}) {
-    link::Hello threads = hello("alpha");
+    link::Hello threads = hello_for("alpha");
     threads.clock = clock;
     EXPECT_FALSE(clock_fault(threads, std::nullopt));
     threads.concurrent = true;
@@ -63,7 +63,7 @@ TEST(Admission, AConcurrentSutNeedsAClockForAllThreads) {
 }
 
 TEST(Admission, TheFactorOfTheClockMustMatch) {
-  link::Hello sut = hello("alpha");
+  link::Hello sut = hello_for("alpha");
   sut.clock = link::ClockKind::kWall;
   sut.cpu_factor = 4.0;
   const ClockSetting scaled{.kind = link::ClockKind::kWall, .cpu_factor = 4.0};

@@ -12,7 +12,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-SimTime ms(std::int64_t value) {
+SimTime st_ms(std::int64_t value) {
   return SimTime(milliseconds(value));
 }
 
@@ -24,21 +24,21 @@ TEST(Stepper, ACommandTakesEffectAtTheFirstBoundaryFromItsTimeOn) {
   barrier.add(ExecTime{});
   Stepper stepper(simulator, barrier, log, milliseconds(10), {Sampler({}, simulator.grid(), true)});
   stepper.act();
-  const std::pair<int, int> cases[] = {{0, 0}, {1'000, 1}, {1'001, 2}, {2'999, 3}};  // us, ms
+  const std::pair<int, int> cases[] = {{0, 0}, {1'000, 1}, {1'001, 2}, {2'999, 3}};  // us, st_ms
   for (const auto& [t, effect] : cases)
-    EXPECT_EQ(stepper.command(0, 7, {}, SimTime(microseconds(t))), ms(effect));
+    EXPECT_EQ(stepper.command(0, 7, {}, SimTime(microseconds(t))), st_ms(effect));
   EXPECT_EQ(stepper.waiting_commands(0), 4u);
-  EXPECT_EQ(stepper.next_due(), ms(0));
+  EXPECT_EQ(stepper.next_due(), st_ms(0));
   stepper.act();
   for (int i = 1; i <= 3; ++i) {
-    EXPECT_EQ(stepper.next_due(), ms(i));
-    stepper.advance_to(ms(i));
+    EXPECT_EQ(stepper.next_due(), st_ms(i));
+    stepper.advance_to(st_ms(i));
   }
   EXPECT_EQ(stepper.waiting_commands(0), 0u);
   ASSERT_EQ(recorder.commands.size(), 4u);
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(simulator.applied()[i].at, ms(cases[i].second));
-    EXPECT_EQ(recorder.commands[i].applied_at, ms(cases[i].second));
+    EXPECT_EQ(simulator.applied()[i].at, st_ms(cases[i].second));
+    EXPECT_EQ(recorder.commands[i].applied_at, st_ms(cases[i].second));
   }
 }
 

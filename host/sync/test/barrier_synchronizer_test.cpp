@@ -7,7 +7,7 @@
 namespace tether::sync {
 namespace {
 
-constexpr Duration kStep{1000};
+constexpr Duration kDt_1us{1000};
 
 ExecTime et(std::int64_t ns) {
   return from_ns<ExecTime>(ns);
@@ -17,7 +17,7 @@ SimTime st(std::int64_t ns) {
 }
 
 BarrierSynchronizer with_suts(std::vector<std::int64_t> starts) {
-  BarrierSynchronizer barrier{StepGrid(kStep)};
+  BarrierSynchronizer barrier{StepGrid(kDt_1us)};
   for (const auto start : starts) barrier.add(et(start));
   return barrier;
 }
@@ -58,11 +58,11 @@ TEST(Barrier, ProgressOnlyRaisesTheBoundOfAComputingSut) {
 // Rule 3: released exactly at floor(t_rep); the bound on ST excludes later releases.
 TEST(Barrier, ReleasesWhenStHasReachedTheFloorOfTheReply) {
   for (const std::int64_t reply_ns : {0, 1, 999, 1000, 1001, 54'321}) {
-    const std::int64_t released_ns = reply_ns / kStep.count() * kStep.count();
+    const std::int64_t released_ns = reply_ns / kDt_1us.count() * kDt_1us.count();
     auto barrier = with_suts({0});
     request(barrier, 0, 0, reply_ns);
     EXPECT_EQ(barrier.horizon(), st(released_ns));
-    for (std::int64_t now = 0; now < released_ns; now += kStep.count())
+    for (std::int64_t now = 0; now < released_ns; now += kDt_1us.count())
       EXPECT_FALSE(barrier.release(st(now))) << now;
     const auto grant = barrier.release(st(released_ns));
     ASSERT_TRUE(grant) << reply_ns;
@@ -133,7 +133,7 @@ TEST(Barrier, FindsTheSlowestComputingSutThatHasNotLeft) {
 }
 
 BarrierSynchronizer with_concurrent(std::int64_t start = 0) {
-  BarrierSynchronizer barrier{StepGrid(kStep)};
+  BarrierSynchronizer barrier{StepGrid(kDt_1us)};
   barrier.add(et(start), SutKind::kConcurrent);
   return barrier;
 }

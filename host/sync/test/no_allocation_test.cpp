@@ -6,16 +6,16 @@
 namespace tether::sync {
 namespace {
 
-constexpr Duration kStep = std::chrono::milliseconds(1);
+constexpr Duration kDt = std::chrono::milliseconds(1);
 
 ExecTime at(std::int64_t step) {
-  return ExecTime(step * kStep);
+  return ExecTime(step * kDt);
 }
 
 // Serial and concurrent SUTs, all of whose calls are open at once.
 TEST(NoAllocation, TheBarrierAllocatesOnlyWhereSutsJoin) {
   if (!AllocationCount::is_possible()) GTEST_SKIP() << "a sanitizer's allocator";
-  BarrierSynchronizer barrier{StepGrid(kStep)};
+  BarrierSynchronizer barrier{StepGrid(kDt)};
   const SutIndex serial = barrier.add(ExecTime{});
   const SutIndex concurrent = barrier.add(ExecTime{}, SutKind::kConcurrent);
   std::uint64_t released = 0;
@@ -30,7 +30,7 @@ TEST(NoAllocation, TheBarrierAllocatesOnlyWhereSutsJoin) {
       barrier.arrive(concurrent, now, st);
       barrier.hold({concurrent, due, call});
     }
-    barrier.progress(concurrent, now + kStep);
+    barrier.progress(concurrent, now + kDt);
     barrier.stop(concurrent, due);
     st = barrier.horizon();
     while (barrier.release(st)) ++released;

@@ -6,26 +6,26 @@ namespace tether::sync {
 namespace {
 
 using std::chrono::milliseconds;
-WallTime wt(std::int64_t ms) {
+WallTime wt_ms(std::int64_t ms) {
   return WallTime(milliseconds(ms));
 }
 
 TEST(RealTimeLimit, AllowsTimeInProportionToWallTime) {
-  RealTimeLimit limit(0.25, milliseconds(100), wt(0));
-  EXPECT_EQ(limit.allowance(wt(0)), Duration(0));
-  EXPECT_EQ(limit.allowance(wt(40)), milliseconds(10));
+  RealTimeLimit limit(0.25, milliseconds(100), wt_ms(0));
+  EXPECT_EQ(limit.allowance(wt_ms(0)), Duration(0));
+  EXPECT_EQ(limit.allowance(wt_ms(40)), milliseconds(10));
   limit.spend(milliseconds(9));
-  EXPECT_EQ(limit.allowance(wt(44)), milliseconds(2));
+  EXPECT_EQ(limit.allowance(wt_ms(44)), milliseconds(2));
   EXPECT_EQ(limit.wait_for(milliseconds(3)), milliseconds(4));
   EXPECT_EQ(limit.wait_for(milliseconds(1)), Duration(0));
-  EXPECT_EQ(limit.allowance(wt(48)), milliseconds(3));
+  EXPECT_EQ(limit.allowance(wt_ms(48)), milliseconds(3));
 }
 
 TEST(RealTimeLimit, LosesIdleTimeAndTimeAboveTheCredit) {
-  RealTimeLimit limit(1.0, milliseconds(20), wt(0));
-  EXPECT_EQ(limit.allowance(wt(1'000)), milliseconds(20));
-  limit.idle(wt(1'500));
-  EXPECT_EQ(limit.allowance(wt(1'501)), milliseconds(1));
+  RealTimeLimit limit(1.0, milliseconds(20), wt_ms(0));
+  EXPECT_EQ(limit.allowance(wt_ms(1'000)), milliseconds(20));
+  limit.idle(wt_ms(1'500));
+  EXPECT_EQ(limit.allowance(wt_ms(1'501)), milliseconds(1));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 using tasks::testing::PlanarVehicle;
 using ::testing::HasSubstr;
 
-Mission mission_of(TaskOptions options) {
+Mission mission_with(TaskOptions options) {
   TaskSpec spec;
   spec.options = std::move(options);
   spec.anchor = "blue_box";
@@ -29,7 +29,7 @@ Mission face_anchor() {
   tasks::FaceAnchorOptions options;
   options.convergence = convergence();
   options.lost_limit = std::chrono::seconds(1);
-  return mission_of(options);
+  return mission_with(options);
 }
 
 TEST(Fly, ReportsTheOutcomeToTheCoordinator) {
@@ -59,7 +59,7 @@ TEST(Fly, EachTaskReportsItsResults) {
       {tasks::ClosedPathOptions{.convergence = convergence()}, "displacement_m"}};
   for (const auto& [options, result] : expected) {
     PlanarVehicle vehicle({});
-    EXPECT_EQ(exit_code(fly(mission_of(options), vehicle)), 0) << result;
+    EXPECT_EQ(exit_code(fly(mission_with(options), vehicle)), 0) << result;
     ASSERT_TRUE(vehicle.finished());
     EXPECT_THAT(vehicle.finished()->details_json, HasSubstr("\"" + result + "\""));
   }
@@ -69,7 +69,7 @@ TEST(Fly, MissionReportsEachTask) {
   PlanarVehicle vehicle({});
   Mission mission = face_anchor();
   mission.tasks.push_back(
-      mission_of(tasks::RelativePositionOptions{.convergence = convergence()}).tasks.front());
+      mission_with(tasks::RelativePositionOptions{.convergence = convergence()}).tasks.front());
   mission.is_sequence = true;
   EXPECT_EQ(exit_code(fly(mission, vehicle)), 0);
   const auto& details = vehicle.finished()->details_json;

@@ -16,7 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-devices::Rig parsed(const std::string& text) {
+devices::Rig rig_from(const std::string& text) {
   Result<devices::Rig> rig = parse_rig(text, "data/rigs/r.toml");
   EXPECT_TRUE(rig) << rig.failure().message;
   return rig ? *rig : devices::Rig{};
@@ -27,7 +27,7 @@ const uav::CameraModel& camera_of(const devices::RigSensor& sensor) {
 }
 
 TEST(RigFile, DescribesSensorsAndAnchors) {
-  const devices::Rig rig = parsed(R"(
+  const devices::Rig rig = rig_from(R"(
 uav = "bench"
 [sensors.camera]
 kind = "camera"
@@ -85,7 +85,7 @@ color_rgb = [1, 0, 0]
 
 TEST(RigFile, MissingKeysHaveDefaults) {
   const devices::Rig rig =
-      parsed("[sensors.eye]\nkind = \"camera\"\n[sensors.range]\nkind = \"range\"\n");
+      rig_from("[sensors.eye]\nkind = \"camera\"\n[sensors.range]\nkind = \"range\"\n");
   EXPECT_EQ(rig.uav, "rig");
   const uav::CameraModel& model = camera_of(rig.sensors[0]);
   EXPECT_EQ(model.width_px, 0);
@@ -99,11 +99,11 @@ TEST(RigFile, MissingKeysHaveDefaults) {
 TEST(RigFile, FieldOfViewGivesFocalLengthsForAGivenSize) {
   const std::string eye =
       "[sensors.eye]\nkind = \"camera\"\nhorizontal_fov_deg = 80\ndistortion = { k1 = 0.1 }\n";
-  const devices::Rig sized = parsed(eye + "size_px = [640, 480]\n");
+  const devices::Rig sized = rig_from(eye + "size_px = [640, 480]\n");
   EXPECT_NEAR(camera_of(sized.sensors[0]).fx_px, 320.0 / std::tan(rad_from_deg(40)), 1e-9);
   EXPECT_EQ(camera_of(sized.sensors[0]).cx_px, 319.5);
   EXPECT_EQ(camera_of(sized.sensors[0]).k1, 0.1);
-  const devices::Rig open = parsed(eye);  // the size is the device's
+  const devices::Rig open = rig_from(eye);  // the size is the device's
   EXPECT_DOUBLE_EQ(open.sensors[0].horizontal_fov_rad, rad_from_deg(80));
   EXPECT_EQ(camera_of(open.sensors[0]).width_px, 0);
   EXPECT_EQ(camera_of(open.sensors[0]).fx_px, 0.0);
@@ -112,7 +112,7 @@ TEST(RigFile, FieldOfViewGivesFocalLengthsForAGivenSize) {
 
 TEST(RigFile, ARelativeDeviceIsBesideTheFile) {
   const auto device = [](const std::string& text) {
-    return parsed("[sensors.eye]\nkind = \"camera\"\ndevice = \"" + text + "\"\n")
+    return rig_from("[sensors.eye]\nkind = \"camera\"\ndevice = \"" + text + "\"\n")
         .sensors[0]
         .device;
   };

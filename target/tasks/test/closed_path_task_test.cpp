@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::PlanarVehicle;
 
-Flight fly(const PlanarVehicle::Options& world, ClosedPathOptions options = {}) {
+Flight fly_path(const PlanarVehicle::Options& world, ClosedPathOptions options = {}) {
   options.convergence.tolerance_px = kTolerance_px;
   ClosedPathTask task("blue_box", options);
   return fly(task, world);
@@ -29,7 +29,7 @@ TEST(ClosedPathTask, ComesBackToItsStart) {
                                        .start_yaw_rad = rad_from_deg(start_yaw_deg),
                                        .camera_ahead_m = 0.1,
                                        .q_BS_imu = uav::from_rpy(0.1, 0.2, 0.3)};
-    const Flight flight = fly(world);
+    const Flight flight = fly_path(world);
     EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
     EXPECT_LT(norm(flight.vehicle.position()), 0.15);
     EXPECT_NEAR(flight.vehicle.yaw(), world.start_yaw_rad, rad_from_deg(1));
@@ -39,7 +39,7 @@ TEST(ClosedPathTask, ComesBackToItsStart) {
 }
 
 TEST(ClosedPathTask, FliesASquareAheadAndToTheLeft) {
-  const Flight flight = fly({.anchor_bearing_rad = 0.0, .start_yaw_rad = 0.5});
+  const Flight flight = fly_path({.anchor_bearing_rad = 0.0, .start_yaw_rad = 0.5});
   double most_x = 0.0, most_y = 0.0, least = 0.0;
   for (const json& note : flight.notes("odometry")) {
     most_x = std::max(most_x, note.at("x_m").get<double>());
@@ -64,7 +64,7 @@ TEST(ClosedPathTask, MeasuresItsDisplacementByVision) {
                                      .start_yaw_rad = rad_from_deg(70),
                                      .camera_ahead_m = 0.1,
                                      .imu_bias_m_s2 = {0.005, -0.004, 0}};
-  const Flight flight = fly(world, options);
+  const Flight flight = fly_path(world, options);
   ASSERT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
   const uav::Vec3 p_H0 =
       rotate(uav::from_rpy(0, 0, -world.start_yaw_rad), flight.vehicle.position());
@@ -80,7 +80,7 @@ TEST(ClosedPathTask, MeasuresItsDisplacementByVision) {
 }
 
 TEST(ClosedPathTask, LearnsTheBiasBeforeItStarts) {
-  const Flight flight = fly({.anchor_bearing_rad = 0.0, .imu_bias_m_s2 = {0.05, -0.05, 0.02}});
+  const Flight flight = fly_path({.anchor_bearing_rad = 0.0, .imu_bias_m_s2 = {0.05, -0.05, 0.02}});
   EXPECT_LT(norm(flight.vehicle.position()), 0.15);
 }
 
@@ -123,7 +123,8 @@ TEST(ClosedPathTask, RestsAndSettlesForATimeWhateverTheImusRate) {
       ClosedPathOptions options;
       options.rest_time = rest_time;
       options.settle_time = settle_time;
-      return fly({.anchor_bearing_rad = 0.0, .imu_period = period}, options).result("duration_s");
+      return fly_path({.anchor_bearing_rad = 0.0, .imu_period = period}, options)
+          .result("duration_s");
     };
     const double at_once_s = duration_s(Duration(0), Duration(0));
     // The next image can come later by its period.
@@ -172,7 +173,7 @@ TEST(ClosedPathTask, EndsWithTheReasonWhyItDidNotReachItsGoal) {
             three_seconds,
             "time limit at rest before the start",
             0}}) {
-    const Flight flight = fly(c.world, c.options);
+    const Flight flight = fly_path(c.world, c.options);
     EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
     EXPECT_EQ(flight.outcome.reason, c.reason);
     EXPECT_EQ(flight.result("legs"), c.legs) << c.reason;
@@ -183,9 +184,9 @@ TEST(ClosedPathTask, EndsWithTheReasonWhyItDidNotReachItsGoal) {
 TEST(ClosedPathTask, FailsWithItsReason) {
   ClosedPathOptions options;
   options.imu = "camera";
-  EXPECT_EQ(fly({}, options).outcome.failure, Failure::Kind::kInvalid);
+  EXPECT_EQ(fly_path({}, options).outcome.failure, Failure::Kind::kInvalid);
   for (const int n : {0, 2, 5, 24, 25, 100}) {
-    const Flight flight = fly({.anchor_bearing_rad = 0, .disconnect_at = n});
+    const Flight flight = fly_path({.anchor_bearing_rad = 0, .disconnect_at = n});
     EXPECT_EQ(flight.outcome.status, TaskStatus::kFailed) << n;
     EXPECT_EQ(flight.outcome.failure, Failure::Kind::kDisconnected) << n;
   }

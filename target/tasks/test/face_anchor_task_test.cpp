@@ -27,7 +27,7 @@ std::vector<std::string> events(const Flight& flight) {
   return events;
 }
 
-Flight fly(const PlanarVehicle::Options& world, FaceAnchorOptions options = {}) {
+Flight fly_facing(const PlanarVehicle::Options& world, FaceAnchorOptions options = {}) {
   options.convergence.tolerance_px = kTolerance_px;
   FaceAnchorTask task("blue_box", options);
   Flight flight = fly(task, world);
@@ -37,7 +37,7 @@ Flight fly(const PlanarVehicle::Options& world, FaceAnchorOptions options = {}) 
 
 TEST(FaceAnchorTask, AFastComputerDoesNotOvershoot) {
   for (const double bearing_deg : {-35.0, -12.0, 8.0, 35.0}) {
-    const Flight flight = fly(
+    const Flight flight = fly_facing(
         {.anchor_bearing_rad = rad_from_deg(bearing_deg), .compute_per_image = milliseconds(2)});
     EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
     EXPECT_EQ(flight.result("overshoots"), 0) << bearing_deg;
@@ -49,7 +49,7 @@ TEST(FaceAnchorTask, AFastComputerDoesNotOvershoot) {
 TEST(FaceAnchorTask, ASlowComputerOvershootsAndRecovers) {
   double overshoots = 0;
   for (const double bearing_deg : {-33.0, 28.0, 35.0}) {
-    const Flight flight = fly(
+    const Flight flight = fly_facing(
         {.anchor_bearing_rad = rad_from_deg(bearing_deg), .compute_per_image = milliseconds(300)});
     EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
     EXPECT_LT(std::abs(deg_from_rad(flight.vehicle.bearing())), 6.0);
@@ -62,7 +62,7 @@ TEST(FaceAnchorTask, EachOvershootReversesAndSlowsDown) {
   FaceAnchorOptions options;
   options.precision_rad = rad_from_deg(0.6);
   options.min_yaw_rate_rad_s = rad_from_deg(4.0);
-  const Flight flight = fly(
+  const Flight flight = fly_facing(
       {.anchor_bearing_rad = rad_from_deg(35), .compute_per_image = milliseconds(300)}, options);
   std::vector<double> rates;
   for (const auto& command : flight.vehicle.commands()) {
@@ -79,20 +79,20 @@ TEST(FaceAnchorTask, EachOvershootReversesAndSlowsDown) {
 }
 
 TEST(FaceAnchorTask, StopsAtOnceWhereItFacesTheAnchorAlready) {
-  const Flight flight = fly({.anchor_bearing_rad = 0});
+  const Flight flight = fly_facing({.anchor_bearing_rad = 0});
   EXPECT_TRUE(flight.outcome.reached());
   EXPECT_EQ(flight.vehicle.yaw(), 0.0);
   EXPECT_THAT(flight.vehicle.commands(), ::testing::Each(uav::VelocityCommand{}));
 }
 
 TEST(FaceAnchorTask, LooksForAnAnchorOutsideTheImage) {
-  const Flight behind = fly({.anchor_bearing_rad = rad_from_deg(120)});
+  const Flight behind = fly_facing({.anchor_bearing_rad = rad_from_deg(120)});
   EXPECT_TRUE(behind.outcome.reached()) << behind.outcome.reason;
   EXPECT_LT(std::abs(deg_from_rad(behind.vehicle.bearing())), 4.0);
 
   FaceAnchorOptions clockwise;
   clockwise.search_clockwise = true;
-  const Flight right = fly({.anchor_bearing_rad = rad_from_deg(-90)}, clockwise);
+  const Flight right = fly_facing({.anchor_bearing_rad = rad_from_deg(-90)}, clockwise);
   EXPECT_TRUE(right.outcome.reached());
   EXPECT_LT(right.vehicle.yaw(), 0.0);
   EXPECT_EQ(right.result("overshoots"), 0);
@@ -116,7 +116,7 @@ TEST(FaceAnchorTask, EndsWithTheReasonWhyItDidNotReachItsGoal) {
            {{.anchor_hidden = {milliseconds(500), seconds(100)}}, soon, "anchor lost", 3.0},
            {{.compute_per_image = milliseconds(100)}, precise, "time limit", 4.0},
            {{.anchor_is_there = false, .clock_stands_still = true}, few, "round limit", 0.0}}) {
-    const Flight flight = fly(c.world, c.options);
+    const Flight flight = fly_facing(c.world, c.options);
     EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
     EXPECT_EQ(flight.outcome.reason, c.reason);
     EXPECT_NEAR(flight.result("duration_s"), c.duration_s, 1.5) << c.reason;
@@ -124,21 +124,21 @@ TEST(FaceAnchorTask, EndsWithTheReasonWhyItDidNotReachItsGoal) {
 }
 
 TEST(FaceAnchorTask, FindsAnAnchorThatWasHiddenForAMoment) {
-  const Flight flight = fly({.anchor_hidden = {milliseconds(300), milliseconds(900)}});
+  const Flight flight = fly_facing({.anchor_hidden = {milliseconds(300), milliseconds(900)}});
   EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
   EXPECT_THAT(events(flight), ::testing::Contains("loop unseen"));
 }
 
 TEST(FaceAnchorTask, FailsWhereverTheConnectionEnds) {
   for (int n = 0; n < 12; ++n) {
-    const Flight flight = fly({.disconnect_at = n});
+    const Flight flight = fly_facing({.disconnect_at = n});
     EXPECT_EQ(flight.outcome.status, TaskStatus::kFailed) << n;
     EXPECT_EQ(flight.outcome.failure, Failure::Kind::kDisconnected) << n;
   }
 }
 
 TEST(FaceAnchorTask, NotesItsPhases) {
-  const Flight flight = fly({.anchor_bearing_rad = rad_from_deg(10)});
+  const Flight flight = fly_facing({.anchor_bearing_rad = rad_from_deg(10)});
   EXPECT_THAT(events(flight),
               ::testing::ElementsAre("initialise start", "initialise rotate", "loop start",
                                      "finalise start", "finalise end"));
@@ -146,7 +146,7 @@ TEST(FaceAnchorTask, NotesItsPhases) {
 
 TEST(FaceAnchorTask, IsDeterministic) {
   const PlanarVehicle::Options slow{.compute_per_image = milliseconds(200)};
-  EXPECT_EQ(details_json(fly(slow).outcome), details_json(fly(slow).outcome));
+  EXPECT_EQ(details_json(fly_facing(slow).outcome), details_json(fly_facing(slow).outcome));
 }
 
 }  // namespace

@@ -11,18 +11,16 @@ namespace {
 
 using testing::PlanarVehicle;
 
-constexpr double kPi = std::numbers::pi;
-
-struct Fixture {
-  explicit Fixture(const PlanarVehicle::Options& options = {}) : vehicle(options) {}
+struct Manoeuvre {
+  explicit Manoeuvre(const PlanarVehicle::Options& options = {}) : vehicle(options) {}
   PlanarVehicle vehicle;
   TaskContext context{vehicle};
 };
 
 TEST(Motion, CommandsWhatTheListingsSay) {
-  Fixture f;
+  Manoeuvre f;
   ASSERT_TRUE(turn(f.context, 0.4));
-  ASSERT_TRUE(move_direction(f.context, 0.5 * kPi, 2.0));
+  ASSERT_TRUE(move_direction(f.context, 0.5 * std::numbers::pi, 2.0));
   ASSERT_TRUE(stop(f.context));
   const auto& commands = f.vehicle.commands();
   ASSERT_EQ(commands.size(), 3u);
@@ -35,8 +33,8 @@ TEST(Motion, CommandsWhatTheListingsSay) {
 }
 
 TEST(Motion, YawIsThatOfTheBodyHoweverTheImuIsMounted) {
-  for (const double mounted : {0.0, 0.5 * kPi, -2.0}) {
-    Fixture f({.start_yaw_rad = 0.7, .q_BS_imu = uav::from_rpy(0.3, -0.2, mounted)});
+  for (const double mounted : {0.0, 0.5 * std::numbers::pi, -2.0}) {
+    Manoeuvre f({.start_yaw_rad = 0.7, .q_BS_imu = uav::from_rpy(0.3, -0.2, mounted)});
     const Result<double> yaw = get_yaw(f.context, "imu");
     ASSERT_TRUE(yaw);
     EXPECT_NEAR(*yaw, 0.7, 1e-9);
@@ -44,7 +42,7 @@ TEST(Motion, YawIsThatOfTheBodyHoweverTheImuIsMounted) {
 }
 
 TEST(Motion, YawNeedsAnImu) {
-  Fixture f;
+  Manoeuvre f;
   for (const char* sensor : {"camera", "compass"}) {
     const Result<double> yaw = get_yaw(f.context, sensor);
     ASSERT_FALSE(yaw);
@@ -56,14 +54,14 @@ TEST(Motion, YawNeedsAnImu) {
 TEST(Motion, PauseFollowsTheImusTimestamps) {
   // Of several seconds at 1 kHz: more readings than those after which standing still is told.
   for (const auto period : {std::chrono::milliseconds(1), std::chrono::milliseconds(50)}) {
-    Fixture f({.clock_stands_still = true, .imu_period = period});
+    Manoeuvre f({.clock_stands_still = true, .imu_period = period});
     ASSERT_TRUE(pause(f.context, "imu", std::chrono::seconds(2)));
     EXPECT_EQ(f.vehicle.read_imu("imu", client::Read::kLatest)->sampled_at,
               SimTime(std::chrono::seconds(2)));
   }
-  Fixture still({.imu_instants_stand_still = true});
+  Manoeuvre still({.imu_instants_stand_still = true});
   EXPECT_EQ(pause(still.context, "imu", Duration(1)).failure().kind, Failure::Kind::kInvalid);
-  Fixture cut({.disconnect_at = 3});
+  Manoeuvre cut({.disconnect_at = 3});
   EXPECT_EQ(pause(cut.context, "imu", std::chrono::seconds(1)).failure().kind,
             Failure::Kind::kDisconnected);
 }

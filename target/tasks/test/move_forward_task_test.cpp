@@ -21,7 +21,7 @@ PlanarVehicle::Options wall_on_the_left() {
   return {.anchor_bearing_rad = std::atan2(1.0, 2.0), .anchor_distance_m = std::sqrt(5.0)};
 }
 
-Flight fly(const PlanarVehicle::Options& world, MoveForwardOptions options = {}) {
+Flight fly_forward(const PlanarVehicle::Options& world, MoveForwardOptions options = {}) {
   options.face.convergence.tolerance_px = kTolerance_px;
   MoveForwardTask task("blue_box", options);
   return fly(task, world);
@@ -40,7 +40,7 @@ TEST(MoveForwardTask, StopsWhereTheAnchorIsAbeam) {
     const double side = start_yaw_deg == 0.0 ? 1.0 : -1.0;  // to the left, to the right
     world.anchor_bearing_rad *= side;
     world.start_yaw_rad = rad_from_deg(start_yaw_deg);
-    const Flight flight = fly(world, slow_flight());
+    const Flight flight = fly_forward(world, slow_flight());
     EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
     const uav::Vec3 p_H0 =
         rotate(uav::from_rpy(0, 0, -world.start_yaw_rad), flight.vehicle.position());
@@ -57,7 +57,7 @@ TEST(MoveForwardTask, GoesOnWhileItFacesTheAnchorUnlessToldToStop) {
   for (const bool stop_to_face : {false, true}) {
     MoveForwardOptions options = slow_flight();
     options.stop_to_face = stop_to_face;
-    const Flight flight = fly(wall_on_the_left(), options);
+    const Flight flight = fly_forward(wall_on_the_left(), options);
     EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
     int turning = 0;
     for (const uav::VelocityCommand& command : flight.vehicle.commands()) {
@@ -75,8 +75,8 @@ TEST(MoveForwardTask, ASlowComputerOvershootsTheAnchorAndIsFurtherOff) {
   options.speed_m_s = 0.6;
   PlanarVehicle::Options slow = wall_on_the_left();
   slow.compute_per_image = milliseconds(250);
-  const Flight host = fly(wall_on_the_left(), options);
-  const Flight target = fly(slow, options);
+  const Flight host = fly_forward(wall_on_the_left(), options);
+  const Flight target = fly_forward(slow, options);
   EXPECT_TRUE(host.outcome.reached() && target.outcome.reached());
   EXPECT_EQ(host.result("overshoots"), 0);
   const auto error = [](const Flight& flight) { return std::abs(flight.vehicle.position().x - 2); };
@@ -105,12 +105,12 @@ TEST(MoveForwardTask, EndsWithTheReasonWhyItDidNotReachItsGoal) {
                                          {vanishing, lost, "anchor lost"},
                                          {stuck, limited, "time limit"},
                                          {still, few, "round limit"}}) {
-    const Flight flight = fly(c.world, c.options);
+    const Flight flight = fly_forward(c.world, c.options);
     EXPECT_EQ(flight.outcome.status, TaskStatus::kNotReached);
     EXPECT_EQ(flight.outcome.reason, c.reason);
   }
   // A search on the spot can turn by more than 90°, which is no arrival.
-  const Flight searched = fly(none, searching);
+  const Flight searched = fly_forward(none, searching);
   EXPECT_EQ(searched.outcome.status, TaskStatus::kNotReached) << searched.outcome.reason;
   EXPECT_GT(std::abs(searched.result("yaw_turned_rad")), rad_from_deg(90));
   EXPECT_LT(norm(searched.vehicle.position()), 0.2);
@@ -122,7 +122,7 @@ TEST(MoveForwardTask, SearchesForHiddenAnchorOnItsSide) {
     PlanarVehicle::Options world = wall_on_the_left();
     world.anchor_bearing_rad = -world.anchor_bearing_rad;
     world.anchor_hidden = {hidden_from, hidden_from + milliseconds(600)};
-    const Flight flight = fly(world);
+    const Flight flight = fly_forward(world);
     EXPECT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
     for (const auto& annotation : flight.vehicle.annotations()) {
       const auto note = nlohmann::json::parse(annotation.json);
@@ -140,7 +140,7 @@ TEST(MoveForwardTask, MovesOnFromAnAnchorThatItCannotFace) {
   options.face.precision_rad = rad_from_deg(0.001);
   options.face.time_limit = seconds(1);
   options.time_limit = seconds(6);
-  const Flight flight = fly(wall_on_the_left(), options);
+  const Flight flight = fly_forward(wall_on_the_left(), options);
   EXPECT_GT(flight.result("face_anchors_missed"), 1);
   EXPECT_GT(flight.vehicle.position().x, 0.1);
 }
@@ -148,14 +148,14 @@ TEST(MoveForwardTask, MovesOnFromAnAnchorThatItCannotFace) {
 TEST(MoveForwardTask, FailsWithItsReason) {
   MoveForwardOptions options;
   options.face.imu = "compass";
-  EXPECT_EQ(fly(wall_on_the_left(), options).outcome.failure, Failure::Kind::kInvalid);
+  EXPECT_EQ(fly_forward(wall_on_the_left(), options).outcome.failure, Failure::Kind::kInvalid);
   PlanarVehicle::Options still = wall_on_the_left();
   still.imu_instants_stand_still = true;
-  EXPECT_EQ(fly(still).outcome.failure, Failure::Kind::kInvalid);
+  EXPECT_EQ(fly_forward(still).outcome.failure, Failure::Kind::kInvalid);
   for (const int n : {0, 1, 2, 5, 9, 20, 40}) {
     PlanarVehicle::Options world = wall_on_the_left();
     world.disconnect_at = n;
-    EXPECT_EQ(fly(world).outcome.failure, Failure::Kind::kDisconnected) << n;
+    EXPECT_EQ(fly_forward(world).outcome.failure, Failure::Kind::kDisconnected) << n;
   }
 }
 

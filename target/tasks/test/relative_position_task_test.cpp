@@ -12,8 +12,8 @@ using std::chrono::milliseconds;
 /// The fake's images are a quarter as wide as those that the default is for.
 const RelativePositionOptions kOptions{.convergence = {.tolerance_px = 2.0}};
 
-struct Fixture {
-  explicit Fixture(const testing::PlanarVehicle::Options& options = {}) : vehicle(options) {}
+struct Approach {
+  explicit Approach(const testing::PlanarVehicle::Options& options = {}) : vehicle(options) {}
   TaskOutcome run_task(const std::string& anchor = "blue_box") {
     task = std::make_unique<RelativePositionTask>(anchor, kOptions);
     return run(*task, context);
@@ -29,7 +29,7 @@ struct Fixture {
 };
 
 TEST(RelativePositionTask, MeasuresBearingAndDistance) {
-  Fixture f({.anchor_bearing_rad = rad_from_deg(20), .anchor_distance_m = 3});
+  Approach f({.anchor_bearing_rad = rad_from_deg(20), .anchor_distance_m = 3});
   const TaskOutcome outcome = f.run_task();
   EXPECT_TRUE(outcome.reached()) << outcome.reason;
   EXPECT_NEAR(deg_from_rad(outcome.results.at("bearing_rad")), 20, 0.4);
@@ -45,7 +45,7 @@ TEST(RelativePositionTask, MeasuresBearingAndDistance) {
 
 TEST(RelativePositionTask, KeepsWhatItsLastEstimateWasMadeFrom) {
   // The anchor is gone after the second image, so that later ones bring no estimate.
-  Fixture f({.anchor_hidden = {milliseconds(60), std::chrono::hours(1)}});
+  Approach f({.anchor_hidden = {milliseconds(60), std::chrono::hours(1)}});
   EXPECT_FALSE(f.run_task().reached());
   EXPECT_GT(f.vehicle.images_read(), 2);
   ASSERT_TRUE(f.task->sighting());
@@ -62,7 +62,7 @@ TEST(RelativePositionTask, KeepsWhatItsLastEstimateWasMadeFrom) {
 
 TEST(RelativePositionTask, ConvergesWhileTurning) {
   for (const auto compute : {milliseconds(2), milliseconds(150)}) {
-    Fixture f({.anchor_bearing_rad = rad_from_deg(25), .compute_per_image = compute});
+    Approach f({.anchor_bearing_rad = rad_from_deg(25), .compute_per_image = compute});
     ASSERT_TRUE(f.vehicle.command_velocity({{}, rad_from_deg(15)}));
     ASSERT_TRUE(f.vehicle.sleep_for(milliseconds(300)));
     const TaskOutcome outcome = f.run_task();
@@ -92,7 +92,7 @@ TEST(RelativePositionTask, EndsWithTheReasonWhyItDidNotReachItsGoal) {
             false},
            {{}, impossible, "did not converge", impossible.convergence.max_frames, true},
            {{.compute_per_image = milliseconds(400)}, hurried, "time limit", 2, true}}) {
-    Fixture f(c.world);
+    Approach f(c.world);
     RelativePositionTask task("blue_box", c.options);
     const TaskOutcome outcome = run(task, f.context);
     EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
@@ -104,16 +104,16 @@ TEST(RelativePositionTask, EndsWithTheReasonWhyItDidNotReachItsGoal) {
 }
 
 TEST(RelativePositionTask, AShortLossCostsImagesOnly) {
-  Fixture f({.anchor_hidden = {milliseconds(60), milliseconds(130)}});
+  Approach f({.anchor_hidden = {milliseconds(60), milliseconds(130)}});
   const TaskOutcome outcome = f.run_task();
   EXPECT_TRUE(outcome.reached()) << outcome.reason;
   EXPECT_GT(outcome.results.at("frames"), 3);
 }
 
 TEST(RelativePositionTask, FailsWithItsReason) {
-  EXPECT_EQ(Fixture().run_task("door").failure, Failure::Kind::kInvalid);
-  EXPECT_EQ(Fixture().run_task("grey_box").failure, Failure::Kind::kInvalid);
-  Fixture cut({.disconnect_at = 1});
+  EXPECT_EQ(Approach().run_task("door").failure, Failure::Kind::kInvalid);
+  EXPECT_EQ(Approach().run_task("grey_box").failure, Failure::Kind::kInvalid);
+  Approach cut({.disconnect_at = 1});
   const TaskOutcome outcome = cut.run_task();
   EXPECT_EQ(outcome.status, TaskStatus::kFailed);
   EXPECT_EQ(outcome.failure, Failure::Kind::kDisconnected);

@@ -34,7 +34,7 @@ struct Told {
   bool required = true;
 };
 
-struct Fixture {
+struct Sequence {
   TaskOutcome run_all(const std::vector<Told>& all) {
     std::vector<SequenceItem> items;
     for (const Told& told : all) {
@@ -51,7 +51,7 @@ struct Fixture {
 const Failure kGone{Failure::Kind::kDisconnected, "gone"};
 
 TEST(TaskSequence, ReachesItsGoalWithTheLastTask) {
-  Fixture f;
+  Sequence f;
   EXPECT_TRUE(f.run_all({}).reached());
   const TaskOutcome outcome =
       f.run_all({{TaskOutcome::goal_reached()}, {TaskOutcome::goal_reached()}});
@@ -65,7 +65,7 @@ TEST(TaskSequence, ReachesItsGoalWithTheLastTask) {
 }
 
 TEST(TaskSequence, EndsWithARequiredTaskThatDoesNotReachItsGoal) {
-  Fixture f;
+  Sequence f;
   const TaskOutcome outcome = f.run_all({{TaskOutcome::goal_reached()},
                                          {TaskOutcome::not_reached("anchor lost")},
                                          {TaskOutcome::goal_reached()}});
@@ -76,7 +76,7 @@ TEST(TaskSequence, EndsWithARequiredTaskThatDoesNotReachItsGoal) {
 }
 
 TEST(TaskSequence, GoesOnAfterOneThatIsNotRequired) {
-  Fixture f;
+  Sequence f;
   const TaskOutcome outcome =
       f.run_all({{TaskOutcome::not_reached("anchor lost"), false}, {TaskOutcome::goal_reached()}});
   EXPECT_TRUE(outcome.reached());
@@ -87,7 +87,7 @@ TEST(TaskSequence, GoesOnAfterOneThatIsNotRequired) {
 
 TEST(TaskSequence, AFailureEndsItRequiredOrNot) {
   for (const bool required : {true, false}) {
-    Fixture f;
+    Sequence f;
     const TaskOutcome outcome =
         f.run_all({{TaskOutcome::failed(kGone), required}, {TaskOutcome::goal_reached()}});
     EXPECT_EQ(outcome.status, TaskStatus::kFailed);
@@ -98,7 +98,7 @@ TEST(TaskSequence, AFailureEndsItRequiredOrNot) {
 }
 
 TEST(TaskSequence, ComposesTasksWithTheirOwnVisionOptions) {
-  Fixture f;
+  Sequence f;
   FaceAnchorOptions face;
   face.convergence.tolerance_px = 2.0;
   const RelativePositionOptions look{.convergence = face.convergence};
@@ -112,16 +112,17 @@ TEST(TaskSequence, ComposesTasksWithTheirOwnVisionOptions) {
   const TaskOutcome outcome = run(sequence, f.context);
   EXPECT_TRUE(outcome.reached()) << outcome.reason;
 
-  const auto json = nlohmann::json::parse(details_json(outcome));
+  const auto details = nlohmann::json::parse(details_json(outcome));
   std::vector<std::string> ends;
-  for (const auto& part : json.at("tasks")) {
+  for (const auto& part : details.at("tasks")) {
     ends.push_back(part.at("task").get<std::string>() + ": " +
                    part.at("reason").get<std::string>());
   }
   EXPECT_THAT(ends, ElementsAre("relative_position: anchor not seen", "face_anchor: goal reached",
                                 "relative_position: goal reached"));
-  EXPECT_LT(std::abs(json.at("tasks").at(2).at("results").at("bearing_rad").get<double>()), 0.06);
-  EXPECT_EQ(json.at("results").at("tasks_run"), 3);
+  EXPECT_LT(std::abs(details.at("tasks").at(2).at("results").at("bearing_rad").get<double>()),
+            0.06);
+  EXPECT_EQ(details.at("results").at("tasks_run"), 3);
 }
 
 }  // namespace

@@ -81,11 +81,11 @@ TEST(TaskOutcome, DetailsAreJson) {
   TaskOutcome outcome = TaskOutcome::not_reached("said \"no\"\n");
   outcome.results["angle_rad"] = 0.5;
   outcome.results["distance_m"] = std::nan("");
-  const auto json = nlohmann::json::parse(details_json(outcome));
-  EXPECT_EQ(json.at("status"), "not_reached");
-  EXPECT_EQ(json.at("reason"), "said \"no\"\n");
-  EXPECT_EQ(json.at("results").at("angle_rad"), 0.5);
-  EXPECT_TRUE(json.at("results").at("distance_m").is_null());
+  const auto details = nlohmann::json::parse(details_json(outcome));
+  EXPECT_EQ(details.at("status"), "not_reached");
+  EXPECT_EQ(details.at("reason"), "said \"no\"\n");
+  EXPECT_EQ(details.at("results").at("angle_rad"), 0.5);
+  EXPECT_TRUE(details.at("results").at("distance_m").is_null());
 }
 
 TEST(TaskOutcome, NamesItsStatusAndKeepsAFailuresKind) {

@@ -9,7 +9,7 @@
 namespace tether::vision {
 namespace {
 
-const uav::Anchor kCube{"cube", uav::AnchorShape::kBox, {0.4, 0.4, 0.4}, {0.1, 0.2, 0.9}};
+const uav::Anchor kTracked{"cube", uav::AnchorShape::kBox, {0.4, 0.4, 0.4}, {0.1, 0.2, 0.9}};
 const cv::Scalar kBlue(25, 51, 230);
 
 /// A drawn image: grey wall, brown floor.
@@ -42,7 +42,7 @@ class Picture {
 };
 
 AnchorTracker tracker(const TrackerOptions& options = {}) {
-  Result<AnchorTracker> created = AnchorTracker::create(kCube, options);
+  Result<AnchorTracker> created = AnchorTracker::create(kTracked, options);
   return std::move(created).value();
 }
 
@@ -163,7 +163,7 @@ TEST(AnchorTracker, AcceptsImagesOfAnySizeAndIgnoresIncompleteOnes) {
 }
 
 TEST(AnchorTracker, RefusesUnusableAnchorsAndOptions) {
-  uav::Anchor grey = kCube, flat = kCube;
+  uav::Anchor grey = kTracked, flat = kTracked;
   grey.color_rgb = {0.5, 0.5, 0.52};
   flat.size_m.z = 0;
   TrackerOptions even, wide, share;
@@ -172,8 +172,8 @@ TEST(AnchorTracker, RefusesUnusableAnchorsAndOptions) {
   share.min_value = 1.5;
   for (const auto& tracker :
        {AnchorTracker::create(grey), AnchorTracker::create(flat),
-        AnchorTracker::create(kCube, even), AnchorTracker::create(kCube, wide),
-        AnchorTracker::create(kCube, share)}) {
+        AnchorTracker::create(kTracked, even), AnchorTracker::create(kTracked, wide),
+        AnchorTracker::create(kTracked, share)}) {
     ASSERT_FALSE(tracker);
     EXPECT_EQ(tracker.failure().kind, Failure::Kind::kInvalid);
   }

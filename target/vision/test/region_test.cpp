@@ -6,7 +6,7 @@
 namespace tether::vision {
 namespace {
 
-const uav::Anchor kCube{"cube", uav::AnchorShape::kBox, {0.4, 0.4, 0.4}, {0.1, 0.2, 0.9}};
+const uav::Anchor kBlueCube{"cube", uav::AnchorShape::kBox, {0.4, 0.4, 0.4}, {0.1, 0.2, 0.9}};
 
 cv::Mat empty_map() {
   return cv::Mat(240, 320, CV_8U, cv::Scalar(0));
@@ -29,7 +29,7 @@ TEST(FitRectangle, GrowsOrShrinksToTheMass) {
 TEST(Measure, CentreIsThatOfThePixels) {
   cv::Mat map = empty_map();
   cv::rectangle(map, cv::Rect(100, 80, 41, 31), cv::Scalar(255), cv::FILLED);
-  const Roi roi = measure(map, cv::Rect(100, 80, 41, 31), proportions_of(kCube));
+  const Roi roi = measure(map, cv::Rect(100, 80, 41, 31), proportions_of(kBlueCube));
   EXPECT_DOUBLE_EQ(roi.center.u_px, 120);
   EXPECT_DOUBLE_EQ(roi.center.v_px, 95);
   EXPECT_NEAR(roi.score, 1.0, 1e-9);
@@ -37,7 +37,7 @@ TEST(Measure, CentreIsThatOfThePixels) {
 }
 
 TEST(Measure, ScoreFallsWithShapeFillAndColor) {
-  const Proportions cube = proportions_of(kCube);
+  const Proportions cube = proportions_of(kBlueCube);
   const auto score = [&cube](const cv::Rect& r, double value) {
     cv::Mat map = empty_map();
     cv::rectangle(map, r, cv::Scalar(value), cv::FILLED);
@@ -55,7 +55,7 @@ TEST(Measure, WhatIsCutOffMayBeNarrow) {
   cv::Mat map = empty_map();
   const cv::Rect sliver(0, 80, 8, 40);
   cv::rectangle(map, sliver, cv::Scalar(255), cv::FILLED);
-  const Roi roi = measure(map, sliver, proportions_of(kCube));
+  const Roi roi = measure(map, sliver, proportions_of(kBlueCube));
   EXPECT_TRUE(roi.cut_left_or_right);
   EXPECT_GT(roi.score, 0.9);
 }
@@ -72,7 +72,7 @@ TEST(FindBlobs, LargestFirstWithoutNoise) {
 }
 
 TEST(FindEdges, AreExactToAFractionOfAPixel) {
-  const ColorModel color(kCube.color_rgb, {});
+  const ColorModel color(kBlueCube.color_rgb, {});
   const cv::Scalar blue(25, 51, 230), grey(140, 140, 140);
   for (const double part : {0.0, 0.25, 0.5, 0.75}) {
     // Blue on grey; its lower and right edges cover part of a row and a column.
@@ -91,7 +91,7 @@ TEST(FindEdges, AreExactToAFractionOfAPixel) {
 }
 
 TEST(FindEdges, WhatIsCutOffEndsWithTheImage) {
-  const ColorModel color(kCube.color_rgb, {});
+  const ColorModel color(kBlueCube.color_rgb, {});
   cv::Mat hsv(240, 320, CV_8UC3, cv::Scalar(0, 0, 140));
   cv::rectangle(hsv, cv::Rect(0, 80, 20, 30), cv::Scalar(117, 230, 230), cv::FILLED);
   EXPECT_EQ(find_edges(hsv, {0, 80, 20, 30}, color).left_px, -0.5);
@@ -100,7 +100,7 @@ TEST(FindEdges, WhatIsCutOffEndsWithTheImage) {
 }
 
 TEST(Proportions, OfEachShape) {
-  const Proportions cube = proportions_of(kCube);
+  const Proportions cube = proportions_of(kBlueCube);
   EXPECT_LT(cube.min_width_per_height, 1.0);
   EXPECT_GT(cube.max_width_per_height, 1.42);
   const uav::Anchor pole{"pole", uav::AnchorShape::kCylinder, {0.1, 0.1, 1.0}, {1, 0, 0}};

@@ -161,7 +161,7 @@ const Misdeed kMisdeeds[] = {
      },
      kSilent},
     {"AnotherAnswer",
-     [](Host& host, auto) { host.send(protocol::Reply(protocol::Distances{{1.0}})); }, "CastRays"},
+     [](Host& host, auto) { host.send(protocol::Reply(protocol::Distances{{1.0}})); }, "Distances"},
     spoils(
         "NoNumber", [](auto& state) { state.bodies[0].p_WB.x = kNan; }, "State.bodies"),
     spoils(

@@ -14,7 +14,7 @@ SimTime at(std::int64_t ms) {
 }
 
 /// One UAV, one other body, three past steps, 64x48 pixels.
-Open open() {
+Open small_open() {
   Open open;
   open.step = milliseconds(1);
   open.uavs = {{"alpha", "", {}, uav::hummingbird()}};
@@ -68,23 +68,24 @@ void expect_refused(const Conversation& conversation, const Message& message,
 TEST(Conversation, BeginsWithOneOpenOfThisVersion) {
   const Conversation fresh;
   expect_refused(fresh, Request(Reset{}), "Open");
-  Open other = open();
+  Open other = small_open();
   other.version = kVersion + 1;
   expect_refused(fresh, Request(other), "version 2");
-  expect_refused(after({open()}), Request(open()), "Open");
+  expect_refused(after({small_open()}), Request(small_open()), "Open");
 }
 
 TEST(Conversation, AdvancesGoForwardStepByStep) {
-  const Conversation advanced = after({open(), Advance{at(5), {}}});
+  const Conversation advanced = after({small_open(), Advance{at(5), {}}});
   EXPECT_TRUE(advanced.check(Request(Advance{at(5), {{0, {}}}})).ok());
   expect_refused(advanced, Request(Advance{at(4), {}}), "4000000 ns");
   expect_refused(advanced, Request(Advance{at(5) + Duration(1), {}}), "5000001 ns");
   expect_refused(advanced, Request(Advance{at(6), {{1, {}}}}), "Advance.commands");
-  EXPECT_TRUE(after({open(), Advance{at(5), {}}, Reset{}}).check(Request(Advance{at(1), {}})).ok());
+  EXPECT_TRUE(
+      after({small_open(), Advance{at(5), {}}, Reset{}}).check(Request(Advance{at(1), {}})).ok());
 }
 
 TEST(Conversation, MeasurementsFitTheWorld) {
-  const Conversation opened = after({open()});
+  const Conversation opened = after({small_open()});
   CastRays few = rays();
   few.X_WB.pop_back();
   expect_refused(opened, Request(few), "CastRays.X_WB");
@@ -97,7 +98,7 @@ TEST(Conversation, MeasurementsFitTheWorld) {
 }
 
 TEST(Conversation, StatesAreThoseRequested) {
-  const Conversation advanced = after({open(), Advance{at(2), {}}, Advance{at(4), {}}});
+  const Conversation advanced = after({small_open(), Advance{at(2), {}}, Advance{at(4), {}}});
   EXPECT_TRUE(advanced.check(Reply(state(4, 2))).ok());
   expect_refused(advanced, Reply(state(5, 2)), "5000000 ns");
   expect_refused(advanced, Reply(state(4, 3)), "State.past");
@@ -110,19 +111,19 @@ TEST(Conversation, StatesAreThoseRequested) {
 }
 
 TEST(Conversation, ThePastIsAtMostAsLongAsAnnounced) {
-  EXPECT_TRUE(after({open(), Advance{at(50), {}}}).check(Reply(state(50, 3))).ok());
-  EXPECT_TRUE(after({open(), Advance{at(9), {}}, Reset{}}).check(Reply(state(0, 0))).ok());
-  EXPECT_TRUE(after({open()}).check(Reply(Opened{"", state(0, 0)})).ok());
-  expect_refused(after({open()}), Reply(Opened{"", state(0, 1)}), "State.past");
+  EXPECT_TRUE(after({small_open(), Advance{at(50), {}}}).check(Reply(state(50, 3))).ok());
+  EXPECT_TRUE(after({small_open(), Advance{at(9), {}}, Reset{}}).check(Reply(state(0, 0))).ok());
+  EXPECT_TRUE(after({small_open()}).check(Reply(Opened{"", state(0, 0)})).ok());
+  expect_refused(after({small_open()}), Reply(Opened{"", state(0, 1)}), "State.past");
 }
 
 TEST(Conversation, EveryReplyAnswersItsRequest) {
   const Reply opened = Opened{"", state(0, 0)};
   const std::vector<Reply> replies{opened, state(0, 0), Distances{{1.0, 2.0}}, picture()};
-  const std::vector<Request> requests{open(), Reset{}, rays(), render()};
+  const std::vector<Request> requests{small_open(), Reset{}, rays(), render()};
   for (std::size_t asked = 0; asked < requests.size(); ++asked) {
     const Conversation conversation =
-        asked == 0 ? after({open()}) : after({open(), requests[asked]});
+        asked == 0 ? after({small_open()}) : after({small_open(), requests[asked]});
     for (std::size_t answered = 0; answered < replies.size(); ++answered) {
       EXPECT_EQ(conversation.check(replies[answered]).ok(), asked == answered)
           << asked << " " << answered;
@@ -132,13 +133,13 @@ TEST(Conversation, EveryReplyAnswersItsRequest) {
 }
 
 TEST(Conversation, MeasurementsHaveTheRequestedSize) {
-  expect_refused(after({open(), rays()}), Reply(Distances{{1.0}}), "Distances.distance_m");
+  expect_refused(after({small_open(), rays()}), Reply(Distances{{1.0}}), "Distances.distance_m");
   Picture small = picture();
   small.height_px = 47;
-  expect_refused(after({open(), render()}), Reply(small), "64x47");
+  expect_refused(after({small_open(), render()}), Reply(small), "64x47");
   Render with_depth = render();
   with_depth.with_depth = true;
-  expect_refused(after({open(), with_depth}), Reply(picture()), "nearest_depth_m");
+  expect_refused(after({small_open(), with_depth}), Reply(picture()), "nearest_depth_m");
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ namespace {
 using ::testing::IsEmpty;
 using uav::Vec3;
 
-const std::filesystem::path kSource = TETHER_SOURCE_DIR;
-const std::filesystem::path kHummingbird = kSource / "data/models/hummingbird/model.sdf";
+const std::filesystem::path kProject = TETHER_SOURCE_DIR;
+const std::filesystem::path kHummingbird = kProject / "data/models/hummingbird/model.sdf";
 
 /// Each world is read once for all of its tests.
 const Loaded& load_once(const std::string& world) {
@@ -28,7 +28,7 @@ const Loaded& load_once(const std::string& world) {
   const auto known = worlds.find(world);
   if (known != worlds.end()) return known->second;
   const Vec3 start{world == "room" ? 1.2 : 0.0, 0.0, 1.2};
-  return worlds[world] = load({kSource / "data/worlds" / (world + ".sdf"),
+  return worlds[world] = load({kProject / "data/worlds" / (world + ".sdf"),
                                {{"uav", kHummingbird, start, 0.0}},
                                {"blue_box"}});
 }
@@ -151,20 +151,20 @@ TEST(Hummingbird, CarriesCameraImuAndRangefinder) {
 
 TEST(ShippedFiles, AreSmall) {
   for (const char* name : {"chair/chair.obj", "plant/leaves.obj"}) {
-    std::ifstream file(kSource / "data/models" / name);
+    std::ifstream file(kProject / "data/models" / name);
     int triangles = 0;
     for (std::string line; std::getline(file, line);) triangles += line.starts_with("f ") ? 1 : 0;
     EXPECT_GT(triangles, 0) << name;
     EXPECT_LT(triangles, 500) << name;
   }
-  for (const auto& file : std::filesystem::directory_iterator(kSource / "data/models/textures")) {
+  for (const auto& file : std::filesystem::directory_iterator(kProject / "data/models/textures")) {
     EXPECT_LT(file.file_size(), 100'000u) << file.path();
   }
 }
 
 TEST(ShippedFiles, AreAllNamedByTheirWorld) {
-  const World world = load({kSource / "data/worlds/room.sdf", {}, {}}).world;
-  EXPECT_TRUE(world.files.contains(kSource / "data/worlds/room.sdf"));
+  const World world = load({kProject / "data/worlds/room.sdf", {}, {}}).world;
+  EXPECT_TRUE(world.files.contains(kProject / "data/worlds/room.sdf"));
   std::set<std::string> extensions;
   for (const auto& file : world.files) {
     EXPECT_TRUE(std::filesystem::is_regular_file(file)) << file;

@@ -22,7 +22,7 @@ struct Unrepresented {
 std::string link(const std::string& content) {
   return "<model name='m'><static>true</static>\n<link name='l'>\n" + content + "\n</link></model>";
 }
-std::string visual(const std::string& content) {
+std::string visual_of(const std::string& content) {
   return link("<visual name='v'>" + content + "</visual>");
 }
 const std::string kSphere = "<geometry><sphere><radius>1</radius></sphere></geometry>";
@@ -42,16 +42,16 @@ TEST(SdfWarning, NamesTheElement) {
       {"<wind><linear_velocity>1 0 0</linear_velocity></wind>", 3, "<wind> of world 'w'"},
       {"<scene>\n<fog><type>linear</type></fog></scene>", 4, "<fog> of world 'w'"},
       {"<physics name='p' type='ode'><ode/></physics>", 3, "<ode> of physics 'p'"},
-      {visual("<geometry><heightmap><uri>h.png</uri></heightmap></geometry>"), 5,
+      {visual_of("<geometry><heightmap><uri>h.png</uri></heightmap></geometry>"), 5,
        "<heightmap> of visual 'v'"},
-      {visual("<geometry><polyline><point>0 0</point><point>1 0</point><point>0 1</point>"
-              "<height>1</height></polyline></geometry>"),
+      {visual_of("<geometry><polyline><point>0 0</point><point>1 0</point><point>0 1</point>"
+                 "<height>1</height></polyline></geometry>"),
        5, "<polyline> of visual 'v'"},
-      {visual(kSphere + "<material>\n<script><uri>a</uri><name>Gazebo/Blue</name></script>"
-                        "</material>"),
+      {visual_of(kSphere + "<material>\n<script><uri>a</uri><name>Gazebo/Blue</name></script>"
+                           "</material>"),
        6, "<script> of visual 'v'"},
-      {visual(kSphere + "<material><pbr><metal><normal_map>n.png</normal_map></metal></pbr>"
-                        "</material>"),
+      {visual_of(kSphere + "<material><pbr><metal><normal_map>n.png</normal_map></metal></pbr>"
+                           "</material>"),
        5, "<normal_map> of visual 'v'"},
       {link("<sensor name='s' type='imu'/>"), 5, "sensor 's'"},
       {"<model name='m'><link name='l'>\n<light name='lamp' type='point'/></link></model>", 4,
