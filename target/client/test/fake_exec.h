@@ -70,13 +70,16 @@ class FakeExec {
         ++connections_;
         EXPECT_TRUE(sockets_.back().send_clock(clock_.descriptor).ok());
       }
-      for (auto& socket : sockets_) serve(socket);
       const std::lock_guard lock(mutex_);
+      for (auto& socket : sockets_) serve(socket);
       if (!end_) continue;
+      // To close a socket with an unread request would reset the connection, and lose the refusal.
       for (auto& socket : sockets_) {
         if (why_) static_cast<void>(socket.send(*why_));
       }
-      sockets_.clear();
+      if (!why_) sockets_.clear();
+      answer_ = [](const link::Request&) { return std::nullopt; };
+      end_ = false;
     }
   }
   void serve(LocalSocket& socket) {
