@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
-#include <regex>
-#include <sstream>
 
 namespace tether::layout {
 namespace {
@@ -21,13 +19,6 @@ std::string_view trim(std::string_view text) {
   while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
   return text;
 }
-
-bool contains_word(std::string_view text, std::string_view word) {
-  return !lines_with_word(text, word).empty();
-}
-
-// ---- comments and literals
-// --------------------------------------------------------------------------------------
 
 /// Copies a source while blanking what is no code.
 class Stripper {
@@ -102,34 +93,6 @@ class Stripper {
   std::size_t at_ = 0;
 };
 
-// ---- functions
-
-/// A declaration's head up to its brace is that of a function if it has parameters and is neither a
-/// type or namespace nor the initialiser of something.
-bool is_function(const std::string& head) {
-  static const std::regex kScope(
-      "(template ?<.*> )?(inline )?(namespace|class|struct|union|enum|extern)\\b.*");
-  const std::size_t parameters = head.find('(');
-  if (parameters == std::string::npos || std::regex_match(head, kScope)) return false;
-  const std::size_t types = head.rfind('>', parameters);  // may have defaults
-  const std::size_t begin = types == std::string::npos ? 0 : types;
-  const std::string name = head.substr(begin, parameters - begin);
-  return name.find('=') == std::string::npos || contains_word(head, "operator");
-}
-
-std::string name_of(const std::string& head) {
-  static const std::regex kName("([A-Za-z_0-9:~]*)\\(");
-  std::smatch match;
-  return std::regex_search(head, match, kName) ? match[1].str() : "";
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
 }  // namespace
 
 std::string strip(std::string_view source) {
@@ -154,34 +117,6 @@ std::vector<Include> includes(std::string_view source) {
     const bool quoted = text[open] == '"';
     const std::size_t close = text.find(quoted ? '"' : '>', open + 1);
     found.push_back({line, std::string(text.substr(open + 1, close - open - 1)), quoted});
-  }
-  return found;
-}
-
-// clang-format closes what a declaration opens by a "}" at the indentation of its first line.
-std::vector<Function> functions(std::string_view source) {
-  const std::vector<std::string> lines = lines_of(strip(source));
-  std::vector<Function> found;
-  std::string head;  // the declaration up to here
-  std::string end;   // the beginning of the line that closes it
-  bool is_directive = false;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string_view text = trim(lines[i]);
-    is_directive = text.starts_with('#') || is_directive;
-    if (head.empty()) end = std::string(lines[i].find_first_not_of(' ') % 200, ' ') + "}";
-    if (!is_directive) head += (head.empty() ? "" : " ") + std::string(text);
-    is_directive = is_directive && text.ends_with('\\');
-    const bool opens = head.ends_with('{');
-    if (!opens && !head.ends_with('}') && !head.ends_with(';') && !head.ends_with(':')) continue;
-    const bool is_body = is_function(head);
-    const std::size_t first = i;
-    if (opens && (is_body || head.ends_with("= {")))
-      while (i + 1 < lines.size() && !lines[++i].starts_with(end)) {
-      }
-    if (is_body && (opens || head.ends_with('}')))
-      found.push_back(
-          {static_cast<int>(first) + 1, static_cast<int>(i - first) + 1, name_of(head)});
-    head.clear();
   }
   return found;
 }

@@ -14,22 +14,12 @@ struct Include {
   bool quoted = false;  ///< "…" rather than <…>
 };
 
-struct Function {
-  int line = 0;      ///< of its opening brace
-  int length = 0;    ///< lines from the opening brace to the closing one, both counted
-  std::string name;  ///< as far as the scanner can tell
-};
-
 /// The text with comments, and the contents of string and character literals, turned into blanks;
 /// line breaks stay.
 std::string strip(std::string_view source);
 
 /// Every #include, in order. Ignores those in comments.
 std::vector<Include> includes(std::string_view source);
-
-/// Function definitions at namespace or class scope. What is inside a function (lambdas, local
-/// types) counts as its lines. @pre formatted by clang-format
-std::vector<Function> functions(std::string_view source);
 
 /// Lines on which `word` stands by itself (no letter, digit or underscore beside it) in stripped
 /// text.

@@ -8,12 +8,6 @@ namespace {
 
 using testing::ElementsAre;
 
-std::vector<std::string> names(std::string_view source) {
-  std::vector<std::string> out;
-  for (const Function& function : functions(source)) out.push_back(function.name);
-  return out;
-}
-
 TEST(Strip, BlanksCommentsAndKeepsLines) {
   EXPECT_EQ(strip("a; // b\nc; /* d\ne */ f;"), "a;     \nc;     \n     f;");
 }
@@ -40,56 +34,6 @@ TEST(Includes, FindsBothKindsAndSkipsComments) {
   EXPECT_EQ(found[1].path, "c.h");
   EXPECT_TRUE(found[1].quoted);
   EXPECT_EQ(found[1].line, 3);
-}
-
-TEST(Functions, MeasuresFromBraceToBrace) {
-  const auto found = functions(
-      "int f() { return 1; }\n\nvoid g(int a,\n       int b) {\n  if (a) {\n    b = {};\n  }\n}\n");
-  ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[0].length, 1);
-  EXPECT_EQ(found[1].name, "g");
-  EXPECT_EQ(found[1].line, 4);
-  EXPECT_EQ(found[1].length, 5);
-}
-
-TEST(Functions, AreFoundInEveryScopeAndNothingElseIs) {
-  EXPECT_THAT(names(R"(#define X(a) { \
-  a
-namespace a::b {
-constexpr int kTable[] = {1, 2};
-const std::map<int, B> kMap = {
-    {1, make(2)},
-};
-template <class T>
-class C final : public D {
- public:
-  C() : x_{0},
-        y_(1) {}
-  ~C() {}
-  int f(A a = {}) const { return x_; }
-  bool operator==(const C&) const { return true; }
-  enum class E { kA };
-
- private:
-  int x_{0};
-  std::vector<int> y_ = {1, 2};
-};
-template <class T, class U = V<int>>
-T g(U u) {
-  return [] {
-    return 1;
-  };
-}
-C::C(int a)
-    : a_{a}, b_(a) {
-  X(1)
-}
-extern "C" {
-int c();
-}
-}
-)"),
-              ElementsAre("C", "~C", "f", testing::_, "g", "C::C"));
 }
 
 TEST(LinesWithWord, NeedsWholeWords) {

