@@ -181,7 +181,7 @@ void Coordinator::Impl::read_timers(WallTime now) {
 
 // How far ST may advance in this turn.
 SimTime Coordinator::Impl::next_stop() const {
-  const SimTime bound = is_synchronised() ? barrier_.horizon() : SimTime::max();
+  const SimTime bound = is_synchronised() ? barrier_.lower_bound() : SimTime::max();
   return std::min({bound, time_limit_, stepper_.next_due(), st() + kStepsPerTurn * grid().dt()});
 }
 
@@ -216,7 +216,7 @@ void Coordinator::Impl::watch() {
 
 void Coordinator::Impl::stop_if_asked() {
   if (ended_ || !hooks_.should_stop) return;
-  if (const auto stop = hooks_.should_stop()) end({stop->first, stop->second});
+  if (const auto stop = hooks_.should_stop()) end(*stop);
 }
 
 // Whether the coordinator waits for the next message of the SUT.

@@ -12,7 +12,7 @@
 #include <tether/record/messages.h>
 #include <tether/sim/simulator.h>
 #include <tether/sync/barrier_synchronizer.h>
-#include <tether/sync/clock_witness.h>
+#include <tether/sync/clock_plausibility.h>
 #include <tether/sync/execution_timer.h>
 
 namespace tether::coordinator {
@@ -36,7 +36,7 @@ struct Session {
   link::PeerId peer = 0;  ///< 0: not joined
   link::Hello hello;
   std::optional<sync::ExecutionTimer> timer;  ///< of an unstamped client
-  std::optional<sync::ClockWitness>
+  std::optional<sync::ClockPlausibility>
       plausibility;  ///< synchronised, if the SUT measures its own time
   std::uint64_t next_sequence = 1;
   SimTime called_at{};            ///< ST of the last request

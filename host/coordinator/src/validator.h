@@ -8,7 +8,7 @@
 #include <string>
 
 #include <tether/link/messages.h>
-#include <tether/sync/clock_witness.h>
+#include <tether/sync/clock_plausibility.h>
 
 /// Checks messages of a SUT against the protocol and its earlier messages. Pure: times are
 /// arguments.
@@ -53,7 +53,7 @@ struct Standing {
   std::size_t calls_in_step = 0;  ///< at this ST
   std::size_t waiting_commands = 0;
   const Sampler& sensors;
-  const sync::ClockWitness* plausibility = nullptr;  ///< nullptr: its clock is not checked
+  const sync::ClockPlausibility* plausibility = nullptr;  ///< nullptr: its clock is not checked
   int clock_cores = 0;  ///< cores whose time its CPU clock adds up; 0: another clock
 };
 

@@ -12,12 +12,6 @@
 
 namespace tether::coordinator {
 
-/// Why a run is over.
-struct Ending {
-  RunEnd how = RunEnd::kFinished;
-  std::string reason;  ///< one line; names the cause
-};
-
 /// The state of one SUT, for messages.
 struct Party {
   std::string sut;  ///< its name from the Hello

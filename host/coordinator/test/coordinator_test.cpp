@@ -152,9 +152,9 @@ TEST_F(CoordinatorTest, ProgressOfOneSutReleasesAnother) {
     released = server_->sent[quick].size() > 1;
     if (status.interactions == 0) server_->deliver(slow, link::Progress{us(900)});
   };
-  hooks_.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
+  hooks_.should_stop = [&]() -> std::optional<Ending> {
     if (!released && to_seconds(now_) < 100.0) return std::nullopt;
-    return std::pair(RunEnd::kInterrupted, std::string("enough"));
+    return Ending{RunEnd::kInterrupted, "enough"};
   };
   run();
   EXPECT_TRUE(released);
@@ -233,9 +233,9 @@ TEST_F(CoordinatorTest, EndsIfTheSimulatorFails) {
       failed = true;
       throw Error(ErrorCode::kSetup, "crashed");
     });
-    hooks_.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
+    hooks_.should_stop = [&]() -> std::optional<Ending> {
       if (!failed || !interrupted) return std::nullopt;
-      return std::pair(RunEnd::kInterrupted, std::string("by the user"));
+      return Ending{RunEnd::kInterrupted, "by the user"};
     };
     const RunReport report = run({sleep(Duration(0), seconds(1))});
     EXPECT_EQ(report.end, interrupted ? RunEnd::kInterrupted : RunEnd::kSimulatorLost);

@@ -86,7 +86,7 @@ TEST_F(Validator, TimestampsAreFromZeroTo146Years) {
 }
 
 TEST_F(Validator, RejectsTimestampsAheadOfACheckedClock) {
-  const sync::ClockWitness plausibility(sync::wall_bound(1.0), ExecTime{}, WallTime{});
+  const sync::ClockPlausibility plausibility(sync::wall_bound(1.0), ExecTime{}, WallTime{});
   const link::Request hour = request(link::ReadSensor{}, ExecTime(std::chrono::hours(1)));
   expect(std::nullopt, hour);
   sut_.plausibility = &plausibility;

@@ -6,7 +6,7 @@ namespace tether::runner {
 
 using coordinator::RunEnd;
 
-std::pair<RunEnd, std::string> to_run_end(const EarlyStop& stop) {
+coordinator::Ending to_run_end(const EarlyStop& stop) {
   switch (stop.cause) {
     case StopCause::kInterrupted:
       return {RunEnd::kInterrupted, stop.reason};

@@ -22,7 +22,7 @@ struct EarlyStop {
   std::string reason;  ///< one line
 };
 /// In the coordinator's terms.
-std::pair<coordinator::RunEnd, std::string> to_run_end(const EarlyStop& stop);
+coordinator::Ending to_run_end(const EarlyStop& stop);
 
 struct TrialEnd {
   coordinator::RunReport report;

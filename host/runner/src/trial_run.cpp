@@ -11,7 +11,7 @@
 #include <tether/board/target_probe.h>
 #include <tether/os/machine.h>
 #include <tether/runner/trial_folder.h>
-#include <tether/sync/clock_witness.h>
+#include <tether/sync/clock_plausibility.h>
 
 /// Sets up the coordinator, its server and its record, and conducts the run. While it runs, hooks
 /// of the coordinator look for a reason to end it early. Causes that only processes show (an exit
@@ -168,7 +168,7 @@ TrialEnd TrialRun::fly() {
   TrialEnd end;
   StallWatch stalls([&] { return suts_.stopped(); }, host_clocks());
   coordinator::RunHooks hooks;
-  hooks.should_stop = [&]() -> std::optional<std::pair<RunEnd, std::string>> {
+  hooks.should_stop = [&]() -> std::optional<coordinator::Ending> {
     const auto stop = early_stop();
     if (!stop) return std::nullopt;
     end.cause = stop->cause;

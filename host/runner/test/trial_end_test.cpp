@@ -8,12 +8,12 @@ namespace {
 using coordinator::RunEnd;
 
 TEST(EarlyStop, MapsToTheEndOfARun) {
-  const auto end_for = [](StopCause cause) { return to_run_end({cause, "why"}).first; };
+  const auto end_for = [](StopCause cause) { return to_run_end({cause, "why"}).how; };
   EXPECT_EQ(end_for(StopCause::kInterrupted), RunEnd::kInterrupted);
   EXPECT_EQ(end_for(StopCause::kSimulatorLost), RunEnd::kSimulatorLost);
   EXPECT_EQ(end_for(StopCause::kBoardLost), RunEnd::kSutLost);
   EXPECT_EQ(end_for(StopCause::kSutEnded), RunEnd::kSutLost);
-  EXPECT_EQ(to_run_end({StopCause::kSutEnded, "why"}).second, "why");
+  EXPECT_EQ(to_run_end({StopCause::kSutEnded, "why"}).reason, "why");
 }
 
 TEST(TrialEnd, TellsWhichCausesToLookFor) {

@@ -38,7 +38,7 @@ void BarrierSynchronizer::stop(SutIndex sut, ExecTime at) {
 
 Arrival BarrierSynchronizer::arrive(SutIndex sut, ExecTime issued_at, SimTime st) {
   Sut& s = suts_[sut];
-  assert(s.is_computing() && st <= horizon());
+  assert(s.is_computing() && st <= lower_bound());
 
   Arrival arrival{.charged_at = std::max(issued_at, s.bound)};
   if (issued_at < s.bound)
@@ -56,7 +56,7 @@ void BarrierSynchronizer::hold(const TimeAdvanceRequest& request) {
   if (s.is_serial()) s.bound = request.reply_at;
 }
 
-SimTime BarrierSynchronizer::horizon() const {
+SimTime BarrierSynchronizer::lower_bound() const {
   SimTime least = SimTime::max();
   for (const Sut& s : suts_) {
     if (!s.gone) least = std::min(least, grid_.floor(same_instant(s.bound)));

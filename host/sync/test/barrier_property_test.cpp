@@ -196,7 +196,7 @@ class Schedule {
   }
 
   void simulate(std::int64_t steps) {
-    for (; steps > 0 && st_ + kStep <= barrier_.horizon(); --steps) {
+    for (; steps > 0 && st_ + kStep <= barrier_.lower_bound(); --steps) {
       ASSERT_TRUE(pending_commands_.empty() || pending_commands_.begin()->first > st_);
       st_ += kStep;
       last_release_here_ = ExecTime::min();

@@ -36,23 +36,23 @@ TEST(Barrier, NamesPoliciesAndViolations) {
 
 // Rule 4: a computing SUT bounds ST by the floor of the last ET it is known to have reached.
 TEST(Barrier, StIsBoundedByTheFloorOfTheLeastBound) {
-  EXPECT_EQ(with_suts({}).horizon(), SimTime::max());
-  EXPECT_EQ(with_suts({0}).horizon(), st(0));
-  EXPECT_EQ(with_suts({999}).horizon(), st(0));
-  EXPECT_EQ(with_suts({1000}).horizon(), st(1000));
-  EXPECT_EQ(with_suts({2500, 1999}).horizon(), st(1000));
-  EXPECT_EQ(with_suts({5000, 7000, 5001}).horizon(), st(5000));
+  EXPECT_EQ(with_suts({}).lower_bound(), SimTime::max());
+  EXPECT_EQ(with_suts({0}).lower_bound(), st(0));
+  EXPECT_EQ(with_suts({999}).lower_bound(), st(0));
+  EXPECT_EQ(with_suts({1000}).lower_bound(), st(1000));
+  EXPECT_EQ(with_suts({2500, 1999}).lower_bound(), st(1000));
+  EXPECT_EQ(with_suts({5000, 7000, 5001}).lower_bound(), st(5000));
 }
 
 TEST(Barrier, ProgressOnlyRaisesTheBoundOfAComputingSut) {
   auto barrier = with_suts({0});
   barrier.progress(0, et(4200));
-  EXPECT_EQ(barrier.horizon(), st(4000));
+  EXPECT_EQ(barrier.lower_bound(), st(4000));
   barrier.progress(0, et(1000));
-  EXPECT_EQ(barrier.horizon(), st(4000));
+  EXPECT_EQ(barrier.lower_bound(), st(4000));
   request(barrier, 0, 4500, 6500, 4000);
   barrier.progress(0, et(9000));
-  EXPECT_EQ(barrier.horizon(), st(6000));
+  EXPECT_EQ(barrier.lower_bound(), st(6000));
 }
 
 // Rule 3: released exactly at floor(t_rep); the bound on ST excludes later releases.
@@ -61,7 +61,7 @@ TEST(Barrier, ReleasesWhenStHasReachedTheFloorOfTheReply) {
     const std::int64_t released_ns = reply_ns / kDt_1us.count() * kDt_1us.count();
     auto barrier = with_suts({0});
     request(barrier, 0, 0, reply_ns);
-    EXPECT_EQ(barrier.horizon(), st(released_ns));
+    EXPECT_EQ(barrier.lower_bound(), st(released_ns));
     for (std::int64_t now = 0; now < released_ns; now += kDt_1us.count())
       EXPECT_FALSE(barrier.release(st(now))) << now;
     const auto grant = barrier.release(st(released_ns));
@@ -129,7 +129,7 @@ TEST(Barrier, FindsTheSlowestComputingSutThatHasNotLeft) {
   EXPECT_EQ(barrier.slowest_computing(), SutIndex{0});
   barrier.remove(0);
   EXPECT_EQ(barrier.slowest_computing(), SutIndex{2});
-  EXPECT_EQ(barrier.horizon(), st(1000));
+  EXPECT_EQ(barrier.lower_bound(), st(1000));
 }
 
 BarrierSynchronizer with_concurrent(std::int64_t start = 0) {
@@ -146,18 +146,18 @@ void call(BarrierSynchronizer& barrier, CallId id, std::int64_t at, std::int64_t
 
 TEST(ConcurrentSut, BoundsStByItsOwnTimeAndByEachOpenCall) {
   auto barrier = with_concurrent(1200);
-  EXPECT_EQ(barrier.horizon(), st(1000));
+  EXPECT_EQ(barrier.lower_bound(), st(1000));
   call(barrier, 1, 2300, 7000);
-  EXPECT_EQ(barrier.horizon(), st(2000));
+  EXPECT_EQ(barrier.lower_bound(), st(2000));
   barrier.progress(0, et(6500));
-  EXPECT_EQ(barrier.horizon(), st(6000));
+  EXPECT_EQ(barrier.lower_bound(), st(6000));
   call(barrier, 2, 6600, 6700);
   barrier.stop(0, et(9000));
-  EXPECT_EQ(barrier.horizon(), st(6000));
+  EXPECT_EQ(barrier.lower_bound(), st(6000));
   ASSERT_TRUE(barrier.release(st(6000)));
-  EXPECT_EQ(barrier.horizon(), st(7000));
+  EXPECT_EQ(barrier.lower_bound(), st(7000));
   ASSERT_TRUE(barrier.release(st(7000)));
-  EXPECT_EQ(barrier.horizon(), st(9000));
+  EXPECT_EQ(barrier.lower_bound(), st(9000));
 }
 
 TEST(ConcurrentSut, GetsAReplyOnlyWhileItIsStoppedAtOrAfterItsTimestamp) {
@@ -200,7 +200,7 @@ TEST(ConcurrentSut, LeavesWithItsOpenCalls) {
   auto barrier = with_concurrent();
   call(barrier, 1, 300, 800);
   barrier.remove(0);
-  EXPECT_EQ(barrier.horizon(), SimTime::max());
+  EXPECT_EQ(barrier.lower_bound(), SimTime::max());
   EXPECT_FALSE(barrier.release(st(0)));
 }
 

@@ -32,12 +32,12 @@ TEST(NoAllocation, TheBarrierAllocatesOnlyWhereSutsJoin) {
     }
     barrier.progress(concurrent, now + kDt);
     barrier.stop(concurrent, due);
-    st = barrier.horizon();
+    st = barrier.lower_bound();
     while (barrier.release(st)) ++released;
     barrier.slowest_computing();
     barrier.progress(serial, at(100 * round + 100));
     barrier.progress(concurrent, at(100 * round + 100));
-    st = barrier.horizon();
+    st = barrier.lower_bound();
   }
   EXPECT_EQ(count.stop(), 0);
   EXPECT_EQ(released, 100 * (1 + kMaxOpenCalls));

@@ -69,6 +69,12 @@ enum class RunEnd {
 };
 std::string_view name(RunEnd end);
 
+/// The end of a run, for people too.
+struct Ending {
+  RunEnd how = RunEnd::kFinished;
+  std::string reason;  ///< one line; names the cause
+};
+
 /// The result of one SUT.
 struct SutReport {
   std::string uav;
@@ -111,7 +117,7 @@ struct RunStatus {
 struct RunHooks {
   /// A reason to end the run now, for example an interrupt or a SUT's process that died. None:
   /// continue.
-  std::function<std::optional<std::pair<RunEnd, std::string>>()> should_stop;
+  std::function<std::optional<Ending>()> should_stop;
   std::function<void(const RunStatus&)> on_status;
   /// A connection was rejected: its address and the reason, one line.
   std::function<void(const std::string&)> on_refused;

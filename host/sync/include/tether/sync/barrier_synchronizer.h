@@ -74,7 +74,7 @@ struct TimeAdvanceGrant {
 /// reached, before which it can stamp nothing; or *held*, with the timestamp of its reply, at which
 /// it resumes.
 ///
-///     arrive(sut, stamp, ST) → hold(sut, reply_at) → ST advances up to horizon() → release(ST)
+///     arrive(sut, stamp, ST) → hold(sut, reply_at) → ST advances up to lower_bound() → release(ST)
 ///
 /// A *concurrent* SUT is always computing, with a bound that its stamps, `progress` and `stop`
 /// raise. In addition, each of its open calls is held, each with its timestamp.
@@ -82,9 +82,8 @@ struct TimeAdvanceGrant {
 ///     arrive, hold; arrive, hold; stop(sut, ET) → … → release(ST), for each call that is due by ET
 ///
 /// Guarantees, for any schedule:
-///  - ST ≤ horizon() = min over all SUTs and open calls of floor(bound or reply_at): no later
-///  request
-///    is in the simulator's past (rule 4);
+///  - ST ≤ lower_bound() = min over all SUTs and open calls of floor(bound or reply_at): no later
+///    request is in the simulator's past (rule 4);
 ///  - a reply stamped t is sent at ST = floor(t), once no other SUT can put a command with a stamp
 ///    earlier than t into effect at or before that boundary (rule 3);
 ///  - to a concurrent SUT it is sent while the SUT is stopped at an ET ≥ t. So no request with an
@@ -115,7 +114,7 @@ class BarrierSynchronizer {
 
   /// A request of a computing SUT, stamped `issued_at`, arrived when the simulation was at `st`.
   /// The SUT's bound becomes `charged_at`; a concurrent one counts as running until its next stop.
-  /// @pre computing, st ≤ horizon().
+  /// @pre computing, st ≤ lower_bound().
   Arrival arrive(SutIndex sut, ExecTime issued_at, SimTime st);
 
   /// Holds the call until ST has reached its `reply_at`. @pre `arrive` was called; reply_at ≥
@@ -123,16 +122,17 @@ class BarrierSynchronizer {
   /// open.
   void hold(const TimeAdvanceRequest& request);
 
-  /// The upper bound on ST: the simulation must not step past it. SimTime::max() without SUTs.
-  SimTime horizon() const;
+  /// The lower bound on the timestamps of later requests, at its step boundary: the simulation must
+  /// not step past it. SimTime::max() without SUTs.
+  SimTime lower_bound() const;
 
   /// Releases the held call with the least (reply_at, SUT, call) of those that may be answered at
-  /// `st`, if there is one; call again until there is none. @pre st ≤ horizon(), every command with
-  /// effect ≤ st has been applied.
+  /// `st`, if there is one; call again until there is none. @pre st ≤ lower_bound(), every command
+  /// with effect ≤ st has been applied.
   std::optional<TimeAdvanceGrant> release(SimTime st);
 
   /// The SUT with the least bound of those that are not held: the simulation is blocked on it once
-  /// ST has reached horizon(). None if all are held.
+  /// ST has reached lower_bound(). None if all are held.
   std::optional<SutIndex> slowest_computing() const;
 
   /// It waits for a reply: a serial SUT with its call open; a concurrent one that has stopped where

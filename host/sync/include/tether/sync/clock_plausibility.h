@@ -30,13 +30,13 @@ ClockBound cpu_bound(double factor, int cores);
 /// Delays of the link only add to the coordinator's time, so a correct clock is always accepted; of
 /// a stamp that is ahead, the excess is known. Pure: the clock's readings are arguments. Not
 /// thread-safe.
-class ClockWitness {
+class ClockPlausibility {
  public:
   /// Relative drift between two correct clocks.
   static constexpr double kDrift = 1e-3;
 
   /// The SUT runs from `now` with ET = `start`.
-  ClockWitness(ClockBound bound, ExecTime start, WallTime now)
+  ClockPlausibility(ClockBound bound, ExecTime start, WallTime now)
       : bound_(bound), et_(start), wall_(now) {}
 
   /// It was stopped, and resumes at `now` with ET = `at`.

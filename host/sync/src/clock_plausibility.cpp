@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tether/sync/clock_witness.h>
+#include <tether/sync/clock_plausibility.h>
 
 namespace tether::sync {
 
@@ -27,12 +27,12 @@ ClockBound cpu_bound(double factor, int cores) {
           .slack = stretched(std::min(most * kTick, kMostUnaccounted), factor)};
 }
 
-void ClockWitness::go_on(ExecTime at, WallTime now) {
+void ClockPlausibility::go_on(ExecTime at, WallTime now) {
   et_ = at;
   wall_ = now;
 }
 
-Duration ClockWitness::excess(ExecTime stamp, WallTime now) const {
+Duration ClockPlausibility::excess(ExecTime stamp, WallTime now) const {
   const auto elapsed_ns = static_cast<double>((now - wall_).count());
   const double most_ns =
       bound_.rate * elapsed_ns * (1.0 + kDrift) + static_cast<double>(bound_.slack.count());

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <tether/base/random.h>
-#include <tether/sync/clock_witness.h>
+#include <tether/sync/clock_plausibility.h>
 
 namespace tether::sync {
 namespace {
@@ -25,29 +25,29 @@ WallTime wt(Duration t) {
   return WallTime(t);
 }
 
-TEST(ClockWitness, MeasuresHowFarAStampIsAhead) {
-  ClockWitness witness(wall_bound(1.0), et(seconds(5)), wt(seconds(100)));
+TEST(ClockPlausibility, MeasuresHowFarAStampIsAhead) {
+  ClockPlausibility clock(wall_bound(1.0), et(seconds(5)), wt(seconds(100)));
   const Duration most = seconds(2) + milliseconds(2) + milliseconds(1);
-  EXPECT_EQ(witness.excess(et(seconds(1)), wt(seconds(100))), kNone);
-  EXPECT_EQ(witness.excess(et(seconds(5) + most), wt(seconds(102))), kNone);
-  EXPECT_EQ(witness.excess(et(seconds(5) + most + Duration(7)), wt(seconds(102))), Duration(7));
-  EXPECT_EQ(witness.excess(et(hours(1)), wt(seconds(102))), hours(1) - seconds(5) - most);
+  EXPECT_EQ(clock.excess(et(seconds(1)), wt(seconds(100))), kNone);
+  EXPECT_EQ(clock.excess(et(seconds(5) + most), wt(seconds(102))), kNone);
+  EXPECT_EQ(clock.excess(et(seconds(5) + most + Duration(7)), wt(seconds(102))), Duration(7));
+  EXPECT_EQ(clock.excess(et(hours(1)), wt(seconds(102))), hours(1) - seconds(5) - most);
   // The time in which it was stopped does not count.
-  witness.go_on(et(seconds(7)), wt(seconds(150)));
-  EXPECT_EQ(witness.went_on_at(), et(seconds(7)));
-  EXPECT_EQ(witness.excess(et(seconds(7) + milliseconds(1)), wt(seconds(150))), kNone);
-  EXPECT_EQ(witness.excess(et(seconds(8)), wt(seconds(150))), seconds(1) - milliseconds(1));
+  clock.go_on(et(seconds(7)), wt(seconds(150)));
+  EXPECT_EQ(clock.went_on_at(), et(seconds(7)));
+  EXPECT_EQ(clock.excess(et(seconds(7) + milliseconds(1)), wt(seconds(150))), kNone);
+  EXPECT_EQ(clock.excess(et(seconds(8)), wt(seconds(150))), seconds(1) - milliseconds(1));
 }
 
-TEST(ClockWitness, DoesNotOverflowForTheGreatestStamp) {
+TEST(ClockPlausibility, DoesNotOverflowForTheGreatestStamp) {
   constexpr auto latest = from_ns<ExecTime>((std::int64_t{1} << 62) - 1);
-  const ClockWitness witness(wall_bound(1.0), et(kNone), wt(seconds(1)));
-  EXPECT_EQ(witness.excess(latest, wt(seconds(1))), latest - et(milliseconds(1)));
-  const ClockWitness fast(cpu_bound(1e6, kMostCores), et(kNone), wt(kNone));
+  const ClockPlausibility clock(wall_bound(1.0), et(kNone), wt(seconds(1)));
+  EXPECT_EQ(clock.excess(latest, wt(seconds(1))), latest - et(milliseconds(1)));
+  const ClockPlausibility fast(cpu_bound(1e6, kMostCores), et(kNone), wt(kNone));
   EXPECT_EQ(fast.excess(latest, wt(hours(24 * 365))), kNone);
 }
 
-TEST(ClockWitness, CpuTimeGrowsOnEachCoreAndByATickOfEach) {
+TEST(ClockPlausibility, CpuTimeGrowsOnEachCoreAndByATickOfEach) {
   const struct {
     ClockBound bound;
     double rate;
@@ -58,10 +58,10 @@ TEST(ClockWitness, CpuTimeGrowsOnEachCoreAndByATickOfEach) {
   for (const auto& c : cases) {
     EXPECT_EQ(c.bound.rate, c.rate);
     EXPECT_EQ(c.bound.slack, c.slack);
-    const ClockWitness witness(c.bound, et(seconds(5)), wt(kNone));
+    const ClockPlausibility clock(c.bound, et(seconds(5)), wt(kNone));
     const Duration most = Duration(std::llround(c.rate * 1.001e9)) + c.slack;
-    EXPECT_EQ(witness.excess(et(seconds(5) + most), wt(seconds(1))), kNone);
-    EXPECT_EQ(witness.excess(et(seconds(5) + most + Duration(7)), wt(seconds(1))), Duration(7));
+    EXPECT_EQ(clock.excess(et(seconds(5) + most), wt(seconds(1))), kNone);
+    EXPECT_EQ(clock.excess(et(seconds(5) + most + Duration(7)), wt(seconds(1))), Duration(7));
   }
 }
 
@@ -82,24 +82,24 @@ class Draws {
 
 // The SUT's clock drifts within its limits, computes and waits in turns; the link delays messages.
 // Its correct stamps are accepted, and a stamp that exceeds all tolerances is found.
-TEST(ClockWitness, AcceptsACorrectClockAndFindsOneThatRunsAhead) {
+TEST(ClockPlausibility, AcceptsACorrectClockAndFindsOneThatRunsAhead) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Draws draw(seed);
     const double factor = draw.uniform(0.1, 10.0), drift = draw.uniform(-2e-4, 2e-4);
     Duration now = draw.up_to(hours(1));
     ExecTime reached{};
-    ClockWitness witness(wall_bound(factor), reached, wt(now));
+    ClockPlausibility clock(wall_bound(factor), reached, wt(now));
     for (int i = 0; i < 50; ++i) {
       const Duration computing = draw.up_to(milliseconds(300)), link = draw.up_to(milliseconds(5));
       now += computing + link;
       reached += Draws::scaled(computing, factor * (1.0 + drift));
-      ASSERT_EQ(witness.excess(reached, wt(now)), kNone) << "seed " << seed;
+      ASSERT_EQ(clock.excess(reached, wt(now)), kNone) << "seed " << seed;
       const Duration margin = Draws::scaled(computing + link, factor * 2e-3) +
                               Draws::scaled(link + Duration(1'001'000), factor);
       const Duration ahead = margin + draw.up_to(seconds(1)) + Duration(3);
-      ASSERT_GT(witness.excess(reached + ahead, wt(now)), kNone) << "seed " << seed;
+      ASSERT_GT(clock.excess(reached + ahead, wt(now)), kNone) << "seed " << seed;
       now += draw.up_to(seconds(2));  // held
-      witness.go_on(reached, wt(now));
+      clock.go_on(reached, wt(now));
     }
   }
 }
@@ -135,7 +135,7 @@ class TickedProcess {
 
 // Other threads compute while the calling thread is held, and while it is not. Time that is charged
 // after it resumed may have been used before.
-TEST(ClockWitness, AcceptsCpuTimeThatIsAccountedByTicks) {
+TEST(ClockPlausibility, AcceptsCpuTimeThatIsAccountedByTicks) {
   Duration furthest{0};
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     Draws draw(seed);
@@ -143,17 +143,17 @@ TEST(ClockWitness, AcceptsCpuTimeThatIsAccountedByTicks) {
     const double factor = draw.uniform(0.1, 10.0);
     TickedProcess process(draw, cores);
     ExecTime reached{};
-    ClockWitness witness(cpu_bound(factor, static_cast<int>(cores)), reached, wt(process.now()));
+    ClockPlausibility clock(cpu_bound(factor, static_cast<int>(cores)), reached, wt(process.now()));
     for (int i = 0; i < 60; ++i) {
       process.go_on(draw.up_to(milliseconds(30)), draw.below(cores + 1));  // held
-      witness.go_on(reached, wt(process.now()));
+      clock.go_on(reached, wt(process.now()));
       const Duration before = process.reading(), since = process.now();
       process.go_on(draw.up_to(milliseconds(i % 2 == 0 ? 1 : 30)), draw.below(cores + 1));
       const Duration charged = process.reading() - before;
       const auto most = static_cast<std::int64_t>(cores) * (process.now() - since);
       furthest = std::max(furthest, charged - most);
       reached += Draws::scaled(charged, factor);
-      ASSERT_EQ(witness.excess(reached, wt(process.now())), kNone) << "seed " << seed;
+      ASSERT_EQ(clock.excess(reached, wt(process.now())), kNone) << "seed " << seed;
     }
   }
   EXPECT_GT(furthest, milliseconds(10));  // so much of the slack was needed
