@@ -19,9 +19,6 @@ struct Planar {
 Planar operator-(const Planar& a, const Planar& b) {
   return {a.x_m - b.x_m, a.y_m - b.y_m};
 }
-double norm(const Planar& p) {
-  return std::hypot(p.x_m, p.y_m);
-}
 
 /// The closed path on a scripted clock, with ground truth at every step.
 record::Record fly(int seed) {
