@@ -1,3 +1,5 @@
+#include "refuse_folder.h"
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -22,10 +24,6 @@ bool holds_anything(const fs::path& folder) {
   if (!failed) return false;
   throw Error(ErrorCode::kSetup, {folder.string()}, "cannot be read: " + failed.message() + ".")
       .about(folder.string());
-}
-
-[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
-  throw Error(ErrorCode::kUsage, {folder.string()}, why).about(folder.string());
 }
 
 void require_same(const fs::path& folder, const Settings& then, const Settings& now,
@@ -72,10 +70,11 @@ void require_nothing_dropped(const fs::path& folder, const CampaignManifest& the
   if (dropped.empty()) return;
   const std::size_t more = dropped.size() - std::min(dropped.size(), kMostNames);
   dropped.resize(dropped.size() - more);
-  refuse(folder,
-         fmt::format("contains trials of {}{}, which this campaign no longer has. Put that "
-                     "back, or choose another folder.",
-                     fmt::join(dropped, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
+  refuse_folder(
+      folder,
+      fmt::format("contains trials of {}{}, which this campaign no longer has. Put that "
+                  "back, or choose another folder.",
+                  fmt::join(dropped, ", "), more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
 }  // namespace
@@ -87,9 +86,10 @@ CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campai
   if (holds_anything(folder_)) check_existing(manifest, mode);
   find_missing(campaign);
   if (mode == OpenMode::kFresh && finished_ > 0) {
-    refuse(folder_, fmt::format("already contains {} of {} trials. Continue with --resume, or "
-                                "choose another folder.",
-                                finished_, finished_ + missing_.size()));
+    refuse_folder(folder_,
+                  fmt::format("already contains {} of {} trials. Continue with --resume, or "
+                              "choose another folder.",
+                              finished_, finished_ + missing_.size()));
   }
   os::write_file_atomically(folder_ / kCampaignFile, to_json(manifest));
 }
@@ -97,11 +97,12 @@ CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campai
 void CampaignFolder::check_existing(const CampaignManifest& now, OpenMode mode) const {
   std::error_code ignored;
   if (!fs::exists(folder_ / kCampaignFile, ignored))
-    refuse(folder_, "is not empty and contains no campaign. Choose another folder.");
+    refuse_folder(folder_, "is not empty and contains no campaign. Choose another folder.");
   const CampaignManifest then = read_manifest(folder_);
   if (then.name != now.name) {
-    refuse(folder_, fmt::format("contains the campaign '{}', not '{}'. Choose another folder.",
-                                then.name, now.name));
+    refuse_folder(folder_,
+                  fmt::format("contains the campaign '{}', not '{}'. Choose another folder.",
+                              then.name, now.name));
   }
   require_nothing_dropped(folder_, then, now);
   require_same(folder_, then.settings, now.settings, mode);

@@ -1,3 +1,5 @@
+#include "refuse_folder.h"
+
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -31,12 +33,8 @@ namespace fs = std::filesystem;
       .about(path.string());
 }
 
-[[noreturn]] void refuse_claim(const fs::path& folder, const std::string& why) {
-  throw Error(ErrorCode::kUsage, {folder.string()}, why).about(folder.string());
-}
-
 [[noreturn]] void refuse_busy(const fs::path& folder, const std::string& who) {
-  refuse_claim(folder, who + ". Wait for it, or choose another folder with --out.");
+  refuse_folder(folder, who + ". Wait for it, or choose another folder with --out.");
 }
 
 /// The absolute path without symbolic links; what is at its end need not exist.
@@ -117,11 +115,11 @@ void share_campaign(const fs::path& root, const fs::path& whole, const fs::path&
     locks.push_back(std::move(file));
   }
   if (has_trial(root, whole))
-    refuse_claim(folder,
-                 fmt::format("is a trial of the campaign in {}, whose results must be of one "
-                             "kind. Choose another folder with --out, or remove this one and "
-                             "run the campaign with --resume.",
-                             root.string()));
+    refuse_folder(folder,
+                  fmt::format("is a trial of the campaign in {}, whose results must be of one "
+                              "kind. Choose another folder with --out, or remove this one and "
+                              "run the campaign with --resume.",
+                              root.string()));
 }
 
 /// Of the campaigns in `innermost` and in every folder above it.

@@ -46,7 +46,7 @@ MetricOutcome time_required(const scenario::Metric& metric, const record::Record
 
 MetricOutcome oscillations(const scenario::Metric& metric, const record::Record& record) {
   return with_bearings(metric, record, [&](const std::vector<double>& bearings_rad) {
-    return double{1} * count_overshoots(bearings_rad, metric.threshold_rad);
+    return static_cast<double>(count_overshoots(bearings_rad, metric.threshold_rad));
   });
 }
 

@@ -75,7 +75,7 @@ TEST_F(MakeRig, DeviceOfTheCommandLineReplacesThatOfTheFile) {
   ASSERT_EQ(rig.sensors.size(), 2u) << "the rangefinder has no device";
   EXPECT_EQ(rig.sensors[0].device, "/dev/video7");
   EXPECT_EQ(rig.sensors[1].device, "iio:bmi160");
-  EXPECT_EQ(mission.tasks[0].vision.camera, "eye") << "the task is told the sensor's name";
+  EXPECT_EQ(mission.tasks[0].vision.camera, "eye") << "the task uses the name of the sensor";
   EXPECT_EQ(std::get<tasks::ClosedPathOptions>(mission.tasks[0].options).imu, "gyro");
 }
 

@@ -15,8 +15,4 @@ Error thrown_error(ErrorCode code, const std::function<void()>& action) {
   return {ErrorCode::kInternal, ""};
 }
 
-std::string error_message(ErrorCode code, const std::function<void()>& action) {
-  return thrown_error(code, action).what();
-}
-
 }  // namespace tether

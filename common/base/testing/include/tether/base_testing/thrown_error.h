@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <string>
 
 #include <tether/base/error.h>
 
@@ -13,7 +12,5 @@ Error thrown_error(ErrorCode code, const std::function<void()>& action);
 inline Error bad_file_error(const std::function<void()>& action) {
   return thrown_error(ErrorCode::kBadFile, action);
 }
-/// Its message.
-std::string error_message(ErrorCode code, const std::function<void()>& action);
 
 }  // namespace tether
