@@ -87,22 +87,31 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view t
   if (folder) ::fsync(folder.get());
 }
 
-std::string read_file(const std::filesystem::path& file) {
+std::string_view why_no_file(const std::filesystem::path& path) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) {
-    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "there is no such file");
+  return std::filesystem::exists(path, ignored) ? "that is no regular file"
+                                                : "there is no such file";
+}
+
+std::string read_file(const std::filesystem::path& file, std::uintmax_t limit) {
+  const auto fail_with = [&](std::string what) {
+    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, std::move(what));
+  };
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed)) fail_with(std::string(why_no_file(file)));
+  const std::uintmax_t size = std::filesystem::file_size(file, failed);
+  if (!failed && size > limit) {
+    fail_with("is " + std::to_string(size) + " bytes long; at most " + std::to_string(limit) +
+              " are read");
   }
   std::ifstream stream(file, std::ios::binary);
-  std::string text;
-  char block[1 << 16];
-  while (stream.read(block, sizeof block) || stream.gcount() > 0) {
-    text.append(block, static_cast<std::size_t>(stream.gcount()));
-  }
-  if (!stream.eof()) {
+  std::ostringstream text;
+  if (size > 0) text << stream.rdbuf();
+  if (failed || !stream || !text) {
     require_a_handle_for(file.string());
-    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "cannot be read");
+    fail_with("cannot be read");
   }
-  return text;
+  return std::move(text).str();
 }
 
 std::string read_whole(const std::filesystem::path& file) {

@@ -1,10 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include <toml++/toml.h>
 
+#include <tether/os/text_file.h>
 #include <tether/toml/number_text.h>
 #include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
@@ -62,14 +61,6 @@ bool is_identifier(std::string_view text) {
 
 double seconds_per_unit(std::string_view key) {
   return key.ends_with("ms") ? 1e-3 : 1.0;
-}
-
-/// Folders, devices and pipes are not read: reading some of them would never end.
-/// @pre it is not a regular file
-std::string_view why_no_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored) ? "that is no regular file"
-                                                : "there is no such file";
 }
 
 }  // namespace
@@ -280,7 +271,7 @@ std::filesystem::path Table::existing_file(std::string_view key) const {
   std::error_code ignored;
   const fs::path path = (fs::path(file_).parent_path() / written).lexically_normal();
   if (!fs::is_regular_file(path, ignored)) {
-    fail(key, "names \"" + written + "\", but " + string_of(why_no_file(path)) + " (" +
+    fail(key, "names \"" + written + "\", but " + std::string(os::why_no_file(path)) + " (" +
                   path.string() + ")");
   }
   return path;
@@ -370,37 +361,13 @@ std::vector<Table> Table::tables_or_none(std::string_view key, Keys allowed) con
   return has(key) ? tables(key, allowed) : std::vector<Table>{};
 }
 
-// Files.
-
-std::string read_text_file(const std::filesystem::path& file, std::size_t limit) {
-  const FileLocation where{file.string()};
-  std::error_code failed;
-  if (!std::filesystem::is_regular_file(file, failed)) {
-    throw Error(ErrorCode::kBadFile, where, string_of(why_no_file(file)));
-  }
-  const auto size = std::filesystem::file_size(file, failed);
-  if (!failed && size > limit) {
-    throw Error(ErrorCode::kBadFile, where,
-                "is " + std::to_string(size) + " bytes long; at most " + std::to_string(limit) +
-                    " are read");
-  }
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (size > 0) text << stream.rdbuf();
-  if (failed || !stream || !text) {
-    require_a_handle_for(file.string());
-    throw Error(ErrorCode::kBadFile, where, "cannot be read");
-  }
-  return std::move(text).str();
-}
-
 void Document::Delete::operator()(const Node* node) const {
   delete &as_table(*node);
 }
 
 Document Document::load(const std::filesystem::path& file) {
   constexpr std::size_t kLargestFile = std::size_t{1} << 20;
-  return parse(read_text_file(file, kLargestFile), file.string());
+  return parse(os::read_file(file, kLargestFile), file.string());
 }
 
 Document Document::parse(std::string_view text, const std::string& file) {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <tether/os/text_file.h>
+
 namespace tether::scenario {
 namespace {
 
@@ -101,7 +103,7 @@ uav::Delay read_delay(const toml::Table& sensor, std::vector<std::filesystem::pa
 std::vector<Duration> read_delay_samples(const std::filesystem::path& file,
                                          double seconds_per_unit) {
   constexpr std::size_t kLargestFile = std::size_t{64} << 20;
-  std::istringstream text(without_byte_order_mark(toml::read_text_file(file, kLargestFile)));
+  std::istringstream text(without_byte_order_mark(os::read_file(file, kLargestFile)));
   std::vector<Duration> samples;
   FileLocation at{file.string()};
   for (std::string whole_line; std::getline(text, whole_line);) {

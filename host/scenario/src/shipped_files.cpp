@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/os/text_file.h>
 #include <tether/scenario/shipped_files.h>
 #include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
@@ -50,7 +51,7 @@ std::string first_comment(const std::string& xml) {
 }
 
 std::string description_of(const fs::path& file) {
-  if (file.extension() == ".sdf") return first_comment(toml::read_text_file(file, 1 << 20));
+  if (file.extension() == ".sdf") return first_comment(os::read_file(file, 1 << 20));
   const toml::Document document = toml::Document::load(file);
   return document.root().text_or("description", "");
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -19,8 +20,12 @@ std::string file_name_of(std::string_view name);
 /// @throws Error(kSetup) with the file's place if the file system refuses; the old content stays.
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
-/// The content of a regular file. @throws Error(kBadFile) if it is missing or cannot be read.
-std::string read_file(const std::filesystem::path& file);
+/// Why a path that is not a regular file is none: it is missing, or a folder, a pipe or a device.
+std::string_view why_no_file(const std::filesystem::path& path);
+
+/// The content of a regular file; reading a pipe or a device might never end.
+/// @throws Error(kBadFile) if it is missing, unreadable or longer than `limit` bytes.
+std::string read_file(const std::filesystem::path& file, std::uintmax_t limit = UINTMAX_MAX);
 
 /// The content of a file of any kind; empty if it is missing.
 std::string read_whole(const std::filesystem::path& file);

@@ -124,14 +124,10 @@ class Table {
   std::string file_;
 };
 
-/// The whole text of a file that a user wrote.
-/// @throws Error(kBadFile) if it is missing, not a regular file, unreadable or larger than `limit`.
-std::string read_text_file(const std::filesystem::path& file, std::size_t limit);
-
 /// A parsed file.
 class Document {
  public:
-  /// Of at most 1 MiB. @throws as read_text_file and `parse`.
+  /// Of at most 1 MiB. @throws as os::read_file and `parse`.
   static Document load(const std::filesystem::path& file);
   /// `file` is for the messages. @throws Error(kBadFile) with the line of a syntax error.
   static Document parse(std::string_view text, const std::string& file);
