@@ -1,0 +1,145 @@
+"""Plants a breach of each rule; then checks the repository itself.  Run by scripts/test, or:
+
+    python3 -B -m unittest discover -s tests/layout -p '*_test.py'
+"""
+
+import pathlib
+import subprocess
+import unittest
+
+from layout_rules import *
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+ARROWS = {"base": set(), "uav": {"base"}, "link": {"base", "uav"}, "sim": {"base"}, "sim_mujoco": {"sim"},
+          "coordinator": {"sim", "link"}, "client": {"link"}, "client_c_api": {"client"}}
+
+
+class Text(unittest.TestCase):
+    def test_comments_and_literals_become_blanks(self):
+        for text, code in {
+            "a; // b\nc; /* d\ne */ f;": "a;     \nc;     \n     f;",
+            r'''f("a\"{", '{', '\'');''': "f(      ,    ,     );",
+            "x = 1'000'000; y = 0xF'F; // z": "x = 1'000'000; y = 0xF'F;     ",
+            'x = R"a( " { )" )a"; y': "x =                ; y",
+        }.items():
+            self.assertEqual(blanked(text), code)
+
+    def test_includes_in_comments_do_not_count(self):
+        text = '#include <a/b.h>\n// #include <no.h>\n#  include "c.h"  // why\n/*\n#include <d>\n*/\n'
+        self.assertEqual(Source("bench/a.cpp", text).includes, [(1, "a/b.h", False), (3, "c.h", True)])
+
+    def test_a_path_gives_library_and_role(self):
+        for path, expected in {
+            "host/sim/mujoco/src/a/b.cpp": ("sim_mujoco", "src"),
+            "host/sim/include/tether/sim/world.h": ("sim", "include"),
+            "common/base/test/time_test.cpp": ("base", "test"),
+            "common/base/testing/include/tether/base_testing/c.h": ("base", "testing"),
+            "apps/tether/main.cpp": ("", "program"),
+            "apps/tether-sut/test/mission_test.cpp": ("", "test"),
+            "bench/link_bench.cpp": ("", "other"),
+        }.items():
+            source = Source(path, "")
+            self.assertEqual((source.library, source.role), expected)
+
+    def test_arrows_are_read_from_the_design(self):
+        design = "## 4. Layout\n```\napps/\n  x   program\n\ncommon/   both\n  base  words → std\n  c/d   two\n      lines → base sim/sdf\ndata/  → no\n```"
+        self.assertEqual(read_arrows(design), {"base": set(), "c_d": {"base", "sim_sdf"}})
+
+
+class Planted(unittest.TestCase):
+    """(path, text, the breach's words; none if it is allowed)"""
+
+    def expect(self, check, *cases):
+        for path, text, words in cases:
+            breaches = check([Source(path, text)])
+            self.assertEqual(len(breaches), 1 if words else 0, (path, text, breaches))
+            self.assertIn(words or "", "".join(breaches))
+
+    def test_arrows(self):
+        fake = "#include <tether/sim_testing/fake.h>\n"
+        self.expect(lambda sources: check_arrows(sources, ARROWS),
+                    ("common/uav/src/a.cpp", "\n#include <tether/sim/world.h>\n", "a.cpp:2: 'uav' may not include 'sim'"),
+                    ("common/uav/test/a_test.cpp", "#include <tether/link/a.h>\n", "'uav' may not include 'link'"),
+                    ("target/client/src/a.cpp", "#include <tether/client.hpp>\n", "may not include 'client_c_api'"),
+                    ("host/novel/src/a.cpp", "#include <tether/base/time.h>\n", "has no line"),
+                    ("host/coordinator/src/a.cpp", fake, "fake"), ("apps/tether/src/a.cpp", fake, "fake"),
+                    ("host/coordinator/test/a_test.cpp", fake, None), ("apps/tether/test/a_test.cpp", fake, None))
+        self.assertEqual(check_cycles(ARROWS), [])
+        self.assertEqual(len(check_cycles(ARROWS | {"base": {"link"}})), 3)
+
+    def test_headers(self):
+        path = "common/link/include/tether/link/a.h"
+        self.expect(check_public_headers,
+                    (path, "#pragma once\n#include <fmt/format.h>\n", "third-party"),
+                    (path, "#pragma once\n#include <Eigen/Core>\n", "third-party"),
+                    (path, '#pragma once\n#include "b.h"\n', "quotes"),
+                    (path, "#include <vector>\n", "#pragma once"),
+                    ("common/link/src/a.cpp", "#include <fmt/format.h>\n", None))
+        header = Source("common/link/src/frame.h", "#pragma once\n")
+        quote = '#include "frame.h"\n'
+        self.expect(lambda sources: check_private_headers([header, *sources]),
+                    ("common/link/src/a.cpp", quote + '#include "link_generated.h"\n', None),
+                    ("common/link/test/a_test.cpp", quote, None), ("bench/a.cpp", quote, None),
+                    ("target/client/src/a.cpp", quote, "is no file of this folder"),
+                    ("target/client/src/a.cpp", '#include "../../link/src/frame.h"\n', "leaves its folder"))
+
+    def test_words(self):
+        sync = "host/sync/src/a.cpp"
+        self.expect(check_sync_is_pure, (sync, "#include <thread>\n", "<thread>"),
+                    (sync, "#include <spdlog/spdlog.h>\n", "spdlog"), (sync, "steady_clock::now();\n", "steady_clock"),
+                    (sync, "// no steady_clock here\n#include <vector>\n", None))
+        self.expect(check_coordinator_is_neutral,
+                    ("host/coordinator/src/a.cpp", "\n make_mujoco_simulator();\n", "a.cpp:2"))
+        self.expect(check_randomness, ("common/uav/src/a.cpp", "std::mt19937 g;\n", "mt19937"),
+                    ("common/uav/test/a_test.cpp", "std::mt19937 g(1);\n", None))
+
+    def test_lengths_and_tests(self):
+        self.expect(check_lengths, ("bench/a.cpp", "\n" * 501, "501"), ("bench/a.cpp", "\n" * 500, None))
+        source = Source("common/link/src/x_y.cpp", "")
+        self.assertEqual(len(check_tests([source], "")), 1)
+        self.assertEqual(check_tests([source], "common/link/src/x_y.cpp  y_test\n"), [])
+        self.assertEqual(len(check_tests([source], "common/link/src/x_y.cpp\n")), 1)
+        for test in ("x_y_test", "x_y_z_test"):
+            covered = [source, Source(f"common/link/test/{test}.cpp", "")]
+            self.assertEqual(check_tests(covered, ""), [])
+            self.assertEqual(len(check_tests(covered, "common/link/src/x_y.cpp  why\n")), 1)
+
+    def test_documents(self):
+        self.assertEqual(len(check_leftovers({"a": "\nTO" + "DO: later"})), 1)
+        links = {"docs/a.md": "[a](b.md#x) [c](https://d) <img src=\"e.png\">"}
+        self.assertEqual(check_links(links, lambda path: path.as_posix() == "docs/b.md"), ["docs/a.md:1: no file e.png"])
+        self.assertEqual(len(check_decisions({"docs/adr/0001-a.md": "Status: a ## Context ## Decision ## Consequences"})), 2)
+
+
+class Repository(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.sources, cls.texts = read_repository(ROOT)
+        cls.arrows = read_arrows(cls.texts["docs/design.md"])
+
+    def test_is_read(self):
+        self.assertGreater(sum(s.is_product for s in self.sources), 300)
+        self.assertGreater(len(self.arrows), 25)
+
+    def test_keeps_the_rules(self):
+        breaches = [*check_arrows(self.sources, self.arrows), *check_cycles(self.arrows),
+                    *check_public_headers(self.sources), *check_private_headers(self.sources),
+                    *check_sync_is_pure(self.sources), *check_coordinator_is_neutral(self.sources),
+                    *check_randomness(self.sources), *check_lengths(self.sources),
+                    *check_tests(self.sources, self.texts["tests/layout/untested.txt"]),
+                    *check_leftovers(self.texts), *check_links(self.texts, lambda path: (ROOT / path).exists()),
+                    *check_decisions(self.texts)]
+        self.assertFalse(breaches, "\n" + "\n".join(breaches))
+
+    def test_each_scripts_help_is_its_comment_alone(self):
+        scripts = [path for path, text in self.texts.items()
+                   if path.startswith("scripts/") and "-h | --help) usage; exit 0 ;;" in text]
+        self.assertGreater(len(scripts), 5)
+        for script in scripts:
+            shown = subprocess.run([ROOT / script, "--help"], capture_output=True, text=True)
+            self.assertIn(f"\nusage: {script}", shown.stdout + shown.stderr)
+            self.assertNotIn("shellcheck", shown.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
