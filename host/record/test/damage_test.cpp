@@ -214,9 +214,10 @@ TEST(Damage, EachKindOfBadChunkIsReported) {
   for (const auto& [chunk, damage] : cases) EXPECT_EQ(damage_of(chunk), damage);
 }
 
-/// A message of sequence 42 that is not a ground truth message, under that topic.
-std::string wrong_message(const std::string& topic) {
-  std::string schema, channel, message;
+/// A channel of ground truth under that topic, and its messages of these numbers, outside a chunk.
+std::string numbered_messages(const std::string& topic, const std::vector<std::uint32_t>& sequences,
+                              const std::string& json) {
+  std::string schema, channel, messages;
   append_u16(schema, 1);
   append_string(schema, "tether.GroundTruth");
   append_string(schema, "");
@@ -226,12 +227,38 @@ std::string wrong_message(const std::string& topic) {
   append_string(channel, topic);
   append_string(channel, "json");
   append_u32(channel, 0);
-  append_u16(message, 7);
-  append_u32(message, 42);
-  append_u64(message, 0);
-  append_u64(message, 0);
-  return raw_record(Opcode::kSchema, schema) + raw_record(Opcode::kChannel, channel) +
-         raw_record(Opcode::kMessage, message + "{\"uav\":3}");
+  for (const std::uint32_t sequence : sequences) {
+    std::string message;
+    append_u16(message, 7);
+    append_u32(message, sequence);
+    append_u64(message, 1000 + sequence);
+    append_u64(message, 0);
+    messages += raw_record(Opcode::kMessage, message + json);
+  }
+  return raw_record(Opcode::kSchema, schema) + raw_record(Opcode::kChannel, channel) + messages;
+}
+
+TEST(Damage, MessagesThatWereRemovedRepeatedOrMovedAreMiscounted) {
+  using Numbers = std::vector<std::uint32_t>;
+  using Pairs = std::vector<std::pair<std::uint64_t, std::uint64_t>>;  // expected, found
+  std::string json;
+  append_json(json, ground_truth(0));
+  for (const auto& [numbers, expected] : {std::pair(Numbers{0, 1, 2}, Pairs{}),
+                                          {{0, 1, 3, 4}, {{2, 3}}},
+                                          {{1, 2}, {{0, 1}}},
+                                          {{0, 1, 1, 2}, {{2, 1}}},
+                                          {{0, 2, 1, 3}, {{1, 2}, {3, 1}, {2, 3}}}}) {
+    TemporaryFile file;
+    make_mcap_recorder(file.path())->write(header());
+    file.set_bytes(file.bytes() + numbered_messages("/ground_truth/a", numbers, json));
+    Pairs found;
+    for (const Miscount& miscount : read_record(file.path()).miscounts) {
+      EXPECT_EQ(miscount.topic, "/ground_truth/a");
+      EXPECT_EQ(to_ns(miscount.at), 1000 + static_cast<std::int64_t>(miscount.found));
+      found.emplace_back(miscount.expected, miscount.found);
+    }
+    EXPECT_EQ(found, expected);
+  }
 }
 
 TEST(Damage, WrongMessageIsNamedWithItsTopicInOnePrintableLine) {
@@ -239,7 +266,7 @@ TEST(Damage, WrongMessageIsNamedWithItsTopicInOnePrintableLine) {
        {std::pair("/ground_truth/a", "/ground_truth/a"), std::pair("/a\nb\x1b[2J", "/a?b?[2J")}) {
     TemporaryFile file;
     make_mcap_recorder(file.path())->write(header());
-    file.set_bytes(file.bytes() + wrong_message(topic));
+    file.set_bytes(file.bytes() + numbered_messages(topic, {42}, "{\"uav\":3}"));
     const std::string damage = read(file).damage;
     EXPECT_TRUE(damage.ends_with("message 42 of " + std::string(printed) +
                                  ": member \"uav\" is not a string"))
