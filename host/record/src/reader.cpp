@@ -4,6 +4,7 @@
 #include "mcap_reader.h"
 #include "schemas.h"
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <string>
@@ -118,6 +119,26 @@ class RecordBuilder final : public McapVisitor {
 };
 
 }  // namespace
+
+SimTime last_time(const Record& record) {
+  SimTime last{};
+  const auto see = [&](const auto& messages) {
+    for (const auto& logged : messages) last = std::max(last, logged.at);
+  };
+  see(record.interactions);
+  see(record.commands);
+  see(record.ground_truth);
+  see(record.annotations);
+  see(record.stops);
+  return last;
+}
+
+std::string describe_damage(const Record& record) {
+  if (record.footer) return record.damage;
+  return "truncated at ST " + std::to_string(to_seconds(last_time(record))) + " s, after " +
+         std::to_string(record.interactions.size()) + " interactions" +
+         (record.damage.empty() ? "" : "; " + record.damage);
+}
 
 Record read_record(const std::filesystem::path& file, const ReadOptions& options) {
   RecordBuilder builder(file, options);

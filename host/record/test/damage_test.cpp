@@ -3,11 +3,13 @@
 #include "sample_messages.h"
 
 #include <algorithm>
+#include <csignal>
 #include <map>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -22,16 +24,20 @@ constexpr std::size_t kChunks = 4;
 constexpr std::size_t kMessagesPerChunk = 6;
 
 // Four seconds, so that something is left before a truncation.
-std::string small_record() {
-  const TemporaryFile file;
+void write_small_record(const TemporaryFile& file) {
   const auto recorder = make_mcap_recorder(file.path());
   recorder->write(header());
   for (std::int64_t ms = 0; ms < 4000; ms += 500) {
     recorder->write(st_ms(ms), ground_truth(ms));
     recorder->write(st_ms(ms), command_effect(static_cast<std::uint64_t>(ms)));
+    recorder->flush();
     recorder->write(st_ms(ms), annotation());
   }
   recorder->write(footer());
+}
+std::string small_record() {
+  const TemporaryFile file;
+  write_small_record(file);
   return file.bytes();
 }
 
@@ -99,6 +105,55 @@ TEST(Damage, ATruncatedRecordGivesAllMessagesOfCompleteChunks) {
     const std::size_t place = damaged == records.end() ? records.back().end() : damaged->offset;
     ASSERT_TRUE(outcome.damage.starts_with("damaged at byte " + std::to_string(place) + ": "))
         << outcome.damage;
+  }
+}
+
+/// No file of this process can grow beyond that size.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(std::size_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    ::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  sighandler_t handler_ = ::signal(SIGXFSZ, SIG_IGN);
+};
+
+TEST(Damage, AFullDiskLeavesAllMessagesThatFit) {
+  const std::string whole = small_record();
+  const std::vector<Raw> records = raw_records(whole);
+  const TemporaryFile file;
+  file.set_bytes(whole);
+  const Outcome all = read(file);
+  for (std::size_t size = 0; size < whole.size(); size += 13) {
+    SCOPED_TRACE(size);
+    {
+      const FileSizeLimit limit(size);
+      EXPECT_EQ(thrown_error(ErrorCode::kSetup, [&] { write_small_record(file); }).where().file,
+                file.path());
+    }
+    // Parts: the header, each chunk, its indices, the footer. What follows is one part.
+    std::size_t kept = 0, chunks = 0, metadata = 0;
+    for (const Raw& raw : records) {
+      if (raw.end() > size) break;
+      if (raw.opcode == Opcode::kChunk) ++chunks;
+      if (raw.opcode == Opcode::kMetadata) ++metadata;
+      if (raw.opcode != Opcode::kDataEnd) kept = raw.end();
+    }
+    EXPECT_TRUE(whole.starts_with(file.bytes()));
+    EXPECT_LE(file.bytes().size(), kept);
+    const Outcome outcome = read(file);
+    ASSERT_EQ(outcome.refused, metadata == 0);
+    EXPECT_EQ(outcome.lines, first_of(all.lines, kMessagesPerChunk * chunks));
+    EXPECT_EQ(outcome.has_end, metadata == 2);
+    EXPECT_EQ(outcome.damage.empty(), outcome.refused);
   }
 }
 

@@ -45,6 +45,14 @@ struct Record {
   std::string damage;
 };
 
+/// Log time of the last message; 0 if there is none.
+SimTime last_time(const Record& record);
+
+/// How far a record without its end goes, and its damage, in one printable line: "truncated at
+/// ST 1.500000 s, after 420 interactions; damaged at byte N: …". Empty if it has its end and no
+/// damage.
+std::string describe_damage(const Record& record);
+
 struct ReadOptions {
   bool images = false;  ///< also load images
 };
