@@ -24,7 +24,7 @@ void drop(const std::filesystem::path& file) {
   if (error) fail(file, error.message());
 }
 
-constexpr off_t kRoomForResult_bytes = 64 * 1024;
+constexpr off_t kRoomForResult_bytes = 32 * 1024;
 
 /// Nothing if the file system cannot do it, or the limit of file sizes is lower.
 os::FileDescriptor reserve_room(const std::filesystem::path& folder) {

@@ -37,10 +37,10 @@ class Folder : public RunTest {
 // ---- Full
 
 TEST_F(Folder, WhoseFilesMayNotGrowEndsTheRunWithItsReason) {
-  const auto result = expect_failed(
-      run(limited(flight(), "-f 32")),
+  const auto failure = expect_failed(
+      run(limited(flight(), "-f 96")),
       {"setup_failed", {(out_ / "record.mcap").string(), "File too large", "kept up to ST"}});
-  expect_truncated(result, out_);
+  expect_truncated(failure, out_);
   EXPECT_EQ(run(flight()).code, 0);
   EXPECT_EQ(result()["end"], "finished");
 }
@@ -107,7 +107,7 @@ TEST_F(Disk, ThatGetsFullEndsTheRunWithItsReason) {
   const Command command =
       tether({"run", write_hover_scenario(folder_.path(), "good"), "--out", disk_ / "out"}, mark_);
   const std::string record = disk_ / "out/record.mcap";
-  expect_truncated(expect_failed(run(on_small_disk(command, disk_, 112, kept_)),
+  expect_truncated(expect_failed(run(on_small_disk(command, disk_, 80, kept_)),
                                  {"setup_failed", {record, "No space left on device"}}, kept_),
                    kept_);
 }
