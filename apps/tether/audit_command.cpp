@@ -2,6 +2,7 @@
 #include "say.h"
 
 #include <filesystem>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -12,7 +13,8 @@ namespace tether::app {
 
 int audit_record(const AuditOptions& options, const std::stop_token&) {
   const record::Record record = record::read_record(options.record);
-  if (!record.damage.empty()) say("warning: {}: {}\n", options.record.string(), record.damage);
+  if (const std::string damage = record::describe_damage(record); !damage.empty())
+    say("warning: {}: {}\n", options.record.string(), damage);
   const audit::Verdict verdict = audit::audit(record);
   fmt::print("{}", audit::to_text(verdict, options.max_findings));
   return verdict.passed() ? 0 : 1;

@@ -21,7 +21,7 @@ std::string why_no_images(const record::Record& record) {
     return "the record has no images. To record images, type: tether run SCENARIO --images";
   return fmt::format(
       "the record has no images up to the damage: {}. Run the trial again with --images",
-      record.damage);
+      record::describe_damage(record));
 }
 
 record::Record read_images(const std::filesystem::path& file) {
@@ -29,7 +29,7 @@ record::Record read_images(const std::filesystem::path& file) {
   if (record.images.empty())
     throw Error(ErrorCode::kBadFile, {file.string()}, why_no_images(record));
   if (!record.damage.empty())
-    say("tether: {}: drawn up to the damage: {}\n", file.string(), record.damage);
+    say("tether: {}: drawn up to the damage: {}\n", file.string(), record::describe_damage(record));
   return record;
 }
 

@@ -55,7 +55,8 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
 int draw_plots(const PlotOptions& options, const std::stop_token&) {
   const record::Record record = record::read_record(options.record);
   if (!record.damage.empty())
-    say("tether: {}: plotted up to the damage: {}\n", options.record.string(), record.damage);
+    say("tether: {}: plotted up to the damage: {}\n", options.record.string(),
+        record::describe_damage(record));
   // Draws all of them before the first is written.
   std::vector<std::pair<std::string, std::string>> drawings;
   for (const auto& [name, plot] : plots_of(record)) drawings.emplace_back(name, draw_svg(plot));

@@ -11,6 +11,7 @@ Verdict audit(const record::Record& record) {
   Report report(verdict);
   verdict.synchronised = record.header.policy == record::kConservativeBarrier;
   verdict.complete = record.footer.has_value();
+  verdict.reached = record::last_time(record);
   verdict.interactions = record.interactions.size();
   if (!verdict.synchronised && record.header.policy != record::kFreeRunning) {
     report.add("unknown policy \"" + record.header.policy + "\"");
@@ -22,6 +23,7 @@ Verdict audit(const record::Record& record) {
 
   const Boundaries grid(record.header.step);
   check_consistency(record, grid, report);
+  check_motion(record, report);
   if (verdict.synchronised) {
     check_interactions(record, grid, report);
     check_rows(record, report);

@@ -24,12 +24,16 @@ void check_newness(const record::Record& record, Report& report);
 /// Rule 2 and the second half of rule 3: the effects of commands.
 void check_commands(const record::Record& record, const Boundaries& grid, Report& report);
 
-/// Rule 4 across SUTs: ST never passes a SUT that can still act, in the order of the file and of
-/// wall time.
+/// Rules 3 and 4 across SUTs: replies are sent in the order of their timestamps, and ST never
+/// passes a SUT that can still act, in the order of the file and of wall time.
 void check_order(const record::Record& record, const Boundaries& grid, Report& report);
 
-/// Rule 0 for any policy: header, numbering, ground truth, log times.
+/// Rule 0 for any policy: header, numbering, ground truth, log times, wall times.
 void check_consistency(const record::Record& record, const Boundaries& grid, Report& report);
+
+/// Rule 0 for any policy: no UAV moves faster than it can fly, no command is beyond what a SUT can
+/// give.
+void check_motion(const record::Record& record, Report& report);
 
 /// Rule 0: the footer's figures, and for synchronised runs also the times at the end.
 void check_end(const record::Record& record, const Boundaries& grid, Report& report);

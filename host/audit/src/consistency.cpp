@@ -48,12 +48,24 @@ class ConsistencyCheck {
     if (suts_.size() != record_.header.suts.size()) report_.add("two SUTs have the same UAV");
     for_each_in_file_order(record_, [&](const auto& entry) { visit(entry); });
     for (const auto& [uav, sut] : suts_) check_missing(uav, sut);
+    for (const record::Miscount& miscount : record_.miscounts) check_count(miscount);
   }
 
  private:
+  void check_count(const record::Miscount& miscount) {
+    const std::uint64_t missing = miscount.found - miscount.expected;
+    report_.add({0, "", 0, miscount.at,
+                 miscount.found > miscount.expected
+                     ? fmt::format("{} message{} of {} missing before number {}", missing,
+                                   missing == 1 ? "" : "s", miscount.topic, miscount.found)
+                     : fmt::format("number {} of {} repeated or out of order, expected number {}",
+                                   miscount.found, miscount.topic, miscount.expected)});
+  }
+
   void visit(const Logged<Interaction>& entry) {
     const Interaction& message = entry.message;
     check_log_time(entry, message.st_at_release);
+    check_wall_times(message, entry);
     if (!is_known_kind(message.kind)) report_.add(0, entry, "unknown kind \"{}\"", message.kind);
     // For synchronised records, check_order checks the order of log times.
     if (record_.header.policy == record::kFreeRunning) {
@@ -65,6 +77,19 @@ class ConsistencyCheck {
       return report_.add(0, entry, "no UAV \"{}\" in the record's header", message.uav);
     check_sequence(entry, sut->second);
     reached_ = std::max(reached_, entry.at);
+  }
+
+  // Replies are recorded in the order in which they were sent.
+  void check_wall_times(const Interaction& message, const Logged<Interaction>& entry) {
+    const WallTime arrival = message.wall_at_arrival, release = message.wall_at_release;
+    if (arrival != WallTime{} && release != WallTime{} && release < arrival)
+      report_.add(0, entry, "reply sent {} before its request arrived",
+                  ns(wide(arrival) - wide(release)));
+    if (release == WallTime{}) return;
+    if (release < wall_at_last_release_)
+      report_.add(0, entry, "reply sent {} before the previous reply in the record",
+                  ns(wide(wall_at_last_release_) - wide(release)));
+    wall_at_last_release_ = std::max(wall_at_last_release_, release);
   }
 
   template <class Message>
@@ -234,6 +259,7 @@ class ConsistencyCheck {
   // In a free-running record: the request that first read a measurement.
   std::map<std::tuple<std::string, std::string, std::uint64_t>, std::uint64_t> taken_by_;
   SimTime reached_{};
+  WallTime wall_at_last_release_;
 };
 
 }  // namespace

@@ -49,15 +49,7 @@ void check_figures(const record::Record& record, const Footer& footer, Report& r
 void check_st(const record::Record& record, const Boundaries& grid, const Footer& footer,
               Report& report) {
   const Wide end = wide(footer.st_at_end);
-  SimTime last{};
-  const auto see = [&](const auto& messages) {
-    for (const auto& entry : messages) last = std::max(last, entry.at);
-  };
-  see(record.interactions);
-  see(record.commands);
-  see(record.ground_truth);
-  see(record.annotations);
-  see(record.stops);
+  const SimTime last = record::last_time(record);
   if (last > footer.st_at_end)
     report.add(
         fmt::format("the run ended at ST {}, but a message has log time ST {}", ns(end), ns(last)));
@@ -108,9 +100,7 @@ void check_et(const record::Record& record, const Boundaries& grid, const Footer
 }  // namespace
 
 void check_end(const record::Record& record, const Boundaries& grid, Report& report) {
-  if (!record.footer)
-    return report.note("the record has no end" +
-                       (record.damage.empty() ? "" : ": " + record.damage));
+  if (!record.footer) return report.note("the record is " + record::describe_damage(record));
   if (!record.damage.empty()) report.add("the record is " + record.damage);
   check_figures(record, *record.footer, report);
   check_st(record, grid, *record.footer, report);

@@ -9,12 +9,16 @@ namespace tether::audit {
 namespace {
 
 std::string headline(const Verdict& verdict) {
+  const std::string truncated =
+      verdict.complete ? ""
+                       : fmt::format(", truncated at ST {:.6f} s", to_seconds(verdict.reached));
   const std::size_t findings = verdict.findings.size() + verdict.further_findings;
   if (findings > 0) {
-    return fmt::format("FAILED: {} finding{} in {} interactions\n", findings,
-                       findings == 1 ? "" : "s", verdict.interactions);
+    return fmt::format("FAILED: {} finding{} in {} interactions{}\n", findings,
+                       findings == 1 ? "" : "s", verdict.interactions, truncated);
   }
-  const char* how = verdict.complete ? "passed" : "INCOMPLETE, no finding before the record ends";
+  const std::string how =
+      verdict.complete ? "passed" : "INCOMPLETE" + truncated + ", no finding before";
   if (!verdict.synchronised) {
     return fmt::format("{}: {} interactions, not synchronised: rules 1 to 7 do not apply\n", how,
                        verdict.interactions);

@@ -151,7 +151,8 @@ TEST(Audit, WithoutItsEndARecordDoesNotPass) {
   EXPECT_TRUE(verdict.findings.empty()) << to_text(verdict);
   EXPECT_FALSE(verdict.complete);
   EXPECT_FALSE(verdict.passed());
-  EXPECT_EQ(verdict.notes, std::vector{"the record has no end: " + record.damage});
+  EXPECT_EQ(verdict.reached, record::last_time(record));
+  EXPECT_EQ(verdict.notes, std::vector{"the record is " + record::describe_damage(record)});
 }
 
 // A command whose reply is still held when the run ends has its effect but no interaction.

@@ -87,6 +87,22 @@ Interaction& second_of_pair(Record& record,
   throw std::logic_error("the generated record has no such pair");
 }
 
+// Puts the replies of two SUTs at one ST into the other order: as it was sent, wall times included,
+// up to `alter`.
+void swap_replies(Record& record, const std::function<void(Interaction&, Interaction&)>& alter) {
+  for (std::size_t i = 1; i < record.interactions.size(); ++i) {
+    Interaction& one = record.interactions[i - 1].message;
+    Interaction& other = record.interactions[i].message;
+    if (one.uav == other.uav || one.st_at_release != other.st_at_release ||
+        other.wall_at_arrival > one.wall_at_release || one.effect_at || other.effect_at)
+      continue;
+    std::swap(one, other);
+    std::swap(one.wall_at_release, other.wall_at_release);
+    return alter(one, other);
+  }
+  throw std::logic_error("no two replies at one ST");
+}
+
 const Planted kPlanted[] = {
     // Rule 1.
     {"sample_from_the_future",
@@ -215,6 +231,23 @@ const Planted kPlanted[] = {
        }
        throw std::logic_error("no effect just before a release");
      }},
+    {"replies_in_wrong_order",
+     {3},
+     [](Record& r) { swap_replies(r, [](Interaction&, Interaction&) {}); }},
+    {"replies_in_wrong_order_of_wall_time",
+     {0, 3},
+     [](Record& r) {
+       swap_replies(r, [](Interaction& one, Interaction& other) {
+         std::swap(one.wall_at_release, other.wall_at_release);
+       });
+     }},
+    {"replies_in_wrong_order_without_wall_times",
+     {3},
+     [](Record& r) {
+       swap_replies(r, [](Interaction&, Interaction&) {});
+       for (Entry& entry : r.interactions)
+         entry.message.wall_at_arrival = entry.message.wall_at_release = WallTime{};
+     }},
     // Rule 4.
     {"st_ahead_of_request",
      {4},
@@ -226,7 +259,7 @@ const Planted kPlanted[] = {
      {4},
      [](Record& r) { set_arrival(r, where(r, is_ahead, 20), SimTime(kStep)); }},
     {"reply_sent_before_earlier_request_arrived",
-     {4},
+     {0, 4},
      [](Record& r) {
        // By wall time the request came only at the end of the run.
        where(r, is_command).wall_at_arrival = r.interactions.back().message.wall_at_release + kNs;
@@ -340,6 +373,28 @@ const Planted kPlanted[] = {
     {"truth_logged_early", {0}, [](Record& r) { r.ground_truth[9].at -= kNs; }},
     {"truth_not_finite", {0}, [](auto& r) { r.ground_truth[9].message.p_WB_m[1] = std::nan(""); }},
     {"truth_not_a_rotation", {0}, [](Record& r) { r.ground_truth[9].message.q_WB[0] = 1.001; }},
+    {"removed_message",
+     {0},
+     [](Record& r) {
+       r.miscounts.push_back({"/interactions", SimTime(kStep), 5, 6});
+     }},
+    {"reply_before_arrival_by_wall_time",
+     {0},
+     [](Record& r) {
+       Interaction& m = r.interactions.front().message;
+       m.wall_at_arrival = m.wall_at_release + kNs;
+     }},
+    {"pose_that_jumps", {0}, [](Record& r) { r.ground_truth[40].message.p_WB_m[1] += 0.2; }},
+    {"pose_that_jumps_with_its_speed",
+     {0},
+     [](Record& r) {
+       auto& truth = r.ground_truth[40].message;
+       truth.p_WB_m[0] -= 2.0;
+       truth.v_WB_m_s[0] -= 200.0;
+     }},
+    {"command_beyond_its_limits",
+     {0},
+     [](Record& r) { r.commands[3].message.vy_H_m_s = -100.001; }},
     {"command_not_finite", {0}, [](Record& r) { r.commands[3].message.yaw_rate_rad_s = HUGE_VAL; }},
     {"annotation_out_of_order",
      {0},

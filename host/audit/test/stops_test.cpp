@@ -170,7 +170,7 @@ const Planted kPlantedStops[] = {
        set_figures(r);
      }},
     {"replies_out_of_order",
-     {5},
+     {0, 5},
      [](Record& r) {
        const auto first = std::ranges::adjacent_find(r.interactions, [](auto& a, auto& b) {
          return a.at == b.at && b.order == a.order + 1 && a.message.kind != record::kCommand &&

@@ -7,10 +7,10 @@ namespace {
 
 TEST(ToText, WithoutFindingsIsOneLine) {
   Verdict verdict;
-  EXPECT_EQ(
-      to_text(verdict),
-      "INCOMPLETE, no finding before the record ends: 0 interactions, not synchronised: rules "
-      "1 to 7 do not apply\n");
+  verdict.reached = from_ns<SimTime>(500'000'000);
+  EXPECT_EQ(to_text(verdict),
+            "INCOMPLETE, truncated at ST 0.500000 s, no finding before: 0 interactions, not "
+            "synchronised: rules 1 to 7 do not apply\n");
   verdict.synchronised = verdict.complete = true;
   verdict.interactions = 42;
   verdict.largest_grid_error = Duration(999'999);
@@ -22,6 +22,7 @@ TEST(ToText, WithoutFindingsIsOneLine) {
 TEST(ToText, ListsFindingsUpToTheLimit) {
   Verdict verdict;
   verdict.notes = {"a note"};
+  verdict.complete = true;
   verdict.further_findings = 2;
   verdict.findings = {{3, "a", 7, from_ns<SimTime>(1'500'000'000), "too late"},
                       {0, "", 0, {}, "wrong"},

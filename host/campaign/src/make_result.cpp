@@ -144,8 +144,9 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   result.this_run.machine = record.header.machine;
   if (!record.footer) {
     result.end = "record_cut";
-    settle(result, "the record was cut short: " +
-                       (record.damage.empty() ? "it has no end" : record.damage));
+    result.sync.interactions = record.interactions.size();
+    result.sync.st_at_end = record::last_time(record);
+    settle(result, "the record is " + record::describe_damage(record));
     return result;
   }
   const record::Footer& footer = *record.footer;

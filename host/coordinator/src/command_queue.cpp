@@ -1,12 +1,13 @@
 #include "command_queue.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tether::coordinator {
 
 void CommandQueue::push(const PendingCommand& command) {
   const auto place = std::find_if(commands_.begin(), commands_.end(), [&](const PendingCommand& c) {
-    return c.effect_at <= command.effect_at;
+    return std::pair(c.effect_at, c.uav) <= std::pair(command.effect_at, command.uav);
   });
   commands_.insert(place, command);
   if (waiting_.size() <= command.uav) waiting_.resize(command.uav + 1);

@@ -18,7 +18,8 @@ struct PendingCommand {
   uav::VelocityCommand command;
 };
 
-/// Commands in the order of their effect; those of one boundary in the order of arrival.
+/// Commands in the order of their effect; those of one boundary in the order of
+/// UAVs, and for each UAV in the order of arrival.
 class CommandQueue {
  public:
   void push(const PendingCommand& command);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <tether/base/printable.h>
 #include <tether/coordinator/coordinator.h>
 
@@ -81,8 +83,9 @@ RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
 }  // namespace
 
 std::string_view name(RunEnd end) {
-  constexpr std::string_view kNames[] = {"finished", "time_limit",     "sut_lost",
-                                         "sut_hung", "simulator_lost", "interrupted"};
+  constexpr std::string_view kNames[] = {"finished",     "time_limit",     "sut_lost",
+                                         "sut_hung",     "simulator_lost", "interrupted",
+                                         "record_failed"};
   return kNames[static_cast<std::size_t>(end)];
 }
 
@@ -118,11 +121,13 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
   while (!ended_) {
     try {
       turn();
+      watch();
     } catch (const SimulatorFailure& e) {
       stop_if_asked();  // the caller may know a cause of the failure
       end({RunEnd::kSimulatorLost, e.what()});
+    } catch (const RecordFailure& e) {
+      end({RunEnd::kRecordFailed, e.what()});
     }
-    watch();
   }
   return close_run();
 }
@@ -138,7 +143,7 @@ void Coordinator::Impl::start() {
   stepper_.reset(options_.seed);
   started_ = host_clock_();
   watchdog_.begin(started_);
-  log_.begin(make_header());
+  log_.begin(make_header(), is_repeatable());
   running_ = true;
   if (options_.real_time_factor > 0.0)
     pace_.emplace(options_.real_time_factor, std::max(kPaceCredit, 2 * grid().dt()), started_);
@@ -151,11 +156,19 @@ void Coordinator::Impl::start() {
       session.plausibility.emplace(*bound, ExecTime{}, started_);
   }
   stepper_.act();
+  log_.race_again();
   for (const Session& session : sessions_)
     server_->send(session.peer, link::Welcome{.catalogue = sim::make_catalogue(
                                                   world(), world().uavs[session.uav]),
                                               .free_running = !is_synchronised(),
                                               .start = ExecTime{}});
+}
+
+// Whether every run with these options has the same messages: no clock has a part in them.
+bool Coordinator::Impl::is_repeatable() const {
+  return is_synchronised() && std::ranges::all_of(sessions_, [](const Session& session) {
+           return session.hello.clock == link::ClockKind::kScripted && !session.is_concurrent();
+         });
 }
 
 // Advances ST; false if it must not advance now.
@@ -293,7 +306,13 @@ RunReport Coordinator::Impl::close_run() {
   footer.wall = report.wall;
   for (const SutReport& sut : report.suts) footer.et_at_end.push_back(sut.et);
   if (hooks_.read_target) footer.target_after = hooks_.read_target();
-  log_.end();
+  if (report.end == RunEnd::kRecordFailed) return report;
+  try {
+    log_.end();
+  } catch (const RecordFailure& e) {
+    report.reason = fmt::format("{}; the run ended with: {}", e.what(), report.reason);
+    report.end = RunEnd::kRecordFailed;
+  }
   return report;
 }
 

@@ -34,6 +34,7 @@ class Coordinator::Impl {
   void turn();
   void start();
   record::Header make_header() const;
+  bool is_repeatable() const;
   bool advance();
   SimTime next_stop() const;
   SimTime paced(SimTime target, WallTime now);

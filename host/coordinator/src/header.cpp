@@ -1,6 +1,7 @@
 #include "coordinator_impl.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -63,6 +64,14 @@ record::Anchor describe(const sim::PlacedAnchor& placed) {
           .q_WA = {X_WA.q.w, X_WA.q.x, X_WA.q.y, X_WA.q.z}};
 }
 
+/// Of all rotors at full speed together with gravity.
+double max_acceleration_m_s2(const uav::MultirotorParameters& airframe, double gravity_m_s2) {
+  const double speed = airframe.max_rotor_speed_rad_s;
+  const double thrust_N =
+      static_cast<double>(airframe.rotors.size()) * airframe.thrust_coefficient * speed * speed;
+  return thrust_N / airframe.mass_kg + std::abs(gravity_m_s2);
+}
+
 }  // namespace
 
 record::Header Coordinator::Impl::make_header() const {
@@ -75,6 +84,7 @@ record::Header Coordinator::Impl::make_header() const {
   header.real_time_factor = options_.real_time_factor;
   header.wall_at_start = started_;
   for (const Session& session : sessions_) {
+    const sim::Uav& uav = world().uavs[session.uav];
     header.suts.push_back(
         {.uav = session.uav_name,
          .sut = session.hello.sut,
@@ -82,8 +92,8 @@ record::Header Coordinator::Impl::make_header() const {
          .cpu_factor = session.hello.cpu_factor,
          .command_latency = session.command_latency,
          .concurrent = session.is_concurrent(),
-         .cores = session.hello.clock == link::ClockKind::kCpu ? session.cores : 0});
-    const sim::Uav& uav = world().uavs[session.uav];
+         .cores = session.hello.clock == link::ClockKind::kCpu ? session.cores : 0,
+         .max_acceleration_m_s2 = max_acceleration_m_s2(uav.airframe, world().gravity_m_s2)});
     for (std::size_t i = 0; i < uav.sensors.size(); ++i)
       header.sensors.push_back(
           describe(uav.name, uav.sensors[i], options_.uavs[session.uav].timings[i]));

@@ -1,53 +1,141 @@
 #include "run_log.h"
 
+#include <algorithm>
+#include <type_traits>
+
 #include <tether/record/png.h>
 
 namespace tether::coordinator {
+
+namespace {
+
+template <class F>
+void ask(F&& f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    throw RecordFailure(e.what());
+  }
+}
+
+}  // namespace
+
+void RunLog::begin(record::Header header, bool repeatable) {
+  repeatable_ = repeatable;
+  for (const record::SutInfo& sut : header.suts) rows_.insert({sut.uav, {rows_.size(), {}}});
+  if (repeatable) {
+    header.wall_at_start = {};
+    header.machine.clear();
+    if (header.target) header.target->before.clear();
+  }
+  ask([&] { recorder_->write(header); });
+}
 
 void RunLog::interaction(SimTime st, const record::Interaction& entry) {
   ++footer_.interactions;
   if (entry.violation) ++footer_.causality_violations;
   footer_.largest_lag = std::max(footer_.largest_lag, entry.lag);
   footer_.largest_grid_error = std::max(footer_.largest_grid_error, entry.grid_error);
-  recorder_->write(st, entry);
+  put(st, entry);
 }
 
 void RunLog::command_effect(SimTime st, const std::string& uav, const PendingCommand& command) {
   const auto& [velocity, yaw_rate] = command.command;
-  recorder_->write(st, record::CommandEffect{.uav = uav,
-                                             .sequence = command.sequence,
-                                             .applied_at = st,
-                                             .vx_H_m_s = velocity.x,
-                                             .vy_H_m_s = velocity.y,
-                                             .vz_H_m_s = velocity.z,
-                                             .yaw_rate_rad_s = yaw_rate});
+  put(st, record::CommandEffect{.uav = uav,
+                                .sequence = command.sequence,
+                                .applied_at = st,
+                                .vx_H_m_s = velocity.x,
+                                .vy_H_m_s = velocity.y,
+                                .vz_H_m_s = velocity.z,
+                                .yaw_rate_rad_s = yaw_rate});
 }
 
 void RunLog::ground_truth(const std::string& uav, const sim::GroundTruth& truth) {
   const auto& [p, q, v, w] = truth.body;
-  recorder_->write(truth.at, record::GroundTruth{.uav = uav,
-                                                 .at = truth.at,
-                                                 .p_WB_m = {p.x, p.y, p.z},
-                                                 .q_WB = {q.w, q.x, q.y, q.z},
-                                                 .v_WB_m_s = {v.x, v.y, v.z},
-                                                 .w_WB_B_rad_s = {w.x, w.y, w.z}});
+  put(truth.at, record::GroundTruth{.uav = uav,
+                                    .at = truth.at,
+                                    .p_WB_m = {p.x, p.y, p.z},
+                                    .q_WB = {q.w, q.x, q.y, q.z},
+                                    .v_WB_m_s = {v.x, v.y, v.z},
+                                    .w_WB_B_rad_s = {w.x, w.y, w.z}});
 }
 
 void RunLog::stop(SimTime st, const record::Stop& stop) {
   ++footer_.stops;
   if (stop.reply_at)
     footer_.largest_overshoot = std::max(footer_.largest_overshoot, stop.at - *stop.reply_at);
-  recorder_->write(st, stop);
+  put(st, stop);
 }
 
 void RunLog::image(SimTime st, const std::string& uav, const std::string& sensor,
                    const uav::CameraSample& sample) {
-  recorder_->write(
-      st, record::Image{.uav = uav,
+  put(st, record::Image{.uav = uav,
                         .sensor = sensor,
                         .at = sample.sampled_at,
                         .index = sample.index,
                         .png = record::encode_png(sample.width_px, sample.height_px, sample.rgb)});
+}
+
+void RunLog::flush() {
+  ask([&] { recorder_->flush(); });
+}
+
+void RunLog::end() {
+  settle();
+  record::Footer footer = footer_;
+  if (repeatable_) {
+    footer.wall = {};
+    footer.target_after.clear();
+  }
+  ask([&] { recorder_->write(footer); });
+}
+
+void RunLog::settle() {
+  collects_ = false;
+  for (Collected& collected : collected_) write(collected.st, collected.message);
+  collected_.clear();
+}
+
+// Inserts the message before those of other SUTs that have a greater key. Those of one SUT stay in
+// their order: its key does not decrease.
+void RunLog::put(SimTime st, Message message) {
+  if (!collects_) return write(st, message);
+  Row& row = rows_.at(std::visit([](const auto& m) { return m.uav; }, message));
+  if (const auto* interaction = std::get_if<record::Interaction>(&message))
+    row.reached = std::max(row.reached, interaction->reply_at);
+  if (std::holds_alternative<record::CommandEffect>(message))
+    row.reached = std::max(row.reached, same_instant(st));
+  Collected later{st, {row.reached, row.index}, std::move(message)};
+  auto place = collected_.end();
+  while (place != collected_.begin() && may_precede(later, *std::prev(place))) --place;
+  collected_.insert(place, std::move(later));
+}
+
+// A message of another SUT came later, but its place is before. The barrier lets a reply go while a
+// SUT computes only if that SUT cannot act before the reply any more, or beyond this ST only.
+bool RunLog::may_precede(const Collected& later, const Collected& earlier) {
+  if (later.key >= earlier.key) return false;
+  const auto* reply = std::get_if<record::Interaction>(&earlier.message);
+  if (!reply) return true;
+  if (std::holds_alternative<record::CommandEffect>(later.message))
+    return reply->reply_at <= same_instant(later.st);
+  const auto* other = std::get_if<record::Interaction>(&later.message);
+  if (!other) return true;
+  const bool was_held =
+      other->st_at_arrival < later.st || other->wall_at_arrival < reply->wall_at_release;
+  const bool was_awaited =
+      other->request_at <= same_instant(later.st) && other->request_at < reply->reply_at;
+  return !was_held && !was_awaited;
+}
+
+void RunLog::write(SimTime st, Message& message) {
+  if (repeatable_) {
+    if (auto* interaction = std::get_if<record::Interaction>(&message)) {
+      interaction->wall_at_arrival = interaction->wall_at_release = {};
+      interaction->previous_link_time.reset();
+    }
+  }
+  ask([&] { std::visit([&](const auto& m) { recorder_->write(st, m); }, message); });
 }
 
 }  // namespace tether::coordinator

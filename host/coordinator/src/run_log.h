@@ -2,9 +2,16 @@
 
 #include "command_queue.h"
 
-#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
+#include <tether/base/error.h>
 #include <tether/base/time.h>
 #include <tether/record/messages.h>
 #include <tether/record/writer.h>
@@ -12,24 +19,39 @@
 
 namespace tether::coordinator {
 
-/// Writes the record of a run, and keeps the figures of its footer.
+/// The record cannot be written any more.
+struct RecordFailure : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Writes the record of a run, and keeps the figures of its footer. Errors of the recorder are
+/// thrown as RecordFailure.
+///
+/// The record of a *repeatable* run is the same to the byte each time. It has no wall times and no
+/// state of the machine. The messages of one ST are collected and written in the order of (time of
+/// the SUT, index of the SUT), because which SUT of several acts first at one ST is a race. Only
+/// messages that the rules of time leave unordered change places: a reply that was sent too early
+/// stays where it was, and the audit finds it.
 class RunLog {
  public:
   explicit RunLog(record::Recorder& recorder) : recorder_(&recorder) {}
 
-  void begin(const record::Header& header) { recorder_->write(header); }
+  void begin(record::Header header, bool repeatable);
   void interaction(SimTime st, const record::Interaction& entry);
   void command_effect(SimTime st, const std::string& uav, const PendingCommand& command);
   void ground_truth(const std::string& uav, const sim::GroundTruth& truth);
-  void annotation(SimTime st, const record::Annotation& annotation) {
-    recorder_->write(st, annotation);
-  }
+  void annotation(SimTime st, record::Annotation annotation) { put(st, std::move(annotation)); }
   void stop(SimTime st, const record::Stop& stop);
   void image(SimTime st, const std::string& uav, const std::string& sensor,
              const uav::CameraSample& sample);
-  void flush() { recorder_->flush(); }
+  void flush();
   /// Writes the footer.
-  void end() { recorder_->write(footer_); }
+  void end();
+
+  /// From here on, until `race_again`, messages are written as they come, as at the start: what is
+  /// due when ST reaches a boundary has a fixed order.
+  void settle();
+  void race_again() { collects_ = repeatable_; }
 
   /// With the figures so far.
   record::Footer& footer() { return footer_; }
@@ -38,9 +60,29 @@ class RunLog {
   void count_image() { ++images_; }
 
  private:
+  using Message = std::variant<record::Interaction, record::CommandEffect, record::GroundTruth,
+                               record::Annotation, record::Stop, record::Image>;
+  struct Collected {
+    SimTime st;
+    std::pair<ExecTime, std::size_t> key;
+    Message message;
+  };
+  struct Row {
+    std::size_t index;
+    ExecTime reached;  // time of its last interaction
+  };
+
+  void put(SimTime st, Message message);
+  void write(SimTime st, Message& message);
+  static bool may_precede(const Collected& later, const Collected& earlier);
+
   record::Recorder* recorder_;
   record::Footer footer_;
   std::uint64_t images_ = 0;  // rendered because a SUT read them
+  bool repeatable_ = false;
+  bool collects_ = false;
+  std::map<std::string, Row> rows_;   // by UAV
+  std::vector<Collected> collected_;  // of one ST
 };
 
 }  // namespace tether::coordinator

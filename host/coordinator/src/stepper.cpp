@@ -31,7 +31,9 @@ SimTime Stepper::next_due() const {
 void Stepper::advance_to(SimTime to) {
   ask([&](sim::Simulator& s) { s.advance_to(to); });
   st_ = to;
+  log_->settle();
   act();
+  log_->race_again();
 }
 
 // Samples come first, so that they do not depend on commands that take effect at this boundary.

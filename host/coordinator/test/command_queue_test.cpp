@@ -9,7 +9,7 @@ SimTime st(std::int64_t ns) {
   return from_ns<SimTime>(ns);
 }
 
-TEST(CommandQueue, ReturnsAndCountsCommandsInTheOrderOfEffectThenArrival) {
+TEST(CommandQueue, ReturnsAndCountsCommandsInTheOrderOfEffectThenUav) {
   CommandQueue queue;
   EXPECT_EQ(queue.next_effect(), SimTime::max());
   queue.push({st(30), 0, 1, {}});
@@ -20,8 +20,9 @@ TEST(CommandQueue, ReturnsAndCountsCommandsInTheOrderOfEffectThenArrival) {
   EXPECT_EQ(queue.waiting(0), 2u);
   EXPECT_EQ(queue.waiting(3), 0u);
   EXPECT_FALSE(queue.pop_due(st(9)));
-  EXPECT_EQ(queue.pop_due(st(10))->sequence, 2u);
-  EXPECT_EQ(queue.pop_due(st(10))->sequence, 4u);
+  queue.push({st(10), 0, 5, {}});
+  for (const std::uint64_t sequence : {4u, 5u, 2u})
+    EXPECT_EQ(queue.pop_due(st(10))->sequence, sequence);
   EXPECT_FALSE(queue.pop_due(st(29)));
   EXPECT_EQ(queue.pop_due(st(40))->sequence, 1u);
   EXPECT_EQ(queue.pop_due(st(40))->sequence, 3u);

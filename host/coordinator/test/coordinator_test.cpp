@@ -252,9 +252,28 @@ TEST_F(CoordinatorTest, ReadsTheTargetOnceAfterTheRun) {
     ++reads;
     return record::Readings{{"governor", "performance"}};
   };
-  run({sleep(Duration(0), milliseconds(50))});
+  make();
+  server_->add_sut(hello("", link::ClockKind::kWall), {sleep(Duration(0), milliseconds(50))});
+  run();
   EXPECT_EQ(reads, 1);
   EXPECT_EQ(recorder_.footer->target_after, (record::Readings{{"governor", "performance"}}));
+}
+
+TEST_F(CoordinatorTest, EndsIfTheRecordCannotBeWritten) {
+  for (int room = 1;; room += 7) {
+    make();
+    recorder_.room = room;
+    const RunReport report = run(busy_script());
+    if (recorder_.footer) {
+      EXPECT_EQ(report.end, RunEnd::kFinished);
+      return;
+    }
+    EXPECT_EQ(report.end, RunEnd::kRecordFailed);
+    EXPECT_TRUE(report.began);
+    EXPECT_THAT(report.reason, HasSubstr("the disk is full"));
+    const bool had_finished = report.suts.at(0).finish.has_value();
+    EXPECT_TRUE(had_finished || refusal(1).reason == link::Refusal::Reason::kRunEnded);
+  }
 }
 
 TEST_F(CoordinatorTest, RejectedClientsDoNotDisturbTheRun) {

@@ -14,7 +14,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-SimTime us(std::int64_t value) {
+SimTime st_us(std::int64_t value) {
   return SimTime(microseconds(value));
 }
 
@@ -43,15 +43,15 @@ const uav::PeriodicTiming kPeriodic{milliseconds(10), Duration(0),
 TEST_F(Sampling, CapturesAnOnDemandReadOnceAtTheBoundaryOfItsRequest) {
   make(kOnDemand);
   EXPECT_EQ(sampler_->next_due(), SimTime::max());
-  ASSERT_TRUE(sampler_->plan(7, {}, us(2'300)));
-  EXPECT_EQ(sampler_->next_due(), us(2'000));
-  sample(us(1'000), us(0));
+  ASSERT_TRUE(sampler_->plan(7, {}, st_us(2'300)));
+  EXPECT_EQ(sampler_->next_due(), st_us(2'000));
+  sample(st_us(1'000), st_us(0));
   EXPECT_EQ(captures_, 0);
   EXPECT_THROW(sampler_->state_of(*sampler_->find(7)), Error);
-  sample(us(2'000), us(0));
-  sample(us(3'000), us(0));
+  sample(st_us(2'000), st_us(0));
+  sample(st_us(3'000), st_us(0));
   EXPECT_EQ(captures_, 1);
-  EXPECT_EQ(sampler_->state_of(*sampler_->find(7)).at, us(2'000));
+  EXPECT_EQ(sampler_->state_of(*sampler_->find(7)).at, st_us(2'000));
   EXPECT_EQ(sampler_->next_due(), SimTime::max());
   sampler_->answered(7);
   EXPECT_EQ(sampler_->find(7), nullptr);
@@ -59,19 +59,19 @@ TEST_F(Sampling, CapturesAnOnDemandReadOnceAtTheBoundaryOfItsRequest) {
 
 TEST_F(Sampling, CapturesPeriodicSensorsUnlessInFreeRunning) {
   make(kPeriodic);
-  EXPECT_EQ(sampler_->next_due(), us(0));
-  sample(us(0), us(0));
-  EXPECT_EQ(sampler_->next_due(), us(10'000));
+  EXPECT_EQ(sampler_->next_due(), st_us(0));
+  sample(st_us(0), st_us(0));
+  EXPECT_EQ(sampler_->next_due(), st_us(10'000));
   make(kPeriodic, false);
   EXPECT_EQ(sampler_->next_due(), SimTime::max());
 }
 
 TEST_F(Sampling, NothingIsDueOnceTheSutHasLeft) {
   make(kPeriodic);
-  ASSERT_TRUE(sampler_->plan(1, {}, us(0)));
+  ASSERT_TRUE(sampler_->plan(1, {}, st_us(0)));
   sampler_->close();
   EXPECT_EQ(sampler_->next_due(), SimTime::max());
-  sample(us(50'000), us(0));
+  sample(st_us(50'000), st_us(0));
   EXPECT_EQ(captures_, 0);
 }
 

@@ -2,13 +2,19 @@
 
 #include "scripted_threads.h"
 
+#include <algorithm>
 #include <deque>
+#include <functional>
+#include <limits>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
+#include <tether/base/error.h>
 #include <tether/link/server.h>
 #include <tether/record/writer.h>
 
@@ -54,8 +60,10 @@ class ScriptedServer final : public link::Server {
   std::span<link::Event> poll(Duration) override {
     ++polls;
     if (queue_.empty()) return {};
-    event_ = std::move(queue_.front());
-    queue_.pop_front();
+    const link::PeerId peer = queue_[choose(queue_.size())].peer;
+    const auto first = std::ranges::find(queue_, peer, &link::Event::peer);
+    event_ = std::move(*first);
+    queue_.erase(first);
     return {&event_, 1};
   }
   void send(link::PeerId peer, link::Message message) override {
@@ -70,6 +78,8 @@ class ScriptedServer final : public link::Server {
   std::map<link::PeerId, std::vector<link::Message>> sent;
   std::vector<link::PeerId> closed;
   std::uint64_t polls = 0;
+  /// Which of so many waiting messages; its peer's first one is next.
+  std::function<std::size_t(std::size_t)> choose = [](std::size_t) { return 0; };
 
  private:
   struct Sut {
@@ -98,15 +108,17 @@ class ScriptedServer final : public link::Server {
 /// Keeps everything, for assertions.
 class MemoryRecorder final : public record::Recorder {
  public:
-  void write(const record::Header& m) override { header = m; }
-  void write(SimTime, const record::Interaction& m) override { interactions.push_back(m); }
-  void write(SimTime, const record::CommandEffect& m) override { commands.push_back(m); }
-  void write(SimTime, const record::GroundTruth& m) override { ground_truth.push_back(m); }
-  void write(SimTime, const record::Annotation& m) override { annotations.push_back(m); }
-  void write(SimTime, const record::Stop& m) override { stops.push_back(m); }
-  void write(SimTime, const record::Image& m) override { images.push_back(m); }
+  void write(const record::Header& m) override { keep(header, m); }
+  void write(SimTime, const record::Interaction& m) override { add(interactions, m); }
+  void write(SimTime, const record::CommandEffect& m) override { add(commands, m); }
+  void write(SimTime, const record::GroundTruth& m) override { add(ground_truth, m); }
+  void write(SimTime, const record::Annotation& m) override { add(annotations, m); }
+  void write(SimTime, const record::Stop& m) override { add(stops, m); }
+  void write(SimTime, const record::Image& m) override { add(images, m); }
   void flush() override {}
-  void write(const record::Footer& m) override { footer = m; }
+  void write(const record::Footer& m) override { keep(footer, m); }
+
+  int room = std::numeric_limits<int>::max();  // for so many messages
 
   record::Header header;
   std::vector<record::Interaction> interactions;
@@ -116,6 +128,22 @@ class MemoryRecorder final : public record::Recorder {
   std::vector<record::Stop> stops;
   std::vector<record::Image> images;
   std::optional<record::Footer> footer;
+
+ private:
+  void take_room() {
+    if (room == 0) throw Error(ErrorCode::kSetup, "the disk is full");
+    --room;
+  }
+  template <class Place, class Message>
+  void keep(Place& place, const Message& message) {
+    take_room();
+    place = message;
+  }
+  template <class Message>
+  void add(std::vector<Message>& messages, const Message& message) {
+    take_room();
+    messages.push_back(message);
+  }
 };
 
 }  // namespace tether::coordinator

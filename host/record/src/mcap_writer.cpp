@@ -8,9 +8,9 @@
 
 #include <tether/base/error.h>
 
-// Messages and their schemas and channels are collected in `chunk_`. `flush` compresses it, writes
-// it with one index per channel, and starts a new one. Along the way the writer keeps what the
-// summary repeats at the end: schemas, channels, indices of chunks and metadata, and counts.
+// Messages and their schemas and channels are collected in `chunk_`. `end_chunk` compresses it,
+// writes it with one index per channel, and starts a new one. Along the way the writer keeps what
+// the summary repeats at the end: schemas, channels, indices of chunks and metadata, and counts.
 namespace tether::record {
 namespace {
 
@@ -59,6 +59,7 @@ McapWriter::McapWriter(const std::filesystem::path& file, std::string_view libra
   append_string(content, "");  // no profile: the topics follow no framework's conventions
   append_string(content, library);
   write_record(Opcode::kHeader, content);
+  file_.end_part();
 }
 
 McapWriter::~McapWriter() = default;
@@ -92,7 +93,7 @@ std::uint16_t McapWriter::add_channel(std::string_view topic, std::uint16_t sche
 }
 
 std::string& McapWriter::begin_message(std::uint16_t channel, std::uint64_t log_time_ns) {
-  if (!chunk_times_.empty && log_time_ns >= chunk_times_.first + limits_.span_ns) flush();
+  if (!chunk_times_.empty && log_time_ns >= chunk_times_.first + limits_.span_ns) end_chunk();
   ChannelState& state = channel_states_[channel - 1U];
   state.index.push_back({log_time_ns, chunk_.size()});
   chunk_times_.include(log_time_ns);
@@ -112,11 +113,11 @@ void McapWriter::end_message() {
   patch_u64(chunk_, open_message_ + 1, chunk_.size() - open_message_ - kRecordPrefixBytes);
   ++channel_states_[open_channel_ - 1U].messages;
   ++message_count_;
-  if (chunk_.size() >= limits_.bytes) flush();
+  if (chunk_.size() >= limits_.bytes) end_chunk();
 }
 
 void McapWriter::add_metadata(std::string_view name, const StringMap& values) {
-  flush();
+  end_chunk();
   std::string entries;
   for (const auto& [key, value] : values) {
     append_string(entries, key);
@@ -133,13 +134,23 @@ void McapWriter::add_metadata(std::string_view name, const StringMap& values) {
   append_record(metadata_indices_, Opcode::kMetadataIndex, index);
   ++metadata_count_;
   write_record(Opcode::kMetadata, content);
+  file_.end_part();
 }
 
+// Where a chunk ends depends on its messages alone, not on when it was flushed.
 void McapWriter::flush() {
   if (chunk_.empty() || file_.failed()) return;
   const std::string_view records = compressed_chunk();
+  file_.write_ahead(chunk_prefix(records).append(records));
+}
+
+void McapWriter::end_chunk() {
+  if (chunk_.empty() || file_.failed()) return;
+  const std::string_view records = compressed_chunk();
   const std::uint64_t chunk_start = file_.position();
-  write_chunk(records);
+  file_.write(chunk_prefix(records));
+  file_.write(records);
+  file_.end_part();
   const std::uint64_t indices_start = file_.position();
   const auto index_offsets = write_message_indices();
 
@@ -176,7 +187,7 @@ std::string_view McapWriter::compressed_chunk() {
   return std::string_view(output).substr(0, size);
 }
 
-void McapWriter::write_chunk(std::string_view records) {
+std::string McapWriter::chunk_prefix(std::string_view records) const {
   std::string fields;
   append_u64(fields, chunk_times_.first);
   append_u64(fields, chunk_times_.last);
@@ -188,8 +199,7 @@ void McapWriter::write_chunk(std::string_view records) {
   std::string prefix;
   append_u8(prefix, static_cast<std::uint8_t>(Opcode::kChunk));
   append_u64(prefix, fields.size() + records.size());
-  file_.write(prefix + fields);
-  file_.write(records);
+  return prefix + fields;
 }
 
 std::map<std::uint16_t, std::uint64_t> McapWriter::write_message_indices() {
@@ -211,6 +221,7 @@ std::map<std::uint16_t, std::uint64_t> McapWriter::write_message_indices() {
     index.clear();
   }
   file_.write(out);
+  file_.end_part();
   return offsets;
 }
 
@@ -221,7 +232,7 @@ void McapWriter::write_record(Opcode opcode, std::string_view content) {
 }
 
 void McapWriter::finish() {
-  flush();
+  end_chunk();
   std::string end;
   append_u32(end, file_.crc());
   write_record(Opcode::kDataEnd, end);

@@ -22,9 +22,9 @@ struct ChunkLimits {
 
 /// Writes an MCAP file: messages in zstd chunks with CRCs and message indices, metadata between
 /// them, summary and offsets at the end. Knows nothing of the contents of messages. The same calls
-/// give the same bytes. Call order: channels after their schema, messages after their channel,
-/// `finish` last. Without `finish` (or after `flush` and a crash) the file is the beginning of
-/// a valid one.
+/// but `flush` give the same bytes. Call order: channels after their schema, messages after their
+/// channel, `finish` last. Without `finish` (after `flush` and a crash, or a failed write) the file
+/// is the beginning of a valid one, up to the end of a chunk or of metadata.
 /// @throws Error(kSetup) with the file if it cannot be created or written. Not thread-safe.
 class McapWriter {
  public:
@@ -42,7 +42,7 @@ class McapWriter {
   /// Goes straight to the file, after all messages so far.
   void add_metadata(std::string_view name, const StringMap& values);
 
-  /// Hands the open chunk to the system.
+  /// Hands the open chunk to the system, and keeps it open.
   void flush();
   /// Closes data section and file: the last call.
   void finish();
@@ -65,8 +65,9 @@ class McapWriter {
   };
   struct Compressor;
 
+  void end_chunk();
   std::string_view compressed_chunk();
-  void write_chunk(std::string_view records);
+  std::string chunk_prefix(std::string_view records) const;
   std::map<std::uint16_t, std::uint64_t> write_message_indices();
   void write_record(Opcode opcode, std::string_view content);
   void write_summary();

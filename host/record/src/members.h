@@ -103,6 +103,8 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
   io("command_latency_ns", m.command_latency);
   io.flag("concurrent", m.concurrent);
   if (io.has("cores", m.cores > 0)) io.within("cores", m.cores, 1, kMostCores);
+  if (io.has("max_acceleration_m_s2", m.max_acceleration_m_s2 > 0.0))
+    io.positive("max_acceleration_m_s2", m.max_acceleration_m_s2);
 }
 
 void members(auto& io, Maybe<CameraInfo> auto& m) {

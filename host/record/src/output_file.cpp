@@ -2,6 +2,7 @@
 
 #include "mcap_format.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -23,16 +24,28 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view bytes) {
+  write_at(position_, bytes);
   crc_ = crc32(bytes, crc_);
   position_ += bytes.size();
+}
+
+void OutputFile::write_ahead(std::string_view bytes) {
+  write_at(position_, bytes);
+}
+
+void OutputFile::write_at(std::uint64_t position, std::string_view bytes) {
+  if (failed()) fail("cannot write the record", error_);
   while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    const ssize_t written =
+        ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(position));
     if (written >= 0) {
       bytes.remove_prefix(static_cast<std::size_t>(written));
+      position += static_cast<std::uint64_t>(written);
     } else if (errno != EINTR) {
       fail("cannot write the record", errno);
     }
   }
+  end_ = std::max(end_, position);
 }
 
 // fsync fails with EINVAL on a pipe or a device, which have nothing to flush.
@@ -40,13 +53,17 @@ void OutputFile::close() {
   const int descriptor = std::exchange(descriptor_, -1);
   if (descriptor < 0) return;
   int why = 0;
-  if (::fsync(descriptor) != 0 && errno != EINVAL) why = errno;
+  const auto size = static_cast<off_t>(position_);
+  if (end_ > position_ && ::ftruncate(descriptor, size) != 0) why = errno;
+  if (::fsync(descriptor) != 0 && errno != EINVAL && why == 0) why = errno;
   if (::close(descriptor) != 0 && why == 0) why = errno;
   if (why != 0) fail("cannot finish the record", why);
 }
 
 void OutputFile::fail(const char* what, int error_number) {
-  failed_ = true;
+  error_ = error_number;
+  // A failure of this one would add nothing: readers stop at the part that is not whole.
+  [[maybe_unused]] const int ignored = ::ftruncate(descriptor_, static_cast<off_t>(whole_));
   throw Error(ErrorCode::kSetup, FileLocation{path_.string(), 0},
               std::string(what) + ": " + std::generic_category().message(error_number) +
                   ". Choose another folder with --out, or free some space");

@@ -4,6 +4,7 @@
 #include "mcap_reader.h"
 #include "schemas.h"
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <string>
@@ -26,22 +27,24 @@ class RecordBuilder final : public McapVisitor {
       : file_(file), options_(options) {}
 
   void channel(const McapChannel& channel) override {
-    topics_[channel.id] = channel.topic;
-    appenders_[channel.id] = appender(channel.schema_name);
+    Channel& known = channels_[channel.id];
+    known.topic = channel.topic;
+    known.append = appender(channel.schema_name);
   }
 
   void message(const McapMessage& message) override {
-    const Appender append_to_topic = appenders_[message.channel];
-    if (append_to_topic == nullptr) return;
+    Channel& channel = channels_[message.channel];
+    if (channel.append == nullptr) return;
     if (message.log_time_ns > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
       throw Damage("a log time is out of range");
+    const auto at = from_ns<SimTime>(static_cast<std::int64_t>(message.log_time_ns));
     try {
-      (this->*append_to_topic)(from_ns<SimTime>(static_cast<std::int64_t>(message.log_time_ns)),
-                               message.data);
+      (this->*channel.append)(at, message.data);
     } catch (const Damage& damage) {
-      throw Damage("message " + std::to_string(message.sequence) + " of " +
-                   topics_[message.channel] + ": " + damage.what());
+      throw Damage("message " + std::to_string(message.sequence) + " of " + channel.topic + ": " +
+                   damage.what());
     }
+    count(message.sequence, at, channel);
     ++order_;
   }
 
@@ -63,6 +66,18 @@ class RecordBuilder final : public McapVisitor {
 
  private:
   using Appender = void (RecordBuilder::*)(SimTime, std::string_view);
+
+  struct Channel {
+    std::string topic;
+    Appender append = nullptr;
+    std::uint64_t next_sequence = 0;
+  };
+
+  void count(std::uint32_t sequence, SimTime at, Channel& channel) {
+    if (sequence != channel.next_sequence && record_.miscounts.size() < kMaxMiscounts)
+      record_.miscounts.push_back({channel.topic, at, channel.next_sequence, sequence});
+    channel.next_sequence = std::uint64_t{sequence} + 1;
+  }
 
   Appender appender(std::string_view schema) const {
     if (schema == kInteractionSchema.name)
@@ -100,11 +115,30 @@ class RecordBuilder final : public McapVisitor {
   Record record_;
   bool has_header_ = false;
   std::uint64_t order_ = 0;
-  std::map<std::uint16_t, Appender> appenders_;
-  std::map<std::uint16_t, std::string> topics_;
+  std::map<std::uint16_t, Channel> channels_;
 };
 
 }  // namespace
+
+SimTime last_time(const Record& record) {
+  SimTime last{};
+  const auto see = [&](const auto& messages) {
+    for (const auto& logged : messages) last = std::max(last, logged.at);
+  };
+  see(record.interactions);
+  see(record.commands);
+  see(record.ground_truth);
+  see(record.annotations);
+  see(record.stops);
+  return last;
+}
+
+std::string describe_damage(const Record& record) {
+  if (record.footer) return record.damage;
+  return "truncated at ST " + std::to_string(to_seconds(last_time(record))) + " s, after " +
+         std::to_string(record.interactions.size()) + " interactions" +
+         (record.damage.empty() ? "" : "; " + record.damage);
+}
 
 Record read_record(const std::filesystem::path& file, const ReadOptions& options) {
   RecordBuilder builder(file, options);

@@ -3,11 +3,13 @@
 #include "sample_messages.h"
 
 #include <algorithm>
+#include <csignal>
 #include <map>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -22,16 +24,20 @@ constexpr std::size_t kChunks = 4;
 constexpr std::size_t kMessagesPerChunk = 6;
 
 // Four seconds, so that something is left before a truncation.
-std::string small_record() {
-  const TemporaryFile file;
+void write_small_record(const TemporaryFile& file) {
   const auto recorder = make_mcap_recorder(file.path());
   recorder->write(header());
   for (std::int64_t ms = 0; ms < 4000; ms += 500) {
     recorder->write(st_ms(ms), ground_truth(ms));
     recorder->write(st_ms(ms), command_effect(static_cast<std::uint64_t>(ms)));
+    recorder->flush();
     recorder->write(st_ms(ms), annotation());
   }
   recorder->write(footer());
+}
+std::string small_record() {
+  const TemporaryFile file;
+  write_small_record(file);
   return file.bytes();
 }
 
@@ -99,6 +105,55 @@ TEST(Damage, ATruncatedRecordGivesAllMessagesOfCompleteChunks) {
     const std::size_t place = damaged == records.end() ? records.back().end() : damaged->offset;
     ASSERT_TRUE(outcome.damage.starts_with("damaged at byte " + std::to_string(place) + ": "))
         << outcome.damage;
+  }
+}
+
+/// No file of this process can grow beyond that size.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(std::size_t bytes) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    ::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  sighandler_t handler_ = ::signal(SIGXFSZ, SIG_IGN);
+};
+
+TEST(Damage, AFullDiskLeavesAllMessagesThatFit) {
+  const std::string whole = small_record();
+  const std::vector<Raw> records = raw_records(whole);
+  const TemporaryFile file;
+  file.set_bytes(whole);
+  const Outcome all = read(file);
+  for (std::size_t size = 0; size < whole.size(); size += 13) {
+    SCOPED_TRACE(size);
+    {
+      const FileSizeLimit limit(size);
+      EXPECT_EQ(thrown_error(ErrorCode::kSetup, [&] { write_small_record(file); }).where().file,
+                file.path());
+    }
+    // Parts: the header, each chunk, its indices, the footer. What follows is one part.
+    std::size_t kept = 0, chunks = 0, metadata = 0;
+    for (const Raw& raw : records) {
+      if (raw.end() > size) break;
+      if (raw.opcode == Opcode::kChunk) ++chunks;
+      if (raw.opcode == Opcode::kMetadata) ++metadata;
+      if (raw.opcode != Opcode::kDataEnd) kept = raw.end();
+    }
+    EXPECT_TRUE(whole.starts_with(file.bytes()));
+    EXPECT_LE(file.bytes().size(), kept);
+    const Outcome outcome = read(file);
+    ASSERT_EQ(outcome.refused, metadata == 0);
+    EXPECT_EQ(outcome.lines, first_of(all.lines, kMessagesPerChunk * chunks));
+    EXPECT_EQ(outcome.has_end, metadata == 2);
+    EXPECT_EQ(outcome.damage.empty(), outcome.refused);
   }
 }
 
@@ -214,9 +269,10 @@ TEST(Damage, EachKindOfBadChunkIsReported) {
   for (const auto& [chunk, damage] : cases) EXPECT_EQ(damage_of(chunk), damage);
 }
 
-/// A message of sequence 42 that is not a ground truth message, under that topic.
-std::string wrong_message(const std::string& topic) {
-  std::string schema, channel, message;
+/// A channel of ground truth under that topic, and its messages of these numbers, outside a chunk.
+std::string numbered_messages(const std::string& topic, const std::vector<std::uint32_t>& sequences,
+                              const std::string& json) {
+  std::string schema, channel, messages;
   append_u16(schema, 1);
   append_string(schema, "tether.GroundTruth");
   append_string(schema, "");
@@ -226,12 +282,38 @@ std::string wrong_message(const std::string& topic) {
   append_string(channel, topic);
   append_string(channel, "json");
   append_u32(channel, 0);
-  append_u16(message, 7);
-  append_u32(message, 42);
-  append_u64(message, 0);
-  append_u64(message, 0);
-  return raw_record(Opcode::kSchema, schema) + raw_record(Opcode::kChannel, channel) +
-         raw_record(Opcode::kMessage, message + "{\"uav\":3}");
+  for (const std::uint32_t sequence : sequences) {
+    std::string message;
+    append_u16(message, 7);
+    append_u32(message, sequence);
+    append_u64(message, 1000 + sequence);
+    append_u64(message, 0);
+    messages += raw_record(Opcode::kMessage, message + json);
+  }
+  return raw_record(Opcode::kSchema, schema) + raw_record(Opcode::kChannel, channel) + messages;
+}
+
+TEST(Damage, MessagesThatWereRemovedRepeatedOrMovedAreMiscounted) {
+  using Numbers = std::vector<std::uint32_t>;
+  using Pairs = std::vector<std::pair<std::uint64_t, std::uint64_t>>;  // expected, found
+  std::string json;
+  append_json(json, ground_truth(0));
+  for (const auto& [numbers, expected] : {std::pair(Numbers{0, 1, 2}, Pairs{}),
+                                          {{0, 1, 3, 4}, {{2, 3}}},
+                                          {{1, 2}, {{0, 1}}},
+                                          {{0, 1, 1, 2}, {{2, 1}}},
+                                          {{0, 2, 1, 3}, {{1, 2}, {3, 1}, {2, 3}}}}) {
+    TemporaryFile file;
+    make_mcap_recorder(file.path())->write(header());
+    file.set_bytes(file.bytes() + numbered_messages("/ground_truth/a", numbers, json));
+    Pairs found;
+    for (const Miscount& miscount : read_record(file.path()).miscounts) {
+      EXPECT_EQ(miscount.topic, "/ground_truth/a");
+      EXPECT_EQ(to_ns(miscount.at), 1000 + static_cast<std::int64_t>(miscount.found));
+      found.emplace_back(miscount.expected, miscount.found);
+    }
+    EXPECT_EQ(found, expected);
+  }
 }
 
 TEST(Damage, WrongMessageIsNamedWithItsTopicInOnePrintableLine) {
@@ -239,7 +321,7 @@ TEST(Damage, WrongMessageIsNamedWithItsTopicInOnePrintableLine) {
        {std::pair("/ground_truth/a", "/ground_truth/a"), std::pair("/a\nb\x1b[2J", "/a?b?[2J")}) {
     TemporaryFile file;
     make_mcap_recorder(file.path())->write(header());
-    file.set_bytes(file.bytes() + wrong_message(topic));
+    file.set_bytes(file.bytes() + numbered_messages(topic, {42}, "{\"uav\":3}"));
     const std::string damage = read(file).damage;
     EXPECT_TRUE(damage.ends_with("message 42 of " + std::string(printed) +
                                  ": member \"uav\" is not a string"))

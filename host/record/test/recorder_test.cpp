@@ -80,6 +80,12 @@ TEST(Recorder, FlushWritesToTheFile) {
 
   recorder->write(footer());
   recorder->flush();
+  const TemporaryFile unflushed;
+  const auto other = make_mcap_recorder(unflushed.path());
+  write_messages(*other);
+  other->write(st_ms(51), command_interaction(4));
+  other->write(footer());
+  EXPECT_EQ(unflushed.bytes(), file.bytes());
   const Record whole = read_record(file.path());
   EXPECT_EQ(whole.damage, "");
   EXPECT_EQ(whole.interactions.size(), 5U);

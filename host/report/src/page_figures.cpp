@@ -52,7 +52,7 @@ void add_record(SeedRecords& all, std::size_t series, const std::string& conditi
                 const std::filesystem::path& file) {
   try {
     all.records.push_back({series, condition, record::read_record(file, {.images = true})});
-    const std::string& damage = all.records.back().record.damage;
+    const std::string damage = record::describe_damage(all.records.back().record);
     if (!damage.empty())
       all.unreadable.push_back(
           fmt::format("{}: only the part before the damage is shown: {}", file.string(), damage));

@@ -65,9 +65,8 @@ std::string record_part(const std::filesystem::path& folder) {
     std::string html = plots_part(figures, record);
     const std::string frames = figures.frames(record);
     if (!frames.empty()) html += element("h2", "Camera images") + frames;
-    if (!record.damage.empty())
-      html +=
-          element("p", "Only the part of the record before the damage is shown: " + record.damage);
+    if (const std::string damage = record::describe_damage(record); !damage.empty())
+      html += element("p", "Only the part of the record before the damage is shown: " + damage);
     return html;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::kBadFile) throw;

@@ -9,6 +9,7 @@
 #include <tether/campaign/campaign_folder.h>
 #include <tether/os/child_process.h>
 #include <tether/os/program.h>
+#include <tether/os/text_file.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/sim_sdf/load_world.h>
 
@@ -105,8 +106,10 @@ campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
   }
   if (std::filesystem::exists(plan.folder / campaign::kResultFile))
     return campaign::read_result(plan.folder);
-  throw Error(ErrorCode::kSetup, fmt::format("the trial left no result: it {}; see {}",
-                                             process.poll()->description, log.string()));
+  const std::string why = os::last_line(os::read_whole(log));
+  throw Error(ErrorCode::kSetup,
+              fmt::format("the trial left no result: it {}{}; see {}", process.poll()->description,
+                          why.empty() ? "" : ": " + why, log.string()));
 }
 
 }  // namespace tether::runner

@@ -53,13 +53,42 @@ campaign::TrialResult setup_failure(const TrialSpec& spec, const std::string& re
   return result;
 }
 
+/// Puts in what the record of a repeatable run leaves out.
+void complete(record::Record& record, const Conducted& conducted) {
+  record.header.target = conducted.target;
+  if (!record.footer) return;
+  record.footer->wall = conducted.report.wall;
+  record.footer->target_after = conducted.target_after;
+}
+
+/// The result of a run whose record could not be written to its end, from what there is of it. The
+/// trial counts as not set up, so that a campaign repeats it.
+campaign::TrialResult unrecorded(const TrialSpec& spec, const coordinator::RunReport& report) try {
+  const record::Record record = record::read_record(spec.folder / kRecordFile);
+  auto result = campaign::make_result(spec.scenario, spec.condition, record, {});
+  const audit::Verdict verdict = audit::audit(record);
+  result.audit = {verdict.passed(), audit::to_line(verdict)};
+  result.end = campaign::kEndSetupFailed;
+  result.this_run.wall = report.wall;
+  campaign::invalidate(
+      result, fmt::format("{}; the record is kept up to ST {:.3f} s, with {} interactions",
+                          report.reason, to_seconds(verdict.reached), verdict.interactions));
+  return result;
+} catch (const Error& e) {
+  if (e.code() != ErrorCode::kBadFile) throw;
+  return setup_failure(spec, report.reason, false);  // not even a header
+}
+
 /// The result of a run, from its record. The record stays if there is too little memory to read it.
-campaign::TrialResult evaluate(const TrialSpec& spec, const coordinator::RunReport& report) try {
+campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted) try {
+  const coordinator::RunReport& report = conducted.report;
   const std::filesystem::path file = spec.folder / kRecordFile;
   if (!report.began) return setup_failure(spec, report.reason, report.end == RunEnd::kInterrupted);
   if (!std::filesystem::exists(file))
     throw Error(ErrorCode::kSetup, {file.string()}, "the record was removed during the run");
-  const record::Record record = record::read_record(file);
+  if (report.end == RunEnd::kRecordFailed) return unrecorded(spec, report);
+  record::Record record = record::read_record(file);
+  complete(record, conducted);
   auto result = campaign::make_result(spec.scenario, spec.condition, record, task_ends(report));
   const audit::Verdict verdict = audit::audit(record);
   result.audit = {verdict.passed(), audit::to_line(verdict)};
@@ -73,7 +102,7 @@ campaign::TrialResult evaluate(const TrialSpec& spec, const coordinator::RunRepo
       spec.scenario, spec.condition, spec.seed,
       fmt::format("out of memory while evaluating the run, which ended with: {}. With more memory, "
                   "evaluate its record with: tether audit {}",
-                  report.reason, (spec.folder / kRecordFile).string()));
+                  conducted.report.reason, (spec.folder / kRecordFile).string()));
 }
 
 SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& observer,
@@ -94,10 +123,10 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
   const auto board = hold_board(spec, stop);
   const auto simulator = back_end.start(std::move(world), simulator_setup(spec, observer, stop));
   try {
-    const auto [report, notes] =
+    const Conducted conducted =
         TrialRun(spec, timings, *simulator, board.get(), observer, stop).conduct();
-    auto result = evaluate(spec, report);
-    result.this_run.notes = notes;
+    auto result = evaluate(spec, conducted);
+    result.this_run.notes = conducted.notes;
     result.versions["simulator"] = simulator->get().description();
     return result;
   } catch (const Error& e) {
@@ -133,7 +162,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
       scenario::resolve_sensors(spec.scenario, spec.condition, world, observer.warn);
   world.step = spec.scenario.step;
   if (is_local(spec)) require_sut_programs(spec.scenario, spec.condition);
-  const TrialFolder folder(spec.folder);
+  TrialFolder folder(spec.folder);
 
   const std::string started_at = utc_now();
   campaign::TrialResult result;
@@ -150,6 +179,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   result.versions["tether"] = version();
   result.this_run.started_at = started_at;
   result.this_run.machine = os::describe_machine();
+  folder.release_room();
   keep(spec, result);
   return result;
 }

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <string>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
@@ -23,6 +24,18 @@ void drop(const std::filesystem::path& file) {
   if (error) fail(file, error.message());
 }
 
+constexpr off_t kRoomForResult_bytes = 32 * 1024;
+
+/// Nothing if the file system cannot do it, or the limit of file sizes is lower.
+os::FileDescriptor reserve_room(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / ".room";
+  os::FileDescriptor room(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  ::unlink(file.c_str());
+  const int error = room ? ::posix_fallocate(room.get(), 0, kRoomForResult_bytes) : 0;
+  if (error == ENOSPC || error == EDQUOT) fail(folder, std::strerror(error));
+  return room;
+}
+
 }  // namespace
 
 TrialFolder::TrialFolder(const std::filesystem::path& folder)
@@ -32,6 +45,7 @@ TrialFolder::TrialFolder(const std::filesystem::path& folder)
   drop(folder / campaign::kResultFile);
   drop(folder / kRecordFile);
   drop(folder / kSimulatorLog);
+  room_ = reserve_room(folder);
 }
 
 }  // namespace tether::runner

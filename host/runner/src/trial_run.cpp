@@ -66,7 +66,8 @@ std::optional<record::TargetInfo> target_info(const TrialSpec& spec, board::Boar
 }
 
 coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timings,
-                                    const std::string& token, board::Board* board) {
+                                    const std::string& token,
+                                    const std::optional<record::TargetInfo>& target) {
   coordinator::RunOptions options;
   options.policy = spec.condition.policy == scenario::Policy::kFreeRunning
                        ? sync::SyncPolicy::kFreeRunning
@@ -88,7 +89,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
   options.header.scenario = spec.scenario.name;
   options.header.condition = spec.condition.name;
   options.header.machine = os::describe_machine();
-  options.header.target = target_info(spec, board);
+  options.header.target = target;
   return options;
 }
 
@@ -146,8 +147,9 @@ TrialRun::TrialRun(const TrialSpec& spec, const Timings& timings, RunningSimulat
       observer_(observer),
       stop_(std::move(stop)),
       token_(token_of_run()),
+      target_(target_info(spec, board)),
       recorder_(record::make_mcap_recorder(spec.folder / kRecordFile)),
-      coordinator_(simulator.get(), *recorder_, run_options(spec, timings, token_, board),
+      coordinator_(simulator.get(), *recorder_, run_options(spec, timings, token_, target_),
                    host_now),
       server_(listen(spec, board)),
       sut_run_{sut_address(spec, board, *server_), token_, spec.condition},
@@ -161,7 +163,7 @@ Conducted TrialRun::conduct() {
   TrialEnd end = fly();
   end.report.reason += explanation(end);
   end_suts(end);
-  return {std::move(end.report), std::move(notes_)};
+  return {std::move(end.report), std::move(notes_), target_, target_after_};
 }
 
 TrialEnd TrialRun::fly() {
@@ -176,7 +178,7 @@ TrialEnd TrialRun::fly() {
   };
   hooks.on_status = [&](const coordinator::RunStatus& status) { watch(status, stalls); };
   hooks.on_refused = [&](const std::string& text) { refusals_.add(text); };
-  hooks.read_target = [&] { return read_target(spec_, board_); };
+  hooks.read_target = [&] { return target_after_ = read_target(spec_, board_); };
   end.report = coordinator_.run(*server_, hooks);
   refusals_.close();
   notes_ = stalls.notes(host_clocks());

@@ -30,6 +30,9 @@ bool is_local(const TrialSpec& spec);
 struct Conducted {
   coordinator::RunReport report;
   std::vector<std::string> notes;
+  // Not in the record of a repeatable run.
+  std::optional<record::TargetInfo> target;  ///< none if the user starts the SUTs
+  record::Readings target_after;
 };
 
 /// One run of the coordinator with its SUTs, in phases: start the SUTs, fly, find the cause of a
@@ -59,6 +62,7 @@ class TrialRun {
   const TrialObserver& observer_;
   std::stop_token stop_;
   std::string token_;
+  std::optional<record::TargetInfo> target_;  // before the run
   std::unique_ptr<record::Recorder> recorder_;
   coordinator::Coordinator coordinator_;
   std::unique_ptr<link::Server> server_;
@@ -66,6 +70,7 @@ class TrialRun {
   SutProcesses suts_;
   Refusals refusals_;
   bool have_all_joined_ = false;
+  record::Readings target_after_;
   std::vector<std::string> notes_;
 };
 

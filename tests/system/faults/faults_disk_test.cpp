@@ -20,14 +20,27 @@ class Folder : public RunTest {
     for (const std::string& part : named) EXPECT_THAT(output.err, HasSubstr(part));
     EXPECT_TRUE(wait_until_gone(mark_));
   }
+  /// The record is there as far as it went, and the result and `tether audit` give its extent.
+  void expect_truncated(const nlohmann::json& result, const std::filesystem::path& out) {
+    const record::Record record = read_record(out);
+    EXPECT_FALSE(record.footer);
+    EXPECT_GT(record.interactions.size(), 0u);
+    EXPECT_EQ(result["sync"]["interactions"], record.interactions.size());
+    EXPECT_EQ(result["sync"]["st_at_end_s"], to_seconds(record::last_time(record)));
+    const Output audit = run(tether({"audit", out / "record.mcap"}));
+    EXPECT_EQ(audit.code, 1);
+    EXPECT_THAT(audit.out, HasSubstr("truncated at ST"));
+    EXPECT_THAT(result["audit"]["summary"].get<std::string>(), HasSubstr("truncated at ST"));
+  }
 };
 
 // ---- Full
 
 TEST_F(Folder, WhoseFilesMayNotGrowEndsTheRunWithItsReason) {
-  expect_failed(run(limited(flight(), "-f 32")),
-                {"setup_failed", {(out_ / "record.mcap").string(), "File too large"}});
-  EXPECT_FALSE(std::filesystem::exists(out_ / "record.mcap"));
+  const auto failure = expect_failed(
+      run(limited(flight(), "-f 96")),
+      {"setup_failed", {(out_ / "record.mcap").string(), "File too large", "kept up to ST"}});
+  expect_truncated(failure, out_);
   EXPECT_EQ(run(flight()).code, 0);
   EXPECT_EQ(result()["end"], "finished");
 }
@@ -94,9 +107,9 @@ TEST_F(Disk, ThatGetsFullEndsTheRunWithItsReason) {
   const Command command =
       tether({"run", write_hover_scenario(folder_.path(), "good"), "--out", disk_ / "out"}, mark_);
   const std::string record = disk_ / "out/record.mcap";
-  expect_failed(run(on_small_disk(command, disk_, 48, kept_)),
-                {"setup_failed", {record, "No space left on device"}}, kept_);
-  EXPECT_FALSE(std::filesystem::exists(kept_ / "record.mcap"));
+  expect_truncated(expect_failed(run(on_small_disk(command, disk_, 80, kept_)),
+                                 {"setup_failed", {record, "No space left on device"}}, kept_),
+                   kept_);
 }
 
 // A campaign's finished trials stay, those that found no room are reported, and it may go on.

@@ -21,6 +21,7 @@ struct Finding {
 struct Verdict {
   bool synchronised = false;  ///< under the barrier; otherwise rules 1 to 7 do not apply
   bool complete = false;      ///< the record has its end
+  SimTime reached;            ///< log time of its last message
   std::uint64_t interactions = 0;
   Duration largest_grid_error{0};  ///< computed again; for synchronised records
   std::vector<Finding> findings;   ///< by log time; at most kMaxFindings

@@ -66,6 +66,7 @@ enum class RunEnd {
   kSutHung,        ///< no message from a SUT within the limit
   kSimulatorLost,  ///< the simulator failed
   kInterrupted,    ///< `should_stop` of the caller requested it
+  kRecordFailed,   ///< the record could not be written; it has no end
 };
 std::string_view name(RunEnd end);
 
@@ -142,7 +143,9 @@ class Coordinator {
   Coordinator& operator=(const Coordinator&) = delete;
 
   /// Waits for the SUT of every UAV, runs until the end, notifies the SUTs, and writes the record's
-  /// footer. A failed run is a report, too. @throws Error(kSetup) if the record cannot be written.
+  /// footer. A failed run is a report, too, also if the record cannot be written. If every SUT's
+  /// clock is scripted, the record is the same to the byte in each run: without wall times,
+  /// readings of the target, and the machine; the report and the caller have them.
   RunReport run(link::Server& server, const RunHooks& hooks = {});
 
  private:

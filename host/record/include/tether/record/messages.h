@@ -153,6 +153,9 @@ struct SutInfo {
   bool concurrent = false;      ///< several threads with parallel calls
   /// Clock "cpu": number of cores whose CPU time can add up; 0: unknown.
   int cores = 0;
+  /// The most that rotors and gravity together can accelerate the UAV; 0: unknown, as in records of
+  /// Tether 0.1.0.
+  double max_acceleration_m_s2 = 0.0;
 };
 /// Readings of a machine by name, see host/board/src/target_probe.sh: "governor",
 /// "temperature_mc", … Values that are not available are left out.

@@ -17,6 +17,17 @@ struct Logged {
   Message message;
 };
 
+/// The messages of a channel are numbered 0, 1, 2, …, and this number is not the next one: messages
+/// were removed, repeated or moved after the record was written.
+struct Miscount {
+  std::string topic;
+  SimTime at;  ///< log time
+  std::uint64_t expected = 0;
+  std::uint64_t found = 0;
+};
+
+inline constexpr std::size_t kMaxMiscounts = 1'000;
+
 /// A whole record in memory, each topic in file order.
 struct Record {
   Header header;
@@ -27,11 +38,20 @@ struct Record {
   std::vector<Logged<Stop>> stops;
   std::vector<Logged<Image>> images;
   std::optional<Footer> footer;
+  std::vector<Miscount> miscounts;  ///< in file order, also of images; at most kMaxMiscounts
   /// Where and why reading stopped early (truncated or damaged file), in one printable line:
   /// "damaged at byte N: …". N is the start of the first damaged record of the container (for
   /// messages: of their chunk). Empty: the file was read to its end.
   std::string damage;
 };
+
+/// Log time of the last message; 0 if there is none.
+SimTime last_time(const Record& record);
+
+/// How far a record without its end goes, and its damage, in one printable line: "truncated at
+/// ST 1.500000 s, after 420 interactions; damaged at byte N: …". Empty if it has its end and no
+/// damage.
+std::string describe_damage(const Record& record);
 
 struct ReadOptions {
   bool images = false;  ///< also load images

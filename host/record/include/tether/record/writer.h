@@ -26,11 +26,12 @@ class Recorder {
 };
 
 /// Writes an MCAP file (https://mcap.dev/spec): JSON messages with JSON schemas, zstd chunks with
-/// CRCs, summary and indices at the end. A chunk is written every second of ST, every
-/// 1 MiB and on `flush`, so that a killed run leaves a readable record. Without `write(Footer)` the
-/// destructor writes the last chunk if possible, and the record has no end. The same messages,
-/// flushed at the same places, give the same bytes.
-/// @throws Error(kSetup) with the file if it cannot be created or written.
+/// CRCs, summary and indices at the end. A chunk is ended every second of ST and every 1 MiB, and
+/// written by then and at each `flush`, so that a killed run leaves a readable record. Without
+/// `write(Footer)` the destructor writes the last chunk if possible, and the record has no end. The
+/// same messages give the same bytes, wherever they were flushed.
+/// @throws Error(kSetup) with the file if it cannot be created or written. The file then keeps what
+/// is whole: it reads back as the first messages. Nothing is written after a failure.
 std::unique_ptr<Recorder> make_mcap_recorder(const std::filesystem::path& file);
 
 /// Discards everything.
