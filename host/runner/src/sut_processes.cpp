@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <tether/os/child_process.h>
+#include <tether/os/process_table.h>
 
 namespace tether::runner {
 
@@ -48,9 +49,16 @@ constexpr Duration kEndLimit = std::chrono::milliseconds(200);
 
 }  // namespace
 
+SutProcesses::~SutProcesses() {
+  if (suts_.empty()) return;
+  suts_.clear();
+  if (!board_) os::kill_orphans();
+}
+
 void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
                          const std::filesystem::path& folder, board::Board* board) {
   board_ = board;
+  if (!board) os::adopt_orphans();
   for (const scenario::UavSetup& uav : scenario.uavs) {
     const std::string& name = uav.placement.name;
     Sut sut{.uav = name,

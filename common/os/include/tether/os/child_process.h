@@ -72,4 +72,9 @@ class ChildProcess {
   std::optional<ChildExit> exit_;
 };
 
+/// Kills all children of this process that no ChildProcess started, thus adopted ones
+/// (adopt_orphans in process_table.h), and what they leave. Returns once they have ended, after 5 s
+/// at the latest. Thread-safe.
+void kill_orphans();
+
 }  // namespace tether::os
