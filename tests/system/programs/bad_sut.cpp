@@ -42,6 +42,8 @@ class LyingSource final : public tether::client::TimeSource {
   tether::Duration elapsed() const override {
     return right_->elapsed() + tether::Duration(g_ahead_ns.load());
   }
+  tether::Duration elapsed_in_children() const override { return right_->elapsed_in_children(); }
+  tether::Status complete() const override { return right_->complete(); }
   void exclude_calling_thread() override { right_->exclude_calling_thread(); }
   void release_calling_thread() override { right_->release_calling_thread(); }
 
