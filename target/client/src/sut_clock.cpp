@@ -19,7 +19,7 @@ ExecTime SutClock::hold() {
 
 void SutClock::resume(ExecTime at) {
   base_et_ = at;
-  const Duration elapsed = source_->elapsed();
+  const Duration elapsed = source_->elapsed_at_resume();
   base_source_ = elapsed - (source_->elapsed_in_children() - children_at_hold_);
   held_ = false;
 }

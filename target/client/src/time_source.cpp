@@ -48,12 +48,15 @@ class CpuSource final : public TimeSource {
   link::ClockKind kind() const override { return link::ClockKind::kCpu; }
   double factor() const override { return factor_; }
   Duration elapsed() const override;
+  Duration elapsed_at_resume() const override;
   Duration elapsed_in_children() const override;
   Status complete() const override;
   void exclude_calling_thread() override;
   void release_calling_thread() override;
 
  private:
+  void read_own() const;
+  void read_children() const;
   Duration own() const;
   Duration children() const;
 
@@ -70,10 +73,25 @@ class CpuSource final : public TimeSource {
 };
 
 // What is read here cannot be read at the same instant; what that may take back is held back.
+void CpuSource::read_own() const {
+  newest_own_ = std::max(newest_own_, own());
+}
+
+void CpuSource::read_children() const {
+  newest_children_ = std::max(newest_children_, children());
+}
+
 Duration CpuSource::elapsed() const {
   const std::lock_guard lock(mutex_);
-  newest_own_ = std::max(newest_own_, own());
-  newest_children_ = std::max(newest_children_, children());
+  read_own();
+  read_children();
+  return scaled(newest_own_ + newest_children_, factor_);
+}
+
+Duration CpuSource::elapsed_at_resume() const {
+  const std::lock_guard lock(mutex_);
+  read_children();
+  read_own();
   return scaled(newest_own_ + newest_children_, factor_);
 }
 

@@ -19,6 +19,9 @@ class TimeSource {
   virtual double factor() const { return 1.0; }
   /// Measured time since an arbitrary origin, scaled by `factor()`.
   virtual Duration elapsed() const = 0;
+  /// The same for a SUT that is about to go on: what reading takes is before the measured instant,
+  /// not after it, so that it is not charged.
+  virtual Duration elapsed_at_resume() const { return elapsed(); }
   /// The part of the last `elapsed()` that processes started by the SUT's have computed. Monotone.
   virtual Duration elapsed_in_children() const { return Duration::zero(); }
   /// Fails with kRefused if a part of the SUT's computing is not in `elapsed()`.
