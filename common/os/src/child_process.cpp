@@ -120,16 +120,10 @@ void forget(pid_t process) {
   started().processes.erase(process);
 }
 
-/// Kills each orphan; false if there is none.
-bool kill_some_orphans() {
+std::vector<pid_t> orphans() {
   const std::lock_guard lock(started().mutex);
-  bool found = false;
-  for (const pid_t child : children_of(getpid())) {
-    if (started().processes.contains(child)) continue;
-    found = true;
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, WNOHANG);
-  }
+  std::vector<pid_t> found = children_of(getpid());
+  std::erase_if(found, [](pid_t child) { return started().processes.contains(child); });
   return found;
 }
 
@@ -240,10 +234,23 @@ void ChildProcess::terminate() {
   pid_ = -1;
 }
 
-void kill_orphans() {
-  const auto deadline = std::chrono::steady_clock::now() + kOrphanLimit;
-  while (kill_some_orphans() && std::chrono::steady_clock::now() < deadline)
+// tether-exec's guardian, an orphan if tether-exec was killed, blocks SIGTERM and ends by itself.
+void end_orphans(Duration grace) {
+  const auto began = std::chrono::steady_clock::now();
+  std::set<pid_t> asked;
+  for (auto left = orphans(); !left.empty(); left = orphans()) {
+    const auto passed = std::chrono::steady_clock::now() - began;
+    if (passed > grace + kOrphanLimit) return;
+    for (const pid_t orphan : left) {
+      if (passed >= grace) kill(orphan, SIGKILL);
+      if (asked.insert(orphan).second) {
+        kill(orphan, SIGTERM);
+        kill(orphan, SIGCONT);
+      }
+      waitpid(orphan, nullptr, WNOHANG);
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
 }
 
 }  // namespace tether::os

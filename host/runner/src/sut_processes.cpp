@@ -46,13 +46,15 @@ std::string last_line(const std::filesystem::path& file) {
 constexpr Duration kExitLimit = std::chrono::seconds(2);
 // How long the process of a lost SUT may take to end after its connection.
 constexpr Duration kEndLimit = std::chrono::milliseconds(200);
+// How long the processes that local SUTs leave behind may take to end.
+constexpr Duration kOrphanGrace = std::chrono::seconds(1);
 
 }  // namespace
 
 SutProcesses::~SutProcesses() {
   if (suts_.empty()) return;
   suts_.clear();
-  if (!board_) os::kill_orphans();
+  if (!board_) os::end_orphans(kOrphanGrace);
 }
 
 void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
