@@ -1,9 +1,8 @@
 #pragma once
 
+#include <csignal>  // pid_t
 #include <optional>
 #include <vector>
-
-#include <sys/types.h>
 
 #include <tether/base/time.h>
 
