@@ -113,7 +113,7 @@ TEST_F(CpuOfDescendants, IsCountedOnceWhoeverUsedIt) {
          for (auto& thread : threads) thread.join();
        }},
   };
-  constexpr Duration kStarts = milliseconds(15);  // of processes, also under sanitizers
+  constexpr Duration kStarts = milliseconds(40);  // of processes, also under sanitizers
   for (const auto& c : cases) {
     begin_ = source_->elapsed();
     c.run();
