@@ -1,6 +1,8 @@
 #include <cerrno>
 #include <chrono>
 #include <map>
+#include <mutex>
+#include <set>
 #include <thread>
 
 #include <fcntl.h>
@@ -15,6 +17,7 @@
 #include <tether/os/child_process.h>
 #include <tether/os/file_descriptor.h>
 #include <tether/os/pipe.h>
+#include <tether/os/process_table.h>
 #include <tether/os/program.h>
 
 extern char** environ;
@@ -27,6 +30,17 @@ namespace tether::os {
 namespace {
 
 constexpr auto kPollPeriod = std::chrono::milliseconds(5);
+constexpr auto kOrphanLimit = std::chrono::seconds(5);
+
+/// The children that are no orphans. Locked from before a fork until its child is in it.
+struct Started {
+  std::mutex mutex;
+  std::set<pid_t> processes;
+};
+Started& started() {
+  static Started all;
+  return all;
+}
 
 std::vector<std::string> merged_environment(const Environment& extra) {
   std::map<std::string, std::string> variables;
@@ -101,6 +115,18 @@ struct Image {
   int death_signal;
 };
 
+void forget(pid_t process) {
+  const std::lock_guard lock(started().mutex);
+  started().processes.erase(process);
+}
+
+std::vector<pid_t> orphans() {
+  const std::lock_guard lock(started().mutex);
+  std::vector<pid_t> found = children_of(getpid());
+  std::erase_if(found, [](pid_t child) { return started().processes.contains(child); });
+  return found;
+}
+
 // Only makes calls that are safe after the fork of a program with threads. Writes to `report` why
 // it failed.
 [[noreturn]] void become(const Image& image, const Streams& streams, int report, pid_t parent) {
@@ -110,8 +136,7 @@ struct Image {
   dup2(streams.in() < 0 ? open("/dev/null", O_RDONLY) : streams.in(), STDIN_FILENO);
   dup2(streams.out(), STDOUT_FILENO);
   dup2(streams.err(), STDERR_FILENO);
-  signal(SIGPIPE, SIG_DFL);
-  signal(SIGXFSZ, SIG_DFL);
+  for (const int own : {SIGPIPE, SIGXFSZ, SIGCHLD}) signal(own, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -145,12 +170,19 @@ ChildProcess::ChildProcess(const ChildCommand& command)
                     command.cpus.empty() ? nullptr : &cpus,
                     command.death_signal};
   const pid_t parent = getpid();
-  pid_ = fork();
-  if (pid_ == 0) become(image, streams, report.write_end.get(), parent);
+  {
+    const std::lock_guard lock(started().mutex);
+    pid_ = fork();
+    if (pid_ == 0) become(image, streams, report.write_end.get(), parent);
+    if (pid_ > 0) started().processes.insert(pid_);
+  }
   report.write_end = FileDescriptor();
   int why = pid_ < 0 ? errno : 0;
   // Nothing can be read once the exec has succeeded.
-  if (pid_ > 0 && read(report.read_end.get(), &why, sizeof why) > 0) waitpid(pid_, nullptr, 0);
+  if (pid_ > 0 && read(report.read_end.get(), &why, sizeof why) > 0) {
+    waitpid(pid_, nullptr, 0);
+    forget(pid_);
+  }
   if (why != 0) {
     pid_ = -1;
     throw cannot_start(program_, why);
@@ -163,6 +195,7 @@ ChildProcess::~ChildProcess() {
 
 // Shells, launchers and tether-exec report by such a code that a signal ended their program.
 void ChildProcess::reap(int status) {
+  forget(pid_);
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     exit_ = {kSignalled + signal, "was ended by " + name_of_signal(signal)};
@@ -199,6 +232,25 @@ void ChildProcess::terminate() {
   int status = 0;
   if (!exit_ && waitpid(pid_, &status, 0) == pid_) reap(status);
   pid_ = -1;
+}
+
+// tether-exec's guardian, an orphan if tether-exec was killed, blocks SIGTERM and ends by itself.
+void end_orphans(Duration grace) {
+  const auto began = std::chrono::steady_clock::now();
+  std::set<pid_t> asked;
+  for (auto left = orphans(); !left.empty(); left = orphans()) {
+    const auto passed = std::chrono::steady_clock::now() - began;
+    if (passed > grace + kOrphanLimit) return;
+    for (const pid_t orphan : left) {
+      if (passed >= grace) kill(orphan, SIGKILL);
+      if (asked.insert(orphan).second) {
+        kill(orphan, SIGTERM);
+        kill(orphan, SIGCONT);
+      }
+      waitpid(orphan, nullptr, WNOHANG);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
 }
 
 }  // namespace tether::os

@@ -1,7 +1,10 @@
 #include <cerrno>
 #include <csignal>
+#include <iterator>
 #include <memory>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,6 +14,7 @@
 #include <tether/os/child_process.h>
 #include <tether/os/machine.h>
 #include <tether/os/pipe.h>
+#include <tether/os/process_table.h>
 #include <tether/os/text_file.h>
 
 namespace tether::os {
@@ -124,6 +128,25 @@ TEST_F(Child, GetsItsEndSignalAndIsKilledAfterItsGrace) {
   EXPECT_EQ(terminated("trap 'exit 7' INT", SIGINT, kPatience), 7);
   EXPECT_EQ(terminated("trap '' TERM", SIGTERM, std::chrono::milliseconds(1)),
             kSignalled + SIGKILL);
+}
+
+TEST_F(Child, EndsOrphansButNoProcessThatItStarted) {
+  adopt_orphans();
+  const ChildProcess running(shell("exec sleep 600"));
+  const auto numbers = scratch_.path("numbers");
+  const auto daemon = [&](const std::string& trap) {
+    return "(setsid sh -c '" + trap + " echo $$ >>" + numbers.string() +
+           "; while :; do :; done' &)\n";
+  };
+  run(shell(daemon("") + daemon("trap \"\" TERM;")));
+  std::vector<pid_t> daemons;
+  while (daemons.size() < 2) {
+    std::istringstream text(read_whole(numbers));
+    daemons.assign(std::istream_iterator<pid_t>(text), {});
+  }
+  end_orphans(std::chrono::milliseconds(1));
+  for (const pid_t process : daemons) EXPECT_EQ(kill(process, 0), -1);
+  EXPECT_EQ(kill(running.pid(), 0), 0);
 }
 
 TEST_F(Child, RefusesWhatCannotBeStarted) {

@@ -59,6 +59,7 @@ class Coordinator::Impl {
   void on_annotation(Session& session, const link::Annotation& note);
   void on_stop(Session& session, ExecTime at, WallTime now);
   static std::optional<ExecTime> earliest_due(const Session& session, ExecTime at);
+  void on_refusal(Session& session, const link::Refusal& refusal);
   void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);
   Standing standing(const Session& session) const;
   void begin(Session& session, const link::Request& request, WallTime now);

@@ -60,7 +60,18 @@ void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& messa
     return on_progress(*session, *progress, now);
   if (const auto* note = std::get_if<link::Annotation>(&message))
     return on_annotation(*session, *note);
+  if (const auto* refusal = std::get_if<link::Refusal>(&message))
+    return on_refusal(*session, *refusal);
   break_off(*session, link::Refusal::Reason::kBadMessage, fault_of_other(message));
+}
+
+// The SUT's side cannot go on, and says why.
+void Coordinator::Impl::on_refusal(Session& session, const link::Refusal& refusal) {
+  server_->close(session.peer);
+  remote_.erase(session.peer);
+  session.left = true;
+  end({RunEnd::kSutLost, fmt::format("the SUT of UAV \"{}\" ended the run: {}", session.uav_name,
+                                     printable(refusal.message))});
 }
 
 // Ends the run because of a protocol violation.

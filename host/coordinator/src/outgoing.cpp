@@ -52,8 +52,12 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   watchdog_.heard(session.uav, entry.wall_at_release);
   watchdog_.moved(entry.wall_at_release);
   if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
+  // A CPU clock adds what child processes computed during the call.
   if (session.plausibility)
-    session.plausibility->go_on(barrier_.bound(session.uav), entry.wall_at_release);
+    session.plausibility->go_on(barrier_.bound(session.uav),
+                                session.hello.clock == link::ClockKind::kCpu
+                                    ? entry.wall_at_arrival
+                                    : entry.wall_at_release);
   log_.interaction(st, entry);
   if (image) log_.image(st, session.uav_name, entry.sensor, *image);
   if (entry.kind == record::kFinish) leave(session);

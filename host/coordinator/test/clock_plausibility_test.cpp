@@ -51,14 +51,25 @@ TEST_F(ClockPlausibility, ProgressAheadOfTheHostClockEndsTheRun) {
   EXPECT_LT(report.st, st_ms(100));
 }
 
-TEST_F(ClockPlausibility, TimeInACallDoesNotCount) {
-  tick_ = milliseconds(10);  // the call of one second takes more than two seconds of the host clock
+// The call of one second takes more than two seconds of the host clock. Child processes compute
+// meanwhile, which a CPU clock adds afterwards.
+TEST_F(ClockPlausibility, OnlyChildrenComputeDuringACall) {
+  const struct {
+    ClockKind clock;
+    RunEnd end;
+  } cases[] = {{ClockKind::kWall, RunEnd::kSutLost}, {ClockKind::kCpu, RunEnd::kFinished}};
+  tick_ = milliseconds(10);
+  cores_ = 1;
   options_.real_time_factor = 0.5;
-  const RunReport report =
-      fly(ClockKind::kWall, 1.0, {sleep(Duration(0), seconds(1)), sleep(seconds(2), seconds(1))});
-  EXPECT_EQ(report.end, RunEnd::kSutLost);
-  EXPECT_GT(report.wall, seconds(2));
-  EXPECT_THAT(report.reason, HasSubstr("resumed at ET 1.000000 s"));
+  for (const auto& c : cases) {
+    const RunReport report = fly(
+        c.clock, 1.0,
+        {sleep(Duration(0), seconds(1)), sleep(seconds(2), seconds(1)), finish(milliseconds(1))});
+    EXPECT_EQ(report.end, c.end) << report.reason;
+    EXPECT_GT(report.wall, seconds(2));
+    const bool is_lost = c.end == RunEnd::kSutLost;
+    EXPECT_EQ(report.reason.find("resumed at ET 1.000000 s") != std::string::npos, is_lost);
+  }
 }
 
 // CPU time of all cores together grows faster than the host clock, but not without limit. Of an
@@ -87,6 +98,15 @@ TEST_F(ClockPlausibility, DependsOnTheClockAndTheCores) {
     EXPECT_EQ(report.end, c.end) << report.reason;
     EXPECT_EQ(recorder_.header.suts[0].cores, c.clock == ClockKind::kCpu ? c.cores : 0);
   }
+}
+
+TEST_F(ClockPlausibility, ASutThatCannotMeasureItsTimeEndsTheRun) {
+  make();
+  const auto peer = server_->add_sut(hello("", ClockKind::kCpu), {});
+  server_->deliver(peer, link::Refusal{link::Refusal::Reason::kBadRequest, "SIGCHLD\nis ignored"});
+  const RunReport report = run();
+  EXPECT_EQ(report.end, RunEnd::kSutLost);
+  EXPECT_THAT(report.reason, HasSubstr("ended the run: SIGCHLD?is ignored"));
 }
 
 TEST_F(ClockPlausibility, IsNotCheckedInFreeRunning) {

@@ -1,15 +1,12 @@
 #include "stall_watch.h"
 
 #include <algorithm>
-#include <charconv>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 #include <time.h>
+
+#include <tether/os/process_table.h>
 
 namespace tether::runner {
 
@@ -27,32 +24,6 @@ WallTime read(clockid_t clock) {
   return WallTime(std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec));
 }
 
-// The fields after the program's name, which may contain any character, in /proc/PID/stat.
-struct ProcessState {
-  char state = '?';
-  pid_t parent = 0;
-  pid_t group = 0;
-};
-
-std::optional<ProcessState> state_of(const std::filesystem::path& process) {
-  std::ifstream file(process / "stat");
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const auto name_end = text.rfind(')');
-  if (name_end == std::string::npos) return std::nullopt;
-  std::istringstream rest(text.substr(name_end + 1));
-  ProcessState process_state;
-  rest >> process_state.state >> process_state.parent >> process_state.group;
-  return rest ? std::optional(process_state) : std::nullopt;
-}
-
-std::optional<pid_t> number_of(const std::filesystem::path& process) {
-  const std::string name = process.filename().string();
-  pid_t number = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  return error == std::errc{} && end == name.data() + name.size() ? std::optional(number)
-                                                                  : std::nullopt;
-}
-
 }  // namespace
 
 HostClocks host_clocks() {
@@ -60,11 +31,8 @@ HostClocks host_clocks() {
 }
 
 std::optional<pid_t> stopped_process(pid_t group) {
-  std::error_code failed;
-  for (const auto& entry : std::filesystem::directory_iterator("/proc", failed)) {
-    const auto number = number_of(entry.path());
-    if (!number) continue;
-    const auto process = state_of(entry.path());
+  for (const pid_t number : os::all_processes()) {
+    const auto process = os::process_stat(number);
     if (process && process->group == group && (process->state == 'T' || process->state == 't'))
       return number;
   }

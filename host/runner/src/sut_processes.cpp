@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <tether/os/child_process.h>
+#include <tether/os/process_table.h>
 
 namespace tether::runner {
 
@@ -45,12 +46,21 @@ std::string last_line(const std::filesystem::path& file) {
 constexpr Duration kExitLimit = std::chrono::seconds(2);
 // How long the process of a lost SUT may take to end after its connection.
 constexpr Duration kEndLimit = std::chrono::milliseconds(200);
+// How long the processes that local SUTs leave behind may take to end.
+constexpr Duration kOrphanGrace = std::chrono::seconds(1);
 
 }  // namespace
+
+SutProcesses::~SutProcesses() {
+  if (suts_.empty()) return;
+  suts_.clear();
+  if (!board_) os::end_orphans(kOrphanGrace);
+}
 
 void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
                          const std::filesystem::path& folder, board::Board* board) {
   board_ = board;
+  if (!board) os::adopt_orphans();
   for (const scenario::UavSetup& uav : scenario.uavs) {
     const std::string& name = uav.placement.name;
     Sut sut{.uav = name,

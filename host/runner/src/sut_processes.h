@@ -14,10 +14,15 @@
 
 namespace tether::runner {
 
-/// The processes of a scenario's SUTs, here or on a board. They end with the object. Not
-/// thread-safe.
+/// The processes of a scenario's SUTs, here or on a board. They end with the object, and so do all
+/// processes that local SUTs have started, also in sessions of their own. Not thread-safe.
 class SutProcesses {
  public:
+  SutProcesses() = default;
+  ~SutProcesses();
+  SutProcesses(const SutProcesses&) = delete;
+  SutProcesses& operator=(const SutProcesses&) = delete;
+
   /// Starts all of them, here or on `board`, which must outlive them. The output of each goes to
   /// `folder`/sut-UAV.log, and its TETHER_OUT is `folder`, or `folder`/UAV if there are several.
   /// The scenario's files that parameters name are copied to the board. @throws Error(kSetup).

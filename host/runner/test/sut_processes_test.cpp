@@ -1,5 +1,8 @@
 #include "sut_processes.h"
 
+#include <csignal>
+#include <cstdlib>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,6 +71,28 @@ TEST_F(Suts, ReportSignals) {
   EXPECT_THAT(suts_.await_exit(), ElementsAre(HasSubstr("\"uav2\"")));
   EXPECT_THAT(suts_.post_mortem(),
               testing::EndsWith("was ended by signal 11 (Segmentation fault)"));
+}
+
+/// A process in a session of its own without its parent or its environment, as daemons are.
+TEST(SutProcesses, EndTheDaemonsOfASut) {
+  const ScratchFolder scratch;
+  scenario::Scenario scenario;
+  scenario.uavs.resize(1);
+  scenario.uavs[0].placement.name = "uav1";
+  const auto number = scratch.path("number");
+  scenario.uavs[0].sut.command = {
+      "sh", "-c",
+      "(env -i setsid sh -c 'cd /; echo $$ >\"$0\"; exec sleep 600' \"$0\" &) && exit 3",
+      number.string()};
+  pid_t daemon = 0;
+  {
+    SutProcesses suts;
+    suts.start(scenario, {"127.0.0.1:4000", "token", {}}, scratch.path());
+    while (daemon == 0) daemon = std::atoi(os::read_whole(number).c_str());
+    while (!suts.early_end()) continue;
+    EXPECT_EQ(kill(daemon, 0), 0);
+  }
+  EXPECT_EQ(kill(daemon, 0), -1);
 }
 
 TEST_F(Suts, HaveFailedToConnectIfTheirLastLineHasTheAddress) {

@@ -9,6 +9,7 @@ namespace {
 
 constexpr Duration kReading = std::chrono::milliseconds(1);
 constexpr Duration kTick = std::chrono::milliseconds(10);
+constexpr Duration kGrandchildren = std::chrono::milliseconds(20);
 constexpr Duration kMostUnaccounted = std::chrono::seconds(1);
 
 Duration stretched(Duration measured, double factor) {
@@ -24,7 +25,7 @@ ClockBound wall_bound(double factor) {
 ClockBound cpu_bound(double factor, int cores) {
   const int most = cores > 0 ? cores : kMostCores;
   return {.rate = factor * most,
-          .slack = stretched(std::min(most * kTick, kMostUnaccounted), factor)};
+          .slack = stretched(std::min(most * kTick, kMostUnaccounted) + kGrandchildren, factor)};
 }
 
 void ClockPlausibility::go_on(ExecTime at, WallTime now) {

@@ -52,9 +52,9 @@ TEST(ClockPlausibility, CpuTimeGrowsOnEachCoreAndByATickOfEach) {
     ClockBound bound;
     double rate;
     Duration slack;
-  } cases[] = {{cpu_bound(1.0, 2), 2.0, milliseconds(20)},
-               {cpu_bound(6.0, 4), 24.0, milliseconds(240)},
-               {cpu_bound(1.0, 0), 1024.0, seconds(1)}};  // unknown: any number of cores
+  } cases[] = {{cpu_bound(1.0, 2), 2.0, milliseconds(40)},
+               {cpu_bound(6.0, 4), 24.0, milliseconds(360)},
+               {cpu_bound(1.0, 0), 1024.0, milliseconds(1020)}};  // unknown: any number of cores
   for (const auto& c : cases) {
     EXPECT_EQ(c.bound.rate, c.rate);
     EXPECT_EQ(c.bound.slack, c.slack);

@@ -48,6 +48,7 @@ Result<link::Reply> SimulatedVehicle::interact(Body body) {
 Result<link::Reply> SimulatedVehicle::interact_alone(Body body) {
   if (const Status good = usable(); !good) return good.failure();  // others were first
   const ExecTime stamp = clock_->begin();
+  if (const Status good = complete(); !good) return good.failure();
   const Duration issued = wall_->now();
   const link::Request request{sequence_ + 1, stamp, previous_round_trip_, std::move(body)};
   auto reply = ask(request);
@@ -81,6 +82,17 @@ Result<link::Reply> SimulatedVehicle::ask(const link::Request& request) {
   if (const Status good = check(*reply, request, free_running_ != nullptr); !good)
     return good.failure();
   return std::move(*reply);
+}
+
+// The coordinator ends the run with the reason.
+Status SimulatedVehicle::complete() {
+  const Status good = source_->complete();
+  if (good) return good;
+  give_up(good.failure());
+  const std::lock_guard lock(sending_);
+  static_cast<void>(
+      channel_->send(link::Refusal{link::Refusal::Reason::kBadRequest, good.failure().message}));
+  return good;
 }
 
 bool SimulatedVehicle::report_progress() {

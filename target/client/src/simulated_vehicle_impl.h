@@ -37,6 +37,8 @@ class SimulatedVehicle final : public InteractingVehicle {
   Result<link::Reply> interact_alone(Body body);
   Result<link::Reply> ask(const link::Request& request);
   Status sleep_alone(ExecTime until);
+  /// Ends the run if a part of the SUT's computing is not measured.
+  Status complete();
   /// @}
 
   /// Sends a Progress unless the SUT waits for a reply. From the reporter's thread.

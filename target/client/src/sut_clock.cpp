@@ -10,14 +10,17 @@ ExecTime SutClock::now() const {
 }
 
 ExecTime SutClock::hold() {
+  if (held_) return base_et_;
   base_et_ = now();
+  children_at_hold_ = source_->elapsed_in_children();
   held_ = true;
   return base_et_;
 }
 
 void SutClock::resume(ExecTime at) {
   base_et_ = at;
-  base_source_ = source_->elapsed();
+  const Duration elapsed = source_->elapsed_at_resume();
+  base_source_ = elapsed - (source_->elapsed_in_children() - children_at_hold_);
   held_ = false;
 }
 

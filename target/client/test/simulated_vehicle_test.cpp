@@ -242,5 +242,26 @@ TEST_F(SimulatedVehicleTest, DoesNotHoldEtInFreeRunning) {
   EXPECT_EQ(coordinator_->requests().size(), 1u);
 }
 
+class IncompleteSource final : public TimeSource {
+ public:
+  link::ClockKind kind() const override { return link::ClockKind::kCpu; }
+  Duration elapsed() const override { return Duration(0); }
+  Status complete() const override { return Failure{Failure::Kind::kRefused, "not measured"}; }
+};
+
+TEST(SimulatedVehicle, EndsTheRunIfAPartOfItsTimeIsNotMeasured) {
+  ScriptedCoordinator coordinator(link::Welcome{});
+  ConnectOptions options;
+  options.time = std::make_unique<IncompleteSource>();
+  const auto vehicle = connect(coordinator.connect(), std::move(options)).value();
+  for (const Status& status : {vehicle->sleep_for(Duration(1)), vehicle->command_velocity({})})
+    EXPECT_EQ(status.failure().kind, Failure::Kind::kRefused);
+  EXPECT_TRUE(coordinator.wait_for([](const link::Message& message) {
+    const auto* refusal = std::get_if<link::Refusal>(&message);
+    return refusal != nullptr && refusal->message == "not measured";
+  }));
+  EXPECT_TRUE(coordinator.requests().empty());
+}
+
 }  // namespace
 }  // namespace tether::client

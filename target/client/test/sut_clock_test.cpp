@@ -41,5 +41,23 @@ TEST(SutClock, BetweenInteractionsOnlyComputingCounts) {
   }
 }
 
+// The SUT is held, its children are not: none of their time is lost, and none comes twice.
+TEST(SutClock, AddsWhatChildrenComputedDuringAnInteraction) {
+  ManualTimeSource source;
+  SutClock clock(source);
+  source.advance_children(Duration(10));
+  const ExecTime stamp = clock.hold();
+  EXPECT_EQ(stamp, from_ns<ExecTime>(10));
+  source.advance(Duration(1000));
+  source.advance_children(Duration(7));
+  EXPECT_EQ(clock.hold(), stamp);
+  source.advance_children(Duration(5));
+  EXPECT_EQ(clock.now(), stamp);
+  clock.resume(from_ns<ExecTime>(100));
+  EXPECT_EQ(clock.now(), from_ns<ExecTime>(112));
+  source.advance_children(Duration(1));
+  EXPECT_EQ(clock.hold(), from_ns<ExecTime>(113));
+}
+
 }  // namespace
 }  // namespace tether::client

@@ -58,6 +58,7 @@ const StruckSut kStruckSuts[] = {
     {"kill_reply_half", {"sut_lost", {kKilled}}, "sut_lost"},
     {"crash", {"sut_lost", {"signal 11"}}, "sut_lost"},
     {"exit", {"sut_lost", {}}, "sut_lost"},
+    {"deaf", {"sut_lost", {"SIGCHLD"}}, "sut_lost"},
     // 30 s are allowed for joining.
     {"stop_connected", {"setup_failed", {"30 s"}}, ""},
     {"stop_joined", {"sut_hung", {"2.0 s"}}, "sut_hung"},

@@ -19,6 +19,7 @@
 #include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <tether/client/simulated_vehicle.h>
@@ -42,6 +43,8 @@ class LyingSource final : public tether::client::TimeSource {
   tether::Duration elapsed() const override {
     return right_->elapsed() + tether::Duration(g_ahead_ns.load());
   }
+  tether::Duration elapsed_in_children() const override { return right_->elapsed_in_children(); }
+  tether::Status complete() const override { return right_->complete(); }
   void exclude_calling_thread() override { right_->exclude_calling_thread(); }
   void release_calling_thread() override { right_->release_calling_thread(); }
 
@@ -216,9 +219,17 @@ int struck(const Strike& strike) {
   std::abort();
 }
 
-// A helper process that nobody waits for.
-void leave_child() {
+// Helper processes that nobody waits for, the second in a session of its own and without a parent.
+void leave_children() {
   if (fork() == 0) wait_for_ever();
+  const pid_t parent = fork();
+  if (parent != 0) {
+    waitpid(parent, nullptr, 0);
+    return;
+  }
+  setsid();
+  if (fork() == 0) wait_for_ever();
+  _exit(0);
 }
 
 const std::map<std::string, std::function<int(Vehicle&)>> kFlyingModes = {
@@ -249,7 +260,12 @@ const std::map<std::string, std::function<int(Vehicle&)>> kFlyingModes = {
      }},
     {"child",
      [](Vehicle& v) {
-       leave_child();
+       leave_children();
+       return finish(v, true);
+     }},
+    {"deaf",
+     [](Vehicle& v) {
+       std::signal(SIGCHLD, SIG_IGN);
        return finish(v, true);
      }},
     {"fly_on",

@@ -3,6 +3,9 @@
 namespace tether::client_testing {
 
 ManualTimeSource::ManualTimeSource(link::ClockKind kind, double factor)
-    : kind_(kind), factor_(factor), elapsed_ns_(std::make_shared<std::atomic<std::int64_t>>(0)) {}
+    : kind_(kind),
+      factor_(factor),
+      elapsed_ns_(std::make_shared<std::atomic<std::int64_t>>(0)),
+      children_ns_(std::make_shared<std::atomic<std::int64_t>>(0)) {}
 
 }  // namespace tether::client_testing

@@ -46,7 +46,8 @@ struct Welcome {
   ExecTime start;             ///< the SUT's ET begins here
 };
 
-/// Coordinator → SUT: not accepted, or the run is over. The connection closes after it.
+/// Coordinator → SUT: not accepted, or the run is over. SUT → coordinator: its execution time is
+/// not measured completely, which ends the run. The connection closes after it.
 struct Refusal {
   enum class Reason : std::uint8_t { kVersion, kToken, kUav, kBadMessage, kBadRequest, kRunEnded };
   Reason reason = Reason::kBadMessage;

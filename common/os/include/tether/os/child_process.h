@@ -72,4 +72,9 @@ class ChildProcess {
   std::optional<ChildExit> exit_;
 };
 
+/// Ends all children of this process that no ChildProcess started, thus adopted ones (adopt_orphans
+/// in process_table.h), and what they leave: with SIGTERM, after `grace` with SIGKILL. Returns once
+/// they have ended, 5 s after `grace` at the latest. Thread-safe.
+void end_orphans(Duration grace);
+
 }  // namespace tether::os

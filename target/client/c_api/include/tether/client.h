@@ -158,6 +158,9 @@ tether_status tether_options_set_sut_name(tether_options* options,
                                           const char* name) TETHER_NOEXCEPT;
 /// Sets how ET is measured. The coordinator refuses a clock that the scenario does not ask for.
 /// @param options  the options
+/// "cpu" counts the CPU time of this process, except the library's own thread, and of all its
+/// descendants. With it, orphaned descendants become children of this process, and interactions
+/// fail with TETHER_REFUSED if a process ignores SIGCHLD.
 /// @param clock  as in TETHER_CLOCK: "wall", "cpu", "cpu*FACTOR", "scripted*MILLISECONDS", ...
 /// @return TETHER_OK or TETHER_INVALID
 tether_status tether_options_set_clock(tether_options* options, const char* clock) TETHER_NOEXCEPT;

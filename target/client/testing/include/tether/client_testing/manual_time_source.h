@@ -19,13 +19,20 @@ class ManualTimeSource final : public client::TimeSource {
   double factor() const override { return factor_; }
   Duration elapsed() const override { return Duration(elapsed_ns_->load()); }
 
+  Duration elapsed_in_children() const override { return Duration(children_ns_->load()); }
+
   /// The SUT computes for `duration` [ET]. @pre duration ≥ 0
   void advance(Duration duration) { *elapsed_ns_ += duration.count(); }
+  /// The same, by its children.
+  void advance_children(Duration duration) {
+    *children_ns_ += duration.count();
+    advance(duration);
+  }
 
  private:
   link::ClockKind kind_;
   double factor_;
-  std::shared_ptr<std::atomic<std::int64_t>> elapsed_ns_;  // shared by the copies
+  std::shared_ptr<std::atomic<std::int64_t>> elapsed_ns_, children_ns_;  // shared by the copies
 };
 
 }  // namespace tether::client_testing

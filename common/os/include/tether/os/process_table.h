@@ -1,0 +1,38 @@
+#pragma once
+
+#include <csignal>  // pid_t
+#include <optional>
+#include <vector>
+
+#include <tether/base/time.h>
+
+/// Processes of this machine, as the kernel shows them in /proc. Thread-safe.
+namespace tether::os {
+
+struct ProcessStat {
+  char state = '?';  ///< 'R', 'S', 'T' …; 'Z': has ended, 'X': has ended and was waited for
+  pid_t parent = 0;
+  pid_t group = 0;
+  /// CPU time of the children for which it has waited, and of those for which they had; rounded
+  /// down to the kernel's ticks (10 ms), user and system time each.
+  Duration waited_children{0};
+  /// It ignores SIGCHLD: the CPU time of its children is lost when they end.
+  bool ignores_child_end = false;
+};
+
+/// None: there is no such process.
+std::optional<ProcessStat> process_stat(pid_t process);
+
+/// All processes that this one can see.
+std::vector<pid_t> all_processes();
+
+/// The children of all threads of `process`, also those that have ended and were not waited for.
+/// Children that appear or end meanwhile may be missing. Reads the whole process table on a kernel
+/// that does not list them (CONFIG_PROC_CHILDREN).
+std::vector<pid_t> children_of(pid_t process);
+
+/// From now on, descendants of this process whose own parent ends become its children, however
+/// they left their group or session (PR_SET_CHILD_SUBREAPER).
+void adopt_orphans();
+
+}  // namespace tether::os
