@@ -138,7 +138,7 @@ Result<Message> read(const wire::Reply& reply) {
 Result<Message> read(const wire::Hello& hello) {
   return Message(Hello{hello.protocol_version(), hello.sut()->str(), hello.uav()->str(),
                        static_cast<ClockKind>(hello.clock()), hello.cpu_factor(),
-                       hello.token()->str(), hello.concurrent()});
+                       hello.token()->str(), hello.concurrent(), Duration(hello.computing_ns())});
 }
 Result<Message> read(const wire::Refusal& refusal) {
   return Message(Refusal{static_cast<Refusal::Reason>(refusal.reason()), refusal.message()->str()});

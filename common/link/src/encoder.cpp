@@ -144,10 +144,11 @@ Content write(FlatBufferBuilder& b, const Hello& hello, ImageSlot&) {
   const auto sut = b.CreateString(hello.sut);
   const auto uav = b.CreateString(hello.uav);
   const auto token = b.CreateString(hello.token);
-  return {wire::Content::Hello, wire::CreateHello(b, hello.protocol_version, sut, uav,
-                                                  static_cast<wire::ClockKind>(hello.clock),
-                                                  hello.cpu_factor, token, hello.concurrent)
-                                    .Union()};
+  return {wire::Content::Hello,
+          wire::CreateHello(b, hello.protocol_version, sut, uav,
+                            static_cast<wire::ClockKind>(hello.clock), hello.cpu_factor, token,
+                            hello.concurrent, hello.computing.count())
+              .Union()};
 }
 Content write(FlatBufferBuilder& b, const Welcome& welcome, ImageSlot&) {
   const auto catalogue = write(b, welcome.catalogue);

@@ -63,6 +63,12 @@ record::Anchor describe(const sim::PlacedAnchor& placed) {
           .q_WA = {X_WA.q.w, X_WA.q.x, X_WA.q.y, X_WA.q.z}};
 }
 
+record::ClockInfo describe(const ClockSetting& clock) {
+  return {.clock = std::string(link::name(clock.kind)),
+          .cpu_factor = clock.cpu_factor,
+          .computing = clock.computing};
+}
+
 }  // namespace
 
 record::Header Coordinator::Impl::make_header() const {
@@ -82,7 +88,11 @@ record::Header Coordinator::Impl::make_header() const {
          .cpu_factor = session.hello.cpu_factor,
          .command_latency = session.command_latency,
          .concurrent = session.is_concurrent(),
-         .cores = session.hello.clock == link::ClockKind::kCpu ? session.cores : 0});
+         .cores = session.hello.clock == link::ClockKind::kCpu ? session.cores : 0,
+         .computing = session.hello.computing,
+         .required_clock = {}});
+    if (const auto& required = options_.uavs[session.uav].clock)
+      header.suts.back().required_clock = describe(*required);
     const sim::Uav& uav = world().uavs[session.uav];
     for (std::size_t i = 0; i < uav.sensors.size(); ++i)
       header.sensors.push_back(

@@ -119,6 +119,7 @@ void Coordinator::Impl::on_progress(Session& session, const link::Progress& prog
   if (!running_ || !is_synchronised() || !is_stamp(progress.reached)) return;
   if (const auto fault = fault_of(progress, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
+  if (session.timer) return;  // its time is the coordinator's, not the client's
   if (progress.stopped) return on_stop(session, progress.reached, now);
   barrier_.progress(session.uav, progress.reached);
   release_ready();

@@ -161,6 +161,7 @@ TEST_F(CoordinatorTest, ProgressOfOneSutReleasesAnother) {
 }
 
 TEST_F(CoordinatorTest, MeasuresTheTimeOfAnUnstampedClient) {
+  clock_ = ClockSetting{.kind = link::ClockKind::kUnstamped};
   make();
   server_->add_sut(hello("", link::ClockKind::kUnstamped),
                    {read(seconds(99), kRange), finish(seconds(99))});
@@ -169,7 +170,9 @@ TEST_F(CoordinatorTest, MeasuresTheTimeOfAnUnstampedClient) {
   EXPECT_FALSE(entry.stamped);
   EXPECT_GT(entry.request_at, us(0));
   EXPECT_LT(entry.request_at, us(1'000'000));  // some readings of the host clock
-  EXPECT_EQ(recorder_.header.suts.at(0).clock, "unstamped");
+  const record::SutInfo& sut = recorder_.header.suts.at(0);
+  EXPECT_EQ(sut.clock, "unstamped");
+  EXPECT_EQ(sut.required_clock, (record::ClockInfo{"unstamped"}));
 }
 
 TEST_F(CoordinatorTest, FreeRunningRepliesAtOnceAndChargesNothing) {

@@ -95,7 +95,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, PastTheTimeLimit,
 class OnceItHasFinished : public RunTest, public testing::WithParamInterface<std::string> {};
 
 TEST_P(OnceItHasFinished, AStruckSutSpoilsNothing) {
-  const Output output = run(flight(GetParam(), {"--real-time-factor", "1"}));
+  const Output output = run(flight(GetParam(), {"--real-time-factor", "1"}, {kScripted}));
   EXPECT_EQ(output.code, 0) << output.err;
   EXPECT_TRUE(wait_until_gone(mark_));
   EXPECT_EQ(result()["outcome"], "goal_reached");

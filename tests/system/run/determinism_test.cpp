@@ -20,7 +20,7 @@ class ScriptedRun : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<TempFolder>();
-    scenario_ = write_face_scenario(folder_->path());
+    scenario_ = write_face_scenario(folder_->path(), {kScripted});
     fly("first", {"--images"});
   }
   static void TearDownTestSuite() { folder_.reset(); }
@@ -66,6 +66,7 @@ TEST_F(ScriptedRun, IsAnotherWithAnotherSeed) {
 
 // ---- Two UAVs
 
+    {kScripted.first, "clock = \"scripted\"\ncomputing_ms = 7.3"},
 /// A second UAV beside the first, turned the other way.
 const std::vector<Substitution> kTwoUavs = {
     {"\n[sut]", R"(
@@ -88,8 +89,7 @@ TEST(TwoUavs, FlyUnderOneBarrierAndRepeat) {
     const std::vector<std::string> slowly{"--real-time-factor", "0.5"};
     ExternalRun run(scenario, folder / out, *out == 'b' ? slowly : std::vector<std::string>{});
     const auto first = run.start_sut(face_sut(), {{"TETHER_UAV", "uav1"}});
-    const auto second =
-        run.start_sut(face_sut(), {{"TETHER_UAV", "uav2"}, {"TETHER_CLOCK", "scripted*7.3"}});
+    const auto second = run.start_sut(face_sut(), {{"TETHER_UAV", "uav2"}});
     const Output output = run.wait();
     EXPECT_EQ(output.code, 0) << output.err << first->err() << second->err();
     EXPECT_EQ(audit_code(folder / out), 0);

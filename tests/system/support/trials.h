@@ -72,8 +72,7 @@ void expect_same_runs(const std::filesystem::path& a, const std::filesystem::pat
 /// Writes the record as a file that reads back the same.
 void write_record(const std::filesystem::path& file, const record::Record& record);
 
-/// One run whose SUTs are started by the test, so that they can have a scripted clock and a wire of
-/// their own.
+/// One run whose SUTs are started by the test, so that they can have a wire of their own.
 class ExternalRun {
  public:
   /// Starts `tether run --target wait --quiet` and waits until it listens.

@@ -37,6 +37,8 @@ struct Hello {
   /// Several threads or processes call, and each waits for its own reply only. Under the barrier
   /// all of them are stopped while a reply that is due has not arrived (Progress::stopped).
   bool concurrent = false;
+  /// Of a scripted clock: the ET of each phase of computing. 0: another clock, or not known.
+  Duration computing{0};
 };
 
 /// Coordinator → SUT: accepted.
