@@ -144,7 +144,8 @@ Result<Message> read(const wire::Refusal& refusal) {
   return Message(Refusal{static_cast<Refusal::Reason>(refusal.reason()), refusal.message()->str()});
 }
 Result<Message> read(const wire::Progress& progress) {
-  return Message(Progress{from_ns<ExecTime>(progress.reached_et_ns()), progress.stopped()});
+  return Message(Progress{from_ns<ExecTime>(progress.reached_et_ns()), progress.stopped(),
+                          progress.received_bytes()});
 }
 Result<Message> read(const wire::Due& due) {
   return Message(Due{due.sequence(), from_ns<ExecTime>(due.reply_at_et_ns())});

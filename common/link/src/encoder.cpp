@@ -178,8 +178,9 @@ Content write(FlatBufferBuilder& b, const Reply& reply, ImageSlot& slot) {
       wire::CreateReply(b, reply.sequence, to_ns(reply.resume_at), sample.kind, sample.at).Union()};
 }
 Content write(FlatBufferBuilder& b, const Progress& progress, ImageSlot&) {
-  return {wire::Content::Progress,
-          wire::CreateProgress(b, to_ns(progress.reached), progress.stopped).Union()};
+  return {wire::Content::Progress, wire::CreateProgress(b, to_ns(progress.reached),
+                                                        progress.stopped, progress.received_bytes)
+                                       .Union()};
 }
 Content write(FlatBufferBuilder& b, const Due& due, ImageSlot&) {
   return {wire::Content::Due, wire::CreateDue(b, due.sequence, to_ns(due.reply_at)).Union()};

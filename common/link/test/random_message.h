@@ -25,7 +25,7 @@ class RandomMessage {
     if (kind == 2) return Refusal{static_cast<Refusal::Reason>(random_.bits() % 6), text()};
     if (kind == 3) return request();
     if (kind == 4) return reply();
-    if (kind == 5) return Progress{time<ExecTime>(), coin()};
+    if (kind == 5) return Progress{time<ExecTime>(), coin(), random_.bits()};
     if (kind == 6) return Due{1 + word() % 1000, time<ExecTime>()};
     return Annotation{time<ExecTime>(), "t" + text(), json()};
   }

@@ -3,6 +3,7 @@
 #include "scripted_threads.h"
 
 #include <deque>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -65,11 +66,13 @@ class ScriptedServer final : public link::Server {
     if (const auto* welcome = std::get_if<link::Welcome>(&message)) proceed(peer, welcome->start);
     if (const auto* reply = std::get_if<link::Reply>(&message)) proceed(peer, reply->resume_at);
   }
+  std::uint64_t moved_bytes(link::PeerId) override { return moved ? moved() : 0; }
   void close(link::PeerId peer) override { closed.push_back(peer); }
 
   std::map<link::PeerId, std::vector<link::Message>> sent;
   std::vector<link::PeerId> closed;
   std::uint64_t polls = 0;
+  std::function<std::uint64_t()> moved;
 
  private:
   struct Sut {

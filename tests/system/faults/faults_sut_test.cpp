@@ -153,6 +153,14 @@ TEST_F(StoppedSut, ChangesNothingUnderAScriptedClock) {
   }
 }
 
+// The image takes 3.7 s to arrive, and hang_limit_s is 2.
+TEST_F(RunTest, TransitOnASlowLinkIsNotSilence) {
+  ExternalRun run(write_hover_scenario(folder_.path(), "unused", {kWall}), out_);
+  const SlowWire wire(run.address(), 1, 2);
+  const auto sut = run.start_sut({bad_sut_program(), "look"}, {{"TETHER_ADDRESS", wire.address()}});
+  EXPECT_EQ(run.wait().code, 0) << reason();
+}
+
 // By a wall clock, the time in which it was stopped counts as computing.
 TEST_F(StoppedSut, IsChargedForItByAWallClock) {
   Process process(flight("pause", {}, {kWall, {"hang_limit_s = 2", "hang_limit_s = 60"}}));

@@ -48,10 +48,8 @@ TEST_F(ScriptedRun, IsTheSameWithASlowSimulator) {
 
 TEST_F(ScriptedRun, IsTheSameOverASlowLink) {
   ExternalRun run(scenario_, out("slow_link"), {"--images"});
-  Process proxy({{proxy_program(), run.address(), "20", "100"}});
-  ASSERT_TRUE(proxy.wait_for_out("\n", 10s)) << proxy.err();
-  const std::string address = proxy.out().substr(0, proxy.out().find('\n'));
-  const auto sut = run.start_sut(face_sut(), {{"TETHER_ADDRESS", address}});
+  const SlowWire wire(run.address(), 20, 100);
+  const auto sut = run.start_sut(face_sut(), {{"TETHER_ADDRESS", wire.address()}});
   EXPECT_EQ(run.wait().code, 0) << sut->err();
 
   expect_same_runs(out("first"), out("slow_link"));
@@ -66,9 +64,9 @@ TEST_F(ScriptedRun, IsAnotherWithAnotherSeed) {
 
 // ---- Two UAVs
 
-    {kScripted.first, "clock = \"scripted\"\ncomputing_ms = 7.3"},
 /// A second UAV beside the first, turned the other way.
 const std::vector<Substitution> kTwoUavs = {
+    {kScripted.first, "clock = \"scripted\"\ncomputing_ms = 7.3"},
     {"\n[sut]", R"(
 [[uav]]
 name = "uav2"

@@ -173,6 +173,12 @@ std::unique_ptr<Process> ExternalRun::start_sut(const std::vector<std::string>& 
   return std::make_unique<Process>(with({arguments, joining}, {}, environment));
 }
 
+SlowWire::SlowWire(const std::string& address, int delay_ms, int mbit_s)
+    : proxy_({{proxy_program(), address, std::to_string(delay_ms), std::to_string(mbit_s)}}) {
+  if (!proxy_.wait_for_out("\n", std::chrono::seconds(10))) throw std::runtime_error(proxy_.err());
+  address_ = proxy_.out().substr(0, proxy_.out().find('\n'));
+}
+
 std::vector<std::string> face_sut() {
   return {
       sut_program(),      "face_anchor", "--anchor",        "blue_box", "--precision-deg",     "3",

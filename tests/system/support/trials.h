@@ -95,6 +95,20 @@ class ExternalRun {
  private:
   std::unique_ptr<Process> tether_;
   std::string address_;
+  std::string clock_;  // of the condition, as in TETHER_CLOCK
+};
+
+/// A slow wire to a run.
+class SlowWire {
+ public:
+  /// @throws std::runtime_error if it does not start.
+  SlowWire(const std::string& address, int delay_ms, int mbit_s);
+  /// Where SUTs connect instead.
+  const std::string& address() const { return address_; }
+
+ private:
+  Process proxy_;
+  std::string address_;
 };
 
 /// tether-sut with the parameters of data/face_anchor.toml.

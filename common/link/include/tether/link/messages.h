@@ -103,11 +103,14 @@ struct Due {
   ExecTime reply_at;  ///< t_rep, ≥ the request's stamp
 };
 
-/// SUT → coordinator while it computes: ET has reached at least this.
+/// SUT → coordinator while it computes: ET has reached at least this. Or while it receives.
 struct Progress {
-  ExecTime reached;
+  ExecTime reached{};
   /// Of a concurrent SUT under the barrier: all of its threads have been stopped since `reached`.
   bool stopped = false;
+  /// Bytes of a frame that takes long to arrive, so far; the SUT is waiting for the rest, and
+  /// `reached` has no meaning. 0: it is not.
+  std::uint32_t received_bytes = 0;
 };
 
 /// SUT → coordinator: an entry for the record (ROI, estimate, task phase). Takes no ET and gets no
