@@ -288,8 +288,8 @@ void TcpServer::expire_deadlines() {
   if (!deadline) return;
   const auto now = steady_clock::now();
   if (accept_paused_until_ && *accept_paused_until_ <= now) accept_paused_until_.reset();
-  for (std::size_t i = 0; i < peers_.size(); ++i) {
-    Peer& peer = *peers_[i];
+  for (const auto& entry : peers_) {
+    Peer& peer = *entry;
     const auto its_deadline = deadline_of(peer);
     if (!its_deadline || *its_deadline > now) continue;
     const bool is_draining = peer.state() == Peer::State::kDraining;
