@@ -123,6 +123,9 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
   fmt::print("  {:<24} {:.3f} s in {:.3f} s of wall time, {} interactions\n", "simulated",
              to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
              result.sync.interactions);
+  if (result.clock == scenario::name(scenario::Clock::kUnstamped))
+    fmt::print("  {:<24} {}\n", "clock",
+               "unstamped: the coordinator measured the SUT's time, which includes the link's");
   if (!result.target.empty()) fmt::print("  {:<24} {}\n", "target", result.target);
   if (const auto& stops = result.sync.stops)
     fmt::print("  {:<24} {}, at most {:.3f} ms late\n", "stops of all threads", stops->count,

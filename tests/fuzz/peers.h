@@ -21,6 +21,7 @@ class Peers final : public link::Server {
   link::Address address() const override { return {"fuzz", 0}; }
   std::span<link::Event> poll(Duration max_wait) override;
   void send(link::PeerId id, link::Message message) override;
+  std::uint64_t moved_bytes(link::PeerId) override { return 0; }
   void close(link::PeerId id) override { peers_.erase(id); }
 
   /// Host time that has passed because the input said so.

@@ -1,14 +1,13 @@
 #include "connection.h"
 
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <utility>
 
 #include <malloc.h>
 #include <sys/utsname.h>
 
-#include <tether/base/text_table.h>
 #include <tether/base/version.h>
 #include <tether/calibration/machine.h>
 #include <tether/client/simulated_vehicle.h>
@@ -40,21 +39,13 @@ void override_environment(const CommandLine& line) {
   set("TETHER_CLOCK", line.clock);
 }
 
-/// "6", "0.5".
-std::string factor_text(double factor) {
-  const bool is_whole = factor == std::floor(factor);
-  return fixed(factor, is_whole ? 0 : 3);
-}
-
-std::string clock_text(const client::TimeSource& time) {
-  switch (time.kind()) {
-    case link::ClockKind::kWall:
-      return "wall";
-    case link::ClockKind::kScripted:
-      return "scripted";
-    default:
-      return "cpu × " + factor_text(time.factor());
-  }
+/// "cpu × 6". From the environment, because the vehicle knows its clock only without tether-exec.
+std::string clock_text() {
+  const char* clock = std::getenv("TETHER_CLOCK");
+  std::string text = clock == nullptr || *clock == '\0' ? "wall" : clock;
+  if (const std::size_t sign = text.find('*'); sign != std::string::npos)
+    text.replace(sign, 1, " × ");
+  return text;
 }
 
 Result<Connection> open_devices(const devices::Rig& rig) {
@@ -90,7 +81,7 @@ Result<Connection> connect_as(const CommandLine& line) {
   Result<client::ConnectOptions> options = client::options_from_environment();
   if (!options) return options.failure();
   options->sut_name = name_of_this_program();
-  const std::string location = calibration::host_name() + ", " + clock_text(*options->time);
+  const std::string location = calibration::host_name() + ", " + clock_text();
   prepare();
   Result<std::unique_ptr<client::Vehicle>> vehicle = client::connect(std::move(options).value());
   if (!vehicle) return vehicle.failure();

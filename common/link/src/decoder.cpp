@@ -138,13 +138,14 @@ Result<Message> read(const wire::Reply& reply) {
 Result<Message> read(const wire::Hello& hello) {
   return Message(Hello{hello.protocol_version(), hello.sut()->str(), hello.uav()->str(),
                        static_cast<ClockKind>(hello.clock()), hello.cpu_factor(),
-                       hello.token()->str(), hello.concurrent()});
+                       hello.token()->str(), hello.concurrent(), Duration(hello.computing_ns())});
 }
 Result<Message> read(const wire::Refusal& refusal) {
   return Message(Refusal{static_cast<Refusal::Reason>(refusal.reason()), refusal.message()->str()});
 }
 Result<Message> read(const wire::Progress& progress) {
-  return Message(Progress{from_ns<ExecTime>(progress.reached_et_ns()), progress.stopped()});
+  return Message(Progress{from_ns<ExecTime>(progress.reached_et_ns()), progress.stopped(),
+                          progress.received_bytes()});
 }
 Result<Message> read(const wire::Due& due) {
   return Message(Due{due.sequence(), from_ns<ExecTime>(due.reply_at_et_ns())});

@@ -144,10 +144,11 @@ Content write(FlatBufferBuilder& b, const Hello& hello, ImageSlot&) {
   const auto sut = b.CreateString(hello.sut);
   const auto uav = b.CreateString(hello.uav);
   const auto token = b.CreateString(hello.token);
-  return {wire::Content::Hello, wire::CreateHello(b, hello.protocol_version, sut, uav,
-                                                  static_cast<wire::ClockKind>(hello.clock),
-                                                  hello.cpu_factor, token, hello.concurrent)
-                                    .Union()};
+  return {wire::Content::Hello,
+          wire::CreateHello(b, hello.protocol_version, sut, uav,
+                            static_cast<wire::ClockKind>(hello.clock), hello.cpu_factor, token,
+                            hello.concurrent, hello.computing.count())
+              .Union()};
 }
 Content write(FlatBufferBuilder& b, const Welcome& welcome, ImageSlot&) {
   const auto catalogue = write(b, welcome.catalogue);
@@ -177,8 +178,9 @@ Content write(FlatBufferBuilder& b, const Reply& reply, ImageSlot& slot) {
       wire::CreateReply(b, reply.sequence, to_ns(reply.resume_at), sample.kind, sample.at).Union()};
 }
 Content write(FlatBufferBuilder& b, const Progress& progress, ImageSlot&) {
-  return {wire::Content::Progress,
-          wire::CreateProgress(b, to_ns(progress.reached), progress.stopped).Union()};
+  return {wire::Content::Progress, wire::CreateProgress(b, to_ns(progress.reached),
+                                                        progress.stopped, progress.received_bytes)
+                                       .Union()};
 }
 Content write(FlatBufferBuilder& b, const Due& due, ImageSlot&) {
   return {wire::Content::Due, wire::CreateDue(b, due.sequence, to_ns(due.reply_at)).Union()};

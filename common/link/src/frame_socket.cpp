@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <sys/socket.h>
+#include <sys/time.h>
 
 #include <tether/link/frame_socket.h>
 
@@ -37,9 +38,30 @@ Result<std::span<const std::uint8_t>> FrameSocket::receive_within(Duration timeo
 Result<std::span<const std::uint8_t>> FrameSocket::receive_until(const Deadline& deadline) {
   while (true) {
     const auto frame = input_.next();
-    if (!frame || !frame->empty()) return frame;
+    if (!frame || !frame->empty()) {
+      reported_at_.reset();
+      reported_ = 0;
+      return frame;
+    }
+    if (on_slow_frame_ && input_.missing() > 0) report_slow_frame();
     if (const Status more = receive_more(deadline); !more) return more.failure();
   }
+}
+
+void FrameSocket::on_slow_frame(std::function<void(std::size_t)> report) {
+  on_slow_frame_ = std::move(report);
+  // A call that waits for the rest of a frame returns this often.
+  const timeval period{0, std::chrono::microseconds(kSlowPeriod).count()};
+  ::setsockopt(descriptor(), SOL_SOCKET, SO_RCVTIMEO, &period, sizeof period);
+}
+
+void FrameSocket::report_slow_frame() {
+  const auto now = Clock::now();
+  if (!reported_at_) reported_at_ = now;
+  if (now - *reported_at_ < kSlowPeriod || input_.arrived() == reported_) return;
+  reported_at_ = now;
+  reported_ = input_.arrived();
+  on_slow_frame_(reported_);
 }
 
 void FrameSocket::look_out() const {

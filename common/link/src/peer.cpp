@@ -3,7 +3,9 @@
 #include <utility>
 #include <variant>
 
+#include <linux/sockios.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 namespace tether::link {
@@ -54,6 +56,7 @@ Status Peer::send(const FramePieces& pieces, Message& message) {
       return lost(remote_, sent.error);
     }
     done = sent.bytes;
+    sent_bytes_ += sent.bytes;
   }
   if (done < pieces.size()) enqueue(pieces, done, message);
   return ok_status();
@@ -75,11 +78,20 @@ Status Peer::flush() {
     }
     frame.done += sent.bytes;
     queued_bytes_ -= sent.bytes;
+    sent_bytes_ += sent.bytes;
     if (frame.left() > 0) return ok_status();
     queue_.pop_front();
   }
   shut_when_flushed();
   return ok_status();
+}
+
+std::uint64_t Peer::moved_bytes() const {
+  int unacknowledged = 0;
+  ::ioctl(descriptor(), SIOCOUTQ, &unacknowledged);
+  const std::size_t arrived = input_.arrived();
+  const bool is_large = arrived + input_.missing() > kSmallFrameBytes;
+  return sent_bytes_ - static_cast<std::uint64_t>(unacknowledged) + (is_large ? arrived : 0);
 }
 
 Result<bool> Peer::receive() {

@@ -65,6 +65,8 @@ class Peer {
   /// The next whole frame; empty if there is none. The first one removes the deadline and raises
   /// the limit on sizes.
   Result<std::span<const std::uint8_t>> next_frame();
+  /// See Server::moved_bytes. @pre it is not dead
+  std::uint64_t moved_bytes() const;
   /// Another frame may have arrived with the last one.
   bool may_have_frame() const { return may_have_frame_ && state_ == State::kOpen; }
   /// Receives once and drops the bytes; dead if the peer has closed and nothing is queued for it.
@@ -91,6 +93,7 @@ class Peer {
   FrameBuffer input_{kMaxHelloBytes};
   std::deque<QueuedFrame> queue_;
   std::size_t queued_bytes_ = 0;
+  std::uint64_t sent_bytes_ = 0;  // that the socket took
   State state_ = State::kOpen;
   bool input_has_ended_ = false;
 };

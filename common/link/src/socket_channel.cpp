@@ -12,7 +12,12 @@ namespace {
 class SocketChannel final : public Channel {
  public:
   SocketChannel(Descriptor socket, std::string peer)
-      : socket_(std::move(socket), std::move(peer), kMaxReplyBytes) {}
+      : socket_(std::move(socket), std::move(peer), kMaxReplyBytes) {
+    // A failure shows at the next message.
+    socket_.on_slow_frame([this](std::size_t bytes) {
+      static_cast<void>(send(Progress{.received_bytes = static_cast<std::uint32_t>(bytes)}));
+    });
+  }
 
   Status send(const Message& message) override;
   Result<Message> receive() override { return decoded(socket_.receive()); }

@@ -39,6 +39,7 @@ class TcpServer final : public Server {
   Address address() const override { return address_; }
   std::span<Event> poll(Duration max_wait) override;
   void send(PeerId id, Message message) override;
+  std::uint64_t moved_bytes(PeerId id) override;
   void close(PeerId id) override;
 
  private:
@@ -117,6 +118,11 @@ void TcpServer::send(PeerId id, Message message) {
   const FramePieces pieces = encoder_.encode_pieces(message);
   if (!pieces.image.empty()) spoke_last_ = 0;  // reading it takes the peer too long
   if (const Status sent = peer->send(pieces, message); !sent) lose(*peer, sent.failure());
+}
+
+std::uint64_t TcpServer::moved_bytes(PeerId id) {
+  const Peer* const peer = find(id);
+  return peer == nullptr || peer->state() == Peer::State::kDead ? 0 : peer->moved_bytes();
 }
 
 void TcpServer::close(PeerId id) {
@@ -282,8 +288,8 @@ void TcpServer::expire_deadlines() {
   if (!deadline) return;
   const auto now = steady_clock::now();
   if (accept_paused_until_ && *accept_paused_until_ <= now) accept_paused_until_.reset();
-  for (std::size_t i = 0; i < peers_.size(); ++i) {
-    Peer& peer = *peers_[i];
+  for (const auto& entry : peers_) {
+    Peer& peer = *entry;
     const auto its_deadline = deadline_of(peer);
     if (!its_deadline || *its_deadline > now) continue;
     const bool is_draining = peer.state() == Peer::State::kDraining;

@@ -48,10 +48,10 @@ T decoded(const T& message) {
 
 // A field that both encoder and decoder left out would survive the round trip above.
 TEST(Codec, HelloRequestAndReplyFieldByField) {
-  const auto [version, sut, uav, clock, factor, token, concurrent] =
-      decoded(Hello{9, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true});
-  EXPECT_EQ(std::tie(version, sut, uav, clock, factor, token, concurrent),
-            std::tuple(9u, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true));
+  const auto [version, sut, uav, clock, factor, token, concurrent, computing] =
+      decoded(Hello{9, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true, Duration(7)});
+  EXPECT_EQ(std::tie(version, sut, uav, clock, factor, token, concurrent, computing),
+            std::tuple(9u, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true, Duration(7)));
 
   const uav::VelocityCommand velocity{{1.0, -2.0, 0.5}, 0.25};
   const auto [sequence, issued_at, round_trip, body] =

@@ -20,12 +20,12 @@ class RandomMessage {
   Message draw(std::uint32_t kind) {
     if (kind == 0)
       return Hello{random_.bits(),  text(), text(), static_cast<ClockKind>(random_.bits() % 4),
-                   0.01 + number(), text(), coin()};
+                   0.01 + number(), text(), coin(), Duration(random_.bits())};
     if (kind == 1) return welcome();
     if (kind == 2) return Refusal{static_cast<Refusal::Reason>(random_.bits() % 6), text()};
     if (kind == 3) return request();
     if (kind == 4) return reply();
-    if (kind == 5) return Progress{time<ExecTime>(), coin()};
+    if (kind == 5) return Progress{time<ExecTime>(), coin(), random_.bits()};
     if (kind == 6) return Due{1 + word() % 1000, time<ExecTime>()};
     return Annotation{time<ExecTime>(), "t" + text(), json()};
   }

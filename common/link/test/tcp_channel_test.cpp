@@ -7,6 +7,8 @@
 #include <gmock/gmock.h>
 #include <sys/socket.h>
 
+#include <tether/link/frame_buffer.h>
+
 namespace tether::link {
 namespace {
 
@@ -76,6 +78,22 @@ TEST_F(TcpChannel, ReceivesWhatWasSentBeforeTheEnd) {
   ASSERT_TRUE(refusal.ok()) << refusal.failure().message;
   EXPECT_EQ(std::get<Refusal>(*refusal).message, "time limit");
   EXPECT_EQ(channel_->receive().failure().kind, Failure::Kind::kDisconnected);
+}
+
+TEST(SlowMessage, IsReportedWhileItArrives) {
+  const std::string frame = frame_bytes(Refusal{Refusal::Reason::kRunEnded, "time limit"});
+  const Descriptor listener = listen_on_tcp({"127.0.0.1", 0}).value();
+  const auto channel = connect_tcp(local_address(listener.get()), 10s).value();
+  const Accepted accepted = accept_tcp(listener.get());
+  const int other = accepted.socket.get();
+  const std::jthread receiver([&] { EXPECT_TRUE(channel->receive().ok()); });
+  ASSERT_EQ(::send(other, frame.data(), 10, 0), 10);
+  FrameBuffer input(kMaxRequestBytes);
+  ASSERT_TRUE(wait_readable(other, 10s));
+  input.commit(receive_some(other, input.space()).bytes);
+  const auto progress = decode(*input.next());
+  EXPECT_EQ(std::get<Progress>(*progress).received_bytes, 10u);
+  ::send(other, frame.data() + 10, frame.size() - 10, 0);
 }
 
 TEST_F(TcpChannel, CloseUnblocksReceive) {

@@ -86,6 +86,30 @@ TEST_F(TcpServer, RefusesBadInputAndServesOthers) {
   refuse(longer_than_a_hello, false);
 }
 
+TEST_F(TcpServer, CountsBytesOfLargeFramesInTransit) {
+  listen();
+  RawClient client = connect();
+  expect_served(client);
+  const auto moved = [&] { return server_->moved_bytes(events_.connected.at(0)); };
+  EXPECT_EQ(moved(), 0u);
+  server_->send(events_.connected.at(0), Due{1, {}});
+  EXPECT_TRUE(poll_until([&] { return moved() > 0; })) << "acknowledged";
+
+  const std::uint64_t before = moved();
+  RawClient other = connect();
+  const std::string small = frame_bytes(Progress{});
+  const std::string large =
+      frame_bytes(Annotation{{}, "x", "{\"x\": \"" + std::string(2000, 'x') + "\"}"});
+  client.write(small.substr(0, 8));
+  expect_served(other);
+  EXPECT_EQ(moved(), before);
+  client.write(small.substr(8) + large.substr(0, 1500));
+  EXPECT_TRUE(poll_until([&] { return moved() == before + 1500; }));
+  client.write(large.substr(1500));
+  EXPECT_TRUE(poll_until([&] { return events_.received.size() == 4; }));
+  EXPECT_EQ(moved(), before);
+}
+
 TEST_F(TcpServer, RefusesAPeerWithoutAWholeHelloInTime) {
   for (const std::string& part : {std::string(), std::string("\x40\x00", 2)}) {
     listen(20ms);

@@ -52,6 +52,9 @@ TEST(Validate, Hello) {
   expect({"sut", hello_with(1.0, std::string(257, 'x'))});
   expect({"sut", hello_with(1.0, std::string(1, '\0'))});
   expect({"clock", hello_with(1.0, "", static_cast<ClockKind>(4))});
+  Hello backwards = hello_with(1.0);
+  backwards.computing = Duration(-1);
+  expect({"computing", backwards});
 }
 
 TEST(Validate, Requests) {

@@ -30,6 +30,11 @@ constexpr double kRotationTolerance = 1e-6;
 // Largest number of open calls of one SUT (DESIGN section 2).
 constexpr std::uint64_t kMostOpenCalls = 64;
 
+std::string text_of(const record::ClockInfo& clock) {
+  return fmt::format("\"{}\" × {}{}", clock.clock, clock.cpu_factor,
+                     clock.clock == "scripted" ? " with steps of " + ns(clock.computing) : "");
+}
+
 struct SutSequences {
   bool concurrent = false;
   std::uint64_t last = 0;
@@ -46,6 +51,7 @@ class ConsistencyCheck {
 
   void run() {
     if (suts_.size() != record_.header.suts.size()) report_.add("two SUTs have the same UAV");
+    for (const record::SutInfo& sut : record_.header.suts) check_clock(sut);
     for_each_in_file_order(record_, [&](const auto& entry) { visit(entry); });
     for (const auto& [uav, sut] : suts_) check_missing(uav, sut);
     for (const record::Miscount& miscount : record_.miscounts) check_count(miscount);
@@ -60,6 +66,18 @@ class ConsistencyCheck {
                                    missing == 1 ? "" : "s", miscount.topic, miscount.found)
                      : fmt::format("number {} of {} repeated or out of order, expected number {}",
                                    miscount.found, miscount.topic, miscount.expected)});
+  }
+
+  // Rule 6: the clock of the SUT is that of its condition.
+  void check_clock(const record::SutInfo& sut) {
+    const record::ClockInfo own{sut.clock, sut.cpu_factor, sut.computing};
+    if (sut.required_clock && *sut.required_clock != own)
+      report_.add({6,
+                   sut.uav,
+                   0,
+                   {},
+                   fmt::format("the SUT's clock is {}, but the condition requires {}", text_of(own),
+                               text_of(*sut.required_clock))});
   }
 
   void visit(const Logged<Interaction>& entry) {

@@ -7,7 +7,7 @@
 /// Arithmetic on times that cannot overflow, whatever the record contains.
 namespace tether::audit {
 
-__extension__ typedef __int128 Wide;  ///< ns
+__extension__ using Wide = __int128;  ///< ns
 
 template <class Clock>
 Wide wide(std::chrono::time_point<Clock, Duration> t) {

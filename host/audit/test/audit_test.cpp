@@ -136,6 +136,7 @@ TEST(Audit, EtIsComparedOnlyWithKnownWallTimes) {
 TEST(Audit, UnstampedRequestsAreANote) {
   Record record = generate({.suts = 1});
   record.header.suts[0].clock = "unstamped";
+  record.header.suts[0].required_clock = record::ClockInfo{"unstamped"};
   for (Entry& entry : record.interactions) entry.message.stamped = false;
   const Verdict verdict = audit(record);
   EXPECT_TRUE(verdict.passed()) << to_text(verdict);

@@ -75,6 +75,11 @@ void set_arrival(Record& record, Interaction& m, SimTime at) {
   set_figures(record);
 }
 
+// The first SUT is scripted.
+void require_clock(Record& record, const record::ClockInfo& clock) {
+  record.header.suts[0].required_clock = clock;
+}
+
 // The first pair of different interactions, the second of them later in the file.
 Interaction& second_of_pair(Record& record,
                             const std::function<bool(Interaction&, Interaction&)>& wanted) {
@@ -348,6 +353,21 @@ const Planted kPlanted[] = {
     // Rule 6.
     {"not_stamped", {6}, [](Record& r) { where(r, is_sleep).stamped = false; }},
     {"stamped_by_unstamped_clock", {6}, [](Record& r) { r.header.suts[0].clock = "unstamped"; }},
+    {"clock_of_another_kind",
+     {6},
+     [](Record& r) {
+       require_clock(r, {"cpu", 1.0, {}});
+     }},
+    {"clock_with_another_factor",
+     {6},
+     [](Record& r) {
+       require_clock(r, {"scripted", 12.0, {}});
+     }},
+    {"clock_with_another_step",
+     {6},
+     [](Record& r) {
+       require_clock(r, {"scripted", 1.0, Duration(1)});
+     }},
     // Rule 7.
     {"slept_too_short", {0, 7}, [](Record& r) { where(r, is_long_sleep).reply_at -= kNs; }},
     {"slept_too_long", {7}, [](Record& r) { *where(r, is_long_sleep).sleep_until -= kNs; }},

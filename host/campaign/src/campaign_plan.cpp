@@ -39,6 +39,11 @@ std::string setting_name(const scenario::Campaign& campaign, const std::filesyst
   return "file " + name_in(campaign, file);
 }
 
+// Parallel trials would distort the times of such SUTs.
+bool is_by_wall(scenario::Clock clock) {
+  return clock == scenario::Clock::kWall || clock == scenario::Clock::kUnstamped;
+}
+
 }  // namespace
 
 std::filesystem::path trial_folder(const std::string& scenario, const std::string& condition,
@@ -67,7 +72,7 @@ int parallel_trials(const TrialPlan& plan, int jobs) {
   const scenario::Condition& condition = *plan.condition;
   // The SUTs of parallel trials would be bound to the same cores.
   const bool is_bound = condition.target && condition.target->cores > 0;
-  if (condition.clock == scenario::Clock::kWall || is_bound || jobs == 1) return 1;
+  if (is_by_wall(condition.clock) || is_bound || jobs == 1) return 1;
   if (condition.policy == scenario::Policy::kConservativeBarrier) return jobs;
   if (condition.simulator != "mujoco") return 1;
   // A stalling SUT computes for one part in `cpu_factor` of the time; the embedded simulator with
@@ -105,7 +110,7 @@ void require_jobs_allowed(const scenario::Campaign& campaign, int jobs) {
         refuse_jobs(jobs, fmt::format("{} uses the simulator at {}, which serves one run at a "
                                       "time. Use --jobs 1.",
                                       where, condition.simulator));
-      if (condition.clock == scenario::Clock::kWall)
+      if (is_by_wall(condition.clock))
         refuse_jobs(jobs, fmt::format("{} measures its SUT by the wall clock, which parallel "
                                       "trials would distort. Use --jobs 1, or clock = \"cpu\" or "
                                       "\"scripted\".",

@@ -56,6 +56,7 @@ TEST(ParallelTrials, AreAsManyAsDisturbNothing) {
       {"barrier", kConservativeBarrier, kCpu, 6.0, 0.0, 2, 4, 4},
       {"scripted", kConservativeBarrier, kScripted, 1.0, 0.0, 1, 4, 4},
       {"a wall clock", kConservativeBarrier, kWall, 1.0, 0.0, 1, 4, 1},
+      {"the coordinator's clock", kConservativeBarrier, kUnstamped, 1.0, 0.0, 1, 4, 1},
       {"barrier in Gazebo", kConservativeBarrier, kCpu, 6.0, 0.0, 1, 4, 4, "gazebo"},
       {"a target of one core", kConservativeBarrier, kCpu, 1.0, 0.0, 1, 4, 1, "mujoco", 1},
       {"free, a wall clock", kFreeRunning, kWall, 1.0, 0.3, 1, 4, 1},

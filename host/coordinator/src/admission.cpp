@@ -50,6 +50,10 @@ std::string to_text(const ClockSetting& setting) {
   return std::string(link::name(setting.kind));
 }
 
+ClockSetting clock_of(const link::Hello& hello) {
+  return {.kind = hello.clock, .cpu_factor = hello.cpu_factor, .computing = hello.computing};
+}
+
 std::optional<std::string> clock_fault(const link::Hello& hello,
                                        const std::optional<ClockSetting>& wanted) {
   if (hello.concurrent &&
@@ -58,16 +62,17 @@ std::optional<std::string> clock_fault(const link::Hello& hello,
         "the clock \"{}\" does not work for several threads; start the SUT with "
         "TETHER_CLOCK='wall'",
         link::name(hello.clock));
-  const bool is_measured =
-      hello.clock == link::ClockKind::kWall || hello.clock == link::ClockKind::kCpu;
-  if (!wanted || !is_measured) return std::nullopt;
-  const std::string given = to_text({.kind = hello.clock, .cpu_factor = hello.cpu_factor});
+  if (!wanted) return std::nullopt;
+  const std::string given = to_text(clock_of(hello));
   const std::string asked = to_text(*wanted);
   if (given == asked) return std::nullopt;
-  return fmt::format(
-      "the SUT's clock is \"{}\", but the condition requires \"{}\"; start the SUT with "
-      "TETHER_CLOCK='{}'",
-      given, asked, asked);
+  std::string advice = fmt::format("start the SUT with TETHER_CLOCK='{}'", asked);
+  if (hello.clock == link::ClockKind::kUnstamped)
+    advice = "stamp the requests, or allow this with clock = \"unstamped\" in the condition";
+  if (wanted->kind == link::ClockKind::kUnstamped)
+    advice = "Tether's client library stamps its requests; use another clock in the condition";
+  return fmt::format("the SUT's clock is \"{}\", but the condition requires \"{}\"; {}", given,
+                     asked, advice);
 }
 
 }  // namespace tether::coordinator

@@ -18,9 +18,11 @@ std::variant<std::size_t, link::Refusal> admit(const link::Hello& hello, const s
                                                const std::vector<std::string>& uavs,
                                                const std::vector<bool>& taken);
 
+/// The clock that a SUT announces.
+ClockSetting clock_of(const link::Hello& hello);
+
 /// What is wrong with a SUT's clock: it is not that of its condition, or a concurrent SUT cannot
-/// use it. None if nothing is. Scripted clocks, and unstamped ones of serial SUTs, are always
-/// accepted.
+/// use it. None if nothing is.
 std::optional<std::string> clock_fault(const link::Hello& hello,
                                        const std::optional<ClockSetting>& wanted);
 

@@ -222,6 +222,11 @@ void Coordinator::Impl::watch() {
     flushed_ = now;
     log_.flush();
   }
+  for (Session& session : sessions_) {
+    if (!session.joined() || session.left) continue;
+    const std::uint64_t moved = server_->moved_bytes(session.peer);
+    if (std::exchange(session.moved_bytes, moved) != moved) watchdog_.heard(session.uav, now);
+  }
   if (const auto overdue = watchdog_.overdue(parties(now), st())) end(*overdue);
   if (hooks_.on_status) hooks_.on_status(status(now));
   stop_if_asked();
@@ -244,7 +249,8 @@ Party Coordinator::Impl::party(const Session& session, WallTime now) const {
               .joined = session.joined(),
               .computing = is_computing(session),
               .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
-              .silence = watchdog_.silence(session.uav, now)};
+              .silence = watchdog_.silence(session.uav, now),
+              .received_bytes = session.received_bytes};
   for (const PendingInteraction& pending : session.open)
     party.reply_at = std::min(party.reply_at.value_or(ExecTime::max()), pending.entry.reply_at);
   return party;

@@ -72,6 +72,12 @@ double max_acceleration_m_s2(const uav::MultirotorParameters& airframe, double g
   return thrust_N / airframe.mass_kg + std::abs(gravity_m_s2);
 }
 
+record::ClockInfo describe(const ClockSetting& clock) {
+  return {.clock = std::string(link::name(clock.kind)),
+          .cpu_factor = clock.cpu_factor,
+          .computing = clock.computing};
+}
+
 }  // namespace
 
 record::Header Coordinator::Impl::make_header() const {
@@ -93,7 +99,11 @@ record::Header Coordinator::Impl::make_header() const {
          .command_latency = session.command_latency,
          .concurrent = session.is_concurrent(),
          .cores = session.hello.clock == link::ClockKind::kCpu ? session.cores : 0,
-         .max_acceleration_m_s2 = max_acceleration_m_s2(uav.airframe, world().gravity_m_s2)});
+         .max_acceleration_m_s2 = max_acceleration_m_s2(uav.airframe, world().gravity_m_s2),
+         .computing = session.hello.computing,
+         .required_clock = {}});
+    if (const auto& required = options_.uavs[session.uav].clock)
+      header.suts.back().required_clock = describe(*required);
     for (std::size_t i = 0; i < uav.sensors.size(); ++i)
       header.sensors.push_back(
           describe(uav.name, uav.sensors[i], options_.uavs[session.uav].timings[i]));

@@ -54,10 +54,12 @@ void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& messa
   const WallTime now = host_clock_();
   if (shows_life(message, standing(*session), session->hello.clock))
     watchdog_.heard(session->uav, now);
+  const auto* progress = std::get_if<link::Progress>(&message);
+  session->received_bytes = progress ? progress->received_bytes : 0;
+  if (session->received_bytes > 0) return;
   if (const auto* request = std::get_if<link::Request>(&message))
     return on_request(*session, *request, now);
-  if (const auto* progress = std::get_if<link::Progress>(&message))
-    return on_progress(*session, *progress, now);
+  if (progress) return on_progress(*session, *progress, now);
   if (const auto* note = std::get_if<link::Annotation>(&message))
     return on_annotation(*session, *note);
   if (const auto* refusal = std::get_if<link::Refusal>(&message))
@@ -128,6 +130,7 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
 void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress,
                                     WallTime now) {
   if (!running_ || !is_synchronised() || !is_stamp(progress.reached)) return;
+  if (session.timer) return;  // its time is the coordinator's, not the client's
   if (const auto fault = fault_of(progress, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
   if (progress.stopped) return on_stop(session, progress.reached, now);
@@ -168,6 +171,7 @@ Standing Coordinator::Impl::standing(const Session& session) const {
           .held = running_ && barrier_.is_held(session.uav),
           .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
           .open_calls = session.open.size(),
+          .received_bytes = session.received_bytes,
           .next_sequence = session.next_sequence,
           .st = st(),
           .calls_in_step = st() > session.called_at ? 0 : session.calls_in_step,

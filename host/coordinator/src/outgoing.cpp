@@ -47,6 +47,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   entry.grid_error = std::max(entry.grid_error, same_instant(entry.reply_at) - st);
   entry.wall_at_release = host_clock_();
   server_->send(session.peer, std::move(message));
+  session.received_bytes = 0;
 
   session.last_hold = entry.wall_at_release - entry.wall_at_arrival;
   watchdog_.heard(session.uav, entry.wall_at_release);

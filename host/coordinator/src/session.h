@@ -47,7 +47,9 @@ struct Session {
 
   /// Requests without a reply, in order; at most one for a serial SUT.
   std::vector<PendingInteraction> open;
-  Duration last_hold{0};  ///< WT from the last request to its reply; 0: none yet
+  std::uint32_t received_bytes = 0;  ///< of its newest reply, if that takes long to arrive
+  std::uint64_t moved_bytes = 0;     ///< of link::Server, when the limits were last checked
+  Duration last_hold{0};             ///< WT from the last request to its reply; 0: none yet
 
   bool joined() const { return peer != 0; }
   bool is_concurrent() const { return hello.concurrent; }

@@ -48,6 +48,7 @@ struct Standing {
   bool held = false;         ///< it is stopped until a reply
   ExecTime bound;            ///< ET that it has reached; the reply's if it is held
   std::size_t open_calls = 0;
+  std::uint32_t received_bytes = 0;  ///< of a reply that takes long to arrive
   std::uint64_t next_sequence = 1;
   SimTime st;
   std::size_t calls_in_step = 0;  ///< at this ST

@@ -49,10 +49,15 @@ std::string describe_blocking(SimTime st, const std::vector<Party>& parties) {
   }
   if (!blocker) return "";
   return fmt::format(
-      "ST {:.6f} s{}: blocked on SUT \"{}\" (UAV \"{}\"), which has been computing for {:.1f} s "
+      "ST {:.6f} s{}: blocked on SUT \"{}\" (UAV \"{}\"), which has been {} for {:.1f} s "
       "without a message; last message at ET {:.6f} s",
       to_seconds(st), waiting.empty() ? "" : fmt::format(" ({})", fmt::join(waiting, ", ")),
-      blocker->sut, blocker->uav, to_seconds(blocker->silence), to_seconds(blocker->bound));
+      blocker->sut, blocker->uav,
+      blocker->received_bytes == 0
+          ? "computing"
+          : fmt::format("waiting for the rest of its reply (received {} bytes)",
+                        blocker->received_bytes),
+      to_seconds(blocker->silence), to_seconds(blocker->bound));
 }
 
 bool shows_life(const link::Message& message, const Standing& sut, link::ClockKind clock) {
@@ -60,6 +65,7 @@ bool shows_life(const link::Message& message, const Standing& sut, link::ClockKi
   if (std::holds_alternative<link::Annotation>(message)) return false;
   const auto* progress = std::get_if<link::Progress>(&message);
   if (!progress) return true;
+  if (progress->received_bytes > 0) return progress->received_bytes > sut.received_bytes;
   if (clock == link::ClockKind::kWall && sut.open_calls == 0) return false;
   return progress->reached > sut.bound;
 }

@@ -21,6 +21,7 @@ struct Party {
   ExecTime bound;                      ///< ET that it is known to have reached
   Duration silence{0};                 ///< WT since its last sign of life
   std::optional<ExecTime> reply_at{};  ///< of its open calls the earliest
+  std::uint32_t received_bytes = 0;    ///< of a reply that takes long to arrive
 };
 
 /// "it was computing; last message at ET 1.200000 s"
@@ -31,7 +32,8 @@ std::string describe_blocking(SimTime st, const std::vector<Party>& parties);
 
 /// Whether a message is a sign of life. Under the barrier, progress is sent by a helper thread, and
 /// the SUT itself may be stuck. If it computes, its CPU time grows. A wall clock always grows, so
-/// it counts only while a call is open. Annotations do not count: a SUT could send them for ever.
+/// it counts only while a call is open. More bytes of a reply count. Annotations do not count: a
+/// SUT could send them for ever.
 bool shows_life(const link::Message& message, const Standing& sut, link::ClockKind clock);
 
 /// Detects that a run takes too long or that a SUT is silent for too long, and describes which SUT
@@ -50,7 +52,7 @@ class Watchdog {
   void begin(WallTime now);
   /// ST advanced, a reply was sent, or a SUT joined.
   void moved(WallTime now) { moved_ = now; }
-  /// A SUT gave a sign of life, or a reply was sent to it.
+  /// A SUT gave a sign of life, a reply was sent to it, or a message in transit moved on.
   void heard(std::size_t sut, WallTime now) { last_heard_[sut] = now; }
 
   /// Whether the limits have to be checked again; call it once per turn of the loop. Time in which

@@ -7,6 +7,7 @@ namespace tether::coordinator {
 namespace {
 
 using link::Refusal;
+using std::chrono::microseconds;
 using testing::HasSubstr;
 
 link::Hello hello_for(const std::string& uav) {
@@ -62,15 +63,28 @@ TEST(Admission, AConcurrentSutNeedsAClockForAllThreads) {
   }
 }
 
-TEST(Admission, TheFactorOfTheClockMustMatch) {
-  link::Hello sut = hello_for("alpha");
-  sut.clock = link::ClockKind::kWall;
-  sut.cpu_factor = 4.0;
-  const ClockSetting scaled{.kind = link::ClockKind::kWall, .cpu_factor = 4.0};
-  EXPECT_FALSE(clock_fault(sut, scaled));
-  EXPECT_THAT(clock_fault(sut, ClockSetting{}).value_or(""), HasSubstr("TETHER_CLOCK='wall'"));
-  sut.cpu_factor = 1.0;
-  EXPECT_THAT(clock_fault(sut, scaled).value_or(""), HasSubstr("TETHER_CLOCK='wall*4'"));
+TEST(Admission, OnlyTheClockOfTheConditionIsAccepted) {
+  const std::pair<ClockSetting, std::string> clocks[] = {
+      {{.kind = link::ClockKind::kWall}, "'wall'"},
+      {{.kind = link::ClockKind::kWall, .cpu_factor = 4.0}, "'wall*4'"},
+      {{.kind = link::ClockKind::kCpu}, "'cpu*1'"},
+      {{.kind = link::ClockKind::kCpu, .cpu_factor = 12.0}, "'cpu*12'"},
+      {{.kind = link::ClockKind::kScripted, .computing = microseconds(1)}, "'scripted*0.001'"},
+      {{.kind = link::ClockKind::kScripted, .computing = microseconds(2500)}, "'scripted*2.5'"},
+      {{.kind = link::ClockKind::kUnstamped}, ""}};
+  for (const auto& [wanted, advice] : clocks) {
+    for (const auto& [own, unused] : clocks) {
+      link::Hello sut = hello_for("alpha");
+      sut.clock = own.kind;
+      sut.cpu_factor = own.cpu_factor;
+      sut.computing = own.computing;
+      const auto fault = clock_fault(sut, wanted);
+      EXPECT_EQ(fault.has_value(), to_text(own) != to_text(wanted));
+      EXPECT_FALSE(clock_fault(sut, std::nullopt));
+      const bool is_stamped = own.kind != link::ClockKind::kUnstamped;
+      EXPECT_THAT(is_stamped ? fault.value_or(advice) : advice, HasSubstr(advice));
+    }
+  }
 }
 
 }  // namespace

@@ -161,6 +161,7 @@ TEST_F(CoordinatorTest, ProgressOfOneSutReleasesAnother) {
 }
 
 TEST_F(CoordinatorTest, MeasuresTheTimeOfAnUnstampedClient) {
+  clock_ = ClockSetting{.kind = link::ClockKind::kUnstamped};
   make();
   server_->add_sut(hello("", link::ClockKind::kUnstamped),
                    {read(seconds(99), kRange), finish(seconds(99))});
@@ -169,7 +170,9 @@ TEST_F(CoordinatorTest, MeasuresTheTimeOfAnUnstampedClient) {
   EXPECT_FALSE(entry.stamped);
   EXPECT_GT(entry.request_at, us(0));
   EXPECT_LT(entry.request_at, us(1'000'000));  // some readings of the host clock
-  EXPECT_EQ(recorder_.header.suts.at(0).clock, "unstamped");
+  const record::SutInfo& sut = recorder_.header.suts.at(0);
+  EXPECT_EQ(sut.clock, "unstamped");
+  EXPECT_EQ(sut.required_clock, (record::ClockInfo{"unstamped"}));
 }
 
 TEST_F(CoordinatorTest, FreeRunningRepliesAtOnceAndChargesNothing) {
@@ -344,6 +347,29 @@ TEST_F(CoordinatorTest, RecordsAnnotationsOfSutsOnly) {
 }
 
 // ---- Status and messages while nothing moves.
+
+// Of a reply, as the server sees it or as the SUT reports it.
+TEST_F(CoordinatorTest, TransitIsNotSilence) {
+  options_.hang_limit = seconds(3);
+  for (const bool is_reported : {true, false}) {
+    make();
+    const auto peer = server_->add_sut(hello(), {read(Duration(0), kCamera)});
+    const WallTime arrival = now_ + seconds(20);
+    std::uint32_t bytes = 0;
+    std::string blocked;
+    server_->moved = [&] { return is_reported || now_ > arrival ? 0 : ++bytes; };
+    hooks_.on_status = [&](const RunStatus& status) {
+      if (now_ > arrival) return;
+      blocked = status.blocked;
+      if (is_reported) server_->deliver(peer, link::Progress{.received_bytes = ++bytes});
+    };
+    const RunReport report = run();
+    EXPECT_EQ(report.end, RunEnd::kSutHung) << "later";
+    EXPECT_GT(report.wall, seconds(22));
+    EXPECT_LT(report.wall, seconds(24));
+    EXPECT_EQ(blocked.find("the rest of its reply") != std::string::npos, is_reported) << blocked;
+  }
+}
 
 TEST_F(CoordinatorTest, TheStatusNamesTheSutThatBlocksTheRun) {
   options_.hang_limit = seconds(3);

@@ -73,6 +73,7 @@ class ScriptedServer final : public link::Server {
     if (const auto* welcome = std::get_if<link::Welcome>(&message)) proceed(peer, welcome->start);
     if (const auto* reply = std::get_if<link::Reply>(&message)) proceed(peer, reply->resume_at);
   }
+  std::uint64_t moved_bytes(link::PeerId) override { return moved ? moved() : 0; }
   void close(link::PeerId peer) override { closed.push_back(peer); }
 
   std::map<link::PeerId, std::vector<link::Message>> sent;
@@ -80,6 +81,7 @@ class ScriptedServer final : public link::Server {
   std::uint64_t polls = 0;
   /// Which of so many waiting messages; its peer's first one is next.
   std::function<std::size_t(std::size_t)> choose = [](std::size_t) { return 0; };
+  std::function<std::uint64_t()> moved;
 
  private:
   struct Sut {

@@ -160,11 +160,14 @@ TEST(ShowsLife, IgnoresTheHelperThreadOfAStuckSut) {
       {"CPU time that did not advance", same, kCpu, 0, false},
       {"the wall clock while no call is open", further, kWall, 0, false},
       {"the wall clock while a call is open", further, kWall, 1, true},
+      {"more of a reply in transit", link::Progress{.received_bytes = 8}, kWall, 0, true},
+      {"no more of a reply in transit", link::Progress{.received_bytes = 7}, kWall, 0, false},
   };
   for (const LifeCase& c : cases) {
     Standing sut{.running = true,
                  .bound = same.reached,
                  .open_calls = c.open_calls,
+                 .received_bytes = 7,
                  .st = {},
                  .sensors = sensors};
     EXPECT_EQ(shows_life(c.message, sut, c.clock), c.shows_life) << c.what;

@@ -94,6 +94,12 @@ void members(auto& io, Maybe<Annotation> auto& m) {
   io("topic", m.topic);
 }
 
+void members(auto& io, Maybe<ClockInfo> auto& m) {
+  io("clock", m.clock);
+  io("cpu_factor", m.cpu_factor);
+  if (io.has("computing_ns", m.computing > Duration(0))) io("computing_ns", m.computing);
+}
+
 void members(auto& io, Maybe<SutInfo> auto& m) {
   constexpr int kMostCores = 1024;
   io("uav", m.uav);
@@ -105,6 +111,9 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
   if (io.has("cores", m.cores > 0)) io.within("cores", m.cores, 1, kMostCores);
   if (io.has("max_acceleration_m_s2", m.max_acceleration_m_s2 > 0.0))
     io.positive("max_acceleration_m_s2", m.max_acceleration_m_s2);
+  if (io.has("computing_ns", m.computing > Duration(0))) io("computing_ns", m.computing);
+  if (!io.has("required_clock", m.required_clock.has_value())) return;
+  io.object("required_clock", [&](auto& clock) { members(clock, io.value_of(m.required_clock)); });
 }
 
 void members(auto& io, Maybe<CameraInfo> auto& m) {

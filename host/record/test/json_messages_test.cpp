@@ -153,6 +153,7 @@ TEST(JsonMetadata, OptionalValuesHaveDefaults) {
   EXPECT_EQ(unbounded.delay_max, Duration::max());
 
   EXPECT_EQ(header_from_metadata(changed("suts", ",\"cores\":4", "")).suts[0].cores, 0);
+  EXPECT_FALSE(header_from_metadata(to_metadata(header())).suts[1].required_clock);
   EXPECT_FALSE(
       header_from_metadata(changed("suts", ",\"concurrent\":true", "")).suts[1].concurrent);
 

@@ -12,10 +12,11 @@ namespace tether::runner {
 
 coordinator::ClockSetting clock_of(const scenario::Condition& condition) {
   using link::ClockKind;
-  const ClockKind kind = condition.clock == scenario::Clock::kCpu        ? ClockKind::kCpu
-                         : condition.clock == scenario::Clock::kScripted ? ClockKind::kScripted
-                                                                         : ClockKind::kWall;
-  return {kind, condition.cpu_factor, condition.computing};
+  // In the order of scenario::Clock.
+  constexpr ClockKind kKinds[] = {ClockKind::kWall, ClockKind::kCpu, ClockKind::kScripted,
+                                  ClockKind::kUnstamped};
+  return {kKinds[static_cast<std::size_t>(condition.clock)], condition.cpu_factor,
+          condition.computing};
 }
 
 std::vector<std::string> command_line(const scenario::Sut& sut) {

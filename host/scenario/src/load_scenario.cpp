@@ -16,7 +16,7 @@ namespace tether::scenario {
 namespace {
 
 constexpr std::array<std::string_view, 2> kPolicies = {"conservative_barrier", "free_running"};
-constexpr std::array<std::string_view, 3> kClocks = {"wall", "cpu", "scripted"};
+constexpr std::array<std::string_view, 4> kClocks = {"wall", "cpu", "scripted", "unstamped"};
 constexpr std::array<std::string_view, 2> kSimulators = {"mujoco", "gazebo"};
 
 constexpr double kLongestRun_s = 7 * 24 * 3600.0;
@@ -204,17 +204,17 @@ void read_clock(const toml::Table& table, Condition& condition) {
   if (condition.clock != Clock::kCpu && table.has("cpu_factor")) {
     table.fail("cpu_factor", "scales CPU time, so it needs clock = \"cpu\".");
   }
-  if (condition.clock != Clock::kScripted) {
-    if (!table.has("computing_ms")) return;
+  const bool is_scripted = condition.clock == Clock::kScripted;
+  if (is_scripted) condition.computing = table.duration("computing_ms", kComputing_ms);
+  if (!is_scripted && table.has("computing_ms")) {
     table.fail("computing_ms",
                "replaces the measured computing time, so it needs clock = \"scripted\".");
   }
-  condition.computing = table.duration("computing_ms", kComputing_ms);
-  if (condition.policy == Policy::kFreeRunning) {
-    table.fail(
-        "clock",
-        "is \"scripted\", which needs policy = \"conservative_barrier\", because free running uses "
-        "the wall clock.");
+  const bool needs_barrier = is_scripted || condition.clock == Clock::kUnstamped;
+  if (needs_barrier && condition.policy == Policy::kFreeRunning) {
+    table.fail("clock", fmt::format("is \"{}\", which needs policy = \"conservative_barrier\", "
+                                    "because free running uses the wall clock.",
+                                    name(condition.clock)));
   }
 }
 

@@ -125,6 +125,8 @@ TEST_F(LoadScenario, ReadsConditions) {
   EXPECT_EQ(s.conditions[3].cpu_factor, 6.0);
   EXPECT_EQ(s.conditions[3].simulator, "gazebo");
   EXPECT_EQ(s.find_condition("nowhere"), nullptr);
+  EXPECT_EQ(load_with("\"cpu\"\ncpu_factor = 1.5", "\"unstamped\"").conditions[0].clock,
+            Clock::kUnstamped);
 }
 
 TEST_F(LoadScenario, ReadsProfilesAndAppliesAnotherOnTop) {
@@ -228,7 +230,8 @@ TEST_F(LoadScenario, RefusesWrongConditions) {
                   {factor, factor + "\ncpu_factor = 2", 68, "cpu_factor"},
                   {"cpu_factor = 1.5", "computing_ms = 2", 61, "computing_ms"},
                   {"computing_ms = 2.5", "computing_ms = 0", 73, "computing_ms"},
-                  {"clock = \"wall\"", "clock = \"scripted\"\ncomputing_ms = 1", 66, "clock"}});
+                  {"clock = \"wall\"", "clock = \"scripted\"\ncomputing_ms = 1", 66, "clock"},
+                  {"clock = \"wall\"", "clock = \"unstamped\"", 66, "clock"}});
 }
 
 TEST_F(LoadScenario, RefusesWrongMetricsAndNumbers) {

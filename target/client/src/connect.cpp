@@ -15,6 +15,7 @@ link::Hello hello_for(const ConnectOptions& options) {
   hello.uav = options.uav;
   hello.clock = options.time->kind();
   hello.cpu_factor = options.time->factor();
+  hello.computing = options.time->computing();
   hello.token = options.token;
   return hello;
 }

@@ -62,6 +62,10 @@ std::unique_ptr<TimeSource> make_source(const std::string& text) {
 
 Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text) {
   if (auto source = make_source(text)) return source;
+  if (text == "unstamped")
+    return Failure{Failure::Kind::kInvalid,
+                   "'unstamped' is for clients that do not stamp their requests; this library "
+                   "always does. Use another clock in the condition"};
   return Failure{
       Failure::Kind::kInvalid,
       "'" + text +

@@ -155,6 +155,7 @@ class ScriptedSource final : public TimeSource {
  public:
   explicit ScriptedSource(Duration step) : step_(step) {}
   link::ClockKind kind() const override { return link::ClockKind::kScripted; }
+  Duration computing() const override { return step_; }
   Duration elapsed() const override { return ++readings_ * step_; }
 
  private:

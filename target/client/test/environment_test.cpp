@@ -70,7 +70,7 @@ TEST_F(Environment, TetherExecCountsForMore) {
 TEST_F(Environment, NamesTheVariableThatIsMissingOrWrong) {
   for (const std::string clock :
        {"", "clock", "cpu*", "cpu*0", "cpu*-1", "cpu*nan", "cpu*2x", "cpu*1e9", "wall*", "wall*0",
-        "wall4", "cpu*2,5", "scripted", "scripted*0", "Wall"}) {
+        "wall4", "cpu*2,5", "scripted", "scripted*0", "unstamped", "Wall"}) {
     set("TETHER_CLOCK", clock);
     expect_failure("TETHER_CLOCK", clock);
   }

@@ -57,7 +57,7 @@ class Arm64 : public testing::Test {
   }
 
   TempFolder folder_;
-  std::filesystem::path scenario_ = write_face_scenario(folder_.path());
+  std::filesystem::path scenario_ = write_face_scenario(folder_.path(), {kScripted});
 };
 
 TEST_F(Arm64, FliesAsTheTargetOfASynchronisedRun) {

@@ -64,6 +64,20 @@ TEST_F(SteppedClock, ByADayInMidRunChangesNothing) {
 
 class WrongClock : public RunTest {};
 
+// Its own TETHER_CLOCK is not that of the run.
+TEST_F(WrongClock, OfAnotherKindFactorOrStepIsRefused) {
+  const std::tuple<std::string, std::string, std::vector<Substitution>> cases[] = {
+      {"scripted*0.001", "slow", {}}, {"cpu", "slow", {}}, {"scripted*0.001", "host", {kScripted}}};
+  for (const auto& [clock, condition, changes] : cases) {
+    std::vector<Substitution> all = changes;
+    all.emplace_back("command = [\"",
+                     "command = [\"/usr/bin/env\", \"TETHER_CLOCK=" + clock + "\", \"");
+    const Output output = run(flight("good", {"--condition", condition}, all));
+    expect_failed(output, {"setup_failed", {"TETHER_CLOCK='"}});
+    std::filesystem::remove_all(out_);
+  }
+}
+
 TEST_F(WrongClock, AheadEndsTheRunWithItsSize) {
   for (const std::string mode : {"lie_later", "lie_in_progress"}) {
     const Output output = run(flight(mode, {"--real-time-factor", "1"},

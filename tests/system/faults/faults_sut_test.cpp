@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, PastTheTimeLimit,
 class OnceItHasFinished : public RunTest, public testing::WithParamInterface<std::string> {};
 
 TEST_P(OnceItHasFinished, AStruckSutSpoilsNothing) {
-  const Output output = run(flight(GetParam(), {"--real-time-factor", "1"}));
+  const Output output = run(flight(GetParam(), {"--real-time-factor", "1"}, {kScripted}));
   EXPECT_EQ(output.code, 0) << output.err;
   EXPECT_TRUE(wait_until_gone(mark_));
   EXPECT_EQ(result()["outcome"], "goal_reached");
@@ -152,6 +152,14 @@ TEST_F(StoppedSut, ChangesNothingUnderAScriptedClock) {
     expect_same_runs(alone, out_);
     std::filesystem::remove_all(out_);
   }
+}
+
+// The image takes 3.7 s to arrive, and hang_limit_s is 2.
+TEST_F(RunTest, TransitOnASlowLinkIsNotSilence) {
+  ExternalRun run(write_hover_scenario(folder_.path(), "unused", {kWall}), out_);
+  const SlowWire wire(run.address(), 1, 2);
+  const auto sut = run.start_sut({bad_sut_program(), "look"}, {{"TETHER_ADDRESS", wire.address()}});
+  EXPECT_EQ(run.wait().code, 0) << reason();
 }
 
 // By a wall clock, the time in which it was stopped counts as computing.

@@ -40,6 +40,7 @@ class LyingSource final : public tether::client::TimeSource {
   explicit LyingSource(std::unique_ptr<TimeSource> right) : right_(std::move(right)) {}
   tether::link::ClockKind kind() const override { return right_->kind(); }
   double factor() const override { return right_->factor(); }
+  tether::Duration computing() const override { return right_->computing(); }
   tether::Duration elapsed() const override {
     return right_->elapsed() + tether::Duration(g_ahead_ns.load());
   }
@@ -118,7 +119,10 @@ void send_all(int fd, const void* bytes, std::size_t size) {
 tether::link::Hello hello_of_this_run() {
   tether::link::Hello hello;
   hello.sut = "bad_sut";
-  hello.clock = tether::link::ClockKind::kCpu;
+  const auto time = tether::client::parse_time_source(std::getenv("TETHER_CLOCK")).value();
+  hello.clock = time->kind();
+  hello.cpu_factor = time->factor();
+  hello.computing = time->computing();
   hello.token = std::getenv("TETHER_TOKEN");
   hello.uav = std::getenv("TETHER_UAV");
   return hello;
@@ -176,9 +180,7 @@ void strike_on_the_wire(const Strike& strike) {
   if (phase == "joined" || phase == "computing" || phase == "finished") return;
   const int fd = connect_socket(phase == "reply_half" ? 32'768 : 0);
   if (phase == "connected") std::raise(strike.signal);
-  auto hello = hello_of_this_run();
-  hello.clock = tether::link::ClockKind::kScripted;  // nothing was computed by then
-  send_hello(fd, hello);
+  send_hello(fd, hello_of_this_run());
   send_far_request(fd, phase);
   constexpr int kMoreThanAWelcome = 8192;
   int unread = 0;

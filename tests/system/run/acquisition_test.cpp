@@ -89,13 +89,11 @@ Acquisitions acquire(const TempFolder& folder, const std::string& name, bool has
   all.insert(all.end(), options.begin(), options.end());
   ExternalRun run(scenario, out, all);
 
-  Variables environment{{"TETHER_CLOCK", "cpu*10"}};
-  std::unique_ptr<Process> proxy;
+  Variables environment;
+  std::optional<SlowWire> wire;
   if (has_slow_wire) {
-    proxy = std::make_unique<Process>(Command{{proxy_program(), run.address(), "20", "100"}});
-    EXPECT_TRUE(proxy->wait_for_out("\n", 10s)) << proxy->err();
-    const std::string address = proxy->out().substr(0, proxy->out().find('\n'));
-    environment.emplace_back("TETHER_ADDRESS", address);
+    wire.emplace(run.address(), 20, 100);
+    environment.emplace_back("TETHER_ADDRESS", wire->address());
   }
   const auto profile = folder / (name + ".toml");
   const auto sut =

@@ -18,7 +18,7 @@ class ScriptedRun : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<TempFolder>();
-    scenario_ = write_face_scenario(folder_->path());
+    scenario_ = write_face_scenario(folder_->path(), {kScripted});
     fly("first", {"--images"});
   }
   static void TearDownTestSuite() { folder_.reset(); }
@@ -46,10 +46,8 @@ TEST_F(ScriptedRun, IsTheSameWithASlowSimulator) {
 
 TEST_F(ScriptedRun, IsTheSameOverASlowLink) {
   ExternalRun run(scenario_, out("slow_link"), {"--images"});
-  Process proxy({{proxy_program(), run.address(), "20", "100"}});
-  ASSERT_TRUE(proxy.wait_for_out("\n", 10s)) << proxy.err();
-  const std::string address = proxy.out().substr(0, proxy.out().find('\n'));
-  const auto sut = run.start_sut(face_sut(), {{"TETHER_ADDRESS", address}});
+  const SlowWire wire(run.address(), 20, 100);
+  const auto sut = run.start_sut(face_sut(), {{"TETHER_ADDRESS", wire.address()}});
   EXPECT_EQ(run.wait().code, 0) << sut->err();
 
   expect_same_runs(out("first"), out("slow_link"));
@@ -66,6 +64,7 @@ TEST_F(ScriptedRun, IsAnotherWithAnotherSeed) {
 
 /// A second UAV beside the first, turned the other way.
 const std::vector<Substitution> kTwoUavs = {
+    {kScripted.first, "clock = \"scripted\"\ncomputing_ms = 7.3"},
     {"\n[sut]", R"(
 [[uav]]
 name = "uav2"
@@ -86,8 +85,7 @@ TEST(TwoUavs, FlyUnderOneBarrierAndRepeat) {
     const std::vector<Spinner> load(*out == 'b' ? 3 : 0);
     ExternalRun run(scenario, folder / out, {"--images"});
     const auto first = run.start_sut(face_sut(), {{"TETHER_UAV", "uav1"}});
-    const auto second =
-        run.start_sut(face_sut(), {{"TETHER_UAV", "uav2"}, {"TETHER_CLOCK", "scripted*7.3"}});
+    const auto second = run.start_sut(face_sut(), {{"TETHER_UAV", "uav2"}});
     const Output output = run.wait();
     EXPECT_EQ(output.code, 0) << output.err << first->err() << second->err();
     EXPECT_EQ(audit_code(folder / out), 0);

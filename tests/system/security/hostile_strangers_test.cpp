@@ -26,6 +26,7 @@ link::Hello hello_with(const std::string& token) {
   link::Hello hello;
   hello.sut = "hostile";
   hello.clock = link::ClockKind::kScripted;
+  hello.computing = 2ms;
   hello.token = token;
   return hello;
 }
@@ -119,7 +120,7 @@ class Strangers : public testing::TestWithParam<Attack> {
  protected:
   static void SetUpTestSuite() {
     folder_ = std::make_unique<TempFolder>();
-    scenario_ = write_hover_scenario(folder_->path(), "good");
+    scenario_ = write_hover_scenario(folder_->path(), "good", {kScripted});
     memory_alone_KiB_ = fly("alone", {}, [](const auto&, const auto&) {});
   }
   static void TearDownTestSuite() { folder_.reset(); }
@@ -171,7 +172,7 @@ INSTANTIATE_TEST_SUITE_P(Attacks, Strangers, testing::ValuesIn(kAttacks), [](con
 /// A SUT whose UAV is taken, and a Hello with the token of an earlier run.
 TEST(Hello, IsRefusedForAUavThatIsTakenAndInALaterRun) {
   const TempFolder folder;
-  const auto scenario = write_hover_scenario(folder.path(), "good");
+  const auto scenario = write_hover_scenario(folder.path(), "good", {kScripted});
   std::string recorded;
   for (const char* out : {"first", "second"}) {
     Process process(with(tether({"run", scenario, "--target", "wait", "--out", folder / out}), {},

@@ -34,6 +34,7 @@ link::Hello hello_for(const std::string& uav) {
   hello.sut = "hostile 1.0";
   hello.uav = uav;
   hello.clock = link::ClockKind::kScripted;
+  hello.computing = 2ms;
   hello.token = ExternalRun::token();
   return hello;
 }
@@ -198,7 +199,7 @@ class HostileSut : public testing::TestWithParam<Misdeed> {
 };
 
 TEST_P(HostileSut, EndsItsRunByName) {
-  ExternalRun run(write_hover_scenario(folder_.path(), "good"), folder_ / "out");
+  ExternalRun run(write_hover_scenario(folder_.path(), "good", {kScripted}), folder_ / "out");
   RawPeer sut(run.address());
   join(sut);
   const std::uint64_t next = fly_correctly(sut);
@@ -235,7 +236,7 @@ class LeavingSut : public testing::TestWithParam<std::string> {};
 
 TEST_P(LeavingSut, HasFinished) {
   const TempFolder folder;
-  ExternalRun run(write_hover_scenario(folder.path(), "good"), folder / "out");
+  ExternalRun run(write_hover_scenario(folder.path(), "good", {kScripted}), folder / "out");
   std::optional<RawPeer> sut(std::in_place, run.address());
   join(*sut);
   sut->write(request(fly_correctly(*sut), 4 * kFlown, link::Finish{true, "done", "{}"}));
@@ -268,9 +269,10 @@ TEST(HostileSutBesideAnother, EndsTheRunInItsOwnName) {
       "[[uav]]\nname = \"uav2\"\nmodel = \"" TETHER_SOURCE_DIR
       "/data/models/hummingbird/model.sdf\"\nposition_m = [2.0, 0.0, 1.0]\n\n[sut]";
   ExternalRun run(
-      write_hover_scenario(
-          folder.path(), "fly_on",
-          {{"[sut]", second}, {"\"time_required\"", "\"time_required\"\nuav = \"uav1\""}}),
+      write_hover_scenario(folder.path(), "fly_on",
+                           {kScripted,
+                            {"[sut]", second},
+                            {"\"time_required\"", "\"time_required\"\nuav = \"uav1\""}}),
       folder / "out");
   const auto other = run.start_sut({bad_sut_program(), "fly_on"}, {{"TETHER_UAV", "uav1"}});
   RawPeer sut(run.address());

@@ -149,12 +149,17 @@ ExternalRun::ExternalRun(const std::filesystem::path& scenario, const std::files
       with(tether({"run", scenario, "--out", out, "--target", "wait", "--quiet"}), options,
            {{"TETHER_TOKEN", kToken}}));
 
-  const std::string key = "TETHER_ADDRESS=";
-  const bool listens = tether_->wait_for_err(" TETHER_TOKEN=", std::chrono::seconds(90));
+  const bool listens = tether_->wait_for_err(" TETHER_CLOCK=", std::chrono::seconds(90));
   const std::string text = tether_->err();
   if (!listens) throw std::runtime_error("tether does not listen: " + text);
-  const auto begin = text.find(key) + key.size();
-  address_ = text.substr(begin, text.find(' ', begin) - begin);
+  const auto value_of = [&text](const std::string& key) {
+    const auto begin = text.find(key) + key.size();
+    std::string value = text.substr(begin, text.find(' ', begin) - begin);
+    std::erase(value, '\'');
+    return value;
+  };
+  address_ = value_of("TETHER_ADDRESS=");
+  clock_ = value_of("TETHER_CLOCK=");
 }
 
 std::string ExternalRun::token() {
@@ -164,8 +169,14 @@ std::string ExternalRun::token() {
 std::unique_ptr<Process> ExternalRun::start_sut(const std::vector<std::string>& arguments,
                                                 const Variables& environment) const {
   const Variables joining{
-      {"TETHER_ADDRESS", address_}, {"TETHER_TOKEN", kToken}, {"TETHER_CLOCK", "scripted*2"}};
+      {"TETHER_ADDRESS", address_}, {"TETHER_TOKEN", kToken}, {"TETHER_CLOCK", clock_}};
   return std::make_unique<Process>(with({arguments, joining}, {}, environment));
+}
+
+SlowWire::SlowWire(const std::string& address, int delay_ms, int mbit_s)
+    : proxy_({{proxy_program(), address, std::to_string(delay_ms), std::to_string(mbit_s)}}) {
+  if (!proxy_.wait_for_out("\n", std::chrono::seconds(10))) throw std::runtime_error(proxy_.err());
+  address_ = proxy_.out().substr(0, proxy_.out().find('\n'));
 }
 
 std::vector<std::string> face_sut() {

@@ -72,8 +72,7 @@ void expect_same_runs(const std::filesystem::path& a, const std::filesystem::pat
 /// Writes the record as a file that reads back the same.
 void write_record(const std::filesystem::path& file, const record::Record& record);
 
-/// One run whose SUTs are started by the test, so that they can have a scripted clock and a wire of
-/// their own.
+/// One run whose SUTs are started by the test, so that they can have a wire of their own.
 class ExternalRun {
  public:
   /// Starts `tether run --target wait --quiet` and waits until it listens.
@@ -95,6 +94,20 @@ class ExternalRun {
 
  private:
   std::unique_ptr<Process> tether_;
+  std::string address_;
+  std::string clock_;  // of the condition, as in TETHER_CLOCK
+};
+
+/// A slow wire to a run.
+class SlowWire {
+ public:
+  /// @throws std::runtime_error if it does not start.
+  SlowWire(const std::string& address, int delay_ms, int mbit_s);
+  /// Where SUTs connect instead.
+  const std::string& address() const { return address_; }
+
+ private:
+  Process proxy_;
   std::string address_;
 };
 

@@ -12,7 +12,9 @@
 namespace tether::link {
 
 /// The SUT's end of a connection, for whole messages; calls block. `send` and `close` are
-/// thread-safe; `receive` and `receive_within` may be called from one thread at a time.
+/// thread-safe; `receive` and `receive_within` may be called from one thread at a time. While a
+/// message arrives slowly, they report that to the coordinator (Progress::received_bytes), so that
+/// the SUT does not seem to hang.
 class Channel {
  public:
   virtual ~Channel() = default;

@@ -34,6 +34,8 @@ class FrameBuffer {
 
   /// Missing bytes of a frame whose header has arrived; 0 if there is none.
   std::size_t missing() const { return frame_bytes_ > size() ? frame_bytes_ - size() : 0; }
+  /// Those of it that have arrived; 0 if there is none.
+  std::size_t arrived() const { return missing() > 0 ? size() : 0; }
 
  private:
   std::size_t size() const { return end_ - begin_; }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +19,8 @@ namespace tether::link {
 /// name the other end `peer`. One thread sends and one receives at a time; `close` is thread-safe.
 class FrameSocket {
  public:
+  static constexpr std::chrono::milliseconds kSlowPeriod{100};
+
   /// `limit`: the largest frame that is accepted from the peer [bytes].
   FrameSocket(Descriptor socket, std::string peer, std::uint32_t limit);
 
@@ -32,6 +35,10 @@ class FrameSocket {
   /// arrived in part is not lost.
   Result<std::span<const std::uint8_t>> receive_within(Duration timeout);
 
+  /// From now on, the receiving thread calls `report` every kSlowPeriod while more bytes of a frame
+  /// arrive but not the last, with their number so far.
+  void on_slow_frame(std::function<void(std::size_t bytes)> report);
+
   int descriptor() const { return socket_.get(); }
   /// Ends the connection; unblocks calls that send or receive on either end.
   void close();
@@ -42,11 +49,16 @@ class FrameSocket {
   Result<std::span<const std::uint8_t>> receive_until(const Deadline& deadline);
   Status receive_more(const Deadline& deadline);
   void look_out() const;
+  void report_slow_frame();
 
   Descriptor socket_;
   bool may_look_out_ = may_look_out();
   std::string peer_;
   FrameBuffer input_;
+  std::function<void(std::size_t)> on_slow_frame_;
+  Deadline
+      reported_at_;  // of the frame that has arrived in part; before the first report, its begin
+  std::size_t reported_ = 0;
 };
 
 }  // namespace tether::link

@@ -37,6 +37,8 @@ struct Hello {
   /// Several threads or processes call, and each waits for its own reply only. Under the barrier
   /// all of them are stopped while a reply that is due has not arrived (Progress::stopped).
   bool concurrent = false;
+  /// Of a scripted clock: the ET of each phase of computing. 0: another clock, or not known.
+  Duration computing{0};
 };
 
 /// Coordinator → SUT: accepted.
@@ -102,11 +104,14 @@ struct Due {
   ExecTime reply_at;  ///< t_rep, ≥ the request's stamp
 };
 
-/// SUT → coordinator while it computes: ET has reached at least this.
+/// SUT → coordinator while it computes: ET has reached at least this. Or while it receives.
 struct Progress {
-  ExecTime reached;
+  ExecTime reached{};
   /// Of a concurrent SUT under the barrier: all of its threads have been stopped since `reached`.
   bool stopped = false;
+  /// Bytes of a frame that takes long to arrive, so far; the SUT is waiting for the rest, and
+  /// `reached` has no meaning. 0: it is not.
+  std::uint32_t received_bytes = 0;
 };
 
 /// SUT → coordinator: an entry for the record (ROI, estimate, task phase). Takes no ET and gets no

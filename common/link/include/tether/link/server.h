@@ -49,6 +49,9 @@ inline constexpr std::size_t kMaxStrangers = 128;
 /// Time limit of a stranger while other connections wait; enough for a peer that sends at once.
 inline constexpr Duration kCrowdedStay = std::chrono::milliseconds(500);
 
+/// Larger than a Request without details, and than a Progress, which a SUT that hangs sends too.
+inline constexpr std::size_t kSmallFrameBytes = 1024;
+
 /// The coordinator's end: many connections, one thread, no locks. Frames go out whole and in order.
 class Server {
  public:
@@ -66,6 +69,10 @@ class Server {
   /// the next poll). Does nothing for a peer that is gone.
   /// @throws Error(kInternal) if `validate` rejects the message.
   virtual void send(PeerId peer, Message message) = 0;
+  /// A number that changes while a frame is in transit: bytes that the peer's system has
+  /// acknowledged, and those that have arrived of a frame of more than kSmallFrameBytes. 0 if the
+  /// peer is gone.
+  virtual std::uint64_t moved_bytes(PeerId id) = 0;
   /// Sends what is queued, then closes; no further event comes from this peer.
   virtual void close(PeerId peer) = 0;
 };

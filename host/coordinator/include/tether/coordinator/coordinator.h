@@ -35,8 +35,7 @@ struct UavOptions {
   std::vector<uav::SensorTiming> timings;  ///< one per sensor of the UAV, in the world's order
   Duration command_latency{0};             ///< from a command's timestamp to its effect; ≥ 0
   /// The clock by which the condition measures this SUT's time. A SUT with another clock is
-  /// rejected. Scripted and unstamped SUTs are accepted, and the record names them. None: any
-  /// clock.
+  /// rejected. None: any clock.
   std::optional<ClockSetting> clock{};
   /// Cores of the SUT's machine; they limit how fast its CPU time can grow. 0: not known.
   int cores = 0;

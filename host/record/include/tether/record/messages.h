@@ -144,6 +144,14 @@ struct SensorInfo {
   Duration delay_max{Duration::max()};
   std::optional<CameraInfo> camera{};  ///< none in records of Tether 0.1.0
 };
+/// How the time of a SUT is measured.
+struct ClockInfo {
+  std::string clock;        ///< "wall", "cpu", "scripted", "unstamped"
+  double cpu_factor = 1.0;  ///< seconds of ET per second of what the clock measures
+  Duration computing{0};    ///< of "scripted": ET of each phase of computing
+
+  friend bool operator==(const ClockInfo&, const ClockInfo&) = default;
+};
 struct SutInfo {
   std::string uav;
   std::string sut;              ///< name and version that the SUT reported
@@ -156,6 +164,9 @@ struct SutInfo {
   /// The most that rotors and gravity together can accelerate the UAV; 0: unknown, as in records of
   /// Tether 0.1.0.
   double max_acceleration_m_s2 = 0.0;
+  Duration computing{0};  ///< clock "scripted": ET of each phase of computing
+  /// The clock of the condition; the SUT announced the one above. None in records of Tether 0.1.0.
+  std::optional<ClockInfo> required_clock{};
 };
 /// Readings of a machine by name, see host/board/src/target_probe.sh: "governor",
 /// "temperature_mc", … Values that are not available are left out.

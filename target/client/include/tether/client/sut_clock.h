@@ -17,6 +17,8 @@ class TimeSource {
   virtual link::ClockKind kind() const = 0;
   /// Seconds of ET per measured second; 1 except for a virtual target.
   virtual double factor() const { return 1.0; }
+  /// Of a scripted source: by how much each reading advances it; else 0.
+  virtual Duration computing() const { return Duration(0); }
   /// Measured time since an arbitrary origin, scaled by `factor()`.
   virtual Duration elapsed() const = 0;
   /// The same for a SUT that is about to go on: what reading takes is before the measured instant,

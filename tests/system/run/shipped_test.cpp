@@ -1,0 +1,144 @@
+#include "support/trials.h"
+
+#include <atomic>
+#include <map>
+#include <ostream>
+#include <regex>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include <tether/scenario/scenario.h>
+#include <tether/scenario/shipped_files.h>
+
+/// Every shipped program flies under every shipped condition and target that claims to support it.
+/// What is shipped is found when the test starts, so a new file joins by itself. Each flight is so
+/// short that few goals are reached; system_tasks flies them to their ends.
+namespace tether::system_test {
+namespace {
+
+using scenario::Clock;
+using scenario::ShippedKind;
+
+struct Flight {
+  std::string scenario;
+  std::string condition;
+  std::optional<scenario::Target> target{};  // of the command line
+  bool concurrent = false;
+  std::string skipped{};  // why
+
+  std::string name() const {
+    return scenario::slug(scenario + " " + condition + (target ? " on " + target->name : "") +
+                          (concurrent ? " concurrent" : ""));
+  }
+};
+
+void PrintTo(const Flight& flight, std::ostream* stream) {
+  *stream << flight.name();
+}
+
+std::string why_skipped(const scenario::Condition& condition) {
+  if (condition.simulator != "mujoco") return "needs " + condition.simulator;
+  if (!condition.target) return "";
+  if (condition.target->ssh) return "needs a board";
+  return condition.target->program_folder.empty() ? "" : "needs programs of another architecture";
+}
+
+std::vector<Flight> flights_of(const std::string& name,
+                               const std::vector<scenario::Target>& targets) {
+  std::vector<Flight> flights;
+  const auto loaded =
+      scenario::load_scenario(TETHER_SOURCE_DIR "/data/scenarios/" + name + ".toml");
+  for (const scenario::Condition& condition : loaded.conditions)
+    flights.push_back({name, condition.name, {}, false, why_skipped(condition)});
+  for (const scenario::Target& target : targets) {
+    scenario::Condition condition = loaded.conditions.front();
+    if (!why_not_on(condition, target).empty()) continue;
+    place_on(condition, target);
+    const std::string skipped = why_skipped(condition);
+    flights.push_back({name, loaded.conditions.front().name, target, false, skipped});
+    if (target.clock != Clock::kWall) continue;
+    flights.push_back({name, loaded.conditions.front().name, target, true, skipped});
+  }
+  return flights;
+}
+
+std::vector<Flight> shipped_flights() {
+  const scenario::ShippedFiles shipped(TETHER_SOURCE_DIR "/data");
+  std::vector<scenario::Target> targets;
+  for (const auto& [name, description] : shipped.list(ShippedKind::kTarget))
+    targets.push_back(scenario::load_target(shipped.find(ShippedKind::kTarget, name)));
+  std::vector<Flight> flights;
+  for (const auto& [name, description] : shipped.list(ShippedKind::kScenario))
+    for (Flight& flight : flights_of(name, targets)) flights.push_back(std::move(flight));
+  return flights;
+}
+
+/// Without furniture and pictures, which take longer to load than the flight takes.
+void write_bare_worlds(const std::filesystem::path& folder) {
+  std::filesystem::remove(folder);  // the link to those that are shipped
+  std::filesystem::create_directory(folder);
+  const std::regex unneeded("<include>[^]*?</include>|<albedo_map>[^<]*</albedo_map>");
+  for (const auto& world : std::filesystem::directory_iterator(TETHER_SOURCE_DIR "/data/worlds"))
+    write_text(folder / world.path().filename(),
+               std::regex_replace(read_text(world.path()), unneeded, ""));
+}
+
+struct Landed {
+  Output output;
+  nlohmann::json result;
+};
+
+Landed fly(const Flight& flight) {
+  const TempFolder folder;
+  std::vector<Substitution> changes{{"\ntime_limit_s = ", "\ntime_limit_s = 0.3  # "}};
+  if (flight.concurrent) changes.emplace_back("[sut]", "[sut]\nconcurrent = true");
+  const auto file = write_shipped_scenario(folder.path(), flight.scenario, changes);
+  write_bare_worlds(folder / "worlds");
+  std::vector<std::string> words{"run",   file,          "--quiet", "--condition", flight.condition,
+                                 "--out", folder / "out"};
+  if (flight.target) words.insert(words.end(), {"--target", flight.target->file});
+  Landed landed{run(tether(words)), {}};
+  if (std::filesystem::exists(folder / "out/result.json"))
+    landed.result = read_result(folder / "out");
+  return landed;
+}
+
+class ShippedFlight : public testing::TestWithParam<Flight> {
+ protected:
+  /// Two at a time, because a flight waits as often as it computes.
+  static void SetUpTestSuite() {
+    const std::vector<Flight> flights = shipped_flights();
+    std::vector<Landed> landed(flights.size());
+    std::atomic<std::size_t> next = 0;
+    const auto work = [&] {
+      for (std::size_t i = next++; i < flights.size(); i = next++)
+        if (flights[i].skipped.empty()) landed[i] = fly(flights[i]);
+    };
+    {
+      const std::jthread other(work);
+      work();
+    }
+    for (std::size_t i = 0; i < flights.size(); ++i) landed_[flights[i].name()] = landed[i];
+  }
+
+  static inline std::map<std::string, Landed> landed_;
+};
+
+TEST_P(ShippedFlight, Flies) {
+  if (!GetParam().skipped.empty()) GTEST_SKIP() << GetParam().skipped;
+  const auto& [output, result] = landed_.at(GetParam().name());
+  ASSERT_LE(output.code, 1) << output.err;
+  EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
+  EXPECT_GT(result["sync"]["interactions"], 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, ShippedFlight, testing::ValuesIn(shipped_flights()),
+                         [](const auto& one) {
+                           std::string name = one.param.name();
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace tether::system_test
