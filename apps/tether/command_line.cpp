@@ -63,8 +63,12 @@ void add_run_command(CLI::App& program, Action& action) {
       ->check(CLI::Range(0.0, 9007199254740992.0))
       ->capture_default_str();
   command->add_option("--out", options->out,
-                      "Folder for result.json, record.mcap and the SUT's log "
-                      "[out/SCENARIO/CONDITION/seed-N]");
+                      "Folder for result.json, record.mcap and the SUT's log. A folder with an "
+                      "earlier run needs --force [out/SCENARIO/CONDITION/seed-N; replaces the "
+                      "earlier run]");
+  command->add_flag("--force", options->force,
+                    "Replace the earlier run in the folder of --out: remove all of its files, "
+                    "with its reports, plots and frames");
   command
       ->add_option("--real-time-factor", options->real_time_factor,
                    "Maximum speed of the simulation relative to the wall clock")

@@ -62,7 +62,10 @@ int draw_plots(const PlotOptions& options, const std::stop_token&) {
   if (drawings.empty())
     throw Error(ErrorCode::kBadFile, {options.record.string()},
                 "nothing to plot: the record has neither interactions nor ground truth");
-  const auto out = make_output_folder(options.out, options.record, "plots");
+  std::set<std::string> names;
+  for (const auto& [name, svg] : drawings) names.insert(name);
+  const auto out =
+      make_output_folder(options.out, options.record, "plots", names, "@(timeline*|lag*|path).svg");
   for (const auto& [name, svg] : drawings) {
     os::write_file_atomically(out / name, svg);
     fmt::print("{}\n", (out / name).string());

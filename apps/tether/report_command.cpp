@@ -70,7 +70,7 @@ std::string rendered(const ReportOptions& options) {
 int report(const ReportOptions& options, const std::stop_token&) {
   const std::string text = rendered(options);
   std::filesystem::path out = options.out;
-  if (out.empty() && options.format == kHtml) out = options.folder / "report.html";
+  if (out.empty() && options.format == kHtml) out = options.folder / campaign::kReportFile;
   if (out.empty()) {
     fmt::print("{}", text);
   } else {

@@ -96,6 +96,7 @@ runner::TrialSpec make_spec(const RunOptions& options) {
   spec.folder = options.out.empty() ? "out" / campaign::trial_folder(spec.scenario.name,
                                                                      spec.condition.name, spec.seed)
                                     : options.out;
+  if (options.out.empty() || options.force) spec.earlier = runner::EarlierRun::kReplace;
   if (!options.listen.empty()) {
     const auto address = link::parse_address(options.listen);
     if (!address)
