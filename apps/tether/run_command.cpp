@@ -148,9 +148,7 @@ int run_one(const RunOptions& options, const std::stop_token& stop) {
     runner::TrialObserver observer;
     observer.warn = [&](const std::string& text) { say("warning: {}\n", text); };
     if (!options.quiet) {
-      observer.on_status = [&](const coordinator::RunStatus& status) {
-        line.show(to_line(status));
-      };
+      observer.on_status = [&](const coordinator::RunStatus& status) { line.show(status); };
       observer.on_setup = [&](const std::string& text) { line.show(text); };
       observer.on_blocked = [&](const std::string& text) { line.print(text); };
     }
