@@ -1,12 +1,14 @@
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include <toml++/toml.h>
 
+#include <tether/base/suggest.h>
+#include <tether/base/system_reason.h>
 #include <tether/toml/number_text.h>
-#include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
 
 /// Values are checked where they are read. `required` finds the node of a key, `text_of`,
@@ -66,10 +68,10 @@ double seconds_per_unit(std::string_view key) {
 
 /// Folders, devices and pipes are not read: reading some of them would never end.
 /// @pre it is not a regular file
-std::string_view why_no_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored) ? "that is no regular file"
-                                                : "there is no such file";
+std::string why_no_file(const std::filesystem::path& path) {
+  std::error_code failed;
+  if (std::filesystem::exists(path, failed)) return "that is no regular file";
+  return failed ? "it cannot be reached: " + failed.message() : "there is no such file";
 }
 
 }  // namespace
@@ -280,8 +282,7 @@ std::filesystem::path Table::existing_file(std::string_view key) const {
   std::error_code ignored;
   const fs::path path = (fs::path(file_).parent_path() / written).lexically_normal();
   if (!fs::is_regular_file(path, ignored)) {
-    fail(key, "names \"" + written + "\", but " + string_of(why_no_file(path)) + " (" +
-                  path.string() + ")");
+    fail(key, "names \"" + written + "\", but " + why_no_file(path) + " (" + path.string() + ")");
   }
   return path;
 }
@@ -376,8 +377,9 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t limit)
   const FileLocation where{file.string()};
   std::error_code failed;
   if (!std::filesystem::is_regular_file(file, failed)) {
-    throw Error(ErrorCode::kBadFile, where, string_of(why_no_file(file)));
+    throw Error(ErrorCode::kBadFile, where, why_no_file(file));
   }
+  errno = 0;
   const auto size = std::filesystem::file_size(file, failed);
   if (!failed && size > limit) {
     throw Error(ErrorCode::kBadFile, where,
@@ -389,7 +391,8 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t limit)
   if (size > 0) text << stream.rdbuf();
   if (failed || !stream || !text) {
     require_a_handle_for(file.string());
-    throw Error(ErrorCode::kBadFile, where, "cannot be read");
+    throw Error(ErrorCode::kBadFile, where,
+                "cannot be read: " + (failed ? failed.message() : reason_of(errno)));
   }
   return std::move(text).str();
 }
