@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "file_kind.h"
 #include "say.h"
 
 #include <filesystem>
@@ -11,6 +12,7 @@
 namespace tether::app {
 
 int audit_record(const AuditOptions& options, const std::stop_token&) {
+  require_kind(options.record, FileKind::kRecord);
   const record::Record record = record::read_record(options.record);
   if (!record.damage.empty()) say("warning: {}: {}\n", options.record.string(), record.damage);
   const audit::Verdict verdict = audit::audit(record);

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "file_kind.h"
 #include "output_folder.h"
 #include "say.h"
 
@@ -42,6 +43,7 @@ std::string file_name_of(const record::Image& image) {
 }  // namespace
 
 int draw_frames(const FramesOptions& options, const std::stop_token&) {
+  require_kind(options.record, FileKind::kRecord);
   const record::Record record = read_images(options.record);
   std::set<std::string> names;
   for (const auto& logged : record.images) names.insert(file_name_of(logged.message));

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "file_kind.h"
 #include "output_folder.h"
 #include "say.h"
 
@@ -53,6 +54,7 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
 }  // namespace
 
 int draw_plots(const PlotOptions& options, const std::stop_token&) {
+  require_kind(options.record, FileKind::kRecord);
   const record::Record record = record::read_record(options.record);
   if (!record.damage.empty())
     say("tether: {}: plotted up to the damage: {}\n", options.record.string(), record.damage);

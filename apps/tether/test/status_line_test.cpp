@@ -51,7 +51,7 @@ TEST(ProgressBar, ShowsWhatFitsTheColumns) {
   EXPECT_EQ(to_line(progress, 200),
             "[#########.....................] 3/10  1 failed  1:12 left  "
             "face_anchor, target, no sync, seed 3");
-  EXPECT_EQ(to_line(progress, 60), "[###.......] 3/10  1 failed  1:12 left  face_anchor, target…");
+  EXPECT_EQ(to_line(progress, 60), "[###.......] 3/10  1 failed  1:12 left  face_anchor, targe…");
   EXPECT_EQ(to_line(progress, 20), "3/10  1 failed  fa…");
 }
 

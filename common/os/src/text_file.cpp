@@ -88,9 +88,11 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view t
 }
 
 std::string read_file(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) {
-    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "there is no such file");
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed)) {
+    const bool is_missing = !failed || failed == std::errc::no_such_file_or_directory;
+    throw Error(ErrorCode::kBadFile, FileLocation{file.string()},
+                is_missing ? "there is no such file" : "cannot be read: " + failed.message());
   }
   std::ifstream stream(file, std::ios::binary);
   std::string text;
@@ -100,7 +102,8 @@ std::string read_file(const std::filesystem::path& file) {
   }
   if (!stream.eof()) {
     require_a_handle_for(file.string());
-    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, "cannot be read");
+    throw Error(ErrorCode::kBadFile, FileLocation{file.string()},
+                "cannot be read: " + reason_of(errno));
   }
   return text;
 }
