@@ -78,16 +78,17 @@ class OnTerminal {
 
 class Terminal : public RunTest {
  protected:
-  /// The lines that were to be overwritten. Each fits, or it would have wrapped.
+  /// The lines that were overwritten by another. Each fits, or it would have wrapped.
   static std::vector<std::string> overwritten_lines(std::string_view printed) {
     std::vector<std::string> lines;
     const std::string_view clear = os::kClearLine;
     for (auto at = printed.find(clear); at != std::string_view::npos;) {
       printed.remove_prefix(at + clear.size());
       at = printed.find(clear);
-      const auto end = std::min({at, printed.find('\r'), printed.find('\n')});
-      if (end != 0) lines.emplace_back(printed.substr(0, end));
-      EXPECT_EQ(os::cut_to_columns(lines.back(), OnTerminal::kColumns), lines.back());
+      const std::string line(printed.substr(0, at));
+      if (at == std::string_view::npos || line.empty() || line.find('\n') != line.npos) continue;
+      lines.push_back(line);
+      EXPECT_EQ(os::cut_to_columns(line, OnTerminal::kColumns), line);
     }
     return lines;
   }
