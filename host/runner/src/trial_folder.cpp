@@ -114,7 +114,7 @@ std::string first_of(std::vector<std::string> names) {
 }
 
 void remove_earlier_run(const fs::path& folder, const campaign::TrialResult* run) {
-  const std::vector<fs::path> all = all_below(folder);
+  std::vector<fs::path> all = all_below(folder);
   std::vector<std::string> of_others;
   for (const fs::path& file : all) {
     const std::string path = file.lexically_relative(folder).string();
@@ -127,9 +127,10 @@ void remove_earlier_run(const fs::path& folder, const campaign::TrialResult* run
                                "has {}, which Tether and the SUTs of that run did not write. Move "
                                "them, or choose another folder with --out.",
                                first_of(std::move(of_others))));
+  std::ranges::reverse(all);  // what is in a folder before the folder
   std::error_code failed;
-  for (auto path = all.rbegin(); path != all.rend(); ++path)  // what is in a folder before it
-    if (!fs::remove(*path, failed) && failed) fail(*path, failed.message());
+  for (const fs::path& path : all)
+    if (!fs::remove(path, failed) && failed) fail(path, failed.message());
 }
 
 /// Refuses what is left of an earlier run whose record was removed: it would seem to be of this
