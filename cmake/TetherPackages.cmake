@@ -129,7 +129,7 @@ endif()
 # CPack puts a summary of its own before each description, unless it is this one.
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${CMAKE_PROJECT_NAME} built using CMake")
 
-# describe(<component> <section> <summary> <text>...): one argument per line, as dpkg wants it.
+# describe(<component> <section> <summary> <text>...): one argument per line, as dpkg wants it; no ";".
 function(describe component section)
   string(TOUPPER "${component}" key)
   list(JOIN ARGN "\n" text)
@@ -154,13 +154,13 @@ set(CPACK_DEBIAN_TETHER_PACKAGE_SUGGESTS "xvfb")
 describe(tether-sut science
   "vision tasks of a UAV, flown in simulation or with real sensors"
   "The target's half of Tether: vision tasks of a UAV as one program, which Tether"
-  "flies on a simulated UAV, and which can also read real sensors; and tether-exec,"
-  "which starts programs of several threads for Tether.")
+  "flies on a simulated UAV, and which can also read real sensors. The package"
+  "also has tether-exec, which starts programs of several threads for Tether.")
 
 describe(client libs
   "client library of Tether, for programs of UAVs"
-  "A UAV's own program links to this library to be flown by Tether. It reads sensors"
-  "and sends commands, and measures the computing time in between.")
+  "A UAV's own program links to this library to be flown by Tether. The library"
+  "reads sensors and sends commands, and measures the computing time in between.")
 
 file(WRITE "${documents}/triggers" "activate-noawait ldconfig\n")
 file(WRITE "${documents}/shlibs" "libtether-client 1 libtether-client1 (>= ${PROJECT_VERSION})\n")
@@ -168,14 +168,14 @@ set(CPACK_DEBIAN_CLIENT_PACKAGE_CONTROL_EXTRA "${documents}/triggers" "${documen
 
 describe(client-dev libdevel
   "client library of Tether, development files"
-  "Headers for C and C++17, files for CMake and pkg-config, and examples of programs"
-  "that Tether can fly.")
+  "Headers for C and C++17, files for CMake and pkg-config, and examples of"
+  "programs that Tether can fly.")
 set(CPACK_DEBIAN_CLIENT-DEV_PACKAGE_DEPENDS "libtether-client1 (= ${PROJECT_VERSION})")
 
 describe(doc doc
   "documents of Tether as a site"
-  "Guides, results, decisions, and the reference of the client library in C and C++."
-  "The site starts with /usr/share/doc/tether-doc/html/index.html.")
+  "Guides, results, decisions, and the reference of the client library in C and"
+  "C++. The site starts with /usr/share/doc/tether-doc/html/index.html.")
 set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
 
 include(CPack)
