@@ -1,16 +1,18 @@
 # What `cpack -G DEB` packs (scripts/package, scripts/build-arm64): the parts that install() names as
 # components, each as a Debian package.
 #
-#   tether       tether                 the host: the program, and its data in /usr/share/tether
-#   tether-sut   tether-sut             the target: the paper's tasks, and what supervises other programs
+#   tether       tether                 the host: the program, and its data in /usr/share/tether, guides
+#   tether-sut   tether-sut             the target: the paper's tasks with missions and rigs, and what supervises
+#                                       other programs
 #   client       libtether-client1      the shared library of other people's programs
 #   client-dev   libtether-client-dev   what it takes to build them
 #   doc          tether-doc             the site of scripts/docs, if it was built before CMake configures
 
 set(components tether-sut)
+install(DIRECTORY data/missions data/rigs DESTINATION "${CMAKE_INSTALL_DATADIR}/tether" COMPONENT tether-sut)
 if(NOT TETHER_TARGET_ONLY)
   list(APPEND components tether)
-  install(DIRECTORY data/campaigns data/missions data/models data/profiles data/rigs data/scenarios data/worlds
+  install(DIRECTORY data/campaigns data/models data/profiles data/scenarios data/worlds
     DESTINATION "${CMAKE_INSTALL_DATADIR}/tether" COMPONENT tether)
   set(site "${PROJECT_SOURCE_DIR}/build/docs/html")
   install(DIRECTORY "${site}" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/tether-doc" COMPONENT doc OPTIONAL)
@@ -36,7 +38,14 @@ execute_process(COMMAND git log -1 --format=%cD WORKING_DIRECTORY "${PROJECT_SOU
 if(NOT changed)
   string(TIMESTAMP changed "%a, %d %b %Y %H:%M:%S +0000" UTC)
 endif()
-set(maintainer "Tether developers <developers@tether.example>")
+# Who packs it: the author of the last commit, unless -DTETHER_MAINTAINER="NAME <ADDRESS>" names another.
+execute_process(COMMAND git log -1 "--format=%an <%ae>" WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
+  OUTPUT_VARIABLE author OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+set(TETHER_MAINTAINER "" CACHE STRING "Maintainer of the Debian packages, NAME <ADDRESS> [author of the last commit]")
+set(maintainer "${TETHER_MAINTAINER}")
+if(NOT maintainer)
+  set(maintainer "${author}")
+endif()
 set(documents "${PROJECT_BINARY_DIR}/package")
 configure_file(packaging/changelog.in "${documents}/changelog" @ONLY)
 if(TETHER_GZIP)
@@ -63,6 +72,30 @@ foreach(component IN LISTS components)
   install(FILES packaging/copyright DESTINATION "${destination}" COMPONENT ${component})
   install(FILES "${documents}/changelog.gz" DESTINATION "${destination}" COMPONENT ${component} OPTIONAL)
 endforeach()
+
+# The guides, with what they link to. Links out of docs/ lead to where the file is installed.
+if(NOT TETHER_TARGET_ONLY)
+  set(destination "${CMAKE_INSTALL_DATADIR}/doc/tether")
+  file(GLOB guides RELATIVE "${PROJECT_SOURCE_DIR}/docs" CONFIGURE_DEPENDS docs/guide/*.md)
+  foreach(guide IN LISTS guides)
+    file(READ "docs/${guide}" text)
+    foreach(place IN ITEMS
+        "data/:/usr/share/tether/"
+        "examples/own-sut:/usr/share/doc/libtether-client-dev/examples/own-sut"
+        "examples/own-simulator:../examples/own-simulator"
+        "host/sim/protocol/schema/:/usr/share/tether/schema/"
+        "target/client/c_api/include/:/usr/include/")
+      string(REGEX MATCH "^(.*):(.*)$" match "${place}")
+      string(REPLACE "](../../${CMAKE_MATCH_1}" "](${CMAKE_MATCH_2}" text "${text}")
+    endforeach()
+    file(CONFIGURE OUTPUT "${documents}/${guide}" CONTENT "${text}" @ONLY)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/${guide}")
+  endforeach()
+  install(DIRECTORY "${documents}/guide" docs/adr docs/images DESTINATION "${destination}" COMPONENT tether)
+  install(FILES docs/design.md docs/results.md CHANGELOG.md DESTINATION "${destination}" COMPONENT tether)
+  install(DIRECTORY examples/own-simulator DESTINATION "${destination}/examples" COMPONENT tether
+    PATTERN build EXCLUDE)
+endif()
 
 # ---- CPack ---------------------------------------------------------------------------------------
 
@@ -93,10 +126,10 @@ set(SHLIBDEPS_EXECUTABLE "@SHLIBDEPS_EXECUTABLE@")
   set(CPACK_PROJECT_CONFIG_FILE "${documents}/cpack.cmake")
 endif()
 
-# The first line of every description; CPack has one for all.
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "whether a UAV's computer is fast enough for its task")
+# CPack puts a summary of its own before each description, unless it is this one.
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${CMAKE_PROJECT_NAME} built using CMake")
 
-# describe(<component> <section> <text>...): one argument per line, as dpkg wants it.
+# describe(<component> <section> <summary> <text>...): one argument per line, as dpkg wants it; no ";".
 function(describe component section)
   string(TOUPPER "${component}" key)
   list(JOIN ARGN "\n" text)
@@ -106,9 +139,12 @@ function(describe component section)
 endfunction()
 
 describe(tether science
+  "test in simulation whether a UAV's computer is fast enough"
   "The host's half of Tether. The software under test runs on the board that it is"
-  "meant for, or on a stand-in; this program plays the UAV, its sensors and the"
-  "world, and ties simulated time to the time that the board spent computing.")
+  "meant for, or on a virtual target. This program simulates the UAV, its sensors"
+  "and the world, and synchronises simulated time with the computing time of the"
+  "board. Scenarios and worlds are in /usr/share/tether, guides in"
+  "/usr/share/doc/tether/guide.")
 # The driver that draws is looked for at run time, so that no program names it.
 set(CPACK_DEBIAN_TETHER_PACKAGE_DEPENDS "libgl1-mesa-dri")
 set(CPACK_DEBIAN_TETHER_PACKAGE_RECOMMENDS "tether-sut, gnuplot-nox")
@@ -116,26 +152,30 @@ set(CPACK_DEBIAN_TETHER_PACKAGE_RECOMMENDS "tether-sut, gnuplot-nox")
 set(CPACK_DEBIAN_TETHER_PACKAGE_SUGGESTS "xvfb")
 
 describe(tether-sut science
+  "vision tasks of a UAV, flown in simulation or with real sensors"
   "The target's half of Tether: vision tasks of a UAV as one program, which Tether"
-  "flies on a simulated UAV, and which can also read real sensors.")
+  "flies on a simulated UAV, and which can also read real sensors. The package"
+  "also has tether-exec, which starts programs of several threads for Tether.")
 
 describe(client libs
-  "The client library of Tether: what a UAV's own program links to, to be flown by"
-  "Tether. It reads sensors and sends commands, and measures the time between.")
+  "client library of Tether, for programs of UAVs"
+  "A UAV's own program links to this library to be flown by Tether. The library"
+  "reads sensors and sends commands, and measures the computing time in between.")
 
 file(WRITE "${documents}/triggers" "activate-noawait ldconfig\n")
 file(WRITE "${documents}/shlibs" "libtether-client 1 libtether-client1 (>= ${PROJECT_VERSION})\n")
 set(CPACK_DEBIAN_CLIENT_PACKAGE_CONTROL_EXTRA "${documents}/triggers" "${documents}/shlibs")
 
 describe(client-dev libdevel
-  "The client library of Tether, development files: headers for C and C++17, files"
-  "for CMake and pkg-config, and examples.")
+  "client library of Tether, development files"
+  "Headers for C and C++17, files for CMake and pkg-config, and examples of"
+  "programs that Tether can fly.")
 set(CPACK_DEBIAN_CLIENT-DEV_PACKAGE_DEPENDS "libtether-client1 (= ${PROJECT_VERSION})")
 
 describe(doc doc
-  "The documents of Tether as a site: guides, results, decisions, and the reference"
-  "of the client library in C and C++. It starts with"
-  "/usr/share/doc/tether-doc/html/index.html.")
+  "documents of Tether as a site"
+  "Guides, results, decisions, and the reference of the client library in C and"
+  "C++. The site starts with /usr/share/doc/tether-doc/html/index.html.")
 set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
 
 include(CPack)

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "file_kind.h"
 #include "say.h"
 
 #include <filesystem>
@@ -12,6 +13,7 @@
 namespace tether::app {
 
 int audit_record(const AuditOptions& options, const std::stop_token&) {
+  require_kind(options.record, FileKind::kRecord);
   const record::Record record = record::read_record(options.record);
   if (const std::string damage = record::describe_damage(record); !damage.empty())
     say("warning: {}: {}\n", options.record.string(), damage);

@@ -1,5 +1,6 @@
 #include "back_ends.h"
 #include "commands.h"
+#include "file_kind.h"
 #include "print_report.h"
 #include "progress_bar.h"
 #include "say.h"
@@ -33,8 +34,10 @@ namespace {
 /// The campaign, with the simulator of the options in all conditions if one is given.
 scenario::Campaign load(const CampaignOptions& options) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
-  scenario::Campaign campaign =
-      scenario::load_campaign(shipped.find(scenario::ShippedKind::kCampaign, options.campaign));
+  const std::filesystem::path file =
+      shipped.find(scenario::ShippedKind::kCampaign, options.campaign);
+  require_kind(file, FileKind::kCampaign);
+  scenario::Campaign campaign = scenario::load_campaign(file);
   if (options.simulator.empty()) return campaign;
   parse_simulator_option(options.simulator);
   for (auto& entry : campaign.scenarios)

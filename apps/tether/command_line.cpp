@@ -1,15 +1,20 @@
 #include "command_line.h"
 
 #include "commands.h"
+#include "say.h"
 
 #include <functional>
 #include <memory>
 #include <stop_token>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/base/suggest.h>
 #include <tether/base/version.h>
 
 // The options of all commands, with their help texts; the only source that includes CLI11, which is
@@ -26,8 +31,10 @@ constexpr const char* kFooter =
 Examples:
   tether run face_anchor
   tether run face_anchor --condition "target, no sync" --seed 7
-  tether campaign face_anchor --out out/face_anchor
-  tether audit out/face_anchor/face_anchor/host/seed-0001/record.mcap)";
+  tether campaign face_anchor --out out/campaign
+  tether audit out/campaign/face_anchor/host/seed-0001/record.mcap
+
+Shipped files: /usr/share/tether (tether list). Guides: /usr/share/doc/tether/guide.)";
 
 /// Adds a subcommand; if it is chosen, `action` calls `run` with the options that were parsed.
 template <class Options>
@@ -63,8 +70,12 @@ void add_run_command(CLI::App& program, Action& action) {
       ->check(CLI::Range(0.0, 9007199254740992.0))
       ->capture_default_str();
   command->add_option("--out", options->out,
-                      "Folder for result.json, record.mcap and the SUT's log "
-                      "[out/SCENARIO/CONDITION/seed-N]");
+                      "Folder for result.json, record.mcap and the SUT's log. A folder with an "
+                      "earlier run needs --force [out/SCENARIO/CONDITION/seed-N; replaces the "
+                      "earlier run]");
+  command->add_flag("--force", options->force,
+                    "Replace the earlier run in the folder of --out: remove all of its files, "
+                    "with its reports, plots and frames");
   command
       ->add_option("--real-time-factor", options->real_time_factor,
                    "Maximum speed of the simulation relative to the wall clock")
@@ -112,9 +123,9 @@ void add_campaign_command(CLI::App& program, Action& action) {
   command->add_flag("--resume", options->resume,
                     "Continue a campaign: run only the trials without a result");
   command->footer(R"(Examples:
-  tether campaign face_anchor --out out/face_anchor
-  tether campaign face_anchor --out out/face_anchor --resume
-  tether campaign face_anchor --simulator gazebo --out out/face_anchor_gazebo)");
+  tether campaign face_anchor --out out/campaign
+  tether campaign face_anchor --out out/campaign --resume
+  tether campaign face_anchor --simulator gazebo --out out/campaign_gazebo)");
 }
 
 void add_report_command(CLI::App& program, Action& action) {
@@ -130,10 +141,10 @@ void add_report_command(CLI::App& program, Action& action) {
   command->add_option("--out", options->out,
                       "File to write [standard output; for html, report.html in the folder]");
   command->footer(R"(Examples:
-  tether report out/face_anchor
-  tether report out/face_anchor --format html
+  tether report out/campaign
+  tether report out/campaign --format html
   tether report out/one --format html --out one.html
-  tether report out/face_anchor --format csv --out trials.csv)");
+  tether report out/campaign --format csv --out trials.csv)");
 }
 
 void add_frames_command(CLI::App& program, Action& action) {
@@ -143,8 +154,8 @@ void add_frames_command(CLI::App& program, Action& action) {
   command->add_option("record", options->record, "record.mcap of a run with --images")->required();
   command->add_option("--out", options->out, "Folder for the images [frames, next to the record]");
   command->footer(R"(Example:
-  tether run face_anchor --images --out out/one
-  tether frames out/one/record.mcap)");
+  tether run face_anchor --images --out out/images
+  tether frames out/images/record.mcap)");
 }
 
 void add_plot_command(CLI::App& program, Action& action) {
@@ -204,6 +215,37 @@ Examples:
   tether target check ssh://pi@board.local)");
 }
 
+/// The command that was given last: the program itself if there is none.
+const CLI::App& innermost(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? app : innermost(*chosen.front());
+}
+
+/// "tether run".
+std::string command_words(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return parent ? command_words(*parent) + " " + command.get_name() : command.get_name();
+}
+
+/// For a word that is neither a command nor an option: the nearest one that is. Empty if there is
+/// no such word, or nothing is near.
+std::string suggestion(const CLI::App& program) {
+  const CLI::App& command = innermost(program);
+  std::vector<std::string> known;
+  for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
+    known.push_back(sub->get_name());
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  const std::vector<std::string_view> candidates(known.begin(), known.end());
+  for (const std::string& word : command.remaining()) {
+    const std::string given = word.substr(0, word.find('='));
+    if (const std::string_view near = nearest(given, candidates); !near.empty())
+      return fmt::format("unknown {} '{}'; did you mean '{}'?",
+                         given.starts_with('-') ? "option" : "command", given, near);
+  }
+  return "";
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interrupt) {
@@ -221,7 +263,13 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return program.exit(e) == 0 ? 0 : exit_code(ErrorCode::kUsage);
+    const bool is_wrong = e.get_exit_code() != 0;
+    const std::string hint = is_wrong ? suggestion(program) : "";
+    if (!hint.empty())
+      say("tether: {} For a list, type: {} --help\n", hint, command_words(innermost(program)));
+    else
+      program.exit(e);
+    return is_wrong ? exit_code(ErrorCode::kUsage) : 0;
   }
   interrupt.emplace();
   return action(interrupt->token());

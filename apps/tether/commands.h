@@ -24,6 +24,7 @@ struct RunOptions {
   bool record_images = false;
   bool json = false;
   bool quiet = false;
+  bool force = false;
 };
 /// Runs one trial and prints its result.
 int run_one(const RunOptions& options, const std::stop_token& stop);

@@ -1,8 +1,10 @@
 #include "commands.h"
+#include "file_kind.h"
 #include "output_folder.h"
 #include "say.h"
 
 #include <filesystem>
+#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -33,15 +35,23 @@ record::Record read_images(const std::filesystem::path& file) {
   return record;
 }
 
+std::string file_name_of(const record::Image& image) {
+  return fmt::format("{}-{}-{:06}.svg", os::file_name_of(image.uav), os::file_name_of(image.sensor),
+                     image.index);
+}
+
 }  // namespace
 
 int draw_frames(const FramesOptions& options, const std::stop_token&) {
+  require_kind(options.record, FileKind::kRecord);
   const record::Record record = read_images(options.record);
-  const auto out = make_output_folder(options.out, options.record, "frames");
+  std::set<std::string> names;
+  for (const auto& logged : record.images) names.insert(file_name_of(logged.message));
+  const auto out = make_output_folder(options.out, options.record, "frames", names,
+                                      "*-*-[0-9][0-9][0-9][0-9][0-9][0-9].svg");
   for (const auto& logged : record.images) {
     const record::Image& image = logged.message;
-    os::write_file_atomically(out / fmt::format("{}-{}-{:06}.svg", os::file_name_of(image.uav),
-                                                os::file_name_of(image.sensor), image.index),
+    os::write_file_atomically(out / file_name_of(image),
                               report::frame_svg(image, report::find_roi(record, image),
                                                 report::find_true_roi(record, image)));
   }

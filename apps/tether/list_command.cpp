@@ -32,6 +32,7 @@ int list_shipped(const ListOptions&, const std::stop_token&) {
       fmt::print("  {:<{}}  {}\n", file.name, width, file.description);
     gap = "\n";
   }
+  fmt::print("\nThe files are in {}. Copy one to change it.\n", shipped.folder().string());
   return 0;
 }
 

@@ -1,4 +1,5 @@
 #include "commands.h"
+#include "file_kind.h"
 #include "output_folder.h"
 #include "say.h"
 
@@ -53,6 +54,7 @@ std::vector<NamedPlot> plots_of(const record::Record& record) {
 }  // namespace
 
 int draw_plots(const PlotOptions& options, const std::stop_token&) {
+  require_kind(options.record, FileKind::kRecord);
   const record::Record record = record::read_record(options.record);
   if (!record.damage.empty())
     say("tether: {}: plotted up to the damage: {}\n", options.record.string(),
@@ -63,7 +65,10 @@ int draw_plots(const PlotOptions& options, const std::stop_token&) {
   if (drawings.empty())
     throw Error(ErrorCode::kBadFile, {options.record.string()},
                 "nothing to plot: the record has neither interactions nor ground truth");
-  const auto out = make_output_folder(options.out, options.record, "plots");
+  std::set<std::string> names;
+  for (const auto& [name, svg] : drawings) names.insert(name);
+  const auto out =
+      make_output_folder(options.out, options.record, "plots", names, "@(timeline*|lag*|path).svg");
   for (const auto& [name, svg] : drawings) {
     os::write_file_atomically(out / name, svg);
     fmt::print("{}\n", (out / name).string());

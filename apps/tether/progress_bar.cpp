@@ -8,11 +8,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <tether/os/terminal.h>
+
 namespace tether::app {
 
 namespace {
-
-constexpr std::size_t kWidth = 30;
 
 std::string trial_name(const campaign::TrialPlan& plan) {
   return fmt::format("{}, {}, seed {}", plan.scenario->name, plan.condition->name, plan.seed);
@@ -22,25 +22,33 @@ std::string time_left(const campaign::CampaignProgress& progress) {
   if (!progress.time_left) return "";
   const auto seconds =
       std::chrono::duration_cast<std::chrono::seconds>(*progress.time_left).count();
-  return fmt::format("   {}:{:02} left", seconds / 60, seconds % 60);
+  return fmt::format("{}:{:02} left", seconds / 60, seconds % 60);
 }
 
 }  // namespace
 
-ProgressBar::ProgressBar() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
+std::string to_line(const campaign::CampaignProgress& progress, int columns) {
+  const std::size_t width = columns > 80 ? 30 : columns > 40 ? 10 : 0;
+  const std::size_t filled = progress.total == 0 ? width : width * progress.done / progress.total;
+  const std::string line = os::fields_in_columns(
+      {fmt::format("{}{}/{}",
+                   width ? fmt::format("[{:#>{}}{:.>{}}] ", "", filled, "", width - filled) : "",
+                   progress.done, progress.total),
+       progress.failed ? fmt::format("{} failed", progress.failed) : "", time_left(progress)},
+      columns);
+  return progress.latest ? os::cut_to_columns(line + "  " + trial_name(*progress.latest), columns)
+                         : line;
+}
 
 void ProgressBar::show(const campaign::CampaignProgress& progress) {
-  if (is_terminal_) {
-    const std::size_t filled =
-        progress.total == 0 ? kWidth : kWidth * progress.done / progress.total;
-    say("\r\x1b[K[{:#>{}}{:.>{}}] {}/{}{}{}   {}", "", filled, "", kWidth - filled, progress.done,
-        progress.total, progress.failed ? fmt::format("   {} failed", progress.failed) : "",
-        time_left(progress), progress.latest ? trial_name(*progress.latest) : "");
+  if (const int columns = os::terminal_columns(STDERR_FILENO)) {
+    say("{}{}", os::kClearLine, to_line(progress, columns));
     std::fflush(stderr);
     shown_ = true;
   } else if (progress.result && progress.latest) {
-    say("{}/{}  {}: {}{}\n", progress.done, progress.total, trial_name(*progress.latest),
-        campaign::name(progress.result->outcome), time_left(progress));
+    say("{}/{}  {}: {}{}{}\n", progress.done, progress.total, trial_name(*progress.latest),
+        campaign::name(progress.result->outcome), progress.time_left ? "   " : "",
+        time_left(progress));
   }
 }
 

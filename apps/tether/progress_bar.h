@@ -1,20 +1,24 @@
 #pragma once
 
+#include <string>
+
 #include <tether/campaign/run_campaign.h>
 
 namespace tether::app {
 
-/// The progress of a campaign on stderr: a bar with the remaining time on a terminal, otherwise a
-/// line per trial.
+/// The progress as one line of a terminal with that many columns: a bar, the number of trials, of
+/// failed ones, the remaining time, and what fits of the latest trial's name.
+std::string to_line(const campaign::CampaignProgress& progress, int columns);
+
+/// The progress of a campaign on stderr: a bar with the remaining time that fits the terminal's
+/// present width, or if stderr is not a terminal, a line per trial.
 class ProgressBar {
  public:
-  ProgressBar();
   void show(const campaign::CampaignProgress& progress);
   /// Ends the line of the bar.
   void finish();
 
  private:
-  bool is_terminal_;
   bool shown_ = false;
 };
 

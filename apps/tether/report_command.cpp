@@ -1,12 +1,16 @@
 #include "commands.h"
+#include "file_kind.h"
 #include "print_report.h"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_results.h>
@@ -27,17 +31,32 @@ bool is_run(const std::filesystem::path& folder) {
          std::filesystem::exists(folder / campaign::kResultFile);
 }
 
-/// A run that was killed leaves only its record.
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+  throw Error(ErrorCode::kBadFile, {path.string()}, why).about(path.string());
+}
+
+/// Refuses everything but a run or campaign with results. A run that was killed leaves only its
+/// record.
 void require_result(const std::filesystem::path& folder) {
-  const std::filesystem::path record = folder / runner::kRecordFile;
+  std::error_code failed;
+  const bool is_folder = std::filesystem::is_directory(folder, failed);
+  if (failed) refuse(folder, failed.message());
+  if (!is_folder) {
+    require_kind(folder, FileKind::kRun);
+    refuse(folder, "is not a folder. Give the folder of a run or a campaign.");
+  }
+  if (access(folder.c_str(), R_OK | X_OK) != 0)
+    refuse(folder, fmt::format("cannot be read: {}", std::strerror(errno)));
   if (std::filesystem::exists(folder / campaign::kCampaignFile) ||
-      std::filesystem::exists(folder / campaign::kResultFile) || !std::filesystem::exists(record))
+      std::filesystem::exists(folder / campaign::kResultFile))
     return;
-  throw Error(
-      ErrorCode::kBadFile, {folder.string()},
-      fmt::format("this run has no result, because it is still running or was killed. To check its "
-                  "record, type: tether audit {}",
-                  record.string()));
+  const std::filesystem::path record = folder / runner::kRecordFile;
+  if (!std::filesystem::exists(record))
+    refuse(folder, fmt::format("is neither a run nor a campaign: it has no {} and no {}.",
+                               campaign::kResultFile, campaign::kCampaignFile));
+  refuse(folder, fmt::format("this run has no result, because it is still running or was killed. "
+                             "To check its record, type: tether audit {}",
+                             record.string()));
 }
 
 std::string joined(const std::vector<report::Table>& tables,
@@ -70,7 +89,7 @@ std::string rendered(const ReportOptions& options) {
 int report(const ReportOptions& options, const std::stop_token&) {
   const std::string text = rendered(options);
   std::filesystem::path out = options.out;
-  if (out.empty() && options.format == kHtml) out = options.folder / "report.html";
+  if (out.empty() && options.format == kHtml) out = options.folder / campaign::kReportFile;
   if (out.empty()) {
     fmt::print("{}", text);
   } else {

@@ -1,5 +1,6 @@
 #include "back_ends.h"
 #include "commands.h"
+#include "file_kind.h"
 #include "say.h"
 #include "simulator_option.h"
 #include "status_line.h"
@@ -14,6 +15,7 @@
 #include <fmt/ranges.h>
 
 #include <tether/base/error.h>
+#include <tether/base/suggest.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/result.h>
 #include <tether/os/program.h>
@@ -31,11 +33,10 @@ namespace {
 scenario::Condition pick_condition(const scenario::Scenario& scenario, const std::string& wanted) {
   if (wanted.empty()) return scenario.conditions.front();
   if (const auto* condition = scenario.find_condition(wanted)) return *condition;
-  std::vector<std::string> names;
+  std::vector<std::string_view> names;
   for (const auto& condition : scenario.conditions) names.push_back(condition.name);
   throw Error(ErrorCode::kUsage, {scenario.file.string()},
-              fmt::format("unknown condition \"{}\". The scenario has \"{}\"", wanted,
-                          fmt::join(names, "\", \"")))
+              fmt::format("has no condition '{}'; {}", wanted, allowed_hint(wanted, names)))
       .about(wanted);
 }
 
@@ -56,6 +57,14 @@ scenario::Target board_at(const scenario::SshAddress& address) {
   return target;
 }
 
+/// The file that the user means, which is not of another kind.
+std::filesystem::path find_file(const scenario::ShippedFiles& shipped, scenario::ShippedKind kind,
+                                const std::filesystem::path& given, FileKind wanted) {
+  const std::filesystem::path file = shipped.find(kind, given);
+  require_kind(file, wanted);
+  return file;
+}
+
 /// The condition and the target of the options.
 scenario::Condition make_condition(const scenario::Scenario& scenario, const RunOptions& options,
                                    const scenario::ShippedFiles& shipped) {
@@ -64,7 +73,9 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
   const bool keep_name = !options.condition.empty();
   const TargetOption target = parse_target_option(options.target);
   if (const auto* file = std::get_if<std::filesystem::path>(&target))
-    move_to(condition, scenario::load_target(shipped.find(scenario::ShippedKind::kTarget, *file)),
+    move_to(condition,
+            scenario::load_target(
+                find_file(shipped, scenario::ShippedKind::kTarget, *file, FileKind::kTarget)),
             keep_name);
   if (const auto* address = std::get_if<scenario::SshAddress>(&target))
     move_to(condition, board_at(*address), keep_name);
@@ -85,17 +96,19 @@ void require_use_of_tunnel(const runner::TrialSpec& spec) {
 runner::TrialSpec make_spec(const RunOptions& options) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   runner::TrialSpec spec;
-  spec.scenario =
-      scenario::load_scenario(shipped.find(scenario::ShippedKind::kScenario, options.scenario));
+  spec.scenario = scenario::load_scenario(
+      find_file(shipped, scenario::ShippedKind::kScenario, options.scenario, FileKind::kScenario));
   spec.scenario.record_images |= options.record_images;
   if (!options.profile.empty())
-    scenario::lay_profile(spec.scenario, scenario::load_profile(shipped.find(
-                                             scenario::ShippedKind::kProfile, options.profile)));
+    scenario::lay_profile(spec.scenario,
+                          scenario::load_profile(find_file(shipped, scenario::ShippedKind::kProfile,
+                                                           options.profile, FileKind::kProfile)));
   spec.condition = make_condition(spec.scenario, options, shipped);
   spec.seed = options.seed;
   spec.folder = options.out.empty() ? "out" / campaign::trial_folder(spec.scenario.name,
                                                                      spec.condition.name, spec.seed)
                                     : options.out;
+  if (options.out.empty() || options.force) spec.earlier = runner::EarlierRun::kReplace;
   if (!options.listen.empty()) {
     const auto address = link::parse_address(options.listen);
     if (!address)
@@ -109,8 +122,9 @@ runner::TrialSpec make_spec(const RunOptions& options) {
 }
 
 void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& result) {
-  fmt::print("{} under \"{}\", seed {}: {}: {}\n", result.scenario, result.condition, result.seed,
-             campaign::name(result.outcome), result.reason);
+  const bool has_failed = result.outcome == campaign::Outcome::kFailed;  // its reason is an error
+  fmt::print("{} under \"{}\", seed {}: {}{}\n", result.scenario, result.condition, result.seed,
+             campaign::name(result.outcome), has_failed ? "" : ": " + result.reason);
   for (const auto& metric : result.metrics) {
     const std::string value =
         metric.value
@@ -150,9 +164,7 @@ int run_one(const RunOptions& options, const std::stop_token& stop) {
     runner::TrialObserver observer;
     observer.warn = [&](const std::string& text) { say("warning: {}\n", text); };
     if (!options.quiet) {
-      observer.on_status = [&](const coordinator::RunStatus& status) {
-        line.show(to_line(status));
-      };
+      observer.on_status = [&](const coordinator::RunStatus& status) { line.show(status); };
       observer.on_setup = [&](const std::string& text) { line.show(text); };
       observer.on_blocked = [&](const std::string& text) { line.print(text); };
     }

@@ -7,26 +7,28 @@
 
 namespace tether::app {
 
-/// The status in one line: ST, ET, lag, real-time factor, frames, and the SUT that computes.
-std::string to_line(const coordinator::RunStatus& status);
+/// The status as one line of a terminal with that many columns: ST, ET, lag, real-time factor, the
+/// SUT that computes, interactions, frames; as many of them as fit.
+std::string to_line(const coordinator::RunStatus& status, int columns);
 
-/// A line on stderr that is overwritten with each status; nothing if stderr is not a terminal.
+/// A line on stderr that is overwritten with each status and fits the terminal's present width;
+/// nothing if stderr is not a terminal.
 class StatusLine {
  public:
-  StatusLine();
+  StatusLine() = default;
   /// Clears it.
   ~StatusLine();
   StatusLine(const StatusLine&) = delete;
   StatusLine& operator=(const StatusLine&) = delete;
 
-  void show(const std::string& line);
+  void show(const coordinator::RunStatus& status);
+  void show(const std::string& text);
   /// Prints a permanent line, on a terminal or not.
   void print(const std::string& line);
 
  private:
   void clear();
 
-  bool is_terminal_;
   bool shown_ = false;
 };
 

@@ -31,14 +31,16 @@ constexpr const char* kDescription =
 
 constexpr const char* kExamples = R"(
 Examples:
+  tether run face_anchor --target wait      # prints the environment that the tasks below need
   tether-sut face_anchor --anchor blue_box
   tether-sut face_anchor --anchor blue_box --precision-deg 1 --yaw-rate-deg-s 30
   tether-sut relative_position --anchor blue_box --address 192.168.1.10:4810
   tether-sut move_forward --anchor blue_box --speed-m-s 0.3
   TETHER_CLOCK='cpu*20' tether-sut closed_path --anchor blue_box --distance-m 1
   tether-sut sensor_characterization --sensor camera --acquisitions 100
-  tether-sut mission data/missions/look_around.toml
-  tether-sut relative_position --anchor blue_box --rig data/rigs/bench.toml --camera /dev/video0
+  tether-sut mission /usr/share/tether/missions/look_around.toml
+  tether-sut relative_position --anchor blue_box --rig /usr/share/tether/rigs/bench.toml \
+    --camera /dev/video0
   tether-sut characterize --camera /dev/video0 --range iio:vl53l0x --out bench.toml
   tether-sut calibrate --out board.toml
   tether-sut calibrate --against board.toml --write-target my_board.toml

@@ -4,6 +4,8 @@
 
 #include <unistd.h>
 
+#include <tether/os/terminal.h>
+
 namespace tether::sut {
 namespace {
 
@@ -11,16 +13,15 @@ constexpr std::chrono::seconds kBetweenLines(10);
 
 }  // namespace
 
-ProgressLine::ProgressLine()
-    : is_terminal_(isatty(STDERR_FILENO) == 1), last_(std::chrono::steady_clock::now()) {}
+ProgressLine::ProgressLine() : last_(std::chrono::steady_clock::now()) {}
 
 ProgressLine::~ProgressLine() {
-  if (is_shown_) std::cerr << "\r\x1b[K" << std::flush;
+  if (is_shown_) std::cerr << os::kClearLine << std::flush;
 }
 
 void ProgressLine::show(const std::string& what) {
-  if (is_terminal_) {
-    std::cerr << "\r\x1b[K" << what << std::flush;
+  if (const int columns = os::terminal_columns(STDERR_FILENO)) {
+    std::cerr << os::kClearLine << os::cut_to_columns(what, columns) << std::flush;
     is_shown_ = true;
     return;
   }

@@ -18,7 +18,6 @@ class ProgressLine {
   void show(const std::string& what);
 
  private:
-  bool is_terminal_;
   bool is_shown_ = false;
   std::chrono::steady_clock::time_point last_;
 };

@@ -48,12 +48,15 @@ Interrupt::Interrupt() : signals_(make_pipe()) {
   action.sa_handler = pass_on;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  ignores_hangup_ = std::signal(SIGHUP, SIG_IGN) == SIG_IGN;
+  if (!ignores_hangup_) sigaction(SIGHUP, &action, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit of file sizes then fails with an error
 }
 
 Interrupt::~Interrupt() {
   for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_DFL);
+  if (!ignores_hangup_) std::signal(SIGHUP, SIG_DFL);
   write_all(signals_.write_end, {&kEnd, 1});
   watcher_.join();
 }
@@ -64,9 +67,10 @@ void Interrupt::watch() {
     const ssize_t got = read(signals_.read_end.get(), &signal, 1);
     if (got < 0 && errno == EINTR) continue;
     if (got != 1 || signal == kEnd) return;
+    stop_.request_stop();
+    if (signal == SIGHUP) continue;  // the kernel and the shell send one each, at any distance
     if (first && Steady::now() - *first > kSameInterrupt) _exit(128 + signal);
     if (!first) first = Steady::now();
-    stop_.request_stop();
   }
 }
 

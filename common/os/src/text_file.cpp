@@ -87,10 +87,10 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view t
   if (folder) ::fsync(folder.get());
 }
 
-std::string_view why_no_file(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::exists(path, ignored) ? "that is no regular file"
-                                                : "there is no such file";
+std::string why_no_file(const std::filesystem::path& path) {
+  std::error_code failed;
+  if (std::filesystem::exists(path, failed)) return "that is no regular file";
+  return failed ? "it cannot be reached: " + failed.message() : "there is no such file";
 }
 
 std::string read_file(const std::filesystem::path& file, std::uintmax_t limit) {
@@ -98,7 +98,8 @@ std::string read_file(const std::filesystem::path& file, std::uintmax_t limit) {
     throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, std::move(what));
   };
   std::error_code failed;
-  if (!std::filesystem::is_regular_file(file, failed)) fail_with(std::string(why_no_file(file)));
+  if (!std::filesystem::is_regular_file(file, failed)) fail_with(why_no_file(file));
+  errno = 0;
   const std::uintmax_t size = std::filesystem::file_size(file, failed);
   if (!failed && size > limit) {
     fail_with("is " + std::to_string(size) + " bytes long; at most " + std::to_string(limit) +
@@ -109,7 +110,7 @@ std::string read_file(const std::filesystem::path& file, std::uintmax_t limit) {
   if (size > 0) text << stream.rdbuf();
   if (failed || !stream || !text) {
     require_a_handle_for(file.string());
-    fail_with("cannot be read");
+    fail_with("cannot be read: " + (failed ? failed.message() : reason_of(errno)));
   }
   return std::move(text).str();
 }

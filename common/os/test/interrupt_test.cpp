@@ -19,8 +19,8 @@ void wait_for(const std::stop_token& token) {
   stopped.wait(lock, token, [&] { return token.stop_requested(); });
 }
 
-TEST(Interrupt, RequestsAStopOnSigintAndOnSigterm) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+TEST(Interrupt, RequestsAStopOnSigintSigtermAndSighup) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const Interrupt interrupt;
     EXPECT_FALSE(interrupt.token().stop_requested());
     raise(signal);
@@ -40,12 +40,23 @@ TEST(Interrupt, TreatsSignalsInARowAsOneAndIgnoresSigpipe) {
 }
 
 TEST(Interrupt, LeavesSignalsAsTheyWereAfterItsEnd) {
-  EXPECT_EXIT(
-      {
-        { const Interrupt interrupt; }
-        raise(SIGTERM);
-      },
-      testing::KilledBySignal(SIGTERM), "");
+  for (const int signal : {SIGTERM, SIGHUP})
+    EXPECT_EXIT(
+        {
+          { const Interrupt interrupt; }
+          raise(signal);
+        },
+        testing::KilledBySignal(signal), "");
+}
+
+TEST(Interrupt, LeavesSighupIgnoredAsNohupWants) {
+  std::signal(SIGHUP, SIG_IGN);
+  {
+    const Interrupt interrupt;
+    raise(SIGHUP);
+    EXPECT_EQ(std::signal(SIGHUP, SIG_IGN), SIG_IGN);
+  }
+  EXPECT_EQ(std::signal(SIGHUP, SIG_DFL), SIG_IGN);
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 
 #include <toml++/toml.h>
 
+#include <tether/base/suggest.h>
 #include <tether/os/text_file.h>
 #include <tether/toml/number_text.h>
-#include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
 
 /// Values are checked where they are read. `required` finds the node of a key, `text_of`,
@@ -271,8 +271,8 @@ std::filesystem::path Table::existing_file(std::string_view key) const {
   std::error_code ignored;
   const fs::path path = (fs::path(file_).parent_path() / written).lexically_normal();
   if (!fs::is_regular_file(path, ignored)) {
-    fail(key, "names \"" + written + "\", but " + std::string(os::why_no_file(path)) + " (" +
-                  path.string() + ")");
+    fail(key,
+         "names \"" + written + "\", but " + os::why_no_file(path) + " (" + path.string() + ")");
   }
   return path;
 }

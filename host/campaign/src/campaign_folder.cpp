@@ -92,6 +92,9 @@ CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campai
                               finished_, finished_ + missing_.size()));
   }
   os::write_file_atomically(folder_ / kCampaignFile, to_json(manifest));
+  // A report of fewer trials would lie beside the new ones.
+  std::error_code ignored;
+  if (!missing_.empty()) fs::remove(folder_ / kReportFile, ignored);
 }
 
 void CampaignFolder::check_existing(const CampaignManifest& now, OpenMode mode) const {

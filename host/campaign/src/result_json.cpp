@@ -104,6 +104,7 @@ Json json_of(const ThisRun& run) {
   if (!run.first_failure.empty()) json["first_failure"] = run.first_failure;
   if (run.target) json["target"] = json_of(*run.target);
   if (!run.notes.empty()) json["notes"] = run.notes;
+  if (!run.sut_files.empty()) json["sut_files"] = run.sut_files;
   return json;
 }
 
@@ -170,6 +171,7 @@ ThisRun read_this_run(const JsonReader& json) {
   if (json.has("first_failure")) run.first_failure = json.text("first_failure");
   if (json.has("target")) run.target = read_target(json.object("target"));
   if (json.has("notes")) run.notes = json.texts("notes");
+  if (json.has("sut_files")) run.sut_files = json.texts("sut_files");
   return run;
 }
 

@@ -43,7 +43,9 @@ TEST_F(Folder, IsMadeWithItsManifestAndFindsWhatIsMissing) {
   EXPECT_EQ(read_manifest(out_), manifest_of(campaign_, settings_));
   keep(0);
   keep(4);
+  const auto report = scratch_.write("out/report.html", "of two trials");
   const CampaignFolder folder = open(OpenMode::kResume);
+  EXPECT_FALSE(std::filesystem::exists(report));
   EXPECT_EQ(folder.finished(), 2u);
   ASSERT_EQ(folder.missing().size(), 7u);
   EXPECT_EQ(folder.missing()[0].condition->name, "target");

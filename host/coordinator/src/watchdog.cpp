@@ -108,8 +108,9 @@ std::optional<Ending> Watchdog::over_time(SimTime st) const {
 std::optional<Ending> Watchdog::overdue(const std::vector<Party>& parties, SimTime st) const {
   for (const Party& party : parties) {
     if (!running_ && !party.joined && party.silence > limits_.connect)
-      return Ending{RunEnd::kSutLost, fmt::format("no SUT joined for UAV \"{}\" within {} s",
-                                                  party.uav, to_seconds(limits_.connect))};
+      return Ending{RunEnd::kSutLost,
+                    fmt::format("no SUT joined for UAV \"{}\" within {} s (connect_limit_s)",
+                                party.uav, to_seconds(limits_.connect))};
     if (running_ && party.computing && party.silence > limits_.hang)
       return Ending{
           RunEnd::kSutHung,

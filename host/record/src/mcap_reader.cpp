@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -13,6 +14,7 @@
 
 #include <tether/base/error.h>
 #include <tether/base/printable.h>
+#include <tether/base/system_reason.h>
 
 // Reads an MCAP file (https://mcap.dev/spec) from front to back, without its indices. InputFile
 // counts bytes and sums CRCs; Decompressor unpacks one chunk at a time; McapReader walks over the
@@ -38,6 +40,7 @@ class InputFile {
  public:
   explicit InputFile(const std::filesystem::path& path) {
     std::error_code error;
+    errno = 0;
     // First, because opening a pipe blocks until somebody writes to it.
     if (std::filesystem::is_regular_file(path, error)) {
       stream_.open(path, std::ios::binary);
@@ -45,8 +48,12 @@ class InputFile {
     }
     if (!stream_.is_open() || error) {
       require_a_handle_for(path.string());
+      const std::string why = error                                  ? error.message()
+                              : errno != 0                           ? reason_of(errno)
+                              : std::filesystem::exists(path, error) ? "it is no regular file"
+                                                                     : "there is no such file";
       throw Error(ErrorCode::kBadFile, FileLocation{path.string(), 0},
-                  "cannot read this record. Give the record.mcap of a run");
+                  "cannot read this record: " + why + ". Give the record.mcap of a run");
     }
   }
 

@@ -45,7 +45,7 @@ void add_programs(const scenario::CampaignScenario& entry,
 /// The second attempt keeps the log of the first.
 std::filesystem::path log_file(const campaign::TrialPlan& plan) {
   const std::filesystem::path first = plan.folder / campaign::kTrialLog;
-  return std::filesystem::exists(first) ? plan.folder / "run-2.log" : first;
+  return std::filesystem::exists(first) ? plan.folder / campaign::kSecondTrialLog : first;
 }
 
 }  // namespace

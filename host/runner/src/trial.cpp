@@ -135,7 +135,8 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
 }
 
 /// Writes the result. @throws Error(kSetup) with the end of the run as well.
-void keep(const TrialSpec& spec, const campaign::TrialResult& result) try {
+void keep(const TrialSpec& spec, const TrialFolder& folder, campaign::TrialResult& result) try {
+  result.this_run.sut_files = folder.files_of_suts();
   campaign::write_result(spec.folder, result);
 } catch (const Error& e) {
   throw Error(ErrorCode::kSetup,
@@ -162,7 +163,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
       scenario::resolve_sensors(spec.scenario, spec.condition, world, observer.warn);
   world.step = spec.scenario.step;
   if (is_local(spec)) require_sut_programs(spec.scenario, spec.condition);
-  TrialFolder folder(spec.folder);
+  TrialFolder folder(spec.folder, spec.earlier);
 
   const std::string started_at = utc_now();
   campaign::TrialResult result;
@@ -180,7 +181,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   result.this_run.started_at = started_at;
   result.this_run.machine = os::describe_machine();
   folder.release_room();
-  keep(spec, result);
+  keep(spec, folder, result);
   return result;
 }
 

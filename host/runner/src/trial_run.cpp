@@ -81,7 +81,8 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
   options.real_time_factor = spec.condition.real_time_factor;
   options.time_limit = spec.scenario.time_limit;
   options.hang_limit = spec.scenario.hang_limit;
-  if (spec.waits_for_sut) options.connect_limit = std::chrono::hours(24);
+  options.connect_limit =
+      spec.waits_for_sut ? Duration(std::chrono::hours(24)) : spec.scenario.connect_limit;
   options.ground_truth_period = spec.scenario.ground_truth_period;
   options.record_images = spec.scenario.record_images;
   options.image_period = spec.scenario.image_period;

@@ -22,6 +22,7 @@ class Trial : public testing::Test {
     spec_.condition = spec_.scenario.conditions.front();
     spec_.condition.simulator = "fake";
     spec_.folder = scratch_.path("out");
+    spec_.earlier = EarlierRun::kReplace;
     run_as_sut("exec sleep 600");
   }
   void run_as_sut(const std::string& script) {

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/suggest.h>
 #include <tether/scenario/campaign.h>
-#include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
 
 namespace tether::scenario {
@@ -50,9 +50,8 @@ std::vector<std::string> read_conditions(const toml::Table& table, const Scenari
   std::set<std::string> seen;
   for (const std::string& name : conditions) {
     if (scenario.find_condition(name) == nullptr) {
-      table.fail("conditions",
-                 fmt::format("names \"{}\", which {} does not have; {}", name,
-                             scenario.file.string(), toml::allowed_hint(name, allowed)));
+      table.fail("conditions", fmt::format("names \"{}\", which {} does not have; {}", name,
+                                           scenario.file.string(), allowed_hint(name, allowed)));
     }
     if (!seen.insert(name).second) {
       table.fail("conditions", fmt::format("names \"{}\" twice.", name));

@@ -325,9 +325,13 @@ Metric read_metric(const toml::Table& table, const Scenario& scenario) {
   Metric metric;
   metric.kind = kind.name;
   metric.unit = kind.unit;
-  metric.name = table.has("name") ? table.identifier("name") : metric.kind;
-  metric.label = table.text_or("label", kind.label);
   metric.uav = choose(table, "uav", uav_names(scenario));
+  const bool is_alone = scenario.uavs.size() == 1;
+  metric.name = table.has("name") ? table.identifier("name")
+                : is_alone        ? metric.kind
+                                  : metric.kind + "_" + metric.uav;
+  metric.label = table.text_or(
+      "label", is_alone ? std::string(kind.label) : fmt::format("{}, {}", kind.label, metric.uav));
   if (kind.needs_anchor) metric.anchor = choose(table, "anchor", scenario.anchors);
   if (kind.needs_sensor) {
     metric.sensor = table.text("sensor");
@@ -359,6 +363,7 @@ void read_metrics(const toml::Table& root, Scenario& scenario) {
 
 void read_anchors(const toml::Table& root, Scenario& scenario) {
   scenario.anchors = root.texts_or_none("anchors");
+  if (root.has("anchors")) scenario.anchors_at = root.where("anchors");
   const std::set<std::string> distinct(scenario.anchors.begin(), scenario.anchors.end());
   if (distinct.size() < scenario.anchors.size()) root.fail("anchors", "names an anchor twice.");
 }
@@ -382,6 +387,7 @@ void read_limits(const toml::Table& root, Scenario& scenario) {
   scenario.step = root.duration_or("step_ms", kStep_ms, scenario.step);
   scenario.time_limit = root.duration("time_limit_s", kSpan_s);
   scenario.hang_limit = root.duration_or("hang_limit_s", kSpan_s, scenario.hang_limit);
+  scenario.connect_limit = root.duration_or("connect_limit_s", kSpan_s, scenario.connect_limit);
 }
 
 }  // namespace
@@ -416,7 +422,7 @@ Scenario load_scenario(const std::filesystem::path& file) {
   const toml::Document document = toml::Document::load(scenario.file);
   const toml::Table root =
       document.root({"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s",
-                     "anchors", "uav", "sut", "condition", "metric", "record"});
+                     "connect_limit_s", "anchors", "uav", "sut", "condition", "metric", "record"});
   scenario.name = root.identifier("name");
   scenario.description = root.text_or("description", "");
   scenario.world = root.existing_file("world");

@@ -34,13 +34,13 @@ constexpr std::array kMetricKinds = {
                .help = "the SUT's last estimated distance against the true horizontal one from the "
                        "camera to the anchor's centre"},
     MetricKind{.name = "abeam_error",
-               .label = "Position error",
+               .label = "Abeam error",
                .unit = "m",
                .needs_anchor = true,
                .help = "horizontal distance from where the SUT finished to the point of the start "
                        "line at which the anchor is abeam"},
     MetricKind{.name = "return_error",
-               .label = "Position error",
+               .label = "Return error",
                .unit = "m",
                .help = "horizontal distance from where the SUT finished to the start"},
     MetricKind{.name = "estimate_error",

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/suggest.h>
 #include <tether/base/units.h>
-#include <tether/toml/suggest.h>
 
 // The table of one sensor. `kKeys` lists which kind of sensor supports which key; the functions
 // below read keys of timing, mounting and measuring, each only if it is there.
@@ -238,7 +238,7 @@ void require_kind(const SensorProfile& profile, std::string_view sensor, SensorK
                 fmt::format("'{}' is a key of the kind \"{}\", but the sensor '{}' is of the kind "
                             "\"{}\"; {}",
                             rule.key, uav::name(*rule.kind), sensor, uav::name(kind),
-                            toml::allowed_hint(rule.key, keys_of(kind))))
+                            allowed_hint(rule.key, keys_of(kind))))
         .about(std::string(rule.key));
   }
 }

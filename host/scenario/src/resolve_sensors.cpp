@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/base/suggest.h>
 #include <tether/scenario/scenario.h>
-#include <tether/toml/suggest.h>
 
 // Each sensor of the world is wrapped in a LayeredSensor, to which the layers are applied in order:
 // the UAV's profile, the scenario's own tables, the condition's profiles.
@@ -93,11 +93,11 @@ class ProfileLayer {
 
   [[noreturn]] void refuse_choice(const std::string& name, const SensorProfile& entry,
                                   const std::vector<const LayeredSensor*>& candidates) const {
-    throw Error(ErrorCode::kBadFile, entry.where,
-                fmt::format("the UAV '{}' has no sensor '{}' of the kind \"{}\", but {}. Name one "
-                            "of them.",
-                            uav_.name, name, uav::name(*entry.kind),
-                            toml::quoted_list(names_of(candidates))))
+    throw Error(
+        ErrorCode::kBadFile, entry.where,
+        fmt::format("the UAV '{}' has no sensor '{}' of the kind \"{}\", but {}. Name one "
+                    "of them.",
+                    uav_.name, name, uav::name(*entry.kind), quoted_list(names_of(candidates))))
         .about(name);
   }
 
@@ -127,7 +127,7 @@ class ProfileLayer {
   for (const LayeredSensor& sensor : sensors) all.push_back(&sensor);
   throw Error(ErrorCode::kBadFile, at,
               fmt::format("the UAV '{}' has no sensor '{}' ({}); {}", setup.placement.name, name,
-                          setup.placement.model.string(), toml::allowed_hint(name, names_of(all))))
+                          setup.placement.model.string(), allowed_hint(name, names_of(all))))
       .about(name);
 }
 

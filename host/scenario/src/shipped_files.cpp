@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/base/suggest.h>
 #include <tether/os/text_file.h>
 #include <tether/scenario/shipped_files.h>
-#include <tether/toml/suggest.h>
 #include <tether/toml/table.h>
 
 // Shipped files are found by the folder and the extension of their kind; each contains its own
@@ -96,13 +96,13 @@ fs::path ShippedFiles::find(ShippedKind kind, const std::string& given) const {
   const auto files = list(kind);
   std::vector<std::string_view> names;
   for (const ShippedFile& file : files) names.push_back(file.name);
-  const std::string_view near = toml::nearest(given, names);
+  const std::string_view near = nearest(given, names);
   throw Error(
       ErrorCode::kUsage,
-      fmt::format("'{}' is neither a file nor a shipped {}{} Run `tether list` for a list of "
-                  "shipped files.",
+      fmt::format("'{}' is neither a file nor a shipped {}{} `tether list` lists the "
+                  "shipped files, which are in {}.",
                   given, place_of(kind).name,
-                  near.empty() ? "." : fmt::format("; did you mean '{}'?", near)))
+                  near.empty() ? "." : fmt::format("; did you mean '{}'?", near), data_.string()))
       .about(given);
 }
 

@@ -43,6 +43,9 @@ TEST_F(LoadScenario, ReadsTheTop) {
   EXPECT_EQ(s.step, milliseconds(2));
   EXPECT_EQ(s.time_limit, seconds(60));
   EXPECT_EQ(s.hang_limit, milliseconds(12'500));
+  EXPECT_EQ(s.connect_limit, seconds(30));
+  EXPECT_EQ(load_with("step_ms = 2", "connect_limit_s = 7").connect_limit, seconds(7));
+  EXPECT_EQ(s.anchors_at.line, 7);
   EXPECT_THAT(s.anchors, ElementsAre("blue_box", "red_box"));
   EXPECT_EQ(s.ground_truth_period, milliseconds(20));
   EXPECT_TRUE(s.record_images);
@@ -148,8 +151,8 @@ TEST_F(LoadScenario, ReadsProfilesAndAppliesAnotherOnTop) {
 TEST_F(LoadScenario, ReadsMetrics) {
   const Scenario s = load(kFullScenario);
   ASSERT_EQ(s.metrics.size(), 3u);
-  EXPECT_EQ(s.metrics[0].name, "time_required");
-  EXPECT_EQ(s.metrics[0].label, "Time required");
+  EXPECT_EQ(s.metrics[0].name, "time_required_uav1");
+  EXPECT_EQ(s.metrics[0].label, "Time required, uav1");
   EXPECT_EQ(s.metrics[0].unit, "s");
   EXPECT_EQ(s.metrics[0].max, 30.0);
   EXPECT_EQ(s.metrics[0].anchor, "");
@@ -206,7 +209,7 @@ TEST_F(LoadScenario, RefusesWrongNames) {
                   {"name = \"uav2\"", "name = \"uav1\"", 40, "name"},
                   {"name = \"target, no sync\"", "name = \"Host!\"", 64, "name"},
                   {"name = \"scripted\"", "name = \"--\"", 70, "name"},
-                  {"name = \"swings\"", "name = \"time_required\"", 89, "name"},
+                  {"name = \"swings\"", "name = \"time_required_uav1\"", 89, "name"},
                   {"acquisition_time\"\nuav = \"uav1\"\nsensor = \"camera\"",
                    "time_required\"\nuav = \"uav1\"", 97, "kind"},
                   {"\"red_box\"]", "\"blue_box\"]", 7, "anchors"},

@@ -7,10 +7,11 @@
 namespace tether::scenario {
 namespace {
 
-TEST(MetricKinds, HaveDistinctNamesAllTheirTextsAndUnitSuffixes) {
-  std::set<std::string_view> names;
+TEST(MetricKinds, HaveDistinctNamesAndLabelsAndAllTheirTexts) {
+  std::set<std::string_view> names, labels;
   for (const MetricKind& kind : metric_kinds()) {
     EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
+    EXPECT_TRUE(labels.insert(kind.label).second) << kind.label;
     EXPECT_FALSE(kind.label.empty() || kind.unit.empty() || kind.help.empty()) << kind.name;
   }
   EXPECT_FALSE(names.empty());

@@ -1,4 +1,7 @@
+#include <csignal>
+
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <tether/rig/interruptible_vehicle.h>
 #include <tether/tasks/testing/planar_vehicle.h>
@@ -28,6 +31,17 @@ TEST(InterruptibleVehicle, EndsEveryInteractionOnceInterrupted) {
   EXPECT_FALSE(vehicle->sleep_until(ExecTime()));
   EXPECT_TRUE(vehicle->annotate("task", "{}"));
   EXPECT_EQ(vehicle->now(), at) << "nothing reached the vehicle";
+}
+
+TEST(InterruptibleVehicle, IsInterruptedByAClosedTerminalUnlessItIsIgnored) {
+  const auto hang_up = [](void (*before)(int)) {
+    signal(SIGHUP, before);
+    catch_interrupts();
+    for (int i = 0; i < 2; ++i) raise(SIGHUP);
+    _exit(interrupted() ? 1 : 0);
+  };
+  EXPECT_EXIT(hang_up(SIG_DFL), testing::ExitedWithCode(1), "");
+  EXPECT_EXIT(hang_up(SIG_IGN), testing::ExitedWithCode(0), "");
 }
 
 TEST(InterruptibleVehicle, FinishSucceedsAfterInterrupt) {

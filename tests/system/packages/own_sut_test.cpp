@@ -44,7 +44,7 @@ class OwnSut : public testing::TestWithParam<const char*> {
                      {"build/face_anchor_cpp\"", std::string(GetParam()) + "\""}});
     write_text(file, substituted(text, changes));
     const Output output =
-        run(tether({"run", file, "--condition", condition, "--quiet", "--out", out}),
+        run(tether({"run", file, "--condition", condition, "--quiet", "--force", "--out", out}),
             std::chrono::seconds(100));
     ASSERT_EQ(output.code, 0) << output.err << read_text(out / "sut-uav1.log");
     const auto result = read_result(out);

@@ -74,9 +74,10 @@ class Tokens : public testing::Test {
   Watched fly(const std::filesystem::path& scenario, const std::vector<std::string>& options = {},
               const Variables& environment = {},
               const std::vector<std::filesystem::path>& folders = {}) const {
-    const Command paced =
-        with(tether({"run", scenario, "--out", folder_ / "out", "--real-time-factor", "2"}, mark_),
-             options, {{"TETHER_TOKEN", ""}});
+    const Command paced = with(
+        tether({"run", scenario, "--force", "--out", folder_ / "out", "--real-time-factor", "2"},
+               mark_),
+        options, {{"TETHER_TOKEN", ""}});
     const Watched watched = watch(with(paced, {}, environment), mark_, folders);
     EXPECT_EQ(watched.output.code, 0) << watched.output.err;
     expect_unseen(watched);

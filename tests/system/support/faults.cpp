@@ -38,7 +38,7 @@ void wait_until_recorded(Process& tether, const std::filesystem::path& out,
 Command RunTest::flight(const std::string& mode, const std::vector<std::string>& options,
                         const std::vector<Substitution>& changes) const {
   const auto scenario = write_hover_scenario(folder_.path(), mode, changes);
-  return with(tether({"run", scenario, "--out", out_}, mark_), options);
+  return with(tether({"run", scenario, "--force", "--out", out_}, mark_), options);
 }
 
 nlohmann::json RunTest::expect_failed(const Output& output, const Failure& failure,

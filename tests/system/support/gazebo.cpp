@@ -24,8 +24,9 @@ Variables stand_in_gazebo(const fs::path& folder, const std::string& mode) {
 
 Command gazebo_run(const fs::path& scenario, const fs::path& out, const Variables& environment,
                    const std::string& mark) {
-  return with(tether({"run", scenario, "--simulator", "gazebo", "--out", out, "--quiet"}, mark), {},
-              environment);
+  return with(
+      tether({"run", scenario, "--simulator", "gazebo", "--force", "--out", out, "--quiet"}, mark),
+      {}, environment);
 }
 
 EndlessFlight::EndlessFlight(const fs::path& folder, const Variables& environment,

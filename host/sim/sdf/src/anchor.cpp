@@ -1,16 +1,14 @@
 #include "sdf_convert.h"
 
 #include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include <tether/base/suggest.h>
 
 namespace tether::sim {
 
 namespace {
-
-std::string names_of(const std::vector<Model>& models) {
-  std::string names;
-  for (const Model& model : models) names += (names.empty() ? "" : ", ") + model.name;
-  return names.empty() ? "none" : names;
-}
 
 [[noreturn]] void refuse_anchor(const SdfSource& source, const std::string& name,
                                 const std::string& message) {
@@ -18,6 +16,18 @@ std::string names_of(const std::vector<Model>& models) {
   while (model && name_attribute(model) != name) model = model->GetNextElement("model");
   const FileLocation where = model ? source.where(model) : FileLocation{source.file().string(), 0};
   throw Error(ErrorCode::kBadFile, where, "anchor '" + name + "' " + message).about(name);
+}
+
+[[noreturn]] void refuse_unknown(const SdfSource& source, const World& world,
+                                 const std::string& name, const FileLocation& requested_at) {
+  std::vector<std::string_view> models;
+  for (const Model& model : world.models) models.push_back(model.name);
+  const FileLocation where =
+      requested_at.file.empty() ? FileLocation{source.file().string(), 0} : requested_at;
+  throw Error(ErrorCode::kBadFile, where,
+              "anchor '" + name + "' is not a model of the world " + source.file().string() + "; " +
+                  allowed_hint(name, models))
+      .about(name);
 }
 
 /// None if SUTs do not know the shape.
@@ -35,12 +45,10 @@ std::optional<std::pair<uav::AnchorShape, uav::Vec3>> shape_and_size(const Geome
 
 }  // namespace
 
-PlacedAnchor find_anchor(const SdfSource& source, const World& world, const std::string& name) {
+PlacedAnchor find_anchor(const SdfSource& source, const World& world, const std::string& name,
+                         const FileLocation& requested_at) {
   const auto model = std::ranges::find(world.models, name, &Model::name);
-  if (model == world.models.end()) {
-    refuse_anchor(source, name,
-                  "is not a model of the world; its models are " + names_of(world.models));
-  }
+  if (model == world.models.end()) refuse_unknown(source, world, name, requested_at);
   std::size_t visuals = 0;
   const Link* link = nullptr;
   for (const Link& candidate : model->links) {

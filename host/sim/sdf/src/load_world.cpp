@@ -177,7 +177,7 @@ World load_world(const WorldRequest& request, const WarningSink& any_warn) {
   world.sdf_files = source.sdf_files();
   add_uavs(request, warn, world);
   for (const std::string& name : request.anchors) {
-    world.anchors.push_back(find_anchor(source, world, name));
+    world.anchors.push_back(find_anchor(source, world, name, request.anchors_at));
   }
   world.files.merge(source.files());
   return world;

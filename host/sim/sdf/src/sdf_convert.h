@@ -47,6 +47,7 @@ Uav read_uav(const SdfSource& source, const UavPlacement& placement, double grav
 /// The model `name` of the world as an anchor.
 /// @throws Error(kBadFile) about `name`: not a model, or not one untextured box, cylinder or
 /// sphere.
-PlacedAnchor find_anchor(const SdfSource& source, const World& world, const std::string& name);
+PlacedAnchor find_anchor(const SdfSource& source, const World& world, const std::string& name,
+                         const FileLocation& requested_at);
 
 }  // namespace tether::sim

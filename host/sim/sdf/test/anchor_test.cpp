@@ -43,6 +43,7 @@ TEST(Anchor, IsABoxACylinderOrASphereOfOneColour) {
        {std::pair{"nothing", 0}, {"two", 12}, {"plane", 15}, {"textured", 16}}) {
     expect_error(refusal({file, {}, {name}}), file, line, name);
   }
+  expect_error(refusal({file, {}, {"bx"}, {"scenario.toml", 7}}), "scenario.toml", 7, "bx");
 }
 
 }  // namespace

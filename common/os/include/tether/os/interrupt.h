@@ -7,9 +7,10 @@
 
 namespace tether::os {
 
-/// Turns SIGINT and SIGTERM into a request to stop while it lives. A second signal more than half a
-/// second after the first ends the process at once. SIGPIPE and SIGXFSZ are ignored meanwhile, so
-/// that failed writes return an error. One object at a time.
+/// Turns SIGINT, SIGTERM and SIGHUP (the terminal was closed) into a request to stop while it
+/// lives. A second SIGINT or SIGTERM more than half a second after the first ends the process at
+/// once. SIGHUP stays ignored if it was (nohup). SIGPIPE and SIGXFSZ are ignored meanwhile, so that
+/// failed writes return an error. One object at a time.
 class Interrupt {
  public:
   /// @throws Error(kSetup) if a pipe or a thread cannot be created.
@@ -24,6 +25,7 @@ class Interrupt {
   void watch();
 
   Pipe signals_;  // a byte for each
+  bool ignores_hangup_ = false;
   std::stop_source stop_;
   std::thread watcher_;
 };

@@ -20,8 +20,9 @@ std::string file_name_of(std::string_view name);
 /// @throws Error(kSetup) with the file's place if the file system refuses; the old content stays.
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
-/// Why a path that is not a regular file is none: it is missing, or a folder, a pipe or a device.
-std::string_view why_no_file(const std::filesystem::path& path);
+/// Why a path that is not a regular file is none: it is missing or cannot be reached, or is a
+/// folder, a pipe or a device.
+std::string why_no_file(const std::filesystem::path& path);
 
 /// The content of a regular file; reading a pipe or a device might never end.
 /// @throws Error(kBadFile) if it is missing, unreadable or longer than `limit` bytes.

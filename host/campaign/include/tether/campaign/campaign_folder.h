@@ -51,7 +51,7 @@ class CampaignFolder {
  public:
   /// Makes the folder or opens it again, and determines which trials are missing: those without a
   /// result, with a truncated or corrupt one, and those whose set-up failed or that were
-  /// interrupted.
+  /// interrupted. Removes the report of the folder if any are.
   /// @throws Error(kUsage), about the folder and without a change, if the folder contains something
   ///   else, results with other settings or versions (about the setting), a campaign with more
   ///   seeds, conditions or scenarios (whose trials would be missing from every mean), or results

@@ -19,6 +19,8 @@ namespace tether::campaign {
 
 inline constexpr int kResultSchemaVersion = 1;
 inline constexpr std::string_view kResultFile = "result.json";
+/// The report of a run or campaign in its folder, unless the user names another file.
+inline constexpr std::string_view kReportFile = "report.html";
 
 enum class Outcome {
   kGoalReached,  ///< exit 0: every SUT finished with its goal reached, every metric within its
@@ -100,6 +102,7 @@ struct ThisRun {
   std::string first_failure;             ///< its reason
   std::optional<TargetReport> target{};  ///< none if it was not read
   std::vector<std::string> notes{};      ///< unintended stalls of the run, one line each
+  std::vector<std::string> sut_files{};  ///< written by SUTs; paths in the trial's folder, sorted
 
   friend bool operator==(const ThisRun&, const ThisRun&) = default;
 };

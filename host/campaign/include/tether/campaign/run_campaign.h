@@ -13,6 +13,8 @@ namespace tether::campaign {
 
 /// The output of a trial's program, in the trial's folder.
 inline constexpr std::string_view kTrialLog = "run.log";
+/// The same of a second attempt.
+inline constexpr std::string_view kSecondTrialLog = "run-2.log";
 
 /// Runs one trial, leaves its record in `plan.folder` (which exists and is empty; at a second
 /// attempt it contains the first one's kTrialLog), and returns its result, which run_campaign

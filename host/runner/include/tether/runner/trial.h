@@ -12,6 +12,7 @@
 #include <tether/link/channel.h>
 #include <tether/link/server.h>
 #include <tether/runner/back_end.h>
+#include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>
 #include <tether/sim/simulator.h>
 
@@ -22,7 +23,8 @@ struct TrialSpec {
   scenario::Scenario scenario;
   scenario::Condition condition;
   std::uint64_t seed = 1;
-  std::filesystem::path folder;  ///< for result.json, record.mcap and the logs of SUTs
+  std::filesystem::path folder;              ///< for result.json, record.mcap and the logs of SUTs
+  EarlierRun earlier = EarlierRun::kRefuse;  ///< one in the folder
   /// None: a free port of 127.0.0.1, or of the address at which the board sees this machine.
   std::optional<link::Address> listen{};
   /// Tunnel the connection of SUTs on the board through SSH.
@@ -45,10 +47,11 @@ struct TrialObserver {
   std::function<void(const std::string& instructions)> on_listening;
 };
 
-/// Runs one trial and writes its result to the folder, even if it fails. Replaces the files of an
-/// earlier trial there. A stop request ends it as interrupted.
+/// Runs one trial and writes its result to the folder, even if it fails. A stop request ends it as
+/// interrupted.
 /// @throws Error(kUsage) and Error(kBadFile) before anything is written, if an option, the world, a
-///   model or a profile cannot be used; Error(kSetup) if the folder cannot be written.
+///   model, a profile or the folder (see TrialFolder) cannot be used; Error(kSetup) if the folder
+///   cannot be written.
 campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_back_end,
                                 const TrialObserver& observer, const std::stop_token& stop);
 

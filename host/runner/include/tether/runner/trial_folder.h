@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
 
 #include <tether/campaign/folder_claim.h>
 #include <tether/os/file_descriptor.h>
@@ -12,20 +15,32 @@ inline constexpr const char* kRecordFile = "record.mcap";
 /// Output of the simulator's processes.
 inline constexpr const char* kSimulatorLog = "simulator.log";
 
+/// What happens to an earlier run in a trial's folder.
+enum class EarlierRun {
+  kRefuse,
+  kReplace,  ///< all of its files are removed: those of Tether, and those that its SUTs wrote
+};
+
 /// The folder of a trial, created if necessary. While the object exists, no other process of Tether
-/// writes to it. Results of an earlier trial are removed. Room for the result is reserved, because
-/// the record of the trial may fill the disk.
+/// writes to it. It never mixes two runs. Room for the result is reserved, because the record of
+/// the trial may fill the disk. Not thread-safe.
 class TrialFolder {
  public:
-  /// @throws Error(kUsage) if another run writes to it or it belongs to a campaign; Error(kSetup)
-  /// if the file system does not allow it. The subject is the path.
-  explicit TrialFolder(const std::filesystem::path& folder);
+  /// @throws Error(kUsage), without a change, if another run writes to the folder, it belongs to a
+  ///   campaign or is one, or it has an earlier run that must not be replaced or lies beside files
+  ///   of others; Error(kSetup) if the file system does not allow it. The subject is the path.
+  TrialFolder(const std::filesystem::path& folder, EarlierRun earlier);
+
+  /// The files that the SUTs of this run wrote to it so far, relative to it and sorted.
+  std::vector<std::string> files_of_suts() const;
   /// Call before the result is written.
   void release_room() { room_ = {}; }
 
  private:
+  std::filesystem::path folder_;
   campaign::FolderClaim claim_;
-  os::FileDescriptor room_;  // of a file without a name
+  os::FileDescriptor room_;                    // of a file without a name
+  std::set<std::filesystem::path> of_others_;  // names in it before the run
 };
 
 }  // namespace tether::runner

@@ -72,10 +72,12 @@ struct Scenario {
   std::string description;
   std::filesystem::path world;  ///< absolute
   Duration step{std::chrono::milliseconds(1)};
-  Duration time_limit{0};                         ///< of ST
-  Duration hang_limit{std::chrono::seconds(30)};  ///< of WT without a message from a SUT
-  std::vector<UavSetup> uavs;                     ///< at least one
+  Duration time_limit{0};                            ///< of ST
+  Duration hang_limit{std::chrono::seconds(30)};     ///< of WT without a message from a SUT
+  Duration connect_limit{std::chrono::seconds(30)};  ///< of WT until every SUT has joined
+  std::vector<UavSetup> uavs;                        ///< at least one
   std::vector<std::string> anchors;
+  FileLocation anchors_at{};          ///< of their key; empty: there is none
   std::vector<Condition> conditions;  ///< at least one; the first is the default
   std::vector<Metric> metrics;
   Duration ground_truth_period{std::chrono::milliseconds(10)};

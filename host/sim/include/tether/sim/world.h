@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include <tether/base/error.h>
 #include <tether/base/time.h>
 #include <tether/uav/catalogue.h>
 #include <tether/uav/math.h>
@@ -211,6 +212,7 @@ struct WorldRequest {
   std::filesystem::path world;  ///< SDF file with one <world>
   std::vector<UavPlacement> uavs;
   std::vector<std::string> anchors;  ///< names of models of the world
+  FileLocation anchors_at{};         ///< where they are requested; empty: in no file
 };
 
 /// Receives warnings: one printable line each, with file (and line if known).

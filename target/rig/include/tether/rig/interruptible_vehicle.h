@@ -13,8 +13,9 @@ namespace tether::rig {
 std::unique_ptr<client::Vehicle> make_interruptible(std::unique_ptr<client::Vehicle> vehicle,
                                                     std::function<bool()> is_interrupted);
 
-/// Installs handlers for the whole process: the first SIGINT or SIGTERM makes `interrupted` true,
-/// the next one ends the process.
+/// Installs handlers for the whole process: the first SIGINT or SIGTERM, and every SIGHUP (the
+/// terminal was closed) unless it is ignored, makes `interrupted` true. The next SIGINT or SIGTERM
+/// ends the process. SIGPIPE is ignored: output that nobody reads any more ends nothing.
 void catch_interrupts();
 bool interrupted();
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace tether::toml {
+namespace tether {
 
 /// The candidate that a user who wrote `word` most likely meant: the nearest by edit distance
 /// (insertion, deletion, substitution, transposition) if the distance is small for its length, or
@@ -17,4 +17,4 @@ std::string quoted_list(std::span<const std::string_view> words);
 /// "allowed are 'a' and 'b'", with "; did you mean 'a'?" before it where `nearest` finds one.
 std::string allowed_hint(std::string_view word, std::span<const std::string_view> candidates);
 
-}  // namespace tether::toml
+}  // namespace tether

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <tether/toml/suggest.h>
+#include <tether/base/suggest.h>
 
-namespace tether::toml {
+namespace tether {
 namespace {
 
 constexpr std::array<std::string_view, 4> kKeys = {"rate_hz", "period_ms", "phase_ms", "delay"};
@@ -33,4 +33,4 @@ TEST(QuotedList, ReadsAsASentence) {
 }
 
 }  // namespace
-}  // namespace tether::toml
+}  // namespace tether

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <vector>
 
-#include <tether/toml/suggest.h>
+#include <tether/base/suggest.h>
 
-namespace tether::toml {
+namespace tether {
 namespace {
 
 // Optimal string alignment distance.
@@ -70,4 +70,4 @@ std::string allowed_hint(std::string_view word, std::span<const std::string_view
   return hint + "Allowed: " + quoted_list(candidates);
 }
 
-}  // namespace tether::toml
+}  // namespace tether

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+namespace tether::app {
+
+/// What a file or folder is that a user may give to a command.
+enum class FileKind {
+  kScenario,
+  kCampaign,
+  kProfile,
+  kTarget,
+  kWorld,
+  kMission,
+  kRig,
+  kRecord,
+  kRun,             ///< a folder
+  kCampaignFolder,  ///< a folder with the trials of a campaign
+};
+
+/// By its content; none if it is none of them, cannot be read, or could be several.
+std::optional<FileKind> kind_of(const std::filesystem::path& path);
+
+/// Checks that a file is not of another kind than the command needs. One that is not recognised may
+/// be of that kind, and the command says what is wrong with it.
+/// @throws Error(kUsage), about the path, that says what it is and which command takes it.
+void require_kind(const std::filesystem::path& path, FileKind wanted);
+
+}  // namespace tether::app

@@ -1,0 +1,30 @@
+#include "output_folder.h"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <tether/base/error.h>
+
+namespace tether::app {
+
+namespace fs = std::filesystem;
+
+fs::path make_output_folder(fs::path out, const fs::path& record, const char* name,
+                            const std::set<std::string>& drawings, const char* pattern) {
+  if (out.empty()) out = record.parent_path() / name;
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw Error(ErrorCode::kSetup, {out.string()}, error.message()).about(out.string());
+  for (const auto& entry : fs::directory_iterator(out, error)) {
+    const std::string file = entry.path().filename().string();
+    if (!drawings.contains(file) && fnmatch(pattern, file.c_str(), FNM_EXTMATCH) == 0)
+      throw Error(ErrorCode::kUsage, {out.string()},
+                  fmt::format("has '{}' of another record. Remove it, or choose another folder "
+                              "with --out.",
+                              file))
+          .about(out.string());
+  }
+  return out;
+}
+
+}  // namespace tether::app
