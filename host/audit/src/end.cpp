@@ -58,6 +58,7 @@ void check_st(const record::Record& record, const Boundaries& grid, const Footer
   see(record.ground_truth);
   see(record.annotations);
   see(record.stops);
+  see(record.contacts);
   if (last > footer.st_at_end)
     report.add(
         fmt::format("the run ended at ST {}, but a message has log time ST {}", ns(end), ns(last)));

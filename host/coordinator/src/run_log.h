@@ -21,6 +21,9 @@ class RunLog {
   void interaction(SimTime st, const record::Interaction& entry);
   void command_effect(SimTime st, const std::string& uav, const PendingCommand& command);
   void ground_truth(const std::string& uav, const sim::GroundTruth& truth);
+  void contact(SimTime st, const std::string& uav, const sim::Contact& contact);
+  /// At the instant of the ground truth. The footer keeps the least.
+  void clearance(SimTime st, const std::string& uav, const sim::Clearance& clearance);
   void annotation(SimTime st, const record::Annotation& annotation) {
     recorder_->write(st, annotation);
   }

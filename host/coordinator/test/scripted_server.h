@@ -104,6 +104,7 @@ class MemoryRecorder final : public record::Recorder {
   void write(SimTime, const record::GroundTruth& m) override { ground_truth.push_back(m); }
   void write(SimTime, const record::Annotation& m) override { annotations.push_back(m); }
   void write(SimTime, const record::Stop& m) override { stops.push_back(m); }
+  void write(SimTime at, const record::Contact& m) override { contacts.emplace_back(at, m); }
   void write(SimTime, const record::Image& m) override { images.push_back(m); }
   void flush() override {}
   void write(const record::Footer& m) override { footer = m; }
@@ -114,6 +115,7 @@ class MemoryRecorder final : public record::Recorder {
   std::vector<record::GroundTruth> ground_truth;
   std::vector<record::Annotation> annotations;
   std::vector<record::Stop> stops;
+  std::vector<std::pair<SimTime, record::Contact>> contacts;
   std::vector<record::Image> images;
   std::optional<record::Footer> footer;
 };

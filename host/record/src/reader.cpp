@@ -74,6 +74,8 @@ class RecordBuilder final : public McapVisitor {
     if (schema == kAnnotationSchema.name)
       return &RecordBuilder::append<&Record::annotations, annotation_from_json>;
     if (schema == kStopSchema.name) return &RecordBuilder::append<&Record::stops, stop_from_json>;
+    if (schema == kContactSchema.name)
+      return &RecordBuilder::append<&Record::contacts, contact_from_json>;
     if (schema == kCompressedImageSchema.name)
       return options_.images ? &RecordBuilder::append<&Record::images, image_from_json>
                              : &RecordBuilder::skip;

@@ -80,6 +80,10 @@ class RemoteSimulator final : public Simulator {
     return {now(), state_.bodies[uav]};
   }
 
+  bool reports_contacts() const override { return false; }
+  std::vector<Contact> take_contacts() override { return {}; }
+  std::optional<Clearance> clearance(std::size_t) const override { return std::nullopt; }
+
   std::string description() const override {
     const std::string renderer = sensors_.renderer_name();
     return renderer.empty() ? description_ : description_ + ", " + renderer;

@@ -25,6 +25,7 @@ struct Record {
   std::vector<Logged<GroundTruth>> ground_truth;
   std::vector<Logged<Annotation>> annotations;
   std::vector<Logged<Stop>> stops;
+  std::vector<Logged<Contact>> contacts;
   std::vector<Logged<Image>> images;
   std::optional<Footer> footer;
   /// Where and why reading stopped early (truncated or damaged file), in one printable line:
