@@ -75,6 +75,7 @@ std::string_view why_no_file(const std::filesystem::path& path) {
 }  // namespace
 
 bool Range::contains(double value) const {
+  if (with_inf && value == std::numeric_limits<double>::infinity()) return true;
   return std::isfinite(value) && (above_min ? value > min : value >= min) &&
          (below_max ? value < max : value <= max);
 }
@@ -85,7 +86,8 @@ std::string Range::text() const {
   if (has_min) text = (above_min ? "greater than " : "at least ") + number_text(min);
   if (has_min && has_max) text += " and ";
   if (has_max) text += (below_max ? "less than " : "at most ") + number_text(max);
-  return text.empty() ? "finite" : text;
+  if (text.empty()) text = "finite";
+  return with_inf ? text + ", or inf" : text;
 }
 
 Table::Table(const Node& table, std::string path, std::string file)

@@ -284,7 +284,8 @@ Table optimism_table(const campaign::ScenarioResults& scenario) {
   Table table = table_of(scenario, optimism(scenario));
   table.title = fmt::format("Optimism of the unsynchronised test of {}", scenario.scenario);
   table.notes.push_back(
-      "Positive: the unsynchronised test reports a value that is better by this amount.");
+      "Positive: the unsynchronised test reports a value that is smaller by this amount. Of all "
+      "metrics but the least clearance, that is better.");
   return table;
 }
 

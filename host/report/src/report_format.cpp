@@ -29,6 +29,10 @@ std::string exact(const std::optional<double>& value) {
   return value ? exact(*value) : "";
 }
 
+std::string limit_text(const campaign::MetricValue& metric) {
+  if (metric.min) return "≥ " + exact(*metric.min);
+  return metric.max ? exact(*metric.max) : kNone;
+}
 std::string with_unit(const std::string& label, const std::string& unit) {
   return unit == "1" ? label : fmt::format("{} ({})", label, unit);
 }

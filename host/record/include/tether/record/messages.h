@@ -104,6 +104,7 @@ struct Contact {
   SimTime at;              ///< step boundary at which both touched for the first time
   std::string with;        ///< name of the model or UAV
   double speed_m_s = 0.0;  ///< of approach along the contact's normal, just before the impact; ≥ 0
+  friend bool operator==(const Contact&, const Contact&) = default;
 };
 
 /// A message of the SUT for the record. Topic /task/<uav>; log time = ST when it arrived.
@@ -201,6 +202,7 @@ struct Clearance {
   double min_m = 0.0;  ///< 0: it touched, or was inside
   SimTime at;          ///< when that was for the first time
   std::string to;      ///< name of the model or UAV
+  friend bool operator==(const Clearance&, const Clearance&) = default;
 };
 
 /// End of the run: written last (metadata record "tether.end"). A record without it is incomplete.

@@ -66,6 +66,9 @@ struct UavSetup {
   Sut sut;  ///< its own, or the scenario's; own parameters override the scenario's
 };
 
+/// Softer contacts are landings: UAVs descend at less.
+inline constexpr double kHardContact_m_s = 0.5;
+
 struct Scenario {
   std::filesystem::path file;  ///< absolute
   std::string name;            ///< letters, digits, '_', '-', '.'
@@ -74,7 +77,9 @@ struct Scenario {
   Duration step{std::chrono::milliseconds(1)};
   Duration time_limit{0};                         ///< of ST
   Duration hang_limit{std::chrono::seconds(30)};  ///< of WT without a message from a SUT
-  std::vector<UavSetup> uavs;                     ///< at least one
+  /// A contact that is harder misses the goal (record::Contact::speed_m_s); inf: none does.
+  double max_contact_speed_m_s = kHardContact_m_s;
+  std::vector<UavSetup> uavs;  ///< at least one
   std::vector<std::string> anchors;
   std::vector<Condition> conditions;  ///< at least one; the first is the default
   std::vector<Metric> metrics;
