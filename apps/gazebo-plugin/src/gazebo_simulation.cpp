@@ -3,6 +3,7 @@
 
 #include "gazebo_simulation.h"
 
+#include "conversions.h"
 #include "scene.h"
 
 #include <thread>
