@@ -109,13 +109,14 @@ runner::TrialSpec make_spec(const RunOptions& options) {
 }
 
 void print_contacts(const campaign::UavContacts& own) {
-  std::string text = own.count ? fmt::format("{} contacts", *own.count) : "contacts not reported";
+  std::string text = own.count ? fmt::format("{} contact{}", *own.count, *own.count == 1 ? "" : "s")
+                               : "contacts not reported";
   if (const auto& hardest = own.hardest)
     text += fmt::format(", the hardest with '{}' at ST {:.6g} s and {:.3g} m/s", hardest->with,
                         to_seconds(hardest->at), hardest->speed_m_s);
   if (const auto& nearest = own.nearest)
-    text += fmt::format("; at least {:.3g} m from everything ('{}' at ST {:.6g} s)", nearest->min_m,
-                        nearest->to, to_seconds(nearest->at));
+    text += fmt::format("; nearest to '{}' at ST {:.6g} s: {:.3g} m", nearest->to,
+                        to_seconds(nearest->at), nearest->min_m);
   fmt::print("  {:<24} {}\n", own.uav, text);
 }
 

@@ -284,8 +284,13 @@ Table optimism_table(const campaign::ScenarioResults& scenario) {
   Table table = table_of(scenario, optimism(scenario));
   table.title = fmt::format("Optimism of the unsynchronised test of {}", scenario.scenario);
   table.notes.push_back(
-      "Positive: the unsynchronised test reports a value that is smaller by this amount. Of all "
-      "metrics but the least clearance, that is better.");
+      "Positive: the unsynchronised test reports a value that is better by this amount.");
+  for (const Comparison& c : optimism(scenario)) {
+    const campaign::MetricValue& metric = *scenario.find_metric(c.metric);
+    if (is_better_if_more(metric))
+      table.notes.push_back(
+          fmt::format("{}: more is better, so negative values are better.", metric.label));
+  }
   return table;
 }
 

@@ -29,6 +29,10 @@ std::string exact(const std::optional<double>& value) {
   return value ? exact(*value) : "";
 }
 
+bool is_better_if_more(const campaign::MetricValue& metric) {
+  const auto* kind = scenario::find_metric_kind(metric.kind);
+  return kind != nullptr && kind->is_better_if_more;
+}
 std::string limit_text(const campaign::MetricValue& metric) {
   if (metric.min) return "≥ " + exact(*metric.min);
   return metric.max ? exact(*metric.max) : kNone;

@@ -1,5 +1,7 @@
 #include "verdict.h"
 
+#include "report_format.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -203,8 +205,7 @@ std::string optimism_sentence(const Comparison& comparison, const campaign::Metr
   const double hidden = comparison.means.difference;
   const int places = decimals_for(comparison.means);
   const bool smaller = hidden > 0.0;
-  const auto* kind = scenario::find_metric_kind(metric.kind);
-  const bool better = smaller != (kind && kind->is_better_if_more);
+  const bool better = smaller != is_better_if_more(metric);
   const std::string label = in_a_sentence(metric.label);
   if (hidden == 0.0 || contains_zero(comparison.means.ci95))
     return fmt::format(
