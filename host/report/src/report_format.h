@@ -22,6 +22,8 @@ std::string p_value(double p);
 /// The shortest text that reads back as the same number; empty for none.
 std::string exact(double value);
 std::string exact(const std::optional<double>& value);
+/// Whether a UAV hit something harder than the scenario allows.
+bool has_crash(const campaign::TrialResult& trial);
 /// Whether a larger value of the metric is better.
 bool is_better_if_more(const campaign::MetricValue& metric);
 /// "0.5" or, of a minimum, "≥ 0.5".

@@ -135,9 +135,7 @@ std::string throttled_sentence(const campaign::ScenarioResults& scenario) {
 std::string crashes_sentence(const campaign::ScenarioResults& scenario) {
   std::vector<std::string> parts;
   for (const campaign::ConditionResults& condition : scenario.conditions) {
-    const auto crashed = std::ranges::count_if(condition.trials, [](const auto& trial) {
-      return std::ranges::any_of(trial.contacts, [](const auto& own) { return own.hard > 0; });
-    });
+    const auto crashed = std::ranges::count_if(condition.trials, has_crash);
     if (crashed > 0)
       parts.push_back(fmt::format("{} of {} trials on “{}”", crashed, condition.trials.size(),
                                   condition.condition));
@@ -155,9 +153,7 @@ void add_trial_problems(std::vector<std::string>& lines, const std::string& wher
     lines.push_back(fmt::format("{}: failed, excluded from all means: {}", which, trial.reason));
     return;
   }
-  const auto is_crash = [](const campaign::UavContacts& own) { return own.hard > 0; };
-  if (std::ranges::any_of(trial.contacts, is_crash))
-    lines.push_back(fmt::format("{}: {}", which, trial.reason));
+  if (has_crash(trial)) lines.push_back(fmt::format("{}: {}", which, trial.reason));
   for (const campaign::MetricValue& metric : trial.metrics) {
     if (!metric.value)
       lines.push_back(fmt::format("{}: no value of {}: {}", which, in_a_sentence(metric.label),
