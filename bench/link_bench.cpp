@@ -140,6 +140,9 @@ class StillSimulator final : public sim::Simulator {
     return uav::CameraSample{snapshot.at, index, kWidthPx, kHeightPx, std::move(image_.rgb)};
   }
   sim::GroundTruth ground_truth(std::size_t) const override { return {now_, {}}; }
+  bool reports_contacts() const override { return false; }
+  std::vector<sim::Contact> take_contacts() override { return {}; }
+  std::optional<sim::Clearance> clearance(std::size_t) const override { return std::nullopt; }
   std::string description() const override { return "still"; }
 
  private:
@@ -192,6 +195,7 @@ class CoordinatorHost {
     void write(SimTime at, const record::GroundTruth& m) override { file_->write(at, m); }
     void write(SimTime at, const record::Annotation& m) override { file_->write(at, m); }
     void write(SimTime at, const record::Stop& m) override { file_->write(at, m); }
+    void write(SimTime at, const record::Contact& m) override { file_->write(at, m); }
     void write(SimTime at, const record::Image& m) override { file_->write(at, m); }
     void flush() override { file_->flush(); }
     void write(const record::Footer& m) override { file_->write(m); }

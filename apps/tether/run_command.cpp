@@ -121,6 +121,18 @@ runner::TrialSpec make_spec(const RunOptions& options) {
   return spec;
 }
 
+void print_contacts(const campaign::UavContacts& own) {
+  std::string text = own.count ? fmt::format("{} contact{}", *own.count, *own.count == 1 ? "" : "s")
+                               : "contacts not reported";
+  if (const auto& hardest = own.hardest)
+    text += fmt::format(", the hardest with '{}' at ST {:.6g} s and {:.3g} m/s", hardest->with,
+                        to_seconds(hardest->at), hardest->speed_m_s);
+  if (const auto& nearest = own.nearest)
+    text += fmt::format("; nearest to '{}' at ST {:.6g} s: {:.3g} m", nearest->to,
+                        to_seconds(nearest->at), nearest->min_m);
+  fmt::print("  {:<24} {}\n", own.uav, text);
+}
+
 void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& result) {
   const bool has_failed = result.outcome == campaign::Outcome::kFailed;  // its reason is an error
   fmt::print("{} under \"{}\", seed {}: {}{}\n", result.scenario, result.condition, result.seed,
@@ -132,8 +144,11 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
         : metric.missing_because == result.reason ? "none"
                                                   : "none: " + metric.missing_because;
     fmt::print("  {:<24} {}{}\n", metric.label, value,
-               metric.max ? fmt::format("  (limit {:.4g})", *metric.max) : "");
+               metric.max   ? fmt::format("  (limit {:.4g})", *metric.max)
+               : metric.min ? fmt::format("  (at least {:.4g})", *metric.min)
+                            : "");
   }
+  for (const campaign::UavContacts& own : result.contacts) print_contacts(own);
   fmt::print("  {:<24} {:.3f} s in {:.3f} s of wall time, {} interactions\n", "simulated",
              to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
              result.sync.interactions);

@@ -43,6 +43,7 @@ record::Header header(Choices& choices) {
     header.sensors.push_back({name(choices), name(choices), "camera", choices.coin(),
                               time<Duration>(choices), time<Duration>(choices),
                               time<Duration>(choices), time<Duration>(choices)});
+  header.reports_contacts = header.suts.size() % 2 == 0;
   return header;
 }
 
@@ -101,6 +102,9 @@ void add_message(Choices& choices, std::uint64_t order, record::Record& record) 
                                      order,
                                      {name(choices), time<ExecTime>(choices),
                                       maybe<ExecTime>(choices), time<WallTime>(choices)}});
+    case 4:
+      return record.contacts.push_back(
+          {at, order, {name(choices), time<SimTime>(choices), name(choices), 1.0}});
     default:
       return record.interactions.push_back({at, order, interaction(choices)});
   }

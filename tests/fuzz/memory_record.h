@@ -22,6 +22,7 @@ class MemoryRecord final : public record::Recorder {
     add(record.stops, at, m);
     record.stops.back().message.wall = WallTime{};
   }
+  void write(SimTime at, const record::Contact& m) override { add(record.contacts, at, m); }
   void write(SimTime at, const record::Image& m) override { add(record.images, at, m); }
   void flush() override {}
   void write(const record::Footer& m) override { record.footer = m; }

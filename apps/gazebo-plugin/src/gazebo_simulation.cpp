@@ -3,11 +3,13 @@
 
 #include "gazebo_simulation.h"
 
+#include "conversions.h"
 #include "scene.h"
 
 #include <thread>
 
 #include <gazebo/gazebo_config.h>
+#include <gazebo/physics/ode/ODELink.hh>
 #include <gazebo/physics/ode/ODEPhysics.hh>
 #include <gazebo/physics/physics.hh>
 #include <gazebo/rendering/rendering.hh>
@@ -25,6 +27,12 @@ constexpr std::chrono::milliseconds kWarmUpPause{1};
 
 [[noreturn]] void fail(const std::string& what) {
   throw Error(ErrorCode::kSetup, what);
+}
+
+TouchedPoint::Side side_of(const ::gazebo::physics::Collision& collision, const OdeBodies& bodies) {
+  const auto* link = dynamic_cast<const ::gazebo::physics::ODELink*>(collision.GetLink().get());
+  const dBodyID id = link ? link->GetODEId() : nullptr;
+  return {bodies.find(id), collision.GetModel()->GetScopedName(), collision.GetId()};
 }
 
 bool can_draw() {
@@ -63,6 +71,8 @@ void GazeboSimulation::check(const protocol::Open& open) const {
 void GazeboSimulation::open(const protocol::Open& open) {
   check(open);
   open_ = open;
+  // Contacts are kept although nobody subscribes to them.
+  world_->Physics()->GetContactManager()->SetNeverDropContacts(true);
   world_->Physics()->SetMaxStepSize(to_seconds(open.step));
   world_->Physics()->SetRealTimeUpdateRate(0.0);
   world_->SetGravity({0.0, 0.0, -open.gravity_m_s2});
@@ -153,6 +163,22 @@ std::vector<uav::BodyState> GazeboSimulation::bodies() const {
 
 void GazeboSimulation::push(std::size_t uav, const uav::Vec3& force_W, const uav::Vec3& torque_W) {
   bodies_.push(uav, force_W, torque_W);
+}
+
+// Gazebo keeps the contacts of a step until the next one.
+std::vector<TouchedPoint> GazeboSimulation::touched_points() const {
+  const auto* manager = world_->Physics()->GetContactManager();
+  std::vector<TouchedPoint> points;
+  for (unsigned int i = 0; i < manager->GetContactCount(); ++i) {
+    const ::gazebo::physics::Contact& contact = *manager->GetContacts()[i];
+    const TouchedPoint::Side first = side_of(*contact.collision1, bodies_);
+    const TouchedPoint::Side second = side_of(*contact.collision2, bodies_);
+    for (int k = 0; k < contact.count; ++k) {
+      points.push_back(
+          {{first, second}, from_gazebo(contact.positions[k]), from_gazebo(contact.normals[k])});
+    }
+  }
+  return points;
 }
 
 protocol::Distances GazeboSimulation::cast(const protocol::CastRays& rays) {

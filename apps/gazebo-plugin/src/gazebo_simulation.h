@@ -33,6 +33,7 @@ class GazeboSimulation : public Simulation {
   void reset(std::uint64_t seed) override;
   std::vector<uav::BodyState> bodies() const override;
   void push(std::size_t uav, const uav::Vec3& force_W, const uav::Vec3& torque_W) override;
+  std::vector<TouchedPoint> touched_points() const override;
   protocol::Distances cast(const protocol::CastRays& rays) override;
   protocol::Picture render(const protocol::Render& view) override;
 

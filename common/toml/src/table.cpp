@@ -66,6 +66,7 @@ double seconds_per_unit(std::string_view key) {
 }  // namespace
 
 bool Range::contains(double value) const {
+  if (with_inf && value == std::numeric_limits<double>::infinity()) return true;
   return std::isfinite(value) && (above_min ? value > min : value >= min) &&
          (below_max ? value < max : value <= max);
 }
@@ -76,7 +77,8 @@ std::string Range::text() const {
   if (has_min) text = (above_min ? "greater than " : "at least ") + number_text(min);
   if (has_min && has_max) text += " and ";
   if (has_max) text += (below_max ? "less than " : "at most ") + number_text(max);
-  return text.empty() ? "finite" : text;
+  if (text.empty()) text = "finite";
+  return with_inf ? text + ", or inf" : text;
 }
 
 Table::Table(const Node& table, std::string path, std::string file)

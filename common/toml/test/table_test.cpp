@@ -147,6 +147,8 @@ TEST(Table, SaysWhatWasFoundAndWhatIsAllowed) {
   EXPECT_EQ(message("5.5", {.min = 0.0, .max = 5.0}), at + "at least 0 and at most 5, but is 5.5");
   EXPECT_EQ(message("0", {.min = 0.0, .max = 9.0, .above_min = true, .below_max = true}),
             at + "greater than 0 and less than 9, but is 0");
+  EXPECT_EQ(message("-inf", {.min = 0.0, .with_inf = true}),
+            at + "at least 0, or inf, but is -inf");
 }
 
 // Files -------------------------------------------------------------------------------------------

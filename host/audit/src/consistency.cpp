@@ -236,6 +236,20 @@ class ConsistencyCheck {
     reached_ = std::max(reached_, entry.at);
   }
 
+  void visit(const Logged<record::Contact>& entry) {
+    const record::Contact& message = entry.message;
+    if (!suts_.contains(message.uav))
+      report_.add(0, entry, "no UAV \"{}\" in the record's header", message.uav);
+    if (!record_.header.reports_contacts)
+      report_.add(0, entry, "contact in a record that reports none");
+    if (!grid_.contain(wide(message.at)) || message.at > entry.at)
+      report_.add(0, entry, "contact at {}, recorded at ST {}", ns(message.at), ns(entry.at));
+    if (!(std::isfinite(message.speed_m_s) && message.speed_m_s >= 0.0))
+      report_.add(0, entry, "contact at {} m/s", message.speed_m_s);
+    check_order(entry);
+    reached_ = std::max(reached_, entry.at);
+  }
+
   // Ground truth k is at the first boundary from k·period on; without a period, its times increase.
   void check_instant(const Logged<GroundTruth>& entry) {
     TruthRow& row = truth_[entry.message.uav];

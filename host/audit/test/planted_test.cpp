@@ -56,6 +56,15 @@ std::size_t effect_of(const Record& record, const Interaction& command) {
   return static_cast<std::size_t>(found - record.commands.begin());
 }
 
+// With the last interaction, of `offset` from the boundary before it.
+void add_contact(Record& record, Duration offset, double speed_m_s) {
+  const auto& last = record.interactions.back();
+  const auto boundary = from_ns<SimTime>(floor_ns(to_ns(last.at), kStep.count()));
+  record.header.reports_contacts = true;
+  record.contacts.push_back(
+      {last.at, last.order + 1, {last.message.uav, boundary + offset, "wall", speed_m_s}});
+}
+
 record::SensorInfo& info_of(Record& record, const Interaction& reading) {
   return *std::ranges::find_if(record.header.sensors, [&](const record::SensorInfo& sensor) {
     return sensor.uav == reading.uav && sensor.name == reading.sensor;
@@ -421,6 +430,15 @@ const Planted kPlanted[] = {
      [](Record& r) {
        r.annotations.push_back({from_ns<SimTime>(5), r.interactions.back().order + 1, {}});
      }},
+    {"contact_off_the_grid", {0}, [](Record& r) { add_contact(r, -kNs, 1.0); }},
+    {"contact_from_the_future", {0}, [](Record& r) { add_contact(r, kStep, 1.0); }},
+    {"contact_of_negative_speed", {0}, [](Record& r) { add_contact(r, -kStep, -1.0); }},
+    {"contact_not_reported",
+     {0},
+     [](Record& r) {
+       add_contact(r, -kStep, 1.0);
+       r.header.reports_contacts = false;
+     }},
     {"wrong_count_of_interactions", {0}, [](Record& r) { ++r.footer->interactions; }},
     {"wrong_count_of_violations", {0}, [](Record& r) { ++r.footer->causality_violations; }},
     {"wrong_largest_lag", {0}, [](Record& r) { r.footer->largest_lag += kNs; }},
@@ -446,6 +464,12 @@ TEST_P(PlantedViolation, IsFoundAsABreachOfItsRules) {
 
 INSTANTIATE_TEST_SUITE_P(Planted, PlantedViolation, ::testing::ValuesIn(kPlanted),
                          [](const auto& planted) { return std::string(planted.param.what); });
+
+TEST(PlantedViolations, AContactIsNone) {
+  Record record = generate({.seed = 7});
+  add_contact(record, -kStep, 4.0);
+  EXPECT_TRUE(audit(record).passed()) << to_text(audit(record));
+}
 
 TEST(PlantedViolations, CoverEveryRule) {
   Rules covered;

@@ -1,3 +1,5 @@
+#include "contacts.h"
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -63,7 +65,7 @@ void drop_metrics_of_missed_tasks(TrialResult& result, const scenario::Scenario&
     const std::string why = why_missed(sut);
     if (why.empty()) continue;
     for (std::size_t i = 0; i < result.metrics.size(); ++i) {
-      if (scenario.metrics[i].uav != sut.uav) continue;
+      if (scenario.metrics[i].uav != sut.uav || scenario.metrics[i].of_any_flight) continue;
       result.metrics[i].value.reset();
       result.metrics[i].missing_because = why;
     }
@@ -81,8 +83,10 @@ std::string why_missed(const TrialResult& result) {
   for (const MetricValue& metric : result.metrics) {
     if (metric.is_met()) continue;
     if (!metric.value) return fmt::format("no {}: {}", metric.name, metric.missing_because);
-    return fmt::format("{} is {}, beyond its limit of {}", metric.name,
-                       text_of(*metric.value, metric.unit), text_of(*metric.max, metric.unit));
+    const bool is_less = metric.min && *metric.value < *metric.min;
+    return fmt::format("{} is {}, {} its limit of {}", metric.name,
+                       text_of(*metric.value, metric.unit), is_less ? "below" : "beyond",
+                       text_of(is_less ? *metric.min : *metric.max, metric.unit));
   }
   return "";
 }
@@ -101,10 +105,12 @@ std::string end_of(const record::Footer& footer) {
   return nothing_happened ? std::string(kEndSetupFailed) : footer.end;
 }
 
-void settle(TrialResult& result, const std::string& reason_of_end) {
+// A crash comes first among the reasons: it often is the cause of the others.
+void settle(TrialResult& result, const std::string& reason_of_end, const std::string& crash = "") {
   const bool ran = result.end == kEndFinished || result.end == kEndTimeLimit;
   if (!ran) return invalidate(result, reason_of_end.empty() ? result.end : reason_of_end);
-  const std::string missed = result.end == kEndTimeLimit ? reason_of_end : why_missed(result);
+  std::string missed = result.end == kEndTimeLimit ? reason_of_end : why_missed(result);
+  if (!crash.empty()) missed = crash + (missed.empty() ? "" : "; " + missed);
   const bool reached = result.end == kEndFinished && missed.empty();
   result.outcome = reached ? Outcome::kGoalReached : Outcome::kGoalMissed;
   result.reason = reached ? "every SUT reached its goal within the limits"
@@ -155,7 +161,9 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
                  footer.st_at_end, stop_figures(record)};
   result.this_run.wall = footer.wall;
   result.this_run.largest_lag = footer.largest_lag;
-  settle(result, footer.reason);
+  const double max_speed_m_s = scenario.max_contact_speed_m_s;
+  result.contacts = contacts_of(record, max_speed_m_s);
+  settle(result, footer.reason, why_crashed(record, max_speed_m_s));
   take_target(result, record);
   return result;
 }

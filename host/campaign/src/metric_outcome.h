@@ -38,6 +38,9 @@ std::optional<StartAndEnd> start_and_end(const record::Record& record, const std
 // Kinds (scenario::metric_kinds()). Of the UAV's path:
 MetricOutcome abeam_error(const scenario::Metric& metric, const record::Record& record);
 MetricOutcome return_error(const scenario::Metric& metric, const record::Record& record);
+// Of what it touched:
+MetricOutcome collisions(const scenario::Metric& metric, const record::Record& record);
+MetricOutcome min_clearance(const scenario::Metric& metric, const record::Record& record);
 // Of the SUT's own estimates:
 MetricOutcome bearing_error(const scenario::Metric& metric, const record::Record& record);
 MetricOutcome distance_error(const scenario::Metric& metric, const record::Record& record);

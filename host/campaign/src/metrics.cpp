@@ -116,6 +116,8 @@ constexpr std::array kKinds = {
     Kind{"return_error", return_error},
     Kind{"estimate_error", estimate_error},
     Kind{"acquisition_time", acquisition_time},
+    Kind{"collisions", collisions},
+    Kind{"min_clearance_m", min_clearance},
 };
 
 MetricOutcome compute(const scenario::Metric& metric, const record::Record& record) {
@@ -191,7 +193,7 @@ std::vector<MetricValue> compute_metrics(std::span<const scenario::Metric> metri
       outcome = missing("the value from the record is not finite");
     }
     values.push_back({metric.name, metric.kind, metric.label, metric.unit, outcome.value,
-                      outcome.missing_because, metric.max});
+                      outcome.missing_because, metric.max, metric.min});
   }
   return values;
 }

@@ -15,6 +15,7 @@ namespace tether::campaign {
 namespace {
 
 constexpr std::string_view kScripted = "scripted";
+constexpr const char* kNotReported = "not reported";
 constexpr std::array<std::string_view, 3> kOutcomes = {"goal_reached", "goal_missed", "failed"};
 
 // Division rounds correctly, so that every nanosecond count prints short and reads back exactly.
@@ -40,6 +41,7 @@ Json json_of(const MetricValue& metric) {
             {"value", optional_number(metric.value)},
             {"max", optional_number(metric.max)},
             {"met", metric.is_met()}};
+  if (metric.min) json["min"] = *metric.min;
   if (!metric.value) json["missing_because"] = metric.missing_because;
   return json;
 }
@@ -63,6 +65,20 @@ Json json_of(const SutResult& sut) {
               {"reached_goal", sut.reached_goal},
               {"outcome", sut.outcome},
               {"details", json_of_details(sut.details)}};
+}
+
+Json json_of(const UavContacts& own) {
+  Json json{{"uav", own.uav},
+            {"contacts", own.count ? Json(*own.count) : Json(kNotReported)},
+            {"hard", own.count ? Json(own.hard) : Json(kNotReported)}};
+  if (own.hardest)
+    json["hardest"] = Json{{"at_s", exact_seconds(own.hardest->at)},
+                           {"with", own.hardest->with},
+                           {"speed_m_s", own.hardest->speed_m_s}};
+  json["min_clearance_m"] = own.nearest ? Json(own.nearest->min_m) : Json(kNotReported);
+  if (own.nearest)
+    json["nearest"] = Json{{"at_s", exact_seconds(own.nearest->at)}, {"to", own.nearest->to}};
+  return json;
 }
 
 template <class T>
@@ -118,6 +134,7 @@ MetricValue read_metric(const JsonReader& json) {
   metric.unit = json.text("unit");
   metric.value = json.optional_number("value");
   metric.max = json.optional_number("max");
+  if (json.has("min")) metric.min = json.number("min");
   if (!metric.value) metric.missing_because = json.text("missing_because");
   return metric;
 }
@@ -148,6 +165,25 @@ SyncFigures read_sync(const JsonReader& json) {
   if (json.has("stops"))
     sync.stops = StopFigures{json.count("stops"), json.seconds("largest_overshoot_s")};
   return sync;
+}
+
+UavContacts read_contacts(const JsonReader& json) {
+  UavContacts own{.uav = json.text("uav")};
+  if (!json.member("contacts").is_string()) {
+    own.count = json.count("contacts");
+    own.hard = json.count("hard");
+  }
+  if (json.has("hardest")) {
+    const JsonReader hardest = json.object("hardest");
+    own.hardest = {own.uav, SimTime(hardest.seconds("at_s")), hardest.text("with"),
+                   hardest.number("speed_m_s")};
+  }
+  if (json.has("nearest")) {
+    const JsonReader nearest = json.object("nearest");
+    own.nearest = {own.uav, json.number("min_clearance_m"), SimTime(nearest.seconds("at_s")),
+                   nearest.text("to")};
+  }
+  return own;
 }
 
 TargetReport read_target(const JsonReader& json) {
@@ -230,6 +266,7 @@ std::string to_json(const TrialResult& result) {
                    {"metrics", json_of(result.metrics)},
                    {"suts", json_of(result.suts)},
                    {"sync", json_of(result.sync)},
+                   {"contacts", json_of(result.contacts)},
                    {"audit", json_of(result.audit)},
                    {"versions", result.versions},
                    {"this_run", json_of(result.this_run)}});
@@ -247,6 +284,9 @@ TrialResult result_from_json(const std::string& text, const std::filesystem::pat
   }
   for (const JsonReader& sut : json.objects("suts")) result.suts.push_back(read_sut(sut));
   result.sync = read_sync(json.object("sync"));
+  if (json.has("contacts"))
+    for (const JsonReader& own : json.objects("contacts"))
+      result.contacts.push_back(read_contacts(own));
   if (!json.member("audit").is_null()) {
     const JsonReader audit = json.object("audit");
     result.audit = AuditVerdict{audit.boolean("passed"), audit.text("summary")};

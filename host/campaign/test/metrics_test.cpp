@@ -184,6 +184,8 @@ TEST(ComputeMetrics, KnowEveryKindThatAScenarioMayAskFor) {
       "estimate",
       R"({"anchor":"box","camera":"camera","image_index":7,"bearing_rad":0,"distance_m":1})");
   flight.finish(50);
+  flight.record().header.reports_contacts = true;
+  flight.record().footer.emplace().clearances = {{"uav1", 0.5, {}, "box"}};
   for (const scenario::MetricKind& kind : scenario::metric_kinds()) {
     const MetricValue value = flight.metric(std::string(kind.name));
     EXPECT_TRUE(value.value) << kind.name << ": " << value.missing_because;
@@ -199,6 +201,11 @@ TEST(MetricValue, IsMetUpToItsLimit) {
   value.max = 2.0;
   EXPECT_TRUE(value.is_met());
   value.max = 1.9;
+  EXPECT_FALSE(value.is_met());
+  value.max.reset();
+  value.min = 2.0;
+  EXPECT_TRUE(value.is_met());
+  value.min = 2.1;
   EXPECT_FALSE(value.is_met());
 }
 

@@ -282,6 +282,7 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
 
 // Notifies the SUTs that are still connected, then completes the record.
 RunReport Coordinator::Impl::close_run() {
+  if (running_ && ended_->how != RunEnd::kSimulatorLost) stepper_.log_contacts();
   record::Footer& footer = log_.footer();
   RunReport report{.end = ended_->how,
                    .reason = ended_->reason,

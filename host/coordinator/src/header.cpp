@@ -89,6 +89,7 @@ record::Header Coordinator::Impl::make_header() const {
   header.ground_truth_period = options_.ground_truth_period;
   header.real_time_factor = options_.real_time_factor;
   header.wall_at_start = started_;
+  header.reports_contacts = simulator_->reports_contacts();
   for (const Session& session : sessions_) {
     const sim::Uav& uav = world().uavs[session.uav];
     header.suts.push_back(

@@ -1,6 +1,7 @@
 #include "run_log.h"
 
 #include <algorithm>
+#include <limits>
 #include <type_traits>
 
 #include <tether/record/png.h>
@@ -58,6 +59,21 @@ void RunLog::ground_truth(const std::string& uav, const sim::GroundTruth& truth)
                                     .q_WB = {q.w, q.x, q.y, q.z},
                                     .v_WB_m_s = {v.x, v.y, v.z},
                                     .w_WB_B_rad_s = {w.x, w.y, w.z}});
+}
+
+void RunLog::contact(SimTime st, const std::string& uav, const sim::Contact& contact) {
+  put(st, record::Contact{
+              .uav = uav, .at = contact.at, .with = contact.with, .speed_m_s = contact.speed_m_s});
+}
+
+void RunLog::clearance(SimTime st, const std::string& uav, const sim::Clearance& clearance) {
+  auto& least = footer_.clearances;
+  auto own = std::ranges::find(least, uav, &record::Clearance::uav);
+  if (own == least.end()) {
+    own = least.insert(own, {uav, std::numeric_limits<double>::infinity(), {}, {}});
+  }
+  if (clearance.distance_m >= own->min_m) return;
+  *own = {uav, clearance.distance_m, st, std::string(clearance.to)};
 }
 
 void RunLog::stop(SimTime st, const record::Stop& stop) {

@@ -40,6 +40,9 @@ class RunLog {
   void interaction(SimTime st, const record::Interaction& entry);
   void command_effect(SimTime st, const std::string& uav, const PendingCommand& command);
   void ground_truth(const std::string& uav, const sim::GroundTruth& truth);
+  void contact(SimTime st, const std::string& uav, const sim::Contact& contact);
+  /// At the instant of the ground truth. The footer keeps the least.
+  void clearance(SimTime st, const std::string& uav, const sim::Clearance& clearance);
   void annotation(SimTime st, record::Annotation annotation) { put(st, std::move(annotation)); }
   void stop(SimTime st, const record::Stop& stop);
   void image(SimTime st, const std::string& uav, const std::string& sensor,
@@ -61,7 +64,7 @@ class RunLog {
 
  private:
   using Message = std::variant<record::Interaction, record::CommandEffect, record::GroundTruth,
-                               record::Annotation, record::Stop, record::Image>;
+                               record::Annotation, record::Stop, record::Contact, record::Image>;
   struct Collected {
     SimTime st;
     std::pair<ExecTime, std::size_t> key;

@@ -62,9 +62,21 @@ void Stepper::apply_commands() {
 void Stepper::log_ground_truth() {
   if (next_ground_truth() > st_) return;
   ++ground_truths_;
-  for (std::size_t uav = 0; uav < samplers_.size(); ++uav)
-    log_->ground_truth(simulator_->world().uavs[uav].name,
-                       ask([&](sim::Simulator& s) { return s.ground_truth(uav); }));
+  for (std::size_t uav = 0; uav < samplers_.size(); ++uav) {
+    const std::string& name = simulator_->world().uavs[uav].name;
+    log_->ground_truth(name, ask([&](sim::Simulator& s) { return s.ground_truth(uav); }));
+    const auto clearance = ask([&](sim::Simulator& s) { return s.clearance(uav); });
+    if (clearance) log_->clearance(st_, name, *clearance);
+  }
+  log_contacts();
+}
+
+// At the instants of the ground truth and at the end only, which do not depend on the load: how far
+// ST advances at once does.
+void Stepper::log_contacts() {
+  const auto contacts = ask([](sim::Simulator& s) { return s.take_contacts(); });
+  for (const sim::Contact& contact : contacts)
+    log_->contact(st_, simulator_->world().uavs[contact.uav].name, contact);
 }
 
 SimTime Stepper::command(std::size_t uav, std::uint64_t sequence,

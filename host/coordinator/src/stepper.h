@@ -42,6 +42,9 @@ class Stepper {
   /// Does everything that is due at the present ST, once.
   void act();
 
+  /// Logs the contacts that began before the present ST and are not logged yet.
+  void log_contacts();
+
   /// Queues a command for the first boundary at or after `t`; returns that boundary.
   SimTime command(std::size_t uav, std::uint64_t sequence, const uav::VelocityCommand& command,
                   SimTime t);

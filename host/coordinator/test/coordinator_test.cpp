@@ -34,6 +34,38 @@ TEST_F(CoordinatorTest, ReportsAndRecordsAFinishedRun) {
   EXPECT_EQ(recorder_.header.sensors.size(), 3u);
 }
 
+// Contacts are asked for with the ground truth, however far the simulation advances at once.
+TEST_F(CoordinatorTest, RecordsContactsAndTheLeastClearance) {
+  const std::vector<sim::Contact> contacts{{st_ms(3), 0, "wall", 4.0}, {st_ms(11), 0, "box", 0.5}};
+  make();
+  simulator_->plan_contacts(contacts);
+  const uav::VelocityCommand ahead{.velocity_H_m_s = {100.0, 0.0, 0.0}, .yaw_rate_rad_s = 0.0};
+  run({{milliseconds(1), link::SetVelocity{ahead}},
+       sleep(Duration(0), milliseconds(11)),
+       finish(milliseconds(1))});
+  EXPECT_TRUE(recorder_.header.reports_contacts);
+  ASSERT_EQ(recorder_.contacts.size(), 2u);
+  EXPECT_EQ(recorder_.contacts[0].first, st_ms(10));
+  EXPECT_EQ(recorder_.contacts[1].first, st_ms(13)) << "the end";
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const record::Contact& contact = recorder_.contacts[i].second;
+    EXPECT_EQ(contact.uav, "uav0");
+    EXPECT_EQ(contact.at, contacts[i].at);
+    EXPECT_EQ(contact.with, contacts[i].with);
+    EXPECT_EQ(contact.speed_m_s, contacts[i].speed_m_s);
+  }
+  ASSERT_EQ(recorder_.footer->clearances.size(), 1u);
+  EXPECT_NEAR(recorder_.footer->clearances[0].min_m, 9.1, 1e-9);
+  EXPECT_EQ(recorder_.footer->clearances[0].at, st_ms(10));
+  EXPECT_EQ(recorder_.footer->clearances[0].to, "wall");
+}
+
+TEST_F(CoordinatorTest, SaysThatTheSimulatorReportsNoContacts) {
+  run({finish(Duration(0))});
+  EXPECT_FALSE(recorder_.header.reports_contacts);
+  EXPECT_TRUE(recorder_.footer->clearances.empty());
+}
+
 TEST_F(CoordinatorTest, SendsACatalogueWithTheCamerasOfTheRecord) {
   run({finish(Duration(0))});
   const auto& welcome = std::get<link::Welcome>(server_->sent.at(1).front());

@@ -10,6 +10,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -116,6 +117,7 @@ class MemoryRecorder final : public record::Recorder {
   void write(SimTime, const record::GroundTruth& m) override { add(ground_truth, m); }
   void write(SimTime, const record::Annotation& m) override { add(annotations, m); }
   void write(SimTime, const record::Stop& m) override { add(stops, m); }
+  void write(SimTime at, const record::Contact& m) override { add(contacts, {at, m}); }
   void write(SimTime, const record::Image& m) override { add(images, m); }
   void flush() override {}
   void write(const record::Footer& m) override { keep(footer, m); }
@@ -128,6 +130,7 @@ class MemoryRecorder final : public record::Recorder {
   std::vector<record::GroundTruth> ground_truth;
   std::vector<record::Annotation> annotations;
   std::vector<record::Stop> stops;
+  std::vector<std::pair<SimTime, record::Contact>> contacts;
   std::vector<record::Image> images;
   std::optional<record::Footer> footer;
 
@@ -142,7 +145,7 @@ class MemoryRecorder final : public record::Recorder {
     place = message;
   }
   template <class Message>
-  void add(std::vector<Message>& messages, const Message& message) {
+  void add(std::vector<Message>& messages, const std::type_identity_t<Message>& message) {
     take_room();
     messages.push_back(message);
   }

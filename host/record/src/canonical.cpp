@@ -96,6 +96,10 @@ std::string canonical(const Record& record, const CanonicalOptions& options) {
     if (options.arrivals) append_log_time(out, logged.at);
     append_json(out, logged.message, {.wall = false});
   });
+  append_lines(out, "contact", record.contacts, [&](const Logged<Contact>& logged) {
+    append_log_time(out, logged.at);
+    append_json(out, logged.message);
+  });
   append_lines(out, "image", record.images,
                [&](const Logged<Image>& logged) { append_image(out, logged.message); });
   if (record.footer) append_footer(out, *record.footer, options);

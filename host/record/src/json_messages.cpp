@@ -54,6 +54,10 @@ void append_json(std::string& out, const Stop& message, JsonParts parts) {
   append_members(out, message, parts);
 }
 
+void append_json(std::string& out, const Contact& message) {
+  append_members(out, message);
+}
+
 // The JSON of the SUT's is written as it is if it is an object, and as a string if it is not.
 void append_json(std::string& out, const Annotation& message) {
   MemberWriter writer(out);
@@ -111,6 +115,10 @@ GroundTruth ground_truth_from_json(std::string_view text) {
 }
 Stop stop_from_json(std::string_view text) {
   return read_members<Stop>(parse_object(text));
+}
+
+Contact contact_from_json(std::string_view text) {
+  return read_members<Contact>(parse_object(text));
 }
 
 Annotation annotation_from_json(std::string_view text) {

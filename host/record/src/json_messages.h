@@ -20,6 +20,7 @@ void append_json(std::string& out, const CommandEffect& message);
 void append_json(std::string& out, const GroundTruth& message);
 void append_json(std::string& out, const Annotation& message);
 void append_json(std::string& out, const Stop& message, JsonParts parts = {});
+void append_json(std::string& out, const Contact& message);
 /// As foxglove.CompressedImage, with more members.
 void append_json(std::string& out, const Image& message);
 /// The pose of a ground truth message as foxglove.FrameTransform: "world" to the UAV's name.
@@ -31,6 +32,7 @@ CommandEffect command_effect_from_json(std::string_view json);
 GroundTruth ground_truth_from_json(std::string_view json);
 Annotation annotation_from_json(std::string_view json);
 Stop stop_from_json(std::string_view json);
+Contact contact_from_json(std::string_view json);
 Image image_from_json(std::string_view json);
 
 }  // namespace tether::record

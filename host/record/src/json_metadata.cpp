@@ -17,6 +17,8 @@
 namespace tether::record {
 namespace {
 
+constexpr const char* kTrue = "true";
+
 class MetadataWriter {
  public:
   explicit MetadataWriter(StringMap& values) : values_(values) {}
@@ -34,6 +36,9 @@ class MetadataWriter {
     } else {
       text = to_utf8(value);
     }
+  }
+  void flag(const char* name, bool value) {
+    if (value) values_[name] = kTrue;
   }
   template <class Item>
   void list(const char* name, const std::vector<Item>& items) {
@@ -67,6 +72,10 @@ class MetadataReader {
     } else {
       value = text(name);
     }
+  }
+  void flag(const char* name, bool& value) const {
+    value = values_.contains(name);
+    if (value && text(name) != kTrue) fail(name, "is not \"true\"");
   }
   template <class Item>
   void list(const char* name, std::vector<Item>& items) const {

@@ -87,6 +87,20 @@ void members(auto& io, Maybe<Stop> auto& m) {
   if (io.wall()) io.object("wall", [&](auto& wall) { wall("arrival_ns", m.wall); });
 }
 
+void members(auto& io, Maybe<Contact> auto& m) {
+  io("uav", m.uav);
+  io("at_ns", m.at);
+  io("with", m.with);
+  io("speed_m_s", m.speed_m_s);
+}
+
+void members(auto& io, Maybe<Clearance> auto& m) {
+  io("uav", m.uav);
+  io("min_m", m.min_m);
+  io("at_ns", m.at);
+  io("to", m.to);
+}
+
 /// All but "data", which is JSON of the SUT's.
 void members(auto& io, Maybe<Annotation> auto& m) {
   io("uav", m.uav);
@@ -173,6 +187,7 @@ void members(auto& io, Maybe<Header> auto& m) {
   io.list("anchors", m.anchors);
   if (io.has("wall_at_start_ns", m.wall_at_start != WallTime{}))
     io("wall_at_start_ns", m.wall_at_start);
+  io.flag("reports_contacts", m.reports_contacts);
 }
 
 /// All but the target's readings.
@@ -186,6 +201,7 @@ void members(auto& io, Maybe<Footer> auto& m) {
   io("causality_violations", m.causality_violations);
   io("largest_lag_ns", m.largest_lag);
   io("largest_grid_error_ns", m.largest_grid_error);
+  if (io.has("clearances", !m.clearances.empty())) io.list("clearances", m.clearances);
   if (!io.has("stops", m.stops > 0)) return;
   io("stops", m.stops);
   io("largest_overshoot_ns", m.largest_overshoot);

@@ -89,6 +89,8 @@ class RecordBuilder final : public McapVisitor {
     if (schema == kAnnotationSchema.name)
       return &RecordBuilder::append<&Record::annotations, annotation_from_json>;
     if (schema == kStopSchema.name) return &RecordBuilder::append<&Record::stops, stop_from_json>;
+    if (schema == kContactSchema.name)
+      return &RecordBuilder::append<&Record::contacts, contact_from_json>;
     if (schema == kCompressedImageSchema.name)
       return options_.images ? &RecordBuilder::append<&Record::images, image_from_json>
                              : &RecordBuilder::skip;
@@ -130,6 +132,7 @@ SimTime last_time(const Record& record) {
   see(record.ground_truth);
   see(record.annotations);
   see(record.stops);
+  see(record.contacts);
   return last;
 }
 

@@ -83,6 +83,9 @@ class McapRecorder final : public Recorder {
   void write(SimTime at, const Stop& message) override {
     write_json(stops_.of("/stops", message.uav), at, message);
   }
+  void write(SimTime at, const Contact& message) override {
+    write_json(contacts_.of("/contacts", message.uav), at, message);
+  }
   void write(SimTime at, const Image& message) override {
     write_json(images_.of("/images", message.uav, message.sensor), at, message);
   }
@@ -112,6 +115,7 @@ class McapRecorder final : public Recorder {
   Channels transforms_{mcap_, kFrameTransformSchema};
   Channels annotations_{mcap_, kAnnotationSchema};
   Channels stops_{mcap_, kStopSchema};
+  Channels contacts_{mcap_, kContactSchema};
   Channels images_{mcap_, kCompressedImageSchema};
   bool finished_ = false;
 };
@@ -124,6 +128,7 @@ class NullRecorder final : public Recorder {
   void write(SimTime, const GroundTruth&) override {}
   void write(SimTime, const Annotation&) override {}
   void write(SimTime, const Stop&) override {}
+  void write(SimTime, const Contact&) override {}
   void write(SimTime, const Image&) override {}
   void flush() override {}
   void write(const Footer&) override {}

@@ -108,6 +108,20 @@ const Schema kStopSchema{"tether.Stop", R"json({
   "required": ["uav", "at_ns", "wall"]
 })json"};
 
+const Schema kContactSchema{"tether.Contact", R"json({
+  "title": "tether.Contact",
+  "description": "A UAV began to touch something. Log time: ST of the next ground truth.",
+  "type": "object",
+  "properties": {
+    "uav": {"type": "string"},
+    "at_ns": {"type": "integer", "description": "ST at which both touched for the first time"},
+    "with": {"type": "string", "description": "name of the model or UAV"},
+    "speed_m_s": {"type": ["number", "null"],
+                  "description": "of approach along the contact's normal, before the impact"}
+  },
+  "required": ["uav", "at_ns", "with", "speed_m_s"]
+})json"};
+
 const Schema kCompressedImageSchema{"foxglove.CompressedImage", R"json({
   "title": "foxglove.CompressedImage",
   "type": "object",

@@ -15,6 +15,7 @@ extern const Schema kCommandEffectSchema;
 extern const Schema kGroundTruthSchema;
 extern const Schema kAnnotationSchema;
 extern const Schema kStopSchema;
+extern const Schema kContactSchema;
 /// Well-known schemas of Foxglove, by their names.
 extern const Schema kCompressedImageSchema;
 extern const Schema kFrameTransformSchema;

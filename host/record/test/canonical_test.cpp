@@ -20,6 +20,7 @@ Record sample() {
   record.ground_truth = {{st_ms(40), 3, ground_truth()}};
   record.annotations = {{st_ms(38), 1, annotation()}};
   record.stops = {{st_ms(50), 6, stop()}};
+  record.contacts = {{st_ms(50), 7, contact()}};
   record.images = {{st_ms(41), 5, image()}};
   record.footer = footer();
   return record;
@@ -60,6 +61,7 @@ TEST(Canonical, HasEverythingElseButArrivalsOnlyOnRequest) {
        [](Record& r) { r.ground_truth[0].message.p_WB_m[0] = std::nextafter(1.0 / 3.0, 1); }},
       {"annotation", false, [](Record& r) { r.annotations[0].message.json = "{}"; }},
       {"stop", false, [](Record& r) { r.stops[0].message.at += Duration(1); }},
+      {"contact", false, [](Record& r) { r.contacts[0].message.with = "a"; }},
       {"image", false, [](Record& r) { r.images[0].message.png[4] ^= 1; }},
       {"overshoot", false, [](Record& r) { r.footer->largest_overshoot += Duration(1); }},
       {"end", false, [](Record& r) { r.footer->end = "time_limit"; }},

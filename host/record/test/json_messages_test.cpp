@@ -58,6 +58,7 @@ TEST(JsonMessages, FormIsStable) {
        {sensor_interaction(), command_interaction(), sleep_interaction(), vain_interaction()})
     check_form(texts, message, interaction_from_json, kInteractionSchema);
   check_form(texts, stop(), stop_from_json, kStopSchema);
+  check_form(texts, contact(), contact_from_json, kContactSchema);
   check_form(texts, command_effect(), command_effect_from_json, kCommandEffectSchema);
   check_form(texts, ground_truth(), ground_truth_from_json, kGroundTruthSchema);
   check_form(texts, annotation(), annotation_from_json, kAnnotationSchema);
@@ -159,11 +160,15 @@ TEST(JsonMetadata, OptionalValuesHaveDefaults) {
 
   Header unread = header();
   unread.target.reset();
+  unread.reports_contacts = false;
   EXPECT_FALSE(header_from_metadata(to_metadata(unread)).target);
+  EXPECT_FALSE(header_from_metadata(to_metadata(unread)).reports_contacts);
 
   Footer without_stops = footer();
   without_stops.stops = 0;
+  without_stops.clearances.clear();
   EXPECT_FALSE(to_metadata(without_stops).contains("stops"));
+  EXPECT_FALSE(to_metadata(without_stops).contains("clearances"));
   EXPECT_EQ(footer_from_metadata(to_metadata(without_stops)).stops, 0U);
 }
 
@@ -195,8 +200,9 @@ TEST(JsonMetadata, RefusesImpossibleCamerasAndCores) {
 }
 
 TEST(JsonMetadata, MissingAndWrongValuesAreNamed) {
-  Header required = header();  // the target may be left out
+  Header required = header();  // these may be left out
   required.target.reset();
+  required.reports_contacts = false;
   for (const auto& [name, unused] : to_metadata(required)) {
     StringMap values = to_metadata(required);
     values.erase(name);

@@ -20,13 +20,14 @@ TEST(Recorder, WholeRecordIsTheSameEachTimeAndReadBack) {
   written.header = header();
   written.interactions = {{st_ms(37), 0, sensor_interaction()},
                           {st_ms(40), 2, command_interaction()},
-                          {st_ms(50), 6, sleep_interaction()},
-                          {st_ms(50), 8, vain_interaction()}};
+                          {st_ms(50), 7, sleep_interaction()},
+                          {st_ms(50), 9, vain_interaction()}};
   written.annotations = {{st_ms(38), 1, annotation()}};
   written.ground_truth = {{st_ms(40), 3, ground_truth()}};
   written.commands = {{st_ms(41), 4, command_effect()}};
   written.images = {{st_ms(41), 5, image()}};
-  written.stops = {{st_ms(50), 7, stop()}};
+  written.contacts = {{st_ms(50), 6, contact()}};
+  written.stops = {{st_ms(50), 8, stop()}};
   written.footer = footer();
   const TemporaryFile file;
   write_whole_record(file.path());
@@ -41,8 +42,8 @@ TEST(Recorder, WholeRecordIsTheSameEachTimeAndReadBack) {
     EXPECT_EQ(to_metadata(read.header), to_metadata(written.header));
     EXPECT_EQ(to_metadata(read.footer.value()), to_metadata(*written.footer));
     EXPECT_EQ(read.ground_truth[0].order, 3U);
-    EXPECT_EQ(read.stops[0].order, 7U);
-    EXPECT_EQ(read.interactions[3].order, 8U) << "images count";
+    EXPECT_EQ(read.stops[0].order, 8U);
+    EXPECT_EQ(read.interactions[3].order, 9U) << "images count";
   }
 }
 

@@ -81,6 +81,10 @@ inline Stop stop() {
   return {"a", et_ns(50'000'321), et_ns(50'000'000), from_ns<WallTime>(323'456'789)};
 }
 
+inline Contact contact() {
+  return {"a", st_ms(42), "room \"1\"", 1.0 / 3.0};
+}
+
 inline CommandEffect command_effect(std::uint64_t sequence = 2) {
   return {"a", sequence, st_ms(41), 0.1, -0.0, 1e-300, 1.0 / 3.0};
 }
@@ -140,6 +144,7 @@ inline Header header() {
   header.anchors = {{"box", "box", {0.4, 0.5, 0.6}, {8, 0, 1.5}, {0.5, 0.5, -0.5, 0.5}}};
   header.target = TargetInfo{
       "my board", "ssh://pi@board", {{"governor", "ondemand"}, {"throttled", "0x50005"}}};
+  header.reports_contacts = true;
   return header;
 }
 
@@ -156,6 +161,7 @@ inline Footer footer() {
   footer.largest_grid_error = Duration(500'001);
   footer.stops = 1;
   footer.largest_overshoot = Duration(321);
+  footer.clearances = {{"a", 0.25, st_ms(40), "room"}, {"b", 0.0, st_ms(0), "floor"}};
   footer.target_after = {{"temperature_mc", "82500"}};
   return footer;
 }
@@ -191,6 +197,7 @@ inline void write_messages(Recorder& recorder) {
   recorder.write(st_ms(40), ground_truth());
   recorder.write(st_ms(41), command_effect());
   recorder.write(st_ms(41), image());
+  recorder.write(st_ms(50), contact());
   recorder.write(st_ms(50), sleep_interaction());
   recorder.write(st_ms(50), stop());
   recorder.write(st_ms(50), vain_interaction());

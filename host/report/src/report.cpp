@@ -112,6 +112,14 @@ void add_missing_notes(Table& table, const campaign::ConditionResults& results,
                   results.planned - results.trials.size(), results.condition));
 }
 
+void add_crash_notes(Table& table, const campaign::ConditionResults& results) {
+  for (const campaign::TrialResult& trial : results.trials) {
+    if (has_crash(trial))
+      table.notes.push_back(
+          fmt::format("Crash: {}, seed {}: {}.", results.condition, trial.seed, trial.reason));
+  }
+}
+
 void add_second_attempt_notes(Table& table, const campaign::ConditionResults& results) {
   for (const campaign::TrialResult& trial : results.trials) {
     if (trial.this_run.attempts > 1)
@@ -233,6 +241,7 @@ Table paper_form_table(const campaign::ScenarioResults& scenario) {
   if (paper != nullptr) table.notes.push_back(fmt::format("Paper: {}.", paper->source));
   for (const campaign::ConditionResults& results : scenario.conditions) {
     add_missing_notes(table, results, columns);
+    add_crash_notes(table, results);
     add_second_attempt_notes(table, results);
     add_target_notes(table, results);
     add_run_notes(table, results);
@@ -285,6 +294,12 @@ Table optimism_table(const campaign::ScenarioResults& scenario) {
   table.title = fmt::format("Optimism of the unsynchronised test of {}", scenario.scenario);
   table.notes.push_back(
       "Positive: the unsynchronised test reports a value that is better by this amount.");
+  for (const Comparison& c : optimism(scenario)) {
+    const campaign::MetricValue& metric = *scenario.find_metric(c.metric);
+    if (is_better_if_more(metric))
+      table.notes.push_back(
+          fmt::format("{}: more is better, so negative values are better.", metric.label));
+  }
   return table;
 }
 

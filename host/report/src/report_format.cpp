@@ -1,5 +1,7 @@
 #include "report_format.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 namespace tether::report {
@@ -29,6 +31,17 @@ std::string exact(const std::optional<double>& value) {
   return value ? exact(*value) : "";
 }
 
+bool has_crash(const campaign::TrialResult& trial) {
+  return std::ranges::any_of(trial.contacts, [](const auto& own) { return own.hard > 0; });
+}
+bool is_better_if_more(const campaign::MetricValue& metric) {
+  const auto* kind = scenario::find_metric_kind(metric.kind);
+  return kind != nullptr && kind->is_better_if_more;
+}
+std::string limit_text(const campaign::MetricValue& metric) {
+  if (metric.min) return "≥ " + exact(*metric.min);
+  return metric.max ? exact(*metric.max) : kNone;
+}
 std::string with_unit(const std::string& label, const std::string& unit) {
   return unit == "1" ? label : fmt::format("{} ({})", label, unit);
 }

@@ -22,6 +22,12 @@ std::string p_value(double p);
 /// The shortest text that reads back as the same number; empty for none.
 std::string exact(double value);
 std::string exact(const std::optional<double>& value);
+/// Whether a UAV hit something harder than the scenario allows.
+bool has_crash(const campaign::TrialResult& trial);
+/// Whether a larger value of the metric is better.
+bool is_better_if_more(const campaign::MetricValue& metric);
+/// "0.5" or, of a minimum, "≥ 0.5".
+std::string limit_text(const campaign::MetricValue& metric);
 /// "Time required (s)"; counts have no unit.
 std::string with_unit(const std::string& label, const std::string& unit);
 /// Unexpected events of a run, in one line; empty: none.

@@ -57,12 +57,34 @@ std::string plots_part(FigureMaker& figures, const record::Record& record) {
   return html;
 }
 
+constexpr std::size_t kMostContacts = 100;
+
+std::string contacts_part(const record::Record& record) {
+  const std::string title = element("h2", "Contacts");
+  if (!record.header.reports_contacts)
+    return title + element("p", "Not reported by the simulator, or by the version of Tether.");
+  if (record.contacts.empty()) return title + element("p", "None.");
+  Table table;
+  table.headings = {single_headings({"UAV", "With", "ST (s)", "Speed (m/s)"})};
+  table.text_columns = 2;
+  for (const auto& [at, order, contact] : record.contacts) {
+    if (table.rows.size() == kMostContacts) {
+      table.notes.push_back(
+          fmt::format("The first {} of {} contacts.", kMostContacts, record.contacts.size()));
+      break;
+    }
+    table.rows.push_back(
+        {contact.uav, contact.with, decimals(to_seconds(contact.at)), decimals(contact.speed_m_s)});
+  }
+  return title + to_html(table);
+}
+
 std::string record_part(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "record.mcap";
   try {
     const record::Record record = record::read_record(file, {.images = true});
     FigureMaker figures(1);
-    std::string html = plots_part(figures, record);
+    std::string html = contacts_part(record) + plots_part(figures, record);
     const std::string frames = figures.frames(record);
     if (!frames.empty()) html += element("h2", "Camera images") + frames;
     if (const std::string damage = record::describe_damage(record); !damage.empty())

@@ -1,5 +1,7 @@
 #include "verdict.h"
 
+#include "report_format.h"
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -129,6 +131,19 @@ std::string throttled_sentence(const campaign::ScenarioResults& scenario) {
       joined_with_and(parts));
 }
 
+// Trials with a hard contact; empty: none.
+std::string crashes_sentence(const campaign::ScenarioResults& scenario) {
+  std::vector<std::string> parts;
+  for (const campaign::ConditionResults& condition : scenario.conditions) {
+    const auto crashed = std::ranges::count_if(condition.trials, has_crash);
+    if (crashed > 0)
+      parts.push_back(fmt::format("{} of {} trials on “{}”", crashed, condition.trials.size(),
+                                  condition.condition));
+  }
+  if (parts.empty()) return "";
+  return fmt::format(" A UAV crashed in {}.", joined_with_and(parts));
+}
+
 // Problems.
 
 void add_trial_problems(std::vector<std::string>& lines, const std::string& where,
@@ -138,6 +153,7 @@ void add_trial_problems(std::vector<std::string>& lines, const std::string& wher
     lines.push_back(fmt::format("{}: failed, excluded from all means: {}", which, trial.reason));
     return;
   }
+  if (has_crash(trial)) lines.push_back(fmt::format("{}: {}", which, trial.reason));
   for (const campaign::MetricValue& metric : trial.metrics) {
     if (!metric.value)
       lines.push_back(fmt::format("{}: no value of {}: {}", which, in_a_sentence(metric.label),
@@ -178,13 +194,14 @@ std::string verdict(const campaign::ScenarioResults& scenario) {
   const std::string& first = scenario.conditions.front().condition;
   for (const campaign::ConditionResults& other : scenario.conditions)
     text += comparison_sentence(scenario, comparisons, first, other.condition);
-  return text + throttled_sentence(scenario);
+  return text + crashes_sentence(scenario) + throttled_sentence(scenario);
 }
 
 std::string optimism_sentence(const Comparison& comparison, const campaign::MetricValue& metric) {
   const double hidden = comparison.means.difference;
   const int places = decimals_for(comparison.means);
-  const bool better = hidden > 0.0;
+  const bool smaller = hidden > 0.0;
+  const bool better = smaller != is_better_if_more(metric);
   const std::string label = in_a_sentence(metric.label);
   if (hidden == 0.0 || contains_zero(comparison.means.ci95))
     return fmt::format(
@@ -192,13 +209,13 @@ std::string optimism_sentence(const Comparison& comparison, const campaign::Metr
         label, amount(hidden, places, metric.unit),
         interval_text(comparison.means.ci95, places, false));
   const std::string size = amount(std::abs(hidden), places, metric.unit);
-  const std::string range = interval_text(comparison.means.ci95, places, !better);
+  const std::string range = interval_text(comparison.means.ci95, places, !smaller);
   const std::string start = fmt::format("Without synchronisation, “{}” appears ", comparison.a);
   if (metric.unit == "s" || metric.unit == "ms")
     return start + fmt::format("{} {} than it is ({}; {}).", size, better ? "faster" : "slower",
                                label, range);
   return start + fmt::format("{} than it is: {} {} by {} ({}).", better ? "better" : "worse", label,
-                             better ? "smaller" : "larger", size, range);
+                             smaller ? "smaller" : "larger", size, range);
 }
 
 std::vector<std::string> problems(const campaign::CampaignResults& results) {

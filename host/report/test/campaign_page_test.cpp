@@ -63,6 +63,7 @@ void write_record(const std::filesystem::path& file, const record::Record& recor
     recorder->write(record.annotations[i].at, record.annotations[i].message);
     recorder->write(record.interactions[i].at, record.interactions[i].message);
   }
+  for (const auto& contact : record.contacts) recorder->write(contact.at, contact.message);
   for (const auto& image : record.images) recorder->write(image.at, image.message);
   recorder->write(record::Footer{});
 }
@@ -73,6 +74,9 @@ class CampaignPage : public CampaignFixture {
     for (const char* condition : {"host", "target"}) {
       record::Record record = sample_record(30);
       record.header.condition = condition;
+      record.header.reports_contacts = true;
+      const SimTime end = record.interactions.back().at;
+      record.contacts = {{end, 0, {"uav1", end, "<wall>", 3.8}}};
       const std::vector<std::uint8_t> grey(12 * 8 * 3, 77);
       for (std::uint64_t i = 0; i < 9; ++i) {
         const SimTime at = record.interactions.back().at;
@@ -163,7 +167,8 @@ TEST_F(CampaignPage, OfOneRunShowsItsOutcomeAndPlots) {
   expect_in_order(html, {"<h1>turn, target, seed 1</h1>",
                          "Goal reached: every SUT reached its goal within the limits. SUT of uav1: "
                          "the anchor is in the middle.",
-                         "Time required (s)", "<h2>Camera images</h2>"});
+                         "Time required (s)", "<h2>Contacts</h2>", "&lt;wall&gt;", "2.930", "3.800",
+                         "<h2>Camera images</h2>"});
   check_page(html, 8);  // timeline twice, lag, path, four images
 }
 

@@ -38,6 +38,8 @@ TEST_F(Report, NotesNameEverySpecialTrial) {
   again.this_run.target.emplace().warnings = {"it was hot"};
   write(again);
   TrialResult noted = trial("host", 1, 0, 2.7);
+  noted.contacts[0].hard = 1;
+  noted.reason = "'uav1' hit 'room'";
   noted.this_run.notes = {"a signal stopped the SUT", "suspended"};
   write(noted);
   write(make_setup_failure(scenario(), scenario().conditions[0], 3, "no port"));
@@ -52,7 +54,7 @@ TEST_F(Report, NotesNameEverySpecialTrial) {
           "Trials: host 3 of 3 (2 reached the goal); target 3 of 3 (3 reached the goal); "
           "target, no sync 1 of 3 (1 reached the goal). Times are simulated time.",
           "Paper: Table III, Section V; ten experiments per condition.",
-          "Excluded from means: host, seed 3: no port.",
+          "Excluded from means: host, seed 3: no port.", "Crash: host, seed 1: 'uav1' hit 'room'.",
           "Note: host, seed 1: a signal stopped the SUT; suspended.",
           "Excluded from means: target, seed 2: the SUT of 'uav1' did not finish.",
           "Second attempt: target, seed 3. The first attempt failed during set-up: the port "

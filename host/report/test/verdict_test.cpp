@@ -46,13 +46,15 @@ TEST(Verdict, CountsMissedGoalsAndThrottledBoards) {
 }
 
 std::string sentence(double difference, std::optional<campaign::Interval> interval,
-                     const std::string& label, const std::string& unit) {
+                     const std::string& label, const std::string& unit,
+                     const std::string& kind = "") {
   Comparison comparison;
   comparison.a = "target";
   comparison.b = "target, no sync";
   comparison.means.difference = difference;
   comparison.means.ci95 = interval;
   campaign::MetricValue metric;
+  metric.kind = kind;
   metric.label = label;
   metric.unit = unit;
   return optimism_sentence(comparison, metric);
@@ -78,6 +80,19 @@ TEST(Optimism, IsANumberWithItsIntervalIfSignificant) {
             "0.012 m (95 % interval −0.021 to 0.045).");
 }
 
+TEST(Optimism, KnowsOfWhichMetricsMoreIsBetter) {
+  EXPECT_THAT(sentence(0.5, {{0.4, 0.6}}, "Least clearance", "m", "min_clearance_m"),
+              testing::HasSubstr("appears worse than it is: least clearance smaller by 0.5"));
+}
+
+TEST(Verdict, CountsTrialsThatCrashed) {
+  campaign::ScenarioResults results = scenario({1, 2}, {1, 2});
+  EXPECT_EQ(verdict(results).find("crashed"), std::string::npos);
+  campaign::TrialResult& trial = results.conditions[1].trials[0];
+  trial.contacts = {{.uav = "uav1", .count = 3, .hard = 2}};
+  EXPECT_THAT(verdict(results), testing::HasSubstr("A UAV crashed in 1 of 2 trials on “target”."));
+}
+
 TEST(Problems, AreEachNamed) {
   campaign::CampaignResults results;
   results.manifest.seeds = {1, 2};
@@ -92,6 +107,8 @@ TEST(Problems, AreEachNamed) {
   host[1].metrics[0].missing_because = "it did not finish";
   host[2].audit = campaign::AuditVerdict{false, "FAILED: 1 finding"};
   host[3].sync.causality_violations = 2;
+  host[3].reason = "'uav1' hit 'room'";
+  host[3].contacts = {{.uav = "uav1", .count = 1, .hard = 1}};
   campaign::ThisRun& target = results.scenarios[0].conditions[1].trials[0].this_run;
   target.target.emplace().warnings = {"it was hot"};
   target.notes = {"a signal stopped the SUT", "this machine was suspended"};
@@ -101,6 +118,7 @@ TEST(Problems, AreEachNamed) {
       ElementsAre("turn, host, seed 1: failed, excluded from all means: the SUT was lost",
                   "turn, host, seed 2: no value of time required: it did not finish",
                   "turn, host, seed 3: audit: FAILED: 1 finding",
+                  "turn, host, seed 4: 'uav1' hit 'room'",
                   "turn, host, seed 4: 2 causality violations", "turn, target, seed 1: it was hot",
                   "turn, target, seed 1: a signal stopped the SUT",
                   "turn, target, seed 1: this machine was suspended",

@@ -300,19 +300,25 @@ const MetricKind& read_metric_kind(const toml::Table& table) {
   return metric_kinds()[table.choice("kind", names)];
 }
 
+std::string limit_key(const MetricKind& kind) {
+  return (kind.is_better_if_more ? "min" : "max") + unit_suffix(kind.unit);
+}
+
 void reject_unsupported(const toml::Table& table, const MetricKind& kind) {
   const std::pair<std::string_view, bool> supported[] = {
       {"anchor", kind.needs_anchor},
       {"sensor", kind.needs_sensor},
-      {"threshold_deg", kind.default_threshold_deg.has_value()}};
+      {"threshold_deg", kind.default_threshold_deg.has_value()},
+      {"threshold_m_s", kind.has_speed_threshold}};
   for (const auto& [key, is_supported] : supported) {
     if (is_supported || !table.has(key)) continue;
     table.fail(key, fmt::format("is not supported by metric kind \"{}\".", kind.name));
   }
-  const std::string limit = "max" + unit_suffix(kind.unit);
+  const std::string limit = limit_key(kind);
   for (const std::string& key : table.keys()) {
-    if (!key.starts_with("max") || key == limit) continue;
-    table.fail(key, fmt::format("has the wrong unit for metric kind \"{}\". Did you mean '{}'?",
+    const bool is_limit = key.starts_with("max") || key.starts_with("min");
+    if (!is_limit || key == limit) continue;
+    table.fail(key, fmt::format("is not the limit of metric kind \"{}\". Did you mean '{}'?",
                                 kind.name, limit));
   }
 }
@@ -320,6 +326,7 @@ void reject_unsupported(const toml::Table& table, const MetricKind& kind) {
 Metric read_metric(const toml::Table& table, const Scenario& scenario) {
   constexpr toml::Range kLimit{.min = 0.0, .max = 1e9};
   constexpr toml::Range kThreshold_deg{.min = 0.0, .max = 180.0};
+  constexpr toml::Range kThreshold_m_s{.min = 0.0, .max = 1e9};
   const MetricKind& kind = read_metric_kind(table);
   reject_unsupported(table, kind);
   Metric metric;
@@ -340,8 +347,16 @@ Metric read_metric(const toml::Table& table, const Scenario& scenario) {
   const double threshold_deg = kind.default_threshold_deg.value_or(0.0);
   metric.threshold_rad =
       rad_from_deg(table.number_or("threshold_deg", kThreshold_deg, threshold_deg));
-  const std::string limit = "max" + unit_suffix(kind.unit);
-  if (table.has(limit)) metric.max = table.number(limit, kLimit);
+  if (kind.has_speed_threshold) {
+    const double allowed_m_s = scenario.max_contact_speed_m_s;
+    metric.threshold_m_s =
+        table.number_or("threshold_m_s", kThreshold_m_s,
+                        std::isfinite(allowed_m_s) ? allowed_m_s : kHardContact_m_s);
+  }
+  metric.of_any_flight = kind.of_any_flight;
+  const std::string limit = limit_key(kind);
+  if (table.has(limit))
+    (kind.is_better_if_more ? metric.min : metric.max) = table.number(limit, kLimit);
   return metric;
 }
 
@@ -349,7 +364,7 @@ void read_metrics(const toml::Table& root, Scenario& scenario) {
   std::set<std::string> names;
   for (const toml::Table& table : root.tables_or_none(
            "metric", {"name", "kind", "label", "uav", "anchor", "sensor", "threshold_deg", "max",
-                      "max_s", "max_ms", "max_m", "max_deg"})) {
+                      "threshold_m_s", "max_s", "max_ms", "max_m", "max_deg", "min_m"})) {
     scenario.metrics.push_back(read_metric(table, scenario));
     const std::string& name = scenario.metrics.back().name;
     if (!names.insert(name).second) {
@@ -384,10 +399,13 @@ void read_record(const toml::Table& root, Scenario& scenario) {
 void read_limits(const toml::Table& root, Scenario& scenario) {
   constexpr toml::Range kStep_ms{.min = 0.01, .max = 100.0};
   constexpr toml::Range kSpan_s{.min = 0.0, .max = kLongestRun_s, .above_min = true};
+  constexpr toml::Range kSpeed_m_s{.min = 0.0, .with_inf = true};
   scenario.step = root.duration_or("step_ms", kStep_ms, scenario.step);
   scenario.time_limit = root.duration("time_limit_s", kSpan_s);
   scenario.hang_limit = root.duration_or("hang_limit_s", kSpan_s, scenario.hang_limit);
   scenario.connect_limit = root.duration_or("connect_limit_s", kSpan_s, scenario.connect_limit);
+  scenario.max_contact_speed_m_s =
+      root.number_or("max_contact_speed_m_s", kSpeed_m_s, scenario.max_contact_speed_m_s);
 }
 
 }  // namespace
@@ -420,9 +438,9 @@ Scenario load_scenario(const std::filesystem::path& file) {
   Scenario scenario;
   scenario.file = std::filesystem::absolute(file).lexically_normal();
   const toml::Document document = toml::Document::load(scenario.file);
-  const toml::Table root =
-      document.root({"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s",
-                     "connect_limit_s", "anchors", "uav", "sut", "condition", "metric", "record"});
+  const toml::Table root = document.root(
+      {"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s", "connect_limit_s",
+       "max_contact_speed_m_s", "anchors", "uav", "sut", "condition", "metric", "record"});
   scenario.name = root.identifier("name");
   scenario.description = root.text_or("description", "");
   scenario.world = root.existing_file("world");

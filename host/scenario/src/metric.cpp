@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 
 #include <tether/scenario/metric.h>
@@ -52,12 +53,29 @@ constexpr std::array kMetricKinds = {
                .unit = "ms",
                .needs_sensor = true,
                .help = "mean time from requesting the sensor's data to receiving it"},
+    MetricKind{.name = "collisions",
+               .label = "Collisions",
+               .unit = "1",
+               .has_speed_threshold = true,
+               .of_any_flight = true,
+               .help = "how often the UAV hit something at more than threshold_m_s"},
+    MetricKind{.name = "min_clearance_m",
+               .label = "Least clearance",
+               .unit = "m",
+               .is_better_if_more = true,
+               .of_any_flight = true,
+               .help = "least distance from the UAV's collision shapes to any other one"},
 };
 
 }  // namespace
 
 std::span<const MetricKind> metric_kinds() {
   return kMetricKinds;
+}
+
+const MetricKind* find_metric_kind(std::string_view name) {
+  const auto* found = std::ranges::find(kMetricKinds, name, &MetricKind::name);
+  return found == kMetricKinds.end() ? nullptr : found;
 }
 
 std::string unit_suffix(std::string_view unit) {

@@ -1,6 +1,7 @@
 #include "test_files.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -168,6 +169,37 @@ TEST_F(LoadScenario, ReadsMetrics) {
   EXPECT_EQ(s.metrics[2].line, 99);
 }
 
+TEST_F(LoadScenario, ReadsLimitsOfContacts) {
+  const std::string metrics = R"([[metric]]
+kind = "min_clearance_m"
+uav = "uav1"
+min_m = 0.2
+[[metric]]
+kind = "collisions"
+uav = "uav1"
+)";
+  const auto with = [&](const std::string& speed, const std::string& threshold) {
+    return load(replaced(kFullScenario, "time_limit_s", speed + "\ntime_limit_s") + metrics +
+                threshold);
+  };
+  const Scenario s = with("", "");
+  EXPECT_EQ(s.max_contact_speed_m_s, 0.5);
+  EXPECT_EQ(s.metrics[3].min, 0.2);
+  EXPECT_FALSE(s.metrics[3].max);
+  EXPECT_TRUE(s.metrics[3].of_any_flight);
+  struct {
+    const char *speed, *threshold;
+    double max_m_s, threshold_m_s;
+  } const cases[] = {{"", "", 0.5, 0.5},
+                     {"max_contact_speed_m_s = 2", "", 2.0, 2.0},
+                     {"max_contact_speed_m_s = inf", "", HUGE_VAL, 0.5},
+                     {"max_contact_speed_m_s = 2", "threshold_m_s = 1", 2.0, 1.0}};
+  for (const auto& c : cases) {
+    EXPECT_EQ(with(c.speed, c.threshold).max_contact_speed_m_s, c.max_m_s);
+    EXPECT_EQ(with(c.speed, c.threshold).metrics[4].threshold_m_s, c.threshold_m_s);
+  }
+}
+
 TEST_F(LoadScenario, TakesTheOnlyUavAndTheOnlyAnchorAsDefaults) {
   const Scenario s = load(R"(name = "small"
 world = "worlds/room.sdf"
@@ -246,6 +278,9 @@ TEST_F(LoadScenario, RefusesWrongMetricsAndNumbers) {
        {limit, "anchor = \"red_box\"", 85, "anchor"},
        {limit, "threshold_deg = 1", 85, "threshold_deg"},
        {limit, "max_m = 30", 85, "max_m"},
+       {limit, "min_m = 30", 85, "min_m"},
+       {limit, "threshold_m_s = 1", 85, "threshold_m_s"},
+       {"hang_limit_s", "max_contact_speed_m_s = -1\nhang_limit_s", 6, "max_contact_speed_m_s"},
        {"position_m = [1, -2.5, 1.2]", "position_m = [1, 2]", 12, "position_m"},
        {"_period_ms = 20", "_period_ms = 1", 102, "ground_truth_period_ms"}});
 }

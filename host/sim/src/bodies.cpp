@@ -18,7 +18,7 @@ std::vector<FixedBody> fixed_bodies(const World& world) {
   std::vector<FixedBody> bodies;
   for (const Model& model : world.models) {
     if (!model.is_static) continue;
-    for (const Link& link : model.links) bodies.push_back({&link, model.X_WM * link.X_ML});
+    for (const Link& link : model.links) bodies.push_back({&link, model.X_WM * link.X_ML, &model});
   }
   return bodies;
 }

@@ -174,5 +174,35 @@ TEST_F(StoppedSut, IsChargedForItByAWallClock) {
   EXPECT_GE(result()["sync"]["st_at_end_s"].get<double>(), 1.3 + 2.5);
 }
 
+// ---- A crash
+
+struct Ram {
+  std::string limit;  ///< in the scenario
+  int code;
+  std::string outcome;
+};
+
+TEST_F(RunTest, AHardContactMissesTheGoalWhateverTheSutReports) {
+  for (const Ram& ram :
+       {Ram{"", 1, "goal_missed"}, Ram{"max_contact_speed_m_s = inf\n", 0, "goal_reached"}}) {
+    const Output output =
+        run(flight("ram", {}, {kScripted, {"hang_limit_s", ram.limit + "hang_limit_s"}}));
+    EXPECT_EQ(output.code, ram.code) << output.err;
+    const auto contacts = result()["contacts"][0];
+    EXPECT_EQ(result()["outcome"], ram.outcome);
+    EXPECT_TRUE(result()["suts"][0]["reached_goal"]);
+    EXPECT_EQ(contacts["hardest"]["with"], "floor");
+    EXPECT_GT(contacts["hardest"]["speed_m_s"], 1.0);
+    EXPECT_EQ(contacts["hard"], ram.code);
+    EXPECT_EQ(contacts["min_clearance_m"], 0.0);
+    EXPECT_EQ(reason().find("'uav1' hit 'floor' at ST ") == 0, ram.code == 1) << reason();
+    const record::Record record = read_record(out_);
+    ASSERT_FALSE(record.contacts.empty());
+    EXPECT_EQ(record.contacts[0].message.speed_m_s, contacts["hardest"]["speed_m_s"]);
+    EXPECT_EQ(audit_code(out_), 0);
+    std::filesystem::remove_all(out_);
+  }
+}
+
 }  // namespace
 }  // namespace tether::system_test

@@ -245,6 +245,13 @@ const std::map<std::string, std::function<int(Vehicle&)>> kFlyingModes = {
        }
        return finish(v, true);
      }},
+    // Dives into the floor, and claims success.
+    {"ram",
+     [](Vehicle& v) {
+       require(v.command_velocity({.velocity_H_m_s = {0.0, 0.0, -2.0}, .yaw_rate_rad_s = 0.0}));
+       require(v.sleep_for(2s));
+       return finish(v, true);
+     }},
     {"missed", [](Vehicle& v) { return finish(v, false); }},
     {"crash", [](Vehicle&) -> int { crash(); }},
     {"stop", [](Vehicle&) { return std::raise(SIGSTOP); }},

@@ -38,6 +38,9 @@ TrialResult make_trial(const scenario::Scenario& scenario, const std::string& co
   result.suts = {{"uav1", "tether-sut 0.1.0", "cpu", 8.0, ExecTime(std::chrono::seconds(3)), true,
                   true, "the anchor is in the middle", R"({"steps":12})"}};
   result.sync = {120, 0, Duration(999'999), SimTime(Duration(2'481'000'001))};
+  const SimTime early(Duration(1'000'000'001));
+  result.contacts = {{"uav1", 2, 0, record::Contact{"uav1", early, "room", 0.25},
+                      record::Clearance{"uav1", 0.5, early, "shelf"}}};
   result.audit = AuditVerdict{true, "no violation"};
   result.versions = {{"simulator", "mujoco 2.2.2"}, {"tether", "0.1.0"}};
   result.this_run = {"2024-05-01T10:00:00Z", "a machine", Duration(1'234'567'891),

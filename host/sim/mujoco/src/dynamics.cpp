@@ -1,13 +1,26 @@
 #include "dynamics.h"
 
 #include "conversions.h"
+#include "mesh_file.h"
 #include "physics_model.h"
 
+#include <algorithm>
 #include <string>
 
 #include <tether/base/error.h>
 
 namespace tether::sim {
+namespace {
+
+std::vector<uav::Vec3> mesh_vertices(const MeshGeometry& mesh) {
+  std::vector<uav::Vec3> vertices;
+  for (const TriangleMesh::Vertex& v : load_mesh(mesh, {}, [](const auto&) {}).vertices) {
+    vertices.push_back({v.position[0], v.position[1], v.position[2]});
+  }
+  return vertices;
+}
+
+}  // namespace
 
 Dynamics::Dynamics(const World& world, const WarningSink& warn)
     : world_(world),
@@ -15,7 +28,11 @@ Dynamics::Dynamics(const World& world, const WarningSink& warn)
       data_(make_data(*model_)),
       recorder_(world),
       X_WB_(recorder_.layout().bodies()),
-      motions_(recorder_.layout().uavs()) {
+      motions_(recorder_.layout().uavs()),
+      shape_owners_(shape_owners(world)),
+      qvel_before_(static_cast<std::size_t>(model_->nv)),
+      meter_(world, mesh_vertices) {
+  meter_.warn_of_starts(warn);
   for (const Uav& uav : world.uavs) flights_.push_back({&uav.airframe, {}, {}});
   reset();
 }
@@ -30,6 +47,8 @@ void Dynamics::reset() {
   }
   read_engine();
   recorder_.reset(X_WB_);
+  contacts_.reset();
+  now_ = SimTime{};
 }
 
 void Dynamics::set_command(std::size_t uav, const uav::VelocityCommand& command) {
@@ -39,9 +58,42 @@ void Dynamics::set_command(std::size_t uav, const uav::VelocityCommand& command)
 void Dynamics::step() {
   recorder_.begin_step(X_WB_);
   for (std::size_t i = 0; i < flights_.size(); ++i) apply_rotors(i);
+  std::copy_n(data_->qvel, qvel_before_.size(), qvel_before_.begin());
   mj_step(model_.get(), data_.get());
   check_engine();
+  log_contacts();
   read_engine();
+  now_ += world_.step;
+}
+
+// The engine has found the contacts at the beginning of the step, where X_WB_ still is. Its solver
+// has acted since, so that the speed of an impact is that of before.
+void Dynamics::log_contacts() {
+  const auto uavs = static_cast<int>(flights_.size());
+  for (int i = 0; i < data_->ncon; ++i) {
+    const mjContact& contact = data_->contact[i];
+    const int shapes[] = {contact.geom1, contact.geom2};
+    const int bodies[] = {model_->geom_bodyid[contact.geom1], model_->geom_bodyid[contact.geom2]};
+    const uav::Vec3 p_W = vec3_from(contact.pos);
+    const uav::Vec3 apart = velocity_before(bodies[1], p_W) - velocity_before(bodies[0], p_W);
+    const double speed_m_s = -dot(vec3_from(contact.frame), apart);
+    for (const int own : {0, 1}) {
+      const int uav = bodies[own] - engine_body(0);
+      if (uav < 0 || uav >= uavs) continue;
+      const int other = shapes[1 - own];
+      contacts_.add({now_, static_cast<std::size_t>(uav),
+                     shape_owners_[static_cast<std::size_t>(other)], other, speed_m_s});
+    }
+  }
+}
+
+// Of the point of a body that is at p_W, at the beginning of the step.
+uav::Vec3 Dynamics::velocity_before(int engine_body, const uav::Vec3& p_W) const {
+  if (engine_body == 0) return {};
+  const auto body = static_cast<std::size_t>(engine_body - 1);
+  const mjtNum* qvel = qvel_before_.data() + qvel_address(body);
+  const uav::Pose& X_WB = X_WB_[body];
+  return vec3_from(qvel) + cross(rotate(X_WB.q, vec3_from(qvel + 3)), p_W - X_WB.p);
 }
 
 void Dynamics::apply_rotors(std::size_t uav) {

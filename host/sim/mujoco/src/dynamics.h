@@ -2,9 +2,13 @@
 
 #include "engine.h"
 
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/sim/clearance.h>
+#include <tether/sim/contacts.h>
 #include <tether/sim/world.h>
 #include <tether/sim_sensing/state_recorder.h>
 #include <tether/uav/multirotor.h>
@@ -29,6 +33,9 @@ class Dynamics {
   void capture(std::vector<double>& state) const;
   uav::BodyState body_state(std::size_t uav) const;
   const mjModel& model() const { return *model_; }
+  std::optional<Clearance> clearance(std::size_t uav) const { return meter_.measure(uav, X_WB_); }
+  /// The contacts of UAVs in the steps so far.
+  ContactLog& contacts() { return contacts_; }
   /// Whether more contacts occurred at once than the engine keeps; those were ignored.
   bool contacts_dropped() const;
 
@@ -40,6 +47,8 @@ class Dynamics {
   };
 
   void apply_rotors(std::size_t uav);
+  void log_contacts();
+  uav::Vec3 velocity_before(int engine_body, const uav::Vec3& p_W) const;
   void check_engine() const;
   void read_engine();
 
@@ -50,6 +59,11 @@ class Dynamics {
   StateRecorder recorder_;
   std::vector<uav::Pose> X_WB_;      // of each of `moving_bodies`
   std::vector<BodyMotion> motions_;  // of each UAV
+  std::vector<std::string_view> shape_owners_;
+  std::vector<mjtNum> qvel_before_;  // at the beginning of the last step
+  ContactLog contacts_;
+  ClearanceMeter meter_;
+  SimTime now_{};
 };
 
 }  // namespace tether::sim

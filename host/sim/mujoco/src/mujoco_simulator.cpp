@@ -70,6 +70,13 @@ class MujocoSimulator final : public Simulator {
     return {now_, dynamics_.body_state(uav)};
   }
 
+  bool reports_contacts() const override { return true; }
+  std::vector<Contact> take_contacts() override { return dynamics_.contacts().take(); }
+  std::optional<Clearance> clearance(std::size_t uav) const override {
+    check_uav(uav);
+    return dynamics_.clearance(uav);
+  }
+
   std::string description() const override {
     const std::string name = "MuJoCo " + engine_version();
     const std::string renderer = sensors_.renderer_name();

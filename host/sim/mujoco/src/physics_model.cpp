@@ -134,6 +134,21 @@ class PhysicsXml {
 
 }  // namespace
 
+// The engine keeps the order of the shapes: those of its world, then body by body.
+std::vector<std::string_view> shape_owners(const World& world) {
+  std::vector<std::string_view> owners;
+  for (const FixedBody& body : fixed_bodies(world)) {
+    owners.insert(owners.end(), body.link->collisions.size(), body.model->name);
+  }
+  for (const MovingBody& body : moving_bodies(world)) {
+    for (const Collision& collision : body.link->collisions) {
+      if (std::holds_alternative<PlaneGeometry>(collision.geometry)) continue;
+      owners.emplace_back(body.uav ? body.uav->name : body.model->name);
+    }
+  }
+  return owners;
+}
+
 ModelPtr make_physics_model(const World& world, const WarningSink& warn) {
   PhysicsXml xml(warn);
   for (const FixedBody& body : fixed_bodies(world)) {

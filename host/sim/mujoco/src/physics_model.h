@@ -2,6 +2,9 @@
 
 #include "engine.h"
 
+#include <string_view>
+#include <vector>
+
 #include <tether/sim/bodies.h>
 
 namespace tether::sim {
@@ -12,6 +15,9 @@ namespace tether::sim {
 /// @throws Error(kBadFile) for a mesh that cannot be read, Error(kSetup) when the model does not
 /// compile.
 ModelPtr make_physics_model(const World& world, const WarningSink& warn);
+
+/// The name of the model or UAV of each of the engine's shapes. Refers into `world`.
+std::vector<std::string_view> shape_owners(const World& world);
 
 /// Where body i of `moving_bodies` is in the engine's arrays.
 constexpr int qpos_address(std::size_t body) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <variant>
 
 namespace tether::sim::protocol {
@@ -92,16 +93,16 @@ void Conversation::note(const Open& open) {
   max_width_px_ = open.max_width_px;
   max_height_px_ = open.max_height_px;
   now_ = SimTime{};
-  asked_ = ForState{now_, 0};
+  asked_ = ForState{now_, now_, 0};
 }
 void Conversation::note(const Reset&) {
   now_ = SimTime{};
-  asked_ = ForState{now_, 0};
+  asked_ = ForState{now_, now_, 0};
 }
 void Conversation::note(const Advance& advance) {
   const auto steps = static_cast<std::size_t>((advance.to - now_) / step_);
-  now_ = advance.to;
-  asked_ = ForState{now_, std::min(steps, past_steps_) * bodies_};
+  const SimTime from = std::exchange(now_, advance.to);
+  asked_ = ForState{from, now_, std::min(steps, past_steps_) * bodies_};
 }
 void Conversation::note(const CastRays& cast) {
   asked_ = ForRays{cast.rays_S.size()};
@@ -135,6 +136,15 @@ std::string Conversation::complaint_of_state(const State& state, const ForState&
                                    unlike("State.motions", state.motions.size(), uavs_),
                                    unlike("State.past", state.past.size(), asked.past)}) {
     if (!wrong.empty()) return wrong;
+  }
+  SimTime before = asked.from;
+  for (const Touch& touch : state.touches) {
+    if (touch.uav >= uavs_) return "State.touches have the unknown UAV index " + number(touch.uav);
+    if (touch.at < before || touch.at > asked.to || to_ns(touch.at) % step_.count() != 0) {
+      return "State.touches have one at " + in_ns(touch.at) +
+             ", which is not a step boundary of the advance, in order";
+    }
+    before = touch.at;
   }
   return {};
 }

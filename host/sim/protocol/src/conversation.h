@@ -30,6 +30,7 @@ class Conversation {
   }
   /// What the reply to the last request must match.
   struct ForState {
+    SimTime from;
     SimTime to;
     std::size_t past;
   };

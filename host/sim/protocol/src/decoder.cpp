@@ -17,7 +17,7 @@ namespace {
 
 /// Above anything that `validate` accepts.
 constexpr flatbuffers::uoffset_t kMaxDepth = 8;
-constexpr flatbuffers::uoffset_t kMaxTables = 3 * kMaxBodies + kMaxMaterials + 16;
+constexpr flatbuffers::uoffset_t kMaxTables = 3 * kMaxBodies + kMaxMaterials + kMaxTouches + 16;
 /// Length, root offset, identifier, and the least root table.
 constexpr std::size_t kMinFrameBytes = 16;
 
@@ -152,11 +152,17 @@ Render read(const wire::Render& render) {
 // --- replies ------------------------------------------------------------------------------------
 
 State read(const wire::State& state) {
-  return {from_ns<SimTime>(state.now_st_ns()), list<uav::BodyState>(*state.bodies()),
-          list<Motion>(*state.motions()), list<uav::Pose>(*state.past())};
+  State out{from_ns<SimTime>(state.now_st_ns()), list<uav::BodyState>(*state.bodies()),
+            list<Motion>(*state.motions()), list<uav::Pose>(*state.past())};
+  if (state.touches() == nullptr) return out;
+  for (const wire::Touch* touch : *state.touches()) {
+    out.touches.push_back({from_ns<SimTime>(touch->at_st_ns()), touch->uav(), touch->with()->str(),
+                           touch->shape(), touch->speed_m_s()});
+  }
+  return out;
 }
 Opened read(const wire::Opened& opened) {
-  return {opened.description()->str(), read(*opened.state())};
+  return {opened.description()->str(), read(*opened.state()), opened.reports_contacts()};
 }
 Distances read(const wire::Distances& distances) {
   Distances out;

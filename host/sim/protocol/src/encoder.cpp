@@ -143,17 +143,28 @@ Content write(FlatBufferBuilder& b, const Render& render, PictureSlot&) {
 
 // --- replies ------------------------------------------------------------------------------------
 
+Offset<wire::Touch> write(FlatBufferBuilder& b, const Touch& touch) {
+  const auto with = b.CreateString(touch.with);
+  return wire::CreateTouch(b, to_ns(touch.at), touch.uav, with, touch.shape, touch.speed_m_s);
+}
+
 Offset<wire::State> write(FlatBufferBuilder& b, const State& state) {
   const auto bodies = structs<wire::BodyState>(b, state.bodies);
   const auto motions = structs<wire::Motion>(b, state.motions);
   const auto past = structs<wire::Pose>(b, state.past);
-  return wire::CreateState(b, to_ns(state.now), bodies, motions, past);
+  Offset<Vector<Offset<wire::Touch>>> touches;
+  if (!state.touches.empty()) {
+    touches = tables<wire::Touch>(b, state.touches, [](FlatBufferBuilder& to, const Touch& touch) {
+      return write(to, touch);
+    });
+  }
+  return wire::CreateState(b, to_ns(state.now), bodies, motions, past, touches);
 }
 
 Content write(FlatBufferBuilder& b, const Opened& opened, PictureSlot&) {
   const auto description = b.CreateString(opened.description);
   const auto state = write(b, opened.state);
-  return wire::CreateOpened(b, description, state);
+  return wire::CreateOpened(b, description, state, opened.reports_contacts);
 }
 Content write(FlatBufferBuilder& b, const State& state, PictureSlot&) {
   return write(b, state);

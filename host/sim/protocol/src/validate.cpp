@@ -186,6 +186,13 @@ void check(Checker& c, const State& state) {
   }
   c.require(state.past.size() <= kMaxPastPoses, "past", "has too many poses");
   for (const uav::Pose& X : state.past) check(c, X, "past");
+  c.require(state.touches.size() <= kMaxTouches, "touches", "are too many");
+  for (const Touch& touch : state.touches) {
+    c.timestamp(touch.at, "touches");
+    name(c, touch.with, "touches");
+    c.require(!touch.with.empty(), "touches", "have no name");
+    c.require(std::isfinite(touch.speed_m_s), "touches", "have a speed that is not a number");
+  }
 }
 void check(Checker& c, const Opened& opened) {
   c.in("Opened.");

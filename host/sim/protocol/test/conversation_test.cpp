@@ -110,6 +110,20 @@ TEST(Conversation, StatesAreThoseRequested) {
   expect_refused(advanced, Reply(motions), "State.motions");
 }
 
+TEST(Conversation, TouchesAreThoseOfTheAdvance) {
+  const Conversation advanced = after({small_open(), Advance{at(2), {}}, Advance{at(4), {}}});
+  State touching = state(4, 2);
+  touching.touches = {{at(2), 0, "wall", 1, 1.0}, {at(3), 0, "wall", 1, 0.0}};
+  EXPECT_TRUE(advanced.check(Reply(touching)).ok());
+  for (const Touch& wrong :
+       {Touch{at(3), 1, "wall", 1, 1.0}, Touch{at(2), 0, "wall", 1, 1.0},
+        Touch{at(5), 0, "wall", 1, 1.0}, Touch{at(3) + Duration(1), 0, "wall", 1, 1.0}}) {
+    State state = touching;
+    state.touches.push_back(wrong);
+    expect_refused(advanced, Reply(state), "State.touches");
+  }
+}
+
 TEST(Conversation, ThePastIsAtMostAsLongAsAnnounced) {
   EXPECT_TRUE(after({small_open(), Advance{at(50), {}}}).check(Reply(state(50, 3))).ok());
   EXPECT_TRUE(after({small_open(), Advance{at(9), {}}, Reset{}}).check(Reply(state(0, 0))).ok());

@@ -73,8 +73,18 @@ class Fields {
     const auto& [a, b, c, d, e, f, g] = render;
     all(a, b, c, d, e, f, g);
   }
-  void add(const State& s) { all(s.now, s.bodies, s.motions, s.past); }
-  void add(const Opened& o) { all(o.description, o.state); }
+  void add(const Touch& touch) {
+    const auto& [a, b, c, d, e] = touch;
+    all(a, b, c, d, e);
+  }
+  void add(const State& state) {
+    const auto& [a, b, c, d, e] = state;
+    all(a, b, c, d, e);
+  }
+  void add(const Opened& opened) {
+    const auto& [a, b, c] = opened;
+    all(a, b, c);
+  }
   void add(const Distances& d) { add(d.distance_m); }
   void add(const Picture& p) { all(p.width_px, p.height_px, p.rgb, p.nearest_depth_m, p.renderer); }
   void add(const Failed& f) { add(f.message); }

@@ -36,7 +36,7 @@ class RandomMessage {
   Reply reply(std::uint32_t kind) {
     switch (kind) {
       case 0:
-        return Opened{text(), state()};
+        return Opened{text(), state(), coin()};
       case 1:
         return state();
       case 2:
@@ -144,6 +144,9 @@ class RandomMessage {
     });
     out.motions.assign(out.bodies.size(), {vec3(), vec3()});
     out.past = many<uav::Pose>([this] { return pose(); });
+    out.touches = many<Touch>([this] {
+      return Touch{time(), random_.bits() % 1024, "t" + text(), random_.bits(), number() - 25.0};
+    });
     return out;
   }
   Picture picture() {

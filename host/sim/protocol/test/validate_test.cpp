@@ -143,7 +143,22 @@ TEST(Validate, StatesAreSane) {
                                 {"motions", [](State& s) { s.motions[0].a_WB_W.x = kNaN; }},
                                 {"motions", [](State& s) { s.motions[0].alpha_WB_B.x = kNaN; }},
                                 {"past", [](State& s) { s.past[0].q = kNotUnit; }},
-                                {"past", [](State& s) { s.past.resize(kMaxPastPoses + 1); }}});
+                                {"past", [](State& s) { s.past.resize(kMaxPastPoses + 1); }},
+                                {"touches",
+                                 [](State& s) {
+                                   s.touches = {{{}, 0, "", 0, 1.0}};
+                                 }},
+                                {"touches",
+                                 [](State& s) {
+                                   s.touches = {{{}, 0, "a", 0, kNaN}};
+                                 }},
+                                {"touches",
+                                 [](State& s) {
+                                   s.touches = {{from_ns<SimTime>(-1), 0, "a", 0, 1.0}};
+                                 }},
+                                {"touches", [](State& s) {
+                                   s.touches.assign(kMaxTouches + 1, {{}, 0, "a", 0, 1.0});
+                                 }}});
 }
 
 TEST(Validate, MeasurementsAreSane) {

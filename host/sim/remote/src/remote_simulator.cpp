@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,10 +38,13 @@ class RemoteSimulator final : public Simulator {
         session_(std::move(connection), std::move(options)),
         rays_(session_),
         recorder_(world_),
+        meter_(world_, {}),
         sensors_(world_, back_end(), warn),
         commands_(world_.uavs.size()) {
     protocol::Opened opened = session_.open(make_open(world_, warn));
     description_ = printable(opened.description);
+    reports_contacts_ = opened.reports_contacts;
+    meter_.warn_of_starts(warn);
     session_.set_name(description_);
     start_at(std::move(opened.state));
   }
@@ -80,6 +84,13 @@ class RemoteSimulator final : public Simulator {
     return {now(), state_.bodies[uav]};
   }
 
+  bool reports_contacts() const override { return reports_contacts_; }
+  std::vector<Contact> take_contacts() override { return contacts_.take(); }
+  std::optional<Clearance> clearance(std::size_t uav) const override {
+    check_uav(uav);
+    return meter_.measure(uav, X_WB_);
+  }
+
   std::string description() const override {
     const std::string renderer = sensors_.renderer_name();
     return renderer.empty() ? description_ : description_ + ", " + renderer;
@@ -103,13 +114,22 @@ class RemoteSimulator final : public Simulator {
       commands_[i].reset();
     }
     take(session_.ask<protocol::State>(request));
+    for (const protocol::Touch& touch : state_.touches) log_touch(touch);
     const std::size_t bodies = X_WB_.size();
     for (std::size_t i = 0; i < state_.past.size(); i += bodies) {
       recorder_.begin_step(std::span(state_.past).subspan(i, bodies));
     }
   }
 
+  // The log refers to the name.
+  void log_touch(const protocol::Touch& touch) {
+    if (!reports_contacts_) return;
+    const std::string& with = *touched_.insert(printable(touch.with)).first;
+    contacts_.add({touch.at, touch.uav, with, touch.shape, touch.speed_m_s});
+  }
+
   void start_at(protocol::State state) {
+    contacts_.reset();
     take(std::move(state));
     check_start(world_, state_, session_.name());
     recorder_.reset(X_WB_);
@@ -146,6 +166,10 @@ class RemoteSimulator final : public Simulator {
   RemoteSession session_;
   RemoteRays rays_;
   StateRecorder recorder_;
+  ClearanceMeter meter_;
+  bool reports_contacts_ = false;
+  ContactLog contacts_;
+  std::set<std::string> touched_;  // names
   SensorSuite sensors_;
   std::string description_;
   /// Not sent yet.

@@ -51,6 +51,32 @@ std::vector<Message> all(const std::vector<Request>& requests) {
   return out;
 }
 
+// ---- contacts ----------------------------------------------------------------------------------
+
+// Touches the box "wall" in every step of the second advance.
+std::optional<Reply> touching(const Request& request, Reply reply, bool is_reported) {
+  if (auto* opened = std::get_if<Opened>(&reply)) opened->reports_contacts = is_reported;
+  const auto* advance = std::get_if<Advance>(&request);
+  if (advance && advance->to == at(100ms)) {
+    for (SimTime t = at(50ms); t < advance->to; t += 1ms)
+      std::get<State>(reply).touches.push_back({t, 0, "wall", 7, 3.0});
+  }
+  return reply;
+}
+
+TEST(RemoteSimulator, MakesContactsOfTouches) {
+  for (const bool is_reported : {true, false}) {
+    Served served(file_world(test_world()), [=](const Request& request, Reply reply) {
+      return touching(request, std::move(reply), is_reported);
+    });
+    EXPECT_EQ(served.simulator->reports_contacts(), is_reported);
+    served.simulator->advance_to(at(250ms));
+    const std::vector<Contact> expected{{at(50ms), 0, "wall", 3.0}};
+    EXPECT_EQ(served.simulator->take_contacts(), is_reported ? expected : std::vector<Contact>{});
+    EXPECT_NEAR(served.simulator->clearance(0)->distance_m, 0.95, 1e-6) << "measured by the host";
+  }
+}
+
 // ---- requests ----------------------------------------------------------------------------------
 
 TEST(RemoteSimulator, SplitsLongAdvancesAtSteps) {

@@ -186,6 +186,21 @@ GroundTruth FakeSimulator::ground_truth(std::size_t uav) const {
            {0.0, 0.0, body.command.yaw_rate_rad_s}}};
 }
 
+std::vector<Contact> FakeSimulator::take_contacts() {
+  std::vector<Contact> begun;
+  while (planned_contacts_ && !planned_contacts_->empty() && planned_contacts_->front().at < now_) {
+    begun.push_back(planned_contacts_->front());
+    planned_contacts_->erase(planned_contacts_->begin());
+  }
+  return begun;
+}
+
+std::optional<Clearance> FakeSimulator::clearance(std::size_t uav) const {
+  check_uav(uav);
+  if (!planned_contacts_) return std::nullopt;
+  return Clearance{kWallX_m - bodies_[uav].p_WB.x, "wall"};
+}
+
 SimTime instant_in_image(const uav::CameraSample& image) {
   std::uint64_t ns = 0;
   for (std::size_t i = 0; i < 8; ++i) ns |= std::uint64_t{image.rgb[i]} << (8 * i);

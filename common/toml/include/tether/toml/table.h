@@ -31,6 +31,7 @@ struct Range {
   double max = std::numeric_limits<double>::infinity();
   bool above_min = false;  ///< min itself is not allowed
   bool below_max = false;  ///< max itself is not allowed
+  bool with_inf = false;   ///< +inf is allowed as well, whatever max is
 
   bool contains(double value) const;
   /// "at least 0 and at most 5", "greater than 0 and less than 180", "finite".

@@ -21,9 +21,10 @@ struct MetricValue {
   std::optional<double> value;  ///< none: see `missing_because`
   std::string missing_because;  ///< one line; empty if there is a value
   std::optional<double> max;
+  std::optional<double> min{};  ///< of kinds of which more is better
 
-  /// Whether there is a value within its limit.
-  bool is_met() const { return value && (!max || *value <= *max); }
+  /// Whether there is a value within its limits.
+  bool is_met() const { return value && (!max || *value <= *max) && (!min || *value >= *min); }
 
   friend bool operator==(const MetricValue&, const MetricValue&) = default;
 };

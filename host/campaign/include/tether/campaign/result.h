@@ -24,7 +24,7 @@ inline constexpr std::string_view kReportFile = "report.html";
 
 enum class Outcome {
   kGoalReached,  ///< exit 0: every SUT finished with its goal reached, every metric within its
-                 ///< limit
+                 ///< limit, no UAV hit anything harder than the scenario allows
   kGoalMissed,   ///< exit 1: the trial ran, but missed that
   kFailed,       ///< exit 3: simulator, link or SUT could not be set up, was lost or hung
 };
@@ -72,6 +72,17 @@ struct SyncFigures {
   std::optional<StopFigures> stops{};  ///< none without a concurrent SUT
 
   friend bool operator==(const SyncFigures&, const SyncFigures&) = default;
+};
+
+/// What a UAV touched, and how near it came to anything.
+struct UavContacts {
+  std::string uav;
+  std::optional<std::uint64_t> count{};  ///< of any speed; none: the simulator reports none
+  std::uint64_t hard = 0;                ///< of these, harder than the scenario allows
+  std::optional<record::Contact> hardest{};
+  std::optional<record::Clearance> nearest{};  ///< none: not measured
+
+  friend bool operator==(const UavContacts&, const UavContacts&) = default;
 };
 
 struct AuditVerdict {
@@ -125,6 +136,8 @@ struct TrialResult {
   std::vector<MetricValue> metrics;
   std::vector<SutResult> suts;
   SyncFigures sync;
+  /// Of each UAV; empty: the trial did not run, or the result is of an earlier version.
+  std::vector<UavContacts> contacts;
   std::optional<AuditVerdict> audit;
   std::map<std::string, std::string> versions;  ///< of everything that took part, by its name
   ThisRun this_run;
@@ -145,7 +158,8 @@ struct TaskEnd {
 
 /// The result of a trial from its record: metrics, figures and the outcome with its reason. A
 /// record without a footer is a failed trial. Metrics have values only if the trial did not fail
-/// and the SUT reached its own goal. The caller adds audit, more versions, `started_at`.
+/// and the SUT reached its own goal (but those of any flight, scenario::MetricKind). The caller
+/// adds audit, more versions, `started_at`.
 TrialResult make_result(const scenario::Scenario& scenario, const scenario::Condition& condition,
                         const record::Record& record, const std::vector<TaskEnd>& task_ends);
 

@@ -97,6 +97,16 @@ struct GroundTruth {
   double w_WB_B_rad_s[3] = {};
 };
 
+/// A UAV began to touch something. Topic /contacts/<uav>; log time = ST of the next ground truth,
+/// or of the end of the run.
+struct Contact {
+  std::string uav;
+  SimTime at;              ///< step boundary at which both touched for the first time
+  std::string with;        ///< name of the model or UAV
+  double speed_m_s = 0.0;  ///< of approach along the contact's normal, just before the impact; ≥ 0
+  friend bool operator==(const Contact&, const Contact&) = default;
+};
+
 /// A message of the SUT for the record. Topic /task/<uav>; log time = ST when it arrived.
 struct Annotation {
   std::string uav;
@@ -195,6 +205,18 @@ struct Header {
   std::vector<Anchor> anchors;
   std::optional<TargetInfo> target{};  ///< none in records of Tether 0.1.0
   WallTime wall_at_start{};            ///< when the SUTs were started, all at ET 0; 0: unknown
+  bool reports_contacts = false;  ///< the record has all contacts; else it has none, and none is
+                                  ///< known
+};
+
+/// How close a UAV came to anything else: to the nearest collision shape, at the instants of the
+/// ground truth.
+struct Clearance {
+  std::string uav;
+  double min_m = 0.0;  ///< 0: it touched, or was inside
+  SimTime at;          ///< when that was for the first time
+  std::string to;      ///< name of the model or UAV
+  friend bool operator==(const Clearance&, const Clearance&) = default;
 };
 
 /// End of the run: written last (metadata record "tether.end"). A record without it is incomplete.
@@ -213,6 +235,8 @@ struct Footer {
   // For concurrent SUTs.
   std::uint64_t stops = 0;        ///< number in the record
   Duration largest_overshoot{0};  ///< largest Stop::at − Stop::reply_at
+  /// Of the UAVs whose clearance was measured.
+  std::vector<Clearance> clearances{};
 };
 
 }  // namespace tether::record

@@ -36,6 +36,7 @@ struct Record {
   std::vector<Logged<GroundTruth>> ground_truth;
   std::vector<Logged<Annotation>> annotations;
   std::vector<Logged<Stop>> stops;
+  std::vector<Logged<Contact>> contacts;
   std::vector<Logged<Image>> images;
   std::optional<Footer> footer;
   std::vector<Miscount> miscounts;  ///< in file order, also of images; at most kMaxMiscounts

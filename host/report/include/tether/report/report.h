@@ -34,8 +34,8 @@ std::vector<Comparison> compare_conditions(const campaign::ScenarioResults& scen
 Table comparisons_table(const campaign::ScenarioResults& scenario);
 
 /// The optimism of an unsynchronised test: for each metric, the mean under the barrier minus the
-/// mean in free running, for conditions with the same clock, factor, target and profiles. For all
-/// metrics smaller is better, so a positive difference means that the unsynchronised test is too
+/// mean in free running, for conditions with the same clock, factor, target and profiles. For
+/// metrics of which less is better, a positive difference means that the unsynchronised test is too
 /// optimistic.
 std::vector<Comparison> optimism(const campaign::ScenarioResults& scenario);
 Table optimism_table(const campaign::ScenarioResults& scenario);

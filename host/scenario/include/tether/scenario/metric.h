@@ -11,16 +11,19 @@ namespace tether::scenario {
 
 /// A number to compute after a run, with the limit up to which the goal counts as reached.
 struct Metric {
-  std::string name;            ///< unique within the scenario; by default its kind
-  std::string kind;            ///< one of `metric_kinds()`
-  std::string label;           ///< for tables, without unit
-  std::string unit;            ///< of the value and of `max`: "s", "m", "deg", "1"
-  std::string uav;             ///< name
-  std::string anchor;          ///< empty if the kind needs none
-  double threshold_rad = 0.0;  ///< 0 if the kind has none
-  std::optional<double> max;   ///< in `unit`; the goal is missed beyond it
-  std::string sensor{};        ///< empty if the kind needs none
-  int line = 0;                ///< of its `sensor`, in the scenario's file; 0 if it has none
+  std::string name;             ///< unique within the scenario; by default its kind
+  std::string kind;             ///< one of `metric_kinds()`
+  std::string label;            ///< for tables, without unit
+  std::string unit;             ///< of the value and of `max`: "s", "m", "deg", "1"
+  std::string uav;              ///< name
+  std::string anchor;           ///< empty if the kind needs none
+  double threshold_rad = 0.0;   ///< 0 if the kind has none
+  std::optional<double> max;    ///< in `unit`; the goal is missed beyond it
+  std::string sensor{};         ///< empty if the kind needs none
+  int line = 0;                 ///< of its `sensor`, in the scenario's file; 0 if it has none
+  std::optional<double> min{};  ///< in `unit`; the goal is missed below it
+  double threshold_m_s = 0.0;   ///< 0 if the kind has none
+  bool of_any_flight = false;   ///< as its kind
 };
 
 /// A kind of metric and the keys that it supports.
@@ -31,14 +34,20 @@ struct MetricKind {
   bool needs_anchor = false;
   bool needs_sensor = false;
   std::optional<double> default_threshold_deg{};  ///< set: has a threshold
-  std::string_view help;                          ///< one line: the definition
+  bool has_speed_threshold = false;
+  bool is_better_if_more = false;  ///< its limit is a minimum
+  bool of_any_flight = false;      ///< it has a value even if the SUT missed its goal
+  std::string_view help;           ///< one line: the definition
 };
 
 /// All kinds, in the order in which help lists them.
 std::span<const MetricKind> metric_kinds();
 
-/// The unit as a suffix of keys: "max" + this is the key of a limit ("_s", "_m", "_deg", "" for
-/// counts).
+/// nullptr if there is none of that name.
+const MetricKind* find_metric_kind(std::string_view name);
+
+/// The unit as a suffix of keys: "max" (or "min") + this is the key of a limit ("_s", "_m", "_deg",
+/// "" for counts).
 std::string unit_suffix(std::string_view unit);
 
 }  // namespace tether::scenario

@@ -66,6 +66,9 @@ struct UavSetup {
   Sut sut;  ///< its own, or the scenario's; own parameters override the scenario's
 };
 
+/// Softer contacts are landings: UAVs descend at less.
+inline constexpr double kHardContact_m_s = 0.5;
+
 struct Scenario {
   std::filesystem::path file;  ///< absolute
   std::string name;            ///< letters, digits, '_', '-', '.'
@@ -75,7 +78,9 @@ struct Scenario {
   Duration time_limit{0};                            ///< of ST
   Duration hang_limit{std::chrono::seconds(30)};     ///< of WT without a message from a SUT
   Duration connect_limit{std::chrono::seconds(30)};  ///< of WT until every SUT has joined
-  std::vector<UavSetup> uavs;                        ///< at least one
+  /// A contact that is harder misses the goal (record::Contact::speed_m_s); inf: none does.
+  double max_contact_speed_m_s = kHardContact_m_s;
+  std::vector<UavSetup> uavs;  ///< at least one
   std::vector<std::string> anchors;
   FileLocation anchors_at{};          ///< of their key; empty: there is none
   std::vector<Condition> conditions;  ///< at least one; the first is the default

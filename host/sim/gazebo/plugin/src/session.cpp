@@ -1,4 +1,5 @@
 #include <exception>
+#include <tuple>
 
 #include <tether/sim_gazebo_plugin/session.h>
 
@@ -31,6 +32,7 @@ void Session::at_step_boundary() {
 
 void Session::go_on() {
   if (phase_ == Phase::kWarmingUp) warm_up();
+  if (advancing_) note_touches();
   if (advancing_ && steps_left_ == 0) finish_advance();
   while (!needs_step()) serve();
   if (steps_left_ > 0 && phase_ == Phase::kServing) begin_step();
@@ -61,7 +63,7 @@ void Session::warm_up() {
   if (!simulation_.is_ready()) return;
   phase_ = Phase::kServing;
   reset(0);
-  host_.answer(protocol::Opened{simulation_.description(), state()});
+  host_.answer(protocol::Opened{simulation_.description(), state(), true});
 }
 
 void Session::reset(std::uint64_t seed) {
@@ -69,6 +71,7 @@ void Session::reset(std::uint64_t seed) {
   flights_.reset();
   now_ = {};
   past_.clear();
+  touches_.clear();
   motions_.assign(flights_.size(), {});
 }
 
@@ -82,9 +85,31 @@ void Session::handle(const protocol::Advance& advance) {
     flights_.set_command(command.uav, command.command);
   }
   past_.clear();
+  touches_.clear();
   steps_left_ = (advance.to - now_) / open_.step;
   advancing_ = true;
   if (steps_left_ == 0) finish_advance();
+}
+
+// Those of the last step, at its beginning: the engine has acted on the velocities since.
+void Session::note_touches() {
+  if (before_.empty()) return;
+  for (const TouchedPoint& point : simulation_.touched_points()) {
+    const auto& [first, second] = point.sides;
+    const uav::Vec3 apart = velocity_before(first, point.p_W) - velocity_before(second, point.p_W);
+    const double speed_m_s = -dot(point.normal_W, apart);
+    for (const auto& [own, other] : {std::tie(first, second), std::tie(second, first)}) {
+      if (!own.body || *own.body >= flights_.size()) continue;
+      touches_.push_back({now_ - open_.step, static_cast<std::uint32_t>(*own.body), other.model,
+                          other.shape, speed_m_s});
+    }
+  }
+}
+
+uav::Vec3 Session::velocity_before(const TouchedPoint::Side& side, const uav::Vec3& p_W) const {
+  if (!side.body) return {};
+  const uav::BodyState& body = before_[*side.body];
+  return body.v_WB + cross(rotate(body.q_WB, body.w_WB_B), p_W - body.p_WB);
 }
 
 void Session::finish_advance() {
@@ -116,7 +141,7 @@ void Session::begin_step() {
 }
 
 protocol::State Session::state() const {
-  protocol::State state{now_, simulation_.bodies(), motions_, {}};
+  protocol::State state{now_, simulation_.bodies(), motions_, {}, touches_};
   for (const std::vector<uav::Pose>& poses : past_) {
     state.past.insert(state.past.end(), poses.begin(), poses.end());
   }

@@ -47,11 +47,13 @@ class FakeSimulation : public Simulation {
     EXPECT_LT(uav, kUavs);
     forces_W.push_back(force_W);
   }
+  std::vector<TouchedPoint> touched_points() const override { return points; }
   protocol::Distances cast(const protocol::CastRays&) override { return {{x_m}}; }
   protocol::Picture render(const protocol::Render&) override {
     throw Error(ErrorCode::kSetup, "no canvas");
   }
 
+  std::vector<TouchedPoint> points;
   int warm_up_steps = kWarmUp - 1;
   double x_m = 0.0;
   std::vector<std::uint64_t> seeds;
@@ -130,6 +132,30 @@ TEST_F(SessionTest, HasTheMotionOfTheLastStepUntilAReset) {
   EXPECT_EQ(state(4).now, SimTime(2ms));
   EXPECT_EQ(state(4).bodies.at(0).p_WB.x, 2.0);
   EXPECT_EQ(simulation.seeds, (std::vector<std::uint64_t>{0, 7}));
+}
+
+// The UAV is body 0 and the ball body 1. Both have the same velocity, which is 3 m/s at the
+// beginning of the last step.
+TEST_F(SessionTest, ReportsWhatTheUavTouchesInEachStep) {
+  const TouchedPoint::Side uav{0, "uav1", 1}, ball{1, "ball", 2}, wall{std::nullopt, "wall", 3};
+  simulation.points = {{{uav, wall}, {}, {-1, 0, 0}},
+                       {{wall, uav}, {}, {-1, 0, 0}},
+                       {{ball, uav}, {}, {-1, 0, 0}},
+                       {{ball, wall}, {}, {1, 0, 0}}};
+  run({open(), advance_to(3ms), advance_to(4ms), advance_to(4ms)});
+  EXPECT_TRUE(std::get<protocol::Opened>(host.replies[0]).reports_contacts);
+  EXPECT_EQ(state(1).touches.size(), 9U);
+  EXPECT_TRUE(state(3).touches.empty());
+  ASSERT_EQ(state(2).touches.size(), 3U);
+  const std::pair<const char*, double> expected[] = {{"wall", 3.0}, {"wall", -3.0}, {"ball", 0.0}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const protocol::Touch& touch = state(2).touches[i];
+    EXPECT_EQ(touch.at, SimTime(3ms));
+    EXPECT_EQ(touch.uav, 0U);
+    EXPECT_EQ(touch.with, expected[i].first);
+    EXPECT_EQ(touch.shape, i < 2 ? 3U : 2U);
+    EXPECT_DOUBLE_EQ(touch.speed_m_s, expected[i].second);
+  }
 }
 
 TEST_F(SessionTest, FliesTheUavAsItIsCommanded) {

@@ -23,6 +23,7 @@ std::vector<MovingBody> moving_bodies(const World& world);
 struct FixedBody {
   const Link* link = nullptr;
   uav::Pose X_WB;
+  const Model* model = nullptr;
 };
 std::vector<FixedBody> fixed_bodies(const World& world);
 

@@ -3,11 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <tether/base/step_grid.h>
 #include <tether/base/time.h>
+#include <tether/sim/clearance.h>
+#include <tether/sim/contacts.h>
 #include <tether/sim/world.h>
 #include <tether/uav/multirotor.h>
 #include <tether/uav/samples.h>
@@ -68,6 +71,13 @@ class Simulator {
 
   /// At `now()`.
   virtual GroundTruth ground_truth(std::size_t uav) const = 0;
+
+  /// Whether the simulator reports contacts; if not, `take_contacts` returns nothing.
+  virtual bool reports_contacts() const = 0;
+  /// The contacts of UAVs that began before `now()` and were not taken yet, in the order of time.
+  virtual std::vector<Contact> take_contacts() = 0;
+  /// From a UAV to whatever is nearest, at `now()`. None: not measured, or there is nothing else.
+  virtual std::optional<Clearance> clearance(std::size_t uav) const = 0;
 
   /// Name and version, for the record: "MuJoCo 2.2.2, Mesa llvmpipe".
   virtual std::string description() const = 0;

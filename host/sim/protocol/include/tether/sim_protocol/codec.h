@@ -20,6 +20,7 @@ inline constexpr std::uint32_t kMaxFrameBytes = 64u << 20;
 inline constexpr std::size_t kMaxBodies = 1024;
 /// Most poses in a State's past: past_steps times bodies.
 inline constexpr std::size_t kMaxPastPoses = 1u << 20;
+inline constexpr std::size_t kMaxTouches = 1u << 16;
 inline constexpr std::size_t kMaxRays = 1u << 16;
 /// Of a picture's width and height; width × height is at most kMaxPixels.
 inline constexpr std::int32_t kMaxSidePx = 16384;

@@ -120,6 +120,17 @@ struct Motion {
   uav::Vec3 alpha_WB_B;  ///< angular acceleration [rad/s²]
 };
 
+/// A UAV touches a collision shape of something else at a step boundary.
+struct Touch {
+  SimTime at;               ///< step boundary: from the beginning to the end of the advance
+  std::uint32_t uav = 0;    ///< index into Open::uavs
+  std::string with;         ///< name of the model ("outer::inner" of nested ones) or UAV
+  std::uint32_t shape = 0;  ///< a number of the shape, unique in `with`
+  /// Speed at which both approach each other along the contact's normal, before the impact [m/s];
+  /// negative if they depart.
+  double speed_m_s = 0.0;
+};
+
 /// The world at a step boundary.
 struct State {
   SimTime now;
@@ -128,11 +139,15 @@ struct State {
   /// Poses of all bodies at the beginning of each of the last steps of this advance, oldest first:
   /// min(steps, Open::past_steps) times the number of bodies.
   std::vector<uav::Pose> past;
+  /// During this advance, one for each UAV, shape and step for which they touch, in the order of
+  /// time. Empty unless Opened::reports_contacts.
+  std::vector<Touch> touches{};
 };
 
 struct Opened {
   std::string description;  ///< name and version, for the record: "Gazebo 11.1.0, ODE"
   State state;
+  bool reports_contacts = false;  ///< State::touches has everything that UAVs touch
 };
 
 struct Distances {

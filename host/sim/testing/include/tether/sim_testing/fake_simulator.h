@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tether/sim/simulator.h>
@@ -45,6 +47,9 @@ class FakeSimulator final : public Simulator {
   /// Called at the beginning of each `measure`, likewise.
   void on_measure(std::function<void(std::size_t uav, std::size_t sensor)> callback);
 
+  /// Contacts of the next flight, in the order of time; it reports none otherwise.
+  void plan_contacts(std::vector<Contact> contacts) { planned_contacts_ = std::move(contacts); }
+
   const Calls& calls() const { return calls_; }
   /// Every command applied since the last reset, in order.
   const std::vector<AppliedCommand>& applied() const { return applied_; }
@@ -62,6 +67,10 @@ class FakeSimulator final : public Simulator {
   uav::Sample measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
                       std::uint64_t index) override;
   GroundTruth ground_truth(std::size_t uav) const override;
+  bool reports_contacts() const override { return planned_contacts_.has_value(); }
+  std::vector<Contact> take_contacts() override;
+  /// To the plane x = 10 m, "wall", if contacts were planned.
+  std::optional<Clearance> clearance(std::size_t uav) const override;
   std::string description() const override { return "fake simulator"; }
 
  private:
@@ -80,6 +89,7 @@ class FakeSimulator final : public Simulator {
   std::uint64_t seed_ = 0;
   std::vector<Body> bodies_;
   std::vector<AppliedCommand> applied_;
+  std::optional<std::vector<Contact>> planned_contacts_;
   mutable Calls calls_;
   std::function<void(SimTime, SimTime)> on_advance_;
   std::function<void(std::size_t, std::size_t)> on_measure_;

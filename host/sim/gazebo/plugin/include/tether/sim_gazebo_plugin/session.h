@@ -48,6 +48,8 @@ class Session {
   void serve();
   void warm_up();
   void finish_advance();
+  void note_touches();
+  uav::Vec3 velocity_before(const TouchedPoint::Side& side, const uav::Vec3& p_W) const;
   void begin_step();
   void refuse(const std::string& why);
   void reset(std::uint64_t seed);
@@ -72,6 +74,7 @@ class Session {
   std::vector<protocol::Motion> motions_;
   /// The bodies' poses when the last steps began, all bodies of a step after one another.
   std::deque<std::vector<uav::Pose>> past_;
+  std::vector<protocol::Touch> touches_;  ///< of this advance
 };
 
 }  // namespace tether::gazebo_plugin

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,18 @@
 namespace tether::gazebo_plugin {
 
 namespace protocol = sim::protocol;
+
+/// Two shapes that touch, at one point. The numbers of bodies are as in `Simulation::bodies`.
+struct TouchedPoint {
+  struct Side {
+    std::optional<std::size_t> body;  ///< none: it does not move
+    std::string model;
+    std::uint32_t shape = 0;  ///< a number of its own in the world
+  };
+  Side sides[2];
+  uav::Vec3 p_W;
+  uav::Vec3 normal_W;  ///< unit, from the second to the first
+};
 
 /// The simulator of a session. Every function may throw Error, whose message is sent to the host;
 /// after that no function is called.
@@ -31,6 +45,9 @@ class Simulation {
   virtual std::vector<uav::BodyState> bodies() const = 0;
   /// Force and torque on a UAV's centre of mass during the next step [N, N m].
   virtual void push(std::size_t uav, const uav::Vec3& force_W, const uav::Vec3& torque_W) = 0;
+
+  /// Of anything, at the beginning of the last step.
+  virtual std::vector<TouchedPoint> touched_points() const = 0;
 
   virtual protocol::Distances cast(const protocol::CastRays& rays) = 0;
   virtual protocol::Picture render(const protocol::Render& view) = 0;

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <tether/sim/world.h>
+
+namespace tether::sim {
+
+/// From a UAV to the nearest of the other collision shapes.
+struct Clearance {
+  double distance_m = 0.0;  ///< 0: it touches, or is inside
+  std::string_view to;      ///< name of the model or UAV; refers into the world
+};
+
+/// The vertices of a mesh, scaled, in its own frame.
+using MeshVertices = std::function<std::vector<uav::Vec3>(const MeshGeometry& mesh)>;
+
+/// Measures distances between the collision shapes of a world: exact up to rounding; a mesh is its
+/// convex hull, a plane is solid below. It has no part in the simulation, so that every back end
+/// can use it.
+///
+/// Not thread-safe.
+class ClearanceMeter {
+ public:
+  /// `world` must outlive it. Without `vertices`, nothing is measured in worlds where a mesh
+  /// collides.
+  ClearanceMeter(const World& world, const MeshVertices& vertices);
+  ~ClearanceMeter();
+
+  /// With the moving bodies at `X_WB`. None: the UAV has no collision shape, nothing else has one,
+  /// or a mesh is not known. @pre one pose for each of `moving_bodies(world)`.
+  std::optional<Clearance> measure(std::size_t uav, std::span<const uav::Pose> X_WB) const;
+
+  /// Warns of each UAV that starts inside or touching something (standing on it is fine), below the
+  /// floor, or far from every anchor.
+  void warn_of_starts(const WarningSink& warn) const;
+
+ private:
+  struct Shape;
+
+  void add(const Link& link, const uav::Pose& X_BL, std::optional<std::size_t> body,
+           std::string_view owner, const MeshVertices& vertices);
+  std::string_view shape_overhead(const uav::Vec3& p_W) const;
+
+  const World& world_;
+  std::vector<Shape> shapes_;
+  std::vector<uav::Pose> starts_;
+  bool is_complete_ = true;
+};
+
+}  // namespace tether::sim

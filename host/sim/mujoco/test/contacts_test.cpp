@@ -1,0 +1,106 @@
+#include "test_simulator.h"
+
+#include <algorithm>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+// What the embedded simulator reports of its contacts.
+namespace tether::sim {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::box_model;
+using testing::make_simulator;
+using testing::test_uav;
+using testing::test_world;
+
+World world_with_wall() {
+  World world = test_world();
+  world.models.push_back(box_model("wall", {5.0, 0.0, 1.5}, {0.2, 40.0, 3.0}, {1.0, 1.0, 1.0}));
+  return world;
+}
+
+World world_from(World world, const uav::Vec3& p_WB) {
+  world.uavs[0].X_WB.p = p_WB;
+  return world;
+}
+
+World world_with_two() {
+  World world = test_world();
+  world.uavs.push_back(test_uav("beta", {4.0, 0.0, 1.0}));
+  world.uavs[1].X_WB.q = uav::from_axis_angle({0.0, 0.0, 1.0}, std::numbers::pi);
+  return world;
+}
+
+struct ContactCase {
+  std::string name;
+  World world;
+  uav::Vec3 velocity_H_m_s;
+  std::string first_with;  ///< of the first contact of UAV 0; empty: there is none
+  double hardest_m_s;      ///< of all its contacts
+  double tolerance_m_s;
+};
+
+class MujocoContactsTest : public ::testing::TestWithParam<ContactCase> {};
+
+TEST_P(MujocoContactsTest, ReportsWhatWasHitAndHowHard) {
+  const ContactCase& flight = GetParam();
+  const auto simulator = make_simulator(flight.world);
+  ASSERT_TRUE(simulator->reports_contacts());
+  for (std::size_t i = 0; i < flight.world.uavs.size(); ++i) {
+    simulator->apply(i, {flight.velocity_H_m_s, 0.0});
+  }
+  simulator->advance_to(SimTime(4s));
+  std::string first_with;
+  double hardest_m_s = 0.0;
+  for (const Contact& contact : simulator->take_contacts()) {
+    if (contact.uav != 0) continue;
+    if (first_with.empty()) first_with = contact.with;
+    hardest_m_s = std::max(hardest_m_s, contact.speed_m_s);
+  }
+  EXPECT_EQ(first_with, flight.first_with);
+  EXPECT_NEAR(hardest_m_s, flight.hardest_m_s, flight.tolerance_m_s);
+}
+
+const std::vector<ContactCase> kContactCases = {
+    {"Hovering", world_with_wall(), {}, "", 0.0, 0.0},
+    {"IntoAWall", world_with_wall(), {4.0, 0.0, 0.0}, "wall", 4.0, 0.2},
+    {"AlongAWall",
+     world_from(world_with_wall(), {4.69, 0.0, 1.0}),
+     {0.1, 2.0, 0.0},
+     "wall",
+     0.2,
+     0.2},
+    {"Landing", test_world(), {0.0, 0.0, -0.4}, "floor", 0.4, 0.02},
+    {"OnTheFloor", world_from(test_world(), {0.0, 0.0, 0.05}), {}, "floor", 0.0, 0.02},
+    {"AnotherUav", world_with_two(), {1.0, 0.0, 0.0}, "beta", 2.0, 0.1},
+};
+
+INSTANTIATE_TEST_SUITE_P(Flights, MujocoContactsTest, ::testing::ValuesIn(kContactCases),
+                         [](const auto& named) { return named.param.name; });
+
+TEST(MujocoContactsTest, DoNotDependOnHowTheAdvanceIsSplit) {
+  const auto whole = make_simulator(world_with_wall());
+  const auto pieces = make_simulator(world_with_wall());
+  whole->apply(0, {{4.0, 0.0, 0.0}, 0.0});
+  pieces->apply(0, {{4.0, 0.0, 0.0}, 0.0});
+  whole->advance_to(SimTime(4s));
+  std::vector<Contact> contacts;
+  for (auto t = SimTime(1ms); t <= SimTime(4s); t += 1ms) {
+    pieces->advance_to(t);
+    for (const Contact& contact : pieces->take_contacts()) {
+      contacts.push_back(contact);
+      EXPECT_EQ(contact.at, t - 1ms);
+    }
+  }
+  EXPECT_EQ(whole->take_contacts(), contacts);
+  whole->reset(1);
+  whole->advance_to(SimTime(1s));
+  EXPECT_EQ(whole->take_contacts(), std::vector<Contact>{});
+}
+
+}  // namespace
+}  // namespace tether::sim

@@ -1,0 +1,185 @@
+#include "convex.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <tether/sim/bodies.h>
+#include <tether/sim/clearance.h>
+
+namespace tether::sim {
+namespace {
+
+using uav::Pose;
+using uav::Vec3;
+
+/// Shapes that are this close touch.
+constexpr double kTouching_m = 1e-3;
+/// What a UAV leaves when it is lifted by this, it stands on.
+constexpr double kLift_m = 0.02;
+constexpr double kFarFromAnchors_m = 50.0;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The smallest box around a shape, in the shape's own axes.
+struct Bounds {
+  Vec3 centre;
+  Vec3 half_m;
+};
+
+Bounds bounds_of(Convex shape) {
+  shape.X_WS = {};
+  const auto extent = [&](const Vec3& axis) {
+    return dot(support_point(shape, axis), axis) + rounding_m(shape);
+  };
+  const Vec3 high{extent({1, 0, 0}), extent({0, 1, 0}), extent({0, 0, 1})};
+  const Vec3 low{-extent({-1, 0, 0}), -extent({0, -1, 0}), -extent({0, 0, -1})};
+  return {0.5 * (high + low), 0.5 * (high - low)};
+}
+
+/// How far `p_S` is outside of the box.
+double distance_m(const Bounds& bounds, const Vec3& p_S) {
+  const Vec3 d = p_S - bounds.centre;
+  const auto beyond = [](double value, double half) {
+    return std::max(0.0, std::abs(value) - half);
+  };
+  return norm(Vec3{beyond(d.x, bounds.half_m.x), beyond(d.y, bounds.half_m.y),
+                   beyond(d.z, bounds.half_m.z)});
+}
+
+}  // namespace
+
+struct ClearanceMeter::Shape {
+  std::string_view owner;
+  std::optional<std::size_t> body;  ///< of `moving_bodies`; none: fixed, and X_BS is in W
+  Pose X_BS;
+  Convex convex;
+  Bounds bounds;
+  std::optional<Vec3> plane_normal_S;  ///< of a plane, which has no `convex`
+
+  Pose pose(std::span<const Pose> X_WB) const { return body ? X_WB[*body] * X_BS : X_BS; }
+  Convex placed(std::span<const Pose> X_WB) const {
+    Convex there = convex;
+    there.X_WS = pose(X_WB);
+    return there;
+  }
+  /// How far a point is above the plane.
+  double height_m(const Vec3& p_W) const {
+    return dot(rotate(X_BS.q, *plane_normal_S), p_W - X_BS.p);
+  }
+};
+
+ClearanceMeter::ClearanceMeter(const World& world, const MeshVertices& vertices) : world_(world) {
+  for (const FixedBody& body : fixed_bodies(world)) {
+    add(*body.link, body.X_WB, std::nullopt, body.model->name, vertices);
+  }
+  for (const MovingBody& body : moving_bodies(world)) {
+    add(*body.link, {}, starts_.size(), body.uav ? body.uav->name : body.model->name, vertices);
+    starts_.push_back(body.X_WB);
+  }
+}
+
+ClearanceMeter::~ClearanceMeter() = default;
+
+void ClearanceMeter::add(const Link& link, const Pose& X_BL, std::optional<std::size_t> body,
+                         std::string_view owner, const MeshVertices& vertices) {
+  for (const Collision& collision : link.collisions) {
+    Shape shape{owner, body, X_BL * collision.X_LC, {collision.geometry, {}, {}}, {}, {}};
+    if (const auto* plane = std::get_if<PlaneGeometry>(&collision.geometry)) {
+      if (body) continue;  // collides with nothing
+      const double length = norm(plane->normal);
+      shape.plane_normal_S = length > 0.0 ? (1.0 / length) * plane->normal : Vec3{0.0, 0.0, 1.0};
+    } else if (const auto* mesh = std::get_if<MeshGeometry>(&collision.geometry)) {
+      if (vertices) shape.convex.vertices = vertices(*mesh);
+      is_complete_ = is_complete_ && !shape.convex.vertices.empty();
+      if (shape.convex.vertices.empty()) continue;
+    }
+    if (!shape.plane_normal_S) shape.bounds = bounds_of(shape.convex);
+    shapes_.push_back(std::move(shape));
+  }
+}
+
+std::optional<Clearance> ClearanceMeter::measure(std::size_t uav,
+                                                 std::span<const Pose> X_WB) const {
+  if (!is_complete_) return std::nullopt;
+  Clearance nearest{kInfinity, {}};
+  for (const Shape& own : shapes_) {
+    if (own.body != uav) continue;
+    const Convex here = own.placed(X_WB);
+    const Vec3 centre_W = transform(here.X_WS, own.bounds.centre);
+    const double radius_m = norm(own.bounds.half_m);
+    for (const Shape& other : shapes_) {
+      if (other.body == uav) continue;
+      double candidate_m = 0.0;
+      if (other.plane_normal_S) {
+        const Vec3 down_W = rotate(other.X_BS.q, -1.0 * *other.plane_normal_S);
+        candidate_m = other.height_m(support_point(here, down_W)) - rounding_m(here);
+      } else {
+        const Pose X_WS = other.pose(X_WB);
+        const Vec3 centre_S = rotate(inverse(X_WS.q), centre_W - X_WS.p);
+        if (distance_m(other.bounds, centre_S) - radius_m >= nearest.distance_m) continue;
+        candidate_m = sim::distance_m(here, other.placed(X_WB));
+      }
+      candidate_m = std::max(0.0, candidate_m);
+      if (candidate_m < nearest.distance_m) nearest = {candidate_m, other.owner};
+    }
+  }
+  if (nearest.distance_m == kInfinity) return std::nullopt;
+  return nearest;
+}
+
+// The owner of a fixed shape above the point, if there is none below it; empty: the point is not
+// under the floor.
+std::string_view ClearanceMeter::shape_overhead(const Vec3& p_W) const {
+  std::string_view overhead;
+  for (const Shape& shape : shapes_) {
+    if (shape.body) continue;
+    bool is_above = false;
+    if (shape.plane_normal_S) {
+      is_above = shape.height_m(p_W) < 0.0;
+    } else {
+      const Convex there = shape.placed({});
+      const auto reach_m = [&](const Vec3& axis) {
+        return dot(support_point(there, axis), axis) + rounding_m(there) - dot(p_W, axis);
+      };
+      const bool is_in_column = reach_m({1, 0, 0}) > 0.0 && reach_m({-1, 0, 0}) > 0.0 &&
+                                reach_m({0, 1, 0}) > 0.0 && reach_m({0, -1, 0}) > 0.0;
+      if (!is_in_column) continue;
+      is_above = reach_m({0, 0, -1}) < 0.0;
+    }
+    if (!is_above) return {};
+    overhead = shape.owner;
+  }
+  return overhead;
+}
+
+void ClearanceMeter::warn_of_starts(const WarningSink& warn) const {
+  if (!warn) return;
+  for (std::size_t i = 0; i < world_.uavs.size(); ++i) {
+    const std::string name = "UAV '" + world_.uavs[i].name + "' starts ";
+    const Vec3& p_WB = starts_[i].p;
+    const std::string_view floor = shape_overhead(p_WB);
+    std::vector<Pose> lifted = starts_;
+    lifted[i].p.z += kLift_m;
+    const auto is_touching = [](const std::optional<Clearance>& clearance) {
+      return clearance && clearance->distance_m <= kTouching_m;
+    };
+    const auto above = measure(i, lifted);
+    if (!floor.empty()) {
+      warn(name + "below the floor '" + std::string(floor) + "'; set its position_m");
+    } else if (is_touching(measure(i, starts_)) && is_touching(above)) {
+      warn(name + "inside '" + std::string(above->to) + "' or touching it; set its position_m");
+    }
+    const PlacedAnchor* nearest = nullptr;
+    for (const PlacedAnchor& anchor : world_.anchors) {
+      if (!nearest || norm(anchor.X_WA.p - p_WB) < norm(nearest->X_WA.p - p_WB)) nearest = &anchor;
+    }
+    if (nearest && norm(nearest->X_WA.p - p_WB) > kFarFromAnchors_m)
+      warn(name + std::to_string(std::lround(norm(nearest->X_WA.p - p_WB))) +
+           " m from the nearest anchor, '" + nearest->anchor.name +
+           "'; check its position_m and the anchor's");
+  }
+}
+
+}  // namespace tether::sim
