@@ -4,6 +4,7 @@
 #include "simulator_option.h"
 #include "status_line.h"
 #include "target_option.h"
+#include "world_options.h"
 
 #include <algorithm>
 #include <cctype>
@@ -88,6 +89,7 @@ runner::TrialSpec make_spec(const RunOptions& options) {
   spec.scenario =
       scenario::load_scenario(shipped.find(scenario::ShippedKind::kScenario, options.scenario));
   spec.scenario.record_images |= options.record_images;
+  spec.scenario.world_options = world_options(options.reading, shipped);
   if (!options.profile.empty())
     scenario::lay_profile(spec.scenario, scenario::load_profile(shipped.find(
                                              scenario::ShippedKind::kProfile, options.profile)));
@@ -131,6 +133,10 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
     fmt::print("  {:<24} {}\n", "profiles", fmt::join(result.profiles, ", "));
   if (const auto simulator = result.versions.find("simulator"); simulator != result.versions.end())
     fmt::print("  {:<24} {}\n", "simulator", simulator->second);
+  for (const Warning& warning : result.warnings) {
+    if (warning.consequence == Consequence::kMissing)
+      fmt::print("  {:<24} {}\n", "missing", warning.subject);
+  }
   if (result.audit) fmt::print("  {:<24} {}\n", "audit", result.audit->summary);
   for (const std::string& note : result.this_run.notes) fmt::print("  {:<24} {}\n", "note", note);
   if (std::filesystem::exists(spec.folder / runner::kRecordFile))
@@ -145,8 +151,11 @@ int run_one(const RunOptions& options, const std::stop_token& stop) {
   {
     StatusLine line;
     runner::TrialObserver observer;
-    observer.warn = [&](const std::string& text) { say("warning: {}\n", text); };
     if (!options.quiet) {
+      observer.warn = [&](const std::string& text) { line.print("warning: " + text); };
+      observer.on_warnings = [&](const std::vector<Warning>& warnings) {
+        line.print(summary_of(warnings, (spec.folder / runner::kWarningsFile).string()));
+      };
       observer.on_status = [&](const coordinator::RunStatus& status) {
         line.show(to_line(status));
       };

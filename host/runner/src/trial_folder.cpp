@@ -32,6 +32,7 @@ TrialFolder::TrialFolder(const std::filesystem::path& folder)
   drop(folder / campaign::kResultFile);
   drop(folder / kRecordFile);
   drop(folder / kSimulatorLog);
+  drop(folder / kWarningsFile);
 }
 
 }  // namespace tether::runner

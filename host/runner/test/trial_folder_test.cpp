@@ -21,10 +21,10 @@ TEST(TrialFolder, IsCreatedForOneRunAtATime) {
 
 TEST(TrialFolder, RemovesOnlyTheFilesOfAnEarlierTrial) {
   const ScratchFolder scratch;
-  for (const char* file : {"result.json", kRecordFile, kSimulatorLog, "notes.txt"})
+  for (const char* file : {"result.json", kRecordFile, kSimulatorLog, kWarningsFile, "notes.txt"})
     scratch.write(file, "text");
   const TrialFolder folder(scratch.path());
-  for (const char* file : {"result.json", kRecordFile, kSimulatorLog})
+  for (const char* file : {"result.json", kRecordFile, kSimulatorLog, kWarningsFile})
     EXPECT_FALSE(std::filesystem::exists(scratch.path(file))) << file;
   EXPECT_TRUE(std::filesystem::exists(scratch.path("notes.txt")));
 }

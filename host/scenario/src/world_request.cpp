@@ -12,6 +12,7 @@ sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed) {
     request.uavs.back().yaw_rad += uav.yaw_spread_rad * (2.0 * random.uniform() - 1.0);
   }
   request.anchors = scenario.anchors;
+  request.options = scenario.world_options;
   return request;
 }
 

@@ -10,6 +10,7 @@
 
 #include <tether/base/error.h>
 #include <tether/base/time.h>
+#include <tether/base/warning.h>
 #include <tether/campaign/metrics.h>
 #include <tether/record/reader.h>
 #include <tether/scenario/scenario.h>
@@ -123,6 +124,7 @@ struct TrialResult {
   std::vector<SutResult> suts;
   SyncFigures sync;
   std::optional<AuditVerdict> audit;
+  std::vector<Warning> warnings{};              ///< what of the files is not simulated as written
   std::map<std::string, std::string> versions;  ///< of everything that took part, by its name
   ThisRun this_run;
 

@@ -28,6 +28,9 @@ class ShippedFiles {
   /// of the source tree in whose build/PRESET/bin it is.
   static ShippedFiles of_program(const std::filesystem::path& program);
 
+  /// The folder of the models, for model:// (sim::WorldOptions).
+  std::filesystem::path models() const { return data_ / "models"; }
+
   /// Sorted by name.
   /// @throws Error(kBadFile) if a file cannot be read.
   std::vector<ShippedFile> list(ShippedKind kind) const;
