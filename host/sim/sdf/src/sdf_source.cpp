@@ -248,9 +248,10 @@ FileLocation SdfSource::where(const sdf::Error& error) const {
   std::vector<std::string> names;
   for (std::sregex_iterator it(message.begin(), message.end(), naming), end; it != end; ++it)
     names.push_back((*it)[1].str());
+  std::ranges::reverse(names);
   sdf::ElementPtr place;
-  for (auto name = names.rbegin(); name != names.rend(); ++name) {
-    if (const auto inner = find_named(place ? place : element(), *name)) place = inner;
+  for (const std::string& name : names) {
+    if (const auto inner = find_named(place ? place : element(), name)) place = inner;
   }
   return place ? where(place) : FileLocation{file_.string(), 0};
 }

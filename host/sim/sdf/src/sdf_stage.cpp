@@ -130,7 +130,8 @@ SdfStage::SdfStage(const fs::path& file, const ModelPath& path, const WorldOptio
   try {
     stage(file);
   } catch (...) {
-    fs::remove_all(folder_);
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
     throw;
   }
 }

@@ -10,12 +10,9 @@
 #include <string>
 #include <vector>
 
-#include <tether/sim/world.h>
+#include <tinyxml2.h>
 
-namespace tinyxml2 {
-class XMLDocument;
-class XMLElement;
-}  // namespace tinyxml2
+#include <tether/sim/world.h>
 
 namespace tether::sim {
 
