@@ -21,8 +21,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-void print_warning(const std::string& line) {
-  std::fprintf(stderr, "%s\n", line.c_str());
+void print_warning(const Warning& warning) {
+  std::fprintf(stderr, "%s\n", to_line(warning).c_str());
 }
 
 World corridor() {

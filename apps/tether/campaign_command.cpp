@@ -5,6 +5,7 @@
 #include "progress_bar.h"
 #include "say.h"
 #include "simulator_option.h"
+#include "world_options.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -24,6 +25,7 @@
 #include <tether/os/machine.h>
 #include <tether/os/program.h>
 #include <tether/runner/campaign_trials.h>
+#include <tether/runner/trial_folder.h>
 #include <tether/scenario/campaign.h>
 #include <tether/scenario/shipped_files.h>
 
@@ -38,6 +40,8 @@ scenario::Campaign load(const CampaignOptions& options) {
       shipped.find(scenario::ShippedKind::kCampaign, options.campaign);
   require_kind(file, FileKind::kCampaign);
   scenario::Campaign campaign = scenario::load_campaign(file);
+  for (auto& entry : campaign.scenarios)
+    entry.scenario.world_options = world_options(options.reading, shipped);
   if (options.simulator.empty()) return campaign;
   parse_simulator_option(options.simulator);
   for (auto& entry : campaign.scenarios)
@@ -83,13 +87,16 @@ int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out") / campaign.name : options.out;
   const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end);
-  for (const std::string& warning : warnings) say("warning: {}\n", warning);
-  const campaign::Settings settings = campaign::campaign_settings(
-      campaign,
-      {{"tether", std::string(version())},
-       {"machine", os::describe_machine()},
-       {"simulator", fmt::format("{}", fmt::join(runner::simulators(campaign), ", "))}},
-      files);
+  if (!warnings.empty())
+    say("{}\n", summary_of(warnings, std::string(runner::kWarningsFile) + " of each trial"));
+  campaign::Settings versions = {
+      {"tether", std::string(version())},
+      {"machine", os::describe_machine()},
+      {"simulator", fmt::format("{}", fmt::join(runner::simulators(campaign), ", "))}};
+  if (options.reading.tolerant) versions["reading of worlds"] = "tolerant";
+  if (options.reading.missing_models != "error")
+    versions["missing models"] = options.reading.missing_models;
+  const campaign::Settings settings = campaign::campaign_settings(campaign, versions, files);
   const campaign::CampaignFolder folder(
       out, campaign, settings,
       options.resume ? campaign::OpenMode::kResume : campaign::OpenMode::kFresh);

@@ -56,6 +56,19 @@ void add_simulator_option(CLI::App& command, std::string& simulator) {
                      "unix:/path or tcp://host:port");
 }
 
+void add_reading_options(CLI::App& command, ReadingOptions& reading) {
+  command
+      .add_option(
+          "--missing-models", reading.missing_models,
+          "What to do about an included model, a mesh or a texture that is not found: error, "
+          "or placeholder (go without it, and name it in the result)")
+      ->check(CLI::IsMember({"error", "placeholder"}))
+      ->capture_default_str();
+  command.add_flag(
+      "--tolerant", reading.tolerant,
+      "Mend impossible inertias of the world and the UAVs, and name them in the result");
+}
+
 void add_run_command(CLI::App& program, Action& action) {
   const auto [command, options] =
       add_command(program, action, "run", "Run one trial of a scenario", run_one);
@@ -95,7 +108,8 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_flag("--images", options->record_images,
                     "Record the camera images that the SUT reads");
   command->add_flag("--json", options->json, "Print result.json instead of a summary");
-  command->add_flag("--quiet", options->quiet, "Print only errors and warnings");
+  add_reading_options(*command, options->reading);
+  command->add_flag("--quiet", options->quiet, "Print only errors");
   command->footer(R"(Examples:
   tether run face_anchor
   tether run face_anchor --condition "target, no sync" --seed 7
@@ -120,6 +134,7 @@ void add_campaign_command(CLI::App& program, Action& action) {
           "Number of parallel trials. Rejected if parallel runs would distort measured time")
       ->capture_default_str();
   add_simulator_option(*command, options->simulator);
+  add_reading_options(*command, options->reading);
   command->add_flag("--resume", options->resume,
                     "Continue a campaign: run only the trials without a result");
   command->footer(R"(Examples:
@@ -197,6 +212,24 @@ void add_list_command(CLI::App& program, Action& action) {
       "of a file.");
 }
 
+void add_world_command(CLI::App& program, Action& action) {
+  CLI::App* world = program.add_subcommand("world", "Check worlds before a flight");
+  world->require_subcommand(1);
+  world->footer("Examples:\n  tether world check room");
+  const auto [check, options] =
+      add_command(*world, action, "check",
+                  "Read a world, and print what of it is not simulated as written", check_world);
+  check->add_option("world", options->world, "Name of a shipped world, or a file (SDF)")
+      ->required();
+  add_reading_options(*check, options->reading);
+  check->footer(
+      R"(Exit codes: 0 the world can be used, 2 it cannot, or wrong use.
+
+Examples:
+  tether world check room
+  tether world check warehouse.sdf --missing-models placeholder)");
+}
+
 void add_target_command(CLI::App& program, Action& action) {
   CLI::App* target = program.add_subcommand("target", "Check machines on which a SUT can run");
   target->require_subcommand(1);
@@ -256,9 +289,9 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
   program.require_subcommand(1);
 
   Action action;
-  for (const auto add :
-       {add_run_command, add_campaign_command, add_report_command, add_audit_command,
-        add_frames_command, add_plot_command, add_target_command, add_list_command})
+  for (const auto add : {add_run_command, add_campaign_command, add_report_command,
+                         add_audit_command, add_frames_command, add_plot_command, add_world_command,
+                         add_target_command, add_list_command})
     add(program, action);
   try {
     program.parse(argc, argv);

@@ -10,6 +10,12 @@
 /// the exit code of the program. The long ones end early after a stop request.
 namespace tether::app {
 
+/// How worlds are read.
+struct ReadingOptions {
+  bool tolerant = false;
+  std::string missing_models = "error";  ///< "error" or "placeholder"
+};
+
 struct RunOptions {
   std::filesystem::path scenario;
   std::string condition;
@@ -20,6 +26,7 @@ struct RunOptions {
   std::filesystem::path out;
   std::string listen;
   double real_time_factor = 0.0;
+  ReadingOptions reading;
   bool tunnel = false;
   bool record_images = false;
   bool json = false;
@@ -34,6 +41,7 @@ struct CampaignOptions {
   std::filesystem::path out;
   std::string simulator;
   int jobs = 1;
+  ReadingOptions reading;
   bool resume = false;
 };
 /// Runs many trials: scenarios x conditions x seeds.
@@ -71,6 +79,13 @@ int audit_record(const AuditOptions& options, const std::stop_token&);
 struct ListOptions {};
 /// Prints the names and descriptions of the files that Tether ships.
 int list_shipped(const ListOptions&, const std::stop_token&);
+
+struct WorldCheckOptions {
+  std::filesystem::path world;
+  ReadingOptions reading;
+};
+/// Reads a world as a run does, and prints what of it is not simulated as written.
+int check_world(const WorldCheckOptions& options, const std::stop_token&);
 
 struct CheckOptions {
   std::string address;

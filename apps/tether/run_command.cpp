@@ -5,6 +5,7 @@
 #include "simulator_option.h"
 #include "status_line.h"
 #include "target_option.h"
+#include "world_options.h"
 
 #include <algorithm>
 #include <cctype>
@@ -99,6 +100,7 @@ runner::TrialSpec make_spec(const RunOptions& options) {
   spec.scenario = scenario::load_scenario(
       find_file(shipped, scenario::ShippedKind::kScenario, options.scenario, FileKind::kScenario));
   spec.scenario.record_images |= options.record_images;
+  spec.scenario.world_options = world_options(options.reading, shipped);
   if (!options.profile.empty())
     scenario::lay_profile(spec.scenario,
                           scenario::load_profile(find_file(shipped, scenario::ShippedKind::kProfile,
@@ -163,6 +165,10 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
     fmt::print("  {:<24} {}\n", "profiles", fmt::join(result.profiles, ", "));
   if (const auto simulator = result.versions.find("simulator"); simulator != result.versions.end())
     fmt::print("  {:<24} {}\n", "simulator", simulator->second);
+  for (const Warning& warning : result.warnings) {
+    if (warning.consequence == Consequence::kMissing)
+      fmt::print("  {:<24} {}\n", "missing", warning.subject);
+  }
   if (result.audit) fmt::print("  {:<24} {}\n", "audit", result.audit->summary);
   for (const std::string& note : result.this_run.notes) fmt::print("  {:<24} {}\n", "note", note);
   if (std::filesystem::exists(spec.folder / runner::kRecordFile))
@@ -177,8 +183,11 @@ int run_one(const RunOptions& options, const std::stop_token& stop) {
   {
     StatusLine line;
     runner::TrialObserver observer;
-    observer.warn = [&](const std::string& text) { say("warning: {}\n", text); };
     if (!options.quiet) {
+      observer.warn = [&](const std::string& text) { line.print("warning: " + text); };
+      observer.on_warnings = [&](const std::vector<Warning>& warnings) {
+        line.print(summary_of(warnings, (spec.folder / runner::kWarningsFile).string()));
+      };
       observer.on_status = [&](const coordinator::RunStatus& status) { line.show(status); };
       observer.on_setup = [&](const std::string& text) { line.show(text); };
       observer.on_blocked = [&](const std::string& text) { line.print(text); };

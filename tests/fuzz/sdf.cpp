@@ -131,7 +131,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   (void)written;
   fuzz::require(sim::kHasMujoco, "a build without the embedded simulator");
   const sim::WorldRequest request = fuzz::request(folder, {data, size});
-  const auto warn = [](const std::string& line) { fuzz::require_one_line(line); };
+  const auto warn = [](const Warning& warning) { fuzz::require_one_line(to_line(warning)); };
   auto world = fuzz::read_or_refuse([&] { return sim::load_world(request, warn); });
   if (!world) return 0;
   fuzz::require_whole(*world);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -79,6 +81,14 @@ Json json_of(const UavContacts& own) {
   if (own.nearest)
     json["nearest"] = Json{{"at_s", exact_seconds(own.nearest->at)}, {"to", own.nearest->to}};
   return json;
+}
+
+Json json_of(const Warning& warning) {
+  return Json{{"consequence", name(warning.consequence)},
+              {"file", warning.where.file},
+              {"line", warning.where.line},
+              {"subject", warning.subject},
+              {"message", warning.message}};
 }
 
 template <class T>
@@ -195,6 +205,18 @@ TargetReport read_target(const JsonReader& json) {
           .is_spoiled = json.boolean("is_spoiled")};
 }
 
+Warning read_warning(const JsonReader& json) {
+  const std::string word = json.text("consequence");
+  const auto consequence =
+      std::ranges::find(kConsequences, word, [](Consequence c) { return name(c); });
+  if (consequence == kConsequences.end()) json.fail("consequence", fmt::format("is \"{}\"", word));
+  constexpr std::uint64_t kMostLines = std::numeric_limits<int>::max();
+  return {*consequence,
+          {json.text("file"), static_cast<int>(std::min(json.count("line"), kMostLines))},
+          json.text("subject"),
+          json.text("message")};
+}
+
 ThisRun read_this_run(const JsonReader& json) {
   ThisRun run;
   run.started_at = json.text("started_at");
@@ -267,9 +289,9 @@ std::string to_json(const TrialResult& result) {
                    {"suts", json_of(result.suts)},
                    {"sync", json_of(result.sync)},
                    {"contacts", json_of(result.contacts)},
-                   {"audit", json_of(result.audit)},
-                   {"versions", result.versions},
-                   {"this_run", json_of(result.this_run)}});
+                   {"audit", json_of(result.audit)}});
+  if (!result.warnings.empty()) json["warnings"] = json_of(result.warnings);
+  json.update(Json{{"versions", result.versions}, {"this_run", json_of(result.this_run)}});
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -290,6 +312,10 @@ TrialResult result_from_json(const std::string& text, const std::filesystem::pat
   if (!json.member("audit").is_null()) {
     const JsonReader audit = json.object("audit");
     result.audit = AuditVerdict{audit.boolean("passed"), audit.text("summary")};
+  }
+  if (json.has("warnings")) {
+    for (const JsonReader& warning : json.objects("warnings"))
+      result.warnings.push_back(read_warning(warning));
   }
   result.versions = json.object("versions").all_texts();
   result.this_run = read_this_run(json.object("this_run"));

@@ -60,7 +60,7 @@ TEST_F(Result, TextIsTheSameApartFromThisRun) {
 
 TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   const std::string plain = to_json(trial_);
-  for (const char* member : {"\"target\":", "overshoot", "computing_s"})
+  for (const char* member : {"\"target\":", "overshoot", "computing_s", "warnings"})
     EXPECT_THAT(plain, testing::Not(HasSubstr(member)));
   trial_.clock = "scripted";
   trial_.computing = Duration(2'500'000);
@@ -68,6 +68,8 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   trial_.profiles = {"rig", "top"};
   trial_.metrics[0].min = 0.5;
   trial_.contacts.push_back({.uav = "uav2"});
+  trial_.warnings = {{Consequence::kMissing, {"w.sdf", 7}, "<include> of 'sun'", "is not found"},
+                     {Consequence::kNoEffect, {}, "visual 'v'", "is plain"}};
   trial_.sync.stops = StopFigures{1200, Duration(73'000)};
   trial_.this_run.target =
       TargetReport{.name = "board",
@@ -81,7 +83,8 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   for (const char* documented :
        {"\"outcome\": \"goal_reached\"", "\"exit_code\": 0", "\"st_at_end_s\": 2.481000001",
         "\"value\": 9.242", "\"steps\": 12", "\"stops\": 1200", "\"largest_overshoot_s\": 7.3e-05",
-        "\"computing_s\": 0.0025", "\"contacts\": \"not reported\"", "\"speed_m_s\": 0.25"})
+        "\"computing_s\": 0.0025", "\"contacts\": \"not reported\"", "\"speed_m_s\": 0.25",
+        "\"consequence\": \"missing\""})
     EXPECT_THAT(text, HasSubstr(documented));
   const auto begin = text.find("  \"profiles\""), end = text.find("  \"outcome\"");
   EXPECT_THAT(result_from_json(text.substr(0, begin) + text.substr(end), "f").profiles,

@@ -1,4 +1,5 @@
 #include "local_sut.h"
+#include "warning_log.h"
 
 #include <algorithm>
 #include <utility>
@@ -20,13 +21,12 @@ namespace {
 constexpr Duration kPollPeriod = std::chrono::milliseconds(50);
 
 /// Applies the profiles of each condition to a copy of the world, so that errors in them are found
-/// before anything is written. Collects each warning once.
+/// before anything is written.
 void try_profiles(const scenario::CampaignScenario& entry, const sim::World& world,
-                  std::set<std::string>& warnings) {
+                  const WarningSink& warn) {
   for (const std::string& name : entry.conditions) {
     sim::World copy = world;
-    scenario::resolve_sensors(entry.scenario, *entry.scenario.find_condition(name), copy,
-                              [&](const std::string& text) { warnings.insert(text); });
+    scenario::resolve_sensors(entry.scenario, *entry.scenario.find_condition(name), copy, warn);
   }
 }
 
@@ -60,24 +60,23 @@ std::set<std::string> simulators(const scenario::Campaign& campaign) {
 
 CampaignFiles files_of_trials(const scenario::Campaign& campaign,
                               const FindBackEnd& find_back_end) {
-  std::set<std::string> warnings;
+  WarningLog warnings({});
   std::vector<std::filesystem::path> files = campaign::files_of(campaign);
   files.push_back(os::own_file());
-  const auto ignore = [](const std::string&) {};  // each trial repeats the warning
   for (const auto& entry : campaign.scenarios) {
     add_programs(entry, files);
-    const sim::World world =
-        sim::load_world(scenario::world_request(entry.scenario, campaign.seeds.front()), ignore);
+    const sim::World world = sim::load_world(
+        scenario::world_request(entry.scenario, campaign.seeds.front()), warnings.sink());
     files.insert(files.end(), world.files.begin(), world.files.end());
     for (const std::string& name : entry.conditions)
       find_back_end(entry.scenario.find_condition(name)->simulator).require_readable(world);
-    try_profiles(entry, world, warnings);
+    try_profiles(entry, world, warnings.sink());
   }
   for (const std::string& name : simulators(campaign)) {
     const auto own = find_back_end(name).files();
     files.insert(files.end(), own.begin(), own.end());
   }
-  return {std::move(files), std::move(warnings)};
+  return {std::move(files), warnings.all()};
 }
 
 campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
@@ -90,6 +89,10 @@ campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
   if (!plan.profile.empty())
     arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
   if (plan.record_images) arguments.push_back("--images");
+  const sim::WorldOptions& options = plan.scenario->world_options;
+  if (options.is_tolerant) arguments.push_back("--tolerant");
+  if (options.replaces_missing_models)
+    arguments.insert(arguments.end(), {"--missing-models", "placeholder"});
   // The grace period lets it end its own processes.
   os::ChildProcess process({.arguments = std::move(arguments),
                             .environment = {},

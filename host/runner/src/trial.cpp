@@ -1,7 +1,9 @@
 #include "local_sut.h"
 #include "trial_run.h"
+#include "warning_log.h"
 
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <new>
 #include <vector>
@@ -14,6 +16,7 @@
 #include <tether/base/version.h>
 #include <tether/board/board.h>
 #include <tether/os/machine.h>
+#include <tether/os/text_file.h>
 #include <tether/record/reader.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>
@@ -106,10 +109,10 @@ campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted
 }
 
 SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& observer,
-                               const std::stop_token& stop) {
+                               WarningLog& warnings, const std::stop_token& stop) {
   return {.answer_limit = spec.scenario.hang_limit,
           .log = spec.folder / kSimulatorLog,
-          .warn = observer.warn,
+          .warn = warnings.sink(),
           .on_setup = observer.on_setup,
           .on_silence = observer.on_blocked,
           .stop = stop};
@@ -119,9 +122,11 @@ SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& obser
 /// is lost before the run.
 campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::World world,
                           const Timings& timings, const TrialObserver& observer,
-                          const std::stop_token& stop) {
+                          WarningLog& warnings, const std::stop_token& stop) {
   const auto board = hold_board(spec, stop);
-  const auto simulator = back_end.start(std::move(world), simulator_setup(spec, observer, stop));
+  const auto simulator =
+      back_end.start(std::move(world), simulator_setup(spec, observer, warnings, stop));
+  warnings.pass_on();
   try {
     const Conducted conducted =
         TrialRun(spec, timings, *simulator, board.get(), observer, stop).conduct();
@@ -137,6 +142,10 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
 /// Writes the result. @throws Error(kSetup) with the end of the run as well.
 void keep(const TrialSpec& spec, const TrialFolder& folder, campaign::TrialResult& result) try {
   result.this_run.sut_files = folder.files_of_suts();
+  if (!result.warnings.empty()) {
+    os::write_file_atomically(spec.folder / kWarningsFile,
+                              grouped(result.warnings, std::numeric_limits<std::size_t>::max()));
+  }
   campaign::write_result(spec.folder, result);
 } catch (const Error& e) {
   throw Error(ErrorCode::kSetup,
@@ -156,11 +165,12 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   // Errors in options and files are found before anything is written.
   const BackEnd back_end = find_back_end(spec.condition.simulator);
   scenario::require_clock(spec.scenario, spec.condition);
+  WarningLog warnings(observer.on_warnings);
   sim::World world =
-      sim::load_world(scenario::world_request(spec.scenario, spec.seed), observer.warn);
+      sim::load_world(scenario::world_request(spec.scenario, spec.seed), warnings.sink());
   back_end.require_readable(world);
   const Timings timings =
-      scenario::resolve_sensors(spec.scenario, spec.condition, world, observer.warn);
+      scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink());
   world.step = spec.scenario.step;
   if (is_local(spec)) require_sut_programs(spec.scenario, spec.condition);
   TrialFolder folder(spec.folder, spec.earlier);
@@ -168,7 +178,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   const std::string started_at = utc_now();
   campaign::TrialResult result;
   try {
-    result = fly(spec, back_end, std::move(world), timings, observer, stop);
+    result = fly(spec, back_end, std::move(world), timings, observer, warnings, stop);
   } catch (const Error& e) {
     result = setup_failure(spec, e.what(), stop.stop_requested());
   } catch (const std::bad_alloc&) {
@@ -180,6 +190,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   result.versions["tether"] = version();
   result.this_run.started_at = started_at;
   result.this_run.machine = os::describe_machine();
+  result.warnings = warnings.all();
   folder.release_room();
   keep(spec, folder, result);
   return result;

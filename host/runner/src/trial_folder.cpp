@@ -36,6 +36,7 @@ constexpr OwnFile kOwnFiles[] = {
     {campaign::kResultFile, true},
     {kRecordFile, true},
     {kSimulatorLog, true},
+    {kWarningsFile, true},
     {"sut-*.log", true},
     {campaign::kReportFile},
     {"plots/*.svg"},

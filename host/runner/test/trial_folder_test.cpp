@@ -82,7 +82,8 @@ TEST_F(TrialFolderTest, ReplacesAnEarlierRunAsAWholeOrRefusesIt) {
 
 // Killed before it had a result, or damaged.
 TEST_F(TrialFolderTest, RecognizesARunByAnyOfItsFiles) {
-  for (const char* file : {"result.json", kRecordFile, kSimulatorLog, "sut-uav1.log"}) {
+  for (const char* file :
+       {"result.json", kRecordFile, kSimulatorLog, kWarningsFile, "sut-uav1.log"}) {
     write({file, "run.log", "result.json.part"});
     expect_refused(EarlierRun::kRefuse);
     { const TrialFolder folder(scratch_.path(), EarlierRun::kReplace); }

@@ -5,6 +5,7 @@
 
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
+#include <tether/os/text_file.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>
 
@@ -76,6 +77,24 @@ TEST_F(Trial, IsInterruptedByAStopRequest) {
     for (const char* name : {"TETHER_ADDRESS=127.0.0.1:", "TETHER_UAV=", "TETHER_TOKEN="})
       EXPECT_EQ(instructions.find(name) != std::string::npos, waits_for_sut) << name;
   }
+}
+
+TEST_F(Trial, KeepsWarningsAndPassesThemOnBeforeTheRun) {
+  spec_.scenario.anchors.clear();
+  spec_.scenario.world = scratch_.write(
+      "w.sdf", "<sdf version='1.7'>\n<world name='w'>\n<bogus/>\n<bogus/></world></sdf>");
+  std::vector<Warning> passed_on;
+  observer_.on_warnings = [&](const std::vector<Warning>& warnings) { passed_on = warnings; };
+  observer_.on_status = [&](const coordinator::RunStatus&) {
+    EXPECT_EQ(passed_on.size(), 2u);
+    stop_.request_stop();
+  };
+  const auto result = run();
+  EXPECT_EQ(result.warnings, passed_on);
+  EXPECT_EQ(result.warnings.at(0).where.line, 3);
+  EXPECT_EQ(campaign::read_result(spec_.folder).warnings, passed_on);
+  const std::string list = os::read_file(spec_.folder / kWarningsFile);
+  for (const Warning& warning : passed_on) EXPECT_THAT(list, HasSubstr(to_line(warning)));
 }
 
 TEST_F(Trial, WritesNothingIfAnOptionOrAFileIsWrong) {

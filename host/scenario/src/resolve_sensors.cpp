@@ -79,16 +79,16 @@ class ProfileLayer {
   }
 
   /// `other` is the entry that matches the only sensor of the kind; nullptr: there is no sensor.
-  std::string no_sensor(const std::string& name, const SensorProfile& entry,
-                        const std::string* other) const {
+  Warning no_sensor(const std::string& name, const SensorProfile& entry,
+                    const std::string* other) const {
     const std::string reason = other == nullptr
                                    ? ""
                                    : fmt::format("; its only one matches [sensors.{}] (line {})",
                                                  *other, profile_.sensors.at(*other).where.line);
-    return located(entry.where,
-                   fmt::format("the UAV '{}' has no sensor of the kind \"{}\" for [sensors.{}] of "
-                               "the profile '{}'{}",
-                               uav_.name, uav::name(*entry.kind), name, profile_.name, reason));
+    return {Consequence::kNoEffect, entry.where, fmt::format("[sensors.{}]", name),
+            fmt::format("of the profile '{}' applies to nothing: the UAV '{}' has no sensor of the "
+                        "kind \"{}\" for it{}",
+                        profile_.name, uav_.name, uav::name(*entry.kind), reason)};
   }
 
   [[noreturn]] void refuse_choice(const std::string& name, const SensorProfile& entry,

@@ -13,6 +13,7 @@ sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed) {
   }
   request.anchors = scenario.anchors;
   request.anchors_at = scenario.anchors_at;
+  request.options = scenario.world_options;
   return request;
 }
 

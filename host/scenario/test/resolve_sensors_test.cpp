@@ -31,7 +31,7 @@ class ResolveSensors : public testing::Test {
   using Timings = std::vector<std::vector<uav::SensorTiming>>;
   Timings resolve(const std::string& condition = "host") {
     return resolve_sensors(scenario_, *scenario_.find_condition(condition), world_,
-                           [&](const std::string& text) { warnings_.push_back(text); });
+                           [&](const Warning& warning) { warnings_.push_back(to_line(warning)); });
   }
   void expect_refused(int line, const std::string& subject) {
     expect_refusal(line, subject, [&] { (void)resolve(); });

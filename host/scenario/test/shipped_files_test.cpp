@@ -54,7 +54,7 @@ std::string text_of(const uav::SensorTiming& timing) {
 }
 
 Resolved resolved(const Scenario& scenario) {
-  const auto no_warning = [](const std::string& text) { ADD_FAILURE() << text; };
+  const auto no_warning = [](const Warning& warning) { ADD_FAILURE() << to_line(warning); };
   Resolved result{sim::load_world(world_request(scenario, 1), no_warning), {}};
   const auto timings =
       resolve_sensors(scenario, scenario.conditions.front(), result.world, no_warning);

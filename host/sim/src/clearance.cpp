@@ -157,7 +157,9 @@ std::string_view ClearanceMeter::shape_overhead(const Vec3& p_W) const {
 void ClearanceMeter::warn_of_starts(const WarningSink& warn) const {
   if (!warn) return;
   for (std::size_t i = 0; i < world_.uavs.size(); ++i) {
-    const std::string name = "UAV '" + world_.uavs[i].name + "' starts ";
+    const auto warn_that = [&](const std::string& message) {
+      warn({Consequence::kDoubtfulStart, {}, "UAV '" + world_.uavs[i].name + "'", message});
+    };
     const Vec3& p_WB = starts_[i].p;
     const std::string_view floor = shape_overhead(p_WB);
     std::vector<Pose> lifted = starts_;
@@ -167,18 +169,19 @@ void ClearanceMeter::warn_of_starts(const WarningSink& warn) const {
     };
     const auto above = measure(i, lifted);
     if (!floor.empty()) {
-      warn(name + "below the floor '" + std::string(floor) + "'; set its position_m");
+      warn_that("starts below the floor '" + std::string(floor) + "'; set its position_m");
     } else if (is_touching(measure(i, starts_)) && is_touching(above)) {
-      warn(name + "inside '" + std::string(above->to) + "' or touching it; set its position_m");
+      warn_that("starts inside '" + std::string(above->to) +
+                "' or touching it; set its position_m");
     }
     const PlacedAnchor* nearest = nullptr;
     for (const PlacedAnchor& anchor : world_.anchors) {
       if (!nearest || norm(anchor.X_WA.p - p_WB) < norm(nearest->X_WA.p - p_WB)) nearest = &anchor;
     }
     if (nearest && norm(nearest->X_WA.p - p_WB) > kFarFromAnchors_m)
-      warn(name + std::to_string(std::lround(norm(nearest->X_WA.p - p_WB))) +
-           " m from the nearest anchor, '" + nearest->anchor.name +
-           "'; check its position_m and the anchor's");
+      warn_that("starts " + std::to_string(std::lround(norm(nearest->X_WA.p - p_WB))) +
+                " m from the nearest anchor, '" + nearest->anchor.name +
+                "'; check its position_m and the anchor's");
   }
 }
 

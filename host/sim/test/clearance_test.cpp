@@ -92,7 +92,10 @@ TEST_P(StartWarningTest, NamesWhatIsWrongWithAStart) {
   world.models.push_back(box_model("wall", {5.0, 0.0, 1.5}, {0.2, 6.0, 3.0}, {1.0, 1.0, 1.0}));
   world.anchors.push_back({{"box", uav::AnchorShape::kBox, {1, 1, 1}, {1, 1, 1}}, {}});
   std::vector<std::string> warnings;
-  ClearanceMeter(world, {}).warn_of_starts([&](const std::string& w) { warnings.push_back(w); });
+  ClearanceMeter(world, {}).warn_of_starts([&](const Warning& w) {
+    EXPECT_EQ(w.consequence, Consequence::kDoubtfulStart);
+    warnings.push_back(to_line(w));
+  });
   ASSERT_EQ(warnings.size(), GetParam().said.size());
   for (std::size_t i = 0; i < warnings.size(); ++i) {
     EXPECT_NE(warnings[i].find("'alpha'"), std::string::npos);

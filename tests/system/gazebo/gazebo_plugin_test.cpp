@@ -40,7 +40,7 @@ sim::World load(const Start& start, bool has_cameras) {
                                       {{"uav1", kSource / "data/models/hummingbird/model.sdf",
                                         start.p_WB, start.yaw_deg * std::numbers::pi / 180.0}},
                                       {}},
-                                     [](const std::string&) {});
+                                     [](const Warning&) {});
   if (!has_cameras) {
     std::erase_if(world.uavs[0].sensors, [](const sim::Sensor& sensor) {
       return sensor.kind() == uav::SensorKind::kCamera;
@@ -68,7 +68,7 @@ class GazeboPluginTest : public ::testing::Test {
     if (has_cameras && !x_) x_.emplace();
     servers_.push_back(std::make_unique<Gzserver>(start.world, has_cameras ? x_->display() : ""));
     return sim::make_remote_simulator(load(start, has_cameras), servers_.back()->connect(), {},
-                                      [](const std::string&) {});
+                                      [](const Warning&) {});
   }
   Gzserver& server() { return *servers_.back(); }
 

@@ -13,7 +13,8 @@ using testing::HasSubstr;
 
 // Help of every command: packages/manual_pages_test.cpp.
 TEST(Help, HasAnExampleOfEachCommand) {
-  for (const std::string command : {"run", "campaign", "report", "audit", "frames", "target"}) {
+  for (const std::string command :
+       {"run", "campaign", "report", "audit", "frames", "target", "world"}) {
     const Output output = run(tether({command, "--help"}));
     EXPECT_EQ(output.err, "");
     EXPECT_THAT(output.out, HasSubstr("\n  tether " + command + " "));
@@ -79,6 +80,23 @@ TEST(ShippedNames, OfNothingEndWithTwoAndNameTheNearest) {
   const Output output = run(tether({"campaign", "face_ancor"}));
   EXPECT_EQ(output.code, 2);
   EXPECT_THAT(output.err, HasSubstr("'face_anchor'"));
+}
+
+TEST(WorldCheck, PrintsWhatIsNotSimulatedUnlessTheWorldCannotBeUsed) {
+  const TempFolder folder;
+  write_text(folder / "w.sdf",
+             "<sdf version='1.7'><world name='w'><plugin name='p' filename='p'/>"
+             "<include><uri>model://gone</uri></include></world></sdf>");
+  const Output refused = run(tether({"world", "check", folder / "w.sdf"}));
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_THAT(refused.err, HasSubstr("model://gone"));
+  const Output used =
+      run(tether({"world", "check", folder / "w.sdf", "--missing-models", "placeholder"}));
+  EXPECT_EQ(used.code, 0) << used.err;
+  EXPECT_EQ(used.err, "");
+  EXPECT_THAT(used.out,
+              testing::AllOf(HasSubstr("<include> of 'model://gone'"), HasSubstr("plugin 'p'")));
 }
 
 TEST(SutProgram, EndsWithThreeWhereThereIsNoCoordinator) {

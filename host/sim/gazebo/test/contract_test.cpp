@@ -65,7 +65,7 @@ std::shared_ptr<Simulator> make_in_gazebo(World world) {
   world.file = gazebo->folder.write("world.sdf", sdf_world(world));
   gazebo->running = std::make_unique<GazeboSimulator>(
       world, GazeboSetup{std::chrono::seconds(30), gazebo->folder.path("simulator.log"),
-                         [](const std::string& line) { ADD_FAILURE() << line; }});
+                         [](const Warning& warning) { ADD_FAILURE() << to_line(warning); }});
   Simulator& simulator = gazebo->running->get();
   return {std::move(gazebo), &simulator};
 }

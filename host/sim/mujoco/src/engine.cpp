@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
 
 #include <tether/base/error.h>
 
@@ -43,16 +42,6 @@ class MemoryFiles {
   std::unique_ptr<mjVFS> vfs_ = std::make_unique<mjVFS>();
 };
 
-std::string read_file(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in || bytes.empty()) {
-    require_a_handle_for(path.string());
-    throw Error(ErrorCode::kBadFile, {path.string(), 0}, "cannot be read");
-  }
-  return bytes;
-}
-
 }  // namespace
 
 void install_engine_handlers() {
@@ -66,8 +55,7 @@ ModelPtr compile_model(const std::string& xml, const std::vector<ModelFile>& fil
   MemoryFiles memory;
   memory.add(kName, xml.data(), xml.size());
   for (const ModelFile& file : files) {
-    const std::string bytes = read_file(file.path);
-    memory.add(file.name, bytes.data(), bytes.size());
+    memory.add(file.name, file.bytes.data(), file.bytes.size());
   }
   std::array<char, 1000> message{};
   ModelPtr model(mj_loadXML(kName, memory.get(), message.data(), static_cast<int>(message.size())));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,7 +21,7 @@ using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 /// A file that a model's XML refers to by `name`.
 struct ModelFile {
   std::string name;
-  std::filesystem::path path;
+  std::string bytes;
 };
 
 /// Compiles MJCF text and its files in memory; nothing is written to disk.

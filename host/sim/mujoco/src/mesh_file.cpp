@@ -113,7 +113,10 @@ TriangleMesh load_mesh(const MeshGeometry& mesh, const TextureScale& scale,
   MeshCollector collector(*scene, mesh, scale);
   collector.visit(*scene->mRootNode, aiMatrix4x4(), false);
   if (collector.materials() > 1) {
-    warn(mesh.file.string() + ": materials in mesh files are not used; the visual's material is");
+    warn({Consequence::kLooksDifferent,
+          {mesh.file.string()},
+          "mesh",
+          "has several materials, which are not used; the visual's material is"});
   }
   TriangleMesh out = collector.take();
   if (out.triangles.empty()) {

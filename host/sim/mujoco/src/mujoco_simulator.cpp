@@ -25,7 +25,7 @@ class MujocoSimulator final : public Simulator {
  public:
   MujocoSimulator(World world, WarningSink warn)
       : world_(std::move(world)),
-        warn_(with_printable_lines(std::move(warn))),
+        warn_(printable_warnings(std::move(warn))),
         grid_(world_.step),
         dynamics_(world_, warn_),
         rays_(dynamics_.model()),
@@ -101,7 +101,10 @@ class MujocoSimulator final : public Simulator {
   void warn_once_about_contacts() {
     if (warned_ || !dynamics_.contacts_dropped()) return;
     warned_ = true;
-    warn_("more contacts at once than the simulator keeps: some bodies pass through others");
+    warn_({Consequence::kBehavesDifferent,
+           {},
+           "contacts",
+           "are more at once than the simulator keeps; some bodies pass through others"});
   }
 
   World world_;

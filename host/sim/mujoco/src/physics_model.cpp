@@ -105,8 +105,10 @@ class PhysicsXml {
   std::string describe(const PlaneGeometry& plane, const Pose& X, const Collision& collision,
                        bool is_static) const {
     if (!is_static) {
-      warn_(
-          fmt::format("collision '{}': a plane of a moving body does not collide", collision.name));
+      warn_({Consequence::kBehavesDifferent,
+             {},
+             fmt::format("collision '{}'", collision.name),
+             "is a plane of a moving body, which does not collide"});
       return {};
     }
     const Pose X_P{X.p, X.q * rotation_from_z(plane.normal)};
@@ -114,8 +116,10 @@ class PhysicsXml {
   }
 
   std::string describe(const MeshGeometry& mesh, const Pose& X, const Collision& collision) {
-    warn_(fmt::format("{}: collision '{}' collides as the convex hull of its mesh",
-                      mesh.file.string(), collision.name));
+    warn_({Consequence::kBehavesDifferent,
+           {mesh.file.string()},
+           fmt::format("collision '{}'", collision.name),
+           "collides as the convex hull of its mesh"});
     const std::string name = fmt::format("m{}", meshes_++);
     std::string vertices;
     for (const TriangleMesh::Vertex& v : load_mesh(mesh, {}, [](const auto&) {}).vertices) {

@@ -6,6 +6,7 @@
 
 #include "conversions.h"
 #include "mesh_file.h"
+#include "texture_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +46,7 @@ class SceneBuilder {
 
   void add_link(const Link& link, const Pose& X, std::optional<std::size_t> body) {
     for (const Visual& visual : link.visuals) {
-      warn_about(visual);
+      check_colors(visual);
       SceneItem item;
       item.geom = make_geom(visual.material);
       item.geom.dataid = mesh_list(scene_.meshes.size());
@@ -100,33 +101,32 @@ class SceneBuilder {
     auto& textures = scene_.textures;
     const auto found = std::find(textures.begin(), textures.end(), file);
     if (found != textures.end()) return static_cast<int>(found - textures.begin());
-    std::string type = file.extension().string();
-    std::transform(type.begin(), type.end(), type.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-    if (type != ".png" || textures.size() == kMaxTextures) {
-      warn_(fmt::format("{}: texture is not shown: {}", file.string(),
-                        type != ".png" ? "it is not a PNG file" : "there are more than 99"));
+    if (textures.size() == kMaxTextures) {
+      warn_({Consequence::kLooksDifferent,
+             {file.string()},
+             "texture",
+             fmt::format("is not shown: there are more than {}", kMaxTextures)});
       return -1;
     }
     textures.push_back(file);
     return static_cast<int>(textures.size()) - 1;
   }
 
-  void warn_about(const Visual& visual) const {
+  void warn_about(const Visual& visual, const char* message) const {
+    warn_({Consequence::kLooksDifferent, {}, fmt::format("visual '{}'", visual.name), message});
+  }
+
+  void check_colors(const Visual& visual) const {
     const Material& m = visual.material;
     if (largest(m.ambient_rgb - m.diffuse_rgb) > kVisibleDifference) {
-      warn_(
-          fmt::format("visual '{}': its ambient colour is not shown; the diffuse one is used for "
-                      "both",
-                      visual.name));
+      warn_about(visual, "has an ambient colour that is not shown; the diffuse one is used");
     }
     const double grey = (m.specular_rgb.x + m.specular_rgb.y + m.specular_rgb.z) / 3.0;
     if (largest(m.specular_rgb - Vec3{grey, grey, grey}) > kVisibleDifference) {
-      warn_(fmt::format("visual '{}': its specular colour is shown as grey", visual.name));
+      warn_about(visual, "has a specular colour that is shown as grey");
     }
     if (largest(m.emissive_rgb - emission_factor(m) * m.diffuse_rgb) > kVisibleDifference) {
-      warn_(fmt::format("visual '{}': its emissive colour is shown in the diffuse colour's hue",
-                        visual.name));
+      warn_about(visual, "has an emissive colour that is shown in the diffuse colour's hue");
     }
   }
 
@@ -167,8 +167,10 @@ void add_lights(Scene& scene, const World& world, const WarningSink& warn) {
   scene.lights.push_back(ambient_light(world.ambient_rgb));
   for (const Light& light : world.lights) {
     if (scene.lights.size() == kMaxLights) {
-      warn(fmt::format("light '{}' is not shown: at most {} lights are", light.name,
-                       kMaxLights - 1));
+      warn({Consequence::kLooksDifferent,
+            {},
+            fmt::format("light '{}'", light.name),
+            fmt::format("is not shown: at most {} lights are", kMaxLights - 1)});
       continue;
     }
     scene.lights.push_back(make_light(light));
@@ -179,7 +181,10 @@ void add_lights(Scene& scene, const World& world, const WarningSink& warn) {
 void warn_about_shadows(const Link& link, const WarningSink& warn) {
   for (const Visual& visual : link.visuals) {
     if (visual.cast_shadows) continue;
-    warn(fmt::format("visual '{}' casts a shadow in spite of its <cast_shadows>", visual.name));
+    warn({Consequence::kLooksDifferent,
+          {},
+          fmt::format("visual '{}'", visual.name),
+          "casts a shadow in spite of its <cast_shadows>"});
   }
 }
 
@@ -217,9 +222,8 @@ ModelPtr make_scene_model(const Scene& scene, int width_px, int height_px) {
   std::string assets;
   std::vector<ModelFile> files;
   for (const std::filesystem::path& file : scene.textures) {
-    const std::string name = fmt::format("t{}.png", files.size());
-    assets += fmt::format(R"(<texture type="2d" name="{0}" file="{0}"/>)", name);
-    files.push_back({name, file});
+    files.push_back(texture_file(fmt::format("t{}", files.size()), file));
+    assets += fmt::format(R"(<texture type="2d" name="{0}" file="{0}"/>)", files.back().name);
   }
   // The background is a sky of one colour, after the textures that items count.
   const Vec3& sky = scene.background_rgb;

@@ -37,7 +37,8 @@ TEST(MujocoSimulatorTest, WarnsInPrintableLines) {
   plane.geometry = PlaneGeometry{{0.0, 0.0, 1.0}, 1.0, 1.0};
   world.uavs[0].body.collisions = {plane};
   std::vector<std::string> warnings;
-  make_mujoco_simulator(world, [&](const std::string& line) { warnings.push_back(line); });
+  make_mujoco_simulator(world,
+                        [&](const Warning& warning) { warnings.push_back(to_line(warning)); });
   EXPECT_THAT(warnings, ::testing::ElementsAre(::testing::HasSubstr("'flo?or'")));
 }
 

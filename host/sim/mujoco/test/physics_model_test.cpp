@@ -65,8 +65,8 @@ TEST(PhysicsModelTest, EveryShapeIsSolid) {
 /// The warnings of a world, and the shapes of its model.
 std::pair<std::vector<std::string>, std::vector<int>> build(const World& world) {
   std::vector<std::string> warnings;
-  const ModelPtr model =
-      make_physics_model(world, [&](const std::string& line) { warnings.push_back(line); });
+  const ModelPtr model = make_physics_model(
+      world, [&](const Warning& warning) { warnings.push_back(to_line(warning)); });
   return {warnings, {model->geom_type, model->geom_type + model->ngeom}};
 }
 

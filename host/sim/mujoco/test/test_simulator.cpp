@@ -7,7 +7,7 @@
 namespace tether::sim::testing {
 
 WarningSink no_warnings() {
-  return [](const std::string& line) { ADD_FAILURE() << "unexpected warning: " << line; };
+  return [](const Warning& warning) { ADD_FAILURE() << to_line(warning); };
 }
 
 std::unique_ptr<Simulator> make_simulator(World world) {

@@ -28,7 +28,7 @@ void add_material(const std::string& model, const std::string& link, const Visua
 std::vector<VisualMaterial> materials_of(const World& world) {
   std::vector<VisualMaterial> materials;
   for (const Uav& uav : world.uavs) {
-    for (const Visual& v : sdf16_visuals(uav, [](const std::string&) {})) {
+    for (const Visual& v : sdf16_visuals(uav, [](const Warning&) {})) {
       add_material(uav.name, "base_link", v, materials);
     }
   }

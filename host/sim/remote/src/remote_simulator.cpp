@@ -185,7 +185,7 @@ std::unique_ptr<Simulator> make_remote_simulator(World world,
                                                  std::unique_ptr<protocol::Connection> connection,
                                                  RemoteOptions options, const WarningSink& warn) {
   return std::make_unique<RemoteSimulator>(std::move(world), std::move(connection),
-                                           std::move(options), with_printable_lines(warn));
+                                           std::move(options), printable_warnings(warn));
 }
 
 }  // namespace tether::sim

@@ -49,8 +49,12 @@ std::vector<Shape> in_sdf16(const std::vector<Shape>& shapes, uav::Pose Shape::*
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const Shape& shape = shapes[i];
     if (is_oblong(shape.geometry)) {
-      warn("UAV '" + uav + "': external simulators receive the ellipsoid '" + shape.name +
-           "' as a sphere of the same volume, because SDF 1.6 has no ellipsoid");
+      warn({Consequence::kLooksDifferent,
+            {},
+            "ellipsoid '" + shape.name + "'",
+            "of UAV '" + uav +
+                "' is a sphere of the same volume for external simulators, because "
+                "SDF 1.6 has no ellipsoid"});
     }
     for (Part& part : parts_of(shape.geometry)) {
       Shape& added = out.emplace_back(shape);

@@ -15,7 +15,7 @@ std::unique_ptr<Simulator> make_served(World world) {
   // Shared, so that it lives as long as the simulator that it serves.
   options.why_give_up = [external] { return std::nullopt; };
   return make_remote_simulator(std::move(world), std::move(connection), std::move(options),
-                               [](const std::string& line) { ADD_FAILURE() << line; });
+                               [](const Warning& warning) { ADD_FAILURE() << to_line(warning); });
 }
 
 }  // namespace

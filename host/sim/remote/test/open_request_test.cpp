@@ -23,7 +23,7 @@ World world_of_a_file() {
 }
 
 protocol::Open open_of(const World& world) {
-  return make_open(world, [](const std::string& line) { ADD_FAILURE() << line; });
+  return make_open(world, [](const Warning& warning) { ADD_FAILURE() << to_line(warning); });
 }
 
 TEST(OpenRequest, DescribesTheWorld) {

@@ -36,7 +36,7 @@ struct Served {
   explicit Served(const World& world, Fault fault = {}, RemoteOptions options = {})
       : external(world, std::move(fault)),
         simulator(make_remote_simulator(world, external.take_connection(), std::move(options),
-                                        [](const std::string&) {})) {}
+                                        [](const Warning&) {})) {}
 
   FakeExternalSimulator external;
   std::unique_ptr<Simulator> simulator;
@@ -117,7 +117,7 @@ TEST(RemoteSimulator, WarnsInPrintableLines) {
   FakeExternalSimulator external(world);
   std::vector<std::string> warnings;
   make_remote_simulator(world, external.take_connection(), {},
-                        [&](const std::string& line) { warnings.push_back(line); });
+                        [&](const Warning& warning) { warnings.push_back(to_line(warning)); });
   EXPECT_THAT(warnings, ::testing::ElementsAre(HasSubstr("'eg?g'")));
 }
 

@@ -24,7 +24,7 @@ class Sdf16Shapes : public ::testing::Test {
 
   Uav uav_ = test_uav("alpha", {});
   std::vector<std::string> warnings_;
-  WarningSink note_ = [this](const std::string& line) { warnings_.push_back(line); };
+  WarningSink note_ = [this](const Warning& warning) { warnings_.push_back(to_line(warning)); };
 };
 
 TEST_F(Sdf16Shapes, KeepsThoseThatSdf16Has) {

@@ -28,7 +28,7 @@ void expect_near(const ignition::math::Pose3d& actual, const uav::Pose& expected
 class SdfText : public ::testing::Test {
  protected:
   const sdf::Model& read(const Uav& uav) {
-    const std::string text = to_sdf(uav, [](const std::string&) {});
+    const std::string text = to_sdf(uav, [](const Warning&) {});
     EXPECT_NE(text.find("<sdf version='1.6'>"), std::string::npos);
     const sdf::Errors errors = root_.LoadSdfString(text);
     for (const sdf::Error& error : errors) ADD_FAILURE() << error.Message() << "\n" << text;

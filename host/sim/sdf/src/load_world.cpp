@@ -2,6 +2,7 @@
 // links, lights, physics and scene from the world's file, then the UAVs, then the anchors.
 
 #include "sdf_convert.h"
+#include "sdf_mend.h"
 
 #include <cmath>
 #include <set>
@@ -27,7 +28,8 @@ void require_few_moving_links(const SdfSource& source, const sdf::Model& model,
 
 /// Adds a model and, behind it, the models nested in it, each as a separate model.
 void add_model(const SdfSource& source, const sdf::Model& model, const Pose& X_WP,
-               const std::string& prefix, bool parent_is_static, World& world) {
+               const std::string& prefix, bool parent_is_static, const WarningSink& warn,
+               World& world) {
   Model result;
   result.name = prefix + model.Name();
   result.X_WM = X_WP * resolved_pose(source, model);
@@ -37,7 +39,7 @@ void add_model(const SdfSource& source, const sdf::Model& model, const Pose& X_W
   }
   for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
     const sdf::Link& link = *model.LinkByIndex(i);
-    result.links.push_back(read_link(source, link));
+    result.links.push_back(read_link(source, link, warn));
     for (std::uint64_t k = 0; k < link.LightCount(); ++k) {
       world.lights.push_back(
           read_light(source, *link.LightByIndex(k), result.X_WM * result.links.back().X_ML));
@@ -48,7 +50,7 @@ void add_model(const SdfSource& source, const sdf::Model& model, const Pose& X_W
   const std::string name = result.name;
   world.models.push_back(std::move(result));
   for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
-    add_model(source, *model.ModelByIndex(i), X_WM, name + "::", is_static, world);
+    add_model(source, *model.ModelByIndex(i), X_WM, name + "::", is_static, warn, world);
   }
 }
 
@@ -59,7 +61,7 @@ void warn_of_lost_motion(const SdfSource& source, const sdf::Model& model, bool 
   for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
     const sdf::Model& nested = *model.ModelByIndex(i);
     if (!is_static) {
-      warn_at(source, nested.Element(),
+      warn_at(source, nested.Element(), Consequence::kBehavesDifferent,
               "is nested in a dynamic model; it moves independently of that model", warn);
     }
     warn_of_lost_motion(source, nested, is_static, warn);
@@ -67,7 +69,7 @@ void warn_of_lost_motion(const SdfSource& source, const sdf::Model& model, bool 
   for (std::uint64_t i = 0; !is_static && i < model.LinkCount(); ++i) {
     const sdf::Link& link = *model.LinkByIndex(i);
     for (std::uint64_t k = 0; k < link.LightCount(); ++k) {
-      warn_at(source, link.LightByIndex(k)->Element(),
+      warn_at(source, link.LightByIndex(k)->Element(), Consequence::kLooksDifferent,
               "is on a dynamic model; it stays at its start pose", warn);
     }
   }
@@ -114,7 +116,7 @@ World read_world(const SdfSource& source, const WarningSink& warn) {
   world.gravity_m_s2 = read_gravity(source, sdf_world);
   world.step = read_step(source, sdf_world);
   for (std::uint64_t i = 0; i < sdf_world.ModelCount(); ++i) {
-    add_model(source, *sdf_world.ModelByIndex(i), {}, "", false, world);
+    add_model(source, *sdf_world.ModelByIndex(i), {}, "", false, warn, world);
     warn_of_lost_motion(source, *sdf_world.ModelByIndex(i), false, warn);
   }
   for (std::uint64_t i = 0; i < sdf_world.LightCount(); ++i) {
@@ -129,6 +131,12 @@ LightKind to_light_kind(sdf::LightType type) {
   return type == sdf::LightType::SPOT ? LightKind::kSpot : LightKind::kPoint;
 }
 
+void check_and_load(SdfSource& source, SdfPurpose purpose, const WarningSink& warn) {
+  check_elements(source, purpose, warn);
+  mend(source, warn);
+  source.load();
+}
+
 void add_uavs(const WorldRequest& request, const WarningSink& warn, World& world) {
   std::set<std::string> names;
   for (const UavPlacement& placement : request.uavs) {
@@ -137,9 +145,8 @@ void add_uavs(const WorldRequest& request, const WarningSink& warn, World& world
                   "two UAVs have the name '" + placement.name + "'; give each a unique name")
           .about(placement.name);
     }
-    const SdfSource source(placement.model);
-    check_elements(source, SdfPurpose::kUav, warn);
-    source.throw_on_errors();
+    SdfSource source(placement.model, request.options, warn);
+    check_and_load(source, SdfPurpose::kUav, warn);
     world.uavs.push_back(read_uav(source, placement, world.gravity_m_s2, warn));
     world.files.merge(source.files());
   }
@@ -168,10 +175,9 @@ Light read_light(const SdfSource& source, const sdf::Light& light, const Pose& X
 }
 
 World load_world(const WorldRequest& request, const WarningSink& any_warn) {
-  const WarningSink warn = with_printable_lines(any_warn);
-  const SdfSource source(request.world);
-  check_elements(source, SdfPurpose::kWorld, warn);
-  source.throw_on_errors();
+  const WarningSink warn = printable_warnings(any_warn);
+  SdfSource source(request.world, request.options, warn);
+  check_and_load(source, SdfPurpose::kWorld, warn);
   World world = read_world(source, warn);
   world.file = source.file();
   world.sdf_files = source.sdf_files();

@@ -94,6 +94,42 @@ const ElementTable kWithoutEffect = {
     {"camera", {"optical_frame_id"}},
 };
 
+/// What follows if an element is not represented: by the element, else by its parent, else nothing.
+const std::map<std::string, Consequence, std::less<>> kConsequenceOfElement = {
+    {"actor", Consequence::kMissing},
+    {"population", Consequence::kMissing},
+    {"road", Consequence::kMissing},
+    {"particle_emitter", Consequence::kLooksDifferent},
+    {"projector", Consequence::kLooksDifferent},
+    {"laser_retro", Consequence::kNoEffect},
+    {"enable_wind", Consequence::kBehavesDifferent},
+    {"gravity", Consequence::kBehavesDifferent},
+    {"joint", Consequence::kBehavesDifferent},
+    {"kinematic", Consequence::kBehavesDifferent},
+    {"self_collide", Consequence::kBehavesDifferent},
+    {"velocity_decay", Consequence::kBehavesDifferent},
+    {"wind", Consequence::kBehavesDifferent},
+};
+const std::map<std::string, Consequence, std::less<>> kConsequenceOfParent = {
+    {"geometry", Consequence::kMissing},           {"attenuation", Consequence::kLooksDifferent},
+    {"light", Consequence::kLooksDifferent},       {"material", Consequence::kLooksDifferent},
+    {"metal", Consequence::kLooksDifferent},       {"mesh", Consequence::kLooksDifferent},
+    {"pbr", Consequence::kLooksDifferent},         {"scene", Consequence::kLooksDifferent},
+    {"specular", Consequence::kLooksDifferent},    {"spot", Consequence::kLooksDifferent},
+    {"visual", Consequence::kLooksDifferent},      {"camera", Consequence::kBehavesDifferent},
+    {"collision", Consequence::kBehavesDifferent}, {"friction", Consequence::kBehavesDifferent},
+    {"imu", Consequence::kBehavesDifferent},       {"inertial", Consequence::kBehavesDifferent},
+    {"noise", Consequence::kBehavesDifferent},     {"ode", Consequence::kBehavesDifferent},
+    {"surface", Consequence::kBehavesDifferent},
+};
+
+Consequence consequence_of(std::string_view parent, std::string_view child) {
+  const auto of_element = kConsequenceOfElement.find(child);
+  if (of_element != kConsequenceOfElement.end()) return of_element->second;
+  const auto of_parent = kConsequenceOfParent.find(parent);
+  return of_parent != kConsequenceOfParent.end() ? of_parent->second : Consequence::kNoEffect;
+}
+
 /// Sensor types that Tether represents.
 const Names kSensorTypes = {"camera", "imu", "ray", "gpu_ray", "lidar", "gpu_lidar"};
 
@@ -102,7 +138,7 @@ bool contains(const ElementTable& table, std::string_view parent, std::string_vi
   return row != table.end() && row->second.contains(child);
 }
 
-bool is_represented(SdfPurpose purpose, const std::string& parent, const std::string& child) {
+bool is_known(SdfPurpose purpose, const std::string& parent, const std::string& child) {
   return contains(kElements, parent, child) ||
          contains(purpose == SdfPurpose::kWorld ? kWorldElements : kUavElements, parent, child);
 }
@@ -119,7 +155,9 @@ bool is_numeric(const sdf::ElementPtr& element) {
 
 void check_numbers_of(const SdfSource& source, const sdf::ElementPtr& element,
                       const std::vector<double>& numbers, const std::string& text) {
-  const ValueRule* rule = find_rule(element->GetParent()->GetName(), element->GetName());
+  const std::string& parent = element->GetParent()->GetName();
+  // Of an inertia, all moments together decide (`mend`).
+  const ValueRule* rule = parent == "inertia" ? nullptr : find_rule(parent, element->GetName());
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     if (!std::isfinite(numbers[i])) refuse(source, element, "is " + text + "; it must be finite");
     if (rule != nullptr && i < rule->count && !rule->holds(numbers[i])) {
@@ -158,14 +196,14 @@ void check_light_shape(const SdfSource& source, const std::string& parent,
   const sdf::ElementPtr light = element->GetParent()->GetParent();
   if (parent == "attenuation" && element->GetName() == "range" && shows_range(light, element)) {
     warn_at(
-        source, element,
+        source, element, Consequence::kLooksDifferent,
         "is not represented in the embedded simulator, whose lights have no range limit; use at "
         "least 1000 m",
         warn);
   }
   if (parent == "spot" && element->GetName() == "inner_angle" &&
       shows_inner_angle(light, element)) {
-    warn_at(source, element,
+    warn_at(source, element, Consequence::kLooksDifferent,
             "is not represented in the embedded simulator, whose spot lights have no inner cone; "
             "use 0",
             warn);
@@ -178,7 +216,7 @@ void check_distortion_center(const SdfSource& source, const std::string& parent,
   if (parent != "distortion" || element->GetName() != "center") return;
   const auto center = element->Get<ignition::math::Vector2d>();
   if (center.X() == 0.5 && center.Y() == 0.5) return;
-  warn_at(source, element,
+  warn_at(source, element, Consequence::kLooksDifferent,
           "is not represented: the distortion is centred on the optical axis; use 0.5 0.5, and set "
           "a principal point that is not in the middle by <cx> and <cy> of <lens>",
           warn);
@@ -190,31 +228,57 @@ class Walk {
       : source_(source), purpose_(purpose), warn_(warn) {}
 
   void visit_children(const sdf::ElementPtr& element) const {
+    std::vector<sdf::ElementPtr> unrepresented;
     for_each_child(element, [&](const sdf::ElementPtr& child) {
-      if (child->GetExplicitlySetInFile()) visit(element->GetName(), child);
+      if (child->GetExplicitlySetInFile() && !visit(element->GetName(), child))
+        unrepresented.push_back(child);
     });
+    // Only now: the place of an element depends on those before it.
+    for (const sdf::ElementPtr& child : unrepresented) child->RemoveFromParent();
   }
 
  private:
-  void visit(const std::string& parent, const sdf::ElementPtr& element) const {
+  /// @return whether it is to stay. libsdformat would check it further, for nothing; but a pose may
+  /// be relative to a joint.
+  bool visit(const std::string& parent, const sdf::ElementPtr& element) const {
     const std::string& name = element->GetName();
-    if (contains(kWithoutEffect, parent, name) || is_own_plugin(element)) return;
-    if (!is_represented(purpose_, parent, name)) {
-      warn_at(source_, element, unrepresented(parent, element), warn_);
-      return;
-    }
-    if (name == "sensor" && !kSensorTypes.contains(attribute(element, "type"))) {
-      warn_at(source_, element,
-              "is of type '" + attribute(element, "type") +
-                  "', which is not simulated (camera, imu and ray sensors are); left out",
-              warn_);
-      return;
-    }
+    if (!is_represented(parent, element)) return name == "joint";
     check_value(source_, element);
     check_light_shape(source_, parent, element, warn_);
     check_distortion_center(source_, parent, element, warn_);
     // These two are read, and warned of, where a UAV is put together.
     if (name != "tether:multirotor" && name != "joint") visit_children(element);
+    return true;
+  }
+
+  /// Warns of an element that is not and should be.
+  bool is_represented(const std::string& parent, const sdf::ElementPtr& element) const {
+    const std::string& name = element->GetName();
+    if (contains(kWithoutEffect, parent, name) || is_own_plugin(element)) return false;
+    if (name == "inertial" && is_static(element)) return false;
+    if (!is_known(purpose_, parent, name)) {
+      warn_at(source_, element, consequence_of(parent, name), unrepresented(parent, element),
+              warn_);
+      return false;
+    }
+    if (name == "sensor" && !kSensorTypes.contains(attribute(element, "type"))) {
+      if (!sdf::Sensor().SetType(attribute(element, "type")))
+        refuse(source_, element,
+               "is of type '" + attribute(element, "type") + "', which SDF does not have");
+      warn_at(source_, element, Consequence::kMissing,
+              "is of type '" + attribute(element, "type") +
+                  "', which is not simulated (camera, imu and ray sensors are); left out",
+              warn_);
+      return false;
+    }
+    return true;
+  }
+
+  /// Whether it is in a model that is static or is nested in one that is.
+  static bool is_static(const sdf::ElementPtr& element) {
+    for (sdf::ElementPtr e = element->GetParent(); e; e = e->GetParent())
+      if (e->GetName() == "model" && e->Get<bool>("static", false).first) return true;
+    return false;
   }
 
   static bool is_own_plugin(const sdf::ElementPtr& element) {
@@ -242,16 +306,28 @@ class Walk {
   const WarningSink& warn_;
 };
 
+/// " in model 'm'" of a link and what belongs to it.
+std::string in_model(const sdf::ElementPtr& element) {
+  bool is_of_link = false;
+  for (sdf::ElementPtr e = element; e; e = e->GetParent()) {
+    is_of_link = is_of_link || e->GetName() == "link";
+    if (is_of_link && e->GetName() == "model") return " in " + describe(e);
+  }
+  return "";
+}
+
 }  // namespace
 
-void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message,
-             const WarningSink& warn) {
-  if (warn) warn(located(source.where(element), describe(element) + " " + message));
+void warn_at(const SdfSource& source, const sdf::ElementPtr& element, Consequence consequence,
+             const std::string& message, const WarningSink& warn) {
+  if (warn) warn({consequence, source.where(element), describe(element), message});
 }
 
 void refuse(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message) {
   const std::string subject = describe(element);
-  throw Error(ErrorCode::kBadFile, source.where(element), subject + " " + message).about(subject);
+  throw Error(ErrorCode::kBadFile, source.where(element),
+              subject + in_model(element) + " " + message)
+      .about(subject);
 }
 
 std::vector<double> read_numbers(const SdfSource& source, const sdf::ElementPtr& element,
@@ -269,10 +345,7 @@ std::vector<double> read_numbers(const SdfSource& source, const sdf::ElementPtr&
 }
 
 void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn) {
-  for (const std::string& warning : source.warnings()) {
-    if (warn) warn(warning);
-  }
-  Walk(source, purpose, warn).visit_children(source.root().Element());
+  Walk(source, purpose, warn).visit_children(source.element());
 }
 
 }  // namespace tether::sim

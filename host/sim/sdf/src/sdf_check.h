@@ -10,15 +10,15 @@ namespace tether::sim {
 enum class SdfPurpose { kWorld, kUav };
 
 /// Walks through everything that the file says: warns of each element that Tether does not
-/// represent, and refuses values that no scene can have.
+/// represent and removes it, and refuses values that no scene can have.
 /// @throws Error(kBadFile) at the first impossible value.
 void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn);
 
-/// Warns about an element: "file:line: <what> message".
-void warn_at(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message,
-             const WarningSink& warn);
+/// Warns about an element: its place, and `describe(element)` as the subject.
+void warn_at(const SdfSource& source, const sdf::ElementPtr& element, Consequence consequence,
+             const std::string& message, const WarningSink& warn);
 /// Refuses an element. The error has the element's place, `describe(element)` as its subject, and
-/// `message`.
+/// a message with the model of the element.
 [[noreturn]] void refuse(const SdfSource& source, const sdf::ElementPtr& element,
                          const std::string& message);
 

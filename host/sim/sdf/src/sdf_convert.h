@@ -27,7 +27,7 @@ uav::Pose resolved_pose(const SdfSource& source, const SdfObject& object) {
 }
 
 /// One link, with its visuals and collisions.
-Link read_link(const SdfSource& source, const sdf::Link& link);
+Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink& warn);
 
 /// A light of the world or of a static link; X_WP is the pose of what it is given in.
 Light read_light(const SdfSource& source, const sdf::Light& light, const uav::Pose& X_WP);

@@ -16,8 +16,8 @@ namespace {
 Noise read_noise(const SdfSource& source, const sdf::Noise& noise, const WarningSink& warn) {
   if (noise.Type() == sdf::NoiseType::NONE) return {};
   if (noise.Type() == sdf::NoiseType::GAUSSIAN_QUANTIZED) {
-    warn_at(source, noise.Element(), "is quantized, which is not simulated; treated as gaussian",
-            warn);
+    warn_at(source, noise.Element(), Consequence::kBehavesDifferent,
+            "is quantized, which is not simulated; treated as gaussian", warn);
   }
   return {noise.Mean(),
           noise.StdDev(),
@@ -54,7 +54,7 @@ CameraModel read_camera(const SdfSource& source, const sdf::Camera& camera,
   const sdf::PixelFormatType format = camera.PixelFormat();
   if (format != sdf::PixelFormatType::RGB_INT8 &&
       format != sdf::PixelFormatType::UNKNOWN_PIXEL_FORMAT) {
-    warn_at(source, camera.Element(),
+    warn_at(source, camera.Element(), Consequence::kLooksDifferent,
             "has the image format " + camera.PixelFormatStr() + "; images are R8G8B8", warn);
   }
   return {read_intrinsics(camera), camera.NearClip(), camera.FarClip(),

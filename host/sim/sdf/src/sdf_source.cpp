@@ -1,17 +1,19 @@
-// Reads one SDF file with libsdformat. tinyxml2 reads it first, for the lines of XML errors and of
-// custom elements, and for `check_numbers`. libsdformat's typed errors and warnings are collected
-// by its policies; its console is captured for those that version 12 reports only there.
+// Reads one SDF file and those that it includes with libsdformat, each from its copy (SdfStage).
+// Reading included files alone, before the file that includes them, gives typed errors for all;
+// libsdformat repeats those of deeper ones on the console, which is discarded.
 
 #include "sdf_source.h"
 
-#include "sdf_numbers.h"
+#include "file_kind.h"
 #include "sdf_rules.h"
 
 #include <algorithm>
-#include <cstdlib>
+#include <iostream>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
+#include <streambuf>
+#include <vector>
 
 #include <console_bridge/console.h>
 #include <tinyxml2.h>
@@ -22,55 +24,33 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Keeps libsdformat and the URDF reader that it tries on broken files from writing to the console
-/// while this lives, and holds what they would have written.
+/// Discards what libsdformat and the URDF reader that it tries on broken files write to the
+/// console while this lives.
 class QuietConsole {
  public:
-  QuietConsole() : stream_(sdf::Console::Instance()->GetMsgStream().GetStream()) {
-    sdf::Console::Instance()->GetMsgStream().SetStream(&text_);
+  QuietConsole()
+      : messages_(sdf::Console::Instance()->GetMsgStream().GetStream()),
+        errors_(std::cerr.rdbuf(&nothing_)) {
+    sdf::Console::Instance()->GetMsgStream().SetStream(nullptr);
     console_bridge::noOutputHandler();
   }
   ~QuietConsole() {
-    sdf::Console::Instance()->GetMsgStream().SetStream(stream_);
+    sdf::Console::Instance()->GetMsgStream().SetStream(messages_);
     console_bridge::restorePreviousOutputHandler();
+    std::cerr.rdbuf(errors_);
+    std::cerr.clear();
   }
   QuietConsole(const QuietConsole&) = delete;
   QuietConsole& operator=(const QuietConsole&) = delete;
 
-  std::string text() const { return text_.str(); }
-
  private:
-  std::ostream* stream_;
-  std::ostringstream text_;
+  struct Nothing : std::streambuf {
+    int overflow(int c) override { return c; }
+  };
+  std::ostream* messages_;
+  Nothing nothing_;
+  std::streambuf* errors_;
 };
-
-/// False also for what cannot be a path, such as a name that is too long.
-bool is_folder(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
-}
-bool is_file(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_regular_file(path, ignored);
-}
-
-void add_folders_of_variable(const char* variable, std::vector<fs::path>& folders) {
-  const char* value = std::getenv(variable);
-  std::istringstream list(value != nullptr ? value : "");
-  for (std::string folder; std::getline(list, folder, ':');) {
-    if (!folder.empty()) folders.emplace_back(folder);
-  }
-}
-
-/// Where model:// leads: around the file first, then Gazebo's own variables.
-std::vector<fs::path> model_folders(const fs::path& file) {
-  const fs::path folder = file.parent_path();
-  std::vector<fs::path> folders{folder / "models", folder.parent_path() / "models",
-                                folder.parent_path(), folder};
-  add_folders_of_variable("GAZEBO_MODEL_PATH", folders);
-  add_folders_of_variable("GZ_SIM_RESOURCE_PATH", folders);
-  return folders;
-}
 
 /// Longer messages of libsdformat, which may quote a whole file, are cut: std::regex needs stack
 /// for every character.
@@ -85,31 +65,24 @@ std::string one_line(const std::string& text) {
   return line;
 }
 
-/// What the value at the end of an XML path ("/sdf/.../link[@name="l"]/inertial/mass") must be, as
-/// the end of a message; empty where it has no rule.
-std::string allowed_value(const std::string& xml_path) {
-  const std::size_t slash = xml_path.rfind('/');
-  if (slash == std::string::npos) return "";
-  std::string parent = xml_path.substr(0, slash);
-  if (parent.ends_with(']')) parent.resize(std::min(parent.rfind("[@name="), parent.size()));
-  parent.erase(0, parent.rfind('/') + 1);
-  const ValueRule* rule = find_rule(parent, xml_path.substr(slash + 1));
-  return rule != nullptr ? std::string("; ") + rule->allowed : "";
-}
-
 /// libsdformat continues after these.
 bool is_warning(const sdf::Error& error) {
   return error.Code() == sdf::ErrorCode::ATTRIBUTE_INCORRECT_TYPE ||
          error.Code() == sdf::ErrorCode::ELEMENT_DEPRECATED;
 }
 
+/// The element with that name attribute that is nearest to `element`, or it itself.
 sdf::ElementPtr find_named(const sdf::ElementPtr& element, const std::string& name) {
-  if (name_attribute(element) == name) return element;
-  sdf::ElementPtr found;
-  for_each_child(element, [&](const sdf::ElementPtr& child) {
-    if (!found) found = find_named(child, name);
-  });
-  return found;
+  std::vector<sdf::ElementPtr> level{element};
+  while (!level.empty()) {
+    std::vector<sdf::ElementPtr> next;
+    for (const sdf::ElementPtr& candidate : level) {
+      if (name_attribute(candidate) == name) return candidate;
+      for_each_child(candidate, [&](const sdf::ElementPtr& child) { next.push_back(child); });
+    }
+    level = std::move(next);
+  }
+  return nullptr;
 }
 
 /// Which of its same-named siblings of the same file this is.
@@ -131,6 +104,30 @@ const tinyxml2::XMLElement* nth_child(const tinyxml2::XMLElement* parent, const 
   const tinyxml2::XMLElement* child = parent->FirstChildElement(name.c_str());
   for (; child != nullptr && n > 0; --n) child = child->NextSiblingElement(name.c_str());
   return child;
+}
+
+/// The last element of that name on the line: errors are of the innermost one.
+const tinyxml2::XMLElement* element_at(const tinyxml2::XMLElement& element, const std::string& name,
+                                       int line) {
+  const tinyxml2::XMLElement* found =
+      element.Name() == name && element.GetLineNum() == line ? &element : nullptr;
+  for (const auto* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    if (const auto* inner = element_at(*child, name, line)) found = inner;
+  }
+  return found;
+}
+
+/// A description of SDF to read a file into. Making one anew takes a tenth of a second.
+sdf::SDFPtr empty_sdf() {
+  static const sdf::SDFPtr blank = [] {
+    auto sdf = std::make_shared<sdf::SDF>();
+    sdf::init(sdf);
+    return sdf;
+  }();
+  auto sdf = std::make_shared<sdf::SDF>();
+  sdf->Root(blank->Root()->Clone());
+  return sdf;
 }
 
 }  // namespace
@@ -155,136 +152,114 @@ std::string describe(const sdf::ElementPtr& element) {
 void for_each_child(const sdf::ElementPtr& element,
                     const std::function<void(const sdf::ElementPtr&)>& visit) {
   if (!element) return;
-  for (sdf::ElementPtr child = element->GetFirstElement(); child; child = child->GetNextElement()) {
+  for (sdf::ElementPtr child = element->GetFirstElement(), next; child; child = next) {
+    next = child->GetNextElement();
     visit(child);
   }
 }
 
-SdfSource::~SdfSource() = default;
-
-SdfSource::SdfSource(const fs::path& file) : file_(fs::absolute(file).lexically_normal()) {
-  if (is_folder(file_)) {
-    throw Error(ErrorCode::kBadFile, {file_.string(), 0},
-                "is a directory; give the SDF file in it, such as model.sdf");
-  }
-  if (!is_file(file_)) {
-    throw Error(ErrorCode::kBadFile, {file_.string(), 0}, "there is no such file");
-  }
-  model_folders_ = model_folders(file_);
-
-  // XML first: libsdformat does not report the line of an XML error.
-  const tinyxml2::XMLDocument* xml = xml_of(file_.string());
-  if (xml->Error()) {
-    require_a_handle_for(file_.string());
-    throw Error(ErrorCode::kBadFile, {file_.string(), xml->ErrorLineNum()},
-                "not well-formed XML (" + std::string(xml->ErrorName()) + ")");
-  }
-  if (xml->RootElement() == nullptr) {
-    throw Error(ErrorCode::kBadFile, {file_.string(), 0},
-                "has no element; the outermost element of an SDF file must be <sdf>");
-  }
-  if (std::string(xml->RootElement()->Name()) != "sdf") {
-    throw Error(ErrorCode::kBadFile, {file_.string(), xml->RootElement()->GetLineNum()},
-                "the outermost element is <" + std::string(xml->RootElement()->Name()) +
-                    ">; it must be <sdf>");
-  }
-  check_numbers(file_.string(), *xml);
-  parse();
-  if (!root_.Element()) throw_first_error();
-  check_included_numbers();
+SdfSource::SdfSource(const fs::path& file, const WorldOptions& options, const WarningSink& warn)
+    : file_(fs::absolute(file).lexically_normal()),
+      options_(options),
+      path_(file_, options.model_folders),
+      stage_(file_, path_, options_, warn) {
+  read(warn);
 }
 
-void SdfSource::check_included_numbers() const {
-  for (const fs::path& file : files()) {
-    if (file != file_) check_numbers(file.string(), *xml_of(file.string()));
-  }
-}
-
-void SdfSource::parse() {
+void SdfSource::read(const WarningSink& warn) {
+  const QuietConsole quiet;
   sdf::ParserConfig config;
-  // A prefix of every URI: a relative include means the file's folder, not the current one.
-  config.AddURIPath("", file_.parent_path().string());
-  for (const fs::path& folder : model_folders_) config.AddURIPath("model://", folder.string());
   config.SetFindCallback([](const std::string&) { return std::string(); });
-
   // As errors they have a place. The elements that SDF does not know are named by `check_elements`.
   config.SetWarningsPolicy(sdf::EnforcementPolicy::ERR);
   config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
+  for (const SdfStage::File& staged : stage_.files()) {
+    sdf::Errors errors;
+    parsed_ = empty_sdf();
+    bool is_read = false;
+    try {
+      is_read = sdf::readFile(staged.copy, config, parsed_, errors);
+    } catch (const std::logic_error& error) {
+      throw Error(ErrorCode::kBadFile, {staged.original.string(), 0},
+                  "libsdformat cannot read it (" + std::string(error.what()) + ")");
+    }
+    for (const sdf::Error& error : errors) {
+      if (warn && is_warning(error)) warn(warning_of(error));
+    }
+    std::erase_if(errors, is_warning);
+    if (!errors.empty()) refuse_by(errors);
+    if (!is_read)
+      throw Error(ErrorCode::kBadFile, {staged.original.string(), 0}, "not an SDF file");
+  }
+}
 
-  QuietConsole console;
+/// Of an attribute that SDF does not know, or of a deprecated element.
+Warning SdfSource::warning_of(const sdf::Error& error) const {
+  const std::string path = error.XmlPath().value_or("");
+  const std::size_t at = path.rfind("[@");
+  const bool is_attribute = error.Code() == sdf::ErrorCode::ATTRIBUTE_INCORRECT_TYPE;
+  const std::string name = path.substr(std::min(at, path.size()));
+  return {Consequence::kNoEffect, where(error),
+          is_attribute ? "attribute " +
+                             name.substr(std::min<std::size_t>(2, name.size()), name.find('=') - 2)
+                       : "<" + path.substr(path.rfind('/') + 1) + ">",
+          is_attribute ? "is not known to SDF; ignored" : "is deprecated in SDF"};
+}
+
+void SdfSource::load() {
+  const QuietConsole quiet;
+  sdf::Errors errors;
   try {
-    errors_ = root_.Load(file_.string(), config);
+    errors = root_.Load(parsed_);
   } catch (const std::logic_error& error) {
-    // Of the file or of one that it includes; libsdformat does not say which.
     throw Error(ErrorCode::kBadFile, {file_.string(), 0},
-                "libsdformat cannot read it (" + std::string(error.what()) +
-                    "); check <sdf version='...'> here and in included files");
+                "libsdformat cannot read it (" + std::string(error.what()) + ")");
   }
-  for (const sdf::Error& error : errors_)
-    if (is_warning(error)) warnings_.push_back(located(where(error), one_line(error.Message())));
-  std::erase_if(errors_, is_warning);
-  collect_console(console.text());
+  std::erase_if(errors, is_warning);
+  if (!errors.empty()) refuse_by(errors);
 }
 
-/// What libsdformat 12 has no typed error for: the reason why it refuses a value, names that occur
-/// twice, what it changed in a file of an older SDF, and warnings of included files.
-void SdfSource::collect_console(const std::string& text) {
-  constexpr std::string_view kRed = "\x1b[1;31m", kEndOfPrefix = "]\x1b[0m ";
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) {
-    const std::size_t end = line.find(kEndOfPrefix);
-    if (end == std::string::npos) continue;
-    const std::string message = one_line(line.substr(end + kEndOfPrefix.size()));
-    if (line.starts_with(kRed))
-      console_errors_.push_back(message);
-    else
-      warnings_.push_back(located({file_.string(), 0}, message));
-  }
-}
-
-void SdfSource::throw_on_errors() const {
-  if (!errors_.empty()) throw_first_error();
-}
-
-void SdfSource::throw_first_error() const {
+void SdfSource::refuse_by(const sdf::Errors& errors) const {
   require_a_handle_for(file_.string());
-  if (errors_.empty()) throw Error(ErrorCode::kBadFile, {file_.string(), 0}, "not an SDF file");
-  const sdf::Error& first = errors_.front();
+  const sdf::Error& first = errors.front();
+  const FileLocation at = where(first);
   std::string reason = one_line(first.Message());
-  const bool is_value = first.Code() == sdf::ErrorCode::ELEMENT_INVALID && !root_.Element();
-  if (is_value && !console_errors_.empty()) {
-    reason += ": " + console_errors_.front() + allowed_value(first.XmlPath().value_or(""));
+  // Of a value, libsdformat says on the console only what is wrong.
+  static const std::regex unread("Error reading element <(\\S+)>");
+  std::smatch match;
+  if (std::regex_match(reason, match, unread) && first.LineNumber()) {
+    const auto* root = stage_.root_of(at.file);
+    const auto* xml = root != nullptr ? element_at(*root, match[1].str(), at.line) : nullptr;
+    if (xml != nullptr && xml->GetText() != nullptr)
+      reason += ": '" + one_line(xml->GetText()) + "' is not a value that SDF allows for it";
   }
-  if (first.Code() == sdf::ErrorCode::LINK_INERTIA_INVALID) {
-    reason += "; moments must be positive, and none larger than the sum of the other two";
-  }
-  if (first.Code() == sdf::ErrorCode::URI_LOOKUP) {
-    reason +=
-        "; model:// is searched for next to the file, in its models/ and ../models/, and in "
-        "GAZEBO_MODEL_PATH";
-  }
-  throw Error(ErrorCode::kBadFile, where(first), reason);
+  throw Error(ErrorCode::kBadFile, at, reason);
 }
 
 FileLocation SdfSource::where(const sdf::Error& error) const {
   if (error.LineNumber()) {
-    return {error.FilePath().value_or(file_.string()), *error.LineNumber()};
+    const std::string file = stage_.original_of(error.FilePath().value_or(""));
+    return {file.empty() ? file_.string() : file, *error.LineNumber()};
   }
-  // Errors between elements carry names instead of lines: "name[x]", "A link named x".
-  static const std::regex naming("name\\[([^\\]]*)\\]|named (\\S+)");
+  // Errors between elements have names instead of lines, the inner one first: "joint with name[j]
+  // in model with name[m]". The place is that of the innermost one that is found in the outer ones.
+  static const std::regex naming("name\\[([^\\]]*)\\]");
   const std::string message = error.Message().substr(0, kLongestMessage);
-  for (std::sregex_iterator it(message.begin(), message.end(), naming), end; it != end; ++it) {
-    const std::string name = (*it)[1].matched ? (*it)[1].str() : (*it)[2].str();
-    const sdf::ElementPtr element = root_.Element() ? find_named(root_.Element(), name) : nullptr;
-    if (element) return where(element);
+  std::vector<std::string> names;
+  for (std::sregex_iterator it(message.begin(), message.end(), naming), end; it != end; ++it)
+    names.push_back((*it)[1].str());
+  std::ranges::reverse(names);
+  sdf::ElementPtr place;
+  for (const std::string& name : names) {
+    if (const auto inner = find_named(place ? place : element(), name)) place = inner;
   }
-  return {file_.string(), 0};
+  return place ? where(place) : FileLocation{file_.string(), 0};
 }
 
 FileLocation SdfSource::where(const sdf::ElementPtr& element) const {
   for (sdf::ElementPtr e = element; e; e = e->GetParent()) {
     const int line = e->LineNumber() ? *e->LineNumber() : line_in_xml(e);
-    if (line > 0) return {e->FilePath(), line};
+    if (line > 0) return {stage_.original_of(e->FilePath()), line};
   }
   return {file_.string(), 0};
 }
@@ -296,22 +271,13 @@ int SdfSource::line_in_xml(const sdf::ElementPtr& element) const {
     if (e->FilePath() != element->FilePath()) break;
     path.push_back(e);
   }
-  const tinyxml2::XMLElement* xml = xml_of(element->FilePath())->RootElement();
+  const tinyxml2::XMLElement* xml = stage_.root_of(stage_.original_of(element->FilePath()));
   for (auto it = path.rbegin(); it != path.rend() && xml != nullptr; ++it) {
     const sdf::ElementPtr parent = (*it)->GetParent();
     const bool is_top = !parent || parent->FilePath() != (*it)->FilePath();
     xml = nth_child(xml, (*it)->GetName(), is_top ? 0 : ordinal(*it));
   }
   return xml != nullptr ? xml->GetLineNum() : 0;
-}
-
-tinyxml2::XMLDocument* SdfSource::xml_of(const std::string& file) const {
-  auto& document = xml_[file];
-  if (!document) {
-    document = std::make_unique<tinyxml2::XMLDocument>();
-    document->LoadFile(file.c_str());
-  }
-  return document.get();
 }
 
 std::set<fs::path> SdfSource::files() const {
@@ -321,33 +287,20 @@ std::set<fs::path> SdfSource::files() const {
 }
 
 std::set<fs::path> SdfSource::sdf_files() const {
-  std::set<fs::path> files{file_};
-  const std::function<void(const sdf::ElementPtr&)> visit = [&](const sdf::ElementPtr& element) {
-    const fs::path file = element->FilePath();
-    if (is_file(file)) files.insert(fs::absolute(file).lexically_normal());
-    for_each_child(element, visit);
-  };
-  visit(root_.Element());
+  std::set<fs::path> files;
+  for (const SdfStage::File& staged : stage_.files()) files.insert(staged.original);
   return files;
 }
 
 fs::path SdfSource::find_resource(const sdf::ElementPtr& element, const std::string& uri) const {
-  std::vector<fs::path> candidates;
-  if (uri.starts_with("model://")) {
-    for (const fs::path& folder : model_folders_) candidates.push_back(folder / uri.substr(8));
-  } else {
-    const std::string path = uri.starts_with("file://") ? uri.substr(7) : uri;
-    candidates.push_back(fs::path(element->FilePath()).parent_path() / path);
-  }
-  for (const fs::path& candidate : candidates) {
-    if (is_file(candidate))
-      return *resources_.insert(fs::absolute(candidate).lexically_normal()).first;
-  }
+  const auto found = path_.find(uri, stage_.original_of(element->FilePath()));
+  if (found && is_file(*found))
+    return *resources_.insert(fs::absolute(*found).lexically_normal()).first;
+  if (options_.replaces_missing_models) return {};
   const std::string subject = describe(element);
-  throw Error(ErrorCode::kBadFile, where(element),
-              subject + " names the file '" + uri + "', which does not exist (searched " +
-                  candidates.front().lexically_normal().string() +
-                  (candidates.size() > 1 ? " and the model path)" : ")"))
+  throw Error(
+      ErrorCode::kBadFile, where(element),
+      subject + " names the file '" + uri + "', which is not found. " + advice_on_missing(uri))
       .about(subject);
 }
 

@@ -1,50 +1,51 @@
 #pragma once
 
+#include "model_path.h"
+#include "sdf_stage.h"
+
 #include <filesystem>
 #include <functional>
-#include <map>
-#include <memory>
 #include <set>
 #include <string>
-#include <vector>
 
 #include <sdf/sdf.hh>
 
 #include <tether/base/error.h>
 #include <tether/sim/world.h>
 
-namespace tinyxml2 {
-class XMLDocument;
-}
-
 namespace tether::sim {
 
-/// One SDF file as libsdformat parsed it, with everything that libsdformat would print to the
-/// console collected instead, and with the place of every element. Errors and warnings are
-/// libsdformat's typed ones, by its policies, where version 12 has them; for the rest its console
-/// is read.
+/// One SDF file with all that it includes, as libsdformat parsed it, with the place of every
+/// element. First its elements are read, which may then be checked and changed; `load` makes
+/// libsdformat's objects of them. libsdformat prints nothing: each file is read alone, by policies
+/// that make every message a typed error.
 class SdfSource {
  public:
-  /// @throws Error(kBadFile) if the file is missing, a directory, not XML or not SDF, or has a
-  /// value that SDF does not allow or would read in part only ("1 kg").
-  explicit SdfSource(const std::filesystem::path& file);
-  ~SdfSource();
-  SdfSource(const SdfSource&) = delete;
-  SdfSource& operator=(const SdfSource&) = delete;
+  /// `warn` receives what libsdformat warns of.
+  /// @throws Error(kBadFile) if the file or one that it includes is missing, a directory, not XML
+  /// or not SDF, or has a value that SDF does not allow or would read in part only ("1 kg").
+  SdfSource(const std::filesystem::path& file, const WorldOptions& options,
+            const WarningSink& warn);
 
+  /// <sdf>
+  sdf::ElementPtr element() const { return parsed_->Root(); }
+  /// @throws Error(kBadFile) for what is wrong beyond single values: frames, names, joints.
+  void load();
+  /// @pre `load`
   const sdf::Root& root() const { return root_; }
+
   const std::filesystem::path& file() const { return file_; }
+  const WorldOptions& options() const { return options_; }
 
-  /// What libsdformat found wrong beyond single values: frames, names, includes.
-  void throw_on_errors() const;
-  /// What libsdformat warns of, one line each: "file:line: message".
-  const std::vector<std::string>& warnings() const { return warnings_; }
-
+  /// Whether an element is from an included file, not from this one.
+  bool is_included(const sdf::ElementPtr& element) const {
+    return element->FilePath() != this->element()->FilePath();
+  }
   /// File and line of an element, of its nearest ancestor with a line if need be.
   FileLocation where(const sdf::ElementPtr& element) const;
 
-  /// The file that `uri` means at `element`: model://, file://, or relative to the element's file.
-  /// @throws Error(kBadFile) about the element if there is none.
+  /// The file that `uri` means at `element` (ModelPath); empty if it is not found and the options
+  /// allow to go without it. @throws Error(kBadFile) about the element if they do not.
   std::filesystem::path find_resource(const sdf::ElementPtr& element, const std::string& uri) const;
 
   /// Every file that this one was made of so far: itself, what it includes, and the resources
@@ -54,22 +55,19 @@ class SdfSource {
   std::set<std::filesystem::path> sdf_files() const;
 
  private:
-  int line_in_xml(const sdf::ElementPtr& element) const;
-  tinyxml2::XMLDocument* xml_of(const std::string& file) const;
-  void parse();
-  void check_included_numbers() const;
-  void collect_console(const std::string& text);
-  [[noreturn]] void throw_first_error() const;
+  void read(const WarningSink& warn);
+  Warning warning_of(const sdf::Error& error) const;
+  [[noreturn]] void refuse_by(const sdf::Errors& errors) const;
   FileLocation where(const sdf::Error& error) const;
+  int line_in_xml(const sdf::ElementPtr& element) const;
 
   std::filesystem::path file_;
-  std::vector<std::filesystem::path> model_folders_;
+  WorldOptions options_;
+  ModelPath path_;
+  SdfStage stage_;
+  sdf::SDFPtr parsed_;
   sdf::Root root_;
-  sdf::Errors errors_;
-  std::vector<std::string> console_errors_;
-  std::vector<std::string> warnings_;
   mutable std::set<std::filesystem::path> resources_;
-  mutable std::map<std::string, std::unique_ptr<tinyxml2::XMLDocument>> xml_;
 };
 
 /// "<mass> of link 'body'": an element by its name and its nearest named ancestor, for messages.
@@ -77,7 +75,7 @@ std::string describe(const sdf::ElementPtr& element);
 /// The element's name attribute; empty where it has none.
 std::string name_attribute(const sdf::ElementPtr& element);
 
-/// Calls `visit` for each child in order.
+/// Calls `visit` for each child in order. `visit` may remove the child.
 void for_each_child(const sdf::ElementPtr& element,
                     const std::function<void(const sdf::ElementPtr&)>& visit);
 

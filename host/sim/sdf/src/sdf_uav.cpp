@@ -29,7 +29,8 @@ void warn_of_moving_joints(const SdfSource& source, const sdf::Model& model,
   for (std::uint64_t i = 0; i < model.JointCount(); ++i) {
     const sdf::Joint& joint = *model.JointByIndex(i);
     if (joint.Type() == sdf::JointType::FIXED) continue;
-    warn_at(source, joint.Element(), "is a moving joint, which is not represented; ignored", warn);
+    warn_at(source, joint.Element(), Consequence::kBehavesDifferent,
+            "is a moving joint, which is not represented; ignored", warn);
   }
 }
 
@@ -45,7 +46,7 @@ void add_sensors(const SdfSource& source, const sdf::Link& link, const uav::Pose
 /// body's inertia is that of the whole airframe.
 void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose& X_BM,
                 const WarningSink& warn, Uav& uav) {
-  Link link = read_link(source, part);
+  Link link = read_link(source, part, warn);
   const uav::Pose X_BL = X_BM * link.X_ML;
   for (Visual& visual : link.visuals) {
     visual.name = link.name + "::" + visual.name;
@@ -58,7 +59,7 @@ void merge_link(const SdfSource& source, const sdf::Link& part, const uav::Pose&
     uav.body.collisions.push_back(std::move(collision));
   }
   add_sensors(source, part, X_BL, warn, uav);
-  warn_at(source, part.Element(),
+  warn_at(source, part.Element(), Consequence::kBehavesDifferent,
           "is merged into link '" + uav.body.name + "'; its mass is not added", warn);
 }
 
@@ -71,7 +72,8 @@ void add_fixed_links(const SdfSource& source, const sdf::Model& model, const sdf
     if (is_fixed_to(model, link.Name(), body.Name())) {
       merge_link(source, link, X_BM, warn, uav);
     } else {
-      warn_at(source, link.Element(), "is not fixed to link '" + body.Name() + "'; left out", warn);
+      warn_at(source, link.Element(), Consequence::kMissing,
+              "is not fixed to link '" + body.Name() + "'; left out", warn);
     }
   }
 }
@@ -100,7 +102,7 @@ Uav read_uav(const SdfSource& source, const UavPlacement& placement, double grav
   Uav uav;
   uav.name = placement.name;
   uav.X_WB = {placement.p_WB, uav::from_rpy(0.0, 0.0, placement.yaw_rad)};
-  uav.body = read_link(source, body);
+  uav.body = read_link(source, body, warn);
   uav.airframe = read_airframe(source, model->Element(), uav.body, gravity_m_s2);
   add_sensors(source, body, {}, warn, uav);
   add_fixed_links(source, *model, body, warn, uav);

@@ -1,5 +1,5 @@
-#include <compare>
-#include <cstdio>
+#include "sdf_version_number.h"
+
 #include <filesystem>
 #include <string>
 
@@ -11,21 +11,11 @@
 namespace tether::sim {
 namespace {
 
-struct Version {
-  int major = 0;
-  int minor = 0;
-  friend auto operator<=>(const Version&, const Version&) = default;
-};
-
-std::string to_string(const Version& version) {
-  return std::to_string(version.major) + "." + std::to_string(version.minor);
-}
-
 /// What one file is read for.
 struct Reading {
   std::string file;
   std::string reader;
-  Version newest;
+  SdfVersion newest;
 };
 
 [[noreturn]] void refuse(const Reading& reading, int line, const std::string& what,
@@ -36,9 +26,7 @@ struct Reading {
 }
 
 void check_version(const Reading& reading, const tinyxml2::XMLElement& root) {
-  Version version;
-  const char* text = root.Attribute("version");
-  if (text == nullptr || std::sscanf(text, "%d.%d", &version.major, &version.minor) != 2) return;
+  const SdfVersion version = parse_sdf_version(root.Attribute("version")).value_or(SdfVersion{});
   if (version <= reading.newest) return;
   refuse(reading, root.GetLineNum(), "is SDF " + to_string(version),
          "Write it as SDF " + to_string(reading.newest) +
@@ -61,8 +49,8 @@ void check_shapes(const Reading& reading, const tinyxml2::XMLElement& element) {
 }  // namespace
 
 void check_sdf_version(const World& world, const SdfReader& reader) {
-  constexpr Version kRoundShapes{1, 8};
-  const Version newest{reader.major, reader.minor};
+  constexpr SdfVersion kRoundShapes{1, 8};
+  const SdfVersion newest{reader.major, reader.minor};
   for (const std::filesystem::path& file : world.sdf_files) {
     tinyxml2::XMLDocument xml;
     if (xml.LoadFile(file.c_str()) != tinyxml2::XML_SUCCESS || xml.RootElement() == nullptr) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,14 @@
 #include <tether/sim_sdf/load_world.h>
 
 /// SDF files for a scratch folder, and the results of `load_world` for them.
+namespace tether {
+
+inline void PrintTo(const Warning& warning, std::ostream* out) {
+  *out << name(warning.consequence) << ": " << to_line(warning);
+}
+
+}  // namespace tether
+
 namespace tether::sim {
 
 /// A world file: `content` begins on line 3.
@@ -29,13 +38,13 @@ inline std::string link_sdf(const std::string& content) {
 
 struct Loaded {
   World world;
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 inline Loaded load(const WorldRequest& request) {
   Loaded loaded;
   loaded.world =
-      load_world(request, [&](const std::string& line) { loaded.warnings.push_back(line); });
+      load_world(request, [&](const Warning& warning) { loaded.warnings.push_back(warning); });
   return loaded;
 }
 /// The same for a world file with that content from line 3 on.
@@ -47,6 +56,15 @@ inline Loaded load_content(const std::string& content) {
 /// The error with which `load_world` refuses.
 inline Error refusal(const WorldRequest& request) {
   return bad_file_error([&] { load_world(request, nullptr); });
+}
+
+/// Matches a warning by its fields; its message is free.
+inline auto is_warning(Consequence consequence, const std::filesystem::path& file, int line,
+                       const std::string& subject) {
+  using ::testing::Field;
+  return ::testing::AllOf(Field("consequence", &Warning::consequence, consequence),
+                          Field("where", &Warning::where, FileLocation{file.string(), line}),
+                          Field("subject", &Warning::subject, subject));
 }
 
 inline void expect_error(const Error& error, const std::filesystem::path& file, int line,

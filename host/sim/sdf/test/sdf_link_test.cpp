@@ -10,6 +10,7 @@
 namespace tether::sim {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using uav::Vec3;
 
@@ -56,6 +57,47 @@ TEST(SdfLink, ReadsShapesAndMaterials) {
   EXPECT_EQ(std::get<CapsuleGeometry>(link.visuals[3].geometry).radius_m, 0.5);
   EXPECT_EQ(std::get<EllipsoidGeometry>(link.visuals[4].geometry).radii_m, (Vec3{1, 2, 3}));
   EXPECT_EQ(link.collisions.at(0).friction, 0.5);
+}
+
+TEST(SdfLink, TakesTexturesOfPngAndJpegAndWarnsOfOthers) {
+  const ScratchFolder folder;
+  const auto load_texture = [&](const std::string& name) {
+    folder.write(name, "");
+    return load(
+        {folder.write("w.sdf", link_sdf(R"(<visual name='v'><geometry><sphere><radius>1</radius>
+        </sphere></geometry><material><pbr><metal>
+        <albedo_map>)" + name + "</albedo_map></metal></pbr></material></visual>")),
+         {},
+         {}});
+  };
+  const auto texture_of = [](const Loaded& loaded) {
+    return loaded.world.models.at(0).links.at(0).visuals.at(0).material.albedo_map.filename();
+  };
+  for (const char* name : {"t.png", "t.JPG", "t.jpeg"}) {
+    const Loaded loaded = load_texture(name);
+    EXPECT_EQ(texture_of(loaded), name);
+    EXPECT_THAT(loaded.warnings, IsEmpty());
+  }
+  const Loaded loaded = load_texture("t.tga");
+  EXPECT_EQ(texture_of(loaded), "");
+  EXPECT_THAT(loaded.warnings,
+              ElementsAre(is_warning(Consequence::kLooksDifferent, folder.path("w.sdf"), 7,
+                                     "<albedo_map> of visual 'v'")));
+}
+
+TEST(SdfLink, GoesWithoutMissingFilesIfAllowed) {
+  const ScratchFolder folder;
+  const auto file = folder.write("w.sdf", link_sdf(R"(<visual name='a'><geometry><mesh>
+      <uri>model://gone/a.dae</uri></mesh></geometry></visual>
+      <visual name='b'><geometry><sphere><radius>1</radius></sphere></geometry><material><pbr><metal>
+      <albedo_map>https://fuel.gazebosim.org/1.0/o/models/m/1/files/t.png</albedo_map>
+      </metal></pbr></material></visual>)"));
+  const Loaded loaded = load({file, {}, {}, {}, {.replaces_missing_models = true}});
+  EXPECT_THAT(
+      loaded.warnings,
+      ElementsAre(is_warning(Consequence::kMissing, file, 6, "<uri> of visual 'a'"),
+                  is_warning(Consequence::kLooksDifferent, file, 8, "<albedo_map> of visual 'b'")));
+  EXPECT_EQ(loaded.world.models.at(0).links.at(0).visuals.size(), 1u);
 }
 
 TEST(SdfLink, ReadsInertiaAboutPrincipalAxes) {

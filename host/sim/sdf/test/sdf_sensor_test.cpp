@@ -213,7 +213,7 @@ TEST_F(BadSensors, AreRefused) {
       {"<min>0.1", "<min>6", 29, "<range> of sensor 'nose'"},
       {"<stddev>0.25", "<stddev>-0.25", 30, "<stddev> of sensor 'nose'"},
       {"<update_rate>25", "<update_rate>-25", 22, "<update_rate> of sensor 'eye'"},
-      {"type='ray'", "type='crystal_ball'", 0, ""},
+      {"type='ray'", "type='crystal_ball'", 27, "sensor 'nose'"},
   });
 }
 

@@ -54,7 +54,9 @@ class UavModel : public ::testing::Test {
   }
   Uav read(const std::string& model) const { return load(request(model)).world.uavs.at(0); }
   std::vector<std::string> warnings(const std::string& model) const {
-    return load(request(model)).warnings;
+    std::vector<std::string> lines;
+    for (const Warning& warning : load(request(model)).warnings) lines.push_back(to_line(warning));
+    return lines;
   }
 
   ScratchFolder folder_;

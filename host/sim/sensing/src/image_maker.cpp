@@ -171,9 +171,12 @@ const ImageMaker::Plan& ImageMaker::plan_of(const Sensor& sensor, const CameraMo
   if (known != plans_.end()) return known->second;
   const Plan& plan = plans_.try_emplace(&sensor, camera.intrinsics).first->second;
   if (const std::size_t blind = plan.warp ? plan.warp->blind_pixels() : 0; blind > 0) {
-    warn_("camera '" + sensor.name + "': " + std::to_string(blind) +
-          " pixels of its image are black, because its distortion maps no direction to them; use "
-          "coefficients that are valid for its whole field of view");
+    warn_({Consequence::kLooksDifferent,
+           {},
+           "camera '" + sensor.name + "'",
+           "has " + std::to_string(blind) +
+               " black pixels, because its distortion maps no direction to them; use "
+               "coefficients that are valid for its whole field of view"});
   }
   return plan;
 }

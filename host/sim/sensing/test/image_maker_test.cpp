@@ -70,7 +70,7 @@ struct Studio {
   explicit Studio(World w)
       : world(std::move(w)),
         maker(world, {0.3, 0.5}, testing::fake_renderers(log),
-              [this](const std::string& line) { warnings.push_back(line); }) {}
+              [this](const Warning& warning) { warnings.push_back(to_line(warning)); }) {}
 
   uav::CameraSample image(const Course& course, std::uint64_t seed = 0, std::uint64_t index = 0) {
     StateRecorder recorder(world);

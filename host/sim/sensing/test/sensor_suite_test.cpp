@@ -61,7 +61,7 @@ class SensorSuiteTest : public ::testing::Test {
   testing::FakeRays rays_{{3.0, 2.0, 5.0}};
   SensorSuite suite_{world_,
                      {rays_, testing::fake_renderers(log_), {0.3, 0.3, 0.9}},
-                     [](const std::string& line) { ADD_FAILURE() << line; }};
+                     [](const Warning& warning) { ADD_FAILURE() << to_line(warning); }};
   Snapshot snapshot_;
 };
 

@@ -27,6 +27,8 @@ std::string_view name(ErrorCode code);
 struct FileLocation {
   std::string file;
   int line = 0;
+
+  friend bool operator==(const FileLocation&, const FileLocation&) = default;
 };
 
 /// "file:line: message", or "file: message".

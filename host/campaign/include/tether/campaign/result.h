@@ -10,6 +10,7 @@
 
 #include <tether/base/error.h>
 #include <tether/base/time.h>
+#include <tether/base/warning.h>
 #include <tether/campaign/metrics.h>
 #include <tether/record/reader.h>
 #include <tether/scenario/scenario.h>
@@ -139,6 +140,7 @@ struct TrialResult {
   /// Of each UAV; empty: the trial did not run, or the result is of an earlier version.
   std::vector<UavContacts> contacts;
   std::optional<AuditVerdict> audit;
+  std::vector<Warning> warnings{};              ///< what of the files is not simulated as written
   std::map<std::string, std::string> versions;  ///< of everything that took part, by its name
   ThisRun this_run;
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <tether/base/warning.h>
 #include <tether/campaign/run_campaign.h>
 #include <tether/runner/back_end.h>
 #include <tether/scenario/campaign.h>
@@ -18,7 +19,8 @@ std::set<std::string> simulators(const scenario::Campaign& campaign);
 
 struct CampaignFiles {
   std::vector<std::filesystem::path> files;
-  std::set<std::string> warnings;  ///< about profiles that apply to no UAV; each once
+  /// What of worlds, UAVs and profiles is not simulated as written; each once.
+  std::vector<Warning> warnings;
 };
 /// All files that the result of a trial depends on. Reads each of them, so that errors in them are
 /// found before anything is written.

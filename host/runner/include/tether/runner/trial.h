@@ -6,7 +6,9 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <vector>
 
+#include <tether/base/warning.h>
 #include <tether/campaign/result.h>
 #include <tether/coordinator/coordinator.h>
 #include <tether/link/channel.h>
@@ -36,6 +38,9 @@ struct TrialSpec {
 /// Callbacks of a trial.
 struct TrialObserver {
   std::function<void(const std::string&)> warn;  ///< one line each
+  /// What of the world, the UAVs and the profiles is not simulated as written: all of it before the
+  /// first status, then what the simulator notices during the run.
+  std::function<void(const std::vector<Warning>&)> on_warnings;
   std::function<void(const coordinator::RunStatus&)> on_status;
   /// Nothing advances: which SUT blocks the run or has not joined; one line, once per stall.
   std::function<void(const std::string&)> on_blocked;

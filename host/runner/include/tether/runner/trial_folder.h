@@ -12,6 +12,8 @@ namespace tether::runner {
 
 /// The record in a trial's folder.
 inline constexpr const char* kRecordFile = "record.mcap";
+/// What is not simulated as written; there is none if nothing is.
+inline constexpr const char* kWarningsFile = "warnings.txt";
 /// Output of the simulator's processes.
 inline constexpr const char* kSimulatorLog = "simulator.log";
 

@@ -73,7 +73,8 @@ struct Scenario {
   std::filesystem::path file;  ///< absolute
   std::string name;            ///< letters, digits, '_', '-', '.'
   std::string description;
-  std::filesystem::path world;  ///< absolute
+  std::filesystem::path world;        ///< absolute
+  sim::WorldOptions world_options{};  ///< not of the file: how to read the world
   Duration step{std::chrono::milliseconds(1)};
   Duration time_limit{0};                            ///< of ST
   Duration hang_limit{std::chrono::seconds(30)};     ///< of WT without a message from a SUT

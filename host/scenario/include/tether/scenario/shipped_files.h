@@ -30,6 +30,8 @@ class ShippedFiles {
 
   /// The folder that holds them.
   const std::filesystem::path& folder() const { return data_; }
+  /// The folder of the models, for model:// (sim::WorldOptions).
+  std::filesystem::path models() const { return data_ / "models"; }
 
   /// Sorted by name.
   /// @throws Error(kBadFile) if a file cannot be read.

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include <tether/base/error.h>
 #include <tether/base/time.h>
+#include <tether/base/warning.h>
 #include <tether/uav/catalogue.h>
 #include <tether/uav/math.h>
 #include <tether/uav/multirotor.h>
@@ -66,7 +66,7 @@ struct Material {
   uav::Vec3 specular_rgb;
   uav::Vec3 emissive_rgb;
   double alpha = 1.0;
-  std::filesystem::path albedo_map;  ///< PNG; empty: none
+  std::filesystem::path albedo_map;  ///< PNG or JPEG; empty: none
   double texture_repeat_x = 1.0;     ///< repetitions per metre of surface (<tether:texture_repeat>)
   double texture_repeat_y = 1.0;
 };
@@ -208,19 +208,25 @@ struct UavPlacement {
   double yaw_rad = 0.0;
 };
 
+/// How strictly files are read, and where models are searched for besides the usual places.
+struct WorldOptions {
+  std::vector<std::filesystem::path> model_folders{};  ///< for model://, before the environment's
+  /// Mend impossible inertias, and warn of each; otherwise they are errors.
+  bool is_tolerant = false;
+  /// Put an empty model in place of an included one that is not found, and leave out visuals,
+  /// collisions and textures whose file is not found. Warns of each; otherwise they are errors.
+  bool replaces_missing_models = false;
+};
+
 struct WorldRequest {
   std::filesystem::path world;  ///< SDF file with one <world>
   std::vector<UavPlacement> uavs;
   std::vector<std::string> anchors;  ///< names of models of the world
   FileLocation anchors_at{};         ///< where they are requested; empty: in no file
+  WorldOptions options{};
 };
 
-/// Receives warnings: one printable line each, with file (and line if known).
-using WarningSink = std::function<void(const std::string&)>;
-
-/// A sink that passes each line to `warn` with its unprintable characters replaced; empty if `warn`
-/// is.
-WarningSink with_printable_lines(WarningSink warn);
+using tether::WarningSink;
 
 /// Maximum number of links of dynamic models in a world. The engine's memory grows with the square
 /// of their number.

@@ -4,16 +4,15 @@
 
 namespace tether::sim {
 
-/// Reads world and UAV models (SDFormat up to 1.9) and resolves every pose, include, mesh and
-/// texture. `warn` receives one line, with file and line number, for each element that Tether
-/// cannot represent.
+/// Reads world and UAV models (SDFormat up to 1.9, and what it knows of later versions) and
+/// resolves every pose, include, mesh and texture, as docs/guide/worlds.md says. `warn` receives a
+/// warning, with file and line, for each element that Tether cannot represent, and for what
+/// `request.options` allow to mend or to leave out.
 ///
-/// URIs of meshes and textures are relative to the file that contains them, those of includes to
-/// `request.world`. model:// is searched for in models/ and ../models/ next to that file, beside
-/// it, and in GAZEBO_MODEL_PATH and GZ_SIM_RESOURCE_PATH. Nested models become separate models
-/// named "outer::inner". A UAV's body is its link "base_link", else its first one; links fixed to
-/// it are merged into it. Its airframe is its <tether:multirotor>, all of whose elements are
-/// required; models/hummingbird/model.sdf shows them.
+/// Nested models become separate models named "outer::inner". A UAV's body is its link
+/// "base_link", else its first one; links fixed to it are merged into it. Its airframe is its
+/// <tether:multirotor>, all of whose elements are required; models/hummingbird/model.sdf shows
+/// them.
 ///
 /// @throws Error(kBadFile) with file, line and element for input that cannot be used: missing file,
 ///   XML or SDF errors, not exactly one <world>, numbers followed by a unit or other text,
@@ -21,9 +20,10 @@ namespace tether::sim {
 ///   kg, more than `kMaxMovingLinks`, zero-size image, gravity that does not point down, a step
 ///   outside 10 µs to 20 ms), two UAVs of one name, an anchor that is not a model with one
 ///   untextured box, cylinder or sphere, a UAV model without <tether:multirotor>, with two sensors
-///   of one name, a centre of mass off its origin, or less thrust than weight.
+///   of one name, a centre of mass off its origin, or less thrust than weight. Error(kSetup) if
+///   there is no room in the folder of temporary files.
 ///
-/// Not thread-safe: libsdformat's console is silenced while this runs.
+/// Not thread-safe: std::cerr and libsdformat's console are silenced while this runs.
 World load_world(const WorldRequest& request, const WarningSink& warn);
 
 }  // namespace tether::sim

@@ -1,0 +1,37 @@
+#include "back_ends.h"
+#include "commands.h"
+#include "world_options.h"
+
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tether/os/program.h>
+#include <tether/sim_sdf/load_world.h>
+
+namespace tether::app {
+
+int check_world(const WorldCheckOptions& options, const std::stop_token&) {
+  const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
+  std::vector<Warning> warnings;
+  const auto collect = [&](const Warning& warning) { warnings.push_back(warning); };
+  sim::World world =
+      sim::load_world({.world = shipped.find(scenario::ShippedKind::kWorld, options.world),
+                       .uavs = {},
+                       .anchors = {},
+                       .options = world_options(options.reading, shipped)},
+                      collect);
+  const std::string file = world.file.string();
+  const auto models = world.models.size(), lights = world.lights.size();
+  // Meshes are read by the simulator.
+  find_back_end("mujoco").start(std::move(world), {.answer_limit = {}, .log = {}, .warn = collect});
+  fmt::print("{}: can be used ({} models, {} lights); {}\n{}", file, models, lights,
+             warnings.empty()
+                 ? "all of it is simulated as written"
+                 : fmt::format("{} things are not simulated as written", warnings.size()),
+             grouped(warnings, std::numeric_limits<std::size_t>::max()));
+  return 0;
+}
+
+}  // namespace tether::app
