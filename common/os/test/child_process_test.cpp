@@ -138,12 +138,12 @@ TEST_F(Child, EndsOrphansButNoProcessThatItStarted) {
     return "(setsid sh -c '" + trap + " echo $$ >>" + numbers.string() +
            "; while :; do :; done' &)\n";
   };
-  run(shell(daemon("") + daemon("trap \"\" TERM;")));
-  std::vector<pid_t> daemons;
-  while (daemons.size() < 2) {
-    std::istringstream text(read_whole(numbers));
-    daemons.assign(std::istream_iterator<pid_t>(text), {});
-  }
+  // The shell ends when both have their sessions, because its process group ends with it.
+  run(shell(daemon("") + daemon("trap \"\" TERM;") + "until [ \"$(wc -l <" + numbers.string() +
+            ")\" = 2 ]; do :; done"));
+  std::istringstream text(read_whole(numbers));
+  const std::vector<pid_t> daemons(std::istream_iterator<pid_t>(text), {});
+  ASSERT_EQ(daemons.size(), 2U);
   end_orphans(std::chrono::milliseconds(1));
   for (const pid_t process : daemons) EXPECT_EQ(kill(process, 0), -1);
   EXPECT_EQ(kill(running.pid(), 0), 0);

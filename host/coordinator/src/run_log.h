@@ -28,10 +28,10 @@ struct RecordFailure : std::runtime_error {
 /// thrown as RecordFailure.
 ///
 /// The record of a *repeatable* run is the same to the byte each time. It has no wall times and no
-/// state of the machine. The messages of one ST are collected and written in the order of (time of
-/// the SUT, index of the SUT), because which SUT of several acts first at one ST is a race. Only
-/// messages that the rules of time leave unordered change places: a reply that was sent too early
-/// stays where it was, and the audit finds it.
+/// state of the machine. With several SUTs, the messages of one ST are collected and written in the
+/// order of (time of the SUT, index of the SUT), because which SUT acts first at one ST is a race.
+/// Only messages that the rules of time leave unordered change places: a reply that was sent too
+/// early stays where it was, and the audit finds it.
 class RunLog {
  public:
   explicit RunLog(record::Recorder& recorder) : recorder_(&recorder) {}
@@ -54,7 +54,7 @@ class RunLog {
   /// From here on, until `race_again`, messages are written as they come, as at the start: what is
   /// due when ST reaches a boundary has a fixed order.
   void settle();
-  void race_again() { collects_ = repeatable_; }
+  void race_again() { collects_ = repeatable_ && rows_.size() > 1; }
 
   /// With the figures so far.
   record::Footer& footer() { return footer_; }

@@ -62,8 +62,9 @@ class Arm64 : public testing::Test {
 
 TEST_F(Arm64, FliesAsTheTargetOfASynchronisedRun) {
   const auto target = kSources / "data/profiles/targets/qemu_aarch64.toml";
-  const Output output = run(
-      tether({"run", scenario_, "--target", target, "--out", folder_ / "out", "--quiet"}), 100s);
+  const Output output = run(tether({"run", scenario_, "--force", "--target", target, "--out",
+                                    folder_ / "out", "--quiet"}),
+                            100s);
   ASSERT_EQ(output.code, 0) << output.err;
   const auto result = read_result(folder_ / "out");
   EXPECT_EQ(result["condition"], "qemu_aarch64");

@@ -37,7 +37,7 @@ const WrongInput kWrongInputs[] = {
      "sonar",
      {"range"}},
     {"UnknownAnchor", {"[\"blue_box\"]", "[\"red_box\"]"}, "", {"red_box"}},
-    {"UnknownCondition", {}, "", {"moon", "\"host\"", "\"slow\""}, {"--condition", "moon"}},
+    {"UnknownCondition", {}, "", {"moon", "host", "slow"}, {"--condition", "moon"}},
     {"UnknownSimulator", {}, "", {"gazeebo", "mujoco"}, {"--simulator", "gazeebo"}},
     {"NoAddress", {}, "", {"--listen", "here"}, {"--listen", "here"}},
     {"TunnelWithoutABoard", {}, "", {"--tunnel"}, {"--tunnel"}},

@@ -47,8 +47,8 @@ TEST(Profile, ChangesTheCameraOfTheRecord) {
   write_text(profile,
              "name = \"lens\"\n[sensors.camera]\nkind = \"camera\"\nposition_m = [0.5, 0, 0.25]\n"
              "size_px = [320, 200]\n[sensors.camera2]\nkind = \"camera\"\n");
-  const Output output = run(tether({"run", write_hover_scenario(folder.path(), "good"), "--quiet",
-                                    "--profile", profile, "--out", folder / "out"}));
+  const Output output = run(tether({"run", write_hover_scenario(folder.path(), "good"), "--profile",
+                                    profile, "--out", folder / "out"}));
   ASSERT_EQ(output.code, 0) << output.err;
   EXPECT_THAT(output.err, HasSubstr(profile.string() + ":6: "));
   const auto sensors = read_record(folder / "out").header.sensors;

@@ -146,8 +146,8 @@ void write_record(const std::filesystem::path& file, const record::Record& recor
 ExternalRun::ExternalRun(const std::filesystem::path& scenario, const std::filesystem::path& out,
                          const std::vector<std::string>& options) {
   tether_ = std::make_unique<Process>(
-      with(tether({"run", scenario, "--out", out, "--target", "wait", "--quiet"}), options,
-           {{"TETHER_TOKEN", kToken}}));
+      with(tether({"run", scenario, "--force", "--out", out, "--target", "wait", "--quiet"}),
+           options, {{"TETHER_TOKEN", kToken}}));
 
   const bool listens = tether_->wait_for_err(" TETHER_CLOCK=", std::chrono::seconds(90));
   const std::string text = tether_->err();

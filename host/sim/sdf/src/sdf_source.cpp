@@ -188,8 +188,10 @@ void SdfSource::read(const WarningSink& warn) {
     }
     std::erase_if(errors, is_warning);
     if (!errors.empty()) refuse_by(errors);
-    if (!is_read)
+    if (!is_read) {
+      require_a_handle_for(staged.copy);
       throw Error(ErrorCode::kBadFile, {staged.original.string(), 0}, "not an SDF file");
+    }
   }
 }
 
