@@ -85,7 +85,7 @@ int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
   campaign::require_jobs_allowed(campaign, options.jobs);
   require_ports(campaign, options.jobs);
   const std::filesystem::path out =
-      options.out.empty() ? std::filesystem::path("out") / campaign.name : options.out;
+      options.out.empty() ? std::filesystem::path("out/campaigns") / campaign.name : options.out;
   const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end);
   if (!warnings.empty())
     say("{}\n", summary_of(warnings, std::string(runner::kWarningsFile) + " of each trial"));

@@ -127,7 +127,7 @@ void add_campaign_command(CLI::App& program, Action& action) {
                                               run_campaign);
   command->add_option("campaign", options->campaign, "Name of a shipped campaign, or a file (TOML)")
       ->required();
-  command->add_option("--out", options->out, "Folder for the trials [out/CAMPAIGN]");
+  command->add_option("--out", options->out, "Folder for the trials [out/campaigns/CAMPAIGN]");
   command
       ->add_option(
           "--jobs", options->jobs,

@@ -30,7 +30,7 @@ Session* Coordinator::Impl::find(link::PeerId peer) {
 void Coordinator::Impl::refuse(link::PeerId peer, link::Refusal::Reason reason,
                                const std::string& message) {
   if (hooks_.on_refused && reason != link::Refusal::Reason::kRunEnded)
-    hooks_.on_refused(printable(fmt::format("refused {}: {}", remote_[peer], message)));
+    hooks_.on_refused(remote_[peer], printable(message));
   server_->send(peer, link::Refusal{reason, printable(message)});
   server_->close(peer);
   remote_.erase(peer);  // no more events from it
@@ -94,7 +94,7 @@ bool Coordinator::Impl::awaits_only_confirmation(const Session& session) const {
 void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
   const Session* session = find(peer);
   if (!session && hooks_.on_refused && failure.kind != Failure::Kind::kDisconnected)
-    hooks_.on_refused(fmt::format("refused {}: {}", remote_[peer], failure.message));
+    hooks_.on_refused(remote_[peer], failure.message);
   remote_.erase(peer);
   if (!session || session->left) return;
   if (failure.kind == Failure::Kind::kDisconnected && awaits_only_confirmation(*session)) return;

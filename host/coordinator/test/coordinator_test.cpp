@@ -359,7 +359,9 @@ TEST_F(CoordinatorTest, RejectsASutWithAnotherClockThanItsCondition) {
     clock_ = clock;
     make();
     std::vector<std::string> refused;
-    hooks_.on_refused = [&](const std::string& text) { refused.push_back(text); };
+    hooks_.on_refused = [&](const std::string&, const std::string& reason) {
+      refused.push_back(reason);
+    };
     const auto peer = server_->add_sut(hello("", link::ClockKind::kWall), {});
     EXPECT_EQ(run().end, RunEnd::kSutLost);
     EXPECT_THAT(refusal(peer).message, HasSubstr(expected));

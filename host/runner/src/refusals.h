@@ -18,16 +18,16 @@ class Refusals {
   /// `show` gets a line for each of the first connections; it may be empty.
   explicit Refusals(std::function<void(const std::string&)> show) : show_(std::move(show)) {}
 
-  void add(const std::string& text) {
-    last_ = text;
-    if (++count_ <= kMostShown && show_) show_(text);
+  void add(const std::string& address, const std::string& reason) {
+    last_ = reason;
+    if (++count_ <= kMostShown && show_) show_(fmt::format("refused {}: {}", address, reason));
   }
   /// Shows the number of the other connections.
   void close() const {
     if (count_ > kMostShown && show_)
       show_(fmt::format("refused {} more connections", count_ - kMostShown));
   }
-  /// The last line; empty if there is none.
+  /// The last reason; empty if there is none.
   const std::string& last() const { return last_; }
 
  private:

@@ -178,7 +178,9 @@ TrialEnd TrialRun::fly() {
     return to_run_end(*stop);
   };
   hooks.on_status = [&](const coordinator::RunStatus& status) { watch(status, stalls); };
-  hooks.on_refused = [&](const std::string& text) { refusals_.add(text); };
+  hooks.on_refused = [&](const std::string& address, const std::string& reason) {
+    refusals_.add(address, reason);
+  };
   hooks.read_target = [&] { return target_after_ = read_target(spec_, board_); };
   end.report = coordinator_.run(*server_, hooks);
   refusals_.close();
@@ -192,8 +194,11 @@ std::optional<EarlyStop> TrialRun::early_stop() {
   if (const auto why = suts_.lost()) return EarlyStop{StopCause::kBoardLost, *why};
   const auto ended = have_all_joined_ ? std::nullopt : suts_.early_end();
   if (!ended) return std::nullopt;
-  const std::string refusal = refusals_.last().empty() ? "" : "; " + refusals_.last();
-  return EarlyStop{StopCause::kSutEnded, *ended + refusal};
+  // Most programs print the reason for which they were rejected: it is part of their end.
+  const std::string& why = refusals_.last();
+  const bool is_known = ended->find(why) != std::string::npos;
+  return EarlyStop{StopCause::kSutEnded,
+                   *ended + (is_known ? "" : "; its connection was refused: " + why)};
 }
 
 void TrialRun::watch(const coordinator::RunStatus& status, StallWatch& stalls) {

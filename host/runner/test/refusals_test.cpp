@@ -11,10 +11,10 @@ TEST(Refusals, ShowsTheFirstOnesAndTheNumberOfTheOthers) {
   std::vector<std::string> shown;
   Refusals refusals([&](const std::string& text) { shown.push_back(text); });
   EXPECT_EQ(refusals.last(), "");
-  for (const char* text : {"a", "b"}) refusals.add(text);
+  for (const char* peer : {"a", "b"}) refusals.add(peer, "late");
   refusals.close();
-  EXPECT_EQ(shown, (std::vector<std::string>{"a", "b"}));
-  for (int i = 2; i < 1000; ++i) refusals.add(std::to_string(i));
+  EXPECT_EQ(shown, (std::vector<std::string>{"refused a: late", "refused b: late"}));
+  for (int i = 2; i < 1000; ++i) refusals.add("c", std::to_string(i));
   EXPECT_EQ(shown.size(), Refusals::kMostShown);
   refusals.close();
   EXPECT_EQ(shown.back(), "refused 980 more connections");
@@ -23,9 +23,9 @@ TEST(Refusals, ShowsTheFirstOnesAndTheNumberOfTheOthers) {
 
 TEST(Refusals, NeedsNoCallback) {
   Refusals refusals({});
-  refusals.add("a");
+  refusals.add("a", "late");
   refusals.close();
-  EXPECT_EQ(refusals.last(), "a");
+  EXPECT_EQ(refusals.last(), "late");
 }
 
 }  // namespace

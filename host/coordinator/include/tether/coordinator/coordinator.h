@@ -119,8 +119,8 @@ struct RunHooks {
   /// continue.
   std::function<std::optional<Ending>()> should_stop;
   std::function<void(const RunStatus&)> on_status;
-  /// A connection was rejected: its address and the reason, one line.
-  std::function<void(const std::string&)> on_refused;
+  /// A connection was rejected, with the reason in one line.
+  std::function<void(const std::string& address, const std::string& reason)> on_refused;
   /// Reads the state of the SUTs' machine for the record. Called once after a run that had begun,
   /// when its SUTs have been notified of the end.
   std::function<record::Readings()> read_target;
