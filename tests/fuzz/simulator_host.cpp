@@ -48,7 +48,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto flown = [&] {
     const auto remote = sim::make_remote_simulator(
         fuzz::scripted_world(), std::move(connection), {},
-        [](const std::string& warning) { fuzz::require_one_line(warning); });
+        [](const Warning& warning) { fuzz::require_one_line(to_line(warning)); });
     fuzz::fly_script(*remote);
     fuzz::require_one_line(remote->description());
     return true;
