@@ -94,8 +94,8 @@ std::string why_no_file(const std::filesystem::path& path) {
 }
 
 std::string read_file(const std::filesystem::path& file, std::uintmax_t limit) {
-  const auto fail_with = [&](std::string what) {
-    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, std::move(what));
+  const auto fail_with = [&](const std::string& what) {
+    throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, what);
   };
   std::error_code failed;
   if (!std::filesystem::is_regular_file(file, failed)) fail_with(why_no_file(file));
