@@ -27,12 +27,12 @@ void append_json(std::string& out, const Image& message);
 void append_frame_transform(std::string& out, const GroundTruth& message);
 
 /// The inverse. @throws Damage naming the member that is missing or wrong.
-Interaction interaction_from_json(std::string_view json);
-CommandEffect command_effect_from_json(std::string_view json);
-GroundTruth ground_truth_from_json(std::string_view json);
-Annotation annotation_from_json(std::string_view json);
-Stop stop_from_json(std::string_view json);
-Contact contact_from_json(std::string_view json);
-Image image_from_json(std::string_view json);
+Interaction interaction_from_json(std::string_view text);
+CommandEffect command_effect_from_json(std::string_view text);
+GroundTruth ground_truth_from_json(std::string_view text);
+Annotation annotation_from_json(std::string_view text);
+Stop stop_from_json(std::string_view text);
+Contact contact_from_json(std::string_view text);
+Image image_from_json(std::string_view text);
 
 }  // namespace tether::record

@@ -292,7 +292,7 @@ std::vector<Comparison> optimism(const campaign::ScenarioResults& scenario) {
 Table optimism_table(const campaign::ScenarioResults& scenario) {
   Table table = table_of(scenario, optimism(scenario));
   table.title = fmt::format("Optimism of the unsynchronised test of {}", scenario.scenario);
-  table.notes.push_back(
+  table.notes.emplace_back(
       "Positive: the unsynchronised test reports a value that is better by this amount.");
   for (const Comparison& c : optimism(scenario)) {
     const campaign::MetricValue& metric = *scenario.find_metric(c.metric);

@@ -88,9 +88,9 @@ campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
       plan.folder.string(),    "--simulator", plan.condition->simulator,    "--quiet"};
   if (!plan.profile.empty())
     arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
-  if (plan.record_images) arguments.push_back("--images");
+  if (plan.record_images) arguments.emplace_back("--images");
   const sim::WorldOptions& options = plan.scenario->world_options;
-  if (options.is_tolerant) arguments.push_back("--tolerant");
+  if (options.is_tolerant) arguments.emplace_back("--tolerant");
   if (options.replaces_missing_models)
     arguments.insert(arguments.end(), {"--missing-models", "placeholder"});
   // The grace period lets it end its own processes.
