@@ -4,6 +4,7 @@
 #include <fnmatch.h>
 
 #include <tether/base/error.h>
+#include <tether/campaign/refuse_folder.h>
 
 namespace tether::app {
 
@@ -18,11 +19,10 @@ fs::path make_output_folder(fs::path out, const fs::path& record, const char* na
   for (const auto& entry : fs::directory_iterator(out, error)) {
     const std::string file = entry.path().filename().string();
     if (!drawings.contains(file) && fnmatch(pattern, file.c_str(), FNM_EXTMATCH) == 0)
-      throw Error(ErrorCode::kUsage, {out.string()},
-                  fmt::format("has '{}' of another record. Remove it, or choose another folder "
-                              "with --out.",
-                              file))
-          .about(out.string());
+      campaign::refuse_folder(
+          out, fmt::format("has '{}' of another record. Remove it, or choose another folder "
+                           "with --out.",
+                           file));
   }
   return out;
 }

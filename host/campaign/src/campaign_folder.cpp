@@ -1,11 +1,10 @@
-#include "refuse_folder.h"
-
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <tether/campaign/campaign_folder.h>
+#include <tether/campaign/refuse_folder.h>
 #include <tether/os/text_file.h>
 
 namespace tether::campaign {

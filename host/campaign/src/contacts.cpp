@@ -3,6 +3,7 @@
 #include "metric_outcome.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,14 @@ namespace tether::campaign {
 namespace {
 
 using Logged = record::Logged<record::Contact>;
+
+std::optional<record::Clearance> clearance_of(const record::Record& record,
+                                              const std::string& uav) {
+  if (!record.footer) return std::nullopt;
+  const auto& all = record.footer->clearances;
+  const auto own = std::ranges::find(all, uav, &record::Clearance::uav);
+  return own == all.end() ? std::nullopt : std::optional(*own);
+}
 
 }  // namespace
 
@@ -24,11 +33,7 @@ std::vector<UavContacts> contacts_of(const record::Record& record, double max_sp
       own.hard += contact.speed_m_s > max_speed_m_s ? 1U : 0U;
       if (!own.hardest || contact.speed_m_s > own.hardest->speed_m_s) own.hardest = contact;
     }
-    if (record.footer) {
-      const auto& clearances = record.footer->clearances;
-      const auto nearest = std::ranges::find(clearances, sut.uav, &record::Clearance::uav);
-      if (nearest != clearances.end()) own.nearest = *nearest;
-    }
+    own.nearest = clearance_of(record, sut.uav);
     all.push_back(std::move(own));
   }
   return all;
@@ -55,10 +60,7 @@ MetricOutcome collisions(const scenario::Metric& metric, const record::Record& r
 }
 
 MetricOutcome min_clearance(const scenario::Metric& metric, const record::Record& record) {
-  if (record.footer) {
-    for (const record::Clearance& clearance : record.footer->clearances)
-      if (clearance.uav == metric.uav) return {clearance.min_m, ""};
-  }
+  if (const auto nearest = clearance_of(record, metric.uav)) return {nearest->min_m, ""};
   return missing(fmt::format("the clearance of '{}' was not measured", metric.uav));
 }
 

@@ -1,5 +1,3 @@
-#include "refuse_folder.h"
-
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -17,6 +15,7 @@
 #include <tether/base/system_reason.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/folder_claim.h>
+#include <tether/campaign/refuse_folder.h>
 
 // A run locks its folder. A campaign locks its folder too, and alone the lock file in it. A run or
 // campaign in or below a campaign's folder shares that lock file, so that the campaign cannot start

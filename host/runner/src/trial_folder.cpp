@@ -14,6 +14,7 @@
 
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_folder.h>
+#include <tether/campaign/refuse_folder.h>
 #include <tether/campaign/result.h>
 #include <tether/campaign/run_campaign.h>
 #include <tether/os/text_file.h>
@@ -57,10 +58,6 @@ bool is_own(std::string path) {
 [[noreturn]] void fail(const fs::path& path, const std::string& why) {
   throw Error(ErrorCode::kSetup, {path.string()}, why + ". Choose another folder with --out.")
       .about(path.string());
-}
-
-[[noreturn]] void refuse(const fs::path& folder, const std::string& why) {
-  throw Error(ErrorCode::kUsage, {folder.string()}, why).about(folder.string());
 }
 
 bool is_folder(const fs::path& path) {
@@ -125,10 +122,11 @@ void remove_earlier_run(const fs::path& folder, const campaign::TrialResult* run
   }
   std::ranges::sort(of_others);
   if (!of_others.empty())
-    refuse(folder, fmt::format("the earlier run there cannot be replaced, because the folder also "
-                               "has {}, which Tether and the SUTs of that run did not write. Move "
-                               "them, or choose another folder with --out.",
-                               first_of(std::move(of_others))));
+    campaign::refuse_folder(
+        folder, fmt::format("the earlier run there cannot be replaced, because the folder also "
+                            "has {}, which Tether and the SUTs of that run did not write. Move "
+                            "them, or choose another folder with --out.",
+                            first_of(std::move(of_others))));
   std::ranges::reverse(all);  // what is in a folder before the folder
   std::error_code failed;
   for (const fs::path& path : all)
@@ -140,9 +138,10 @@ void remove_earlier_run(const fs::path& folder, const campaign::TrialResult* run
 void refuse_remains(const fs::path& folder) {
   for (const char* name : {campaign::kReportFile.data(), "plots", "frames"})
     if (fs::exists(folder / name))
-      refuse(folder, fmt::format("has '{}' of something else. Remove it, or choose another folder "
-                                 "with --out.",
-                                 name));
+      campaign::refuse_folder(
+          folder, fmt::format("has '{}' of something else. Remove it, or choose another folder "
+                              "with --out.",
+                              name));
 }
 
 constexpr off_t kRoomForResult_bytes = 32 * 1024;
@@ -164,13 +163,14 @@ TrialFolder::TrialFolder(const fs::path& folder, EarlierRun earlier)
   // Fail now, not when the result is written.
   if (access(folder.c_str(), R_OK | W_OK | X_OK) != 0) fail(folder, std::strerror(errno));
   if (fs::exists(folder / campaign::kCampaignFile))
-    refuse(folder, "has a campaign. Choose another folder with --out.");
+    campaign::refuse_folder(folder, "has a campaign. Choose another folder with --out.");
   if (std::ranges::any_of(entries_of(folder), shows_a_run)) {
     const auto run = result_in(folder);
     if (earlier == EarlierRun::kRefuse)
-      refuse(folder, fmt::format("has {}. Choose another folder with --out, or replace that run "
-                                 "with --force.",
-                                 describe(run)));
+      campaign::refuse_folder(
+          folder, fmt::format("has {}. Choose another folder with --out, or replace that run "
+                              "with --force.",
+                              describe(run)));
     remove_earlier_run(folder, run ? &*run : nullptr);
   }
   refuse_remains(folder);
