@@ -118,6 +118,15 @@ const tinyxml2::XMLElement* element_at(const tinyxml2::XMLElement& element, cons
   return found;
 }
 
+/// What libsdformat answers about a file; some broken ones make it throw.
+template <class Question>
+auto ask_library(const fs::path& file, Question question) try {
+  return question();
+} catch (const std::logic_error& error) {
+  throw Error(ErrorCode::kBadFile, {file.string(), 0},
+              "libsdformat cannot read it (" + std::string(error.what()) + ")");
+}
+
 /// A description of SDF to read a file into. Making one anew takes a tenth of a second.
 sdf::SDFPtr empty_sdf() {
   static const sdf::SDFPtr blank = [] {
@@ -176,13 +185,8 @@ void SdfSource::read(const WarningSink& warn) {
   for (const SdfStage::File& staged : stage_.files()) {
     sdf::Errors errors;
     parsed_ = empty_sdf();
-    bool is_read = false;
-    try {
-      is_read = sdf::readFile(staged.copy, config, parsed_, errors);
-    } catch (const std::logic_error& error) {
-      throw Error(ErrorCode::kBadFile, {staged.original.string(), 0},
-                  "libsdformat cannot read it (" + std::string(error.what()) + ")");
-    }
+    const bool is_read = ask_library(
+        staged.original, [&] { return sdf::readFile(staged.copy, config, parsed_, errors); });
     for (const sdf::Error& error : errors) {
       if (warn && is_warning(error)) warn(warning_of(error));
     }
@@ -210,13 +214,7 @@ Warning SdfSource::warning_of(const sdf::Error& error) const {
 
 void SdfSource::load() {
   const QuietConsole quiet;
-  sdf::Errors errors;
-  try {
-    errors = root_.Load(parsed_);
-  } catch (const std::logic_error& error) {
-    throw Error(ErrorCode::kBadFile, {file_.string(), 0},
-                "libsdformat cannot read it (" + std::string(error.what()) + ")");
-  }
+  sdf::Errors errors = ask_library(file_, [&] { return root_.Load(parsed_); });
   std::erase_if(errors, is_warning);
   if (!errors.empty()) refuse_by(errors);
 }
