@@ -90,7 +90,7 @@ const Schema kAnnotationSchema{"tether.Annotation", R"json({
 
 const Schema kStopSchema{"tether.Stop", R"json({
   "title": "tether.Stop",
-  "description": "All of a concurrent SUT stood still. Log time: ST when it was known.",
+  "description": "All threads of a concurrent SUT were stopped. Log time: ST when this was known.",
   "type": "object",
   "properties": {
     "uav": {"type": "string"},
