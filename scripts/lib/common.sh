@@ -23,7 +23,7 @@ packages_build=(
   libsdformat-dev libtinyxml2-dev libconsole-bridge-dev libassimp-dev
   libopencv-dev libpng-dev libturbojpeg0-dev zlib1g-dev libzstd-dev libboost-dev
   libflatbuffers-dev flatbuffers-compiler
-  libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
+  libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libhwy-dev
   gnuplot-nox
 )
 packages_test=(git python3 libgtest-dev libgmock-dev libbenchmark-dev clang-format)

@@ -1,0 +1,179 @@
+#include "lens.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <tether/base/error.h>
+
+namespace tether::raster {
+namespace {
+
+constexpr double kSame_px = 0.01;
+constexpr double kFarthest_px = 32000.0;
+constexpr std::array<int, 3> kCellSizes_px{16, 128, 1024};
+constexpr int kManyCells = 8;
+
+constexpr PixelRect kNoPixels{std::numeric_limits<int>::max(), std::numeric_limits<int>::max(),
+                              std::numeric_limits<int>::min(), std::numeric_limits<int>::min()};
+
+template <class T>
+void include(Rect<T>& rect, T x, T y) {
+  rect.x_low = std::min(rect.x_low, x);
+  rect.y_low = std::min(rect.y_low, y);
+  rect.x_high = std::max(rect.x_high, x);
+  rect.y_high = std::max(rect.y_high, y);
+}
+
+void include(PixelRect& rect, const PixelRect& more) {
+  if (more.is_empty()) return;
+  include(rect, more.x_low, more.y_low);
+  include(rect, more.x_high, more.y_high);
+}
+
+FixedRect common_part(const FixedRect& a, const FixedRect& b) {
+  return {std::max(a.x_low, b.x_low), std::max(a.y_low, b.y_low), std::min(a.x_high, b.x_high),
+          std::min(a.y_high, b.y_high)};
+}
+
+// How far off the axis, at z = 1, the radial distortion goes on outwards.
+double fold_radius(const uav::CameraModel& c) {
+  constexpr double kStep = 1e-3;
+  constexpr double kWidest = 20.0;
+  for (double r = 0.0; r < kWidest; r += kStep) {
+    const double r2 = r * r;
+    if (1.0 + r2 * (3.0 * c.k1 + r2 * (5.0 * c.k2 + r2 * 7.0 * c.k3)) <= 0.0) return r;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+// None where undoing the distortion leads elsewhere, or beyond the fold.
+std::optional<uav::Vec3> direction(const uav::CameraModel& camera, const uav::Pixel& pixel,
+                                   double fold) {
+  const uav::Vec3 p = camera.unproject(pixel);
+  const uav::Pixel seen = *camera.project(p);
+  const double du = seen.u_px - pixel.u_px;
+  const double dv = seen.v_px - pixel.v_px;
+  const bool is_same = du * du + dv * dv < kSame_px * kSame_px;
+  if (!is_same || p.x * p.x + p.y * p.y > fold * fold) return std::nullopt;
+  return p;
+}
+
+std::int32_t fixed_sample(double px) {
+  if (!(std::abs(px) <= kFarthest_px)) {
+    throw Error(ErrorCode::kUsage,
+                "the camera sees more than 32000 pixels off its axis: use a smaller image, a "
+                "narrower field of view, or distortion coefficients that hold for all of it");
+  }
+  return static_cast<std::int32_t>(std::floor(px * kSubpixels + 0.5));
+}
+
+std::size_t place_of(int column, int row, int columns) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+         static_cast<std::size_t>(column);
+}
+
+int floor_div(int a, int b) {
+  return a >= 0 ? a / b : -((b - 1 - a) / b);
+}
+
+}  // namespace
+
+Lens::Lens(const uav::CameraModel& camera) : camera_(camera) {
+  const auto blocks = static_cast<std::size_t>((camera.width_px + kStride - 1) / kStride);
+  stride_ = blocks * kStride;
+  if (!camera.has_distortion()) {
+    all_ = {0, 0, (camera.width_px - 1) * kSubpixels, (camera.height_px - 1) * kSubpixels};
+    return;
+  }
+  fill_samples();
+  fill_cells();
+}
+
+void Lens::fill_samples() {
+  const std::size_t count = stride_ * static_cast<std::size_t>(camera_.height_px);
+  x_.assign(count, kBlind);
+  y_.assign(count, kBlind);
+  all_ = kNoPixels;
+  const double fold = fold_radius(camera_);
+  for (int row = 0; row < camera_.height_px; ++row) {
+    FixedRect& bounds = rows_.emplace_back(kNoPixels);
+    for (int column = 0; column < camera_.width_px; ++column) {
+      const uav::Pixel pixel{static_cast<double>(column), static_cast<double>(row)};
+      const auto p = direction(camera_, pixel, fold);
+      if (!p) {
+        ++blind_pixels_;
+        continue;
+      }
+      const std::size_t i =
+          static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column);
+      x_[i] = fixed_sample(camera_.cx_px + camera_.fx_px * p->x);
+      y_[i] = fixed_sample(camera_.cy_px + camera_.fy_px * p->y);
+      include(bounds, x_[i], y_[i]);
+    }
+    if (!bounds.is_empty()) {
+      include(all_, bounds.x_low, bounds.y_low);
+      include(all_, bounds.x_high, bounds.y_high);
+    }
+  }
+}
+
+void Lens::fill_cells() {
+  if (all_.is_empty()) return;
+  for (std::size_t level = 0; level < cells_.size(); ++level) {
+    Cells& cells = cells_[level];
+    cells.size = kCellSizes_px[level] * kSubpixels;
+    cells.columns = (all_.x_high - all_.x_low) / cells.size + 1;
+    const int rows = (all_.y_high - all_.y_low) / cells.size + 1;
+    cells.pixels.assign(place_of(0, rows, cells.columns), kNoPixels);
+    for (int row = 0; row < camera_.height_px; ++row) {
+      for (int column = 0; column < camera_.width_px; ++column) {
+        const std::size_t i =
+            static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column);
+        if (x_[i] == kBlind) continue;
+        const int cell =
+            (y_[i] - all_.y_low) / cells.size * cells.columns + (x_[i] - all_.x_low) / cells.size;
+        include(cells.pixels[static_cast<std::size_t>(cell)], column, row);
+      }
+    }
+  }
+}
+
+FixedRect Lens::samples_of_rows(int first, int last) const {
+  if (is_grid()) return {0, first * kSubpixels, all_.x_high, last * kSubpixels};
+  FixedRect bounds = kNoPixels;
+  for (int row = first; row <= last; ++row) {
+    include(bounds, rows_[static_cast<std::size_t>(row)]);
+  }
+  return bounds;
+}
+
+FixedRect Lens::seen_part(const FixedRect& rect) const {
+  const FixedRect seen = common_part(rect, all_);
+  return seen.is_empty() ? rect : seen;
+}
+
+PixelRect Lens::pixels_of(const FixedRect& rect) const {
+  const FixedRect seen = common_part(rect, all_);
+  if (seen.is_empty()) return kNoPixels;
+  if (is_grid()) {
+    return {(seen.x_low + kSubpixels - 1) / kSubpixels, (seen.y_low + kSubpixels - 1) / kSubpixels,
+            floor_div(seen.x_high, kSubpixels), floor_div(seen.y_high, kSubpixels)};
+  }
+  std::size_t level = 0;
+  const std::int32_t extent = std::max(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
+  while (level + 1 < cells_.size() && extent > kManyCells * cells_[level].size) ++level;
+  const Cells& cells = cells_[level];
+  PixelRect pixels = kNoPixels;
+  const int last_column = (seen.x_high - all_.x_low) / cells.size;
+  const int last_row = (seen.y_high - all_.y_low) / cells.size;
+  for (int row = (seen.y_low - all_.y_low) / cells.size; row <= last_row; ++row) {
+    for (int c = (seen.x_low - all_.x_low) / cells.size; c <= last_column; ++c) {
+      include(pixels, cells.pixels[place_of(c, row, cells.columns)]);
+    }
+  }
+  return pixels;
+}
+
+}  // namespace tether::raster

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <tether/uav/camera_model.h>
+
+namespace tether::raster {
+
+/// Positions in the picture that the camera would take without distortion are whole numbers of
+/// this part of a pixel, counted from the centre of the upper left pixel.
+inline constexpr int kSubpixels = 256;
+/// Positions beyond this are cut off, so that products of two fit where they are computed.
+inline constexpr std::int32_t kGuard = (1 << 23) - 1;
+
+/// Both ends included; empty if low > high.
+template <class T>
+struct Rect {
+  T x_low, y_low, x_high, y_high;
+  bool is_empty() const { return x_low > x_high || y_low > y_high; }
+};
+using PixelRect = Rect<int>;
+using FixedRect = Rect<std::int32_t>;  ///< in kSubpixels
+
+/// Where the centre of each pixel lies in the picture without distortion: the ray of a pixel is
+/// that of this place.
+class Lens {
+ public:
+  static constexpr int kStride = 32;  ///< the samples' rows are this wide, or a multiple
+  static constexpr std::int32_t kBlind = -(1 << 30);
+
+  /// @throws Error(kUsage) for a camera that sees beyond kGuard.
+  explicit Lens(const uav::CameraModel& camera);
+
+  const uav::CameraModel& camera() const { return camera_; }
+  /// Whether pixel (i, j) is just at (i, j) · kSubpixels. There are no tables then.
+  bool is_grid() const { return x_.empty(); }
+  std::size_t stride() const { return stride_; }
+  /// height × stride, kBlind where the lens maps no direction to the pixel.
+  const std::vector<std::int32_t>& x() const { return x_; }
+  const std::vector<std::int32_t>& y() const { return y_; }
+  std::size_t blind_pixels() const { return blind_pixels_; }
+
+  /// The bounds of the samples of some rows.
+  FixedRect samples_of_rows(int first, int last) const;
+  /// The part of `rect` within the bounds of all samples; `rect` itself if there is none.
+  FixedRect seen_part(const FixedRect& rect) const;
+  /// The pixels whose samples may lie within `rect`: no other's does.
+  PixelRect pixels_of(const FixedRect& rect) const;
+
+ private:
+  // For each square of the undistorted picture, the pixels whose samples lie in it.
+  struct Cells {
+    int size = 0;  // in kSubpixels
+    int columns = 0;
+    std::vector<PixelRect> pixels;
+  };
+
+  void fill_samples();
+  void fill_cells();
+
+  uav::CameraModel camera_;
+  std::size_t stride_ = 0;
+  std::vector<std::int32_t> x_;
+  std::vector<std::int32_t> y_;
+  std::vector<FixedRect> rows_;
+  FixedRect all_{};
+  std::size_t blind_pixels_ = 0;
+  std::array<Cells, 3> cells_;
+};
+
+}  // namespace tether::raster

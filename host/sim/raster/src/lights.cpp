@@ -1,0 +1,64 @@
+#include "lights.h"
+
+#include "trigonometry.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace tether::raster {
+namespace {
+
+using uav::Pose;
+using uav::Vec3;
+
+std::array<float, 3> floats(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+LightRow make_row(const Light& light, const Pose& X_CW) {
+  LightRow row;
+  row.position = floats(transform(X_CW, light.p_WL));
+  row.direction = floats(rotate(X_CW.q, light.direction_W));
+  row.diffuse = light.diffuse;
+  row.specular = light.specular;
+  row.attenuation = {light.attenuation_constant, light.attenuation_linear,
+                     light.attenuation_quadratic};
+  row.is_directional = light.kind == LightKind::kDirectional;
+  row.has_specular =
+      std::any_of(light.specular.begin(), light.specular.end(), [](float c) { return c > 0.0F; });
+  if (light.kind == LightKind::kSpot) {
+    const double angle = std::clamp(light.spot_half_angle_rad, 0.0, 0.5 * std::numbers::pi);
+    row.cos_cutoff = static_cast<float>(cosine(angle));
+    row.exponent = light.spot_exponent;
+  }
+  return row;
+}
+
+// The map's matrix for points in C.
+std::array<float, 12> from_camera(const std::array<double, 12>& from_world, const Pose& X_WC) {
+  const uav::Quat q_CW = uav::inverse(X_WC.q);
+  std::array<float, 12> out{};
+  for (std::size_t i = 0; i < 12; i += 4) {
+    const Vec3 normal{from_world[i], from_world[i + 1], from_world[i + 2]};
+    const std::array<float, 3> turned = floats(rotate(q_CW, normal));
+    std::copy(turned.begin(), turned.end(), out.begin() + static_cast<std::ptrdiff_t>(i));
+    out[i + 3] = static_cast<float>(dot(normal, X_WC.p) + from_world[i + 3]);
+  }
+  return out;
+}
+
+}  // namespace
+
+void place_lights(const PreparedScene& scene, const std::vector<ShadowMap>& shadows, Layer& layer) {
+  layer.lights.clear();
+  std::int32_t map = 0;
+  for (const Light& light : scene.lights) {
+    LightRow& row = layer.lights.emplace_back(make_row(light, layer.X_CW));
+    if (!light.cast_shadows || shadows.empty()) continue;
+    row.shadow = map++;
+    row.to_shadow = from_camera(shadows[static_cast<std::size_t>(row.shadow)].from_world(),
+                                inverse(layer.X_CW));
+  }
+}
+
+}  // namespace tether::raster

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <tether/sim_raster/scene.h>
+
+namespace tether::raster {
+
+/// As many floats as any processor's instructions take at once.
+inline constexpr std::size_t kMaxLanes = 16;
+
+struct Sphere {
+  uav::Vec3 centre;
+  double radius_m = 0.0;
+};
+
+/// Neighbouring triangles of a mesh with vertices of their own, transformed or culled at once.
+struct Cluster {
+  static constexpr std::size_t kMaxTriangles = 64;
+  static constexpr std::size_t kMaxVertices = 192;
+  std::uint32_t first_vertex = 0;  ///< a multiple of kMaxLanes
+  std::uint32_t vertices = 0;
+  std::uint32_t first_triangle = 0;
+  std::uint32_t triangles = 0;
+  Sphere bounds;  ///< in V
+};
+
+struct VertexLook {
+  std::array<float, 3> normal;
+  std::array<float, 2> uv;
+};
+
+struct PreparedMesh {
+  std::uint32_t first_cluster = 0;
+  std::uint32_t clusters = 0;
+  std::uint32_t triangles = 0;
+  Sphere bounds;  ///< in V
+};
+
+/// A material as the shading reads it.
+struct MaterialRow {
+  std::array<float, 3> base;  ///< emissive + ambient · the scene's
+  std::array<float, 3> diffuse;
+  std::array<float, 3> specular;
+  float shininess;
+  float alpha;
+  std::int32_t first_level;  ///< of PreparedScene::levels
+  std::int32_t levels;       ///< 0: no texture
+  std::int32_t is_shiny;     ///< whether it is specular at all
+};
+
+/// One size of a texture.
+struct LevelRow {
+  std::int32_t first_texel;
+  std::int32_t width;
+  std::int32_t height;
+  std::int32_t unused;  ///< four numbers to a row
+};
+
+struct PreparedInstance {
+  std::uint32_t mesh;
+  std::uint32_t material;
+  std::int32_t body;  ///< −1: fixed in W
+  std::uint32_t entity;
+  std::uint32_t first_primitive;  ///< its triangles are numbered from here, from 1 on
+  bool transparent;
+  bool cast_shadows;
+  uav::Pose X_BV;
+};
+
+struct PreparedScene {
+  std::vector<float> x, y, z;                          ///< of the clusters' vertices, in V
+  std::vector<VertexLook> looks;                       ///< as many
+  std::vector<std::array<std::uint8_t, 3>> triangles;  ///< vertices in their cluster
+  std::vector<Cluster> clusters;
+  std::vector<PreparedMesh> meshes;
+  std::vector<MaterialRow> materials;
+  /// R in the lowest byte; in the upper half the texel to the right, repeated.
+  std::vector<std::uint64_t> texels;
+  std::vector<LevelRow> levels;
+  std::vector<PreparedInstance> instances;
+  std::vector<Light> lights;  ///< directions unit
+  Rgb background{};
+  bool any_transparent = false;
+  bool any_shadow = false;  ///< a light and a visual that cast them
+  std::vector<double> body_radii_m;
+};
+
+/// Appends a mesh's clusters. Leaves out triangles with a vertex twice.
+PreparedMesh add_mesh(const Mesh& mesh, PreparedScene& scene);
+
+/// Appends a texture and its smaller versions, each half as large: down to one pixel.
+/// @returns how many levels.
+std::int32_t add_texture(const Texture& texture, PreparedScene& scene);
+
+}  // namespace tether::raster

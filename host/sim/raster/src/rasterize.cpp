@@ -1,0 +1,357 @@
+#include "rasterize.h"
+
+#include <algorithm>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "rasterize.cpp"
+#include <hwy/foreach_target.h>
+//
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace tether::raster::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<float, kMaxLanes>;
+using DI = hn::RebindToSigned<D>;
+using DU = hn::RebindToUnsigned<D>;
+using V = hn::Vec<D>;
+using VI = hn::Vec<DI>;
+using VU = hn::Vec<DU>;
+using M = hn::Mask<D>;
+
+alignas(64) constexpr std::array<std::int32_t, kMaxLanes> kLaneNumbers{
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+
+// Keeps a triangle where it is nearer than the present one.
+struct Nearest {
+  static constexpr bool kKeepsNearest = true;
+  TileIds& ids;
+
+  void take(std::size_t at, M inside, V inverse_depth, VU id) const {
+    const D d;
+    const DU du;
+    const V before = hn::Load(d, ids.inverse_depth.data() + at);
+    const M taken = hn::And(inside, hn::Gt(inverse_depth, before));
+    hn::Store(hn::IfThenElse(taken, inverse_depth, before), d, ids.inverse_depth.data() + at);
+    const VU id_before = hn::Load(du, ids.id.data() + at);
+    hn::Store(hn::IfThenElse(hn::RebindMask(du, taken), id, id_before), du, ids.id.data() + at);
+  }
+};
+
+// Keeps the farthest triangle that is nearer than `last`. Ids order equally far ones.
+struct Next {
+  static constexpr bool kKeepsNearest = false;
+  const TileIds& last;
+  TileIds& next;
+
+  static M is_before(V depth_a, VU id_a, V depth_b, VU id_b) {
+    const D d;
+    return hn::Or(hn::Lt(depth_a, depth_b),
+                  hn::And(hn::Eq(depth_a, depth_b), hn::RebindMask(d, hn::Lt(id_a, id_b))));
+  }
+  void take(std::size_t at, M inside, V inverse_depth, VU id) const {
+    const D d;
+    const DU du;
+    const V last_depth = hn::Load(d, last.inverse_depth.data() + at);
+    const V best_depth = hn::Load(d, next.inverse_depth.data() + at);
+    const VU last_id = hn::Load(du, last.id.data() + at);
+    const VU best_id = hn::Load(du, next.id.data() + at);
+    const M taken = hn::And(inside, hn::And(is_before(last_depth, last_id, inverse_depth, id),
+                                            is_before(inverse_depth, id, best_depth, best_id)));
+    hn::Store(hn::IfThenElse(taken, inverse_depth, best_depth), d, next.inverse_depth.data() + at);
+    hn::Store(hn::IfThenElse(hn::RebindMask(du, taken), id, best_id), du, next.id.data() + at);
+  }
+};
+
+// Some columns and rows of a tile, counted from its corner; whole vectors of columns.
+struct Part {
+  int first_column, columns, first_row, rows;
+
+  Part(const Tile& tile, const PixelRect& pixels) {
+    constexpr D d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    first_column = std::max(0, pixels.x_low - tile.x) / lanes * lanes;
+    columns = std::min(tile.width - 1, pixels.x_high - tile.x) + 1 - first_column;
+    first_row = std::max(0, pixels.y_low - tile.y);
+    rows = std::min(tile.height - 1, pixels.y_high - tile.y) + 1 - first_row;
+  }
+};
+
+std::size_t place_of(int column, int row) {
+  return static_cast<std::size_t>(row) * kTile_px + static_cast<std::size_t>(column);
+}
+
+// The reciprocal of the depth, never beyond that of the corners: on a
+// triangle that is seen nearly edge-on, the plane overshoots between pixels.
+class Depth {
+ public:
+  explicit Depth(const Facet& f)
+      : facet_(f),
+        x_ref_(hn::Set(D(), f.x_ref)),
+        slope_(hn::Set(D(), f.inverse_depth[1])),
+        low_(hn::Set(D(), f.inverse_depth_low)),
+        high_(hn::Set(D(), f.inverse_depth_high)) {}
+
+  V row(float y) const {
+    return hn::Set(D(), facet_.inverse_depth[0] + facet_.inverse_depth[2] * (y - facet_.y_ref));
+  }
+  V row(V y) const {
+    const D d;
+    return hn::Add(
+        hn::Set(d, facet_.inverse_depth[0]),
+        hn::Mul(hn::Set(d, facet_.inverse_depth[2]), hn::Sub(y, hn::Set(d, facet_.y_ref))));
+  }
+  // The least and the most over a rectangle of whole pixels: each operation is monotonic, so that
+  // they are at its corners.
+  struct Range {
+    float low, high;
+  };
+  Range range(int x, int y, int columns, int rows) const {
+    const auto corner = [&](int column, int row_number) {
+      const Facet& f = facet_;
+      const float dx = static_cast<float>(x + column) - f.x_ref;
+      const float dy = static_cast<float>(y + row_number) - f.y_ref;
+      const float plane = (f.inverse_depth[0] + f.inverse_depth[2] * dy) + f.inverse_depth[1] * dx;
+      return std::min(std::max(plane, f.inverse_depth_low), f.inverse_depth_high);
+    };
+    const std::array corners{corner(0, 0), corner(columns - 1, 0), corner(0, rows - 1),
+                             corner(columns - 1, rows - 1)};
+    return {*std::min_element(corners.begin(), corners.end()),
+            *std::max_element(corners.begin(), corners.end())};
+  }
+
+  V at(V row, V x) const {
+    const V plane = hn::Add(row, hn::Mul(slope_, hn::Sub(x, x_ref_)));
+    return hn::Min(hn::Max(plane, low_), high_);
+  }
+
+ private:
+  const Facet& facet_;
+  V x_ref_, slope_, low_, high_;
+};
+
+// The three edges of a triangle over samples on a grid. Of E = a·x + b·y + c, whose steps from
+// pixel to pixel are multiples of kSubpixels, E ≥ 0 just where E div kSubpixels is, which fits
+// into 32 bits: an edge that is beyond ±kFar does not get back to 0 within a tile.
+class GridEdges {
+ public:
+  GridEdges(const Coverage& t, int x, int y) : t_(t) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::int64_t e =
+          t.c[i] + kSubpixels * (std::int64_t{t.a[i]} * x + std::int64_t{t.b[i]} * y);
+      at_[i] = static_cast<std::int32_t>(std::clamp(e >> kShift, -kFar, kFar));
+    }
+  }
+
+  // Whether no pixel of some columns and rows is inside, because one edge is beyond them.
+  bool misses(int columns, int rows) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::int32_t most =
+          at_[i] + std::max(0, t_.a[i] * (columns - 1)) + std::max(0, t_.b[i] * (rows - 1));
+      if (most < 0) return true;
+    }
+    return false;
+  }
+  // Whether all are.
+  bool covers(int columns, int rows) const {
+    std::int32_t least = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      least = std::min(
+          least, at_[i] + std::min(0, t_.a[i] * (columns - 1)) + std::min(0, t_.b[i] * (rows - 1)));
+    }
+    return least == 0;
+  }
+
+  // Of one edge: the first row's first vector, and the steps to the next ones.
+  struct Walk {
+    VI first, column_step, row_step;
+  };
+  Walk walk(std::size_t i) const {
+    const DI di;
+    const VI lane = hn::Load(di, kLaneNumbers.data());
+    return {hn::Add(hn::Set(di, at_[i]), hn::Mul(lane, hn::Set(di, t_.a[i]))),
+            hn::Set(di, t_.a[i] * static_cast<int>(hn::Lanes(di))), hn::Set(di, t_.b[i])};
+  }
+
+ private:
+  static constexpr std::int64_t kFar = std::int64_t{1} << 30;
+  static constexpr int kShift = 8;
+  static_assert(kSubpixels == 1 << kShift);
+
+  const Coverage& t_;
+  std::array<std::int32_t, 3> at_{};
+};
+
+// A triangle's pixels in a part of a tile, of which it covers all or some.
+template <bool kCoversAll, class Target>
+HWY_INLINE void take_part(const GridEdges& edges, const Depth& depth, VU ids, const Tile& tile,
+                          const Part& part, const Target& target) {
+  const D d;
+  const DI di;
+  const std::size_t vectors =
+      (static_cast<std::size_t>(part.columns) + hn::Lanes(d) - 1) / hn::Lanes(d);
+  const V lane = hn::ConvertTo(d, hn::Load(di, kLaneNumbers.data()));
+  const V first_x = hn::Add(lane, hn::Set(d, static_cast<float>(tile.x + part.first_column)));
+  const V x_step = hn::Set(d, static_cast<float>(hn::Lanes(d)));
+  const GridEdges::Walk e0 = edges.walk(0);
+  const GridEdges::Walk e1 = edges.walk(1);
+  const GridEdges::Walk e2 = edges.walk(2);
+  VI row0 = e0.first;
+  VI row1 = e1.first;
+  VI row2 = e2.first;
+  for (int row = 0; row < part.rows; ++row) {
+    const V depth_row = depth.row(static_cast<float>(tile.y + part.first_row + row));
+    std::size_t at = place_of(part.first_column, part.first_row + row);
+    V x = first_x;
+    VI at0 = row0;
+    VI at1 = row1;
+    VI at2 = row2;
+    for (std::size_t i = 0; i < vectors; ++i, at += hn::Lanes(d)) {
+      const M inside = hn::RebindMask(
+          d, hn::Gt(kCoversAll ? hn::Zero(di) : hn::Or(hn::Or(at0, at1), at2), hn::Set(di, -1)));
+      if (kCoversAll || !hn::AllFalse(d, inside)) {
+        target.take(at, inside, depth.at(depth_row, x), ids);
+      }
+      x = hn::Add(x, x_step);
+      at0 = hn::Add(at0, e0.column_step);
+      at1 = hn::Add(at1, e1.column_step);
+      at2 = hn::Add(at2, e2.column_step);
+    }
+    row0 = hn::Add(row0, e0.row_step);
+    row1 = hn::Add(row1, e1.row_step);
+    row2 = hn::Add(row2, e2.row_step);
+  }
+}
+
+// `hidden` is the 1/depth at which all of the tile is taken already.
+template <class Target>
+void rasterize_on_grid(const Coverage& t, const Facet& facet, std::uint32_t id, const Tile& tile,
+                       const Target& target, float& hidden) {
+  const Part part(tile, t.pixels);
+  const int x = tile.x + part.first_column;
+  const int y = tile.y + part.first_row;
+  const GridEdges edges(t, x, y);
+  if (edges.misses(part.columns, part.rows)) return;
+  const Depth depth(facet);
+  const Depth::Range range = depth.range(x, y, part.columns, part.rows);
+  if (Target::kKeepsNearest && range.high <= hidden) return;
+  const VU ids = hn::Set(DU(), id);
+  // The last vector's pixels beyond the part as well.
+  const int lanes = static_cast<int>(hn::Lanes(D()));
+  const int columns = (part.columns + lanes - 1) / lanes * lanes;
+  if (!edges.covers(columns, part.rows)) {
+    take_part<false>(edges, depth, ids, tile, part, target);
+    return;
+  }
+  take_part<true>(edges, depth, ids, tile, part, target);
+  const bool is_whole = part.columns == tile.width && part.rows == tile.height;
+  if (is_whole) hidden = std::max(hidden, range.low);
+}
+
+// The least of the three edges for each sample of a row, as whole numbers that doubles hold
+// exactly; as floats they keep their signs. @pre `count` is a multiple of the lanes.
+void least_edges(const Coverage& t, const std::int32_t* x, const std::int32_t* y, int count,
+                 float* out) {
+  using DF = hn::Half<D>;
+  using DD = hn::Rebind<double, DF>;
+  const DD d;
+  const hn::Rebind<std::int32_t, DD> di;
+  const hn::Rebind<float, DD> df;
+  const auto edge = [&](std::size_t i, hn::Vec<DD> px, hn::Vec<DD> py) HWY_ATTR {
+    return hn::Add(hn::Add(hn::Mul(hn::Set(d, static_cast<double>(t.a[i])), px),
+                           hn::Mul(hn::Set(d, static_cast<double>(t.b[i])), py)),
+                   hn::Set(d, static_cast<double>(t.c[i])));
+  };
+  for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+    const auto px = hn::PromoteTo(d, hn::LoadU(di, x + i));
+    const auto py = hn::PromoteTo(d, hn::LoadU(di, y + i));
+    const auto least = hn::Min(hn::Min(edge(0, px, py), edge(1, px, py)), edge(2, px, py));
+    hn::StoreU(hn::DemoteTo(df, least), df, out + i);
+  }
+}
+
+// Samples in pixels, from kSubpixels: exact.
+V in_pixels(const std::int32_t* samples) {
+  const D d;
+  return hn::Mul(hn::ConvertTo(d, hn::LoadU(DI(), samples)), hn::Set(d, 1.0F / kSubpixels));
+}
+
+template <class Target>
+void rasterize_samples(const Coverage& t, const Facet& facet, std::uint32_t id, const Tile& tile,
+                       const Lens& lens, const Target& target) {
+  const D d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const Part part(tile, t.pixels);
+  const Depth depth(facet);
+  const VU ids = hn::Set(DU(), id);
+  alignas(64) std::array<float, kTile_px> least;
+  const int whole_vectors = (part.columns + lanes - 1) / lanes * lanes;
+  for (int row = part.first_row; row < part.first_row + part.rows; ++row) {
+    const std::size_t sample = static_cast<std::size_t>(tile.y + row) * lens.stride() +
+                               static_cast<std::size_t>(tile.x + part.first_column);
+    const std::int32_t* const x = lens.x().data() + sample;
+    const std::int32_t* const y = lens.y().data() + sample;
+    least_edges(t, x, y, whole_vectors, least.data());
+    for (int c = 0; c < part.columns; c += lanes) {
+      const M inside = hn::Ge(hn::Load(d, least.data() + c), hn::Zero(d));
+      if (hn::AllFalse(d, inside)) continue;
+      const V depth_row = depth.row(in_pixels(y + c));
+      target.take(place_of(part.first_column + c, row), inside,
+                  depth.at(depth_row, in_pixels(x + c)), ids);
+    }
+  }
+}
+
+template <class Target>
+void rasterize_all(const Layer& layer, const Lens& lens, const Tile& tile,
+                   std::span<const std::uint32_t> triangles, const Target& target) {
+  float hidden = 0.0F;
+  for (const std::uint32_t i : triangles) {
+    if (lens.is_grid()) {
+      rasterize_on_grid(layer.coverage[i], layer.facets[i], i + 1, tile, target, hidden);
+    } else {
+      rasterize_samples(layer.coverage[i], layer.facets[i], i + 1, tile, lens, target);
+    }
+  }
+}
+
+}  // namespace
+
+void rasterize_nearest_on(const Layer& layer, const Lens& lens, const Tile& tile,
+                          std::span<const std::uint32_t> triangles, TileIds& ids) {
+  rasterize_all(layer, lens, tile, triangles, Nearest{ids});
+}
+
+void rasterize_next_on(const Layer& layer, const Lens& lens, const Tile& tile,
+                       std::span<const std::uint32_t> triangles, const TileIds& last,
+                       TileIds& next) {
+  rasterize_all(layer, lens, tile, triangles, Next{last, next});
+}
+
+}  // namespace tether::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tether::raster {
+
+HWY_EXPORT(rasterize_nearest_on);
+HWY_EXPORT(rasterize_next_on);
+
+void rasterize_nearest(const Layer& layer, const Lens& lens, const Tile& tile,
+                       std::span<const std::uint32_t> triangles, TileIds& ids) {
+  HWY_DYNAMIC_DISPATCH(rasterize_nearest_on)(layer, lens, tile, triangles, ids);
+}
+
+bool rasterize_next(const Layer& layer, const Lens& lens, const Tile& tile,
+                    std::span<const std::uint32_t> triangles, const TileIds& last, TileIds& next) {
+  next.id.fill(0);
+  next.inverse_depth.fill(std::numeric_limits<float>::infinity());
+  HWY_DYNAMIC_DISPATCH(rasterize_next_on)(layer, lens, tile, triangles, last, next);
+  return std::any_of(next.id.begin(), next.id.end(), [](std::uint32_t id) { return id != 0; });
+}
+
+}  // namespace tether::raster
+#endif

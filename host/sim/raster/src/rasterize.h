@@ -1,0 +1,35 @@
+#pragma once
+
+#include "layer.h"
+#include "lens.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace tether::raster {
+
+/// A part of the picture: up to kTile_px each way. `x` is a multiple of it.
+struct Tile {
+  int x = 0, y = 0;
+  int width = 0, height = 0;
+};
+
+/// For each pixel of a tile, the triangle that is seen there (1 + its place in the layer; 0: none)
+/// and the reciprocal of its depth.
+struct TileIds {
+  alignas(64) std::array<std::uint32_t, kTilePixels> id;
+  alignas(64) std::array<float, kTilePixels> inverse_depth;
+};
+
+/// Keeps, for each pixel, the nearest of `triangles` and of the present one; of equally near ones,
+/// the first.
+void rasterize_nearest(const Layer& layer, const Lens& lens, const Tile& tile,
+                       std::span<const std::uint32_t> triangles, TileIds& ids);
+
+/// Finds, for each pixel, the farthest of `triangles` that is nearer than `last`; of equally far
+/// ones, the first after `last`. `next` is set anew. @returns whether there is any.
+bool rasterize_next(const Layer& layer, const Lens& lens, const Tile& tile,
+                    std::span<const std::uint32_t> triangles, const TileIds& last, TileIds& next);
+
+}  // namespace tether::raster

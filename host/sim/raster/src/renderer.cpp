@@ -1,0 +1,215 @@
+#include "exposure.h"
+#include "lens.h"
+#include "prepared_scene.h"
+#include "shadow_map.h"
+#include "strip_renderer.h"
+#include "worker_pool.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <list>
+
+#include <hwy/targets.h>
+
+#include <tether/base/error.h>
+#include <tether/sim_raster/renderer.h>
+
+namespace tether::raster {
+namespace {
+
+constexpr std::size_t kLensesKept = 16;
+constexpr int kScoutScale = 8;
+constexpr int kStripsPerWorker = 4;
+
+void require(bool condition, const char* what) {
+  if (!condition) throw Error(ErrorCode::kUsage, std::string("view: ") + what);
+}
+
+bool is_pose(const uav::Pose& X) {
+  const double length = X.q.w * X.q.w + X.q.x * X.q.x + X.q.y * X.q.y + X.q.z * X.q.z;
+  return std::abs(X.p.x) <= kMaxCoordinate_m && std::abs(X.p.y) <= kMaxCoordinate_m &&
+         std::abs(X.p.z) <= kMaxCoordinate_m && std::abs(length - 1.0) < 1e-6;
+}
+
+void check(const uav::CameraModel& c) {
+  const auto is_size = [](int px) { return px >= 1 && px <= kMaxImageSize_px; };
+  require(is_size(c.width_px) && is_size(c.height_px),
+          "the image's size is not 1 to 8192 pixels each way");
+  const auto is_focal = [](double f) { return f > 1e-3 && f < 1e6; };
+  require(is_focal(c.fx_px) && is_focal(c.fy_px),
+          "the camera's focal length is not within 0.001 to 1,000,000 pixels");
+  require(std::abs(c.cx_px) < 3e4 && std::abs(c.cy_px) < 3e4,
+          "the camera's principal point is not within 30,000 pixels");
+  const std::array distortion{c.k1, c.k2, c.k3, c.p1, c.p2};
+  require(
+      std::all_of(distortion.begin(), distortion.end(), [](double k) { return std::abs(k) < 1e3; }),
+      "a distortion coefficient is not finite, or beyond 1000");
+}
+
+void check(const View& view, const Scene& scene) {
+  check(view.camera);
+  require(view.near_m >= 1e-4 && view.far_m > view.near_m && view.far_m <= 1e7,
+          "near_m is not at least 0.1 mm, or far_m not beyond it and within 10,000 km");
+  require(!view.instants.empty(), "there is no instant");
+  const auto is_time = [](double s) { return s >= 0.0 && s <= 1e6; };
+  require(is_time(view.exposure_s) && is_time(view.readout_s),
+          "exposure_s or readout_s is negative or not finite");
+  for (const Instant& instant : view.instants) {
+    require(instant.X_WB.size() >= scene.bodies() &&
+                instant.X_WB.size() == view.instants[0].X_WB.size(),
+            "not a pose for each body");
+    require(is_pose(instant.X_WC) && std::all_of(instant.X_WB.begin(), instant.X_WB.end(), is_pose),
+            "a pose is not finite, beyond 1,000 km, or its quaternion is not unit");
+  }
+}
+
+void check(const Picture& picture, const uav::CameraModel& c) {
+  const std::size_t pixels =
+      static_cast<std::size_t>(c.width_px) * static_cast<std::size_t>(c.height_px);
+  const auto fits = [](std::size_t size, std::size_t wanted) {
+    return size == 0 || size == wanted;
+  };
+  require(fits(picture.rgb.size(), 3 * pixels) && fits(picture.depth_m.size(), pixels) &&
+              fits(picture.entity.size(), pixels),
+          "the picture's arrays are not of the image's size");
+}
+
+// The same field of view in fewer pixels.
+uav::CameraModel smaller(uav::CameraModel c, int scale) {
+  c.width_px = (c.width_px + scale - 1) / scale;
+  c.height_px = (c.height_px + scale - 1) / scale;
+  c.fx_px /= scale;
+  c.fy_px /= scale;
+  c.cx_px = (c.cx_px + 0.5) / scale - 0.5;
+  c.cy_px = (c.cy_px + 0.5) / scale - 0.5;
+  return c;
+}
+
+bool is_same(const uav::CameraModel& a, const uav::CameraModel& b) {
+  return a.width_px == b.width_px && a.height_px == b.height_px && a.fx_px == b.fx_px &&
+         a.fy_px == b.fy_px && a.cx_px == b.cx_px && a.cy_px == b.cy_px && a.k1 == b.k1 &&
+         a.k2 == b.k2 && a.k3 == b.k3 && a.p1 == b.p1 && a.p2 == b.p2;
+}
+
+// Equal parts of the rows, each from where the last one ends.
+Strip strip_of(int rows, int part, int parts, int multiple) {
+  const int units = (rows + multiple - 1) / multiple;
+  const int first = units * part / parts * multiple;
+  const int end = std::min(rows, units * (part + 1) / parts * multiple);
+  return {first, end - first};
+}
+
+}  // namespace
+
+class Renderer::Work {
+ public:
+  Work(const Scene& scene, int threads)
+      : scene_(scene), pool_(threads), strips_(static_cast<std::size_t>(threads)) {}
+
+  const Lens& lens_of(const uav::CameraModel& camera) {
+    const auto known = std::find_if(lenses_.begin(), lenses_.end(), [&](const Lens& lens) {
+      return is_same(lens.camera(), camera);
+    });
+    if (known != lenses_.end()) {
+      lenses_.splice(lenses_.begin(), lenses_, known);
+    } else {
+      lenses_.emplace_front(camera);
+      if (lenses_.size() > kLensesKept) lenses_.pop_back();
+    }
+    return lenses_.front();
+  }
+
+  void draw(const View& view, const Picture& picture) {
+    check(view, scene_);
+    check(picture, view.camera);
+    update_shadows(view);
+    Sampling sampling = sampling_of(view);
+    if (view.antialias) sampling.layers = std::max(sampling.layers, 4);
+    const StripRenderer::Job job{scene_.prepared(), lens_of(view.camera), shadows_, view, picture,
+                                 sampling};
+    const int rows = view.camera.height_px;
+    const bool is_rolling = sampling.bands > 1;
+    const int tile_rows = (rows + kTile_px - 1) / kTile_px;
+    const int strips = is_rolling ? sampling.bands
+                       : pool_.workers() == 1
+                           ? 1
+                           : std::min(tile_rows, pool_.workers() * kStripsPerWorker);
+    pool_.run(strips, [&](int worker, int i) {
+      strips_[static_cast<std::size_t>(worker)].draw(
+          job, strip_of(rows, i, strips, is_rolling ? 1 : kTile_px));
+    });
+  }
+
+ private:
+  // Shadows are those of the middle of the window.
+  void update_shadows(const View& view) {
+    if (!scene_.prepared().any_shadow) return;
+    if (shadows_.empty()) {
+      for (const Light& light : scene_.prepared().lights) {
+        if (light.cast_shadows) shadows_.emplace_back(scene_.prepared(), light);
+      }
+    }
+    interpolate(view.instants, 0.5, moment_);
+    for (ShadowMap& map : shadows_) map.update(moment_.X_WB, view.hidden);
+  }
+
+  // The depth of the nearest surface comes from a small picture of the last instant.
+  Sampling sampling_of(const View& view) {
+    if (view.instants.size() == 1 || view.exposure_s + view.readout_s <= 0.0) return {};
+    View scout = view;
+    scout.camera = smaller(view.camera, kScoutScale);
+    scout.instants = view.instants.last(1);
+    scout.antialias = false;
+    const Picture nothing;
+    const StripRenderer::Job job{
+        scene_.prepared(), lens_of(scout.camera), shadows_, scout, nothing, {}};
+    const double nearest_m = strips_[0].nearest_m(job, {0, scout.camera.height_px});
+    return choose_sampling(view, motion_px(view, scene_.body_radii_m(), nearest_m));
+  }
+
+  const Scene& scene_;
+  WorkerPool pool_;
+  std::vector<StripRenderer> strips_;
+  std::list<Lens> lenses_;  ///< the last used one first
+  std::vector<ShadowMap> shadows_;
+  Moment moment_;
+};
+
+Renderer::Renderer(const Scene& scene, int threads) {
+  if (threads < 1 || threads > kMaxThreads) {
+    throw Error(ErrorCode::kUsage, "the renderer's threads are not 1 to 256");
+  }
+  work_ = std::make_unique<Work>(scene, threads);
+}
+
+Renderer::~Renderer() = default;
+
+void Renderer::draw(const View& view, const Picture& picture) {
+  work_->draw(view, picture);
+}
+
+std::size_t Renderer::blind_pixels(const uav::CameraModel& camera) {
+  check(camera);
+  return work_->lens_of(camera).blind_pixels();
+}
+
+std::string Renderer::instructions() {
+  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
+  return hwy::TargetName(supported & -supported);
+}
+
+std::map<std::uint32_t, PixelBox> visible_boxes(std::span<const std::uint32_t> entity,
+                                                int width_px) {
+  std::map<std::uint32_t, PixelBox> boxes;
+  for (std::size_t i = 0; i < entity.size(); ++i) {
+    if (entity[i] == 0) continue;
+    const int x = static_cast<int>(i % static_cast<std::size_t>(width_px));
+    const int y = static_cast<int>(i / static_cast<std::size_t>(width_px));
+    PixelBox& box = boxes.try_emplace(entity[i], PixelBox{x, y, x, y, 0}).first->second;
+    box = {std::min(box.left, x), box.top, std::max(box.right, x), y, box.pixels + 1};
+  }
+  return boxes;
+}
+
+}  // namespace tether::raster

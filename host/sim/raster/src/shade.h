@@ -1,0 +1,57 @@
+#pragma once
+
+#include "layer.h"
+#include "lens.h"
+#include "light_table.h"
+#include "prepared_scene.h"
+#include "rasterize.h"
+#include "shadow_map.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tether::raster {
+
+/// The data of a picture that all of its tiles are shaded with.
+struct Shading {
+  const PreparedScene& scene;
+  const Lens& lens;
+  const std::vector<ShadowMap>& shadows;
+  const LightTable& table = light_table();
+};
+
+/// A tile's pixels, R in the lowest byte.
+struct TilePixels {
+  alignas(64) std::array<std::uint32_t, kTilePixels> rgb;
+};
+
+/// A tile's colours, 0..1, or its light, 0..LightTable::kWhite.
+struct TileColours {
+  alignas(64) std::array<float, kTilePixels> r, g, b;
+};
+
+/// The picture of one layer, without transparent things.
+void shade(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
+           TilePixels& pixels);
+
+/// The mean light of several layers, without transparent things. A triangle that a pixel sees in
+/// several layers is shaded once, and its texture is averaged along the way that it moves.
+void shade_mean(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
+                std::span<const TileIds> ids, TilePixels& pixels);
+
+/// Mixes the triangles of `ids` into `colours` by their opacity, or draws opaque ones on the
+/// background.
+void shade_over(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
+                bool with_background, TileColours& colours);
+/// Adds the light of colours, of one out of `layers` layers.
+void add_light(const LightTable& table, const TileColours& colours, int layers, TileColours& light);
+/// The pixels of colours, and of light.
+void encode_colours(const TileColours& colours, TilePixels& pixels);
+void encode_light(const LightTable& table, const TileColours& light, TilePixels& pixels);
+
+/// Three bytes for each of a row's pixels.
+void store_row(const std::uint32_t* pixels, int count, std::uint8_t* rgb);
+
+}  // namespace tether::raster

@@ -1,0 +1,135 @@
+#if defined(TETHER_RASTER_VECTOR_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef TETHER_RASTER_VECTOR_INL_H_
+#undef TETHER_RASTER_VECTOR_INL_H_
+#else
+#define TETHER_RASTER_VECTOR_INL_H_
+#endif
+
+#include "prepared_scene.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+// Numbers of several pixels at once.
+//
+// Every pixel's arithmetic is its own, in a fixed order, of operations that IEEE 754 rounds in one
+// way only. So it does not matter how many pixels are computed at once, or by which instructions.
+HWY_BEFORE_NAMESPACE();
+namespace tether::raster::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<float, kMaxLanes>;
+using DI = hn::RebindToSigned<D>;
+using DU = hn::RebindToUnsigned<D>;
+using V = hn::Vec<D>;
+using VI = hn::Vec<DI>;
+using VU = hn::Vec<DU>;
+using M = hn::Mask<D>;
+using hn::Add;
+using hn::And;
+using hn::Div;
+using hn::Mul;
+using hn::Sub;
+
+HWY_INLINE V set(float f) {
+  return hn::Set(D(), f);
+}
+HWY_INLINE VI whole(std::int32_t i) {
+  return hn::Set(DI(), i);
+}
+HWY_INLINE V to_float(VI i) {
+  return hn::ConvertTo(D(), i);
+}
+// The nearest whole number, the even one of two. @pre |x| ≤ 2²². The sum has it in its lowest bits:
+// the conversions of processors differ out of range.
+HWY_INLINE VI nearest(V x) {
+  constexpr float kShift = 12582912.0F;  // 1.5·2²³
+  constexpr std::int32_t kShiftBits = 0x4B400000;
+  return Sub(hn::BitCast(DI(), Add(x, set(kShift))), whole(kShiftBits));
+}
+// 0, 1, 2, …: the number of each lane.
+HWY_INLINE V lane_numbers() {
+  alignas(64) static constexpr std::array<float, kMaxLanes> kNumbers{0, 1, 2,  3,  4,  5,  6,  7,
+                                                                     8, 9, 10, 11, 12, 13, 14, 15};
+  return hn::Load(D(), kNumbers.data());
+}
+HWY_INLINE M float_mask(hn::Mask<DI> m) {
+  return hn::RebindMask(D(), m);
+}
+HWY_INLINE std::size_t lanes() {
+  return hn::Lanes(D());
+}
+HWY_INLINE V dot(V ax, V ay, V az, V bx, V by, V bz) {
+  return Add(Add(Mul(ax, bx), Mul(ay, by)), Mul(az, bz));
+}
+HWY_INLINE V mix(V a, V b, V share) {
+  return Add(a, Mul(Sub(b, a), share));
+}
+
+// Within 1e-6, for normal numbers above 0.
+HWY_INLINE V log2(V x) {
+  // x = m·2^e, m within √½ and √2.
+  constexpr std::int32_t kRootOfHalf = 0x3F3504F3;
+  const VI bits = Sub(hn::BitCast(DI(), x), whole(kRootOfHalf));
+  const VI exponent = hn::ShiftRight<23>(bits);
+  const V m = hn::BitCast(D(), Add(And(bits, whole(0x7FFFFF)), whole(kRootOfHalf)));
+  const V t = Div(Sub(m, set(1.0F)), Add(m, set(1.0F)));
+  const V t2 = Mul(t, t);
+  V sum = Add(set(0.41219857F), Mul(t2, set(0.32059889F)));
+  sum = Add(set(0.57707802F), Mul(t2, sum));
+  sum = Add(set(0.96179669F), Mul(t2, sum));
+  sum = Add(set(2.8853901F), Mul(t2, sum));
+  return Add(to_float(exponent), Mul(t, sum));
+}
+
+// With a relative error of 1e-6. @pre x ≤ 0. Below 2^-126 the result is 0.
+HWY_INLINE V exp2(V x) {
+  const V least = set(-126.0F);
+  const V clamped = hn::Max(x, least);
+  const VI n = nearest(clamped);
+  const V f = Sub(clamped, to_float(n));
+  V sum = Add(set(0.0013333558F), Mul(f, set(0.00015403530F)));
+  sum = Add(set(0.0096181291F), Mul(f, sum));
+  sum = Add(set(0.055504109F), Mul(f, sum));
+  sum = Add(set(0.24022651F), Mul(f, sum));
+  sum = Add(set(0.69314718F), Mul(f, sum));
+  sum = Add(set(1.0F), Mul(f, sum));
+  const V power = hn::BitCast(D(), hn::ShiftLeft<23>(Add(n, whole(127))));
+  return hn::IfThenElseZero(hn::Gt(x, least), Mul(sum, power));
+}
+
+// x^e, of x up to 1.
+HWY_INLINE V power(V x, float e) {
+  return exp2(Mul(set(e), log2(hn::Max(x, set(1e-30F)))));
+}
+
+struct Colour {
+  V r, g, b;
+};
+
+HWY_INLINE Colour colour(const std::array<float, 3>& c) {
+  return {set(c[0]), set(c[1]), set(c[2])};
+}
+HWY_INLINE Colour scaled(const Colour& c, const Colour& by) {
+  return {Mul(c.r, by.r), Mul(c.g, by.g), Mul(c.b, by.b)};
+}
+HWY_INLINE void add_to(Colour& sum, const Colour& c, V factor) {
+  sum = {Add(sum.r, Mul(factor, c.r)), Add(sum.g, Mul(factor, c.g)), Add(sum.b, Mul(factor, c.b))};
+}
+HWY_INLINE Colour mix(const Colour& a, const Colour& b, V share) {
+  return {mix(a.r, b.r, share), mix(a.g, b.g, share), mix(a.b, b.b, share)};
+}
+HWY_INLINE Colour select(M mask, const Colour& a, const Colour& b) {
+  return {hn::IfThenElse(mask, a.r, b.r), hn::IfThenElse(mask, a.g, b.g),
+          hn::IfThenElse(mask, a.b, b.b)};
+}
+
+}  // namespace
+}  // namespace tether::raster::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

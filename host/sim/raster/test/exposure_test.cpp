@@ -1,0 +1,156 @@
+#include "exposure.h"
+
+#include "light_table.h"
+#include "test_scenes.h"
+
+#include <cmath>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+namespace tether::raster {
+namespace {
+
+// A camera that turns to the right and moves ahead, in a rich scene.
+struct Flight {
+  explicit Flight(double speed) {
+    bodies.resize(2);
+    bodies[1].p = {0.05 * speed, 0.0, 0.0};
+    for (int i = 0; i <= 10; ++i) {
+      const double s = 0.1 * i;
+      poses.push_back({{0.02 * speed * s, 0.0, 0.1 * speed * s},
+                       uav::from_axis_angle({0.0, 1.0, 0.0}, 0.03 * speed * s)});
+    }
+    for (const uav::Pose& pose : poses) instants.push_back({pose, {bodies.data(), 1}});
+    view.camera = small_camera();
+    view.instants = instants;
+  }
+
+  std::vector<uav::Pose> bodies;
+  std::vector<uav::Pose> poses;
+  std::vector<Instant> instants;
+  View view;
+};
+
+View at_share(const Flight& flight, double share, Moment& moment, Instant& instant) {
+  interpolate(flight.instants, share, moment);
+  instant = {moment.X_WC, moment.X_WB};
+  View view = flight.view;
+  view.instants = {&instant, 1};
+  return view;
+}
+
+TEST(Exposure, OfAStillSceneIsThePlainPicture) {
+  const Scene scene(rich_parts());
+  Renderer renderer(scene);
+  Flight flight(0.0);
+  flight.view.exposure_s = 0.01;
+  flight.view.readout_s = 0.02;
+  View plain = flight.view;
+  plain.instants = plain.instants.first(1);
+  EXPECT_EQ(draw(renderer, flight.view).rgb, draw(renderer, plain).rgb);
+}
+
+// Each row of a rolling picture is that row of the picture of its instant, up to a
+// quarter of a pixel's motion.
+TEST(Exposure, RollsThroughThePicturesOfEachRow) {
+  SceneParts parts = plain_parts(rectangle(-0.5F, -9, 9, 9, 3), {1, 1, 1});
+  const Scene scene(parts);
+  Renderer renderer(scene);
+  Flight flight(4.0);
+  flight.view.readout_s = 0.02;
+  const Drawing rolling = draw(renderer, flight.view);
+  const auto edge = [](const Drawing& drawing, int row) {
+    int column = 0;
+    while (drawing.at(column, row)[0] < 128) ++column;
+    return column;
+  };
+  for (int row = 0; row < 120; row += 7) {
+    Moment moment;
+    Instant instant;
+    const View view = at_share(flight, share_of(flight.view, row, 0, 1), moment, instant);
+    EXPECT_NEAR(edge(rolling, row), edge(draw(renderer, view), row), 1) << "row " << row;
+  }
+  EXPECT_GT(std::abs(edge(rolling, 0) - edge(rolling, 119)), 8);
+}
+
+// An exposed picture is the mean light of pictures throughout the exposure.
+TEST(Exposure, AveragesTheLightOfItsInstants) {
+  const Scene scene(rich_parts());
+  Renderer renderer(scene);
+  for (const bool transparent : {true, false}) {
+    SceneParts parts = rich_parts();
+    if (!transparent) parts.materials[2].alpha = 1.0F;
+    const Scene exposed_scene(parts);
+    Renderer exposing(exposed_scene);
+    Flight flight(2.0);
+    flight.view.exposure_s = 0.01;
+    const Drawing exposed = draw(exposing, flight.view);
+    constexpr int kPictures = 64;
+    std::vector<double> light(exposed.rgb.size());
+    for (int i = 0; i < kPictures; ++i) {
+      Moment moment;
+      Instant instant;
+      const View view = at_share(flight, (i + 0.5) / kPictures, moment, instant);
+      const Drawing one = draw(exposing, view);
+      for (std::size_t k = 0; k < light.size(); ++k) {
+        light[k] += static_cast<double>(light_table().light[one.rgb[k]]) / kPictures;
+      }
+    }
+    double difference = 0.0;
+    for (std::size_t k = 0; k < light.size(); ++k) {
+      const int wanted = light_table().byte[static_cast<std::size_t>(std::lround(light[k]))];
+      difference += std::abs(wanted - static_cast<int>(exposed.rgb[k]));
+    }
+    EXPECT_LT(difference / static_cast<double>(light.size()), 2.0) << transparent;
+  }
+}
+
+TEST(Exposure, DividesTimeByTheMotionInThePicture) {
+  View view;
+  view.camera = small_camera(640, 480);
+  EXPECT_EQ(choose_sampling(view, 50.0), (Sampling{1, 1}));
+  view.exposure_s = 0.01;
+  EXPECT_EQ(choose_sampling(view, 0.0), (Sampling{1, 1}));
+  EXPECT_EQ(choose_sampling(view, 3.5), (Sampling{4, 1}));
+  EXPECT_EQ(choose_sampling(view, 1e9), (Sampling{16, 1}));
+  view.readout_s = 0.03;
+  EXPECT_EQ(choose_sampling(view, 4.0), (Sampling{2, 6}));
+  EXPECT_EQ(choose_sampling(view, 1e9), (Sampling{16, 120}));
+}
+
+TEST(Exposure, EndsWithTheLastRow) {
+  View view;
+  view.camera = small_camera(640, 480);
+  view.exposure_s = 0.01;
+  view.readout_s = 0.03;
+  EXPECT_DOUBLE_EQ(share_of(view, 0, 0, 1), 0.125);
+  EXPECT_DOUBLE_EQ(share_of(view, 479, 0, 1), 0.875);
+  EXPECT_DOUBLE_EQ(share_of(view, 479, 1, 2), 0.9375);
+  EXPECT_DOUBLE_EQ(share_of(view, 0, 0, 2), 0.0625);
+}
+
+TEST(Antialiasing, GivesEdgesTheShareThatIsCovered) {
+  // Edges at quarters of a pixel: columns 20.0, 20.25, … of a picture with focal length 64.
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const float left = static_cast<float>((20.0 + 0.25 * quarter - 0.5 - 31.5) / 64.0 * 2.0);
+    const Scene scene(plain_parts(rectangle(left, -9, 9, 9, 2), {1, 1, 1}));
+    Renderer renderer(scene);
+    uav::CameraModel camera = small_camera(64, 64);
+    camera.fx_px = camera.fy_px = 64.0;
+    const Instant instant;
+    View view;
+    view.camera = camera;
+    view.instants = {&instant, 1};
+    view.antialias = true;
+    const Drawing drawing = draw(renderer, view);
+    EXPECT_EQ(drawing.at(19, 30)[0], 0);
+    EXPECT_EQ(drawing.at(21, 30)[0], 255);
+    const double share =
+        light_table().light[static_cast<std::size_t>(drawing.at(20, 30)[0])] / 65535.0F;
+    EXPECT_NEAR(share, 1.0 - 0.25 * quarter, 0.01);
+  }
+}
+
+}  // namespace
+}  // namespace tether::raster

@@ -1,0 +1,200 @@
+#include "test_scenes.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <hwy/targets.h>
+
+#include <tether/base/error.h>
+#include <tether/sim_raster/renderer.h>
+
+namespace tether::raster {
+namespace {
+
+// The views of the determinism tests: plain, exposed, rolling, distorted, antialiased.
+std::vector<std::uint64_t> hashes(Renderer& renderer) {
+  const std::vector<uav::Pose> bodies(1);
+  std::vector<Instant> instants;
+  for (int i = 0; i < 4; ++i) {
+    instants.push_back(
+        {{{0.02 * i, 0.01 * i, 0.03 * i}, uav::from_axis_angle({0.0, 1.0, 0.0}, 0.01 * i)},
+         bodies});
+  }
+  std::vector<std::uint64_t> result;
+  for (int kind = 0; kind < 5; ++kind) {
+    View view;
+    view.camera = kind == 3 ? bent_camera() : small_camera(157, 119);
+    view.instants = instants;
+    if (kind == 0) view.instants = view.instants.first(1);
+    if (kind == 1 || kind == 3) view.exposure_s = 0.01;
+    if (kind == 2 || kind == 3) view.readout_s = 0.02;
+    view.antialias = kind == 4;
+    result.push_back(hash_of(draw(renderer, view)));
+  }
+  return result;
+}
+
+// Draws with one set of instructions for as long as it lives.
+class ForcedInstructions {
+ public:
+  explicit ForcedInstructions(std::int64_t target) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();
+  }
+  ~ForcedInstructions() {
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().DeInit();
+  }
+  ForcedInstructions(const ForcedInstructions&) = delete;
+  ForcedInstructions& operator=(const ForcedInstructions&) = delete;
+};
+
+TEST(Renderer, GivesTheSameBytesWithAllInstructionsAndThreads) {
+  const Scene scene(rich_parts());
+  Renderer one(scene, 1);
+  const std::vector<std::uint64_t> expected = hashes(one);
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    const ForcedInstructions forced(target);
+    Renderer renderer(scene, 1);
+    EXPECT_EQ(hashes(renderer), expected) << Renderer::instructions();
+  }
+  for (const int threads : {2, 3}) {
+    Renderer renderer(scene, threads);
+    EXPECT_EQ(hashes(renderer), expected) << threads << " threads";
+  }
+  EXPECT_EQ(hashes(one), expected) << "after other pictures";
+}
+
+// The same on every machine. It changes with the arithmetic only: see that the picture is right
+// before you change it.
+TEST(Renderer, GivesTheBytesOfTheGoldenPicture) {
+  const Scene scene(rich_parts());
+  Renderer renderer(scene);
+  const std::vector<std::uint64_t> golden{11583384555181892833ULL, 3897855945125909344ULL,
+                                          8436384362931424482ULL, 11650068734448308340ULL,
+                                          16808630405170128032ULL};
+  EXPECT_EQ(hashes(renderer), golden);
+}
+
+struct BadView {
+  const char* what;
+  std::function<void(View&)> spoil;
+};
+
+TEST(Renderer, RefusesViewsThatCannotBeDrawn) {
+  constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<BadView> bad{
+      {"no width", [](View& v) { v.camera.width_px = 0; }},
+      {"too high", [](View& v) { v.camera.height_px = 8193; }},
+      {"no focal length", [](View& v) { v.camera.fx_px = 0.0; }},
+      {"principal point", [=](View& v) { v.camera.cx_px = kNotANumber; }},
+      {"distortion", [=](View& v) { v.camera.k1 = kNotANumber; }},
+      {"near", [](View& v) { v.near_m = 0.0; }},
+      {"far", [](View& v) { v.far_m = v.near_m; }},
+      {"no instant", [](View& v) { v.instants = {}; }},
+      {"exposure", [](View& v) { v.exposure_s = -1.0; }},
+      {"readout", [=](View& v) { v.readout_s = kNotANumber; }},
+  };
+  const Scene scene(rich_parts());
+  Renderer renderer(scene);
+  const std::vector<uav::Pose> bodies(1);
+  const Instant instant{{}, bodies};
+  for (const BadView& view : bad) {
+    View spoilt;
+    spoilt.camera = small_camera();
+    spoilt.instants = {&instant, 1};
+    view.spoil(spoilt);
+    EXPECT_THROW(renderer.draw(spoilt, {}), Error) << view.what;
+  }
+  View view;
+  view.camera = small_camera();
+  const Instant without_body;
+  view.instants = {&without_body, 1};
+  EXPECT_THROW(renderer.draw(view, {}), Error);
+  Instant nowhere = instant;
+  nowhere.X_WC.p.x = kNotANumber;
+  view.instants = {&nowhere, 1};
+  EXPECT_THROW(renderer.draw(view, {}), Error);
+  view.instants = {&instant, 1};
+  std::vector<std::uint8_t> too_small(10);
+  Picture picture;
+  picture.rgb = too_small;
+  EXPECT_THROW(renderer.draw(view, picture), Error);
+  EXPECT_THROW(Renderer(scene, 0), Error);
+}
+
+TEST(Renderer, DrawsFromWithinThings) {
+  SceneParts parts = rich_parts();
+  parts.meshes.push_back(ball(0.03F, 8));
+  parts.meshes.push_back(box(0.2F));
+  Instance around;
+  around.mesh = 3;
+  parts.instances.push_back(around);
+  around.mesh = 4;
+  parts.instances.push_back(around);
+  draw(Scene(parts), small_camera());
+}
+
+TEST(Renderer, DrawsThePictureOfTheLargestSize) {
+  const Scene scene(plain_parts(rectangle(-0.25F, -0.25F, 0.25F, 0.25F, 2.0F), {1, 1, 1}));
+  const uav::CameraModel camera = small_camera(kMaxImageSize_px, kMaxImageSize_px);
+  const Drawing drawing = draw(scene, camera, {}, 2);
+  const PixelBox box = visible_boxes(drawing.entity, camera.width_px).at(7);
+  EXPECT_EQ(box.right - box.left, box.bottom - box.top);
+  EXPECT_NEAR(box.right - box.left + 1, 0.25 * camera.fx_px, 1.0);
+}
+
+TEST(Renderer, HidesABody) {
+  const Scene scene(rich_parts());
+  Renderer renderer(scene);
+  const std::vector<uav::Pose> bodies(1);
+  const Instant instant{{}, bodies};
+  View view;
+  view.camera = small_camera();
+  view.instants = {&instant, 1};
+  EXPECT_TRUE(visible_boxes(draw(renderer, view).entity, 160).contains(5));
+  view.hidden = 0;
+  EXPECT_FALSE(visible_boxes(draw(renderer, view).entity, 160).contains(5));
+}
+
+TEST(Renderer, GivesDepthAsTheRobotsStandardHasIt) {
+  SceneParts parts = plain_parts(rectangle(-9, -9, 0, 9, 2), {1, 1, 1});
+  parts.meshes.push_back(rectangle(0, -9, 9, 0, 20));
+  Instance far = parts.instances[0];
+  far.mesh = 1;
+  parts.instances.push_back(far);
+  const Scene scene(parts);
+  Renderer renderer(scene);
+  const Instant instant;
+  View view;
+  view.camera = small_camera(40, 40);
+  view.instants = {&instant, 1};
+  std::vector<float> depth(1600);
+  Picture picture;
+  picture.depth_m = depth;
+  picture.depth_max_m = 10.0F;
+  renderer.draw(view, picture);
+  EXPECT_FLOAT_EQ(depth[20 * 40 + 5], 2.0F);
+  EXPECT_EQ(depth[12 * 40 + 30], std::numeric_limits<float>::infinity());
+  EXPECT_EQ(depth[35 * 40 + 30], std::numeric_limits<float>::infinity());
+  picture.depth_min_m = 3.0F;
+  picture.depth_max_m = 50.0F;
+  renderer.draw(view, picture);
+  EXPECT_EQ(depth[20 * 40 + 5], -std::numeric_limits<float>::infinity());
+  EXPECT_NEAR(depth[12 * 40 + 30], 20.0F, 1e-4);
+}
+
+TEST(VisibleBoxes, AreThoseOfWhatIsSeen) {
+  const std::vector<std::uint32_t> entity{0, 3, 3, 0,  //
+                                          0, 0, 3, 9,  //
+                                          3, 0, 0, 9};
+  const auto boxes = visible_boxes(entity, 4);
+  ASSERT_EQ(boxes.size(), 2U);
+  EXPECT_EQ(boxes.at(3), (PixelBox{0, 0, 2, 2, 4}));
+  EXPECT_EQ(boxes.at(9), (PixelBox{3, 1, 3, 2, 2}));
+}
+
+}  // namespace
+}  // namespace tether::raster

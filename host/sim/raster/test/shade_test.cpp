@@ -1,0 +1,224 @@
+#include "shade.h"
+
+#include "light_table.h"
+#include "lights.h"
+#include "test_scenes.h"
+#include "trigonometry.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+
+namespace tether::raster {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::Ge;
+using testing::Le;
+
+// The middle pixel of a wall at z = 2 that fills the picture; its ray is the axis.
+std::vector<int> wall(SceneParts parts) {
+  return draw(Scene(parts), small_camera(33, 33)).at(16, 16);
+}
+
+SceneParts dark_wall() {
+  SceneParts parts = plain_parts(rectangle(-9, -9, 9, 9, 2), {0, 0, 0});
+  parts.materials[0].diffuse = {1.0F, 0.5F, 0.25F};
+  return parts;
+}
+
+Light head_light() {
+  Light light;
+  light.direction_W = {0.0, 0.0, 1.0};
+  light.diffuse = {0.8F, 0.8F, 0.8F};
+  return light;
+}
+
+TEST(Shade, AddsAmbientAndEmissive) {
+  SceneParts parts = plain_parts(rectangle(-9, -9, 9, 9, 2), {0.2F, 0.4F, 0.6F});
+  parts.ambient = {0.5F, 0.5F, 0.5F};
+  parts.materials[0].emissive = {0.1F, 0.0F, 0.9F};
+  EXPECT_THAT(wall(parts), ElementsAre(51, 51, 255));
+}
+
+TEST(Shade, LightsByTheCosine) {
+  SceneParts parts = dark_wall();
+  Light sun = head_light();
+  sun.kind = LightKind::kDirectional;
+  sun.direction_W = {std::sqrt(3.0), 0.0, 1.0};  // 60° off
+  parts.lights = {sun};
+  EXPECT_THAT(wall(parts), ElementsAre(102, 51, 26));
+  parts.lights[0].direction_W = {0.0, 0.0, -1.0};
+  EXPECT_THAT(wall(parts), Each(0));
+}
+
+TEST(Shade, AttenuatesByDistance) {
+  SceneParts parts = dark_wall();
+  Light lamp = head_light();
+  lamp.attenuation_constant = 0.5F;
+  lamp.attenuation_linear = 0.25F;
+  lamp.attenuation_quadratic = 0.75F;
+  parts.lights = {lamp};  // 1 / (0.5 + 0.5 + 3) of 0.8
+  EXPECT_THAT(wall(parts), ElementsAre(51, 26, 13));
+}
+
+TEST(Shade, KeepsASpotWithinItsCone) {
+  SceneParts parts = dark_wall();
+  Light spot = head_light();
+  spot.kind = LightKind::kSpot;
+  spot.spot_half_angle_rad = 0.3;
+  spot.spot_exponent = 2.0F;
+  parts.lights = {spot};
+  EXPECT_THAT(wall(parts), ElementsAre(204, 102, 51));
+  parts.lights[0].direction_W = {std::sin(0.29), 0.0, std::cos(0.29)};
+  const double fallen = std::cos(0.29) * std::cos(0.29);
+  EXPECT_THAT(wall(parts)[0], std::lround(204 * fallen));
+  parts.lights[0].direction_W = {std::sin(0.31), 0.0, std::cos(0.31)};
+  EXPECT_THAT(wall(parts), Each(0));
+}
+
+TEST(Shade, ShinesWhereTheHalfOfLightAndViewIsNearTheNormal) {
+  SceneParts parts = dark_wall();
+  parts.materials[0].diffuse = {0.0F, 0.0F, 0.0F};
+  parts.materials[0].specular = {0.5F, 1.0F, 0.0F};
+  parts.materials[0].shininess = 32.0F;
+  Light sun = head_light();
+  sun.kind = LightKind::kDirectional;
+  sun.specular = {1.0F, 1.0F, 1.0F};
+  parts.lights = {sun};
+  EXPECT_THAT(wall(parts), ElementsAre(128, 255, 0));
+  parts.lights[0].direction_W = {std::sin(0.4), 0.0, std::cos(0.4)};
+  EXPECT_NEAR(wall(parts)[1], 255 * std::pow(std::cos(0.2), 32.0), 1.0);
+}
+
+TEST(Shade, MixesWhatIsTransparentFromBackToFront) {
+  SceneParts parts = plain_parts(rectangle(-9, -9, 9, 9, 4), {1.0F, 0.0F, 0.0F});
+  const std::vector<Rgb> colours{{0.0F, 1.0F, 0.0F}, {0.0F, 0.0F, 1.0F}};
+  // The nearer pane is given first, and both have corners of the same depth.
+  for (std::size_t i = 0; i < 2; ++i) {
+    Material pane = parts.materials[0];
+    pane.ambient = colours[i];
+    pane.alpha = 0.5F;
+    parts.meshes.push_back(rectangle(-9, -9, 9, 9, i == 0 ? 2.0F : 3.0F));
+    parts.materials.push_back(pane);
+    Instance one;
+    one.mesh = one.material = i + 1;
+    parts.instances.push_back(one);
+  }
+  // Red, half blue: (½, 0, ½); half green: (¼, ½, ¼).
+  EXPECT_THAT(wall(parts), ElementsAre(64, 128, 64));
+  const Drawing drawing = draw(Scene(parts), small_camera(33, 33));
+  EXPECT_THAT(drawing.entity, Each(7U)) << "entities are those of opaque things";
+}
+
+TEST(Shade, ShowsTheUpperLeftPixelOfATextureAtItsUpperLeft) {
+  SceneParts parts = plain_parts(rectangle(-1, -1, 1, 1, 2), {1.0F, 1.0F, 1.0F});
+  parts.textures = {{2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}}};
+  parts.materials[0].texture = 0;
+  uav::CameraModel camera = small_camera(64, 64);
+  camera.fx_px = camera.fy_px = 64.0;  // the rectangle fills the picture
+  const Drawing drawing = draw(Scene(parts), camera);
+  // Half a pixel off the middles of the texture's pixels.
+  const auto dark = Le(8);
+  const auto bright = Ge(247);
+  EXPECT_THAT(drawing.at(16, 16), ElementsAre(bright, dark, dark));
+  EXPECT_THAT(drawing.at(47, 16), ElementsAre(dark, bright, dark));
+  EXPECT_THAT(drawing.at(16, 47), ElementsAre(dark, dark, bright));
+  EXPECT_THAT(drawing.at(47, 47), ElementsAre(bright, bright, bright));
+}
+
+// A texture's channel at a place, the slow way: bilinear on one size.
+double texel(const PreparedScene& scene, std::size_t level, double u, double v, unsigned shift) {
+  const LevelRow& row = scene.levels[level];
+  const double x = (u - std::floor(u)) * row.width - 0.5;
+  const double y = (v - std::floor(v)) * row.height - 0.5;
+  double sum = 0.0;
+  for (int dy = 0; dy < 2; ++dy) {
+    for (int dx = 0; dx < 2; ++dx) {
+      const int column = static_cast<int>(std::floor(x)) + dx;
+      const int line = static_cast<int>(std::floor(y)) + dy;
+      const int at = (line + row.height) % row.height * row.width +
+                     (column + row.width) % row.width + row.first_texel;
+      const double share = (dx == 0 ? 1.0 - (x - std::floor(x)) : x - std::floor(x)) *
+                           (dy == 0 ? 1.0 - (y - std::floor(y)) : y - std::floor(y));
+      sum +=
+          share * static_cast<double>(scene.texels[static_cast<std::size_t>(at)] >> shift & 0xFFU);
+    }
+  }
+  return sum;
+}
+
+TEST(Shade, FiltersTexturesTrilinearly) {
+  for (const float repeat : {0.37F, 2.3F, 9.0F, 21.0F}) {
+    SceneParts parts = plain_parts(rectangle(-1, -1, 1, 1, 2, repeat), {1.0F, 1.0F, 1.0F});
+    parts.textures = {noise(3, 24, 17)};
+    parts.materials[0].texture = 0;
+    const Scene scene(parts);
+    uav::CameraModel camera = small_camera(64, 64);
+    camera.fx_px = camera.fy_px = 64.0;
+    const Drawing drawing = draw(scene, camera);
+    const double lod = std::max(0.0, std::log2(repeat * 24 / 64.0));
+    const auto level = static_cast<std::size_t>(lod);
+    const std::size_t next = std::min(level + 1, scene.prepared().levels.size() - 1);
+    for (int i = 0; i < 64 * 64; i += 7) {
+      const double u = repeat * (i % 64 + 0.5) / 64.0;
+      const double v = repeat * (static_cast<double>(i / 64) + 0.5) / 64.0;
+      for (unsigned channel = 0; channel < 3; ++channel) {
+        const double a = texel(scene.prepared(), level, u, v, 8 * channel);
+        const double b = texel(scene.prepared(), next, u, v, 8 * channel);
+        const double expected = a + (b - a) * (lod - static_cast<double>(level));
+        ASSERT_NEAR(drawing.at(i % 64, i / 64)[channel], expected, 2.0)
+            << "repeated " << repeat << " times, pixel " << i;
+      }
+    }
+  }
+}
+
+TEST(Shadows, DarkenWhatIsBehindTheirCaster) {
+  for (const LightKind kind : {LightKind::kDirectional, LightKind::kSpot, LightKind::kPoint}) {
+    SceneParts parts = dark_wall();
+    parts.meshes.push_back(rectangle(0.3F, -0.5F, 1.3F, 0.5F, 1.5F));
+    Instance screen = parts.instances[0];
+    screen.mesh = 1;
+    parts.instances.push_back(screen);
+    Light light = head_light();
+    light.kind = kind;
+    light.p_WL = {2.0, 0.0, 0.0};
+    light.direction_W = {-0.7, 0.0, 1.0};
+    light.spot_half_angle_rad = 0.9;
+    light.cast_shadows = true;
+    parts.lights = {light};
+    // The camera sees the wall left of the screen, where the screen's shadow falls: the light
+    // comes from the right.
+    const Drawing with = draw(Scene(parts), small_camera(65, 65));
+    parts.instances[1].cast_shadows = false;
+    const Drawing without = draw(Scene(parts), small_camera(65, 65));
+    const auto column = [](double x) { return static_cast<int>(32 + 47.5 * x / 2.0); };
+    const double shadow_x = kind == LightKind::kDirectional ? 0.15 : 0.0;
+    EXPECT_EQ(with.at(column(shadow_x), 32)[0], 0) << static_cast<int>(kind);
+    EXPECT_GT(without.at(column(shadow_x), 32)[0], 60) << static_cast<int>(kind);
+    EXPECT_EQ(with.at(column(-0.9), 32), without.at(column(-0.9), 32)) << static_cast<int>(kind);
+  }
+}
+
+TEST(LightTable, GivesBytesBack) {
+  const LightTable& table = light_table();
+  for (std::size_t i = 0; i < 256; ++i) {
+    const double srgb = static_cast<double>(i) / 255.0;
+    const double light = srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+    EXPECT_NEAR(table.light[i], 65535.0 * light, 0.01);
+    EXPECT_EQ(table.byte[static_cast<std::size_t>(std::lround(table.light[i]))], i);
+  }
+}
+
+TEST(Trigonometry, AgreesWithTheStandardLibrary) {
+  for (double angle = 0.0; angle <= 0.5 * std::numbers::pi; angle += 0.01) {
+    EXPECT_NEAR(sine(angle), std::sin(angle), 1e-15);
+    EXPECT_NEAR(cosine(angle), std::cos(angle), 1e-15);
+  }
+}
+
+}  // namespace
+}  // namespace tether::raster
