@@ -33,15 +33,14 @@ Texture checks(int size_px) {
 }
 
 void add_vertex(Mesh& mesh, const Vec3& p, const Vec3& n, double u, double v) {
-  mesh.positions.push_back(
-      {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-  mesh.normals.push_back(
-      {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)});
-  mesh.uv.push_back({static_cast<float>(u), static_cast<float>(v)});
+  mesh.vertices.push_back(
+      {{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
+       {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)},
+       {static_cast<float>(u), static_cast<float>(v)}});
 }
 
 void add_square(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-  mesh.indices.insert(mesh.indices.end(), {a, b, c, a, c, d});
+  mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
 }
 
 // A box of the given size around its origin, seen from outside, or from inside for side −1.
@@ -51,7 +50,7 @@ Mesh box(const Vec3& size, double side) {
   for (std::size_t face = 0; face < 6; ++face) {
     const std::size_t axis = face / 2;
     const double sign = face % 2 == 0 ? 1.0 : -1.0;
-    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     for (int corner = 0; corner < 4; ++corner) {
       const double a = corner == 0 || corner == 3 ? -1.0 : 1.0;
       const double b = corner < 2 ? -1.0 : 1.0;
@@ -82,7 +81,7 @@ Mesh ball(double radius, int n) {
     }
   }
   const auto stride = static_cast<std::uint32_t>(n + 1);
-  for (std::uint32_t a = 0; a + stride + 1 < mesh.positions.size(); ++a) {
+  for (std::uint32_t a = 0; a + stride + 1 < mesh.vertices.size(); ++a) {
     if (a % stride + 1 < stride) add_square(mesh, a, a + stride, a + stride + 1, a + 1);
   }
   return mesh;

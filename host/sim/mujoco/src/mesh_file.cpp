@@ -32,7 +32,7 @@ class MeshCollector {
     for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], transform, wanted);
   }
 
-  TriangleMesh take() { return std::move(out_); }
+  raster::Mesh take() { return std::move(out_); }
   std::size_t materials() const { return materials_.size(); }
 
  private:
@@ -60,8 +60,8 @@ class MeshCollector {
     return mesh.HasTextureCoords(0) ? &mesh.mTextureCoords[0][i] : nullptr;
   }
 
-  TriangleMesh::Vertex vertex(const Vec3& p, const Vec3& n, const aiVector3D* uv) const {
-    TriangleMesh::Vertex v;
+  raster::Mesh::Vertex vertex(const Vec3& p, const Vec3& n, const aiVector3D* uv) const {
+    raster::Mesh::Vertex v;
     copy_to(p, v.position.data());
     const double length = norm(n);
     copy_to(length > 0.0 ? (1.0 / length) * n : Vec3{0.0, 0.0, 1.0}, v.normal.data());
@@ -92,7 +92,7 @@ class MeshCollector {
   const aiScene& scene_;
   const MeshGeometry& geometry_;
   TextureScale texture_;
-  TriangleMesh out_;
+  raster::Mesh out_;
   std::set<unsigned> materials_;
 };
 
@@ -101,7 +101,7 @@ constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_GenSmoothNormals |
 
 }  // namespace
 
-TriangleMesh load_mesh(const MeshGeometry& mesh, const TextureScale& scale,
+raster::Mesh load_mesh(const MeshGeometry& mesh, const TextureScale& scale,
                        const WarningSink& warn) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
@@ -118,7 +118,18 @@ TriangleMesh load_mesh(const MeshGeometry& mesh, const TextureScale& scale,
           "mesh",
           "has several materials, which are not used; the visual's material is"});
   }
-  TriangleMesh out = collector.take();
+  raster::Mesh out = collector.take();
+  const auto fail = [&](const char* what) {
+    throw Error(ErrorCode::kBadFile, FileLocation{mesh.file.string()}, what);
+  };
+  if (out.triangles.size() > raster::kMaxTriangles) fail("has more than 10,000,000 triangles");
+  for (const raster::Mesh::Vertex& v : out.vertices) {
+    for (const float number : {v.position[0], v.position[1], v.position[2], v.uv[0], v.uv[1]}) {
+      if (!(std::abs(number) <= raster::kMaxCoordinate_m)) {
+        fail("has a vertex that is not finite, or farther than 1,000 km from the origin");
+      }
+    }
+  }
   if (out.triangles.empty()) {
     throw Error(ErrorCode::kBadFile, {mesh.file.string(), 0},
                 mesh.submesh.empty() ? "has no triangle" : "has no submesh '" + mesh.submesh + "'")

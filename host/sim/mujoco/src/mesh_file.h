@@ -9,8 +9,8 @@ namespace tether::sim {
 /// projected along the main axis of each face. The file's own materials are not used; several ones
 /// cause a warning.
 /// @throws Error(kBadFile) with the file, about the submesh, if the file cannot be read or has no
-/// such submesh or no triangle.
-TriangleMesh load_mesh(const MeshGeometry& mesh, const TextureScale& scale,
+/// such submesh, no triangle, or more than the renderer takes.
+raster::Mesh load_mesh(const MeshGeometry& mesh, const TextureScale& scale,
                        const WarningSink& warn);
 
 }  // namespace tether::sim

@@ -1,23 +1,23 @@
 #include "collision_rays.h"
 #include "dynamics.h"
 #include "renderer.h"
+#include "scene.h"
 
 #include <utility>
 
 #include <tether/base/error.h>
+#include <tether/sim/bodies.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
 #include <tether/sim_sensing/sensor_suite.h>
 
 namespace tether::sim {
 namespace {
 
-// The back end for the sensors. The renderer takes the scene when it is made.
 SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, const WarningSink& warn) {
-  Scene scene = make_scene(world, warn);
-  std::vector<double> radii_m = body_radii_m(scene, moving_bodies(world).size());
-  auto make_renderer = [scene = std::move(scene)](int max_width_px, int max_height_px) mutable {
-    return std::make_unique<Renderer>(std::move(scene), max_width_px, max_height_px);
-  };
+  const auto scene = std::make_shared<const raster::Scene>(make_scene(world, warn));
+  std::vector<double> radii_m = scene->body_radii_m();
+  radii_m.resize(moving_bodies(world).size());
+  auto make_renderer = [scene](int, int) { return std::make_unique<Renderer>(scene); };
   return {rays, std::move(make_renderer), std::move(radii_m)};
 }
 

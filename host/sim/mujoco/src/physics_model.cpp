@@ -122,7 +122,7 @@ class PhysicsXml {
            "collides as the convex hull of its mesh"});
     const std::string name = fmt::format("m{}", meshes_++);
     std::string vertices;
-    for (const TriangleMesh::Vertex& v : load_mesh(mesh, {}, [](const auto&) {}).vertices) {
+    for (const raster::Mesh::Vertex& v : load_mesh(mesh, {}, [](const auto&) {}).vertices) {
       fmt::format_to(std::back_inserter(vertices), "{} {} {} ", v.position[0], v.position[1],
                      v.position[2]);
     }

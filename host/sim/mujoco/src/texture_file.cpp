@@ -1,65 +1,73 @@
 #include "texture_file.h"
 
-#include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
+#include <png.h>
 #include <turbojpeg.h>
 
 #include <tether/base/error.h>
+#include <tether/os/text_file.h>
 
 namespace tether::sim {
 namespace {
 
-constexpr int kMaxEdge_px = 16384;
+constexpr std::size_t kLargestFile = std::size_t{1} << 28;
 
-std::string read_file(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (!in || bytes.empty()) {
-    require_a_handle_for(path.string());
-    throw Error(ErrorCode::kBadFile, {path.string(), 0}, "cannot be read");
-  }
-  return bytes;
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
+  throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, what);
 }
 
-/// Width and height as 32-bit integers, then RGB bytes.
-std::string decode_jpeg(const std::filesystem::path& file, const std::string& jpeg) {
-  const std::unique_ptr<void, int (*)(tjhandle)> decoder(tjInitDecompress(), tjDestroy);
-  const auto* bytes = reinterpret_cast<const unsigned char*>(jpeg.data());
-  std::int32_t size_px[2] = {};
-  int chroma = 0, space = 0;
-  const auto refuse = [&](const std::string& reason) {
-    throw Error(ErrorCode::kBadFile, {file.string(), 0}, "cannot be read as a texture: " + reason);
+// An empty picture of a size, once that is known to be small enough.
+raster::Texture sized(const std::filesystem::path& file, std::int64_t width, std::int64_t height) {
+  constexpr std::int64_t kMost = raster::kMaxTextureSize_px;
+  if (width < 1 || height < 1 || width > kMost || height > kMost) {
+    fail(file, "is " + std::to_string(width) + " × " + std::to_string(height) +
+                   " pixels large; a texture has 1 to 8192 each way");
+  }
+  raster::Texture texture{static_cast<int>(width), static_cast<int>(height), {}};
+  texture.rgba.resize(static_cast<std::size_t>(4 * width * height));
+  return texture;
+}
+
+raster::Texture read_png(const std::filesystem::path& file, const std::string& bytes) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  const std::unique_ptr<png_image, decltype(&png_image_free)> owner(&image, &png_image_free);
+  if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) {
+    fail(file, std::string("cannot be read as PNG: ") + image.message);
+  }
+  image.format = PNG_FORMAT_RGBA;
+  raster::Texture texture = sized(file, image.width, image.height);
+  if (png_image_finish_read(&image, nullptr, texture.rgba.data(), 0, nullptr) == 0) {
+    fail(file, std::string("cannot be read as PNG: ") + image.message);
+  }
+  return texture;
+}
+
+raster::Texture read_jpeg(const std::filesystem::path& file, const std::string& bytes) {
+  const std::unique_ptr<void, decltype(&tjDestroy)> reader(tjInitDecompress(), &tjDestroy);
+  const auto* const data = reinterpret_cast<const unsigned char*>(bytes.data());
+  const auto size = static_cast<unsigned long>(bytes.size());  // NOLINT(google-runtime-int)
+  int width = 0;
+  int height = 0;
+  int sampling = 0;
+  int space = 0;
+  const auto require = [&](int result) {
+    if (result == 0 || tjGetErrorCode(reader.get()) == TJERR_WARNING) return;
+    fail(file, std::string("cannot be read as JPEG: ") + tjGetErrorStr2(reader.get()));
   };
-  if (tjDecompressHeader3(decoder.get(), bytes, jpeg.size(), &size_px[0], &size_px[1], &chroma,
-                          &space) != 0)
-    refuse(tjGetErrorStr2(decoder.get()));
-  if (size_px[0] < 1 || size_px[1] < 1) refuse("it has no picture");
-  if (size_px[0] > kMaxEdge_px || size_px[1] > kMaxEdge_px)
-    refuse("it has more than " + std::to_string(kMaxEdge_px) + " pixels an edge");
-  std::string texture(sizeof size_px + std::size_t{3} * static_cast<std::size_t>(size_px[0]) *
-                                           static_cast<std::size_t>(size_px[1]),
-                      '\0');
-  std::memcpy(texture.data(), size_px, sizeof size_px);
-  auto* pixels = reinterpret_cast<unsigned char*>(texture.data() + sizeof size_px);
-  // A warning, such as one of a truncated file, still fills the image.
-  if (tjDecompress2(decoder.get(), bytes, jpeg.size(), pixels, size_px[0], 0, size_px[1], TJPF_RGB,
-                    0) != 0 &&
-      tjGetErrorCode(decoder.get()) != TJERR_WARNING)
-    refuse(tjGetErrorStr2(decoder.get()));
+  require(tjDecompressHeader3(reader.get(), data, size, &width, &height, &sampling, &space));
+  raster::Texture texture = sized(file, width, height);
+  require(tjDecompress2(reader.get(), data, size, texture.rgba.data(), width, 0, height, TJPF_RGBA,
+                        TJFLAG_ACCURATEDCT));
   return texture;
 }
 
 }  // namespace
 
-ModelFile texture_file(const std::string& name, const std::filesystem::path& file) {
-  std::string bytes = read_file(file);
-  const bool is_jpeg = bytes.starts_with("\xff\xd8");
-  return is_jpeg ? ModelFile{name + ".rgb", decode_jpeg(file, bytes)}
-                 : ModelFile{name + ".png", std::move(bytes)};
+raster::Texture load_texture(const std::filesystem::path& file) {
+  const std::string bytes = os::read_file(file, kLargestFile);
+  return bytes.starts_with("\xff\xd8") ? read_jpeg(file, bytes) : read_png(file, bytes);
 }
 
 }  // namespace tether::sim

@@ -1,16 +1,13 @@
 #pragma once
 
-#include "engine.h"
-
 #include <filesystem>
-#include <string>
+
+#include <tether/sim_raster/scene.h>
 
 namespace tether::sim {
 
-/// A PNG or JPEG file as the engine reads textures: PNG as it is, JPEG decoded into the engine's
-/// own format. `name` gets the extension by which the engine tells them apart.
-/// @throws Error(kBadFile) with the file if it cannot be read or is not a JPEG image of up to
-/// 16384 pixels an edge.
-ModelFile texture_file(const std::string& name, const std::filesystem::path& file);
+/// Reads a PNG or JPEG picture; its first bytes say which.
+/// @throws Error(kBadFile) with the file if it cannot be read or is larger than the renderer takes.
+raster::Texture load_texture(const std::filesystem::path& file);
 
 }  // namespace tether::sim

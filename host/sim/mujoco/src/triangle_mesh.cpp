@@ -1,6 +1,5 @@
 // Triangle meshes of the primitive shapes. Boxes and planes consist of rectangles, all others of
-// surfaces of revolution given by their profile. Both are lattices of vertices, fine enough for
-// lighting by vertex.
+// surfaces of revolution given by their profile.
 
 #include "triangle_mesh.h"
 
@@ -14,15 +13,10 @@ namespace tether::sim {
 namespace {
 
 using uav::Vec3;
-using Vertex = TriangleMesh::Vertex;
+using Vertex = raster::Mesh::Vertex;
 
-constexpr int kMaxPieces = 64;
 constexpr int kSlices = 32;
 constexpr int kStacksPerQuarter = 8;
-
-int pieces(double length_m) {
-  return std::clamp(static_cast<int>(std::ceil(length_m / kMaxEdge_m)), 1, kMaxPieces);
-}
 
 Vertex make_vertex(const Vec3& position, const Vec3& normal, double u, double v) {
   Vertex vertex;
@@ -38,7 +32,7 @@ std::uint32_t index(std::size_t i) {
 
 // Two triangles for each cell of a (rows+1) × (columns+1) lattice of vertices whose rows run down
 // and whose columns run right, seen from outside.
-void add_lattice_triangles(TriangleMesh& mesh, std::size_t first, int rows, int columns) {
+void add_lattice_triangles(raster::Mesh& mesh, std::size_t first, int rows, int columns) {
   const auto stride = static_cast<std::size_t>(columns) + 1;
   for (std::size_t r = 0; r < static_cast<std::size_t>(rows); ++r) {
     for (std::size_t c = 0; c + 1 < stride; ++c) {
@@ -50,22 +44,18 @@ void add_lattice_triangles(TriangleMesh& mesh, std::size_t first, int rows, int 
 }
 
 // A flat rectangle around `centre`; `right` and `down` are unit, seen from outside.
-void add_rectangle(TriangleMesh& mesh, const Vec3& centre, const Vec3& right, double width_m,
+void add_rectangle(raster::Mesh& mesh, const Vec3& centre, const Vec3& right, double width_m,
                    const Vec3& down, double height_m, const TextureScale& scale) {
-  const int columns = pieces(width_m);
-  const int rows = pieces(height_m);
   const Vec3 normal = cross(down, right);
   const Vec3 corner = centre - 0.5 * width_m * right - 0.5 * height_m * down;
   const std::size_t first = mesh.vertices.size();
-  for (int r = 0; r <= rows; ++r) {
-    for (int c = 0; c <= columns; ++c) {
-      const double x = width_m * c / columns;
-      const double y = height_m * r / rows;
+  for (const double y : {0.0, height_m}) {
+    for (const double x : {0.0, width_m}) {
       mesh.vertices.push_back(make_vertex(corner + x * right + y * down, normal,
                                           x * scale.repeat_x_per_m, y * scale.repeat_y_per_m));
     }
   }
-  add_lattice_triangles(mesh, first, rows, columns);
+  add_lattice_triangles(mesh, first, 1, 1);
 }
 
 // One ring of a surface of revolution about z.
@@ -78,7 +68,7 @@ struct Ring {
 };
 
 // The profile runs from top to bottom.
-void add_revolution(TriangleMesh& mesh, const std::vector<Ring>& profile, double texture_radius_m,
+void add_revolution(raster::Mesh& mesh, const std::vector<Ring>& profile, double texture_radius_m,
                     const TextureScale& scale) {
   const std::size_t first = mesh.vertices.size();
   for (const Ring& ring : profile) {
@@ -95,15 +85,12 @@ void add_revolution(TriangleMesh& mesh, const std::vector<Ring>& profile, double
   add_lattice_triangles(mesh, first, static_cast<int>(profile.size()) - 1, kSlices);
 }
 
-// A flat disc at height z, facing `up` (+1 or −1), in rings fine enough for the light.
-void add_disc(TriangleMesh& mesh, double radius_m, double z_m, double up,
+// A flat disc at height z, facing `up` (+1 or −1).
+void add_disc(raster::Mesh& mesh, double radius_m, double z_m, double up,
               const TextureScale& scale) {
-  const int rings = pieces(radius_m);
-  std::vector<Ring> profile;
-  for (int i = 0; i <= rings; ++i) {
-    const double r = radius_m * (up > 0.0 ? i : rings - i) / rings;
-    profile.push_back({r, z_m, 0.0, up, 0.0});
-  }
+  const Ring centre{0.0, z_m, 0.0, up, 0.0};
+  const Ring rim{radius_m, z_m, 0.0, up, 0.0};
+  const std::vector<Ring> profile = up > 0.0 ? std::vector{centre, rim} : std::vector{rim, centre};
   const std::size_t first = mesh.vertices.size();
   add_revolution(mesh, profile, 1.0, scale);
   for (std::size_t i = first; i < mesh.vertices.size(); ++i) {
@@ -125,19 +112,16 @@ void append_quarter(std::vector<Ring>& profile, double radius_m, double z_m, dou
 }
 
 void append_side(std::vector<Ring>& profile, double radius_m, double length_m, double distance_m) {
-  const int count = pieces(length_m);
-  for (int i = 0; i <= count; ++i) {
-    const double down = length_m * i / count;
-    profile.push_back({radius_m, 0.5 * length_m - down, 1.0, 0.0, distance_m + down});
-  }
+  profile.push_back({radius_m, 0.5 * length_m, 1.0, 0.0, distance_m});
+  profile.push_back({radius_m, -0.5 * length_m, 1.0, 0.0, distance_m + length_m});
 }
 
 }  // namespace
 
-TriangleMesh box_mesh(const Vec3& size_m, const TextureScale& scale) {
+raster::Mesh box_mesh(const Vec3& size_m, const TextureScale& scale) {
   const auto [x, y, z] = size_m;
   const Vec3 down{0.0, 0.0, -1.0};
-  TriangleMesh mesh;
+  raster::Mesh mesh;
   add_rectangle(mesh, {0.5 * x, 0.0, 0.0}, {0.0, 1.0, 0.0}, y, down, z, scale);
   add_rectangle(mesh, {-0.5 * x, 0.0, 0.0}, {0.0, -1.0, 0.0}, y, down, z, scale);
   add_rectangle(mesh, {0.0, 0.5 * y, 0.0}, {-1.0, 0.0, 0.0}, x, down, z, scale);
@@ -147,8 +131,8 @@ TriangleMesh box_mesh(const Vec3& size_m, const TextureScale& scale) {
   return mesh;
 }
 
-TriangleMesh cylinder_mesh(double radius_m, double length_m, const TextureScale& scale) {
-  TriangleMesh mesh;
+raster::Mesh cylinder_mesh(double radius_m, double length_m, const TextureScale& scale) {
+  raster::Mesh mesh;
   std::vector<Ring> side;
   append_side(side, radius_m, length_m, 0.0);
   add_revolution(mesh, side, radius_m, scale);
@@ -157,24 +141,24 @@ TriangleMesh cylinder_mesh(double radius_m, double length_m, const TextureScale&
   return mesh;
 }
 
-TriangleMesh capsule_mesh(double radius_m, double length_m, const TextureScale& scale) {
+raster::Mesh capsule_mesh(double radius_m, double length_m, const TextureScale& scale) {
   const double quarter_m = 0.5 * std::numbers::pi * radius_m;
   std::vector<Ring> profile;
   append_quarter(profile, radius_m, 0.5 * length_m, 0.0, 0.0);
   append_side(profile, radius_m, length_m, quarter_m);
   append_quarter(profile, radius_m, -0.5 * length_m, 0.5 * std::numbers::pi, quarter_m + length_m);
-  TriangleMesh mesh;
+  raster::Mesh mesh;
   add_revolution(mesh, profile, radius_m, scale);
   return mesh;
 }
 
-TriangleMesh ellipsoid_mesh(const Vec3& radii_m, const TextureScale& scale) {
+raster::Mesh ellipsoid_mesh(const Vec3& radii_m, const TextureScale& scale) {
   const double mean_m = (radii_m.x + radii_m.y + radii_m.z) / 3.0;
   const TextureScale unit{scale.repeat_x_per_m * mean_m, scale.repeat_y_per_m * mean_m};
   std::vector<Ring> profile;
   append_quarter(profile, 1.0, 0.0, 0.0, 0.0);
   append_quarter(profile, 1.0, 0.0, 0.5 * std::numbers::pi, 0.5 * std::numbers::pi);
-  TriangleMesh mesh;
+  raster::Mesh mesh;
   add_revolution(mesh, profile, 1.0, unit);
   for (Vertex& vertex : mesh.vertices) {
     const auto [x, y, z] = vertex.position;
@@ -185,9 +169,9 @@ TriangleMesh ellipsoid_mesh(const Vec3& radii_m, const TextureScale& scale) {
   return mesh;
 }
 
-TriangleMesh plane_mesh(const PlaneGeometry& plane, const TextureScale& scale) {
+raster::Mesh plane_mesh(const PlaneGeometry& plane, const TextureScale& scale) {
   const uav::Quat q = rotation_from_z(plane.normal);
-  TriangleMesh mesh;
+  raster::Mesh mesh;
   add_rectangle(mesh, {}, rotate(q, {1.0, 0.0, 0.0}), plane.size_x_m, rotate(q, {0.0, -1.0, 0.0}),
                 plane.size_y_m, scale);
   return mesh;
@@ -201,21 +185,6 @@ uav::Quat rotation_from_z(const Vec3& normal) {
   const double sine = norm(axis);
   if (sine < 1e-12) return n.z > 0.0 ? uav::Quat{} : uav::Quat{0.0, 1.0, 0.0, 0.0};
   return uav::from_axis_angle((1.0 / sine) * axis, std::atan2(sine, n.z));
-}
-
-BoundingSphere bounding_sphere(const TriangleMesh& mesh) {
-  if (mesh.vertices.empty()) return {};
-  std::array<float, 3> low = mesh.vertices.front().position;
-  std::array<float, 3> high = low;
-  for (const Vertex& vertex : mesh.vertices) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      low[i] = std::min(low[i], vertex.position[i]);
-      high[i] = std::max(high[i], vertex.position[i]);
-    }
-  }
-  const Vec3 a{low[0], low[1], low[2]};
-  const Vec3 b{high[0], high[1], high[2]};
-  return {0.5 * (a + b), 0.5 * norm(b - a)};
 }
 
 }  // namespace tether::sim

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::uint32_t kNoCluster = std::numeric_limits<std::uint32_t>::max();
 
-uav::Vec3 point(const std::array<float, 3>& p) {
-  return {p[0], p[1], p[2]};
+uav::Vec3 point(const Mesh::Vertex& v) {
+  return {v.position[0], v.position[1], v.position[2]};
 }
 
 Sphere sphere_around(const PreparedScene& scene, std::size_t first, std::size_t count) {
@@ -31,8 +31,8 @@ class ClusterBuilder {
   ClusterBuilder(const Mesh& mesh, PreparedScene& scene)
       : mesh_(mesh),
         scene_(scene),
-        cluster_of_(mesh.positions.size(), kNoCluster),
-        place_of_(mesh.positions.size(), 0) {}
+        cluster_of_(mesh.vertices.size(), kNoCluster),
+        place_of_(mesh.vertices.size(), 0) {}
 
   void add(const std::array<std::uint32_t, 3>& corners) {
     if (!is_open_ || !has_room_for(corners)) open();
@@ -77,9 +77,8 @@ class ClusterBuilder {
     if (cluster_of_[vertex] != index()) {
       cluster_of_[vertex] = index();
       place_of_[vertex] = static_cast<std::uint8_t>(cluster().vertices++);
-      const auto& p = mesh_.positions[vertex];
-      const std::array<float, 2> uv = mesh_.uv.empty() ? std::array<float, 2>{} : mesh_.uv[vertex];
-      append(p[0], p[1], p[2], {mesh_.normals[vertex], uv});
+      const auto& [p, normal, uv] = mesh_.vertices[vertex];
+      append(p[0], p[1], p[2], {normal, uv});
     }
     return place_of_[vertex];
   }
@@ -100,8 +99,8 @@ class ClusterBuilder {
 
 // A vertex twice, or three on one line exactly.
 bool has_area(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
-  const uav::Vec3 a = point(mesh.positions[t[0]]);
-  const uav::Vec3 n = cross(point(mesh.positions[t[1]]) - a, point(mesh.positions[t[2]]) - a);
+  const uav::Vec3 a = point(mesh.vertices[t[0]]);
+  const uav::Vec3 n = cross(point(mesh.vertices[t[1]]) - a, point(mesh.vertices[t[2]]) - a);
   return n.x != 0.0 || n.y != 0.0 || n.z != 0.0;
 }
 
@@ -111,8 +110,7 @@ PreparedMesh add_mesh(const Mesh& mesh, PreparedScene& scene) {
   PreparedMesh prepared;
   prepared.first_cluster = static_cast<std::uint32_t>(scene.clusters.size());
   ClusterBuilder builder(mesh, scene);
-  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
-    const std::array corners{mesh.indices[i], mesh.indices[i + 1], mesh.indices[i + 2]};
+  for (const auto& corners : mesh.triangles) {
     if (!has_area(mesh, corners)) continue;
     builder.add(corners);
     ++prepared.triangles;

@@ -48,22 +48,17 @@ bool is_usable_pose(const uav::Pose& X) {
 }
 
 void check(const Mesh& mesh, const std::string& name) {
-  const std::size_t vertices = mesh.positions.size();
-  require(mesh.normals.size() == vertices, name, "not one normal for each position");
-  require(mesh.uv.empty() || mesh.uv.size() == vertices, name,
-          "not one texture coordinate for each position");
-  require(mesh.indices.size() % 3 == 0, name, "the indices are not three for each triangle");
-  require(mesh.indices.size() / 3 <= kMaxTriangles, name, "more than 10,000,000 triangles");
-  const auto near = [](const auto& v) { return is_near(v); };
-  require(std::all_of(mesh.positions.begin(), mesh.positions.end(), near), name,
-          "a position is not finite, or beyond 1,000 km");
-  require(std::all_of(mesh.normals.begin(), mesh.normals.end(), near), name,
-          "a normal is not finite");
-  require(std::all_of(mesh.uv.begin(), mesh.uv.end(), near), name,
-          "a texture coordinate is not finite, or beyond 1,000,000");
-  require(std::all_of(mesh.indices.begin(), mesh.indices.end(),
-                      [&](std::uint32_t i) { return i < vertices; }),
-          name, "an index is not that of a vertex");
+  require(mesh.triangles.size() <= kMaxTriangles, name, "more than 10,000,000 triangles");
+  require(std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                      [](const Mesh::Vertex& v) {
+                        return is_near(v.position) && is_near(v.normal) && is_near(v.uv);
+                      }),
+          name, "a number of a vertex is not finite, or beyond 1,000,000");
+  for (const auto& triangle : mesh.triangles) {
+    require(std::all_of(triangle.begin(), triangle.end(),
+                        [&](std::uint32_t i) { return i < mesh.vertices.size(); }),
+            name, "an index is not that of a vertex");
+  }
 }
 
 void check(const Texture& texture, const std::string& name) {
@@ -125,7 +120,7 @@ void check_totals(const SceneParts& parts) {
           "its ambient light or its background is not a colour");
   std::size_t triangles = 0;
   for (const Instance& i : parts.instances) {
-    triangles += parts.meshes[i.mesh].indices.size() / 3;
+    triangles += parts.meshes[i.mesh].triangles.size();
     require(triangles <= kMaxTriangles, "scene", "more than 10,000,000 triangles");
   }
   std::size_t texels = 0;

@@ -64,13 +64,13 @@ TEST(Rasterize, CoversEachPixelOnceBeforeTheNearPlaneAndFarBeyondThePicture) {
   Mesh floor;
   for (int i = 0; i <= 8; ++i) {
     for (int j = 0; j <= 1; ++j) {
-      floor.positions.push_back(
-          {static_cast<float>(12500 * (i - 4)), 1.5F, j == 0 ? -40000.0F : 60000.0F});
-      floor.normals.push_back({0.0F, -1.0F, 0.0F});
+      floor.vertices.push_back(
+          {{static_cast<float>(12500 * (i - 4)), 1.5F, j == 0 ? -40000.0F : 60000.0F},
+           {0.0F, -1.0F, 0.0F}});
     }
   }
   for (std::uint32_t i = 0; i < 16; i += 2) {
-    floor.indices.insert(floor.indices.end(), {i, i + 2, i + 3, i, i + 3, i + 1});
+    floor.triangles.insert(floor.triangles.end(), {{i, i + 2, i + 3}, {i, i + 3, i + 1}});
   }
   const Scene scene(plain_parts(floor, {1, 1, 1}));
   const Lens lens(small_camera());
@@ -139,11 +139,12 @@ Triangles random_triangles(std::uint64_t seed) {
 Mesh mesh_of(const Triangles& triangles) {
   Mesh mesh;
   for (const auto& triangle : triangles) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.triangles.push_back({first, first + 1, first + 2});
     for (const uav::Vec3& p : triangle) {
-      mesh.indices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-      mesh.positions.push_back(
-          {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)});
-      mesh.normals.push_back({0.0F, 0.0F, -1.0F});
+      mesh.vertices.push_back(
+          {{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
+           {0.0F, 0.0F, -1.0F}});
     }
   }
   return mesh;

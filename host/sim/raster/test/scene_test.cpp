@@ -21,15 +21,12 @@ struct BadPart {
 
 TEST(Scene, RefusesPartsThatCannotBeDrawnAndNamesThem) {
   const std::vector<BadPart> bad{
-      {"mesh 0", [](SceneParts& p) { p.meshes[0].positions[1][2] = kNotANumber; }},
-      {"mesh 0", [](SceneParts& p) { p.meshes[0].positions[1][2] = kInfinite; }},
-      {"mesh 0", [](SceneParts& p) { p.meshes[0].positions[0][0] = 2e6F; }},
-      {"mesh 0", [](SceneParts& p) { p.meshes[0].normals[1][0] = kNotANumber; }},
-      {"mesh 0", [](SceneParts& p) { p.meshes[0].uv[0][0] = kInfinite; }},
-      {"mesh 0", [](SceneParts& p) { p.meshes[0].uv.pop_back(); }},
-      {"mesh 0", [](SceneParts& p) { p.meshes[0].normals.pop_back(); }},
-      {"mesh 0", [](SceneParts& p) { p.meshes[0].indices.pop_back(); }},
-      {"mesh 1", [](SceneParts& p) { p.meshes[1].indices[3] = 1'000'000; }},
+      {"mesh 0", [](SceneParts& p) { p.meshes[0].vertices[1].position[2] = kNotANumber; }},
+      {"mesh 0", [](SceneParts& p) { p.meshes[0].vertices[1].position[2] = kInfinite; }},
+      {"mesh 0", [](SceneParts& p) { p.meshes[0].vertices[0].position[0] = 2e6F; }},
+      {"mesh 0", [](SceneParts& p) { p.meshes[0].vertices[1].normal[0] = kNotANumber; }},
+      {"mesh 0", [](SceneParts& p) { p.meshes[0].vertices[0].uv[0] = kInfinite; }},
+      {"mesh 1", [](SceneParts& p) { p.meshes[1].triangles[1][0] = 1'000'000; }},
       {"texture 0", [](SceneParts& p) { p.textures[0].width_px = 0; }},
       {"texture 0", [](SceneParts& p) { p.textures[0].width_px = 8193; }},
       {"texture 1", [](SceneParts& p) { p.textures[1].rgba.pop_back(); }},
@@ -67,7 +64,7 @@ TEST(Scene, RefusesPartsThatCannotBeDrawnAndNamesThem) {
 
 TEST(Scene, RefusesMoreTrianglesThanTheLimit) {
   SceneParts parts = rich_parts();
-  const std::size_t each = parts.meshes[1].indices.size() / 3;
+  const std::size_t each = parts.meshes[1].triangles.size();
   Instance one;
   one.mesh = 1;
   parts.instances.assign(kMaxTriangles / each + 1, one);
@@ -76,7 +73,7 @@ TEST(Scene, RefusesMoreTrianglesThanTheLimit) {
 
 TEST(Scene, AcceptsTrianglesWithoutAreaAndLeavesThemOut) {
   SceneParts parts = plain_parts(rectangle(-1, -1, 1, 1, 2), {1, 1, 1});
-  parts.meshes[0].indices = {0, 0, 1, 1, 1, 1, 0, 1, 0};
+  parts.meshes[0].triangles = {{0, 0, 1}, {1, 1, 1}, {0, 1, 0}};
   const Drawing drawing = draw(Scene(parts), small_camera());
   EXPECT_THAT(drawing.entity, testing::Each(0U));
 }

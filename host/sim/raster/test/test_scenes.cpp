@@ -10,18 +10,16 @@ namespace tether::raster {
 namespace {
 
 void add_square(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-  mesh.indices.insert(mesh.indices.end(), {a, b, c, a, c, d});
+  mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
 }
 
 std::uint32_t count(const Mesh& mesh) {
-  return static_cast<std::uint32_t>(mesh.positions.size());
+  return static_cast<std::uint32_t>(mesh.vertices.size());
 }
 
 void add_vertex(Mesh& mesh, float x, float y, float z, const std::array<float, 3>& n, float u,
                 float v) {
-  mesh.positions.push_back({x, y, z});
-  mesh.normals.push_back(n);
-  mesh.uv.push_back({u, v});
+  mesh.vertices.push_back({{x, y, z}, n, {u, v}});
 }
 
 Instance instance(std::size_t mesh, std::size_t material, const uav::Vec3& p, std::uint32_t id) {

@@ -19,13 +19,15 @@ namespace tether::raster {
 /// Red, green, blue of a display, each 0..1.
 using Rgb = std::array<float, 3>;
 
-/// Triangles in V, counter-clockwise seen from outside. Each vertex has one entry of `positions`,
-/// of `normals` and, unless that is empty, of `uv`.
+/// Triangles in V, counter-clockwise seen from outside.
 struct Mesh {
-  std::vector<std::array<float, 3>> positions;  ///< [m]
-  std::vector<std::array<float, 3>> normals;    ///< unit
-  std::vector<std::array<float, 2>> uv;         ///< repetitions; v runs down the picture
-  std::vector<std::uint32_t> indices;           ///< three for each triangle
+  struct Vertex {
+    std::array<float, 3> position{};  ///< [m]
+    std::array<float, 3> normal{};    ///< unit
+    std::array<float, 2> uv{};        ///< repetitions of the texture; v runs down the picture
+  };
+  std::vector<Vertex> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into `vertices`
 };
 
 /// Pixels of a display (sRGB bytes), rows from the top down, each R, G, B, A. Repeated beyond its
@@ -100,7 +102,7 @@ struct PreparedScene;
 class Scene {
  public:
   /// @throws Error(kBadFile), with the part as its subject ("mesh 3"), for numbers that are not
-  /// finite or beyond the limits, indices out of range, and arrays of unequal length.
+  /// finite or beyond the limits, and indices out of range.
   /// Triangles without area are left out.
   explicit Scene(const SceneParts& parts);
   ~Scene();
