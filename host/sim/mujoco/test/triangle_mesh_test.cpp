@@ -11,13 +11,13 @@ namespace {
 
 using uav::Vec3;
 
-Vec3 position(const TriangleMesh& mesh, std::uint32_t i) {
+Vec3 position(const raster::Mesh& mesh, std::uint32_t i) {
   const auto [x, y, z] = mesh.vertices[i].position;
   return {x, y, z};
 }
 
 // By the divergence theorem; positive only if the triangles look outwards.
-double volume_m3(const TriangleMesh& mesh) {
+double volume_m3(const raster::Mesh& mesh) {
   double sum = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {
     sum += dot(position(mesh, a), cross(position(mesh, b), position(mesh, c))) / 6.0;
@@ -26,7 +26,7 @@ double volume_m3(const TriangleMesh& mesh) {
 }
 
 // The least cosine between a vertex normal and the normal of a triangle there.
-double worst_normal(const TriangleMesh& mesh) {
+double worst_normal(const raster::Mesh& mesh) {
   double worst = 1.0;
   for (const auto& triangle : mesh.triangles) {
     const auto& [a, b, c] = triangle;
@@ -43,7 +43,7 @@ double worst_normal(const TriangleMesh& mesh) {
 
 struct Case {
   std::string name;
-  TriangleMesh mesh;
+  raster::Mesh mesh;
   double volume_m3;
   double tolerance;
 };
@@ -62,17 +62,9 @@ TEST(TriangleMeshTest, ClosedShapesHaveTheirVolumeAndLookOutwards) {
   }
 }
 
-TEST(TriangleMeshTest, LargeFacesAreDividedForTheLight) {
-  const TriangleMesh mesh = box_mesh({4.0, 3.0, 0.1}, {});
-  for (const auto& [a, b, c] : mesh.triangles) {
-    EXPECT_LE(norm(position(mesh, a) - position(mesh, b)), 1.5 * kMaxEdge_m);
-    EXPECT_LE(norm(position(mesh, b) - position(mesh, c)), 1.5 * kMaxEdge_m);
-  }
-}
-
 TEST(TriangleMeshTest, TextureCountsRepetitionsPerMetreAndStartsAtTheUpperLeft) {
-  const TriangleMesh mesh = box_mesh({0.1, 4.0, 2.0}, {0.5, 2.0});
-  for (const TriangleMesh::Vertex& v : mesh.vertices) {
+  const raster::Mesh mesh = box_mesh({0.1, 4.0, 2.0}, {0.5, 2.0});
+  for (const raster::Mesh::Vertex& v : mesh.vertices) {
     if (v.normal[0] < 0.5F) continue;  // the face that looks along +x; its left is −y
     EXPECT_NEAR(v.uv[0], (v.position[1] + 2.0) * 0.5, 1e-5);
     EXPECT_NEAR(v.uv[1], (1.0 - v.position[2]) * 2.0, 1e-5);
@@ -81,18 +73,10 @@ TEST(TriangleMeshTest, TextureCountsRepetitionsPerMetreAndStartsAtTheUpperLeft) 
 
 TEST(TriangleMeshTest, PlaneLooksAlongItsNormal) {
   for (const Vec3& normal : {Vec3{0.0, 0.0, 1.0}, Vec3{0.0, 0.0, -1.0}, Vec3{1.0, 2.0, 0.5}}) {
-    const TriangleMesh mesh = plane_mesh({normal, 2.0, 1.0}, {});
+    const raster::Mesh mesh = plane_mesh({normal, 2.0, 1.0}, {});
     const auto [x, y, z] = mesh.vertices.front().normal;
     EXPECT_NEAR(dot(normal, {x, y, z}), norm(normal), 1e-6);
     EXPECT_GT(worst_normal(mesh), 0.999);
-  }
-}
-
-TEST(TriangleMeshTest, BoundingSphereHoldsEveryVertex) {
-  const TriangleMesh mesh = capsule_mesh(0.3, 1.0, {});
-  const BoundingSphere sphere = bounding_sphere(mesh);
-  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i) {
-    EXPECT_LE(norm(position(mesh, i) - sphere.centre), sphere.radius_m + 1e-6);
   }
 }
 
