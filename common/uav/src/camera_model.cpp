@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include <tether/uav/camera_model.h>
 
@@ -50,6 +51,17 @@ PlanePoint undistort(const CameraModel& m, const PlanePoint& distorted) {
   return ideal;
 }
 
+/// How far off the axis, at z = 1, the radial distortion goes on outwards.
+double fold_radius(const CameraModel& m) {
+  constexpr double kStep = 1e-3;
+  constexpr double kWidest = 20.0;
+  for (double r = 0.0; m.has_distortion() && r < kWidest; r += kStep) {
+    const double r2 = r * r;
+    if (1.0 + r2 * (3.0 * m.k1 + r2 * (5.0 * m.k2 + r2 * 7.0 * m.k3)) <= 0.0) return r;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
 
 CameraModel CameraModel::from_horizontal_fov(int width_px, int height_px,
@@ -91,6 +103,20 @@ Vec3 CameraModel::unproject(const Pixel& pixel) const {
 bool CameraModel::contains(const Pixel& pixel) const {
   return pixel.u_px >= -0.5 && pixel.u_px < width_px - 0.5 && pixel.v_px >= -0.5 &&
          pixel.v_px < height_px - 0.5;
+}
+
+PixelRays::PixelRays(const CameraModel& camera)
+    : camera_(camera), fold_radius_(fold_radius(camera)) {}
+
+std::optional<Vec3> PixelRays::at(const Pixel& pixel) const {
+  constexpr double kSame_px = 0.01;
+  const Vec3 p = camera_.unproject(pixel);
+  const Pixel seen = *camera_.project(p);
+  const double du = seen.u_px - pixel.u_px;
+  const double dv = seen.v_px - pixel.v_px;
+  const bool is_same = du * du + dv * dv < kSame_px * kSame_px;
+  if (!is_same || p.x * p.x + p.y * p.y > fold_radius_ * fold_radius_) return std::nullopt;
+  return p;
 }
 
 double bearing_rad(const CameraModel& model, const Pixel& pixel) {

@@ -23,4 +23,13 @@ Quat normalized(const Quat& q) {
   return {q.w / length, q.x / length, q.y / length, q.z / length};
 }
 
+Pose between(const Pose& a, const Pose& b, double share) {
+  // A quaternion and its opposite are the same rotation.
+  const double same = a.q.w * b.q.w + a.q.x * b.q.x + a.q.y * b.q.y + a.q.z * b.q.z;
+  const double sign = same < 0.0 ? -1.0 : 1.0;
+  const auto mix = [&](double from, double to) { return from + share * (sign * to - from); };
+  return {a.p + share * (b.p - a.p),
+          normalized({mix(a.q.w, b.q.w), mix(a.q.x, b.q.x), mix(a.q.y, b.q.y), mix(a.q.z, b.q.z)})};
+}
+
 }  // namespace tether::uav

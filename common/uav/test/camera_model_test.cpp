@@ -65,6 +65,19 @@ TEST(CameraModel, UnprojectInvertsProjectAnywhereInTheImage) {
   }
 }
 
+TEST(PixelRays, HaveNoneWhereTheDistortionFolds) {
+  CameraModel m = distorted();
+  for (const bool folds : {false, true}) {
+    if (folds) m.k1 = -0.9;
+    const PixelRays rays(m);
+    const auto corner = rays.at({0.0, 0.0});
+    EXPECT_EQ(corner.has_value(), !folds);
+    const auto middle = rays.at({m.cx_px + 10.0, m.cy_px});
+    ASSERT_TRUE(middle);
+    EXPECT_NEAR(m.project(*middle)->u_px, m.cx_px + 10.0, 1e-6);
+  }
+}
+
 TEST(Bearing, IsCounterClockwiseAndThatOfTheVisiblePoint) {
   EXPECT_NEAR(bearing_rad(ideal(), {-0.5, 200}), rad_from_deg(40), 1e-12);
   EXPECT_NEAR(bearing_rad(ideal(), {639.5, 200}), rad_from_deg(-40), 1e-12);

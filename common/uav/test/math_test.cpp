@@ -71,6 +71,16 @@ TEST(Math, PosesComposeAndInvert) {
   }
 }
 
+TEST(Math, BetweenTwoPosesBothPositionAndRotationAre) {
+  const Quat turn = from_axis_angle({0, 0, 1}, 0.1);
+  for (const double sign : {1.0, -1.0}) {  // the opposite quaternion is the same rotation
+    const Quat q{sign * turn.w, sign * turn.x, sign * turn.y, sign * turn.z};
+    const Pose quarter = between({{2, 0, 0}, {}}, {{1, 0, 4}, q}, 0.25);
+    EXPECT_EQ(quarter.p, (Vec3{1.75, 0, 1}));
+    EXPECT_NEAR(yaw_rad(quarter.q), 0.025, 1e-5);
+  }
+}
+
 TEST(Math, NormalizedHasUnitLengthAndTheSameRotation) {
   const Quat q = normalized({2, 0, 0, 2});
   EXPECT_NEAR(q.w * q.w + q.z * q.z, 1.0, kTolerance);

@@ -36,6 +36,20 @@ struct CameraModel {
   bool contains(const Pixel& pixel) const;
 };
 
+/// The viewing directions of a camera's pixels. A value.
+class PixelRays {
+ public:
+  explicit PixelRays(const CameraModel& camera);
+
+  /// Scaled to z = 1. None where the distortion maps no direction to the pixel: strong barrel
+  /// distortion folds back on itself before it reaches the corners.
+  std::optional<Vec3> at(const Pixel& pixel) const;
+
+ private:
+  CameraModel camera_;
+  double fold_radius_;
+};
+
 /// Horizontal bearing of a pixel: angle of its viewing direction about the body's z,
 /// counter-clockwise (left of the centre is positive) [rad].
 double bearing_rad(const CameraModel& model, const Pixel& pixel);

@@ -78,6 +78,8 @@ constexpr Pose inverse(const Pose& X_AB) {
   const Quat q_BA = inverse(X_AB.q);
   return {-1.0 * rotate(q_BA, X_AB.p), q_BA};
 }
+/// A pose between two that are near each other, `share` of the way from `a` to `b`.
+Pose between(const Pose& a, const Pose& b, double share);
 /// `transform(X_AB, p_BQ)` → `p_AQ`.
 constexpr Vec3 transform(const Pose& X_AB, const Vec3& p_B) {
   return X_AB.p + rotate(X_AB.q, p_B);
