@@ -154,6 +154,7 @@ void images(benchmark::State& state, const Options& options) {
   }
   view.exposure_s = options.exposure_s;
   view.readout_s = options.readout_s;
+  view.spacing_s = 0.001;
   view.antialias = options.antialias;
   const auto pixels = static_cast<std::size_t>(options.width_px * options.height_px);
   std::vector<std::uint8_t> rgb(3 * pixels);

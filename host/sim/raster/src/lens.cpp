@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include <tether/base/error.h>
 
 namespace tether::raster {
 namespace {
 
-constexpr double kSame_px = 0.01;
 constexpr double kFarthest_px = 32000.0;
 constexpr std::array<int, 3> kCellSizes_px{16, 128, 1024};
 constexpr int kManyCells = 8;
@@ -35,29 +33,6 @@ void include(PixelRect& rect, const PixelRect& more) {
 FixedRect common_part(const FixedRect& a, const FixedRect& b) {
   return {std::max(a.x_low, b.x_low), std::max(a.y_low, b.y_low), std::min(a.x_high, b.x_high),
           std::min(a.y_high, b.y_high)};
-}
-
-// How far off the axis, at z = 1, the radial distortion goes on outwards.
-double fold_radius(const uav::CameraModel& c) {
-  constexpr double kStep = 1e-3;
-  constexpr double kWidest = 20.0;
-  for (double r = 0.0; r < kWidest; r += kStep) {
-    const double r2 = r * r;
-    if (1.0 + r2 * (3.0 * c.k1 + r2 * (5.0 * c.k2 + r2 * 7.0 * c.k3)) <= 0.0) return r;
-  }
-  return std::numeric_limits<double>::infinity();
-}
-
-// None where undoing the distortion leads elsewhere, or beyond the fold.
-std::optional<uav::Vec3> direction(const uav::CameraModel& camera, const uav::Pixel& pixel,
-                                   double fold) {
-  const uav::Vec3 p = camera.unproject(pixel);
-  const uav::Pixel seen = *camera.project(p);
-  const double du = seen.u_px - pixel.u_px;
-  const double dv = seen.v_px - pixel.v_px;
-  const bool is_same = du * du + dv * dv < kSame_px * kSame_px;
-  if (!is_same || p.x * p.x + p.y * p.y > fold * fold) return std::nullopt;
-  return p;
 }
 
 std::int32_t fixed_sample(double px) {
@@ -96,12 +71,11 @@ void Lens::fill_samples() {
   x_.assign(count, kBlind);
   y_.assign(count, kBlind);
   all_ = kNoPixels;
-  const double fold = fold_radius(camera_);
+  const uav::PixelRays rays(camera_);
   for (int row = 0; row < camera_.height_px; ++row) {
     FixedRect& bounds = rows_.emplace_back(kNoPixels);
     for (int column = 0; column < camera_.width_px; ++column) {
-      const uav::Pixel pixel{static_cast<double>(column), static_cast<double>(row)};
-      const auto p = direction(camera_, pixel, fold);
+      const auto p = rays.at({static_cast<double>(column), static_cast<double>(row)});
       if (!p) {
         ++blind_pixels_;
         continue;

@@ -55,6 +55,9 @@ void check(const View& view, const Scene& scene) {
   const auto is_time = [](double s) { return s >= 0.0 && s <= 1e6; };
   require(is_time(view.exposure_s) && is_time(view.readout_s),
           "exposure_s or readout_s is negative or not finite");
+  const double reach_s = view.spacing_s * static_cast<double>(view.instants.size() - 1);
+  require(view.instants.size() == 1 || reach_s >= (1.0 - 1e-9) * (view.exposure_s + view.readout_s),
+          "the instants do not reach back to the first row's exposure");
   for (const Instant& instant : view.instants) {
     require(instant.X_WB.size() >= scene.bodies() &&
                 instant.X_WB.size() == view.instants[0].X_WB.size(),
@@ -150,7 +153,7 @@ class Renderer::Work {
         if (light.cast_shadows) shadows_.emplace_back(scene_.prepared(), light);
       }
     }
-    interpolate(view.instants, 0.5, moment_);
+    interpolate(view, 0.5 * (view.exposure_s + view.readout_s), moment_);
     for (ShadowMap& map : shadows_) map.update(moment_.X_WB, view.hidden);
   }
 

@@ -79,8 +79,7 @@ void StripRenderer::place_layer(const Job& job, const Strip& strip, std::size_t 
   const View& view = job.view;
   const double middle_row = strip.first_row + 0.5 * (strip.rows - 1);
   const double row = job.sampling.bands > 1 ? middle_row : 0.5 * (view.camera.height_px - 1);
-  interpolate(view.instants, share_of(view, row, static_cast<int>(index), job.sampling.layers),
-              moment_);
+  interpolate(view, before_end_s(view, row, static_cast<int>(index), job.sampling.layers), moment_);
   Layer& layer = layers_[index];
   layer.X_CW = inverse(moment_.X_WC);
   layer.X_WB.swap(moment_.X_WB);

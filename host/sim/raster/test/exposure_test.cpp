@@ -24,6 +24,7 @@ struct Flight {
     for (const uav::Pose& pose : poses) instants.push_back({pose, {bodies.data(), 1}});
     view.camera = small_camera();
     view.instants = instants;
+    view.spacing_s = 0.003;
   }
 
   std::vector<uav::Pose> bodies;
@@ -32,8 +33,8 @@ struct Flight {
   View view;
 };
 
-View at_share(const Flight& flight, double share, Moment& moment, Instant& instant) {
-  interpolate(flight.instants, share, moment);
+View plain_view(const Flight& flight, double before_end_s, Moment& moment, Instant& instant) {
+  interpolate(flight.view, before_end_s, moment);
   instant = {moment.X_WC, moment.X_WB};
   View view = flight.view;
   view.instants = {&instant, 1};
@@ -68,7 +69,7 @@ TEST(Exposure, RollsThroughThePicturesOfEachRow) {
   for (int row = 0; row < 120; row += 7) {
     Moment moment;
     Instant instant;
-    const View view = at_share(flight, share_of(flight.view, row, 0, 1), moment, instant);
+    const View view = plain_view(flight, before_end_s(flight.view, row, 0, 1), moment, instant);
     EXPECT_NEAR(edge(rolling, row), edge(draw(renderer, view), row), 1) << "row " << row;
   }
   EXPECT_GT(std::abs(edge(rolling, 0) - edge(rolling, 119)), 8);
@@ -91,7 +92,7 @@ TEST(Exposure, AveragesTheLightOfItsInstants) {
     for (int i = 0; i < kPictures; ++i) {
       Moment moment;
       Instant instant;
-      const View view = at_share(flight, (i + 0.5) / kPictures, moment, instant);
+      const View view = plain_view(flight, 0.01 * (i + 0.5) / kPictures, moment, instant);
       const Drawing one = draw(exposing, view);
       for (std::size_t k = 0; k < light.size(); ++k) {
         light[k] += static_cast<double>(light_table().light[one.rgb[k]]) / kPictures;
@@ -119,15 +120,24 @@ TEST(Exposure, DividesTimeByTheMotionInThePicture) {
   EXPECT_EQ(choose_sampling(view, 1e9), (Sampling{16, 120}));
 }
 
-TEST(Exposure, EndsWithTheLastRow) {
-  View view;
-  view.camera = small_camera(640, 480);
-  view.exposure_s = 0.01;
-  view.readout_s = 0.03;
-  EXPECT_DOUBLE_EQ(share_of(view, 0, 0, 1), 0.125);
-  EXPECT_DOUBLE_EQ(share_of(view, 479, 0, 1), 0.875);
-  EXPECT_DOUBLE_EQ(share_of(view, 479, 1, 2), 0.9375);
-  EXPECT_DOUBLE_EQ(share_of(view, 0, 0, 2), 0.0625);
+// For any shutter: the layers of a row are the middles of equal parts of [e − exposure, e].
+TEST(Exposure, OfEachRowIsItsPartOfTheWindow) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    View view;
+    view.camera.height_px = static_cast<int>(drawn(seed, 0, 1, 900));
+    view.exposure_s = seed % 5 == 0 ? 0.0 : drawn(seed, 1, 0.0, 0.05);
+    view.readout_s = seed % 7 == 0 ? 0.0 : drawn(seed, 2, 0.0, 0.05);
+    const int rows = view.camera.height_px;
+    const int row = static_cast<int>(drawn(seed, 3, 0, rows));
+    const int layers = static_cast<int>(drawn(seed, 4, 1, 17));
+    const double late_s = rows == 1 ? 0.0 : view.readout_s * (rows - 1 - row) / (rows - 1);
+    const double part_s = view.exposure_s / layers;
+    for (int k = 0; k < layers; ++k) {
+      const double begin_s = late_s + view.exposure_s - part_s * k;
+      EXPECT_NEAR(before_end_s(view, row, k, layers), begin_s - 0.5 * part_s, 1e-12) << seed;
+    }
+    EXPECT_EQ(before_end_s(view, rows - 1, 0, 1), 0.5 * view.exposure_s) << "ends with the last";
+  }
 }
 
 TEST(Antialiasing, GivesEdgesTheShareThatIsCovered) {

@@ -30,6 +30,7 @@ std::vector<std::uint64_t> hashes(Renderer& renderer) {
     if (kind == 0) view.instants = view.instants.first(1);
     if (kind == 1 || kind == 3) view.exposure_s = 0.01;
     if (kind == 2 || kind == 3) view.readout_s = 0.02;
+    view.spacing_s = (view.exposure_s + view.readout_s) / 3.0;
     view.antialias = kind == 4;
     result.push_back(hash_of(draw(renderer, view)));
   }
@@ -85,6 +86,11 @@ struct BadView {
 
 TEST(Renderer, RefusesViewsThatCannotBeDrawn) {
   constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+  const Scene scene(rich_parts());
+  Renderer renderer(scene);
+  const std::vector<uav::Pose> bodies(1);
+  const Instant instant{{}, bodies};
+  const std::vector<Instant> two(2, instant);
   const std::vector<BadView> bad{
       {"no width", [](View& v) { v.camera.width_px = 0; }},
       {"too high", [](View& v) { v.camera.height_px = 8193; }},
@@ -96,11 +102,9 @@ TEST(Renderer, RefusesViewsThatCannotBeDrawn) {
       {"no instant", [](View& v) { v.instants = {}; }},
       {"exposure", [](View& v) { v.exposure_s = -1.0; }},
       {"readout", [=](View& v) { v.readout_s = kNotANumber; }},
+      {"instants after the beginning",
+       [&](View& v) { v.instants = two, v.spacing_s = 0.009, v.readout_s = 0.01; }},
   };
-  const Scene scene(rich_parts());
-  Renderer renderer(scene);
-  const std::vector<uav::Pose> bodies(1);
-  const Instant instant{{}, bodies};
   for (const BadView& view : bad) {
     View spoilt;
     spoilt.camera = small_camera();

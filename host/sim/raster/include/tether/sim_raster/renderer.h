@@ -1,58 +1,17 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 
 #include <tether/sim_raster/scene.h>
+#include <tether/sim_raster/view.h>
 #include <tether/uav/camera_model.h>
-#include <tether/uav/math.h>
 
 namespace tether::raster {
-
-/// Where everything is at one moment.
-struct Instant {
-  uav::Pose X_WC;                   ///< the camera's optical frame
-  std::span<const uav::Pose> X_WB;  ///< one for each of Scene::bodies()
-};
-
-/// The camera and the moments of a picture.
-///
-/// With a single instant the picture is of that moment. With several, evenly spaced over
-/// exposure_s + readout_s and the last at its end, row r of H gathers light during
-/// [e − exposure_s, e] with e = end − readout_s·(H−1−r)/(H−1). Poses in between are interpolated.
-/// Light is averaged as light, not as sRGB bytes.
-struct View {
-  uav::CameraModel camera;
-  double near_m = 0.05;  ///< nothing nearer or farther is drawn, along the camera's axis
-  double far_m = 100.0;
-  std::span<const Instant> instants;
-  double exposure_s = 0.0;
-  double readout_s = 0.0;
-  std::optional<std::size_t> hidden;  ///< a body that is not drawn
-  /// Computes the coverage of edges from four samples in each pixel. A surface is still shaded
-  /// once in each pixel.
-  bool antialias = false;
-};
-
-/// The arrays that a picture is written to: height × width entries, rows from the top down. An
-/// empty array is not written.
-/// Depth and entities are of opaque surfaces, in the middle of each row's exposure.
-struct Picture {
-  std::span<std::uint8_t> rgb;  ///< three bytes for each pixel
-  /// Along the camera's axis [m]. As in REP 117 and 118: +∞ where nothing is within
-  /// `depth_max_m` and View::far_m, −∞ where something is between View::near_m and `depth_min_m`,
-  /// NaN where the lens sees nothing.
-  std::span<float> depth_m;
-  std::span<std::uint32_t> entity;  ///< Instance::entity; 0: background
-  float depth_min_m = 0.0F;
-  float depth_max_m = 1e9F;
-};
 
 inline constexpr int kMaxImageSize_px = 8192;  ///< each way
 inline constexpr int kMaxThreads = 256;
