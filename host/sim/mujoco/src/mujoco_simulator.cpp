@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <tether/base/error.h>
-#include <tether/sim/bodies.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
 #include <tether/sim_sensing/sensor_suite.h>
 
@@ -14,11 +13,9 @@ namespace tether::sim {
 namespace {
 
 SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, const WarningSink& warn) {
+  // Shared by the function's copies, and the renderers.
   const auto scene = std::make_shared<const raster::Scene>(make_scene(world, warn));
-  std::vector<double> radii_m = scene->body_radii_m();
-  radii_m.resize(moving_bodies(world).size());
-  auto make_renderer = [scene](int, int) { return std::make_unique<Renderer>(scene); };
-  return {rays, std::move(make_renderer), std::move(radii_m)};
+  return {rays, [scene] { return std::make_unique<Renderer>(scene); }};
 }
 
 class MujocoSimulator final : public Simulator {

@@ -1,29 +1,33 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
-#include <vector>
+#include <string>
+#include <utility>
 
 #include <tether/sim_raster/renderer.h>
 #include <tether/sim_raster/scene.h>
-#include <tether/sim_sensing/view_renderer.h>
+#include <tether/sim_sensing/camera_renderer.h>
 
 namespace tether::sim {
 
-/// Draws views of a scene in software: the same bytes on every machine. One thread at a time.
-class Renderer final : public ViewRenderer {
+/// Draws pictures of a scene in software: the same bytes on every machine. One thread at a time.
+class Renderer final : public CameraRenderer {
  public:
-  /// `bodies`: how many bodies of the world move.
-  Renderer(std::shared_ptr<const raster::Scene> scene);
+  explicit Renderer(std::shared_ptr<const raster::Scene> scene)
+      : scene_(std::move(scene)), renderer_(*scene_) {}
 
-  void render(const View& view, std::span<std::uint8_t> rgb) override;
-  double nearest_depth_m() override;
+  void draw(const raster::View& view, const raster::Picture& picture) override {
+    renderer_.draw(view, picture);
+  }
+  std::size_t blind_pixels(const uav::CameraModel& camera) override {
+    return renderer_.blind_pixels(camera);
+  }
   std::string name() const override { return "software renderer"; }
 
  private:
-  std::shared_ptr<const raster::Scene> scene_;
+  std::shared_ptr<const raster::Scene> scene_;  ///< other renderers may draw it, too
   raster::Renderer renderer_;
-  std::vector<float> depth_m_;  ///< of the last view; empty if it was without
-  double far_m_ = 0.0;
 };
 
 }  // namespace tether::sim

@@ -45,17 +45,25 @@ struct Picture {
   }
 };
 
-Picture draw(Renderer& renderer, const View& view) {
-  Picture picture{view.camera.width_px, view.camera.height_px, {}};
+Picture draw(Renderer& renderer, const uav::CameraModel& camera, const Pose& X_WS,
+             const std::vector<Pose>& bodies = {}, std::optional<std::size_t> hidden = {}) {
+  Picture picture{camera.width_px, camera.height_px, {}};
   picture.rgb.resize(static_cast<std::size_t>(3 * picture.width_px * picture.height_px));
-  renderer.render(view, picture.rgb);
+  const raster::Instant instant{X_WS * Pose{{}, uav::q_body_from_optical()}, bodies};
+  raster::View view;
+  view.camera = camera;
+  view.instants = {&instant, 1};
+  view.hidden = hidden;
+  raster::Picture into;
+  into.rgb = picture.rgb;
+  renderer.draw(view, into);
   return picture;
 }
 
 Picture render(const World& world, const uav::CameraModel& camera, const Pose& X_WS,
                const std::vector<Pose>& bodies = {}, std::optional<std::size_t> hidden = {}) {
   Renderer renderer = renderer_of(world);
-  return draw(renderer, {camera, 0.05, 100.0, X_WS, bodies, hidden});
+  return draw(renderer, camera, X_WS, bodies, hidden);
 }
 
 std::array<int, 3> colour(const Picture& image, int column, int row) {
@@ -157,21 +165,6 @@ TEST(RendererTest, TheBackgroundShowsThroughGlass) {
   EXPECT_GT(colour(glazed, glass_px, 24)[2], colour(glazed, glass_px, 24)[0]) << "bluish";
 }
 
-TEST(RendererTest, MeasuresTheNearestDepth) {
-  World world = flat_world();
-  const auto nearest_m = [&] {
-    Renderer renderer = renderer_of(world);
-    draw(renderer, {camera_intrinsics(64, 48), 0.05, 100.0, {}, {}, {}, true});
-    return renderer.nearest_depth_m();
-  };
-  EXPECT_GT(nearest_m(), 99.0) << "nothing before the far plane";
-  world.models.push_back(box_model("wall", {8.0, 0.0, 0.0}, {1.0, 90.0, 90.0}, {1.0, 1.0, 1.0}));
-  world.models.push_back(box_model("hidden", {1.0, 9.0, 0.0}, {1.0, 1.0, 1.0}, {1.0, 1.0, 1.0}));
-  EXPECT_NEAR(nearest_m(), 7.5, 0.01);
-  world.models.push_back(box_model("post", {0.6, 0.2, 0.0}, {0.2, 0.1, 0.1}, {1.0, 1.0, 1.0}));
-  EXPECT_NEAR(nearest_m(), 0.5, 0.001);
-}
-
 // quarters.png: red, green (above), blue, white (below).
 TEST(RendererTest, ATextureIsUprightAndRepeatsPerMetre) {
   World world = flat_world();
@@ -249,13 +242,13 @@ TEST(RendererTest, SameInputSameBytesInAnyThread) {
       std::filesystem::path(TETHER_TEST_DIR) / "data/quarters.png";
   world.lights.resize(2);
   const uav::CameraModel camera = camera_intrinsics(320, 240);
-  const View view{camera, 0.05, 100.0, {{0.0, 0.0, 0.1}, {}}, {}, {}};
+  const Pose X_WS{{0.0, 0.0, 0.1}, {}};
   Renderer a = renderer_of(world);
   Renderer b = renderer_of(world);
-  const std::vector<std::uint8_t> first = draw(a, view).rgb;
-  EXPECT_TRUE(first == draw(b, view).rgb);
-  EXPECT_TRUE(first == draw(a, view).rgb);
-  std::thread other([&] { EXPECT_TRUE(first == draw(a, view).rgb); });
+  const std::vector<std::uint8_t> first = draw(a, camera, X_WS).rgb;
+  EXPECT_TRUE(first == draw(b, camera, X_WS).rgb);
+  EXPECT_TRUE(first == draw(a, camera, X_WS).rgb);
+  std::thread other([&] { EXPECT_TRUE(first == draw(a, camera, X_WS).rgb); });
   other.join();
 }
 

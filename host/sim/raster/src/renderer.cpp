@@ -89,12 +89,6 @@ uav::CameraModel smaller(uav::CameraModel c, int scale) {
   return c;
 }
 
-bool is_same(const uav::CameraModel& a, const uav::CameraModel& b) {
-  return a.width_px == b.width_px && a.height_px == b.height_px && a.fx_px == b.fx_px &&
-         a.fy_px == b.fy_px && a.cx_px == b.cx_px && a.cy_px == b.cy_px && a.k1 == b.k1 &&
-         a.k2 == b.k2 && a.k3 == b.k3 && a.p1 == b.p1 && a.p2 == b.p2;
-}
-
 // Equal parts of the rows, each from where the last one ends.
 Strip strip_of(int rows, int part, int parts, int multiple) {
   const int units = (rows + multiple - 1) / multiple;
@@ -111,9 +105,8 @@ class Renderer::Work {
       : scene_(scene), pool_(threads), strips_(static_cast<std::size_t>(threads)) {}
 
   const Lens& lens_of(const uav::CameraModel& camera) {
-    const auto known = std::find_if(lenses_.begin(), lenses_.end(), [&](const Lens& lens) {
-      return is_same(lens.camera(), camera);
-    });
+    const auto known = std::find_if(lenses_.begin(), lenses_.end(),
+                                    [&](const Lens& lens) { return lens.camera() == camera; });
     if (known != lenses_.end()) {
       lenses_.splice(lenses_.begin(), lenses_, known);
     } else {

@@ -7,7 +7,7 @@
 
 #include <tether/base/error.h>
 #include <tether/sim/bodies.h>
-#include <tether/sim_sensing/sensor_suite.h>
+#include <tether/sim_sensing/composite_renderer.h>
 #include <tether/sim_sensing/state_layout.h>
 
 namespace tether::sim {

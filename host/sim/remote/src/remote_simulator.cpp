@@ -19,6 +19,7 @@
 #include <tether/base/printable.h>
 #include <tether/sim/bodies.h>
 #include <tether/sim_remote/remote_simulator.h>
+#include <tether/sim_sensing/composite_renderer.h>
 #include <tether/sim_sensing/sensor_suite.h>
 #include <tether/sim_sensing/state_recorder.h>
 
@@ -98,8 +99,10 @@ class RemoteSimulator final : public Simulator {
 
  private:
   SensorSuite::BackEnd back_end() {
-    auto make_renderer = [this](int, int) { return std::make_unique<RemoteRenderer>(session_); };
-    return {rays_, std::move(make_renderer), drawn_radii_m(world_)};
+    auto make_renderer = [this, radii_m = drawn_radii_m(world_)] {
+      return make_composite_renderer(std::make_unique<RemoteRenderer>(session_), radii_m);
+    };
+    return {rays_, std::move(make_renderer)};
   }
 
   // At least one step.

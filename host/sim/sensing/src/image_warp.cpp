@@ -24,36 +24,19 @@ struct Extent {
   }
 };
 
-// How far off the axis, at z = 1, the radial distortion goes on outwards.
-double fold_radius(const uav::CameraModel& c) {
-  constexpr double kStep = 1e-3;
-  for (double r = 0.0; r < 2.0 * kMaxTangent; r += kStep) {
-    const double r2 = r * r;
-    if (1.0 + r2 * (3.0 * c.k1 + r2 * (5.0 * c.k2 + r2 * 7.0 * c.k3)) <= 0.0) return r;
-  }
-  return std::numeric_limits<double>::infinity();
-}
-
 using Directions = std::vector<std::optional<uav::Vec3>>;
 
 Directions viewing_directions(const uav::CameraModel& camera) {
-  constexpr double kSame_px = 0.01;
-  const double fold = fold_radius(camera);
-  const auto direction = [&](const uav::Pixel& pixel) -> std::optional<uav::Vec3> {
-    uav::Vec3 p = camera.unproject(pixel);
-    const uav::Pixel seen = *camera.project(p);
-    const double error_px = std::hypot(seen.u_px - pixel.u_px, seen.v_px - pixel.v_px);
-    if (!(error_px < kSame_px) || std::hypot(p.x, p.y) > fold) return std::nullopt;
-    p.x = std::clamp(p.x, -kMaxTangent, kMaxTangent);
-    p.y = std::clamp(p.y, -kMaxTangent, kMaxTangent);
-    return p;
-  };
+  const uav::PixelRays rays(camera);
   Directions directions;
   directions.reserve(static_cast<std::size_t>(camera.width_px) *
                      static_cast<std::size_t>(camera.height_px));
   for (int row = 0; row < camera.height_px; ++row) {
     for (int column = 0; column < camera.width_px; ++column) {
-      directions.push_back(direction({static_cast<double>(column), static_cast<double>(row)}));
+      auto p = rays.at({static_cast<double>(column), static_cast<double>(row)});
+      if (p) p->x = std::clamp(p->x, -kMaxTangent, kMaxTangent);
+      if (p) p->y = std::clamp(p->y, -kMaxTangent, kMaxTangent);
+      directions.push_back(p);
     }
   }
   return directions;

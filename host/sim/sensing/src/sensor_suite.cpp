@@ -14,8 +14,7 @@ SensorSuite::SensorSuite(const World& world, BackEnd back_end, const WarningSink
     : world_(world),
       layout_(world),
       rays_(back_end.rays),
-      images_(std::make_unique<ImageMaker>(world, std::move(back_end.body_radii_m),
-                                           std::move(back_end.make_renderer), warn)),
+      images_(std::make_unique<ImageMaker>(world, std::move(back_end.make_renderer), warn)),
       X_WB_(layout_.bodies()) {}
 
 SensorSuite::~SensorSuite() = default;

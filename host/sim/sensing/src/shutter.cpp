@@ -26,24 +26,20 @@ double hat_integral(double x) {
 
 }  // namespace
 
-Shutter::Shutter(const CameraModel& camera)
-    : exposure_s(camera.exposure_s),
-      readout_s(camera.readout_s),
-      rows(camera.intrinsics.height_px) {}
-
 int count_instants(double motion_px) {
   if (!(motion_px > kStill_px)) return 1;
   return 1 + static_cast<int>(std::ceil(std::min(motion_px, kMaxInstants - 1.0)));
 }
 
-double row_weight(const Shutter& shutter, int row, int instant, int instants) {
+double row_weight(const raster::View& view, int row, int instant, int instants) {
   if (instants == 1) return 1.0;
   const double last = instants - 1;
-  const double per_s = last / shutter.window_s();
-  const int rows_after = shutter.rows - 1 - row;
-  const double late_s = rows_after == 0 ? 0.0 : shutter.readout_s * rows_after / (shutter.rows - 1);
+  const double per_s = last / window_s(view);
+  const int rows_after = view.camera.height_px - 1 - row;
+  const double late_s =
+      rows_after == 0 ? 0.0 : view.readout_s * rows_after / (view.camera.height_px - 1);
   const double end = last - late_s * per_s;
-  const double begin = std::max(0.0, end - shutter.exposure_s * per_s);
+  const double begin = std::max(0.0, end - view.exposure_s * per_s);
   if (end - begin < kShort) return hat(end - instant);
   return (hat_integral(end - instant) - hat_integral(begin - instant)) / (end - begin);
 }

@@ -7,43 +7,31 @@
 namespace tether::sim::testing {
 namespace {
 
-class FakeRenderer final : public ViewRenderer {
+class FakeRenderer final : public CameraRenderer {
  public:
-  explicit FakeRenderer(RenderLog& log) : log_(log) {}
+  explicit FakeRenderer(DrawLog& log) : log_(log) {}
 
-  void render(const View& view, std::span<std::uint8_t> rgb) override {
-    log_.views.push_back({view, {view.X_WB.begin(), view.X_WB.end()}});
-    EXPECT_LE(view.camera.width_px, log_.max_width_px);
-    EXPECT_LE(view.camera.height_px, log_.max_height_px);
-    EXPECT_EQ(rgb.size(),
-              static_cast<std::size_t>(3 * view.camera.width_px * view.camera.height_px));
-    std::uint8_t* out = rgb.data();
-    for (int row = 0; row < view.camera.height_px; ++row) {
-      for (int column = 0; column < view.camera.width_px; ++column) {
-        out = std::fill_n(out, 3, log_.paint(view, column, row));
-      }
+  void draw(const raster::View& view, const raster::Picture& picture) override {
+    DrawLog::Drawn& drawn = log_.drawn.emplace_back();
+    drawn.view = view;
+    for (const raster::Instant& instant : view.instants) {
+      drawn.X_WC.push_back(instant.X_WC);
+      drawn.X_WB.emplace_back(instant.X_WB.begin(), instant.X_WB.end());
     }
+    std::fill(picture.rgb.begin(), picture.rgb.end(), log_.grey);
   }
-
-  double nearest_depth_m() override {
-    EXPECT_TRUE(log_.views.back().view.with_depth);
-    ++log_.depths;
-    return log_.nearest_m;
-  }
-
+  std::size_t blind_pixels(const uav::CameraModel&) override { return log_.blind_pixels; }
   std::string name() const override { return "fake"; }
 
  private:
-  RenderLog& log_;
+  DrawLog& log_;
 };
 
 }  // namespace
 
-ViewRendererFactory fake_renderers(RenderLog& log) {
-  return [&log](int max_width_px, int max_height_px) {
+CameraRendererFactory fake_renderers(DrawLog& log) {
+  return [&log] {
     ++log.made;
-    log.max_width_px = max_width_px;
-    log.max_height_px = max_height_px;
     return std::make_unique<FakeRenderer>(log);
   };
 }

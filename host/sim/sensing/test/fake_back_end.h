@@ -2,38 +2,32 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
+#include <tether/sim_sensing/camera_renderer.h>
 #include <tether/sim_sensing/ray_caster.h>
-#include <tether/sim_sensing/view_renderer.h>
 
 /// A back end that makes everything up, and remembers what it was asked for.
 namespace tether::sim::testing {
 
-/// A view with a copy of its poses.
-struct SeenView {
-  View view;
-  std::vector<uav::Pose> X_WB;
-};
-
-/// What the renderers of `fake_renderers` do.
-struct RenderLog {
+/// What the renderers of `fake_renderers` were asked for, and what they answer.
+struct DrawLog {
+  /// A view with copies of its poses.
+  struct Drawn {
+    raster::View view;
+    std::vector<uav::Pose> X_WC;
+    std::vector<std::vector<uav::Pose>> X_WB;
+  };
   int made = 0;
-  int max_width_px = 0;
-  int max_height_px = 0;
-  int depths = 0;  ///< how often the depth was asked for
-  std::vector<SeenView> views;
+  std::vector<Drawn> drawn;
 
-  double nearest_m = 1.0;
-  /// The grey of a pixel; `row` as in the picture that is drawn.
-  std::function<std::uint8_t(const View& view, int column, int row)> paint =
-      [](const View&, int, int) { return std::uint8_t{0}; };
+  std::uint8_t grey = 0;  ///< of each pixel
+  std::size_t blind_pixels = 0;
 };
 
-/// Renderers named "fake" that draw as `log` says; it must outlive them.
-ViewRendererFactory fake_renderers(RenderLog& log);
+/// Renderers named "fake"; `log` must outlive them.
+CameraRendererFactory fake_renderers(DrawLog& log);
 
 /// Rays that meet something at the distances given, the first ray at the first.
 class FakeRays final : public RayCaster {

@@ -57,11 +57,11 @@ class SensorSuiteTest : public ::testing::Test {
   Pose X_BS() const { return world_.uavs[0].sensors[kImu].X_BS; }
 
   const World world_ = noisy_world();
-  testing::RenderLog log_;
+  testing::DrawLog log_;
   testing::FakeRays rays_{{3.0, 2.0, 5.0}};
-  SensorSuite suite_{world_,
-                     {rays_, testing::fake_renderers(log_), {0.3, 0.3, 0.9}},
-                     [](const Warning& warning) { ADD_FAILURE() << to_line(warning); }};
+  SensorSuite suite_{world_, {rays_, testing::fake_renderers(log_)}, [](const Warning& warning) {
+                       ADD_FAILURE() << to_line(warning);
+                     }};
   Snapshot snapshot_;
 };
 
@@ -103,10 +103,11 @@ TEST_F(SensorSuiteTest, ACameraSeesFromItsCarrierWithALateRenderer) {
   EXPECT_EQ(sample.rgb.size(), std::size_t{3} * 160 * 120);
   EXPECT_EQ(sample.sampled_at, kAt);
   EXPECT_EQ(sample.index, 4U);
-  ASSERT_EQ(log_.views.size(), 1U);
-  EXPECT_EQ(log_.views[0].view.X_WS, kPoses[1] * X_BS());
-  EXPECT_EQ(log_.views[0].view.hidden, 1U);
-  EXPECT_EQ(log_.views[0].X_WB, kPoses);
+  ASSERT_EQ(log_.drawn.size(), 1U);
+  const testing::DrawLog::Drawn& drawn = log_.drawn[0];
+  EXPECT_EQ(drawn.X_WC.at(0), kPoses[1] * (X_BS() * Pose{{}, uav::q_body_from_optical()}));
+  EXPECT_EQ(drawn.view.hidden, 1U);
+  EXPECT_EQ(drawn.X_WB.at(0), kPoses);
 }
 
 TEST_F(SensorSuiteTest, TheSeedKeysTheNoise) {

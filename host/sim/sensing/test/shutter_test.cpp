@@ -8,19 +8,19 @@
 namespace tether::sim {
 namespace {
 
-Shutter shutter(double exposure_s, double readout_s, int rows) {
-  CameraModel camera;
-  camera.intrinsics.height_px = rows;
-  camera.exposure_s = exposure_s;
-  camera.readout_s = readout_s;
-  return Shutter(camera);
+raster::View view_of(double exposure_s, double readout_s, int rows) {
+  raster::View view;
+  view.camera.height_px = rows;
+  view.exposure_s = exposure_s;
+  view.readout_s = readout_s;
+  return view;
 }
 
 // The mean instant of a row's light, in seconds before the end.
-double mean_age_s(const Shutter& s, int row, int instants) {
+double mean_age_s(const raster::View& s, int row, int instants) {
   double age_s = 0.0;
   for (int i = 0; i < instants; ++i) {
-    age_s += row_weight(s, row, i, instants) * s.window_s() * (instants - 1 - i) / (instants - 1);
+    age_s += row_weight(s, row, i, instants) * window_s(s) * (instants - 1 - i) / (instants - 1);
   }
   return age_s;
 }
@@ -30,7 +30,7 @@ TEST(ShutterTest, WeightsOfEachRowAreSharesOfOne) {
        {std::pair{0.01, 0.0}, {0.0, 0.03}, {0.02, 0.01}, {1e-9, 0.03}, {0.01, 1e-9}}) {
     for (const int instants : {1, 2, 3, 7, 32}) {
       for (const int rows : {1, 2, 9, 480}) {
-        const Shutter s = shutter(exposure_s, readout_s, rows);
+        const raster::View s = view_of(exposure_s, readout_s, rows);
         for (int row = 0; row < rows; ++row) {
           double sum = 0.0;
           for (int i = 0; i < instants; ++i) {
@@ -46,7 +46,7 @@ TEST(ShutterTest, WeightsOfEachRowAreSharesOfOne) {
 
 // Weights that are linear in time keep the mean of every row's exposure, wherever it lies.
 TEST(ShutterTest, EachRowIsSeenAtTheMiddleOfItsExposure) {
-  const Shutter s = shutter(0.012, 0.03, 5);
+  const raster::View s = view_of(0.012, 0.03, 5);
   for (const int instants : {2, 3, 8, 32}) {
     for (int row = 0; row < 5; ++row) {
       EXPECT_NEAR(mean_age_s(s, row, instants), 0.006 + 0.03 * (4 - row) / 4.0, 1e-9);
@@ -55,7 +55,7 @@ TEST(ShutterTest, EachRowIsSeenAtTheMiddleOfItsExposure) {
 }
 
 TEST(ShutterTest, RollingRowsAreInstants) {
-  const Shutter s = shutter(0.0, 0.04, 5);
+  const raster::View s = view_of(0.0, 0.04, 5);
   for (int row = 0; row < 5; ++row) {
     for (int i = 0; i < 5; ++i) EXPECT_NEAR(row_weight(s, row, i, 5), row == i ? 1.0 : 0.0, 1e-12);
   }

@@ -36,8 +36,7 @@ void expect_past(const StateRecorder& recorder, const std::vector<double>& state
   const StateLayout& layout = recorder.layout();
   for (std::size_t steps = 0; steps < x.size(); ++steps) {
     for (std::size_t body = 0; body < 2; ++body) {
-      EXPECT_EQ(layout.past_pose_of(state, body, static_cast<double>(steps)),
-                poses_at(x[steps])[body])
+      EXPECT_EQ(layout.past_pose_of(state, body, steps), poses_at(x[steps])[body])
           << body << ", " << steps << " steps ago";
     }
   }

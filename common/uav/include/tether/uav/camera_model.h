@@ -34,6 +34,7 @@ struct CameraModel {
   /// The viewing direction of a pixel, scaled to z = 1. Undoes the distortion iteratively.
   Vec3 unproject(const Pixel& pixel) const;
   bool contains(const Pixel& pixel) const;
+  friend bool operator==(const CameraModel&, const CameraModel&) = default;
 };
 
 /// The viewing directions of a camera's pixels. A value.

@@ -8,32 +8,23 @@
 
 #include <tether/sim/simulator.h>
 #include <tether/sim/world.h>
+#include <tether/sim_sensing/camera_renderer.h>
 #include <tether/sim_sensing/ray_caster.h>
 #include <tether/sim_sensing/state_layout.h>
-#include <tether/sim_sensing/view_renderer.h>
 #include <tether/uav/samples.h>
 
 namespace tether::sim {
 
 class ImageMaker;
 
-/// The largest views that the world's cameras need, for ViewRendererFactory.
-struct ViewSize {
-  int width_px = 0;  ///< 0: no camera
-  int height_px = 0;
-};
-ViewSize largest_view(const World& world);
-
 /// All sensors of a world: makes the samples of `Simulator::measure` from captured states, rays and
-/// views. Mounting, lever arms, lens, shutter, noise, limits and dropouts are the same for every
-/// back end. One thread at a time.
+/// pictures. Mounting, lever arms, noise, limits and dropouts are the same for every back end. One
+/// thread at a time.
 class SensorSuite {
  public:
   struct BackEnd {
     RayCaster& rays;  ///< must outlive the suite
-    ViewRendererFactory make_renderer;
-    /// An upper bound of the drawn extent of each of `moving_bodies` from its origin [m].
-    std::vector<double> body_radii_m;
+    CameraRendererFactory make_renderer;
   };
 
   /// `world` must outlive the suite. Warns of what a camera cannot show when its first image is

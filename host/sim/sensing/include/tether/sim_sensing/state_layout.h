@@ -19,6 +19,8 @@ struct BodyMotion {
 /// are in a captured state.
 /// @throws Error(kBadFile) for a shutter that is negative or longer than 1 s.
 std::size_t shutter_steps(const World& world);
+/// The same of one camera, with such steps. @pre a shutter of at most 1 s
+std::size_t shutter_steps(const CameraModel& camera, Duration step);
 
 /// The layout of `Snapshot::state` of every back end whose sensors are made by the sensing library:
 /// position and quaternion of each of `moving_bodies` (7 numbers each), then the BodyMotion of each
@@ -42,10 +44,9 @@ class StateLayout {
 
   uav::Pose pose_of(const std::vector<double>& state, std::size_t body) const;
   BodyMotion motion_of(const std::vector<double>& state, std::size_t uav) const;
-  /// Where a body was `steps_ago` steps before the capture, a whole number or between two. @pre not
-  /// negative, and within the longest shutter.
+  /// Where a body was so many steps before the capture. @pre within the longest shutter.
   uav::Pose past_pose_of(const std::vector<double>& state, std::size_t body,
-                         double steps_ago) const;
+                         std::size_t steps_ago) const;
 
  private:
   std::size_t bodies_;

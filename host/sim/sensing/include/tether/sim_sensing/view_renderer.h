@@ -2,8 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,8 +25,9 @@ struct View {
   bool with_depth = false;
 };
 
-/// Draws pictures of the world: what a back end provides for cameras. The sensing library adds
-/// lens, shutter and noise. The same view always gives the same bytes. One thread at a time.
+/// Draws views of the world: what an external simulator provides for cameras; lens and shutter are
+/// put together from several (`make_composite_renderer`). The same view always gives the same
+/// bytes. One thread at a time.
 class ViewRenderer {
  public:
   virtual ~ViewRenderer() = default;
@@ -50,11 +49,5 @@ class ViewRenderer {
  protected:
   ViewRenderer() = default;
 };
-
-/// Makes a renderer for views of at most this size. Called once, for the first image: a run without
-/// a camera needs no renderer.
-/// @throws Error(kSetup) without a renderer, Error(kBadFile) for something that cannot be shown.
-using ViewRendererFactory =
-    std::function<std::unique_ptr<ViewRenderer>(int max_width_px, int max_height_px)>;
 
 }  // namespace tether::sim
