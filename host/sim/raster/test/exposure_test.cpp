@@ -11,6 +11,9 @@
 namespace tether::raster {
 namespace {
 
+using uav::Pose;
+using uav::Vec3;
+
 // A camera that turns to the right and moves ahead, in a rich scene.
 struct Flight {
   explicit Flight(double speed) {
@@ -52,27 +55,90 @@ TEST(Exposure, OfAStillSceneIsThePlainPicture) {
   EXPECT_EQ(draw(renderer, flight.view).rgb, draw(renderer, plain).rgb);
 }
 
-// Each row of a rolling picture is that row of the picture of its instant, up to a
-// quarter of a pixel's motion.
-TEST(Exposure, RollsThroughThePicturesOfEachRow) {
-  SceneParts parts = plain_parts(rectangle(-0.5F, -9, 9, 9, 3), {1, 1, 1});
+// Where an edge is seen by a camera that flies and turns while the edge moves, from geometry alone:
+// everything right of x = −0.5 m on a plate 3 m ahead is white.
+class MovingEdge {
+ public:
+  static constexpr double kEdge_m = -0.5;
+  static constexpr double kDepth_m = 3.0;
+
+  static Pose camera(double t_s) {
+    return {{0.8 * t_s, -0.5 * t_s, 1.5 * t_s}, uav::from_axis_angle({0.0, 0.96, 0.28}, 1.6 * t_s)};
+  }
+  static Pose plate(double t_s) {
+    return {{1.1 * t_s, 0.0, 0.0}, uav::from_axis_angle({0.0, 0.0, 1.0}, 0.3 - 0.9 * t_s)};
+  }
+
+  // A share of the light of a row's exposure: how long the ray of a pixel sees white.
+  static double light(const View& view, double row, const Vec3& ray_C) {
+    const int rows = view.camera.height_px;
+    const double end_s = -view.readout_s * (rows - 1 - row) / (rows - 1);
+    const int times = view.exposure_s > 0.0 ? 100 : 1;
+    int white = 0;
+    for (int i = 0; i < times; ++i) {
+      if (sees_white(end_s - view.exposure_s * (i + 0.5) / times, ray_C)) ++white;
+    }
+    return 1.0 * white / times;
+  }
+
+ private:
+  static bool sees_white(double t_s, const Vec3& ray_C) {
+    const Pose X_BC = inverse(plate(t_s)) * camera(t_s);
+    const Vec3 ray_B = rotate(X_BC.q, ray_C);
+    return X_BC.p.x + ray_B.x * (kDepth_m - X_BC.p.z) / ray_B.z > kEdge_m;
+  }
+};
+
+// The sample of a pixel is exact up to 1/512 px; a band of rows is drawn at the time of its middle,
+// a quarter of a pixel's motion off at most; layers of an exposure are at most a pixel apart.
+TEST(Exposure, ShowsEachPixelWhatItsRayMeetsInTheTimeOfItsRow) {
+  SceneParts parts = plain_parts(
+      rectangle(static_cast<float>(MovingEdge::kEdge_m), -9, 9, 9, MovingEdge::kDepth_m),
+      {1, 1, 1});
+  parts.instances[0].body = 0;
   const Scene scene(parts);
   Renderer renderer(scene);
-  Flight flight(4.0);
-  flight.view.readout_s = 0.02;
-  const Drawing rolling = draw(renderer, flight.view);
-  const auto edge = [](const Drawing& drawing, int row) {
-    int column = 0;
-    while (drawing.at(column, row)[0] < 128) ++column;
-    return column;
-  };
-  for (int row = 0; row < 120; row += 7) {
-    Moment moment;
-    Instant instant;
-    const View view = plain_view(flight, before_end_s(flight.view, row, 0, 1), moment, instant);
-    EXPECT_NEAR(edge(rolling, row), edge(draw(renderer, view), row), 1) << "row " << row;
+  std::vector<Pose> bodies;
+  for (int i = 0; i <= 30; ++i) bodies.push_back(MovingEdge::plate(0.001 * (i - 30)));
+  std::vector<Instant> instants;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    instants.push_back(
+        {MovingEdge::camera(0.001 * (static_cast<double>(i) - 30)), {&bodies[i], 1}});
   }
-  EXPECT_GT(std::abs(edge(rolling, 0) - edge(rolling, 119)), 8);
+  int edges = 0;
+  for (int kind = 0; kind < 8; ++kind) {
+    View view;
+    view.camera = kind % 2 == 1 ? bent_camera() : small_camera();
+    view.instants = instants;
+    view.spacing_s = 0.001;
+    view.exposure_s = kind & 2 ? 0.01 : 0.0;
+    view.readout_s = kind & 4 ? 0.02 : 0.0;
+    const Sampling sampling =
+        choose_sampling(view, motion_px(view, scene.body_radii_m(), MovingEdge::kDepth_m - 0.5));
+    EXPECT_TRUE(view.exposure_s == 0.0 || sampling.layers > 2) << sampling.layers;
+    EXPECT_TRUE(view.readout_s == 0.0 || sampling.bands > 9) << sampling.bands;
+    const double off_px = view.readout_s > 0.0 ? 0.26 : 0.01;
+    const double off_light = sampling.layers > 1 ? 0.5 / sampling.layers + 0.02 : 0.0;
+    const Drawing drawing = draw(renderer, view);
+    for (int row = 1; row < view.camera.height_px; row += 9) {
+      double before = 0.0;
+      for (int column = 0; column < view.camera.width_px; ++column) {
+        const auto expected = [&](double aside_px) {
+          return MovingEdge::light(view, row,
+                                   view.camera.unproject({column + aside_px, 1.0 * row}));
+        };
+        const double light =
+            light_table().light[static_cast<std::size_t>(drawing.at(column, row)[0])] / 65535.0;
+        const double left = expected(-off_px);
+        const double right = expected(off_px);
+        ASSERT_GE(light, left - off_light) << kind << ": " << column << ", " << row;
+        ASSERT_LE(light, right + off_light) << kind << ": " << column << ", " << row;
+        if (column > 0 && light > 0.5 && before <= 0.5) ++edges;
+        before = light;
+      }
+    }
+  }
+  EXPECT_EQ(edges, 8 * 14) << "one in each row";
 }
 
 // An exposed picture is the mean light of pictures throughout the exposure.
