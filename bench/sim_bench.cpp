@@ -1,5 +1,5 @@
 #include "physics_model.h"
-#include "renderer.h"
+#include "scene.h"
 
 #include <chrono>
 #include <cstdint>
@@ -12,6 +12,7 @@
 
 #include <tether/sim/world.h>
 #include <tether/sim_mujoco/mujoco_simulator.h>
+#include <tether/sim_raster/renderer.h>
 #include <tether/sim_sdf/load_world.h>
 
 // The embedded simulator in the corridor world: steps and images per second, each beside the least
@@ -154,33 +155,44 @@ BENCHMARK(BM_exposed_10ms)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_rolling_20ms)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_exposed_10ms_rolling_20ms)->UseRealTime()->Unit(benchmark::kMillisecond);
 
-// The yardstick: an empty picture of the same size, cleared, multisampled, read back and packed.
-void empty_images(benchmark::State& state, int width_px, int height_px) {
-  Scene scene;
-  scene.lights.resize(1);
-  Renderer renderer(scene, width_px, height_px);
-  const auto camera = uav::CameraModel::from_horizontal_fov(width_px, height_px, 1.4);
+// The yardsticks: the renderer alone with the same world from the start of that flight, without
+// physics and noise, and with an empty world.
+void renderer_alone(benchmark::State& state, const raster::SceneParts& parts, int width_px,
+                    int height_px) {
+  const raster::Scene scene(parts);
+  raster::Renderer renderer(scene);
+  const std::vector<uav::Pose> bodies(scene.bodies());
+  const uav::Pose X_WS{{0.1, 0.0, 1.2}, {}};
+  const raster::Instant instant{X_WS * uav::Pose{{}, uav::q_body_from_optical()}, bodies};
+  raster::View view;
+  view.camera = uav::CameraModel::from_horizontal_fov(width_px, height_px, 1.4);
+  view.instants = {&instant, 1};
   std::vector<std::uint8_t> rgb(static_cast<std::size_t>(3 * width_px * height_px));
+  raster::Picture picture;
+  picture.rgb = rgb;
   for (auto _ : state) {
-    renderer.render({camera, 0.05, 50.0, {}, {}, {}}, rgb);
+    renderer.draw(view, picture);
     benchmark::DoNotOptimize(rgb.data());
   }
+  state.SetLabel(raster::Renderer::instructions());
   count_items(state, "images", 1.0);
 }
+void BM_renderer_alone_640x480(benchmark::State& state) {
+  renderer_alone(state, make_scene(corridor(), print_warning), 640, 480);
+}
+void BM_renderer_alone_320x240(benchmark::State& state) {
+  renderer_alone(state, make_scene(corridor(), print_warning), 320, 240);
+}
 void BM_empty_images_640x480(benchmark::State& state) {
-  empty_images(state, 640, 480);
+  renderer_alone(state, {}, 640, 480);
 }
 void BM_empty_images_320x240(benchmark::State& state) {
-  empty_images(state, 320, 240);
+  renderer_alone(state, {}, 320, 240);
 }
-BENCHMARK(BM_empty_images_640x480)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(BM_empty_images_320x240)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_renderer_alone_640x480)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_renderer_alone_320x240)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_empty_images_640x480)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_empty_images_320x240)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tether::sim
