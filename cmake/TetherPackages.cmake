@@ -145,8 +145,6 @@ describe(tether science
   "and the world, and synchronises simulated time with the computing time of the"
   "board. Scenarios and worlds are in /usr/share/tether, guides in"
   "/usr/share/doc/tether/guide.")
-# The driver that draws is looked for at run time, so that no program names it.
-set(CPACK_DEBIAN_TETHER_PACKAGE_DEPENDS "libgl1-mesa-dri")
 set(CPACK_DEBIAN_TETHER_PACKAGE_RECOMMENDS "tether-sut, gnuplot-nox")
 # Cameras in Gazebo draw on it.
 set(CPACK_DEBIAN_TETHER_PACKAGE_SUGGESTS "xvfb")

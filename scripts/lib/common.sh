@@ -16,14 +16,14 @@ usage() { sed -n '2,/^[^#]/{/^# shellcheck /q;/^#/s/^# \{0,1\}//p}' "$0"; }
 # ---- packages ------------------------------------------------------------------------------------
 # Debian 12's names, by what they are for.
 
-# Compiler and libraries of the product, with the software renderer that cameras need without a GPU.
+# Compiler and libraries of the product.
 packages_build=(
   g++ cmake ninja-build mold
-  libmujoco-dev libegl-dev libgl-dev libopengl-dev libegl1 libgl1-mesa-dri
+  libmujoco-dev libhwy-dev
   libsdformat-dev libtinyxml2-dev libconsole-bridge-dev libassimp-dev
   libopencv-dev libpng-dev libturbojpeg0-dev zlib1g-dev libzstd-dev libboost-dev
   libflatbuffers-dev flatbuffers-compiler
-  libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libhwy-dev
+  libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   gnuplot-nox
 )
 packages_test=(git python3 libgtest-dev libgmock-dev libbenchmark-dev clang-format)

@@ -84,6 +84,13 @@ TEST_F(Arm64, ComputesWhatThisMachineComputes) {
   EXPECT_TRUE(record == comparable(timeless_record(folder_ / "there"))) << "the records differ";
 }
 
+TEST_F(Arm64, DrawsThePicturesThatThisMachineDraws) {
+  std::vector<std::string> drawing{"raster_elsewhere", "--gtest_filter=Renderer.Gives*Bytes*"};
+  const Output output = run({emulated(drawing)}, 300s);
+  EXPECT_EQ(output.code, 0) << output.out << output.err;
+  EXPECT_THAT(output.out, HasSubstr("[  PASSED  ] 2 tests"));
+}
+
 /// The names in a package's Depends; each has to come with a least version.
 std::vector<std::string> needs_of(const std::string& package) {
   const auto file =

@@ -12,21 +12,23 @@
 namespace tether::sim {
 namespace {
 
-SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, const WarningSink& warn) {
+SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, const WarningSink& warn,
+                              const MeshFiles& meshes) {
   // Shared by the function's copies, and the renderers.
-  const auto scene = std::make_shared<const raster::Scene>(make_scene(world, warn));
+  const auto scene = std::make_shared<const raster::Scene>(make_scene(world, warn, meshes));
   return {rays, [scene] { return std::make_unique<Renderer>(scene); }};
 }
 
 class MujocoSimulator final : public Simulator {
  public:
-  MujocoSimulator(World world, WarningSink warn)
+  // Keeps the files of meshes only until all parts have read them.
+  MujocoSimulator(World world, WarningSink warn, const MeshFiles& meshes = MeshFiles())
       : world_(std::move(world)),
         warn_(printable_warnings(std::move(warn))),
         grid_(world_.step),
-        dynamics_(world_, warn_),
+        dynamics_(world_, warn_, meshes),
         rays_(dynamics_.model()),
-        sensors_(world_, back_end(world_, rays_, warn_), warn_) {}
+        sensors_(world_, back_end(world_, rays_, warn_, meshes), warn_) {}
 
   const World& world() const override { return world_; }
   StepGrid grid() const override { return grid_; }

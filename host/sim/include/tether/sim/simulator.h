@@ -79,7 +79,7 @@ class Simulator {
   /// From a UAV to whatever is nearest, at `now()`. None: not measured, or there is nothing else.
   virtual std::optional<Clearance> clearance(std::size_t uav) const = 0;
 
-  /// Name and version, for the record: "MuJoCo 2.2.2, Mesa llvmpipe".
+  /// Name and version, for the record: "MuJoCo 2.2.2, software renderer".
   virtual std::string description() const = 0;
 
  protected:

@@ -43,7 +43,7 @@ class ViewRenderer {
   /// moving camera. @pre the last view was `with_depth`.
   virtual double nearest_depth_m() = 0;
 
-  /// The renderer's name, for the record: "llvmpipe (LLVM 15.0.6, 256 bits)".
+  /// The renderer's name, for the record: "software renderer".
   virtual std::string name() const = 0;
 
  protected:
