@@ -14,7 +14,7 @@ namespace {
 
 std::vector<uav::Vec3> mesh_vertices(const MeshGeometry& mesh) {
   std::vector<uav::Vec3> vertices;
-  for (const TriangleMesh::Vertex& v : load_mesh(mesh, {}, [](const auto&) {}).vertices) {
+  for (const raster::Mesh::Vertex& v : load_mesh(mesh, {}, [](const auto&) {}).vertices) {
     vertices.push_back({v.position[0], v.position[1], v.position[2]});
   }
   return vertices;
