@@ -126,21 +126,21 @@ TEST_F(SensorSuiteTest, TheSeedKeysTheNoise) {
 }
 
 // Greys that depend on the camera's place; used by several threads.
-class PlaceRenderer final : public ViewRenderer {
+class PlaceRenderer final : public CameraRenderer {
  public:
-  void render(const View& view, std::span<std::uint8_t> rgb) override {
-    if (view.X_WS.p.x < 0.0) throw Error(ErrorCode::kSetup, "lost");
-    std::ranges::fill(rgb, static_cast<std::uint8_t>(view.X_WS.p.x));
+  void draw(const raster::View& view, const raster::Picture& picture) override {
+    const double x_m = view.instants.back().X_WC.p.x;
+    if (x_m < 0.0) throw Error(ErrorCode::kSetup, "lost");
+    std::ranges::fill(picture.rgb, static_cast<std::uint8_t>(x_m));
   }
-  double nearest_depth_m() override { return 1.0; }
+  std::size_t blind_pixels(const uav::CameraModel&) override { return 0; }
   std::string name() const override { return "place"; }
 };
 
 TEST_F(SensorSuiteTest, PicturesDrawnAheadAreThoseOfTheirSnapshots) {
-  SensorSuite suite{
-      world_,
-      {rays_, [](int, int) { return std::make_unique<PlaceRenderer>(); }, {0.3, 0.3, 0.9}, 3},
-      [](const Warning&) {}};
+  SensorSuite suite{world_,
+                    {rays_, [] { return std::make_unique<PlaceRenderer>(); }, 3},
+                    [](const Warning&) {}};
   std::vector<Snapshot> snapshots(100, snapshot_);
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     snapshots[i].at = SimTime(std::chrono::milliseconds(i));
