@@ -179,7 +179,7 @@ TrialEnd TrialRun::fly() {
   };
   hooks.on_status = [&](const coordinator::RunStatus& status) { watch(status, stalls); };
   hooks.on_refused = [&](const std::string& address, const std::string& reason) {
-    refusals_.add(address, reason);
+    refusals_.add(address, reason, !spec_.waits_for_sut && !have_all_joined_);
   };
   hooks.read_target = [&] { return target_after_ = read_target(spec_, board_); };
   end.report = coordinator_.run(*server_, hooks);
@@ -195,7 +195,7 @@ std::optional<EarlyStop> TrialRun::early_stop() {
   const auto ended = have_all_joined_ ? std::nullopt : suts_.early_end();
   if (!ended) return std::nullopt;
   // Most programs print the reason for which they were rejected: it is part of their end.
-  const std::string& why = refusals_.last();
+  const std::string why = refusals_.take_last();
   const bool is_known = ended->find(why) != std::string::npos;
   return EarlyStop{StopCause::kSutEnded,
                    *ended + (is_known ? "" : "; its connection was refused: " + why)};

@@ -28,8 +28,7 @@ struct Bounds {
   Vec3 half_m;
 };
 
-Bounds bounds_of(Convex shape) {
-  shape.X_WS = {};
+Bounds bounds_of(const Convex& shape) {
   const auto extent = [&](const Vec3& axis) {
     return dot(support_point(shape, axis), axis) + rounding_m(shape);
   };
@@ -54,16 +53,13 @@ struct ClearanceMeter::Shape {
   std::string_view owner;
   std::optional<std::size_t> body;  ///< of `moving_bodies`; none: fixed, and X_BS is in W
   Pose X_BS;
-  Convex convex;
-  Bounds bounds;
-  std::optional<Vec3> plane_normal_S;  ///< of a plane, which has no `convex`
+  const Geometry& geometry;         ///< of the world
+  std::span<const Vec3> vertices;  ///< of a mesh, in `vertices_`
+  Bounds bounds{};
+  std::optional<Vec3> plane_normal_S{};  ///< of a plane, which has no `bounds`
 
   Pose pose(std::span<const Pose> X_WB) const { return body ? X_WB[*body] * X_BS : X_BS; }
-  Convex placed(std::span<const Pose> X_WB) const {
-    Convex there = convex;
-    there.X_WS = pose(X_WB);
-    return there;
-  }
+  Convex at(const Pose& X_WS) const { return {geometry, vertices, X_WS}; }
   /// How far a point is above the plane.
   double height_m(const Vec3& p_W) const {
     return dot(rotate(X_BS.q, *plane_normal_S), p_W - X_BS.p);
@@ -85,17 +81,17 @@ ClearanceMeter::~ClearanceMeter() = default;
 void ClearanceMeter::add(const Link& link, const Pose& X_BL, std::optional<std::size_t> body,
                          std::string_view owner, const MeshVertices& vertices) {
   for (const Collision& collision : link.collisions) {
-    Shape shape{owner, body, X_BL * collision.X_LC, {collision.geometry, {}, {}}, {}, {}};
+    Shape shape{owner, body, X_BL * collision.X_LC, collision.geometry, {}};
     if (const auto* plane = std::get_if<PlaneGeometry>(&collision.geometry)) {
       if (body) continue;  // collides with nothing
       const double length = norm(plane->normal);
       shape.plane_normal_S = length > 0.0 ? (1.0 / length) * plane->normal : Vec3{0.0, 0.0, 1.0};
     } else if (const auto* mesh = std::get_if<MeshGeometry>(&collision.geometry)) {
-      if (vertices) shape.convex.vertices = vertices_of(*mesh, vertices);
-      is_complete_ = is_complete_ && !shape.convex.vertices.empty();
-      if (shape.convex.vertices.empty()) continue;
+      if (vertices) shape.vertices = vertices_of(*mesh, vertices);
+      is_complete_ = is_complete_ && !shape.vertices.empty();
+      if (shape.vertices.empty()) continue;
     }
-    if (!shape.plane_normal_S) shape.bounds = bounds_of(shape.convex);
+    if (!shape.plane_normal_S) shape.bounds = bounds_of(shape.at({}));
     shapes_.push_back(std::move(shape));
   }
 }
@@ -114,7 +110,7 @@ std::optional<Clearance> ClearanceMeter::measure(std::size_t uav,
   Clearance nearest{kInfinity, {}};
   for (const Shape& own : shapes_) {
     if (own.body != uav) continue;
-    const Convex here = own.placed(X_WB);
+    const Convex here = own.at(own.pose(X_WB));
     const Vec3 centre_W = transform(here.X_WS, own.bounds.centre);
     const double radius_m = norm(own.bounds.half_m);
     for (const Shape& other : shapes_) {
@@ -127,7 +123,7 @@ std::optional<Clearance> ClearanceMeter::measure(std::size_t uav,
         const Pose X_WS = other.pose(X_WB);
         const Vec3 centre_S = rotate(inverse(X_WS.q), centre_W - X_WS.p);
         if (distance_m(other.bounds, centre_S) - radius_m >= nearest.distance_m) continue;
-        candidate_m = sim::distance_m(here, other.placed(X_WB));
+        candidate_m = sim::distance_m(here, other.at(X_WS));
       }
       candidate_m = std::max(0.0, candidate_m);
       if (candidate_m < nearest.distance_m) nearest = {candidate_m, other.owner};
@@ -147,7 +143,7 @@ std::string_view ClearanceMeter::shape_overhead(const Vec3& p_W) const {
     if (shape.plane_normal_S) {
       is_above = shape.height_m(p_W) < 0.0;
     } else {
-      const Convex there = shape.placed({});
+      const Convex there = shape.at(shape.X_BS);
       const auto reach_m = [&](const Vec3& axis) {
         return dot(support_point(there, axis), axis) + rounding_m(there) - dot(p_W, axis);
       };

@@ -9,7 +9,7 @@ namespace tether::sim {
 /// A convex shape at a pose. It is a core, which is described by its support points, with
 /// everything within `rounding_m` of it.
 struct Convex {
-  Geometry geometry;                    ///< not a plane
+  const Geometry& geometry;             ///< not a plane
   std::span<const uav::Vec3> vertices;  ///< of a mesh
   uav::Pose X_WS;
 };

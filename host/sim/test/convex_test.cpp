@@ -56,16 +56,19 @@ TEST(ConvexDistance, OfRandomShapesIsWithinTheBoundsOfTheirPoints) {
   const auto number = [&](double low, double high) {
     return low + (high - low) * random.uniform();
   };
-  const auto shape = [&]() -> Convex {
+  const auto geometry = [&]() -> Geometry {
     const double a = number(0.05, 2.0), b = number(0.05, 2.0), c = number(0.05, 2.0);
     const Geometry kinds[] = {BoxGeometry{{a, b, c}}, CylinderGeometry{a, b}, SphereGeometry{a},
                               CapsuleGeometry{a, b}, EllipsoidGeometry{{a, b, c}}};
-    const Pose X_WS{{number(-4, 4), number(-4, 4), number(-4, 4)},
-                    uav::from_rpy(number(-3, 3), number(-1, 1), number(-3, 3))};
-    return {kinds[random.bits() % 5], {}, X_WS};
+    return kinds[random.bits() % 5];
+  };
+  const auto pose = [&]() -> Pose {
+    return {{number(-4, 4), number(-4, 4), number(-4, 4)},
+            uav::from_rpy(number(-3, 3), number(-1, 1), number(-3, 3))};
   };
   for (int i = 0; i < 300; ++i) {
-    const Convex a = shape(), b = shape();
+    const Geometry geometry_a = geometry(), geometry_b = geometry();
+    const Convex a{geometry_a, {}, pose()}, b{geometry_b, {}, pose()};
     const double measured_m = distance_m(a, b);
     const double rounding = rounding_m(a) + rounding_m(b);
     double separation_m = 0.0;  // the widest gap between two parallel planes
