@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <vector>
 
@@ -103,24 +104,26 @@ void BM_images_320x240(benchmark::State& state) {
 BENCHMARK(BM_images_640x480)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_images_320x240)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
 
-// What a shutter costs: the images of two cameras in one place along the same flight, one with it
-// and one without. `times_plain` is how many times as long the one takes.
-void shutter(benchmark::State& state, double exposure_s, double readout_s) {
+// What shutter and lens cost: the images of two cameras in one place along the same flight, one
+// with them and one without. `times_plain` is how many times the CPU time the one takes.
+void effects(benchmark::State& state, double exposure_s, double readout_s, bool is_distorted) {
   World world = corridor();
   const std::size_t plain = camera_of(world);
-  const std::size_t exposed = world.uavs[0].sensors.size();
+  const std::size_t affected = world.uavs[0].sensors.size();
   Sensor copy = world.uavs[0].sensors[plain];
-  copy.name = "exposed";
-  std::get<CameraModel>(copy.model).exposure_s = exposure_s;
-  std::get<CameraModel>(copy.model).readout_s = readout_s;
+  copy.name = "affected";
+  auto& model = std::get<CameraModel>(copy.model);
+  model.exposure_s = exposure_s;
+  model.readout_s = readout_s;
+  if (is_distorted) model.intrinsics.k1 = -0.2, model.intrinsics.k2 = 0.03;
   world.uavs[0].sensors.push_back(copy);
   const auto simulator = make_mujoco_simulator(world, print_warning);
   Snapshot snapshot;
   std::uint64_t index = 0;
   const auto seconds = [&](std::size_t camera) {
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();
     benchmark::DoNotOptimize(simulator->measure(snapshot, 0, camera, index));
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   };
   const auto take_off = [&] {
     simulator->reset(1);
@@ -130,30 +133,26 @@ void shutter(benchmark::State& state, double exposure_s, double readout_s) {
   take_off();
   simulator->capture(snapshot);
   seconds(plain);  // sets the renderer up
+  seconds(affected);
   double plain_s = 0.0;
-  double exposed_s = 0.0;
+  double affected_s = 0.0;
   for (auto _ : state) {
     if (simulator->now() > SimTime(10s)) take_off();
     simulator->advance_to(simulator->now() + 33ms);
     simulator->capture(snapshot);
     plain_s += seconds(plain);
-    exposed_s += seconds(exposed);
+    affected_s += seconds(affected);
     ++index;
   }
-  state.counters["times_plain"] = exposed_s / plain_s;
+  state.counters["times_plain"] = affected_s / plain_s;
 }
-void BM_exposed_10ms(benchmark::State& state) {
-  shutter(state, 0.010, 0.0);
-}
-void BM_rolling_20ms(benchmark::State& state) {
-  shutter(state, 0.0, 0.020);
-}
-void BM_exposed_10ms_rolling_20ms(benchmark::State& state) {
-  shutter(state, 0.010, 0.020);
-}
-BENCHMARK(BM_exposed_10ms)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(BM_rolling_20ms)->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(BM_exposed_10ms_rolling_20ms)->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(effects, exposed_10ms, 0.010, 0.0, false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(effects, rolling_20ms, 0.0, 0.020, false)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(effects, exposed_10ms_rolling_20ms, 0.010, 0.020, false)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(effects, distorted, 0.0, 0.0, true)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(effects, distorted_exposed_10ms_rolling_20ms, 0.010, 0.020, true)
+    ->Unit(benchmark::kMillisecond);
 
 // The yardsticks: the renderer alone with the same world from the start of that flight, without
 // physics and noise, and with an empty world.
