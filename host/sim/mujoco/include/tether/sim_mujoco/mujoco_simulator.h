@@ -9,14 +9,14 @@ namespace tether::sim {
 /// Whether this build contains the embedded back end.
 extern const bool kHasMujoco;
 
-/// The embedded simulator: MuJoCo for dynamics, its renderer on a headless EGL display for cameras
-/// (created for the first image, so that a run without a camera needs no GL).
+/// The embedded simulator: MuJoCo for dynamics, `sim/raster` for cameras. Its images have the same
+/// bytes on every machine.
 /// Used from one thread at a time, any thread.
 ///
 /// A UAV's cameras and rays do not see its own body. Rays meet collision shapes, cameras see
-/// visuals. A mesh collides as its convex hull. Distortion and oblong pixels are resampled from an
-/// ideal picture. The walking bias of a sensor is a function of seed and ST alone. `description()`
-/// includes the OpenGL renderer after the first image.
+/// visuals. A mesh collides as its convex hull. Each pixel is drawn along its own ray, at the time
+/// of its row's exposure. The walking bias of a sensor is a function of seed and ST alone.
+/// `description()` includes the renderer after the first image.
 ///
 /// `warn` receives one line for each thing of the world that MuJoCo cannot represent.
 /// @throws Error(kSetup) when the back end is not built in or the model does not compile.
