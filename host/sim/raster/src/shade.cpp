@@ -259,22 +259,20 @@ class Mean {
   void add_layer(std::size_t k) {
     const Part part{part_.shading, layers_[k], part_.tile, part_.first_row, part_.rows};
     const VI number = whole(static_cast<std::int32_t>(k));
-    const auto differs = [&](std::size_t at) HWY_ATTR {
-      return hn::Ne(primitives(layers_[k], ids_in(k, at)), load(primitive_, at));
-    };
     for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
-      const auto other = differs(at);
+      const VU ids = ids_in(k, at);
+      const auto other = hn::Ne(primitives(layers_[k], ids), load(primitive_, at));
       const VI first = load(first_, at);
       const VI last = load(last_, at);
       put(Add(load(count_, at), hn::IfThenZeroElse(other, whole(1))), count_, at);
       put(hn::IfThenElse(other, first, hn::Min(first, number)), first_, at);
       put(hn::IfThenElse(other, last, hn::Max(last, number)), last_, at);
-      hn::Store(hn::IfThenElseZero(hn::RebindMask(DU(), other), ids_in(k, at)), DU(),
-                b_.ids.data() + at);
+      put(hn::VecFromMask(DI(), other), other_, at);
+      hn::Store(hn::IfThenElseZero(hn::RebindMask(DU(), other), ids), DU(), b_.ids.data() + at);
     });
     shade_block(part, false, b_);
     for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
-      const M other = float_mask(differs(at));
+      const M other = float_mask(hn::Ne(load(other_, at), whole(0)));
       if (hn::AllFalse(D(), other)) return;
       const Colour own =
           select(is_empty(b_, at), colour(part_.shading.scene.background), colour_at(b_, at));
@@ -389,6 +387,7 @@ class Mean {
   // The layers in which a pixel sees the same triangle as in the middle one.
   alignas(64) Whole first_, last_, count_;
   alignas(64) Whole primitive_;  // the triangle in the middle layer
+  alignas(64) Whole other_;      // whether it is another in the present layer
 };
 
 }  // namespace
