@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <tether/base/error.h>
 
@@ -12,23 +11,6 @@ namespace {
 constexpr double kFarthest_px = 32000.0;
 constexpr std::array<int, 3> kCellSizes_px{16, 128, 1024};
 constexpr int kManyCells = 8;
-
-constexpr PixelRect kNoPixels{std::numeric_limits<int>::max(), std::numeric_limits<int>::max(),
-                              std::numeric_limits<int>::min(), std::numeric_limits<int>::min()};
-
-template <class T>
-void include(Rect<T>& rect, T x, T y) {
-  rect.x_low = std::min(rect.x_low, x);
-  rect.y_low = std::min(rect.y_low, y);
-  rect.x_high = std::max(rect.x_high, x);
-  rect.y_high = std::max(rect.y_high, y);
-}
-
-void include(PixelRect& rect, const PixelRect& more) {
-  if (more.is_empty()) return;
-  include(rect, more.x_low, more.y_low);
-  include(rect, more.x_high, more.y_high);
-}
 
 FixedRect common_part(const FixedRect& a, const FixedRect& b) {
   return {std::max(a.x_low, b.x_low), std::max(a.y_low, b.y_low), std::min(a.x_high, b.x_high),
@@ -70,26 +52,24 @@ void Lens::fill_samples() {
   const std::size_t count = stride_ * static_cast<std::size_t>(camera_.height_px);
   x_.assign(count, kBlind);
   y_.assign(count, kBlind);
-  all_ = kNoPixels;
+  all_ = FixedRect::none();
   const uav::PixelRays rays(camera_);
   for (int row = 0; row < camera_.height_px; ++row) {
-    FixedRect& bounds = rows_.emplace_back(kNoPixels);
+    FixedRect& bounds = rows_.emplace_back(FixedRect::none());
     for (int column = 0; column < camera_.width_px; ++column) {
-      const auto p = rays.at({static_cast<double>(column), static_cast<double>(row)});
-      if (!p) {
-        ++blind_pixels_;
-        continue;
-      }
+      if (column % kStride == 0) blocks_.push_back(FixedRect::none());
       const std::size_t i =
           static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column);
-      x_[i] = fixed_sample(camera_.cx_px + camera_.fx_px * p->x);
-      y_[i] = fixed_sample(camera_.cy_px + camera_.fy_px * p->y);
-      include(bounds, x_[i], y_[i]);
+      if (const auto p = rays.at({static_cast<double>(column), static_cast<double>(row)})) {
+        x_[i] = fixed_sample(camera_.cx_px + camera_.fx_px * p->x);
+        y_[i] = fixed_sample(camera_.cy_px + camera_.fy_px * p->y);
+        bounds.include({x_[i], y_[i], x_[i], y_[i]});
+      } else {
+        ++blind_pixels_;
+      }
+      blocks_.back().include({x_[i], y_[i], x_[i], y_[i]});
     }
-    if (!bounds.is_empty()) {
-      include(all_, bounds.x_low, bounds.y_low);
-      include(all_, bounds.x_high, bounds.y_high);
-    }
+    all_.include(bounds);
   }
 }
 
@@ -100,7 +80,7 @@ void Lens::fill_cells() {
     cells.size = kCellSizes_px[level] * kSubpixels;
     cells.columns = (all_.x_high - all_.x_low) / cells.size + 1;
     const int rows = (all_.y_high - all_.y_low) / cells.size + 1;
-    cells.pixels.assign(place_of(0, rows, cells.columns), kNoPixels);
+    cells.pixels.assign(place_of(0, rows, cells.columns), PixelRect::none());
     for (int row = 0; row < camera_.height_px; ++row) {
       for (int column = 0; column < camera_.width_px; ++column) {
         const std::size_t i =
@@ -108,7 +88,7 @@ void Lens::fill_cells() {
         if (x_[i] == kBlind) continue;
         const int cell =
             (y_[i] - all_.y_low) / cells.size * cells.columns + (x_[i] - all_.x_low) / cells.size;
-        include(cells.pixels[static_cast<std::size_t>(cell)], column, row);
+        cells.pixels[static_cast<std::size_t>(cell)].include({column, row, column, row});
       }
     }
   }
@@ -116,10 +96,8 @@ void Lens::fill_cells() {
 
 FixedRect Lens::samples_of_rows(int first, int last) const {
   if (is_grid()) return {0, first * kSubpixels, all_.x_high, last * kSubpixels};
-  FixedRect bounds = kNoPixels;
-  for (int row = first; row <= last; ++row) {
-    include(bounds, rows_[static_cast<std::size_t>(row)]);
-  }
+  FixedRect bounds = FixedRect::none();
+  for (int row = first; row <= last; ++row) bounds.include(rows_[static_cast<std::size_t>(row)]);
   return bounds;
 }
 
@@ -130,7 +108,7 @@ FixedRect Lens::seen_part(const FixedRect& rect) const {
 
 PixelRect Lens::pixels_of(const FixedRect& rect) const {
   const FixedRect seen = common_part(rect, all_);
-  if (seen.is_empty()) return kNoPixels;
+  if (seen.is_empty()) return PixelRect::none();
   if (is_grid()) {
     return {(seen.x_low + kSubpixels - 1) / kSubpixels, (seen.y_low + kSubpixels - 1) / kSubpixels,
             floor_div(seen.x_high, kSubpixels), floor_div(seen.y_high, kSubpixels)};
@@ -139,12 +117,12 @@ PixelRect Lens::pixels_of(const FixedRect& rect) const {
   const std::int32_t extent = std::max(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
   while (level + 1 < cells_.size() && extent > kManyCells * cells_[level].size) ++level;
   const Cells& cells = cells_[level];
-  PixelRect pixels = kNoPixels;
+  PixelRect pixels = PixelRect::none();
   const int last_column = (seen.x_high - all_.x_low) / cells.size;
   const int last_row = (seen.y_high - all_.y_low) / cells.size;
   for (int row = (seen.y_low - all_.y_low) / cells.size; row <= last_row; ++row) {
     for (int c = (seen.x_low - all_.x_low) / cells.size; c <= last_column; ++c) {
-      include(pixels, cells.pixels[place_of(c, row, cells.columns)]);
+      pixels.include(cells.pixels[place_of(c, row, cells.columns)]);
     }
   }
   return pixels;

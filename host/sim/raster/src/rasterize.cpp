@@ -104,21 +104,21 @@ class Depth {
         hn::Set(d, facet_.inverse_depth[0]),
         hn::Mul(hn::Set(d, facet_.inverse_depth[2]), hn::Sub(y, hn::Set(d, facet_.y_ref))));
   }
-  // The least and the most over a rectangle of whole pixels: each operation is monotonic, so that
+  // The least and the most over a rectangle: each operation is monotonic, so that
   // they are at its corners.
   struct Range {
     float low, high;
   };
-  Range range(int x, int y, int columns, int rows) const {
-    const auto corner = [&](int column, int row_number) {
+  Range range(const FixedRect& r) const {
+    const auto corner = [&](std::int32_t x, std::int32_t y) {
       const Facet& f = facet_;
-      const float dx = static_cast<float>(x + column) - f.x_ref;
-      const float dy = static_cast<float>(y + row_number) - f.y_ref;
+      const float dx = static_cast<float>(x) / kSubpixels - f.x_ref;
+      const float dy = static_cast<float>(y) / kSubpixels - f.y_ref;
       const float plane = (f.inverse_depth[0] + f.inverse_depth[2] * dy) + f.inverse_depth[1] * dx;
       return std::min(std::max(plane, f.inverse_depth_low), f.inverse_depth_high);
     };
-    const std::array corners{corner(0, 0), corner(columns - 1, 0), corner(0, rows - 1),
-                             corner(columns - 1, rows - 1)};
+    const std::array corners{corner(r.x_low, r.y_low), corner(r.x_high, r.y_low),
+                             corner(r.x_low, r.y_high), corner(r.x_high, r.y_high)};
     return {*std::min_element(corners.begin(), corners.end()),
             *std::max_element(corners.begin(), corners.end())};
   }
@@ -236,7 +236,9 @@ void rasterize_on_grid(const Coverage& t, const Facet& facet, std::uint32_t id, 
   const GridEdges edges(t, x, y);
   if (edges.misses(part.columns, part.rows)) return;
   const Depth depth(facet);
-  const Depth::Range range = depth.range(x, y, part.columns, part.rows);
+  const Depth::Range range =
+      depth.range({x * kSubpixels, y * kSubpixels, (x + part.columns - 1) * kSubpixels,
+                   (y + part.rows - 1) * kSubpixels});
   if (Target::kKeepsNearest && range.high <= hidden) return;
   const VU ids = hn::Set(DU(), id);
   // The last vector's pixels beyond the part as well.
@@ -279,41 +281,76 @@ V in_pixels(const std::int32_t* samples) {
   return hn::Mul(hn::ConvertTo(d, hn::LoadU(DI(), samples)), hn::Set(d, 1.0F / kSubpixels));
 }
 
+// How much of a rectangle a triangle covers: nothing, because one edge is beyond it, or all.
+enum class Reach { kNone, kSome, kAll };
+
+Reach reach(const Coverage& t, const FixedRect& r) {
+  Reach result = Reach::kAll;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto x = std::minmax({std::int64_t{t.a[i]} * r.x_low, std::int64_t{t.a[i]} * r.x_high});
+    const auto y = std::minmax({std::int64_t{t.b[i]} * r.y_low, std::int64_t{t.b[i]} * r.y_high});
+    if (x.second + y.second + t.c[i] < 0) return Reach::kNone;
+    if (x.first + y.first + t.c[i] < 0) result = Reach::kSome;
+  }
+  return result;
+}
+
+FixedRect samples_of(const Tile& tile, const Lens& lens) {
+  FixedRect bounds = FixedRect::none();
+  for (int row = 0; row < tile.height; ++row) {
+    bounds.include(lens.samples_of_block(tile.x / kTile_px, tile.y + row));
+  }
+  return bounds;
+}
+
+// `bounds` are those of all of the tile's samples.
 template <class Target>
 void rasterize_samples(const Coverage& t, const Facet& facet, std::uint32_t id, const Tile& tile,
-                       const Lens& lens, const Target& target) {
+                       const Lens& lens, const FixedRect& bounds, const Target& target,
+                       float& hidden) {
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const Part part(tile, t.pixels);
+  const Reach of_tile = reach(t, bounds);
   const Depth depth(facet);
+  const Depth::Range range = depth.range(bounds);
+  if (of_tile == Reach::kNone || (Target::kKeepsNearest && range.high <= hidden)) return;
+  const Part part(tile, t.pixels);
   const VU ids = hn::Set(DU(), id);
-  alignas(64) std::array<float, kTile_px> least;
+  alignas(64) std::array<float, kTile_px> least{};
   const int whole_vectors = (part.columns + lanes - 1) / lanes * lanes;
   for (int row = part.first_row; row < part.first_row + part.rows; ++row) {
+    const Reach of_row = of_tile == Reach::kAll
+                             ? of_tile
+                             : reach(t, lens.samples_of_block(tile.x / kTile_px, tile.y + row));
+    if (of_row == Reach::kNone) continue;
     const std::size_t sample = static_cast<std::size_t>(tile.y + row) * lens.stride() +
                                static_cast<std::size_t>(tile.x + part.first_column);
     const std::int32_t* const x = lens.x().data() + sample;
     const std::int32_t* const y = lens.y().data() + sample;
-    least_edges(t, x, y, whole_vectors, least.data());
+    if (of_row == Reach::kSome) least_edges(t, x, y, whole_vectors, least.data());
     for (int c = 0; c < part.columns; c += lanes) {
-      const M inside = hn::Ge(hn::Load(d, least.data() + c), hn::Zero(d));
+      const V edges = of_row == Reach::kAll ? hn::Zero(d) : hn::Load(d, least.data() + c);
+      const M inside = hn::Ge(edges, hn::Zero(d));
       if (hn::AllFalse(d, inside)) continue;
       const V depth_row = depth.row(in_pixels(y + c));
       target.take(place_of(part.first_column + c, row), inside,
                   depth.at(depth_row, in_pixels(x + c)), ids);
     }
   }
+  if (of_tile == Reach::kAll) hidden = std::max(hidden, range.low);
 }
 
 template <class Target>
 void rasterize_all(const Layer& layer, const Lens& lens, const Tile& tile,
                    std::span<const std::uint32_t> triangles, const Target& target) {
+  const FixedRect bounds = lens.is_grid() ? FixedRect{} : samples_of(tile, lens);
   float hidden = 0.0F;
   for (const std::uint32_t i : triangles) {
     if (lens.is_grid()) {
       rasterize_on_grid(layer.coverage[i], layer.facets[i], i + 1, tile, target, hidden);
     } else {
-      rasterize_samples(layer.coverage[i], layer.facets[i], i + 1, tile, lens, target);
+      rasterize_samples(layer.coverage[i], layer.facets[i], i + 1, tile, lens, bounds, target,
+                        hidden);
     }
   }
 }
