@@ -9,8 +9,9 @@ namespace tether::raster {
 namespace {
 
 constexpr double kFarthest_px = 32000.0;
-constexpr std::array<int, 3> kCellSizes_px{16, 128, 1024};
-constexpr int kManyCells = 8;
+constexpr int kCell_px = 4;  // of the smallest cells
+constexpr int kCoarser = 4;  // from one level of cells to the next
+constexpr int kManyCells = 4;
 
 FixedRect common_part(const FixedRect& a, const FixedRect& b) {
   return {std::max(a.x_low, b.x_low), std::max(a.y_low, b.y_low), std::min(a.x_high, b.x_high),
@@ -75,23 +76,43 @@ void Lens::fill_samples() {
 
 void Lens::fill_cells() {
   if (all_.is_empty()) return;
-  for (std::size_t level = 0; level < cells_.size(); ++level) {
-    Cells& cells = cells_[level];
-    cells.size = kCellSizes_px[level] * kSubpixels;
-    cells.columns = (all_.x_high - all_.x_low) / cells.size + 1;
-    const int rows = (all_.y_high - all_.y_low) / cells.size + 1;
-    cells.pixels.assign(place_of(0, rows, cells.columns), PixelRect::none());
-    for (int row = 0; row < camera_.height_px; ++row) {
-      for (int column = 0; column < camera_.width_px; ++column) {
-        const std::size_t i =
-            static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column);
-        if (x_[i] == kBlind) continue;
-        const int cell =
-            (y_[i] - all_.y_low) / cells.size * cells.columns + (x_[i] - all_.x_low) / cells.size;
-        cells.pixels[static_cast<std::size_t>(cell)].include({column, row, column, row});
-      }
+  // A lens that sees very far aside has no more cells than pixels.
+  const auto pixels =
+      static_cast<std::size_t>(camera_.width_px) * static_cast<std::size_t>(camera_.height_px);
+  const auto wide = [](std::int32_t low, std::int32_t high, int size) {
+    return static_cast<std::size_t>((high - low) / size + 1);
+  };
+  int size = kCell_px * kSubpixels;
+  while (wide(all_.x_low, all_.x_high, size) * wide(all_.y_low, all_.y_high, size) > pixels) {
+    size *= 2;
+  }
+  Cells& finest = cells_[0];
+  finest = empty_cells(size);
+  for (int row = 0; row < camera_.height_px; ++row) {
+    for (int column = 0; column < camera_.width_px; ++column) {
+      const std::size_t i =
+          static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column);
+      if (x_[i] == kBlind) continue;
+      finest.at((x_[i] - all_.x_low) / finest.size, (y_[i] - all_.y_low) / finest.size)
+          .include({column, row, column, row});
     }
   }
+  for (std::size_t level = 1; level < cells_.size(); ++level) {
+    const Cells& finer = cells_[level - 1];
+    Cells& cells = cells_[level];
+    cells = empty_cells(kCoarser * finer.size);
+    for (std::size_t i = 0; i < finer.pixels.size(); ++i) {
+      const int column = static_cast<int>(i) % finer.columns;
+      const int row = static_cast<int>(i) / finer.columns;
+      cells.at(column / kCoarser, row / kCoarser).include(finer.pixels[i]);
+    }
+  }
+}
+
+Lens::Cells Lens::empty_cells(int size) const {
+  const int columns = (all_.x_high - all_.x_low) / size + 1;
+  const int rows = (all_.y_high - all_.y_low) / size + 1;
+  return {size, columns, std::vector<PixelRect>(place_of(0, rows, columns), PixelRect::none())};
 }
 
 FixedRect Lens::samples_of_rows(int first, int last) const {

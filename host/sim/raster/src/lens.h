@@ -74,10 +74,16 @@ class Lens {
     int size = 0;  // in kSubpixels
     int columns = 0;
     std::vector<PixelRect> pixels;
+
+    PixelRect& at(int column, int row) {
+      return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                    static_cast<std::size_t>(column)];
+    }
   };
 
   void fill_samples();
   void fill_cells();
+  Cells empty_cells(int size) const;
 
   uav::CameraModel camera_;
   std::size_t stride_ = 0;
@@ -87,7 +93,7 @@ class Lens {
   std::vector<FixedRect> rows_;
   FixedRect all_{};
   std::size_t blind_pixels_ = 0;
-  std::array<Cells, 3> cells_;
+  std::array<Cells, 5> cells_;  ///< from fine to coarse
 };
 
 }  // namespace tether::raster
