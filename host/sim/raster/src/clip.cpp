@@ -31,6 +31,9 @@ Polygon::Point cut(const Polygon::Point& inner, const Polygon::Point& outer, con
 }
 
 void clip(Polygon& polygon, const Plane& plane) {
+  const auto* const begin = polygon.points.data();
+  const auto is_cut = [&](const Polygon::Point& point) { return plane.at(point.p_C) < 0.0; };
+  if (std::none_of(begin, begin + polygon.size, is_cut)) return;
   Polygon kept;
   for (std::size_t i = 0; i < polygon.size; ++i) {
     const Polygon::Point& here = polygon.points[i];

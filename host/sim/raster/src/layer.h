@@ -26,20 +26,20 @@ struct Coverage {
 };
 
 /// The surface of a triangle as planes over the picture: p(x, y) = p0 + px·(x−x_ref) +
-/// py·(y−y_ref), in pixels. As 32 floats, which is how the shading reads it.
-struct alignas(64) Facet {
+/// py·(y−y_ref), in pixels.
+struct alignas(32) Facet {
   float x_ref, y_ref;
   std::array<float, 3> inverse_depth;  ///< 1/z: value, and change along x and y [1/m]
   std::array<float, 3> second, third;  ///< weights of the second and third corner, over z
   float inverse_depth_low, inverse_depth_high;
-  std::array<float, 3> u, v;                   ///< of corner 1; corners 2 and 3 less that
+  std::array<float, 3> u, v;  ///< of corner 1; corners 2 and 3 less that
+  float u_x, u_y, v_x, v_y;   ///< changes of u/z and v/z along x and y, for u = v = 0 at corner 1
   std::array<std::array<float, 3>, 3> normal;  ///< the same, in C
   std::int32_t is_flat;                        ///< −1: the normal is the same everywhere; else 0
   std::uint32_t material;
   std::uint32_t primitive;  ///< the same triangle has the same number in all layers
   std::uint32_t entity;
 };
-static_assert(sizeof(Facet) == 32 * sizeof(float));
 
 /// A light as the shading reads it, in C.
 struct LightRow {
@@ -49,6 +49,7 @@ struct LightRow {
   float exponent = 0.0F;
   bool is_directional = false;
   bool has_specular = false;
+  bool is_last_of_colour = true;  ///< the next light is of another colour, or there is none
   /// Of the shadow's map; none: -1. From C to the light's picture: rows of u·z, v·z and z.
   std::int32_t shadow = -1;
   std::array<float, 12> to_shadow{};

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <tether/base/error.h>
 
@@ -10,25 +9,9 @@ namespace tether::raster {
 namespace {
 
 constexpr double kFarthest_px = 32000.0;
-constexpr std::array<int, 3> kCellSizes_px{16, 128, 1024};
-constexpr int kManyCells = 8;
-
-constexpr PixelRect kNoPixels{std::numeric_limits<int>::max(), std::numeric_limits<int>::max(),
-                              std::numeric_limits<int>::min(), std::numeric_limits<int>::min()};
-
-template <class T>
-void include(Rect<T>& rect, T x, T y) {
-  rect.x_low = std::min(rect.x_low, x);
-  rect.y_low = std::min(rect.y_low, y);
-  rect.x_high = std::max(rect.x_high, x);
-  rect.y_high = std::max(rect.y_high, y);
-}
-
-void include(PixelRect& rect, const PixelRect& more) {
-  if (more.is_empty()) return;
-  include(rect, more.x_low, more.y_low);
-  include(rect, more.x_high, more.y_high);
-}
+constexpr int kCell_px = 4;  // of the smallest cells
+constexpr int kCoarser = 4;  // from one level of cells to the next
+constexpr int kManyCells = 4;
 
 FixedRect common_part(const FixedRect& a, const FixedRect& b) {
   return {std::max(a.x_low, b.x_low), std::max(a.y_low, b.y_low), std::min(a.x_high, b.x_high),
@@ -70,56 +53,72 @@ void Lens::fill_samples() {
   const std::size_t count = stride_ * static_cast<std::size_t>(camera_.height_px);
   x_.assign(count, kBlind);
   y_.assign(count, kBlind);
-  all_ = kNoPixels;
+  all_ = FixedRect::none();
   const uav::PixelRays rays(camera_);
   for (int row = 0; row < camera_.height_px; ++row) {
-    FixedRect& bounds = rows_.emplace_back(kNoPixels);
+    FixedRect& bounds = rows_.emplace_back(FixedRect::none());
     for (int column = 0; column < camera_.width_px; ++column) {
-      const auto p = rays.at({static_cast<double>(column), static_cast<double>(row)});
-      if (!p) {
-        ++blind_pixels_;
-        continue;
-      }
+      if (column % kStride == 0) blocks_.push_back(FixedRect::none());
       const std::size_t i =
           static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column);
-      x_[i] = fixed_sample(camera_.cx_px + camera_.fx_px * p->x);
-      y_[i] = fixed_sample(camera_.cy_px + camera_.fy_px * p->y);
-      include(bounds, x_[i], y_[i]);
+      if (const auto p = rays.at({static_cast<double>(column), static_cast<double>(row)})) {
+        x_[i] = fixed_sample(camera_.cx_px + camera_.fx_px * p->x);
+        y_[i] = fixed_sample(camera_.cy_px + camera_.fy_px * p->y);
+        bounds.include({x_[i], y_[i], x_[i], y_[i]});
+      } else {
+        ++blind_pixels_;
+      }
+      blocks_.back().include({x_[i], y_[i], x_[i], y_[i]});
     }
-    if (!bounds.is_empty()) {
-      include(all_, bounds.x_low, bounds.y_low);
-      include(all_, bounds.x_high, bounds.y_high);
-    }
+    all_.include(bounds);
   }
 }
 
 void Lens::fill_cells() {
   if (all_.is_empty()) return;
-  for (std::size_t level = 0; level < cells_.size(); ++level) {
+  // A lens that sees very far aside has no more cells than pixels.
+  const auto pixels =
+      static_cast<std::size_t>(camera_.width_px) * static_cast<std::size_t>(camera_.height_px);
+  const auto wide = [](std::int32_t low, std::int32_t high, int size) {
+    return static_cast<std::size_t>((high - low) / size + 1);
+  };
+  int size = kCell_px * kSubpixels;
+  while (wide(all_.x_low, all_.x_high, size) * wide(all_.y_low, all_.y_high, size) > pixels) {
+    size *= 2;
+  }
+  Cells& finest = cells_[0];
+  finest = empty_cells(size);
+  for (int row = 0; row < camera_.height_px; ++row) {
+    for (int column = 0; column < camera_.width_px; ++column) {
+      const std::size_t i =
+          static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column);
+      if (x_[i] == kBlind) continue;
+      finest.at((x_[i] - all_.x_low) / finest.size, (y_[i] - all_.y_low) / finest.size)
+          .include({column, row, column, row});
+    }
+  }
+  for (std::size_t level = 1; level < cells_.size(); ++level) {
+    const Cells& finer = cells_[level - 1];
     Cells& cells = cells_[level];
-    cells.size = kCellSizes_px[level] * kSubpixels;
-    cells.columns = (all_.x_high - all_.x_low) / cells.size + 1;
-    const int rows = (all_.y_high - all_.y_low) / cells.size + 1;
-    cells.pixels.assign(place_of(0, rows, cells.columns), kNoPixels);
-    for (int row = 0; row < camera_.height_px; ++row) {
-      for (int column = 0; column < camera_.width_px; ++column) {
-        const std::size_t i =
-            static_cast<std::size_t>(row) * stride_ + static_cast<std::size_t>(column);
-        if (x_[i] == kBlind) continue;
-        const int cell =
-            (y_[i] - all_.y_low) / cells.size * cells.columns + (x_[i] - all_.x_low) / cells.size;
-        include(cells.pixels[static_cast<std::size_t>(cell)], column, row);
-      }
+    cells = empty_cells(kCoarser * finer.size);
+    for (std::size_t i = 0; i < finer.pixels.size(); ++i) {
+      const int column = static_cast<int>(i) % finer.columns;
+      const int row = static_cast<int>(i) / finer.columns;
+      cells.at(column / kCoarser, row / kCoarser).include(finer.pixels[i]);
     }
   }
 }
 
+Lens::Cells Lens::empty_cells(int size) const {
+  const int columns = (all_.x_high - all_.x_low) / size + 1;
+  const int rows = (all_.y_high - all_.y_low) / size + 1;
+  return {size, columns, std::vector<PixelRect>(place_of(0, rows, columns), PixelRect::none())};
+}
+
 FixedRect Lens::samples_of_rows(int first, int last) const {
   if (is_grid()) return {0, first * kSubpixels, all_.x_high, last * kSubpixels};
-  FixedRect bounds = kNoPixels;
-  for (int row = first; row <= last; ++row) {
-    include(bounds, rows_[static_cast<std::size_t>(row)]);
-  }
+  FixedRect bounds = FixedRect::none();
+  for (int row = first; row <= last; ++row) bounds.include(rows_[static_cast<std::size_t>(row)]);
   return bounds;
 }
 
@@ -130,7 +129,7 @@ FixedRect Lens::seen_part(const FixedRect& rect) const {
 
 PixelRect Lens::pixels_of(const FixedRect& rect) const {
   const FixedRect seen = common_part(rect, all_);
-  if (seen.is_empty()) return kNoPixels;
+  if (seen.is_empty()) return PixelRect::none();
   if (is_grid()) {
     return {(seen.x_low + kSubpixels - 1) / kSubpixels, (seen.y_low + kSubpixels - 1) / kSubpixels,
             floor_div(seen.x_high, kSubpixels), floor_div(seen.y_high, kSubpixels)};
@@ -139,12 +138,12 @@ PixelRect Lens::pixels_of(const FixedRect& rect) const {
   const std::int32_t extent = std::max(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
   while (level + 1 < cells_.size() && extent > kManyCells * cells_[level].size) ++level;
   const Cells& cells = cells_[level];
-  PixelRect pixels = kNoPixels;
+  PixelRect pixels = PixelRect::none();
   const int last_column = (seen.x_high - all_.x_low) / cells.size;
   const int last_row = (seen.y_high - all_.y_low) / cells.size;
   for (int row = (seen.y_low - all_.y_low) / cells.size; row <= last_row; ++row) {
     for (int c = (seen.x_low - all_.x_low) / cells.size; c <= last_column; ++c) {
-      include(pixels, cells.pixels[place_of(c, row, cells.columns)]);
+      pixels.include(cells.pixels[place_of(c, row, cells.columns)]);
     }
   }
   return pixels;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <tether/uav/camera_model.h>
@@ -20,6 +22,17 @@ template <class T>
 struct Rect {
   T x_low, y_low, x_high, y_high;
   bool is_empty() const { return x_low > x_high || y_low > y_high; }
+  void include(const Rect& more) {
+    x_low = std::min(x_low, more.x_low);
+    y_low = std::min(y_low, more.y_low);
+    x_high = std::max(x_high, more.x_high);
+    y_high = std::max(y_high, more.y_high);
+  }
+  static constexpr Rect none() {
+    constexpr T kLow = std::numeric_limits<T>::min();
+    constexpr T kHigh = std::numeric_limits<T>::max();
+    return {kHigh, kHigh, kLow, kLow};
+  }
 };
 using PixelRect = Rect<int>;
 using FixedRect = Rect<std::int32_t>;  ///< in kSubpixels
@@ -43,6 +56,11 @@ class Lens {
   const std::vector<std::int32_t>& y() const { return y_; }
   std::size_t blind_pixels() const { return blind_pixels_; }
 
+  /// The bounds of the samples of kStride pixels of a row. @pre !is_grid()
+  const FixedRect& samples_of_block(int block, int row) const {
+    return blocks_[static_cast<std::size_t>(row) * (stride_ / kStride) +
+                   static_cast<std::size_t>(block)];
+  }
   /// The bounds of the samples of some rows.
   FixedRect samples_of_rows(int first, int last) const;
   /// The part of `rect` within the bounds of all samples; `rect` itself if there is none.
@@ -56,19 +74,26 @@ class Lens {
     int size = 0;  // in kSubpixels
     int columns = 0;
     std::vector<PixelRect> pixels;
+
+    PixelRect& at(int column, int row) {
+      return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                    static_cast<std::size_t>(column)];
+    }
   };
 
   void fill_samples();
   void fill_cells();
+  Cells empty_cells(int size) const;
 
   uav::CameraModel camera_;
   std::size_t stride_ = 0;
   std::vector<std::int32_t> x_;
   std::vector<std::int32_t> y_;
+  std::vector<FixedRect> blocks_;  // of kStride pixels; kBlind counts
   std::vector<FixedRect> rows_;
   FixedRect all_{};
   std::size_t blind_pixels_ = 0;
-  std::array<Cells, 3> cells_;
+  std::array<Cells, 5> cells_;  ///< from fine to coarse
 };
 
 }  // namespace tether::raster

@@ -59,6 +59,11 @@ void place_lights(const PreparedScene& scene, const std::vector<ShadowMap>& shad
     row.to_shadow = from_camera(shadows[static_cast<std::size_t>(row.shadow)].from_world(),
                                 inverse(layer.X_CW));
   }
+  for (std::size_t i = 1; i < layer.lights.size(); ++i) {
+    const LightRow& light = layer.lights[i];
+    LightRow& last = layer.lights[i - 1];
+    last.is_last_of_colour = last.diffuse != light.diffuse || last.specular != light.specular;
+  }
 }
 
 }  // namespace tether::raster

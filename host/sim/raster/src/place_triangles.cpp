@@ -282,6 +282,10 @@ class Placer {
     const VertexLook& c = looks_[corners_[2]];
     facet.u = {a.uv[0], b.uv[0] - a.uv[0], c.uv[0] - a.uv[0]};
     facet.v = {a.uv[1], b.uv[1] - a.uv[1], c.uv[1] - a.uv[1]};
+    facet.u_x = facet.u[1] * facet.second[1] + facet.u[2] * facet.third[1];
+    facet.u_y = facet.u[1] * facet.second[2] + facet.u[2] * facet.third[2];
+    facet.v_x = facet.v[1] * facet.second[1] + facet.v[2] * facet.third[1];
+    facet.v_y = facet.v[1] * facet.second[2] + facet.v[2] * facet.third[2];
     const auto na = rotated(transformation_.rotation, a.normal);
     facet.is_flat = a.normal == b.normal && a.normal == c.normal ? -1 : 0;
     if (facet.is_flat != 0) {

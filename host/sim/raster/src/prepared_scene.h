@@ -46,12 +46,13 @@ struct MaterialRow {
   std::array<float, 3> specular;
   float shininess;
   float alpha;
-  std::int32_t first_level;  ///< of PreparedScene::levels
-  std::int32_t levels;       ///< 0: no texture
-  std::int32_t is_shiny;     ///< whether it is specular at all
+  std::int32_t first_level;  ///< of PreparedScene::levels; 0: no texture
+  std::int32_t levels;
+  std::int32_t is_shiny;                ///< whether it is specular at all
+  float texture_width, texture_height;  ///< of its largest size
 };
 
-/// One size of a texture.
+/// One size of a texture: height + 1 rows of width + 1 texels, the last of which are the first.
 struct LevelRow {
   std::int32_t first_texel;
   std::int32_t width;
@@ -77,9 +78,8 @@ struct PreparedScene {
   std::vector<Cluster> clusters;
   std::vector<PreparedMesh> meshes;
   std::vector<MaterialRow> materials;
-  /// R in the lowest byte; in the upper half the texel to the right, repeated.
-  std::vector<std::uint64_t> texels;
-  std::vector<LevelRow> levels;
+  std::vector<std::uint32_t> texels;  ///< R in the lowest byte
+  std::vector<LevelRow> levels;       ///< the first is white; so is one after the last
   std::vector<PreparedInstance> instances;
   std::vector<Light> lights;  ///< directions unit
   Rgb background{};

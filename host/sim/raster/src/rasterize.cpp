@@ -104,20 +104,21 @@ class Depth {
         hn::Set(d, facet_.inverse_depth[0]),
         hn::Mul(hn::Set(d, facet_.inverse_depth[2]), hn::Sub(y, hn::Set(d, facet_.y_ref))));
   }
-  // The least and the most over a rectangle, in pixels: each operation is monotonic, so that they
-  // are at its corners.
+  // The least and the most over a rectangle: each operation is monotonic, so that
+  // they are at its corners.
   struct Range {
     float low, high;
   };
-  Range range(const Rect<float>& px) const {
-    const auto corner = [&](float x, float y) {
+  Range range(const FixedRect& r) const {
+    const auto corner = [&](std::int32_t x, std::int32_t y) {
       const Facet& f = facet_;
-      const float plane = (f.inverse_depth[0] + f.inverse_depth[2] * (y - f.y_ref)) +
-                          f.inverse_depth[1] * (x - f.x_ref);
+      const float dx = static_cast<float>(x) / kSubpixels - f.x_ref;
+      const float dy = static_cast<float>(y) / kSubpixels - f.y_ref;
+      const float plane = (f.inverse_depth[0] + f.inverse_depth[2] * dy) + f.inverse_depth[1] * dx;
       return std::min(std::max(plane, f.inverse_depth_low), f.inverse_depth_high);
     };
-    const std::array corners{corner(px.x_low, px.y_low), corner(px.x_high, px.y_low),
-                             corner(px.x_low, px.y_high), corner(px.x_high, px.y_high)};
+    const std::array corners{corner(r.x_low, r.y_low), corner(r.x_high, r.y_low),
+                             corner(r.x_low, r.y_high), corner(r.x_high, r.y_high)};
     return {*std::min_element(corners.begin(), corners.end()),
             *std::max_element(corners.begin(), corners.end())};
   }
@@ -235,9 +236,9 @@ void rasterize_on_grid(const Coverage& t, const Facet& facet, std::uint32_t id, 
   const GridEdges edges(t, x, y);
   if (edges.misses(part.columns, part.rows)) return;
   const Depth depth(facet);
-  const Depth::Range range = depth.range({static_cast<float>(x), static_cast<float>(y),
-                                          static_cast<float>(x + part.columns - 1),
-                                          static_cast<float>(y + part.rows - 1)});
+  const Depth::Range range =
+      depth.range({x * kSubpixels, y * kSubpixels, (x + part.columns - 1) * kSubpixels,
+                   (y + part.rows - 1) * kSubpixels});
   if (Target::kKeepsNearest && range.high <= hidden) return;
   const VU ids = hn::Set(DU(), id);
   // The last vector's pixels beyond the part as well.
@@ -280,94 +281,75 @@ V in_pixels(const std::int32_t* samples) {
   return hn::Mul(hn::ConvertTo(d, hn::LoadU(DI(), samples)), hn::Set(d, 1.0F / kSubpixels));
 }
 
-// The bounds of a tile's samples. They reach to Lens::kBlind if one of its whole vectors does.
-FixedRect bounds_of_samples(const Lens& lens, const Tile& tile) {
-  const DI d;
-  const auto first =
-      static_cast<std::size_t>(tile.y) * lens.stride() + static_cast<std::size_t>(tile.x);
-  VI x_low = hn::LoadU(d, lens.x().data() + first);
-  VI y_low = hn::LoadU(d, lens.y().data() + first);
-  VI x_high = x_low;
-  VI y_high = y_low;
-  for (int row = 0; row < tile.height; ++row) {
-    const std::size_t at = first + static_cast<std::size_t>(row) * lens.stride();
-    for (std::size_t i = 0; i < static_cast<std::size_t>(tile.width); i += hn::Lanes(d)) {
-      const VI x = hn::LoadU(d, lens.x().data() + at + i);
-      const VI y = hn::LoadU(d, lens.y().data() + at + i);
-      x_low = hn::Min(x_low, x);
-      y_low = hn::Min(y_low, y);
-      x_high = hn::Max(x_high, x);
-      y_high = hn::Max(y_high, y);
-    }
-  }
-  return {hn::GetLane(hn::MinOfLanes(d, x_low)), hn::GetLane(hn::MinOfLanes(d, y_low)),
-          hn::GetLane(hn::MaxOfLanes(d, x_high)), hn::GetLane(hn::MaxOfLanes(d, y_high))};
-}
+// How much of a rectangle a triangle covers: nothing, because one edge is beyond it, or all.
+enum class Reach { kNone, kSome, kAll };
 
-// How a triangle lies to a rectangle.
-enum class Cover { kNone, kSome, kAll };
-Cover cover_of(const Coverage& t, const FixedRect& samples) {
-  Cover cover = Cover::kAll;
+Reach reach(const Coverage& t, const FixedRect& r) {
+  Reach result = Reach::kAll;
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t a = t.a[i];
-    const std::int64_t b = t.b[i];
-    const auto [x_least, x_most] = std::minmax({a * samples.x_low, a * samples.x_high});
-    const auto [y_least, y_most] = std::minmax({b * samples.y_low, b * samples.y_high});
-    if (t.c[i] + x_most + y_most < 0) return Cover::kNone;
-    if (t.c[i] + x_least + y_least < 0) cover = Cover::kSome;
+    const auto x = std::minmax({std::int64_t{t.a[i]} * r.x_low, std::int64_t{t.a[i]} * r.x_high});
+    const auto y = std::minmax({std::int64_t{t.b[i]} * r.y_low, std::int64_t{t.b[i]} * r.y_high});
+    if (x.second + y.second + t.c[i] < 0) return Reach::kNone;
+    if (x.first + y.first + t.c[i] < 0) result = Reach::kSome;
   }
-  return cover;
+  return result;
 }
 
-// `samples` are the bounds of the tile's, `hidden` the 1/depth at which all of it is taken already.
+FixedRect samples_of(const Tile& tile, const Lens& lens) {
+  FixedRect bounds = FixedRect::none();
+  for (int row = 0; row < tile.height; ++row) {
+    bounds.include(lens.samples_of_block(tile.x / kTile_px, tile.y + row));
+  }
+  return bounds;
+}
+
+// `bounds` are those of all of the tile's samples.
 template <class Target>
 void rasterize_samples(const Coverage& t, const Facet& facet, std::uint32_t id, const Tile& tile,
-                       const Lens& lens, const FixedRect& samples, const Target& target,
+                       const Lens& lens, const FixedRect& bounds, const Target& target,
                        float& hidden) {
-  const Cover cover = cover_of(t, samples);
-  if (cover == Cover::kNone) return;
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const Part part(tile, t.pixels);
+  const Reach of_tile = reach(t, bounds);
   const Depth depth(facet);
-  const auto px = [](std::int32_t sample) { return static_cast<float>(sample) / kSubpixels; };
-  const Depth::Range range =
-      depth.range({px(samples.x_low), px(samples.y_low), px(samples.x_high), px(samples.y_high)});
-  if (Target::kKeepsNearest && range.high <= hidden) return;
-  if (cover == Cover::kAll) hidden = std::max(hidden, range.low);
+  const Depth::Range range = depth.range(bounds);
+  if (of_tile == Reach::kNone || (Target::kKeepsNearest && range.high <= hidden)) return;
+  const Part part(tile, t.pixels);
   const VU ids = hn::Set(DU(), id);
-  alignas(64) std::array<float, kTile_px> least;
+  alignas(64) std::array<float, kTile_px> least{};
   const int whole_vectors = (part.columns + lanes - 1) / lanes * lanes;
   for (int row = part.first_row; row < part.first_row + part.rows; ++row) {
+    const Reach of_row = of_tile == Reach::kAll
+                             ? of_tile
+                             : reach(t, lens.samples_of_block(tile.x / kTile_px, tile.y + row));
+    if (of_row == Reach::kNone) continue;
     const std::size_t sample = static_cast<std::size_t>(tile.y + row) * lens.stride() +
                                static_cast<std::size_t>(tile.x + part.first_column);
     const std::int32_t* const x = lens.x().data() + sample;
     const std::int32_t* const y = lens.y().data() + sample;
-    if (cover == Cover::kAll) {
-      least.fill(0.0F);
-    } else {
-      least_edges(t, x, y, whole_vectors, least.data());
-    }
+    if (of_row == Reach::kSome) least_edges(t, x, y, whole_vectors, least.data());
     for (int c = 0; c < part.columns; c += lanes) {
-      const M inside = hn::Ge(hn::Load(d, least.data() + c), hn::Zero(d));
+      const V edges = of_row == Reach::kAll ? hn::Zero(d) : hn::Load(d, least.data() + c);
+      const M inside = hn::Ge(edges, hn::Zero(d));
       if (hn::AllFalse(d, inside)) continue;
       const V depth_row = depth.row(in_pixels(y + c));
       target.take(place_of(part.first_column + c, row), inside,
                   depth.at(depth_row, in_pixels(x + c)), ids);
     }
   }
+  if (of_tile == Reach::kAll) hidden = std::max(hidden, range.low);
 }
 
 template <class Target>
 void rasterize_all(const Layer& layer, const Lens& lens, const Tile& tile,
                    std::span<const std::uint32_t> triangles, const Target& target) {
+  const FixedRect bounds = lens.is_grid() ? FixedRect{} : samples_of(tile, lens);
   float hidden = 0.0F;
-  const FixedRect samples = lens.is_grid() ? FixedRect{} : bounds_of_samples(lens, tile);
   for (const std::uint32_t i : triangles) {
     if (lens.is_grid()) {
       rasterize_on_grid(layer.coverage[i], layer.facets[i], i + 1, tile, target, hidden);
     } else {
-      rasterize_samples(layer.coverage[i], layer.facets[i], i + 1, tile, lens, samples, target,
+      rasterize_samples(layer.coverage[i], layer.facets[i], i + 1, tile, lens, bounds, target,
                         hidden);
     }
   }

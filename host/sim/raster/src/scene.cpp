@@ -137,6 +137,7 @@ MaterialRow make_row(const Material& m, const Rgb& ambient) {
   row.specular = m.specular;
   row.shininess = m.shininess;
   row.alpha = m.alpha;
+  row.levels = 1;
   row.is_shiny = m.specular[0] > 0.0F || m.specular[1] > 0.0F || m.specular[2] > 0.0F ? 1 : 0;
   return row;
 }
@@ -168,17 +169,22 @@ class Preparation {
     std::vector<std::int32_t> first_levels;
     std::vector<std::int32_t> levels;
     std::vector<bool> transparent;
+    const Texture white{1, 1, {255, 255, 255, 255}};
+    add_texture(white, scene_);
     for (const Texture& texture : parts_.textures) {
       first_levels.push_back(static_cast<std::int32_t>(scene_.levels.size()));
       levels.push_back(add_texture(texture, scene_));
       transparent.push_back(is_transparent(texture));
     }
+    add_texture(white, scene_);
     for (const Material& material : parts_.materials) {
       MaterialRow row = make_row(material, parts_.ambient);
       bool seen_through = material.alpha < kOpaque;
       if (material.texture) {
         row.first_level = first_levels[*material.texture];
         row.levels = levels[*material.texture];
+        row.texture_width = static_cast<float>(parts_.textures[*material.texture].width_px);
+        row.texture_height = static_cast<float>(parts_.textures[*material.texture].height_px);
         seen_through = seen_through || transparent[*material.texture];
       }
       scene_.materials.push_back(row);

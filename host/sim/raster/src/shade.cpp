@@ -45,52 +45,146 @@ HWY_INLINE VI byte_of_light(const LightTable& table, V light) {
   return And(hn::GatherOffset(di, bytes, amount), whole(0xFF));
 }
 
-// The colour of a triangle at some pixels, for a whole texture of ones.
-HWY_INLINE Colour light_on(const Shading& shading, const Layer& layer, const Facet& facet,
-                           const MaterialRow& material, const Pixels& p, const Spot& at, M wanted) {
-  return lit_colour(shading, layer, material, surface(facet, at, p), wanted);
-}
+// A layer's part of a tile, from one of its rows on.
+struct Part {
+  const Shading& shading;
+  const Layer& layer;
+  const Tile& tile;
+  int first_row, rows;
 
-HWY_INLINE Colour times_texel(const Colour& light, const Texel& texel) {
-  const V scale = set(1.0F / kTexelScale);
-  return scaled({Mul(light.r, scale), Mul(light.g, scale), Mul(light.b, scale)}, texel.colour);
-}
+  std::size_t first_pixel() const { return static_cast<std::size_t>(first_row) * kTile_px; }
+};
 
-// The colours of the triangles of `ids`, where `wanted`; `result` elsewhere.
-HWY_INLINE void shade_pixels(const Shading& shading, const Layer& layer, const Tile& tile,
-                             std::size_t at, VU ids, M wanted, Colour& result, V& alpha) {
-  const Pixels p = pixels_at(shading.lens, layer, tile, at);
-  for_each_facet(ids, wanted, [&](std::size_t index, M same) HWY_ATTR {
-    const Facet& facet = layer.facets[index];
-    const MaterialRow& material = shading.scene.materials[facet.material];
-    const Spot s = spot(facet, p.x, p.y);
-    Colour own = light_on(shading, layer, facet, material, p, s, same);
-    V opacity = set(material.alpha);
-    if (material.levels > 0) {
-      const TexturePoint point = texture_point(facet, s);
-      const Filter filter = make_filter(shading.scene, material, point);
-      const Texel texel = sample(shading.scene, filter, point.u, point.v);
-      own = times_texel(own, texel);
-      opacity = Mul(opacity, Mul(texel.alpha, set(1.0F / kTexelScale)));
-    }
-    result = select(same, own, result);
-    alpha = hn::IfThenElse(same, opacity, alpha);
-  });
-}
-
-HWY_INLINE M everywhere() {
-  const V zero = set(0.0F);
-  return hn::Eq(zero, zero);
-}
-
-// Calls `use` with the place of each vector of a tile's pixels.
+// Calls `use` with each block of a tile.
 template <class Use>
-HWY_INLINE void for_each_vector(const Tile& tile, const Use& use) {
-  for (int row = 0; row < tile.height; ++row) {
-    for (std::size_t c = 0; c < static_cast<std::size_t>(tile.width); c += lanes()) {
+HWY_INLINE void for_each_part(const Shading& shading, const Layer& layer, const Tile& tile,
+                              const Use& use) {
+  for (int row = 0; row < tile.height; row += Block::kRows) {
+    use(Part{shading, layer, tile, row, std::min(Block::kRows, tile.height - row)});
+  }
+}
+
+// Calls `use` with the place in its block of each vector of pixels.
+template <class Use>
+HWY_INLINE void for_each_vector(const Part& part, const Use& use) {
+  for (int row = 0; row < part.rows; ++row) {
+    for (std::size_t c = 0; c < static_cast<std::size_t>(part.tile.width); c += lanes()) {
       use(static_cast<std::size_t>(row) * kTile_px + c);
     }
   }
+}
+
+// Puts what some pixels see of a triangle into a block; the first into all of the vector.
+template <bool kIsFirst>
+HWY_INLINE void put_surface(const Part& part, const Facet& f, const Pixels& p, std::size_t at,
+                            hn::Mask<DI> same, Block& b) {
+  const PreparedScene& scene = part.shading.scene;
+  const MaterialRow& material = scene.materials[f.material];
+  const M mask = float_mask(same);
+  const auto put = [&](Block::Plane<float>& plane, V value) HWY_ATTR {
+    store(kIsFirst ? value : hn::IfThenElse(mask, value, load(plane, at)), plane, at);
+  };
+  const auto put_whole = [&](Block::Plane<std::int32_t>& plane, VI value) HWY_ATTR {
+    hn::Store(kIsFirst ? value : hn::IfThenElse(same, value, load(plane, at)), DI(),
+              plane.data() + at);
+  };
+  const Spot s = spot(f, p);
+  put(b.x, Mul(p.ray_x, s.z));
+  put(b.y, Mul(p.ray_y, s.z));
+  put(b.z, s.z);
+  const bool is_textured = material.first_level > 0;
+  Weights w{};
+  if (is_textured || f.is_flat == 0) w = weights(f, s);
+  const Normal n = f.is_flat != 0
+                       ? Normal{set(f.normal[0][0]), set(f.normal[1][0]), set(f.normal[2][0])}
+                       : normal(f, w);
+  put(b.nx, n.x);
+  put(b.ny, n.y);
+  put(b.nz, n.z);
+  put(b.r, set(material.base[0]));
+  put(b.g, set(material.base[1]));
+  put(b.b, set(material.base[2]));
+  put_whole(b.material, whole(static_cast<std::int32_t>(f.material)));
+  Block::Vector& vector = b.vectors[b.vector_count - 1];
+  vector.is_shiny = vector.is_shiny || material.is_shiny != 0;
+  vector.is_textured = vector.is_textured || is_textured;
+  if (!is_textured) {
+    put_whole(b.level, whole(0));
+    put_whole(b.next_share, whole(0));
+    put(b.u, set(0.0F));
+    put(b.v, set(0.0F));
+    put(b.texels_per_pixel2, set(1.0F));
+    return;
+  }
+  const TexturePoint point = texture_point(f, s, w);
+  const Filter filter = make_filter(scene, material, point);
+  put(b.u, point.u);
+  put(b.v, point.v);
+  put(b.texels_per_pixel2, filter.texels_per_pixel2);
+  put_whole(b.level, filter.level);
+  put_whole(b.next_share, filter.next_share);
+}
+
+// The colours of the triangles of `b.ids`, under all lights, before their textures.
+void light_block(const Part& part, Block& b) {
+  b.vector_count = 0;
+  for_each_vector(part, [&](std::size_t at) HWY_ATTR {
+    const VU ids = hn::Load(DU(), b.ids.data() + at);
+    if (hn::AllTrue(DU(), hn::Eq(ids, hn::Zero(DU())))) return;
+    b.vectors[b.vector_count++] = {static_cast<std::uint16_t>(at), false, false};
+    store(set(0.0F), b.diffuse, at);
+    store(set(0.0F), b.specular, at);
+    const Pixels p = pixels_at(part.shading.lens, part.layer, part.tile, part.first_pixel() + at);
+    for_each_facet(ids, [&](std::size_t index, hn::Mask<DI> same, auto is_first) HWY_ATTR {
+      put_surface<is_first.value>(part, part.layer.facets[index], p, at, same, b);
+    });
+  });
+  light_up(part.shading, part.layer, b);
+}
+
+HWY_INLINE Colour colour_at(const Block& b, std::size_t at) {
+  return {load(b.r, at), load(b.g, at), load(b.b, at)};
+}
+
+// At most 1.
+HWY_INLINE Colour lit_at(const Block& b, std::size_t at) {
+  const Colour c = colour_at(b, at);
+  const V one = set(1.0F);
+  return {hn::Min(c.r, one), hn::Min(c.g, one), hn::Min(c.b, one)};
+}
+
+HWY_INLINE void set_colour(const Colour& c, Block& b, std::size_t at) {
+  store(c.r, b.r, at);
+  store(c.g, b.g, at);
+  store(c.b, b.b, at);
+}
+
+// The same with textures and, if wanted, opacity.
+void shade_block(const Part& part, bool with_alpha, Block& b) {
+  const PreparedScene& scene = part.shading.scene;
+  light_block(part, b);
+  for (const Block::Vector& vector : b.active()) {
+    const std::size_t at = vector.at;
+    const V one = set(1.0F);
+    Texel texel{{one, one, one}, one};
+    if (vector.is_textured) {
+      texel =
+          sample(scene, load(b.level, at), load(b.next_share, at), load(b.u, at), load(b.v, at));
+    }
+    set_colour(scaled(lit_at(b, at), texel.colour), b, at);
+    if (!with_alpha) continue;
+    const V alpha = of_material(load(b.material, at), scene.materials[0].alpha);
+    store(Mul(alpha, texel.alpha), b.alpha, at);
+  }
+}
+
+HWY_INLINE void load_ids(const Part& part, const TileIds& ids, Block& b) {
+  const auto* const first = ids.id.data() + part.first_pixel();
+  std::copy_n(first, static_cast<std::size_t>(part.rows) * kTile_px, b.ids.data());
+}
+
+HWY_INLINE M is_empty(const Block& b, std::size_t at) {
+  return hn::RebindMask(D(), hn::Eq(hn::Load(DU(), b.ids.data() + at), hn::Zero(DU())));
 }
 
 // The triangles that several pixels see, by their numbers; 0: none.
@@ -110,91 +204,114 @@ HWY_INLINE VI primitives(const Layer& layer, VU ids) {
   return hn::IfThenElseZero(is_seen, hn::GatherIndex(di, first, row));
 }
 
-// The layers in which pixels see the same triangle as in the middle one.
-struct Stay {
-  VI first, last;
-  VI count;
-};
-
-// The mean light of one vector of pixels over some layers.
+// The mean light of a block over some layers. A pixel that sees a triangle in the middle layer is
+// shaded there once for all layers in which it sees that triangle.
 class Mean {
  public:
-  Mean(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
-       std::span<const TileIds> ids, std::size_t at)
-      : shading_(shading),
+  Mean(const Part& part, std::span<const Layer> layers, std::span<const TileIds> ids, Block& block,
+       TileColours& light)
+      : part_(part),
         layers_(layers),
-        tile_(tile),
         ids_(ids),
-        at_(at),
+        b_(block),
+        light_(light),
         middle_(layers.size() / 2),
         share_(1.0F / static_cast<float>(layers.size())) {}
 
-  Colour light() const {
+  void add_up() {
     const VI number = whole(static_cast<std::int32_t>(middle_));
-    const VI middle = primitives(layers_[middle_], ids_in(middle_));
-    Stay stay{number, number, whole(1)};
-    Colour sum{set(0.0F), set(0.0F), set(0.0F)};
+    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
+      put(number, first_, at);
+      put(number, last_, at);
+      put(whole(1), count_, at);
+      put(primitives(layers_[middle_], ids_in(middle_, at)), primitive_, at);
+      for (auto* plane : {&light_.r, &light_.g, &light_.b}) {
+        hn::Store(set(0.0F), D(), plane->data() + part_.first_pixel() + at);
+      }
+    });
     for (std::size_t k = 0; k < layers_.size(); ++k) {
-      if (k != middle_) add_layer(k, middle, stay, sum);
+      if (k != middle_) add_layer(k);
     }
-    add_to(sum, middle_light(stay), Mul(to_float(stay.count), set(share_)));
-    return sum;
+    add_middle();
   }
 
  private:
-  VU ids_in(std::size_t layer) const { return hn::Load(DU(), ids_[layer].id.data() + at_); }
+  using Whole = Block::Plane<std::int32_t>;
 
-  // Counts the pixels that see the same as in the middle layer, and shades the others.
-  void add_layer(std::size_t k, VI middle, Stay& stay, Colour& sum) const {
-    const DI di;
-    const VU ids = ids_in(k);
-    const auto same = hn::Eq(primitives(layers_[k], ids), middle);
-    const VI number = whole(static_cast<std::int32_t>(k));
-    stay.count = Sub(stay.count, hn::VecFromMask(di, same));
-    stay.first = hn::IfThenElse(same, hn::Min(stay.first, number), stay.first);
-    stay.last = hn::IfThenElse(same, hn::Max(stay.last, number), stay.last);
-    if (hn::AllTrue(di, same)) return;
-    const M differs = hn::Not(float_mask(same));
-    Colour own = colour(shading_.scene.background);
-    V alpha = set(1.0F);
-    shade_pixels(shading_, layers_[k], tile_, at_, ids, differs, own, alpha);
-    add_to(sum, light_of(shading_.table, own), hn::IfThenElseZero(differs, set(share_)));
+  static void put(VI value, Whole& plane, std::size_t at) {
+    hn::Store(value, DI(), plane.data() + at);
+  }
+  VU ids_in(std::size_t layer, std::size_t at) const {
+    return hn::Load(DU(), ids_[layer].id.data() + part_.first_pixel() + at);
+  }
+  void add(const Colour& light, V share, std::size_t at) {
+    const D d;
+    const std::size_t i = part_.first_pixel() + at;
+    Colour sum{hn::Load(d, light_.r.data() + i), hn::Load(d, light_.g.data() + i),
+               hn::Load(d, light_.b.data() + i)};
+    add_to(sum, light, share);
+    hn::Store(sum.r, d, light_.r.data() + i);
+    hn::Store(sum.g, d, light_.g.data() + i);
+    hn::Store(sum.b, d, light_.b.data() + i);
   }
 
-  Colour middle_light(const Stay& stay) const {
-    Colour light = light_of(shading_.table, colour(shading_.scene.background));
-    const Layer& layer = layers_[middle_];
-    const Pixels p = pixels_at(shading_.lens, layer, tile_, at_);
-    for_each_facet(ids_in(middle_), everywhere(), [&](std::size_t index, M same) HWY_ATTR {
-      const Facet& facet = layer.facets[index];
-      const MaterialRow& material = shading_.scene.materials[facet.material];
-      const Spot at = spot(facet, p.x, p.y);
-      const Colour lit = light_on(shading_, layer, facet, material, p, at, same);
-      Colour own;
-      if (material.levels > 0) {
-        const TexturePoint point = texture_point(facet, at);
-        own = moving_texture(lit, point, make_filter(shading_.scene, material, point), stay, same);
-      } else {
-        own = light_of(shading_.table, lit);
-      }
-      light = select(same, own, light);
+  // Counts the pixels that see the same as in the middle layer, and shades the others.
+  void add_layer(std::size_t k) {
+    const Part part{part_.shading, layers_[k], part_.tile, part_.first_row, part_.rows};
+    const VI number = whole(static_cast<std::int32_t>(k));
+    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
+      const VU ids = ids_in(k, at);
+      const auto other = hn::Ne(primitives(layers_[k], ids), load(primitive_, at));
+      const VI first = load(first_, at);
+      const VI last = load(last_, at);
+      put(Add(load(count_, at), hn::IfThenZeroElse(other, whole(1))), count_, at);
+      put(hn::IfThenElse(other, first, hn::Min(first, number)), first_, at);
+      put(hn::IfThenElse(other, last, hn::Max(last, number)), last_, at);
+      put(hn::VecFromMask(DI(), other), other_, at);
+      hn::Store(hn::IfThenElseZero(hn::RebindMask(DU(), other), ids), DU(), b_.ids.data() + at);
     });
-    return light;
+    shade_block(part, false, b_);
+    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
+      const M other = float_mask(hn::Ne(load(other_, at), whole(0)));
+      if (hn::AllFalse(D(), other)) return;
+      const Colour own =
+          select(is_empty(b_, at), colour(part_.shading.scene.background), colour_at(b_, at));
+      add(light_of(part_.shading.table, own), hn::IfThenElseZero(other, set(share_)), at);
+    });
+  }
+
+  void add_middle() {
+    load_ids(part_, ids_[middle_], b_);
+    light_block(part_, b_);
+    const LightTable& table = part_.shading.table;
+    for (const Block::Vector& vector : b_.active()) {
+      set_colour(
+          vector.is_textured ? moving_texture(vector.at) : light_of(table, lit_at(b_, vector.at)),
+          b_, vector.at);
+    }
+    const Colour background = light_of(table, colour(part_.shading.scene.background));
+    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
+      add(select(is_empty(b_, at), background, colour_at(b_, at)),
+          Mul(to_float(load(count_, at)), set(share_)), at);
+    });
   }
 
   // Texture coordinates in the layers `of`, which differ from pixel to pixel.
-  void coordinates_in(VI of, M wanted, V& u, V& v) const {
+  void coordinates_in(VI of, M wanted, std::size_t at, V& u, V& v) const {
     M rest = wanted;
     for (std::size_t k = 0; !hn::AllFalse(D(), rest) && k < layers_.size(); ++k) {
       const M here = And(rest, float_mask(hn::Eq(of, whole(static_cast<std::int32_t>(k)))));
       if (hn::AllFalse(D(), here)) continue;
       rest = hn::AndNot(here, rest);
-      const Pixels p = pixels_at(shading_.lens, layers_[k], tile_, at_);
-      for_each_facet(ids_in(k), here, [&](std::size_t index, M same) HWY_ATTR {
-        const Facet& facet = layers_[k].facets[index];
-        const Spot s = spot(facet, p.x, p.y);
-        u = hn::IfThenElse(same, between_corners(facet.u, s), u);
-        v = hn::IfThenElse(same, between_corners(facet.v, s), v);
+      const Layer& layer = layers_[k];
+      const Pixels p = pixels_at(part_.shading.lens, layer, part_.tile, part_.first_pixel() + at);
+      const VU ids = hn::IfThenElseZero(hn::RebindMask(DU(), here), ids_in(k, at));
+      for_each_facet(ids, [&](std::size_t index, hn::Mask<DI> pixels, auto) HWY_ATTR {
+        const M same = float_mask(pixels);
+        const Facet& facet = layer.facets[index];
+        const Weights w = weights(facet, spot(facet, p));
+        u = hn::IfThenElse(same, between_corners(facet.u, w), u);
+        v = hn::IfThenElse(same, between_corners(facet.v, w), v);
       });
     }
   }
@@ -207,22 +324,29 @@ class Mean {
   };
 
   // The first and the last layer are half a step within the ends of the way.
-  Way way_of(const TexturePoint& point, const Filter& filter, const Stay& stay, M wanted) const {
-    Way way{point.u, point.v, set(0.0F), set(0.0F), whole(1)};
-    const M moves = And(wanted, float_mask(hn::Lt(stay.first, stay.last)));
+  Way way_at(std::size_t at) const {
+    const VI first = load(first_, at);
+    const VI last = load(last_, at);
+    Way way{load(b_.u, at), load(b_.v, at), set(0.0F), set(0.0F), whole(1)};
+    const auto has_texture = hn::Gt(load(b_.level, at), whole(0));
+    const M moves = float_mask(And(has_texture, hn::Lt(first, last)));
     if (hn::AllFalse(D(), moves)) return way;
     V u_first = way.u;
     V v_first = way.v;
     V u_last = way.u;
     V v_last = way.v;
-    coordinates_in(stay.first, moves, u_first, v_first);
-    coordinates_in(stay.last, moves, u_last, v_last);
-    const V steps = to_float(hn::Max(Sub(stay.last, stay.first), whole(1)));
+    coordinates_in(first, moves, at, u_first, v_first);
+    coordinates_in(last, moves, at, u_last, v_last);
+    const V steps = to_float(hn::Max(Sub(last, first), whole(1)));
     const V longer = Div(Add(steps, set(1.0F)), steps);
     way.du = Mul(Sub(u_last, u_first), longer);
     way.dv = Mul(Sub(v_last, v_first), longer);
+    const PreparedScene& scene = part_.shading.scene;
+    const VI material = load(b_.material, at);
     const V length2 =
-        Div(squared_length(way.du, way.dv, filter.width, filter.height), filter.texels_per_pixel2);
+        Div(squared_length(way.du, way.dv, of_material(material, scene.materials[0].texture_width),
+                           of_material(material, scene.materials[0].texture_height)),
+            load(b_.texels_per_pixel2, at));
     const V length = hn::Sqrt(hn::Min(length2, set(kMostTaps * kMostTaps)));
     way.taps = hn::Max(nearest(Add(length, set(kRoundUp))), whole(1));
     const M several = And(moves, float_mask(hn::Gt(way.taps, whole(1))));
@@ -234,18 +358,18 @@ class Mean {
     return way;
   }
 
-  Colour moving_texture(const Colour& lit, const TexturePoint& point, const Filter& filter,
-                        const Stay& stay, M wanted) const {
-    const Way way = way_of(point, filter, stay, wanted);
+  Colour moving_texture(std::size_t at) const {
+    const Colour lit = lit_at(b_, at);
+    const Way way = way_at(at);
     const V step = Div(set(1.0F), to_float(way.taps));
     Colour sum{set(0.0F), set(0.0F), set(0.0F)};
     for (std::int32_t i = 0;; ++i) {
       const M counts = float_mask(hn::Gt(way.taps, whole(i)));
-      if (hn::AllFalse(D(), And(counts, wanted))) return sum;
+      if (hn::AllFalse(D(), counts)) return sum;
       const V along = Sub(Mul(set(static_cast<float>(i) + 0.5F), step), set(0.5F));
-      const Texel texel = sample(shading_.scene, filter, Add(way.u, Mul(way.du, along)),
-                                 Add(way.v, Mul(way.dv, along)));
-      add_to(sum, light_of(shading_.table, times_texel(lit, texel)),
+      const Texel texel = sample(part_.shading.scene, load(b_.level, at), load(b_.next_share, at),
+                                 Add(way.u, Mul(way.du, along)), Add(way.v, Mul(way.dv, along)));
+      add_to(sum, light_of(part_.shading.table, scaled(lit, texel.colour)),
              hn::IfThenElseZero(counts, step));
     }
   }
@@ -253,58 +377,62 @@ class Mean {
   static constexpr float kMostTaps = 8.0F;
   static constexpr float kRoundUp = 0.4F;
 
-  const Shading& shading_;
+  const Part& part_;
   std::span<const Layer> layers_;
-  const Tile& tile_;
   std::span<const TileIds> ids_;
-  std::size_t at_;
+  Block& b_;
+  TileColours& light_;
   std::size_t middle_;
   float share_;
+  // The layers in which a pixel sees the same triangle as in the middle one.
+  alignas(64) Whole first_, last_, count_;
+  alignas(64) Whole primitive_;  // the triangle in the middle layer
+  alignas(64) Whole other_;      // whether it is another in the present layer
 };
 
 }  // namespace
 
 void shade_on(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
               TilePixels& pixels) {
-  const DU du;
-  for_each_vector(tile, [&](std::size_t at) HWY_ATTR {
-    Colour result = colour(shading.scene.background);
-    V alpha = set(1.0F);
-    shade_pixels(shading, layer, tile, at, hn::Load(du, ids.id.data() + at), everywhere(), result,
-                 alpha);
-    hn::Store(packed(result), du, pixels.rgb.data() + at);
+  Block b;
+  for_each_part(shading, layer, tile, [&](const Part& part) HWY_ATTR {
+    load_ids(part, ids, b);
+    shade_block(part, false, b);
+    const Colour background = colour(shading.scene.background);
+    for_each_vector(part, [&](std::size_t at) HWY_ATTR {
+      hn::Store(packed(select(is_empty(b, at), background, colour_at(b, at))), DU(),
+                pixels.rgb.data() + part.first_pixel() + at);
+    });
   });
 }
 
 void shade_mean_on(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
-                   std::span<const TileIds> ids, TilePixels& pixels) {
-  const LightTable& table = shading.table;
-  for_each_vector(tile, [&](std::size_t at) HWY_ATTR {
-    const Colour light = Mean(shading, layers, tile, ids, at).light();
-    hn::Store(packed(byte_of_light(table, light.r), byte_of_light(table, light.g),
-                     byte_of_light(table, light.b)),
-              DU(), pixels.rgb.data() + at);
-  });
+                   std::span<const TileIds> ids, TileColours& light) {
+  Block b;
+  for_each_part(shading, layers[layers.size() / 2], tile,
+                [&](const Part& part) HWY_ATTR { Mean(part, layers, ids, b, light).add_up(); });
 }
 
 void shade_over_on(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
                    bool with_background, TileColours& colours) {
   const D d;
-  for_each_vector(tile, [&](std::size_t at) HWY_ATTR {
-    Colour before = colour(shading.scene.background);
-    if (!with_background) {
-      before = {hn::Load(d, colours.r.data() + at), hn::Load(d, colours.g.data() + at),
-                hn::Load(d, colours.b.data() + at)};
-    }
-    Colour own = before;
-    V alpha = set(1.0F);
-    shade_pixels(shading, layer, tile, at, hn::Load(DU(), ids.id.data() + at), everywhere(), own,
-                 alpha);
-    // Triangles drawn on the background are opaque.
-    const Colour after = with_background ? own : mix(before, own, alpha);
-    hn::Store(after.r, d, colours.r.data() + at);
-    hn::Store(after.g, d, colours.g.data() + at);
-    hn::Store(after.b, d, colours.b.data() + at);
+  Block b;
+  for_each_part(shading, layer, tile, [&](const Part& part) HWY_ATTR {
+    load_ids(part, ids, b);
+    shade_block(part, true, b);
+    for_each_vector(part, [&](std::size_t at) HWY_ATTR {
+      const std::size_t i = part.first_pixel() + at;
+      const Colour own = colour_at(b, at);
+      Colour after = select(is_empty(b, at), colour(shading.scene.background), own);
+      if (!with_background) {
+        const Colour before{hn::Load(d, colours.r.data() + i), hn::Load(d, colours.g.data() + i),
+                            hn::Load(d, colours.b.data() + i)};
+        after = select(is_empty(b, at), before, mix(before, own, load(b.alpha, at)));
+      }
+      hn::Store(after.r, d, colours.r.data() + i);
+      hn::Store(after.g, d, colours.g.data() + i);
+      hn::Store(after.b, d, colours.b.data() + i);
+    });
   });
 }
 
@@ -383,8 +511,8 @@ void shade(const Shading& shading, const Layer& layer, const Tile& tile, const T
 }
 
 void shade_mean(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
-                std::span<const TileIds> ids, TilePixels& pixels) {
-  HWY_DYNAMIC_DISPATCH(shade_mean_on)(shading, layers, tile, ids, pixels);
+                std::span<const TileIds> ids, TileColours& light) {
+  HWY_DYNAMIC_DISPATCH(shade_mean_on)(shading, layers, tile, ids, light);
 }
 
 void shade_over(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,

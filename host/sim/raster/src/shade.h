@@ -39,7 +39,7 @@ void shade(const Shading& shading, const Layer& layer, const Tile& tile, const T
 /// The mean light of several layers, without transparent things. A triangle that a pixel sees in
 /// several layers is shaded once, and its texture is averaged along the way that it moves.
 void shade_mean(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
-                std::span<const TileIds> ids, TilePixels& pixels);
+                std::span<const TileIds> ids, TileColours& light);
 
 /// Mixes the triangles of `ids` into `colours` by their opacity, or draws opaque ones on the
 /// background.

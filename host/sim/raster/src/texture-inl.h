@@ -19,26 +19,45 @@ struct TexturePoint {
   V u_x, u_y, v_x, v_y;
 };
 
-HWY_INLINE V change(const Facet& f, const std::array<float, 3>& over_z, V weight, V z,
-                    std::size_t axis) {
-  return Mul(z, Sub(set(over_z[axis]), Mul(weight, set(f.inverse_depth[axis]))));
+HWY_INLINE TexturePoint texture_point(const Facet& f, const Spot& s, const Weights& w) {
+  const V u = added(f.u, w);
+  const V v = added(f.v, w);
+  const auto change = [&](float over_z, V value, std::size_t axis) HWY_ATTR {
+    return Mul(s.z, Sub(set(over_z), Mul(value, set(f.inverse_depth[axis]))));
+  };
+  return {Add(set(f.u[0]), u), Add(set(f.v[0]), v), change(f.u_x, u, 1),
+          change(f.u_y, u, 2), change(f.v_x, v, 1), change(f.v_y, v, 2)};
 }
 
-HWY_INLINE TexturePoint texture_point(const Facet& f, const Spot& s) {
-  const V second_x = change(f, f.second, s.second, s.z, 1);
-  const V second_y = change(f, f.second, s.second, s.z, 2);
-  const V third_x = change(f, f.third, s.third, s.z, 1);
-  const V third_y = change(f, f.third, s.third, s.z, 2);
-  const V u1 = set(f.u[1]);
-  const V u2 = set(f.u[2]);
-  const V v1 = set(f.v[1]);
-  const V v2 = set(f.v[2]);
-  return {between_corners(f.u, s),
-          between_corners(f.v, s),
-          Add(Mul(u1, second_x), Mul(u2, third_x)),
-          Add(Mul(u1, second_y), Mul(u2, third_y)),
-          Add(Mul(v1, second_x), Mul(v2, third_x)),
-          Add(Mul(v1, second_y), Mul(v2, third_y))};
+// Two numbers of 16 bits for each pixel: their products, and the upper halves of these.
+HWY_INLINE VU times(VU a, VU b) {
+#if HWY_TARGET == HWY_SCALAR
+  const std::uint32_t x = hn::GetLane(a);
+  const std::uint32_t y = hn::GetLane(b);
+  return hn::Set(DU(), ((x & 0xFFFFU) * (y & 0xFFFFU) & 0xFFFFU) | (x >> 16U) * (y >> 16U) << 16U);
+#else
+  const hn::Repartition<std::uint16_t, DU> dh;
+  return hn::BitCast(DU(), Mul(hn::BitCast(dh, a), hn::BitCast(dh, b)));
+#endif
+}
+HWY_INLINE VU times_high(VU a, VU b) {
+#if HWY_TARGET == HWY_SCALAR
+  const std::uint32_t x = hn::GetLane(a);
+  const std::uint32_t y = hn::GetLane(b);
+  return hn::Set(DU(),
+                 (x & 0xFFFFU) * (y & 0xFFFFU) >> 16U | ((x >> 16U) * (y >> 16U) & 0xFFFF0000U));
+#else
+  const hn::Repartition<std::uint16_t, DU> dh;
+  return hn::BitCast(DU(), hn::MulHigh(hn::BitCast(dh, a), hn::BitCast(dh, b)));
+#endif
+}
+
+// The same number, below 2^16, in both halves.
+HWY_INLINE VU twice(VI number) {
+  return hn::BitCast(DU(), hn::Or(number, hn::ShiftLeft<16>(number)));
+}
+HWY_INLINE VU twice(std::uint32_t number) {
+  return hn::Set(DU(), number << 16U | number);
 }
 
 // Four channels of up to 255·256: red and blue in the halves of one number, green and alpha in
@@ -52,48 +71,36 @@ struct Axis {
   VI first, share;
 };
 
-HWY_INLINE Axis axis(V at, VI size) {
-  const V repeated = Sub(at, hn::Floor(at));
+HWY_INLINE Axis axis(V repeated, VI size) {
   const VI fixed = Sub(nearest(Mul(repeated, to_float(hn::ShiftLeft<8>(size)))), whole(128));
   const VI first = hn::ShiftRight<8>(fixed);
   return {Add(first, And(hn::BroadcastSignBit(first), size)), And(fixed, whole(0xFF))};
 }
 
-// Two numbers of 16 bits each, times one that leaves them within 16 bits.
-HWY_INLINE VU times(VU pair, VI factor) {
-  const DU du;
-#if HWY_TARGET == HWY_SCALAR
-  return Mul(pair, hn::BitCast(du, factor));
-#else
-  const hn::Repartition<std::uint16_t, DU> dh;
-  const auto twice = hn::BitCast(dh, hn::Or(factor, hn::ShiftLeft<16>(factor)));
-  return hn::BitCast(du, Mul(hn::BitCast(dh, pair), twice));
-#endif
-}
-
-HWY_INLINE void add_texel(Blend& sum, VU texel, VI weight) {
-  const VU low_bytes = hn::Set(DU(), 0x00FF00FFU);
+HWY_INLINE void add_texel(Blend& sum, VU texel, VU weight) {
+  const VU low_bytes = twice(0xFFU);
   sum.red_blue = Add(sum.red_blue, times(And(texel, low_bytes), weight));
   sum.green_alpha = Add(sum.green_alpha, times(And(hn::ShiftRight<8>(texel), low_bytes), weight));
 }
 
-// Texels with their neighbours.
+// Texels with their right neighbours.
 struct Pair {
   VU left, right;
 };
 
-HWY_INLINE Pair gather(const std::uint64_t* texels, VI at) {
+HWY_INLINE Pair gather(const std::uint32_t* texels, VI at) {
   const DU du;
 #if HWY_TARGET == HWY_SCALAR
-  const std::uint64_t pair = texels[hn::GetLane(at)];
-  return {hn::Set(du, static_cast<std::uint32_t>(pair)),
-          hn::Set(du, static_cast<std::uint32_t>(pair >> 32U))};
+  const std::uint32_t* const left = texels + hn::GetLane(at);
+  return {hn::Set(du, left[0]), hn::Set(du, left[1])};
 #else
   const hn::Repartition<std::uint64_t, DU> dw;
   const hn::Repartition<std::int64_t, DI> di;
   const hn::Half<DI> half;
-  const auto low = hn::GatherIndex(dw, texels, hn::PromoteTo(di, hn::LowerHalf(half, at)));
-  const auto high = hn::GatherIndex(dw, texels, hn::PromoteTo(di, hn::UpperHalf(half, at)));
+  const auto* const both = reinterpret_cast<const std::uint64_t*>(texels);
+  const VI bytes = hn::ShiftLeft<2>(at);
+  const auto low = hn::GatherOffset(dw, both, hn::PromoteTo(di, hn::LowerHalf(half, bytes)));
+  const auto high = hn::GatherOffset(dw, both, hn::PromoteTo(di, hn::UpperHalf(half, bytes)));
   const VU a = hn::BitCast(du, low);
   const VU b = hn::BitCast(du, high);
   return {hn::ConcatEven(du, b, a), hn::ConcatOdd(du, b, a)};
@@ -120,29 +127,31 @@ HWY_INLINE Level level_at(const PreparedScene& scene, VI row) {
 }
 
 // The four weights sum to 256 exactly.
-HWY_INLINE Blend bilinear(const std::uint64_t* texels, const Level& level, V u, V v) {
+HWY_INLINE Blend bilinear(const std::uint32_t* texels, const Level& level, V u, V v) {
   const Axis x = axis(u, level.width);
   const Axis y = axis(v, level.height);
-  const VI next = Add(y.first, whole(1));
-  const VI wrapped = hn::IfThenZeroElse(hn::Eq(next, level.height), next);
-  const VI column = Add(level.first_texel, x.first);
-  const Pair upper = gather(texels, Add(column, Mul(y.first, level.width)));
-  const Pair lower = gather(texels, Add(column, Mul(wrapped, level.width)));
-  const VI both = hn::ShiftRight<8>(Add(Mul(x.share, y.share), whole(128)));
+  const VI stride = Add(level.width, whole(1));
+  const VI at = Add(Add(level.first_texel, x.first), Mul(y.first, stride));
+  const Pair upper = gather(texels, at);
+  const Pair lower = gather(texels, Add(at, stride));
+  const VU right = twice(x.share);
+  const VU below = twice(y.share);
+  const VU both = And(hn::ShiftRight<8>(Add(times(right, below), twice(128U))), twice(0xFFU));
   Blend sum{hn::Zero(DU()), hn::Zero(DU())};
-  add_texel(sum, upper.left, Add(Sub(Sub(whole(256), x.share), y.share), both));
-  add_texel(sum, upper.right, Sub(x.share, both));
-  add_texel(sum, lower.left, Sub(y.share, both));
+  add_texel(sum, upper.left, Add(Sub(Sub(twice(256U), right), below), both));
+  add_texel(sum, upper.right, Sub(right, both));
+  add_texel(sum, lower.left, Sub(below, both));
   add_texel(sum, lower.right, both);
   return sum;
 }
 
-// The channels, times kTexelScale.
+// The channels, 0..1.
 struct Texel {
   Colour colour;
   V alpha;
 };
-constexpr float kTexelScale = 65280.0F;
+constexpr float kTexelScale = 1.0F / 65280.0F;
+static_assert(65280.0F * kTexelScale == 1.0F, "white leaves a surface as it is");
 
 HWY_INLINE V low_half(VU pair) {
   return to_float(hn::BitCast(DI(), And(pair, hn::Set(DU(), 0xFFFFU))));
@@ -151,17 +160,10 @@ HWY_INLINE V high_half(VU pair) {
   return to_float(hn::BitCast(DI(), hn::ShiftRight<16>(pair)));
 }
 
-HWY_INLINE Texel from_blend(const Blend& b) {
-  return {{low_half(b.red_blue), low_half(b.green_alpha), high_half(b.red_blue)},
-          high_half(b.green_alpha)};
-}
-
-// Which sizes of a texture to look at, and how far from the one to the next.
+// Which size of a texture to look at, and how far to go to the next, in 1/256.
 struct Filter {
-  VI level, next;  // rows of PreparedScene::levels
-  V share;
-  V texels_per_pixel2;  // of the largest size, squared; at least 1
-  V width, height;      // of the largest size
+  VI level, next_share;  // a row of PreparedScene::levels
+  V texels_per_pixel2;   // of the largest size, squared; at least 1
 };
 
 HWY_INLINE V squared_length(V u, V v, V width, V height) {
@@ -170,35 +172,47 @@ HWY_INLINE V squared_length(V u, V v, V width, V height) {
   return Add(Mul(x, x), Mul(y, y));
 }
 
+// 128 times the logarithm of x ≥ 1, to 1: the exponent, and a parabola through the fraction.
+HWY_INLINE V log2_times_128(V x) {
+  const VI bits = Sub(hn::BitCast(DI(), x), whole(0x3F800000));
+  const V fraction = Mul(to_float(And(bits, whole(0x7FFFFF))), set(1.0F / 8388608.0F));
+  const V curve = Mul(Mul(fraction, Sub(set(1.0F), fraction)), set(128.0F * 0.3437F));
+  return Add(Mul(to_float(bits), set(128.0F / 8388608.0F)), curve);
+}
+
 // As OpenGL: by the longer of the changes to the next pixel along x and y.
 HWY_INLINE Filter make_filter(const PreparedScene& scene, const MaterialRow& m,
                               const TexturePoint& p) {
   const LevelRow& largest = scene.levels[static_cast<std::size_t>(m.first_level)];
-  Filter f;
-  f.width = set(static_cast<float>(largest.width));
-  f.height = set(static_cast<float>(largest.height));
-  const V longer = hn::Max(squared_length(p.u_x, p.v_x, f.width, f.height),
-                           squared_length(p.u_y, p.v_y, f.width, f.height));
-  f.texels_per_pixel2 = hn::Min(hn::Max(longer, set(1.0F)), set(1e12F));
-  f.level = f.next = whole(m.first_level);
-  f.share = set(0.0F);
-  if (hn::AllTrue(D(), hn::Eq(f.texels_per_pixel2, set(1.0F)))) return f;
-  const V last = set(static_cast<float>(m.levels - 1));
-  // Of 1 the logarithm is 0 exactly.
-  const V lod = hn::Min(Mul(set(0.5F), log2(f.texels_per_pixel2)), last);
-  const V low = hn::Floor(lod);
-  f.share = Sub(lod, low);
-  f.level = Add(f.level, nearest(low));
-  f.next = hn::Min(Add(f.level, whole(1)), whole(m.first_level + m.levels - 1));
-  return f;
+  const V width = set(static_cast<float>(largest.width));
+  const V height = set(static_cast<float>(largest.height));
+  const V longer = hn::Max(squared_length(p.u_x, p.v_x, width, height),
+                           squared_length(p.u_y, p.v_y, width, height));
+  const V square = hn::Min(hn::Max(longer, set(1.0F)), set(1e12F));
+  const VI level = hn::Min(nearest(log2_times_128(square)), whole(256 * (m.levels - 1)));
+  return {Add(hn::ShiftRight<8>(level), whole(m.first_level)), And(level, whole(0xFF)), square};
 }
 
-HWY_INLINE Texel sample(const PreparedScene& scene, const Filter& f, V u, V v) {
-  const std::uint64_t* const texels = scene.texels.data();
-  const Texel texel = from_blend(bilinear(texels, level_at(scene, f.level), u, v));
-  if (hn::AllTrue(D(), hn::Eq(f.share, set(0.0F)))) return texel;
-  const Texel next = from_blend(bilinear(texels, level_at(scene, f.next), u, v));
-  return {mix(texel.colour, next.colour, f.share), mix(texel.alpha, next.alpha, f.share)};
+// Of numbers up to 2^16 − 256.
+HWY_INLINE VU mix(VU a, VU b, VU share) {
+  return Add(Sub(a, times_high(a, share)), times_high(b, share));
+}
+
+HWY_INLINE Texel sample(const PreparedScene& scene, VI level, VI next_share, V u, V v) {
+  const std::uint32_t* const texels = scene.texels.data();
+  const V u_repeated = Sub(u, hn::Floor(u));
+  const V v_repeated = Sub(v, hn::Floor(v));
+  Blend b = bilinear(texels, level_at(scene, level), u_repeated, v_repeated);
+  if (!hn::AllTrue(DI(), hn::Eq(next_share, whole(0)))) {
+    const Level next_level = level_at(scene, Add(level, whole(1)));
+    const Blend next = bilinear(texels, next_level, u_repeated, v_repeated);
+    const VU share = twice(hn::ShiftLeft<8>(next_share));
+    b = {mix(b.red_blue, next.red_blue, share), mix(b.green_alpha, next.green_alpha, share)};
+  }
+  const V scale = set(kTexelScale);
+  return {{Mul(low_half(b.red_blue), scale), Mul(low_half(b.green_alpha), scale),
+           Mul(high_half(b.red_blue), scale)},
+          Mul(high_half(b.green_alpha), scale)};
 }
 
 }  // namespace

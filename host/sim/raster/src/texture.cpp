@@ -70,10 +70,11 @@ Image make_smaller(const Image& from) {
 void add_level(const Image& image, PreparedScene& scene) {
   scene.levels.push_back(
       {static_cast<std::int32_t>(scene.texels.size()), image.width, image.height, 0});
-  const auto width = static_cast<std::size_t>(image.width);
-  for (std::size_t i = 0; i < image.texels.size(); ++i) {
-    const std::size_t right = (i + 1) % width == 0 ? i + 1 - width : i + 1;
-    scene.texels.push_back(image.texels[i] | std::uint64_t{image.texels[right]} << 32U);
+  const auto width = static_cast<std::ptrdiff_t>(image.width);
+  for (int row = 0; row <= image.height; ++row) {
+    const auto first = image.texels.begin() + row % image.height * width;
+    scene.texels.insert(scene.texels.end(), first, first + width);
+    scene.texels.push_back(*first);
   }
 }
 

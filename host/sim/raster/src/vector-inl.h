@@ -70,43 +70,6 @@ HWY_INLINE V mix(V a, V b, V share) {
   return Add(a, Mul(Sub(b, a), share));
 }
 
-// Within 1e-6, for normal numbers above 0.
-HWY_INLINE V log2(V x) {
-  // x = m·2^e, m within √½ and √2.
-  constexpr std::int32_t kRootOfHalf = 0x3F3504F3;
-  const VI bits = Sub(hn::BitCast(DI(), x), whole(kRootOfHalf));
-  const VI exponent = hn::ShiftRight<23>(bits);
-  const V m = hn::BitCast(D(), Add(And(bits, whole(0x7FFFFF)), whole(kRootOfHalf)));
-  const V t = Div(Sub(m, set(1.0F)), Add(m, set(1.0F)));
-  const V t2 = Mul(t, t);
-  V sum = Add(set(0.41219857F), Mul(t2, set(0.32059889F)));
-  sum = Add(set(0.57707802F), Mul(t2, sum));
-  sum = Add(set(0.96179669F), Mul(t2, sum));
-  sum = Add(set(2.8853901F), Mul(t2, sum));
-  return Add(to_float(exponent), Mul(t, sum));
-}
-
-// With a relative error of 1e-6. @pre x ≤ 0. Below 2^-126 the result is 0.
-HWY_INLINE V exp2(V x) {
-  const V least = set(-126.0F);
-  const V clamped = hn::Max(x, least);
-  const VI n = nearest(clamped);
-  const V f = Sub(clamped, to_float(n));
-  V sum = Add(set(0.0013333558F), Mul(f, set(0.00015403530F)));
-  sum = Add(set(0.0096181291F), Mul(f, sum));
-  sum = Add(set(0.055504109F), Mul(f, sum));
-  sum = Add(set(0.24022651F), Mul(f, sum));
-  sum = Add(set(0.69314718F), Mul(f, sum));
-  sum = Add(set(1.0F), Mul(f, sum));
-  const V power = hn::BitCast(D(), hn::ShiftLeft<23>(Add(n, whole(127))));
-  return hn::IfThenElseZero(hn::Gt(x, least), Mul(sum, power));
-}
-
-// x^e, of x up to 1.
-HWY_INLINE V power(V x, float e) {
-  return exp2(Mul(set(e), log2(hn::Max(x, set(1e-30F)))));
-}
-
 struct Colour {
   V r, g, b;
 };

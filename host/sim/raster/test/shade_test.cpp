@@ -139,7 +139,7 @@ double texel(const PreparedScene& scene, std::size_t level, double u, double v, 
     for (int dx = 0; dx < 2; ++dx) {
       const int column = static_cast<int>(std::floor(x)) + dx;
       const int line = static_cast<int>(std::floor(y)) + dy;
-      const int at = (line + row.height) % row.height * row.width +
+      const int at = (line + row.height) % row.height * (row.width + 1) +
                      (column + row.width) % row.width + row.first_texel;
       const double share = (dx == 0 ? 1.0 - (x - std::floor(x)) : x - std::floor(x)) *
                            (dy == 0 ? 1.0 - (y - std::floor(y)) : y - std::floor(y));
@@ -160,20 +160,71 @@ TEST(Shade, FiltersTexturesTrilinearly) {
     camera.fx_px = camera.fy_px = 64.0;
     const Drawing drawing = draw(scene, camera);
     const double lod = std::max(0.0, std::log2(repeat * 24 / 64.0));
-    const auto level = static_cast<std::size_t>(lod);
-    const std::size_t next = std::min(level + 1, scene.prepared().levels.size() - 1);
+    // The first size of all is that of the white texture.
+    const auto level = static_cast<std::size_t>(lod) + 1;
+    const std::size_t next = std::min(level + 1, scene.prepared().levels.size() - 2);
     for (int i = 0; i < 64 * 64; i += 7) {
       const double u = repeat * (i % 64 + 0.5) / 64.0;
       const double v = repeat * (static_cast<double>(i / 64) + 0.5) / 64.0;
       for (unsigned channel = 0; channel < 3; ++channel) {
         const double a = texel(scene.prepared(), level, u, v, 8 * channel);
         const double b = texel(scene.prepared(), next, u, v, 8 * channel);
-        const double expected = a + (b - a) * (lod - static_cast<double>(level));
+        const double expected = a + (b - a) * (lod + 1.0 - static_cast<double>(level));
         ASSERT_NEAR(drawing.at(i % 64, i / 64)[channel], expected, 2.0)
             << "repeated " << repeat << " times, pixel " << i;
       }
     }
   }
+}
+
+// Triangles of different looks share vectors of pixels, and the number of these differs from
+// machine to machine: none may change the other's pixels.
+TEST(Shade, KeepsPixelsFreeOfTheirNeighbours) {
+  SceneParts parts = rich_parts();
+  parts.meshes = {rectangle(-3.0F, -3.0F, 0.013F, 3.0F, 2.0F, 6.0F),
+                  rectangle(0.013F, -3.0F, 3.0F, 3.0F, 2.5F, 6.0F)};
+  parts.instances.resize(2);
+  parts.instances[0].mesh = 0;
+  parts.instances[1].mesh = 1;
+  const auto draw_pair = [&](std::size_t left, std::size_t right) {
+    parts.instances[0].material = left;
+    parts.instances[1].material = right;
+    return draw(Scene(parts), small_camera());
+  };
+  for (const std::size_t left : {0U, 1U, 3U}) {
+    const Drawing alike = draw_pair(left, left);
+    for (const std::size_t right : {0U, 1U, 2U, 3U}) {
+      const Drawing drawing = draw_pair(left, right);
+      for (int i = 0; i < 120 * 80; ++i) {
+        ASSERT_EQ(drawing.at(i % 80, i / 80), alike.at(i % 80, i / 80)) << left << ' ' << right;
+      }
+    }
+  }
+}
+
+TEST(Shade, TakesHighlightsToAnyPower) {
+  for (const float shininess : {0.0F, 0.75F, 1.0F, 2.5F, 10.0F, 33.125F}) {
+    SceneParts parts = dark_wall();
+    parts.materials[0].diffuse = {0.0F, 0.0F, 0.0F};
+    parts.materials[0].specular = {1.0F, 1.0F, 1.0F};
+    parts.materials[0].shininess = shininess;
+    Light sun = head_light();
+    sun.kind = LightKind::kDirectional;
+    sun.direction_W = {std::sin(0.8), 0.0, std::cos(0.8)};
+    sun.specular = {1.0F, 1.0F, 1.0F};
+    parts.lights = {sun};
+    EXPECT_NEAR(wall(parts)[0], 255 * std::pow(std::cos(0.4), shininess), 1.0) << shininess;
+  }
+}
+
+TEST(Shade, AddsLightsOfOneAndOfSeveralColours) {
+  SceneParts parts = dark_wall();
+  parts.materials[0].diffuse = {1.0F, 1.0F, 1.0F};
+  for (const Rgb& colour : {Rgb{0.1F, 0.1F, 0.0F}, Rgb{0.1F, 0.1F, 0.0F}, Rgb{0.0F, 0.2F, 0.4F}}) {
+    parts.lights.push_back(head_light());
+    parts.lights.back().diffuse = colour;
+  }
+  EXPECT_THAT(wall(parts), ElementsAre(51, 102, 102));
 }
 
 TEST(Shadows, DarkenWhatIsBehindTheirCaster) {

@@ -14,9 +14,9 @@ extern const bool kHasMujoco;
 /// Used from one thread at a time, any thread.
 ///
 /// A UAV's cameras and rays do not see its own body. Rays meet collision shapes, cameras see
-/// visuals. A mesh collides as its convex hull. Distortion and oblong pixels are resampled from an
-/// ideal picture. The walking bias of a sensor is a function of seed and ST alone. `description()`
-/// includes the renderer after the first image.
+/// visuals. A mesh collides as its convex hull. Each pixel is drawn along its own ray, at the time
+/// of its row's exposure. The walking bias of a sensor is a function of seed and ST alone.
+/// `description()` includes the renderer after the first image.
 ///
 /// Expected pictures are drawn on `threads_ahead` threads of its own; 0: `expect` does nothing.
 ///
