@@ -45,6 +45,18 @@ HWY_INLINE VI byte_of_light(const LightTable& table, V light) {
   return And(hn::GatherOffset(di, bytes, amount), whole(0xFF));
 }
 
+HWY_INLINE Colour load(const TileColours& from, std::size_t at) {
+  const D d;
+  return {hn::Load(d, from.r.data() + at), hn::Load(d, from.g.data() + at),
+          hn::Load(d, from.b.data() + at)};
+}
+HWY_INLINE void store(const Colour& c, TileColours& to, std::size_t at) {
+  const D d;
+  hn::Store(c.r, d, to.r.data() + at);
+  hn::Store(c.g, d, to.g.data() + at);
+  hn::Store(c.b, d, to.b.data() + at);
+}
+
 // A layer's part of a tile, from one of its rows on.
 struct Part {
   const Shading& shading;
@@ -225,9 +237,7 @@ class Mean {
       put(number, last_, at);
       put(whole(1), count_, at);
       put(primitives(layers_[middle_], ids_in(middle_, at)), primitive_, at);
-      for (auto* plane : {&light_.r, &light_.g, &light_.b}) {
-        hn::Store(set(0.0F), D(), plane->data() + part_.first_pixel() + at);
-      }
+      store({set(0.0F), set(0.0F), set(0.0F)}, light_, part_.first_pixel() + at);
     });
     for (std::size_t k = 0; k < layers_.size(); ++k) {
       if (k != middle_) add_layer(k);
@@ -245,14 +255,9 @@ class Mean {
     return hn::Load(DU(), ids_[layer].id.data() + part_.first_pixel() + at);
   }
   void add(const Colour& light, V share, std::size_t at) {
-    const D d;
-    const std::size_t i = part_.first_pixel() + at;
-    Colour sum{hn::Load(d, light_.r.data() + i), hn::Load(d, light_.g.data() + i),
-               hn::Load(d, light_.b.data() + i)};
+    Colour sum = load(light_, part_.first_pixel() + at);
     add_to(sum, light, share);
-    hn::Store(sum.r, d, light_.r.data() + i);
-    hn::Store(sum.g, d, light_.g.data() + i);
-    hn::Store(sum.b, d, light_.b.data() + i);
+    store(sum, light_, part_.first_pixel() + at);
   }
 
   // Counts the pixels that see the same as in the middle layer, and shades the others.
@@ -415,60 +420,42 @@ void shade_mean_on(const Shading& shading, std::span<const Layer> layers, const 
 
 void shade_over_on(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
                    bool with_background, TileColours& colours) {
-  const D d;
   Block b;
   for_each_part(shading, layer, tile, [&](const Part& part) HWY_ATTR {
     load_ids(part, ids, b);
     shade_block(part, true, b);
     for_each_vector(part, [&](std::size_t at) HWY_ATTR {
       const std::size_t i = part.first_pixel() + at;
+      const Colour before = with_background ? colour(shading.scene.background) : load(colours, i);
       const Colour own = colour_at(b, at);
-      Colour after = select(is_empty(b, at), colour(shading.scene.background), own);
-      if (!with_background) {
-        const Colour before{hn::Load(d, colours.r.data() + i), hn::Load(d, colours.g.data() + i),
-                            hn::Load(d, colours.b.data() + i)};
-        after = select(is_empty(b, at), before, mix(before, own, load(b.alpha, at)));
-      }
-      hn::Store(after.r, d, colours.r.data() + i);
-      hn::Store(after.g, d, colours.g.data() + i);
-      hn::Store(after.b, d, colours.b.data() + i);
+      const Colour after = with_background ? own : mix(before, own, load(b.alpha, at));
+      store(select(is_empty(b, at), before, after), colours, i);
     });
   });
 }
 
 void add_light_on(const LightTable& table, const TileColours& colours, int layers,
                   TileColours& light) {
-  const D d;
   const V share = set(1.0F / static_cast<float>(layers));
-  const auto add = [&](const float* from, float* to) HWY_ATTR {
-    for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-      const V more = Mul(light_of(table, hn::Load(d, from + i)), share);
-      hn::Store(Add(hn::Load(d, to + i), more), d, to + i);
-    }
-  };
-  add(colours.r.data(), light.r.data());
-  add(colours.g.data(), light.g.data());
-  add(colours.b.data(), light.b.data());
+  for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
+    Colour sum = load(light, i);
+    add_to(sum, light_of(table, load(colours, i)), share);
+    store(sum, light, i);
+  }
 }
 
 void encode_colours_on(const TileColours& colours, TilePixels& pixels) {
-  const D d;
-  const DU du;
   for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-    const Colour c{hn::Load(d, colours.r.data() + i), hn::Load(d, colours.g.data() + i),
-                   hn::Load(d, colours.b.data() + i)};
-    hn::Store(packed(c), du, pixels.rgb.data() + i);
+    hn::Store(packed(load(colours, i)), DU(), pixels.rgb.data() + i);
   }
 }
 
 void encode_light_on(const LightTable& table, const TileColours& light, TilePixels& pixels) {
-  const D d;
-  const DU du;
   for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-    const VI r = byte_of_light(table, hn::Load(d, light.r.data() + i));
-    const VI g = byte_of_light(table, hn::Load(d, light.g.data() + i));
-    const VI b = byte_of_light(table, hn::Load(d, light.b.data() + i));
-    hn::Store(packed(r, g, b), du, pixels.rgb.data() + i);
+    const Colour c = load(light, i);
+    const VU rgb =
+        packed(byte_of_light(table, c.r), byte_of_light(table, c.g), byte_of_light(table, c.b));
+    hn::Store(rgb, DU(), pixels.rgb.data() + i);
   }
 }
 
