@@ -1,7 +1,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
+#include <ctime>
 #include <vector>
 
 #include <benchmark/benchmark.h>
@@ -9,8 +9,8 @@
 #include <tether/sim_raster/renderer.h>
 #include <tether/sim_raster/scene.h>
 
-// Pictures of a furnished, textured room with four lamps, on one thread. `images` is how many there
-// are for each second of CPU time.
+// Pictures of a furnished, textured room with four lamps. `images` is how many there are for each
+// second of CPU time; with threads, of wall time.
 namespace tether::raster {
 namespace {
 
@@ -141,11 +141,17 @@ struct Options {
   bool is_distorted = false;
   bool antialias = false;
   bool with_depth = false;
+  int threads = 1;
 };
 
-// Pictures along a flight at 0.5 m/s that turns at 0.1 rad/s.
+// A flight at 0.5 m/s that turns at 0.1 rad/s, with cameras side by side.
+Pose camera_pose(double t_s, int camera = 0) {
+  return Pose{{0.5 * t_s, 0.0, 0.0}, uav::from_axis_angle({0, 0, 1}, 0.1 * t_s)} *
+         Pose{{0.0, -0.1 * camera, 0.0}, uav::q_body_from_optical()};
+}
+
 void images(benchmark::State& state, const Options& options) {
-  Renderer renderer(scene(options.is_large));
+  Renderer renderer(scene(options.is_large), options.threads);
   View view;
   view.camera = uav::CameraModel::from_horizontal_fov(options.width_px, options.height_px, 1.0472);
   if (options.is_distorted) {
@@ -170,8 +176,7 @@ void images(benchmark::State& state, const Options& options) {
   for (auto _ : state) {
     for (std::size_t i = 0; i < instants.size(); ++i) {
       const double t = 0.033 * (k % 60) + 0.001 * static_cast<double>(i);
-      instants[i].X_WC = Pose{{0.5 * t, 0.0, 0.0}, uav::from_axis_angle({0, 0, 1}, 0.1 * t)} *
-                         Pose{{}, uav::q_body_from_optical()};
+      instants[i].X_WC = camera_pose(t);
     }
     view.instants = instants;
     renderer.draw(view, picture);
@@ -181,6 +186,42 @@ void images(benchmark::State& state, const Options& options) {
   state.SetLabel(Renderer::instructions());
   state.counters["images"] =
       benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+
+double cpu_s() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Pictures of several cameras that one renderer draws in turn. `times_one` is how many times as
+// long a picture takes as one of a single camera, which another renderer draws in between.
+void cameras(benchmark::State& state, int count) {
+  Renderer single(scene(false));
+  Renderer several(scene(false));
+  View view;
+  view.camera = uav::CameraModel::from_horizontal_fov(640, 480, 1.0472);
+  std::vector<std::uint8_t> rgb(std::size_t{3} * 640 * 480);
+  Picture picture;
+  picture.rgb = rgb;
+  const auto draw = [&](Renderer& renderer, double t_s, int camera) {
+    const Instant instant{camera_pose(t_s, camera), {}};
+    view.instants = {&instant, 1};
+    const double begin_s = cpu_s();
+    renderer.draw(view, picture);
+    return cpu_s() - begin_s;
+  };
+  double one_s = 0.0;
+  double all_s = 0.0;
+  int k = 0;
+  for (auto _ : state) {
+    const double t_s = 0.033 * (k++ % 60);
+    for (int camera = 0; camera < count; ++camera) {
+      one_s += draw(single, t_s, 0);
+      all_s += draw(several, t_s, camera);
+    }
+  }
+  state.counters["times_one"] = all_s / one_s;
 }
 
 const Options kPlain{};
@@ -195,6 +236,8 @@ const Options kDistortedExposed{640, 480, false, 0.010, 0.020, true};
 const Options kAntialiased{640, 480, false, 0.0, 0.0, false, true};
 const Options kWithDepth{640, 480, false, 0.0, 0.0, false, false, true};
 
+const Options kTwoThreads{640, 480, false, 0.0, 0.0, false, false, false, 2};
+
 BENCHMARK_CAPTURE(images, 640x480, kPlain)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(images, 320x240, kSmallImage)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(images, 640x480_11000_triangles, kLarge)->Unit(benchmark::kMillisecond);
@@ -208,6 +251,12 @@ BENCHMARK_CAPTURE(images, distorted_exposed_10ms_rolling_20ms, kDistortedExposed
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(images, antialiased, kAntialiased)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(images, with_depth_and_entities, kWithDepth)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(images, 2_threads, kTwoThreads)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(cameras, stereo_pair, 2)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(cameras, four, 4)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tether::raster

@@ -1,13 +1,10 @@
 #include "prepared_scene.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <iterator>
 
 namespace tether::raster {
 namespace {
-
-constexpr std::uint32_t kNoCluster = std::numeric_limits<std::uint32_t>::max();
 
 uav::Vec3 point(const Mesh::Vertex& v) {
   return {v.position[0], v.position[1], v.position[2]};
@@ -25,78 +22,6 @@ Sphere sphere_around(const PreparedScene& scene, std::size_t first, std::size_t 
   return {0.5 * (low + high), 0.5 * norm(high - low)};
 }
 
-// Fills clusters with a mesh's triangles in their order, in which neighbours tend to be near.
-class ClusterBuilder {
- public:
-  ClusterBuilder(const Mesh& mesh, PreparedScene& scene)
-      : mesh_(mesh),
-        scene_(scene),
-        cluster_of_(mesh.vertices.size(), kNoCluster),
-        place_of_(mesh.vertices.size(), 0) {}
-
-  void add(const std::array<std::uint32_t, 3>& corners) {
-    if (!is_open_ || !has_room_for(corners)) open();
-    std::array<std::uint8_t, 3> local{};
-    for (std::size_t i = 0; i < 3; ++i) local[i] = place(corners[i]);
-    scene_.triangles.push_back(local);
-    ++cluster().triangles;
-  }
-
-  // Whole vectors are read: the last vertex is repeated.
-  void close() {
-    if (!is_open_) return;
-    cluster().bounds = sphere_around(scene_, cluster().first_vertex, cluster().vertices);
-    while (scene_.x.size() % kMaxLanes != 0) {
-      append(scene_.x.back(), scene_.y.back(), scene_.z.back(), scene_.looks.back());
-    }
-    is_open_ = false;
-  }
-
- private:
-  Cluster& cluster() { return scene_.clusters.back(); }
-  std::uint32_t index() const { return static_cast<std::uint32_t>(scene_.clusters.size() - 1); }
-
-  void open() {
-    close();
-    scene_.clusters.push_back({static_cast<std::uint32_t>(scene_.x.size()),
-                               0,
-                               static_cast<std::uint32_t>(scene_.triangles.size()),
-                               0,
-                               {}});
-    is_open_ = true;
-  }
-
-  bool has_room_for(const std::array<std::uint32_t, 3>& corners) {
-    const auto fresh = std::count_if(corners.begin(), corners.end(),
-                                     [&](std::uint32_t v) { return cluster_of_[v] != index(); });
-    return cluster().triangles < Cluster::kMaxTriangles &&
-           cluster().vertices + static_cast<std::uint32_t>(fresh) <= Cluster::kMaxVertices;
-  }
-
-  std::uint8_t place(std::uint32_t vertex) {
-    if (cluster_of_[vertex] != index()) {
-      cluster_of_[vertex] = index();
-      place_of_[vertex] = static_cast<std::uint8_t>(cluster().vertices++);
-      const auto& [p, normal, uv] = mesh_.vertices[vertex];
-      append(p[0], p[1], p[2], {normal, uv});
-    }
-    return place_of_[vertex];
-  }
-
-  void append(float x, float y, float z, const VertexLook& look) {
-    scene_.x.push_back(x);
-    scene_.y.push_back(y);
-    scene_.z.push_back(z);
-    scene_.looks.push_back(look);
-  }
-
-  const Mesh& mesh_;
-  PreparedScene& scene_;
-  std::vector<std::uint32_t> cluster_of_;
-  std::vector<std::uint8_t> place_of_;
-  bool is_open_ = false;
-};
-
 // A vertex twice, or three on one line exactly.
 bool has_area(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
   const uav::Vec3 a = point(mesh.vertices[t[0]]);
@@ -104,22 +29,50 @@ bool has_area(const Mesh& mesh, const std::array<std::uint32_t, 3>& t) {
   return n.x != 0.0 || n.y != 0.0 || n.z != 0.0;
 }
 
+using Triangles = std::vector<std::array<std::uint32_t, 3>>;
+
+// All first corners, then all second ones, then all third ones; the last is repeated, because whole
+// vectors are read.
+void add_corners(const Mesh& mesh, const Triangles& triangles, std::size_t first,
+                 PreparedScene& scene) {
+  Cluster& cluster = scene.clusters.back();
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    for (std::size_t i = 0; i < cluster.stride; ++i) {
+      const std::size_t triangle = first + std::min<std::size_t>(i, cluster.triangles - 1);
+      const auto& p = mesh.vertices[triangles[triangle][corner]].position;
+      scene.x.push_back(p[0]);
+      scene.y.push_back(p[1]);
+      scene.z.push_back(p[2]);
+    }
+  }
+}
+
 }  // namespace
 
 PreparedMesh add_mesh(const Mesh& mesh, PreparedScene& scene) {
   PreparedMesh prepared;
   prepared.first_cluster = static_cast<std::uint32_t>(scene.clusters.size());
-  ClusterBuilder builder(mesh, scene);
-  for (const auto& corners : mesh.triangles) {
-    if (!has_area(mesh, corners)) continue;
-    builder.add(corners);
-    ++prepared.triangles;
+  prepared.first_look = static_cast<std::uint32_t>(scene.looks.size());
+  for (const Mesh::Vertex& v : mesh.vertices) scene.looks.push_back({v.normal, v.uv});
+  Triangles kept;
+  std::copy_if(mesh.triangles.begin(), mesh.triangles.end(), std::back_inserter(kept),
+               [&](const auto& corners) { return has_area(mesh, corners); });
+  prepared.triangles = static_cast<std::uint32_t>(kept.size());
+  const std::size_t first_corner = scene.x.size();
+  for (std::size_t i = 0; i < kept.size(); i += Cluster::kMaxTriangles) {
+    Cluster& cluster = scene.clusters.emplace_back();
+    cluster.first_corner = static_cast<std::uint32_t>(scene.x.size());
+    cluster.first_triangle = static_cast<std::uint32_t>(scene.triangles.size() + i);
+    cluster.triangles =
+        static_cast<std::uint32_t>(std::min(Cluster::kMaxTriangles, kept.size() - i));
+    cluster.stride = (cluster.triangles + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
+    add_corners(mesh, kept, i, scene);
+    cluster.bounds = sphere_around(scene, cluster.first_corner, std::size_t{3} * cluster.stride);
   }
-  builder.close();
+  scene.triangles.insert(scene.triangles.end(), kept.begin(), kept.end());
   prepared.clusters = static_cast<std::uint32_t>(scene.clusters.size()) - prepared.first_cluster;
-  if (prepared.clusters > 0) {
-    const std::size_t first = scene.clusters[prepared.first_cluster].first_vertex;
-    prepared.bounds = sphere_around(scene, first, scene.x.size() - first);
+  if (!kept.empty()) {
+    prepared.bounds = sphere_around(scene, first_corner, scene.x.size() - first_corner);
   }
   return prepared;
 }

@@ -148,6 +148,7 @@ class Placer {
     const Pose X_CV = layer_.X_CW * X_WV;
     if (mesh.clusters == 0 || !may_see(X_CV, mesh.bounds)) return;
     instance_ = &instance;
+    looks_ = scene_.looks.data() + mesh.first_look;
     transformation_ = make_transformation(X_CV, layer_.projection);
     const std::uint32_t first_triangle = scene_.clusters[mesh.first_cluster].first_triangle;
     for (std::uint32_t i = 0; i < mesh.clusters; ++i) {
@@ -162,10 +163,10 @@ class Placer {
   }
 
   void place(const Cluster& cluster, std::uint32_t first_primitive) {
-    looks_ = scene_.looks.data() + cluster.first_vertex;
     place_vertices(scene_, cluster, transformation_, placed_);
     for (std::uint32_t i = 0; i < cluster.triangles; ++i) {
-      corners_ = scene_.triangles[cluster.first_triangle + i];
+      corners_ = {i, cluster.stride + i, 2 * cluster.stride + i};
+      triangle_ = cluster.first_triangle + i;
       primitive_ = first_primitive + i;
       place_triangle();
     }
@@ -175,7 +176,7 @@ class Placer {
     return {placed_.u[corners_[corner]], placed_.v[corners_[corner]]};
   }
   Vec3 position(std::size_t corner) const {
-    const std::uint8_t i = corners_[corner];
+    const std::size_t i = corners_[corner];
     return {placed_.x[i], placed_.y[i], placed_.z[i]};
   }
 
@@ -277,9 +278,10 @@ class Placer {
   }
 
   void set_look(Facet& facet) {
-    const VertexLook& a = looks_[corners_[0]];
-    const VertexLook& b = looks_[corners_[1]];
-    const VertexLook& c = looks_[corners_[2]];
+    const auto& looks = scene_.triangles[triangle_];
+    const VertexLook& a = looks_[looks[0]];
+    const VertexLook& b = looks_[looks[1]];
+    const VertexLook& c = looks_[looks[2]];
     facet.u = {a.uv[0], b.uv[0] - a.uv[0], c.uv[0] - a.uv[0]};
     facet.v = {a.uv[1], b.uv[1] - a.uv[1], c.uv[1] - a.uv[1]};
     facet.u_x = facet.u[1] * facet.second[1] + facet.u[2] * facet.third[1];
@@ -310,7 +312,8 @@ class Placer {
   Transformation transformation_{};
   const PreparedInstance* instance_ = nullptr;
   const VertexLook* looks_ = nullptr;
-  std::array<std::uint8_t, 3> corners_{};
+  std::array<std::uint32_t, 3> corners_{};  // of `placed_`
+  std::size_t triangle_ = 0;
   std::uint32_t primitive_ = 0;
 };
 

@@ -16,12 +16,13 @@ struct Sphere {
   double radius_m = 0.0;
 };
 
-/// Neighbouring triangles of a mesh with vertices of their own, transformed or culled at once.
+/// Triangles of a mesh that follow each other, transformed or culled at once. Meshes tend to have
+/// near ones in a row.
 struct Cluster {
   static constexpr std::size_t kMaxTriangles = 64;
-  static constexpr std::size_t kMaxVertices = 192;
-  std::uint32_t first_vertex = 0;  ///< a multiple of kMaxLanes
-  std::uint32_t vertices = 0;
+  static constexpr std::size_t kMaxCorners = 3 * kMaxTriangles;
+  std::uint32_t first_corner = 0;  ///< of the first triangle
+  std::uint32_t stride = 0;        ///< from a triangle's corner to its next one
   std::uint32_t first_triangle = 0;
   std::uint32_t triangles = 0;
   Sphere bounds;  ///< in V
@@ -35,6 +36,7 @@ struct VertexLook {
 struct PreparedMesh {
   std::uint32_t first_cluster = 0;
   std::uint32_t clusters = 0;
+  std::uint32_t first_look = 0;
   std::uint32_t triangles = 0;
   Sphere bounds;  ///< in V
 };
@@ -72,9 +74,9 @@ struct PreparedInstance {
 };
 
 struct PreparedScene {
-  std::vector<float> x, y, z;                          ///< of the clusters' vertices, in V
-  std::vector<VertexLook> looks;                       ///< as many
-  std::vector<std::array<std::uint8_t, 3>> triangles;  ///< vertices in their cluster
+  std::vector<float> x, y, z;                           ///< of the clusters' corners, in V
+  std::vector<VertexLook> looks;                        ///< of the meshes' vertices
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< looks, from their mesh's first one on
   std::vector<Cluster> clusters;
   std::vector<PreparedMesh> meshes;
   std::vector<MaterialRow> materials;

@@ -7,23 +7,13 @@
 #define HWY_TARGET_INCLUDE "rasterize.cpp"
 #include <hwy/foreach_target.h>
 //
+#include "vector-inl.h"
+
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace tether::raster::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::CappedTag<float, kMaxLanes>;
-using DI = hn::RebindToSigned<D>;
-using DU = hn::RebindToUnsigned<D>;
-using V = hn::Vec<D>;
-using VI = hn::Vec<DI>;
-using VU = hn::Vec<DU>;
-using M = hn::Mask<D>;
-
-alignas(64) constexpr std::array<std::int32_t, kMaxLanes> kLaneNumbers{
-    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
 // Keeps a triangle where it is nearer than the present one.
 struct Nearest {
@@ -171,7 +161,7 @@ class GridEdges {
   };
   Walk walk(std::size_t i) const {
     const DI di;
-    const VI lane = hn::Load(di, kLaneNumbers.data());
+    const VI lane = hn::Iota(di, 0);
     return {hn::Add(hn::Set(di, at_[i]), hn::Mul(lane, hn::Set(di, t_.a[i]))),
             hn::Set(di, t_.a[i] * static_cast<int>(hn::Lanes(di))), hn::Set(di, t_.b[i])};
   }
@@ -193,8 +183,8 @@ HWY_INLINE void take_part(const GridEdges& edges, const Depth& depth, VU ids, co
   const DI di;
   const std::size_t vectors =
       (static_cast<std::size_t>(part.columns) + hn::Lanes(d) - 1) / hn::Lanes(d);
-  const V lane = hn::ConvertTo(d, hn::Load(di, kLaneNumbers.data()));
-  const V first_x = hn::Add(lane, hn::Set(d, static_cast<float>(tile.x + part.first_column)));
+  const V lane = lane_numbers();
+  const V first_x = Add(lane, hn::Set(d, static_cast<float>(tile.x + part.first_column)));
   const V x_step = hn::Set(d, static_cast<float>(hn::Lanes(d)));
   const GridEdges::Walk e0 = edges.walk(0);
   const GridEdges::Walk e1 = edges.walk(1);

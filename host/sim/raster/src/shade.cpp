@@ -9,9 +9,7 @@
 #define HWY_TARGET_INCLUDE "shade.cpp"
 #include <hwy/foreach_target.h>
 //
-#include "light-inl.h"
-#include "surface-inl.h"
-#include "texture-inl.h"
+#include "block-inl.h"
 #include "vector-inl.h"
 
 #include <hwy/highway.h>
@@ -45,146 +43,16 @@ HWY_INLINE VI byte_of_light(const LightTable& table, V light) {
   return And(hn::GatherOffset(di, bytes, amount), whole(0xFF));
 }
 
-// A layer's part of a tile, from one of its rows on.
-struct Part {
-  const Shading& shading;
-  const Layer& layer;
-  const Tile& tile;
-  int first_row, rows;
-
-  std::size_t first_pixel() const { return static_cast<std::size_t>(first_row) * kTile_px; }
-};
-
-// Calls `use` with each block of a tile.
-template <class Use>
-HWY_INLINE void for_each_part(const Shading& shading, const Layer& layer, const Tile& tile,
-                              const Use& use) {
-  for (int row = 0; row < tile.height; row += Block::kRows) {
-    use(Part{shading, layer, tile, row, std::min(Block::kRows, tile.height - row)});
-  }
+HWY_INLINE Colour load(const TileColours& from, std::size_t at) {
+  const D d;
+  return {hn::Load(d, from.r.data() + at), hn::Load(d, from.g.data() + at),
+          hn::Load(d, from.b.data() + at)};
 }
-
-// Calls `use` with the place in its block of each vector of pixels.
-template <class Use>
-HWY_INLINE void for_each_vector(const Part& part, const Use& use) {
-  for (int row = 0; row < part.rows; ++row) {
-    for (std::size_t c = 0; c < static_cast<std::size_t>(part.tile.width); c += lanes()) {
-      use(static_cast<std::size_t>(row) * kTile_px + c);
-    }
-  }
-}
-
-// Puts what some pixels see of a triangle into a block; the first into all of the vector.
-template <bool kIsFirst>
-HWY_INLINE void put_surface(const Part& part, const Facet& f, const Pixels& p, std::size_t at,
-                            hn::Mask<DI> same, Block& b) {
-  const PreparedScene& scene = part.shading.scene;
-  const MaterialRow& material = scene.materials[f.material];
-  const M mask = float_mask(same);
-  const auto put = [&](Block::Plane<float>& plane, V value) HWY_ATTR {
-    store(kIsFirst ? value : hn::IfThenElse(mask, value, load(plane, at)), plane, at);
-  };
-  const auto put_whole = [&](Block::Plane<std::int32_t>& plane, VI value) HWY_ATTR {
-    hn::Store(kIsFirst ? value : hn::IfThenElse(same, value, load(plane, at)), DI(),
-              plane.data() + at);
-  };
-  const Spot s = spot(f, p);
-  put(b.x, Mul(p.ray_x, s.z));
-  put(b.y, Mul(p.ray_y, s.z));
-  put(b.z, s.z);
-  const bool is_textured = material.first_level > 0;
-  Weights w{};
-  if (is_textured || f.is_flat == 0) w = weights(f, s);
-  const Normal n = f.is_flat != 0
-                       ? Normal{set(f.normal[0][0]), set(f.normal[1][0]), set(f.normal[2][0])}
-                       : normal(f, w);
-  put(b.nx, n.x);
-  put(b.ny, n.y);
-  put(b.nz, n.z);
-  put(b.r, set(material.base[0]));
-  put(b.g, set(material.base[1]));
-  put(b.b, set(material.base[2]));
-  put_whole(b.material, whole(static_cast<std::int32_t>(f.material)));
-  Block::Vector& vector = b.vectors[b.vector_count - 1];
-  vector.is_shiny = vector.is_shiny || material.is_shiny != 0;
-  vector.is_textured = vector.is_textured || is_textured;
-  if (!is_textured) {
-    put_whole(b.level, whole(0));
-    put_whole(b.next_share, whole(0));
-    put(b.u, set(0.0F));
-    put(b.v, set(0.0F));
-    put(b.texels_per_pixel2, set(1.0F));
-    return;
-  }
-  const TexturePoint point = texture_point(f, s, w);
-  const Filter filter = make_filter(scene, material, point);
-  put(b.u, point.u);
-  put(b.v, point.v);
-  put(b.texels_per_pixel2, filter.texels_per_pixel2);
-  put_whole(b.level, filter.level);
-  put_whole(b.next_share, filter.next_share);
-}
-
-// The colours of the triangles of `b.ids`, under all lights, before their textures.
-void light_block(const Part& part, Block& b) {
-  b.vector_count = 0;
-  for_each_vector(part, [&](std::size_t at) HWY_ATTR {
-    const VU ids = hn::Load(DU(), b.ids.data() + at);
-    if (hn::AllTrue(DU(), hn::Eq(ids, hn::Zero(DU())))) return;
-    b.vectors[b.vector_count++] = {static_cast<std::uint16_t>(at), false, false};
-    store(set(0.0F), b.diffuse, at);
-    store(set(0.0F), b.specular, at);
-    const Pixels p = pixels_at(part.shading.lens, part.layer, part.tile, part.first_pixel() + at);
-    for_each_facet(ids, [&](std::size_t index, hn::Mask<DI> same, auto is_first) HWY_ATTR {
-      put_surface<is_first.value>(part, part.layer.facets[index], p, at, same, b);
-    });
-  });
-  light_up(part.shading, part.layer, b);
-}
-
-HWY_INLINE Colour colour_at(const Block& b, std::size_t at) {
-  return {load(b.r, at), load(b.g, at), load(b.b, at)};
-}
-
-// At most 1.
-HWY_INLINE Colour lit_at(const Block& b, std::size_t at) {
-  const Colour c = colour_at(b, at);
-  const V one = set(1.0F);
-  return {hn::Min(c.r, one), hn::Min(c.g, one), hn::Min(c.b, one)};
-}
-
-HWY_INLINE void set_colour(const Colour& c, Block& b, std::size_t at) {
-  store(c.r, b.r, at);
-  store(c.g, b.g, at);
-  store(c.b, b.b, at);
-}
-
-// The same with textures and, if wanted, opacity.
-void shade_block(const Part& part, bool with_alpha, Block& b) {
-  const PreparedScene& scene = part.shading.scene;
-  light_block(part, b);
-  for (const Block::Vector& vector : b.active()) {
-    const std::size_t at = vector.at;
-    const V one = set(1.0F);
-    Texel texel{{one, one, one}, one};
-    if (vector.is_textured) {
-      texel =
-          sample(scene, load(b.level, at), load(b.next_share, at), load(b.u, at), load(b.v, at));
-    }
-    set_colour(scaled(lit_at(b, at), texel.colour), b, at);
-    if (!with_alpha) continue;
-    const V alpha = of_material(load(b.material, at), scene.materials[0].alpha);
-    store(Mul(alpha, texel.alpha), b.alpha, at);
-  }
-}
-
-HWY_INLINE void load_ids(const Part& part, const TileIds& ids, Block& b) {
-  const auto* const first = ids.id.data() + part.first_pixel();
-  std::copy_n(first, static_cast<std::size_t>(part.rows) * kTile_px, b.ids.data());
-}
-
-HWY_INLINE M is_empty(const Block& b, std::size_t at) {
-  return hn::RebindMask(D(), hn::Eq(hn::Load(DU(), b.ids.data() + at), hn::Zero(DU())));
+HWY_INLINE void store(const Colour& c, TileColours& to, std::size_t at) {
+  const D d;
+  hn::Store(c.r, d, to.r.data() + at);
+  hn::Store(c.g, d, to.g.data() + at);
+  hn::Store(c.b, d, to.b.data() + at);
 }
 
 // The triangles that several pixels see, by their numbers; 0: none.
@@ -225,9 +93,7 @@ class Mean {
       put(number, last_, at);
       put(whole(1), count_, at);
       put(primitives(layers_[middle_], ids_in(middle_, at)), primitive_, at);
-      for (auto* plane : {&light_.r, &light_.g, &light_.b}) {
-        hn::Store(set(0.0F), D(), plane->data() + part_.first_pixel() + at);
-      }
+      store({set(0.0F), set(0.0F), set(0.0F)}, light_, part_.first_pixel() + at);
     });
     for (std::size_t k = 0; k < layers_.size(); ++k) {
       if (k != middle_) add_layer(k);
@@ -245,14 +111,9 @@ class Mean {
     return hn::Load(DU(), ids_[layer].id.data() + part_.first_pixel() + at);
   }
   void add(const Colour& light, V share, std::size_t at) {
-    const D d;
-    const std::size_t i = part_.first_pixel() + at;
-    Colour sum{hn::Load(d, light_.r.data() + i), hn::Load(d, light_.g.data() + i),
-               hn::Load(d, light_.b.data() + i)};
+    Colour sum = load(light_, part_.first_pixel() + at);
     add_to(sum, light, share);
-    hn::Store(sum.r, d, light_.r.data() + i);
-    hn::Store(sum.g, d, light_.g.data() + i);
-    hn::Store(sum.b, d, light_.b.data() + i);
+    store(sum, light_, part_.first_pixel() + at);
   }
 
   // Counts the pixels that see the same as in the middle layer, and shades the others.
@@ -415,60 +276,42 @@ void shade_mean_on(const Shading& shading, std::span<const Layer> layers, const 
 
 void shade_over_on(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
                    bool with_background, TileColours& colours) {
-  const D d;
   Block b;
   for_each_part(shading, layer, tile, [&](const Part& part) HWY_ATTR {
     load_ids(part, ids, b);
     shade_block(part, true, b);
     for_each_vector(part, [&](std::size_t at) HWY_ATTR {
       const std::size_t i = part.first_pixel() + at;
+      const Colour before = with_background ? colour(shading.scene.background) : load(colours, i);
       const Colour own = colour_at(b, at);
-      Colour after = select(is_empty(b, at), colour(shading.scene.background), own);
-      if (!with_background) {
-        const Colour before{hn::Load(d, colours.r.data() + i), hn::Load(d, colours.g.data() + i),
-                            hn::Load(d, colours.b.data() + i)};
-        after = select(is_empty(b, at), before, mix(before, own, load(b.alpha, at)));
-      }
-      hn::Store(after.r, d, colours.r.data() + i);
-      hn::Store(after.g, d, colours.g.data() + i);
-      hn::Store(after.b, d, colours.b.data() + i);
+      const Colour after = with_background ? own : mix(before, own, load(b.alpha, at));
+      store(select(is_empty(b, at), before, after), colours, i);
     });
   });
 }
 
 void add_light_on(const LightTable& table, const TileColours& colours, int layers,
                   TileColours& light) {
-  const D d;
   const V share = set(1.0F / static_cast<float>(layers));
-  const auto add = [&](const float* from, float* to) HWY_ATTR {
-    for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-      const V more = Mul(light_of(table, hn::Load(d, from + i)), share);
-      hn::Store(Add(hn::Load(d, to + i), more), d, to + i);
-    }
-  };
-  add(colours.r.data(), light.r.data());
-  add(colours.g.data(), light.g.data());
-  add(colours.b.data(), light.b.data());
+  for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
+    Colour sum = load(light, i);
+    add_to(sum, light_of(table, load(colours, i)), share);
+    store(sum, light, i);
+  }
 }
 
 void encode_colours_on(const TileColours& colours, TilePixels& pixels) {
-  const D d;
-  const DU du;
   for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-    const Colour c{hn::Load(d, colours.r.data() + i), hn::Load(d, colours.g.data() + i),
-                   hn::Load(d, colours.b.data() + i)};
-    hn::Store(packed(c), du, pixels.rgb.data() + i);
+    hn::Store(packed(load(colours, i)), DU(), pixels.rgb.data() + i);
   }
 }
 
 void encode_light_on(const LightTable& table, const TileColours& light, TilePixels& pixels) {
-  const D d;
-  const DU du;
   for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-    const VI r = byte_of_light(table, hn::Load(d, light.r.data() + i));
-    const VI g = byte_of_light(table, hn::Load(d, light.g.data() + i));
-    const VI b = byte_of_light(table, hn::Load(d, light.b.data() + i));
-    hn::Store(packed(r, g, b), du, pixels.rgb.data() + i);
+    const Colour c = load(light, i);
+    const VU rgb =
+        packed(byte_of_light(table, c.r), byte_of_light(table, c.g), byte_of_light(table, c.b));
+    hn::Store(rgb, DU(), pixels.rgb.data() + i);
   }
 }
 

@@ -25,14 +25,13 @@ enum Outside : std::int32_t {
   kBelow = 16,
 };
 
-/// A cluster's vertices in C and in the picture.
+/// A cluster's corners in C and in the picture.
 struct PlacedVertices {
-  alignas(64) std::array<float, Cluster::kMaxVertices> x, y, z;         ///< [m]
-  alignas(64) std::array<std::int32_t, Cluster::kMaxVertices> u, v;     ///< in kSubpixels
-  alignas(64) std::array<std::int32_t, Cluster::kMaxVertices> outside;  ///< of Outside
+  alignas(64) std::array<float, Cluster::kMaxCorners> x, y, z;         ///< [m]
+  alignas(64) std::array<std::int32_t, Cluster::kMaxCorners> u, v;     ///< in kSubpixels
+  alignas(64) std::array<std::int32_t, Cluster::kMaxCorners> outside;  ///< of Outside
 };
 
-/// Whole vectors: reads and writes up to kMaxLanes − 1 vertices more.
 void place_vertices(const PreparedScene& scene, const Cluster& cluster, const Transformation& t,
                     PlacedVertices& out);
 
