@@ -13,23 +13,24 @@
 namespace tether::sim {
 namespace {
 
-SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, const WarningSink& warn) {
+SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, int threads_ahead,
+                              const WarningSink& warn) {
   const auto scene = std::make_shared<const raster::Scene>(make_scene(world, warn));
   std::vector<double> radii_m = scene->body_radii_m();
   radii_m.resize(moving_bodies(world).size());
   auto make_renderer = [scene](int, int) { return std::make_unique<Renderer>(scene); };
-  return {rays, std::move(make_renderer), std::move(radii_m)};
+  return {rays, std::move(make_renderer), std::move(radii_m), threads_ahead};
 }
 
 class MujocoSimulator final : public Simulator {
  public:
-  MujocoSimulator(World world, WarningSink warn)
+  MujocoSimulator(World world, WarningSink warn, int threads_ahead)
       : world_(std::move(world)),
         warn_(printable_warnings(std::move(warn))),
         grid_(world_.step),
         dynamics_(world_, warn_),
         rays_(dynamics_.model()),
-        sensors_(world_, back_end(world_, rays_, warn_), warn_) {}
+        sensors_(world_, back_end(world_, rays_, threads_ahead, warn_), warn_) {}
 
   const World& world() const override { return world_; }
   StepGrid grid() const override { return grid_; }
@@ -38,15 +39,18 @@ class MujocoSimulator final : public Simulator {
   void reset(std::uint64_t seed) override {
     sensors_.reset(seed);
     now_ = SimTime{};
+    stepping_ = Duration(0);
     dynamics_.reset();
   }
 
   void advance_to(SimTime t) override {
     check_target(t);
+    const CpuTimer timer;
     while (now_ < t) {
       dynamics_.step();
       now_ += grid_.dt();
     }
+    stepping_ += timer.elapsed();
     warn_once_about_contacts();
   }
 
@@ -63,6 +67,17 @@ class MujocoSimulator final : public Simulator {
   uav::Sample measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
                       std::uint64_t index) override {
     return sensors_.measure(snapshot, uav, sensor, index);
+  }
+
+  void expect(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
+              std::uint64_t index) override {
+    sensors_.expect(snapshot, uav, sensor, index);
+  }
+
+  std::optional<SimulatorWork> work() const override {
+    SimulatorWork work = sensors_.work();
+    work.stepping = stepping_;
+    return work;
   }
 
   GroundTruth ground_truth(std::size_t uav) const override {
@@ -114,6 +129,7 @@ class MujocoSimulator final : public Simulator {
   CollisionRays rays_;
   SensorSuite sensors_;
   SimTime now_{};
+  Duration stepping_{0};
   bool warned_ = false;
 };
 
@@ -121,8 +137,9 @@ class MujocoSimulator final : public Simulator {
 
 const bool kHasMujoco = true;
 
-std::unique_ptr<Simulator> make_mujoco_simulator(World world, const WarningSink& warn) {
-  return std::make_unique<MujocoSimulator>(std::move(world), warn);
+std::unique_ptr<Simulator> make_mujoco_simulator(World world, const WarningSink& warn,
+                                                 int threads_ahead) {
+  return std::make_unique<MujocoSimulator>(std::move(world), warn, threads_ahead);
 }
 
 }  // namespace tether::sim

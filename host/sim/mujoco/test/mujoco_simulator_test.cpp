@@ -1,6 +1,7 @@
 #include "test_simulator.h"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -14,8 +15,25 @@ namespace tether::sim::testing {
 
 using namespace std::chrono_literals;
 
-INSTANTIATE_TEST_SUITE_P(Mujoco, SimulatorContract,
-                         ::testing::Values(SimulatorMaker(make_simulator)));
+std::unique_ptr<Simulator> make_ahead(World world) {
+  return make_mujoco_simulator(std::move(world), no_warnings(), 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Mujoco, SimulatorContract, ::testing::Values(SimulatorMaker(make_ahead)));
+
+TEST(MujocoSimulatorTest, DrawsWhatIsExpectedAfterTheFirstPicture) {
+  const auto simulator = make_ahead(test_world());
+  Snapshot snapshot;
+  simulator->capture(snapshot);
+  simulator->expect(snapshot, 0, kCamera, 0);
+  simulator->measure(snapshot, 0, kCamera, 0);
+  simulator->expect(snapshot, 0, kCamera, 1);
+  while (simulator->work()->drawn_ahead == 0) continue;  // CTest ends it if nothing is drawn
+  simulator->measure(snapshot, 0, kCamera, 1);
+  SimulatorWork work = *simulator->work();
+  EXPECT_GT(std::exchange(work.drawing, {}), Duration(0));
+  EXPECT_EQ(work, (SimulatorWork{.pictures = 2, .drawn_ahead = 1, .drawn_in_vain = 0}));
+}
 
 TEST(MujocoSimulatorTest, NamesItself) {
   EXPECT_THAT(make_simulator(test_world())->description(), ::testing::StartsWith("MuJoCo "));

@@ -1,3 +1,4 @@
+#include "ahead_drawer.h"
 #include "image_maker.h"
 #include "sensors.h"
 
@@ -10,40 +11,94 @@
 
 namespace tether::sim {
 
-SensorSuite::SensorSuite(const World& world, BackEnd back_end, const WarningSink& warn)
+SensorSuite::SensorSuite(const World& world, const BackEnd& back_end, const WarningSink& warn)
     : world_(world),
       layout_(world),
       rays_(back_end.rays),
-      images_(std::make_unique<ImageMaker>(world, std::move(back_end.body_radii_m),
-                                           std::move(back_end.make_renderer), warn)),
-      X_WB_(layout_.bodies()) {}
+      images_(
+          std::make_unique<ImageMaker>(world, back_end.body_radii_m, back_end.make_renderer, warn)),
+      X_WB_(layout_.bodies()) {
+  if (back_end.threads_ahead < 1) return;
+  for (int i = 0; i < back_end.threads_ahead; ++i) {
+    images_ahead_.push_back(std::make_unique<ImageMaker>(
+        world, back_end.body_radii_m, back_end.make_renderer, [](const Warning&) {}));
+  }
+  ahead_ = std::make_unique<AheadDrawer>(
+      back_end.threads_ahead,
+      [this](std::size_t worker, const PictureKey& key, const Snapshot& snapshot) {
+        return draw(*images_ahead_[worker], snapshot, key.uav, key.sensor, key.index);
+      });
+}
 
 SensorSuite::~SensorSuite() = default;
 
+void SensorSuite::reset(std::uint64_t seed) {
+  if (ahead_) ahead_->reset();
+  work_ = {};
+  seed_ = seed;
+}
+
 uav::Sample SensorSuite::measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
                                  std::uint64_t index) {
+  const Sensor& mounted = sensor_of(uav, sensor);
+  const MeasurementKey key{seed_, world_.uavs[uav].name, mounted.name, index, snapshot.at};
+  return std::visit(
+      Visitor{[&](const ImuModel& imu) -> uav::Sample {
+                return measure_imu(imu, mounted.X_BS, layout_.pose_of(snapshot.state, uav),
+                                   layout_.motion_of(snapshot.state, uav), world_.gravity_m_s2,
+                                   key);
+              },
+              [&](const RangeModel& range) -> uav::Sample {
+                cast(range, snapshot.state, uav, mounted.X_BS);
+                return measure_range(range, distances_m_, key);
+              },
+              [&](const CameraModel&) { return picture(snapshot, uav, sensor, index); }},
+      mounted.model);
+}
+
+const Sensor& SensorSuite::sensor_of(std::size_t uav, std::size_t sensor) const {
   if (uav >= world_.uavs.size()) {
     throw Error(ErrorCode::kInternal, "simulator: no UAV " + std::to_string(uav));
   }
-  const Uav& carrier = world_.uavs[uav];
-  if (sensor >= carrier.sensors.size()) {
+  if (sensor >= world_.uavs[uav].sensors.size()) {
     throw Error(ErrorCode::kInternal, "simulator: no sensor " + std::to_string(sensor));
   }
+  return world_.uavs[uav].sensors[sensor];
+}
+
+uav::Sample SensorSuite::picture(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
+                                 std::uint64_t index) {
+  if (ahead_) {
+    if (auto sample = ahead_->take({uav, sensor, index, snapshot.at})) return std::move(*sample);
+  }
+  const CpuTimer timer;
+  uav::Sample sample = draw(*images_, snapshot, uav, sensor, index);
+  work_.drawing += timer.elapsed();
+  ++work_.pictures;
+  seen_.insert(&world_.uavs[uav].sensors[sensor]);
+  return sample;
+}
+
+// Called by several threads, each with `images` of its own.
+uav::Sample SensorSuite::draw(ImageMaker& images, const Snapshot& snapshot, std::size_t uav,
+                              std::size_t sensor, std::uint64_t index) const {
+  const Uav& carrier = world_.uavs[uav];
   const Sensor& mounted = carrier.sensors[sensor];
   const MeasurementKey key{seed_, carrier.name, mounted.name, index, snapshot.at};
-  return std::visit(Visitor{[&](const ImuModel& imu) -> uav::Sample {
-                              return measure_imu(
-                                  imu, mounted.X_BS, layout_.pose_of(snapshot.state, uav),
-                                  layout_.motion_of(snapshot.state, uav), world_.gravity_m_s2, key);
-                            },
-                            [&](const RangeModel& range) -> uav::Sample {
-                              cast(range, snapshot.state, uav, mounted.X_BS);
-                              return measure_range(range, distances_m_, key);
-                            },
-                            [&](const CameraModel& camera) -> uav::Sample {
-                              return images_->make(camera, {snapshot.state, uav, mounted, key});
-                            }},
-                    mounted.model);
+  return images.make(std::get<CameraModel>(mounted.model), {snapshot.state, uav, mounted, key});
+}
+
+void SensorSuite::expect(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
+                         std::uint64_t index) {
+  const bool may_be_ahead = ahead_ && seen_.contains(&sensor_of(uav, sensor));
+  if (may_be_ahead) ahead_->expect({uav, sensor, index, snapshot.at}, snapshot);
+}
+
+SimulatorWork SensorSuite::work() const {
+  SimulatorWork work = ahead_ ? ahead_->work() : SimulatorWork{};
+  work.drawing += work_.drawing;
+  work.pictures += work_.pictures;
+  return work;
 }
 
 std::string SensorSuite::renderer_name() const {

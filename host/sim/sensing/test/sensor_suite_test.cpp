@@ -1,6 +1,9 @@
 #include "fake_back_end.h"
 #include "sensors.h"
 
+#include <algorithm>
+#include <memory>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -119,6 +122,51 @@ TEST_F(SensorSuiteTest, TheSeedKeysTheNoise) {
   EXPECT_NE(at_first, read(1));
   suite_.reset(0);
   EXPECT_EQ(at_first, read(1));
+}
+
+// Greys that depend on the camera's place; used by several threads.
+class PlaceRenderer final : public ViewRenderer {
+ public:
+  void render(const View& view, std::span<std::uint8_t> rgb) override {
+    if (view.X_WS.p.x < 0.0) throw Error(ErrorCode::kSetup, "lost");
+    std::ranges::fill(rgb, static_cast<std::uint8_t>(view.X_WS.p.x));
+  }
+  double nearest_depth_m() override { return 1.0; }
+  std::string name() const override { return "place"; }
+};
+
+TEST_F(SensorSuiteTest, PicturesDrawnAheadAreThoseOfTheirSnapshots) {
+  SensorSuite suite{
+      world_,
+      {rays_, [](int, int) { return std::make_unique<PlaceRenderer>(); }, {0.3, 0.3, 0.9}, 3},
+      [](const Warning&) {}};
+  std::vector<Snapshot> snapshots(100, snapshot_);
+  for (std::size_t i = 0; i < snapshots.size(); ++i) {
+    snapshots[i].at = SimTime(std::chrono::milliseconds(i));
+    snapshots[i].state[0] = i == 70 ? -10.0 : static_cast<double>(2 * i + 10);
+    snapshots[i].state[7] = static_cast<double>(i + 10);
+  }
+  const auto grey = [&](std::size_t i, std::size_t uav) {
+    return std::get<uav::CameraSample>(suite.measure(snapshots[i], uav, kCamera, i)).rgb.at(0);
+  };
+  suite.reset(0);
+  const int offset[] = {grey(0, 0) - 10, grey(0, 1) - 10};
+  for (std::size_t i = 1; i < snapshots.size(); ++i) {
+    const std::size_t next = std::min(i + i % 3, snapshots.size() - 1);
+    for (std::size_t uav = 0; uav < 2; ++uav) suite.expect(snapshots[next], uav, kCamera, next);
+    if (i % 3 == 0) suite.expect(snapshots[i], 0, kRange, i);
+    if (i == 70) {
+      EXPECT_THROW(grey(i, 0), Error);
+    } else if (i % 7 != 0) {
+      EXPECT_EQ(grey(i, 0), static_cast<int>(2 * i + 10) + offset[0]);
+    }
+    EXPECT_EQ(grey(i, 1), static_cast<int>(i + 10) + offset[1]);
+  }
+  const SimulatorWork work = suite.work();
+  EXPECT_GE(work.pictures, 2 * snapshots.size() - 14);
+  EXPECT_LE(work.drawn_in_vain, 14u);
+  suite.reset(0);
+  EXPECT_EQ(suite.work(), SimulatorWork{});
 }
 
 TEST_F(SensorSuiteTest, RefusesUnknownUavsAndSensors) {

@@ -102,6 +102,7 @@ void FakeSimulator::reset(std::uint64_t seed) {
   seed_ = seed;
   now_ = SimTime{};
   applied_.clear();
+  expected_.clear();
   bodies_.clear();
   for (const Uav& uav : world_.uavs) {
     bodies_.push_back({uav.X_WB.p, uav::yaw_rad(uav.X_WB.q), {}});

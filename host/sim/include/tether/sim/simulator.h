@@ -11,6 +11,7 @@
 #include <tether/base/time.h>
 #include <tether/sim/clearance.h>
 #include <tether/sim/contacts.h>
+#include <tether/sim/simulator_work.h>
 #include <tether/sim/world.h>
 #include <tether/uav/multirotor.h>
 #include <tether/uav/samples.h>
@@ -68,6 +69,14 @@ class Simulator {
   /// `index`.
   virtual uav::Sample measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
                               std::uint64_t index) = 0;
+
+  /// Announces a measurement that will probably be asked for, so that a simulator can draw it on
+  /// another thread before. A hint: `measure` returns the same bytes, and throws the same errors,
+  /// with and without. Returns at once.
+  virtual void expect(const Snapshot& /*snapshot*/, std::size_t /*uav*/, std::size_t /*sensor*/,
+                      std::uint64_t /*index*/) {}
+  /// None: not measured.
+  virtual std::optional<SimulatorWork> work() const { return std::nullopt; }
 
   /// At `now()`.
   virtual GroundTruth ground_truth(std::size_t uav) const = 0;

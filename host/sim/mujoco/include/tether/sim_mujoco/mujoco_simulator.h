@@ -18,8 +18,11 @@ extern const bool kHasMujoco;
 /// ideal picture. The walking bias of a sensor is a function of seed and ST alone. `description()`
 /// includes the OpenGL renderer after the first image.
 ///
+/// Expected pictures are drawn on `threads_ahead` threads of its own; 0: `expect` does nothing.
+///
 /// `warn` receives one line for each thing of the world that MuJoCo cannot represent.
 /// @throws Error(kSetup) when the back end is not built in or the model does not compile.
-std::unique_ptr<Simulator> make_mujoco_simulator(World world, const WarningSink& warn);
+std::unique_ptr<Simulator> make_mujoco_simulator(World world, const WarningSink& warn,
+                                                 int threads_ahead = 0);
 
 }  // namespace tether::sim

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 
 namespace tether::sim {
 
+class AheadDrawer;
 class ImageMaker;
 
 /// The largest views that the world's cameras need, for ViewRendererFactory.
@@ -26,7 +28,7 @@ ViewSize largest_view(const World& world);
 
 /// All sensors of a world: makes the samples of `Simulator::measure` from captured states, rays and
 /// views. Mounting, lever arms, lens, shutter, noise, limits and dropouts are the same for every
-/// back end. One thread at a time.
+/// back end. Used from one thread at a time; pictures that are expected are drawn on others.
 class SensorSuite {
  public:
   struct BackEnd {
@@ -34,17 +36,20 @@ class SensorSuite {
     ViewRendererFactory make_renderer;
     /// An upper bound of the drawn extent of each of `moving_bodies` from its origin [m].
     std::vector<double> body_radii_m;
+    /// Threads that draw expected pictures, each with a renderer of its own, which is made and used
+    /// on that thread.
+    int threads_ahead = 0;
   };
 
   /// `world` must outlive the suite. Warns of what a camera cannot show when its first image is
   /// made. @throws Error(kBadFile) as `shutter_steps` does.
-  SensorSuite(const World& world, BackEnd back_end, const WarningSink& warn);
+  SensorSuite(const World& world, const BackEnd& back_end, const WarningSink& warn);
   ~SensorSuite();
   SensorSuite(const SensorSuite&) = delete;
   SensorSuite& operator=(const SensorSuite&) = delete;
 
   /// `seed` keys all noise from here on; it is 0 before.
-  void reset(std::uint64_t seed) { seed_ = seed; }
+  void reset(std::uint64_t seed);
 
   /// As `Simulator::measure`. @pre the snapshot's state is as StateRecorder captures it.
   /// @throws Error(kInternal) for a UAV or sensor that the world does not have; what the back end
@@ -52,10 +57,21 @@ class SensorSuite {
   uav::Sample measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
                       std::uint64_t index);
 
+  /// As `Simulator::expect`. Ignored for other sensors than cameras, and before the first picture
+  /// of a camera, which may warn.
+  void expect(const Snapshot& snapshot, std::size_t uav, std::size_t sensor, std::uint64_t index);
+  /// Of pictures, since the last reset.
+  SimulatorWork work() const;
+
   /// The renderer's name; empty before the first image.
   std::string renderer_name() const;
 
  private:
+  const Sensor& sensor_of(std::size_t uav, std::size_t sensor) const;
+  uav::Sample picture(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
+                      std::uint64_t index);
+  uav::Sample draw(ImageMaker& images, const Snapshot& snapshot, std::size_t uav,
+                   std::size_t sensor, std::uint64_t index) const;
   void cast(const RangeModel& range, const std::vector<double>& state, std::size_t uav,
             const uav::Pose& X_BS);
 
@@ -66,6 +82,10 @@ class SensorSuite {
   std::uint64_t seed_ = 0;
   std::vector<uav::Pose> X_WB_;
   std::vector<double> distances_m_;
+  std::set<const Sensor*> seen_;                           // cameras with a picture
+  SimulatorWork work_;                                     // on the caller's thread
+  std::vector<std::unique_ptr<ImageMaker>> images_ahead_;  // one per thread
+  std::unique_ptr<AheadDrawer> ahead_;                     // last: its threads use the rest
 };
 
 }  // namespace tether::sim

@@ -30,6 +30,14 @@ class FakeSimulator final : public Simulator {
     friend bool operator==(const AppliedCommand&, const AppliedCommand&) = default;
   };
 
+  /// One call of `expect`.
+  struct Expected {
+    SimTime at;
+    std::size_t uav = 0;
+    std::size_t sensor = 0;
+    std::uint64_t index = 0;
+  };
+
   /// How often each function was called since construction.
   struct Calls {
     std::uint64_t reset = 0;
@@ -54,6 +62,9 @@ class FakeSimulator final : public Simulator {
   /// Every command applied since the last reset, in order.
   const std::vector<AppliedCommand>& applied() const { return applied_; }
 
+  /// Every measurement expected since the last reset, in order.
+  const std::vector<Expected>& expected() const { return expected_; }
+
   const World& world() const override { return world_; }
   StepGrid grid() const override { return grid_; }
   SimTime now() const override { return now_; }
@@ -66,6 +77,10 @@ class FakeSimulator final : public Simulator {
   /// plane x = 10 m.
   uav::Sample measure(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
                       std::uint64_t index) override;
+  void expect(const Snapshot& snapshot, std::size_t uav, std::size_t sensor,
+              std::uint64_t index) override {
+    expected_.push_back({snapshot.at, uav, sensor, index});
+  }
   GroundTruth ground_truth(std::size_t uav) const override;
   bool reports_contacts() const override { return planned_contacts_.has_value(); }
   std::vector<Contact> take_contacts() override;
@@ -89,6 +104,7 @@ class FakeSimulator final : public Simulator {
   std::uint64_t seed_ = 0;
   std::vector<Body> bodies_;
   std::vector<AppliedCommand> applied_;
+  std::vector<Expected> expected_;
   std::optional<std::vector<Contact>> planned_contacts_;
   mutable Calls calls_;
   std::function<void(SimTime, SimTime)> on_advance_;

@@ -4,11 +4,13 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/base/error.h>
+#include <tether/base/random.h>
 #include <tether/sim/simulator.h>
 #include <tether/sim_testing/busy_flight.h>
 #include <tether/sim_testing/test_worlds.h>
@@ -72,6 +74,33 @@ TEST_P(SimulatorContract, SamplesCarryInstantAndIndex) {
   EXPECT_EQ(camera.width_px, 160);
   EXPECT_EQ(camera.height_px, 120);
   EXPECT_EQ(camera.rgb.size(), 160U * 120U * 3U);
+}
+
+// Whatever is expected, in whatever order it is measured.
+TEST_P(SimulatorContract, ExpectationsChangeNoMeasurement) {
+  const auto told = make(test_world());
+  const auto untold = make(test_world());
+  KeyedRandom random({.seed = 8});
+  std::vector<Snapshot> snapshots(40);
+  const auto any_of_last = [&](std::size_t count) {
+    return count - 1 - random.bits() % std::min<std::size_t>(count, 4);
+  };
+  for (std::size_t i = 0; i < snapshots.size(); ++i) {
+    for (const auto& simulator : {told, untold}) {
+      simulator->apply(0, {{1.0, 0.0, 0.0}, 0.5});
+      simulator->advance_to(at(i * std::chrono::milliseconds(20)));
+      simulator->capture(snapshots[i]);
+    }
+    for (std::uint64_t n = random.bits() % 4; n > 0; --n) {
+      const std::size_t k = any_of_last(i + 1);
+      told->expect(snapshots[k], 0, random.bits() % 4 == 0 ? kRange : kCamera, k);
+    }
+    if (random.bits() % 2 == 0) continue;
+    const std::size_t k = any_of_last(i + 1);
+    EXPECT_EQ(std::get<uav::CameraSample>(told->measure(snapshots[k], 0, kCamera, k)).rgb,
+              std::get<uav::CameraSample>(untold->measure(snapshots[k], 0, kCamera, k)).rgb)
+        << k << " at " << i;
+  }
 }
 
 TEST_P(SimulatorContract, RaysEndAtTheNextObject) {

@@ -1,0 +1,108 @@
+#include "ahead_drawer.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tether::sim {
+
+AheadDrawer::AheadDrawer(int threads, Draw draw) : draw_(std::move(draw)) {
+  for (int i = 0; i < threads; ++i) {
+    threads_.emplace_back([this, i] { serve(static_cast<std::size_t>(i)); });
+  }
+}
+
+AheadDrawer::~AheadDrawer() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  begin_.notify_all();
+}
+
+void AheadDrawer::expect(const PictureKey& key, const Snapshot& snapshot) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto is_of_sensor = [&](const Job& job) {
+      return job.key.uav == key.uav && job.key.sensor == key.sensor;
+    };
+    if (std::ranges::count_if(jobs_, is_of_sensor) >= kMostPerSensor) return;
+    if (std::ranges::find(jobs_, key, &Job::key) != jobs_.end()) return;
+    jobs_.push_back({.key = key, .snapshot = snapshot});
+  }
+  begin_.notify_one();
+}
+
+std::optional<uav::Sample> AheadDrawer::take(const PictureKey& key) {
+  std::unique_lock lock(mutex_);
+  for (auto job = jobs_.begin(); job != jobs_.end();) {
+    const bool is_earlier =
+        job->key.uav == key.uav && job->key.sensor == key.sensor && job->key.index < key.index;
+    job = is_earlier ? drop(job) : std::next(job);
+  }
+  const auto job = std::ranges::find_if(
+      jobs_, [&](const Job& other) { return other.key == key && !other.is_dropped; });
+  if (job == jobs_.end()) return std::nullopt;
+  if (job->state == State::kWaiting) {
+    jobs_.erase(job);
+    return std::nullopt;
+  }
+  done_.wait(lock, [&] { return job->state == State::kDone; });
+  --work_.drawn_in_vain;
+  Job taken = std::move(*job);
+  jobs_.erase(job);
+  if (taken.failure) std::rethrow_exception(taken.failure);
+  return std::move(taken.sample);
+}
+
+void AheadDrawer::reset() {
+  std::unique_lock lock(mutex_);
+  for (auto job = jobs_.begin(); job != jobs_.end();) job = drop(job);
+  done_.wait(lock, [&] { return jobs_.empty(); });
+  work_ = {};
+}
+
+SimulatorWork AheadDrawer::work() const {
+  const std::lock_guard lock(mutex_);
+  return work_;
+}
+
+// A job that is being drawn is removed by its thread. @pre locked.
+AheadDrawer::Jobs::iterator AheadDrawer::drop(Jobs::iterator job) {
+  if (job->state != State::kBegun) return jobs_.erase(job);
+  job->is_dropped = true;
+  return std::next(job);
+}
+
+void AheadDrawer::serve(std::size_t worker) {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    auto job = jobs_.end();
+    begin_.wait(lock, [&] {
+      job = std::ranges::find(jobs_, State::kWaiting, &Job::state);
+      return ends_ || job != jobs_.end();
+    });
+    if (ends_) return;
+    job->state = State::kBegun;
+    ++work_.pictures, ++work_.drawn_ahead, ++work_.drawn_in_vain;
+    lock.unlock();
+    const CpuTimer timer;
+    draw(*job, worker);
+    const Duration time = timer.elapsed();
+    lock.lock();
+    work_.drawing += time;
+    job->state = State::kDone;
+    if (job->is_dropped) jobs_.erase(job);
+    done_.notify_all();
+  }
+}
+
+// No other thread touches a picture that is being drawn.
+void AheadDrawer::draw(Job& job, std::size_t worker) {
+  try {
+    job.sample = draw_(worker, job.key, job.snapshot);
+  } catch (...) {
+    job.failure = std::current_exception();
+  }
+}
+
+}  // namespace tether::sim

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include <tether/base/time.h>
+#include <tether/sim/simulator.h>
+#include <tether/sim/simulator_work.h>
+#include <tether/uav/samples.h>
+
+namespace tether::sim {
+
+/// A measurement of a camera.
+struct PictureKey {
+  std::size_t uav = 0;
+  std::size_t sensor = 0;
+  std::uint64_t index = 0;
+  SimTime at;  ///< of the snapshot
+
+  friend bool operator==(const PictureKey&, const PictureKey&) = default;
+};
+
+/// Draws pictures on threads of its own before they are asked for. Its functions are called from
+/// one thread at a time. The destructor waits for pictures that are being drawn.
+class AheadDrawer {
+ public:
+  /// Draws the picture of a snapshot on thread `worker` (0, 1, …). Called by several threads, with
+  /// different workers.
+  using Draw =
+      std::function<uav::Sample(std::size_t worker, const PictureKey&, const Snapshot& snapshot)>;
+  /// Pictures of one sensor that are kept; an image may have 200 MB.
+  static constexpr int kMostPerSensor = 2;
+
+  /// @pre `threads` ≥ 1.
+  AheadDrawer(int threads, Draw draw);
+  ~AheadDrawer();
+  AheadDrawer(const AheadDrawer&) = delete;
+  AheadDrawer& operator=(const AheadDrawer&) = delete;
+
+  /// Draws this picture as soon as a thread is free. Does nothing if the picture is known, or if
+  /// `kMostPerSensor` of its sensor are.
+  void expect(const PictureKey& key, const Snapshot& snapshot);
+  /// The picture; waits for it if it is being drawn. None if no thread has begun to draw it; then
+  /// none will. Drops earlier pictures of the sensor, in vain. @throws what `Draw` threw for it.
+  std::optional<uav::Sample> take(const PictureKey& key);
+  /// Drops every picture, and waits until no thread draws; counts from 0 again.
+  void reset();
+  /// What the threads have drawn. A picture that can still be taken counts as in vain.
+  SimulatorWork work() const;
+
+ private:
+  enum class State { kWaiting, kBegun, kDone };
+  struct Job {
+    PictureKey key;
+    Snapshot snapshot;
+    State state = State::kWaiting;
+    bool is_dropped = false;  // while it is being drawn
+    uav::Sample sample{};
+    std::exception_ptr failure{};
+  };
+  using Jobs = std::list<Job>;
+
+  void serve(std::size_t worker);
+  void draw(Job& job, std::size_t worker);
+  Jobs::iterator drop(Jobs::iterator job);
+
+  const Draw draw_;
+  mutable std::mutex mutex_;
+  std::condition_variable begin_;
+  std::condition_variable done_;
+  Jobs jobs_;
+  SimulatorWork work_;
+  bool ends_ = false;
+  std::vector<std::jthread> threads_;  // last: ends before what it uses
+};
+
+}  // namespace tether::sim

@@ -1,0 +1,113 @@
+#include "ahead_drawer.h"
+
+#include <array>
+#include <semaphore>
+
+#include <gtest/gtest.h>
+
+#include <tether/base/error.h>
+#include <tether/base_testing/thrown_error.h>
+
+namespace tether::sim {
+namespace {
+
+constexpr std::uint64_t kFails = 7;
+
+PictureKey key(std::uint64_t index, std::size_t sensor = 0) {
+  return {0, sensor, index, SimTime(std::chrono::milliseconds(index))};
+}
+
+/// One thread draws pictures; each waits until the test opens its gate.
+class AheadDrawerTest : public ::testing::Test {
+ protected:
+  ~AheadDrawerTest() override {
+    for (Gate& gate : gates_) gate.open.release();
+  }
+  void expect(std::uint64_t index, std::size_t sensor = 0) {
+    drawer_.expect(key(index, sensor), {.at = {}, .state = {static_cast<double>(index)}});
+  }
+  /// Expects a picture, which a thread begins to draw.
+  void begin(std::uint64_t index) {
+    expect(index);
+    gates_[index].has_begun.acquire();
+  }
+  void open(std::uint64_t index) { gates_[index].open.release(); }
+  /// What is taken; 0: nothing.
+  double take(std::uint64_t index, std::size_t sensor = 0) {
+    const auto sample = drawer_.take(key(index, sensor));
+    return sample ? std::get<uav::RangeSample>(*sample).range_m : 0.0;
+  }
+  std::uint64_t drawn() const { return drawer_.work().drawn_ahead; }
+  std::uint64_t in_vain() const { return drawer_.work().drawn_in_vain; }
+
+  struct Gate {
+    std::counting_semaphore<2> has_begun{0};
+    std::counting_semaphore<2> open{0};
+  };
+  std::array<Gate, 10> gates_;
+  AheadDrawer drawer_{
+      1, [this](std::size_t, const PictureKey& picture, const Snapshot& snapshot) -> uav::Sample {
+        gates_[picture.index].has_begun.release();
+        gates_[picture.index].open.acquire();
+        if (picture.index == kFails) throw Error(ErrorCode::kSetup, "lost");
+        return uav::RangeSample{picture.at, picture.index, snapshot.state.at(0)};
+      }};
+};
+
+TEST_F(AheadDrawerTest, ReturnsAPictureOnceThatWasBegun) {
+  begin(3);
+  expect(3);
+  EXPECT_EQ(in_vain(), 1u);
+  open(3);
+  EXPECT_EQ(take(3), 3.0);
+  EXPECT_EQ(in_vain(), 0u);
+  EXPECT_EQ(drawer_.work().pictures, 1u);
+  EXPECT_EQ(take(3), 0.0);
+  EXPECT_EQ(drawn(), 1u);
+}
+
+TEST_F(AheadDrawerTest, LeavesToTheCallerWhatNoThreadHasBegun) {
+  begin(3);
+  expect(4);
+  EXPECT_EQ(take(4), 0.0);
+  open(3);
+  EXPECT_EQ(take(3), 0.0);  // earlier than what was taken
+  expect(5);
+  open(5);
+  gates_[5].has_begun.acquire();
+  EXPECT_EQ(take(5), 5.0);
+  EXPECT_EQ(drawn(), 2u);
+  EXPECT_EQ(in_vain(), 1u);
+}
+
+TEST_F(AheadDrawerTest, ThrowsTheErrorOfTheThread) {
+  begin(kFails);
+  open(kFails);
+  EXPECT_STREQ(thrown_error(ErrorCode::kSetup, [&] { take(kFails); }).what(), "lost");
+}
+
+TEST_F(AheadDrawerTest, KeepsTwoPicturesOfASensor) {
+  begin(1);
+  expect(2);
+  expect(3);
+  expect(4, 1);
+  for (const std::uint64_t index : {1u, 2u, 4u}) open(index);
+  EXPECT_EQ(take(1), 1.0);
+  gates_[4].has_begun.acquire();
+  EXPECT_EQ(take(4, 1), 4.0);
+  EXPECT_EQ(take(2), 2.0);
+  EXPECT_EQ(take(3), 0.0);
+}
+
+TEST_F(AheadDrawerTest, ResetDropsEveryPicture) {
+  begin(1);
+  expect(2);
+  open(1);
+  drawer_.reset();
+  EXPECT_EQ(drawer_.work(), SimulatorWork{});
+  EXPECT_EQ(take(2), 0.0);
+  EXPECT_EQ(take(1), 0.0);
+}
+
+}  // namespace
+}  // namespace tether::sim
