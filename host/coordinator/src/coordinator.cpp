@@ -39,9 +39,10 @@ std::vector<Sampler> make_samplers(const sim::Simulator& simulator, const RunOpt
     const auto& timings = options.uavs[samplers.size()].timings;
     std::vector<Sampler::Sensor> sensors;
     for (const sim::Sensor& sensor : uav.sensors)
-      sensors.push_back(
-          {sensor.name,
-           {timings[sensors.size()], options.seed, random_stream(uav.name, sensor.name, "delay")}});
+      sensors.push_back({.name = sensor.name,
+                         .schedule = {timings[sensors.size()], options.seed,
+                                      random_stream(uav.name, sensor.name, "delay")},
+                         .is_drawn = sensor.kind() == uav::SensorKind::kCamera});
     samplers.emplace_back(std::move(sensors), simulator.grid(), synchronised);
   }
   return samplers;
@@ -134,6 +135,7 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
 
 void Coordinator::Impl::turn() {
   const bool moved = running_ && advance();
+  if (running_ && is_synchronised()) stepper_.announce();
   const Duration wait = pace_ ? std::min(kIdleWait, pace_->wait_for(grid().dt())) : kIdleWait;
   for (const link::Event& event : server_->poll(moved ? Duration(0) : wait)) on_event(event);
 }

@@ -14,6 +14,8 @@ std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSen
   const auto measurement = choose(schedule, read, t);
   if (!measurement) return std::nullopt;
   schedule.mark_read(*measurement);
+  sensors_[read.sensor].forecast.requested(t, read.latest);
+  sensors_[read.sensor].forecasted.reset();
   const bool on_demand = !synchronised_ || !schedule.is_periodic();
   reads_.push_back({.call = call,
                     .sensor = read.sensor,
@@ -87,25 +89,50 @@ const Sampler::Read* Sampler::find(std::uint64_t call) const {
   return read == reads_.end() ? nullptr : &*read;
 }
 
-const sim::Snapshot& Sampler::state_of(const Read& read) const {
-  const sim::Snapshot* state = read.on_demand
-                                   ? (read.captured ? &read.state : nullptr)
-                                   : sensors_[read.sensor].captures.find(read.measurement.index);
-  if (!state)
-    throw Error(ErrorCode::kInternal, "the state of a measurement was dropped before it was read");
-  return *state;
+const sim::Snapshot* Sampler::find_state(const Read& read) const {
+  if (!read.on_demand) return sensors_[read.sensor].captures.find(read.measurement.index);
+  return read.captured ? &read.state : nullptr;
 }
 
-void Sampler::answered(std::uint64_t call) {
+const sim::Snapshot& Sampler::state_of(const Read& read) const {
+  if (const sim::Snapshot* state = find_state(read)) return *state;
+  throw Error(ErrorCode::kInternal, "the state of a measurement was dropped before it was read");
+}
+
+void Sampler::answered(std::uint64_t call, SimTime t) {
   const auto read =
       std::find_if(reads_.begin(), reads_.end(), [call](const Read& r) { return r.call == call; });
   if (read == reads_.end()) return;
+  Sensor& sensor = sensors_[read->sensor];
+  if (sensor.is_drawn && !read->on_demand) {
+    sensor.forecast.replied(t);
+    sensor.forecasted = sensor.forecast.next(sensor.schedule);
+  }
   spares_.push_back(std::move(read->state));
   reads_.erase(read);
 }
 
+void Sampler::announce(const Announce& announce) {
+  for (Read& read : reads_) {
+    if (read.announced || !sensors_[read.sensor].is_drawn) continue;
+    const sim::Snapshot* state = find_state(read);
+    if (!state) continue;
+    announce(*state, read.sensor, read.measurement.index);
+    read.announced = true;
+  }
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    Sensor& sensor = sensors_[i];
+    if (!sensor.forecasted) continue;
+    const sim::Snapshot* state = sensor.captures.find(*sensor.forecasted);
+    if (!state) continue;
+    announce(*state, i, *sensor.forecasted);
+    sensor.forecasted.reset();
+  }
+}
+
 void Sampler::close() {
   closed_ = true;
+  for (Sensor& sensor : sensors_) sensor.forecasted.reset();
   reads_.clear();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "capture_store.h"
+#include "read_forecast.h"
 #include "sensor_schedule.h"
 
 #include <cstddef>
@@ -28,8 +29,13 @@ class Sampler {
     SensorSchedule schedule;
     CaptureStore captures{};         ///< of a periodic one
     std::uint64_t next_capture = 0;  ///< index of its first measurement not yet captured
+    bool is_drawn = false;           ///< its measurements are announced
+    ReadForecast forecast{};
+    std::optional<std::uint64_t> forecasted{};  ///< a measurement that is not yet announced
   };
   using Capture = std::function<void(sim::Snapshot&)>;
+  using Announce =
+      std::function<void(const sim::Snapshot&, std::size_t sensor, std::uint64_t index)>;
 
   /// `synchronised`: false in free running.
   Sampler(std::vector<Sensor> sensors, StepGrid grid, bool synchronised)
@@ -54,14 +60,18 @@ class Sampler {
     Measurement measurement;
     bool on_demand = false;  ///< it has a state of its own …
     bool captured = false;   ///< … which is captured in `state`
+    bool announced = false;
     sim::Snapshot state{};
   };
   /// nullptr if this call is not a read.
   const Read* find(std::uint64_t call) const;
   /// The state for the measurement. @throws Error(kInternal) if it was not captured.
   const sim::Snapshot& state_of(const Read& read) const;
-  /// Removes an answered read.
-  void answered(std::uint64_t call);
+  /// Removes a read that is answered at `t`.
+  void answered(std::uint64_t call, SimTime t);
+  /// Announces the measurements that are captured and will be read: each once when it is forecast,
+  /// and once when it is planned.
+  void announce(const Announce& announce);
   /// Ends sampling, because the SUT has left.
   void close();
 
@@ -70,6 +80,7 @@ class Sampler {
                                     SimTime t) const;
   void sample_periodic(std::size_t sensor, SimTime st, SimTime earliest, const Capture& capture);
   std::uint64_t first_needed(std::size_t sensor, SimTime earliest) const;
+  const sim::Snapshot* find_state(const Read& read) const;
   sim::Snapshot take_spare();
 
   std::vector<Sensor> sensors_;

@@ -96,9 +96,17 @@ std::optional<uav::Sample> Stepper::measure(std::size_t uav, record::Interaction
   auto sample = ask([&](sim::Simulator& s) {
     return s.measure(state, uav, read->sensor, read->measurement.index);
   });
-  sampler.answered(entry.sequence);
+  sampler.answered(entry.sequence, same_instant(entry.reply_at));
   if (std::holds_alternative<uav::CameraSample>(sample)) log_->count_image();
   return sample;
+}
+
+void Stepper::announce() {
+  for (std::size_t uav = 0; uav < samplers_.size(); ++uav)
+    samplers_[uav].announce(
+        [&](const sim::Snapshot& state, std::size_t sensor, std::uint64_t index) {
+          ask([&](sim::Simulator& s) { s.expect(state, uav, sensor, index); });
+        });
 }
 
 }  // namespace tether::coordinator

@@ -54,6 +54,8 @@ class Stepper {
   const Sampler& sampler(std::size_t uav) const { return samplers_[uav]; }
   /// The sample for the read of this interaction, noted in it; none if it is not a read.
   std::optional<uav::Sample> measure(std::size_t uav, record::Interaction& entry);
+  /// Announces to the simulator what will be measured, so that it can draw meanwhile.
+  void announce();
 
  private:
   void sample();

@@ -125,6 +125,24 @@ TEST_F(ConcurrentTest, TheSpeedOfTheSimulatorDoesNotChangeTheRecord) {
   }
 }
 
+// Whatever is read when, and by how many threads.
+TEST_F(ConcurrentTest, PicturesAreAnnouncedWithTheStateOfTheirInstant) {
+  std::size_t announced = 0;
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    SCOPED_TRACE(seed);
+    make();
+    run_threads(busy_threads(seed), microseconds(130));
+    for (const auto& picture : simulator_->expected()) {
+      EXPECT_EQ(picture.sensor, kCamera);
+      EXPECT_EQ(
+          picture.at,
+          StepGrid(milliseconds(1)).floor(uav::sampling_instant(kCameraTiming, picture.index)));
+    }
+    announced += simulator_->expected().size();
+  }
+  EXPECT_GT(announced, 50u);
+}
+
 TEST_F(ConcurrentTest, TheFinishOfOneThreadDropsTheCallsOfTheOthers) {
   const RunReport report = run_threads({{sleep(Duration(0), seconds(9))},
                                         {read(milliseconds(2), kRange)},

@@ -218,6 +218,7 @@ TEST_F(CoordinatorTest, FreeRunningRepliesAtOnceAndChargesNothing) {
     EXPECT_EQ(entry.reply_at, entry.request_at);
     EXPECT_EQ(entry.st_at_release, entry.st_at_arrival);
   }
+  EXPECT_TRUE(simulator_->expected().empty());
   EXPECT_TRUE(std::get<link::Welcome>(server_->sent.at(1).front()).free_running);
 }
 

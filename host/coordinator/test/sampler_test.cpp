@@ -53,7 +53,7 @@ TEST_F(Sampling, CapturesAnOnDemandReadOnceAtTheBoundaryOfItsRequest) {
   EXPECT_EQ(captures_, 1);
   EXPECT_EQ(sampler_->state_of(*sampler_->find(7)).at, st_us(2'000));
   EXPECT_EQ(sampler_->next_due(), SimTime::max());
-  sampler_->answered(7);
+  sampler_->answered(7, st_us(0));
   EXPECT_EQ(sampler_->find(7), nullptr);
 }
 
@@ -98,11 +98,43 @@ TEST_F(Sampling, NoStateIsDroppedBeforeItIsRead) {
         if (due.second > st) return false;
         const Sampler::Read& answered = *sampler_->find(due.first);
         EXPECT_EQ(sampler_->state_of(answered).at, kGrid.floor(answered.measurement.sampled_at));
-        sampler_->answered(due.first);
+        sampler_->answered(due.first, due.second);
         return true;
       });
     }
     EXPECT_LT(open.size(), 20u);
+  }
+}
+
+// A read twice if it was forecast, and after two pauses the next one.
+TEST_F(Sampling, AnnouncesWhatWillBeRead) {
+  for (const bool is_drawn : {true, false}) {
+    sampler_.emplace(
+        std::vector<Sampler::Sensor>{
+            {.name = "sensor", .schedule = {kPeriodic, 0, 0}, .is_drawn = is_drawn}},
+        kGrid, true);
+    std::vector<std::uint64_t> announced;
+    const auto announce = [&] {
+      for (int i = 0; i < 2; ++i)
+        sampler_->announce([&](const sim::Snapshot& state, std::size_t, std::uint64_t index) {
+          EXPECT_EQ(state.at, uav::sampling_instant(kPeriodic, index));
+          announced.push_back(index);
+        });
+    };
+    SimTime st{}, t{};
+    for (std::uint64_t call = 1; call <= 5; ++call) {
+      const SimTime reply_at = sampler_->plan(call, {0, false}, t)->available_at;
+      for (; st <= reply_at; st += milliseconds(1)) sample(st, t);
+      announce();
+      sampler_->answered(call, reply_at);
+      announce();
+      t = reply_at + milliseconds(5);
+    }
+    EXPECT_EQ(announced, is_drawn ? std::vector<std::uint64_t>({0, 1, 2, 3, 3, 4, 4, 5})
+                                  : std::vector<std::uint64_t>{});
+    sampler_->close();
+    announce();
+    EXPECT_EQ(announced.size(), is_drawn ? 8u : 0u);
   }
 }
 
