@@ -80,7 +80,7 @@ runner::BackEnd without_processes(Make make) {
 
 runner::BackEnd back_end(EmbeddedSimulator) {
   return without_processes([](sim::World world, const SimulatorSetup& setup) {
-    return sim::make_mujoco_simulator(std::move(world), setup.warn);
+    return sim::make_mujoco_simulator(std::move(world), setup.warn, setup.threads_ahead);
   });
 }
 

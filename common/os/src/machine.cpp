@@ -1,5 +1,7 @@
 
 #include <fstream>
+#include <set>
+#include <string>
 #include <thread>
 
 #include <sched.h>
@@ -30,6 +32,17 @@ std::string describe_machine() {
 int machine_cores() {
   const long cores = sysconf(_SC_NPROCESSORS_CONF);
   return cores > 0 ? static_cast<int>(cores) : 0;
+}
+
+int separate_cores() {
+  std::set<std::string> cores;
+  for (const int cpu : allowed_cpus()) {
+    const std::string name = "cpu" + std::to_string(cpu);
+    std::ifstream file("/sys/devices/system/cpu/" + name + "/topology/thread_siblings_list");
+    std::string siblings;
+    cores.insert(std::getline(file, siblings) ? siblings : name);
+  }
+  return static_cast<int>(cores.size());
 }
 
 std::vector<int> allowed_cpus() {

@@ -17,6 +17,8 @@ TEST(Machine, HasAtLeastTheCoresThatThisProcessMayUse) {
   ASSERT_FALSE(cpus.empty());
   EXPECT_TRUE(std::is_sorted(cpus.begin(), cpus.end()));
   EXPECT_GE(machine_cores(), static_cast<int>(cpus.size()));
+  EXPECT_GE(separate_cores(), 1);
+  EXPECT_LE(separate_cores(), static_cast<int>(cpus.size()));
 }
 
 }  // namespace

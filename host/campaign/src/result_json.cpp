@@ -131,6 +131,12 @@ Json json_of(const ThisRun& run) {
   if (run.target) json["target"] = json_of(*run.target);
   if (!run.notes.empty()) json["notes"] = run.notes;
   if (!run.sut_files.empty()) json["sut_files"] = run.sut_files;
+  if (run.simulator)
+    json["simulator"] = Json{{"stepping_s", exact_seconds(run.simulator->stepping)},
+                             {"drawing_s", exact_seconds(run.simulator->drawing)},
+                             {"pictures", run.simulator->pictures},
+                             {"drawn_ahead", run.simulator->drawn_ahead},
+                             {"drawn_in_vain", run.simulator->drawn_in_vain}};
   return json;
 }
 
@@ -217,6 +223,14 @@ Warning read_warning(const JsonReader& json) {
           json.text("message")};
 }
 
+SimulatorFigures read_simulator(const JsonReader& json) {
+  return {.stepping = json.seconds("stepping_s"),
+          .drawing = json.seconds("drawing_s"),
+          .pictures = json.count("pictures"),
+          .drawn_ahead = json.count("drawn_ahead"),
+          .drawn_in_vain = json.count("drawn_in_vain")};
+}
+
 ThisRun read_this_run(const JsonReader& json) {
   ThisRun run;
   run.started_at = json.text("started_at");
@@ -230,6 +244,7 @@ ThisRun read_this_run(const JsonReader& json) {
   if (json.has("target")) run.target = read_target(json.object("target"));
   if (json.has("notes")) run.notes = json.texts("notes");
   if (json.has("sut_files")) run.sut_files = json.texts("sut_files");
+  if (json.has("simulator")) run.simulator = read_simulator(json.object("simulator"));
   return run;
 }
 

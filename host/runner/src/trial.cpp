@@ -1,3 +1,4 @@
+#include "drawing_threads.h"
 #include "local_sut.h"
 #include "trial_run.h"
 #include "warning_log.h"
@@ -108,11 +109,13 @@ campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted
                   conducted.report.reason, (spec.folder / kRecordFile).string()));
 }
 
-SimulatorSetup simulator_setup(const TrialSpec& spec, const TrialObserver& observer,
-                               WarningLog& warnings, const std::stop_token& stop) {
+SimulatorSetup simulator_setup(const TrialSpec& spec, const sim::World& world,
+                               const TrialObserver& observer, WarningLog& warnings,
+                               const std::stop_token& stop) {
   return {.answer_limit = spec.scenario.hang_limit,
           .log = spec.folder / kSimulatorLog,
           .warn = warnings.sink(),
+          .threads_ahead = drawing_threads(spec, world, os::separate_cores()),
           .on_setup = observer.on_setup,
           .on_silence = observer.on_blocked,
           .stop = stop};
@@ -124,14 +127,20 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
                           const Timings& timings, const TrialObserver& observer,
                           WarningLog& warnings, const std::stop_token& stop) {
   const auto board = hold_board(spec, stop);
-  const auto simulator =
-      back_end.start(std::move(world), simulator_setup(spec, observer, warnings, stop));
+  const SimulatorSetup setup = simulator_setup(spec, world, observer, warnings, stop);
+  const auto simulator = back_end.start(std::move(world), setup);
   warnings.pass_on();
   try {
     const Conducted conducted =
         TrialRun(spec, timings, *simulator, board.get(), observer, stop).conduct();
     auto result = evaluate(spec, conducted);
     result.this_run.notes = conducted.notes;
+    if (const auto work = simulator->get().work())
+      result.this_run.simulator = {.stepping = work->stepping,
+                                   .drawing = work->drawing,
+                                   .pictures = work->pictures,
+                                   .drawn_ahead = work->drawn_ahead,
+                                   .drawn_in_vain = work->drawn_in_vain};
     result.versions["simulator"] = simulator->get().description();
     return result;
   } catch (const Error& e) {

@@ -1,6 +1,10 @@
 #include "support/trials.h"
 
+#include <cstdint>
+
 #include <gtest/gtest.h>
+
+#include <tether/os/machine.h>
 
 /// With scripted execution times a run is the same to the byte, whatever the speed of the simulator
 /// or of the link.
@@ -53,6 +57,21 @@ TEST_F(ScriptedRun, IsTheSameOverASlowLink) {
   expect_same_runs(out("first"), out("slow_link"));
   const double interactions = read_result(out("slow_link"))["sync"]["interactions"];
   EXPECT_GE(wall_s(out("slow_link")), 0.04 * (interactions - 1.0));
+}
+
+// With a second core, pictures are drawn before the SUT asks for them.
+TEST_F(ScriptedRun, IsTheSameOnOneCore) {
+  if (os::separate_cores() < 2) GTEST_SKIP() << "needs two cores";
+  const auto drawn_ahead = [](const std::string& name, const std::vector<std::string>& launcher) {
+    const Command command = tether({"run", scenario_, "--images", "--quiet", "--out", out(name)});
+    const Output output = run(started_by(launcher, command), 120s);
+    EXPECT_EQ(output.code, 0) << output.err;
+    return std::uint64_t{read_result(out(name))["this_run"]["simulator"]["drawn_ahead"]};
+  };
+  const std::string one_cpu = std::to_string(os::allowed_cpus().front());
+  EXPECT_EQ(drawn_ahead("one_core", {"taskset", "--cpu-list", one_cpu}), 0u);
+  EXPECT_GT(drawn_ahead("all_cores", {}), 0u);
+  expect_same_runs(out("one_core"), out("all_cores"));
 }
 
 TEST_F(ScriptedRun, IsAnotherWithAnotherSeed) {

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <tether/os/machine.h>
+
 /// A trial with scripted times is one trial, however often, on however busy a machine, with however
 /// many rendering threads, and by whatever build it is flown.
 namespace tether::system_test {
@@ -37,7 +39,8 @@ class Repeatability : public testing::Test {
     const auto out = folder_ / ("run" + std::to_string(run_number));
     Command command = tether({"run", scenario_, "--images", "--quiet", "--out", out});
     command.arguments.front() = program.string();
-    command.environment.emplace_back("LP_NUM_THREADS", run_number % 2 == 0 ? "1" : "2");
+    const std::string one_cpu = std::to_string(os::allowed_cpus().front());
+    if (run_number % 2 == 0) command = started_by({"taskset", "--cpu-list", one_cpu}, command);
     const Output output = run(command, 120s);
     EXPECT_EQ(output.code, 0) << output.err;
     EXPECT_FALSE(read_record(out).images.empty());

@@ -12,6 +12,10 @@ std::string describe_machine();
 /// switched off; 0 if unknown.
 int machine_cores();
 
+/// Number of cores that this process may use. CPUs that share a core (simultaneous multithreading)
+/// count once.
+int separate_cores();
+
 /// The CPUs that this process may run on, ascending.
 std::vector<int> allowed_cpus();
 

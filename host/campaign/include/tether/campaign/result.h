@@ -104,6 +104,17 @@ struct TargetReport {
   friend bool operator==(const TargetReport&, const TargetReport&) = default;
 };
 
+/// What the embedded simulator computed during a run. Times are CPU time.
+struct SimulatorFigures {
+  Duration stepping{0};
+  Duration drawing{0};
+  std::uint64_t pictures = 0;       ///< drawn, those in vain among them
+  std::uint64_t drawn_ahead = 0;    ///< of these, begun before the SUT asked for them
+  std::uint64_t drawn_in_vain = 0;  ///< of these, not read
+
+  friend bool operator==(const SimulatorFigures&, const SimulatorFigures&) = default;
+};
+
 /// Everything that may differ between two runs of the same trial with the same execution times.
 struct ThisRun {
   std::string started_at;  ///< ISO 8601, UTC
@@ -115,6 +126,7 @@ struct ThisRun {
   std::optional<TargetReport> target{};  ///< none if it was not read
   std::vector<std::string> notes{};      ///< unintended stalls of the run, one line each
   std::vector<std::string> sut_files{};  ///< written by SUTs; paths in the trial's folder, sorted
+  std::optional<SimulatorFigures> simulator{};  ///< none: not measured
 
   friend bool operator==(const ThisRun&, const ThisRun&) = default;
 };

@@ -19,6 +19,7 @@ struct SimulatorSetup {
   Duration answer_limit{0};   ///< maximum time for a reply of an external simulator
   std::filesystem::path log;  ///< output of the simulator's processes
   sim::WarningSink warn;
+  int threads_ahead = 0;  ///< that may draw before a picture is asked for; 0: none may
   std::function<void(const std::string&)> on_setup{};    ///< called with what is being started
   std::function<void(const std::string&)> on_silence{};  ///< called if a reply takes long
   std::stop_token stop{};                                ///< a stop request ends all waiting for it

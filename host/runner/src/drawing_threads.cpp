@@ -1,0 +1,42 @@
+#include "drawing_threads.h"
+
+#include <algorithm>
+
+namespace tether::runner {
+namespace {
+
+bool runs_on_board(const TrialSpec& spec) {
+  return !spec.waits_for_sut && spec.condition.target && spec.condition.target->ssh;
+}
+
+bool may_distort(const TrialSpec& spec) {
+  switch (spec.condition.clock) {
+    case scenario::Clock::kWall:
+      return !runs_on_board(spec);
+    case scenario::Clock::kUnstamped:  // this machine's time
+      return true;
+    case scenario::Clock::kCpu:
+    case scenario::Clock::kScripted:
+      return false;
+  }
+  return true;
+}
+
+int cameras_of(const sim::World& world) {
+  int cameras = 0;
+  for (const sim::Uav& uav : world.uavs) {
+    cameras += static_cast<int>(std::ranges::count_if(uav.sensors, [](const sim::Sensor& sensor) {
+      return sensor.kind() == uav::SensorKind::kCamera;
+    }));
+  }
+  return cameras;
+}
+
+}  // namespace
+
+int drawing_threads(const TrialSpec& spec, const sim::World& world, int cores) {
+  if (spec.condition.policy == scenario::Policy::kFreeRunning || may_distort(spec)) return 0;
+  return std::clamp(cores - 1, 0, cameras_of(world));
+}
+
+}  // namespace tether::runner
