@@ -11,7 +11,7 @@
 
 namespace tether::sim {
 
-SensorSuite::SensorSuite(const World& world, BackEnd back_end, const WarningSink& warn)
+SensorSuite::SensorSuite(const World& world, const BackEnd& back_end, const WarningSink& warn)
     : world_(world),
       layout_(world),
       rays_(back_end.rays),

@@ -153,7 +153,8 @@ TEST_F(SensorSuiteTest, PicturesDrawnAheadAreThoseOfTheirSnapshots) {
   suite.reset(0);
   const int offset[] = {grey(0, 0) - 10, grey(0, 1) - 10};
   for (std::size_t i = 1; i < snapshots.size(); ++i) {
-    for (std::size_t uav = 0; uav < 2; ++uav) suite.expect(snapshots[i], uav, kCamera, i);
+    const std::size_t next = std::min(i + i % 3, snapshots.size() - 1);
+    for (std::size_t uav = 0; uav < 2; ++uav) suite.expect(snapshots[next], uav, kCamera, next);
     if (i % 3 == 0) suite.expect(snapshots[i], 0, kRange, i);
     if (i == 70) {
       EXPECT_THROW(grey(i, 0), Error);

@@ -34,7 +34,7 @@ class SensorSuite {
 
   /// `world` must outlive the suite. Warns of what a camera cannot show when its first image is
   /// made. @throws Error(kBadFile) as `shutter_steps` does.
-  SensorSuite(const World& world, BackEnd back_end, const WarningSink& warn);
+  SensorSuite(const World& world, const BackEnd& back_end, const WarningSink& warn);
   ~SensorSuite();
   SensorSuite(const SensorSuite&) = delete;
   SensorSuite& operator=(const SensorSuite&) = delete;
