@@ -91,13 +91,21 @@ void ClearanceMeter::add(const Link& link, const Pose& X_BL, std::optional<std::
       const double length = norm(plane->normal);
       shape.plane_normal_S = length > 0.0 ? (1.0 / length) * plane->normal : Vec3{0.0, 0.0, 1.0};
     } else if (const auto* mesh = std::get_if<MeshGeometry>(&collision.geometry)) {
-      if (vertices) shape.convex.vertices = vertices(*mesh);
+      if (vertices) shape.convex.vertices = vertices_of(*mesh, vertices);
       is_complete_ = is_complete_ && !shape.convex.vertices.empty();
       if (shape.convex.vertices.empty()) continue;
     }
     if (!shape.plane_normal_S) shape.bounds = bounds_of(shape.convex);
     shapes_.push_back(std::move(shape));
   }
+}
+
+std::span<const Vec3> ClearanceMeter::vertices_of(const MeshGeometry& mesh,
+                                                  const MeshVertices& vertices) {
+  const auto [known, is_new] =
+      vertices_.try_emplace({mesh.file, mesh.submesh, mesh.scale.x, mesh.scale.y, mesh.scale.z});
+  if (is_new) known->second = vertices(mesh);
+  return known->second;
 }
 
 std::optional<Clearance> ClearanceMeter::measure(std::size_t uav,

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include <tether/sim/world.h>
 
@@ -9,8 +9,8 @@ namespace tether::sim {
 /// A convex shape at a pose. It is a core, which is described by its support points, with
 /// everything within `rounding_m` of it.
 struct Convex {
-  Geometry geometry;                ///< not a plane
-  std::vector<uav::Vec3> vertices;  ///< of a mesh
+  Geometry geometry;                    ///< not a plane
+  std::span<const uav::Vec3> vertices;  ///< of a mesh
   uav::Pose X_WS;
 };
 

@@ -1,7 +1,6 @@
 #include "dynamics.h"
 
 #include "conversions.h"
-#include "mesh_file.h"
 #include "physics_model.h"
 
 #include <algorithm>
@@ -10,28 +9,17 @@
 #include <tether/base/error.h>
 
 namespace tether::sim {
-namespace {
 
-std::vector<uav::Vec3> mesh_vertices(const MeshGeometry& mesh) {
-  std::vector<uav::Vec3> vertices;
-  for (const raster::Mesh::Vertex& v : load_mesh(mesh, {}, [](const auto&) {}).vertices) {
-    vertices.push_back({v.position[0], v.position[1], v.position[2]});
-  }
-  return vertices;
-}
-
-}  // namespace
-
-Dynamics::Dynamics(const World& world, const WarningSink& warn)
+Dynamics::Dynamics(const World& world, const WarningSink& warn, const MeshFiles& meshes)
     : world_(world),
-      model_(make_physics_model(world, warn)),
+      model_(make_physics_model(world, warn, meshes)),
       data_(make_data(*model_)),
       recorder_(world),
       X_WB_(recorder_.layout().bodies()),
       motions_(recorder_.layout().uavs()),
       shape_owners_(shape_owners(world)),
       qvel_before_(static_cast<std::size_t>(model_->nv)),
-      meter_(world, mesh_vertices) {
+      meter_(world, [&](const MeshGeometry& mesh) { return meshes.corners(mesh); }) {
   meter_.warn_of_starts(warn);
   for (const Uav& uav : world.uavs) flights_.push_back({&uav.airframe, {}, {}});
   reset();

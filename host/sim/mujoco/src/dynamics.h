@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine.h"
+#include "mesh_file.h"
 
 #include <optional>
 #include <string_view>
@@ -19,7 +20,7 @@ namespace tether::sim {
 class Dynamics {
  public:
   /// `world` must outlive this object.
-  Dynamics(const World& world, const WarningSink& warn);
+  Dynamics(const World& world, const WarningSink& warn, const MeshFiles& meshes = MeshFiles());
 
   /// Start poses, UAVs hovering, zero commands. Allocates nothing.
   void reset();

@@ -1,20 +1,63 @@
 #include "mesh_file.h"
 
+#include "collada_check.h"
 #include "conversions.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <numeric>
 #include <set>
 
+#include <assimp/BaseImporter.h>
 #include <assimp/Importer.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <tether/base/error.h>
+#include <tether/os/text_file.h>
 
 namespace tether::sim {
 namespace {
 
 using uav::Vec3;
+
+constexpr std::uintmax_t kLargestMesh = std::uintmax_t{1} << 29;  // 10,000,000 triangles of STL
+constexpr unsigned kMaxCorners = 1000;  // Assimp's time grows with their square
+constexpr std::size_t kMaxHullCorners = 1'000'000;
+
+[[noreturn]] void fail_mesh(const std::filesystem::path& file, const std::string& what) {
+  throw Error(ErrorCode::kBadFile, FileLocation{file.string()}, what);
+}
+
+// The normals of a mesh without: at each place, the mean of those of all triangles there.
+// Assimp's own search for places would take hours for a large mesh that lies in a plane.
+std::vector<aiVector3D> smooth_normals(const aiMesh& mesh) {
+  const auto position = [&](unsigned i) {
+    const aiVector3D& p = mesh.mVertices[i];
+    return std::tuple{p.x, p.y, p.z};
+  };
+  std::vector<unsigned> order(mesh.mNumVertices);
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(),
+            [&](unsigned a, unsigned b) { return position(a) < position(b); });
+  std::vector<unsigned> place(mesh.mNumVertices);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool is_new = i == 0 || position(order[i]) != position(order[i - 1]);
+    place[order[i]] = is_new ? order[i] : place[order[i - 1]];
+  }
+  std::vector<aiVector3D> sums(mesh.mNumVertices);
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    if (face.mNumIndices != 3) continue;
+    const auto at = [&](unsigned corner) { return mesh.mVertices[face.mIndices[corner]]; };
+    const aiVector3D normal = ((at(1) - at(0)) ^ (at(2) - at(0))).NormalizeSafe();
+    for (unsigned corner = 0; corner < 3; ++corner) sums[place[face.mIndices[corner]]] += normal;
+  }
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) sums[i] = sums[place[i]];
+  return sums;
+}
 
 // Collects the triangles of an Assimp scene.
 class MeshCollector {
@@ -47,14 +90,33 @@ class MeshCollector {
     const bool mirrored = transform.Determinant() * static_cast<float>(s.x * s.y * s.z) < 0.0F;
     aiMatrix3x3 normal_map(transform);
     normal_map.Inverse().Transpose();
+    require_finite(mesh);
+    const std::vector<aiVector3D> smooth =
+        mesh.HasNormals() ? std::vector<aiVector3D>() : smooth_normals(mesh);
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
       const aiVector3D p = transform * mesh.mVertices[i];
-      const aiVector3D n = normal_map * mesh.mNormals[i];
+      const aiVector3D n = normal_map * (mesh.HasNormals() ? mesh.mNormals[i] : smooth[i]);
       out_.vertices.push_back(vertex({p.x * s.x, p.y * s.y, p.z * s.z},
                                      {n.x / s.x, n.y / s.y, n.z / s.z}, texture_at(mesh, i)));
     }
     for (unsigned i = 0; i < mesh.mNumFaces; ++i) add_face(mesh.mFaces[i], first, mirrored);
+    // A file may name a mesh any number of times.
+    if (out_.triangles.size() > raster::kMaxTriangles ||
+        out_.vertices.size() > 3 * raster::kMaxTriangles) {
+      fail_mesh(geometry_.file, "has more than 10,000,000 triangles");
+    }
   }
+
+  void require_finite(const aiMesh& mesh) const {
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      const aiVector3D& p = mesh.mVertices[i];
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+        fail_mesh(geometry_.file, "has a vertex that is not finite");
+      }
+    }
+  }
+
+  static bool is_near(float number) { return std::abs(number) <= raster::kMaxCoordinate_m; }
 
   static const aiVector3D* texture_at(const aiMesh& mesh, unsigned i) {
     return mesh.HasTextureCoords(0) ? &mesh.mTextureCoords[0][i] : nullptr;
@@ -64,8 +126,14 @@ class MeshCollector {
     raster::Mesh::Vertex v;
     copy_to(p, v.position.data());
     const double length = norm(n);
-    copy_to(length > 0.0 ? (1.0 / length) * n : Vec3{0.0, 0.0, 1.0}, v.normal.data());
+    const bool has_direction = length > 0.0 && std::isfinite(length);
+    copy_to(has_direction ? (1.0 / length) * n : Vec3{0.0, 0.0, 1.0}, v.normal.data());
     v.uv = uv ? std::array<float, 2>{uv->x, uv->y} : projected(p, n);
+    if (!std::all_of(v.position.begin(), v.position.end(), is_near) ||
+        !std::all_of(v.uv.begin(), v.uv.end(), is_near)) {
+      fail_mesh(geometry_.file,
+                "has a vertex that is not finite, or farther than 1,000 km from the origin");
+    }
     return v;
   }
 
@@ -96,22 +164,84 @@ class MeshCollector {
   std::set<unsigned> materials_;
 };
 
-constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_GenSmoothNormals |
-                            aiProcess_JoinIdenticalVertices | aiProcess_FlipUVs;
+void check_faces(const aiScene& scene, const std::filesystem::path& file) {
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[i];
+    for (unsigned k = 0; k < mesh.mNumFaces; ++k) {
+      const aiFace& face = mesh.mFaces[k];
+      if (face.mNumIndices > kMaxCorners) fail_mesh(file, "has a face of more than 1000 corners");
+      const auto is_vertex = [&](unsigned index) { return index < mesh.mNumVertices; };
+      if (!std::all_of(face.mIndices, face.mIndices + face.mNumIndices, is_vertex)) {
+        fail_mesh(file, "has a face with a vertex that does not exist");
+      }
+    }
+  }
+}
+
+// ".obj", whatever the case of the name.
+std::string type_of(const std::filesystem::path& file) {
+  std::string type = file.extension().string();
+  for (char& c : type) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return type;
+}
+
+// Leaves only the reader of a type: Assimp tries all of its fifty where the content is not what
+// the name says.
+void keep_reader(Assimp::Importer& importer, const std::string& type) {
+  const Assimp::BaseImporter* const wanted = importer.GetImporter(type.c_str());
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    std::unique_ptr<Assimp::BaseImporter> reader(importer.GetImporter(i));
+    if (reader.get() == wanted) {
+      static_cast<void>(reader.release());
+    } else {
+      importer.UnregisterLoader(reader.get());
+    }
+  }
+}
+
+std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) {
+  const std::string bytes = os::read_file(file, kLargestMesh);
+  const std::string type = type_of(file);
+  if (type == ".dae") check_collada(bytes, file);
+  auto importer = std::make_unique<Assimp::Importer>();
+  keep_reader(*importer, type);
+  importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  importer->SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  // Of these bytes alone: a file could name any other. The importer deletes the object.
+  importer->SetIOHandler(new Assimp::MemoryIOSystem(
+      reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), nullptr));
+  const aiScene* scene = importer->ReadFile(AI_MEMORYIO_MAGIC_FILENAME + type, 0);
+  if (!scene || !scene->mRootNode) {
+    fail_mesh(file, std::string("cannot be read as a mesh: ") + importer->GetErrorString());
+  }
+  check_faces(*scene, file);
+  importer->ApplyPostProcessing(aiProcess_Triangulate | aiProcess_FlipUVs);
+  importer->SetIOHandler(nullptr);
+  return importer;
+}
 
 }  // namespace
 
-raster::Mesh load_mesh(const MeshGeometry& mesh, const TextureScale& scale,
-                       const WarningSink& warn) {
-  Assimp::Importer importer;
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* scene = importer.ReadFile(mesh.file.string(), kSteps);
-  if (!scene || !scene->mRootNode) {
-    throw Error(ErrorCode::kBadFile, {mesh.file.string(), 0},
-                std::string("cannot be read as a mesh: ") + importer.GetErrorString());
-  }
-  MeshCollector collector(*scene, mesh, scale);
-  collector.visit(*scene->mRootNode, aiMatrix4x4(), false);
+MeshKey key_of(const MeshGeometry& mesh) {
+  return {mesh.file, mesh.submesh, mesh.scale.x, mesh.scale.y, mesh.scale.z};
+}
+
+MeshFiles::MeshFiles() = default;
+MeshFiles::~MeshFiles() = default;
+MeshFiles::MeshFiles(MeshFiles&&) noexcept = default;
+MeshFiles& MeshFiles::operator=(MeshFiles&&) noexcept = default;
+
+const Assimp::Importer& MeshFiles::imported(const std::filesystem::path& file) const {
+  std::unique_ptr<Assimp::Importer>& importer = files_[file];
+  if (!importer) importer = import(file);
+  return *importer;
+}
+
+raster::Mesh MeshFiles::load(const MeshGeometry& mesh, const TextureScale& scale,
+                             const WarningSink& warn) const {
+  const aiScene& scene = *imported(mesh.file).GetScene();
+  MeshCollector collector(scene, mesh, scale);
+  collector.visit(*scene.mRootNode, aiMatrix4x4(), false);
   if (collector.materials() > 1) {
     warn({Consequence::kLooksDifferent,
           {mesh.file.string()},
@@ -119,23 +249,27 @@ raster::Mesh load_mesh(const MeshGeometry& mesh, const TextureScale& scale,
           "has several materials, which are not used; the visual's material is"});
   }
   raster::Mesh out = collector.take();
-  const auto fail = [&](const char* what) {
-    throw Error(ErrorCode::kBadFile, FileLocation{mesh.file.string()}, what);
-  };
-  if (out.triangles.size() > raster::kMaxTriangles) fail("has more than 10,000,000 triangles");
-  for (const raster::Mesh::Vertex& v : out.vertices) {
-    for (const float number : {v.position[0], v.position[1], v.position[2], v.uv[0], v.uv[1]}) {
-      if (!(std::abs(number) <= raster::kMaxCoordinate_m)) {
-        fail("has a vertex that is not finite, or farther than 1,000 km from the origin");
-      }
-    }
-  }
   if (out.triangles.empty()) {
     throw Error(ErrorCode::kBadFile, {mesh.file.string(), 0},
                 mesh.submesh.empty() ? "has no triangle" : "has no submesh '" + mesh.submesh + "'")
         .about(mesh.submesh);
   }
   return out;
+}
+
+std::vector<Vec3> MeshFiles::corners(const MeshGeometry& mesh) const {
+  std::vector<std::array<float, 3>> places;
+  for (const raster::Mesh::Vertex& v : load(mesh, {}, [](const Warning&) {}).vertices) {
+    places.push_back(v.position);
+  }
+  std::sort(places.begin(), places.end());
+  places.erase(std::unique(places.begin(), places.end()), places.end());
+  if (places.size() > kMaxHullCorners) {
+    fail_mesh(mesh.file, "has more than 1,000,000 vertices, which is too many for a collision");
+  }
+  std::vector<Vec3> corners;
+  for (const auto& [x, y, z] : places) corners.push_back({x, y, z});
+  return corners;
 }
 
 }  // namespace tether::sim

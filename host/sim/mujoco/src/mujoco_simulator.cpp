@@ -13,8 +13,9 @@
 namespace tether::sim {
 namespace {
 
-SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, const WarningSink& warn) {
-  const auto scene = std::make_shared<const raster::Scene>(make_scene(world, warn));
+SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, const WarningSink& warn,
+                              const MeshFiles& meshes) {
+  const auto scene = std::make_shared<const raster::Scene>(make_scene(world, warn, meshes));
   std::vector<double> radii_m = scene->body_radii_m();
   radii_m.resize(moving_bodies(world).size());
   auto make_renderer = [scene](int, int) { return std::make_unique<Renderer>(scene); };
@@ -23,13 +24,14 @@ SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, const Warning
 
 class MujocoSimulator final : public Simulator {
  public:
-  MujocoSimulator(World world, WarningSink warn)
+  // Keeps the files of meshes only until all parts have read them.
+  MujocoSimulator(World world, WarningSink warn, const MeshFiles& meshes = MeshFiles())
       : world_(std::move(world)),
         warn_(printable_warnings(std::move(warn))),
         grid_(world_.step),
-        dynamics_(world_, warn_),
+        dynamics_(world_, warn_, meshes),
         rays_(dynamics_.model()),
-        sensors_(world_, back_end(world_, rays_, warn_), warn_) {}
+        sensors_(world_, back_end(world_, rays_, warn_, meshes), warn_) {}
 
   const World& world() const override { return world_; }
   StepGrid grid() const override { return grid_; }

@@ -1,10 +1,10 @@
 #include "physics_model.h"
 
-#include "mesh_file.h"
 #include "triangle_mesh.h"
 
 #include <array>
 #include <iterator>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,7 +20,7 @@ using uav::Vec3;
 // MuJoCo's MJCF, written piece by piece. Numbers are written so that they read back exactly.
 class PhysicsXml {
  public:
-  explicit PhysicsXml(const WarningSink& warn) : warn_(warn) {}
+  PhysicsXml(const MeshFiles& meshes, const WarningSink& warn) : mesh_files_(meshes), warn_(warn) {}
 
   // The shapes of a link, at `X` in the engine's body: W for a static link, its own frame for a
   // moving one.
@@ -120,20 +120,23 @@ class PhysicsXml {
            {mesh.file.string()},
            fmt::format("collision '{}'", collision.name),
            "collides as the convex hull of its mesh"});
-    const std::string name = fmt::format("m{}", meshes_++);
-    std::string vertices;
-    for (const raster::Mesh::Vertex& v : load_mesh(mesh, {}, [](const auto&) {}).vertices) {
-      fmt::format_to(std::back_inserter(vertices), "{} {} {} ", v.position[0], v.position[1],
-                     v.position[2]);
+    const auto [known, is_new] = meshes_.try_emplace(key_of(mesh), meshes_.size());
+    const std::string name = fmt::format("m{}", known->second);
+    if (is_new) {
+      std::string vertices;
+      for (const Vec3& v : mesh_files_.corners(mesh)) {
+        fmt::format_to(std::back_inserter(vertices), "{} {} {} ", v.x, v.y, v.z);
+      }
+      assets_ += fmt::format(R"(<mesh name="{}" vertex="{}"/>)", name, vertices);
     }
-    assets_ += fmt::format(R"(<mesh name="{}" vertex="{}"/>)", name, vertices);
     return fmt::format(R"(type="mesh" {} mesh="{}")", place(X), name);
   }
 
+  const MeshFiles& mesh_files_;
   const WarningSink& warn_;
   std::string assets_;
   std::string body_;
-  int meshes_ = 0;
+  std::map<MeshKey, std::size_t> meshes_;
 };
 
 }  // namespace
@@ -153,8 +156,8 @@ std::vector<std::string_view> shape_owners(const World& world) {
   return owners;
 }
 
-ModelPtr make_physics_model(const World& world, const WarningSink& warn) {
-  PhysicsXml xml(warn);
+ModelPtr make_physics_model(const World& world, const WarningSink& warn, const MeshFiles& meshes) {
+  PhysicsXml xml(meshes, warn);
   for (const FixedBody& body : fixed_bodies(world)) {
     xml.add_collisions(*body.link, body.X_WB, true);
   }

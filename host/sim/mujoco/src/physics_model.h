@@ -1,6 +1,7 @@
 #pragma once
 
 #include "engine.h"
+#include "mesh_file.h"
 
 #include <string_view>
 #include <vector>
@@ -14,7 +15,8 @@ namespace tether::sim {
 /// at qpos 7·i and qvel 6·i, and is the engine's body i + 1. Static shapes never meet each other.
 /// @throws Error(kBadFile) for a mesh that cannot be read, Error(kSetup) when the model does not
 /// compile.
-ModelPtr make_physics_model(const World& world, const WarningSink& warn);
+ModelPtr make_physics_model(const World& world, const WarningSink& warn,
+                            const MeshFiles& meshes = MeshFiles());
 
 /// The name of the model or UAV of each of the engine's shapes. Refers into `world`.
 std::vector<std::string_view> shape_owners(const World& world);

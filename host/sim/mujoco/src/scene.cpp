@@ -3,7 +3,6 @@
 
 #include "scene.h"
 
-#include "mesh_file.h"
 #include "texture_file.h"
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/error.h>
 #include <tether/sim/bodies.h>
 
 namespace tether::sim {
@@ -30,13 +30,15 @@ raster::Rgb rgb(const Vec3& v) {
 
 class SceneBuilder {
  public:
-  explicit SceneBuilder(const WarningSink& warn) : warn_(warn) {}
+  SceneBuilder(const MeshFiles& mesh_files, const WarningSink& warn)
+      : mesh_files_(mesh_files), warn_(warn) {}
 
   void add_link(const Link& link, const Pose& X, std::optional<std::size_t> body,
                 std::uint32_t entity) {
     for (const Visual& visual : link.visuals) {
       raster::Instance instance;
       instance.mesh = mesh_of(visual);
+      count_triangles(visual, parts_.meshes[instance.mesh]);
       instance.material = parts_.materials.size();
       instance.body = body;
       instance.X_BV = X * visual.X_LV;
@@ -62,19 +64,39 @@ class SceneBuilder {
     if (norm(direction_W) > 0.0) light.direction_W = direction_W;
     light.diffuse = rgb(in.diffuse_rgb);
     light.specular = rgb(in.specular_rgb);
-    light.attenuation_constant = static_cast<float>(in.attenuation_constant);
-    light.attenuation_linear = static_cast<float>(in.attenuation_linear);
-    light.attenuation_quadratic = static_cast<float>(in.attenuation_quadratic);
+    light.attenuation_constant = factor(in.attenuation_constant);
+    light.attenuation_linear = factor(in.attenuation_linear);
+    light.attenuation_quadratic = factor(in.attenuation_quadratic);
+    if (in.attenuation_constant + in.attenuation_linear + in.attenuation_quadratic <= 0.0) {
+      light.attenuation_constant = 1.0F;
+    }
     light.spot_half_angle_rad =
         std::clamp(0.5 * in.spot_outer_angle_rad, 0.0, 0.5 * std::numbers::pi);
     light.spot_exponent = static_cast<float>(std::clamp(in.spot_falloff, 0.0, 128.0));
-    light.cast_shadows = in.cast_shadows;
+    light.cast_shadows = in.cast_shadows && in.kind != LightKind::kPoint;
+    if (in.cast_shadows && !light.cast_shadows) {
+      warn_({Consequence::kLooksDifferent,
+             {},
+             fmt::format("light '{}'", in.name),
+             "casts no shadows: only directional and spot lights do"});
+    }
     parts_.lights.push_back(light);
   }
 
   raster::SceneParts take() { return std::move(parts_); }
 
  private:
+  static float factor(double attenuation) { return static_cast<float>(std::min(attenuation, 1e6)); }
+
+  // Stops before the next file fills the memory.
+  void count_triangles(const Visual& visual, const raster::Mesh& mesh) {
+    triangles_ += mesh.triangles.size();
+    const auto* const geometry = std::get_if<MeshGeometry>(&visual.geometry);
+    if (triangles_ <= raster::kMaxTriangles || !geometry) return;
+    throw Error(ErrorCode::kBadFile, FileLocation{geometry->file.string()},
+                "brings the world to more than 10,000,000 triangles");
+  }
+
   std::size_t mesh_of(const Visual& visual) {
     const TextureScale scale{visual.material.texture_repeat_x, visual.material.texture_repeat_y};
     const auto add = [&](raster::Mesh mesh) {
@@ -96,15 +118,9 @@ class SceneBuilder {
             [&](const EllipsoidGeometry& g) { return add(ellipsoid_mesh(g.radii_m, scale)); },
             [&](const PlaneGeometry& g) { return add(plane_mesh(g, scale)); },
             [&](const MeshGeometry& g) {
-              const std::tuple key{g.file,
-                                   g.submesh,
-                                   g.scale.x,
-                                   g.scale.y,
-                                   g.scale.z,
-                                   scale.repeat_x_per_m,
-                                   scale.repeat_y_per_m};
-              const auto [known, is_new] = mesh_files_.try_emplace(key);
-              if (is_new) known->second = add(load_mesh(g, scale, warn_));
+              const std::tuple key{key_of(g), scale.repeat_x_per_m, scale.repeat_y_per_m};
+              const auto [known, is_new] = meshes_.try_emplace(key);
+              if (is_new) known->second = add(mesh_files_.load(g, scale, warn_));
               return known->second;
             },
         },
@@ -128,22 +144,29 @@ class SceneBuilder {
     const auto [known, is_new] = textures_.try_emplace(file);
     if (!is_new) return known->second;
     known->second = parts_.textures.size();
-    parts_.textures.push_back(load_texture(file));
+    parts_.textures.push_back(load_texture(file, warn_));
+    texels_ += parts_.textures.back().rgba.size() / 4;
+    if (texels_ > raster::kMaxTexels) {
+      throw Error(ErrorCode::kBadFile, FileLocation{file.string()},
+                  "brings the world's textures to more than 67,108,864 pixels");
+    }
     return known->second;
   }
 
+  const MeshFiles& mesh_files_;
   const WarningSink& warn_;
   raster::SceneParts parts_;
-  std::map<std::tuple<std::filesystem::path, std::string, double, double, double, double, double>,
-           std::size_t>
-      mesh_files_;
+  std::size_t triangles_ = 0;
+  std::size_t texels_ = 0;
+  std::map<std::tuple<MeshKey, double, double>, std::size_t> meshes_;
   std::map<std::filesystem::path, std::optional<std::size_t>> textures_;
 };
 
 }  // namespace
 
-raster::SceneParts make_scene(const World& world, const WarningSink& warn) {
-  SceneBuilder builder(warn);
+raster::SceneParts make_scene(const World& world, const WarningSink& warn,
+                              const MeshFiles& meshes) {
+  SceneBuilder builder(meshes, warn);
   const auto number_of = [&](const Model* model) {
     return static_cast<std::uint32_t>(model - world.models.data()) + 1;
   };

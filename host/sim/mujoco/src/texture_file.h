@@ -2,12 +2,13 @@
 
 #include <filesystem>
 
+#include <tether/base/warning.h>
 #include <tether/sim_raster/scene.h>
 
 namespace tether::sim {
 
-/// Reads a PNG or JPEG picture; its first bytes say which.
+/// Reads a PNG or JPEG picture; its first bytes say which. Warns of a damaged JPEG picture.
 /// @throws Error(kBadFile) with the file if it cannot be read or is larger than the renderer takes.
-raster::Texture load_texture(const std::filesystem::path& file);
+raster::Texture load_texture(const std::filesystem::path& file, const WarningSink& warn);
 
 }  // namespace tether::sim

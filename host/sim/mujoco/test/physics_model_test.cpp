@@ -70,6 +70,16 @@ std::pair<std::vector<std::string>, std::vector<int>> build(const World& world) 
   return {warnings, {model->geom_type, model->geom_type + model->ngeom}};
 }
 
+TEST(PhysicsModelTest, MeshesOfOneFileAndScaleAreOne) {
+  World world = test_world();
+  MeshGeometry tetra{
+      std::filesystem::path(TETHER_TEST_DIR) / "data/tetra.stl", "", {1.0, 1.0, 1.0}};
+  for (int i = 0; i < 150; ++i) world.models[0].links[0].collisions.push_back(collision_of(tetra));
+  tetra.scale.x = 2.0;
+  world.models[0].links[0].collisions.push_back(collision_of(tetra));
+  EXPECT_EQ(make_physics_model(world, [](const Warning&) {})->nmesh, 2);
+}
+
 TEST(PhysicsModelTest, WarnsOfMeshesAndOfPlanesThatMove) {
   World world = test_world();
   const auto tetra = std::filesystem::path(TETHER_TEST_DIR) / "data/tetra.stl";

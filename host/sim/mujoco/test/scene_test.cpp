@@ -6,6 +6,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <png.h>
+
+#include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
+#include <tether/sim_raster/scene.h>
 
 namespace tether::sim {
 namespace {
@@ -43,6 +48,43 @@ TEST(SceneTest, HasAsManyLightsAsTheRendererTakes) {
   World world = test_world();
   for (int i = 0; i < 34; ++i) world.lights.push_back(light_named("l" + std::to_string(i)));
   EXPECT_THAT(warnings_of(world), ElementsAre(HasSubstr("'l32'"), HasSubstr("'l33'")));
+}
+
+TEST(SceneTest, WarnsOfAPointLightThatShouldCastShadows) {
+  World world = test_world();
+  world.lights = {light_named("lamp"), light_named("spot")};
+  for (Light& light : world.lights) light.cast_shadows = true;
+  world.lights[1].kind = LightKind::kSpot;
+  EXPECT_THAT(warnings_of(world), ElementsAre(HasSubstr("'lamp'")));
+}
+
+// Values that an SDF file may have.
+TEST(SceneTest, LightsThatFadeAtOnceOrNeverAreDrawn) {
+  for (const double factor : {0.0, 1e30}) {
+    World world = test_world();
+    world.lights = {light_named("lamp")};
+    world.lights[0].attenuation_constant = factor;
+    world.lights[0].attenuation_linear = factor;
+    world.lights[0].attenuation_quadratic = factor;
+    const raster::Scene scene(make_scene(world, no_warnings()));
+  }
+}
+
+TEST(SceneTest, RefusesTexturesBeyondTheLimitWithTheFile) {
+  const ScratchFolder scratch;
+  const std::vector<std::uint8_t> grey(std::size_t{6000} * 6000, 90);
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.format = PNG_FORMAT_GRAY;
+  image.width = image.height = 6000;
+  World world = test_world();
+  for (Link* link : {&world.models[0].links[0], &world.uavs[0].body}) {
+    const auto file = scratch.path(link == &world.uavs[0].body ? "b.png" : "a.png");
+    ASSERT_NE(png_image_write_to_file(&image, file.c_str(), 0, grey.data(), 0, nullptr), 0);
+    link->visuals[0].material.albedo_map = file;
+  }
+  const Error error = bad_file_error([&] { make_scene(world, no_warnings()); });
+  EXPECT_EQ(error.where().file, world.uavs[0].body.visuals[0].material.albedo_map);
 }
 
 TEST(SceneTest, LightsKeepTheirKindAndDirection) {

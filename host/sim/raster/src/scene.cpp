@@ -100,6 +100,8 @@ void check(const Light& light, const std::string& name) {
               light.attenuation_constant + light.attenuation_linear + light.attenuation_quadratic >
                   0.0F,
           name, "its attenuation is negative, not finite, or 0");
+  require(!light.cast_shadows || light.kind != LightKind::kPoint, name,
+          "a point light casts no shadows");
   require(light.spot_half_angle_rad >= 0.0 && light.spot_half_angle_rad <= 1.5708, name,
           "its angle is not within 0 to 90 degrees");
   require(light.spot_exponent >= 0.0F && light.spot_exponent <= 1000.0F, name,

@@ -11,7 +11,7 @@ using uav::Pose;
 using uav::Quat;
 using uav::Vec3;
 
-constexpr double kPointHalfAngle_rad = 1.3962634015954636;  // 80°
+constexpr double kWidest_rad = 1.3962634015954636;  // 80°
 constexpr double kNear_m = 0.05;
 constexpr float kLocalBias_m = 0.03F;
 // The sun is this many times as far away as the scene is large: its rays are as good as parallel,
@@ -55,11 +55,8 @@ Sphere sphere_of_fixed(const PreparedScene& scene) {
 double focal_px(const Light& light) {
   const double half = 0.5 * (ShadowMap::kSize_px - 1);
   if (light.kind == LightKind::kDirectional) return half * kSunDistance;
-  const double widest = light.kind == LightKind::kSpot
-                            ? std::min(light.spot_half_angle_rad, kPointHalfAngle_rad)
-                            : kPointHalfAngle_rad;
   constexpr double kNarrowest_rad = 0.001;
-  const double angle = std::max(widest, kNarrowest_rad);
+  const double angle = std::clamp(light.spot_half_angle_rad, kNarrowest_rad, kWidest_rad);
   return half * cosine(angle) / sine(angle);
 }
 

@@ -45,6 +45,7 @@ TEST(Scene, RefusesPartsThatCannotBeDrawnAndNamesThem) {
          p.lights[1].direction_W = {0.0, 0.0, 0.0};
        }},
       {"light 1", [](SceneParts& p) { p.lights[1].attenuation_linear = kNotANumber; }},
+      {"light 1", [](SceneParts& p) { p.lights[1].cast_shadows = true; }},
       {"light 2", [](SceneParts& p) { p.lights[2].spot_half_angle_rad = 2.0; }},
       {"scene", [](SceneParts& p) { p.ambient[0] = kNotANumber; }},
       {"scene", [](SceneParts& p) { p.lights.resize(kMaxLights + 1); }},

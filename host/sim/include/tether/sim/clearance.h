@@ -1,11 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include <tether/sim/world.h>
@@ -46,9 +50,14 @@ class ClearanceMeter {
 
   void add(const Link& link, const uav::Pose& X_BL, std::optional<std::size_t> body,
            std::string_view owner, const MeshVertices& vertices);
+  std::span<const uav::Vec3> vertices_of(const MeshGeometry& mesh, const MeshVertices& vertices);
   std::string_view shape_overhead(const uav::Vec3& p_W) const;
 
   const World& world_;
+  /// By file, submesh and scale. Shapes refer to them.
+  std::map<std::tuple<std::filesystem::path, std::string, double, double, double>,
+           std::vector<uav::Vec3>>
+      vertices_;
   std::vector<Shape> shapes_;
   std::vector<uav::Pose> starts_;
   bool is_complete_ = true;

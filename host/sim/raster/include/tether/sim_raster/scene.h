@@ -72,8 +72,7 @@ struct Light {
   float attenuation_constant = 1.0F, attenuation_linear = 0.0F, attenuation_quadratic = 0.0F;
   double spot_half_angle_rad = 0.4;  ///< 0..π/2
   float spot_exponent = 0.0F;        ///< of the cosine of the angle off the direction
-  /// A point light casts shadows up to 80° off its direction, as if it were a spot.
-  bool cast_shadows = false;
+  bool cast_shadows = false;         ///< not of points
 };
 
 /// The plain data of a scene.

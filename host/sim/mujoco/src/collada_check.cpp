@@ -1,0 +1,83 @@
+#include "collada_check.h"
+
+#include <map>
+#include <string_view>
+
+#include <tinyxml2.h>
+
+#include <tether/base/error.h>
+
+namespace tether::sim {
+namespace {
+
+using tinyxml2::XMLElement;
+
+constexpr int kMaxDepth = 200;
+constexpr int kMaxNodes = 100'000;
+
+[[noreturn]] void refuse(const std::filesystem::path& file, int line, const std::string& what) {
+  throw Error(ErrorCode::kBadFile, FileLocation{file.string(), line}, what);
+}
+
+// Walks the nodes of scenes, and those that they refer to, as often as a reader would.
+class Nodes {
+ public:
+  explicit Nodes(const std::filesystem::path& file) : file_(file) {}
+
+  void collect(const XMLElement& element) {
+    if (std::string_view(element.Name()) == "node") {
+      for (const char* key : {"id", "sid", "name"}) {
+        if (const char* value = element.Attribute(key)) by_name_.emplace(value, &element);
+      }
+    }
+    for (const XMLElement* e = element.FirstChildElement(); e; e = e->NextSiblingElement()) {
+      collect(*e);
+    }
+  }
+
+  void walk_scenes(const XMLElement& element) {
+    if (std::string_view(element.Name()) == "visual_scene") return walk(element, 0);
+    for (const XMLElement* e = element.FirstChildElement(); e; e = e->NextSiblingElement()) {
+      walk_scenes(*e);
+    }
+  }
+
+ private:
+  void walk(const XMLElement& element, int depth) {
+    if (depth > kMaxDepth) {
+      refuse(file_, element.GetLineNum(), "has nodes within nodes deeper than 200, or in a circle");
+    }
+    if (++nodes_ > kMaxNodes) refuse(file_, element.GetLineNum(), "has more than 100,000 nodes");
+    for (const XMLElement* e = element.FirstChildElement(); e; e = e->NextSiblingElement()) {
+      const std::string_view name = e->Name();
+      if (name == "node") walk(*e, depth + 1);
+      if (name == "instance_node") walk_instances(*e, depth);
+    }
+  }
+
+  void walk_instances(const XMLElement& instance, int depth) {
+    const char* url = instance.Attribute("url");
+    if (!url || *url != '#') return;
+    const auto [first, last] = by_name_.equal_range(url + 1);
+    for (auto it = first; it != last; ++it) walk(*it->second, depth + 1);
+  }
+
+  const std::filesystem::path& file_;
+  std::multimap<std::string, const XMLElement*> by_name_;
+  int nodes_ = 0;
+};
+
+}  // namespace
+
+void check_collada(const std::string& text, const std::filesystem::path& file) {
+  tinyxml2::XMLDocument document;
+  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    refuse(file, document.ErrorLineNum(),
+           std::string("cannot be read as a COLLADA mesh: ") + document.ErrorName());
+  }
+  Nodes nodes(file);
+  nodes.collect(*document.RootElement());
+  nodes.walk_scenes(*document.RootElement());
+}
+
+}  // namespace tether::sim

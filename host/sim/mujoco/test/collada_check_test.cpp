@@ -1,0 +1,47 @@
+#include "collada_check.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include <tether/base_testing/thrown_error.h>
+
+namespace tether::sim {
+namespace {
+
+// Node i refers to node i + 1 `times` times.
+std::string chain(int nodes, int times) {
+  std::string text = "<a>\n<visual_scene>\n<instance_node url='#n0'/></visual_scene>\n";
+  for (int i = 0; i < nodes; ++i) {
+    text += "<node id='n" + std::to_string(i) + "'>";
+    for (int k = 0; k < times; ++k)
+      text += "<instance_node url='#n" + std::to_string(i + 1) + "'/>";
+    text += "</node>\n";
+  }
+  return text + "</a>";
+}
+
+TEST(ColladaCheck, TakesNodesThatOthersReferTo) {
+  check_collada(chain(150, 1), "a.dae");
+  check_collada(chain(16, 2), "a.dae");
+}
+
+TEST(ColladaCheck, RefusesCirclesDepthAndMultiplication) {
+  const std::string circle =
+      "<a><visual_scene>\n<node name='n'><node>\n<instance_node url='#n'/>"
+      "</node></node></visual_scene></a>";
+  for (const std::string& text : {chain(210, 1), chain(20, 2), circle}) {
+    const Error error = bad_file_error([&] { check_collada(text, "a.dae"); });
+    EXPECT_EQ(error.where().file, "a.dae");
+    EXPECT_GT(error.where().line, 1);
+  }
+}
+
+TEST(ColladaCheck, RefusesWhatIsNotXml) {
+  for (const char* text : {"", "PK", "<a><b></a>"}) {
+    EXPECT_EQ(bad_file_error([&] { check_collada(text, "a.dae"); }).where().file, "a.dae");
+  }
+}
+
+}  // namespace
+}  // namespace tether::sim
