@@ -84,8 +84,8 @@ void require_sound(const uav::Sample& sample) {
   }
 }
 
-/// What simulator.h promises of every instant. Images are left out: a machine without a display
-/// takes longer for one than for all the rest.
+/// What simulator.h promises of every instant. Images are left out: one takes longer than all the
+/// rest. The targets `mesh` and `texture` draw.
 void require_sound(sim::Simulator& simulator) {
   sim::Snapshot snapshot;
   simulator.capture(snapshot);

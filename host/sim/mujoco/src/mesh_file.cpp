@@ -207,7 +207,8 @@ std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) {
   keep_reader(*importer, type);
   importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer->SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  // Of these bytes alone: a file could name any other. The importer deletes the object.
+  // Of these bytes alone: a file could name any other. The importer deletes the object in the end,
+  // but would leave it if it got another now; it does not read again.
   importer->SetIOHandler(new Assimp::MemoryIOSystem(
       reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), nullptr));
   const aiScene* scene = importer->ReadFile(AI_MEMORYIO_MAGIC_FILENAME + type, 0);
@@ -216,7 +217,6 @@ std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) {
   }
   check_faces(*scene, file);
   importer->ApplyPostProcessing(aiProcess_Triangulate | aiProcess_FlipUVs);
-  importer->SetIOHandler(nullptr);
   return importer;
 }
 

@@ -201,9 +201,11 @@ class Placer {
   }
 
   // From the front, corners run counter-clockwise, which is a negative area where y points down.
+  // What is transparent shows its sides behind too.
   void cover(const FixedPoint& p, const FixedPoint& q, const FixedPoint& r) {
     const std::int64_t area = doubled_area(p, q, r);
-    if (area == 0 || (area > 0 && !selection_.both_sides)) return;
+    const bool both_sides = selection_.both_sides || instance_->transparent;
+    if (area == 0 || (area > 0 && !both_sides)) return;
     const FixedRect bounds{std::min({p.x, q.x, r.x}), std::min({p.y, q.y, r.y}),
                            std::max({p.x, q.x, r.x}), std::max({p.y, q.y, r.y})};
     PixelRect pixels = lens_.pixels_of(bounds);

@@ -113,6 +113,20 @@ TEST(Shade, MixesWhatIsTransparentFromBackToFront) {
   EXPECT_THAT(drawing.entity, Each(7U)) << "entities are those of opaque things";
 }
 
+TEST(Shade, ShowsTheSidesBehindOfWhatIsTransparent) {
+  SceneParts parts = plain_parts(rectangle(-9, -9, 9, 9, 4), {1.0F, 0.0F, 0.0F});
+  Material glass = parts.materials[0];
+  glass.ambient = {0.0F, 1.0F, 0.0F};
+  glass.alpha = 0.5F;
+  parts.materials.push_back(glass);
+  parts.meshes.push_back(box(1.0F));
+  Instance pane;
+  pane.mesh = pane.material = 1;
+  pane.X_BV.p = {0.0, 0.0, 2.0};
+  parts.instances.push_back(pane);
+  EXPECT_THAT(wall(parts), ElementsAre(64, 191, 0));
+}
+
 TEST(Shade, ShowsTheUpperLeftPixelOfATextureAtItsUpperLeft) {
   SceneParts parts = plain_parts(rectangle(-1, -1, 1, 1, 2), {1.0F, 1.0F, 1.0F});
   parts.textures = {{2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255}}};
