@@ -16,6 +16,7 @@
 
 #include <tether/base/error.h>
 #include <tether/os/text_file.h>
+#include <tether/record/png.h>
 #include <tether/record/reader.h>
 #include <tether/report/camera_frame.h>
 

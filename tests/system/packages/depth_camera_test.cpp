@@ -14,7 +14,6 @@
 namespace tether::system_test {
 namespace {
 
-using testing::Each;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
@@ -96,12 +95,12 @@ TEST_F(DepthCamera, BothProgramsFlyAlike) {
     EXPECT_EQ(std::count(shown.begin(), shown.end(), label),
               static_cast<std::ptrdiff_t>(read.seen_anchors->front().pixels));
   }
-  // Standing at the start: the first image, straight ahead.
+  // Standing at the start: the first image, straight ahead, in a room of less than 8 m.
   const auto& first = *depths.begin()->second;
   const auto& depth_m = std::get<0>(first.pixels);
   const double start_m = gap_m(record.ground_truth.front().message);
-  EXPECT_NEAR(depth_m[std::size_t{120} * 320 + 160], start_m, 1e-2);
-  EXPECT_THAT(depth_m, testing::Contains(std::numeric_limits<float>::infinity()));  // beyond 8 m
+  EXPECT_NEAR(depth_m[std::size_t{120} * 320 + 160], start_m, 1e-3);
+  EXPECT_TRUE(std::ranges::all_of(depth_m, [](float d) { return d > 0.3F && d < 8.0F; }));
 }
 
 TEST_F(DepthCamera, FramesAreExtracted) {
