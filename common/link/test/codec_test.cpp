@@ -91,7 +91,7 @@ TEST(Codec, CamerasHaveTheirKindLimitsAndModels) {
   for (const auto& sent : {depth, labels}) {
     Welcome welcome;
     welcome.catalogue.sensors = {{"camera", {}, 30.0, sent}};
-    const auto& sensor = decoded(welcome).catalogue.sensors.at(0);
+    const auto sensor = decoded(welcome).catalogue.sensors.at(0);
     const auto got = std::get<uav::CameraProperties>(sensor.properties);
     EXPECT_EQ(std::tie(got.kind, got.min_m, got.max_m, got.models),
               std::tie(sent.kind, sent.min_m, sent.max_m, sent.models));

@@ -138,9 +138,9 @@ TEST(SeenAnchors, AreWhatIsNotHidden) {
     EXPECT_EQ(far.anchor, "far");
     EXPECT_EQ(far.left_px, static_cast<int>(std::ceil(lens.cx_px)));
     const double half_px = lens.fx_px * 0.5 / 3.8;
-    EXPECT_NEAR(far.right_px, lens.cx_px + half_px, 0.51);
-    EXPECT_NEAR(far.top_px, lens.cy_px - half_px, 0.51);
-    EXPECT_NEAR(far.bottom_px, lens.cy_px + half_px, 0.51);
+    EXPECT_NEAR(far.right_px + 0.5, lens.cx_px + half_px, 0.51);
+    EXPECT_NEAR(far.top_px - 0.5, lens.cy_px - half_px, 0.51);
+    EXPECT_NEAR(far.bottom_px + 0.5, lens.cy_px + half_px, 0.51);
     EXPECT_EQ(far.pixels,
               std::int64_t{far.right_px - far.left_px + 1} * (far.bottom_px - far.top_px + 1));
     EXPECT_EQ(image.seen_anchors[1].anchor, "near");
