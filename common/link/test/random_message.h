@@ -102,7 +102,7 @@ class RandomMessage {
     const std::size_t pixels = out.rgb.size() / 3;
     if (coin()) out.depth_m.assign(pixels, static_cast<float>(number()));
     if (coin()) out.labels.assign(pixels, static_cast<std::uint16_t>(random_.bits()));
-    if (!out.depth_m.empty() && coin()) out.rgb = {};
+    if (!out.depth_m.empty() && coin()) out.rgb.clear();
     return out;
   }
 
