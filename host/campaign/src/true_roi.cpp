@@ -197,8 +197,8 @@ std::optional<PixelRect> roi_in_image(const record::Interaction& read,
   const PixelRect pixels{seen->left_px - 0.5, seen->top_px - 0.5, seen->right_px + 0.5,
                          seen->bottom_px + 0.5};
   if (!whole) return pixels;
-  // A pixel shows what is in its middle.
-  constexpr double kReached_px = 1.0;
+  // A pixel shows what is in its middle: a visible edge is half a pixel away at most.
+  constexpr double kReached_px = 0.75;
   const auto edge = [](double of_whole_px, double of_pixels_px) {
     return std::abs(of_whole_px - of_pixels_px) <= kReached_px ? of_whole_px : of_pixels_px;
   };
