@@ -163,9 +163,11 @@ void add_report_command(CLI::App& program, Action& action) {
 }
 
 void add_frames_command(CLI::App& program, Action& action) {
-  const auto [command, options] = add_command(
-      program, action, "frames",
-      "Draw the recorded camera images with the tracked and the true ROI (SVG)", draw_frames);
+  const auto [command, options] = add_command(program, action, "frames",
+                                              "Extract the recorded images: colours with the "
+                                              "tracked and the true ROI (SVG), depths [mm] and "
+                                              "labels (16-bit PNG)",
+                                              draw_frames);
   command->add_option("record", options->record, "record.mcap of a run with --images")->required();
   command->add_option("--out", options->out, "Folder for the images [frames, next to the record]");
   command->footer(R"(Example:

@@ -28,6 +28,7 @@ void write(const record::Record& record, const std::filesystem::path& file) {
   write_all(record.annotations);
   write_all(record.stops);
   write_all(record.images);
+  write_all(record.raw_images);
   if (record.footer) recorder->write(*record.footer);
 }
 

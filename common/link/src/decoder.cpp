@@ -36,8 +36,15 @@ uav::Pose from_wire(const wire::Pose& X) {
 // --- catalogue ----------------------------------------------------------------------------------
 
 uav::CameraProperties read(const wire::CameraProperties& c) {
-  return {{c.width_px(), c.height_px(), c.fx_px(), c.fy_px(), c.cx_px(), c.cy_px(), c.k1(), c.k2(),
-           c.k3(), c.p1(), c.p2()}};
+  uav::CameraProperties out{{c.width_px(), c.height_px(), c.fx_px(), c.fy_px(), c.cx_px(),
+                             c.cy_px(), c.k1(), c.k2(), c.k3(), c.p1(), c.p2()},
+                            static_cast<uav::CameraKind>(c.kind()),
+                            c.min_m(),
+                            c.max_m()};
+  if (const auto* models = c.models()) {
+    for (const flatbuffers::String* model : *models) out.models.push_back(model->str());
+  }
+  return out;
 }
 
 /// False: a kind that this version does not know.
@@ -102,12 +109,22 @@ Result<Message> read(const wire::Request& request) {
 
 // --- reply --------------------------------------------------------------------------------------
 
+template <class T>
+std::vector<T> values_of(const flatbuffers::Vector<T>* vector) {
+  if (vector == nullptr) return {};
+  std::vector<T> values(vector->size());
+  if (!values.empty()) std::memcpy(values.data(), vector->data(), values.size() * sizeof(T));
+  return values;
+}
+
 uav::CameraSample read(const wire::CameraSample& s) {
   return {from_ns<SimTime>(s.sampled_at_st_ns()),
           s.index(),
           s.width_px(),
           s.height_px(),
-          {s.rgb()->data(), s.rgb()->data() + s.rgb()->size()}};
+          values_of(s.rgb()),
+          values_of(s.depth_m()),
+          values_of(s.labels())};
 }
 uav::ImuSample read(const wire::ImuSample& s) {
   return {from_ns<SimTime>(s.sampled_at_st_ns()), s.index(), from_wire(*s.angular_velocity_rad_s()),

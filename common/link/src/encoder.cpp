@@ -37,9 +37,12 @@ using Properties = Member<wire::SensorProperties>;
 
 Properties write(FlatBufferBuilder& b, const uav::CameraProperties& camera) {
   const uav::CameraModel& m = camera.model;
+  const auto models = camera.models.empty() ? 0 : b.CreateVectorOfStrings(camera.models);
   return {wire::SensorProperties::CameraProperties,
           wire::CreateCameraProperties(b, m.width_px, m.height_px, m.fx_px, m.fy_px, m.cx_px,
-                                       m.cy_px, m.k1, m.k2, m.k3, m.p1, m.p2)
+                                       m.cy_px, m.k1, m.k2, m.k3, m.p1, m.p2,
+                                       static_cast<wire::CameraKind>(camera.kind), camera.min_m,
+                                       camera.max_m, models)
               .Union()};
 }
 Properties write(FlatBufferBuilder& b, const uav::ImuProperties&) {
@@ -117,9 +120,11 @@ SampleMember write(FlatBufferBuilder& b, const uav::CameraSample& sample, ImageS
   const Offset<flatbuffers::Vector<std::uint8_t>> rgb(
       b.CreateUninitializedVector<std::uint8_t>(sample.rgb.size(), &room));
   slot = {sample.rgb, rgb.o};
+  const auto depth_m = sample.depth_m.empty() ? 0 : b.CreateVector(sample.depth_m);
+  const auto labels = sample.labels.empty() ? 0 : b.CreateVector(sample.labels);
   return {wire::Sample::CameraSample,
           wire::CreateCameraSample(b, to_ns(sample.sampled_at), sample.index, sample.width_px,
-                                   sample.height_px, rgb)
+                                   sample.height_px, rgb, depth_m, labels)
               .Union()};
 }
 SampleMember write(FlatBufferBuilder& b, const uav::ImuSample& sample, ImageSlot&) {

@@ -1,5 +1,6 @@
 #include "json_text.h"
 
+#include <array>
 #include <cmath>
 #include <set>
 #include <string>
@@ -38,6 +39,11 @@ void json_object(Checker& c, const std::string& value, std::string_view field) {
 
 // --- catalogue ----------------------------------------------------------------------------------
 
+void check_limits(Checker& c, double min_m, double max_m) {
+  c.finite(max_m, "max_m");
+  c.require(min_m >= 0.0 && min_m <= max_m, "min_m", "is not within 0..max_m");
+}
+
 void check(Checker& c, const uav::CameraProperties& camera) {
   const uav::CameraModel& m = camera.model;
   c.require(m.width_px > 0 && m.height_px > 0 && m.width_px <= 1 << 16 && m.height_px <= 1 << 16,
@@ -46,13 +52,17 @@ void check(Checker& c, const uav::CameraProperties& camera) {
   for (double value : {m.fx_px, m.fy_px, m.cx_px, m.cy_px, m.k1, m.k2, m.k3, m.p1, m.p2}) {
     c.finite(value, "camera intrinsic");
   }
+  c.require(camera.kind >= uav::CameraKind::kColor && camera.kind <= uav::CameraKind::kSegmentation,
+            "kind", "is unknown");
+  check_limits(c, camera.min_m, camera.max_m);
+  c.require(camera.models.size() <= kMaxModels, "models", "has too many entries");
+  for (const std::string& model : camera.models) c.text(model, kMaxNameBytes, "model");
 }
 
 void check(Checker&, const uav::ImuProperties&) {}
 
 void check(Checker& c, const uav::RangeProperties& range) {
-  c.finite(range.max_m, "max_m");
-  c.require(range.min_m >= 0.0 && range.min_m <= range.max_m, "min_m", "is not within 0..max_m");
+  check_limits(c, range.min_m, range.max_m);
 }
 
 void check(Checker& c, const uav::SensorDescription& sensor) {
@@ -144,10 +154,17 @@ void check(Checker& c, const Request& request) {
 void check(Checker& c, const uav::CameraSample& sample) {
   c.require(sample.width_px > 0 && sample.height_px > 0, "image size", "is not positive");
   const std::int64_t pixels = std::int64_t{sample.width_px} * sample.height_px;
-  c.require(
-      sample.rgb.size() % 3 == 0 && static_cast<std::int64_t>(sample.rgb.size() / 3) == pixels,
-      "image", "is not width x height x 3 bytes");
-  c.require(sample.rgb.size() <= kMaxReplyBytes - 4096, "image", "is larger than a frame may be");
+  const auto is_whole = [pixels](std::size_t size, std::size_t per_pixel) {
+    return size % per_pixel == 0 && static_cast<std::int64_t>(size / per_pixel) == pixels;
+  };
+  const auto [rgb, depth, labels] =
+      std::array{sample.rgb.size(), sample.depth_m.size(), sample.labels.size()};
+  c.require(rgb + depth + labels > 0, "image", "is empty");
+  c.require(rgb == 0 || is_whole(rgb, 3), "image", "is not width x height x 3 bytes");
+  c.require(depth == 0 || is_whole(depth, 1), "depth_m", "is not width x height numbers");
+  c.require(labels == 0 || is_whole(labels, 1), "labels", "is not width x height numbers");
+  c.require(rgb + 4 * depth + 2 * labels <= kMaxReplyBytes - 4096, "image",
+            "is larger than a frame may be");
 }
 void check(Checker& c, const uav::ImuSample& sample) {
   c.finite(sample.angular_velocity_rad_s, "angular_velocity_rad_s");

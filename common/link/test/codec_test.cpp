@@ -35,7 +35,7 @@ TEST(Codec, RoundTripKeepsEveryFieldWholeAndInPieces) {
     const auto* reply = std::get_if<Reply>(&message);
     if (!reply || !reply->sample) continue;
     const auto* camera = std::get_if<uav::CameraSample>(&*reply->sample);
-    ASSERT_EQ(image.data(), camera ? camera->rgb.data() : nullptr) << i;
+    ASSERT_EQ(image.data(), camera && !camera->rgb.empty() ? camera->rgb.data() : nullptr) << i;
   }
 }
 
@@ -63,9 +63,39 @@ TEST(Codec, HelloRequestAndReplyFieldByField) {
   const std::vector<std::uint8_t> image{1, 2, 3, 4, 5, 6};
   const Reply reply = decoded(
       Reply{3, from_ns<ExecTime>(50), uav::CameraSample{from_ns<SimTime>(45), 8, 2, 1, image}});
-  const auto& [sampled_at, index, width, height, rgb] = std::get<uav::CameraSample>(*reply.sample);
-  EXPECT_EQ(std::tie(reply.resume_at, sampled_at, index, width, height, rgb),
-            std::tuple(from_ns<ExecTime>(50), from_ns<SimTime>(45), 8u, 2, 1, image));
+  const auto& got = std::get<uav::CameraSample>(*reply.sample);
+  EXPECT_EQ(std::tie(reply.resume_at, got.sampled_at, got.index, got.width_px, got.height_px,
+                     got.rgb, got.depth_m, got.labels),
+            std::tuple(from_ns<ExecTime>(50), from_ns<SimTime>(45), 8u, 2, 1, image,
+                       std::vector<float>{}, std::vector<std::uint16_t>{}));
+}
+
+TEST(Codec, ImagesHaveDepthsAndLabelsButNotTheTruth) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  uav::CameraSample image{SimTime{}, 1, 2, 1, {}, {1.5F, -kInf}, {0, 65535}};
+  image.knows_anchors = true;
+  image.seen_anchors = {{"box", 0, 0, 1, 0, 2}};
+  const Reply reply = decoded(Reply{3, ExecTime{}, image});
+  const auto& got = std::get<uav::CameraSample>(*reply.sample);
+  EXPECT_TRUE(got.rgb.empty());
+  EXPECT_EQ(got.depth_m, image.depth_m);
+  EXPECT_EQ(got.labels, image.labels);
+  EXPECT_FALSE(got.knows_anchors);
+  EXPECT_TRUE(got.seen_anchors.empty());
+}
+
+TEST(Codec, CamerasHaveTheirKindLimitsAndModels) {
+  const uav::CameraModel model{640, 480, 1, 2, 3, 4};
+  const uav::CameraProperties depth{model, uav::CameraKind::kRgbd, 0.3, 8.0};
+  const uav::CameraProperties labels{model, uav::CameraKind::kSegmentation, 0, 0, {"box", ""}};
+  for (const auto& sent : {depth, labels}) {
+    Welcome welcome;
+    welcome.catalogue.sensors = {{"camera", {}, 30.0, sent}};
+    const auto sensor = decoded(welcome).catalogue.sensors.at(0);
+    const auto got = std::get<uav::CameraProperties>(sensor.properties);
+    EXPECT_EQ(std::tie(got.kind, got.min_m, got.max_m, got.models),
+              std::tie(sent.kind, sent.min_m, sent.max_m, sent.models));
+  }
 }
 
 TEST(Codec, WelcomeFieldByField) {

@@ -58,7 +58,11 @@ class RandomMessage {
     const std::uint32_t kind = random_.bits() % 3;
     if (kind == 0)
       out.properties = uav::CameraProperties{
-          {640, 480, 1.0 + number(), 2.0, number(), number(), 0.1, 0.2, 0.3, 0.4, number()}};
+          {640, 480, 1.0 + number(), 2.0, number(), number(), 0.1, 0.2, 0.3, 0.4, number()},
+          static_cast<uav::CameraKind>(random_.bits() % 4),
+          0.1,
+          0.2 + number(),
+          std::vector<std::string>(random_.bits() % 4, text())};
     if (kind == 1) out.properties = uav::ImuProperties{};
     if (kind == 2) out.properties = uav::RangeProperties{0.1, 0.2 + number()};
     return out;
@@ -94,7 +98,12 @@ class RandomMessage {
     const int height = 1 + static_cast<int>(random_.bits() % 40);
     std::vector<std::uint8_t> rgb(static_cast<std::size_t>(3 * width * height));
     for (auto& byte : rgb) byte = static_cast<std::uint8_t>(random_.bits());
-    return {time<SimTime>(), word(), width, height, std::move(rgb)};
+    uav::CameraSample out{time<SimTime>(), word(), width, height, std::move(rgb)};
+    const std::size_t pixels = out.rgb.size() / 3;
+    if (coin()) out.depth_m.assign(pixels, static_cast<float>(number()));
+    if (coin()) out.labels.assign(pixels, static_cast<std::uint16_t>(random_.bits()));
+    if (!out.depth_m.empty() && coin()) out.rgb.clear();
+    return out;
   }
 
   Message reply() {

@@ -100,6 +100,16 @@ TEST(Validate, Catalogue) {
   expect({"name", welcome_with({"", {}, 30.0, camera})});
   expect({"orientation", welcome_with({"camera", {{}, {2, 0, 0, 0}}, 30.0, camera})});
   expect({"focal length", welcome_with({"camera", {}, 1.0, uav::CameraProperties{{1, 1}}})});
+  for (const auto& [what, properties] :
+       {std::pair{"min_m", uav::CameraProperties{camera.model, uav::CameraKind::kDepth, 2.0, 1.0}},
+        std::pair{"kind", uav::CameraProperties{camera.model, static_cast<uav::CameraKind>(4)}},
+        std::pair{"model", uav::CameraProperties{camera.model,
+                                                 uav::CameraKind::kSegmentation,
+                                                 0.0,
+                                                 0.0,
+                                                 {std::string(257, 'x')}}}}) {
+    expect({what, welcome_with({"camera", {}, 30.0, properties})});
+  }
   expect({"min_m", welcome_with({"down", {}, 1.0, uav::RangeProperties{3.0, 2.0}})});
   expect({"max_m", welcome_with({"down", {}, 1.0, uav::RangeProperties{0.0, kInf}})});
   expect({"", welcome_with({"box", uav::AnchorShape::kBox, {1, 1, 1}, {0, 0, 1}})});

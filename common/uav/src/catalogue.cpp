@@ -19,6 +19,20 @@ std::string_view name(SensorKind kind) {
   return enum_name(kind, {"camera", "imu", "range"});
 }
 
+std::string_view name(CameraKind kind) {
+  return enum_name(kind, {"camera", "depth camera", "rgbd camera", "segmentation camera"});
+}
+
+std::optional<CameraKind> SensorDescription::camera_kind() const {
+  const auto* camera = std::get_if<CameraProperties>(&properties);
+  return camera == nullptr ? std::nullopt : std::optional(camera->kind);
+}
+
+std::string_view SensorDescription::kind_name() const {
+  const auto of_camera = camera_kind();
+  return of_camera ? uav::name(*of_camera) : uav::name(kind());
+}
+
 std::string_view name(AnchorShape shape) {
   return enum_name(shape, {"box", "cylinder", "sphere"});
 }

@@ -86,23 +86,12 @@ const record::SensorInfo* find_camera(const record::Record& record, const std::s
   return nullptr;
 }
 
-std::optional<SimTime> instant_of_image(const record::Record& record, const std::string& uav,
-                                        const Estimate& estimate) {
-  for (const auto& logged : record.interactions) {
-    const record::Interaction& read = logged.message;
-    if (read.kind != record::kSensor || read.uav != uav || read.sensor != estimate.camera ||
-        read.sample_index != estimate.image_index)
-      continue;
-    return read.sample_state_at ? read.sample_state_at : read.sampled_at;
-  }
-  return std::nullopt;
-}
-
 // The SUT's last estimate, with the ground truth of its image.
 struct Look {
   Estimate estimate;
   const record::SensorInfo* camera = nullptr;
   const record::Anchor* anchor = nullptr;
+  const record::Interaction* read = nullptr;
   uav::Pose X_WB;
 };
 
@@ -121,24 +110,25 @@ MetricOutcome with_last_look(const scenario::Metric& metric, const record::Recor
     return missing(fmt::format("the record does not describe a camera '{}' of '{}'",
                                estimate->camera, metric.uav));
   }
-  const auto instant = instant_of_image(record, metric.uav, *estimate);
-  if (!instant) {
+  const record::Interaction* read =
+      find_read(record, metric.uav, estimate->camera, estimate->image_index);
+  if (read == nullptr) {
     return missing(
         fmt::format("the SUT of '{}' estimated from image {} of '{}', which it never "
                     "received",
                     metric.uav, estimate->image_index, estimate->camera));
   }
-  const auto X_WB = pose_at(record, metric.uav, *instant);
+  const auto X_WB = pose_at(record, metric.uav, read->sample_state_at.value_or(*read->sampled_at));
   if (!X_WB) return no_ground_truth(metric);
-  return evaluate({*estimate, camera, anchor, *X_WB});
+  return evaluate({*estimate, camera, anchor, read, *X_WB});
 }
 
 MetricOutcome bearing_error_of(const Look& look) {
-  const auto roi = true_roi(*look.camera, look.X_WB, *look.anchor);
+  const auto roi = roi_in_image(*look.read, *look.camera, look.X_WB, *look.anchor);
   if (!roi) {
-    return missing(
-        fmt::format("'{}' is not in front of the camera '{}' in the image of the estimate",
-                    look.anchor->name, look.camera->name));
+    return missing(fmt::format(
+        "'{}' {} the camera '{}' in the image of the estimate", look.anchor->name,
+        look.read->seen_anchors ? "is hidden from" : "is not in front of", look.camera->name));
   }
   const double true_rad = roi_bearing_rad(*look.camera, *roi);
   return {deg_from_rad(std::abs(wrap_angle_rad(look.estimate.bearing_rad - true_rad))), ""};

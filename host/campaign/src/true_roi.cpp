@@ -187,6 +187,37 @@ std::optional<PixelRect> true_roi(const record::SensorInfo& camera, const uav::P
   return roi;
 }
 
+std::optional<PixelRect> roi_in_image(const record::Interaction& read,
+                                      const record::SensorInfo& camera, const uav::Pose& X_WB,
+                                      const record::Anchor& anchor) {
+  const std::optional<PixelRect> whole = true_roi(camera, X_WB, anchor);
+  if (!read.seen_anchors) return whole;
+  const auto seen = std::ranges::find(*read.seen_anchors, anchor.name, &record::SeenAnchor::anchor);
+  if (seen == read.seen_anchors->end()) return std::nullopt;
+  const PixelRect pixels{seen->left_px - 0.5, seen->top_px - 0.5, seen->right_px + 0.5,
+                         seen->bottom_px + 0.5};
+  if (!whole) return pixels;
+  // A pixel shows what is in its middle: a visible edge is half a pixel away at most.
+  constexpr double kReached_px = 0.75;
+  const auto edge = [](double of_whole_px, double of_pixels_px) {
+    return std::abs(of_whole_px - of_pixels_px) <= kReached_px ? of_whole_px : of_pixels_px;
+  };
+  return PixelRect{edge(whole->left_px, pixels.left_px), edge(whole->top_px, pixels.top_px),
+                   edge(whole->right_px, pixels.right_px),
+                   edge(whole->bottom_px, pixels.bottom_px)};
+}
+
+const record::Interaction* find_read(const record::Record& record, const std::string& uav,
+                                     const std::string& sensor, std::uint64_t index) {
+  for (const auto& logged : record.interactions) {
+    const record::Interaction& read = logged.message;
+    if (read.kind == record::kSensor && read.uav == uav && read.sensor == sensor &&
+        read.sample_index == index && read.sampled_at)
+      return &read;
+  }
+  return nullptr;
+}
+
 std::optional<PixelRect> visible_part(const record::SensorInfo& camera, const PixelRect& roi) {
   const PixelRect image = image_of(*camera.camera);
   const PixelRect part{std::max(roi.left_px, image.left_px), std::max(roi.top_px, image.top_px),

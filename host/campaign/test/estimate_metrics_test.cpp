@@ -119,6 +119,21 @@ TEST(BearingError, NeedsAnAnchorInFrontOfTheCamera) {
   EXPECT_TRUE(flight.metric("distance_error").value);
 }
 
+// The left half of the box is hidden: its bearing is that of the visible half.
+TEST(BearingError, IsThatOfTheVisiblePixels) {
+  Flight flight = standing();
+  flight.anchor_at(4.6, 0.0).note("estimate", estimate(0.0, "5")).finish(100);
+  EXPECT_NEAR(*flight.metric("bearing_error").value, 0.0, 1e-9);
+  auto& seen = flight.record().interactions[0].message.seen_anchors;
+  seen.emplace().push_back({"box", 320, 200, 359, 280, 3240});
+  // From 319.5 to the true edge of the box, 320 · 0.5 / 4 = 40 px to the right.
+  const double half_deg = deg_from_rad(std::atan2(40.0, 320.0)) / 2.0;
+  EXPECT_NEAR(*flight.metric("bearing_error").value, half_deg, 1e-4);
+  seen->clear();
+  EXPECT_THAT(flight.metric("bearing_error").missing_because, HasSubstr("hidden"));
+  EXPECT_TRUE(flight.metric("distance_error").value);
+}
+
 TEST(DistanceError, NeedsADistanceInTheLastEstimate) {
   Flight flight = standing();
   flight.note("estimate", estimate(0.0, "4.9")).note("estimate", estimate(0.0, "null"));

@@ -23,7 +23,8 @@ std::pair<Duration, Duration> bounds(const uav::Delay& delay) {
   return {Duration(0), Duration::max()};
 }
 
-record::CameraInfo describe(const uav::Pose& X_BS, const uav::CameraModel& model) {
+record::CameraInfo describe(const uav::Pose& X_BS, const uav::CameraProperties& camera) {
+  const uav::CameraModel& model = camera.model;
   return {.p_BS_m = {X_BS.p.x, X_BS.p.y, X_BS.p.z},
           .q_BS = {X_BS.q.w, X_BS.q.x, X_BS.q.y, X_BS.q.z},
           .width_px = model.width_px,
@@ -36,13 +37,15 @@ record::CameraInfo describe(const uav::Pose& X_BS, const uav::CameraModel& model
           .k2 = model.k2,
           .k3 = model.k3,
           .p1 = model.p1,
-          .p2 = model.p2};
+          .p2 = model.p2,
+          .depth_min_m = camera.min_m,
+          .depth_max_m = camera.max_m,
+          .models = camera.models};
 }
 
-record::SensorInfo describe(const std::string& uav, const sim::Sensor& sensor,
+record::SensorInfo describe(const std::string& uav, const uav::SensorDescription& sensor,
                             const uav::SensorTiming& timing) {
-  record::SensorInfo info{
-      .uav = uav, .name = sensor.name, .kind = std::string(uav::name(sensor.kind()))};
+  record::SensorInfo info{.uav = uav, .name = sensor.name, .kind = std::string(sensor.kind_name())};
   std::tie(info.delay_min, info.delay_max) =
       bounds(std::visit([](const auto& t) { return t.delay; }, timing));
   if (const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing)) {
@@ -50,8 +53,8 @@ record::SensorInfo describe(const std::string& uav, const sim::Sensor& sensor,
     info.period = periodic->period;
     info.phase = periodic->phase;
   }
-  if (const auto* camera = std::get_if<sim::CameraModel>(&sensor.model))
-    info.camera = describe(sensor.X_BS, camera->intrinsics);
+  if (const auto* camera = std::get_if<uav::CameraProperties>(&sensor.properties))
+    info.camera = describe(sensor.X_BS, *camera);
   return info;
 }
 
@@ -105,9 +108,10 @@ record::Header Coordinator::Impl::make_header() const {
          .required_clock = {}});
     if (const auto& required = options_.uavs[session.uav].clock)
       header.suts.back().required_clock = describe(*required);
-    for (std::size_t i = 0; i < uav.sensors.size(); ++i)
+    const uav::Catalogue catalogue = sim::make_catalogue(world(), uav);
+    for (std::size_t i = 0; i < catalogue.sensors.size(); ++i)
       header.sensors.push_back(
-          describe(uav.name, uav.sensors[i], options_.uavs[session.uav].timings[i]));
+          describe(uav.name, catalogue.sensors[i], options_.uavs[session.uav].timings[i]));
   }
   for (const sim::PlacedAnchor& anchor : world().anchors)
     header.anchors.push_back(describe(anchor));

@@ -85,11 +85,26 @@ void RunLog::stop(SimTime st, const record::Stop& stop) {
 
 void RunLog::image(SimTime st, const std::string& uav, const std::string& sensor,
                    const uav::CameraSample& sample) {
-  put(st, record::Image{.uav = uav,
-                        .sensor = sensor,
-                        .at = sample.sampled_at,
-                        .index = sample.index,
-                        .png = record::encode_png(sample.width_px, sample.height_px, sample.rgb)});
+  if (!sample.rgb.empty()) {
+    put(st,
+        record::Image{.uav = uav,
+                      .sensor = sensor,
+                      .at = sample.sampled_at,
+                      .index = sample.index,
+                      .png = record::encode_png(sample.width_px, sample.height_px, sample.rgb)});
+  }
+  const auto put_raw = [&](const auto& pixels) {
+    if (pixels.empty()) return;
+    put(st, record::RawImage{.uav = uav,
+                             .sensor = sensor,
+                             .at = sample.sampled_at,
+                             .index = sample.index,
+                             .width_px = sample.width_px,
+                             .height_px = sample.height_px,
+                             .pixels = pixels});
+  };
+  put_raw(sample.depth_m);
+  put_raw(sample.labels);
 }
 
 void RunLog::flush() {

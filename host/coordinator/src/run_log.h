@@ -64,7 +64,8 @@ class RunLog {
 
  private:
   using Message = std::variant<record::Interaction, record::CommandEffect, record::GroundTruth,
-                               record::Annotation, record::Stop, record::Contact, record::Image>;
+                               record::Annotation, record::Stop, record::Contact, record::Image,
+                               record::RawImage>;
   struct Collected {
     SimTime st;
     std::pair<ExecTime, std::size_t> key;

@@ -5,6 +5,17 @@
 
 namespace tether::coordinator {
 
+namespace {
+
+std::vector<record::SeenAnchor> describe(const std::vector<uav::SeenAnchor>& anchors) {
+  std::vector<record::SeenAnchor> described;
+  for (const auto& [name, left, top, right, bottom, pixels] : anchors)
+    described.push_back({name, left, top, right, bottom, static_cast<std::uint64_t>(pixels)});
+  return described;
+}
+
+}  // namespace
+
 Stepper::Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& barrier, RunLog& log,
                  Duration ground_truth_period, std::vector<Sampler> samplers)
     : simulator_(&simulator),
@@ -97,7 +108,10 @@ std::optional<uav::Sample> Stepper::measure(std::size_t uav, record::Interaction
     return s.measure(state, uav, read->sensor, read->measurement.index);
   });
   sampler.answered(entry.sequence, same_instant(entry.reply_at));
-  if (std::holds_alternative<uav::CameraSample>(sample)) log_->count_image();
+  if (const auto* image = std::get_if<uav::CameraSample>(&sample)) {
+    log_->count_image();
+    if (image->knows_anchors) entry.seen_anchors = describe(image->seen_anchors);
+  }
   return sample;
 }
 

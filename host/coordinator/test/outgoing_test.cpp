@@ -38,6 +38,28 @@ TEST_F(CoordinatorTest, RecordsAllImagesOrThoseOfTheImagePeriod) {
   EXPECT_THAT(recorded(milliseconds(66)), testing::ElementsAre(0u, 2u, 4u));
 }
 
+// What is seen of the anchors is the truth: the record has it with each read, the SUT does not.
+TEST_F(CoordinatorTest, RecordsDepthsLabelsAndWhatIsSeenOfAnchors) {
+  using uav::CameraKind;
+  options_.record_images = true;
+  const std::vector<uav::SeenAnchor> seen{{"box", 1, 2, 3, 4, 5}};
+  for (const auto kind : {CameraKind::kColor, CameraKind::kRgbd, CameraKind::kSegmentation}) {
+    make();
+    simulator_->set_camera_kind(kind);
+    simulator_->plan_seen_anchors(seen);
+    run({read(Duration(0), kCamera), read(Duration(0), kRange), finish(Duration(0))});
+    EXPECT_EQ(recorder_.images.size(), uav::has_color(kind) ? 1U : 0U);
+    ASSERT_EQ(recorder_.raw_images.size(), kind == CameraKind::kColor ? 0U : 1U);
+    if (kind == CameraKind::kRgbd) {
+      EXPECT_EQ(recorder_.raw_images[0].pixels.index(), 0U);
+    }
+    const auto& of_image = recorder_.interactions.at(0).seen_anchors;
+    ASSERT_TRUE(of_image && of_image->size() == 1);
+    EXPECT_EQ(of_image->at(0), (record::SeenAnchor{"box", 1, 2, 3, 4, 5}));
+    EXPECT_FALSE(recorder_.interactions.at(1).seen_anchors);
+  }
+}
+
 // ---- The end of a SUT
 
 /// A SUT whose Finish is held until ST is 1 s.

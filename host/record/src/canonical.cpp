@@ -34,8 +34,12 @@ void append_log_time(std::string& out, SimTime at) {
   out += ' ';
 }
 
-void append_image(std::string& out, const Image& image) {
-  const std::string_view bytes(reinterpret_cast<const char*>(image.png.data()), image.png.size());
+template <class Pixels>
+std::string_view bytes_of(const Pixels& pixels) {
+  return {reinterpret_cast<const char*>(pixels.data()), pixels.size() * sizeof pixels[0]};
+}
+
+void append_image(std::string& out, const auto& image, std::string_view bytes) {
   JsonObject object(out);
   object.text("uav", image.uav);
   object.text("sensor", image.sensor);
@@ -100,8 +104,13 @@ std::string canonical(const Record& record, const CanonicalOptions& options) {
     append_log_time(out, logged.at);
     append_json(out, logged.message);
   });
-  append_lines(out, "image", record.images,
-               [&](const Logged<Image>& logged) { append_image(out, logged.message); });
+  append_lines(out, "image", record.images, [&](const Logged<Image>& logged) {
+    append_image(out, logged.message, bytes_of(logged.message.png));
+  });
+  append_lines(out, "raw_image", record.raw_images, [&](const Logged<RawImage>& logged) {
+    std::visit([&](const auto& pixels) { append_image(out, logged.message, bytes_of(pixels)); },
+               logged.message.pixels);
+  });
   if (record.footer) append_footer(out, *record.footer, options);
   return out;
 }

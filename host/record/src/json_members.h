@@ -18,6 +18,11 @@ concept Time = requires(const Value& value) {
   to_ns(value);
 };
 
+template <class Message>
+void append_members(std::string& out, const Message& message, JsonParts parts = {});
+template <class Message>
+Message read_members(const Json& json);
+
 /// Writes a JSON object, member by member.
 class MemberWriter {
  public:
@@ -63,6 +68,21 @@ class MemberWriter {
     MemberWriter inner(object_.begin(name));
     fields(inner);
     inner.close();
+  }
+  /// Of objects or texts.
+  template <class Item>
+  void list(const char* name, const std::vector<Item>& items) {
+    std::string& out = object_.begin(name);
+    out += '[';
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      if (i > 0) out += ',';
+      if constexpr (std::is_same_v<Item, std::string>) {
+        append_json_string(out, items[i]);
+      } else {
+        append_members(out, items[i]);
+      }
+    }
+    out += ']';
   }
   /// To append members of another kind.
   JsonObject& json() { return object_; }
@@ -127,13 +147,26 @@ class MemberReader {
     const MemberReader inner(member(object_, name));
     fields(inner);
   }
+  template <class Item>
+  void list(const char* name, std::vector<Item>& items) const {
+    const Json& array = member(object_, name);
+    if (!array.is_array()) throw Damage("member", name, "is not a list");
+    for (const Json& item : array) {
+      if constexpr (std::is_same_v<Item, std::string>) {
+        if (!item.is_string()) throw Damage("member", name, "is not a list of strings");
+        items.push_back(item.get<std::string>());
+      } else {
+        items.push_back(read_members<Item>(item));
+      }
+    }
+  }
 
  private:
   const Json& object_;
 };
 
 template <class Message>
-void append_members(std::string& out, const Message& message, JsonParts parts = {}) {
+void append_members(std::string& out, const Message& message, JsonParts parts) {
   MemberWriter writer(out, parts);
   members(writer, message);
   writer.close();

@@ -4,6 +4,10 @@
 #include "json_fields.h"
 #include "json_members.h"
 #include "json_text.h"
+#include "members.h"
+
+#include <bit>
+#include <cstring>
 
 #include <tether/base/json_depth.h>
 
@@ -37,6 +41,28 @@ bool is_json_object(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r\n");
   return first != text.npos && text[first] == '{' && json_depth(text) < kMaxJsonDepth &&
          Json::accept(text);
+}
+
+// Foxglove's names; little-endian, as all machines that Tether runs on are.
+static_assert(std::endian::native == std::endian::little);
+std::string_view encoding_of(const std::vector<float>&) {
+  return "32FC1";
+}
+std::string_view encoding_of(const std::vector<std::uint16_t>&) {
+  return "16UC1";
+}
+
+template <class T>
+void decode_pixels(const Json& data, const RawImage& image, std::vector<T>& pixels) {
+  std::vector<std::uint8_t> bytes;
+  if (!data.is_string() || !decode_base64(data.get_ref<const std::string&>(), bytes))
+    throw Damage("member", "data", "is not base64");
+  const std::size_t count =
+      static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
+  if (bytes.size() != count * sizeof(T))
+    throw Damage("member", "data", "has another size than the image");
+  pixels.resize(count);
+  std::memcpy(pixels.data(), bytes.data(), bytes.size());
 }
 
 }  // namespace
@@ -82,6 +108,29 @@ void append_json(std::string& out, const Image& message) {
   data += '"';
   append_base64(data, message.png);
   data += '"';
+  object.close();
+}
+
+void append_json(std::string& out, const RawImage& message) {
+  JsonObject object(out);
+  timestamp(object, message.at);
+  object.text("frame_id", message.uav + "/" + message.sensor);
+  object.integer("width", message.width_px);
+  object.integer("height", message.height_px);
+  object.text("uav", message.uav);
+  object.text("sensor", message.sensor);
+  object.integer("index", message.index);
+  std::visit(
+      [&](const auto& pixels) {
+        object.text("encoding", encoding_of(pixels));
+        object.integer("step", sizeof pixels[0] * static_cast<std::size_t>(message.width_px));
+        std::string& data = object.begin("data");
+        data += '"';
+        append_base64(data, {reinterpret_cast<const std::uint8_t*>(pixels.data()),
+                             pixels.size() * sizeof pixels[0]});
+        data += '"';
+      },
+      message.pixels);
   object.close();
 }
 
@@ -138,6 +187,26 @@ Image image_from_json(std::string_view text) {
   const Json& data = member(json, "data");
   if (!data.is_string() || !decode_base64(data.get_ref<const std::string&>(), message.png))
     throw Damage("member", "data", "is not base64");
+  return message;
+}
+
+RawImage raw_image_from_json(std::string_view text) {
+  const Json json = parse_object(text);
+  RawImage message;
+  message.at = timestamp_member(json);
+  message.uav = text_member(json, "uav");
+  message.sensor = text_member(json, "sensor");
+  message.index = unsigned_member(json, "index");
+  message.width_px = static_cast<int>(integer_member(json, "width", 1, kLargestSide_px));
+  message.height_px = static_cast<int>(integer_member(json, "height", 1, kLargestSide_px));
+  const std::string encoding = text_member(json, "encoding");
+  if (encoding == "16UC1") {
+    message.pixels.emplace<std::vector<std::uint16_t>>();
+  } else if (encoding != "32FC1") {
+    throw Damage("member", "encoding", "is neither 32FC1 nor 16UC1");
+  }
+  std::visit([&](auto& pixels) { decode_pixels(member(json, "data"), message, pixels); },
+             message.pixels);
   return message;
 }
 

@@ -23,6 +23,8 @@ void append_json(std::string& out, const Stop& message, JsonParts parts = {});
 void append_json(std::string& out, const Contact& message);
 /// As foxglove.CompressedImage, with more members.
 void append_json(std::string& out, const Image& message);
+/// As foxglove.RawImage, with more members.
+void append_json(std::string& out, const RawImage& message);
 /// The pose of a ground truth message as foxglove.FrameTransform: "world" to the UAV's name.
 void append_frame_transform(std::string& out, const GroundTruth& message);
 
@@ -34,5 +36,6 @@ Annotation annotation_from_json(std::string_view text);
 Stop stop_from_json(std::string_view text);
 Contact contact_from_json(std::string_view text);
 Image image_from_json(std::string_view text);
+RawImage raw_image_from_json(std::string_view text);
 
 }  // namespace tether::record

@@ -25,6 +25,17 @@ inline bool found_nothing(const Interaction& read) {
   return read.only_if_available && !read.sampled_at;
 }
 
+inline constexpr int kLargestSide_px = 100'000;
+
+void members(auto& io, Maybe<SeenAnchor> auto& m) {
+  io("anchor", m.anchor);
+  io.within("left_px", m.left_px, 0, kLargestSide_px);
+  io.within("top_px", m.top_px, 0, kLargestSide_px);
+  io.within("right_px", m.right_px, 0, kLargestSide_px);
+  io.within("bottom_px", m.bottom_px, 0, kLargestSide_px);
+  io("pixels", m.pixels);
+}
+
 void members(auto& io, Maybe<Interaction> auto& m) {
   io("uav", m.uav);
   io("sequence", m.sequence);
@@ -43,6 +54,8 @@ void members(auto& io, Maybe<Interaction> auto& m) {
   io.optional("sampled_at_ns", m.sampled_at);
   io.optional("sample_state_at_ns", m.sample_state_at);
   io.optional("available_at_ns", m.available_at);
+  if (io.has("seen_anchors", m.seen_anchors.has_value()))
+    io.list("seen_anchors", io.value_of(m.seen_anchors));
   io.optional("effect_at_ns", m.effect_at);
   io.optional("sleep_until_ns", m.sleep_until);
   if (io.arrivals()) {
@@ -131,7 +144,6 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
 }
 
 void members(auto& io, Maybe<CameraInfo> auto& m) {
-  constexpr int kLargestSide_px = 100'000;
   io("p_BS_m", m.p_BS_m);
   io("q_BS", m.q_BS);
   io.within("width_px", m.width_px, 1, kLargestSide_px);
@@ -145,6 +157,11 @@ void members(auto& io, Maybe<CameraInfo> auto& m) {
   io("k3", m.k3);
   io("p1", m.p1);
   io("p2", m.p2);
+  if (io.has("depth_max_m", m.depth_max_m > 0.0)) {
+    io("depth_min_m", m.depth_min_m);
+    io("depth_max_m", m.depth_max_m);
+  }
+  if (io.has("models", !m.models.empty())) io.list("models", m.models);
 }
 
 /// Records of Tether 0.1.0 have neither bounds of the delay nor cameras.

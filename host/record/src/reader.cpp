@@ -94,6 +94,9 @@ class RecordBuilder final : public McapVisitor {
     if (schema == kCompressedImageSchema.name)
       return options_.images ? &RecordBuilder::append<&Record::images, image_from_json>
                              : &RecordBuilder::skip;
+    if (schema == kRawImageSchema.name)
+      return options_.images ? &RecordBuilder::append<&Record::raw_images, raw_image_from_json>
+                             : &RecordBuilder::skip;
     return nullptr;
   }
 

@@ -89,6 +89,12 @@ class McapRecorder final : public Recorder {
   void write(SimTime at, const Image& message) override {
     write_json(images_.of("/images", message.uav, message.sensor), at, message);
   }
+  void write(SimTime at, const RawImage& message) override {
+    const bool is_depth = std::holds_alternative<std::vector<float>>(message.pixels);
+    Channels& channels = is_depth ? depths_ : labels_;
+    write_json(channels.of(is_depth ? "/depth" : "/labels", message.uav, message.sensor), at,
+               message);
+  }
 
   void flush() override { mcap_.flush(); }
 
@@ -117,6 +123,8 @@ class McapRecorder final : public Recorder {
   Channels stops_{mcap_, kStopSchema};
   Channels contacts_{mcap_, kContactSchema};
   Channels images_{mcap_, kCompressedImageSchema};
+  Channels depths_{mcap_, kRawImageSchema};
+  Channels labels_{mcap_, kRawImageSchema};
   bool finished_ = false;
 };
 
@@ -130,6 +138,7 @@ class NullRecorder final : public Recorder {
   void write(SimTime, const Stop&) override {}
   void write(SimTime, const Contact&) override {}
   void write(SimTime, const Image&) override {}
+  void write(SimTime, const RawImage&) override {}
   void flush() override {}
   void write(const Footer&) override {}
 };

@@ -19,6 +19,22 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
     "sampled_at_ns": {"type": "integer", "description": "ST that the timing model asked for"},
     "sample_state_at_ns": {"type": "integer", "description": "ST of the state that was measured"},
     "available_at_ns": {"type": "integer", "description": "sampled_at + delay"},
+    "seen_anchors": {
+      "type": "array",
+      "description": "of an image: each anchor of which pixels are visible",
+      "items": {
+        "type": "object",
+        "properties": {
+          "anchor": {"type": "string"},
+          "left_px": {"type": "integer"},
+          "top_px": {"type": "integer"},
+          "right_px": {"type": "integer"},
+          "bottom_px": {"type": "integer"},
+          "pixels": {"type": "integer", "description": "how many are visible"}
+        },
+        "required": ["anchor", "left_px", "top_px", "right_px", "bottom_px", "pixels"]
+      }
+    },
     "effect_at_ns": {"type": "integer", "description": "first step boundary the command acts on"},
     "sleep_until_ns": {"type": "integer", "description": "ET at which the SUT asked to be woken"},
     "st_at_arrival_ns": {"type": "integer"},
@@ -141,6 +157,32 @@ const Schema kCompressedImageSchema{"foxglove.CompressedImage", R"json({
     "data": {"type": "string", "contentEncoding": "base64"}
   },
   "required": ["timestamp", "frame_id", "format", "uav", "sensor", "index", "data"]
+})json"};
+
+const Schema kRawImageSchema{"foxglove.RawImage", R"json({
+  "title": "foxglove.RawImage",
+  "description": "Depths in metres (32FC1) or numbers of models (16UC1).",
+  "type": "object",
+  "properties": {
+    "timestamp": {
+      "type": "object", "title": "time",
+      "properties": {
+        "sec": {"type": "integer", "minimum": 0},
+        "nsec": {"type": "integer", "minimum": 0, "maximum": 999999999}
+      }
+    },
+    "frame_id": {"type": "string"},
+    "width": {"type": "integer", "minimum": 1},
+    "height": {"type": "integer", "minimum": 1},
+    "uav": {"type": "string"},
+    "sensor": {"type": "string"},
+    "index": {"type": "integer", "minimum": 0, "description": "which measurement of the sensor"},
+    "encoding": {"type": "string", "enum": ["32FC1", "16UC1"]},
+    "step": {"type": "integer", "minimum": 0},
+    "data": {"type": "string", "contentEncoding": "base64"}
+  },
+  "required": ["timestamp", "frame_id", "width", "height", "uav", "sensor", "index", "encoding",
+               "step", "data"]
 })json"};
 
 const Schema kFrameTransformSchema{"foxglove.FrameTransform", R"json({

@@ -18,6 +18,7 @@ extern const Schema kStopSchema;
 extern const Schema kContactSchema;
 /// Well-known schemas of Foxglove, by their names.
 extern const Schema kCompressedImageSchema;
+extern const Schema kRawImageSchema;
 extern const Schema kFrameTransformSchema;
 
 }  // namespace tether::record

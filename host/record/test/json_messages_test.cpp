@@ -50,6 +50,46 @@ void check_form(std::string& texts, const Message& message, Message (*read)(std:
     EXPECT_TRUE(written.contains(name.get<std::string>())) << schema.name << " " << name;
 }
 
+TEST(JsonMessages, RawImagesKeepEveryNumber) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  RawImage depths{"uav1", "depth", from_ns<SimTime>(1'500'000'002), 3,
+                  2,      1,       std::vector{1.25F, -kInf}};
+  RawImage labels = depths;
+  labels.pixels = std::vector<std::uint16_t>{0, 65535};
+  std::string texts;
+  for (const RawImage& image : {depths, labels}) {
+    check_form(texts, image, raw_image_from_json, kRawImageSchema);
+    const RawImage read = raw_image_from_json(json_of(image));
+    EXPECT_EQ(read.pixels, image.pixels);
+    EXPECT_EQ(read.at, image.at);
+  }
+  const json whole = json::parse(json_of(depths));
+  for (const auto& [member, value] : {std::pair{"width", json(3)},
+                                      {"height", json(0)},
+                                      {"encoding", json("rgb8")},
+                                      {"encoding", json("16UC1")},
+                                      {"data", json("?")}}) {
+    json damaged = whole;
+    damaged[member] = value;
+    EXPECT_THROW(raw_image_from_json(damaged.dump()), Damage) << member;
+  }
+}
+
+TEST(JsonMessages, ReadsOfImagesHaveTheAnchorsThatAreSeen) {
+  Interaction read = sensor_interaction();
+  read.seen_anchors.emplace();
+  std::string texts;
+  check_form(texts, read, interaction_from_json, kInteractionSchema);
+  read.seen_anchors = {{"box", 1, 2, 3, 4, 5}, {"ball", 0, 0, 0, 0, 1}};
+  check_form(texts, read, interaction_from_json, kInteractionSchema);
+  EXPECT_EQ(interaction_from_json(json_of(read)).seen_anchors, read.seen_anchors);
+  for (const char* wrong : {R"("no list")", "[3]", R"([{"anchor":"box"}])"}) {
+    json damaged = json::parse(json_of(read));
+    damaged["seen_anchors"] = json::parse(wrong);
+    EXPECT_THROW(interaction_from_json(damaged.dump()), Damage) << wrong;
+  }
+}
+
 // Between them, the samples have a value other than the default for every member. Every text is
 // read back, and matches its schema.
 TEST(JsonMessages, FormIsStable) {

@@ -34,6 +34,19 @@ TEST(Png, DecodesToTheSamePixels) {
   }
 }
 
+TEST(Png, KeepsSixteenBitsAsTheyAre) {
+  std::vector<std::uint16_t> grey(33 * 7);
+  for (std::size_t i = 0; i < grey.size(); ++i) grey[i] = static_cast<std::uint16_t>(i * 283);
+  const auto encoded = encode_png(33, 7, grey);
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  ASSERT_NE(png_image_begin_read_from_memory(&image, encoded.data(), encoded.size()), 0);
+  ASSERT_EQ(image.format, png_uint_32{PNG_FORMAT_LINEAR_Y});
+  std::vector<std::uint16_t> decoded(grey.size());
+  ASSERT_NE(png_image_finish_read(&image, nullptr, decoded.data(), 0, nullptr), 0);
+  EXPECT_EQ(decoded, grey);
+}
+
 TEST(Png, FileAsDataUri) {
   const std::vector<std::uint8_t> file = {'f', 'o', 'o'};
   EXPECT_EQ(to_data_uri(file, "image/jpeg"), "data:image/jpeg;base64,Zm9v");

@@ -47,6 +47,26 @@ TEST(Recorder, WholeRecordIsTheSameEachTimeAndReadBack) {
   }
 }
 
+TEST(Recorder, RawImagesAreReadBackIfAskedFor) {
+  const TemporaryFile file;
+  const RawImage depths{"uav1", "rgbd", st_ms(1), 3, 2, 1, std::vector{1.5F, 2.5F}};
+  RawImage labels = depths;
+  labels.pixels = std::vector<std::uint16_t>{7, 0};
+  const auto recorder = make_mcap_recorder(file.path());
+  recorder->write(header());
+  for (const RawImage& image : {depths, labels, depths}) recorder->write(st_ms(2), image);
+  recorder->write(footer());
+  for (const bool images : {true, false}) {
+    const Record read = read_record(file.path(), {.images = images});
+    EXPECT_EQ(read.damage, "");
+    EXPECT_TRUE(read.miscounts.empty());
+    ASSERT_EQ(read.raw_images.size(), images ? 3U : 0U);
+    if (!images) continue;
+    EXPECT_EQ(read.raw_images[0].message.pixels, depths.pixels);
+    EXPECT_EQ(read.raw_images[1].message.pixels, labels.pixels);
+  }
+}
+
 // After a kill, at most the last second is missing.
 TEST(Recorder, WritesAChunkEverySecond) {
   const TemporaryFile file;

@@ -117,6 +117,13 @@ std::string size_text(const campaign::PixelRect& rect) {
                      rect.bottom_px - rect.top_px);
 }
 
+std::string text_of(const TrueRoi& roi) {
+  if (!roi.rect) return "the anchor is not visible in this image (ground truth)";
+  return std::string(roi.is_of_pixels ? "true ROI (visible pixels), "
+                                      : "true ROI (projection of the whole anchor), ") +
+         size_text(*roi.rect);
+}
+
 }  // namespace
 
 std::optional<ReportedRoi> find_roi(const record::Record& record, const record::Image& image) {
@@ -128,8 +135,7 @@ std::optional<ReportedRoi> find_roi(const record::Record& record, const record::
   return std::nullopt;
 }
 
-std::optional<campaign::PixelRect> find_true_roi(const record::Record& record,
-                                                 const record::Image& image) {
+std::optional<TrueRoi> find_true_roi(const record::Record& record, const record::Image& image) {
   const auto name = target_anchor(record, image);
   if (!name) return std::nullopt;
   const auto& anchors = record.header.anchors;
@@ -140,12 +146,15 @@ std::optional<campaign::PixelRect> find_true_roi(const record::Record& record,
   });
   const auto X_WB = campaign::pose_at(record, image.uav, image.at);
   if (anchor == anchors.end() || camera == sensors.end() || !X_WB) return std::nullopt;
-  const auto whole = campaign::true_roi(*camera, *X_WB, *anchor);
-  return whole ? campaign::visible_part(*camera, *whole) : std::nullopt;
+  const auto* read = campaign::find_read(record, image.uav, image.sensor, image.index);
+  const auto roi = read == nullptr ? campaign::true_roi(*camera, *X_WB, *anchor)
+                                   : campaign::roi_in_image(*read, *camera, *X_WB, *anchor);
+  return TrueRoi{roi ? campaign::visible_part(*camera, *roi) : std::nullopt,
+                 read != nullptr && read->seen_anchors.has_value()};
 }
 
 std::string frame_svg(const record::Image& image, const std::optional<ReportedRoi>& roi,
-                      const std::optional<campaign::PixelRect>& true_roi, ImageQuality quality) {
+                      const std::optional<TrueRoi>& true_roi, ImageQuality quality) {
   const PixelSize size = size_of_png(image.png);
   const unsigned caption_px = 10 + kCaptionLine_px * (true_roi ? 3 : 2);
   const std::string what = escape_markup(
@@ -159,7 +168,7 @@ std::string frame_svg(const record::Image& image, const std::optional<ReportedRo
       "Camera image, " + what);
   // If the two coincide, the solid line is visible between the dashes.
   if (roi) svg += framed(rect_of(*roi), kTracked, false);
-  if (true_roi) svg += framed(*true_roi, kTrue, true);
+  if (true_roi && true_roi->rect) svg += framed(*true_roi->rect, kTrue, true);
   unsigned y_px = size.height + kCaptionLine_px;
   svg += fmt::format(R"(<text x="10" y="{}" font-size="14" fill="#f2f2f2">{}</text>)"
                      "\n",
@@ -168,9 +177,7 @@ std::string frame_svg(const record::Image& image, const std::optional<ReportedRo
   svg += caption_line(y_px, kTracked, false,
                       roi ? "ROI tracked by the SUT, " + size_text(rect_of(*roi))
                           : "no ROI reported by the SUT for this image");
-  if (true_roi)
-    svg += caption_line(y_px + kCaptionLine_px, kTrue, true,
-                        "true ROI (ground truth), " + size_text(*true_roi));
+  if (true_roi) svg += caption_line(y_px + kCaptionLine_px, kTrue, true, text_of(*true_roi));
   return svg + "</svg>\n";
 }
 

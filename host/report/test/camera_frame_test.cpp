@@ -79,14 +79,37 @@ TEST(CameraFrame, FindsTheTrueRoiOfTheTargetAnchor) {
   add_estimate(record, "box", 4);
   const auto roi = find_true_roi(record, image());
   ASSERT_TRUE(roi);
-  EXPECT_NEAR(roi->left_px, 4.5, 1e-9);
-  EXPECT_NEAR(roi->right_px, 6.5, 1e-9);
-  EXPECT_NEAR(roi->top_px, 2.5, 1e-9);
+  EXPECT_FALSE(roi->is_of_pixels);
+  EXPECT_NEAR(roi->rect->left_px, 4.5, 1e-9);
+  EXPECT_NEAR(roi->rect->right_px, 6.5, 1e-9);
+  EXPECT_NEAR(roi->rect->top_px, 2.5, 1e-9);
 
   add_estimate(record, "aside", 5);  // of a later image
-  EXPECT_NEAR(find_true_roi(record, image())->left_px, 4.5, 1e-9);
+  EXPECT_NEAR(find_true_roi(record, image())->rect->left_px, 4.5, 1e-9);
   add_estimate(record, "aside", 4);
-  EXPECT_NEAR(find_true_roi(record, image())->left_px, 1.5, 1e-9);
+  EXPECT_NEAR(find_true_roi(record, image())->rect->left_px, 1.5, 1e-9);
+}
+
+// What of an anchor is seen decides, if the record knows it.
+TEST(CameraFrame, FindsTheTrueRoiOfVisiblePixels) {
+  record::Record record = record_with_truth();
+  add_estimate(record, "box", 4);
+  record::Interaction read;
+  read.uav = "uav1";
+  read.kind = record::kSensor;
+  read.sensor = "camera";
+  read.sample_index = 4;
+  read.sampled_at = image().at;
+  read.seen_anchors = {{"box", 6, 3, 6, 4, 2}};
+  record.interactions = {{image().at, 0, read}};
+  const auto roi = find_true_roi(record, image());
+  ASSERT_TRUE(roi && roi->rect);
+  EXPECT_TRUE(roi->is_of_pixels);
+  EXPECT_NEAR(roi->rect->left_px, 5.5, 1e-9);  // hidden left of it
+  EXPECT_NEAR(roi->rect->right_px, 6.5, 1e-9);
+  record.interactions[0].message.seen_anchors->clear();
+  EXPECT_FALSE(find_true_roi(record, image())->rect);
+  EXPECT_THAT(frame_svg(image(), {}, find_true_roi(record, image())), HasSubstr("not visible"));
 }
 
 TEST(CameraFrame, TakesTheOnlyAnchorWithoutAnEstimate) {
@@ -98,13 +121,13 @@ TEST(CameraFrame, TakesTheOnlyAnchorWithoutAnEstimate) {
 }
 
 TEST(CameraFrame, FramesBothRoisWithACaption) {
-  const std::string svg =
-      frame_svg(image(), ReportedRoi{5.0, 3.0, 4.0, 2.0}, campaign::PixelRect{1.0, 2.0, 4.0, 7.0});
-  for (const char* part :
-       {R"(<image width="12" height="8" href="data:image/png;base64,iVBOR)",
-        R"(<rect x="3.50" y="2.50" width="4.00" height="2.00")",
-        R"(<rect x="1.50" y="2.50" width="3.00" height="5.00")", ">uav1 / camera, ST 1.500 s<",
-        ">ROI tracked by the SUT, 4 x 2 px<", ">true ROI (ground truth), 3 x 5 px<"})
+  const std::string svg = frame_svg(image(), ReportedRoi{5.0, 3.0, 4.0, 2.0},
+                                    TrueRoi{campaign::PixelRect{1.0, 2.0, 4.0, 7.0}});
+  for (const char* part : {R"(<image width="12" height="8" href="data:image/png;base64,iVBOR)",
+                           R"(<rect x="3.50" y="2.50" width="4.00" height="2.00")",
+                           R"(<rect x="1.50" y="2.50" width="3.00" height="5.00")",
+                           ">uav1 / camera, ST 1.500 s<", ">ROI tracked by the SUT, 4 x 2 px<",
+                           ">true ROI (projection of the whole anchor), 3 x 5 px<"})
     EXPECT_THAT(svg, HasSubstr(part));
   const std::string without = frame_svg(image(), std::nullopt, std::nullopt);
   EXPECT_THAT(without, HasSubstr(">no ROI reported by the SUT for this image<"));

@@ -4,10 +4,17 @@ namespace tether::sim {
 
 namespace {
 
-uav::SensorDescription describe_sensor(const Sensor& sensor) {
+uav::CameraProperties describe_camera(const World& world, const CameraModel& camera) {
+  uav::CameraProperties properties{camera.intrinsics, camera.kind, camera.depth_min_m,
+                                   camera.depth_max_m};
+  if (camera.kind == uav::CameraKind::kSegmentation) properties.models = model_names(world);
+  return properties;
+}
+
+uav::SensorDescription describe_sensor(const World& world, const Sensor& sensor) {
   uav::SensorDescription description{sensor.name, sensor.X_BS, sensor.update_rate_hz, {}};
   if (const auto* camera = std::get_if<CameraModel>(&sensor.model)) {
-    description.properties = uav::CameraProperties{camera->intrinsics};
+    description.properties = describe_camera(world, *camera);
   } else if (const auto* range = std::get_if<RangeModel>(&sensor.model)) {
     description.properties = uav::RangeProperties{range->min_m, range->max_m};
   } else {
@@ -18,9 +25,17 @@ uav::SensorDescription describe_sensor(const Sensor& sensor) {
 
 }  // namespace
 
+std::vector<std::string> model_names(const World& world) {
+  std::vector<std::string> names;
+  for (const Model& model : world.models) names.push_back(model.name);
+  for (const Uav& uav : world.uavs) names.push_back(uav.name);
+  return names;
+}
+
 uav::Catalogue make_catalogue(const World& world, const Uav& uav) {
   uav::Catalogue catalogue{uav.name, {}, {}};
-  for (const Sensor& sensor : uav.sensors) catalogue.sensors.push_back(describe_sensor(sensor));
+  for (const Sensor& sensor : uav.sensors)
+    catalogue.sensors.push_back(describe_sensor(world, sensor));
   for (const PlacedAnchor& placed : world.anchors) catalogue.anchors.push_back(placed.anchor);
   return catalogue;
 }

@@ -22,16 +22,22 @@ constexpr uav::SensorKind kind_of() {
   return uav::SensorKind::kRange;
 }
 
-/// Of a camera: whether the image has the size that the catalogue promised.
-Status check_size(const uav::Sample& sample, const uav::SensorDescription& sensor) {
+/// Of a camera: whether the image has the size and the arrays that the catalogue promised.
+Status check_image(const uav::Sample& sample, const uav::SensorDescription& sensor) {
   const auto* image = std::get_if<uav::CameraSample>(&sample);
   const auto* camera = std::get_if<uav::CameraProperties>(&sensor.properties);
   if (image == nullptr || camera == nullptr) return ok_status();
-  if (image->width_px == camera->model.width_px && image->height_px == camera->model.height_px) {
-    return ok_status();
-  }
-  return protocol_failure("its image has another size than the catalogue gives for '" +
-                          sensor.name + "'");
+  const auto failure = [&sensor](const std::string& what) {
+    return protocol_failure("its image has other " + what + " than the catalogue gives for '" +
+                            sensor.name + "'");
+  };
+  if (image->width_px != camera->model.width_px || image->height_px != camera->model.height_px)
+    return failure("sizes");
+  const bool is_complete =
+      image->rgb.empty() != uav::has_color(camera->kind) &&
+      image->depth_m.empty() != uav::has_depth(camera->kind) &&
+      image->labels.empty() == (camera->kind != uav::CameraKind::kSegmentation);
+  return is_complete ? ok_status() : failure("contents");
 }
 
 }  // namespace
@@ -122,15 +128,14 @@ Result<Sample> InteractingVehicle::take_sample(link::Reply reply,
   if (sample == nullptr) {
     return give_up(protocol_failure("it has no sample of sensor '" + sensor.name + "'"));
   }
-  if (const Status good = check_size(*reply.sample, sensor); !good) return give_up(good.failure());
+  if (const Status good = check_image(*reply.sample, sensor); !good) return give_up(good.failure());
   return std::move(*sample);
 }
 
 Failure InteractingVehicle::no_such_sensor(std::string_view sensor, uav::SensorKind kind) const {
   std::string available;
   for (const auto& s : catalogue_.sensors) {
-    available +=
-        (available.empty() ? "" : ", ") + std::string(uav::name(s.kind())) + " '" + s.name + "'";
+    available += (available.empty() ? "" : ", ") + std::string(s.kind_name()) + " '" + s.name + "'";
   }
   return {Failure::Kind::kInvalid, "there is no " + std::string(uav::name(kind)) + " '" +
                                        std::string(sensor) + "'; this UAV has " +

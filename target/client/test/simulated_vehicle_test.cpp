@@ -211,7 +211,9 @@ TEST_F(SimulatedVehicleTest, RefusesRepliesThatBreakTheRules) {
       sample_reply(0ns, uav::RangeSample{}),
       sample_reply(0ns, uav::CameraSample{SimTime(1ms) + 1ns, 0, 4, 2, kImage.rgb}),  // the future
       sample_reply(0ns, uav::CameraSample{SimTime{}, 0, 2, 4, kImage.rgb}),           // its size
-      ScriptedCoordinator::grant_at_once,                                             // no sample
+      sample_reply(0ns, uav::CameraSample{SimTime{}, 0, 4, 2, {}, std::vector(8, 1.0F)}),
+      sample_reply(0ns, uav::CameraSample{SimTime{}, 0, 4, 2, kImage.rgb, std::vector(8, 1.0F)}),
+      ScriptedCoordinator::grant_at_once,  // no sample
       [](const Request&) { return one(link::Welcome{}); },
   };
   for (const auto& answer : answers) {

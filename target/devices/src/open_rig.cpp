@@ -87,6 +87,12 @@ Result<std::unique_ptr<client::Vehicle>> open_rig(Rig rig) {
                                                   sensor.description.name +
                                                   "\"; names must be unique"};
     }
+    if (const auto kind = sensor.description.camera_kind();
+        kind && *kind != uav::CameraKind::kColor) {
+      return Failure{Failure::Kind::kInvalid, label_of(sensor) + ": \"" + sensor.description.name +
+                                                  "\" is a " + std::string(uav::name(*kind)) +
+                                                  "; a rig has colour cameras only"};
+    }
     Result<Device> device = opener.open(sensor);
     if (!device) return device.failure();
     devices.push_back(std::move(*device));

@@ -43,7 +43,11 @@ Result<const uav::SensorDescription*> TaskContext::sensor(std::string_view name,
 }
 
 Result<const uav::SensorDescription*> TaskContext::camera() const {
-  return sensor(vision_.camera, uav::SensorKind::kCamera);
+  auto found = sensor(vision_.camera, uav::SensorKind::kCamera);
+  if (!found || uav::has_color(*(*found)->camera_kind())) return found;
+  return Failure{Failure::Kind::kInvalid, "the sensor \"" + vision_.camera + "\" is a " +
+                                              std::string((*found)->kind_name()) +
+                                              "; tracking needs a camera with colours"};
 }
 
 Result<const uav::Anchor*> TaskContext::anchor(std::string_view name) const {

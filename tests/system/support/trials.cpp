@@ -137,6 +137,7 @@ void write_record(const std::filesystem::path& file, const record::Record& recor
   add(record.ground_truth);
   add(record.annotations);
   add(record.images);
+  add(record.raw_images);
   const auto recorder = record::make_mcap_recorder(file);
   recorder->write(record.header);
   for (const auto& [order, write] : writes) write(*recorder);

@@ -20,6 +20,7 @@ class Renderer final : public CameraRenderer {
   void draw(const raster::View& view, const raster::Picture& picture) override {
     renderer_.draw(view, picture);
   }
+  bool knows_pixels() const override { return true; }
   std::size_t blind_pixels(const uav::CameraModel& camera) override {
     return renderer_.blind_pixels(camera);
   }

@@ -198,12 +198,22 @@ std::string Renderer::instructions() {
 std::map<std::uint32_t, PixelBox> visible_boxes(std::span<const std::uint32_t> entity,
                                                 int width_px) {
   std::map<std::uint32_t, PixelBox> boxes;
-  for (std::size_t i = 0; i < entity.size(); ++i) {
-    if (entity[i] == 0) continue;
-    const int x = static_cast<int>(i % static_cast<std::size_t>(width_px));
-    const int y = static_cast<int>(i / static_cast<std::size_t>(width_px));
-    PixelBox& box = boxes.try_emplace(entity[i], PixelBox{x, y, x, y, 0}).first->second;
-    box = {std::min(box.left, x), box.top, std::max(box.right, x), y, box.pixels + 1};
+  const auto width = static_cast<std::size_t>(width_px);
+  for (std::size_t begin = 0; begin < entity.size();) {
+    // Pixels of one entity that are beside each other.
+    const std::size_t row = begin / width;
+    std::size_t end = begin + 1;
+    while (end < (row + 1) * width && entity[end] == entity[begin]) ++end;
+    if (entity[begin] != 0) {
+      const int y = static_cast<int>(row);
+      const int left = static_cast<int>(begin - row * width);
+      const int right = left + static_cast<int>(end - begin) - 1;
+      PixelBox& box =
+          boxes.try_emplace(entity[begin], PixelBox{left, y, right, y, 0}).first->second;
+      box = {std::min(box.left, left), box.top, std::max(box.right, right), y,
+             box.pixels + end - begin};
+    }
+    begin = end;
   }
   return boxes;
 }

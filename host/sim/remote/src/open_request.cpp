@@ -40,6 +40,22 @@ std::vector<VisualMaterial> materials_of(const World& world) {
   return materials;
 }
 
+/// The protocol's pictures have colours only.
+void refuse_other_cameras(const World& world) {
+  for (const Uav& uav : world.uavs) {
+    for (const Sensor& sensor : uav.sensors) {
+      const auto* camera = std::get_if<CameraModel>(&sensor.model);
+      if (camera == nullptr || camera->kind == uav::CameraKind::kColor) continue;
+      throw Error(ErrorCode::kBadFile, sensor.declared_at,
+                  "sensor '" + sensor.name + "' of UAV '" + uav.name + "' is a " +
+                      std::string(uav::name(camera->kind)) +
+                      ", which external simulators do not have; use the embedded simulator, or a "
+                      "UAV model without this sensor")
+          .about(sensor.name);
+    }
+  }
+}
+
 }  // namespace
 
 protocol::Open make_open(const World& world, const WarningSink& warn) {
@@ -48,6 +64,7 @@ protocol::Open make_open(const World& world, const WarningSink& warn) {
                 "world '" + world.name + "' has no file; external simulators read the world's file")
         .about(world.name);
   }
+  refuse_other_cameras(world);
   const ViewSize size = largest_view(world);
   protocol::Open open;
   open.world_name = world.name;

@@ -98,6 +98,20 @@ TEST(OpenRequest, HasTheMaterialsOfTexturedVisuals) {
   EXPECT_EQ(floor.diffuse_rgb, painted.diffuse_rgb);
 }
 
+// Rather than a picture without depths: with the place of the sensor.
+TEST(OpenRequest, RefusesCamerasThatTheProtocolDoesNotHave) {
+  for (const auto kind :
+       {uav::CameraKind::kDepth, uav::CameraKind::kRgbd, uav::CameraKind::kSegmentation}) {
+    World world = world_of_a_file();
+    Sensor& sensor = world.uavs[1].sensors.at(0);
+    std::get<CameraModel>(sensor.model).kind = kind;
+    sensor.declared_at = {"uav.sdf", 17};
+    const Error error = bad_file_error([&] { open_of(world); });
+    EXPECT_EQ(error.subject(), sensor.name);
+    EXPECT_EQ(error.where(), sensor.declared_at);
+  }
+}
+
 TEST(OpenRequest, NeedsAWorldWithAFile) {
   EXPECT_EQ(bad_file_error([] { open_of(busy_world()); }).subject(), "test");
 }

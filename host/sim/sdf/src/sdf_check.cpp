@@ -56,7 +56,9 @@ const ElementTable kElements = {
     {"attenuation", {"range", "constant", "linear", "quadratic"}},
     {"spot", {"inner_angle", "outer_angle", "falloff"}},
     {"sensor", {"pose", "update_rate", "camera", "imu", "ray", "lidar"}},
-    {"camera", {"pose", "horizontal_fov", "image", "clip", "noise", "distortion", "lens"}},
+    {"camera",
+     {"pose", "horizontal_fov", "image", "clip", "noise", "distortion", "lens", "depth_camera"}},
+    {"depth_camera", {"clip"}},
     {"image", {"width", "height", "format"}},
     {"clip", {"near", "far"}},
     {"distortion", {"k1", "k2", "k3", "p1", "p2", "center"}},
@@ -92,6 +94,7 @@ const ElementTable kWithoutEffect = {
     {"model", {"allow_auto_disable"}},
     {"sensor", {"always_on", "visualize", "topic"}},
     {"camera", {"optical_frame_id"}},
+    {"depth_camera", {"output"}},
 };
 
 /// What follows if an element is not represented: by the element, else by its parent, else nothing.
@@ -131,7 +134,18 @@ Consequence consequence_of(std::string_view parent, std::string_view child) {
 }
 
 /// Sensor types that Tether represents.
-const Names kSensorTypes = {"camera", "imu", "ray", "gpu_ray", "lidar", "gpu_lidar"};
+const Names kSensorTypes = {"camera",
+                            "depth",
+                            "depth_camera",
+                            "rgbd",
+                            "rgbd_camera",
+                            "segmentation",
+                            "segmentation_camera",
+                            "imu",
+                            "ray",
+                            "gpu_ray",
+                            "lidar",
+                            "gpu_lidar"};
 
 bool contains(const ElementTable& table, std::string_view parent, std::string_view child) {
   const auto row = table.find(parent);
@@ -265,10 +279,12 @@ class Walk {
       if (!sdf::Sensor().SetType(attribute(element, "type")))
         refuse(source_, element,
                "is of type '" + attribute(element, "type") + "', which SDF does not have");
-      warn_at(source_, element, Consequence::kMissing,
-              "is of type '" + attribute(element, "type") +
-                  "', which is not simulated (camera, imu and ray sensors are); left out",
-              warn_);
+      warn_at(
+          source_, element, Consequence::kMissing,
+          "is of type '" + attribute(element, "type") +
+              "', which is not simulated (camera, depth_camera, rgbd_camera, segmentation_camera, "
+              "imu and ray sensors are); left out",
+          warn_);
       return false;
     }
     return true;

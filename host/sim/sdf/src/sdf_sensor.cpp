@@ -45,20 +45,55 @@ uav::CameraModel read_intrinsics(const sdf::Camera& camera) {
   return model;
 }
 
-CameraModel read_camera(const SdfSource& source, const sdf::Camera& camera,
+/// None for a sensor that is no camera.
+std::optional<uav::CameraKind> camera_kind(const sdf::Sensor& sensor) {
+  switch (sensor.Type()) {
+    case sdf::SensorType::CAMERA:
+      return uav::CameraKind::kColor;
+    case sdf::SensorType::DEPTH_CAMERA:
+      return uav::CameraKind::kDepth;
+    case sdf::SensorType::RGBD_CAMERA:
+      return uav::CameraKind::kRgbd;
+    case sdf::SensorType::SEGMENTATION_CAMERA:
+      return uav::CameraKind::kSegmentation;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// <depth_camera> has limits of its own, or those of the camera.
+void read_depth_limits(const SdfSource& source, const sdf::Camera& camera, CameraModel& model) {
+  model.depth_min_m = camera.HasDepthNearClip() ? camera.DepthNearClip() : camera.NearClip();
+  model.depth_max_m = camera.HasDepthFarClip() ? camera.DepthFarClip() : camera.FarClip();
+  if (model.depth_min_m >= model.depth_max_m) {
+    refuse(source, camera.Element()->FindElement("depth_camera"),
+           "has a near plane that is not in front of its far plane");
+  }
+  if (model.kind == uav::CameraKind::kDepth) model.far_m = model.depth_max_m;
+}
+
+CameraModel read_camera(const SdfSource& source, const sdf::Camera& camera, uav::CameraKind kind,
                         const WarningSink& warn) {
   if (camera.NearClip() >= camera.FarClip()) {
     refuse(source, camera.Element()->FindElement("clip"),
            "has a near plane that is not in front of its far plane");
   }
   const sdf::PixelFormatType format = camera.PixelFormat();
-  if (format != sdf::PixelFormatType::RGB_INT8 &&
+  if (uav::has_color(kind) && format != sdf::PixelFormatType::RGB_INT8 &&
       format != sdf::PixelFormatType::UNKNOWN_PIXEL_FORMAT) {
     warn_at(source, camera.Element(), Consequence::kLooksDifferent,
             "has the image format " + camera.PixelFormatStr() + "; images are R8G8B8", warn);
   }
-  return {read_intrinsics(camera), camera.NearClip(), camera.FarClip(),
-          read_noise(source, camera.ImageNoise(), warn)};
+  CameraModel model{read_intrinsics(camera), camera.NearClip(), camera.FarClip(),
+                    read_noise(source, camera.ImageNoise(), warn)};
+  model.kind = kind;
+  if (uav::has_depth(kind)) read_depth_limits(source, camera, model);
+  const Noise& noise = model.pixel_noise;
+  if (kind == uav::CameraKind::kSegmentation && (noise.stddev != 0.0 || noise.mean != 0.0)) {
+    warn_at(source, camera.ImageNoise().Element(), Consequence::kBehavesDifferent,
+            "is not added: labels have no noise", warn);
+  }
+  return model;
 }
 
 ImuModel read_imu(const SdfSource& source, const sdf::Imu& imu, const WarningSink& warn) {
@@ -138,11 +173,15 @@ RangeModel read_range(const SdfSource& source, const sdf::Lidar& lidar, const Wa
 
 std::optional<Sensor> read_sensor(const SdfSource& source, const sdf::Sensor& sensor,
                                   const uav::Pose& X_BL, const WarningSink& warn) {
-  Sensor result{sensor.Name(), X_BL * resolved_pose(source, sensor), sensor.UpdateRate(), {}};
-  if (const sdf::Camera* camera = sensor.CameraSensor();
-      camera != nullptr && sensor.Type() == sdf::SensorType::CAMERA) {
+  Sensor result{sensor.Name(),
+                X_BL * resolved_pose(source, sensor),
+                sensor.UpdateRate(),
+                {},
+                source.where(sensor.Element())};
+  const auto kind = camera_kind(sensor);
+  if (const sdf::Camera* camera = sensor.CameraSensor(); camera != nullptr && kind) {
     result.X_BS = result.X_BS * to_pose(camera->RawPose());
-    result.model = read_camera(source, *camera, warn);
+    result.model = read_camera(source, *camera, *kind, warn);
     return result;
   }
   if (const sdf::Imu* imu = sensor.ImuSensor()) {

@@ -47,6 +47,38 @@ TEST_F(SdfSensor, ReadsIntrinsicsDistortionAndPixelNoise) {
   EXPECT_EQ(camera.pixel_noise.stddev, 0.02);
 }
 
+TEST_F(SdfSensor, ReadsOtherCameras) {
+  struct OtherCamera {
+    const char* type;
+    const char* inside;
+    uav::CameraKind kind;
+    double near_m, far_m, depth_min_m, depth_max_m;
+  };
+  const char* const clip =
+      "<depth_camera><output>depths</output><clip><near>0.3</near><far>8</far></clip></"
+      "depth_camera>";
+  for (const OtherCamera& c :
+       {OtherCamera{"depth_camera", "", uav::CameraKind::kDepth, 0.1, 20.0, 0.1, 20.0},
+        OtherCamera{"depth", clip, uav::CameraKind::kDepth, 0.1, 8.0, 0.3, 8.0},
+        OtherCamera{"rgbd_camera", clip, uav::CameraKind::kRgbd, 0.1, 20.0, 0.3, 8.0},
+        OtherCamera{"rgbd", "", uav::CameraKind::kRgbd, 0.1, 20.0, 0.1, 20.0},
+        OtherCamera{"segmentation", "", uav::CameraKind::kSegmentation, 0.1, 20.0, 0.0, 0.0},
+        OtherCamera{"segmentation_camera", "", uav::CameraKind::kSegmentation, 0.1, 20.0, 0.0,
+                    0.0}}) {
+    const std::string model =
+        with(with(kUav, "type='camera'", "type='" + std::string(c.type) + "'"), "</camera>",
+             std::string(c.inside) + "</camera>");
+    const Sensor sensor = read(model).sensors.at(0);
+    const auto& camera = std::get<CameraModel>(sensor.model);
+    EXPECT_EQ(camera.kind, c.kind) << c.type;
+    EXPECT_EQ((std::vector{camera.near_m, camera.far_m, camera.depth_min_m, camera.depth_max_m}),
+              (std::vector{c.near_m, c.far_m, c.depth_min_m, c.depth_max_m}))
+        << c.type;
+    EXPECT_GT(sensor.declared_at.line, 0);
+    EXPECT_THAT(sensor.declared_at.file, HasSubstr(".sdf"));
+  }
+}
+
 TEST_F(SdfSensor, ReadsARangefinderWithItsNoise) {
   const auto range = std::get<RangeModel>(read(kUav).sensors.at(1).model);
   EXPECT_EQ(range.min_m, 0.1);

@@ -1,7 +1,9 @@
 #include "image_maker.h"
 
+#include "pixels.h"
 #include "sensor_noise.h"
 
+#include <cassert>
 #include <span>
 #include <utility>
 
@@ -13,15 +15,20 @@ ImageMaker::ImageMaker(const World& world, CameraRendererFactory make_renderer,
 
 uav::CameraSample ImageMaker::make(const CameraModel& camera, const Request& r) {
   const uav::CameraModel& lens = camera.intrinsics;
-  const auto bytes = std::size_t{3} * static_cast<std::size_t>(lens.width_px) *
-                     static_cast<std::size_t>(lens.height_px);
-  uav::CameraSample sample{r.key.at, r.key.index, lens.width_px, lens.height_px,
-                           std::vector<std::uint8_t>(bytes)};
+  const auto pixels =
+      static_cast<std::size_t>(lens.width_px) * static_cast<std::size_t>(lens.height_px);
+  const bool has_labels = camera.kind == uav::CameraKind::kSegmentation;
+  const bool knows_pixels = renderer().knows_pixels();
+  assert(knows_pixels || camera.kind == uav::CameraKind::kColor);
+  uav::CameraSample sample{r.key.at, r.key.index, lens.width_px, lens.height_px, {}};
+  sample.rgb.resize(uav::has_color(camera.kind) ? 3 * pixels : 0);
+  sample.depth_m.resize(uav::has_depth(camera.kind) ? pixels : 0);
+  models_.resize(knows_pixels && (has_labels || !world_.anchors.empty()) ? pixels : 0);
   warn_of_blind_pixels(camera, r.sensor);
   place_instants(camera, r);
   raster::View view;
   view.camera = lens;
-  view.near_m = camera.near_m;
+  view.near_m = near_m(camera);
   view.far_m = camera.far_m;
   view.instants = instants_;
   view.spacing_s = to_seconds(world_.step);
@@ -30,9 +37,15 @@ uav::CameraSample ImageMaker::make(const CameraModel& camera, const Request& r) 
   view.hidden = r.uav;
   raster::Picture picture;
   picture.rgb = sample.rgb;
+  picture.depth_m = sample.depth_m;
+  picture.entity = models_;
   renderer().draw(view, picture);
   const std::uint64_t stream = random_stream(r.key.uav, r.key.sensor, "pixels");
   add_pixel_noise(camera.pixel_noise, {r.key.seed, stream, r.key.index, r.key.at}, sample.rgb);
+  finish_depths(camera, r.key, sample.depth_m);
+  if (has_labels) sample.labels = labels_of(models_, r.sensor);
+  sample.knows_anchors = knows_pixels;
+  sample.seen_anchors = find_anchors(world_, models_, lens.width_px);
   return sample;
 }
 

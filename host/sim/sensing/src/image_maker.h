@@ -16,7 +16,7 @@
 namespace tether::sim {
 
 /// Makes the images of a world's cameras: has them drawn with the poses of the steps that the
-/// shutter reaches back, and adds the pixel noise.
+/// shutter reaches back, and adds the noise.
 class ImageMaker {
  public:
   /// `world` must outlive this object. Warns of what cannot be shown when an image is made.
@@ -47,6 +47,7 @@ class ImageMaker {
   std::set<const Sensor*> checked_;
   std::vector<uav::Pose> poses_;  ///< of all bodies, at one instant after the other
   std::vector<raster::Instant> instants_;
+  std::vector<std::uint32_t> models_;  ///< which each pixel shows
 };
 
 }  // namespace tether::sim

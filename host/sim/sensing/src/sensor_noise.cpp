@@ -90,6 +90,16 @@ double walking_bias(const Noise& noise, std::uint64_t seed, std::uint64_t stream
   return low_value;
 }
 
+namespace {
+
+// What the noise adds to every pixel of an image.
+double image_offset(const Noise& noise, const NoiseKey& key) {
+  return noise.mean + constant_bias(noise, key.seed, key.stream) +
+         walking_bias(noise, key.seed, key.stream, key.at);
+}
+
+}  // namespace
+
 double noise_value(const Noise& noise, const NoiseKey& key) {
   const double white =
       noise.stddev == 0.0 ? 0.0 : noise.stddev * normal({key.seed, key.stream, key.index});
@@ -97,9 +107,18 @@ double noise_value(const Noise& noise, const NoiseKey& key) {
          walking_bias(noise, key.seed, key.stream, key.at);
 }
 
+void add_depth_noise(const Noise& noise, const NoiseKey& key, std::span<float> depth_m) {
+  const double offset = image_offset(noise, key);
+  if (offset == 0.0 && noise.stddev == 0.0) return;
+  KeyedRandom random({key.seed, key.stream, key.index});
+  for (float& depth : depth_m) {
+    const double white = noise.stddev == 0.0 ? 0.0 : noise.stddev * random.normal();
+    depth = static_cast<float>(depth + offset + white);
+  }
+}
+
 void add_pixel_noise(const Noise& noise, const NoiseKey& key, std::span<std::uint8_t> rgb) {
-  const double offset = noise.mean + constant_bias(noise, key.seed, key.stream) +
-                        walking_bias(noise, key.seed, key.stream, key.at);
+  const double offset = image_offset(noise, key);
   if (offset == 0.0 && noise.stddev == 0.0) return;
   const std::array<std::int32_t, 256> deltas = pixel_deltas(offset, noise.stddev);
   KeyedRandom random({key.seed, key.stream, key.index});

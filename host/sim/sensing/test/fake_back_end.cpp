@@ -19,7 +19,10 @@ class FakeRenderer final : public CameraRenderer {
       drawn.X_WB.emplace_back(instant.X_WB.begin(), instant.X_WB.end());
     }
     std::fill(picture.rgb.begin(), picture.rgb.end(), log_.grey);
+    std::fill(picture.depth_m.begin(), picture.depth_m.end(), log_.depth_m);
+    std::fill(picture.entity.begin(), picture.entity.end(), log_.model);
   }
+  bool knows_pixels() const override { return log_.knows_pixels; }
   std::size_t blind_pixels(const uav::CameraModel&) override { return log_.blind_pixels; }
   std::string name() const override { return "fake"; }
 

@@ -23,6 +23,9 @@ struct DrawLog {
   std::vector<Drawn> drawn;
 
   std::uint8_t grey = 0;  ///< of each pixel
+  float depth_m = 0.0F;
+  std::uint32_t model = 0;
+  bool knows_pixels = false;
   std::size_t blind_pixels = 0;
 };
 

@@ -113,6 +113,40 @@ TEST(ImageMakerTest, WarnsOnceOfDistortionThatLeavesPixelsBlack) {
   EXPECT_THAT(shot.warnings, ::testing::ElementsAre(::testing::HasSubstr("camera 'camera'")));
 }
 
+// Each kind in one picture, with the truth about the anchor if the renderer knows it.
+TEST(ImageMakerTest, ACameraMeasuresWhatItsKindSays) {
+  using uav::CameraKind;
+  constexpr std::size_t kPixels = 16 * 12;
+  for (const auto kind :
+       {CameraKind::kColor, CameraKind::kDepth, CameraKind::kRgbd, CameraKind::kSegmentation}) {
+    World world = small_world();
+    world.anchors.emplace_back().anchor.name = world.models.at(0).name;
+    camera_of(world).kind = kind;
+    camera_of(world).depth_max_m = 10.0;
+    Camera shot(std::move(world));
+    shot.log.knows_pixels = true;
+    shot.log.depth_m = 3.0F;
+    shot.log.model = 1;
+    const uav::CameraSample image = shot.image();
+    EXPECT_EQ(image.rgb.size(), uav::has_color(kind) ? 3 * kPixels : 0);
+    EXPECT_EQ(image.depth_m, std::vector(uav::has_depth(kind) ? kPixels : 0, 3.0F));
+    EXPECT_EQ(image.labels,
+              std::vector(kind == CameraKind::kSegmentation ? kPixels : 0, std::uint16_t{1}));
+    EXPECT_TRUE(image.knows_anchors);
+    ASSERT_EQ(image.seen_anchors.size(), 1U);
+    EXPECT_EQ(image.seen_anchors[0].pixels, static_cast<std::int64_t>(kPixels));
+    EXPECT_EQ(shot.log.drawn.size(), 1U);
+  }
+}
+
+TEST(ImageMakerTest, ARendererOfColoursKnowsNoAnchors) {
+  World world = small_world();
+  world.anchors.emplace_back().anchor.name = world.models.at(0).name;
+  const uav::CameraSample image = Camera(std::move(world)).image();
+  EXPECT_FALSE(image.knows_anchors);
+  EXPECT_TRUE(image.seen_anchors.empty());
+}
+
 TEST(ImageMakerTest, PixelNoiseDiffersByImageAndSeed) {
   World world = small_world();
   camera_of(world).pixel_noise.stddev = 0.1;

@@ -53,6 +53,10 @@ uav::CameraSample make_image(const CameraModel& camera, SimTime at, std::uint64_
   KeyedRandom random(key);
   for (std::uint8_t& byte : image.rgb) byte = static_cast<std::uint8_t>(random.bits());
   put_instant(at, image.rgb);
+  const std::size_t pixels = image.rgb.size() / 3;
+  if (uav::has_depth(camera.kind)) image.depth_m.assign(pixels, 2.5F);
+  if (camera.kind == uav::CameraKind::kSegmentation) image.labels.assign(pixels, 1);
+  if (!uav::has_color(camera.kind)) image.rgb.clear();
   return image;
 }
 
@@ -164,7 +168,10 @@ uav::Sample FakeSimulator::measure(const Snapshot& snapshot, std::size_t uav, st
   if (const auto* camera = std::get_if<CameraModel>(&model.model)) {
     const std::string instant = std::to_string(to_ns(snapshot.at));
     const RandomKey key{seed_, random_stream(world_.uavs[uav].name, model.name, instant), index};
-    return make_image(*camera, snapshot.at, index, key);
+    uav::CameraSample image = make_image(*camera, snapshot.at, index, key);
+    image.knows_anchors = planned_seen_.has_value();
+    image.seen_anchors = planned_seen_.value_or(std::vector<uav::SeenAnchor>{});
+    return image;
   }
   if (const auto* range = std::get_if<RangeModel>(&model.model)) {
     return uav::RangeSample{snapshot.at, index,
@@ -185,6 +192,14 @@ GroundTruth FakeSimulator::ground_truth(std::size_t uav) const {
            q_from_yaw(body.yaw_rad),
            velocity_W(body.yaw_rad, body.command),
            {0.0, 0.0, body.command.yaw_rate_rad_s}}};
+}
+
+void FakeSimulator::set_camera_kind(uav::CameraKind kind) {
+  for (Uav& uav : world_.uavs) {
+    for (Sensor& sensor : uav.sensors) {
+      if (auto* camera = std::get_if<CameraModel>(&sensor.model)) camera->kind = kind;
+    }
+  }
 }
 
 std::vector<Contact> FakeSimulator::take_contacts() {

@@ -8,6 +8,7 @@ using tether::c_api::are_given;
 using tether::c_api::fail;
 using tether::c_api::to_c;
 using tether::uav::Anchor;
+using tether::uav::CameraProperties;
 using tether::uav::SensorDescription;
 
 /// `tether_sensor` and `tether_anchor` have no definition: pointers to them are pointers to what
@@ -61,7 +62,11 @@ const char* tether_sensor_name(const tether_sensor* sensor) noexcept {
 }
 
 tether_sensor_kind tether_sensor_get_kind(const tether_sensor* sensor) noexcept {
-  return are_given(sensor) ? static_cast<tether_sensor_kind>(from_c(sensor)->kind()) : -1;
+  if (!are_given(sensor)) return -1;
+  const auto of_camera = from_c(sensor)->camera_kind();
+  if (!of_camera || *of_camera == tether::uav::CameraKind::kColor)
+    return static_cast<tether_sensor_kind>(from_c(sensor)->kind());
+  return TETHER_RANGE + static_cast<tether_sensor_kind>(*of_camera);
 }
 
 double tether_sensor_rate_hz(const tether_sensor* sensor) noexcept {
@@ -79,7 +84,7 @@ tether_status tether_sensor_mounting(const tether_sensor* sensor, tether_pose* o
 tether_status tether_sensor_camera_model(const tether_sensor* sensor, tether_camera_model* out,
                                          size_t size) noexcept {
   if (!tether::c_api::can_take(out, size) || !are_given(sensor)) return TETHER_INVALID;
-  const auto* camera = std::get_if<tether::uav::CameraProperties>(&from_c(sensor)->properties);
+  const auto* camera = std::get_if<CameraProperties>(&from_c(sensor)->properties);
   if (camera == nullptr) return fail(TETHER_INVALID, "the sensor is not a camera");
   tether::c_api::put(to_c(camera->model), out, size);
   return TETHER_OK;
@@ -90,11 +95,24 @@ tether_status tether_sensor_range_limits(const tether_sensor* sensor, double* mi
   if (!are_given(min_m, max_m)) return TETHER_INVALID;
   *min_m = *max_m = 0.0;
   if (!are_given(sensor)) return TETHER_INVALID;
-  const auto* range = std::get_if<tether::uav::RangeProperties>(&from_c(sensor)->properties);
-  if (range == nullptr) return fail(TETHER_INVALID, "the sensor is not a rangefinder");
-  *min_m = range->min_m;
-  *max_m = range->max_m;
-  return TETHER_OK;
+  const auto give = [&](const auto& limits) {
+    *min_m = limits.min_m;
+    *max_m = limits.max_m;
+    return tether_status{TETHER_OK};
+  };
+  const auto& properties = from_c(sensor)->properties;
+  if (const auto* range = std::get_if<tether::uav::RangeProperties>(&properties))
+    return give(*range);
+  const auto* camera = std::get_if<CameraProperties>(&properties);
+  if (camera != nullptr && tether::uav::has_depth(camera->kind)) return give(*camera);
+  return fail(TETHER_INVALID, "the sensor measures no distances");
+}
+
+const char* tether_sensor_label_model(const tether_sensor* sensor, uint16_t label) noexcept {
+  if (!are_given(sensor)) return nullptr;
+  const auto* camera = std::get_if<CameraProperties>(&from_c(sensor)->properties);
+  if (camera == nullptr || label == 0 || label > camera->models.size()) return nullptr;
+  return camera->models[label - std::size_t{1}].c_str();
 }
 
 // ---- Anchors ------------------------------------------------------------------------------------

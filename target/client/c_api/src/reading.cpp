@@ -5,6 +5,7 @@
 #include <cstring>
 #include <new>
 #include <string>
+#include <vector>
 
 using tether::client::Read;
 
@@ -54,6 +55,13 @@ tether_status check_capacity(const tether_vehicle& vehicle, const char* sensor,
   const auto* camera =
       found == nullptr ? nullptr : std::get_if<uav::CameraProperties>(&found->properties);
   if (camera == nullptr) return TETHER_OK;
+  if (!uav::has_color(camera->kind)) {
+    return guarded([&] {
+      return fail(TETHER_INVALID, "'" + found->name + "' is a " +
+                                      std::string(uav::name(camera->kind)) +
+                                      ", which measures no colours; use tether_read_camera()");
+    });
+  }
   const std::size_t needed = std::size_t{3} * static_cast<std::size_t>(camera->model.width_px) *
                              static_cast<std::size_t>(camera->model.height_px);
   if (capacity >= needed) return TETHER_OK;
@@ -61,6 +69,11 @@ tether_status check_capacity(const tether_vehicle& vehicle, const char* sensor,
     return fail(TETHER_INVALID, "an image of '" + found->name + "' has " + std::to_string(needed) +
                                     " bytes; the buffer has " + std::to_string(capacity));
   });
+}
+
+template <class T>
+const T* pixels_of(const std::vector<T>& pixels) {
+  return pixels.empty() ? nullptr : pixels.data();
 }
 
 }  // namespace
@@ -103,7 +116,13 @@ tether_status tether_image_get_info(const tether_image* image, tether_image_info
 }
 
 const uint8_t* tether_image_rgb(const tether_image* image) noexcept {
-  return are_given(image) ? image->sample->rgb.data() : nullptr;
+  return are_given(image) ? pixels_of(image->sample->rgb) : nullptr;
+}
+const float* tether_image_depth_m(const tether_image* image) noexcept {
+  return are_given(image) ? pixels_of(image->sample->depth_m) : nullptr;
+}
+const uint16_t* tether_image_labels(const tether_image* image) noexcept {
+  return are_given(image) ? pixels_of(image->sample->labels) : nullptr;
 }
 
 tether_status tether_read_camera_into(tether_vehicle* vehicle, const char* sensor,

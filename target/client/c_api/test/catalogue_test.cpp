@@ -31,9 +31,28 @@ TEST(Sensors, HaveTheirPropertiesAndNoOthers) {
   EXPECT_EQ(max_m, 0.0);
 }
 
+TEST(Sensors, OtherCamerasHaveKindsOfTheirOwn) {
+  const Flown flown;
+  const auto* rgbd = tether_find_sensor(flown.vehicle, "rgbd");
+  const auto* labels = tether_find_sensor(flown.vehicle, "labels");
+  EXPECT_EQ(tether_sensor_get_kind(rgbd), TETHER_RGBD_CAMERA);
+  EXPECT_EQ(tether_sensor_get_kind(labels), TETHER_SEGMENTATION_CAMERA);
+  tether_camera_model model;
+  EXPECT_EQ(tether_sensor_camera_model(labels, &model, sizeof model), TETHER_OK);
+  double min_m = 0.0, max_m = 0.0;
+  ASSERT_EQ(tether_sensor_range_limits(rgbd, &min_m, &max_m), TETHER_OK);
+  EXPECT_EQ(max_m, 9.0);
+  EXPECT_EQ(tether_sensor_range_limits(labels, &min_m, &max_m), TETHER_INVALID);
+  EXPECT_STREQ(tether_sensor_label_model(labels, 2), "blue_box");
+  for (const std::uint16_t none : std::initializer_list<std::uint16_t>{0, 3, 65535})
+    EXPECT_EQ(tether_sensor_label_model(labels, none), nullptr);
+  EXPECT_EQ(tether_sensor_label_model(rgbd, 1), nullptr);
+  EXPECT_EQ(tether_sensor_label_model(nullptr, 1), nullptr);
+}
+
 TEST(Catalogue, HasNothingBeyondItsEnd) {
   const Flown flown;
-  EXPECT_EQ(tether_sensor_at(flown.vehicle, 4), nullptr);
+  EXPECT_EQ(tether_sensor_at(flown.vehicle, 6), nullptr);
   EXPECT_EQ(tether_anchor_get_shape(tether_anchor_at(flown.vehicle, 1)), TETHER_SPHERE);
   EXPECT_EQ(tether_anchor_at(flown.vehicle, 2), nullptr);
   EXPECT_EQ(tether_find_anchor(flown.vehicle, ""), nullptr);

@@ -34,7 +34,7 @@ class CppApi : public testing::Test {
 
 TEST_F(CppApi, KnowsTheCatalogue) {
   EXPECT_STREQ(vehicle_.uav_name(), "uav1");
-  ASSERT_EQ(vehicle_.sensor_count(), 4u);
+  ASSERT_EQ(vehicle_.sensor_count(), 6u);
   const auto camera = vehicle_.find_sensor("camera");
   ASSERT_TRUE(camera.has_value());
   EXPECT_EQ(camera->kind(), api::SensorKind::kCamera);
@@ -54,6 +54,20 @@ TEST_F(CppApi, KnowsTheCatalogue) {
   EXPECT_EQ(box->shape(), api::AnchorShape::kBox);
   EXPECT_EQ(box->size_m().x, 0.4);
   EXPECT_EQ(box->color().z, 0.85);
+}
+
+TEST_F(CppApi, ReadsDepthsAndLabels) {
+  fake_->image.rgb.clear();
+  fake_->image.depth_m = {0.5F, 1, 2, 3, 4, 5, 6, 7};
+  fake_->image.labels = {0, 1, 2, 0, 0, 0, 0, 2};
+  const auto image = vehicle_.read_camera("labels");
+  ASSERT_TRUE(image.ok());
+  EXPECT_EQ(image->rgb(), nullptr);
+  EXPECT_EQ(image->size_bytes(), 0u);
+  EXPECT_EQ(image->depth_m()[7], 7.0F);
+  const auto labels = vehicle_.find_sensor("labels");
+  EXPECT_EQ(labels->kind(), api::SensorKind::kSegmentationCamera);
+  EXPECT_STREQ(labels->label_model(image->labels()[7]), "blue_box");
 }
 
 TEST_F(CppApi, ReadsSensors) {

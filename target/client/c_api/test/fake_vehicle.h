@@ -26,10 +26,17 @@ class FakeVehicle final : public client::Vehicle {
     model.p1 = 0.4;
     model.p2 = 0.5;
     const uav::Pose X_BS{{0.1, 0.2, 0.3}, {0.5, 0.5, -0.5, 0.5}};
-    catalogue_.sensors = {{"camera", X_BS, 30.0, uav::CameraProperties{model}},
-                          {"imu", {}, 20.0, uav::ImuProperties{}},
-                          {"down", {}, 0.0, uav::RangeProperties{0.1, 8.0}},
-                          {"ahead", {}, 10.0, uav::RangeProperties{0.1, 8.0}}};
+    catalogue_.sensors = {
+        {"camera", X_BS, 30.0, uav::CameraProperties{model}},
+        {"imu", {}, 20.0, uav::ImuProperties{}},
+        {"down", {}, 0.0, uav::RangeProperties{0.1, 8.0}},
+        {"ahead", {}, 10.0, uav::RangeProperties{0.1, 8.0}},
+        {"rgbd", {}, 10.0, uav::CameraProperties{model, uav::CameraKind::kRgbd, 0.3, 9.0}},
+        {"labels",
+         {},
+         10.0,
+         uav::CameraProperties{
+             model, uav::CameraKind::kSegmentation, 0.0, 0.0, {"wall", "blue_box"}}}};
     catalogue_.anchors = {{"blue_box", uav::AnchorShape::kBox, {0.4, 0.5, 0.6}, {0.05, 0.15, 0.85}},
                           {"ball", uav::AnchorShape::kSphere, {0.2, 0.2, 0.2}, {1.0, 0.0, 0.0}}};
     image.rgb.assign(24, 7);

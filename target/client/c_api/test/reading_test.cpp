@@ -52,6 +52,20 @@ TEST(ReadCamera, FillsTheCallersMemoryIfItIsLargeEnough) {
   EXPECT_EQ(rgb[24], 0);
 }
 
+TEST(ReadCamera, WithoutColoursFillsNoBuffer) {
+  const Flown flown;
+  std::array<std::uint8_t, 24> rgb{};
+  EXPECT_EQ(tether_read_camera_into(flown.vehicle, "labels", 0, rgb.data(), 24, nullptr, 0),
+            TETHER_INVALID);
+  EXPECT_THAT(tether_last_error(), HasSubstr("segmentation camera"));
+  EXPECT_TRUE(flown.fake->reads.empty());
+  tether_image* image = nullptr;
+  ASSERT_EQ(tether_read_camera(flown.vehicle, "camera", TETHER_READ_NEXT, &image), TETHER_OK);
+  EXPECT_EQ(tether_image_depth_m(image), nullptr);
+  EXPECT_EQ(tether_image_labels(image), nullptr);
+  tether_image_free(image);
+}
+
 TEST(ReadCamera, NothingYetIsAStatusOfItsOwn) {
   const Flown flown;
   flown.fake->failure = Failure{Failure::Kind::kNothingYet, "no new image"};

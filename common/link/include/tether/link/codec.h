@@ -13,8 +13,8 @@
 namespace tether::link {
 
 inline constexpr std::size_t kFrameHeaderBytes = 4;
-/// Largest frame towards the SUT: a 4096×4096 RGB image and its envelope.
-inline constexpr std::uint32_t kMaxReplyBytes = 64u << 20;
+/// Largest frame towards the SUT: a 4096×4096 image with colours and depths, and its envelope.
+inline constexpr std::uint32_t kMaxReplyBytes = 128u << 20;
 /// Largest frame towards the coordinator: messages of a SUT are short.
 inline constexpr std::uint32_t kMaxRequestBytes = 1u << 20;
 /// Largest first frame towards the coordinator: four times the longest Hello of this version. It
@@ -30,6 +30,8 @@ inline constexpr std::size_t kMaxTextBytes = 4096;
 inline constexpr std::size_t kMaxJsonBytes = 1000u << 10;
 /// Most sensors, and most anchors, of a catalogue.
 inline constexpr std::size_t kMaxCatalogueEntries = 1024;
+/// Most models whose names the properties of a segmentation camera have: its labels are 16 bits.
+inline constexpr std::size_t kMaxModels = 65535;
 /// Every timestamp t has 0 ≤ t < this (146 years), so that sums of two cannot overflow [ns].
 inline constexpr std::int64_t kMaxTimestampNs = std::int64_t{1} << 62;
 

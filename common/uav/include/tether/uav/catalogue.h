@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -15,8 +16,23 @@ namespace tether::uav {
 enum class SensorKind { kCamera, kImu, kRange };
 std::string_view name(SensorKind kind);
 
+/// What a camera measures in each pixel.
+enum class CameraKind { kColor, kDepth, kRgbd, kSegmentation };
+std::string_view name(CameraKind kind);
+/// The arrays of CameraSample that a camera of this kind fills.
+constexpr bool has_color(CameraKind kind) {
+  return kind == CameraKind::kColor || kind == CameraKind::kRgbd;
+}
+constexpr bool has_depth(CameraKind kind) {
+  return kind == CameraKind::kDepth || kind == CameraKind::kRgbd;
+}
+
 struct CameraProperties {
   CameraModel model;
+  CameraKind kind = CameraKind::kColor;
+  double min_m = 0.0;  ///< of depths; 0 for a camera without
+  double max_m = 0.0;
+  std::vector<std::string> models{};  ///< of kSegmentation: those that labels 1, 2, … show
 };
 struct ImuProperties {};
 struct RangeProperties {
@@ -32,6 +48,10 @@ struct SensorDescription {
   std::variant<CameraProperties, ImuProperties, RangeProperties> properties;
 
   SensorKind kind() const { return static_cast<SensorKind>(properties.index()); }
+  /// Of a camera; else none.
+  std::optional<CameraKind> camera_kind() const;
+  /// "camera", "depth camera", "imu", …
+  std::string_view kind_name() const;
 };
 
 enum class AnchorShape { kBox, kCylinder, kSphere };

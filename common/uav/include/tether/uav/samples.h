@@ -12,14 +12,31 @@
 
 namespace tether::uav {
 
-/// One camera image.
+/// Where an anchor is seen in an image: the first and last column and row of its visible pixels.
+struct SeenAnchor {
+  std::string anchor;
+  int left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;
+  std::int64_t pixels = 0;  ///< how many of the anchor are visible, > 0
+  friend bool operator==(const SeenAnchor&, const SeenAnchor&) = default;
+};
+
+/// One image of a camera of any kind. Arrays that the camera's kind does not have are empty. All
+/// are row-major from the top left.
 struct CameraSample {
   SimTime sampled_at;       ///< time of the exposure [ST]
   std::uint64_t index = 0;  ///< number of this measurement of the sensor
   int width_px = 0;
   int height_px = 0;
-  std::vector<std::uint8_t>
-      rgb;  ///< height × width × 3, row-major from the top left, sRGB bytes R, G, B
+  std::vector<std::uint8_t> rgb;  ///< height × width × 3 sRGB bytes R, G, B
+  /// Height × width, along the optical axis [m]: +inf: nothing within range; −inf: closer than the
+  /// minimum (REP-117, REP-118); NaN: the lens maps no direction to the pixel.
+  std::vector<float> depth_m{};
+  /// Height × width: label l shows CameraProperties::models[l − 1]; 0: none of them.
+  std::vector<std::uint16_t> labels{};
+  /// The truth, for the record only: no SUT receives it. The anchors that are seen in the image, in
+  /// the world's order, if the back end knows them.
+  bool knows_anchors = false;
+  std::vector<SeenAnchor> seen_anchors{};
 };
 
 /// One measurement of the inertial measurement unit, in its own frame S.

@@ -39,6 +39,18 @@ uav::Pose camera_pose(const record::SensorInfo& camera, const uav::Pose& X_WB);
 std::optional<PixelRect> true_roi(const record::SensorInfo& camera, const uav::Pose& X_WB,
                                   const record::Anchor& anchor);
 
+/// The true region of an anchor in an image that was read. If the record has what is seen of
+/// anchors, it is the rectangle around the anchor's visible pixels, and none if there are none:
+/// each edge is that of the projection (`true_roi`) where the pixels reach it, and else that of the
+/// pixels. If not, it is the projection, whatever is in front of the anchor.
+std::optional<PixelRect> roi_in_image(const record::Interaction& read,
+                                      const record::SensorInfo& camera, const uav::Pose& X_WB,
+                                      const record::Anchor& anchor);
+
+/// The read of a measurement; nullptr if the record has none.
+const record::Interaction* find_read(const record::Record& record, const std::string& uav,
+                                     const std::string& sensor, std::uint64_t index);
+
 /// The part of `roi` that is in the image; none if there is no such part.
 /// @pre camera.camera has a value.
 std::optional<PixelRect> visible_part(const record::SensorInfo& camera, const PixelRect& roi);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include <tether/base/time.h>
@@ -27,6 +28,14 @@ inline constexpr std::string_view kCommand = "command";
 inline constexpr std::string_view kSleep = "sleep";
 inline constexpr std::string_view kFinish = "finish";
 
+/// Where an anchor is seen in an image: the first and last column and row of its visible pixels.
+struct SeenAnchor {
+  std::string anchor;
+  int left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;
+  std::uint64_t pixels = 0;  ///< how many are visible, > 0
+  friend bool operator==(const SeenAnchor&, const SeenAnchor&) = default;
+};
+
 /// One request of a SUT and its reply. Topic /interactions; log time = ST at release.
 struct Interaction {
   std::string uav;
@@ -45,6 +54,11 @@ struct Interaction {
   std::optional<SimTime> sampled_at;  ///< time of the sample by the timing model
   std::optional<SimTime> sample_state_at;  ///< step boundary whose state was measured (its floor)
   std::optional<SimTime> available_at;     ///< sampled_at + delay
+
+  /// Of an image: the anchors that are seen in it; those that are hidden or outside are missing.
+  /// None if the simulator does not know this, and in records of Tether 0.1.0: then an anchor's
+  /// true region is the projection of its shape, whatever is in front of it.
+  std::optional<std::vector<SeenAnchor>> seen_anchors{};
 
   std::optional<SimTime> effect_at;     ///< kind "command": first step boundary it acts on
   std::optional<ExecTime> sleep_until;  ///< kind "sleep": requested end of the sleep
@@ -124,6 +138,19 @@ struct Image {
   std::vector<std::uint8_t> png;  ///< a PNG file
 };
 
+/// Topic /depth/<uav>/<sensor> or /labels/<uav>/<sensor>: foxglove.RawImage (32FC1 or 16UC1), rows
+/// from the top down without gaps. The header's CameraInfo::models has the meaning of labels.
+struct RawImage {
+  std::string uav;
+  std::string sensor;
+  SimTime at;
+  std::uint64_t index = 0;
+  int width_px = 0;  ///< 1 to 100 000, as the height
+  int height_px = 0;
+  /// Depths along the optical axis [m], as in uav::CameraSample, or labels.
+  std::variant<std::vector<float>, std::vector<std::uint16_t>> pixels;
+};
+
 /// An entity of the world that is known in advance (frame A), in the world frame W.
 struct Anchor {
   std::string name;
@@ -141,11 +168,14 @@ struct CameraInfo {
   double fx_px = 0, fy_px = 0;  ///< focal lengths, > 0
   double cx_px = 0, cy_px = 0;  ///< principal point, from the centre of the upper left pixel
   double k1 = 0, k2 = 0, k3 = 0, p1 = 0, p2 = 0;  ///< Brown-Conrady distortion, as in SDF
+  double depth_min_m = 0, depth_max_m = 0;        ///< 0: measures no depths
+  std::vector<std::string> models{};  ///< of a segmentation camera: those that labels 1, 2, … show
 };
 struct SensorInfo {
   std::string uav;
   std::string name;
-  std::string kind;  ///< "camera", "imu", "range"
+  /// "camera", "depth camera", "rgbd camera", "segmentation camera", "imu", "range"
+  std::string kind;
   bool periodic = false;
   Duration period{0};
   Duration phase{0};

@@ -38,6 +38,7 @@ struct Record {
   std::vector<Logged<Stop>> stops;
   std::vector<Logged<Contact>> contacts;
   std::vector<Logged<Image>> images;
+  std::vector<Logged<RawImage>> raw_images;
   std::optional<Footer> footer;
   std::vector<Miscount> miscounts;  ///< in file order, also of images; at most kMaxMiscounts
   /// Where and why reading stopped early (truncated or damaged file), in one printable line:

@@ -20,12 +20,18 @@ struct ReportedRoi {
 /// The ROI that the SUT of `image.uav` reported for that image; none if there is no readable one.
 std::optional<ReportedRoi> find_roi(const record::Record& record, const record::Image& image);
 
+/// The true region of an anchor in an image.
+struct TrueRoi {
+  std::optional<campaign::PixelRect> rect;  ///< none: the anchor is not in the image, or hidden
+  /// Of the anchor's visible pixels. Else it is a projection, whatever is in front of the anchor.
+  bool is_of_pixels = false;
+};
+
 /// The true region of the anchor that the SUT searched for in that image. It is the anchor of the
 /// SUT's "estimate" for the image, else of its last estimate before, else of its first, else the
-/// only anchor of the record. None if there is no such anchor, the record does not describe the
-/// camera, or the anchor is not visible in the image.
-std::optional<campaign::PixelRect> find_true_roi(const record::Record& record,
-                                                 const record::Image& image);
+/// only anchor of the record. None if there is no such anchor, or the record does not describe the
+/// camera.
+std::optional<TrueRoi> find_true_roi(const record::Record& record, const record::Image& image);
 
 enum class ImageQuality {
   kLossless,
@@ -34,7 +40,7 @@ enum class ImageQuality {
 
 /// The image with frames for both ROIs and a caption: one self-contained SVG.
 std::string frame_svg(const record::Image& image, const std::optional<ReportedRoi>& roi,
-                      const std::optional<campaign::PixelRect>& true_roi,
+                      const std::optional<TrueRoi>& true_roi,
                       ImageQuality quality = ImageQuality::kLossless);
 
 }  // namespace tether::report

@@ -132,7 +132,7 @@ struct CameraModel {
   uav::CameraModel intrinsics;
   double near_m = 0.05;
   double far_m = 100.0;
-  Noise pixel_noise;  ///< of intensities 0..1
+  Noise pixel_noise;  ///< of intensities 0..1; of a depth camera, of depths [m]
   /// How long each row gathers light [s]; 0: an instant. What moves meanwhile is blurred, by the
   /// mean of the light (not of the sRGB bytes).
   double exposure_s = 0.0;
@@ -142,6 +142,10 @@ struct CameraModel {
   /// [e − exposure_s, e] with e = sampled_at − readout_s·(H−1−r)/(H−1). Neither is negative, and
   /// both together are at most 1 s.
   double readout_s = 0.0;
+  uav::CameraKind kind = uav::CameraKind::kColor;
+  /// Of depths: what is nearer reads −inf, what is farther (or nothing) +inf (REP-117) [m].
+  double depth_min_m = 0.0;
+  double depth_max_m = 0.0;
 };
 struct ImuModel {
   std::array<Noise, 3> angular_velocity;     ///< x, y, z [rad/s]
@@ -164,6 +168,7 @@ struct Sensor {
   uav::Pose X_BS;               ///< in the UAV's body frame
   double update_rate_hz = 0.0;  ///< SDF's <update_rate>; 0: none given
   std::variant<CameraModel, ImuModel, RangeModel> model;
+  FileLocation declared_at{};  ///< in its SDF file; empty: in none
   uav::SensorKind kind() const { return static_cast<uav::SensorKind>(model.index()); }
 };
 
@@ -231,6 +236,10 @@ using tether::WarningSink;
 /// Maximum number of links of dynamic models in a world. The engine's memory grows with the square
 /// of their number.
 inline constexpr std::size_t kMaxMovingLinks = 200;
+
+/// The number that a view has for each pixel that shows a model: those of the world from 1, then
+/// the UAVs. 0: none of them. Their names, from number 1 on.
+std::vector<std::string> model_names(const World& world);
 
 /// The catalogue that the SUT of `uav` receives.
 uav::Catalogue make_catalogue(const World& world, const Uav& uav);

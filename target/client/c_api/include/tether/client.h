@@ -3,6 +3,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <tether/client_types.h>
+
 /// @defgroup c_api C: <tether/client.h>
 /// The client library of Tether in C99: what a UAV's own program, the software under test (SUT),
 /// links to. In C++, <tether/client.hpp> is more convenient. The guide is
@@ -90,32 +92,6 @@ const char* tether_status_name(tether_status status) TETHER_NOEXCEPT;
 const char* tether_last_error(void) TETHER_NOEXCEPT;
 
 /// @}
-/// @defgroup c_values Vectors and poses
-/// Small structs that never grow.
-/// @{
-
-/// A vector. Unit and frame are named where it is used.
-typedef struct tether_vec3 {
-  double x;  ///< ahead in B, H and S; east in W
-  double y;  ///< left in B, H and S; north in W
-  double z;  ///< up
-} tether_vec3;
-
-/// Unit quaternion, Hamilton convention.
-typedef struct tether_quat {
-  double w;  ///< scalar part
-  double x;  ///< vector part, x
-  double y;  ///< vector part, y
-  double z;  ///< vector part, z
-} tether_quat;
-
-/// X_PF: the pose of a frame F in its parent P.
-typedef struct tether_pose {
-  tether_vec3 position_m;  ///< of F's origin, in P
-  tether_quat attitude;    ///< q_PF
-} tether_pose;
-
-/// @}
 /// @defgroup c_connecting Connecting
 /// @{
 
@@ -200,13 +176,17 @@ typedef struct tether_sensor tether_sensor;
 /// An anchor of the UAV's world. Owned by the vehicle, never changes.
 typedef struct tether_anchor tether_anchor;
 
-/// Kind of a sensor: TETHER_CAMERA, TETHER_IMU, TETHER_RANGE; a later library may have more.
+/// Kind of a sensor: TETHER_CAMERA, TETHER_IMU, ...; a later library may have more.
 typedef int32_t tether_sensor_kind;
 /// Values of tether_sensor_kind.
 enum {
   TETHER_CAMERA = 0,  ///< colour camera
   TETHER_IMU = 1,     ///< inertial measurement unit
-  TETHER_RANGE = 2    ///< rangefinder
+  TETHER_RANGE = 2,   ///< rangefinder
+  // Read by tether_read_camera().
+  TETHER_DEPTH_CAMERA = 3,        ///< camera that measures a depth in each pixel
+  TETHER_RGBD_CAMERA = 4,         ///< camera that measures colour and depth in each pixel
+  TETHER_SEGMENTATION_CAMERA = 5  ///< camera that finds which model each pixel shows
 };
 
 /// Shape of an anchor: TETHER_BOX, TETHER_CYLINDER, TETHER_SPHERE.
@@ -265,16 +245,20 @@ double tether_sensor_rate_hz(const tether_sensor* sensor) TETHER_NOEXCEPT;
 /// @param sensor  the sensor  @param[out] out  X_BS
 /// @return TETHER_OK or TETHER_INVALID
 tether_status tether_sensor_mounting(const tether_sensor* sensor, tether_pose* out) TETHER_NOEXCEPT;
-/// Optics of a camera.
+/// Optics of a camera of any kind.
 /// @param sensor  the sensor  @param[out] out  its model  @param size  sizeof *out
 /// @return TETHER_OK, or TETHER_INVALID if the sensor is not a camera
 tether_status tether_sensor_camera_model(const tether_sensor* sensor, tether_camera_model* out,
                                          size_t size) TETHER_NOEXCEPT;
-/// The distances that a rangefinder can measure.
+/// The distances that a rangefinder, or the depths that a depth or RGBD camera, can measure.
 /// @param sensor  the sensor  @param[out] min_m,max_m  least and largest [m]
-/// @return TETHER_OK, or TETHER_INVALID if the sensor is not a rangefinder
+/// @return TETHER_OK, or TETHER_INVALID if the sensor measures no distances
 tether_status tether_sensor_range_limits(const tether_sensor* sensor, double* min_m,
                                          double* max_m) TETHER_NOEXCEPT;
+/// The model that a label of a segmentation camera's images means.
+/// @param sensor  the sensor  @param label  from 1; 0 means no model
+/// @return the model's name, owned by the vehicle; NULL if the sensor has no such label
+const char* tether_sensor_label_model(const tether_sensor* sensor, uint16_t label) TETHER_NOEXCEPT;
 
 /// Number of anchors.
 /// @param vehicle  the UAV  @return the number; 0 if `vehicle` is NULL
@@ -332,13 +316,13 @@ typedef struct tether_image_info {
   uint64_t index;         ///< number of the measurement of this sensor
   int32_t width_px;       ///< width [px]
   int32_t height_px;      ///< height [px]
-  uint64_t size_bytes;    ///< height x width x 3
+  uint64_t size_bytes;    ///< of the colours: height x width x 3, or 0 if the image has none
 } tether_image_info;
 
 /// An image in memory of the library. It belongs to no vehicle, may outlive it, and never changes.
 typedef struct tether_image tether_image;
 
-/// Reads a camera into memory of the library, without copying pixels.
+/// Reads a camera of any kind into memory of the library, without copying pixels.
 /// @param vehicle  the UAV  @param sensor  name of the camera  @param mode  which image
 /// @param[out] out  the image; free it with tether_image_free()
 /// @return TETHER_OK, TETHER_NOTHING_YET or an @ref interaction error
@@ -357,16 +341,26 @@ tether_status tether_image_get_info(const tether_image* image, tether_image_info
                                     size_t size) TETHER_NOEXCEPT;
 /// Pixels of an image. @param image  the image
 /// @return height x width x 3 sRGB bytes R, G, B, row by row from the top left without gaps; valid
-///   until tether_image_free(). NULL only if `image` is.
+///   until tether_image_free(). NULL if `image` is, or if the camera measures no colours.
 const uint8_t* tether_image_rgb(const tether_image* image) TETHER_NOEXCEPT;
+/// Depths of an image. @param image  the image
+/// @return height x width numbers, laid out as the pixels of tether_image_rgb(): depth along the
+///   optical axis [m] (REP-118); +inf: nothing in reach; -inf: too close; NaN: the lens maps no
+///   direction to the pixel. NULL if `image` is, or if the camera measures no depths.
+const float* tether_image_depth_m(const tether_image* image) TETHER_NOEXCEPT;
+/// Labels of an image. @param image  the image
+/// @return height x width numbers, laid out as the pixels of tether_image_rgb(): which model the
+///   pixel shows, see tether_sensor_label_model(); 0: none. NULL if `image` is, or if the camera is
+///   not a segmentation camera.
+const uint16_t* tether_image_labels(const tether_image* image) TETHER_NOEXCEPT;
 
-/// Reads a camera into the caller's memory, with one copy.
+/// Reads the colours of a camera into the caller's memory, with one copy.
 /// @param vehicle  the UAV  @param sensor  name of the camera  @param mode  which image
 /// @param[out] rgb  the pixels, laid out as in tether_image_rgb(); unchanged by a failed call
 /// @param capacity  bytes that `rgb` has; the camera's model has the size of an image
 /// @param[out] info  the description, or NULL  @param info_size  sizeof *info
 /// @return TETHER_OK, TETHER_NOTHING_YET or an @ref interaction error; TETHER_INVALID, before
-///   anything is read, if the image does not fit
+///   anything is read, if the image does not fit or the camera measures no colours
 tether_status tether_read_camera_into(tether_vehicle* vehicle, const char* sensor,
                                       tether_read_mode mode, uint8_t* rgb, size_t capacity,
                                       tether_image_info* info, size_t info_size) TETHER_NOEXCEPT;

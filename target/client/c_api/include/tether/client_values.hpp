@@ -147,9 +147,12 @@ using CameraModel = tether_camera_model;  ///< pinhole camera with distortion
 
 /// Kind of a sensor. A later library may have more.
 enum class SensorKind : std::int32_t {
-  kCamera = TETHER_CAMERA,  ///< colour camera
-  kImu = TETHER_IMU,        ///< inertial measurement unit
-  kRange = TETHER_RANGE,    ///< rangefinder
+  kCamera = TETHER_CAMERA,                           ///< colour camera
+  kImu = TETHER_IMU,                                 ///< inertial measurement unit
+  kRange = TETHER_RANGE,                             ///< rangefinder
+  kDepthCamera = TETHER_DEPTH_CAMERA,                ///< measures a depth in each pixel
+  kRgbdCamera = TETHER_RGBD_CAMERA,                  ///< measures colour and depth in each pixel
+  kSegmentationCamera = TETHER_SEGMENTATION_CAMERA,  ///< finds which model each pixel shows
 };
 /// Shape of an anchor.
 enum class AnchorShape : std::int32_t {
@@ -165,7 +168,7 @@ class Sensor {
   explicit Sensor(const tether_sensor* sensor) noexcept : sensor_(sensor) {}
   /// @return the name, unique within the UAV; owned by the vehicle
   const char* name() const noexcept { return tether_sensor_name(sensor_); }
-  /// @return camera, IMU or rangefinder
+  /// @return what the sensor measures
   SensorKind kind() const noexcept {
     return static_cast<SensorKind>(tether_sensor_get_kind(sensor_));
   }
@@ -184,17 +187,22 @@ class Sensor {
     if (got != TETHER_OK) return Failure::last(got);
     return model;
   }
-  /// The distances that a rangefinder can measure.
+  /// The distances that a rangefinder, a depth or an RGBD camera can measure.
   struct RangeLimits {
     double min_m;  ///< least distance [m]
     double max_m;  ///< largest distance [m]
   };
-  /// @return the limits; Code::kInvalid if this is not a rangefinder
+  /// @return the limits; Code::kInvalid if this sensor measures no distances
   Result<RangeLimits> range_limits() const noexcept {
     RangeLimits limits{};
     const tether_status got = tether_sensor_range_limits(sensor_, &limits.min_m, &limits.max_m);
     if (got != TETHER_OK) return Failure::last(got);
     return limits;
+  }
+  /// The model that a label of a segmentation camera's images means.
+  /// @param label  from 1  @return the model's name, owned by the vehicle; nullptr if there is none
+  const char* label_model(std::uint16_t label) const noexcept {
+    return tether_sensor_label_model(sensor_, label);
   }
 
  private:
@@ -256,11 +264,17 @@ class ImageView {
   std::uint64_t index() const noexcept { return info_.index; }
   /// @return ST of the exposure
   SimTime sampled_at() const noexcept { return SimTime(Duration(info_.sampled_at_ns)); }
-  /// @return height x width x 3 sRGB bytes R, G, B, row by row from the top left
+  /// @return height x width x 3 sRGB bytes R, G, B, row by row from the top left; nullptr if the
+  ///   camera measures no colours
   const std::uint8_t* rgb() const noexcept { return tether_image_rgb(image_); }
-  /// @return height x width x 3
+  /// @return height x width depths [m], as tether_image_depth_m(); nullptr if the camera measures
+  ///   none
+  const float* depth_m() const noexcept { return tether_image_depth_m(image_); }
+  /// @return height x width labels, as tether_image_labels(); nullptr if the camera finds none
+  const std::uint16_t* labels() const noexcept { return tether_image_labels(image_); }
+  /// @return height x width x 3; 0 if the camera measures no colours
   std::size_t size_bytes() const noexcept { return static_cast<std::size_t>(info_.size_bytes); }
-  /// The three bytes of one pixel. @pre It is within the image.
+  /// The three bytes of one pixel. @pre It is within the image, which has colours.
   /// @param u_px  column from 0  @param v_px  row from 0  @return R, G, B
   const std::uint8_t* pixel(int u_px, int v_px) const noexcept {
     return rgb() + 3 * (static_cast<std::ptrdiff_t>(v_px) * width_px() + u_px);

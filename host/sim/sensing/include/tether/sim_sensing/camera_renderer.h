@@ -20,8 +20,12 @@ class CameraRenderer {
   CameraRenderer& operator=(const CameraRenderer&) = delete;
 
   /// `view.instants` have the poses of all of `moving_bodies`, in its order; `view.hidden` is one
-  /// of these. @throws Error(kSetup) when the back end is lost.
+  /// of these. A pixel's entity is the number of its model, as in `model_names`.
+  /// @throws Error(kSetup) when the back end is lost.
   virtual void draw(const raster::View& view, const raster::Picture& picture) = 0;
+
+  /// Whether it draws depths and entities, too. If not, cameras measure colours only.
+  virtual bool knows_pixels() const { return false; }
 
   /// How many pixels of a camera are black, because its distortion maps no direction to them.
   virtual std::size_t blind_pixels(const uav::CameraModel& camera) = 0;

@@ -57,6 +57,10 @@ class FakeSimulator final : public Simulator {
 
   /// Contacts of the next flight, in the order of time; it reports none otherwise.
   void plan_contacts(std::vector<Contact> contacts) { planned_contacts_ = std::move(contacts); }
+  /// What of the anchors each image shows; it does not know this otherwise.
+  void plan_seen_anchors(std::vector<uav::SeenAnchor> seen) { planned_seen_ = std::move(seen); }
+  /// Cameras of another kind measure depths of 2.5 m and labels 1.
+  void set_camera_kind(uav::CameraKind kind);
 
   const Calls& calls() const { return calls_; }
   /// Every command applied since the last reset, in order.
@@ -106,6 +110,7 @@ class FakeSimulator final : public Simulator {
   std::vector<AppliedCommand> applied_;
   std::vector<Expected> expected_;
   std::optional<std::vector<Contact>> planned_contacts_;
+  std::optional<std::vector<uav::SeenAnchor>> planned_seen_;
   mutable Calls calls_;
   std::function<void(SimTime, SimTime)> on_advance_;
   std::function<void(std::size_t, std::size_t)> on_measure_;
