@@ -53,7 +53,7 @@ struct ClearanceMeter::Shape {
   std::string_view owner;
   std::optional<std::size_t> body;  ///< of `moving_bodies`; none: fixed, and X_BS is in W
   Pose X_BS;
-  const Geometry& geometry;         ///< of the world
+  const Geometry& geometry;        ///< of the world
   std::span<const Vec3> vertices;  ///< of a mesh, in `vertices_`
   Bounds bounds{};
   std::optional<Vec3> plane_normal_S{};  ///< of a plane, which has no `bounds`

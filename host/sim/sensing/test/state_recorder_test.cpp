@@ -21,12 +21,12 @@ std::vector<Pose> poses_at(double x) {
   return {{{x, 0.0, 1.0}, uav::from_rpy(0.1, 0.2, 0.3 * x)}, {{-x, 5.0, 0.0}, {}}};
 }
 
-const std::vector<BodyMotion> kMotions{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}},
-                                       {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, {0.7, 0.8, 0.9}}};
+const std::vector<BodyMotion> kSteadyMotions{{{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}},
+                                             {{0.1, 0.2, 0.3}, {0.4, 0.5, 0.6}, {0.7, 0.8, 0.9}}};
 
 std::vector<double> captured(const StateRecorder& recorder, double x) {
   std::vector<double> state;
-  recorder.capture(poses_at(x), kMotions, state);
+  recorder.capture(poses_at(x), kSteadyMotions, state);
   return state;
 }
 
