@@ -38,7 +38,8 @@ TaskPointer make_task(const Mission& mission) {
   if (!mission.is_sequence) return make_task(mission.tasks.front());
   std::vector<tasks::SequenceItem> items;
   for (const TaskSpec& spec : mission.tasks) {
-    items.push_back({make_task(spec), spec.vision, spec.required});
+    items.push_back({make_task(spec), spec.vision, spec.required, spec.name, spec.retry,
+                     spec.otherwise, spec.within, spec.before});
   }
   return std::make_unique<tasks::TaskSequence>(std::move(items));
 }

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include <tether/base/time.h>
 #include <tether/client/vehicle.h>
 #include <tether/tasks/closed_path_task.h>
 #include <tether/tasks/face_anchor_task.h>
@@ -24,7 +27,13 @@ struct TaskSpec {
   std::string sensor;  ///< of sensor_characterization
   std::string anchor;  ///< of all other tasks
   tasks::VisionOptions vision;
-  bool required = true;  ///< in a mission file: see tasks::SequenceItem
+
+  // In a mission file: see tasks::SequenceItem.
+  bool required = true;
+  std::string name = {};
+  int retry = 0;
+  std::optional<std::size_t> otherwise = {};
+  std::optional<Duration> within = {}, before = {};
 };
 
 /// The tasks of a run.
