@@ -28,6 +28,21 @@ struct TaskMaker {
   TaskPointer operator()(const tasks::ClosedPathOptions& options) const {
     return std::make_unique<tasks::ClosedPathTask>(spec.anchor, options);
   }
+  TaskPointer operator()(const tasks::GoToOptions& options) const {
+    return std::make_unique<tasks::GoToTask>(options);
+  }
+  TaskPointer operator()(const tasks::SearchOptions& options) const {
+    return std::make_unique<tasks::SearchTask>(spec.anchor, options);
+  }
+  TaskPointer operator()(const tasks::HoldOptions& options) const {
+    return std::make_unique<tasks::HoldTask>(options);
+  }
+  TaskPointer operator()(const tasks::InspectOptions& options) const {
+    return std::make_unique<tasks::InspectTask>(spec.anchor, options);
+  }
+  TaskPointer operator()(const tasks::LandOptions& options) const {
+    return std::make_unique<tasks::LandTask>(options);
+  }
 };
 
 TaskPointer make_task(const TaskSpec& spec) {

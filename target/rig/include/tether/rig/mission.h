@@ -10,8 +10,13 @@
 #include <tether/client/vehicle.h>
 #include <tether/tasks/closed_path_task.h>
 #include <tether/tasks/face_anchor_task.h>
+#include <tether/tasks/go_to_task.h>
+#include <tether/tasks/hold_task.h>
+#include <tether/tasks/inspect_task.h>
+#include <tether/tasks/land_task.h>
 #include <tether/tasks/move_forward_task.h>
 #include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/search_task.h>
 #include <tether/tasks/sensor_characterization_task.h>
 #include <tether/tasks/task.h>
 #include <tether/tasks/task_context.h>
@@ -20,12 +25,14 @@ namespace tether::rig {
 
 using TaskOptions =
     std::variant<tasks::SensorCharacterizationOptions, tasks::RelativePositionOptions,
-                 tasks::FaceAnchorOptions, tasks::MoveForwardOptions, tasks::ClosedPathOptions>;
+                 tasks::FaceAnchorOptions, tasks::MoveForwardOptions, tasks::ClosedPathOptions,
+                 tasks::GoToOptions, tasks::SearchOptions, tasks::HoldOptions,
+                 tasks::InspectOptions, tasks::LandOptions>;
 
 struct TaskSpec {
   TaskOptions options;
   std::string sensor;  ///< of sensor_characterization
-  std::string anchor;  ///< of all other tasks
+  std::string anchor;  ///< of the tasks that look for one
   tasks::VisionOptions vision;
 
   // In a mission file: see tasks::SequenceItem.
