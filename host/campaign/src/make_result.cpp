@@ -105,7 +105,9 @@ void judge_missions(TrialResult& result, const scenario::Scenario& scenario,
                     const record::Record& record) {
   for (const scenario::UavSetup& uav : scenario.uavs) {
     if (!uav.sut.mission) continue;
-    const judge::Verdicts verdicts = judge::judge(*uav.sut.mission, uav.placement.name, record);
+    judge::Verdicts verdicts = judge::judge(*uav.sut.mission, uav.placement.name, record);
+    for (judge::ClauseVerdict& clause : verdicts.clauses)
+      if (scenario.uavs.size() > 1) clause.name += ", " + uav.placement.name;
     result.tasks.insert(result.tasks.end(), verdicts.tasks.begin(), verdicts.tasks.end());
     result.clauses.insert(result.clauses.end(), verdicts.clauses.begin(), verdicts.clauses.end());
   }

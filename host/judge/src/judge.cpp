@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -31,7 +32,7 @@ class Judge {
       : mission_(mission),
         uav_(uav),
         record_(record),
-        tasks_(task_spans(uav, record)),
+        tasks_(task_spans(mission, uav, record)),
         whole_(mission_span(uav, record)),
         signals_(uav, record) {}
 
@@ -223,8 +224,12 @@ class Judge {
                               std::size_t last, double share) {
     std::vector<std::size_t> places;
     for (std::size_t i = first; i <= last; ++i) places.push_back(i);
-    std::ranges::stable_sort(places, std::greater<>(), [&](std::size_t i) { return margins[i]; });
-    return places[place_of(share, places.size())];
+    const auto place = static_cast<std::ptrdiff_t>(place_of(share, places.size()));
+    std::nth_element(places.begin(), places.begin() + place, places.end(),
+                     [&](std::size_t a, std::size_t b) {
+                       return std::pair(-margins[a], a) < std::pair(-margins[b], b);
+                     });
+    return places[static_cast<std::size_t>(place)];
   }
 
   /// A condition that must hold throughout is missed when it first does not; one that must hold at

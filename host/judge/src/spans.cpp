@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <tether/base/printable.h>
+
 namespace tether::judge {
 namespace {
 
@@ -17,7 +19,7 @@ constexpr const char* kUnfinished = "unfinished";
 
 std::string text_of(const nlohmann::json& note, const char* member) {
   const auto found = note.find(member);
-  return found != note.end() && found->is_string() ? found->get<std::string>() : "";
+  return found != note.end() && found->is_string() ? printable(found->get<std::string>()) : "";
 }
 
 bool is_concurrent(const std::string& uav, const record::Record& record) {
@@ -37,7 +39,8 @@ Duration overlap(SimTime from, SimTime to, const Span& span) {
 
 }  // namespace
 
-std::vector<TaskSpan> task_spans(const std::string& uav, const record::Record& record) {
+std::vector<TaskSpan> task_spans(const mission::Mission& mission, const std::string& uav,
+                                 const record::Record& record) {
   const Times times(record);
   std::vector<TaskSpan> spans;
   for (const auto& logged : record.annotations) {
@@ -45,6 +48,7 @@ std::vector<TaskSpan> task_spans(const std::string& uav, const record::Record& r
     const auto note = nlohmann::json::parse(logged.message.json, nullptr, false);
     if (!note.is_object()) continue;
     const std::string task = text_of(note, "task"), event = text_of(note, "event");
+    if (std::ranges::count(mission.tasks, task, &mission::Task::name) == 0) continue;
     const SimTime at = times.noted(logged);
     auto span = std::ranges::find(spans, task, &TaskSpan::task);
     if (event == "start" && span == spans.end())

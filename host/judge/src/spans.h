@@ -8,8 +8,10 @@
 
 namespace tether::judge {
 
-/// From the annotations of the topic "mission". A task that is repeated has one span.
-std::vector<TaskSpan> task_spans(const std::string& uav, const record::Record& record);
+/// Of the mission's tasks that ran, from the annotations of the topic "mission"; others do not
+/// count. A task that is repeated has one span. Texts of the SUT become one printable line.
+std::vector<TaskSpan> task_spans(const mission::Mission& mission, const std::string& uav,
+                                 const record::Record& record);
 
 struct Span {
   SimTime from, to;

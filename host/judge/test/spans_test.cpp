@@ -9,15 +9,31 @@ namespace {
 
 using ::testing::ElementsAre;
 
+mission::Mission mission_of(const std::vector<std::string>& names) {
+  mission::Mission mission;
+  for (const std::string& name : names) mission.tasks.emplace_back().name = name;
+  return mission;
+}
+const mission::Mission kMission = mission_of({"a", "b"});
+
 TEST(Spans, JoinTheRepetitionsOfATask) {
   Flight flight;
   flight.task("a", 1, 2, "not_reached").task("a", 2, 4).note(5, R"({"task":"b","event":"start"})");
   flight.note(6, "[]").note(6, R"({"task":7,"event":"start"})").note(6, R"({"event":"end"})");
-  EXPECT_THAT(task_spans("uav1", flight.record()),
+  flight.note(6, R"({"task":"of nobody","event":"start"})");
+  EXPECT_THAT(task_spans(kMission, "uav1", flight.record()),
               ElementsAre(TaskSpan{"uav1", "a", st(1), st(4), "reached", "so"},
-                          TaskSpan{"uav1", "b", st(5), st(10), "unfinished", ""},
-                          TaskSpan{"uav1", "", st(6), st(6), "", ""}));
-  EXPECT_THAT(task_spans("uav2", flight.record()), ElementsAre());
+                          TaskSpan{"uav1", "b", st(5), st(10), "unfinished", ""}));
+  EXPECT_THAT(task_spans(kMission, "uav2", flight.record()), ElementsAre());
+}
+
+TEST(Spans, HaveNoControlCharacters) {
+  Flight flight;
+  flight.note(1, R"({"task":"a","event":"start"})");
+  flight.note(2, R"({"task":"a","event":"end","status":"\u001b[2J","reason":"x\ny"})");
+  const TaskSpan span = task_spans(kMission, "uav1", flight.record()).at(0);
+  EXPECT_EQ(span.status, "?[2J");
+  EXPECT_EQ(span.reason, "x?y");
 }
 
 TEST(Spans, AreInStInFreeRunning) {
@@ -25,7 +41,7 @@ TEST(Spans, AreInStInFreeRunning) {
   flight.task("a", 1, 2);
   flight.record().header.policy = record::kFreeRunning;
   for (auto& logged : flight.record().annotations) logged.message.at += std::chrono::hours(1);
-  EXPECT_EQ(task_spans("uav1", flight.record()).at(0).to, st(2));
+  EXPECT_EQ(task_spans(kMission, "uav1", flight.record()).at(0).to, st(2));
 }
 
 TEST(Spans, TheMissionEndsWithItsFinish) {
