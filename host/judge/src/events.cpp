@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <tuple>
-
-#include <fmt/format.h>
 
 namespace tether::judge {
 namespace {
@@ -75,17 +72,14 @@ void with_newest(const Calls& calls, const std::vector<Sample>& samples, const T
 
 std::vector<Event> reaction_times(const Calls& calls, const std::string& sensor) {
   std::vector<Event> events;
-  with_newest(calls, calls.samples(sensor, true),
-              [&](const Interaction& command, SimTime sent, const Sample& image) {
-                if (!command.effect_at) return;
-                const auto ms = [](Duration time) { return 1e3 * to_seconds(time); };
-                events.push_back(
-                    {*command.effect_at, to_seconds(*command.effect_at - image.sampled_at),
-                     fmt::format("{:.3g} ms from the image's instant until the program had it, "
-                                 "{:.3g} ms until its command, {:.3g} ms until the effect",
-                                 ms(image.had_at - image.sampled_at), ms(sent - image.had_at),
-                                 ms(*command.effect_at - sent))});
-              });
+  with_newest(
+      calls, calls.samples(sensor, true),
+      [&](const Interaction& command, SimTime sent, const Sample& image) {
+        if (!command.effect_at) return;
+        events.push_back({*command.effect_at, to_seconds(*command.effect_at - image.sampled_at),
+                          Reaction{image.had_at - image.sampled_at, sent - image.had_at,
+                                   *command.effect_at - sent}});
+      });
   return events;
 }
 
@@ -93,7 +87,7 @@ std::vector<Event> data_ages(const Calls& calls, const std::string& sensor) {
   std::vector<Event> events;
   with_newest(calls, calls.samples(sensor, false),
               [&](const Interaction&, SimTime sent, const Sample& sample) {
-                events.push_back({sent, to_seconds(sent - sample.sampled_at)});
+                events.push_back({sent, to_seconds(sent - sample.sampled_at), {}});
               });
   return events;
 }
@@ -104,7 +98,7 @@ std::vector<Event> loop_periods(const Calls& calls, const std::string& sensor) {
     if (sensor.empty() || i->sensor == sensor) rounds.push_back(calls.times().sent(*i));
   std::vector<Event> events;
   for (std::size_t i = 1; i < rounds.size(); ++i)
-    events.push_back({rounds[i], to_seconds(rounds[i] - rounds[i - 1])});
+    events.push_back({rounds[i], to_seconds(rounds[i] - rounds[i - 1]), {}});
   return events;
 }
 

@@ -140,14 +140,25 @@ class Judge {
     const auto first_miss =
         std::ranges::find_if(margins, [](const Margin& margin) { return margin.value < 0.0; });
     const SimTime missed_at = first_miss == margins.end() ? span.to : first_miss->event->at;
-    std::ranges::stable_sort(margins, std::greater<>(), &Margin::value);
-    const Margin& least = margins[place_of(condition.share, margins.size())];
-    const double value = least.event->value / condition.unit->si;
-    settle(least.value, condition, verdict);
+    const std::size_t place = place_of(condition.share, margins.size());
+    std::nth_element(margins.begin(), margins.begin() + static_cast<std::ptrdiff_t>(place),
+                     margins.end(), [](const Margin& a, const Margin& b) {
+                       return std::pair(-a.value, a.event) < std::pair(-b.value, b.event);
+                     });
+    const Event& least = *margins[place].event;
+    settle(margins[place].value, condition, verdict);
     verdict.decided_at = verdict.met || condition.share < 1.0 ? span.to : missed_at;
-    verdict.limited_by =
-        fmt::format("{:.4g} {} {}", value, condition.unit->name, at_text(least.event->at));
-    if (!least.event->parts.empty()) verdict.limited_by += ": " + least.event->parts;
+    verdict.limited_by = fmt::format("{:.4g} {} {}", least.value / condition.unit->si,
+                                     condition.unit->name, at_text(least.at));
+    if (least.reaction) verdict.limited_by += text_of(*least.reaction);
+  }
+
+  static std::string text_of(const Reaction& reaction) {
+    const auto ms = [](Duration time) { return 1e3 * to_seconds(time); };
+    return fmt::format(
+        ": {:.3g} ms from the image's instant until the program had it, {:.3g} ms until its "
+        "command, {:.3g} ms until the effect",
+        ms(reaction.until_had), ms(reaction.until_command), ms(reaction.until_effect));
   }
 
   /// Index of the last of `count` margins, largest first, that a share must have.

@@ -70,7 +70,10 @@ Case clause_case(const campaign::TrialResult& trial, const judge::ClauseVerdict&
   if (clause.decided_at)
     one.output += fmt::format("decided at ST: {:.6f} s\n", to_seconds(*clause.decided_at));
   one.output += fmt::format("limited by: {}\n", clause.limited_by);
-  if (!clause.met) fail(one, trial, fmt::format("margin {}: {}", margin, clause.limited_by));
+  if (!clause.met)
+    fail(one, trial,
+         clause.margin ? fmt::format("margin {}: {}", margin, clause.limited_by)
+                       : clause.limited_by);
   return one;
 }
 
