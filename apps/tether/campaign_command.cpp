@@ -1,6 +1,7 @@
 #include "back_ends.h"
 #include "commands.h"
 #include "file_kind.h"
+#include "junit_option.h"
 #include "print_report.h"
 #include "progress_bar.h"
 #include "say.h"
@@ -21,9 +22,12 @@
 #include <tether/base/error.h>
 #include <tether/base/version.h>
 #include <tether/campaign/campaign_folder.h>
+#include <tether/campaign/campaign_results.h>
 #include <tether/campaign/run_campaign.h>
 #include <tether/os/machine.h>
 #include <tether/os/program.h>
+#include <tether/os/text_file.h>
+#include <tether/report/junit.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/campaign.h>
@@ -78,9 +82,7 @@ campaign::CampaignOutcome fly(const campaign::CampaignFolder& folder,
   }
 }
 
-}  // namespace
-
-int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
+int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   const scenario::Campaign campaign = load(options);
   campaign::require_jobs_allowed(campaign, options.jobs);
   require_ports(campaign, options.jobs);
@@ -105,6 +107,9 @@ int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
   const auto outcome = fly(
       folder, campaign, options.jobs,
       [&, &files = files] { campaign::require_unchanged(campaign, settings, files); }, stop);
+  if (!options.junit.empty())
+    os::write_file_atomically(options.junit,
+                              report::to_junit(campaign::read_campaign_results(out), out));
   if (outcome.interrupted) {
     say("tether: interrupted; to continue, type: tether campaign {} --out {} --resume\n",
         options.campaign.string(), out.string());
@@ -112,6 +117,13 @@ int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
   }
   print_campaign_summary(out);
   return outcome.failed > 0 ? exit_code(ErrorCode::kSetup) : 0;
+}
+
+}  // namespace
+
+int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
+  return with_junit(options.junit, options.campaign.string(),
+                    [&] { return run_trials(options, stop); });
 }
 
 }  // namespace tether::app

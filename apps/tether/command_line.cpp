@@ -69,6 +69,12 @@ void add_reading_options(CLI::App& command, ReadingOptions& reading) {
       "Mend impossible inertias of the world and the UAVs, and name them in the result");
 }
 
+void add_junit_option(CLI::App& command, std::filesystem::path& junit) {
+  command.add_option("--junit", junit,
+                     "Also write the results as JUnit's XML: a test case for each outcome, metric "
+                     "and clause, for continuous integration");
+}
+
 void add_run_command(CLI::App& program, Action& action) {
   const auto [command, options] =
       add_command(program, action, "run", "Run one trial of a scenario", run_one);
@@ -108,6 +114,7 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_flag("--images", options->record_images,
                     "Record the camera images that the SUT reads");
   command->add_flag("--json", options->json, "Print result.json instead of a summary");
+  add_junit_option(*command, options->junit);
   add_reading_options(*command, options->reading);
   command->add_flag("--quiet", options->quiet, "Print only errors");
   command->footer(R"(Examples:
@@ -134,6 +141,7 @@ void add_campaign_command(CLI::App& program, Action& action) {
           "Number of parallel trials. Rejected if parallel runs would distort measured time")
       ->capture_default_str();
   add_simulator_option(*command, options->simulator);
+  add_junit_option(*command, options->junit);
   add_reading_options(*command, options->reading);
   command->add_flag("--resume", options->resume,
                     "Continue a campaign: run only the trials without a result");

@@ -32,6 +32,7 @@ struct RunOptions {
   bool json = false;
   bool quiet = false;
   bool force = false;
+  std::filesystem::path junit;
 };
 /// Runs one trial and prints its result.
 int run_one(const RunOptions& options, const std::stop_token& stop);
@@ -43,6 +44,7 @@ struct CampaignOptions {
   int jobs = 1;
   ReadingOptions reading;
   bool resume = false;
+  std::filesystem::path junit;
 };
 /// Runs many trials: scenarios x conditions x seeds.
 int run_campaign(const CampaignOptions& options, const std::stop_token& stop);

@@ -68,7 +68,10 @@ std::string joined(const std::vector<report::Table>& tables,
 
 std::vector<report::Table> run_tables(const campaign::CampaignResults& results) {
   const auto& trial = results.scenarios.front().conditions.front().trials.front();
-  return {report::run_table(trial), report::basis_table(results)};
+  std::vector<report::Table> tables = {report::run_table(trial)};
+  if (!trial.clauses.empty()) tables.push_back(report::clauses_table(trial));
+  tables.push_back(report::basis_table(results));
+  return tables;
 }
 
 std::string rendered(const ReportOptions& options) {

@@ -1,6 +1,7 @@
 #include "back_ends.h"
 #include "commands.h"
 #include "file_kind.h"
+#include "junit_option.h"
 #include "say.h"
 #include "simulator_option.h"
 #include "status_line.h"
@@ -20,6 +21,9 @@
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/result.h>
 #include <tether/os/program.h>
+#include <tether/os/text_file.h>
+#include <tether/report/junit.h>
+#include <tether/report/page.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>
@@ -135,6 +139,17 @@ void print_contacts(const campaign::UavContacts& own) {
   fmt::print("  {:<24} {}\n", own.uav, text);
 }
 
+void print_clause(const judge::ClauseVerdict& clause) {
+  const std::string margin =
+      clause.margin ? fmt::format(", margin {:.4g} {}", *clause.margin, clause.unit) : "";
+  const std::string reason = clause.limited_by.empty() ? "" : "; " + clause.limited_by;
+  fmt::print("  {:<24} {}{}{}{}\n", clause.name, clause.met ? "met" : "MISSED", margin,
+             clause.decided_at
+                 ? fmt::format(", decided at ST {:.3f} s", to_seconds(*clause.decided_at))
+                 : "",
+             reason);
+}
+
 void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& result) {
   const bool has_failed = result.outcome == campaign::Outcome::kFailed;  // its reason is an error
   fmt::print("{} under \"{}\", seed {}: {}{}\n", result.scenario, result.condition, result.seed,
@@ -150,6 +165,7 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
                : metric.min ? fmt::format("  (at least {:.4g})", *metric.min)
                             : "");
   }
+  for (const auto& clause : result.clauses) print_clause(clause);
   for (const campaign::UavContacts& own : result.contacts) print_contacts(own);
   fmt::print("  {:<24} {:.3f} s in {:.3f} s of wall time, {} interactions\n", "simulated",
              to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
@@ -175,9 +191,7 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
     fmt::print("  {:<24} {}\n", "record", (spec.folder / runner::kRecordFile).string());
 }
 
-}  // namespace
-
-int run_one(const RunOptions& options, const std::stop_token& stop) {
+int run_and_print(const RunOptions& options, const std::stop_token& stop) {
   const runner::TrialSpec spec = make_spec(options);
   campaign::TrialResult result;
   {
@@ -198,12 +212,22 @@ int run_one(const RunOptions& options, const std::stop_token& stop) {
     };
     result = runner::run_trial(spec, find_back_end, observer, stop);
   }
+  if (!options.junit.empty())
+    os::write_file_atomically(options.junit,
+                              report::to_junit(report::read_run_results(spec.folder), spec.folder));
   if (options.json)
     fmt::print("{}\n", campaign::to_json(result));
   else if (!options.quiet)
     print_result(spec, result);
   if (result.outcome == campaign::Outcome::kFailed) say("tether: {}\n", result.reason);
   return campaign::exit_code(result.outcome);
+}
+
+}  // namespace
+
+int run_one(const RunOptions& options, const std::stop_token& stop) {
+  return with_junit(options.junit, options.scenario.string(),
+                    [&] { return run_and_print(options, stop); });
 }
 
 }  // namespace tether::app

@@ -29,6 +29,8 @@ packages_build=(
 packages_test=(git python3 libgtest-dev libgmock-dev libbenchmark-dev clang-format)
 # The library as a user builds against it, and the manual pages.
 packages_test+=(make pkgconf mandoc)
+# The schema of JUnit files.
+packages_test+=(libxml2-utils)
 # Boards in the tests: this machine, over SSH.
 packages_test+=(openssh-server openssh-client)
 # Debian packages of our own, for this machine.

@@ -345,7 +345,8 @@ void define_subcommands(CLI::App& app, Words& words) {
   define_tasks(app, words);
   add_subcommand(
       app, "mission", "Run the tasks of a file in sequence", words, [&](CLI::App& command) {
-        command.add_option("file,--file", words.mission_file, "Mission file (TOML)")->required();
+        command.add_option("file,--file,--mission", words.mission_file, "Mission file (TOML)")
+            ->required();
       });
   add_subcommand(app, "characterize", "Measure the timing of each sensor and write a profile",
                  words,

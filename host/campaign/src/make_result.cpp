@@ -76,9 +76,19 @@ std::string text_of(double value, const std::string& unit) {
   return unit == "1" ? fmt::format("{:.6g}", value) : fmt::format("{:.6g} {}", value, unit);
 }
 
+std::string why_missed(const judge::ClauseVerdict& clause) {
+  const std::string by = clause.margin && *clause.margin < 0.0
+                             ? fmt::format(" by {}", text_of(-*clause.margin, clause.unit))
+                             : "";
+  return fmt::format("clause \"{}\" is missed{}: {}", clause.name, by, clause.limited_by);
+}
+
 std::string why_missed(const TrialResult& result) {
   for (const SutResult& sut : result.suts) {
     if (std::string why = why_missed(sut); !why.empty()) return why;
+  }
+  for (const judge::ClauseVerdict& clause : result.clauses) {
+    if (!clause.met) return why_missed(clause);
   }
   for (const MetricValue& metric : result.metrics) {
     if (metric.is_met()) continue;
@@ -89,6 +99,18 @@ std::string why_missed(const TrialResult& result) {
                        text_of(is_less ? *metric.min : *metric.max, metric.unit));
   }
   return "";
+}
+
+void judge_missions(TrialResult& result, const scenario::Scenario& scenario,
+                    const record::Record& record) {
+  for (const scenario::UavSetup& uav : scenario.uavs) {
+    if (!uav.sut.mission) continue;
+    judge::Verdicts verdicts = judge::judge(*uav.sut.mission, uav.placement.name, record);
+    for (judge::ClauseVerdict& clause : verdicts.clauses)
+      if (scenario.uavs.size() > 1) clause.name += ", " + uav.placement.name;
+    result.tasks.insert(result.tasks.end(), verdicts.tasks.begin(), verdicts.tasks.end());
+    result.clauses.insert(result.clauses.end(), verdicts.clauses.begin(), verdicts.clauses.end());
+  }
 }
 
 std::optional<StopFigures> stop_figures(const record::Record& record) {
@@ -142,6 +164,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   result.metrics = compute_metrics(scenario.metrics, record);
   result.suts = sut_results(record, task_ends);
   drop_metrics_of_missed_tasks(result, scenario);
+  judge_missions(result, scenario, record);
   result.versions = {{"tether", record.header.tether_version},
                      {"simulator", record.header.simulator}};
   for (const record::SutInfo& sut : record.header.suts) {
@@ -175,6 +198,12 @@ void invalidate(TrialResult& result, const std::string& reason) {
     metric.value.reset();
     metric.missing_because = reason;
   }
+  for (judge::ClauseVerdict& clause : result.clauses) {
+    clause.met = false;
+    clause.margin.reset();
+    clause.decided_at.reset();
+    clause.limited_by = reason;
+  }
 }
 
 TrialResult make_setup_failure(const scenario::Scenario& scenario,
@@ -184,6 +213,7 @@ TrialResult make_setup_failure(const scenario::Scenario& scenario,
   result.end = kEndSetupFailed;
   result.metrics = compute_metrics(scenario.metrics, record::Record{});
   for (MetricValue& metric : result.metrics) metric.missing_because = "the trial was not set up";
+  judge_missions(result, scenario, record::Record{});
   settle(result, reason);
   return result;
 }

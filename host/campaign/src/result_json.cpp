@@ -48,6 +48,33 @@ Json json_of(const MetricValue& metric) {
   return json;
 }
 
+Json json_of(const judge::TaskSpan& task) {
+  return Json{{"uav", task.uav},
+              {"task", task.task},
+              {"from_s", exact_seconds(task.from)},
+              {"to_s", exact_seconds(task.to)},
+              {"status", task.status},
+              {"reason", task.reason}};
+}
+
+constexpr std::array<std::pair<const char*, std::optional<SimTime> judge::ClauseVerdict::*>, 4>
+    kTimesOfClauses = {{{"from_s", &judge::ClauseVerdict::from},
+                        {"to_s", &judge::ClauseVerdict::to},
+                        {"deadline_s", &judge::ClauseVerdict::deadline},
+                        {"decided_at_s", &judge::ClauseVerdict::decided_at}}};
+
+Json json_of(const judge::ClauseVerdict& clause) {
+  Json json{{"uav", clause.uav},
+            {"name", clause.name},
+            {"met", clause.met},
+            {"margin", optional_number(clause.margin)},
+            {"unit", clause.unit}};
+  for (const auto& [name, time] : kTimesOfClauses)
+    if (clause.*time) json[name] = exact_seconds(*(clause.*time));
+  json["limited_by"] = clause.limited_by;
+  return json;
+}
+
 // A SUT's details are an object that the SUT defines. What is not an object, or is nested too
 // deeply to be read again, is kept as text.
 Json json_of_details(const std::string& details) {
@@ -153,6 +180,26 @@ MetricValue read_metric(const JsonReader& json) {
   if (json.has("min")) metric.min = json.number("min");
   if (!metric.value) metric.missing_because = json.text("missing_because");
   return metric;
+}
+
+judge::TaskSpan read_task(const JsonReader& json) {
+  return {json.text("uav"),
+          json.text("task"),
+          SimTime(json.seconds("from_s")),
+          SimTime(json.seconds("to_s")),
+          json.text("status"),
+          json.text("reason")};
+}
+
+judge::ClauseVerdict read_clause(const JsonReader& json) {
+  judge::ClauseVerdict clause{.uav = json.text("uav"), .name = json.text("name")};
+  clause.met = json.boolean("met");
+  clause.margin = json.optional_number("margin");
+  clause.unit = json.text("unit");
+  for (const auto& [name, time] : kTimesOfClauses)
+    if (json.has(name)) clause.*time = SimTime(json.seconds(name));
+  clause.limited_by = json.text("limited_by");
+  return clause;
 }
 
 std::string read_details(const JsonReader& json) {
@@ -305,6 +352,8 @@ std::string to_json(const TrialResult& result) {
                    {"sync", json_of(result.sync)},
                    {"contacts", json_of(result.contacts)},
                    {"audit", json_of(result.audit)}});
+  if (!result.tasks.empty()) json["tasks"] = json_of(result.tasks);
+  if (!result.clauses.empty()) json["clauses"] = json_of(result.clauses);
   if (!result.warnings.empty()) json["warnings"] = json_of(result.warnings);
   json.update(Json{{"versions", result.versions}, {"this_run", json_of(result.this_run)}});
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -319,6 +368,11 @@ TrialResult result_from_json(const std::string& text, const std::filesystem::pat
   for (const JsonReader& metric : json.objects("metrics")) {
     result.metrics.push_back(read_metric(metric));
   }
+  if (json.has("tasks"))
+    for (const JsonReader& task : json.objects("tasks")) result.tasks.push_back(read_task(task));
+  if (json.has("clauses"))
+    for (const JsonReader& clause : json.objects("clauses"))
+      result.clauses.push_back(read_clause(clause));
   for (const JsonReader& sut : json.objects("suts")) result.suts.push_back(read_sut(sut));
   result.sync = read_sync(json.object("sync"));
   if (json.has("contacts"))

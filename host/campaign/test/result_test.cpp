@@ -61,7 +61,8 @@ TEST_F(Result, TextIsTheSameApartFromThisRun) {
 
 TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   const std::string plain = to_json(trial_);
-  for (const char* member : {"\"target\":", "overshoot", "computing_s", "warnings"})
+  for (const char* member :
+       {"\"target\":", "overshoot", "computing_s", "warnings", "\"tasks\"", "\"clauses\""})
     EXPECT_THAT(plain, testing::Not(HasSubstr(member)));
   trial_.clock = "scripted";
   trial_.computing = Duration(2'500'000);
@@ -69,6 +70,14 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   trial_.profiles = {"rig", "top"};
   trial_.metrics[0].min = 0.5;
   trial_.contacts.push_back({.uav = "uav2"});
+  trial_.tasks = {{"uav1", "find", SimTime{}, SimTime(seconds(3)), "reached", "goal reached"}};
+  judge::ClauseVerdict clause{.uav = "uav1", .name = "near", .met = true};
+  trial_.clauses = {clause};
+  clause.margin = 0.25;
+  clause.unit = "m";
+  clause.from = clause.to = clause.deadline = clause.decided_at = SimTime(milliseconds(1500));
+  clause.limited_by = "1 m";
+  trial_.clauses.push_back(clause);
   trial_.warnings = {{Consequence::kMissing, {"w.sdf", 7}, "<include> of 'sun'", "is not found"},
                      {Consequence::kNoEffect, {}, "visual 'v'", "is plain"}};
   trial_.sync.stops = StopFigures{1200, Duration(73'000)};
@@ -85,7 +94,7 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
        {"\"outcome\": \"goal_reached\"", "\"exit_code\": 0", "\"st_at_end_s\": 2.481000001",
         "\"value\": 9.242", "\"steps\": 12", "\"stops\": 1200", "\"largest_overshoot_s\": 7.3e-05",
         "\"computing_s\": 0.0025", "\"contacts\": \"not reported\"", "\"speed_m_s\": 0.25",
-        "\"consequence\": \"missing\""})
+        "\"consequence\": \"missing\"", "\"margin\": 0.25", "\"deadline_s\": 1.5"})
     EXPECT_THAT(text, HasSubstr(documented));
   const auto begin = text.find("  \"profiles\""), end = text.find("  \"outcome\"");
   EXPECT_THAT(result_from_json(text.substr(0, begin) + text.substr(end), "f").profiles,
@@ -209,6 +218,34 @@ TEST_F(MakeResult, TakesEverythingFromTheRecord) {
   EXPECT_EQ(result.this_run.largest_lag, milliseconds(40));
   EXPECT_EQ(result.this_run.wall, seconds(2));
   EXPECT_EQ(result.versions.at("sut of uav1"), "tether-sut 0.1.0");
+}
+
+TEST_F(MakeResult, MissesTheGoalWithAClause) {
+  scenario::UavSetup& uav = campaign_.scenarios[0].scenario.uavs[0];
+  uav.placement.name = "uav1";
+  mission::Mission& mission = uav.sut.mission.emplace();
+  mission.tasks.emplace_back().name = "turn";
+  mission::Clause& clause = mission.clauses.emplace_back();
+  clause.name = "in time";
+  record::Record record = finished_record();
+  for (const char* note : {R"({"task":"turn","event":"start"})",
+                           R"({"task":"turn","event":"end","status":"reached"})"})
+    record.annotations.push_back({{}, 0, {"uav1", {}, "mission", note}});
+
+  clause.within = seconds(4);
+  const TrialResult met = make(record, kReached);
+  EXPECT_EQ(met.outcome, Outcome::kGoalReached) << met.reason;
+  EXPECT_EQ(met.tasks.at(0).task, "turn");
+  EXPECT_EQ(met.clauses.at(0).margin, 1.0);
+  clause.within = seconds(2);
+  const TrialResult missed = make(record, kReached);
+  EXPECT_EQ(missed.outcome, Outcome::kGoalMissed);
+  EXPECT_THAT(missed.reason, testing::StartsWith("clause \"in time\" is missed by 1 s"));
+  TrialResult failed = met;
+  invalidate(failed, "the SUT was lost");
+  EXPECT_FALSE(failed.clauses.at(0).met || failed.clauses.at(0).margin);
+  EXPECT_FALSE(
+      make_setup_failure(scenario_, scenario_.conditions[1], 1, "no port").clauses.at(0).met);
 }
 
 TEST_F(MakeResult, TakesClockTargetAndProfilesFromScenarioAndCondition) {

@@ -51,14 +51,19 @@ void RunLog::command_effect(SimTime st, const std::string& uav, const PendingCom
                                 .yaw_rate_rad_s = yaw_rate});
 }
 
-void RunLog::ground_truth(const std::string& uav, const sim::GroundTruth& truth) {
+void RunLog::ground_truth(const std::string& uav, const sim::GroundTruth& truth,
+                          const std::optional<sim::Clearance>& clearance) {
   const auto& [p, q, v, w] = truth.body;
+  std::optional<double> clearance_m;
+  if (clearance) clearance_m = clearance->distance_m;
   put(truth.at, record::GroundTruth{.uav = uav,
                                     .at = truth.at,
                                     .p_WB_m = {p.x, p.y, p.z},
                                     .q_WB = {q.w, q.x, q.y, q.z},
                                     .v_WB_m_s = {v.x, v.y, v.z},
-                                    .w_WB_B_rad_s = {w.x, w.y, w.z}});
+                                    .w_WB_B_rad_s = {w.x, w.y, w.z},
+                                    .clearance_m = clearance_m});
+  if (clearance) take_clearance(truth.at, uav, *clearance);
 }
 
 void RunLog::contact(SimTime st, const std::string& uav, const sim::Contact& contact) {
@@ -66,7 +71,7 @@ void RunLog::contact(SimTime st, const std::string& uav, const sim::Contact& con
               .uav = uav, .at = contact.at, .with = contact.with, .speed_m_s = contact.speed_m_s});
 }
 
-void RunLog::clearance(SimTime st, const std::string& uav, const sim::Clearance& clearance) {
+void RunLog::take_clearance(SimTime st, const std::string& uav, const sim::Clearance& clearance) {
   auto& least = footer_.clearances;
   auto own = std::ranges::find(least, uav, &record::Clearance::uav);
   if (own == least.end()) {

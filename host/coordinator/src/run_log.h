@@ -39,10 +39,10 @@ class RunLog {
   void begin(record::Header header, bool repeatable);
   void interaction(SimTime st, const record::Interaction& entry);
   void command_effect(SimTime st, const std::string& uav, const PendingCommand& command);
-  void ground_truth(const std::string& uav, const sim::GroundTruth& truth);
+  /// The footer keeps the least clearance.
+  void ground_truth(const std::string& uav, const sim::GroundTruth& truth,
+                    const std::optional<sim::Clearance>& clearance);
   void contact(SimTime st, const std::string& uav, const sim::Contact& contact);
-  /// At the instant of the ground truth. The footer keeps the least.
-  void clearance(SimTime st, const std::string& uav, const sim::Clearance& clearance);
   void annotation(SimTime st, record::Annotation annotation) { put(st, std::move(annotation)); }
   void stop(SimTime st, const record::Stop& stop);
   void image(SimTime st, const std::string& uav, const std::string& sensor,
@@ -76,6 +76,7 @@ class RunLog {
     ExecTime reached;  // time of its last interaction
   };
 
+  void take_clearance(SimTime st, const std::string& uav, const sim::Clearance& clearance);
   void put(SimTime st, Message message);
   void write(SimTime st, Message& message);
   static bool may_precede(const Collected& later, const Collected& earlier);

@@ -75,9 +75,8 @@ void Stepper::log_ground_truth() {
   ++ground_truths_;
   for (std::size_t uav = 0; uav < samplers_.size(); ++uav) {
     const std::string& name = simulator_->world().uavs[uav].name;
-    log_->ground_truth(name, ask([&](sim::Simulator& s) { return s.ground_truth(uav); }));
-    const auto clearance = ask([&](sim::Simulator& s) { return s.clearance(uav); });
-    if (clearance) log_->clearance(st_, name, *clearance);
+    const auto truth = ask([&](sim::Simulator& s) { return s.ground_truth(uav); });
+    log_->ground_truth(name, truth, ask([&](sim::Simulator& s) { return s.clearance(uav); }));
   }
   log_contacts();
 }

@@ -91,6 +91,8 @@ void members(auto& io, Maybe<GroundTruth> auto& m) {
   io("q_WB", m.q_WB);
   io("v_WB_m_s", m.v_WB_m_s);
   io("w_WB_B_rad_s", m.w_WB_B_rad_s);
+  if (io.has("clearance_m", m.clearance_m.has_value()))
+    io("clearance_m", io.value_of(m.clearance_m));
 }
 
 void members(auto& io, Maybe<Stop> auto& m) {

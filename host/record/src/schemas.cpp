@@ -86,7 +86,8 @@ const Schema kGroundTruthSchema{"tether.GroundTruth", R"json({
     "q_WB": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 4, "maxItems": 4,
              "description": "w x y z"},
     "v_WB_m_s": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 3, "maxItems": 3},
-    "w_WB_B_rad_s": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 3, "maxItems": 3}
+    "w_WB_B_rad_s": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 3, "maxItems": 3},
+    "clearance_m": {"type": ["number", "null"], "description": "distance to the nearest surface"}
   },
   "required": ["uav", "at_ns", "p_WB_m", "q_WB", "v_WB_m_s", "w_WB_B_rad_s"]
 })json"};

@@ -99,6 +99,7 @@ inline GroundTruth ground_truth(std::int64_t ms = 40) {
   message.q_WB[3] = 0.1;
   message.v_WB_m_s[1] = 5e-324;
   message.w_WB_B_rad_s[2] = -1.7976931348623157e308;
+  message.clearance_m = 0.25;
   return message;
 }
 

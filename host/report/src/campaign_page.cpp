@@ -118,6 +118,8 @@ std::string scenario_section(FigureMaker& figures, const campaign::ScenarioResul
   if (!scenario.description.empty()) html += element("p", scenario.description);
   html += "<p class=\"verdict\">" + escape_markup(verdict(scenario)) + "</p>\n";
   html += to_html(paper_form_table(scenario));
+  if (const Table clauses = clauses_table(scenario); !clauses.rows.empty())
+    html += to_html(clauses);
   html += optimism_part(scenario);
   html += distributions_part(figures, scenario);
   html += path_part(figures, records, runs);

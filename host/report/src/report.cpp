@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -308,6 +309,8 @@ std::vector<Table> report_tables(const campaign::CampaignResults& results) {
   for (const campaign::ScenarioResults& scenario : results.scenarios) {
     tables.push_back(paper_form_table(scenario));
     tables.push_back(details_table(scenario));
+    if (Table clauses = clauses_table(scenario); !clauses.rows.empty())
+      tables.push_back(std::move(clauses));
     if (!compare_conditions(scenario).empty()) tables.push_back(comparisons_table(scenario));
     if (!optimism(scenario).empty()) tables.push_back(optimism_table(scenario));
   }

@@ -1,4 +1,5 @@
 #include "html.h"
+#include "mission_timeline.h"
 #include "page_figures.h"
 #include "report_format.h"
 #include "svg.h"
@@ -79,6 +80,25 @@ std::string contacts_part(const record::Record& record) {
   return title + to_html(table);
 }
 
+std::string mission_part(const campaign::TrialResult& trial) {
+  Table table = clauses_table(trial);
+  if (table.rows.empty()) return "";
+  table.title.clear();
+  std::string html = element("h2", "Mission");
+  for (const campaign::SutResult& sut : trial.suts) {
+    const std::string drawing = mission_timeline(trial, sut.uav);
+    if (!drawing.empty())
+      html +=
+          figure(drawing,
+                 fmt::format("Tasks (bars) and clauses (lines) of {}. A line is the time that a "
+                             "clause is about, a stroke its deadline, a dot the time when it "
+                             "was decided; at the right, status and margin.",
+                             sut.uav),
+                 "plot");
+  }
+  return html + to_html(table);
+}
+
 std::string record_part(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "record.mcap";
   try {
@@ -123,7 +143,7 @@ std::string run_page(const std::filesystem::path& folder) {
   Table metrics = run_table(trial);
   metrics.title.clear();
   std::erase(metrics.notes, trial.reason + ".");  // outcome_sentences has it
-  body += to_html(metrics) + record_part(folder);
+  body += to_html(metrics) + mission_part(trial) + record_part(folder);
   body += element("h2", "Setup and checks") + basis_html(results);
   return html_page(title, body);
 }

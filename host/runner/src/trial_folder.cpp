@@ -40,6 +40,7 @@ constexpr OwnFile kOwnFiles[] = {
     {kWarningsFile, true},
     {"sut-*.log", true},
     {campaign::kReportFile},
+    {"junit.xml"},
     {"plots/*.svg"},
     {"frames/*.svg"},
     {campaign::kTrialLog},

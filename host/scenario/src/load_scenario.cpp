@@ -76,8 +76,22 @@ std::vector<std::string> read_command(const toml::Table& sut, const std::filesys
   return command;
 }
 
-constexpr std::array<std::string_view, 4> kSutKeys = {"command", "concurrent", "parameters",
-                                                      "files"};
+constexpr std::array<std::string_view, 5> kSutKeys = {"command", "concurrent", "mission",
+                                                      "parameters", "files"};
+
+// The SUT gets it as a file. Its clauses are checked against what the scenario has.
+void read_mission(const toml::Table& table, Scenario& scenario, Sut& sut) {
+  if (!table.has("mission")) return;
+  for (const char* other : {"parameters", "files"})
+    if (table.has(other) && table.table(other).has("mission"))
+      table.fail("mission", fmt::format("is already a key of '{}'", other));
+  const std::filesystem::path file = table.existing_file("mission");
+  sut.mission = mission::load_mission(file);
+  mission::require_possible(*sut.mission, {scenario.anchors, scenario.time_limit});
+  scenario.files.push_back(file);
+  sut.parameters.emplace_back("mission", file.string());
+  std::sort(sut.parameters.begin(), sut.parameters.end());
+}
 
 Sut read_program(const toml::Table& sut, const std::filesystem::path& folder) {
   return {read_command(sut, folder), {}, sut.boolean_or("concurrent", false)};
@@ -98,6 +112,7 @@ std::optional<Sut> read_default_sut(const toml::Table& root, Scenario& scenario)
   Sut sut = read_program(table, scenario.file.parent_path());
   require_one_supervisor(table, sut);
   sut.parameters = read_parameters(table, scenario.files);
+  read_mission(table, scenario, sut);
   return sut;
 }
 
@@ -118,7 +133,13 @@ Sut read_sut(const toml::Table& uav, const std::optional<Sut>& fallback, Scenari
   Sut sut = inherits ? *fallback : read_program(own, scenario.file.parent_path());
   sut.concurrent = own.boolean_or("concurrent", sut.concurrent);
   require_one_supervisor(own, sut);
-  sut.parameters = merged(sut.parameters, read_parameters(own, scenario.files));
+  Sut given;
+  given.parameters = read_parameters(own, scenario.files);
+  read_mission(own, scenario, given);
+  const bool has_mission = std::ranges::any_of(
+      given.parameters, [](const auto& parameter) { return parameter.first == "mission"; });
+  if (has_mission) sut.mission = given.mission;
+  sut.parameters = merged(sut.parameters, given.parameters);
   return sut;
 }
 

@@ -106,6 +106,34 @@ TEST_F(LoadScenario, GivesASutAbsolutePaths) {
   EXPECT_EQ(program("/opt/onboard/none"), "/opt/onboard/none") << "may exist on a board only";
 }
 
+TEST_F(LoadScenario, ReadsTheMissionOfASut) {
+  const std::string file = scratch_.write("judged.toml", R"([[task]]
+task = "search"
+[[clause]]
+within_s = 60
+[[clause]]
+never = "distance of red_box <= 1 m"
+)");
+  const std::string command = "command = [\"tether-sut\", \"face-anchor\"]\n";
+  const std::string with_mission = command + "mission = \"judged.toml\"\n";
+  const std::string files = "[sut.files]\nmission = \"missions/around.toml\"\n";
+  const std::string text = replaced(replaced(kFullScenario, files, ""), command, with_mission);
+  const Scenario s = load(text);
+  ASSERT_TRUE(s.uavs[1].sut.mission);
+  EXPECT_EQ(s.uavs[1].sut.mission->clauses.size(), 2u);
+  EXPECT_THAT(s.uavs[1].sut.parameters, testing::Contains(Pair("mission", file)));
+  EXPECT_THAT(s.files, testing::Contains(file));
+  EXPECT_FALSE(s.uavs[0].sut.mission) << "it has its own command";
+
+  expect_refusal(46, "mission", [&] { load(replaced(kFullScenario, command, with_mission)); });
+  expect_refusal(3, "mission within 60 s",
+                 [&] { load(replaced(text, "time_limit_s = 60", "time_limit_s = 50")); });
+  expect_refusal(5, "mission: never distance of red_box <= 1 m", [&] {
+    load(replaced(replaced(text, ", \"red_box\"]", "]"), "anchor = \"red_box\"\n\n[[uav]]",
+                  "anchor = \"blue_box\"\n\n[[uav]]"));
+  });
+}
+
 TEST_F(LoadScenario, ReadsConditions) {
   const Scenario s = load(kFullScenario);
   ASSERT_EQ(s.conditions.size(), 4u);

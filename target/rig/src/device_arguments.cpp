@@ -20,11 +20,17 @@ std::string* imu_of(TaskSpec& spec) {
     return &forward->face.imu;
   }
   if (auto* path = std::get_if<tasks::ClosedPathOptions>(&spec.options)) return &path->imu;
+  if (auto* way = std::get_if<tasks::GoToOptions>(&spec.options)) return &way->imu;
+  if (auto* hold = std::get_if<tasks::HoldOptions>(&spec.options)) return &hold->imu;
+  if (auto* land = std::get_if<tasks::LandOptions>(&spec.options)) return &land->imu;
   return nullptr;
 }
 
 bool has_anchor(const TaskSpec& spec) {
-  return !std::holds_alternative<tasks::SensorCharacterizationOptions>(spec.options);
+  return !std::holds_alternative<tasks::SensorCharacterizationOptions>(spec.options) &&
+         !std::holds_alternative<tasks::GoToOptions>(spec.options) &&
+         !std::holds_alternative<tasks::HoldOptions>(spec.options) &&
+         !std::holds_alternative<tasks::LandOptions>(spec.options);
 }
 
 /// A device stands here until the rig says the sensor's name.

@@ -28,6 +28,21 @@ struct TaskMaker {
   TaskPointer operator()(const tasks::ClosedPathOptions& options) const {
     return std::make_unique<tasks::ClosedPathTask>(spec.anchor, options);
   }
+  TaskPointer operator()(const tasks::GoToOptions& options) const {
+    return std::make_unique<tasks::GoToTask>(options);
+  }
+  TaskPointer operator()(const tasks::SearchOptions& options) const {
+    return std::make_unique<tasks::SearchTask>(spec.anchor, options);
+  }
+  TaskPointer operator()(const tasks::HoldOptions& options) const {
+    return std::make_unique<tasks::HoldTask>(options);
+  }
+  TaskPointer operator()(const tasks::InspectOptions& options) const {
+    return std::make_unique<tasks::InspectTask>(spec.anchor, options);
+  }
+  TaskPointer operator()(const tasks::LandOptions& options) const {
+    return std::make_unique<tasks::LandTask>(options);
+  }
 };
 
 TaskPointer make_task(const TaskSpec& spec) {
@@ -38,7 +53,8 @@ TaskPointer make_task(const Mission& mission) {
   if (!mission.is_sequence) return make_task(mission.tasks.front());
   std::vector<tasks::SequenceItem> items;
   for (const TaskSpec& spec : mission.tasks) {
-    items.push_back({make_task(spec), spec.vision, spec.required});
+    items.push_back({make_task(spec), spec.vision, spec.required, spec.name, spec.retry,
+                     spec.otherwise, spec.within, spec.before});
   }
   return std::make_unique<tasks::TaskSequence>(std::move(items));
 }

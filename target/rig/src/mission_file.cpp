@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <vector>
 
+#include <tether/mission/mission.h>
 #include <tether/rig/mission_file.h>
 #include <tether/rig/task_fields.h>
 #include <tether/toml/table.h>
@@ -49,14 +50,29 @@ void read(const std::vector<Table>& sources, const Field& field) {
   std::visit([&](const auto& value) { read(table, field.name, value); }, field.value);
 }
 
-TaskSpec read_task(const Table& task, const std::vector<Table>& common) {
+/// What follows the task. Only with `on_miss` is a late task a missed one: without it, deadlines
+/// are for the host alone.
+void take_order(const mission::Task& order, TaskSpec& spec) {
+  using Kind = mission::OnMiss::Kind;
+  spec.name = order.name;
+  spec.retry = order.retry;
+  spec.required = order.on_miss.kind != Kind::kContinue;
+  if (!order.acts_on_lateness) return;
+  if (order.on_miss.kind == Kind::kGoTo) spec.otherwise = order.on_miss.task;
+  spec.within = order.within;
+  spec.before = order.before;
+}
+
+TaskSpec read_task(const Table& task, const mission::Task& order,
+                   const std::vector<Table>& common) {
   Names tasks;
   for (const TaskKind& kind : task_kinds()) tasks.push_back(kind.name);
   TaskSpec spec;
   spec.options = task_kinds()[task.choice("task", tasks)].defaults;
-  spec.required = task.boolean_or("required", true);
+  take_order(order, spec);
   const std::vector<Field> fields = fields_of(spec);
-  task.require_keys_in(names_of(fields, {"task", "required"}));
+  task.require_keys_in(
+      names_of(fields, {mission::task_keys().begin(), mission::task_keys().end()}));
   std::vector<Table> sources = {task};
   sources.insert(sources.end(), common.begin(), common.end());
   for (const Field& field : fields) read(sources, field);
@@ -70,7 +86,7 @@ std::vector<Table> read_common(const Table& file) {
     TaskSpec spec;
     common.push_back(file.table("vision", names_of(vision_fields(spec), {})));
   }
-  Names any = {"task", "vision"};
+  Names any = {"task", "vision", "clause"};
   for (const TaskKind& kind : task_kinds()) {
     TaskSpec spec;
     spec.options = kind.defaults;
@@ -83,28 +99,26 @@ std::vector<Table> read_common(const Table& file) {
   return common;
 }
 
-Mission read_mission(const toml::Document& document, const std::string& path) {
+Mission read_mission(const toml::Document& document) {
   const Table file = document.root();
-  if (!file.has("task")) {
-    throw Error(ErrorCode::kBadFile, {path, 1},
-                "the mission has no task; add at least one [[task]]");
-  }
+  const mission::Mission order = mission::read_mission(file);
   const std::vector<Table> tasks = file.tables("task");
   const std::vector<Table> common = read_common(file);
   Mission mission;
   mission.is_sequence = true;
-  for (const Table& task : tasks) mission.tasks.push_back(read_task(task, common));
+  for (std::size_t i = 0; i < tasks.size(); ++i)
+    mission.tasks.push_back(read_task(tasks[i], order.tasks[i], common));
   return mission;
 }
 
 }  // namespace
 
 Result<Mission> parse_mission(const std::string& text, const std::string& path) {
-  return toml::result_of([&] { return read_mission(toml::Document::parse(text, path), path); });
+  return toml::result_of([&] { return read_mission(toml::Document::parse(text, path)); });
 }
 
 Result<Mission> load_mission(const std::string& path) {
-  return toml::result_of([&] { return read_mission(toml::Document::load(path), path); });
+  return toml::result_of([&] { return read_mission(toml::Document::load(path)); });
 }
 
 }  // namespace tether::rig

@@ -146,6 +146,64 @@ Fields fields(tasks::ClosedPathOptions& options, TaskSpec& spec) {
         time_limit(options.time_limit)}});
 }
 
+Field imu(std::string& name) {
+  return {"imu", "Name of the IMU, or the device of a real one", TextField{&name}};
+}
+Field rest(Duration& value) {
+  return {"rest_s", "Pause before the start, in which the IMU's bias is measured",
+          seconds(value, 0.0)};
+}
+
+Fields fields(tasks::GoToOptions& options, TaskSpec&) {
+  return {{"ahead_m", "Goal: distance along the heading at the start",
+           plain(options.ahead_m, -1000.0, 1000.0)},
+          {"left_m", "... to its left", plain(options.left_m, -1000.0, 1000.0)},
+          {"up_m", "... and up", plain(options.up_m, -1000.0, 1000.0)},
+          speed(options.speed_m_s),
+          {"tolerance_m", "The goal is reached within this distance",
+           plain(options.tolerance_m, 0.001, 100.0)},
+          imu(options.imu),
+          rest(options.rest_time),
+          time_limit(options.time_limit)};
+}
+
+Fields fields(tasks::SearchOptions& options, TaskSpec& spec) {
+  return joined({vision_fields(spec),
+                 {{"yaw_rate_deg_s", "Yaw rate", degrees(options.yaw_rate_rad_s, 0.01, 720.0)},
+                  {"search_clockwise", "true or false: direction of the turn",
+                   BooleanField{&options.clockwise}},
+                  {"frames", "Number of consecutive images in which the anchor must be seen",
+                   IntegerField{&options.frames, 1, 1000}},
+                  time_limit(options.time_limit)}});
+}
+
+Fields fields(tasks::HoldOptions& options, TaskSpec&) {
+  return {{"duration_s", "How long it hovers, by the IMU's timestamps", seconds(options.duration)},
+          imu(options.imu)};
+}
+
+Fields fields(tasks::InspectOptions& options, TaskSpec& spec) {
+  return joined(
+      {vision_fields(spec),
+       {{"distance_m", "Wanted distance from the camera to the anchor",
+         plain(options.distance_m, 0.01, 1000.0)},
+        {"duration_s", "How long the anchor must be kept there, by the images' timestamps",
+         seconds(options.duration)},
+        {"distance_tolerance_m", "Maximum error of the distance",
+         plain(options.distance_tolerance_m, 0.001, 100.0)},
+        {"bearing_tolerance_deg", "Maximum bearing of the anchor",
+         degrees(options.bearing_tolerance_rad, 0.01, 90.0)},
+        speed(options.speed_m_s),
+        {"yaw_rate_deg_s", "Maximum yaw rate", degrees(options.yaw_rate_rad_s, 0.01, 720.0)},
+        {"lost_limit_s", "Maximum time without seeing the anchor", seconds(options.lost_limit)},
+        time_limit(options.time_limit)}});
+}
+
+Fields fields(tasks::LandOptions& options, TaskSpec&) {
+  return {speed(options.speed_m_s), imu(options.imu), rest(options.rest_time),
+          time_limit(options.time_limit)};
+}
+
 }  // namespace
 
 std::span<const TaskKind> task_kinds() {
@@ -160,7 +218,13 @@ std::span<const TaskKind> task_kinds() {
                tasks::MoveForwardOptions{}},
       TaskKind{"closed_path",
                "Fly a square by dead reckoning and measure the distance to its start",
-               tasks::ClosedPathOptions{}}};
+               tasks::ClosedPathOptions{}},
+      TaskKind{"go_to", "Fly to a relative position by dead reckoning", tasks::GoToOptions{}},
+      TaskKind{"search", "Turn until the anchor is seen", tasks::SearchOptions{}},
+      TaskKind{"hold", "Hover for a time", tasks::HoldOptions{}},
+      TaskKind{"inspect", "Keep the anchor ahead at a distance for a time",
+               tasks::InspectOptions{}},
+      TaskKind{"land", "Descend until the UAV stands", tasks::LandOptions{}}};
   return kKinds;
 }
 

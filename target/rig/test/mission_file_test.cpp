@@ -70,6 +70,34 @@ distance_m = 1.5
   EXPECT_EQ(std::get<tasks::ClosedPathOptions>(third.options).distance_m, 1.5);
 }
 
+TEST(MissionFile, TasksHaveAnOrder) {
+  const Mission mission = parsed(R"(
+anchor = "blue_box"
+[[task]]
+task = "face_anchor"
+name = "aim"
+retry = 2
+within_s = 5
+on_miss = "look"
+[[task]]
+task = "face_anchor"
+within_s = 6
+[[task]]
+task = "relative_position"
+name = "look"
+[[clause]]
+eventually = "bearing_error <= 2 deg"
+)");
+  ASSERT_EQ(mission.tasks.size(), 3u);
+  const TaskSpec& first = mission.tasks[0];
+  EXPECT_EQ(first.name, "aim");
+  EXPECT_EQ(first.retry, 2);
+  EXPECT_EQ(first.otherwise, 2u);
+  EXPECT_EQ(first.within, Duration(std::chrono::seconds(5)));
+  EXPECT_FALSE(mission.tasks[1].within) << "the host's alone";
+  EXPECT_TRUE(mission.tasks[1].required);
+}
+
 TEST(MissionFile, VisionTableCountsForMoreThanTheTop) {
   const Mission mission = parsed(
       "camera = \"a\"\n[vision]\ncamera = \"b\"\n"
@@ -90,7 +118,7 @@ TEST(MissionFile, RefusalNamesLineAndKey) {
                          {"task = []\n", 1, "[[task]]"},
                          {"\n[[task]\n", 2, ""},
                          {"[[task]]\nanchor = \"b\"\n", 1, "'task'"},
-                         {"[[task]]\ntask = \"land\"\n", 2, "\"land\""},
+                         {"[[task]]\ntask = \"fly\"\n", 2, "\"fly\""},
                          {"\n\n[[task]]\ntask = \"face_anchor\"\n", 3, "'anchor'"},
                          {"height_m = 3\n" + face, 1, "'height_m'"},
                          {"[vision]\nspeed_m_s = 1\n" + face, 2, "'speed_m_s'"},

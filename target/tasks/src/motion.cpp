@@ -65,6 +65,39 @@ Status pause(TaskContext& context, const std::string& imu, Duration time) {
   return ok_status();
 }
 
+Progress calibrate(TaskContext& context, const std::string& imu, Duration time, LoopLimit& limit,
+                   DeadReckoning& reckoning) {
+  std::optional<SimTime> began_at;
+  while (true) {
+    if (Progress end = limit.next_round(context.vehicle().now())) return end;
+    const Result<uav::ImuSample> reading = context.vehicle().read_imu(imu);
+    if (!reading) return TaskOutcome::failed(reading.failure());
+    began_at = began_at.value_or(reading->sampled_at);
+    if (reading->sampled_at - *began_at >= time) {
+      reckoning.update(*reading);
+      return std::nullopt;
+    }
+    reckoning.calibrate(*reading);
+  }
+}
+
+Result<std::optional<Sight>> look(TaskContext& context, const std::string& anchor_name) {
+  const auto camera = context.camera();
+  if (!camera) return camera.failure();
+  const auto anchor = context.anchor(anchor_name);
+  if (!anchor) return anchor.failure();
+  const auto tracker = context.tracker(anchor_name);
+  if (!tracker) return tracker.failure();
+  const Result<uav::CameraSample> image = context.vehicle().read_camera((*camera)->name);
+  if (!image) return image.failure();
+  const std::optional<vision::Roi> roi = (*tracker)->track(*image);
+  if (!roi) return std::optional<Sight>();
+  const vision::RelativePosition position = vision::relative_position(**camera, **anchor, *roi);
+  context.note_roi(*roi, image->index);
+  context.note_estimate(anchor_name, image->index, position, true);
+  return std::optional(Sight{image->sampled_at, position});
+}
+
 void fail_on(const Status& status, TaskOutcome& outcome) {
   if (status || outcome.status == TaskStatus::kFailed) return;
   outcome.status = TaskStatus::kFailed;

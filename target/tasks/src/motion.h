@@ -1,5 +1,8 @@
 #pragma once
 
+#include "dead_reckoning.h"
+
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -7,8 +10,10 @@
 #include <tether/base/time.h>
 #include <tether/client/vehicle.h>
 #include <tether/tasks/face_anchor_task.h>
+#include <tether/tasks/loop_limit.h>
 #include <tether/tasks/task.h>
 #include <tether/tasks/task_context.h>
+#include <tether/vision/relative_position.h>
 
 /// The commands of the paper's listings, in the words of the listings.
 namespace tether::tasks {
@@ -37,6 +42,19 @@ Result<double> get_yaw(TaskContext& context, std::string_view imu);
 /// Waits, by the instants of the IMU's readings, until one is `time` younger than the newest of
 /// now. Fails (kInvalid) when a thousand readings in a row bring no later instant.
 Status pause(TaskContext& context, const std::string& imu, Duration time);
+
+/// Reads the IMU at rest for `time`, by the instants of its readings: their bias, and the start of
+/// dead reckoning. Ends the task at its limit.
+Progress calibrate(TaskContext& context, const std::string& imu, Duration time, LoopLimit& limit,
+                   DeadReckoning& reckoning);
+
+/// The anchor in one image.
+struct Sight {
+  SimTime sampled_at;
+  vision::RelativePosition position;
+};
+/// Reads the next image and tracks the anchor in it; none if it is not in the image. Annotates it.
+Result<std::optional<Sight>> look(TaskContext& context, const std::string& anchor);
 
 /// Makes a failure of what had not failed before; does nothing if `status` is success.
 void fail_on(const Status& status, TaskOutcome& outcome);

@@ -84,6 +84,14 @@ void TaskContext::note_end(std::string_view task, std::string_view status,
             {"reason", reason}});
 }
 
+void TaskContext::note_mission(std::string_view task, std::string_view event,
+                               std::string_view status, std::string_view reason) {
+  json note = {{"task", task}, {"event", event}};
+  if (!status.empty()) note["status"] = status;
+  if (!reason.empty()) note["reason"] = reason;
+  annotate(vehicle_, "mission", note);
+}
+
 void TaskContext::note_roi(const vision::Roi& roi, std::uint64_t image_index) {
   annotate(vehicle_, "roi",
            {{"camera", vision_.camera},

@@ -85,6 +85,89 @@ TEST(TaskSequence, GoesOnAfterOneThatIsNotRequired) {
   EXPECT_EQ(outcome.parts[0].reason, "anchor lost");
 }
 
+/// Ends as listed, one run after the other; each takes a second.
+class ListedTask : public Task {
+ public:
+  explicit ListedTask(std::vector<TaskOutcome> outcomes) : outcomes_(std::move(outcomes)) {}
+  std::string_view name() const override { return "listed"; }
+  Progress initialise(TaskContext& context) override {
+    EXPECT_TRUE(context.vehicle().sleep_for(std::chrono::seconds(1)));
+    return outcomes_[std::min(runs_++, outcomes_.size() - 1)];
+  }
+  Progress step(TaskContext&) override { return std::nullopt; }
+  void finalise(TaskContext&, TaskOutcome&) override {}
+
+ private:
+  std::vector<TaskOutcome> outcomes_;
+  std::size_t runs_ = 0;
+};
+
+const TaskOutcome kReached = TaskOutcome::goal_reached();
+const TaskOutcome kLost = TaskOutcome::not_reached("lost");
+
+struct Ordered {
+  std::vector<TaskOutcome> outcomes;
+  SequenceItem order = {};
+};
+
+TaskOutcome run_in_order(std::vector<Ordered> all, std::vector<std::string>* notes = nullptr) {
+  PlanarVehicle vehicle{{}};
+  TaskContext context{vehicle};
+  std::vector<SequenceItem> items;
+  for (Ordered& one : all) {
+    one.order.task = std::make_unique<ListedTask>(one.outcomes);
+    items.push_back(std::move(one.order));
+  }
+  TaskSequence sequence(std::move(items));
+  const TaskOutcome outcome = run(sequence, context);
+  for (const auto& note : vehicle.annotations())
+    if (notes && note.topic == "mission") notes->push_back(note.json);
+  return outcome;
+}
+
+template <class... Ordereds>
+std::vector<Ordered> in_order(Ordereds... all) {
+  std::vector<Ordered> items;
+  (items.push_back(std::move(all)), ...);
+  return items;
+}
+
+TEST(TaskSequence, RepeatsATaskUntilItReachesItsGoal) {
+  std::vector<std::string> notes;
+  const TaskOutcome reached =
+      run_in_order(in_order(Ordered{{kLost, kReached}, {.name = "find", .retry = 3}}), &notes);
+  EXPECT_TRUE(reached.reached());
+  EXPECT_EQ(reached.results.at("tasks_run"), 2);
+  EXPECT_THAT(
+      notes,
+      ElementsAre(R"({"event":"start","task":"find"})",
+                  R"({"event":"end","reason":"lost","status":"not_reached","task":"find"})",
+                  R"({"event":"start","task":"find"})",
+                  R"({"event":"end","reason":"goal reached","status":"reached","task":"find"})"));
+  const TaskOutcome missed = run_in_order(in_order(Ordered{{kLost}, {.retry = 2}}));
+  EXPECT_EQ(missed.results.at("tasks_run"), 3);
+  EXPECT_EQ(missed.reason, "task 1 (listed): lost");
+}
+
+TEST(TaskSequence, GoesOnElsewhereAfterAMiss) {
+  const TaskOutcome outcome = run_in_order(
+      in_order(Ordered{{kLost}, {.otherwise = 2}}, Ordered{{kReached}}, Ordered{{kReached}}));
+  EXPECT_EQ(outcome.status, TaskStatus::kNotReached);
+  EXPECT_EQ(outcome.reason, "task 1 (listed): lost");
+  EXPECT_EQ(outcome.results.at("tasks_run"), 2);
+}
+
+TEST(TaskSequence, AGoalThatIsReachedTooLateIsMissed) {
+  const Duration half = std::chrono::milliseconds(500), two = std::chrono::seconds(2);
+  EXPECT_EQ(run_in_order(in_order(Ordered{{kReached}, {.within = half}})).reason,
+            "task 1 (listed): 0.500 s late");
+  EXPECT_TRUE(
+      run_in_order(in_order(Ordered{{kReached}, {.within = two, .before = two}})).reached());
+  const TaskOutcome third = run_in_order(
+      in_order(Ordered{{kReached}}, Ordered{{kReached}}, Ordered{{kReached}, {.before = two}}));
+  EXPECT_EQ(third.reason, "task 3 (listed): 1.000 s late");
+}
+
 TEST(TaskSequence, AFailureEndsItRequiredOrNot) {
   for (const bool required : {true, false}) {
     Sequence f;

@@ -1,5 +1,10 @@
 #include "support/trials.h"
 
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 /// Each of the paper's tasks as it is shipped: scenario, task, simulator, metrics, audit. Only the
@@ -46,6 +51,19 @@ TEST(MoveForward, AComputerThatIsTooSlowMissesItsGoal) {
   const auto result = fly(folder, "move_forward", 60, 1);
   EXPECT_EQ(result["outcome"], "goal_missed");
   EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
+}
+
+// Its goals are reached all the same: what a slow computer spoils is the reaction time.
+TEST(Inspection, AComputerThatIsTooSlowMissesAClause) {
+  for (const auto& [computing_ms, code] : {std::pair(10, 0), std::pair(130, 1)}) {
+    const TempFolder folder;
+    const auto result = fly(folder, "inspect_room", computing_ms, code);
+    EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
+    std::vector<std::string> missed;
+    for (const auto& clause : result["clauses"])
+      if (!clause["met"]) missed.push_back(clause["name"]);
+    EXPECT_EQ(std::count(missed.begin(), missed.end(), "reaction"), code) << result["clauses"];
+  }
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <tether/base/time.h>
 #include <tether/base/warning.h>
 #include <tether/campaign/metrics.h>
+#include <tether/judge/judge.h>
 #include <tether/record/reader.h>
 #include <tether/scenario/scenario.h>
 
@@ -25,7 +26,8 @@ inline constexpr std::string_view kReportFile = "report.html";
 
 enum class Outcome {
   kGoalReached,  ///< exit 0: every SUT finished with its goal reached, every metric within its
-                 ///< limit, no UAV hit anything harder than the scenario allows
+                 ///< limit, every clause met, no UAV hit anything harder than the scenario
+                 ///< allows
   kGoalMissed,   ///< exit 1: the trial ran, but missed that
   kFailed,       ///< exit 3: simulator, link or SUT could not be set up, was lost or hung
 };
@@ -147,6 +149,9 @@ struct TrialResult {
   std::string end;     ///< see kEnd…
   std::string reason;  ///< one line: why this outcome
   std::vector<MetricValue> metrics;
+  /// Of the missions, one UAV after the other; empty if no SUT has one.
+  std::vector<judge::TaskSpan> tasks{};
+  std::vector<judge::ClauseVerdict> clauses{};
   std::vector<SutResult> suts;
   SyncFigures sync;
   /// Of each UAV; empty: the trial did not run, or the result is of an earlier version.

@@ -109,6 +109,9 @@ struct GroundTruth {
   double q_WB[4] = {1, 0, 0, 0};  ///< w x y z
   double v_WB_m_s[3] = {};
   double w_WB_B_rad_s[3] = {};
+  /// Distance to the nearest surface of anything else; none: not measured, or a record of Tether
+  /// 0.1.0.
+  std::optional<double> clearance_m{};
 };
 
 /// A UAV began to touch something. Topic /contacts/<uav>; log time = ST of the next ground truth,

@@ -53,6 +53,12 @@ Table summaries_table(const campaign::CampaignResults& results);
 /// The metrics of a run with their limits, and its notes.
 Table run_table(const campaign::TrialResult& trial);
 
+/// The clauses of the missions of a run, with what limited each; no rows if there are none.
+Table clauses_table(const campaign::TrialResult& trial);
+/// A row per clause and condition: trials that met it, and their margins; no rows if there are
+/// none.
+Table clauses_table(const campaign::ScenarioResults& scenario);
+
 /// All tables for people, in reading order.
 std::vector<Table> report_tables(const campaign::CampaignResults& results);
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <tether/base/time.h>
+#include <tether/mission/mission.h>
 #include <tether/scenario/clock.h>
 #include <tether/scenario/metric.h>
 #include <tether/scenario/profile.h>
@@ -55,6 +56,8 @@ struct Sut {
   /// Several of its threads or processes communicate with the UAV, or compute while another waits:
   /// it runs under tether-exec. Needs Clock::kWall.
   bool concurrent = false;
+  /// What it flies, and by what the flight is judged; its file is the parameter "mission".
+  std::optional<mission::Mission> mission{};
 };
 
 struct UavSetup {

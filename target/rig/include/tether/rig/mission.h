@@ -1,14 +1,22 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include <tether/base/time.h>
 #include <tether/client/vehicle.h>
 #include <tether/tasks/closed_path_task.h>
 #include <tether/tasks/face_anchor_task.h>
+#include <tether/tasks/go_to_task.h>
+#include <tether/tasks/hold_task.h>
+#include <tether/tasks/inspect_task.h>
+#include <tether/tasks/land_task.h>
 #include <tether/tasks/move_forward_task.h>
 #include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/search_task.h>
 #include <tether/tasks/sensor_characterization_task.h>
 #include <tether/tasks/task.h>
 #include <tether/tasks/task_context.h>
@@ -17,14 +25,22 @@ namespace tether::rig {
 
 using TaskOptions =
     std::variant<tasks::SensorCharacterizationOptions, tasks::RelativePositionOptions,
-                 tasks::FaceAnchorOptions, tasks::MoveForwardOptions, tasks::ClosedPathOptions>;
+                 tasks::FaceAnchorOptions, tasks::MoveForwardOptions, tasks::ClosedPathOptions,
+                 tasks::GoToOptions, tasks::SearchOptions, tasks::HoldOptions,
+                 tasks::InspectOptions, tasks::LandOptions>;
 
 struct TaskSpec {
   TaskOptions options;
   std::string sensor;  ///< of sensor_characterization
-  std::string anchor;  ///< of all other tasks
+  std::string anchor;  ///< of the tasks that look for one
   tasks::VisionOptions vision;
-  bool required = true;  ///< in a mission file: see tasks::SequenceItem
+
+  // In a mission file: see tasks::SequenceItem.
+  bool required = true;
+  std::string name = {};
+  int retry = 0;
+  std::optional<std::size_t> otherwise = {};
+  std::optional<Duration> within = {}, before = {};
 };
 
 /// The tasks of a run.

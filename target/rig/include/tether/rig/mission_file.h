@@ -6,7 +6,8 @@
 #include <tether/rig/mission.h>
 
 /// Mission files (docs/guide/tasks.md): TOML with a `[[task]]` table for each task, whose keys are
-/// the options of that task's subcommand with underscores (`--precision-deg` → `precision_deg`).
+/// the options of that task's subcommand with underscores (`--precision-deg` → `precision_deg`),
+/// and those of mission::task_keys. Clauses are checked, and are otherwise for the host.
 namespace tether::rig {
 
 /// Reads a mission file. Fails with kInvalid and one line: FILE:LINE and what is wrong.

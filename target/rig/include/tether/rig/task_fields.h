@@ -45,13 +45,13 @@ struct Field {
   std::variant<TextField, NumberField, IntegerField, BooleanField, ChoiceField> value;
 };
 
-/// A task of the paper.
+/// A task.
 struct TaskKind {
   std::string_view name;         ///< "face_anchor"
   std::string_view description;  ///< one line
   TaskOptions defaults;
 };
-/// In the paper's order.
+/// Those of the paper, in its order; then others, to compose missions of.
 std::span<const TaskKind> task_kinds();
 
 /// The arguments of the task that `spec.options` holds. They write to `spec`, which must outlive

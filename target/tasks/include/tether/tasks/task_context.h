@@ -43,7 +43,7 @@ class TaskContext {
   /// anchor, or its colour cannot be tracked.
   Result<vision::AnchorTracker*> tracker(std::string_view anchor);
 
-  /// @name Annotations in the record (topics "task", "roi", "estimate", "odometry",
+  /// @name Annotations in the record (topics "task", "mission", "roi", "estimate", "odometry",
   /// "displacement"). If sending fails, the next interaction reports it. The camera of a ROI or an
   /// estimate is that of the vision options.
   /// @{
@@ -51,6 +51,9 @@ class TaskContext {
   void note_event(std::string_view task, std::string_view phase, std::string_view event,
                   const Values& values = {});
   void note_end(std::string_view task, std::string_view status, std::string_view reason);
+  /// A task of a mission starts or ends (topic "mission"). `status` and `reason`: how it ended.
+  void note_mission(std::string_view task, std::string_view event, std::string_view status = {},
+                    std::string_view reason = {});
   void note_roi(const vision::Roi& roi, std::uint64_t image_index);
   void note_estimate(std::string_view anchor, std::uint64_t image_index,
                      const vision::RelativePosition& estimate, bool converged);

@@ -1,0 +1,28 @@
+#include "junit_option.h"
+
+#include <system_error>
+
+#include <tether/base/error.h>
+#include <tether/os/text_file.h>
+#include <tether/report/junit.h>
+
+namespace tether::app {
+
+int with_junit(const std::filesystem::path& file, const std::string& suite,
+               const std::function<int()>& action) {
+  if (file.empty()) return action();
+  const auto write = [&](const std::string& why) {
+    std::error_code ignored;  // writing reports it
+    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+    os::write_file_atomically(file, report::junit_of_error(suite, why));
+  };
+  write("the command did not run to its end");
+  try {
+    return action();
+  } catch (const Error& error) {
+    write(error.what());
+    throw;
+  }
+}
+
+}  // namespace tether::app

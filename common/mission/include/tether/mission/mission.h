@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tether/base/error.h>
+#include <tether/base/time.h>
+#include <tether/mission/condition.h>
+#include <tether/toml/table.h>
+
+/// Mission files (docs/guide/missions.md): tasks with time constraints. The SUT flies the tasks;
+/// the host judges the clauses. Both read the file with this reader. The options of a task are
+/// those of the program that flies it (rig::load_mission).
+namespace tether::mission {
+
+/// What the SUT does after a task that did not reach its goal, or not by its deadline.
+struct OnMiss {
+  enum class Kind { kContinue, kAbort, kGoTo };
+  Kind kind = Kind::kAbort;
+  std::size_t task = 0;  ///< of kGoTo: index of a later task
+
+  friend bool operator==(const OnMiss&, const OnMiss&) = default;
+};
+
+struct Task {
+  std::string name;  ///< unique; by default its kind
+  std::string kind;  ///< "face_anchor"
+  OnMiss on_miss;
+  bool acts_on_lateness = false;   ///< `on_miss` is given: it also applies to a late goal
+  int retry = 0;                   ///< how often it is repeated if it does not reach its goal
+  std::optional<Duration> within;  ///< its deadline, from its start
+  std::optional<Duration> before;  ///< its deadline, from the mission's start
+};
+
+/// A requirement that the host judges.
+struct Clause {
+  enum class Kind {
+    kDeadline,    ///< the tasks end with their goals reached by the deadline
+    kAlways,      ///< the condition holds throughout
+    kNever,       ///< the condition never holds
+    kEventually,  ///< the condition holds at some time, for `hold`, and by the deadline
+  };
+  std::string name;  ///< unique; by default its text
+  FileLocation where;
+  Kind kind = Kind::kDeadline;
+  std::optional<Condition> condition;  ///< none of kDeadline
+  /// The tasks that it is about: first to last. None: the whole mission.
+  std::optional<std::pair<std::size_t, std::size_t>> during;
+  std::optional<std::size_t> after;  ///< from the end of this task to the end of the mission
+  Duration hold{0};
+  std::optional<Duration> within;  ///< from the start of what it is about
+  std::optional<Duration> before;  ///< from the start of the mission
+};
+
+struct Mission {
+  std::string file;
+  std::vector<Task> tasks;      ///< at least one
+  std::vector<Clause> clauses;  ///< of the tasks' deadlines first, then as in the file
+};
+
+/// The keys of a [[task]] that are not options of a task.
+std::span<const std::string_view> task_keys();
+
+/// @throws Error(kBadFile) with file and line, about the key. @pre `file` is the top of a file.
+Mission read_mission(const toml::Table& file);
+/// @throws Error(kBadFile) as above.
+Mission load_mission(const std::filesystem::path& file);
+
+/// What a mission can refer to.
+struct Surroundings {
+  std::vector<std::string> anchors;
+  Duration time_limit{0};  ///< of the run
+};
+/// @throws Error(kBadFile) at a clause that no run can meet: it names another anchor, or its
+/// deadline is beyond the time limit.
+void require_possible(const Mission& mission, const Surroundings& surroundings);
+
+}  // namespace tether::mission

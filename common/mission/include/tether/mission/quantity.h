@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+/// What the clauses of a mission can be about.
+namespace tether::mission {
+
+enum class Dimension { kLength, kAngle, kTime, kSpeed, kYawRate };
+
+/// A unit that people write.
+struct Unit {
+  std::string_view name;  ///< "deg/s"
+  Dimension dimension;
+  double si = 1.0;  ///< the value of one such unit in SI units
+};
+std::span<const Unit> units();
+
+/// What `of NAME` names in a condition.
+enum class Subject {
+  kNone,
+  kAnchor,  ///< required, but for the file's own `anchor`
+  kSensor,  ///< optional
+};
+
+struct Quantity {
+  std::string_view name;
+  Dimension dimension;
+  Subject subject = Subject::kNone;
+  bool is_event = false;  ///< has values at commands or reads only, not at every instant
+  std::string_view help;  ///< one line: the definition
+};
+/// All, in the order in which help lists them.
+std::span<const Quantity> quantities();
+/// nullptr if there is none of that name.
+const Quantity* find_quantity(std::string_view name);
+
+}  // namespace tether::mission

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tether/base/time.h>
+#include <tether/mission/mission.h>
+#include <tether/record/reader.h>
+
+/// Judges the clauses of a mission from the record of a run: from the ground truth and from the
+/// times of interactions. The SUT only marks when its tasks start and end (docs/guide/missions.md).
+/// Pure functions.
+namespace tether::judge {
+
+/// When a task ran, with its repetitions.
+struct TaskSpan {
+  std::string uav;
+  std::string task;
+  SimTime from;
+  SimTime to;          ///< of one that did not end, the end of the run
+  std::string status;  ///< "reached", "not_reached", "failed", as the SUT says; or "unfinished"
+  std::string reason;  ///< one line; may be empty
+
+  friend bool operator==(const TaskSpan&, const TaskSpan&) = default;
+};
+
+/// Whether a clause is met, and by how much.
+struct ClauseVerdict {
+  std::string uav;
+  std::string name;
+  bool met = false;
+  /// Its robustness: how much further the clause would have been met, or (negative) by how much it
+  /// was missed, in `unit`. None if it could not be judged, which counts as missed.
+  std::optional<double> margin{};
+  std::string unit{};
+  std::optional<SimTime> from{}, to{};  ///< what it is about; none if that did not happen
+  std::optional<SimTime> deadline{};    ///< none if it has none
+  std::optional<SimTime> decided_at{};  ///< when the verdict could no longer change
+  std::string limited_by{};             ///< one line: what made the margin no larger
+
+  friend bool operator==(const ClauseVerdict&, const ClauseVerdict&) = default;
+};
+
+struct Verdicts {
+  std::vector<TaskSpan> tasks;         ///< in the order in which they began
+  std::vector<ClauseVerdict> clauses;  ///< in the order of the mission
+};
+
+/// The verdicts on the flight of `uav`.
+Verdicts judge(const mission::Mission& mission, const std::string& uav,
+               const record::Record& record);
+
+}  // namespace tether::judge

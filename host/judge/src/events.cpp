@@ -1,0 +1,125 @@
+#include "events.h"
+
+#include "times.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace tether::judge {
+namespace {
+
+using record::Interaction;
+
+/// A measurement that the SUT had.
+struct Sample {
+  SimTime had_at;
+  SimTime sampled_at;
+};
+
+/// The interactions of a SUT in a span, and what the quantities need of them.
+class Calls {
+ public:
+  Calls(const std::string& uav, const Span& span, const record::Record& record) : times_(record) {
+    for (const record::SensorInfo& sensor : record.header.sensors)
+      if (sensor.uav == uav && sensor.kind == "camera") cameras_.insert(sensor.name);
+    for (const auto& logged : record.interactions) {
+      const Interaction& i = logged.message;
+      if (i.uav == uav && times_.sent(i) >= span.from && times_.answered(i) <= span.to)
+        own_.push_back(&i);
+    }
+    std::ranges::stable_sort(own_, {}, [&](const Interaction* i) { return times_.sent(*i); });
+  }
+
+  std::vector<const Interaction*> of_kind(std::string_view kind) const {
+    std::vector<const Interaction*> found;
+    for (const Interaction* i : own_)
+      if (i->kind == kind) found.push_back(i);
+    return found;
+  }
+  /// Of one sensor; if `sensor` is empty, of all, or of all cameras.
+  std::vector<Sample> samples(const std::string& sensor, bool of_cameras) const {
+    std::vector<Sample> samples;
+    for (const Interaction* i : of_kind(record::kSensor)) {
+      const bool is_wanted =
+          sensor.empty() ? !of_cameras || cameras_.contains(i->sensor) : i->sensor == sensor;
+      if (is_wanted && i->sampled_at) samples.push_back({times_.answered(*i), *i->sampled_at});
+    }
+    std::ranges::stable_sort(samples, {}, &Sample::had_at);
+    return samples;
+  }
+  const Times& times() const { return times_; }
+
+ private:
+  Times times_;
+  std::set<std::string> cameras_;
+  std::vector<const Interaction*> own_;
+};
+
+/// Calls `take` with each command and the newest of `samples` that the SUT had when it sent it.
+/// Commands without one are left out.
+template <class Take>
+void with_newest(const Calls& calls, const std::vector<Sample>& samples, const Take& take) {
+  std::size_t had = 0;
+  const Sample* newest = nullptr;
+  for (const Interaction* command : calls.of_kind(record::kCommand)) {
+    const SimTime sent = calls.times().sent(*command);
+    for (; had < samples.size() && samples[had].had_at <= sent; ++had)
+      if (!newest || samples[had].sampled_at > newest->sampled_at) newest = &samples[had];
+    if (newest) take(*command, sent, *newest);
+  }
+}
+
+std::vector<Event> reaction_times(const Calls& calls, const std::string& sensor) {
+  std::vector<Event> events;
+  with_newest(
+      calls, calls.samples(sensor, true),
+      [&](const Interaction& command, SimTime sent, const Sample& image) {
+        if (!command.effect_at) return;
+        events.push_back({*command.effect_at, to_seconds(*command.effect_at - image.sampled_at),
+                          Reaction{image.had_at - image.sampled_at, sent - image.had_at,
+                                   *command.effect_at - sent}});
+      });
+  return events;
+}
+
+std::vector<Event> data_ages(const Calls& calls, const std::string& sensor) {
+  std::vector<Event> events;
+  with_newest(calls, calls.samples(sensor, false),
+              [&](const Interaction&, SimTime sent, const Sample& sample) {
+                events.push_back({sent, to_seconds(sent - sample.sampled_at), {}});
+              });
+  return events;
+}
+
+std::vector<Event> loop_periods(const Calls& calls, const std::string& sensor) {
+  std::vector<SimTime> rounds;
+  for (const Interaction* i : calls.of_kind(sensor.empty() ? record::kCommand : record::kSensor))
+    if (sensor.empty() || i->sensor == sensor) rounds.push_back(calls.times().sent(*i));
+  std::vector<Event> events;
+  for (std::size_t i = 1; i < rounds.size(); ++i)
+    events.push_back({rounds[i], to_seconds(rounds[i] - rounds[i - 1]), {}});
+  return events;
+}
+
+std::vector<Event> loop_jitters(const Calls& calls, const std::string& sensor) {
+  std::vector<Event> events = loop_periods(calls, sensor);
+  double mean = 0.0;
+  for (const Event& event : events) mean += event.value / static_cast<double>(events.size());
+  for (Event& event : events) event.value = std::abs(event.value - mean);
+  return events;
+}
+
+}  // namespace
+
+std::vector<Event> events_of(const mission::Condition& condition, const std::string& uav,
+                             const Span& span, const record::Record& record) {
+  const Calls calls(uav, span, record);
+  const std::string_view name = condition.quantity->name;
+  if (name == "reaction_time") return reaction_times(calls, condition.of);
+  if (name == "data_age") return data_ages(calls, condition.of);
+  if (name == "loop_period") return loop_periods(calls, condition.of);
+  return loop_jitters(calls, condition.of);
+}
+
+}  // namespace tether::judge

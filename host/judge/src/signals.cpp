@@ -1,0 +1,91 @@
+#include "signals.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <tether/base/units.h>
+#include <tether/uav/math.h>
+
+namespace tether::judge {
+namespace {
+
+using record::GroundTruth;
+
+uav::Quat attitude(const GroundTruth& truth) {
+  const double(&q)[4] = truth.q_WB;
+  return {q[0], q[1], q[2], q[3]};
+}
+
+// One function for each quantity: its value at an instant. `anchor` is null if the quantity is not
+// about one.
+using Value = std::optional<double> (*)(const GroundTruth& truth, const record::Anchor* anchor);
+
+uav::Vec3 to_anchor(const GroundTruth& truth, const record::Anchor& anchor) {
+  return {anchor.p_WA_m[0] - truth.p_WB_m[0], anchor.p_WA_m[1] - truth.p_WB_m[1], 0.0};
+}
+
+std::optional<double> bearing_error(const GroundTruth& truth, const record::Anchor* anchor) {
+  const uav::Vec3 way = to_anchor(truth, *anchor);
+  return std::abs(wrap_angle_rad(std::atan2(way.y, way.x) - uav::yaw_rad(attitude(truth))));
+}
+std::optional<double> distance(const GroundTruth& truth, const record::Anchor* anchor) {
+  const uav::Vec3 way = to_anchor(truth, *anchor);
+  return std::hypot(way.x, way.y);
+}
+std::optional<double> altitude(const GroundTruth& truth, const record::Anchor*) {
+  return truth.p_WB_m[2];
+}
+std::optional<double> speed(const GroundTruth& truth, const record::Anchor*) {
+  return std::hypot(truth.v_WB_m_s[0], truth.v_WB_m_s[1], truth.v_WB_m_s[2]);
+}
+std::optional<double> yaw_rate(const GroundTruth& truth, const record::Anchor*) {
+  const double(&w)[3] = truth.w_WB_B_rad_s;
+  return std::abs(rotate(attitude(truth), {w[0], w[1], w[2]}).z);
+}
+std::optional<double> clearance(const GroundTruth& truth, const record::Anchor*) {
+  return truth.clearance_m;
+}
+
+struct Source {
+  std::string_view quantity;
+  Value value;
+};
+// One entry for each of mission::quantities() that is not of events.
+constexpr std::array kSources = {
+    Source{"bearing_error", bearing_error}, Source{"distance", distance},
+    Source{"altitude", altitude},           Source{"speed", speed},
+    Source{"yaw_rate", yaw_rate},           Source{"clearance", clearance},
+};
+
+}  // namespace
+
+Signals::Signals(const std::string& uav, const record::Record& record) : record_(record) {
+  for (const auto& logged : record.ground_truth) {
+    const bool is_new = trace_.at.empty() || logged.message.at > trace_.at.back();
+    if (logged.message.uav != uav || !is_new) continue;
+    truths_.push_back(&logged.message);
+    trace_.at.push_back(logged.message.at);
+  }
+}
+
+std::optional<std::size_t> Signals::find(const mission::Condition& condition) {
+  const auto [known, is_new] = known_.try_emplace({condition.quantity->name, condition.of});
+  if (!is_new) return known->second;
+  const auto& anchors = record_.header.anchors;
+  const auto anchor = std::ranges::find(anchors, condition.of, &record::Anchor::name);
+  const bool needs_anchor = condition.quantity->subject == mission::Subject::kAnchor;
+  if (needs_anchor && anchor == anchors.end()) return std::nullopt;
+  const auto* source = std::ranges::find(kSources, condition.quantity->name, &Source::quantity);
+  stl::Signal signal{std::string(condition.quantity->name), {}};
+  for (const GroundTruth* truth : truths_) {
+    const auto value = source->value(*truth, needs_anchor ? &*anchor : nullptr);
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    signal.values.push_back(*value);
+  }
+  known->second = trace_.signals.size();
+  trace_.signals.push_back(std::move(signal));
+  return known->second;
+}
+
+}  // namespace tether::judge

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <tether/mission/condition.h>
+#include <tether/record/reader.h>
+#include <tether/stl/formula.h>
+
+namespace tether::judge {
+
+/// The quantities of a UAV as signals in SI units, at the instants of its ground truth. Each is
+/// computed when it is first asked for.
+class Signals {
+ public:
+  Signals(const std::string& uav, const record::Record& record);
+
+  /// Index in the trace; none if the record does not have it at every instant.
+  std::optional<std::size_t> find(const mission::Condition& condition);
+  const stl::Trace& trace() const { return trace_; }
+
+ private:
+  const record::Record& record_;
+  std::vector<const record::GroundTruth*> truths_;
+  stl::Trace trace_;
+  std::map<std::pair<std::string_view, std::string>, std::optional<std::size_t>> known_;
+};
+
+}  // namespace tether::judge

@@ -1,0 +1,147 @@
+#include "flight.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include <tether/judge/judge.h>
+
+namespace tether::judge {
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Case {
+  const char* clause;
+  bool met;
+  std::optional<double> margin;
+  std::optional<double> decided_s;
+  const char* limited_by;
+};
+
+void expect(const Flight& flight, const Case& c) {
+  const ClauseVerdict verdict = flight.verdict(c.clause);
+  EXPECT_EQ(verdict.met, c.met) << c.clause;
+  ASSERT_EQ(verdict.margin.has_value(), c.margin.has_value()) << c.clause << verdict.limited_by;
+  EXPECT_NEAR(verdict.margin.value_or(0), c.margin.value_or(0), 1e-9) << c.clause;
+  ASSERT_EQ(verdict.decided_at.has_value(), c.decided_s.has_value()) << c.clause;
+  const double decided_s = to_seconds(verdict.decided_at.value_or(SimTime{}));
+  EXPECT_NEAR(decided_s, c.decided_s.value_or(0), 1e-9) << c.clause;
+  EXPECT_THAT(verdict.limited_by, HasSubstr(c.limited_by)) << c.clause;
+}
+
+Flight mission() {
+  Flight flight;
+  flight.task("a", 1, 3).task("b", 3, 6).task("c", 6, 8).finish(8);
+  return flight;
+}
+
+TEST(Judge, ConditionsOnSignals) {
+  for (const Case& c : std::vector<Case>{
+           {R"(always = "altitude <= 9 m")", true, 1.0, 8.0, "8 m at ST 8.000 s"},
+           {R"(always = "altitude <= 5 m")", false, -3.0, 5.1, "8 m at ST 8.000 s"},
+           {R"(never = "altitude >= 5 m")", false, -3.0, 5.1, "8 m"},
+           {R"(never = "altitude >= 900 cm")", true, 100.0, 8.0, "800 cm"},
+           {R"(eventually = "altitude >= 5 m")", true, 3.0, 5.0, "8 m"},
+           {R"(eventually = "altitude >= 9 m")", false, -1.0, 8.0, "8 m"},
+           {"eventually = \"altitude >= 5 m\"\nfor_s = 2", true, 1.0, 7.0, "6 m"},
+           {"eventually = \"altitude >= 5 m\"\nfor_s = 2\nbefore_s = 6", false, -1.0, 6.0, "4 m"},
+           {"eventually = \"altitude >= 2 m\"\nwithin_s = 4", true, 2.0, 2.0, "4 m"},
+           {"during = [\"b\"]\neventually = \"altitude >= 5.5 m\"\nwithin_s = 2", false, -0.5, 5.0,
+            "5 m"},
+           {"during = [\"b\"]\nalways = \"altitude <= 7 m\"", true, 1.0, 6.0, "6 m"},
+           {"during = [\"a\", \"b\"]\nalways = \"altitude >= 1 m\"", true, 0.0, 6.0, "1 m"},
+           {"after = \"b\"\nalways = \"altitude >= 5 m\"", true, 1.0, 8.0, "6 m"},
+           {"during = [\"c\"]\neventually = \"altitude >= 1 m\"\nfor_s = 3",
+            false,
+            {},
+            8.0,
+            "hold that long"},
+           {R"(always = "altitude <= 7.2 m in 90 %")", true, 0.0, 8.0, "7.2 m"},
+           {R"(always = "speed <= 1.5 m/s")", true, 0.5, 8.0, "1 m/s"},
+           {R"(always = "distance <= 4 m")", true, 1.0, 8.0, "3 m"},
+           {R"(always = "bearing_error <= 10 deg")", true, 10.0, 8.0, "0 deg"},
+           {R"(always = "yaw_rate <= 10 deg/s")", true, 10.0, 8.0, "0 deg/s"},
+           {R"(always = "clearance >= 1 m")", false, {}, {}, "clearance"}})
+    expect(mission(), c);
+}
+
+TEST(Judge, ClearanceOfEachInstant) {
+  Flight flight = mission();
+  for (auto& logged : flight.record().ground_truth)
+    logged.message.clearance_m = 10.0 - to_seconds(logged.at);
+  expect(flight, {R"(always = "clearance >= 1 m")", true, 1.0, 8.0, "2 m at ST 8.000 s"});
+}
+
+TEST(Judge, YawRateIsAboutTheVertical) {
+  Flight flight = mission();
+  for (auto& logged : flight.record().ground_truth) {
+    logged.message.q_WB[0] = logged.message.q_WB[1] = std::sqrt(0.5);  // rolled by 90 degrees
+    logged.message.w_WB_B_rad_s[1] = -0.5;
+  }
+  expect(flight, {R"(always = "yaw_rate <= 1 rad/s")", true, 0.5, 8.0, "0.5 rad/s"});
+}
+
+TEST(Judge, Deadlines) {
+  Flight unreached;
+  unreached.task("a", 1, 3).task("b", 3, 6, "not_reached").finish(6);
+  Flight cut;
+  cut.task("a", 1, 3).note(3, R"({"task":"b","event":"start"})").cut(9);
+  struct Deadline {
+    Flight flight;
+    Case expected;
+  };
+  for (const auto& [flight, c] : std::vector<Deadline>{
+           {mission(), {"within_s = 9", true, 1.0, 8.0, "computing 8 s"}},
+           {mission(), {"within_s = 7", false, -1.0, 7.0, "computing 8 s"}},
+           {mission(), {"during = [\"b\"]\nwithin_s = 4", true, 1.0, 6.0, "computing 3 s"}},
+           {mission(), {"during = [\"b\", \"c\"]\nbefore_s = 8", true, 0.0, 8.0, ""}},
+           {mission(), {"after = \"a\"\nwithin_s = 6", true, 1.0, 8.0, ""}},
+           {unreached, {"during = [\"b\"]\nwithin_s = 9", false, {}, 6.0, "not_reached: so"}},
+           {unreached, {"during = [\"b\"]\nwithin_s = 2", false, -1.0, 5.0, "not_reached: so"}},
+           {unreached, {"during = [\"c\"]\nwithin_s = 2", false, {}, {}, "did not run"}},
+           {unreached, {"within_s = 9", false, {}, 6.0, "'b' ended not_reached"}},
+           {cut, {"during = [\"b\"]\nwithin_s = 4", false, -2.0, 7.0, "unfinished"}},
+           {cut, {"after = \"b\"\nwithin_s = 4", false, {}, {}, "did not end"}}})
+    expect(flight, c);
+}
+
+TEST(Judge, ReactionsAgesAndLoops) {
+  Flight flight = mission();
+  flight.image(3.0, 3.2, 3.1).command(3.3, 3.4).command(3.5, 3.6);
+  flight.image(4.0, 4.2, 4.1).command(5.1, 5.1).image(5.5, 5.5, 5.4);
+  for (const Case& c : std::vector<Case>{
+           {R"(always = "reaction_time <= 600 ms")", false, -400.0, 5.1,
+            "1000 ms at ST 5.100 s: 100 ms from the image's instant until the program had it, "
+            "900 ms until its command, 0 ms until the effect"},
+           {R"(always = "reaction_time of eye <= 0.6 s in 66 %")", true, 0.1, 8.0, "0.5 s"},
+           {"during = [\"a\"]\nalways = \"reaction_time <= 1 s\"",
+            false,
+            {},
+            {},
+            "no such command"},
+           {R"(never = "data_age >= 2 s")", true, 1.0, 8.0, "1 s at ST 5.100 s"},
+           {R"(always = "loop_period of eye <= 1.2 s")", false, -0.3, 5.5, "1.5 s"},
+           {R"(always = "loop_period <= 2 s")", true, 0.4, 8.0, "1.6 s"},
+           {R"(always = "loop_jitter of eye <= 0.3 s")", true, 0.05, 8.0, "0.25 s"},
+           {R"(always = "reaction_time of nose <= 1 s")", false, {}, {}, "no such command"}})
+    expect(flight, c);
+}
+
+TEST(Judge, ReactionsInFreeRunningAreInSt) {
+  Flight flight = mission();
+  flight.image(3.0, 3.2, 3.1).command(3.3, 3.4);
+  flight.record().header.policy = record::kFreeRunning;
+  for (auto& logged : flight.record().interactions)
+    logged.message.request_at = logged.message.reply_at = ExecTime{};
+  EXPECT_NEAR(*flight.verdict(R"(always = "reaction_time <= 1 s")").margin, 0.7, 1e-9);
+}
+
+TEST(Judge, NeedsGroundTruth) {
+  Flight flight = mission();
+  flight.record().ground_truth.clear();
+  EXPECT_FALSE(flight.verdict(R"(always = "altitude <= 9 m")").margin);
+}
+
+}  // namespace
+}  // namespace tether::judge

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <tether/base/time.h>
+#include <tether/tasks/loop_limit.h>
+#include <tether/tasks/task.h>
+
+namespace tether::tasks {
+
+struct GoToOptions {
+  double ahead_m = 1.0;       ///< the goal, from the start: along the heading,
+  double left_m = 0.0;        ///< to its left,
+  double up_m = 0.0;          ///< and up
+  double speed_m_s = 0.5;     ///< maximum; > 0
+  double tolerance_m = 0.15;  ///< the goal is reached within this distance; > 0
+  std::string imu = "imu";
+  /// Pause before the start, by the IMU's timestamps, in which its bias is measured; ≥ 0.
+  Duration rest_time = std::chrono::seconds(1);
+  Duration time_limit = std::chrono::seconds(60);  ///< of the SUT's clock; then "time limit"
+  int max_readings = 200'000;                      ///< in case that clock is stopped
+};
+
+/// Flies to a position relative to its start by dead reckoning with the IMU, at a constant heading.
+/// Annotates its odometry. Results: "duration_s" (ET), "end_x_m", "end_y_m", "end_z_m"
+/// (dead-reckoned, in the start-heading frame H0).
+class GoToTask : public Task {
+ public:
+  explicit GoToTask(const GoToOptions& options = {});
+  ~GoToTask() override;
+
+  std::string_view name() const override { return "go_to"; }
+  Progress initialise(TaskContext& context) override;
+  Progress step(TaskContext& context) override;
+  void finalise(TaskContext& context, TaskOutcome& outcome) override;
+
+ private:
+  GoToOptions options_;
+  LoopLimit limit_;
+  std::unique_ptr<class DeadReckoning> reckoning_;  ///< of the current run
+};
+
+}  // namespace tether::tasks
