@@ -7,6 +7,7 @@
 
 #include <tether/base/error.h>
 #include <tether/os/child_process.h>
+#include <tether/os/counted_program.h>
 #include <tether/os/machine.h>
 #include <tether/os/program.h>
 
@@ -57,7 +58,7 @@ LocalSutCommand local_sut_command(const scenario::Sut& sut,
     // tether-exec and launchers search for it in PATH only.
     program = file.string();
     const bool is_counted = target && target->emulator;
-    command.programs.push_back(is_counted ? find_emulator(*target->emulator)
+    command.programs.push_back(is_counted ? os::find_emulator(*target->emulator)
                                           : os::find_program(words.front()));
     if (sut.concurrent && is_launched) command.programs.push_back(os::find_program(words[1]));
   }
@@ -91,7 +92,7 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
 void require_sut_programs(const scenario::Scenario& scenario,
                           const scenario::Condition& condition) {
   sut_programs(scenario, condition);
-  if (condition.target && condition.target->emulator) find_counter_plugin();
+  if (condition.target && condition.target->emulator) os::find_counter_plugin();
   require_cores(scenario, condition);
 }
 

@@ -51,7 +51,7 @@ os::Environment environment_of(const std::string& uav, std::size_t index, const 
                                  {"TETHER_UAV", uav},
                                  {"TETHER_CLOCK", to_text(clock_of(run.condition))}};
   if (index < run.counts.size()) {
-    const os::Environment counting = run.counts.environment(index);
+    const os::Environment counting = run.counts[index].environment();
     environment.insert(environment.end(), counting.begin(), counting.end());
   }
   return environment;

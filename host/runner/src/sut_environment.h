@@ -1,7 +1,5 @@
 #pragma once
 
-#include "count_pages.h"
-
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -10,6 +8,7 @@
 
 #include <tether/coordinator/coordinator.h>
 #include <tether/os/child_process.h>
+#include <tether/os/counted_program.h>
 #include <tether/scenario/scenario.h>
 
 /// The command line and the environment of a SUT, on this machine or a board.
@@ -20,7 +19,7 @@ struct SutRun {
   std::string address;  ///< of the coordinator, host:port
   std::string token;
   scenario::Condition condition;
-  CountPages counts{};  ///< one for each SUT, if the condition's clock is "counted"
+  std::vector<os::CountFile> counts{};  ///< one for each SUT, if the condition's clock is "counted"
 };
 
 /// The clock of the SUTs under a condition.

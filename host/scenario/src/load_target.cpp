@@ -79,7 +79,7 @@ std::array<std::uint64_t, kWorkClasses> read_costs(const toml::Table& root) {
 }
 
 /// What the clock "counted" needs, and no other clock has.
-std::optional<Emulator> read_emulator(const toml::Table& root, const Target& target) {
+std::optional<os::Emulator> read_emulator(const toml::Table& root, const Target& target) {
   if (target.clock != Clock::kCounted) {
     for (const char* key : {"emulator", "cpu_model", "sysroot", "cost_ns"})
       if (root.has(key)) root.fail(key, "needs clock = \"counted\".");
@@ -88,7 +88,7 @@ std::optional<Emulator> read_emulator(const toml::Table& root, const Target& tar
   for (const char* key : {"cpu_factor", "launcher"})
     if (root.has(key))
       root.fail(key, "cannot be used with the clock \"counted\". Remove this key.");
-  Emulator emulator;
+  os::Emulator emulator;
   emulator.program = kEmulators[root.choice("emulator", kEmulators)];
   emulator.cpu_model = root.text("cpu_model");
   if (root.has("sysroot")) emulator.sysroot = beside(target, root.text("sysroot"));

@@ -4,17 +4,10 @@
 
 #include <chrono>
 #include <cstdint>
-#include <system_error>
 #include <thread>
 #include <utility>
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <tether/base/count_page.h>
-#include <tether/link/socket.h>
 
 namespace tether::client {
 namespace {
@@ -39,7 +32,9 @@ constexpr const char* kProcessReason =
 
 class CountedSource final : public TimeSource {
  public:
-  explicit CountedSource(MappedCounts page) : page_(std::move(page)) { page_->watched.store(1); }
+  explicit CountedSource(os::MappedCounts page) : page_(std::move(page)) {
+    page_->watched.store(1);
+  }
   ~CountedSource() override { page_->watched.store(0); }
   CountedSource(const CountedSource&) = delete;
   CountedSource& operator=(const CountedSource&) = delete;
@@ -85,7 +80,7 @@ class CountedSource final : public TimeSource {
                                               static_cast<std::uint64_t>(kCostUnitsPerNs)));
   }
 
-  MappedCounts page_;
+  os::MappedCounts page_;
   mutable Duration before_{0};
   mutable std::uint64_t resumed_at_units_ = total_units();
 };
@@ -125,27 +120,13 @@ Status check(const CountPage& page, const std::string& file) {
 
 }  // namespace
 
-void UnmapCounts::operator()(CountPage* page) const {
-  ::munmap(page, sizeof(CountPage));
-}
-
-MappedCounts map_counts(const std::string& file) {
-  const link::Descriptor descriptor(::open(file.c_str(), O_RDWR | O_CLOEXEC));
-  struct stat status {};
-  if (!descriptor.is_open() || ::fstat(descriptor.get(), &status) != 0) return nullptr;
-  if (status.st_size < static_cast<off_t>(sizeof(CountPage))) return nullptr;
-  void* const mapped =
-      ::mmap(nullptr, sizeof(CountPage), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor.get(), 0);
-  return MappedCounts(mapped == MAP_FAILED ? nullptr : static_cast<CountPage*>(mapped));
-}
-
-std::unique_ptr<TimeSource> source_of(MappedCounts page) {
+std::unique_ptr<TimeSource> source_of(os::MappedCounts page) {
   return std::make_unique<CountedSource>(std::move(page));
 }
 
 Result<std::unique_ptr<TimeSource>> make_counted_source(const std::string& file) {
   if (file.empty()) return unusable("TETHER_COUNTS is not set");
-  MappedCounts page = map_counts(file);
+  os::MappedCounts page = os::map_counts(file);
   if (!page) return unusable("TETHER_COUNTS is " + file + ", which cannot be mapped");
   if (const Status good = check(*page, file); !good) return good.failure();
   return source_of(std::move(page));

@@ -1,4 +1,4 @@
-#include "../src/counted_source.h"
+#include "counted_source.h"
 
 #include <new>
 #include <string>
@@ -17,8 +17,8 @@ using ::testing::HasSubstr;
 class CountedSource : public ::testing::Test {
  protected:
   /// The page, as the host and the plugin leave it when the program starts.
-  MappedCounts page() {
-    MappedCounts mapped = map_counts(file_);
+  os::MappedCounts page() {
+    os::MappedCounts mapped = os::map_counts(file_);
     new (mapped.get()) CountPage{};
     mapped->cost_units.fill(75'003);
     mapped->plugin_version.store(CountPage::kVersion);
@@ -32,7 +32,7 @@ class CountedSource : public ::testing::Test {
 TEST_F(CountedSource, TakesTheSameTimeForTheSameWorkWhateverWasCountedBefore) {
   const auto page_of_plugin = page();
   auto& counts = page_of_plugin->counts;
-  const auto source = source_of(map_counts(file_));
+  const auto source = source_of(os::map_counts(file_));
   SutClock clock(*source);
   for (std::uint64_t i = 0; i < 1000; ++i) {
     clock.hold();
@@ -46,7 +46,7 @@ TEST_F(CountedSource, TakesTheSameTimeForTheSameWorkWhateverWasCountedBefore) {
 
 TEST_F(CountedSource, DoesNotCountWhileTheProgramIsHeld) {
   const auto page_of_plugin = page();
-  const auto source = source_of(map_counts(file_));
+  const auto source = source_of(os::map_counts(file_));
   SutClock clock(*source);
   clock.hold();
   EXPECT_EQ(page_of_plugin->held.load(), 1u);
@@ -58,7 +58,7 @@ TEST_F(CountedSource, DoesNotCountWhileTheProgramIsHeld) {
 
 TEST_F(CountedSource, IsNotCompleteIfThreadsComputeAtOnceOrAProcessWasStarted) {
   const auto page_of_plugin = page();
-  const auto source = source_of(map_counts(file_));
+  const auto source = source_of(os::map_counts(file_));
   EXPECT_EQ(page_of_plugin->watched.load(), 1u);
   EXPECT_TRUE(source->complete());
   for (const CountFault fault : {CountFault::kThreads, CountFault::kProcess}) {

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <tether/base/count_page.h>
+#include <tether/os/counted_program.h>
 #include <tether/scenario/clock.h>
 
 /// Where the SUT runs: this host, a virtual target on it, or a board (profiles/targets/*.toml).
@@ -18,15 +16,6 @@ namespace tether::scenario {
 struct SshAddress {
   std::string destination;  ///< "user@board", or a name from the user's ssh_config
   int port = 0;             ///< 0: as in ssh_config
-};
-
-/// Of clock "counted": what runs the SUT's program, and what its work costs.
-struct Emulator {
-  std::string program;    ///< "qemu-x86_64" or "qemu-aarch64"
-  std::string cpu_model;  ///< as for its option -cpu
-  std::string sysroot;    ///< absolute; the folder of the program's libraries; empty: those of here
-  /// In the order of WorkClass, in parts of kCostUnitsPerNs of a nanosecond.
-  std::array<std::uint64_t, kWorkClasses> cost_units{};
 };
 
 struct Target {
@@ -42,7 +31,7 @@ struct Target {
   /// Where SUT programs named without '/' are: on the board, or on this host (absolute). Empty:
   /// in the PATH there; on this host, beside `tether` first.
   std::string program_folder;
-  std::optional<Emulator> emulator{};  ///< with Clock::kCounted only; `launcher` then starts it
+  std::optional<os::Emulator> emulator{};  ///< with Clock::kCounted only; `launcher` then starts it
 };
 
 /// "ssh://[user@]host[:port]". @throws Error(kUsage) about the text.
