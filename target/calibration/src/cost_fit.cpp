@@ -20,10 +20,10 @@ struct Normal {
     Shares row{};
     for (std::size_t k = 0; k < kWorkClasses; ++k) row[k] = block.work[k] / block.time_ns;
     for (std::size_t i = 0; i < kWorkClasses; ++i) {
-      right[i] += row[i];
-      for (std::size_t k = 0; k < kWorkClasses; ++k) matrix[i][k] += row[i] * row[k];
+      right[i] += block.weight * row[i];
+      for (std::size_t k = 0; k < kWorkClasses; ++k) matrix[i][k] += block.weight * row[i] * row[k];
     }
-    ones += 1.0;
+    ones += block.weight;
   }
 };
 

@@ -14,6 +14,7 @@ struct CountedBlock {
   std::string name;
   double time_ns = 0.0;  ///< > 0
   std::array<double, kWorkClasses> work{};
+  double weight = 1.0;  ///< of its squared error in the fit; > 0
 };
 
 using Costs_ns = std::array<double, kWorkClasses>;
@@ -22,8 +23,8 @@ double predicted_ns(const Costs_ns& costs, const CountedBlock& block);
 /// The prediction's error as a share of the time.
 double relative_error(const Costs_ns& costs, const CountedBlock& block);
 
-/// The costs ≥ 0 with the least sum of squared relative errors. Exact: the least-squares solution
-/// of every set of kinds is computed, and the best without a negative cost is taken.
+/// The costs ≥ 0 with the least weighted sum of squared relative errors. Exact: the least-squares
+/// solution of every set of kinds is computed, and the best without a negative cost is taken.
 Costs_ns fit_costs(const std::vector<CountedBlock>& blocks);
 
 /// For each block, the relative error of its prediction by a fit to the other blocks.

@@ -18,6 +18,7 @@ std::vector<CountedBlock> blocks_of(const Costs_ns& costs, std::size_t count, do
   for (CountedBlock& block : blocks) {
     for (double& work : block.work) work = 1e3 * random.uniform();
     block.time_ns = predicted_ns(costs, block) * (1.0 + noise * random.normal());
+    block.weight = 0.1 + random.uniform();
   }
   return blocks;
 }
@@ -38,8 +39,9 @@ TEST(CostFit, IsTheLeastWithoutNegativeCosts) {
   for (std::size_t k = 0; k < kWorkClasses; ++k) {
     double slope = 0.0, scale = 0.0;
     for (const CountedBlock& block : blocks) {
-      slope += relative_error(fitted, block) * block.work[k] / block.time_ns;
-      scale += block.work[k] / block.time_ns;
+      const double share = block.weight * block.work[k] / block.time_ns;
+      slope += relative_error(fitted, block) * share;
+      scale += share;
     }
     EXPECT_GE(fitted[k], 0.0);
     EXPECT_GE(slope, -1e-9 * scale) << k;
