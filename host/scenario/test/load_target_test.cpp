@@ -82,7 +82,7 @@ TEST_F(LoadTarget, RefusesWrongValuesOfACountedTarget) {
       {"sysroot = \"../sysroot\"", "cpu_factor = 2", 5, "cpu_factor"},
       {"sysroot = \"../sysroot\"", "launcher = [\"nice\"]", 5, "launcher"},
       {"sysroot = \"../sysroot\"", "address = \"ssh://board\"", 2, "clock"},
-      {"\"counted\"", "\"cpu\"", 3, "emulator"},
+      {"clock = \"counted\"", "clock = \"cpu\"", 3, "emulator"},
       {"branch = 0.6", "branch = -0.6", 12, "branch"},
       {"branch = 0.6", "branch = 1e5", 12, "branch"},
       {"branch = 0.6", "branches = 0.6", 12, "branches"},
