@@ -4,6 +4,7 @@
 #   tether       tether                 the host: the program, and its data in /usr/share/tether, guides
 #   tether-sut   tether-sut             the target: the paper's tasks with missions and rigs, and what supervises
 #                                       other programs
+#   tether-counter  tether-counter      the plugin of emulators that counts what a program computes
 #   client       libtether-client1      the shared library of other people's programs
 #   client-dev   libtether-client-dev   what it takes to build them
 #   doc          tether-doc             the site of scripts/docs, if it was built before CMake configures
@@ -11,7 +12,7 @@
 set(components tether-sut)
 install(DIRECTORY data/missions data/rigs DESTINATION "${CMAKE_INSTALL_DATADIR}/tether" COMPONENT tether-sut)
 if(NOT TETHER_TARGET_ONLY)
-  list(APPEND components tether)
+  list(APPEND components tether tether-counter)
   install(DIRECTORY data/campaigns data/models data/profiles data/scenarios data/worlds
     DESTINATION "${CMAKE_INSTALL_DATADIR}/tether" COMPONENT tether)
   set(site "${PROJECT_SOURCE_DIR}/build/docs/html")
@@ -23,6 +24,7 @@ endif()
 set(package_of_doc tether-doc)
 set(package_of_tether tether)
 set(package_of_tether-sut tether-sut)
+set(package_of_tether-counter tether-counter)
 if(TARGET tether-client)
   list(APPEND components client client-dev)
   set(package_of_client libtether-client1)
@@ -147,13 +149,20 @@ describe(tether science
   "/usr/share/doc/tether/guide.")
 set(CPACK_DEBIAN_TETHER_PACKAGE_RECOMMENDS "tether-sut, gnuplot-nox")
 # Cameras in Gazebo draw on it.
-set(CPACK_DEBIAN_TETHER_PACKAGE_SUGGESTS "xvfb")
+set(CPACK_DEBIAN_TETHER_PACKAGE_SUGGESTS "xvfb, tether-counter")
 
 describe(tether-sut science
   "vision tasks of a UAV, flown in simulation or with real sensors"
   "The target's half of Tether: vision tasks of a UAV as one program, which Tether"
   "flies on a simulated UAV, and which can also read real sensors. The package"
   "also has tether-exec, which starts programs of several threads for Tether.")
+
+describe(tether-counter science
+  "plugin of QEMU that counts what a program computes"
+  "Tether runs software under test with this plugin under qemu-user, and charges"
+  "it what its instructions cost on the machine that it is meant for. Such runs"
+  "are the same to the byte on every machine.")
+set(CPACK_DEBIAN_TETHER-COUNTER_PACKAGE_DEPENDS "qemu-user")
 
 describe(client libs
   "client library of Tether, for programs of UAVs"

@@ -26,7 +26,7 @@ packages_build=(
   libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   gnuplot-nox
 )
-packages_test=(git python3 libgtest-dev libgmock-dev libbenchmark-dev clang-format)
+packages_test=(git python3 libgtest-dev libgmock-dev libbenchmark-dev clang-format qemu-user)
 # The library as a user builds against it, and the manual pages.
 packages_test+=(make pkgconf mandoc)
 # The schema of JUnit files.

@@ -44,12 +44,13 @@ Examples:
   tether-sut characterize --camera /dev/video0 --range iio:vl53l0x --out bench.toml
   tether-sut calibrate --out board.toml
   tether-sut calibrate --against board.toml --write-target my_board.toml
+  tether-sut calibrate --against board.toml --counted --write-target my_board.toml
 
 Environment (`tether run` sets it for the SUTs that it starts):
   TETHER_ADDRESS  address of the coordinator, host:port
   TETHER_TOKEN    token of the run, as printed by the coordinator
   TETHER_UAV      UAV to control; can be empty if there is only one
-  TETHER_CLOCK    wall, cpu, or cpu*FACTOR for a virtual target FACTOR times slower
+  TETHER_CLOCK    wall, cpu, counted, or cpu*FACTOR for a virtual target FACTOR times slower
   TETHER_OUT      folder of the run; output files are relative to it
 
 Exit codes: 0 goal reached, 1 goal missed, 2 wrong use or a bad file, 3 set-up or connection failed.)";
@@ -244,6 +245,18 @@ void add_calibrate_options(CLI::App& app, calibration::CalibrateOptions& options
       "--write-target", options.target,
       "With --against: file for a virtual target on this machine that represents the other one "
       "(TOML)");
+  app.add_flag(
+      "--counted", options.counted,
+      "With --against: instead of measuring here, count the work under an emulator and fit "
+      "its costs; the target is the same on every machine");
+  app.add_option("--cpu-model", options.cpu_model,
+                 "With --counted: CPU model for the emulator [Nehalem or cortex-a72]")
+      ->type_name("MODEL");
+  add_file("--program", options.program,
+           "With --counted: tether-sut for the other machine [this program]");
+  app.add_option("--sysroot", options.sysroot,
+                 "With --counted: folder of the libraries for that program [those of this machine]")
+      ->type_name("FOLDER");
   app.add_option("--name", options.name, "Name of the target [name of the other machine]")
       ->check(profile_name())
       ->type_name("NAME");

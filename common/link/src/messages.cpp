@@ -4,7 +4,7 @@
 namespace tether::link {
 
 std::string_view name(ClockKind kind) {
-  return enum_name(kind, {"wall", "cpu", "scripted", "unstamped"});
+  return enum_name(kind, {"wall", "cpu", "scripted", "unstamped", "counted"});
 }
 
 std::string_view name(Refusal::Reason reason) {

@@ -107,7 +107,7 @@ void check(Checker& c, const Hello& hello) {
   c.text(hello.sut, kMaxNameBytes, "sut");
   c.text(hello.uav, kMaxNameBytes, "uav");
   c.text(hello.token, kMaxNameBytes, "token");
-  c.require(hello.clock <= ClockKind::kUnstamped, "clock", "is unknown");
+  c.require(hello.clock <= ClockKind::kCounted, "clock", "is unknown");
   c.require(hello.cpu_factor >= 1e-6 && hello.cpu_factor <= 1e6, "cpu_factor",
             "is not within 1e-6..1e6");
   c.require(hello.computing >= Duration(0), "computing", "is negative");

@@ -164,6 +164,7 @@ TEST(Codec, RefusesWellFormedFramesWithBadValues) {
 TEST(Codec, NamesClocksAndReasons) {
   EXPECT_EQ(name(ClockKind::kWall), "wall");
   EXPECT_EQ(name(ClockKind::kUnstamped), "unstamped");
+  EXPECT_EQ(name(ClockKind::kCounted), "counted");
   EXPECT_EQ(name(Refusal::Reason::kVersion), "version");
   EXPECT_EQ(name(Refusal::Reason::kRunEnded), "run ended");
 }

@@ -19,7 +19,7 @@ class RandomMessage {
 
   Message draw(std::uint32_t kind) {
     if (kind == 0)
-      return Hello{random_.bits(),  text(), text(), static_cast<ClockKind>(random_.bits() % 4),
+      return Hello{random_.bits(),  text(), text(), static_cast<ClockKind>(random_.bits() % 5),
                    0.01 + number(), text(), coin(), Duration(random_.bits())};
     if (kind == 1) return welcome();
     if (kind == 2) return Refusal{static_cast<Refusal::Reason>(random_.bits() % 6), text()};

@@ -51,7 +51,7 @@ TEST(Validate, Hello) {
   for (const double factor : {0.0, -1.0, kNan, kInf}) expect({"cpu_factor", hello_with(factor)});
   expect({"sut", hello_with(1.0, std::string(257, 'x'))});
   expect({"sut", hello_with(1.0, std::string(1, '\0'))});
-  expect({"clock", hello_with(1.0, "", static_cast<ClockKind>(4))});
+  expect({"clock", hello_with(1.0, "", static_cast<ClockKind>(5))});
   Hello backwards = hello_with(1.0);
   backwards.computing = Duration(-1);
   expect({"computing", backwards});

@@ -57,7 +57,8 @@ ClockSetting clock_of(const link::Hello& hello) {
 std::optional<std::string> clock_fault(const link::Hello& hello,
                                        const std::optional<ClockSetting>& wanted) {
   if (hello.concurrent &&
-      (hello.clock == link::ClockKind::kCpu || hello.clock == link::ClockKind::kUnstamped))
+      (hello.clock == link::ClockKind::kCpu || hello.clock == link::ClockKind::kUnstamped ||
+       hello.clock == link::ClockKind::kCounted))
     return fmt::format(
         "the clock \"{}\" does not work for several threads; start the SUT with "
         "TETHER_CLOCK='wall'",

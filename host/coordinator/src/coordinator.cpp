@@ -25,7 +25,7 @@ constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
 // How often the record is flushed, so that a killed run leaves most of it.
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
-/// How fast the SUT's clock can run; none if it is the coordinator's own or scripted.
+/// How fast the SUT's clock can run; none if it is the coordinator's own, scripted or counted.
 std::optional<sync::ClockBound> bound_of(const link::Hello& hello, int cores) {
   if (hello.clock == link::ClockKind::kWall) return sync::wall_bound(hello.cpu_factor);
   if (hello.clock == link::ClockKind::kCpu) return sync::cpu_bound(hello.cpu_factor, cores);
@@ -169,7 +169,9 @@ void Coordinator::Impl::start() {
 // Whether every run with these options has the same messages: no clock has a part in them.
 bool Coordinator::Impl::is_repeatable() const {
   return is_synchronised() && std::ranges::all_of(sessions_, [](const Session& session) {
-           return session.hello.clock == link::ClockKind::kScripted && !session.is_concurrent();
+           const link::ClockKind clock = session.hello.clock;
+           return !session.is_concurrent() &&
+                  (clock == link::ClockKind::kScripted || clock == link::ClockKind::kCounted);
          });
 }
 
@@ -228,6 +230,9 @@ void Coordinator::Impl::watch() {
     if (!session.joined() || session.left) continue;
     const std::uint64_t moved = server_->moved_bytes(session.peer);
     if (std::exchange(session.moved_bytes, moved) != moved) watchdog_.heard(session.uav, now);
+    if (!hooks_.work_of || session.hello.clock != link::ClockKind::kCounted) continue;
+    const std::uint64_t work = hooks_.work_of(session.uav);
+    if (std::exchange(session.work, work) != work) watchdog_.heard(session.uav, now);
   }
   if (const auto overdue = watchdog_.overdue(parties(now), st())) end(*overdue);
   if (hooks_.on_status) hooks_.on_status(status(now));

@@ -7,6 +7,7 @@
 
 #include <tether/base/error.h>
 #include <tether/os/child_process.h>
+#include <tether/os/counted_program.h>
 #include <tether/os/machine.h>
 #include <tether/os/program.h>
 
@@ -56,7 +57,9 @@ LocalSutCommand local_sut_command(const scenario::Sut& sut,
   if (program_at > 0) {
     // tether-exec and launchers search for it in PATH only.
     program = file.string();
-    command.programs.push_back(os::find_program(words.front()));
+    const bool is_counted = target && target->emulator;
+    command.programs.push_back(is_counted ? os::find_emulator(*target->emulator)
+                                          : os::find_program(words.front()));
     if (sut.concurrent && is_launched) command.programs.push_back(os::find_program(words[1]));
   }
   command.programs.push_back(file);
@@ -89,13 +92,14 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
 void require_sut_programs(const scenario::Scenario& scenario,
                           const scenario::Condition& condition) {
   sut_programs(scenario, condition);
+  if (condition.target && condition.target->emulator) os::find_counter_plugin();
   require_cores(scenario, condition);
 }
 
 os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
                            const std::filesystem::path& out, const std::filesystem::path& log) {
   const auto& target = run.condition.target;
-  auto environment = environment_of(uav.placement.name, run);
+  auto environment = environment_of(uav.placement.name, index, run);
   environment.emplace_back("TETHER_OUT", files_folder(out));
   return {.arguments = local_sut_command(uav.sut, target).words,
           .environment = std::move(environment),

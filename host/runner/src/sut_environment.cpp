@@ -14,7 +14,7 @@ coordinator::ClockSetting clock_of(const scenario::Condition& condition) {
   using link::ClockKind;
   // In the order of scenario::Clock.
   constexpr ClockKind kKinds[] = {ClockKind::kWall, ClockKind::kCpu, ClockKind::kScripted,
-                                  ClockKind::kUnstamped};
+                                  ClockKind::kUnstamped, ClockKind::kCounted};
   return {kKinds[static_cast<std::size_t>(condition.clock)], condition.cpu_factor,
           condition.computing};
 }
@@ -45,17 +45,23 @@ SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::T
   return command;
 }
 
-os::Environment environment_of(const std::string& uav, const SutRun& run) {
-  return {{"TETHER_ADDRESS", run.address},
-          {"TETHER_TOKEN", run.token},
-          {"TETHER_UAV", uav},
-          {"TETHER_CLOCK", to_text(clock_of(run.condition))}};
+os::Environment environment_of(const std::string& uav, std::size_t index, const SutRun& run) {
+  os::Environment environment = {{"TETHER_ADDRESS", run.address},
+                                 {"TETHER_TOKEN", run.token},
+                                 {"TETHER_UAV", uav},
+                                 {"TETHER_CLOCK", to_text(clock_of(run.condition))}};
+  if (index < run.counts.size()) {
+    const os::Environment counting = run.counts[index].environment();
+    environment.insert(environment.end(), counting.begin(), counting.end());
+  }
+  return environment;
 }
 
 std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run) {
   std::string text;
-  for (const scenario::UavSetup& uav : scenario.uavs) {
-    for (const auto& [name, value] : environment_of(uav.placement.name, run))
+  for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
+    const scenario::UavSetup& uav = scenario.uavs[i];
+    for (const auto& [name, value] : environment_of(uav.placement.name, i, run))
       text += fmt::format("{}={} ", name, os::shell_word(value));
     std::vector<std::string> words = sut_command(uav.sut, run.condition.target).words;
     std::transform(words.begin(), words.end(), words.begin(), os::shell_word);

@@ -8,6 +8,7 @@
 
 #include <tether/coordinator/coordinator.h>
 #include <tether/os/child_process.h>
+#include <tether/os/counted_program.h>
 #include <tether/scenario/scenario.h>
 
 /// The command line and the environment of a SUT, on this machine or a board.
@@ -18,6 +19,7 @@ struct SutRun {
   std::string address;  ///< of the coordinator, host:port
   std::string token;
   scenario::Condition condition;
+  std::vector<os::CountFile> counts{};  ///< one for each SUT, if the condition's clock is "counted"
 };
 
 /// The clock of the SUTs under a condition.
@@ -33,8 +35,9 @@ struct SutCommand {
 /// The command line on a target: the target's launcher, then the program in the target's folder;
 /// under tether-exec if the SUT is concurrent. Reads no file.
 SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::Target>& target);
-/// The environment with which the client library joins the SUT of that UAV to the run.
-os::Environment environment_of(const std::string& uav, const SutRun& run);
+/// The environment with which the client library joins the SUT of that UAV, the run's SUT with that
+/// index, to the run.
+os::Environment environment_of(const std::string& uav, std::size_t index, const SutRun& run);
 
 /// For a user who starts the SUTs: the command line of each, with its environment.
 std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run);

@@ -29,7 +29,7 @@ board::BoardSut board_sut(board::Board& board, const scenario::Scenario& scenari
           .words = std::move(command.words),
           .program = command.program,
           .concurrent = sut.concurrent,
-          .environment = environment_of(uav.placement.name, run),
+          .environment = environment_of(uav.placement.name, 0, run),
           .log = log};
 }
 

@@ -65,6 +65,15 @@ std::optional<record::TargetInfo> target_info(const TrialSpec& spec, board::Boar
       .before = read_target(spec, board)};
 }
 
+std::vector<os::CountFile> count_files(const TrialSpec& spec) {
+  std::vector<os::CountFile> counts;
+  const auto& target = spec.condition.target;
+  if (target && target->emulator)
+    for (std::size_t i = 0; i < spec.scenario.uavs.size(); ++i)
+      counts.emplace_back(*target->emulator);
+  return counts;
+}
+
 coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timings,
                                     const std::string& token,
                                     const std::optional<record::TargetInfo>& target) {
@@ -153,7 +162,7 @@ TrialRun::TrialRun(const TrialSpec& spec, const Timings& timings, RunningSimulat
       coordinator_(simulator.get(), *recorder_, run_options(spec, timings, token_, target_),
                    host_now),
       server_(listen(spec, board)),
-      sut_run_{sut_address(spec, board, *server_), token_, spec.condition},
+      sut_run_{sut_address(spec, board, *server_), token_, spec.condition, count_files(spec)},
       refusals_(observer.on_refused) {}
 
 Conducted TrialRun::conduct() {
@@ -182,6 +191,8 @@ TrialEnd TrialRun::fly() {
     refusals_.add(address, reason, !spec_.waits_for_sut && !have_all_joined_);
   };
   hooks.read_target = [&] { return target_after_ = read_target(spec_, board_); };
+  if (!sut_run_.counts.empty())
+    hooks.work_of = [&](std::size_t uav) { return sut_run_.counts[uav].work(); };
   end.report = coordinator_.run(*server_, hooks);
   refusals_.close();
   notes_ = stalls.notes(host_clocks());

@@ -16,7 +16,8 @@ namespace tether::scenario {
 namespace {
 
 constexpr std::array<std::string_view, 2> kPolicies = {"conservative_barrier", "free_running"};
-constexpr std::array<std::string_view, 4> kClocks = {"wall", "cpu", "scripted", "unstamped"};
+constexpr std::array<std::string_view, 5> kClocks = {"wall", "cpu", "scripted", "unstamped",
+                                                     "counted"};
 constexpr std::array<std::string_view, 2> kSimulators = {"mujoco", "gazebo"};
 
 constexpr double kLongestRun_s = 7 * 24 * 3600.0;
@@ -221,6 +222,10 @@ void read_clock(const toml::Table& table, Condition& condition) {
     table.fail("clock", "is missing. Add it, or a 'target' whose file specifies the clock.");
   }
   condition.clock = static_cast<Clock>(table.choice("clock", kClocks));
+  if (condition.clock == Clock::kCounted)
+    table.fail("clock",
+               "is \"counted\", which needs an emulator and costs. Name a 'target' whose file has "
+               "them, instead of this key.");
   condition.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
   if (condition.clock != Clock::kCpu && table.has("cpu_factor")) {
     table.fail("cpu_factor", "scales CPU time, so it needs clock = \"cpu\".");

@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -9,7 +10,9 @@
 namespace tether::scenario {
 namespace {
 
-constexpr std::array<std::string_view, 2> kTargetClocks = {"wall", "cpu"};
+constexpr std::array<std::string_view, 3> kTargetClocks = {"wall", "cpu", "counted"};
+constexpr std::array<Clock, 3> kClocksOfTargets = {Clock::kWall, Clock::kCpu, Clock::kCounted};
+constexpr std::array<std::string_view, 2> kEmulators = {"qemu-aarch64", "qemu-x86_64"};
 constexpr std::int64_t kMostCores = 4096;
 
 std::optional<SshAddress> read_address(const toml::Table& root) {
@@ -24,8 +27,10 @@ std::optional<SshAddress> read_address(const toml::Table& root) {
 
 /// A board is measured, not slowed down, and uses all of its cores.
 void reject_keys_of_virtual_targets(const toml::Table& root, const Target& target) {
-  if (target.clock == Clock::kCpu) {
-    root.fail("clock", "is \"cpu\", but a target with an address needs the clock \"wall\".");
+  if (target.clock != Clock::kWall) {
+    root.fail("clock",
+              fmt::format("is \"{}\", but a target with an address needs the clock \"wall\".",
+                          name(target.clock)));
   }
   for (const char* key : {"cpu_factor", "cores"}) {
     if (root.has(key))
@@ -57,6 +62,40 @@ std::string read_program_folder(const toml::Table& root, const Target& target) {
   return folder.empty() || target.ssh ? folder : beside(target, folder);
 }
 
+std::array<std::uint64_t, kWorkClasses> read_costs(const toml::Table& root) {
+  constexpr toml::Range kCost_ns{.min = 0.0, .max = 1e4};
+  if (!root.has("cost_ns"))
+    root.fail("cost_ns", "is missing. The clock \"counted\" needs the table [cost_ns].");
+  std::vector<std::string_view> keys;
+  for (const char* key : kWorkClassNames) keys.emplace_back(key);
+  const toml::Table table = root.table("cost_ns", keys);
+  std::array<std::uint64_t, kWorkClasses> units{};
+  std::uint64_t sum = 0;
+  for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
+    sum += units[kind] = static_cast<std::uint64_t>(
+        std::llround(table.number(keys[kind], kCost_ns) * static_cast<double>(kCostUnitsPerNs)));
+  if (sum == 0) table.fail("has no cost above 0, so that the program would compute in no time.");
+  return units;
+}
+
+/// What the clock "counted" needs, and no other clock has.
+std::optional<os::Emulator> read_emulator(const toml::Table& root, const Target& target) {
+  if (target.clock != Clock::kCounted) {
+    for (const char* key : {"emulator", "cpu_model", "sysroot", "cost_ns"})
+      if (root.has(key)) root.fail(key, "needs clock = \"counted\".");
+    return std::nullopt;
+  }
+  for (const char* key : {"cpu_factor", "launcher"})
+    if (root.has(key))
+      root.fail(key, "cannot be used with the clock \"counted\". Remove this key.");
+  os::Emulator emulator;
+  emulator.program = kEmulators[root.choice("emulator", kEmulators)];
+  emulator.cpu_model = root.text("cpu_model");
+  if (root.has("sysroot")) emulator.sysroot = beside(target, root.text("sysroot"));
+  emulator.cost_units = read_costs(root);
+  return emulator;
+}
+
 }  // namespace
 
 Target load_target(const std::filesystem::path& file) {
@@ -64,8 +103,9 @@ Target load_target(const std::filesystem::path& file) {
   Target target;
   target.file = std::filesystem::absolute(file).lexically_normal();
   const toml::Document document = toml::Document::load(target.file);
-  const toml::Table root = document.root({"name", "description", "address", "clock", "cpu_factor",
-                                          "cores", "launcher", "program_folder"});
+  const toml::Table root =
+      document.root({"name", "description", "address", "clock", "cpu_factor", "cores", "launcher",
+                     "program_folder", "emulator", "cpu_model", "sysroot", "cost_ns"});
   target.name = root.identifier("name");
   if (slug(target.name).empty()) {
     root.fail("name", "must contain a letter or a digit, because it becomes the name of a folder.");
@@ -73,12 +113,14 @@ Target load_target(const std::filesystem::path& file) {
   target.description = root.text_or("description", "");
   target.ssh = read_address(root);
   if (root.has("clock")) {
-    target.clock = root.choice("clock", kTargetClocks) == 0 ? Clock::kWall : Clock::kCpu;
+    target.clock = kClocksOfTargets[root.choice("clock", kTargetClocks)];
   }
   if (target.ssh) reject_keys_of_virtual_targets(root, target);
   target.cpu_factor = root.number_or("cpu_factor", kFactor, 1.0);
   target.cores = static_cast<int>(root.integer_or("cores", 1, kMostCores, 0));
   target.launcher = read_launcher(root, target);
+  target.emulator = read_emulator(root, target);
+  if (target.emulator) target.launcher = {target.emulator->program};
   target.program_folder = read_program_folder(root, target);
   return target;
 }

@@ -12,6 +12,12 @@ std::string why_not_on(const Condition& condition, const Target& target) {
         "because free running uses the real wall clock.",
         target.name);
   }
+  if (condition.policy == Policy::kFreeRunning && target.clock == Clock::kCounted) {
+    return fmt::format(
+        "the target \"{}\" counts instructions, which needs policy = \"conservative_barrier\", "
+        "because free running uses the wall clock.",
+        target.name);
+  }
   return "";
 }
 

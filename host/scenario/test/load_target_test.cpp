@@ -10,6 +10,24 @@ namespace {
 
 using testing::ElementsAre;
 
+const std::string kCountedTarget = R"(name = "counted"
+clock = "counted"
+emulator = "qemu-aarch64"
+cpu_model = "cortex-a72"
+sysroot = "../sysroot"
+[cost_ns]
+integer = 0.3
+multiply = 1.1
+divide = 7.7
+load = 0.5
+store = 0.4
+branch = 0.6
+scalar_float = 1.3
+vector_float = 1.7
+vector_integer = 0.9
+atomic = 11
+)";
+
 class LoadTarget : public testing::Test {
  protected:
   Target load(const std::string& text) const {
@@ -42,6 +60,41 @@ TEST_F(LoadTarget, ReadsABoardAndLeavesItsPathsUnchanged) {
   EXPECT_THAT(target.launcher, ElementsAre("nice", "-n", "-5", "./wrap"));
   EXPECT_EQ(target.program_folder, "bin");
   EXPECT_EQ(load(kBoardTarget + "clock = \"wall\"\n").clock, Clock::kWall);
+}
+
+TEST_F(LoadTarget, ReadsACountedTarget) {
+  const Target target = load(kCountedTarget);
+  EXPECT_EQ(target.clock, Clock::kCounted);
+  ASSERT_TRUE(target.emulator);
+  EXPECT_EQ(target.emulator->program, "qemu-aarch64");
+  EXPECT_EQ(target.emulator->cpu_model, "cortex-a72");
+  EXPECT_EQ(target.emulator->sysroot, scratch_.path("sysroot"));
+  EXPECT_EQ(target.emulator->cost_units[0], 30'000u) << "integer";
+  EXPECT_EQ(target.emulator->cost_units[9], 1'100'000u) << "atomic";
+  EXPECT_THAT(target.launcher, ElementsAre("qemu-aarch64"));
+}
+
+TEST_F(LoadTarget, RefusesWrongValuesOfACountedTarget) {
+  const std::vector<WrongChange> changes = {
+      {"\"qemu-aarch64\"", "\"qemu-arm\"", 3, "emulator"},
+      {"emulator = \"qemu-aarch64\"\n", "", 0, "emulator"},
+      {"cpu_model = \"cortex-a72\"\n", "", 0, "cpu_model"},
+      {"sysroot = \"../sysroot\"", "cpu_factor = 2", 5, "cpu_factor"},
+      {"sysroot = \"../sysroot\"", "launcher = [\"nice\"]", 5, "launcher"},
+      {"sysroot = \"../sysroot\"", "address = \"ssh://board\"", 2, "clock"},
+      {"clock = \"counted\"", "clock = \"cpu\"", 3, "emulator"},
+      {"branch = 0.6", "branch = -0.6", 12, "branch"},
+      {"branch = 0.6", "branch = 1e5", 12, "branch"},
+      {"branch = 0.6", "branches = 0.6", 12, "branches"},
+      {"branch = 0.6\n", "", 6, "branch"}};
+  for (const WrongChange& change : changes)
+    expect_refusal(change.line, change.subject,
+                   [&] { load(replaced(kCountedTarget, change.from, change.to)); });
+  const std::string head = kCountedTarget.substr(0, kCountedTarget.find("[cost_ns]"));
+  expect_refusal(0, "cost_ns", [&] { load(head); });
+  std::string free = head + "[cost_ns]\n";
+  for (const char* key : kWorkClassNames) free += std::string(key) + " = 0\n";
+  EXPECT_EQ(bad_file_error([&] { load(free); }).where().line, 6);
 }
 
 TEST_F(LoadTarget, IsThisHostByDefault) {

@@ -1,3 +1,4 @@
+#include "counted_target.h"
 #include "report.h"
 #include "statistics.h"
 #include "workload.h"
@@ -57,6 +58,22 @@ Result<std::string> compared(const CalibrateOptions& options, const Calibration&
          options.target + "\n";
 }
 
+Result<std::string> counted(const CalibrateOptions& options, const Calibration& there,
+                            const TellRound& tell) {
+  const Result<os::Emulator> emulator = emulator_for(options, there.machine);
+  if (!emulator) return emulator.failure();
+  const Result<Calibration> work = count_work(options, *emulator, tell);
+  if (!work) return work.failure();
+  const Result<CountedTarget> target = fit_target(*emulator, there, *work);
+  if (!target) return invalid(options.against + ": " + target.failure().message);
+  const std::string text = prediction_table(*target);
+  if (options.target.empty()) return text;
+  const std::string file = counted_target_text(target_name(options, there), *target, there, *work);
+  if (const Status written = write_whole(options.target, file); !written) return written.failure();
+  return text + "\nWritten: " + options.target + "; use it with: tether run SCENARIO --target " +
+         options.target + "\n";
+}
+
 }  // namespace
 
 Status check(const CalibrateOptions& options) {
@@ -66,6 +83,20 @@ Status check(const CalibrateOptions& options) {
   }
   if (!options.measured.empty() && (options.cpu_index || !options.out.empty())) {
     return invalid("--measured excludes --cpu and --out, which belong to a new measurement");
+  }
+  const bool has_counting =
+      !(options.cpu_model.empty() && options.program.empty() && options.sysroot.empty());
+  if (has_counting && !options.counted) {
+    return invalid("--cpu-model, --program and --sysroot need --counted");
+  }
+  if (!options.counted) return ok_status();
+  if (options.against.empty()) {
+    return invalid(
+        "--counted needs --against, the measurement of the machine that is to be predicted");
+  }
+  if (options.cpu_index || !options.out.empty() || !options.measured.empty()) {
+    return invalid(
+        "--counted excludes --cpu, --out and --measured, because it measures no time here");
   }
   return ok_status();
 }
@@ -81,10 +112,11 @@ Result<Calibration> measure_machine(const CalibrateOptions& options, const TellR
   calibration.machine.cpu_index = *core;
   read_governor(*core, calibration.machine);
   calibration.machine.mhz_before = read_mhz(*core);
-  auto blocks = run_workload({.rounds = options.rounds}, system_stopwatch(), tell);
-  if (!blocks) return blocks.failure();
+  auto measured = run_workload({.rounds = options.rounds}, system_stopwatch(), tell);
+  if (!measured) return measured.failure();
   calibration.machine.mhz_after = read_mhz(*core);
-  calibration.blocks = std::move(blocks).value();
+  calibration.blocks = std::move(measured->blocks);
+  calibration.kernels = std::move(measured->kernels);
   return calibration;
 }
 
@@ -96,6 +128,7 @@ Result<std::string> calibrate(const CalibrateOptions& options, const TellRound& 
     if (!loaded) return loaded.failure();
     there = std::move(loaded).value();
   }
+  if (options.counted) return counted(options, *there, tell);
   const Result<Calibration> here = this_machine(options, tell);
   if (!here) return here.failure();
   std::string text = speed_table(*here);

@@ -1,5 +1,6 @@
 #include <limits>
 
+#include <tether/base/count_page.h>
 #include <tether/base/text_table.h>
 #include <tether/calibration/calibration.h>
 #include <tether/calibration/profile_text.h>
@@ -16,6 +17,12 @@ std::string times_text(const char* key, const std::vector<double>& times_ms) {
     text += (i % kTimesPerLine == 0 ? "\n  " : " ") + fixed(times_ms[i], 9) + ",";
   }
   return text + "\n]\n";
+}
+
+std::string block_text(const std::string& key, const BlockTimes& block) {
+  return "\n[[" + key + "]]\nname = " + toml_string(block.name) + "\n" +
+         times_text("cpu_ms", block.cpu_ms) + times_text("wall_ms", block.wall_ms) +
+         (block.work.empty() ? "" : times_text("work", block.work));
 }
 
 std::string machine_text(const Machine& machine) {
@@ -50,12 +57,14 @@ Machine read_machine_table(const Table& table) {
   return machine;
 }
 
-std::vector<BlockTimes> read_blocks(const Table& file) {
+std::vector<BlockTimes> read_blocks(const Table& file, std::string_view key) {
   constexpr toml::Range kTime_ms{.min = 0.0, .above_min = true};
+  constexpr toml::Range kWork{.min = 0.0, .max = 1e15};
   std::vector<BlockTimes> blocks;
-  for (const Table& table : file.tables("block")) {
+  for (const Table& table : file.tables(key)) {
     blocks.push_back({table.any_text("name"), table.numbers("cpu_ms", kTime_ms),
                       table.numbers("wall_ms", kTime_ms)});
+    if (table.has("work")) blocks.back().work = table.numbers("work", kWorkClasses, kWork);
     const std::size_t rounds = blocks.front().cpu_ms.size();
     if (blocks.back().cpu_ms.size() != rounds || blocks.back().wall_ms.size() != rounds) {
       throw Error(ErrorCode::kBadFile, table.where(),
@@ -79,7 +88,8 @@ Calibration read_calibration(const toml::Document& document) {
   calibration.opencv = file.any_text("opencv");
   calibration.when = file.any_text("when");
   calibration.machine = read_machine_table(file.table("machine"));
-  calibration.blocks = read_blocks(file);
+  calibration.blocks = read_blocks(file, "block");
+  if (file.has("kernel")) calibration.kernels = read_blocks(file, "kernel");
   return calibration;
 }
 
@@ -93,10 +103,8 @@ std::string calibration_text(const Calibration& calibration) {
       "\nopencv = " + toml_string(calibration.opencv) +
       "\nwhen = " + toml_string(calibration.when) + "\n";
   text += machine_text(calibration.machine);
-  for (const BlockTimes& block : calibration.blocks) {
-    text += "\n[[block]]\nname = " + toml_string(block.name) + "\n" +
-            times_text("cpu_ms", block.cpu_ms) + times_text("wall_ms", block.wall_ms);
-  }
+  for (const BlockTimes& block : calibration.blocks) text += block_text("block", block);
+  for (const BlockTimes& kernel : calibration.kernels) text += block_text("kernel", kernel);
   return text;
 }
 

@@ -1,8 +1,11 @@
 #include "workload.h"
 
 #include "frames.h"
+#include "kernels.h"
 
 #include <cmath>
+#include <cstdlib>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -10,6 +13,7 @@
 
 #include <tether/base/text_table.h>
 #include <tether/base/units.h>
+#include <tether/os/counted_program.h>
 #include <tether/vision/anchor_tracker.h>
 #include <tether/vision/relative_position.h>
 #include <tether/vision/runtime.h>
@@ -44,12 +48,16 @@ class BlockClock {
     times_.name = std::move(name);
   }
 
-  template <class Work>
-  void time(const Work& work) {
+  template <class Function>
+  void time(const Function& work) {
     const Duration cpu = stopwatch_.cpu(), wall = stopwatch_.wall();
+    const Work before = counted();
     work();
+    const Work after = counted();
     cpu_ += stopwatch_.cpu() - cpu;
     wall_ += stopwatch_.wall() - wall;
+    for (std::size_t kind = 0; kind < work_.size(); ++kind)
+      work_[kind] += after[kind] - before[kind];
   }
 
   void end_round(std::size_t images, bool counts) {
@@ -57,17 +65,28 @@ class BlockClock {
     if (counts) {
       times_.cpu_ms.push_back(1e3 * to_seconds(cpu_) / times);
       times_.wall_ms.push_back(1e3 * to_seconds(wall_) / times);
+      if (stopwatch_.work) {
+        times_.work.resize(kWorkClasses);
+        // The mean of the rounds so far.
+        const double share = 1.0 / static_cast<double>(times_.cpu_ms.size());
+        for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
+          times_.work[kind] += share * (work_[kind] / times - times_.work[kind]);
+      }
     }
     cpu_ = wall_ = Duration(0);
+    work_ = {};
   }
 
   BlockTimes take() { return std::move(times_); }
 
  private:
+  Work counted() const { return stopwatch_.work ? stopwatch_.work() : Work{}; }
+
   const Stopwatch& stopwatch_;
   int repetitions_;
   BlockTimes times_;
   Duration cpu_{0}, wall_{0};
+  Work work_{};
 };
 
 std::string in_words(const View& view) {
@@ -87,7 +106,9 @@ class Workload {
         tracking_(stopwatch, "tracking"),
         search_(stopwatch, "search"),
         position_(stopwatch, "position", kPositionsPerImage),
-        perception_(stopwatch, kWholeStep) {}
+        perception_(stopwatch, kWholeStep) {
+    for (const Kernel& kernel : kernels()) kernels_.emplace_back(stopwatch, kernel.name);
+  }
 
   Status run_round(bool counts) {
     for (std::size_t i = 0; i < frames_.size(); ++i) step_by_step(frames_[i]);
@@ -103,13 +124,18 @@ class Workload {
       }
     }
     for (BlockClock* clock : clocks()) clock->end_round(frames_.size(), counts);
+    for (std::size_t i = 0; i < kernels_.size(); ++i) {
+      kernels_[i].time(kernels()[i].run);
+      kernels_[i].end_round(1, counts);
+    }
     return ok_status();
   }
 
-  std::vector<BlockTimes> take() {
-    std::vector<BlockTimes> times;
-    for (BlockClock* clock : clocks()) times.push_back(clock->take());
-    return times;
+  MeasuredWork take() {
+    MeasuredWork measured;
+    for (BlockClock* clock : clocks()) measured.blocks.push_back(clock->take());
+    for (BlockClock& clock : kernels_) measured.kernels.push_back(clock.take());
+    return measured;
   }
 
  private:
@@ -150,6 +176,7 @@ class Workload {
   const uav::SensorDescription camera_ = calibration_camera();
   const uav::Anchor anchor_ = calibration_anchor();
   BlockClock prefilter_, back_projection_, tracking_, search_, position_, perception_;
+  std::vector<BlockClock> kernels_;
   volatile double bearing_rad_ = 0.0;
 };
 
@@ -171,12 +198,23 @@ std::string difference(const std::optional<View>& seen, const View& expected) {
 }
 
 Stopwatch system_stopwatch() {
-  return {[] { return read_clock(CLOCK_PROCESS_CPUTIME_ID); },
-          [] { return read_clock(CLOCK_MONOTONIC); }};
+  Stopwatch stopwatch{[] { return read_clock(CLOCK_PROCESS_CPUTIME_ID); },
+                      [] { return read_clock(CLOCK_MONOTONIC); }};
+  if (const char* file = std::getenv("TETHER_COUNTS")) {
+    // Shared, because a std::function is copied.
+    if (const std::shared_ptr<CountPage> page = os::map_counts(file))
+      stopwatch.work = [page] {
+        Work work{};
+        for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
+          work[kind] = static_cast<double>(page->counts[kind].load());
+        return work;
+      };
+  }
+  return stopwatch;
 }
 
-Result<std::vector<BlockTimes>> run_workload(const WorkloadOptions& options,
-                                             const Stopwatch& stopwatch, const TellRound& tell) {
+Result<MeasuredWork> run_workload(const WorkloadOptions& options, const Stopwatch& stopwatch,
+                                  const TellRound& tell) {
   vision::set_threads(1);
   Result<std::vector<uav::CameraSample>> frames = calibration_frames();
   if (!frames) return frames.failure();

@@ -2,21 +2,27 @@
 
 #include "frames.h"
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include <tether/base/count_page.h>
 #include <tether/base/time.h>
 #include <tether/calibration/calibration.h>
 
 /// The work of `calibrate`, and how its time is taken.
 namespace tether::calibration {
 
+using Work = std::array<double, kWorkClasses>;
+
 /// Clocks as parameters, so that tests need not measure.
 struct Stopwatch {
   std::function<Duration()> cpu;   ///< CPU time of this process
   std::function<Duration()> wall;  ///< monotonic
+  /// Under an emulator with Tether's plugin: how often each kind of work was done; else empty.
+  std::function<Work()> work{};
 };
 /// This machine's.
 Stopwatch system_stopwatch();
@@ -24,6 +30,11 @@ Stopwatch system_stopwatch();
 struct WorkloadOptions {
   int rounds = 30;  ///< that count; a round is every block on every image
   int warm_up = 3;  ///< rounds before them
+};
+
+struct MeasuredWork {
+  std::vector<BlockTimes> blocks;
+  std::vector<BlockTimes> kernels;  ///< of kernels.h
 };
 
 /// How what was seen differs from what must be, beyond what another build's rounding may make;
@@ -38,10 +49,10 @@ std::string difference(const std::optional<View>& seen, const View& expected);
 ///   search           the same in the whole image, without a last window
 ///   position         bearing and distance
 ///   perception       an image's whole way: prefilter to position
+/// and then the kernels.
 /// Fails (kInvalid) with one line where what it sees is not what every machine must see: such times
 /// are of other work.
-Result<std::vector<BlockTimes>> run_workload(const WorkloadOptions& options,
-                                             const Stopwatch& stopwatch,
-                                             const TellRound& tell = {});
+Result<MeasuredWork> run_workload(const WorkloadOptions& options, const Stopwatch& stopwatch,
+                                  const TellRound& tell = {});
 
 }  // namespace tether::calibration

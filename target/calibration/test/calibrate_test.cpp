@@ -111,6 +111,15 @@ TEST_F(Calibrate, RefusesOptionsThatExcludeEachOther) {
   EXPECT_THAT(check(name_alone).failure().message, HasSubstr("--against"));
   options_.cpu_index = 1;
   EXPECT_THAT(check(options_).failure().message, HasSubstr("--measured"));
+  CalibrateOptions counted;
+  counted.program = "tether-sut";
+  EXPECT_THAT(check(counted).failure().message, HasSubstr("--counted"));
+  counted.counted = true;
+  EXPECT_THAT(check(counted).failure().message, HasSubstr("--against"));
+  counted.against = "board.toml";
+  EXPECT_TRUE(check(counted));
+  counted.out = "out.toml";
+  EXPECT_THAT(check(counted).failure().message, HasSubstr("--out"));
 }
 
 // The least that can be measured for real: what it finds, not how long it takes.
@@ -120,6 +129,7 @@ TEST(MeasureMachine, ReportsTheMachineAndEveryBlock) {
   const auto measured = measure_machine(options);
   ASSERT_TRUE(measured) << measured.failure().message;
   EXPECT_EQ(measured->blocks.size(), 6u);
+  EXPECT_EQ(measured->kernels.size(), 12u);
   EXPECT_GE(measured->machine.cores, 1);
   EXPECT_GE(measured->machine.cpu_index, 0);
   EXPECT_NE(measured->machine.architecture, "");

@@ -17,6 +17,7 @@ Calibration sample() {
   calibration.machine = {"bench-pi", "a \"board\"\n", "aarch64", 4, 3, "ondemand", 1500.0, 1499.5};
   calibration.blocks = {{"prefilter", {41.25, 0.000123456}, {42.0, 43.0}},
                         {kWholeStep, {50.0, 51.0}, {52.0, 53.0}}};
+  calibration.kernels = {{"stores", {1.0}, {2.0}, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10.5}}};
   return calibration;
 }
 
@@ -38,6 +39,9 @@ TEST(CalibrationFile, ReadsBackAsItWasWritten) {
   EXPECT_EQ(read->blocks[0].cpu_ms[0], 41.25);
   EXPECT_NEAR(read->blocks[0].cpu_ms[1], 0.000123456, 1e-9);
   EXPECT_EQ(read->blocks[1].wall_ms[1], 53.0);
+  EXPECT_TRUE(read->blocks[1].work.empty());
+  ASSERT_EQ(read->kernels.size(), 1u);
+  EXPECT_EQ(read->kernels[0].work, written.kernels[0].work);
 }
 
 TEST(CalibrationFile, RefusalNamesLineAndKey) {

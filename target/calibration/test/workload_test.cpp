@@ -43,7 +43,7 @@ TEST(Workload, TimesEveryBlockOncePerRoundAndImage) {
   ASSERT_TRUE(blocks) << blocks.failure().message;
   EXPECT_THAT(told, ElementsAre("warming up", "round 1 of 2", "round 2 of 2"));
   std::vector<std::string> names;
-  for (const BlockTimes& block : *blocks) {
+  for (const BlockTimes& block : blocks->blocks) {
     names.push_back(block.name);
     EXPECT_THAT(block.cpu_ms, SizeIs(2)) << block.name;
     EXPECT_THAT(block.wall_ms, SizeIs(2)) << block.name;

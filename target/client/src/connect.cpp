@@ -35,6 +35,12 @@ Result<link::Welcome> shake_hands(link::Channel& channel, const ConnectOptions& 
 /// In free running a virtual target is imitated by stalling.
 Status check_free_running(const link::Welcome& welcome, const TimeSource& time) {
   if (!welcome.free_running) return ok_status();
+  if (time.kind() == link::ClockKind::kCounted) {
+    return Failure{
+        Failure::Kind::kInvalid,
+        "the clock \"counted\" is not allowed in free-running mode, where ST follows the "
+        "wall clock: an emulated program takes longer than what it counts"};
+  }
   if (time.kind() == link::ClockKind::kWall && time.factor() != 1.0) {
     return Failure{Failure::Kind::kInvalid,
                    "wall*FACTOR is not allowed in free-running mode, where ST follows the wall "
@@ -56,12 +62,14 @@ Result<std::unique_ptr<Vehicle>> connect_to_exec(const ConnectOptions& options) 
   return ConcurrentVehicle::make(options);
 }
 
-/// How often to send Progress; 0: never. In free running a scripted SUT sends it too: nothing there
-/// repeats to the byte.
+/// How often to send Progress; 0: never. A SUT whose runs repeat to the byte sends none: where it
+/// would arrive is a race, and a counted SUT must have no other thread. In free running a scripted
+/// SUT sends it too.
 Duration progress_period(const ConnectOptions& options, const link::Welcome& welcome) {
   if (welcome.free_running) return options.heartbeat_period;
-  const bool scripted = options.time->kind() == link::ClockKind::kScripted;
-  return scripted ? Duration::zero() : options.progress_period;
+  const link::ClockKind kind = options.time->kind();
+  const bool repeats = kind == link::ClockKind::kScripted || kind == link::ClockKind::kCounted;
+  return repeats ? Duration::zero() : options.progress_period;
 }
 
 }  // namespace

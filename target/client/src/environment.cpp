@@ -1,3 +1,5 @@
+#include "counted_source.h"
+
 #include <cstdlib>
 #include <locale>
 #include <optional>
@@ -61,6 +63,7 @@ std::unique_ptr<TimeSource> make_source(const std::string& text) {
 }  // namespace
 
 Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text) {
+  if (text == "counted") return make_counted_source(variable("TETHER_COUNTS").value_or(""));
   if (auto source = make_source(text)) return source;
   if (text == "unstamped")
     return Failure{Failure::Kind::kInvalid,
@@ -70,7 +73,7 @@ Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text) {
       Failure::Kind::kInvalid,
       "'" + text +
           "' is not a clock. Allowed: wall, cpu, wall*FACTOR or cpu*FACTOR (cpu*4: a target "
-          "that is four times slower; 1e-6 to 1e6), scripted*MILLISECONDS"};
+          "that is four times slower; 1e-6 to 1e6), counted, scripted*MILLISECONDS"};
 }
 
 Result<ConnectOptions> options_from_environment() {
@@ -95,7 +98,7 @@ Result<ConnectOptions> options_from_environment() {
   options.uav = variable("TETHER_UAV").value_or("");
 
   auto time = parse_time_source(variable("TETHER_CLOCK").value_or("wall"));
-  if (!time) return Failure{Failure::Kind::kInvalid, "TETHER_CLOCK: " + time.failure().message};
+  if (!time) return Failure{time.failure().kind, "TETHER_CLOCK: " + time.failure().message};
   options.time = std::move(*time);
   return options;
 }

@@ -3,7 +3,7 @@
 namespace tether::client {
 
 SutClock::SutClock(const TimeSource& source, ExecTime start)
-    : source_(&source), base_et_(start), base_source_(source.elapsed()) {}
+    : source_(&source), base_et_(start), base_source_(source.elapsed_at_resume()) {}
 
 ExecTime SutClock::now() const {
   return held_ ? base_et_ : base_et_ + (source_->elapsed() - base_source_);
@@ -14,6 +14,7 @@ ExecTime SutClock::hold() {
   base_et_ = now();
   children_at_hold_ = source_->elapsed_in_children();
   held_ = true;
+  source_->hold();
   return base_et_;
 }
 

@@ -44,6 +44,10 @@ class LyingSource final : public tether::client::TimeSource {
   tether::Duration elapsed() const override {
     return right_->elapsed() + tether::Duration(g_ahead_ns.load());
   }
+  tether::Duration elapsed_at_resume() const override {
+    return right_->elapsed_at_resume() + tether::Duration(g_ahead_ns.load());
+  }
+  void hold() const override { right_->hold(); }
   tether::Duration elapsed_in_children() const override { return right_->elapsed_in_children(); }
   tether::Status complete() const override { return right_->complete(); }
   void exclude_calling_thread() override { right_->exclude_calling_thread(); }

@@ -22,7 +22,13 @@ namespace tether::link {
 inline constexpr std::uint32_t kProtocolVersion = 2;
 
 /// How the SUT's execution time is measured (DESIGN section 2).
-enum class ClockKind : std::uint8_t { kWall = 0, kCpu = 1, kScripted = 2, kUnstamped = 3 };
+enum class ClockKind : std::uint8_t {
+  kWall = 0,
+  kCpu = 1,
+  kScripted = 2,
+  kUnstamped = 3,
+  kCounted = 4,
+};
 std::string_view name(ClockKind kind);
 
 /// SUT → coordinator, first.

@@ -121,6 +121,9 @@ struct RunHooks {
   std::function<void(const RunStatus&)> on_status;
   /// A connection was rejected, with the reason in one line.
   std::function<void(const std::string& address, const std::string& reason)> on_refused;
+  /// With clocks "counted": what the SUT of that UAV has computed so far, in any unit. As long as
+  /// it grows, the SUT is not hung.
+  std::function<std::uint64_t(std::size_t uav)> work_of;
   /// Reads the state of the SUTs' machine for the record. Called once after a run that had begun,
   /// when its SUTs have been notified of the end.
   std::function<record::Readings()> read_target;
@@ -143,8 +146,8 @@ class Coordinator {
 
   /// Waits for the SUT of every UAV, runs until the end, notifies the SUTs, and writes the record's
   /// footer. A failed run is a report, too, also if the record cannot be written. If every SUT's
-  /// clock is scripted, the record is the same to the byte in each run: without wall times,
-  /// readings of the target, and the machine; the report and the caller have them.
+  /// clock is scripted or counted, the record is the same to the byte in each run: without wall
+  /// times, readings of the target, and the machine; the report and the caller have them.
   RunReport run(link::Server& server, const RunHooks& hooks = {});
 
  private:

@@ -5,8 +5,8 @@
 namespace tether::scenario {
 
 /// How a SUT's time is measured (docs/design.md section 2).
-enum class Clock { kWall, kCpu, kScripted, kUnstamped };
-/// As written in files: "wall", "cpu", "scripted", "unstamped".
+enum class Clock { kWall, kCpu, kScripted, kUnstamped, kCounted };
+/// As written in files: "wall", "cpu", "scripted", "unstamped", "counted".
 std::string_view name(Clock clock);
 
 }  // namespace tether::scenario

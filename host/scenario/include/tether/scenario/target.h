@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <tether/os/counted_program.h>
 #include <tether/scenario/clock.h>
 
 /// Where the SUT runs: this host, a virtual target on it, or a board (profiles/targets/*.toml).
@@ -30,6 +31,7 @@ struct Target {
   /// Where SUT programs named without '/' are: on the board, or on this host (absolute). Empty:
   /// in the PATH there; on this host, beside `tether` first.
   std::string program_folder;
+  std::optional<os::Emulator> emulator{};  ///< with Clock::kCounted only; `launcher` then starts it
 };
 
 /// "ssh://[user@]host[:port]". @throws Error(kUsage) about the text.

@@ -17,6 +17,13 @@ struct CalibrateOptions {
   std::string against;           ///< a measurement of another machine; empty: none
   std::string target;            ///< the virtual target's file; empty: none
   std::string name;              ///< of the target; empty: that machine's
+  /// The target counts work instead of measuring CPU time: its costs are fitted to the other
+  /// machine's times.
+  bool counted = false;
+  std::string
+      cpu_model;  ///< with `counted`: for the emulator; empty: one that suits its architecture
+  std::string program;  ///< with `counted`: this program for the other machine; empty: itself
+  std::string sysroot;  ///< with `counted`: the folder of its libraries; empty: those of here
 };
 
 /// Checks options that depend on each other. Fails with kInvalid and one line.

@@ -24,6 +24,9 @@ struct BlockTimes {
   std::string name;
   std::vector<double> cpu_ms;   ///< CPU time of this process
   std::vector<double> wall_ms;  ///< of the same length
+  /// Under an emulator with Tether's plugin: how often each kind of work is done per image, in the
+  /// order of WorkClass; else empty.
+  std::vector<double> work{};
 };
 
 /// What an unprivileged program can read about a machine. Empty or 0: unknown.
@@ -46,6 +49,9 @@ struct Calibration {
   std::string when;     ///< "2025-03-01T12:00:00Z"
   Machine machine;
   std::vector<BlockTimes> blocks;  ///< in the order of the work; with equal numbers of rounds
+  /// Short loops, each mostly of one kind of work; empty: an older program measured. An "image" is
+  /// one run of the loop.
+  std::vector<BlockTimes> kernels{};
 };
 
 /// The block that consists of all others: what a task does with an image.

@@ -24,6 +24,8 @@ class TimeSource {
   /// The same for a SUT that is about to go on: what reading takes is before the measured instant,
   /// not after it, so that it is not charged.
   virtual Duration elapsed_at_resume() const { return elapsed(); }
+  /// The SUT has read its stamp, and waits for a reply until `elapsed_at_resume()`.
+  virtual void hold() const {}
   /// The part of the last `elapsed()` that processes started by the SUT's have computed. Monotone.
   virtual Duration elapsed_in_children() const { return Duration::zero(); }
   /// Fails with kRefused if a part of the SUT's computing is not in `elapsed()`.
@@ -57,7 +59,9 @@ std::unique_ptr<TimeSource> make_cpu_source(double factor);
 std::unique_ptr<TimeSource> make_scripted_source(Duration step);
 
 /// The source that TETHER_CLOCK names: "wall", "wall*FACTOR", "cpu", "cpu*FACTOR" (FACTOR within
-/// 1e-6..1e6), "scripted*MILLISECONDS". Fails with kInvalid and the allowed values.
+/// 1e-6..1e6), "counted", "scripted*MILLISECONDS". Fails with kInvalid and the allowed values. For
+/// "counted", TETHER_COUNTS names the page of counts; fails with kRefused if several threads or
+/// processes of the program compute.
 Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text);
 
 /// ET of this SUT: runs with its source, is stopped while the SUT is held, and continues from

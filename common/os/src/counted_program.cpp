@@ -1,0 +1,94 @@
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <string_view>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+#include <tether/os/counted_program.h>
+#include <tether/os/file_descriptor.h>
+#include <tether/os/program.h>
+
+namespace tether::os {
+
+namespace {
+
+constexpr const char* kPlugin = "libtether_count.so";
+
+bool is_file(const std::filesystem::path& file) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(file, ignored);
+}
+
+}  // namespace
+
+std::filesystem::path find_counter_plugin() {
+  constexpr const char* kVariable = "TETHER_COUNTER_PLUGIN";
+  if (const char* given = std::getenv(kVariable); given && *given) {
+    if (is_file(given)) return std::filesystem::absolute(given);
+    throw Error(ErrorCode::kSetup,
+                std::string(kVariable) + " is " + given + ", which does not exist")
+        .about(kVariable);
+  }
+  const auto prefix = own_file().parent_path().parent_path();
+  for (const char* folder : {"lib", "lib/tether"})
+    if (is_file(prefix / folder / kPlugin)) return prefix / folder / kPlugin;
+  throw Error(ErrorCode::kSetup, std::string("Tether's plugin for emulators (") + kPlugin +
+                                     ") was not found in " + (prefix / "lib/tether").string() +
+                                     ". Install the package tether-counter")
+      .about(kPlugin);
+}
+
+std::filesystem::path find_emulator(const Emulator& emulator) try {
+  return find_program(emulator.program);
+} catch (const Error&) {
+  throw Error(ErrorCode::kSetup, "the emulator " + emulator.program +
+                                     " is not installed. Install the package qemu-user")
+      .about(emulator.program);
+}
+
+void UnmapCounts::operator()(CountPage* page) const {
+  ::munmap(page, sizeof(CountPage));
+}
+
+MappedCounts map_counts(const std::filesystem::path& file) {
+  const FileDescriptor descriptor(::open(file.c_str(), O_RDWR | O_CLOEXEC));
+  struct stat status {};
+  if (!descriptor || ::fstat(descriptor.get(), &status) != 0) return nullptr;
+  if (status.st_size < static_cast<off_t>(sizeof(CountPage))) return nullptr;
+  void* const mapped =
+      ::mmap(nullptr, sizeof(CountPage), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor.get(), 0);
+  return MappedCounts(mapped == MAP_FAILED ? nullptr : static_cast<CountPage*>(mapped));
+}
+
+CountFile::CountFile(const Emulator& emulator)
+    : emulator_(emulator),
+      file_(std::string(sizeof(CountPage), '\0')),
+      page_(map_counts(file_.path())) {
+  if (!page_) throw Error(ErrorCode::kSetup, "no memory for the counts of a program");
+  new (page_.get()) CountPage{};
+  page_->cost_units = emulator.cost_units;
+}
+
+Environment CountFile::environment() const {
+  const std::string file =
+      "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(file_.descriptor());
+  Environment variables = {{"TETHER_COUNTS", file},
+                           {"QEMU_PLUGIN", "file=" + plugin_.string() + ",page=" + file},
+                           {"QEMU_CPU", emulator_.cpu_model}};
+  if (!emulator_.sysroot.empty()) variables.emplace_back("QEMU_LD_PREFIX", emulator_.sysroot);
+  return variables;
+}
+
+std::uint64_t CountFile::work() const {
+  std::uint64_t sum = 0;
+  for (const auto& count : page_->counts) sum += count.load(std::memory_order_relaxed);
+  return sum;
+}
+
+}  // namespace tether::os

@@ -1,0 +1,67 @@
+#include <cstdlib>
+#include <fstream>
+#include <map>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/base/count_page.h>
+#include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
+#include <tether/os/counted_program.h>
+
+namespace tether::os {
+namespace {
+
+using testing::HasSubstr;
+
+class CountedProgram : public testing::Test {
+ protected:
+  CountedProgram() { ::setenv("TETHER_COUNTER_PLUGIN", plugin_.c_str(), 1); }
+  ~CountedProgram() override { ::unsetenv("TETHER_COUNTER_PLUGIN"); }
+
+  ScratchFolder scratch_;
+  std::string plugin_ = scratch_.write("plugin.so", "");
+  Emulator emulator_{"qemu-aarch64", "cortex-a72", "/root", {7, 8, 9}};
+};
+
+TEST_F(CountedProgram, HasAPageOfItsOwnWithTheCosts) {
+  const CountFile counts(emulator_), other(emulator_);
+  const Environment first = counts.environment();
+  const std::map<std::string, std::string> variables(first.begin(), first.end());
+  const std::string file = variables.at("TETHER_COUNTS");
+  EXPECT_EQ(variables.at("QEMU_PLUGIN"), "file=" + plugin_ + ",page=" + file);
+  EXPECT_EQ(variables.at("QEMU_CPU"), "cortex-a72");
+  EXPECT_EQ(variables.at("QEMU_LD_PREFIX"), "/root");
+  EXPECT_NE(other.environment(), first);
+
+  std::fstream memory(file, std::ios::in | std::ios::out | std::ios::binary);
+  CountPage page;
+  memory.read(reinterpret_cast<char*>(&page), sizeof page);
+  ASSERT_TRUE(memory);
+  EXPECT_EQ(page.magic, CountPage::kMagic);
+  EXPECT_EQ(page.cost_units, emulator_.cost_units);
+
+  EXPECT_EQ(counts.work(), 0u);
+  page.counts[2] = 5;
+  memory.seekp(0).write(reinterpret_cast<const char*>(&page), sizeof page).flush();
+  EXPECT_EQ(counts.work(), 5u);
+  EXPECT_EQ(other.work(), 0u);
+}
+
+TEST_F(CountedProgram, NamesWhatIsMissing) {
+  emulator_.program = "no-such-emulator";
+  const Error emulator = thrown_error(ErrorCode::kSetup, [&] { find_emulator(emulator_); });
+  EXPECT_EQ(emulator.subject(), "no-such-emulator");
+  EXPECT_THAT(emulator.what(), HasSubstr("qemu-user"));
+
+  ::setenv("TETHER_COUNTER_PLUGIN", "/nowhere/plugin.so", 1);
+  const Error given = thrown_error(ErrorCode::kSetup, [] { find_counter_plugin(); });
+  EXPECT_EQ(given.subject(), "TETHER_COUNTER_PLUGIN");
+  ::unsetenv("TETHER_COUNTER_PLUGIN");
+  const Error none = thrown_error(ErrorCode::kSetup, [] { find_counter_plugin(); });
+  EXPECT_THAT(none.what(), HasSubstr("tether-counter"));
+}
+
+}  // namespace
+}  // namespace tether::os

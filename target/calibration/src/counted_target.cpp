@@ -1,0 +1,215 @@
+#include "counted_target.h"
+
+#include "report.h"
+#include "statistics.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include <stdlib.h>
+
+#include <tether/base/text_table.h>
+#include <tether/calibration/profile_text.h>
+#include <tether/os/child_process.h>
+#include <tether/os/program.h>
+#include <tether/os/text_file.h>
+#include <tether/toml/table.h>
+
+namespace tether::calibration {
+namespace {
+
+// Enough for the work of one round to be known; more would give the same counts.
+constexpr const char* kCountedRounds = "10";
+// The kernels only tell apart what the blocks of real work leave open: their loops use a core
+// better than most programs do.
+constexpr double kWeightOfKernels = 0.05;
+constexpr Duration kLongestCount = std::chrono::minutes(30);
+constexpr Duration kLook = std::chrono::milliseconds(200);
+
+struct EmulatedMachine {
+  const char* architecture;
+  const char* emulator;
+  const char* cpu_model;
+};
+/// A model that the emulator imitates well, and whose instructions every such machine has.
+constexpr EmulatedMachine kMachines[] = {{"x86_64", "qemu-x86_64", "Nehalem"},
+                                         {"aarch64", "qemu-aarch64", "cortex-a72"}};
+
+/// A folder for as long as the object lives.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::error_code error;
+    const auto parent = std::filesystem::temp_directory_path(error);
+    std::string path =
+        ((error ? std::filesystem::path("/tmp") : parent) / "tether-count-XXXXXX").string();
+    if (::mkdtemp(path.data()) != nullptr) path_ = path;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string last_line(const std::string& text) {
+  const std::size_t end = text.find_last_not_of('\n');
+  if (end == std::string::npos) return "";
+  const std::size_t begin = text.rfind('\n', end);
+  return text.substr(begin == std::string::npos ? 0 : begin + 1, end - begin);
+}
+
+/// @throws Error
+Calibration counted_by(const CalibrateOptions& options, const os::Emulator& emulator,
+                       const TellRound& tell) {
+  const ScratchFolder folder;
+  const auto out = folder.path() / "counts.toml", log = folder.path() / "log";
+  const std::string program = options.program.empty()
+                                  ? os::own_file().string()
+                                  : std::filesystem::absolute(options.program).string();
+  os::CountFile counts(emulator);
+  os::ChildProcess child({.arguments = {os::find_emulator(emulator).string(), program, "calibrate",
+                                        "--rounds", kCountedRounds, "--out", out.string()},
+                          .environment = counts.environment(),
+                          .log = log});
+  if (tell) tell("counting under " + emulator.program);
+  const auto end = std::chrono::steady_clock::now() + kLongestCount;
+  while (!child.wait(kLook))
+    if (std::chrono::steady_clock::now() > end)
+      throw Error(ErrorCode::kSetup, program + " did not end under " + emulator.program);
+  if (child.poll()->code != 0)
+    throw Error(ErrorCode::kSetup, program + " under " + emulator.program + " " +
+                                       child.poll()->description +
+                                       "; its last line: " + last_line(os::read_file(log)));
+  Result<Calibration> counted = load_calibration(out.string());
+  if (!counted) throw Error(ErrorCode::kBadFile, counted.failure().message);
+  return std::move(counted).value();
+}
+
+const BlockTimes* find(const std::vector<BlockTimes>& blocks, const std::string& name) {
+  const auto found = std::find_if(blocks.begin(), blocks.end(),
+                                  [&](const BlockTimes& block) { return block.name == name; });
+  return found == blocks.end() ? nullptr : &*found;
+}
+
+Result<std::vector<CountedBlock>> paired(const std::vector<BlockTimes>& measured,
+                                         const std::vector<BlockTimes>& counted) {
+  std::vector<CountedBlock> pairs;
+  for (const BlockTimes& block : counted) {
+    const BlockTimes* times = find(measured, block.name);
+    if (!times || block.work.size() != kWorkClasses)
+      return invalid("the block \"" + block.name +
+                     "\" was not measured there. Measure that machine again with the same "
+                     "tether-sut");
+    CountedBlock pair{.name = block.name, .time_ns = 1e6 * quartiles(times->cpu_ms).median};
+    std::copy(block.work.begin(), block.work.end(), pair.work.begin());
+    pairs.push_back(std::move(pair));
+  }
+  return pairs;
+}
+
+std::string signed_percent(double share) {
+  return (share < 0.0 ? "" : "+") + fixed(100.0 * share, 1) + " %";
+}
+
+std::vector<std::string> row(const CountedTarget& target, const CountedBlock& block) {
+  return {block.name, fixed(1e-6 * block.time_ns, 5),
+          fixed(1e-6 * predicted_ns(target.costs, block), 5),
+          signed_percent(relative_error(target.costs, block))};
+}
+
+constexpr const char* kWhatIsNotKnown =
+    "The costs are averages over this work. They do not know which accesses miss a cache, how "
+    "much\n"
+    "memory bandwidth is left, or how the clock rate changes.\n";
+
+}  // namespace
+
+Result<os::Emulator> emulator_for(const CalibrateOptions& options, const Machine& there) {
+  for (const EmulatedMachine& machine : kMachines)
+    if (there.architecture == machine.architecture)
+      return os::Emulator{
+          .program = machine.emulator,
+          .cpu_model = options.cpu_model.empty() ? machine.cpu_model : options.cpu_model,
+          .sysroot = options.sysroot.empty()
+                         ? ""
+                         : std::filesystem::absolute(options.sysroot).lexically_normal().string()};
+  return invalid(options.against + ": no program for \"" + plain(there.architecture) +
+                 "\" can be counted, only for x86_64 and aarch64");
+}
+
+Result<Calibration> count_work(const CalibrateOptions& options, const os::Emulator& emulator,
+                               const TellRound& tell) {
+  return toml::result_of([&] { return counted_by(options, emulator, tell); });
+}
+
+Result<CountedTarget> fit_target(const os::Emulator& emulator, const Calibration& there,
+                                 const Calibration& counted) {
+  CountedTarget target{.emulator = emulator, .blocks = {}, .left_out = {}, .whole = {}};
+  for (const auto& [measured, work] :
+       {std::pair(&there.blocks, &counted.blocks), std::pair(&there.kernels, &counted.kernels)}) {
+    Result<std::vector<CountedBlock>> pairs = paired(*measured, *work);
+    if (!pairs) return pairs.failure();
+    if (measured == &there.kernels)
+      for (CountedBlock& pair : *pairs) pair.weight = kWeightOfKernels;
+    target.blocks.insert(target.blocks.end(), pairs->begin(), pairs->end());
+  }
+  const auto whole = std::find_if(target.blocks.begin(), target.blocks.end(),
+                                  [](const CountedBlock& b) { return b.name == kWholeStep; });
+  if (whole == target.blocks.end())
+    return invalid("the block \"" + std::string(kWholeStep) + "\" was not counted");
+  target.whole = *whole;
+  target.blocks.erase(whole);
+  target.costs = fit_costs(target.blocks);
+  target.left_out = errors_when_left_out(target.blocks);
+  return target;
+}
+
+std::string prediction_table(const CountedTarget& target) {
+  std::vector<std::vector<std::string>> rows = {
+      {"block", "measured [ms]", "predicted [ms]", "error", "left out"}};
+  for (std::size_t i = 0; i < target.blocks.size(); ++i) {
+    rows.push_back(row(target, target.blocks[i]));
+    rows.back().push_back(signed_percent(target.left_out[i]));
+  }
+  rows.push_back(row(target, target.whole));
+  rows.back().emplace_back("not in the fit");
+  return text_table(rows) +
+         "Left out: the error of the prediction by a fit to the other blocks.\n" + kWhatIsNotKnown;
+}
+
+std::string counted_target_text(const std::string& name, const CountedTarget& target,
+                                const Calibration& there, const Calibration& counted) {
+  const os::Emulator& emulator = target.emulator;
+  std::string comment = "Costs of " + machine_line(there.machine) + ", measured by " +
+                        plain(there.program) + ", " + plain(there.when) + ";\ncounted by " +
+                        plain(counted.program) + " under " + emulator.program + ", " +
+                        plain(counted.when) + ".\n\n" + prediction_table(target);
+  std::string text = "# ";
+  for (const char c : comment.substr(0, comment.size() - 1)) {
+    text += c;
+    if (c == '\n') text += "# ";
+  }
+  text += "\nname = " + toml_string(name) +
+          "\ndescription = " + toml_string(machine_line(there.machine) + ", by counted work") +
+          "\nclock = \"counted\"\nemulator = " + toml_string(emulator.program) +
+          "\ncpu_model = " + toml_string(emulator.cpu_model) + "\n";
+  if (!emulator.sysroot.empty()) text += "sysroot = " + toml_string(emulator.sysroot) + "\n";
+  text += "\n# Nanoseconds for each piece of work.\n[cost_ns]\n";
+  for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
+    text += std::string(kWorkClassNames[kind]) + " = " + fixed(target.costs[kind], 5) + "\n";
+  return text;
+}
+
+}  // namespace tether::calibration

@@ -1,0 +1,167 @@
+#include <atomic>
+#include <cstdio>
+#include <cstring>
+#include <string_view>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <tether/base/count_page.h>
+#include <tether/counter/classify.h>
+
+/// A plugin of qemu-user: counts the work of the emulated program in the page that the program's
+/// client library reads. Counting is an addition per kind of work and translated block.
+///
+/// What it uses of QEMU's interface for plugins (version 1 of 4.2 and later) is declared here, for
+/// no package has the header.
+extern "C" {
+
+// NOLINTBEGIN(readability-identifier-naming): QEMU's names
+struct qemu_plugin_tb;
+struct qemu_plugin_insn;
+struct qemu_info_t {
+  const char* target_name;
+  struct {
+    int min;
+    int cur;
+  } version;
+  bool system_emulation;
+};
+using qemu_plugin_id_t = std::uint64_t;
+
+void qemu_plugin_register_vcpu_tb_trans_cb(qemu_plugin_id_t,
+                                           void (*)(qemu_plugin_id_t, qemu_plugin_tb*));
+std::size_t qemu_plugin_tb_n_insns(const qemu_plugin_tb*);
+qemu_plugin_insn* qemu_plugin_tb_get_insn(const qemu_plugin_tb*, std::size_t);
+const void* qemu_plugin_insn_data(const qemu_plugin_insn*);
+std::size_t qemu_plugin_insn_size(const qemu_plugin_insn*);
+void qemu_plugin_register_vcpu_tb_exec_inline(qemu_plugin_tb*, int operation, void*, std::uint64_t);
+void qemu_plugin_register_vcpu_init_cb(qemu_plugin_id_t, void (*)(qemu_plugin_id_t, unsigned));
+void qemu_plugin_register_vcpu_syscall_cb(qemu_plugin_id_t,
+                                          void (*)(qemu_plugin_id_t, unsigned, std::int64_t number,
+                                                   std::uint64_t, std::uint64_t, std::uint64_t,
+                                                   std::uint64_t, std::uint64_t, std::uint64_t,
+                                                   std::uint64_t, std::uint64_t));
+void qemu_plugin_register_vcpu_syscall_ret_cb(qemu_plugin_id_t,
+                                              void (*)(qemu_plugin_id_t, unsigned, std::int64_t,
+                                                       std::int64_t));
+
+extern __attribute__((visibility("default"))) const int qemu_plugin_version;
+const int qemu_plugin_version = 1;
+__attribute__((visibility("default"))) int qemu_plugin_install(qemu_plugin_id_t, const qemu_info_t*,
+                                                               int, char**);
+// NOLINTEND(readability-identifier-naming)
+
+}  // extern "C"
+
+namespace tether::counter {
+namespace {
+
+constexpr int kAddU64 = 0;  // QEMU_PLUGIN_INLINE_ADD_U64
+
+CountPage* page = nullptr;
+bool is_arm = false;
+// Of this process: a forked child has its own.
+std::atomic<std::uint32_t> computing{0};
+std::atomic<unsigned> last_computing{0};
+
+void translated(qemu_plugin_id_t, qemu_plugin_tb* block) {
+  Work work{};
+  const std::size_t instructions = qemu_plugin_tb_n_insns(block);
+  for (std::size_t k = 0; k < instructions; ++k) {
+    const qemu_plugin_insn* instruction = qemu_plugin_tb_get_insn(block, k);
+    const auto* bytes = static_cast<const std::uint8_t*>(qemu_plugin_insn_data(instruction));
+    if (is_arm) {
+      std::uint32_t word = 0;
+      std::memcpy(&word, bytes, sizeof word);
+      add_aarch64(word, work);
+    } else {
+      add_x86_64({bytes, qemu_plugin_insn_size(instruction)}, work);
+    }
+  }
+  for (std::size_t kind = 0; kind < work.size(); ++kind)
+    if (work[kind] > 0)
+      qemu_plugin_register_vcpu_tb_exec_inline(block, kAddU64, &page->counts[kind], work[kind]);
+}
+
+void fail(CountFault fault) {
+  std::uint32_t none = 0;
+  page->fault.compare_exchange_strong(none, static_cast<std::uint32_t>(fault));
+}
+
+/// A thread leaves the kernel, or begins. In flight only one may compute, and while that one waits
+/// for a reply, no other.
+void computes(unsigned thread) {
+  const std::uint32_t others = computing.fetch_add(1);
+  page->computing.store(others + 1);
+  if (page->watched.load() == 0) return;
+  const bool is_other = thread != last_computing.load();
+  if (others > 0 || (is_other && page->held.load() != 0)) fail(CountFault::kThreads);
+  last_computing.store(thread);
+}
+
+void began(qemu_plugin_id_t, unsigned thread) {
+  computes(thread);
+}
+
+/// A system call that starts a process, unless it starts a thread.
+bool starts_process(std::int64_t number, std::uint64_t flags) {
+  constexpr std::uint64_t kCloneThread = 0x10000;
+  if (number == (is_arm ? 220 : 56)) return (flags & kCloneThread) == 0;  // clone
+  return !is_arm && (number == 57 || number == 58);                       // fork, vfork
+}
+
+void enters_kernel(qemu_plugin_id_t, unsigned thread, std::int64_t number, std::uint64_t flags,
+                   std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t, std::uint64_t,
+                   std::uint64_t, std::uint64_t) {
+  if (page->watched.load() != 0 && starts_process(number, flags)) fail(CountFault::kProcess);
+  last_computing.store(thread);
+  page->computing.store(computing.fetch_sub(1) - 1);
+}
+
+void leaves_kernel(qemu_plugin_id_t, unsigned thread, std::int64_t, std::int64_t) {
+  computes(thread);
+}
+
+int refuse(const char* what, std::string_view subject) {
+  std::fprintf(stderr, "tether-counter: %s (found \"%.*s\")\n", what,
+               static_cast<int>(subject.size()), subject.data());
+  return 1;
+}
+
+CountPage* map_page(const char* file) {
+  const int descriptor = ::open(file, O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) return nullptr;
+  void* const mapped =
+      ::mmap(nullptr, sizeof(CountPage), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+  ::close(descriptor);
+  return mapped == MAP_FAILED ? nullptr : static_cast<CountPage*>(mapped);
+}
+
+int install(qemu_plugin_id_t id, const qemu_info_t& info, std::string_view argument) {
+  const std::string_view machine = info.target_name;
+  is_arm = machine == "aarch64";
+  if (!is_arm && machine != "x86_64")
+    return refuse("only programs for x86_64 and aarch64 can be counted", machine);
+  constexpr std::string_view kPage = "page=";
+  if (!argument.starts_with(kPage)) return refuse("page=FILE is needed", argument);
+  page = map_page(argument.substr(kPage.size()).data());
+  if (!page) return refuse("the page cannot be mapped", argument);
+  if (page->magic != CountPage::kMagic || page->version != CountPage::kVersion ||
+      page->classes != kWorkClasses)
+    return refuse("the page is of another version of Tether", argument);
+  qemu_plugin_register_vcpu_init_cb(id, began);
+  qemu_plugin_register_vcpu_tb_trans_cb(id, translated);
+  qemu_plugin_register_vcpu_syscall_cb(id, enters_kernel);
+  qemu_plugin_register_vcpu_syscall_ret_cb(id, leaves_kernel);
+  page->plugin_version.store(CountPage::kVersion);
+  return 0;
+}
+
+}  // namespace
+}  // namespace tether::counter
+
+int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t* info, int argc, char** argv) {
+  return tether::counter::install(id, *info, argc == 1 ? argv[0] : "");
+}

@@ -1,0 +1,115 @@
+// A SUT whose work is counted: counted_sut MODE
+//
+//   good       flies in small steps, and computes in between
+//   waiter     the same, with a thread that only waits
+//   at_once    a thread computes at the same time
+//   meanwhile  a thread computes while the program waits for a reply
+//   from_start a thread has computed since before it joined
+//   process    starts a process
+//   native     runs itself again, without the emulator
+#include <condition_variable>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include <unistd.h>
+
+#include <tether/client/simulated_vehicle.h>
+
+namespace {
+
+using namespace std::chrono_literals;
+using tether::client::Vehicle;
+
+template <class T>
+T require(tether::Result<T> result) {
+  if (result) return std::move(result).value();
+  std::fprintf(stderr, "counted_sut: %s\n", result.failure().message.c_str());
+  std::_Exit(3);
+}
+
+void require(const tether::Status& status) {
+  if (status) return;
+  std::fprintf(stderr, "counted_sut: %s\n", status.failure().message.c_str());
+  std::_Exit(3);
+}
+
+std::unique_ptr<Vehicle> join() {
+  auto options = require(tether::client::options_from_environment());
+  options.sut_name = "counted_sut";
+  return require(tether::client::connect(std::move(options)));
+}
+
+/// Arithmetic that no compiler can leave out, and memory of changing sizes.
+void work(std::uint64_t steps) {
+  volatile std::uint64_t state = steps;
+  for (std::uint64_t i = 0; i < steps; ++i) state = state * 6364136223846793005u + i;
+  const std::string text(static_cast<std::size_t>(state % 5000), 'x');
+  if (text == "y") std::puts(text.c_str());
+}
+
+/// A thread that waits until it is woken, and then computes.
+class Worker {
+ public:
+  explicit Worker(std::uint64_t steps) {
+    std::thread([this, steps] {
+      std::unique_lock lock(mutex_);
+      is_awake_.wait(lock, [this] { return woken_; });
+      while (true) {
+        work(steps);
+        if (pause_ > 0ms) std::this_thread::sleep_for(pause_);
+      }
+    }).detach();
+  }
+  void wake(std::chrono::milliseconds pause) {
+    const std::lock_guard lock(mutex_);
+    woken_ = true;
+    pause_ = pause;
+    is_awake_.notify_one();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable is_awake_;
+  bool woken_ = false;
+  std::chrono::milliseconds pause_{0};
+};
+
+void fly(Vehicle& vehicle) {
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    work(1000 + 77 * i);
+    require(vehicle.command_velocity({.velocity_H_m_s = {}, .yaw_rate_rad_s = 0.3}));
+    require(require(vehicle.read_range("range")).range_m > 0.0
+                ? tether::ok_status()
+                : tether::Failure{tether::Failure::Kind::kInvalid, "no range"});
+    require(vehicle.annotate("step", "{\"i\": " + std::to_string(i) + "}"));
+    require(vehicle.sleep_for(3ms));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string mode = argc > 1 ? argv[1] : "";
+  if (mode == "native") {
+    // The kernel runs it.
+    const std::string self = argv[0];
+    execl(self.c_str(), self.c_str(), "good", nullptr);
+  }
+  static Worker worker(100'000);  // never ends
+  if (mode == "from_start") worker.wake(0ms);
+  const auto vehicle = join();
+  if (mode == "at_once") worker.wake(0ms);
+  if (mode == "meanwhile") worker.wake(20ms);
+  if (mode == "process" && std::system("true") != 0) return 4;
+  fly(*vehicle);
+  // Meets the worker's next waking.
+  if (mode == "meanwhile")
+    for (int i = 0; i < 200; ++i) require(vehicle->sleep_for(10ms));
+  require(vehicle->finish(true, "flown", "{}"));
+  std::fflush(nullptr);
+  std::_Exit(0);
+}
