@@ -192,9 +192,8 @@ void SizeFlights::show(const campaign::CampaignProgress& progress) {
                     flown, setup_.most, so_far.estimate, so_far.low, so_far.high,
                     progress.latest->condition->name, progress.latest->seed));
   } else if (progress.result != nullptr) {
-    say("{}/{}  {}, seed {}: {}\n", flown + progress.done, setup_.most,
-        progress.latest->condition->name, progress.latest->seed,
-        campaign::name(progress.result->outcome));
+    say("{}  {}, seed {}: {}\n", flown + progress.done, progress.latest->condition->name,
+        progress.latest->seed, campaign::name(progress.result->outcome));
   }
 }
 
