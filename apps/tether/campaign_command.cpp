@@ -6,25 +6,19 @@
 #include "progress_bar.h"
 #include "say.h"
 #include "simulator_option.h"
+#include "trial_options.h"
 #include "world_options.h"
 
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <set>
 #include <stop_token>
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <tether/base/error.h>
-#include <tether/base/version.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/campaign_results.h>
 #include <tether/campaign/run_campaign.h>
-#include <tether/os/machine.h>
 #include <tether/os/program.h>
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
@@ -51,17 +45,6 @@ scenario::Campaign load(const CampaignOptions& options) {
   for (auto& entry : campaign.scenarios)
     for (auto& condition : entry.scenario.conditions) condition.simulator = options.simulator;
   return campaign;
-}
-
-/// Each parallel trial with Gazebo needs a port.
-void require_ports(const scenario::Campaign& campaign, int jobs) {
-  const char* master = std::getenv("GAZEBO_MASTER_URI");
-  if (jobs == 1 || !master || !*master || !runner::simulators(campaign).contains("gazebo")) return;
-  throw Error(ErrorCode::kUsage,
-              fmt::format("--jobs {}: each parallel trial needs a port, but GAZEBO_MASTER_URI "
-                          "selects one ({}). Unset it, or use --jobs 1",
-                          jobs, master))
-      .about("GAZEBO_MASTER_URI");
 }
 
 campaign::CampaignOutcome fly(const campaign::CampaignFolder& folder,
@@ -91,14 +74,8 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
   const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end);
   if (!warnings.empty())
     say("{}\n", summary_of(warnings, std::string(runner::kWarningsFile) + " of each trial"));
-  campaign::Settings versions = {
-      {"tether", std::string(version())},
-      {"machine", os::describe_machine()},
-      {"simulator", fmt::format("{}", fmt::join(runner::simulators(campaign), ", "))}};
-  if (options.reading.tolerant) versions["reading of worlds"] = "tolerant";
-  if (options.reading.missing_models != "error")
-    versions["missing models"] = options.reading.missing_models;
-  const campaign::Settings settings = campaign::campaign_settings(campaign, versions, files);
+  const campaign::Settings settings =
+      campaign::campaign_settings(campaign, versions_of(campaign, options.reading), files);
   const campaign::CampaignFolder folder(
       out, campaign, settings,
       options.resume ? campaign::OpenMode::kResume : campaign::OpenMode::kFresh);

@@ -32,6 +32,7 @@ Examples:
   tether run face_anchor
   tether run face_anchor --condition "target, no sync" --seed 7
   tether campaign face_anchor --out out/campaign
+  tether size face_anchor --target six_times_slower
   tether audit out/campaign/face_anchor/host/seed-0001/record.mcap
 
 Shipped files: /usr/share/tether (tether list). Guides: /usr/share/doc/tether/guide.)";
@@ -100,6 +101,10 @@ void add_run_command(CLI::App& program, Action& action) {
                    "Maximum speed of the simulation relative to the wall clock")
       ->check(CLI::Range(1e-3, 1e4));
   command
+      ->add_option("--slowdown", options->slowdown,
+                   "Make the SUT's computer so many times slower than the condition's")
+      ->check(CLI::Range(1e-3, 1e4));
+  command
       ->add_option("--listen", options->listen,
                    "Address for the SUT, host:port; port 0 selects a free port")
       ->capture_default_str();
@@ -149,6 +154,60 @@ void add_campaign_command(CLI::App& program, Action& action) {
   tether campaign face_anchor --out out/campaign
   tether campaign face_anchor --out out/campaign --resume
   tether campaign face_anchor --simulator gazebo --out out/campaign_gazebo)");
+}
+
+void add_size_command(CLI::App& program, Action& action) {
+  const auto [command, options] = add_command(
+      program, action, "size", "Find the slowest computer that is sufficient for a scenario", size);
+  command->add_option("scenario", options->scenario, "Name of a shipped scenario, or a file (TOML)")
+      ->required();
+  command->add_option("--condition", options->condition,
+                      "Condition to slow down [the scenario's first one]");
+  command->add_option("--target", options->targets,
+                      "Virtual target to judge, several times if you like: name of a shipped "
+                      "target, or a file (TOML)");
+  command
+      ->add_option("--success", options->success,
+                   "Share of flights that must reach the goal, above 0 and below 1")
+      ->capture_default_str();
+  command
+      ->add_option("--confidence", options->confidence,
+                   "Confidence of the answer's interval, above 0 and below 1")
+      ->capture_default_str();
+  command
+      ->add_option("--interval", options->interval,
+                   "Stop when the upper bound of the answer is at most so many times its lower "
+                   "bound, at least 1.05")
+      ->capture_default_str();
+  command->add_option("--between", options->between, "Slowdowns to fly: LEAST,MOST")
+      ->delimiter(',')
+      ->expected(2)
+      ->capture_default_str();
+  command->add_option("--max-trials", options->max_trials, "Maximum number of flights")
+      ->check(CLI::Range(1.0, 10000.0))
+      ->capture_default_str();
+  command->add_option("--unsynchronised", options->unsynchronised,
+                      "Condition without synchronisation to compare: fly it with the same "
+                      "slowdowns and seeds, which doubles the flights");
+  command
+      ->add_option("--jobs", options->jobs,
+                   "Number of parallel flights. Rejected if parallel runs would distort measured "
+                   "time")
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Folder for the flights [out/size/SCENARIO]");
+  command->add_flag("--resume", options->resume, "Continue with the flights in the folder");
+  command->add_flag("--force", options->force, "Remove the earlier flights in the folder");
+  add_simulator_option(*command, options->simulator);
+  add_reading_options(*command, options->reading);
+  command->footer(
+      R"(Exit codes: 0 every --target is sufficient, or none is given and the answer is as narrow as
+--interval asks, 1 not so, 2 wrong use or a bad file, 3 interrupted, or flights failed.
+
+Examples:
+  tether size face_anchor --condition target
+  tether size face_anchor --target six_times_slower --jobs 2
+  tether size face_anchor --success 0.95 --interval 1.2 --max-trials 600
+  tether size face_anchor --condition target --unsynchronised "target, no sync")");
 }
 
 void add_report_command(CLI::App& program, Action& action) {
@@ -299,9 +358,9 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
   program.require_subcommand(1);
 
   Action action;
-  for (const auto add : {add_run_command, add_campaign_command, add_report_command,
-                         add_audit_command, add_frames_command, add_plot_command, add_world_command,
-                         add_target_command, add_list_command})
+  for (const auto add : {add_run_command, add_campaign_command, add_size_command,
+                         add_report_command, add_audit_command, add_frames_command,
+                         add_plot_command, add_world_command, add_target_command, add_list_command})
     add(program, action);
   try {
     program.parse(argc, argv);

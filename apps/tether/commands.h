@@ -3,8 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stop_token>
 #include <string>
+#include <string_view>
+#include <vector>
 
 /// The subcommands of `tether`, one file each; command_line.cpp parses their options. Each returns
 /// the exit code of the program. The long ones end early after a stop request.
@@ -26,6 +29,7 @@ struct RunOptions {
   std::filesystem::path out;
   std::string listen;
   double real_time_factor = 0.0;
+  std::optional<double> slowdown;
   ReadingOptions reading;
   bool tunnel = false;
   bool record_images = false;
@@ -48,6 +52,30 @@ struct CampaignOptions {
 };
 /// Runs many trials: scenarios x conditions x seeds.
 int run_campaign(const CampaignOptions& options, const std::stop_token& stop);
+
+/// The campaign in the folder of `tether size` is called this and the scenario's name. Names of
+/// campaign files have no spaces.
+inline constexpr std::string_view kSizePrefix = "size of ";
+
+struct SizeOptions {
+  std::filesystem::path scenario;
+  std::string condition;
+  std::string unsynchronised;
+  std::vector<std::filesystem::path> targets;
+  std::filesystem::path out;
+  std::string simulator;
+  double success = 0.9;
+  double confidence = 0.95;
+  double interval = 1.3;
+  std::vector<double> between = {1.0, 40.0};
+  std::size_t max_trials = 300;
+  int jobs = 1;
+  ReadingOptions reading;
+  bool resume = false;
+  bool force = false;
+};
+/// Finds the slowest computer that is sufficient for a scenario.
+int size(const SizeOptions& options, const std::stop_token& stop);
 
 struct ReportOptions {
   std::filesystem::path folder;

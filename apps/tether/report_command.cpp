@@ -74,9 +74,18 @@ std::vector<report::Table> run_tables(const campaign::CampaignResults& results) 
   return tables;
 }
 
+/// Its trials are those that the statistics asked for, not all of a campaign.
+void refuse_size(const std::filesystem::path& folder) {
+  if (!campaign::read_manifest(folder).name.starts_with(kSizePrefix)) return;
+  refuse(folder, fmt::format("was written by tether size. Its answer is in {}; to make it again, "
+                             "call tether size with --resume.",
+                             (folder / campaign::kReportFile).string()));
+}
+
 std::string rendered(const ReportOptions& options) {
   require_result(options.folder);
   const bool run = is_run(options.folder);
+  if (!run) refuse_size(options.folder);
   if (options.format == kHtml && run) return report::run_page(options.folder);
   const campaign::CampaignResults results = run ? report::read_run_results(options.folder)
                                                 : campaign::read_campaign_results(options.folder);

@@ -6,6 +6,7 @@
 #include "simulator_option.h"
 #include "status_line.h"
 #include "target_option.h"
+#include "trial_options.h"
 #include "world_options.h"
 
 #include <algorithm>
@@ -17,7 +18,6 @@
 #include <fmt/ranges.h>
 
 #include <tether/base/error.h>
-#include <tether/base/suggest.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/campaign/result.h>
 #include <tether/os/program.h>
@@ -34,16 +34,6 @@
 namespace tether::app {
 
 namespace {
-
-scenario::Condition pick_condition(const scenario::Scenario& scenario, const std::string& wanted) {
-  if (wanted.empty()) return scenario.conditions.front();
-  if (const auto* condition = scenario.find_condition(wanted)) return *condition;
-  std::vector<std::string_view> names;
-  for (const auto& condition : scenario.conditions) names.push_back(condition.name);
-  throw Error(ErrorCode::kUsage, {scenario.file.string()},
-              fmt::format("has no condition '{}'; {}", wanted, allowed_hint(wanted, names)))
-      .about(wanted);
-}
 
 /// Moves the condition's SUTs to that target. A condition that was selected by name keeps its name,
 /// so that results show both.
@@ -85,6 +75,7 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
   if (const auto* address = std::get_if<scenario::SshAddress>(&target))
     move_to(condition, board_at(*address), keep_name);
   if (!options.simulator.empty()) condition.simulator = options.simulator;
+  if (options.slowdown) scenario::slow_down(condition, *options.slowdown);
   return condition;
 }
 

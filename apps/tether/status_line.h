@@ -23,12 +23,11 @@ class StatusLine {
 
   void show(const coordinator::RunStatus& status);
   void show(const std::string& text);
+  void clear();
   /// Prints a permanent line, on a terminal or not.
   void print(const std::string& line);
 
  private:
-  void clear();
-
   bool shown_ = false;
 };
 

@@ -82,7 +82,10 @@ CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campai
                                const Settings& settings, OpenMode mode)
     : folder_(std::move(folder)), claim_(folder_, FolderClaim::By::kCampaign) {
   const CampaignManifest manifest = manifest_of(campaign, settings);
-  if (holds_anything(folder_)) check_existing(manifest, mode);
+  if (holds_anything(folder_)) {
+    check_existing(manifest, mode);
+    if (mode == OpenMode::kReplace) remove_existing();
+  }
   find_missing(campaign);
   if (mode == OpenMode::kFresh && finished_ > 0) {
     refuse_folder(folder_,
@@ -106,8 +109,21 @@ void CampaignFolder::check_existing(const CampaignManifest& now, OpenMode mode) 
                   fmt::format("contains the campaign '{}', not '{}'. Choose another folder.",
                               then.name, now.name));
   }
+  if (mode == OpenMode::kReplace) return;
   require_nothing_dropped(folder_, then, now);
   require_same(folder_, then.settings, now.settings, mode);
+}
+
+void CampaignFolder::remove_existing() const {
+  std::error_code failed;
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::directory_iterator(folder_, failed))
+    if (entry.path().filename() != kLockFile) paths.push_back(entry.path());
+  for (const fs::path& path : paths)
+    if (!failed) fs::remove_all(path, failed);
+  if (!failed) return;
+  throw Error(ErrorCode::kSetup, {folder_.string()}, "cannot be emptied: " + failed.message() + ".")
+      .about(folder_.string());
 }
 
 void CampaignFolder::find_missing(const scenario::Campaign& campaign) {

@@ -77,18 +77,16 @@ TrialResult attempt_twice(const TrialPlan& plan, const TrialExecutor& execute,
 // The trials of one run: hands them to threads, keeps their results, reports progress.
 class Run {
  public:
-  Run(const CampaignFolder& folder, const TrialExecutor& execute, const CampaignOptions& options,
+  Run(std::span<const TrialPlan* const> missing, std::size_t done_before,
+      const TrialExecutor& execute, const CampaignOptions& options,
       const ProgressCallback& progress)
       : execute_(execute),
         options_(options),
         progress_(progress),
         wall_(options.wall ? options.wall : machine_wall),
-        done_before_(folder.finished()),
-        total_(folder.finished() + folder.missing().size()) {
-    Queue missing;
-    for (const TrialPlan& plan : folder.missing()) missing.push_back(&plan);
-    batches_ = make_batches(missing, options.jobs);
-  }
+        batches_(make_batches({missing.begin(), missing.end()}, options.jobs)),
+        done_before_(done_before),
+        total_(done_before + missing.size()) {}
 
   CampaignOutcome run() {
     for (const Batch& batch : batches_) run_all(batch.plans, batch.jobs);
@@ -196,7 +194,14 @@ CampaignOutcome run_campaign(const CampaignFolder& folder, const scenario::Campa
                              const TrialExecutor& execute, const CampaignOptions& options,
                              const ProgressCallback& progress) {
   require_jobs_allowed(campaign, options.jobs);
-  return Run(folder, execute, options, progress).run();
+  std::vector<const TrialPlan*> missing;
+  for (const TrialPlan& plan : folder.missing()) missing.push_back(&plan);
+  return Run(missing, folder.finished(), execute, options, progress).run();
+}
+
+CampaignOutcome run_trials(std::span<const TrialPlan* const> missing, const TrialExecutor& execute,
+                           const CampaignOptions& options, const ProgressCallback& progress) {
+  return Run(missing, 0, execute, options, progress).run();
 }
 
 }  // namespace tether::campaign

@@ -84,6 +84,18 @@ TEST_F(Folder, RefusesToStartOverResults) {
   expect_refused(OpenMode::kFresh, "1 of 9");
 }
 
+TEST_F(Folder, ReplacesResultsOfTheSameCampaignOnly) {
+  open(OpenMode::kFresh);
+  const auto result = keep(0);
+  settings_["tether"] = "0.2.0";
+  EXPECT_EQ(open(OpenMode::kReplace).missing().size(), 9u);
+  EXPECT_FALSE(std::filesystem::exists(result));
+  keep(0);
+  campaign_.name = "another";
+  expect_refused(OpenMode::kReplace, "contains the campaign");
+  EXPECT_TRUE(std::filesystem::exists(result));
+}
+
 TEST_F(Folder, RefusesToMixSettings) {
   open(OpenMode::kFresh);
   keep(0);

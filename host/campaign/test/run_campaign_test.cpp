@@ -62,6 +62,19 @@ TEST_F(RunCampaign, RunsEverythingOnceInAnEmptyFolder) {
   EXPECT_EQ(ended_.back(), "turn/target-no-sync/seed-0003");
 }
 
+TEST_F(RunCampaign, RunsSomeOfTheMissingTrials) {
+  const CampaignFolder folder = open();
+  const std::vector<const TrialPlan*> some = {&folder.missing()[4], &folder.missing()[7]};
+  std::vector<std::size_t> totals;
+  const CampaignOutcome outcome =
+      run_trials(some, good, options_,
+                 [&](const CampaignProgress& progress) { totals.push_back(progress.total); });
+  EXPECT_EQ(outcome.ran, 2u);
+  EXPECT_EQ(totals, (std::vector<std::size_t>(4, 2)));
+  EXPECT_EQ(result_of(4).outcome, Outcome::kGoalReached);
+  EXPECT_FALSE(std::filesystem::exists(folder.missing()[0].folder));
+}
+
 TEST_F(RunCampaign, ResumesAfterAStopWithoutTheTrialThatWasStopped) {
   std::stop_source stop;
   options_.stop = stop.get_token();

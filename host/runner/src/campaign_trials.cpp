@@ -82,12 +82,17 @@ CampaignFiles files_of_trials(const scenario::Campaign& campaign,
 campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
                                         const std::stop_token& stop) {
   const std::filesystem::path log = log_file(plan);
+  const bool is_slowed = !plan.condition->slowed_from.empty();
+  const std::string& name_in_scenario =
+      is_slowed ? plan.condition->slowed_from : plan.condition->name;
   std::vector<std::string> arguments = {
       os::own_file().string(), "run",         plan.scenario->file.string(), "--condition",
-      plan.condition->name,    "--seed",      std::to_string(plan.seed),    "--out",
+      name_in_scenario,        "--seed",      std::to_string(plan.seed),    "--out",
       plan.folder.string(),    "--simulator", plan.condition->simulator,    "--quiet"};
   if (!plan.profile.empty())
     arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
+  if (is_slowed)
+    arguments.insert(arguments.end(), {"--slowdown", fmt::format("{}", plan.condition->slowdown)});
   if (plan.record_images) arguments.emplace_back("--images");
   const sim::WorldOptions& options = plan.scenario->world_options;
   if (options.is_tolerant) arguments.emplace_back("--tolerant");

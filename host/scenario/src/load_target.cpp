@@ -32,7 +32,7 @@ void reject_keys_of_virtual_targets(const toml::Table& root, const Target& targe
               fmt::format("is \"{}\", but a target with an address needs the clock \"wall\".",
                           name(target.clock)));
   }
-  for (const char* key : {"cpu_factor", "cores"}) {
+  for (const char* key : {"cpu_factor", "cpu_factor_interval", "cores"}) {
     if (root.has(key))
       root.fail(key, "is for targets on this host. Remove this key, or 'address'.");
   }
@@ -53,6 +53,15 @@ std::vector<std::string> read_launcher(const toml::Table& root, const Target& ta
     if (is_relative && !target.ssh) word = beside(target, word);
   }
   return words;
+}
+
+void read_interval(const toml::Table& root, const toml::Range& range, Target& target) {
+  const std::vector<double> bounds = root.numbers("cpu_factor_interval", 2, range);
+  if (bounds[0] > target.cpu_factor || bounds[1] < target.cpu_factor)
+    root.fail("cpu_factor_interval",
+              fmt::format("is [{}, {}], which does not contain cpu_factor = {}.", bounds[0],
+                          bounds[1], target.cpu_factor));
+  target.cpu_factor_interval = {bounds[0], bounds[1]};
 }
 
 /// On a board, the folder is checked when a run starts. On this host it need not exist yet: the
@@ -104,8 +113,9 @@ Target load_target(const std::filesystem::path& file) {
   target.file = std::filesystem::absolute(file).lexically_normal();
   const toml::Document document = toml::Document::load(target.file);
   const toml::Table root =
-      document.root({"name", "description", "address", "clock", "cpu_factor", "cores", "launcher",
-                     "program_folder", "emulator", "cpu_model", "sysroot", "cost_ns"});
+      document.root({"name", "description", "address", "clock", "cpu_factor", "cpu_factor_interval",
+                     "cores", "launcher", "program_folder", "emulator", "cpu_model", "sysroot",
+                     "cost_ns"});
   target.name = root.identifier("name");
   if (slug(target.name).empty()) {
     root.fail("name", "must contain a letter or a digit, because it becomes the name of a folder.");
@@ -117,6 +127,7 @@ Target load_target(const std::filesystem::path& file) {
   }
   if (target.ssh) reject_keys_of_virtual_targets(root, target);
   target.cpu_factor = root.number_or("cpu_factor", kFactor, 1.0);
+  if (root.has("cpu_factor_interval")) read_interval(root, kFactor, target);
   target.cores = static_cast<int>(root.integer_or("cores", 1, kMostCores, 0));
   target.launcher = read_launcher(root, target);
   target.emulator = read_emulator(root, target);

@@ -119,6 +119,15 @@ TEST_F(LoadTarget, RefusesWrongValues) {
     expect_refusal(2, "address", [&] { load("name = \"a\"\naddress = \"" + address + "\"\n"); });
 }
 
+TEST_F(LoadTarget, ReadsTheIntervalOfAFactorAroundIt) {
+  const std::string factor = "name = \"a\"\ncpu_factor = 2\ncpu_factor_interval = ";
+  const auto interval = load(factor + "[1.5, 2.5]\n").cpu_factor_interval;
+  ASSERT_TRUE(interval);
+  EXPECT_EQ(*interval, std::pair(1.5, 2.5));
+  for (const std::string wrong : {"[2.1, 2.5]", "[1.5, 1.9]", "[2]", "[0, 3]"})
+    expect_refusal(3, "cpu_factor_interval", [&] { load(factor + wrong + "\n"); });
+}
+
 TEST_F(LoadTarget, RefusesKeysOfVirtualTargetsForABoard) {
   expect_refusal(5, "clock", [&] { load(kBoardTarget + "clock = \"cpu\"\n"); });
   expect_refusal(5, "cpu_factor", [&] { load(kBoardTarget + "cpu_factor = 2\n"); });

@@ -149,7 +149,9 @@ std::string target_text(const std::string& name, const Calibration& here, const 
   text += "# It stands in for that machine on this host only, and for other work than " +
           std::string(kWholeStep) + "\n# no better than the blocks agree.\n";
   return text + "name = " + toml_string(name) + "\ndescription = " + toml_string(what) +
-         "\nclock = \"cpu\"\ncpu_factor = " + fixed(comparison.whole.value, 4) + "\n";
+         "\nclock = \"cpu\"\ncpu_factor = " + fixed(comparison.whole.value, 4) +
+         "\ncpu_factor_interval = [" + fixed(comparison.whole.interval.low, 4) + ", " +
+         fixed(comparison.whole.interval.high, 4) + "]\n";
 }
 
 }  // namespace tether::calibration

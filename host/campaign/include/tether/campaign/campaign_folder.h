@@ -42,8 +42,9 @@ std::string to_json(const CampaignManifest& manifest);
 CampaignManifest read_manifest(const std::filesystem::path& folder);
 
 enum class OpenMode {
-  kFresh,   ///< the folder must not contain results yet
-  kResume,  ///< continue with the results that exist
+  kFresh,    ///< the folder must not contain results yet
+  kResume,   ///< continue with the results that exist
+  kReplace,  ///< remove the results of a campaign of that name, and everything beside them
 };
 
 /// A campaign's folder, claimed by this process while the object lives. Not thread-safe.
@@ -70,6 +71,7 @@ class CampaignFolder {
 
  private:
   void check_existing(const CampaignManifest& now, OpenMode mode) const;
+  void remove_existing() const;
   void find_missing(const scenario::Campaign& campaign);
   bool has_usable_result(const TrialPlan& plan);
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string_view>
 
@@ -60,5 +61,9 @@ struct CampaignOutcome {
 CampaignOutcome run_campaign(const CampaignFolder& folder, const scenario::Campaign& campaign,
                              const TrialExecutor& execute, const CampaignOptions& options,
                              const ProgressCallback& progress);
+
+/// The same for some of the missing trials, which are all of its progress.
+CampaignOutcome run_trials(std::span<const TrialPlan* const> missing, const TrialExecutor& execute,
+                           const CampaignOptions& options, const ProgressCallback& progress);
 
 }  // namespace tether::campaign

@@ -45,6 +45,10 @@ struct Condition {
   std::optional<Target> target{};
   /// "mujoco" or "gazebo"; a program may replace it by the address of an external simulator.
   std::string simulator = "mujoco";
+  /// Of a condition that was slowed down: what of the scenario it is, and the slowdown that the
+  /// values above contain. Empty: it was not.
+  std::string slowed_from{};
+  double slowdown = 1.0;
 };
 
 /// The SUT's command; its parameters become `--key value` arguments (underscores as dashes). Those
@@ -122,6 +126,12 @@ std::string why_not_on(const Condition& condition, const Target& target);
 /// Makes the condition's SUTs run on the target, whose clock replaces that of the condition.
 /// @throws Error(kUsage), about the condition, with the reason of `why_not_on`.
 void place_on(Condition& condition, Target target);
+
+/// Makes the condition's SUTs so many times slower: its factor, or the computing time of a scripted
+/// clock. The name becomes "NAME, 3.16 x slower".
+/// @throws Error(kUsage), about the condition, if its SUTs' time cannot be stretched.
+/// @pre slowdown > 0; it was not slowed down before.
+void slow_down(Condition& condition, double slowdown);
 
 /// @throws Error(kBadFile), about the UAV, if its SUT is concurrent and the condition's clock is
 /// not Clock::kWall.

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <tether/os/counted_program.h>
@@ -26,6 +27,8 @@ struct Target {
   Clock clock = Clock::kWall;
   /// Of a virtual target: seconds of ET per second that the clock measures.
   double cpu_factor = 1.0;
+  /// The bounds of the factor's interval, as its calibration found it; none: not known.
+  std::optional<std::pair<double, double>> cpu_factor_interval{};
   int cores = 0;                      ///< that the SUT may use; 0: all
   std::vector<std::string> launcher;  ///< before the SUT's command, e.g. {"qemu-aarch64", …}
   /// Where SUT programs named without '/' are: on the board, or on this host (absolute). Empty:

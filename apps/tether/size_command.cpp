@@ -1,0 +1,218 @@
+#include "back_ends.h"
+#include "commands.h"
+#include "file_kind.h"
+#include "say.h"
+#include "simulator_option.h"
+#include "size_flights.h"
+#include "trial_options.h"
+#include "world_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/os/program.h>
+#include <tether/os/text_file.h>
+#include <tether/report/gnuplot.h>
+#include <tether/report/size_report.h>
+#include <tether/scenario/shipped_files.h>
+
+/// `tether size`: checks the question, flies until it is answered, and writes the answer.
+namespace tether::app {
+
+namespace {
+
+constexpr double kLargestFactor = 1e4;  // as in files
+constexpr const char* kSizeFile = "size.json";
+constexpr const char* kSizeDrawing = "size.svg";
+
+[[noreturn]] void refuse_option(const std::string& option, const std::string& why) {
+  throw Error(ErrorCode::kUsage, option + ": " + why).about(option);
+}
+
+void require_share(const std::string& option, double share) {
+  if (share > 0.0 && share < 1.0) return;
+  refuse_option(option,
+                fmt::format("{} is not between 0 and 1. {}", share,
+                            share == 1.0 ? "No number of flights shows that all succeed; use a "
+                                           "share such as 0.95."
+                                         : "Use a share such as 0.9."));
+}
+
+/// Even if all flights succeed, fewer than this say nothing about the share with that confidence.
+std::size_t least_flights(const sizing::Question& question) {
+  return static_cast<std::size_t>(
+      std::ceil(std::log(1.0 - question.confidence) / std::log(question.success)));
+}
+
+sizing::Question question_of(const SizeOptions& options) {
+  const sizing::Question question{.success = options.success,
+                                  .confidence = options.confidence,
+                                  .interval = options.interval,
+                                  .least = options.between.at(0),
+                                  .most = options.between.at(1)};
+  require_share("--success", question.success);
+  require_share("--confidence", question.confidence);
+  if (!(question.interval >= 1.05))
+    refuse_option("--interval",
+                  fmt::format("{} is less than 1.05. It is the upper bound of the answer "
+                              "divided by its lower bound, such as 1.3.",
+                              question.interval));
+  if (!(question.least > 0.0 && question.least < question.most))
+    refuse_option("--between",
+                  fmt::format("{},{} is not a range of slowdowns. The first must be above 0 "
+                              "and less than the second, as in 1,40.",
+                              question.least, question.most));
+  if (question.most < question.interval * question.least)
+    refuse_option("--between", fmt::format("{},{} is narrower than --interval {}.", question.least,
+                                           question.most, question.interval));
+  if (options.max_trials < least_flights(question))
+    refuse_option(
+        "--max-trials",
+        fmt::format("{} flights cannot show a success of {} with a confidence of {}, even if all "
+                    "succeed. Use at least {}.",
+                    options.max_trials, question.success, question.confidence,
+                    least_flights(question)));
+  return question;
+}
+
+report::Board board_of(const scenario::ShippedFiles& shipped, const std::filesystem::path& given,
+                       const scenario::Condition& condition) {
+  const std::filesystem::path file = shipped.find(scenario::ShippedKind::kTarget, given);
+  require_kind(file, FileKind::kTarget);
+  const scenario::Target target = scenario::load_target(file);
+  const auto refuse_board = [&](const std::string& why) {
+    throw Error(ErrorCode::kUsage, {file.string()}, why).about(file.string());
+  };
+  if (target.ssh)
+    refuse_board(
+        "is a board without a factor. Calibrate it (tether-sut calibrate --write-target), "
+        "and give that file.");
+  if (condition.clock == scenario::Clock::kScripted)
+    refuse_board(fmt::format("cannot be compared with condition \"{}\", whose time is scripted.",
+                             condition.name));
+  report::Board board{.name = file.filename().string(),
+                      .slowdown = target.cpu_factor / condition.cpu_factor};
+  if (const auto& interval = target.cpu_factor_interval) {
+    board.low = interval->first / condition.cpu_factor;
+    board.high = interval->second / condition.cpu_factor;
+  }
+  return board;
+}
+
+/// What --unsynchronised names: a condition that differs in nothing but its policy.
+void require_comparable(const scenario::Condition& own, const scenario::Condition& other) {
+  const bool is_free = other.policy == scenario::Policy::kFreeRunning &&
+                       own.policy == scenario::Policy::kConservativeBarrier;
+  if (!is_free)
+    refuse_option("--unsynchronised",
+                  fmt::format("\"{}\" must have policy = \"free_running\", and \"{}\" "
+                              "policy = \"conservative_barrier\".",
+                              other.name, own.name));
+  if (own.clock != other.clock || own.cpu_factor != other.cpu_factor)
+    refuse_option("--unsynchronised",
+                  fmt::format("\"{}\" and \"{}\" must have the same clock and factor.", other.name,
+                              own.name));
+}
+
+struct Plan {
+  report::SizeReport report;
+  SizeFlights::Setup flights;
+};
+
+/// Reads and checks everything that does not need the output folder.
+Plan make_plan(const SizeOptions& options) {
+  Plan plan;
+  plan.report.question = question_of(options);
+  plan.report.most_flights = options.max_trials;
+  const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
+  const std::filesystem::path file =
+      shipped.find(scenario::ShippedKind::kScenario, options.scenario);
+  require_kind(file, FileKind::kScenario);
+  scenario::Scenario scenario = scenario::load_scenario(file);
+  scenario.world_options = world_options(options.reading, shipped);
+  if (!options.simulator.empty()) {
+    parse_simulator_option(options.simulator);
+    for (auto& condition : scenario.conditions) condition.simulator = options.simulator;
+  }
+  const scenario::Condition own = pick_condition(scenario, options.condition);
+  if (own.cpu_factor * plan.report.question.most > kLargestFactor)
+    refuse_option("--between",
+                  fmt::format("{} times the factor of condition \"{}\" is more than {}.",
+                              plan.report.question.most, own.name, kLargestFactor));
+  for (const std::filesystem::path& target : options.targets)
+    plan.report.boards.push_back(board_of(shipped, target, own));
+  plan.report.scenario = scenario.name;
+  plan.report.description = scenario.description;
+  plan.flights.conditions = {own};
+  if (!options.unsynchronised.empty()) {
+    plan.flights.conditions.push_back(pick_condition(scenario, options.unsynchronised));
+    require_comparable(own, plan.flights.conditions.back());
+  }
+  plan.flights.scenario = std::move(scenario);
+  plan.flights.most = options.max_trials;
+  plan.flights.jobs = options.jobs;
+  return plan;
+}
+
+void write_answer(const report::SizeReport& report, const std::filesystem::path& out) {
+  os::write_file_atomically(out / kSizeFile, report::size_json(report));
+  for (const std::string& sentence : report::size_sentences(report)) fmt::print("{}\n", sentence);
+  os::write_file_atomically(out / kSizeDrawing, report::draw_svg(report::size_plot(report)));
+  os::write_file_atomically(out / campaign::kReportFile, report::size_page(report));
+  fmt::print("\nPage: {}\nDrawing: {}\nNumbers: {}\n", (out / campaign::kReportFile).string(),
+             (out / kSizeDrawing).string(), (out / kSizeFile).string());
+}
+
+int code_of(const report::SizeReport& report) {
+  const sizing::Answer& answer = report.synchronised.answer;
+  const bool is_answered =
+      report.boards.empty()
+          ? answer.is_narrow
+          : std::ranges::all_of(report.boards, [&](const report::Board& board) {
+              return report::verdict(board, answer) == report::BoardVerdict::kSuffices;
+            });
+  return is_answered ? 0 : 1;
+}
+
+}  // namespace
+
+int size(const SizeOptions& options, const std::stop_token& stop) {
+  Plan plan = make_plan(options);
+  const std::filesystem::path out =
+      options.out.empty() ? std::filesystem::path("out/size") / plan.report.scenario : options.out;
+  const auto mode = options.force    ? campaign::OpenMode::kReplace
+                    : options.resume ? campaign::OpenMode::kResume
+                                     : campaign::OpenMode::kFresh;
+  const sizing::CurveGrid grid(plan.report.question);
+  SizeFlights flights(plan.flights, grid, options.reading, out, mode, stop);
+  for (const char* old : {kSizeFile, kSizeDrawing}) {
+    std::error_code ignored;
+    std::filesystem::remove(out / old, ignored);
+  }
+  const SizeFlights::End end = flights.fly(plan.report);
+  const std::string again =
+      fmt::format("tether size {} --out {} --resume, with the options of this call",
+                  options.scenario.string(), out.string());
+  if (end == SizeFlights::End::kInterrupted) {
+    say("tether: interrupted after {} flights; to continue, type: {}\n",
+        plan.report.synchronised.flights.size(), again);
+    return exit_code(ErrorCode::kSetup);
+  }
+  if (end == SizeFlights::End::kFailing) {
+    for (const std::string& line : plan.report.not_flown) say("tether: {}\n", line);
+    say("tether: {} flights failed, which says nothing about the computer. Mend the cause; to "
+        "continue, type: {}\n",
+        plan.report.not_flown.size(), again);
+    return exit_code(ErrorCode::kSetup);
+  }
+  write_answer(plan.report, out);
+  return code_of(plan.report);
+}
+
+}  // namespace tether::app

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tether/campaign/campaign_folder.h>
+#include <tether/campaign/result.h>
+#include <tether/report/plots.h>
+#include <tether/sizing/sizing.h>
+
+/// What `tether size` found: the answer in sentences, as a drawing, a page and JSON. Pure
+/// functions, but for the drawing program of the page.
+namespace tether::report {
+
+/// A point of a curve of success over slowdown.
+struct CurvePoint {
+  double slowdown = 1.0;
+  sizing::Share share{};
+};
+/// The curve from `least` to `most`, for drawings.
+std::vector<CurvePoint> curve_points(const sizing::SuccessCurve& curve, double least, double most);
+
+/// The flights of one condition, at several slowdowns, and what follows from them.
+struct SizedCondition {
+  std::string condition;
+  sizing::Answer answer{};
+  std::vector<sizing::Flight> flights{};  ///< one for each trial
+  std::vector<campaign::TrialResult> trials{};
+  std::vector<CurvePoint> curve{};
+};
+
+/// A computer that the user asks about.
+struct Board {
+  std::string name;
+  double slowdown = 1.0;        ///< relative to the condition
+  std::optional<double> low{};  ///< bounds of its calibration; both or none
+  std::optional<double> high{};
+};
+enum class BoardVerdict { kSuffices, kUndecided, kDoesNot };
+/// A board suffices if all of its interval is within that of sufficient slowdowns.
+BoardVerdict verdict(const Board& board, const sizing::Answer& answer);
+
+struct SizeReport {
+  std::string scenario;
+  std::string description;
+  sizing::Question question{};
+  std::size_t most_flights = 0;
+  SizedCondition synchronised{};
+  /// The same slowdowns and seeds without synchronisation.
+  std::optional<SizedCondition> unsynchronised{};
+  std::vector<Board> boards{};
+  std::vector<std::string> not_flown{};  ///< one line for each flight that failed, with its reason
+  campaign::Settings settings{};
+};
+
+/// The answer and its evidence: one sentence, then one for each board, then what limits the answer.
+std::vector<std::string> size_sentences(const SizeReport& report);
+
+/// Success over slowdown with the flights and the boards, and below it the margin of each limited
+/// metric.
+Plot size_plot(const SizeReport& report);
+
+/// One self-contained page: answer, drawing, tables.
+/// @throws Error(kSetup) if gnuplot is missing or fails.
+std::string size_page(const SizeReport& report);
+
+inline constexpr int kSizeSchemaVersion = 1;
+/// The content of `size.json` (docs/guide/size.md).
+std::string size_json(const SizeReport& report);
+
+/// A metric's distance from its limit in shares of the limit, negative beyond it. None without a
+/// value or a limit, and for counts, which do not vary continuously.
+std::optional<double> margin_of(const campaign::MetricValue& metric);
+/// The flight for the statistics. Its margin is that of its worst metric, if that agrees with the
+/// outcome. @pre the trial did not fail.
+sizing::Flight flight_of(const campaign::TrialResult& trial, double slowdown);
+
+}  // namespace tether::report

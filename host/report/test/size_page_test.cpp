@@ -1,0 +1,29 @@
+#include "sample_size.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tether::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(SizePage, BeginsWithTheAnswer) {
+  const std::string page = size_page(sample_size());
+  const auto answer = page.find("Sufficient up to 3.1 × slower");
+  ASSERT_NE(answer, std::string::npos);
+  EXPECT_LT(answer, page.find("<svg"));
+  EXPECT_LT(page.find("<svg"), page.find("<table"));
+  EXPECT_THAT(page, HasSubstr("sufficient"));
+  EXPECT_THAT(page, Not(HasSubstr("class=\"problems\"")));
+}
+
+TEST(SizePage, NamesFlightsThatFailed) {
+  SizeReport report = sample_size();
+  report.not_flown = {"seed 7: <crashed>"};
+  EXPECT_THAT(size_page(report), HasSubstr("seed 7: &lt;crashed&gt;"));
+}
+
+}  // namespace
+}  // namespace tether::report

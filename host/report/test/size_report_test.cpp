@@ -1,0 +1,107 @@
+#include "sample_size.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tether::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::SizeIs;
+
+TEST(SizeReport, AnswersFirstThenJudgesTheBoards) {
+  const std::vector<std::string> sentences = size_sentences(sample_size());
+  ASSERT_THAT(sentences, SizeIs(2));
+  EXPECT_EQ(sentences[0],
+            "Sufficient up to 3.1 × slower than “target” [2.7, 3.6], 95 %; 10 flights.");
+  EXPECT_EQ(sentences[1], "pi.toml (1.9 ×) has 1.6 × headroom.");
+}
+
+TEST(SizeReport, SaysWhenTheAnswerIsOutsideTheRange) {
+  SizeReport report = sample_size();
+  report.synchronised.answer.is_above = true;
+  EXPECT_THAT(size_sentences(report)[0], HasSubstr("Sufficient up to 10 × slower"));
+  report.synchronised.answer.is_above = false;
+  report.synchronised.answer.is_below = true;
+  EXPECT_THAT(size_sentences(report)[0], HasSubstr("Not sufficient: already at 1 ×"));
+}
+
+TEST(SizeReport, SaysThatABoundIsOutsideTheRange) {
+  SizeReport report = sample_size();
+  sizing::Threshold& threshold = report.synchronised.answer.threshold;
+  threshold = {0.6, 0.0, std::numeric_limits<double>::infinity()};
+  EXPECT_THAT(size_sentences(report)[0],
+              HasSubstr("0.6 × the computing time of “target” [below 1, above 10]"));
+  report.boards = {{"slow", 20.0}, {"fast", 0.1}};
+  for (const Board& board : report.boards)
+    EXPECT_EQ(verdict(board, report.synchronised.answer), BoardVerdict::kUndecided);
+}
+
+TEST(SizeReport, SaysWhatLimitsTheAnswer) {
+  SizeReport report = sample_size();
+  report.synchronised.answer.is_narrow = false;
+  report.synchronised.answer.basis = sizing::Basis::kLevels;
+  const std::vector<std::string> sentences = size_sentences(report);
+  ASSERT_THAT(sentences, SizeIs(4));
+  EXPECT_THAT(sentences[2], HasSubstr("single slowdowns"));
+  EXPECT_THAT(sentences[3], HasSubstr("wider than a factor of 1.3"));
+}
+
+TEST(SizeReport, ComparesWithTheUnsynchronisedCondition) {
+  SizeReport report = sample_size();
+  report.unsynchronised = report.synchronised;
+  report.unsynchronised->condition = "free";
+  report.unsynchronised->answer.threshold = {6.2, 5.0, 7.0};
+  EXPECT_EQ(size_sentences(report).back(),
+            "Without synchronisation (“free”), 6.2 × slower would seem sufficient: 2 × too much.");
+}
+
+TEST(SizeReport, ABoardSufficesIfAllOfItsCalibrationDoes) {
+  sizing::Answer answer;
+  answer.threshold = {3.1, 2.7, 3.6};
+  EXPECT_EQ(verdict({"a", 2.6}, answer), BoardVerdict::kSuffices);
+  EXPECT_EQ(verdict({"a", 2.6, 2.5, 2.8}, answer), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 3.0}, answer), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 3.7, 3.5, 4.0}, answer), BoardVerdict::kUndecided);
+  EXPECT_EQ(verdict({"a", 3.7}, answer), BoardVerdict::kDoesNot);
+  answer = {};
+  answer.is_above = true;
+  answer.threshold = {10.0, 10.0, std::numeric_limits<double>::infinity()};
+  EXPECT_EQ(verdict({"a", 10.0}, answer), BoardVerdict::kSuffices);
+  EXPECT_EQ(verdict({"a", 11.0}, answer), BoardVerdict::kUndecided);
+  answer = {};
+  answer.is_below = true;
+  answer.threshold = {1.0, 0.0, 1.0};
+  EXPECT_EQ(verdict({"a", 1.0}, answer), BoardVerdict::kDoesNot);
+  EXPECT_EQ(verdict({"a", 0.5}, answer), BoardVerdict::kUndecided);
+}
+
+campaign::MetricValue limited(double value, std::optional<double> max, std::optional<double> min) {
+  campaign::MetricValue metric{"m", "m", "M", "s", value, "", max};
+  metric.min = min;
+  return metric;
+}
+
+TEST(SizeReport, MarginsAreSharesOfTheLimit) {
+  EXPECT_EQ(margin_of(limited(4.0, 5.0, {})), 0.2);
+  EXPECT_EQ(margin_of(limited(6.0, {}, 5.0)), 0.2);
+  EXPECT_EQ(margin_of(limited(6.0, {}, {})), std::nullopt);
+  EXPECT_EQ(margin_of(limited(6.0, 0.0, {})), std::nullopt);
+  campaign::MetricValue count = limited(1.0, 2.0, {});
+  count.unit = "1";
+  EXPECT_EQ(margin_of(count), std::nullopt);
+}
+
+TEST(SizeReport, AFlightHasTheMarginOfItsWorstMetricIfThatDecided) {
+  campaign::TrialResult trial;
+  trial.outcome = campaign::Outcome::kGoalReached;
+  trial.metrics = {limited(4.0, 5.0, {}), limited(1.0, 5.0, {})};
+  EXPECT_EQ(flight_of(trial, 2.0), (sizing::Flight{2.0, true, 0.2}));
+  trial.outcome = campaign::Outcome::kGoalMissed;  // for another reason
+  EXPECT_EQ(flight_of(trial, 2.0), (sizing::Flight{2.0, false, std::nullopt}));
+}
+
+}  // namespace
+}  // namespace tether::report

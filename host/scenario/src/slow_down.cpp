@@ -1,0 +1,39 @@
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tether/scenario/scenario.h>
+
+namespace tether::scenario {
+namespace {
+
+/// Empty: it can be slowed down.
+std::string why_not_slower(const Condition& condition) {
+  if (condition.target && condition.target->ssh)
+    return "its SUTs run on a board, which cannot be slowed down. Use a virtual target.";
+  if (condition.clock == Clock::kUnstamped)
+    return "the clock \"unstamped\" has no factor. Use \"cpu\", \"wall\" or \"scripted\".";
+  if (condition.clock == Clock::kWall && condition.policy == Policy::kFreeRunning)
+    return "in free running, the wall clock cannot be stretched. Use clock = \"cpu\".";
+  return "";
+}
+
+}  // namespace
+
+void slow_down(Condition& condition, double slowdown) {
+  if (const std::string why = why_not_slower(condition); !why.empty()) {
+    throw Error(ErrorCode::kUsage, fmt::format("condition \"{}\": {}", condition.name, why))
+        .about(condition.name);
+  }
+  if (condition.clock == Clock::kScripted) {
+    const double computing_ns = static_cast<double>(condition.computing.count()) * slowdown;
+    condition.computing = Duration(std::llround(computing_ns));
+  } else {
+    condition.cpu_factor *= slowdown;
+  }
+  condition.slowed_from = condition.name;
+  condition.slowdown = slowdown;
+  condition.name = fmt::format("{}, {} x slower", condition.slowed_from, slowdown);
+}
+
+}  // namespace tether::scenario

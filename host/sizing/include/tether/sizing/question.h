@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+
+/// What `tether size` asks, and what it learns from each flight.
+namespace tether::sizing {
+
+struct Question {
+  double success = 0.9;      ///< the share of flights that must succeed, in (0, 1)
+  double confidence = 0.95;  ///< of the threshold's interval, in (0, 1)
+  double interval = 1.3;     ///< upper over lower bound at which the answer is narrow enough, > 1
+  double least = 1.0;        ///< slowdowns to fly: between these, 0 < least < most
+  double most = 40.0;
+};
+
+/// The outcome of a flight.
+struct Flight {
+  double slowdown = 1.0;  ///< > 0
+  bool reached = false;
+  /// How far the worst limited metric was within its limit (negative: beyond), in shares of the
+  /// limit; none if a metric has no value. Positive or zero exactly if `reached`.
+  std::optional<double> margin{};
+
+  friend bool operator==(const Flight&, const Flight&) = default;
+};
+
+/// The largest slowdown at which the share of successful flights is still the wanted one.
+struct Threshold {
+  double estimate = 0.0;
+  double low = 0.0;  ///< bounds of the interval
+  double high = 0.0;
+};
+
+/// A share with the bounds of its interval.
+struct Share {
+  double estimate = 0.0;
+  double low = 0.0;
+  double high = 0.0;
+};
+
+}  // namespace tether::sizing

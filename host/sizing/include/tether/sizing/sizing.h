@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <tether/sizing/by_levels.h>
+#include <tether/sizing/success_curve.h>
+
+namespace tether::sizing {
+
+/// On what an answer rests.
+enum class Basis {
+  kMargins,  ///< a curve that the margins of the flights fit, too
+  kCurve,    ///< a curve that reached and missed goals fit
+  kLevels,   ///< no curve fits: each slowdown for itself
+};
+
+struct Answer {
+  Basis basis = Basis::kCurve;
+  /// The estimate is within the question's range. A bound outside of it is not known: low is 0,
+  /// high is infinity.
+  Threshold threshold{};
+  bool is_narrow = false;  ///< as narrow as asked, or wholly outside the range
+  bool is_below = false;   ///< not even the least slowdown is sufficient
+  bool is_above = false;   ///< the largest slowdown is sufficient
+  double fit = 1.0;        ///< of the curve; of the last one that was rejected if kLevels
+};
+
+/// Finds the threshold flight by flight: which slowdowns to fly, when to stop, and the answer.
+/// Prefers the curve with margins, then the one without, then levels: each is left for the next
+/// when the flights do not fit it (SuccessCurve::fit). Not thread-safe.
+class Sizing {
+ public:
+  /// @param has_margins whether flights have margins. @pre `grid` outlives the object.
+  Sizing(const CurveGrid& grid, bool has_margins);
+
+  void add(const Flight& flight);
+  std::span<const Flight> flights() const { return flights_; }
+  /// The answer so far. Checks the fit once it would be final.
+  /// @param is_last no more flights can be flown.
+  Answer answer(bool is_last = false);
+  /// The slowdowns of the next `count` flights. @pre answer() was not narrow enough.
+  std::vector<double> next(std::size_t count) const;
+  /// The curve of the answer; of kLevels, that of reached and missed goals.
+  const SuccessCurve& curve() const;
+
+ private:
+  Answer current() const;
+
+  const CurveGrid& grid_;
+  SuccessCurve with_margins_, without_;
+  std::vector<Flight> flights_;
+  Basis basis_;
+  double fit_ = 1.0;
+};
+
+}  // namespace tether::sizing
