@@ -112,10 +112,9 @@ Target load_target(const std::filesystem::path& file) {
   Target target;
   target.file = std::filesystem::absolute(file).lexically_normal();
   const toml::Document document = toml::Document::load(target.file);
-  const toml::Table root =
-      document.root({"name", "description", "address", "clock", "cpu_factor", "cpu_factor_interval",
-                     "cores", "launcher", "program_folder", "emulator", "cpu_model", "sysroot",
-                     "cost_ns"});
+  const toml::Table root = document.root(
+      {"name", "description", "address", "clock", "cpu_factor", "cpu_factor_interval", "cores",
+       "launcher", "program_folder", "emulator", "cpu_model", "sysroot", "cost_ns"});
   target.name = root.identifier("name");
   if (slug(target.name).empty()) {
     root.fail("name", "must contain a letter or a digit, because it becomes the name of a folder.");
