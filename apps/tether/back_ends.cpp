@@ -1,6 +1,6 @@
 #include "back_ends.h"
 
-#include "simulator_option.h"
+#include "options/simulator_option.h"
 
 #include <memory>
 #include <utility>

@@ -1,5 +1,5 @@
-#include "command_line.h"
-#include "say.h"
+#include "options/command_line.h"
+#include "terminal/say.h"
 
 #include <cerrno>
 #include <cstdio>

@@ -1,4 +1,4 @@
-#include "junit_option.h"
+#include "options/junit_option.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "simulator_option.h"
+#include "options/simulator_option.h"
 
 #include <gtest/gtest.h>
 

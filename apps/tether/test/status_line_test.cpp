@@ -1,6 +1,6 @@
-#include "status_line.h"
+#include "terminal/status_line.h"
 
-#include "progress_bar.h"
+#include "terminal/progress_bar.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "target_option.h"
+#include "options/target_option.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-#include "status_line.h"
+#include "terminal/status_line.h"
 
-#include "say.h"
+#include "terminal/say.h"
 
 #include <cstdio>
 #include <vector>

@@ -1,13 +1,13 @@
 #include "back_ends.h"
-#include "commands.h"
-#include "file_kind.h"
-#include "junit_option.h"
-#include "say.h"
-#include "simulator_option.h"
-#include "status_line.h"
-#include "target_option.h"
-#include "trial_options.h"
-#include "world_options.h"
+#include "commands/commands.h"
+#include "options/file_kind.h"
+#include "options/junit_option.h"
+#include "options/simulator_option.h"
+#include "options/target_option.h"
+#include "options/trial_options.h"
+#include "options/world_options.h"
+#include "terminal/say.h"
+#include "terminal/status_line.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,6 +1,6 @@
-#include "progress_bar.h"
+#include "terminal/progress_bar.h"
 
-#include "say.h"
+#include "terminal/say.h"
 
 #include <cstdio>
 #include <string>

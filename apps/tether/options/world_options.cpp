@@ -1,4 +1,4 @@
-#include "world_options.h"
+#include "options/world_options.h"
 
 #include <fmt/format.h>
 

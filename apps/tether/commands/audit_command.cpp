@@ -1,6 +1,6 @@
-#include "commands.h"
-#include "file_kind.h"
-#include "say.h"
+#include "commands/commands.h"
+#include "options/file_kind.h"
+#include "terminal/say.h"
 
 #include <filesystem>
 #include <string>

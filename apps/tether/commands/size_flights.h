@@ -1,7 +1,7 @@
 #pragma once
 
-#include "commands.h"
-#include "status_line.h"
+#include "commands/commands.h"
+#include "terminal/status_line.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,7 +1,7 @@
-#include "command_line.h"
+#include "options/command_line.h"
 
-#include "commands.h"
-#include "say.h"
+#include "commands/commands.h"
+#include "terminal/say.h"
 
 #include <functional>
 #include <memory>

@@ -1,9 +1,9 @@
-#include "size_flights.h"
+#include "commands/size_flights.h"
 
 #include "back_ends.h"
-#include "say.h"
-#include "trial_options.h"
-#include "world_options.h"
+#include "options/trial_options.h"
+#include "options/world_options.h"
+#include "terminal/say.h"
 
 #include <algorithm>
 

@@ -1,11 +1,11 @@
 #include "back_ends.h"
-#include "commands.h"
-#include "file_kind.h"
-#include "say.h"
-#include "simulator_option.h"
-#include "size_flights.h"
-#include "trial_options.h"
-#include "world_options.h"
+#include "commands/commands.h"
+#include "commands/size_flights.h"
+#include "options/file_kind.h"
+#include "options/simulator_option.h"
+#include "options/trial_options.h"
+#include "options/world_options.h"
+#include "terminal/say.h"
 
 #include <algorithm>
 #include <cmath>

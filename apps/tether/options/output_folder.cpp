@@ -1,4 +1,4 @@
-#include "output_folder.h"
+#include "options/output_folder.h"
 
 #include <fmt/format.h>
 #include <fnmatch.h>

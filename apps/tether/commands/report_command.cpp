@@ -1,6 +1,6 @@
-#include "commands.h"
-#include "file_kind.h"
-#include "print_report.h"
+#include "commands/commands.h"
+#include "options/file_kind.h"
+#include "terminal/print_report.h"
 
 #include <cerrno>
 #include <cstdio>

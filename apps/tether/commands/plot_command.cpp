@@ -1,7 +1,7 @@
-#include "commands.h"
-#include "file_kind.h"
-#include "output_folder.h"
-#include "say.h"
+#include "commands/commands.h"
+#include "options/file_kind.h"
+#include "options/output_folder.h"
+#include "terminal/say.h"
 
 #include <filesystem>
 #include <set>

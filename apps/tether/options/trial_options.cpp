@@ -1,4 +1,4 @@
-#include "trial_options.h"
+#include "options/trial_options.h"
 
 #include <cstdlib>
 #include <string_view>
