@@ -69,8 +69,8 @@ std::unique_ptr<sim::Simulator> attach(const sim::protocol::Endpoint& endpoint, 
 
 /// A simulator without processes and files; `make` returns it.
 template <class Make>
-runner::BackEnd without_processes(Make make) {
-  return {.require_readable = [](const sim::World&) {},
+runner::BackEnd without_processes(Make make, void (*require_readable)(const sim::World&)) {
+  return {.require_readable = require_readable,
           .start =
               [make](sim::World world, const SimulatorSetup& setup) {
                 return std::make_unique<WithoutProcesses>(make(std::move(world), setup));
@@ -79,15 +79,19 @@ runner::BackEnd without_processes(Make make) {
 }
 
 runner::BackEnd back_end(EmbeddedSimulator) {
-  return without_processes([](sim::World world, const SimulatorSetup& setup) {
-    return sim::make_mujoco_simulator(std::move(world), setup.warn, setup.threads_ahead);
-  });
+  return without_processes(
+      [](sim::World world, const SimulatorSetup& setup) {
+        return sim::make_mujoco_simulator(std::move(world), setup.warn, setup.threads_ahead);
+      },
+      [](const sim::World&) {});
 }
 
 runner::BackEnd back_end(const sim::protocol::Endpoint& endpoint) {
-  return without_processes([endpoint](sim::World world, const SimulatorSetup& setup) {
-    return attach(endpoint, std::move(world), setup);
-  });
+  return without_processes(
+      [endpoint](sim::World world, const SimulatorSetup& setup) {
+        return attach(endpoint, std::move(world), setup);
+      },
+      sim::require_color_cameras);
 }
 
 runner::BackEnd back_end(GazeboSimulator) {
@@ -95,6 +99,7 @@ runner::BackEnd back_end(GazeboSimulator) {
               [](const sim::World& world) {
                 sim::check_sdf_version(world, {.name = "Gazebo 11"});
                 sim::check_gazebo_world(world);
+                sim::require_color_cameras(world);
               },
           .start =
               [](sim::World world, const SimulatorSetup& setup) {

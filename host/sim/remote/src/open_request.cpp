@@ -7,6 +7,7 @@
 
 #include <tether/base/error.h>
 #include <tether/sim/bodies.h>
+#include <tether/sim_remote/remote_simulator.h>
 #include <tether/sim_sensing/composite_renderer.h>
 #include <tether/sim_sensing/state_layout.h>
 
@@ -40,8 +41,9 @@ std::vector<VisualMaterial> materials_of(const World& world) {
   return materials;
 }
 
-/// The protocol's pictures have colours only.
-void refuse_other_cameras(const World& world) {
+}  // namespace
+
+void require_color_cameras(const World& world) {
   for (const Uav& uav : world.uavs) {
     for (const Sensor& sensor : uav.sensors) {
       const auto* camera = std::get_if<CameraModel>(&sensor.model);
@@ -56,15 +58,13 @@ void refuse_other_cameras(const World& world) {
   }
 }
 
-}  // namespace
-
 protocol::Open make_open(const World& world, const WarningSink& warn) {
   if (world.file.empty()) {
     throw Error(ErrorCode::kBadFile,
                 "world '" + world.name + "' has no file; external simulators read the world's file")
         .about(world.name);
   }
-  refuse_other_cameras(world);
+  require_color_cameras(world);
   const ViewSize size = largest_view(world);
   protocol::Open open;
   open.world_name = world.name;

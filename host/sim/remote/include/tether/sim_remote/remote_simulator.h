@@ -25,6 +25,11 @@ struct RemoteOptions {
   std::string address{};
 };
 
+/// The protocol's pictures have colours only.
+/// @throws Error(kBadFile), located at the sensor and about its name, for a depth, RGBD or
+/// segmentation camera.
+void require_color_cameras(const World& world);
+
 /// A simulator at the other end of a connection, with the world's UAVs added to it. It provides
 /// dynamics, rays and ideal pictures; the sensing library makes the samples from them, as for the
 /// embedded back end.
