@@ -8,6 +8,9 @@
 #include "surface-inl.h"
 #include "vector-inl.h"
 
+#include <array>
+#include <cstdint>
+
 // Textures: trilinear, repeated, in the bytes' own values.
 HWY_BEFORE_NAMESPACE();
 namespace tether::raster::HWY_NAMESPACE {
@@ -88,6 +91,20 @@ struct Pair {
   VU left, right;
 };
 
+#if HWY_TARGET != HWY_SCALAR
+// The pairs of texels at several places, by one load each: instructions that gather are no quicker,
+// and those of AVX-512 slower.
+template <class DW>
+HWY_INLINE hn::Vec<DW> pairs(DW d, const std::uint32_t* texels, const std::int32_t* at) {
+  if constexpr (hn::MaxLanes(DW()) == 1) {
+    return hn::LoadU(d, reinterpret_cast<const std::uint64_t*>(texels + *at));
+  } else {
+    const hn::Half<DW> half;
+    return hn::Combine(d, pairs(half, texels, at + hn::Lanes(half)), pairs(half, texels, at));
+  }
+}
+#endif
+
 HWY_INLINE Pair gather(const std::uint32_t* texels, VI at) {
   const DU du;
 #if HWY_TARGET == HWY_SCALAR
@@ -95,14 +112,10 @@ HWY_INLINE Pair gather(const std::uint32_t* texels, VI at) {
   return {hn::Set(du, left[0]), hn::Set(du, left[1])};
 #else
   const hn::Repartition<std::uint64_t, DU> dw;
-  const hn::Repartition<std::int64_t, DI> di;
-  const hn::Half<DI> half;
-  const auto* const both = reinterpret_cast<const std::uint64_t*>(texels);
-  const VI bytes = hn::ShiftLeft<2>(at);
-  const auto low = hn::GatherOffset(dw, both, hn::PromoteTo(di, hn::LowerHalf(half, bytes)));
-  const auto high = hn::GatherOffset(dw, both, hn::PromoteTo(di, hn::UpperHalf(half, bytes)));
-  const VU a = hn::BitCast(du, low);
-  const VU b = hn::BitCast(du, high);
+  alignas(64) std::array<std::int32_t, kMaxLanes> places;
+  hn::Store(at, DI(), places.data());
+  const VU a = hn::BitCast(du, pairs(dw, texels, places.data()));
+  const VU b = hn::BitCast(du, pairs(dw, texels, places.data() + hn::Lanes(dw)));
   return {hn::ConcatEven(du, b, a), hn::ConcatOdd(du, b, a)};
 #endif
 }
