@@ -98,8 +98,7 @@ void ClearanceMeter::add(const Link& link, const Pose& X_BL, std::optional<std::
 
 std::span<const Vec3> ClearanceMeter::vertices_of(const MeshGeometry& mesh,
                                                   const MeshVertices& vertices) {
-  const auto [known, is_new] =
-      vertices_.try_emplace({mesh.file, mesh.submesh, mesh.scale.x, mesh.scale.y, mesh.scale.z});
+  const auto [known, is_new] = vertices_.try_emplace(key_of(mesh));
   if (is_new) known->second = vertices(mesh);
   return known->second;
 }
