@@ -92,7 +92,7 @@ void ClearanceMeter::add(const Link& link, const Pose& X_BL, std::optional<std::
       if (shape.vertices.empty()) continue;
     }
     if (!shape.plane_normal_S) shape.bounds = bounds_of(shape.at({}));
-    shapes_.push_back(std::move(shape));
+    shapes_.push_back(shape);
   }
 }
 
