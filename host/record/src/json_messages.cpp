@@ -52,11 +52,35 @@ std::string_view encoding_of(const std::vector<std::uint16_t>&) {
   return "16UC1";
 }
 
-template <class T>
-void decode_pixels(const Json& data, const RawImage& image, std::vector<T>& pixels) {
+void append_data(JsonObject& object, std::span<const std::uint8_t> bytes) {
+  std::string& data = object.begin("data");
+  data += '"';
+  append_base64(data, bytes);
+  data += '"';
+}
+
+std::vector<std::uint8_t> data_member(const Json& object) {
   std::vector<std::uint8_t> bytes;
+  const Json& data = member(object, "data");
   if (!data.is_string() || !decode_base64(data.get_ref<const std::string&>(), bytes))
     throw Damage("member", "data", "is not base64");
+  return bytes;
+}
+
+// An Image or a RawImage without its pixels.
+template <class Message>
+Message picture_of_sensor(const Json& json) {
+  Message message;
+  message.at = timestamp_member(json);
+  message.uav = text_member(json, "uav");
+  message.sensor = text_member(json, "sensor");
+  message.index = unsigned_member(json, "index");
+  return message;
+}
+
+template <class T>
+void decode_pixels(const std::vector<std::uint8_t>& bytes, const RawImage& image,
+                   std::vector<T>& pixels) {
   const std::size_t count =
       static_cast<std::size_t>(image.width_px) * static_cast<std::size_t>(image.height_px);
   if (bytes.size() != count * sizeof(T))
@@ -104,10 +128,7 @@ void append_json(std::string& out, const Image& message) {
   object.text("uav", message.uav);
   object.text("sensor", message.sensor);
   object.integer("index", message.index);
-  std::string& data = object.begin("data");
-  data += '"';
-  append_base64(data, message.png);
-  data += '"';
+  append_data(object, message.png);
   object.close();
 }
 
@@ -124,11 +145,8 @@ void append_json(std::string& out, const RawImage& message) {
       [&](const auto& pixels) {
         object.text("encoding", encoding_of(pixels));
         object.integer("step", sizeof pixels[0] * static_cast<std::size_t>(message.width_px));
-        std::string& data = object.begin("data");
-        data += '"';
-        append_base64(data, {reinterpret_cast<const std::uint8_t*>(pixels.data()),
+        append_data(object, {reinterpret_cast<const std::uint8_t*>(pixels.data()),
                              pixels.size() * sizeof pixels[0]});
-        data += '"';
       },
       message.pixels);
   object.close();
@@ -179,24 +197,14 @@ Annotation annotation_from_json(std::string_view text) {
 
 Image image_from_json(std::string_view text) {
   const Json json = parse_object(text);
-  Image message;
-  message.at = timestamp_member(json);
-  message.uav = text_member(json, "uav");
-  message.sensor = text_member(json, "sensor");
-  message.index = unsigned_member(json, "index");
-  const Json& data = member(json, "data");
-  if (!data.is_string() || !decode_base64(data.get_ref<const std::string&>(), message.png))
-    throw Damage("member", "data", "is not base64");
+  Image message = picture_of_sensor<Image>(json);
+  message.png = data_member(json);
   return message;
 }
 
 RawImage raw_image_from_json(std::string_view text) {
   const Json json = parse_object(text);
-  RawImage message;
-  message.at = timestamp_member(json);
-  message.uav = text_member(json, "uav");
-  message.sensor = text_member(json, "sensor");
-  message.index = unsigned_member(json, "index");
+  RawImage message = picture_of_sensor<RawImage>(json);
   message.width_px = static_cast<int>(integer_member(json, "width", 1, kLargestSide_px));
   message.height_px = static_cast<int>(integer_member(json, "height", 1, kLargestSide_px));
   const std::string encoding = text_member(json, "encoding");
@@ -205,7 +213,7 @@ RawImage raw_image_from_json(std::string_view text) {
   } else if (encoding != "32FC1") {
     throw Damage("member", "encoding", "is neither 32FC1 nor 16UC1");
   }
-  std::visit([&](auto& pixels) { decode_pixels(member(json, "data"), message, pixels); },
+  std::visit([&](auto& pixels) { decode_pixels(data_member(json), message, pixels); },
              message.pixels);
   return message;
 }

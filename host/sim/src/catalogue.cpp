@@ -25,10 +25,16 @@ uav::SensorDescription describe_sensor(const World& world, const Sensor& sensor)
 
 }  // namespace
 
+const std::string& model_name(const World& world, std::size_t number) {
+  const std::size_t models = world.models.size();
+  return number <= models ? world.models.at(number - 1).name
+                          : world.uavs.at(number - 1 - models).name;
+}
+
 std::vector<std::string> model_names(const World& world) {
   std::vector<std::string> names;
-  for (const Model& model : world.models) names.push_back(model.name);
-  for (const Uav& uav : world.uavs) names.push_back(uav.name);
+  for (std::size_t i = 1; i <= world.models.size() + world.uavs.size(); ++i)
+    names.push_back(model_name(world, i));
   return names;
 }
 

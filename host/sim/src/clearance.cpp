@@ -92,14 +92,13 @@ void ClearanceMeter::add(const Link& link, const Pose& X_BL, std::optional<std::
       if (shape.vertices.empty()) continue;
     }
     if (!shape.plane_normal_S) shape.bounds = bounds_of(shape.at({}));
-    shapes_.push_back(std::move(shape));
+    shapes_.push_back(shape);
   }
 }
 
 std::span<const Vec3> ClearanceMeter::vertices_of(const MeshGeometry& mesh,
                                                   const MeshVertices& vertices) {
-  const auto [known, is_new] =
-      vertices_.try_emplace({mesh.file, mesh.submesh, mesh.scale.x, mesh.scale.y, mesh.scale.z});
+  const auto [known, is_new] = vertices_.try_emplace(key_of(mesh));
   if (is_new) known->second = vertices(mesh);
   return known->second;
 }

@@ -222,10 +222,6 @@ std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) {
 
 }  // namespace
 
-MeshKey key_of(const MeshGeometry& mesh) {
-  return {mesh.file, mesh.submesh, mesh.scale.x, mesh.scale.y, mesh.scale.z};
-}
-
 MeshFiles::MeshFiles() = default;
 MeshFiles::~MeshFiles() = default;
 MeshFiles::MeshFiles(MeshFiles&&) noexcept = default;

@@ -5,10 +5,9 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <string>
-#include <tuple>
 #include <vector>
 
+#include <tether/sim/mesh_key.h>
 #include <tether/sim/world.h>
 
 namespace Assimp {
@@ -16,10 +15,6 @@ class Importer;
 }
 
 namespace tether::sim {
-
-/// What distinguishes two uses of meshes: file, submesh and scale.
-using MeshKey = std::tuple<std::filesystem::path, std::string, double, double, double>;
-MeshKey key_of(const MeshGeometry& mesh);
 
 /// Reads mesh files, each once, and keeps what is in them. One thread at a time.
 class MeshFiles {

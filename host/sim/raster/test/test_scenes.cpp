@@ -13,6 +13,17 @@ void add_square(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, s
   mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
 }
 
+// Of a grid of (n + 1)² vertices, row after row.
+void add_squares(Mesh& mesh, int n) {
+  const auto stride = static_cast<std::uint32_t>(n + 1);
+  for (std::uint32_t i = 0; i + 1 < stride; ++i) {
+    for (std::uint32_t j = 0; j + 1 < stride; ++j) {
+      const std::uint32_t a = i * stride + j;
+      add_square(mesh, a, a + stride, a + stride + 1, a + 1);
+    }
+  }
+}
+
 std::uint32_t count(const Mesh& mesh) {
   return static_cast<std::uint32_t>(mesh.vertices.size());
 }
@@ -90,13 +101,7 @@ Mesh ball(float radius, int n) {
                  static_cast<float>(i) / static_cast<float>(n));
     }
   }
-  const auto stride = static_cast<std::uint32_t>(n + 1);
-  for (std::uint32_t i = 0; i + 1 < stride; ++i) {
-    for (std::uint32_t j = 0; j + 1 < stride; ++j) {
-      const std::uint32_t a = i * stride + j;
-      add_square(mesh, a, a + stride, a + stride + 1, a + 1);
-    }
-  }
+  add_squares(mesh, n);
   return mesh;
 }
 
@@ -114,13 +119,7 @@ Mesh crumpled_sheet(std::uint64_t seed, int n, float z) {
                  z * (1.0F + moved(2, 0.002F)), {0.0F, 0.0F, -1.0F}, 0.0F, 0.0F);
     }
   }
-  const auto stride = static_cast<std::uint32_t>(n + 1);
-  for (std::uint32_t i = 0; i + 1 < stride; ++i) {
-    for (std::uint32_t j = 0; j + 1 < stride; ++j) {
-      const std::uint32_t a = i * stride + j;
-      add_square(mesh, a, a + stride, a + stride + 1, a + 1);
-    }
-  }
+  add_squares(mesh, n);
   return mesh;
 }
 

@@ -46,10 +46,9 @@ std::vector<std::uint16_t> labels_of(std::span<const std::uint32_t> models, cons
 
 std::vector<uav::SeenAnchor> find_anchors(const World& world, std::span<const std::uint32_t> models,
                                           int width_px) {
-  const std::vector<std::string> names = model_names(world);
   std::vector<uav::SeenAnchor> seen(world.anchors.size());
   for (const auto& [number, box] : raster::visible_boxes(models, width_px)) {
-    const std::string& model = names.at(number - 1);
+    const std::string& model = model_name(world, number);
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const std::string& anchor = world.anchors[i].anchor.name;
       if (model != anchor && !model.starts_with(anchor + "::")) continue;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -9,9 +8,9 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
+#include <tether/sim/mesh_key.h>
 #include <tether/sim/world.h>
 
 namespace tether::sim {
@@ -54,10 +53,7 @@ class ClearanceMeter {
   std::string_view shape_overhead(const uav::Vec3& p_W) const;
 
   const World& world_;
-  /// By file, submesh and scale. Shapes refer to them.
-  std::map<std::tuple<std::filesystem::path, std::string, double, double, double>,
-           std::vector<uav::Vec3>>
-      vertices_;
+  std::map<MeshKey, std::vector<uav::Vec3>> vertices_;  ///< Shapes refer to them.
   std::vector<Shape> shapes_;
   std::vector<uav::Pose> starts_;
   bool is_complete_ = true;

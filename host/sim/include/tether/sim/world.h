@@ -237,8 +237,10 @@ using tether::WarningSink;
 /// of their number.
 inline constexpr std::size_t kMaxMovingLinks = 200;
 
-/// The number that a view has for each pixel that shows a model: those of the world from 1, then
-/// the UAVs. 0: none of them. Their names, from number 1 on.
+/// The name of the model with the number that a view has for each of its pixels: the models of the
+/// world from 1, then the UAVs (0: none of them). @throws std::out_of_range for another number.
+const std::string& model_name(const World& world, std::size_t number);
+/// The names from number 1 on.
 std::vector<std::string> model_names(const World& world);
 
 /// The catalogue that the SUT of `uav` receives.

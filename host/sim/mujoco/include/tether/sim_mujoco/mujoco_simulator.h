@@ -20,8 +20,6 @@ extern const bool kHasMujoco;
 ///
 /// Expected pictures are drawn on `threads_ahead` threads of its own; 0: `expect` does nothing.
 ///
-/// Expected pictures are drawn on `threads_ahead` threads of its own; 0: `expect` does nothing.
-///
 /// `warn` receives one line for each thing of the world that MuJoCo cannot represent.
 /// @throws Error(kSetup) when the back end is not built in or the model does not compile.
 std::unique_ptr<Simulator> make_mujoco_simulator(World world, const WarningSink& warn,
