@@ -16,6 +16,7 @@ bool may_distort(const TrialSpec& spec) {
     case scenario::Clock::kUnstamped:  // this machine's time
       return true;
     case scenario::Clock::kCpu:
+    case scenario::Clock::kCounted:
     case scenario::Clock::kScripted:
       return false;
   }

@@ -21,6 +21,7 @@ TEST(DrawingThreads, AreNoneWhereTheyCouldDistortTheTimeOfTheProgram) {
   constexpr Policy kBarrier = Policy::kConservativeBarrier;
   const Case cases[] = {
       {"CPU time", Clock::kCpu, false, false, kBarrier, 1},
+      {"counted instructions", Clock::kCounted, false, false, kBarrier, 1},
       {"a script", Clock::kScripted, false, false, kBarrier, 1},
       {"wall time of this machine", Clock::kWall, false, false, kBarrier, 0},
       {"wall time of a board", Clock::kWall, true, false, kBarrier, 1},
