@@ -18,6 +18,7 @@
 #include <tether/os/text_file.h>
 #include <tether/report/page.h>
 #include <tether/report/report.h>
+#include <tether/report/sweep.h>
 #include <tether/runner/trial_folder.h>
 
 namespace tether::app {
@@ -113,8 +114,11 @@ int report(const ReportOptions& options, const std::stop_token&) {
 
 void print_campaign_summary(const std::filesystem::path& folder) {
   const campaign::CampaignResults results = campaign::read_campaign_results(folder);
+  const auto sweeps = report::sweeps_of(results);
+  for (const report::Sweep& sweep : sweeps) fmt::print("{}\n", to_text(report::sweep_table(sweep)));
   for (const auto& scenario : results.scenarios)
-    fmt::print("{}\n", to_text(report::paper_form_table(scenario)));
+    if (scenario.swept_from.empty())
+      fmt::print("{}\n", to_text(report::paper_form_table(scenario)));
   fmt::print(
       "Records and results: {0}\n"
       "Next steps:\n"

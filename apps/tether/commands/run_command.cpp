@@ -92,8 +92,12 @@ void require_use_of_tunnel(const runner::TrialSpec& spec) {
 runner::TrialSpec make_spec(const RunOptions& options) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   runner::TrialSpec spec;
+  std::vector<scenario::Setting> settings;
+  for (const std::string& text : options.settings)
+    settings.push_back(scenario::parse_setting(text, std::filesystem::current_path()));
   spec.scenario = scenario::load_scenario(
-      find_file(shipped, scenario::ShippedKind::kScenario, options.scenario, FileKind::kScenario));
+      find_file(shipped, scenario::ShippedKind::kScenario, options.scenario, FileKind::kScenario),
+      settings);
   spec.scenario.record_images |= options.record_images;
   spec.scenario.world_options = world_options(options.reading, shipped);
   if (!options.profile.empty())

@@ -24,6 +24,7 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
   result.computing = condition.computing;
   result.real_time_factor = condition.real_time_factor;
   if (condition.target) result.target = condition.target->name;
+  for (const auto& [key, value] : scenario.settings) result.settings[key] = value;
   result.profiles = scenario::profile_names(scenario, condition);
   return result;
 }

@@ -312,6 +312,7 @@ void read_trial(const JsonReader& json, TrialResult& result) {
   if (result.clock == kScripted) result.computing = json.seconds("computing_s");
   result.real_time_factor = json.number("real_time_factor");
   if (json.has("target")) result.target = json.text("target");
+  if (json.has("settings")) result.settings = json.object("settings").all_texts();
   if (json.has("profiles")) result.profiles = json.texts("profiles");
   result.outcome = read_outcome(json);
   result.end = json.text("end");
@@ -341,6 +342,7 @@ std::string to_json(const TrialResult& result) {
             {"cpu_factor", result.cpu_factor}};
   if (result.clock == kScripted) json["computing_s"] = exact_seconds(result.computing);
   if (!result.target.empty()) json["target"] = result.target;
+  if (!result.settings.empty()) json["settings"] = result.settings;
   json.update(Json{{"real_time_factor", result.real_time_factor},
                    {"profiles", result.profiles},
                    {"outcome", name(result.outcome)},

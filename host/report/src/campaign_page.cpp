@@ -8,6 +8,7 @@
 #include <tether/report/page.h>
 #include <tether/report/paper_figures.h>
 #include <tether/report/report.h>
+#include <tether/report/sweep.h>
 
 // The page of a campaign: problems on top, then a section for each scenario, whose parts are built
 // by one function each in reading order, and the setup last. A part without data is empty.
@@ -130,6 +131,15 @@ std::string scenario_section(FigureMaker& figures, const campaign::ScenarioResul
   return html + "</section>\n";
 }
 
+std::string sweep_section(FigureMaker& figures, const Sweep& sweep) {
+  std::string html = "<section>\n" + element("h2", sweep.scenario + ": sweep") +
+                     figures.plot(sweep_plot(sweep), "The bars are 95 % intervals (Wilson).");
+  for (const std::string& metric : sweep.points.front()->metrics)
+    html += figures.plot(sweep_plot(sweep, metric),
+                         "Means; each circle is a trial, the dotted line the limit.");
+  return html + folded("Table", to_html(sweep_table(sweep))) + "</section>\n";
+}
+
 }  // namespace
 
 std::string campaign_page(const campaign::CampaignResults& results,
@@ -139,6 +149,7 @@ std::string campaign_page(const campaign::CampaignResults& results,
   std::string body = element("h1", name);
   if (!results.manifest.description.empty()) body += element("p", results.manifest.description);
   body += problems_box(problems(results)) + contents(results);
+  for (const Sweep& sweep : sweeps_of(results)) body += sweep_section(figures, sweep);
   std::size_t number = 0;
   for (const campaign::ScenarioResults& scenario : results.scenarios)
     body += scenario_section(figures, scenario, folder, ++number);

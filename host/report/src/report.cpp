@@ -8,6 +8,7 @@
 
 #include <tether/report/paper_figures.h>
 #include <tether/report/report.h>
+#include <tether/report/sweep.h>
 
 // The tables for people. A scenario has one in the paper's form with notes on each trial that is
 // missing or special, one with all statistics, one that compares its conditions, and one on the
@@ -306,6 +307,7 @@ Table optimism_table(const campaign::ScenarioResults& scenario) {
 
 std::vector<Table> report_tables(const campaign::CampaignResults& results) {
   std::vector<Table> tables;
+  for (const Sweep& sweep : sweeps_of(results)) tables.push_back(sweep_table(sweep));
   for (const campaign::ScenarioResults& scenario : results.scenarios) {
     tables.push_back(paper_form_table(scenario));
     tables.push_back(details_table(scenario));

@@ -93,6 +93,8 @@ campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
     arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
   if (is_slowed)
     arguments.insert(arguments.end(), {"--slowdown", fmt::format("{}", plan.condition->slowdown)});
+  for (const auto& [key, value] : plan.scenario->settings)
+    arguments.insert(arguments.end(), {"--set", fmt::format("{}={}", key, value)});
   if (plan.record_images) arguments.emplace_back("--images");
   const sim::WorldOptions& options = plan.scenario->world_options;
   if (options.is_tolerant) arguments.emplace_back("--tolerant");

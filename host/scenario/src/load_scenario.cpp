@@ -1,5 +1,6 @@
 #include "read_sensor_profile.h"
 #include "read_sut.h"
+#include "settings.h"
 
 #include <algorithm>
 #include <array>
@@ -339,14 +340,16 @@ const Condition* Scenario::find_condition(std::string_view condition) const {
   return found == conditions.end() ? nullptr : &*found;
 }
 
-Scenario load_scenario(const std::filesystem::path& file) {
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings) {
   Scenario scenario;
   scenario.file = std::filesystem::absolute(file).lexically_normal();
-  const toml::Document document = toml::Document::load(scenario.file);
+  toml::Document document = toml::Document::load(scenario.file);
+  for (const Setting& setting : settings) apply(setting, document, scenario.file);
+  scenario.settings = settings;
   const toml::Table root = document.root(
       {"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s", "connect_limit_s",
        "max_contact_speed_m_s", "anchors", "uav", "sut", "condition", "metric", "record"});
-  scenario.name = root.identifier("name");
+  scenario.name = root.identifier("name") + name_suffix(settings);
   scenario.description = root.text_or("description", "");
   scenario.world = root.existing_file("world");
   scenario.files = {scenario.file, scenario.world};

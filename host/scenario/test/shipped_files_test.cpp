@@ -24,7 +24,7 @@ void expect_named_as_their_files(const std::string& folder, const Load& load) {
 }
 
 TEST(ShippedFiles, LoadAndAreNamedAsTheirFiles) {
-  expect_named_as_their_files("scenarios", load_scenario);
+  expect_named_as_their_files("scenarios", [](const auto& file) { return load_scenario(file); });
   expect_named_as_their_files("campaigns", load_campaign);
   expect_named_as_their_files("profiles", load_profile);
   expect_named_as_their_files("profiles/targets", load_target);

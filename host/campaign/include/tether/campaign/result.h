@@ -143,6 +143,8 @@ struct TrialResult {
   Duration computing{0};  ///< of clock "scripted": charged for each phase of computing
   double real_time_factor = 0.0;
   std::string target{};  ///< its name; empty: the host as it is
+  /// Values of the scenario's file that were replaced (`tether run --set`, sweeps).
+  std::map<std::string, std::string> settings{};
   /// Names of the profiles in use, in the order of their layers: a later one overrides an earlier.
   std::vector<std::string> profiles;
   Outcome outcome = Outcome::kFailed;

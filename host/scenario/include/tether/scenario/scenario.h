@@ -73,13 +73,28 @@ struct UavSetup {
   Sut sut;  ///< its own, or the scenario's; own parameters override the scenario's
 };
 
+/// Replaces a value of a scenario file.
+struct Setting {
+  /// Path of a key that the file has, from its top or from [[condition]] or [[uav]]:
+  /// "time_limit_s", "condition.cpu_factor" or "cpu_factor", "sut.parameters.yaw_rate_deg_s".
+  std::string key;
+  std::string value;  ///< as on a command line
+
+  friend bool operator==(const Setting&, const Setting&) = default;
+};
+
+/// "KEY=VALUE", as an option. A VALUE that is a file in `folder` becomes an absolute path.
+/// @throws Error(kUsage), about the text, if it has no key or no value.
+Setting parse_setting(std::string_view text, const std::filesystem::path& folder);
+
 /// Softer contacts are landings: UAVs descend at less.
 inline constexpr double kHardContact_m_s = 0.5;
 
 struct Scenario {
   std::filesystem::path file;  ///< absolute
-  std::string name;            ///< letters, digits, '_', '-', '.'
+  std::string name;            ///< letters, digits, '_', '-', '.'; with settings, their values too
   std::string description;
+  std::vector<Setting> settings{};    ///< not of the file: values that were replaced
   std::filesystem::path world;        ///< absolute
   sim::WorldOptions world_options{};  ///< not of the file: how to read the world
   Duration step{std::chrono::milliseconds(1)};
@@ -109,10 +124,13 @@ struct Scenario {
 std::string slug(std::string_view name);
 
 /// Reads and checks a scenario (docs/guide/scenario.md). Paths in it are relative to its own
-/// folder.
+/// folder. The settings replace values of the file; the scenario's name then becomes
+/// "NAME-cpu_factor-2".
 /// @throws Error(kBadFile) with file and line, about the key, for TOML errors, an unknown key, a
-///   wrong type, a value out of its range, a missing file or key.
-Scenario load_scenario(const std::filesystem::path& file);
+///   wrong type, a value out of its range, a missing file or key. Error(kUsage), about the key, if
+///   a setting has a key that the file does not have.
+Scenario load_scenario(const std::filesystem::path& file,
+                       const std::vector<Setting>& settings = {});
 
 /// The world request of a trial: each UAV's start yaw is drawn from its spread, keyed by the seed.
 sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
