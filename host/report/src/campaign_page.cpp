@@ -136,7 +136,7 @@ std::string sweep_section(FigureMaker& figures, const Sweep& sweep) {
                      figures.plot(sweep_plot(sweep), "The bars are 95 % intervals (Wilson).");
   for (const std::string& metric : sweep.points.front()->metrics)
     html += figures.plot(sweep_plot(sweep, metric),
-                         "Means; each circle is a trial, the dotted line the limit.");
+                         "Means. Each circle is a trial; a dotted line is the limit.");
   return html + folded("Table", to_html(sweep_table(sweep))) + "</section>\n";
 }
 

@@ -24,6 +24,10 @@ std::string short_value(const std::string& value) {
                                               : std::filesystem::path(value).stem().string();
 }
 
+std::string last_part(const std::string& key) {
+  return key.substr(key.rfind('.') + 1);
+}
+
 std::optional<double> number_in(const std::string& text) {
   double number = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -100,7 +104,7 @@ std::vector<Series> series_of(const Sweep& sweep, const Axis& axis) {
     for (std::size_t key = 0; key < point->settings.size(); ++key) {
       const bool is_shown = key != axis.key && sweep.points.size() > axis.values.size();
       if (is_shown)
-        others += fmt::format(", {} {}", point->settings[key].key,
+        others += fmt::format(", {} {}", last_part(point->settings[key].key),
                               short_value(point->settings[key].value));
     }
     for (const campaign::ConditionResults& condition : point->conditions) {

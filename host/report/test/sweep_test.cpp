@@ -41,7 +41,7 @@ TEST(SweepTable, HasSuccessAndMeansOfEachPoint) {
 
 TEST(SweepPlot, IsOverTheKeyWithTheMostValues) {
   const auto a = point({{"f", "1"}, {"g", "5"}}, {1}), b = point({{"f", "1"}, {"g", "10"}}, {2}),
-             c = point({{"f", "1"}, {"g", "20"}}, {3}), d = point({{"f", "2"}, {"g", "5"}}, {4});
+             c = point({{"f", "1"}, {"g", "20"}}, {3}), d = point({{"a.f", "2"}, {"g", "5"}}, {4});
   const Sweep sweep{"turn", {&a, &b, &c, &d}};
   const std::string means = sweep_plot(sweep, "time_required").value().script;
   EXPECT_THAT(means, HasSubstr("set xtics ('5' 5, '10' 10, '20' 20)"));
