@@ -52,6 +52,17 @@ function(_tether_check_headers target include_dir)
   endif()
 endfunction()
 
+# What nearly every library includes is compiled once. Not with a cache of compiled files (ccache), which finds less
+# that way; nor in `dev`, which finds what a file forgot to include.
+if(CMAKE_UNITY_BUILD AND BUILD_TESTING AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/library_headers.cpp" CONTENT "\n")
+  add_library(tether_library_headers STATIC EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/library_headers.cpp")
+  target_link_libraries(tether_library_headers PRIVATE tether_compile_options)
+  target_precompile_headers(tether_library_headers PRIVATE
+    <algorithm> <array> <atomic> <chrono> <cmath> <condition_variable> <filesystem> <fstream> <functional> <map> <memory>
+    <mutex> <optional> <ranges> <set> <span> <sstream> <stop_token> <string> <thread> <variant> <vector>)
+endif()
+
 # What must be there before a source can be read (scripts/tidy).
 add_custom_target(tether_generated)
 
@@ -140,6 +151,9 @@ function(tether_add_library name)
     add_library(${target} STATIC ${ARG_SOURCES})
     target_include_directories(${target} PUBLIC include PRIVATE src)
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} tether_compile_options)
+    if(TARGET tether_library_headers)
+      target_precompile_headers(${target} REUSE_FROM tether_library_headers)
+    endif()
   else()
     add_library(${target} INTERFACE)
     target_include_directories(${target} INTERFACE include)
