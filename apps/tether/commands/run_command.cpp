@@ -81,8 +81,7 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
 
 /// Rejects --tunnel if it has no effect.
 void require_use_of_tunnel(const runner::TrialSpec& spec) {
-  const auto& target = spec.condition.target;
-  if (!spec.uses_tunnel || (!spec.waits_for_sut && target && target->ssh)) return;
+  if (!spec.uses_tunnel || spec.sut_place() == runner::SutPlace::kBoard) return;
   throw Error(ErrorCode::kUsage,
               "--tunnel needs a SUT on a board. Select the board with --target "
               "ssh://[user@]board[:port] or a target file with its address, or omit --tunnel")

@@ -34,9 +34,8 @@ using coordinator::RunEnd;
 
 /// Connects to the board of the condition and reserves it; none if the SUTs run here.
 std::unique_ptr<board::Board> hold_board(const TrialSpec& spec, const std::stop_token& stop) {
-  const auto& target = spec.condition.target;
-  if (spec.waits_for_sut || !target || !target->ssh) return nullptr;
-  return std::make_unique<board::Board>(*target->ssh, stop);
+  if (spec.sut_place() != SutPlace::kBoard) return nullptr;
+  return std::make_unique<board::Board>(*spec.condition.target->ssh, stop);
 }
 
 std::vector<campaign::TaskEnd> task_ends(const coordinator::RunReport& report) {
@@ -169,6 +168,11 @@ std::string utc_now() {
 
 }  // namespace
 
+SutPlace TrialSpec::sut_place() const {
+  if (waits_for_sut) return SutPlace::kUnknown;
+  return condition.target && condition.target->ssh ? SutPlace::kBoard : SutPlace::kThisMachine;
+}
+
 campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_back_end,
                                 const TrialObserver& observer, const std::stop_token& stop) {
   // Errors in options and files are found before anything is written.
@@ -181,7 +185,8 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   const Timings timings =
       scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink());
   world.step = spec.scenario.step;
-  if (is_local(spec)) require_sut_programs(spec.scenario, spec.condition);
+  if (spec.sut_place() == SutPlace::kThisMachine)
+    require_sut_programs(spec.scenario, spec.condition);
   TrialFolder folder(spec.folder, spec.earlier);
 
   const std::string started_at = utc_now();

@@ -84,7 +84,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
   const coordinator::ClockSetting clock = clock_of(spec.condition);
   for (std::size_t i = 0; i < timings.size(); ++i)
     options.uavs.push_back({timings[i], spec.scenario.uavs[i].command_latency, clock,
-                            is_local(spec) ? known_cores() : 0});
+                            spec.sut_place() == SutPlace::kThisMachine ? known_cores() : 0});
   options.token = token;
   options.seed = spec.seed;
   options.real_time_factor = spec.condition.real_time_factor;
@@ -144,10 +144,6 @@ std::string sut_address(const TrialSpec& spec, board::Board* board, const link::
 }
 
 }  // namespace
-
-bool is_local(const TrialSpec& spec) {
-  return !spec.waits_for_sut && !(spec.condition.target && spec.condition.target->ssh);
-}
 
 TrialRun::TrialRun(const TrialSpec& spec, const Timings& timings, RunningSimulator& simulator,
                    board::Board* board, const TrialObserver& observer, std::stop_token stop)

@@ -23,9 +23,6 @@ namespace tether::runner {
 /// One list per UAV of the world, in the order of its sensors.
 using Timings = std::vector<std::vector<uav::SensorTiming>>;
 
-/// Whether the SUTs are started on this machine.
-bool is_local(const TrialSpec& spec);
-
 /// A run's report, and notes about it.
 struct Conducted {
   coordinator::RunReport report;
