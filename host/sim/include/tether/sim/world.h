@@ -126,6 +126,7 @@ struct Noise {
   double bias_stddev = 0.0;
   double dynamic_bias_stddev = 0.0;
   double dynamic_bias_correlation_time_s = 0.0;
+  friend bool operator==(const Noise&, const Noise&) = default;
 };
 
 struct CameraModel {
