@@ -88,7 +88,7 @@ std::string timelines_part(FigureMaker& figures, const std::vector<PlottedRun>& 
 const SeedRecords::OfCondition* with_images(const SeedRecords& records) {
   const SeedRecords::OfCondition* found = nullptr;
   for (const SeedRecords::OfCondition& one : records.records) {
-    if (one.record.images.empty()) continue;
+    if (one.record.images.empty() && one.record.raw_images.empty()) continue;
     if (found == nullptr || one.record.header.policy == record::kConservativeBarrier) found = &one;
   }
   return found;

@@ -45,7 +45,7 @@ const ElementTable kElements = {
     {"ellipsoid", {"radii"}},
     {"plane", {"normal", "size"}},
     {"mesh", {"uri", "scale", "submesh"}},
-    {"submesh", {"name"}},
+    {"submesh", {"name", "center"}},
     {"material", {"ambient", "diffuse", "specular", "emissive", "pbr", "tether:texture_repeat"}},
     {"pbr", {"metal", "specular"}},
     {"metal", {"albedo_map"}},

@@ -46,6 +46,7 @@ struct MeshGeometry {
   std::filesystem::path file;  ///< absolute, exists: .obj, .stl or .dae
   std::string submesh;         ///< empty: all
   uav::Vec3 scale{1.0, 1.0, 1.0};
+  bool is_centered = false;  ///< moved so that the middle of its extent is the origin
 };
 using Geometry = std::variant<BoxGeometry, CylinderGeometry, SphereGeometry, CapsuleGeometry,
                               EllipsoidGeometry, PlaneGeometry, MeshGeometry>;
@@ -126,6 +127,7 @@ struct Noise {
   double bias_stddev = 0.0;
   double dynamic_bias_stddev = 0.0;
   double dynamic_bias_correlation_time_s = 0.0;
+  friend bool operator==(const Noise&, const Noise&) = default;
 };
 
 struct CameraModel {
