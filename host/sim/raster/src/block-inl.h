@@ -85,10 +85,10 @@ HWY_INLINE void put_surface(const PreparedScene& scene, const Facet& f, const Sp
                             hn::Mask<DI> same, Block::Run& run, Cell& c) {
   const MaterialRow& material = scene.materials[f.material];
   const M mask = float_mask(same);
-  const auto put = [&](Cell::Lanes<float>& to, V value) HWY_ATTR {
+  const auto put = [&](Lanes<float>& to, V value) HWY_ATTR {
     store(kIsFirst ? value : hn::IfThenElse(mask, value, load(to)), to);
   };
-  const auto put_whole = [&](Cell::Lanes<std::int32_t>& to, VI value) HWY_ATTR {
+  const auto put_whole = [&](Lanes<std::int32_t>& to, VI value) HWY_ATTR {
     store(kIsFirst ? value : hn::IfThenElse(same, value, load(to)), to);
   };
   const Normal n = normal_at(f, s);
@@ -181,12 +181,19 @@ HWY_INLINE Colour lit(const Cell& cell) {
 void shade_block(const Part& part, bool with_alpha, Block& b) {
   const PreparedScene& scene = part.shading.scene;
   light_block(part, b);
+  for (const Block::Run& run : b.runs()) {
+    if (!run.is_textured) continue;
+    for (const std::size_t at : b.places(run)) {
+      Cell& c = b.cell(at);
+      look_up(scene, load(c.level), load(c.u), load(c.v), c.lookups);
+    }
+  }
   const V one = set(1.0F);
   for (const Block::Run& run : b.runs()) {
     for (const std::size_t at : b.places(run)) {
       Cell& c = b.cell(at);
       Texel texel{{one, one, one}, one};
-      if (run.is_textured) texel = sample(scene, load(c.level), load(c.u), load(c.v));
+      if (run.is_textured) texel = sample(scene, load(c.level), c.lookups);
       store(scaled(lit(c), texel.colour), c);
       if (!with_alpha) continue;
       store(Mul(of_material(run, c, scene.materials[0].alpha), texel.alpha), c.alpha);

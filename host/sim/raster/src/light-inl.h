@@ -180,8 +180,7 @@ HWY_INLINE void add_light(const Shading& shading, const LightRow& row, Block& b)
 // Adds `amounts` of a light's colour to the pixels' colours, and clears them. `own` is that of the
 // first material.
 HWY_INLINE void add_colour(const Block::Run& run, const Rgb& of_light,
-                           const std::array<float, 3>& own, Cell::Lanes<float> Cell::*amounts,
-                           Block& b) {
+                           const std::array<float, 3>& own, Lanes<float> Cell::*amounts, Block& b) {
   const auto colour_of = [&](const Cell& c) HWY_ATTR {
     return Colour{Mul(set(of_light[0]), of_material(run, c, own[0])),
                   Mul(set(of_light[1]), of_material(run, c, own[1])),

@@ -220,12 +220,14 @@ class Mean {
     const Way way = way_at(run, c, at);
     const V step = Div(set(1.0F), to_float(way.taps));
     Colour sum{set(0.0F), set(0.0F), set(0.0F)};
+    Lookups lookups;
     for (std::int32_t i = 0;; ++i) {
       const M counts = float_mask(hn::Gt(way.taps, whole(i)));
       if (hn::AllFalse(D(), counts)) return sum;
       const V along = Sub(Mul(set(static_cast<float>(i) + 0.5F), step), set(0.5F));
-      const Texel texel = sample(part_.shading.scene, load(c.level), Add(way.u, Mul(way.du, along)),
-                                 Add(way.v, Mul(way.dv, along)));
+      look_up(part_.shading.scene, load(c.level), Add(way.u, Mul(way.du, along)),
+              Add(way.v, Mul(way.dv, along)), lookups);
+      const Texel texel = sample(part_.shading.scene, load(c.level), lookups);
       add_to(sum, light_of(part_.shading.table, scaled(own, texel.colour)),
              hn::IfThenElseZero(counts, step));
     }

@@ -153,10 +153,35 @@ HWY_INLINE Normal normal_at(const Facet& f, const Spot& s) {
   return {Mul(x, scale), Mul(y, scale), Mul(z, scale)};
 }
 
+template <class T>
+using Lanes = std::array<T, hn::MaxLanes(D())>;
+
+// Where some pixels are on one size of a texture.
+struct Lookup {
+  alignas(64) Lanes<std::int32_t> pair;  // of PreparedScene::texels: the left one of four texels
+  Lanes<std::int32_t> x, y;              // between them, in the lowest 8 bits
+};
+using Lookups = std::array<Lookup, 2>;  // on a level and the next
+
+// The pixels of a vector.
+struct Cell {
+  alignas(64) Lanes<float> x, y, z;  // the surface's place in C
+  Lanes<float> nx, ny, nz;           // its normal, unless the run is of a flat triangle
+  Lanes<float> distance;             // from the origin, along the normal
+  Lanes<float> u, v;                 // in its texture
+  Lanes<float> texels_per_pixel2;    // of its largest size, squared; at least 1
+  Lanes<std::int32_t> level;         // 256 times the row of PreparedScene::levels
+  Lanes<std::int32_t> material;      // rows of PreparedScene::materials
+  Lanes<float> diffuse, specular;    // light that is not coloured yet
+  Lanes<float> r, g, b, alpha;       // the output
+  Lookups lookups;
+};
+
 // Some rows of a tile, step by step: each step goes over all pixels, a vector at a time. Pixels
-// that see different triangles share a vector from the second step on.
+// that see different triangles share a vector from the second step on. So few rows stay in the
+// cache.
 struct Block {
-  static constexpr int kRows = 8;
+  static constexpr int kRows = 4;
   static constexpr std::size_t kPixels = std::size_t{kRows} * kTile_px;
 
   // Vectors that follow each other, with triangles in them.
@@ -164,22 +189,6 @@ struct Block {
     const Facet* flat;         // the triangle of all their pixels, if it is one and flat; else null
     std::uint16_t first, end;  // of `places`
     bool is_shiny, is_textured;
-  };
-
-  // The pixels of a vector.
-  struct Cell {
-    template <class T>
-    using Lanes = std::array<T, hn::MaxLanes(D())>;
-
-    alignas(64) Lanes<float> x, y, z;  // the surface's place in C
-    Lanes<float> nx, ny, nz;           // its normal, unless the run is of a flat triangle
-    Lanes<float> distance;             // from the origin, along the normal
-    Lanes<float> u, v;                 // in its texture
-    Lanes<float> texels_per_pixel2;    // of its largest size, squared; at least 1
-    Lanes<std::int32_t> level;         // 256 times the row of PreparedScene::levels
-    Lanes<std::int32_t> material;      // rows of PreparedScene::materials
-    Lanes<float> diffuse, specular;    // light that is not coloured yet
-    Lanes<float> r, g, b, alpha;       // the output
   };
 
   alignas(64) std::array<std::uint32_t, kPixels> ids;  // the input: 0 where nothing is to be shaded
@@ -196,18 +205,16 @@ struct Block {
   }
 };
 
-using Cell = Block::Cell;
-
-HWY_INLINE V load(const Cell::Lanes<float>& from) {
+HWY_INLINE V load(const Lanes<float>& from) {
   return hn::Load(D(), from.data());
 }
-HWY_INLINE VI load(const Cell::Lanes<std::int32_t>& from) {
+HWY_INLINE VI load(const Lanes<std::int32_t>& from) {
   return hn::Load(DI(), from.data());
 }
-HWY_INLINE void store(V value, Cell::Lanes<float>& to) {
+HWY_INLINE void store(V value, Lanes<float>& to) {
   hn::Store(value, D(), to.data());
 }
-HWY_INLINE void store(VI value, Cell::Lanes<std::int32_t>& to) {
+HWY_INLINE void store(VI value, Lanes<std::int32_t>& to) {
   hn::Store(value, DI(), to.data());
 }
 

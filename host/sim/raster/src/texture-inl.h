@@ -96,9 +96,9 @@ struct Square {
 };
 
 #if HWY_TARGET == HWY_SCALAR
-HWY_INLINE Square square_at(const TexelPair* pairs, VI at) {
-  const TexelPair& left = pairs[hn::GetLane(at)];
-  const TexelPair& right = pairs[hn::GetLane(at) + 1];
+HWY_INLINE Square square_at(const TexelPair* pairs, const std::int32_t* places) {
+  const TexelPair& left = pairs[*places];
+  const TexelPair& right = pairs[*places + 1];
   const DU du;
   return {hn::Set(du, left.upper), hn::Set(du, left.lower), hn::Set(du, right.upper),
           hn::Set(du, right.lower)};
@@ -117,15 +117,13 @@ HWY_INLINE hn::Vec<DB> every_fourth(DB d, const TexelPair* pairs, const std::int
   }
 }
 
-HWY_INLINE Square square_at(const TexelPair* pairs, VI at) {
+HWY_INLINE Square square_at(const TexelPair* pairs, const std::int32_t* places) {
   const DU d;
   const hn::Repartition<std::uint64_t, DU> d2;
-  alignas(64) std::array<std::int32_t, kMaxLanes> places;
-  hn::Store(at, DI(), places.data());
-  const VU a = every_fourth(d, pairs, places.data());
-  const VU b = every_fourth(d, pairs, places.data() + 1);
-  const VU c = every_fourth(d, pairs, places.data() + 2);
-  const VU e = every_fourth(d, pairs, places.data() + 3);
+  const VU a = every_fourth(d, pairs, places);
+  const VU b = every_fourth(d, pairs, places + 1);
+  const VU c = every_fourth(d, pairs, places + 2);
+  const VU e = every_fourth(d, pairs, places + 3);
   const auto left_ab = hn::BitCast(d2, hn::InterleaveLower(d, a, b));
   const auto left_ce = hn::BitCast(d2, hn::InterleaveLower(d, c, e));
   const auto right_ab = hn::BitCast(d2, hn::InterleaveUpper(d, a, b));
@@ -163,13 +161,21 @@ HWY_INLINE Level level_at(const PreparedScene& scene, VI row) {
   return all;
 }
 
-// Of `u` and `v` within 0 and 1: the place between four texels, in 1/256. The four weights sum to
-// 256 exactly.
-HWY_INLINE Blend bilinear(const TexelPair* pairs, const Level& level, V u, V v) {
+// Of `u` and `v` within 0 and 1.
+HWY_INLINE void look_up(const Level& level, V u, V v, Lookup& to) {
   const VI x = Sub(nearest(Mul(u, level.width)), whole(128));
   const VI y = Sub(nearest(Mul(v, level.height)), whole(128));
   const VI row = Mul(hn::ShiftRight<8>(y), level.stride);
-  const Square square = square_at(pairs, Add(Add(level.first_pair, hn::ShiftRight<8>(x)), row));
+  store(Add(Add(level.first_pair, hn::ShiftRight<8>(x)), row), to.pair);
+  store(x, to.x);
+  store(y, to.y);
+}
+
+// The four weights sum to 256 exactly.
+HWY_INLINE Blend bilinear(const TexelPair* pairs, const Lookup& from) {
+  const VI x = load(from.x);
+  const VI y = load(from.y);
+  const Square square = square_at(pairs, from.pair.data());
   const VU right = twice(And(x, whole(0xFF)));
   const VU below = twice(And(y, whole(0xFF)));
   const VU both = And(hn::ShiftRight<8>(Add(times(right, below), twice(128U))), twice(0xFFU));
@@ -222,17 +228,27 @@ HWY_INLINE VU mix(VU a, VU b, VU share) {
   return Add(Sub(a, times_high(a, share)), times_high(b, share));
 }
 
-HWY_INLINE Texel sample(const PreparedScene& scene, VI level, V u, V v) {
-  const TexelPair* const texels = scene.texels.data();
+// Whether a level is looked at alone.
+HWY_INLINE bool is_one(VI level) {
+  return hn::AllTrue(DI(), hn::Eq(And(level, whole(0xFF)), whole(0)));
+}
+
+// Finds the texels of some places, on a level and the next.
+HWY_INLINE void look_up(const PreparedScene& scene, VI level, V u, V v, Lookups& to) {
   const V u_repeated = Sub(u, hn::Floor(u));
   const V v_repeated = Sub(v, hn::Floor(v));
   const VI row = hn::ShiftRight<8>(level);
-  const VI next_share = And(level, whole(0xFF));
-  Blend b = bilinear(texels, level_at(scene, row), u_repeated, v_repeated);
-  if (!hn::AllTrue(DI(), hn::Eq(next_share, whole(0)))) {
-    const Level next_level = level_at(scene, Add(row, whole(1)));
-    const Blend next = bilinear(texels, next_level, u_repeated, v_repeated);
-    const VU share = twice(hn::ShiftLeft<8>(next_share));
+  look_up(level_at(scene, row), u_repeated, v_repeated, to[0]);
+  if (is_one(level)) return;
+  look_up(level_at(scene, Add(row, whole(1))), u_repeated, v_repeated, to[1]);
+}
+
+HWY_INLINE Texel sample(const PreparedScene& scene, VI level, const Lookups& from) {
+  const TexelPair* const texels = scene.texels.data();
+  Blend b = bilinear(texels, from[0]);
+  if (!is_one(level)) {
+    const Blend next = bilinear(texels, from[1]);
+    const VU share = twice(hn::ShiftLeft<8>(And(level, whole(0xFF))));
     b = {mix(b.red_blue, next.red_blue, share), mix(b.green_alpha, next.green_alpha, share)};
   }
   const V scale = set(kTexelScale);
