@@ -58,10 +58,10 @@ HWY_INLINE void put_place(const Pixels& p, V z, const Normal& n, Cell& c) {
 
 // Puts a flat triangle into vectors that see nothing else.
 template <bool kIsTextured>
-HWY_INLINE void put_flat(const Part& part, const Block::Run& run, Block& b) {
+HWY_INLINE void put_flat(const Part& part, const Sight& of_part, const Block::Run& run, Block& b) {
+  const Sight sight = of_part;
   const Facet f = *run.flat;  // copies: nothing that is stored can change them
   const MaterialRow material = part.shading.scene.materials[f.material];
-  const Sight sight(part);
   const Normal n{set(f.normal[0][0]), set(f.normal[1][0]), set(f.normal[2][0])};
   for (const std::size_t at : b.places(run)) {
     Cell& c = b.cell(at);
@@ -111,8 +111,7 @@ HWY_INLINE void put_surface(const PreparedScene& scene, const Facet& f, const Sp
 }
 
 // Puts several triangles, or a curved one, into vectors.
-HWY_INLINE void put_mixed(const Part& part, Block::Run& run, Block& b) {
-  const Sight sight(part);
+HWY_INLINE void put_mixed(const Part& part, const Sight& sight, Block::Run& run, Block& b) {
   for (const std::size_t at : b.places(run)) {
     Cell& c = b.cell(at);
     const Pixels p = sight.pixels(at);
@@ -152,19 +151,20 @@ HWY_INLINE void find_runs(const Part& part, Block& b) {
 
 // The colours of the triangles of `b.ids`, under all lights, before their textures.
 void light_block(const Part& part, Block& b) {
+  const Sight sight(part);
   find_runs(part, b);
   for (Block::Run& run : std::span(b.all_runs).first(b.run_count)) {
     if (run.flat == nullptr) {
-      put_mixed(part, run, b);
+      put_mixed(part, sight, run, b);
       continue;
     }
     const MaterialRow& material = part.shading.scene.materials[run.flat->material];
     run.is_shiny = material.is_shiny != 0;
     run.is_textured = material.first_level > 0;
     if (run.is_textured) {
-      put_flat<true>(part, run, b);
+      put_flat<true>(part, sight, run, b);
     } else {
-      put_flat<false>(part, run, b);
+      put_flat<false>(part, sight, run, b);
     }
   }
   light_up(part.shading, part.layer, b);
