@@ -26,6 +26,8 @@ packages_build=(
   libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   gnuplot-nox
 )
+# The emulator whose instructions are counted.
+packages_demo=(qemu-user)
 packages_test=(git python3 libgtest-dev libgmock-dev libbenchmark-dev clang-format qemu-user)
 # The library as a user builds against it, and the manual pages.
 packages_test+=(make pkgconf mandoc)
@@ -78,10 +80,11 @@ install_packages() {
 command -v node >/dev/null || packages_test+=(nodejs)
 command -v npm >/dev/null || packages_test+=(npm)
 
-# install_for build|test|fuzz|tidy|coverage|package|arm64|gazebo|docs
+# install_for build|demo|test|fuzz|tidy|coverage|package|arm64|gazebo|docs
 install_for() {
   case "$1" in
     build) install_packages "${packages_build[@]}" ;;
+    demo) install_packages "${packages_build[@]}" "${packages_demo[@]}" ;;
     test) install_packages "${packages_build[@]}" "${packages_test[@]}" ;;
     fuzz) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_fuzz[@]}" ;;
     tidy) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_tidy[@]}" ;;
@@ -90,7 +93,7 @@ install_for() {
     arm64) install_packages "${packages_arm64[@]}" ;;
     gazebo) install_packages "${packages_gazebo[@]}" ;;
     docs) install_packages "${packages_docs[@]}" ;;
-    *) fail "'$1': build, test, fuzz, tidy, coverage, package, arm64, gazebo or docs" ;;
+    *) fail "'$1': build, demo, test, fuzz, tidy, coverage, package, arm64, gazebo or docs" ;;
   esac
 }
 
