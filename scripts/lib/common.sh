@@ -26,6 +26,8 @@ packages_build=(
   libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   gnuplot-nox
 )
+# The emulator whose instructions are counted.
+packages_demo=(qemu-user)
 packages_test=(git python3 libgtest-dev libgmock-dev libbenchmark-dev clang-format qemu-user)
 # The library as a user builds against it, and the manual pages.
 packages_test+=(make pkgconf mandoc)
@@ -80,12 +82,13 @@ install_packages() {
 command -v node >/dev/null || packages_test+=(nodejs)
 command -v npm >/dev/null || packages_test+=(npm)
 
-# install_for PURPOSE...: build, test, fuzz, tidy, coverage, package, arm64, gazebo or docs
+# install_for PURPOSE...: build, demo, test, fuzz, tidy, coverage, package, arm64, gazebo or docs
 install_for() {
   local purpose names=()
   for purpose in "$@"; do
     case "$purpose" in
       build) names+=("${packages_build[@]}") ;;
+      demo) names+=("${packages_build[@]}" "${packages_demo[@]}") ;;
       test) names+=("${packages_build[@]}" "${packages_test[@]}") ;;
       fuzz) names+=("${packages_build[@]}" "${packages_test[@]}" "${packages_fuzz[@]}") ;;
       tidy) names+=("${packages_build[@]}" "${packages_test[@]}" "${packages_tidy[@]}") ;;
@@ -94,7 +97,7 @@ install_for() {
       arm64) names+=("${packages_arm64[@]}") ;;
       gazebo) names+=("${packages_gazebo[@]}") ;;
       docs) names+=("${packages_docs[@]}") ;;
-      *) fail "'$purpose': build, test, fuzz, tidy, coverage, package, arm64, gazebo or docs" ;;
+      *) fail "'$purpose': build, demo, test, fuzz, tidy, coverage, package, arm64, gazebo or docs" ;;
     esac
   done
   mapfile -t names < <(printf '%s\n' "${names[@]}" | sort -u)

@@ -167,6 +167,9 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
   if (result.clock == scenario::name(scenario::Clock::kUnstamped))
     fmt::print("  {:<24} {}\n", "clock",
                "unstamped: the coordinator measured the SUT's time, which includes the link's");
+  if (!result.emulator.program.empty())
+    fmt::print("  {:<24} counted by {}, CPU model {}\n", "clock", result.emulator.program,
+               result.emulator.cpu_model);
   if (!result.target.empty()) fmt::print("  {:<24} {}\n", "target", result.target);
   if (const auto& stops = result.sync.stops)
     fmt::print("  {:<24} {}, at most {:.3f} ms late\n", "stops of all threads", stops->count,

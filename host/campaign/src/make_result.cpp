@@ -25,6 +25,7 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
   result.real_time_factor = condition.real_time_factor;
   if (condition.target) result.target = condition.target->name;
   for (const auto& [key, value] : scenario.settings) result.settings[key] = value;
+  result.emulator = emulator_of(condition);
   result.profiles = scenario::profile_names(scenario, condition);
   return result;
 }
@@ -190,6 +191,18 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   settle(result, footer.reason, why_crashed(record, max_speed_m_s));
   take_target(result, record);
   return result;
+}
+
+record::EmulatorInfo emulator_of(const scenario::Condition& condition) {
+  record::EmulatorInfo info;
+  if (!condition.target || !condition.target->emulator) return info;
+  const os::Emulator& emulator = *condition.target->emulator;
+  info.program = emulator.program;
+  info.cpu_model = emulator.cpu_model;
+  for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
+    info.costs.push_back({kWorkClassNames[kind], static_cast<double>(emulator.cost_units[kind]) /
+                                                     static_cast<double>(kCostUnitsPerNs)});
+  return info;
 }
 
 void invalidate(TrialResult& result, const std::string& reason) {

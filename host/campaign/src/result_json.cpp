@@ -125,6 +125,12 @@ Json json_of(const std::vector<T>& elements) {
   return array;
 }
 
+Json json_of(const record::EmulatorInfo& emulator) {
+  Json costs = Json::array();
+  for (const auto& [work, ns] : emulator.costs) costs.push_back(Json{{"work", work}, {"ns", ns}});
+  return Json{{"program", emulator.program}, {"cpu_model", emulator.cpu_model}, {"costs", costs}};
+}
+
 Json json_of(const SyncFigures& sync) {
   Json json{{"interactions", sync.interactions},
             {"causality_violations", sync.causality_violations},
@@ -302,6 +308,13 @@ Outcome read_outcome(const JsonReader& json) {
   return static_cast<Outcome>(found - kOutcomes.begin());
 }
 
+record::EmulatorInfo read_emulator(const JsonReader& json) {
+  record::EmulatorInfo emulator{json.text("program"), json.text("cpu_model"), {}};
+  for (const JsonReader& cost : json.objects("costs"))
+    emulator.costs.push_back({cost.text("work"), cost.number("ns")});
+  return emulator;
+}
+
 void read_trial(const JsonReader& json, TrialResult& result) {
   result.scenario = json.text("scenario");
   result.condition = json.text("condition");
@@ -313,6 +326,7 @@ void read_trial(const JsonReader& json, TrialResult& result) {
   result.real_time_factor = json.number("real_time_factor");
   if (json.has("target")) result.target = json.text("target");
   if (json.has("settings")) result.settings = json.object("settings").all_texts();
+  if (json.has("emulator")) result.emulator = read_emulator(json.object("emulator"));
   if (json.has("profiles")) result.profiles = json.texts("profiles");
   result.outcome = read_outcome(json);
   result.end = json.text("end");
@@ -343,6 +357,7 @@ std::string to_json(const TrialResult& result) {
   if (result.clock == kScripted) json["computing_s"] = exact_seconds(result.computing);
   if (!result.target.empty()) json["target"] = result.target;
   if (!result.settings.empty()) json["settings"] = result.settings;
+  if (!result.emulator.program.empty()) json["emulator"] = json_of(result.emulator);
   json.update(Json{{"real_time_factor", result.real_time_factor},
                    {"profiles", result.profiles},
                    {"outcome", name(result.outcome)},

@@ -61,12 +61,13 @@ TEST_F(Result, TextIsTheSameApartFromThisRun) {
 
 TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   const std::string plain = to_json(trial_);
-  for (const char* member :
-       {"\"target\":", "overshoot", "computing_s", "warnings", "\"tasks\"", "\"clauses\""})
+  for (const char* member : {"\"target\":", "overshoot", "computing_s", "warnings", "\"tasks\"",
+                             "\"clauses\"", "emulator"})
     EXPECT_THAT(plain, testing::Not(HasSubstr(member)));
   trial_.clock = "scripted";
   trial_.computing = Duration(2'500'000);
   trial_.target = "slow_board";
+  trial_.emulator = {"qemu-x86_64", "Nehalem", {{"integer", 0.125}, {"load", 0.5}}};
   trial_.profiles = {"rig", "top"};
   trial_.metrics[0].min = 0.5;
   trial_.contacts.push_back({.uav = "uav2"});

@@ -227,16 +227,40 @@ void Coordinator::Impl::watch() {
     log_.flush();
   }
   for (Session& session : sessions_) {
+    if (!session.joined()) hear_emulated_start(session, now);
     if (!session.joined() || session.left) continue;
     const std::uint64_t moved = server_->moved_bytes(session.peer);
     if (std::exchange(session.moved_bytes, moved) != moved) watchdog_.heard(session.uav, now);
-    if (!hooks_.work_of || session.hello.clock != link::ClockKind::kCounted) continue;
-    const std::uint64_t work = hooks_.work_of(session.uav);
-    if (std::exchange(session.work, work) != work) watchdog_.heard(session.uav, now);
+    if (!hooks_.computed_by || session.hello.clock != link::ClockKind::kCounted) continue;
+    const Duration computed = hooks_.computed_by(session.uav);
+    if (std::exchange(session.computed, computed) != computed) watchdog_.heard(session.uav, now);
+    end_endless(session);
   }
   if (const auto overdue = watchdog_.overdue(parties(now), st())) end(*overdue);
   if (hooks_.on_status) hooks_.on_status(status(now));
   stop_if_asked();
+}
+
+// On a busy machine, an emulated program takes long to start. What it has computed is its time.
+void Coordinator::Impl::hear_emulated_start(Session& session, WallTime now) {
+  if (!hooks_.computed_by) return;
+  const Duration computed = hooks_.computed_by(session.uav);
+  if (std::exchange(session.computed, computed) != computed && computed < options_.connect_limit)
+    watchdog_.heard(session.uav, now);
+}
+
+// A counted SUT sends no progress, so ST waits for it. Once it has computed beyond the time limit,
+// whatever it requests next is too late, and ST advances to that limit.
+void Coordinator::Impl::end_endless(Session& session) {
+  constexpr Duration kMostUncharged = std::chrono::seconds(1);  // of the library, around a reply
+  if (!running_) return;
+  const ExecTime bound = barrier_.bound(session.uav);
+  if (std::exchange(session.last_bound, bound) != bound || !is_computing(session))
+    session.computed_before = session.computed;
+  const auto limit = from_ns<ExecTime>(to_ns(time_limit_));
+  const Duration computed = session.computed - session.computed_before - kMostUncharged;
+  if (is_computing(session) && bound < limit && computed > limit - bound)
+    barrier_.progress(session.uav, limit);
 }
 
 void Coordinator::Impl::stop_if_asked() {
@@ -257,6 +281,7 @@ Party Coordinator::Impl::party(const Session& session, WallTime now) const {
               .computing = is_computing(session),
               .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
               .silence = watchdog_.silence(session.uav, now),
+              .counted = session.hello.clock == link::ClockKind::kCounted,
               .received_bytes = session.received_bytes};
   for (const PendingInteraction& pending : session.open)
     party.reply_at = std::min(party.reply_at.value_or(ExecTime::max()), pending.entry.reply_at);

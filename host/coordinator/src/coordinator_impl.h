@@ -44,6 +44,8 @@ class Coordinator::Impl {
   bool awaits_only_confirmation(const Session& session) const;
   Party party(const Session& session, WallTime now) const;
   std::vector<Party> parties(WallTime now) const;
+  void hear_emulated_start(Session& session, WallTime now);
+  void end_endless(Session& session);
   void stop_if_asked();
   void end(const Ending& ending);
   RunReport close_run();

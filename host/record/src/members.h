@@ -188,6 +188,11 @@ void members(auto& io, Maybe<Anchor> auto& m) {
   io("q_WA", m.q_WA);
 }
 
+void members(auto& io, Maybe<WorkCost> auto& m) {
+  io("work", m.work);
+  io("ns", m.ns);
+}
+
 /// All but the target.
 void members(auto& io, Maybe<Header> auto& m) {
   io("schema_version", m.schema_version);
@@ -207,6 +212,10 @@ void members(auto& io, Maybe<Header> auto& m) {
   if (io.has("wall_at_start_ns", m.wall_at_start != WallTime{}))
     io("wall_at_start_ns", m.wall_at_start);
   io.flag("reports_contacts", m.reports_contacts);
+  if (!io.has("emulator", !m.emulator.program.empty())) return;
+  io("emulator", m.emulator.program);
+  io("cpu_model", m.emulator.cpu_model);
+  io.list("costs", m.emulator.costs);
 }
 
 /// All but the target's readings.

@@ -201,8 +201,10 @@ TEST(JsonMetadata, OptionalValuesHaveDefaults) {
   Header unread = header();
   unread.target.reset();
   unread.reports_contacts = false;
+  unread.emulator = {};
   EXPECT_FALSE(header_from_metadata(to_metadata(unread)).target);
   EXPECT_FALSE(header_from_metadata(to_metadata(unread)).reports_contacts);
+  EXPECT_EQ(header_from_metadata(to_metadata(unread)).emulator, EmulatorInfo{});
 
   Footer without_stops = footer();
   without_stops.stops = 0;
@@ -243,6 +245,7 @@ TEST(JsonMetadata, MissingAndWrongValuesAreNamed) {
   Header required = header();  // these may be left out
   required.target.reset();
   required.reports_contacts = false;
+  required.emulator = {};
   for (const auto& [name, unused] : to_metadata(required)) {
     StringMap values = to_metadata(required);
     values.erase(name);

@@ -146,6 +146,7 @@ inline Header header() {
   header.target = TargetInfo{
       "my board", "ssh://pi@board", {{"governor", "ondemand"}, {"throttled", "0x50005"}}};
   header.reports_contacts = true;
+  header.emulator = {"qemu-x86_64", "Nehalem", {{"integer", 0.125}, {"load", 0.5}}};
   return header;
 }
 

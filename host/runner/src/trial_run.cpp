@@ -100,6 +100,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
   options.header.condition = spec.condition.name;
   options.header.machine = os::describe_machine();
   options.header.target = target;
+  options.header.emulator = campaign::emulator_of(spec.condition);
   return options;
 }
 
@@ -188,7 +189,7 @@ TrialEnd TrialRun::fly() {
   };
   hooks.read_target = [&] { return target_after_ = read_target(spec_, board_); };
   if (!sut_run_.counts.empty())
-    hooks.work_of = [&](std::size_t uav) { return sut_run_.counts[uav].work(); };
+    hooks.computed_by = [&](std::size_t uav) { return sut_run_.counts[uav].computed(); };
   end.report = coordinator_.run(*server_, hooks);
   refusals_.close();
   notes_ = stalls.notes(host_clocks());

@@ -142,7 +142,8 @@ struct TrialResult {
   double cpu_factor = 1.0;
   Duration computing{0};  ///< of clock "scripted": charged for each phase of computing
   double real_time_factor = 0.0;
-  std::string target{};  ///< its name; empty: the host as it is
+  std::string target{};             ///< its name; empty: the host as it is
+  record::EmulatorInfo emulator{};  ///< of a counted target
   /// Values of the scenario's file that were replaced (`tether run --set`, sweeps).
   std::map<std::string, std::string> settings{};
   /// Names of the profiles in use, in the order of their layers: a later one overrides an earlier.
@@ -187,6 +188,9 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
 /// For a trial that ran but whose numbers cannot be trusted: it counts as failed for `reason`, and
 /// no metric keeps its value.
 void invalidate(TrialResult& result, const std::string& reason);
+
+/// What counts the work of the condition's SUTs; without a program if nothing does.
+record::EmulatorInfo emulator_of(const scenario::Condition& condition);
 
 /// The result of a trial without a record, because it could not be set up.
 TrialResult make_setup_failure(const scenario::Scenario& scenario,

@@ -220,6 +220,21 @@ struct TargetInfo {
   std::string address;  ///< "ssh://user@board"; empty: the host
   Readings before;      ///< before the first SUT was started
 };
+/// What a unit of one kind of work costs.
+struct WorkCost {
+  std::string work;  ///< a name of kWorkClassNames
+  double ns = 0.0;
+
+  friend bool operator==(const WorkCost&, const WorkCost&) = default;
+};
+/// What ran the SUTs of a counted target and counted their work.
+struct EmulatorInfo {
+  std::string program;    ///< "qemu-x86_64"; empty: the SUTs' work was not counted
+  std::string cpu_model;  ///< the emulated CPU
+  std::vector<WorkCost> costs;
+
+  friend bool operator==(const EmulatorInfo&, const EmulatorInfo&) = default;
+};
 /// Configuration of the run: written first (metadata record "tether"), as names and values.
 struct Header {
   int schema_version = kSchemaVersion;
@@ -238,6 +253,7 @@ struct Header {
   std::vector<Anchor> anchors;
   std::optional<TargetInfo> target{};  ///< none in records of Tether 0.1.0
   WallTime wall_at_start{};            ///< when the SUTs were started, all at ET 0; 0: unknown
+  EmulatorInfo emulator{};
   bool reports_contacts = false;  ///< the record has all contacts; else it has none, and none is
                                   ///< known
 };

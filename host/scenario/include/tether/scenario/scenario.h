@@ -145,8 +145,8 @@ std::string why_not_on(const Condition& condition, const Target& target);
 /// @throws Error(kUsage), about the condition, with the reason of `why_not_on`.
 void place_on(Condition& condition, Target target);
 
-/// Makes the condition's SUTs so many times slower: its factor, or the computing time of a scripted
-/// clock. The name becomes "NAME, 3.16 x slower".
+/// Makes the condition's SUTs so many times slower: its factor, the computing time of a scripted
+/// clock, or the costs of a counted one. The name becomes "NAME, 3.16 x slower".
 /// @throws Error(kUsage), about the condition, if its SUTs' time cannot be stretched.
 /// @pre slowdown > 0; it was not slowed down before.
 void slow_down(Condition& condition, double slowdown);
