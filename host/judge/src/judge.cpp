@@ -128,9 +128,9 @@ class Judge {
   }
 
   /// What is added to margins for the bound 0 [SI].
-  static double shift_of(const Clause& clause) {
+  static double shift_of(const Clause& clause, double before = 0.0) {
     const Condition& condition = *clause.condition;
-    const double bound = condition.bound * condition.unit->si;
+    const double bound = condition.bound * condition.unit->si + before;
     return condition.at_most == (clause.kind == Kind::kNever) ? -bound : bound;
   }
 
@@ -235,9 +235,13 @@ class Judge {
     const double share = clause.condition->share;
     const std::size_t place =
         place_in(margins, is_eventually ? Pick::kBest : Pick::kAtShare, first, last, share);
-    settle(margins[place] + shift_of(clause), *clause.condition, verdict);
-    const double value = signals_.trace().signals[*signal].values[place];
-    verdict.decided_at = decided_at(clause, verdict.met, margins, first, last, until);
+    // Energy counts from the start of the span.
+    const std::vector<double>& values = signals_.trace().signals[*signal].values;
+    const double before = clause.condition->quantity->counts_from_start() ? values[first] : 0.0;
+    const double shift = shift_of(clause, before);
+    settle(margins[place] + shift, *clause.condition, verdict);
+    const double value = values[place] - before;
+    verdict.decided_at = decided_at(clause, verdict.met, margins, shift, {first, last}, until);
     verdict.limited_by =
         fmt::format("{:.4g} {} {}", value / clause.condition->unit->si,
                     clause.condition->unit->name, at_text(std::max(at[place], span.from)));
@@ -270,11 +274,11 @@ class Judge {
   /// A condition that must hold throughout is missed when it first does not; one that must hold at
   /// some time is met when it has held long enough.
   SimTime decided_at(const Clause& clause, bool met, const std::vector<double>& margins,
-                     std::size_t first, std::size_t last, SimTime until) const {
+                     double shift, const std::pair<std::size_t, std::size_t>& places,
+                     SimTime until) const {
     const bool is_eventually = clause.kind == Kind::kEventually;
     if (met != is_eventually || clause.condition->share < 1.0) return until;
-    const double shift = shift_of(clause);
-    for (std::size_t i = first; i <= last; ++i) {
+    for (std::size_t i = places.first; i <= places.second; ++i) {
       const bool decides = is_eventually ? margins[i] + shift >= 0.0 : margins[i] + shift < 0.0;
       if (decides) return std::min(until, signals_.trace().at[i] + clause.hold);
     }

@@ -109,6 +109,20 @@ void members(auto& io, Maybe<Contact> auto& m) {
   io("speed_m_s", m.speed_m_s);
 }
 
+void members(auto& io, Maybe<Battery> auto& m) {
+  io("uav", m.uav);
+  io("at_ns", m.at);
+  io("voltage_v", m.voltage_V);
+  io("current_a", m.current_A);
+  io("charge", m.charge);
+  io("lift_j", m.lift_J);
+  io("moving_j", m.moving_J);
+  io("idle_j", m.idle_J);
+  io("computing_j", m.computing_J);
+  io("sensors_j", m.sensors_J);
+  io("resistance_j", m.resistance_J);
+}
+
 void members(auto& io, Maybe<Clearance> auto& m) {
   io("uav", m.uav);
   io("min_m", m.min_m);

@@ -86,6 +86,9 @@ class McapRecorder final : public Recorder {
   void write(SimTime at, const Contact& message) override {
     write_json(contacts_.of("/contacts", message.uav), at, message);
   }
+  void write(SimTime at, const Battery& message) override {
+    write_json(batteries_.of("/battery", message.uav), at, message);
+  }
   void write(SimTime at, const Image& message) override {
     write_json(images_.of("/images", message.uav, message.sensor), at, message);
   }
@@ -122,6 +125,7 @@ class McapRecorder final : public Recorder {
   Channels annotations_{mcap_, kAnnotationSchema};
   Channels stops_{mcap_, kStopSchema};
   Channels contacts_{mcap_, kContactSchema};
+  Channels batteries_{mcap_, kBatterySchema};
   Channels images_{mcap_, kCompressedImageSchema};
   Channels depths_{mcap_, kRawImageSchema};
   Channels labels_{mcap_, kRawImageSchema};
@@ -137,6 +141,7 @@ class NullRecorder final : public Recorder {
   void write(SimTime, const Annotation&) override {}
   void write(SimTime, const Stop&) override {}
   void write(SimTime, const Contact&) override {}
+  void write(SimTime, const Battery&) override {}
   void write(SimTime, const Image&) override {}
   void write(SimTime, const RawImage&) override {}
   void flush() override {}

@@ -16,6 +16,7 @@ extern const Schema kGroundTruthSchema;
 extern const Schema kAnnotationSchema;
 extern const Schema kStopSchema;
 extern const Schema kContactSchema;
+extern const Schema kBatterySchema;
 /// Well-known schemas of Foxglove, by their names.
 extern const Schema kCompressedImageSchema;
 extern const Schema kRawImageSchema;

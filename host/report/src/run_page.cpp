@@ -143,7 +143,9 @@ std::string run_page(const std::filesystem::path& folder) {
   Table metrics = run_table(trial);
   metrics.title.clear();
   std::erase(metrics.notes, trial.reason + ".");  // outcome_sentences has it
-  body += to_html(metrics) + mission_part(trial) + record_part(folder);
+  body += to_html(metrics) + mission_part(trial);
+  if (const Table energy = energy_table(trial); !energy.rows.empty()) body += to_html(energy);
+  body += record_part(folder);
   body += element("h2", "Setup and checks") + basis_html(results);
   return html_page(title, body);
 }

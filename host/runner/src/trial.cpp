@@ -129,6 +129,13 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
   const auto board = hold_board(spec, stop);
   const SimulatorSetup setup = simulator_setup(spec, world, observer, warnings, stop);
   const auto simulator = back_end.start(std::move(world), setup);
+  for (std::size_t uav = 0; uav < spec.scenario.uavs.size(); ++uav)
+    if (const auto& energy = spec.scenario.uavs[uav].energy;
+        energy && !simulator->get().battery(uav))
+      warnings.sink()({Consequence::kMissing,
+                       {energy->file.string(), 0},
+                       "energy",
+                       "is simulated by the embedded simulator only; this flight has no battery"});
   warnings.pass_on();
   try {
     const Conducted conducted =
@@ -177,6 +184,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   WarningLog warnings(observer.on_warnings);
   sim::World world =
       sim::load_world(scenario::world_request(spec.scenario, spec.seed), warnings.sink());
+  scenario::resolve_energy(spec.scenario, spec.condition, world, warnings.sink());
   back_end.require_readable(world);
   const Timings timings =
       scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink());
