@@ -204,6 +204,7 @@ void invalidate(TrialResult& result, const std::string& reason) {
   for (judge::ClauseVerdict& clause : result.clauses) {
     clause.met = false;
     clause.margin.reset();
+    clause.margins.clear();
     clause.decided_at.reset();
     clause.limited_by = reason;
   }

@@ -72,6 +72,8 @@ Json json_of(const judge::ClauseVerdict& clause) {
   for (const auto& [name, time] : kTimesOfClauses)
     if (clause.*time) json[name] = exact_seconds(*(clause.*time));
   json["limited_by"] = clause.limited_by;
+  for (const auto& [at, margin] : clause.margins)
+    json["margins"].push_back({{"at_s", exact_seconds(at)}, {"margin", margin}});
   return json;
 }
 
@@ -220,6 +222,9 @@ judge::ClauseVerdict read_clause(const JsonReader& json) {
   for (const auto& [name, time] : kTimesOfClauses)
     if (json.has(name)) clause.*time = SimTime(json.seconds(name));
   clause.limited_by = json.text("limited_by");
+  if (json.has("margins"))
+    for (const JsonReader& margin : json.objects("margins"))
+      clause.margins.push_back({SimTime(margin.seconds("at_s")), margin.number("margin")});
   return clause;
 }
 

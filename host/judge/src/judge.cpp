@@ -118,6 +118,8 @@ class Judge {
     verdict.decided_at = std::min(span.to, deadline);
     // Without the goal the margin is known only if the deadline has passed: it is no larger.
     if (missing.empty() || left < Duration(0)) verdict.margin = to_seconds(left);
+    for (const SimTime at : {span.from, span.to})
+      verdict.margins.push_back({at, to_seconds(deadline - at)});
     verdict.limited_by = missing.empty() ? time_taken_in(span) : missing;
   }
 
@@ -171,6 +173,9 @@ class Judge {
           std::ranges::find_if(margins, [&](double margin) { return margin + shift < 0.0; });
       verdict.decided_at = events[static_cast<std::size_t>(first_miss - margins.begin())].at;
     }
+    follow(
+        clause, 0, margins.size() - 1, margins, shift, [&](std::size_t i) { return events[i].at; },
+        verdict);
     const Event& least = events[place];
     verdict.limited_by = fmt::format("{:.4g} {} {}", least.value / condition.unit->si,
                                      condition.unit->name, at_text(least.at));
@@ -240,11 +245,32 @@ class Judge {
     const double before = clause.condition->quantity->counts_from_start() ? values[first] : 0.0;
     const double shift = shift_of(clause, before);
     settle(margins[place] + shift, *clause.condition, verdict);
+    follow(
+        clause, first, last, margins, shift,
+        [&](std::size_t i) { return std::max(at[i], span.from); }, verdict);
     const double value = values[place] - before;
     verdict.decided_at = decided_at(clause, verdict.met, margins, shift, {first, last}, until);
     verdict.limited_by =
         fmt::format("{:.4g} {} {}", value / clause.condition->unit->si,
                     clause.condition->unit->name, at_text(std::max(at[place], span.from)));
+  }
+
+  /// How the margin developed over the instants or events first … last.
+  template <class At>
+  static void follow(const Clause& clause, std::size_t first, std::size_t last,
+                     const std::vector<double>& margins, double shift, const At& at,
+                     ClauseVerdict& verdict) {
+    constexpr std::size_t kMost = 40;
+    const std::size_t stride = (last - first) / kMost + 1;
+    const bool is_eventually = clause.kind == Kind::kEventually;
+    const bool restarts = clause.condition->share < 1.0;
+    double extremum = margins[first];
+    for (std::size_t i = first; i <= last; ++i) {
+      extremum = is_eventually ? std::max(extremum, margins[i]) : std::min(extremum, margins[i]);
+      if ((i - first) % stride != 0 && i != last) continue;
+      verdict.margins.push_back({at(i), (extremum + shift) / clause.condition->unit->si});
+      if (restarts && i < last) extremum = margins[i + 1];
+    }
   }
 
   enum class Pick { kBest, kAtShare };

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include <tether/record/messages.h>
+#include <tether/record/writer.h>
 
 /// The one list of the members of each message and each part of a record's metadata, for both
 /// directions. `io` is a writer or a reader: see json_members.h and json_metadata.cpp. It has
@@ -121,6 +122,14 @@ void members(auto& io, Maybe<Battery> auto& m) {
   io("computing_j", m.computing_J);
   io("sensors_j", m.sensors_J);
   io("resistance_j", m.resistance_J);
+}
+
+void members(auto& io, Maybe<Margin> auto& m) {
+  io("uav", m.uav);
+  io("clause", m.clause);
+  io("at_ns", m.at);
+  io("margin", m.margin);
+  io("unit", m.unit);
 }
 
 void members(auto& io, Maybe<Clearance> auto& m) {

@@ -1,9 +1,12 @@
+#include "json_members.h"
 #include "json_messages.h"
 #include "json_metadata.h"
 #include "json_text.h"
 #include "mcap_writer.h"
+#include "members.h"
 #include "schemas.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -152,6 +155,19 @@ class NullRecorder final : public Recorder {
 
 std::unique_ptr<Recorder> make_mcap_recorder(const std::filesystem::path& file) {
   return std::make_unique<McapRecorder>(file);
+}
+
+void write_margins(const std::filesystem::path& file, std::vector<Margin> margins) {
+  std::ranges::stable_sort(margins, {}, &Margin::at);
+  McapWriter mcap(file, kLibrary);
+  Channels channels(mcap, kMarginSchema);
+  for (const Margin& margin : margins) {
+    std::string& out = mcap.begin_message(channels.of("/margins", margin.uav),
+                                          static_cast<std::uint64_t>(to_ns(margin.at)));
+    append_members(out, margin);
+    mcap.end_message();
+  }
+  mcap.finish();
 }
 
 std::unique_ptr<Recorder> make_null_recorder() {

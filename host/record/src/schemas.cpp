@@ -160,6 +160,20 @@ const Schema kBatterySchema{"tether.Battery", R"json({
                "computing_j", "sensors_j", "resistance_j"]
 })json"};
 
+const Schema kMarginSchema{"tether.Margin", R"json({
+  "title": "tether.Margin",
+  "description": "The margin of a clause as it stood at an instant.",
+  "type": "object",
+  "properties": {
+    "uav": {"type": "string"},
+    "clause": {"type": "string"},
+    "at_ns": {"type": "integer"},
+    "margin": {"type": ["number", "null"], "description": "negative: missed"},
+    "unit": {"type": "string"}
+  },
+  "required": ["uav", "clause", "at_ns", "margin", "unit"]
+})json"};
+
 const Schema kCompressedImageSchema{"foxglove.CompressedImage", R"json({
   "title": "foxglove.CompressedImage",
   "type": "object",

@@ -83,6 +83,14 @@ campaign::TrialResult unrecorded(const TrialSpec& spec, const coordinator::RunRe
   return setup_failure(spec, report.reason, false);  // not even a header
 }
 
+void write_margins(const TrialSpec& spec, const campaign::TrialResult& result) {
+  std::vector<record::Margin> margins;
+  for (const auto& clause : result.clauses)
+    for (const auto& [at, margin] : clause.margins)
+      margins.push_back({clause.uav, clause.name, at, margin, clause.unit});
+  if (!margins.empty()) record::write_margins(spec.folder / kMarginsFile, std::move(margins));
+}
+
 /// The result of a run, from its record. The record stays if there is too little memory to read it.
 campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted) try {
   const coordinator::RunReport& report = conducted.report;
@@ -100,6 +108,7 @@ campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted
     campaign::invalidate(result, report.reason);
   else if (!verdict.passed())
     campaign::invalidate(result, "the record breaks the rules of time: " + result.audit->summary);
+  write_margins(spec, result);
   return result;
 } catch (const std::bad_alloc&) {
   return campaign::make_setup_failure(
