@@ -107,7 +107,7 @@ TEST(Judge, ClausesThatShareWorkAreJudgedAsAlone) {
                                             "during = [\"b\"]\nalways = \"altitude <= 5 m\"",
                                             "always = \"reaction_time <= 150 ms in 95 %\"",
                                             "always = \"reaction_time <= 120 ms\"",
-                                            "never = \"reaction_time <= 120 ms\"",
+                                            "never = \"reaction_time <= 100 ms\"",
                                             "within_s = 7"};
   Flight flight = mission().image(1.0, 1.05, 1.0).command(1.1, 1.12).image(2.0, 2.1, 2.0);
   flight.command(2.15, 2.16);
