@@ -71,6 +71,7 @@ std::vector<report::Table> run_tables(const campaign::CampaignResults& results) 
   const auto& trial = results.scenarios.front().conditions.front().trials.front();
   std::vector<report::Table> tables = {report::run_table(trial)};
   if (!trial.clauses.empty()) tables.push_back(report::clauses_table(trial));
+  if (!trial.energy.empty()) tables.push_back(report::energy_table(trial));
   tables.push_back(report::basis_table(results));
   return tables;
 }

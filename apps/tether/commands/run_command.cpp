@@ -133,6 +133,20 @@ void print_contacts(const campaign::UavContacts& own) {
   fmt::print("  {:<24} {}\n", own.uav, text);
 }
 
+void print_energy(const campaign::UavEnergy& energy) {
+  std::string causes;
+  for (std::size_t i = 0; i < energy::kCauses; ++i)
+    causes += fmt::format("{}{} {:.4g} J", i == 0 ? "" : ", ",
+                          energy::name(static_cast<energy::Cause>(i)), energy.spent_J[i]);
+  const auto more = energy.more_flights();
+  fmt::print("  {:<24} {:.5g} J: {}\n", "energy of " + energy.uav,
+             campaign::total_J(energy.spent_J), causes);
+  fmt::print("  {:<24} {:.1f} % left of {:.1f} %{}; at least {:.4g} V\n", "charge of " + energy.uav,
+             100.0 * energy.charge_to, 100.0 * energy.charge_from,
+             more ? fmt::format(", enough for {:.1f} more such flights", *more) : "",
+             energy.least_voltage_V);
+}
+
 void print_clause(const judge::ClauseVerdict& clause) {
   const std::string margin =
       clause.margin ? fmt::format(", margin {:.4g} {}", *clause.margin, clause.unit) : "";
@@ -160,6 +174,7 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
                             : "");
   }
   for (const auto& clause : result.clauses) print_clause(clause);
+  for (const campaign::UavEnergy& energy : result.energy) print_energy(energy);
   for (const campaign::UavContacts& own : result.contacts) print_contacts(own);
   fmt::print("  {:<24} {:.3f} s in {:.3f} s of wall time, {} interactions\n", "simulated",
              to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),

@@ -1,4 +1,5 @@
 #include "contacts.h"
+#include "energy.h"
 
 #include <algorithm>
 
@@ -131,9 +132,10 @@ std::string end_of(const record::Footer& footer) {
 
 // A crash comes first among the reasons: it often is the cause of the others.
 void settle(TrialResult& result, const std::string& reason_of_end, const std::string& crash = "") {
-  const bool ran = result.end == kEndFinished || result.end == kEndTimeLimit;
+  const bool was_cut = result.end == kEndTimeLimit || result.end == kEndBatteryEmpty;
+  const bool ran = result.end == kEndFinished || was_cut;
   if (!ran) return invalidate(result, reason_of_end.empty() ? result.end : reason_of_end);
-  std::string missed = result.end == kEndTimeLimit ? reason_of_end : why_missed(result);
+  std::string missed = was_cut ? reason_of_end : why_missed(result);
   if (!crash.empty()) missed = crash + (missed.empty() ? "" : "; " + missed);
   const bool reached = result.end == kEndFinished && missed.empty();
   result.outcome = reached ? Outcome::kGoalReached : Outcome::kGoalMissed;
@@ -167,6 +169,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   result.suts = sut_results(record, task_ends);
   drop_metrics_of_missed_tasks(result, scenario);
   judge_missions(result, scenario, record);
+  result.energy = energy_of(record, result.tasks);
   result.versions = {{"tether", record.header.tether_version},
                      {"simulator", record.header.simulator}};
   for (const record::SutInfo& sut : record.header.suts) {
@@ -215,6 +218,7 @@ void invalidate(TrialResult& result, const std::string& reason) {
   for (judge::ClauseVerdict& clause : result.clauses) {
     clause.met = false;
     clause.margin.reset();
+    clause.margins.clear();
     clause.decided_at.reset();
     clause.limited_by = reason;
   }

@@ -22,6 +22,8 @@ constexpr Duration kIdleWait = std::chrono::milliseconds(20);
 // A paced simulation may catch up this much ST after a late turn (rendering an image, say); two
 // steps at least.
 constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
+// How long a UAV without power may fall before the run ends.
+constexpr Duration kFall = std::chrono::seconds(2);
 // How often the record is flushed, so that a killed run leaves most of it.
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
@@ -84,9 +86,9 @@ RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
 }  // namespace
 
 std::string_view name(RunEnd end) {
-  constexpr std::string_view kNames[] = {"finished",     "time_limit",     "sut_lost",
-                                         "sut_hung",     "simulator_lost", "interrupted",
-                                         "record_failed"};
+  constexpr std::string_view kNames[] = {"finished",      "time_limit",     "sut_lost",
+                                         "sut_hung",      "simulator_lost", "interrupted",
+                                         "battery_empty", "record_failed"};
   return kNames[static_cast<std::size_t>(end)];
 }
 
@@ -185,8 +187,21 @@ bool Coordinator::Impl::advance() {
   stepper_.advance_to(target);
   watchdog_.moved(now);
   release_ready();
+  watch_batteries();
   if (const auto over = watchdog_.over_time(st())) end(*over);
   return true;
+}
+
+// The end is far enough ahead that ST, which advances a turn at a time, cannot have passed it.
+void Coordinator::Impl::watch_batteries() {
+  if (!fallen_at_) {
+    const auto exhausted = stepper_.exhausted();
+    if (!exhausted) return;
+    fallen_at_ = grid().ceil(exhausted->at + kFall) + kStepsPerTurn * grid().dt();
+    fall_ = fmt::format("the battery of UAV \"{}\" was empty at ST {:.3f} s",
+                        world().uavs[exhausted->uav].name, to_seconds(exhausted->at));
+  }
+  if (st() >= *fallen_at_) end({RunEnd::kBatteryEmpty, fall_});
 }
 
 // The time of an unstamped client that computes may let ST advance for another SUT.
@@ -199,7 +214,8 @@ void Coordinator::Impl::read_timers(WallTime now) {
 // How far ST may advance in this turn.
 SimTime Coordinator::Impl::next_stop() const {
   const SimTime bound = is_synchronised() ? barrier_.lower_bound() : SimTime::max();
-  return std::min({bound, time_limit_, stepper_.next_due(), st() + kStepsPerTurn * grid().dt()});
+  return std::min({bound, time_limit_, fallen_at_.value_or(SimTime::max()), stepper_.next_due(),
+                   st() + kStepsPerTurn * grid().dt()});
 }
 
 // How much of that the pace allows.

@@ -45,6 +45,8 @@ struct Session {
   std::optional<link::Finish> finish;
   bool left = false;  ///< finished or disconnected by the coordinator
 
+  ExecTime resumed_at{};  ///< ET of its last reply, from which on it computes
+
   /// Requests without a reply, in order; at most one for a serial SUT.
   std::vector<PendingInteraction> open;
   std::uint32_t received_bytes = 0;  ///< of its newest reply, if that takes long to arrive

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include <tether/record/messages.h>
+#include <tether/record/writer.h>
 
 /// The one list of the members of each message and each part of a record's metadata, for both
 /// directions. `io` is a writer or a reader: see json_members.h and json_metadata.cpp. It has
@@ -107,6 +108,28 @@ void members(auto& io, Maybe<Contact> auto& m) {
   io("at_ns", m.at);
   io("with", m.with);
   io("speed_m_s", m.speed_m_s);
+}
+
+void members(auto& io, Maybe<Battery> auto& m) {
+  io("uav", m.uav);
+  io("at_ns", m.at);
+  io("voltage_v", m.voltage_V);
+  io("current_a", m.current_A);
+  io("charge", m.charge);
+  io("lift_j", m.lift_J);
+  io("moving_j", m.moving_J);
+  io("idle_j", m.idle_J);
+  io("computing_j", m.computing_J);
+  io("sensors_j", m.sensors_J);
+  io("resistance_j", m.resistance_J);
+}
+
+void members(auto& io, Maybe<Margin> auto& m) {
+  io("uav", m.uav);
+  io("clause", m.clause);
+  io("at_ns", m.at);
+  io("margin", m.margin);
+  io("unit", m.unit);
 }
 
 void members(auto& io, Maybe<Clearance> auto& m) {

@@ -103,6 +103,7 @@ TEST(JsonMessages, FormIsStable) {
   check_form(texts, ground_truth(), ground_truth_from_json, kGroundTruthSchema);
   check_form(texts, annotation(), annotation_from_json, kAnnotationSchema);
   check_form(texts, image(), image_from_json, kCompressedImageSchema);
+  check_form(texts, battery(), battery_from_json, kBatterySchema);
   texts += json_of(sensor_interaction(), {.wall = false, .arrivals = false}) + "\n";
   texts += json_of(stop(), {.wall = false}) + "\n";
   append_frame_transform(texts, ground_truth(1234));

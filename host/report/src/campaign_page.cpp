@@ -121,6 +121,7 @@ std::string scenario_section(FigureMaker& figures, const campaign::ScenarioResul
   html += to_html(paper_form_table(scenario));
   if (const Table clauses = clauses_table(scenario); !clauses.rows.empty())
     html += to_html(clauses);
+  if (const Table energy = energy_table(scenario); !energy.rows.empty()) html += to_html(energy);
   html += optimism_part(scenario);
   html += distributions_part(figures, scenario);
   html += path_part(figures, records, runs);

@@ -68,8 +68,12 @@ CampaignFiles files_of_trials(const scenario::Campaign& campaign,
     const sim::World world = sim::load_world(
         scenario::world_request(entry.scenario, campaign.seeds.front()), warnings.sink());
     files.insert(files.end(), world.files.begin(), world.files.end());
-    for (const std::string& name : entry.conditions)
-      find_back_end(entry.scenario.find_condition(name)->simulator).require_readable(world);
+    for (const std::string& name : entry.conditions) {
+      const scenario::Condition& condition = *entry.scenario.find_condition(name);
+      find_back_end(condition.simulator).require_readable(world);
+      sim::World copy = world;
+      scenario::resolve_energy(entry.scenario, condition, copy, warnings.sink());
+    }
     try_profiles(entry, world, warnings.sink());
   }
   for (const std::string& name : simulators(campaign)) {

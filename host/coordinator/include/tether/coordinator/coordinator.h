@@ -65,6 +65,7 @@ enum class RunEnd {
   kSutHung,        ///< no message from a SUT within the limit
   kSimulatorLost,  ///< the simulator failed
   kInterrupted,    ///< `should_stop` of the caller requested it
+  kBatteryEmpty,   ///< the battery of a UAV was exhausted, and it fell
   kRecordFailed,   ///< the record could not be written; it has no end
 };
 std::string_view name(RunEnd end);

@@ -124,6 +124,24 @@ struct Contact {
   friend bool operator==(const Contact&, const Contact&) = default;
 };
 
+/// The battery of a UAV, and the energy that was spent since ST 0, by cause (energy::Cause). Only
+/// if the scenario gives the UAV a model of energy. Topic /battery/<uav>; log time = `at`, that of
+/// each ground truth.
+struct Battery {
+  std::string uav;
+  SimTime at;
+  double voltage_V = 0.0;  ///< at the terminals
+  double current_A = 0.0;
+  double charge = 0.0;  ///< share of the capacity
+  double lift_J = 0.0, moving_J = 0.0, idle_J = 0.0, computing_J = 0.0, sensors_J = 0.0,
+         resistance_J = 0.0;
+
+  double spent_J() const {
+    return lift_J + moving_J + idle_J + computing_J + sensors_J + resistance_J;
+  }
+  friend bool operator==(const Battery&, const Battery&) = default;
+};
+
 /// A message of the SUT for the record. Topic /task/<uav>; log time = ST when it arrived.
 struct Annotation {
   std::string uav;
@@ -270,7 +288,8 @@ struct Clearance {
 
 /// End of the run: written last (metadata record "tether.end"). A record without it is incomplete.
 struct Footer {
-  /// "finished", "time_limit", "sut_lost", "sut_hung", "simulator_lost", "interrupted".
+  /// "finished", "time_limit", "sut_lost", "sut_hung", "simulator_lost", "interrupted",
+  /// "battery_empty".
   std::string end;
   std::string reason;  ///< one line
   SimTime st_at_end;

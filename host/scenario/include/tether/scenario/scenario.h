@@ -12,6 +12,7 @@
 #include <tether/base/time.h>
 #include <tether/mission/mission.h>
 #include <tether/scenario/clock.h>
+#include <tether/scenario/energy.h>
 #include <tether/scenario/metric.h>
 #include <tether/scenario/profile.h>
 #include <tether/scenario/target.h>
@@ -70,6 +71,7 @@ struct UavSetup {
   std::optional<Profile> profile;                ///< overrides SDF's sensors
   std::map<std::string, SensorProfile> sensors;  ///< by name; override the profile
   Duration command_latency{0};
+  std::optional<Energy> energy{};  ///< none: energy is not simulated
   Sut sut;  ///< its own, or the scenario's; own parameters override the scenario's
 };
 
@@ -176,5 +178,12 @@ std::vector<std::vector<uav::SensorTiming>> resolve_sensors(const Scenario& scen
                                                             const Condition& condition,
                                                             sim::World& world,
                                                             const sim::WarningSink& warn);
+
+/// Gives the UAVs of `world` their models of energy, with the power of the condition's computer.
+/// @throws Error(kBadFile) with file and line, about "rotor" or "battery", if the battery cannot
+/// lift its UAV, or there is none.
+/// @pre as of `resolve_sensors`.
+void resolve_energy(const Scenario& scenario, const Condition& condition, sim::World& world,
+                    const sim::WarningSink& warn);
 
 }  // namespace tether::scenario

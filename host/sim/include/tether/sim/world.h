@@ -12,6 +12,7 @@
 #include <tether/base/error.h>
 #include <tether/base/time.h>
 #include <tether/base/warning.h>
+#include <tether/energy/meter.h>
 #include <tether/uav/catalogue.h>
 #include <tether/uav/math.h>
 #include <tether/uav/multirotor.h>
@@ -182,6 +183,9 @@ struct Uav {
   Link body;
   uav::MultirotorParameters airframe;
   std::vector<Sensor> sensors;
+  /// That of its SDF file; none: it has none. Used only if `energy` is made from it.
+  std::optional<energy::Battery> battery{};
+  std::optional<energy::Model> energy{};  ///< none: energy is not simulated
 };
 
 /// An anchor: a model of the world that SUTs receive in their catalogue.
