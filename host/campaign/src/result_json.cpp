@@ -48,6 +48,12 @@ Json json_of(const MetricValue& metric) {
   return json;
 }
 
+Json json_of(const ReplayReport& replay) {
+  return Json{{"timing", replay.from.timing},           {"mode", replay.from.mode},
+              {"recorded_at", replay.from.recorded_at}, {"board", replay.from.board},
+              {"build_id", replay.from.build_id},       {"unknown_stages", replay.unknown_stages}};
+}
+
 Json json_of(const judge::TaskSpan& task) {
   return Json{{"uav", task.uav},
               {"task", task.task},
@@ -295,6 +301,12 @@ ThisRun read_this_run(const JsonReader& json) {
   return run;
 }
 
+ReplayReport read_replay(const JsonReader& json) {
+  return {{json.text("timing"), json.text("mode"), json.text("recorded_at"), json.text("board"),
+           json.text("build_id")},
+          json.texts("unknown_stages")};
+}
+
 Outcome read_outcome(const JsonReader& json) {
   const std::string word = json.text("outcome");
   const auto found = std::ranges::find(kOutcomes, word);
@@ -312,6 +324,7 @@ void read_trial(const JsonReader& json, TrialResult& result) {
   if (result.clock == kScripted) result.computing = json.seconds("computing_s");
   result.real_time_factor = json.number("real_time_factor");
   if (json.has("target")) result.target = json.text("target");
+  if (json.has("replay")) result.replay = read_replay(json.object("replay"));
   if (json.has("profiles")) result.profiles = json.texts("profiles");
   result.outcome = read_outcome(json);
   result.end = json.text("end");
@@ -341,6 +354,7 @@ std::string to_json(const TrialResult& result) {
             {"cpu_factor", result.cpu_factor}};
   if (result.clock == kScripted) json["computing_s"] = exact_seconds(result.computing);
   if (!result.target.empty()) json["target"] = result.target;
+  if (result.replay) json["replay"] = json_of(*result.replay);
   json.update(Json{{"real_time_factor", result.real_time_factor},
                    {"profiles", result.profiles},
                    {"outcome", name(result.outcome)},

@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kHeight_px = 600, kSplit_px = 350;  // from the top: where the upper area ends
 constexpr int kTop_px = 44, kLeft_px = 92, kRight_px = 24, kBottom_px = 50, kGap_px = 46;
-constexpr double kReached = 1.09, kMissed = -0.09, kScatter = 0.045;  // where flights are drawn
+constexpr double kReachedLevel = 1.09, kMissedLevel = -0.09,
+                 kScatter = 0.045;  // where flights are drawn
 constexpr double kLeastMargin = -1.0, kMostMargin = 1.0;
 
 // Flights at the same slowdown must not hide each other (as in distribution_plot).
@@ -110,7 +111,7 @@ void add_flights(Drawing& drawing, const SizedCondition& sized, const std::strin
   for (std::size_t i = 0; i < sized.flights.size(); ++i) {
     const sizing::Flight& flight = sized.flights[i];
     (flight.reached ? reached : missed)
-        .add(flight.slowdown, (flight.reached ? kReached : kMissed) + scattered(i));
+        .add(flight.slowdown, (flight.reached ? kReachedLevel : kMissedLevel) + scattered(i));
   }
   const std::string size = is_reference ? "pointsize 0.35" : "pointsize 0.55";
   drawing.add(reached, "with points pointtype 7 " + size, ink,
