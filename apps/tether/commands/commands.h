@@ -31,6 +31,7 @@ struct RunOptions {
   double real_time_factor = 0.0;
   std::optional<double> slowdown;
   std::vector<std::string> settings;  ///< "KEY=VALUE"
+  std::string unknown_stages;
   ReadingOptions reading;
   bool tunnel = false;
   bool record_images = false;
@@ -106,6 +107,18 @@ struct AuditOptions {
 };
 /// Checks a record against the rules of time.
 int audit_record(const AuditOptions& options, const std::stop_token&);
+
+struct TimingOptions {
+  std::vector<std::filesystem::path> runs;
+  std::filesystem::path against;
+  std::optional<double> limit_percent;
+  std::vector<std::filesystem::path> counted;
+  std::filesystem::path out;
+  std::filesystem::path csv;
+  std::filesystem::path html;
+};
+/// Prints what each stage of a program computes, or how it changed.
+int time_stages(const TimingOptions& options, const std::stop_token&);
 
 struct ListOptions {};
 /// Prints the names and descriptions of the files that Tether ships.

@@ -76,6 +76,8 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
     move_to(condition, board_at(*address), keep_name);
   if (!options.simulator.empty()) condition.simulator = options.simulator;
   if (options.slowdown) scenario::slow_down(condition, *options.slowdown);
+  if (!options.unknown_stages.empty())
+    scenario::set_unknown_stages(condition, options.unknown_stages);
   return condition;
 }
 
@@ -185,6 +187,7 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
   if (!result.emulator.program.empty())
     fmt::print("  {:<24} counted by {}, CPU model {}\n", "clock", result.emulator.program,
                result.emulator.cpu_model);
+  if (result.replay) fmt::print("  {:<24} {}\n", "time", campaign::describe_replay(result));
   if (!result.target.empty()) fmt::print("  {:<24} {}\n", "target", result.target);
   if (const auto& stops = result.sync.stops)
     fmt::print("  {:<24} {}, at most {:.3f} ms late\n", "stops of all threads", stops->count,

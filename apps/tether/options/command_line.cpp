@@ -104,6 +104,10 @@ void add_run_command(CLI::App& program, Action& action) {
       ->add_option("--slowdown", options->slowdown,
                    "Make the SUT's computer so many times slower than the condition's")
       ->check(CLI::Range(1e-3, 1e4));
+  command->add_option("--unknown-stages", options->unknown_stages,
+                      "With the clock \"replayed\": what stages are charged that were not "
+                      "recorded, instead of the condition's unknown_stages: refused, counted or "
+                      "zero");
   command
       ->add_option("--set", options->settings,
                    "Replace a value of the scenario, given by its key's path: time_limit_s=30, "
@@ -279,6 +283,40 @@ Example:
   tether audit out/one/record.mcap)");
 }
 
+void add_timing_command(CLI::App& program, Action& action) {
+  const auto [command, options] =
+      add_command(program, action, "timing",
+                  "Report what each stage of a program computes, or how "
+                  "that changed",
+                  time_stages);
+  command
+      ->add_option("runs", options->runs,
+                   "Runs of one program in one scenario: records, folders of runs, timing files")
+      ->required();
+  command->add_option("--out", options->out,
+                      "Timing file to write, for conditions with clock = \"replayed\"");
+  command->add_option("--counted", options->counted,
+                      "Runs of the same program under a counted target: --out then also has the "
+                      "work of each stage, for mode = \"scaled\"");
+  command->add_option("--csv", options->csv, "Table to write as CSV, in seconds");
+  command->add_option("--html", options->html, "Page to write, with a histogram of each stage");
+  command->add_option("--against", options->against,
+                      "Earlier run or timing file: print the change of each stage instead, with "
+                      "its 95 % interval");
+  command
+      ->add_option("--limit", options->limit_percent,
+                   "With --against: the most by which a stage may become slower, in percent")
+      ->check(CLI::Range(0.0, 1e6));
+  command->footer(
+      R"(Exit codes: 0 no stage is slower than --limit allows, or there is no limit, 1 one is, 2 wrong
+use or a bad file.
+
+Examples:
+  tether timing out/one/record.mcap
+  tether timing out/campaign/face_anchor/target/seed-* --out board.timing
+  tether timing out/new --against board.timing --limit 10)");
+}
+
 void add_list_command(CLI::App& program, Action& action) {
   const auto [command, options] =
       add_command(program, action, "list",
@@ -366,9 +404,10 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
   program.require_subcommand(1);
 
   Action action;
-  for (const auto add : {add_run_command, add_campaign_command, add_size_command,
-                         add_report_command, add_audit_command, add_frames_command,
-                         add_plot_command, add_world_command, add_target_command, add_list_command})
+  for (const auto add :
+       {add_run_command, add_campaign_command, add_size_command, add_report_command,
+        add_audit_command, add_timing_command, add_frames_command, add_plot_command,
+        add_world_command, add_target_command, add_list_command})
     add(program, action);
   try {
     program.parse(argc, argv);

@@ -33,6 +33,17 @@ uav::Pose from_wire(const wire::Pose& X) {
   return {from_wire(X.p()), from_wire(X.q())};
 }
 
+// --- stages -------------------------------------------------------------------------------------
+
+std::vector<StageTime> read(
+    const flatbuffers::Vector<flatbuffers::Offset<wire::StageTime>>* times) {
+  std::vector<StageTime> out;
+  if (times == nullptr) return out;
+  for (const wire::StageTime* time : *times)
+    out.push_back({time->stage()->str(), Duration(time->computing_ns())});
+  return out;
+}
+
 // --- catalogue ----------------------------------------------------------------------------------
 
 uav::CameraProperties read(const wire::CameraProperties& c) {
@@ -83,6 +94,7 @@ Result<Message> read(const wire::Welcome& welcome) {
   }
   out.free_running = welcome.free_running();
   out.start = from_ns<ExecTime>(welcome.start_et_ns());
+  out.computing = read(welcome.computing());
   return Message(std::move(out));
 }
 
@@ -93,6 +105,7 @@ Result<Message> read(const wire::Request& request) {
   out.sequence = request.sequence();
   out.issued_at = from_ns<ExecTime>(request.issued_at_et_ns());
   out.previous_round_trip = Duration(request.previous_round_trip_ns());
+  out.stages = read(request.stages());
   if (const auto* sensor = request.body_as_ReadSensor()) {
     out.body = ReadSensor{sensor->sensor(), sensor->latest(), sensor->only_if_available()};
   } else if (const auto* set = request.body_as_SetVelocity()) {
@@ -138,6 +151,7 @@ Result<Message> read(const wire::Reply& reply) {
   Reply out;
   out.sequence = reply.sequence();
   out.resume_at = from_ns<ExecTime>(reply.resume_at_et_ns());
+  out.computing = read(reply.computing());
   if (const auto* camera = reply.sample_as_CameraSample()) {
     out.sample = read(*camera);
   } else if (const auto* imu = reply.sample_as_ImuSample()) {
@@ -155,7 +169,8 @@ Result<Message> read(const wire::Reply& reply) {
 Result<Message> read(const wire::Hello& hello) {
   return Message(Hello{hello.protocol_version(), hello.sut()->str(), hello.uav()->str(),
                        static_cast<ClockKind>(hello.clock()), hello.cpu_factor(),
-                       hello.token()->str(), hello.concurrent(), Duration(hello.computing_ns())});
+                       hello.token()->str(), hello.concurrent(), Duration(hello.computing_ns()),
+                       hello.build_id() != nullptr ? hello.build_id()->str() : ""});
 }
 Result<Message> read(const wire::Refusal& refusal) {
   return Message(Refusal{static_cast<Refusal::Reason>(refusal.reason()), refusal.message()->str()});

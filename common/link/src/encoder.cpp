@@ -1,5 +1,6 @@
 #include "link_generated.h"
 
+#include <array>
 #include <cstring>
 #include <utility>
 #include <vector>
@@ -79,6 +80,21 @@ Offset<wire::Catalogue> write(FlatBufferBuilder& b, const uav::Catalogue& catalo
   return wire::CreateCatalogue(b, uav, sensor_list, b.CreateVector(anchors));
 }
 
+// --- stages -------------------------------------------------------------------------------------
+
+/// 0: none, which takes no room.
+using StageTimes = Offset<flatbuffers::Vector<Offset<wire::StageTime>>>;
+
+StageTimes write(FlatBufferBuilder& b, const std::vector<StageTime>& times) {
+  if (times.empty()) return 0;
+  std::array<Offset<wire::StageTime>, kMaxStages> written;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const auto stage = b.CreateString(times[i].stage);
+    written[i] = wire::CreateStageTime(b, stage, times[i].computing.count());
+  }
+  return b.CreateVector(written.data(), times.size());
+}
+
 // --- Request ------------------------------------------------------------------------------------
 
 using Body = Member<wire::RequestBody>;
@@ -149,16 +165,19 @@ Content write(FlatBufferBuilder& b, const Hello& hello, ImageSlot&) {
   const auto sut = b.CreateString(hello.sut);
   const auto uav = b.CreateString(hello.uav);
   const auto token = b.CreateString(hello.token);
+  const auto build_id = hello.build_id.empty() ? 0 : b.CreateString(hello.build_id);
   return {wire::Content::Hello,
           wire::CreateHello(b, hello.protocol_version, sut, uav,
                             static_cast<wire::ClockKind>(hello.clock), hello.cpu_factor, token,
-                            hello.concurrent, hello.computing.count())
+                            hello.concurrent, hello.computing.count(), build_id)
               .Union()};
 }
 Content write(FlatBufferBuilder& b, const Welcome& welcome, ImageSlot&) {
   const auto catalogue = write(b, welcome.catalogue);
+  const StageTimes computing = write(b, welcome.computing);
   return {wire::Content::Welcome,
-          wire::CreateWelcome(b, catalogue, welcome.free_running, to_ns(welcome.start)).Union()};
+          wire::CreateWelcome(b, catalogue, welcome.free_running, to_ns(welcome.start), computing)
+              .Union()};
 }
 Content write(FlatBufferBuilder& b, const Refusal& refusal, ImageSlot&) {
   const auto message = b.CreateString(refusal.message);
@@ -168,9 +187,10 @@ Content write(FlatBufferBuilder& b, const Refusal& refusal, ImageSlot&) {
 }
 Content write(FlatBufferBuilder& b, const Request& request, ImageSlot&) {
   const Body body = std::visit([&b](const auto& r) { return write(b, r); }, request.body);
+  const StageTimes stages = write(b, request.stages);
   return {wire::Content::Request,
           wire::CreateRequest(b, request.sequence, to_ns(request.issued_at),
-                              to_ns(request.previous_round_trip), body.kind, body.at)
+                              to_ns(request.previous_round_trip), body.kind, body.at, stages)
               .Union()};
 }
 Content write(FlatBufferBuilder& b, const Reply& reply, ImageSlot& slot) {
@@ -178,9 +198,10 @@ Content write(FlatBufferBuilder& b, const Reply& reply, ImageSlot& slot) {
   if (reply.sample) {
     sample = std::visit([&](const auto& s) { return write(b, s, slot); }, *reply.sample);
   }
-  return {
-      wire::Content::Reply,
-      wire::CreateReply(b, reply.sequence, to_ns(reply.resume_at), sample.kind, sample.at).Union()};
+  const StageTimes computing = write(b, reply.computing);
+  return {wire::Content::Reply, wire::CreateReply(b, reply.sequence, to_ns(reply.resume_at),
+                                                  sample.kind, sample.at, computing)
+                                    .Union()};
 }
 Content write(FlatBufferBuilder& b, const Progress& progress, ImageSlot&) {
   return {wire::Content::Progress, wire::CreateProgress(b, to_ns(progress.reached),

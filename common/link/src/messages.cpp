@@ -4,7 +4,11 @@
 namespace tether::link {
 
 std::string_view name(ClockKind kind) {
-  return enum_name(kind, {"wall", "cpu", "scripted", "unstamped", "counted"});
+  return enum_name(kind, {"wall", "cpu", "scripted", "unstamped", "counted", "replayed"});
+}
+
+std::string stage_between(std::string_view previous_call, std::string_view call) {
+  return std::string(previous_call).append(" to ").append(call);
 }
 
 std::string_view name(Refusal::Reason reason) {

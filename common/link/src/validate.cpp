@@ -107,10 +107,24 @@ void check(Checker& c, const Hello& hello) {
   c.text(hello.sut, kMaxNameBytes, "sut");
   c.text(hello.uav, kMaxNameBytes, "uav");
   c.text(hello.token, kMaxNameBytes, "token");
-  c.require(hello.clock <= ClockKind::kCounted, "clock", "is unknown");
+  c.require(hello.clock <= ClockKind::kReplayed, "clock", "is unknown");
   c.require(hello.cpu_factor >= 1e-6 && hello.cpu_factor <= 1e6, "cpu_factor",
             "is not within 1e-6..1e6");
   c.require(hello.computing >= Duration(0), "computing", "is negative");
+  c.text(hello.build_id, kMaxBuildIdBytes, "build_id");
+  c.require(hello.build_id.find_first_not_of("0123456789abcdef") == std::string::npos, "build_id",
+            "is not a number in lower-case hexadecimal digits");
+}
+
+void check(Checker& c, const std::vector<StageTime>& times, std::string_view field) {
+  c.require(times.size() <= kMaxStages, field, "has too many stages");
+  std::set<std::string_view> names;
+  for (const StageTime& time : times) {
+    c.text(time.stage, kMaxNameBytes, field);
+    c.require(!time.stage.empty(), field, "has a stage without a name");
+    c.require(names.insert(time.stage).second, field, "has a stage twice");
+    c.timestamp(to_ns(time.computing), field);
+  }
 }
 
 void check(Checker& c, const Welcome& welcome) {
@@ -120,6 +134,8 @@ void check(Checker& c, const Welcome& welcome) {
   check_entries(c, welcome.catalogue.sensors, "sensors");
   c.in("Welcome: ");
   check_entries(c, welcome.catalogue.anchors, "anchors");
+  c.in("Welcome: ");
+  check(c, welcome.computing, "computing");
 }
 
 void check(Checker& c, const Refusal& refusal) {
@@ -149,6 +165,7 @@ void check(Checker& c, const Request& request) {
   c.timestamp(request.issued_at, "issued_at");
   c.timestamp(to_ns(request.previous_round_trip), "previous_round_trip");
   std::visit([&c](const auto& body) { check(c, body); }, request.body);
+  check(c, request.stages, "stages");
 }
 
 void check(Checker& c, const uav::CameraSample& sample) {
@@ -179,6 +196,7 @@ void check(Checker& c, const Reply& reply) {
   c.in("Reply: ");
   c.require(reply.sequence > 0, "sequence", "is 0");
   c.timestamp(reply.resume_at, "resume_at");
+  check(c, reply.computing, "computing");
   if (!reply.sample) return;
   const auto check_sample = [&c](const auto& sample) {
     c.timestamp(sample.sampled_at, "sampled_at");

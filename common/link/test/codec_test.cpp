@@ -48,14 +48,18 @@ T decoded(const T& message) {
 
 // A field that both encoder and decoder left out would survive the round trip above.
 TEST(Codec, HelloRequestAndReplyFieldByField) {
-  const auto [version, sut, uav, clock, factor, token, concurrent, computing] =
-      decoded(Hello{9, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true, Duration(7)});
-  EXPECT_EQ(std::tie(version, sut, uav, clock, factor, token, concurrent, computing),
-            std::tuple(9u, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true, Duration(7)));
+  const auto [version, sut, uav, clock, factor, token, concurrent, computing, build_id] =
+      decoded(Hello{9, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true, Duration(7), "0a"});
+  EXPECT_EQ(
+      std::tie(version, sut, uav, clock, factor, token, concurrent, computing, build_id),
+      std::tuple(9u, "sut 1.2", "uav0", ClockKind::kCpu, 2.5, "secret", true, Duration(7), "0a"));
 
   const uav::VelocityCommand velocity{{1.0, -2.0, 0.5}, 0.25};
-  const auto [sequence, issued_at, round_trip, body] =
-      decoded(Request{3, from_ns<ExecTime>(40), Duration(5), SetVelocity{velocity}});
+  const std::vector<StageTime> stages{{"detect", Duration(9)}};
+  const auto [sequence, issued_at, round_trip, body, computed] =
+      decoded(Request{3, from_ns<ExecTime>(40), Duration(5), SetVelocity{velocity}, stages});
+  EXPECT_EQ(computed, stages);
+  EXPECT_EQ(decoded(Reply{3, from_ns<ExecTime>(40), std::nullopt, stages}).computing, stages);
   EXPECT_EQ(std::tie(sequence, issued_at, round_trip),
             std::tuple(3u, from_ns<ExecTime>(40), Duration(5)));
   EXPECT_EQ(std::get<SetVelocity>(body).command, velocity);

@@ -19,8 +19,9 @@ class RandomMessage {
 
   Message draw(std::uint32_t kind) {
     if (kind == 0)
-      return Hello{random_.bits(),  text(), text(), static_cast<ClockKind>(random_.bits() % 5),
-                   0.01 + number(), text(), coin(), Duration(random_.bits())};
+      return Hello{random_.bits(),      text(), text(), static_cast<ClockKind>(random_.bits() % 6),
+                   0.01 + number(),     text(), coin(), Duration(random_.bits()),
+                   coin() ? "0a9f" : ""};
     if (kind == 1) return welcome();
     if (kind == 2) return Refusal{static_cast<Refusal::Reason>(random_.bits() % 6), text()};
     if (kind == 3) return request();
@@ -68,6 +69,13 @@ class RandomMessage {
     return out;
   }
 
+  std::vector<StageTime> stages() {
+    std::vector<StageTime> out(random_.bits() % 4);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = {"s" + std::to_string(i), time<ExecTime>().time_since_epoch()};
+    return out;
+  }
+
   Message welcome() {
     Welcome out;
     out.catalogue.uav = text();
@@ -80,6 +88,7 @@ class RandomMessage {
     }
     out.free_running = coin();
     out.start = time<ExecTime>();
+    out.computing = stages();
     return out;
   }
 
@@ -90,6 +99,7 @@ class RandomMessage {
     if (kind == 1) out.body = SetVelocity{{vec3(), number()}};
     if (kind == 2) out.body = Sleep{time<ExecTime>()};
     if (kind == 3) out.body = Finish{coin(), text(), coin() ? json() : ""};
+    out.stages = stages();
     return out;
   }
 
@@ -114,6 +124,7 @@ class RandomMessage {
     if (kind == 1) out.sample = uav::ImuSample{time<SimTime>(), word(), vec3(), vec3(), quat()};
     if (kind == 2) out.sample = uav::RangeSample{time<SimTime>(), word(), number()};
     if (kind == 3) out.sample = uav::RangeSample{time<SimTime>(), word(), coin() ? kInf : -kInf};
+    out.computing = stages();
     return out;
   }
 

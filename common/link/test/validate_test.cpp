@@ -51,7 +51,7 @@ TEST(Validate, Hello) {
   for (const double factor : {0.0, -1.0, kNan, kInf}) expect({"cpu_factor", hello_with(factor)});
   expect({"sut", hello_with(1.0, std::string(257, 'x'))});
   expect({"sut", hello_with(1.0, std::string(1, '\0'))});
-  expect({"clock", hello_with(1.0, "", static_cast<ClockKind>(5))});
+  expect({"clock", hello_with(1.0, "", static_cast<ClockKind>(6))});
   Hello backwards = hello_with(1.0);
   backwards.computing = Duration(-1);
   expect({"computing", backwards});
@@ -132,6 +132,21 @@ TEST(Validate, LimitsTheDepthOfJson) {
   expect({"", Annotation{ExecTime{}, "roi", nested(60)}});
   for (const std::string& json : {nested(61), nested(400'000), objects})
     expect({"60 levels", Annotation{ExecTime{}, "roi", json}});
+}
+
+TEST(Validate, StagesHaveNamesAndTimes) {
+  const auto reply_with = [](std::vector<StageTime> times) {
+    return Reply{1, ExecTime{}, std::nullopt, std::move(times)};
+  };
+  expect({"", reply_with({{"detect", Duration(1)}, {"decide", Duration(0)}})});
+  expect({"without a name", reply_with({{"", Duration(1)}})});
+  expect({"twice", reply_with({{"detect", Duration(1)}, {"detect", Duration(1)}})});
+  expect({"negative", reply_with({{"detect", Duration(-1)}})});
+  expect({"too many", reply_with(std::vector<StageTime>(kMaxStages + 1, {"a", Duration(0)}))});
+  expect({"stages", Request{1, ExecTime{}, Duration(0), Sleep{}, {{"", Duration(0)}}}});
+  Hello hello{};
+  hello.build_id = "no number";
+  expect({"build_id", hello});
 }
 
 TEST(Validate, OneWayMessages) {

@@ -35,6 +35,13 @@ class InteractionCheck {
       if (sut != suts_.end() && sut->second.info != nullptr)  // others: check_consistency
         check(entry, sut->second);
     }
+    for (const record::SutInfo& sut : record_.header.suts)
+      if (sut.replay)
+        report_.note(
+            fmt::format("the time of UAV \"{}\" was replayed ({}) from {}, recorded {} on "
+                        "{}",
+                        sut.uav, sut.replay->mode, sut.replay->timing, sut.replay->recorded_at,
+                        sut.replay->board));
     if (unstamped > 0)
       report_.note(
           fmt::format("rule 6: {} interactions have timestamps of the coordinator, not of "
@@ -48,6 +55,7 @@ class InteractionCheck {
     check_arrival(entry);
     check_release(entry);
     check_stamp(entry, sut);
+    check_stages(entry, sut);
     if (entry.message.kind == record::kSensor) {
       check_sensor(entry, sut);
     } else if (entry.message.kind == record::kCommand) {
@@ -98,6 +106,18 @@ class InteractionCheck {
     if (entry.message.stamped != should_stamp)
       report_.add(6, entry, "{} by a SUT whose clock is \"{}\"",
                   entry.message.stamped ? "stamped" : "not stamped", sut.info->clock);
+  }
+
+  // Rule 5: what was computed under stages is what ET grew by, since the reply before.
+  void check_stages(const Entry& entry, const Sut& sut) {
+    const Interaction& m = entry.message;
+    Wide& resumed = resumed_[m.uav];
+    Wide sum = 0;
+    for (const record::StageTime& time : m.stages) sum += wide(time.computing);
+    if (!m.stages.empty() && !sut.info->concurrent && resumed + sum != wide(m.request_at))
+      report_.add(5, entry, "stages computed {}, but ET grew by {}", ns(sum),
+                  ns(wide(m.request_at) - resumed));
+    resumed = wide(m.reply_at);
   }
 
   void check_sensor(const Entry& entry, const Sut& sut) {
@@ -210,6 +230,7 @@ class InteractionCheck {
   const Boundaries& grid_;
   Report& report_;
   std::map<std::string, Sut> suts_;
+  std::map<std::string, Wide> resumed_;  // by UAV: ET of the last reply; 0 before the first
 };
 
 }  // namespace

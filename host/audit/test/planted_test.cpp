@@ -357,6 +357,12 @@ const Planted kPlanted[] = {
        where(r, is_sleep).violation = "request in the past by 5 ns";
        r.footer->causality_violations = 1;
      }},
+    {"stages_of_another_length",
+     {5},
+     [](Record& r) {
+       Interaction& m = where(r, is_sleep, 10);
+       m.stages = {{"detect", m.request_at.time_since_epoch() + kNs}};
+     }},
     {"request_after_finish", {5}, [](Record& r) { where(r, is_sleep).kind = record::kFinish; }},
     {"et_at_end_before_last_reply", {5}, [](Record& r) { r.footer->et_at_end[1] -= kNs; }},
     // Rule 6.

@@ -2,8 +2,12 @@
 #include "energy.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tether/board/target_readings.h>
 #include <tether/campaign/result.h>
@@ -52,6 +56,28 @@ std::vector<SutResult> sut_results(const record::Record& record,
     suts.push_back(std::move(sut));
   }
   return suts;
+}
+
+/// Of a text as in ISO 8601.
+std::optional<std::chrono::sys_days> day_of(const std::string& time) {
+  int year = 0;
+  unsigned month = 0, day = 0;
+  if (std::sscanf(time.c_str(), "%4d-%2u-%2u", &year, &month, &day) != 3) return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month),
+                                         std::chrono::day(day)};
+  return date.ok() ? std::optional<std::chrono::sys_days>(date) : std::nullopt;
+}
+
+std::optional<ReplayReport> replay_of(const record::Record& record) {
+  const auto& suts = record.header.suts;
+  const auto replayed =
+      std::ranges::find_if(suts, [](const auto& sut) { return sut.replay.has_value(); });
+  if (replayed == suts.end()) return std::nullopt;
+  std::set<std::string> unknown;
+  for (const auto& interaction : record.interactions)
+    for (const record::StageTime& time : interaction.message.stages)
+      if (time.is_unknown) unknown.insert(time.stage);
+  return ReplayReport{*replayed->replay, {unknown.begin(), unknown.end()}};
 }
 
 // Empty: it was reached.
@@ -167,6 +193,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   TrialResult result = result_of(scenario, condition, record.header.seed);
   result.metrics = compute_metrics(scenario.metrics, record);
   result.suts = sut_results(record, task_ends);
+  result.replay = replay_of(record);
   drop_metrics_of_missed_tasks(result, scenario);
   judge_missions(result, scenario, record);
   result.energy = energy_of(record, result.tasks);
@@ -206,6 +233,19 @@ record::EmulatorInfo emulator_of(const scenario::Condition& condition) {
     info.costs.push_back({kWorkClassNames[kind], static_cast<double>(emulator.cost_units[kind]) /
                                                      static_cast<double>(kCostUnitsPerNs)});
   return info;
+}
+
+std::string describe_replay(const TrialResult& result) {
+  if (!result.replay) return "";
+  const record::ReplayInfo& from = result.replay->from;
+  const auto recorded = day_of(from.recorded_at), flown = day_of(result.this_run.started_at);
+  const std::string age =
+      recorded && flown ? fmt::format(" ({} days before)", (*flown - *recorded).count()) : "";
+  std::string text = fmt::format("replayed ({}) from {}, recorded {}{} on {}", from.mode,
+                                 from.timing, from.recorded_at, age, from.board);
+  if (!result.replay->unknown_stages.empty())
+    text += fmt::format("; not recorded: {}", fmt::join(result.replay->unknown_stages, ", "));
+  return text;
 }
 
 void invalidate(TrialResult& result, const std::string& reason) {

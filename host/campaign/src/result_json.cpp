@@ -48,6 +48,12 @@ Json json_of(const MetricValue& metric) {
   return json;
 }
 
+Json json_of(const ReplayReport& replay) {
+  return Json{{"timing", replay.from.timing},           {"mode", replay.from.mode},
+              {"recorded_at", replay.from.recorded_at}, {"board", replay.from.board},
+              {"build_id", replay.from.build_id},       {"unknown_stages", replay.unknown_stages}};
+}
+
 Json json_of(const judge::TaskSpan& task) {
   return Json{{"uav", task.uav},
               {"task", task.task},
@@ -346,6 +352,12 @@ ThisRun read_this_run(const JsonReader& json) {
   return run;
 }
 
+ReplayReport read_replay(const JsonReader& json) {
+  return {{json.text("timing"), json.text("mode"), json.text("recorded_at"), json.text("board"),
+           json.text("build_id")},
+          json.texts("unknown_stages")};
+}
+
 Outcome read_outcome(const JsonReader& json) {
   const std::string word = json.text("outcome");
   const auto found = std::ranges::find(kOutcomes, word);
@@ -372,6 +384,7 @@ void read_trial(const JsonReader& json, TrialResult& result) {
   if (json.has("target")) result.target = json.text("target");
   if (json.has("settings")) result.settings = json.object("settings").all_texts();
   if (json.has("emulator")) result.emulator = read_emulator(json.object("emulator"));
+  if (json.has("replay")) result.replay = read_replay(json.object("replay"));
   if (json.has("profiles")) result.profiles = json.texts("profiles");
   result.outcome = read_outcome(json);
   result.end = json.text("end");
@@ -403,6 +416,7 @@ std::string to_json(const TrialResult& result) {
   if (!result.target.empty()) json["target"] = result.target;
   if (!result.settings.empty()) json["settings"] = result.settings;
   if (!result.emulator.program.empty()) json["emulator"] = json_of(result.emulator);
+  if (result.replay) json["replay"] = json_of(*result.replay);
   json.update(Json{{"real_time_factor", result.real_time_factor},
                    {"profiles", result.profiles},
                    {"outcome", name(result.outcome)},

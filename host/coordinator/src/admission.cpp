@@ -58,7 +58,7 @@ std::optional<std::string> clock_fault(const link::Hello& hello,
                                        const std::optional<ClockSetting>& wanted) {
   if (hello.concurrent &&
       (hello.clock == link::ClockKind::kCpu || hello.clock == link::ClockKind::kUnstamped ||
-       hello.clock == link::ClockKind::kCounted))
+       hello.clock == link::ClockKind::kCounted || hello.clock == link::ClockKind::kReplayed))
     return fmt::format(
         "the clock \"{}\" does not work for several threads; start the SUT with "
         "TETHER_CLOCK='wall'",
@@ -74,6 +74,17 @@ std::optional<std::string> clock_fault(const link::Hello& hello,
     advice = "Tether's client library stamps its requests; use another clock in the condition";
   return fmt::format("the SUT's clock is \"{}\", but the condition requires \"{}\"; {}", given,
                      asked, advice);
+}
+
+std::optional<std::string> build_fault(const link::Hello& hello,
+                                       const std::optional<timing::Replay>& replay) {
+  if (!replay || !replay->required_build_id() || *replay->required_build_id() == hello.build_id)
+    return std::nullopt;
+  return fmt::format(
+      "the program has the build id \"{}\", but the timing file is of \"{}\". An exact replay "
+      "needs "
+      "the same build; for another one, use mode = \"resampled\" or \"scaled\"",
+      hello.build_id, *replay->required_build_id());
 }
 
 }  // namespace tether::coordinator

@@ -26,4 +26,8 @@ ClockSetting clock_of(const link::Hello& hello);
 std::optional<std::string> clock_fault(const link::Hello& hello,
                                        const std::optional<ClockSetting>& wanted);
 
+/// Why the program cannot be given the time of `replay`: it is another build. None if it can.
+std::optional<std::string> build_fault(const link::Hello& hello,
+                                       const std::optional<timing::Replay>& replay);
+
 }  // namespace tether::coordinator

@@ -57,6 +57,7 @@ std::vector<Session> make_sessions(const sim::World& world, const RunOptions& op
     sessions[i].uav_name = world.uavs[i].name;
     sessions[i].command_latency = options.uavs[i].command_latency;
     sessions[i].cores = options.uavs[i].cores;
+    sessions[i].replay = options.uavs[i].replay;
     sessions[i].recorded_image_at.resize(world.uavs[i].sensors.size());
   }
   return sessions;
@@ -88,7 +89,7 @@ RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
 std::string_view name(RunEnd end) {
   constexpr std::string_view kNames[] = {"finished",      "time_limit",     "sut_lost",
                                          "sut_hung",      "simulator_lost", "interrupted",
-                                         "battery_empty", "record_failed"};
+                                         "battery_empty", "record_failed",  "timing_differs"};
   return kNames[static_cast<std::size_t>(end)];
 }
 
@@ -165,7 +166,8 @@ void Coordinator::Impl::start() {
     server_->send(session.peer, link::Welcome{.catalogue = sim::make_catalogue(
                                                   world(), world().uavs[session.uav]),
                                               .free_running = !is_synchronised(),
-                                              .start = ExecTime{}});
+                                              .start = ExecTime{},
+                                              .computing = time_given(session)});
 }
 
 // Whether every run with these options has the same messages: no clock has a part in them.
@@ -173,7 +175,8 @@ bool Coordinator::Impl::is_repeatable() const {
   return is_synchronised() && std::ranges::all_of(sessions_, [](const Session& session) {
            const link::ClockKind clock = session.hello.clock;
            return !session.is_concurrent() &&
-                  (clock == link::ClockKind::kScripted || clock == link::ClockKind::kCounted);
+                  (clock == link::ClockKind::kScripted || clock == link::ClockKind::kCounted ||
+                   clock == link::ClockKind::kReplayed);
          });
 }
 

@@ -63,6 +63,7 @@ class Coordinator::Impl {
   void on_stop(Session& session, ExecTime at, WallTime now);
   static std::optional<ExecTime> earliest_due(const Session& session, ExecTime at);
   void on_refusal(Session& session, const link::Refusal& refusal);
+  void check_replay(Session& session, const link::Request& request);
   void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);
   Standing standing(const Session& session) const;
   void begin(Session& session, const link::Request& request, WallTime now);
@@ -73,6 +74,7 @@ class Coordinator::Impl {
   ExecTime accept_read(Session& session, PendingInteraction& pending, const link::ReadSensor& read);
   ExecTime accept_command(Session& session, PendingInteraction& pending,
                           const link::SetVelocity& set);
+  static std::vector<link::StageTime> time_given(const Session& session);
   Session* find(link::PeerId peer);
   void refuse(link::PeerId peer, link::Refusal::Reason reason, const std::string& message);
 

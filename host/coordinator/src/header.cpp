@@ -105,7 +105,9 @@ record::Header Coordinator::Impl::make_header() const {
          .cores = session.hello.clock == link::ClockKind::kCpu ? session.cores : 0,
          .max_acceleration_m_s2 = max_acceleration_m_s2(uav.airframe, world().gravity_m_s2),
          .computing = session.hello.computing,
-         .required_clock = {}});
+         .required_clock = {},
+         .build_id = session.hello.build_id,
+         .replay = options_.uavs[session.uav].replayed_from});
     if (const auto& required = options_.uavs[session.uav].clock)
       header.suts.back().required_clock = describe(*required);
     const uav::Catalogue catalogue = sim::make_catalogue(world(), uav);

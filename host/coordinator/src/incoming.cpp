@@ -118,6 +118,8 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   Session& session = sessions_[std::get<std::size_t>(admitted)];
   if (const auto fault = clock_fault(hello, options_.uavs[session.uav].clock))
     return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
+  if (const auto fault = build_fault(hello, session.replay))
+    return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
   session.peer = peer;
   session.hello = hello;
   session.hello.token.clear();
@@ -187,10 +189,35 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   if (session.is_concurrent() && session.finish) return;
   if (const auto fault = fault_of(request, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
+  if (session.replay) check_replay(session, request);
+  if (ended_) return;
   ++session.next_sequence;
   begin(session, request, now);
   stepper_.act();
   release_ready();
+}
+
+// The SUT does what it did when its time was recorded. Its timestamp follows from the time given.
+void Coordinator::Impl::check_replay(Session& session, const link::Request& request) {
+  const auto* read = std::get_if<link::ReadSensor>(&request.body);
+  const std::string call =
+      read ? stepper_.sampler(session.uav).name(read->sensor) : kKinds[request.body.index()];
+  ExecTime due = barrier_.bound(session.uav);
+  for (const link::StageTime& time : request.stages) due += time.computing;
+  std::optional<std::string> difference = session.replay->take(call, request.stages);
+  if (!difference && due != request.issued_at)
+    difference = fmt::format("call \"{}\" at ET {} ns instead of the {} ns given", call,
+                             to_ns(request.issued_at), to_ns(due));
+  if (!difference) return;
+  refuse(session.peer, link::Refusal::Reason::kBadRequest, *difference);
+  session.left = true;
+  end({RunEnd::kTimingDiffers,
+       fmt::format("the SUT of UAV \"{}\" differs from the timing file at {}", session.uav_name,
+                   *difference)});
+}
+
+std::vector<link::StageTime> Coordinator::Impl::time_given(const Session& session) {
+  return session.replay ? session.replay->given() : std::vector<link::StageTime>();
 }
 
 // Plans a request and holds its reply. A concurrent SUT receives the time of its reply at once, so
@@ -224,6 +251,11 @@ record::Interaction Coordinator::Impl::make_entry(const Session& session,
   entry.st_at_arrival = st();
   entry.wall_at_arrival = now;
   entry.stamped = !session.timer && is_synchronised();
+  if (entry.stamped)
+    for (const link::StageTime& time : request.stages)
+      entry.stages.push_back({.stage = printable(time.stage),
+                              .computing = time.computing,
+                              .is_unknown = session.replay && !session.replay->knows(time.stage)});
   // Not for several threads: their calls overlap, so the last hold may belong to another call.
   if (!session.is_concurrent() && request.previous_round_trip > Duration(0) &&
       session.last_hold > Duration(0))

@@ -41,7 +41,8 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
 
   link::Reply message{.sequence = entry.sequence,
                       .resume_at = entry.reply_at,
-                      .sample = stepper_.measure(session.uav, entry)};
+                      .sample = stepper_.measure(session.uav, entry),
+                      .computing = time_given(session)};
   const std::optional<uav::CameraSample> image = image_to_record(session, pending.request, message);
   entry.st_at_release = st;
   entry.grid_error = std::max(entry.grid_error, same_instant(entry.reply_at) - st);

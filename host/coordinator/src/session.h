@@ -14,6 +14,7 @@
 #include <tether/sync/barrier_synchronizer.h>
 #include <tether/sync/clock_plausibility.h>
 #include <tether/sync/execution_timer.h>
+#include <tether/timing/replay.h>
 
 namespace tether::coordinator {
 
@@ -39,8 +40,9 @@ struct Session {
   std::optional<sync::ClockPlausibility>
       plausibility;  ///< synchronised, if the SUT measures its own time
   std::uint64_t next_sequence = 1;
-  SimTime called_at{};            ///< ST of the last request
-  std::size_t calls_in_step = 0;  ///< requests at that ST
+  std::optional<timing::Replay> replay;  ///< with the clock "replayed"
+  SimTime called_at{};                   ///< ST of the last request
+  std::size_t calls_in_step = 0;         ///< requests at that ST
   AnnotationBudget annotations;
   std::optional<link::Finish> finish;
   bool left = false;  ///< finished or disconnected by the coordinator

@@ -37,6 +37,12 @@ void members(auto& io, Maybe<SeenAnchor> auto& m) {
   io("pixels", m.pixels);
 }
 
+void members(auto& io, Maybe<StageTime> auto& m) {
+  io("stage", m.stage);
+  io("computing_ns", m.computing);
+  io.flag("unknown", m.is_unknown);
+}
+
 void members(auto& io, Maybe<Interaction> auto& m) {
   io("uav", m.uav);
   io("sequence", m.sequence);
@@ -67,6 +73,7 @@ void members(auto& io, Maybe<Interaction> auto& m) {
   io("grid_error_ns", m.grid_error);
   io("stamped", m.stamped);
   io.optional("violation", m.violation);
+  if (io.has("stages", !m.stages.empty())) io.list("stages", m.stages);
   if (!io.wall()) return;
   io.object("wall", [&](auto& wall) {
     wall("arrival_ns", m.wall_at_arrival);
@@ -152,6 +159,14 @@ void members(auto& io, Maybe<ClockInfo> auto& m) {
   if (io.has("computing_ns", m.computing > Duration(0))) io("computing_ns", m.computing);
 }
 
+void members(auto& io, Maybe<ReplayInfo> auto& m) {
+  io("timing", m.timing);
+  io("mode", m.mode);
+  io("recorded_at", m.recorded_at);
+  io("board", m.board);
+  io("build_id", m.build_id);
+}
+
 void members(auto& io, Maybe<SutInfo> auto& m) {
   constexpr int kMostCores = 1024;
   io("uav", m.uav);
@@ -164,8 +179,12 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
   if (io.has("max_acceleration_m_s2", m.max_acceleration_m_s2 > 0.0))
     io.positive("max_acceleration_m_s2", m.max_acceleration_m_s2);
   if (io.has("computing_ns", m.computing > Duration(0))) io("computing_ns", m.computing);
-  if (!io.has("required_clock", m.required_clock.has_value())) return;
-  io.object("required_clock", [&](auto& clock) { members(clock, io.value_of(m.required_clock)); });
+  if (io.has("required_clock", m.required_clock.has_value()))
+    io.object("required_clock",
+              [&](auto& clock) { members(clock, io.value_of(m.required_clock)); });
+  if (io.has("build_id", !m.build_id.empty())) io("build_id", m.build_id);
+  if (io.has("replay", m.replay.has_value()))
+    io.object("replay", [&](auto& replay) { members(replay, io.value_of(m.replay)); });
 }
 
 void members(auto& io, Maybe<CameraInfo> auto& m) {

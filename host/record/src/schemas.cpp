@@ -43,6 +43,19 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
     "grid_error_ns": {"type": "integer", "description": "what the step grid moved"},
     "stamped": {"type": "boolean", "description": "request_at was taken on the SUT's side"},
     "violation": {"type": "string", "description": "causality violation"},
+    "stages": {
+      "type": "array",
+      "description": "what was computed since the previous call, by stage",
+      "items": {
+        "type": "object",
+        "properties": {
+          "stage": {"type": "string"},
+          "computing_ns": {"type": "integer"},
+          "unknown": {"type": "boolean", "description": "not in the timing file"}
+        },
+        "required": ["stage", "computing_ns"]
+      }
+    },
     "wall": {
       "type": "object",
       "description": "host clock; differs from run to run",

@@ -39,6 +39,7 @@ inline Interaction sensor_interaction(std::uint64_t sequence = 1) {
   message.grid_error = Duration(500'001);
   message.stamped = false;
   message.violation = "sample from the future\n";
+  message.stages = {{"detect", Duration(7), false}, {"decide", Duration(0), true}};
   message.wall_at_arrival = from_ns<WallTime>(123'456'789);
   message.wall_at_release = from_ns<WallTime>(223'456'789);
   message.previous_link_time = Duration(-5);
@@ -128,7 +129,8 @@ inline Header header() {
   header.ground_truth_period = Duration(10'000'000);
   header.real_time_factor = 0.3;
   header.suts = {{"a", "tether-sut 0.1.0", "cpu", 6.5, Duration(2'000'000), false, 4, 40.5,
-                  Duration(8), ClockInfo{"scripted", 7.5, Duration(9)}},
+                  Duration(8), ClockInfo{"scripted", 7.5, Duration(9)}, "0a",
+                  ReplayInfo{"board.timing", "exact", "2026-11-23T06:00:00Z", "pi", "0b"}},
                  {"b", "other", "wall", 1.0, {}, true}};
   header.sensors = {
       {"a", "camera", "camera", true, Duration(33'333'333), Duration(5), Duration(7), Duration(8)},

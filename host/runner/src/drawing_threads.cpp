@@ -13,6 +13,7 @@ bool may_distort(const TrialSpec& spec) {
       return true;
     case scenario::Clock::kCpu:
     case scenario::Clock::kCounted:
+    case scenario::Clock::kReplayed:
     case scenario::Clock::kScripted:
       return false;
   }

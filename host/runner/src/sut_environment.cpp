@@ -13,8 +13,8 @@ namespace tether::runner {
 coordinator::ClockSetting clock_of(const scenario::Condition& condition) {
   using link::ClockKind;
   // In the order of scenario::Clock.
-  constexpr ClockKind kKinds[] = {ClockKind::kWall, ClockKind::kCpu, ClockKind::kScripted,
-                                  ClockKind::kUnstamped, ClockKind::kCounted};
+  constexpr ClockKind kKinds[] = {ClockKind::kWall,      ClockKind::kCpu,     ClockKind::kScripted,
+                                  ClockKind::kUnstamped, ClockKind::kCounted, ClockKind::kReplayed};
   return {kKinds[static_cast<std::size_t>(condition.clock)], condition.cpu_factor,
           condition.computing};
 }

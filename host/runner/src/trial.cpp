@@ -132,7 +132,7 @@ SimulatorSetup simulator_setup(const TrialSpec& spec, const sim::World& world,
 /// @throws Error(kSetup) if the simulator, the board or a SUT cannot be started, or the simulator
 /// is lost before the run.
 campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::World world,
-                          const Timings& timings, const TrialObserver& observer,
+                          const TrialInputs& inputs, const TrialObserver& observer,
                           WarningLog& warnings, const std::stop_token& stop) {
   const auto board = hold_board(spec, stop);
   const SimulatorSetup setup = simulator_setup(spec, world, observer, warnings, stop);
@@ -147,9 +147,11 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
   warnings.pass_on();
   try {
     const Conducted conducted =
-        TrialRun(spec, timings, *simulator, board.get(), observer, stop).conduct();
+        TrialRun(spec, inputs, *simulator, board.get(), observer, stop).conduct();
     auto result = evaluate(spec, conducted);
     result.this_run.notes = conducted.notes;
+    const auto& notes = inputs.replayed.warnings;
+    result.this_run.notes.insert(result.this_run.notes.end(), notes.begin(), notes.end());
     if (const auto work = simulator->get().work())
       result.this_run.simulator = {.stepping = work->stepping,
                                    .drawing = work->drawing,
@@ -199,8 +201,9 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
       sim::load_world(scenario::world_request(spec.scenario, spec.seed), warnings.sink());
   scenario::resolve_energy(spec.scenario, spec.condition, world, warnings.sink());
   back_end.require_readable(world);
-  const Timings timings =
-      scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink());
+  const TrialInputs inputs{
+      scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink()),
+      replayed_time(spec)};
   world.step = spec.scenario.step;
   if (spec.sut_place() == SutPlace::kThisMachine)
     require_sut_programs(spec.scenario, spec.condition);
@@ -209,7 +212,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   const std::string started_at = utc_now();
   campaign::TrialResult result;
   try {
-    result = fly(spec, back_end, std::move(world), timings, observer, warnings, stop);
+    result = fly(spec, back_end, std::move(world), inputs, observer, warnings, stop);
   } catch (const Error& e) {
     result = setup_failure(spec, e.what(), stop.stop_requested());
   } catch (const std::bad_alloc&) {

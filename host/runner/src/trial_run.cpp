@@ -74,7 +74,7 @@ std::vector<os::CountFile> count_files(const TrialSpec& spec) {
   return counts;
 }
 
-coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timings,
+coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& inputs,
                                     const std::string& token,
                                     const std::optional<record::TargetInfo>& target) {
   coordinator::RunOptions options;
@@ -82,9 +82,17 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const Timings& timing
                        ? sync::SyncPolicy::kFreeRunning
                        : sync::SyncPolicy::kConservativeBarrier;
   const coordinator::ClockSetting clock = clock_of(spec.condition);
-  for (std::size_t i = 0; i < timings.size(); ++i)
-    options.uavs.push_back({timings[i], spec.scenario.uavs[i].command_latency, clock,
-                            spec.sut_place() == SutPlace::kThisMachine ? known_cores() : 0});
+  options.uavs.resize(inputs.timings.size());
+  for (std::size_t i = 0; i < options.uavs.size(); ++i) {
+    coordinator::UavOptions& uav = options.uavs[i];
+    uav.timings = inputs.timings[i];
+    uav.command_latency = spec.scenario.uavs[i].command_latency;
+    uav.clock = clock;
+    uav.cores = spec.sut_place() == SutPlace::kThisMachine ? known_cores() : 0;
+    if (inputs.replayed.replays.empty()) continue;
+    uav.replay = inputs.replayed.replays[i];
+    uav.replayed_from = inputs.replayed.from;
+  }
   options.token = token;
   options.seed = spec.seed;
   options.real_time_factor = spec.condition.real_time_factor;
@@ -146,7 +154,7 @@ std::string sut_address(const TrialSpec& spec, board::Board* board, const link::
 
 }  // namespace
 
-TrialRun::TrialRun(const TrialSpec& spec, const Timings& timings, RunningSimulator& simulator,
+TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimulator& simulator,
                    board::Board* board, const TrialObserver& observer, std::stop_token stop)
     : spec_(spec),
       simulator_(simulator),
@@ -156,7 +164,7 @@ TrialRun::TrialRun(const TrialSpec& spec, const Timings& timings, RunningSimulat
       token_(token_of_run()),
       target_(target_info(spec, board)),
       recorder_(record::make_mcap_recorder(spec.folder / kRecordFile)),
-      coordinator_(simulator.get(), *recorder_, run_options(spec, timings, token_, target_),
+      coordinator_(simulator.get(), *recorder_, run_options(spec, inputs, token_, target_),
                    host_now),
       server_(listen(spec, board)),
       sut_run_{sut_address(spec, board, *server_), token_, spec.condition, count_files(spec)},

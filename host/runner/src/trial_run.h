@@ -1,6 +1,7 @@
 #pragma once
 
 #include "refusals.h"
+#include "replayed_time.h"
 #include "stall_watch.h"
 #include "sut_environment.h"
 #include "sut_processes.h"
@@ -23,6 +24,12 @@ namespace tether::runner {
 /// One list per UAV of the world, in the order of its sensors.
 using Timings = std::vector<std::vector<uav::SensorTiming>>;
 
+/// What is read and checked before the folder of a trial is made.
+struct TrialInputs {
+  Timings timings;
+  ReplayedTime replayed;
+};
+
 /// A run's report, and notes about it.
 struct Conducted {
   coordinator::RunReport report;
@@ -38,7 +45,7 @@ class TrialRun {
  public:
   /// Opens the record and the server. The arguments must outlive the object; `board` is null if the
   /// SUTs run here. @throws Error(kSetup).
-  TrialRun(const TrialSpec& spec, const Timings& timings, RunningSimulator& simulator,
+  TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimulator& simulator,
            board::Board* board, const TrialObserver& observer, std::stop_token stop);
 
   /// Call it once. @throws Error(kSetup) if a SUT cannot be started, or the simulator is lost

@@ -1,3 +1,4 @@
+#include "read_replay.h"
 #include "read_sensor_profile.h"
 #include "read_sut.h"
 #include "settings.h"
@@ -18,8 +19,8 @@ namespace tether::scenario {
 namespace {
 
 constexpr std::array<std::string_view, 2> kPolicies = {"conservative_barrier", "free_running"};
-constexpr std::array<std::string_view, 5> kClocks = {"wall", "cpu", "scripted", "unstamped",
-                                                     "counted"};
+constexpr std::array<std::string_view, 6> kClocks = {"wall",      "cpu",     "scripted",
+                                                     "unstamped", "counted", "replayed"};
 constexpr std::array<std::string_view, 2> kSimulators = {"mujoco", "gazebo"};
 
 constexpr double kLongestRun_s = 7 * 24 * 3600.0;
@@ -124,7 +125,8 @@ void read_clock(const toml::Table& table, Condition& condition) {
     table.fail("computing_ms",
                "replaces the measured computing time, so it needs clock = \"scripted\".");
   }
-  const bool needs_barrier = is_scripted || condition.clock == Clock::kUnstamped;
+  const bool needs_barrier =
+      is_scripted || condition.clock == Clock::kUnstamped || condition.clock == Clock::kReplayed;
   if (needs_barrier && condition.policy == Policy::kFreeRunning) {
     table.fail("clock", fmt::format("is \"{}\", which needs policy = \"conservative_barrier\", "
                                     "because free running uses the wall clock.",
@@ -161,6 +163,7 @@ Condition read_condition(const toml::Table& table, Scenario& scenario) {
   } else {
     read_clock(table, condition);
   }
+  condition.replay = read_replay(table, condition, scenario);
   condition.real_time_factor = table.number_or("real_time_factor", kFactor, 0.0);
   if (condition.policy == Policy::kFreeRunning && condition.real_time_factor == 0.0) {
     table.fail(
@@ -175,9 +178,10 @@ Condition read_condition(const toml::Table& table, Scenario& scenario) {
 
 void read_conditions(const toml::Table& root, Scenario& scenario) {
   std::map<std::string, std::string> slugs;
-  for (const toml::Table& table : root.tables(
-           "condition", {"name", "description", "policy", "clock", "cpu_factor", "computing_ms",
-                         "real_time_factor", "profile", "target", "simulator"})) {
+  for (const toml::Table& table :
+       root.tables("condition", {"name", "description", "policy", "clock", "cpu_factor",
+                                 "computing_ms", "real_time_factor", "profile", "target",
+                                 "simulator", "timing", "mode", "counted", "unknown_stages"})) {
     scenario.conditions.push_back(read_condition(table, scenario));
     if (auto profile = read_profile(table, scenario)) {
       scenario.conditions.back().profiles.push_back(std::move(*profile));

@@ -29,6 +29,7 @@ void place_on(Condition& condition, Target target) {
   condition.clock = target.clock;
   condition.cpu_factor = target.cpu_factor;
   condition.computing = Duration{0};
+  condition.replay.reset();
   condition.target = std::move(target);
 }
 

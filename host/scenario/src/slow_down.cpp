@@ -11,6 +11,8 @@ namespace {
 std::string why_not_slower(const Condition& condition) {
   if (condition.target && condition.target->ssh)
     return "its SUTs run on a board, which cannot be slowed down. Use a virtual target.";
+  if (condition.clock == Clock::kReplayed)
+    return "its time is replayed as it was recorded. Use \"cpu\", \"wall\" or \"scripted\".";
   if (condition.clock == Clock::kUnstamped)
     return "the clock \"unstamped\" has no factor. Use \"cpu\", \"wall\" or \"scripted\".";
   if (condition.clock == Clock::kWall && condition.policy == Policy::kFreeRunning)

@@ -35,6 +35,54 @@ class LoadScenario : public testing::Test {
   const std::string mission_ = scratch_.path("missions/around.toml");
 };
 
+TEST_F(LoadScenario, ReadsWhatIsReplayed) {
+  scratch_.write("a.timing", "");
+  scratch_.write("b.timing", "");
+  const std::string measured = "clock = \"cpu\"\ncpu_factor = 1.5";
+  const std::string replayed = "clock = \"replayed\"\n";
+  const std::string timing = replayed + "timing = \"a.timing\"\n";
+  const auto change = [&](const std::string& keys) {
+    return replaced(kFullScenario, measured, keys);
+  };
+  const auto source = [&](const std::string& keys) {
+    const Scenario scenario = load(change(keys));
+    EXPECT_EQ(scenario.conditions[0].clock, Clock::kReplayed);
+    EXPECT_EQ(std::ranges::count(scenario.files, scratch_.path("a.timing")), 1);
+    return *scenario.conditions[0].replay;
+  };
+  EXPECT_EQ(source(timing).timing, scratch_.path("a.timing"));
+  EXPECT_EQ(source(timing).mode, ReplayMode::kResampled);
+  EXPECT_EQ(source(timing + "mode = \"exact\"").mode, ReplayMode::kExact);
+  EXPECT_EQ(source(timing + "unknown_stages = \"zero\"").unknown, UnknownStages::kZero);
+  EXPECT_EQ(source(timing + "mode = \"scaled\"\ncounted = \"b.timing\"").counted,
+            scratch_.path("b.timing"));
+  for (const auto& [keys, line, subject] :
+       {std::tuple(measured + "\nmode = \"exact\"", 2, "mode"),
+        std::tuple(timing + "mode = \"scaled\"", 2, "mode"),
+        std::tuple(timing + "mode = \"same\"", 2, "mode"),
+        std::tuple(timing + "counted = \"b.timing\"", 2, "counted"),
+        std::tuple(timing + "unknown_stages = \"counted\"", 2, "unknown_stages"),
+        std::tuple(replayed + "timing = \"c.timing\"", 1, "timing"),
+        std::tuple(timing + "mode = \"exact\"\nunknown_stages = \"zero\"", 3, "unknown_stages")})
+    expect_refusal(60 + line, subject, [&] { load(change(keys)); });
+  expect_refusal(66, "clock", [&] { load_with("clock = \"wall\"", timing); });  // free running
+}
+
+TEST_F(LoadScenario, ChangesWhatUnknownStagesTake) {
+  Condition condition;
+  const auto refused = [&](const char* name) {
+    return thrown_error(ErrorCode::kUsage, [&] { set_unknown_stages(condition, name); }).subject();
+  };
+  EXPECT_EQ(refused("zero"), "--unknown-stages");
+  condition.replay.emplace();
+  EXPECT_EQ(refused("nothing"), "--unknown-stages");
+  EXPECT_EQ(refused("counted"), "--unknown-stages");
+  set_unknown_stages(condition, "zero");
+  EXPECT_EQ(condition.replay->unknown, UnknownStages::kZero);
+  condition.replay->mode = ReplayMode::kExact;
+  EXPECT_EQ(refused("zero"), "--unknown-stages");
+}
+
 TEST_F(LoadScenario, ReadsTheTop) {
   const Scenario s = load(kFullScenario);
   EXPECT_EQ(s.file, scratch_.path("scenario.toml"));

@@ -92,6 +92,30 @@ void ConcurrentVehicle::give_back(std::unique_ptr<Connection> connection) {
   idle_.push_back(std::move(connection));
 }
 
+// --- stages -------------------------------------------------------------------------------------
+
+ConcurrentVehicle::Computing& ConcurrentVehicle::computing() {
+  const ExecTime at = now();
+  const std::lock_guard lock(mutex_);
+  return computing_.try_emplace(std::this_thread::get_id(), Computing{StageLog(at)}).first->second;
+}
+
+template <class Change>
+Status ConcurrentVehicle::change_stage(Change change) {
+  if (const Status good = usable(); !good) return good;
+  StageLog& stages = computing().stages;
+  if (!free_running_) stages.reach(now());
+  return change(stages);
+}
+
+Status ConcurrentVehicle::begin_stage(std::string_view stage) {
+  return change_stage([&](StageLog& stages) { return stages.begin(stage); });
+}
+
+Status ConcurrentVehicle::end_stage() {
+  return change_stage([](StageLog& stages) { return stages.end(); });
+}
+
 // --- calls --------------------------------------------------------------------------------------
 
 Result<link::Reply> ConcurrentVehicle::interact(Body body) {
@@ -120,7 +144,12 @@ Result<link::Reply> ConcurrentVehicle::interact(Body body) {
 Result<link::Reply> ConcurrentVehicle::ask(Connection& connection, Body body) {
   const Cancellation::Wait wait(Cancellation::of_this_thread(),
                                 [&] { connection.socket.shut_down(); });
-  const link::Request request{connection.sequence + 1, now(), Duration(0), std::move(body)};
+  Computing& own = computing();
+  const ExecTime stamp = now();
+  if (!free_running_) own.stages.reach(stamp);
+  const std::string call = name_of_call(body, catalogue());
+  const link::Request request{connection.sequence + 1, stamp, Duration(0), std::move(body),
+                              own.stages.times(link::stage_between(own.previous_call, call))};
   const Status sent = connection.socket.send(request);
   if (!sent && sent.failure().kind == Failure::Kind::kInvalid) return sent.failure();
   // Even if the request did not go out: tether-exec may have said why before it hung up.
@@ -135,6 +164,8 @@ Result<link::Reply> ConcurrentVehicle::ask(Connection& connection, Body body) {
   if (reply == nullptr) return protocol_failure("it is not a Reply");
   if (const Status good = check(*reply, request, free_running_); !good) return good.failure();
   connection.sequence = request.sequence;
+  own.previous_call = call;
+  own.stages.resume(now());
   return std::move(*reply);
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
 #include "interacting_vehicle.h"
+#include "stage_log.h"
 
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <tether/client/exec/clock_page.h>
@@ -26,6 +29,8 @@ class ConcurrentVehicle final : public InteractingVehicle {
   Status sleep_for(Duration duration) override;
   Status sleep_until(ExecTime until) override;
   Status annotate(std::string_view topic, std::string_view json) override;
+  Status begin_stage(std::string_view stage) override;
+  Status end_stage() override;
 
  private:
   struct Connection {
@@ -44,6 +49,11 @@ class ConcurrentVehicle final : public InteractingVehicle {
     link::Hello hello;
     Duration welcome_timeout;
   };
+  /// What a thread computes between its calls.
+  struct Computing {
+    StageLog stages;
+    std::string previous_call = "start";
+  };
   static Result<Greeting> greet(const Caller& caller);
 
   ConcurrentVehicle(Caller caller, Greeting greeting, MappedClockPage clock);
@@ -53,13 +63,18 @@ class ConcurrentVehicle final : public InteractingVehicle {
 
   Result<link::Reply> ask(Connection& connection, Body body);
   Result<std::unique_ptr<Connection>> take_connection();
+  /// Of the calling thread.
+  Computing& computing();
+  template <class Change>
+  Status change_stage(Change change);
   void give_back(std::unique_ptr<Connection> connection);
 
   Caller caller_;
   MappedClockPage clock_;
   bool free_running_;
   std::mutex mutex_;
-  std::vector<std::unique_ptr<Connection>> idle_;  // guarded by mutex_
+  std::vector<std::unique_ptr<Connection>> idle_;   // guarded by mutex_
+  std::map<std::thread::id, Computing> computing_;  // the map is guarded by mutex_
 };
 
 }  // namespace tether::client

@@ -1,3 +1,4 @@
+#include "build_id.h"
 #include "concurrent_vehicle.h"
 #include "simulated_vehicle_impl.h"
 
@@ -17,6 +18,7 @@ link::Hello hello_for(const ConnectOptions& options) {
   hello.cpu_factor = options.time->factor();
   hello.computing = options.time->computing();
   hello.token = options.token;
+  hello.build_id = build_id();
   return hello;
 }
 
@@ -40,6 +42,11 @@ Status check_free_running(const link::Welcome& welcome, const TimeSource& time) 
         Failure::Kind::kInvalid,
         "the clock \"counted\" is not allowed in free-running mode, where ST follows the "
         "wall clock: an emulated program takes longer than what it counts"};
+  }
+  if (time.kind() == link::ClockKind::kReplayed) {
+    return Failure{Failure::Kind::kInvalid,
+                   "the clock \"replayed\" is not allowed in free-running mode, where ST follows "
+                   "the wall clock"};
   }
   if (time.kind() == link::ClockKind::kWall && time.factor() != 1.0) {
     return Failure{Failure::Kind::kInvalid,
@@ -68,7 +75,8 @@ Result<std::unique_ptr<Vehicle>> connect_to_exec(const ConnectOptions& options) 
 Duration progress_period(const ConnectOptions& options, const link::Welcome& welcome) {
   if (welcome.free_running) return options.heartbeat_period;
   const link::ClockKind kind = options.time->kind();
-  const bool repeats = kind == link::ClockKind::kScripted || kind == link::ClockKind::kCounted;
+  const bool repeats = kind == link::ClockKind::kScripted || kind == link::ClockKind::kCounted ||
+                       kind == link::ClockKind::kReplayed;
   return repeats ? Duration::zero() : options.progress_period;
 }
 

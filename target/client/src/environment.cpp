@@ -45,6 +45,7 @@ std::optional<std::string> after(const std::string& text, const std::string& pre
 std::unique_ptr<TimeSource> make_source(const std::string& text) {
   if (text == "wall") return make_wall_source();
   if (text == "cpu") return make_cpu_source(1.0);
+  if (text == "replayed") return make_replayed_source();
   if (const auto factor = after(text, "wall*")) {
     const auto value = parse_number(*factor, 1e-6, 1e6);
     return value ? make_wall_source(*value) : nullptr;
@@ -73,7 +74,7 @@ Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text) {
       Failure::Kind::kInvalid,
       "'" + text +
           "' is not a clock. Allowed: wall, cpu, wall*FACTOR or cpu*FACTOR (cpu*4: a target "
-          "that is four times slower; 1e-6 to 1e6), counted, scripted*MILLISECONDS"};
+          "that is four times slower; 1e-6 to 1e6), counted, replayed, scripted*MILLISECONDS"};
 }
 
 Result<ConnectOptions> options_from_environment() {

@@ -82,6 +82,14 @@ link::Sleep make_sleep(ExecTime until) {
   return {std::clamp(until, ExecTime{}, last)};
 }
 
+std::string name_of_call(const decltype(link::Request::body)& body,
+                         const uav::Catalogue& catalogue) {
+  if (const auto* read = std::get_if<link::ReadSensor>(&body))
+    return catalogue.sensors[read->sensor].name;
+  if (std::holds_alternative<link::SetVelocity>(body)) return "command";
+  return std::holds_alternative<link::Sleep>(body) ? "sleep" : "finish";
+}
+
 Failure InteractingVehicle::give_up(Failure failure) {
   const std::lock_guard lock(mutex_);
   if (!over_) over_ = failure;

@@ -26,6 +26,10 @@ ExecTime add_within_bounds(ExecTime et, Duration duration);
 /// The Sleep until then, or until the first or last instant that a message may carry.
 link::Sleep make_sleep(ExecTime until);
 
+/// How stages between calls name a call (link::stage_between).
+std::string name_of_call(const decltype(link::Request::body)& body,
+                         const uav::Catalogue& catalogue);
+
 /// What vehicles in the simulator have in common: calls become requests, replies results.
 /// Thread-safe as far as `interact` is.
 class InteractingVehicle : public Vehicle {

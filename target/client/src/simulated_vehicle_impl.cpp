@@ -13,7 +13,9 @@ SimulatedVehicle::SimulatedVehicle(std::unique_ptr<link::Channel> channel, link:
     : InteractingVehicle(std::move(welcome.catalogue)),
       channel_(std::move(channel)),
       source_(std::move(source)),
-      wall_(std::move(wall)) {
+      wall_(std::move(wall)),
+      stages_(welcome.start),
+      given_(std::move(welcome.computing)) {
   if (welcome.free_running) {
     auto clock = std::make_unique<FreeRunningClock>(*source_, *wall_, welcome.start);
     free_running_ = clock.get();
@@ -47,20 +49,37 @@ Result<link::Reply> SimulatedVehicle::interact(Body body) {
 
 Result<link::Reply> SimulatedVehicle::interact_alone(Body body) {
   if (const Status good = usable(); !good) return good.failure();  // others were first
-  const ExecTime stamp = clock_->begin();
+  const ExecTime stamp = begin_call(body);
   if (const Status good = complete(); !good) return good.failure();
   const Duration issued = wall_->now();
-  const link::Request request{sequence_ + 1, stamp, previous_round_trip_, std::move(body)};
+  const std::string call = name_of_call(body, catalogue());
+  const link::Request request{sequence_ + 1, stamp, previous_round_trip_, std::move(body),
+                              stages_.times(link::stage_between(previous_call_, call))};
   auto reply = ask(request);
   previous_round_trip_ = wall_->now() - issued;
   if (reply) {
     sequence_ = request.sequence;
+    stages_.resume(reply->resume_at);
+    given_ = std::move(reply->computing);
+    previous_call_ = call;
     if (std::holds_alternative<link::Finish>(request.body)) give_up(mission_finished());
   } else if (reply.failure().kind != Failure::Kind::kInvalid) {
     give_up(reply.failure());
   }
   clock_->end(reply ? reply->resume_at : stamp);
   return reply;
+}
+
+// Time that is replayed is charged before the clock is read. Otherwise nothing is done until then.
+ExecTime SimulatedVehicle::begin_call(const Body& body) {
+  if (source_->kind() == link::ClockKind::kReplayed) {
+    const std::string call = name_of_call(body, catalogue());
+    source_->charge(stages_.take(given_, link::stage_between(previous_call_, call)));
+    return clock_->begin();
+  }
+  const ExecTime stamp = clock_->begin();
+  if (free_running_ == nullptr) stages_.reach(stamp);
+  return stamp;
 }
 
 Result<link::Reply> SimulatedVehicle::ask(const link::Request& request) {
@@ -112,7 +131,7 @@ Status SimulatedVehicle::sleep_for(Duration duration) {
   if (const Status good = usable(); !good) return good;
   const std::lock_guard lock(calls_);
   if (const Status good = usable(); !good) return good;  // others were first
-  return sleep_alone(add_within_bounds(clock_->begin(), duration));
+  return sleep_alone(add_within_bounds(begin_call(link::Sleep{}), duration));
 }
 
 Status SimulatedVehicle::sleep_until(ExecTime until) {
@@ -141,6 +160,36 @@ Status SimulatedVehicle::annotate(std::string_view topic, std::string_view json)
   }
   if (free_running_ == nullptr) clock_->end(at);
   return sent;
+}
+
+// --- stages -------------------------------------------------------------------------------------
+
+// The clock stands still meanwhile. A scripted clock advances whenever it is read: it is not, and
+// its step belongs to the stage of the next call.
+template <class Change>
+Status SimulatedVehicle::change_stage(Change change) {
+  if (const Status good = usable(); !good) return good;
+  const std::lock_guard lock(calls_);
+  if (const Status good = usable(); !good) return good;  // others were first
+  if (free_running_ != nullptr) return change(stages_);
+  if (source_->computing() > Duration::zero()) {
+    stages_.reach(stages_.reached());
+    return change(stages_);
+  }
+  if (source_->kind() == link::ClockKind::kReplayed) source_->charge(stages_.take(given_, ""));
+  const ExecTime at = clock_->begin();
+  stages_.reach(at);
+  const Status changed = change(stages_);
+  clock_->end(at);
+  return changed;
+}
+
+Status SimulatedVehicle::begin_stage(std::string_view stage) {
+  return change_stage([&](StageLog& stages) { return stages.begin(stage); });
+}
+
+Status SimulatedVehicle::end_stage() {
+  return change_stage([](StageLog& stages) { return stages.end(); });
 }
 
 }  // namespace tether::client

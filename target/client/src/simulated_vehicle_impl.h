@@ -4,10 +4,13 @@
 #include "interacting_vehicle.h"
 #include "interaction_clock.h"
 #include "progress_reporter.h"
+#include "stage_log.h"
 #include "wall_timer.h"
 
 #include <memory>
 #include <mutex>
+#include <string>
+#include <vector>
 
 #include <tether/client/simulated_vehicle.h>
 
@@ -27,6 +30,8 @@ class SimulatedVehicle final : public InteractingVehicle {
   Status sleep_for(Duration duration) override;
   Status sleep_until(ExecTime until) override;
   Status annotate(std::string_view topic, std::string_view json) override;
+  Status begin_stage(std::string_view stage) override;
+  Status end_stage() override;
 
  private:
   Result<link::Reply> interact(Body body) override;
@@ -35,6 +40,10 @@ class SimulatedVehicle final : public InteractingVehicle {
   /// What the calls do while they hold `calls_`.
   /// @{
   Result<link::Reply> interact_alone(Body body);
+  /// The SUT stops computing for that call: its timestamp.
+  ExecTime begin_call(const Body& body);
+  template <class Change>
+  Status change_stage(Change change);
   Result<link::Reply> ask(const link::Request& request);
   Status sleep_alone(ExecTime until);
   /// Ends the run if a part of the SUT's computing is not measured.
@@ -49,7 +58,7 @@ class SimulatedVehicle final : public InteractingVehicle {
   std::unique_ptr<InteractionClock> clock_;
   FreeRunningClock* free_running_ = nullptr;  // clock_, if that is its policy
 
-  std::mutex calls_;  // taken before sending_; guards sequence_ and previous_round_trip_
+  std::mutex calls_;  // taken before sending_; guards what is below sending_
 
   // A progress message is stamped and sent under this lock, and whatever else is sent takes it
   // after having held the clock: so no progress message follows a request, or is stamped later than
@@ -57,6 +66,9 @@ class SimulatedVehicle final : public InteractingVehicle {
   std::mutex sending_;
 
   std::uint64_t sequence_ = 0;
+  StageLog stages_;
+  std::string previous_call_ = "start";
+  std::vector<link::StageTime> given_;  // of a replayed clock: the time of stages to come
   Duration previous_round_trip_{0};
   std::unique_ptr<ProgressReporter> progress_;  // last: its thread uses the others
 };

@@ -159,6 +159,16 @@ class ScriptedSource final : public TimeSource {
   mutable std::atomic<std::int64_t> readings_{0};
 };
 
+class ReplayedSource final : public TimeSource {
+ public:
+  link::ClockKind kind() const override { return link::ClockKind::kReplayed; }
+  Duration elapsed() const override { return Duration(charged_ns_.load()); }
+  void charge(Duration computing) override { charged_ns_ += computing.count(); }
+
+ private:
+  std::atomic<std::int64_t> charged_ns_{0};
+};
+
 }  // namespace
 
 std::unique_ptr<TimeSource> make_wall_source(double factor) {
@@ -169,6 +179,9 @@ std::unique_ptr<TimeSource> make_cpu_source(double factor) {
 }
 std::unique_ptr<TimeSource> make_scripted_source(Duration step) {
   return std::make_unique<ScriptedSource>(step);
+}
+std::unique_ptr<TimeSource> make_replayed_source() {
+  return std::make_unique<ReplayedSource>();
 }
 
 }  // namespace tether::client

@@ -43,6 +43,8 @@ class InterruptibleVehicle : public client::Vehicle {
   Status annotate(std::string_view topic, std::string_view json) override {
     return vehicle_->annotate(topic, json);
   }
+  Status begin_stage(std::string_view stage) override { return vehicle_->begin_stage(stage); }
+  Status end_stage() override { return vehicle_->end_stage(); }
   Status finish(bool reached_goal, std::string_view outcome,
                 std::string_view details_json) override {
     return vehicle_->finish(reached_goal, outcome, details_json);

@@ -88,9 +88,9 @@ Result<std::optional<Sight>> look(TaskContext& context, const std::string& ancho
   if (!anchor) return anchor.failure();
   const auto tracker = context.tracker(anchor_name);
   if (!tracker) return tracker.failure();
-  const Result<uav::CameraSample> image = context.vehicle().read_camera((*camera)->name);
+  const Result<uav::CameraSample> image = context.capture((*camera)->name);
   if (!image) return image.failure();
-  const std::optional<vision::Roi> roi = (*tracker)->track(*image);
+  const std::optional<vision::Roi> roi = context.detect(**tracker, *image);
   if (!roi) return std::optional<Sight>();
   const vision::RelativePosition position = vision::relative_position(**camera, **anchor, *roi);
   context.note_roi(*roi, image->index);

@@ -46,7 +46,7 @@ Progress RelativePositionTask::prepare(TaskContext& context) {
 
 Progress RelativePositionTask::step(TaskContext& context) {
   if (Progress end = limit_.next_round(context.vehicle().now())) return end;
-  Result<uav::CameraSample> image = context.vehicle().read_camera(loop_->camera->name);
+  Result<uav::CameraSample> image = context.capture(loop_->camera->name);
   if (!image) return TaskOutcome::failed(image.failure());
   ++loop_->frames;
   if (Progress progress = look(context, std::move(image).value())) return progress;
@@ -57,7 +57,7 @@ Progress RelativePositionTask::step(TaskContext& context) {
 }
 
 Progress RelativePositionTask::look(TaskContext& context, uav::CameraSample image) {
-  const std::optional<vision::Roi> roi = loop_->tracker->track(image);
+  const std::optional<vision::Roi> roi = context.detect(*loop_->tracker, image);
   if (!roi) return miss();
   loop_->unseen_in_a_row = 0;
   loop_->convergence.see(image.sampled_at, *roi);

@@ -49,7 +49,10 @@ TaskOutcome run(Task& task, TaskContext& context) {
   context.note_event(task.name(), "initialise", "start");
   Progress progress = task.initialise(context);
   if (!progress) context.note_event(task.name(), "loop", "start");
-  while (!progress) progress = task.step(context);
+  while (!progress) {
+    const client::Stage stage(context.vehicle(), "decide");
+    progress = task.step(context);
+  }
   context.note_event(task.name(), "finalise", "start");
   task.finalise(context, *progress);
   progress->task = task.name();

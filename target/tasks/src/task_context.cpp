@@ -67,6 +67,17 @@ Result<vision::AnchorTracker*> TaskContext::tracker(std::string_view anchor_name
   return &trackers_.emplace(anchor_name, std::move(tracker).value()).first->second;
 }
 
+Result<uav::CameraSample> TaskContext::capture(const std::string& camera) {
+  const client::Stage stage(vehicle_, "capture");
+  return vehicle_.read_camera(camera);
+}
+
+std::optional<vision::Roi> TaskContext::detect(vision::AnchorTracker& tracker,
+                                               const uav::CameraSample& image) {
+  const client::Stage stage(vehicle_, "detect");
+  return tracker.track(image);
+}
+
 void TaskContext::note_event(std::string_view task, std::string_view phase, std::string_view event,
                              const Values& values) {
   json note = {{"task", task}, {"phase", phase}, {"event", event}};

@@ -1,6 +1,7 @@
 // A SUT whose work is counted: counted_sut MODE
 //
-//   good       flies in small steps, and computes in between
+//   good       flies in small steps, and computes in between, under the stage "work"
+//   slower     the same, with a fifth more of this work
 //   waiter     the same, with a thread that only waits
 //   at_once    a thread computes at the same time
 //   meanwhile  a thread computes while the program waits for a reply
@@ -79,9 +80,12 @@ class Worker {
   std::chrono::milliseconds pause_{0};
 };
 
-void fly(Vehicle& vehicle) {
+void fly(Vehicle& vehicle, std::uint64_t tenths) {
   for (std::uint64_t i = 0; i < 100; ++i) {
-    work(1000 + 77 * i);
+    {
+      const tether::client::Stage stage(vehicle, "work");
+      work((1000 + 77 * i) * tenths / 10);
+    }
     require(vehicle.command_velocity({.velocity_H_m_s = {}, .yaw_rate_rad_s = 0.3}));
     require(require(vehicle.read_range("range")).range_m > 0.0
                 ? tether::ok_status()
@@ -106,7 +110,7 @@ int main(int argc, char** argv) {
   if (mode == "at_once") worker.wake(0ms);
   if (mode == "meanwhile") worker.wake(20ms);
   if (mode == "process" && std::system("true") != 0) return 4;
-  fly(*vehicle);
+  fly(*vehicle, mode == "slower" ? 12 : 10);
   // Meets the worker's next waking.
   if (mode == "meanwhile")
     for (int i = 0; i < 200; ++i) require(vehicle->sleep_for(10ms));

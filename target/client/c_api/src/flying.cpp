@@ -39,6 +39,16 @@ tether_status tether_annotate(tether_vehicle* vehicle, const char* topic,
   return guarded([&] { return status_of(vehicle->vehicle->annotate(topic, json)); });
 }
 
+tether_status tether_stage_begin(tether_vehicle* vehicle, const char* stage) noexcept {
+  if (!are_given(vehicle, stage)) return TETHER_INVALID;
+  return guarded([&] { return status_of(vehicle->vehicle->begin_stage(stage)); });
+}
+
+tether_status tether_stage_end(tether_vehicle* vehicle) noexcept {
+  if (!are_given(vehicle)) return TETHER_INVALID;
+  return guarded([&] { return status_of(vehicle->vehicle->end_stage()); });
+}
+
 tether_status tether_finish(tether_vehicle* vehicle, int32_t reached_goal, const char* outcome,
                             const char* details_json) noexcept {
   if (!are_given(vehicle, outcome, details_json)) return TETHER_INVALID;

@@ -56,6 +56,17 @@ TEST_F(CppApi, KnowsTheCatalogue) {
   EXPECT_EQ(box->color().z, 0.85);
 }
 
+TEST_F(CppApi, StagesEndWithTheirObjects) {
+  {
+    const api::Stage outer(vehicle_, "decide");
+    const api::Stage inner(vehicle_, "detect");
+  }
+  EXPECT_EQ(fake_->said, (std::vector<std::string>{"begin decide", "begin detect", "end", "end"}));
+  fake_->failure = Failure{Failure::Kind::kInvalid, "bad name"};
+  { const api::Stage none(vehicle_, ""); }
+  EXPECT_EQ(fake_->said.size(), 5u);
+}
+
 TEST_F(CppApi, ReadsDepthsAndLabels) {
   fake_->image.rgb.clear();
   fake_->image.depth_m = {0.5F, 1, 2, 3, 4, 5, 6, 7};

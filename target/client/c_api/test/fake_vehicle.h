@@ -71,6 +71,8 @@ class FakeVehicle final : public client::Vehicle {
   Status annotate(std::string_view topic, std::string_view json) override {
     return say(std::string(topic) + " " + std::string(json));
   }
+  Status begin_stage(std::string_view stage) override { return say("begin " + std::string(stage)); }
+  Status end_stage() override { return say("end"); }
   Status finish(bool reached_goal, std::string_view outcome, std::string_view details) override {
     return say(std::string(reached_goal ? "reached " : "missed ") + std::string(outcome) + " " +
                std::string(details));

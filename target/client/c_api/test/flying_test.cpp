@@ -13,6 +13,8 @@ TEST(Flying, FailuresAreStatuses) {
   EXPECT_EQ(tether_sleep_for(flown.vehicle, 1), TETHER_DISCONNECTED);
   EXPECT_EQ(tether_annotate(flown.vehicle, "a", "{}"), TETHER_DISCONNECTED);
   EXPECT_EQ(tether_finish(flown.vehicle, 1, "a", ""), TETHER_DISCONNECTED);
+  EXPECT_EQ(tether_stage_begin(flown.vehicle, "detect"), TETHER_DISCONNECTED);
+  EXPECT_EQ(tether_stage_end(flown.vehicle), TETHER_DISCONNECTED);
 }
 
 TEST(Flying, NullIsInvalid) {
@@ -22,6 +24,8 @@ TEST(Flying, NullIsInvalid) {
   EXPECT_EQ(tether_sleep_for(nullptr, 0), TETHER_INVALID);
   EXPECT_EQ(tether_sleep_until(nullptr, 0), TETHER_INVALID);
   EXPECT_EQ(tether_annotate(flown.vehicle, nullptr, "{}"), TETHER_INVALID);
+  EXPECT_EQ(tether_stage_begin(flown.vehicle, nullptr), TETHER_INVALID);
+  EXPECT_EQ(tether_stage_end(nullptr), TETHER_INVALID);
   EXPECT_EQ(tether_finish(flown.vehicle, 1, "a", nullptr), TETHER_INVALID);
   EXPECT_TRUE(flown.fake->said.empty());
 }

@@ -32,6 +32,10 @@ inline constexpr std::size_t kMaxJsonBytes = 1000u << 10;
 inline constexpr std::size_t kMaxCatalogueEntries = 1024;
 /// Most models whose names the properties of a segmentation camera have: its labels are 16 bits.
 inline constexpr std::size_t kMaxModels = 65535;
+/// Longest build id [digits].
+inline constexpr std::size_t kMaxBuildIdBytes = 64;
+/// Most stages of a message.
+inline constexpr std::size_t kMaxStages = 256;
 /// Every timestamp t has 0 ≤ t < this (146 years), so that sums of two cannot overflow [ns].
 inline constexpr std::int64_t kMaxTimestampNs = std::int64_t{1} << 62;
 

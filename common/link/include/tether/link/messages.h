@@ -28,6 +28,7 @@ enum class ClockKind : std::uint8_t {
   kScripted = 2,
   kUnstamped = 3,
   kCounted = 4,
+  kReplayed = 5,
 };
 std::string_view name(ClockKind kind);
 
@@ -45,13 +46,27 @@ struct Hello {
   bool concurrent = false;
   /// Of a scripted clock: the ET of each phase of computing. 0: another clock, or not known.
   Duration computing{0};
+  std::string build_id{};  ///< of the program, in hexadecimal digits; empty: it has none
 };
+
+/// What a SUT computed between two calls under one of its stages.
+struct StageTime {
+  std::string stage;
+  Duration computing{0};
+  friend bool operator==(const StageTime&, const StageTime&) = default;
+};
+
+/// The stage of what a SUT computes between two calls outside of its own stages. A call is named by
+/// its sensor, or is "command", "sleep" or "finish"; before the first one is "start".
+std::string stage_between(std::string_view previous_call, std::string_view call);
 
 /// Coordinator → SUT: accepted.
 struct Welcome {
   uav::Catalogue catalogue;
   bool free_running = false;  ///< policy: requests are answered at once, nothing is held
   ExecTime start;             ///< the SUT's ET begins here
+  /// With the clock "replayed": what each stage takes until the first call.
+  std::vector<StageTime> computing{};
 };
 
 /// Coordinator → SUT: not accepted, or the run is over. SUT → coordinator: its execution time is
@@ -93,6 +108,9 @@ struct Request {
   Duration previous_round_trip{0};  ///< WT on the SUT's side from issuing the previous request to
                                     ///< having its reply; 0: not measured
   std::variant<ReadSensor, SetVelocity, Sleep, Finish> body;
+  /// What was computed since the previous reply, each stage once, in the order of their beginning.
+  /// Of a serial SUT that sends them, the sum is `issued_at` - the previous `resume_at`.
+  std::vector<StageTime> stages{};
 };
 
 /// Coordinator → SUT: the interaction ends.
@@ -100,6 +118,8 @@ struct Reply {
   std::uint64_t sequence = 0;
   ExecTime resume_at;                 ///< t_rep: the SUT goes on with ET = this
   std::optional<uav::Sample> sample;  ///< of ReadSensor; none if none was available
+  /// With the clock "replayed": what each stage takes until the next call.
+  std::vector<StageTime> computing{};
 };
 
 /// Coordinator → concurrent SUT under the barrier, as soon as a request has arrived: the time at

@@ -155,6 +155,14 @@ struct ThisRun {
   friend bool operator==(const ThisRun&, const ThisRun&) = default;
 };
 
+/// The time of the SUTs was replayed: from what, how old, and how.
+struct ReplayReport {
+  record::ReplayInfo from;
+  std::vector<std::string>
+      unknown_stages{};  ///< computed under, but not in the timing file; sorted
+
+  friend bool operator==(const ReplayReport&, const ReplayReport&) = default;
+};
 struct TrialResult {
   std::string scenario;
   std::string condition;
@@ -163,6 +171,7 @@ struct TrialResult {
   std::string clock;
   double cpu_factor = 1.0;
   Duration computing{0};  ///< of clock "scripted": charged for each phase of computing
+  std::optional<ReplayReport> replay{};  ///< of clock "replayed"
   double real_time_factor = 0.0;
   std::string target{};             ///< its name; empty: the host as it is
   record::EmulatorInfo emulator{};  ///< of a counted target
@@ -192,6 +201,10 @@ struct TrialResult {
 
   friend bool operator==(const TrialResult&, const TrialResult&) = default;
 };
+
+/// "replayed (resampled) from board.timing, recorded 2026-11-20T10:00:00Z (3 days before) on pi";
+/// empty if no time was replayed.
+std::string describe_replay(const TrialResult& result);
 
 /// What a SUT reported when it finished; not part of the record's header.
 struct TaskEnd {

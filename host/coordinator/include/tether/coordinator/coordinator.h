@@ -14,6 +14,7 @@
 #include <tether/record/writer.h>
 #include <tether/sim/simulator.h>
 #include <tether/sync/barrier_synchronizer.h>
+#include <tether/timing/replay.h>
 #include <tether/uav/sensor_timing.h>
 
 /// The part between the simulator and the SUTs (paper, Section II and Fig. 2). It keeps the
@@ -39,6 +40,9 @@ struct UavOptions {
   std::optional<ClockSetting> clock{};
   /// Cores of the SUT's machine; they limit how fast its CPU time can grow. 0: not known.
   int cores = 0;
+  /// With the clock "replayed": gives the SUT its time, from where `replayed_from` says.
+  std::optional<timing::Replay> replay{};
+  std::optional<record::ReplayInfo> replayed_from{};
 };
 
 struct RunOptions {
@@ -67,6 +71,7 @@ enum class RunEnd {
   kInterrupted,    ///< `should_stop` of the caller requested it
   kBatteryEmpty,   ///< the battery of a UAV was exhausted, and it fell
   kRecordFailed,   ///< the record could not be written; it has no end
+  kTimingDiffers,  ///< a call or a stage of a SUT is not the one whose time is replayed
 };
 std::string_view name(RunEnd end);
 
@@ -147,8 +152,9 @@ class Coordinator {
 
   /// Waits for the SUT of every UAV, runs until the end, notifies the SUTs, and writes the record's
   /// footer. A failed run is a report, too, also if the record cannot be written. If every SUT's
-  /// clock is scripted or counted, the record is the same to the byte in each run: without wall
-  /// times, readings of the target, and the machine; the report and the caller have them.
+  /// clock is scripted, counted or replayed, the record is the same to the byte in each run:
+  /// without wall times, readings of the target, and the machine; the report and the caller have
+  /// them.
   RunReport run(link::Server& server, const RunHooks& hooks = {});
 
  private:

@@ -36,6 +36,14 @@ struct SeenAnchor {
   friend bool operator==(const SeenAnchor&, const SeenAnchor&) = default;
 };
 
+/// What a SUT computed between two calls under one of its stages.
+struct StageTime {
+  std::string stage;
+  Duration computing{0};
+  bool is_unknown = false;  ///< clock "replayed": the timing file does not have this stage
+  friend bool operator==(const StageTime&, const StageTime&) = default;
+};
+
 /// One request of a SUT and its reply. Topic /interactions; log time = ST at release.
 struct Interaction {
   std::string uav;
@@ -72,6 +80,10 @@ struct Interaction {
   Duration grid_error{0};
   bool stamped = true;                   ///< request_at is a timestamp of the SUT
   std::optional<std::string> violation;  ///< description of a causality violation
+  /// What the SUT computed since its previous call, in the order of beginning. Their sum is the
+  /// growth of ET since the previous reply; of a concurrent SUT, that of the calling thread. Empty:
+  /// not measured (free running, a client without stages).
+  std::vector<StageTime> stages{};
 
   // Host clock; differs between runs. 0: not measured.
   WallTime wall_at_arrival;  ///< when the coordinator received the request
@@ -207,16 +219,26 @@ struct SensorInfo {
 };
 /// How the time of a SUT is measured.
 struct ClockInfo {
-  std::string clock;        ///< "wall", "cpu", "scripted", "unstamped"
+  std::string clock;        ///< "wall", "cpu", "scripted", "unstamped", …
   double cpu_factor = 1.0;  ///< seconds of ET per second of what the clock measures
   Duration computing{0};    ///< of "scripted": ET of each phase of computing
 
   friend bool operator==(const ClockInfo&, const ClockInfo&) = default;
 };
+/// Where the time of a SUT with the clock "replayed" comes from.
+struct ReplayInfo {
+  std::string timing;       ///< name of the timing file
+  std::string mode;         ///< "exact", "resampled", "scaled"
+  std::string recorded_at;  ///< when the newest of its records was made: UTC as in ISO 8601
+  std::string board;        ///< on which
+  std::string build_id;     ///< of the program that was timed; empty: not known
+
+  friend bool operator==(const ReplayInfo&, const ReplayInfo&) = default;
+};
 struct SutInfo {
   std::string uav;
   std::string sut;              ///< name and version that the SUT reported
-  std::string clock;            ///< "wall", "cpu", "scripted", "unstamped"
+  std::string clock;            ///< "wall", "cpu", "scripted", "unstamped", …
   double cpu_factor = 1.0;      ///< seconds of ET per second of what the clock measures
   Duration command_latency{0};  ///< from a command's timestamp to its effect, before rounding
   bool concurrent = false;      ///< several threads with parallel calls
@@ -228,6 +250,8 @@ struct SutInfo {
   Duration computing{0};  ///< clock "scripted": ET of each phase of computing
   /// The clock of the condition; the SUT announced the one above. None in records of Tether 0.1.0.
   std::optional<ClockInfo> required_clock{};
+  std::string build_id{};              ///< of the program; empty: it has none
+  std::optional<ReplayInfo> replay{};  ///< clock "replayed"
 };
 /// Readings of a machine by name, see host/board/src/target_probe.sh: "governor",
 /// "temperature_mc", … Values that are not available are left out.
@@ -289,7 +313,7 @@ struct Clearance {
 /// End of the run: written last (metadata record "tether.end"). A record without it is incomplete.
 struct Footer {
   /// "finished", "time_limit", "sut_lost", "sut_hung", "simulator_lost", "interrupted",
-  /// "battery_empty".
+  /// "battery_empty", "timing_differs".
   std::string end;
   std::string reason;  ///< one line
   SimTime st_at_end;

@@ -27,6 +27,19 @@ enum class Policy { kConservativeBarrier, kFreeRunning };
 /// As written in files: "conservative_barrier", "free_running".
 std::string_view name(Policy policy);
 
+/// How recorded time is charged, and what stages take that were not recorded (tether/timing).
+enum class ReplayMode { kExact, kResampled, kScaled };
+enum class UnknownStages { kRefused, kCounted, kZero };
+
+/// Where the time of SUTs with Clock::kReplayed comes from.
+struct ReplaySource {
+  std::filesystem::path timing;  ///< a timing file; absolute
+  ReplayMode mode = ReplayMode::kResampled;
+  UnknownStages unknown = UnknownStages::kRefused;
+  /// A timing file of the program that flies, of a run under a counted clock; absolute; empty:
+  /// none.
+  std::filesystem::path counted{};
+};
 /// Where the SUT runs and how it is synchronised: "host", "target", "target, no sync" (paper,
 /// Section V).
 struct Condition {
@@ -39,6 +52,7 @@ struct Condition {
   /// With kScripted: the ET that each phase of computing takes, independent of its real time, > 0.
   /// Such a run is the same every time. With other clocks 0.
   Duration computing{0};
+  std::optional<ReplaySource> replay{};  ///< with kReplayed
   /// Applied to every UAV's sensors in this order: the condition's own, then that of a campaign or
   /// the command line.
   std::vector<Profile> profiles{};
@@ -146,6 +160,11 @@ std::string why_not_on(const Condition& condition, const Target& target);
 /// Makes the condition's SUTs run on the target, whose clock replaces that of the condition.
 /// @throws Error(kUsage), about the condition, with the reason of `why_not_on`.
 void place_on(Condition& condition, Target target);
+
+/// Changes what stages take that were not recorded: "refused", "counted" or "zero".
+/// @throws Error(kUsage), about --unknown-stages, if the condition does not replay time, or cannot
+/// so.
+void set_unknown_stages(Condition& condition, std::string_view name);
 
 /// Makes the condition's SUTs so many times slower: its factor, the computing time of a scripted
 /// clock, or the costs of a counted one. The name becomes "NAME, 3.16 x slower".

@@ -295,6 +295,25 @@ class Vehicle {
   std::unique_ptr<tether_vehicle, Disconnect> vehicle_;
 };
 
+/// Marks what the program computes during the object's life as a stage. Must not outlive the
+/// vehicle.
+class Stage {
+ public:
+  /// Begins the stage.
+  /// @param vehicle  the UAV  @param name  as tether_stage_begin(); if it fails, nothing is marked
+  Stage(Vehicle& vehicle, const char* name) noexcept
+      : vehicle_(tether_stage_begin(vehicle.get(), name) == TETHER_OK ? vehicle.get() : nullptr) {}
+  /// Ends it, as tether_stage_end().
+  ~Stage() {
+    if (vehicle_ != nullptr) tether_stage_end(vehicle_);
+  }
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+ private:
+  tether_vehicle* vehicle_;
+};
+
 /// Connects as the environment says: for programs that `tether run` starts.
 /// @return the UAV; fails as tether_connect()
 inline Result<Vehicle> connect() noexcept {

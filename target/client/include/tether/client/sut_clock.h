@@ -28,6 +28,8 @@ class TimeSource {
   virtual void hold() const {}
   /// The part of the last `elapsed()` that processes started by the SUT's have computed. Monotone.
   virtual Duration elapsed_in_children() const { return Duration::zero(); }
+  /// Of a replayed source: the SUT has computed for so long.
+  virtual void charge(Duration) {}
   /// Fails with kRefused if a part of the SUT's computing is not in `elapsed()`.
   virtual Status complete() const { return ok_status(); }
 
@@ -58,10 +60,14 @@ std::unique_ptr<TimeSource> make_cpu_source(double factor);
 /// does once. For tests, and for runs that must be reproducible to the byte.
 std::unique_ptr<TimeSource> make_scripted_source(Duration step);
 
+/// A source that advances by what the coordinator gives each stage (link::Reply::computing),
+/// however long the program really computes. Between stages and calls, time stands still.
+std::unique_ptr<TimeSource> make_replayed_source();
+
 /// The source that TETHER_CLOCK names: "wall", "wall*FACTOR", "cpu", "cpu*FACTOR" (FACTOR within
-/// 1e-6..1e6), "counted", "scripted*MILLISECONDS". Fails with kInvalid and the allowed values. For
-/// "counted", TETHER_COUNTS names the page of counts; fails with kRefused if several threads or
-/// processes of the program compute.
+/// 1e-6..1e6), "counted", "replayed", "scripted*MILLISECONDS". Fails with kInvalid and the allowed
+/// values. For "counted", TETHER_COUNTS names the page of counts; fails with kRefused if several
+/// threads or processes of the program compute.
 Result<std::unique_ptr<TimeSource>> parse_time_source(const std::string& text);
 
 /// ET of this SUT: runs with its source, is stopped while the SUT is held, and continues from

@@ -53,10 +53,34 @@ class Vehicle {
   /// it takes no ET, but can wait for another thread's call. `json` is one JSON object.
   virtual Status annotate(std::string_view topic, std::string_view json) = 0;
 
+  /// What is computed from here on belongs to the stage of that name, until the matching
+  /// end_stage(); of nested stages the innermost one counts. For the record: takes no ET, and is no
+  /// interaction. With a concurrent vehicle, each thread has its own stages. Real vehicles ignore
+  /// it. Fails with kInvalid if the name is empty, longer than 256 bytes or has control characters,
+  /// or if there are more than 254 stages between two calls.
+  virtual Status begin_stage(std::string_view) { return ok_status(); }
+  /// Fails with kInvalid if no stage is open.
+  virtual Status end_stage() { return ok_status(); }
+
   /// Ends the mission. Every later call fails with kInvalid; open calls of other threads of a
   /// concurrent vehicle fail with kRunEnded.
   virtual Status finish(bool reached_goal, std::string_view outcome,
                         std::string_view details_json) = 0;
+};
+
+/// A stage for as long as the object lives (Vehicle::begin_stage).
+class Stage {
+ public:
+  Stage(Vehicle& vehicle, std::string_view name)
+      : vehicle_(vehicle.begin_stage(name) ? &vehicle : nullptr) {}
+  ~Stage() {
+    if (vehicle_ != nullptr) static_cast<void>(vehicle_->end_stage());
+  }
+  Stage(const Stage&) = delete;
+  Stage& operator=(const Stage&) = delete;
+
+ private:
+  Vehicle* vehicle_;
 };
 
 }  // namespace tether::client

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -42,6 +43,11 @@ class TaskContext {
   /// The tracker of this anchor, valid until `look_with`. Fails (kInvalid) if there is no such
   /// anchor, or its colour cannot be tracked.
   Result<vision::AnchorTracker*> tracker(std::string_view anchor);
+
+  /// Reads the camera under the stage "capture".
+  Result<uav::CameraSample> capture(const std::string& camera);
+  /// Finds the anchor of the tracker in the image under the stage "detect".
+  std::optional<vision::Roi> detect(vision::AnchorTracker& tracker, const uav::CameraSample& image);
 
   /// @name Annotations in the record (topics "task", "mission", "roi", "estimate", "odometry",
   /// "displacement"). If sending fails, the next interaction reports it. The camera of a ROI or an

@@ -1,0 +1,126 @@
+#include "commands/commands.h"
+#include "options/file_kind.h"
+#include "terminal/say.h"
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/campaign/result.h>
+#include <tether/os/text_file.h>
+#include <tether/record/reader.h>
+#include <tether/report/timing_page.h>
+#include <tether/runner/trial_folder.h>
+#include <tether/stats/sample_statistics.h>
+#include <tether/timing/change.h>
+#include <tether/timing/stage_table.h>
+#include <tether/timing/timing.h>
+
+/// `tether timing`: the stages of records and timing files, as tables, as a file, or compared.
+namespace tether::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// When the run of a record was flown, as its result says; else when the record was written.
+std::string recorded_at(const fs::path& record) try {
+  return campaign::read_result(record.parent_path()).this_run.started_at;
+} catch (const Error&) {
+  const auto written = std::chrono::file_clock::to_sys(fs::last_write_time(record));
+  return fmt::format(
+      "{:%Y-%m-%dT%H:%M:%SZ}",
+      fmt::gmtime(std::chrono::system_clock::to_time_t(
+          std::chrono::time_point_cast<std::chrono::system_clock::duration>(written))));
+}
+
+timing::Timing read_any(const fs::path& given) {
+  const bool is_run = kind_of(given) == FileKind::kRun;
+  const fs::path file = is_run ? given / runner::kRecordFile : given;
+  if (timing::is_timing_file(file)) return timing::read_timing(file);
+  require_kind(file, FileKind::kRecord);
+  const record::Record record = record::read_record(file);
+  if (const std::string damage = record::describe_damage(record); !damage.empty())
+    say("warning: {}: {}\n", file.string(), damage);
+  return timing::of_record(record, file, recorded_at(file));
+}
+
+timing::Timing read_all(const std::vector<fs::path>& files) {
+  timing::Timing timing = read_any(files.front());
+  for (std::size_t i = 1; i < files.size(); ++i) timing::add(timing, read_any(files[i]), files[i]);
+  return timing;
+}
+
+/// The work of each stage under a counted clock.
+void add_counted(timing::Timing& timing, const std::vector<fs::path>& files) {
+  const timing::Timing counted = read_all(files);
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorCode::kBadFile, {files.front().string()}, what).about("--counted");
+  };
+  if (counted.clock != "counted")
+    refuse(
+        fmt::format("was flown with the clock \"{}\". --counted needs a run under a counted "
+                    "target.",
+                    counted.clock));
+  if (counted.scenario != timing.scenario || counted.build_id != timing.build_id)
+    refuse(
+        fmt::format("is of scenario \"{}\" and build \"{}\", but the timing is of \"{}\" and "
+                    "\"{}\". Count the program that was measured.",
+                    counted.scenario, counted.build_id, timing.scenario, timing.build_id));
+  for (const auto& [stage, times_ns] : timing::samples_of(counted))
+    timing.counted_ns[stage] = stats::mean(times_ns);
+}
+
+void require_fit(const TimingOptions& options) {
+  const auto refuse = [](const char* option, const char* why) {
+    throw Error(ErrorCode::kUsage, fmt::format("{}: {}", option, why)).about(option);
+  };
+  if (options.limit_percent && options.against.empty()) refuse("--limit", "needs --against OLD.");
+  if (!options.counted.empty() && options.out.empty())
+    refuse("--counted", "needs --out FILE, into which the counted work is written.");
+  if (options.against.empty()) return;
+  for (const auto& [option, file] :
+       {std::pair("--out", options.out), std::pair("--csv", options.csv),
+        std::pair("--html", options.html)})
+    if (!file.empty()) refuse(option, "cannot be used with --against.");
+}
+
+int print_change(const timing::Timing& now, const TimingOptions& options) {
+  const timing::Timing before = read_any(options.against);
+  if (now.scenario != before.scenario)
+    throw Error(
+        ErrorCode::kBadFile, {options.against.string()},
+        fmt::format("is of the scenario \"{}\", not of \"{}\"", before.scenario, now.scenario))
+        .about(before.scenario);
+  if (now.board != before.board || now.clock != before.clock)
+    say("warning: measured on \"{}\" with the clock \"{}\", before on \"{}\" with \"{}\"\n",
+        now.board, now.clock, before.board, before.clock);
+  const timing::Comparison comparison = timing::compare(now, before);
+  const double limit = options.limit_percent.value_or(0.0) / 100.0;
+  fmt::print("{}", timing::to_text(comparison, options.limit_percent ? &limit : nullptr));
+  return options.limit_percent && timing::is_beyond(comparison, limit) ? 1 : 0;
+}
+
+}  // namespace
+
+int time_stages(const TimingOptions& options, const std::stop_token&) {
+  require_fit(options);
+  timing::Timing timing = read_all(options.runs);
+  if (!options.against.empty()) return print_change(timing, options);
+  if (!options.counted.empty()) add_counted(timing, options.counted);
+  const auto rows = timing::stage_rows(timing);
+  if (!options.csv.empty()) os::write_file_atomically(options.csv, timing::to_csv(rows));
+  if (!options.html.empty()) os::write_file_atomically(options.html, report::timing_page(timing));
+  if (!options.out.empty()) timing::write_timing(options.out, timing);
+  fmt::print("{}: {}, build {}, clock {}, on {}, recorded {}, {} runs\n\n{}", timing.scenario,
+             timing.program, timing.build_id.empty() ? "unknown" : timing.build_id, timing.clock,
+             timing.board, timing.recorded_at, timing.runs.size(), timing::to_text(rows));
+  for (const std::string& warning : timing::warnings(rows)) say("warning: {}\n", warning);
+  return 0;
+}
+
+}  // namespace tether::app

@@ -1,0 +1,103 @@
+#include "coordinator_fixture.h"
+
+#include <vector>
+
+#include <tether/timing/replay.h>
+
+// A SUT whose time is replayed: what it is given, and what ends the run.
+namespace tether::coordinator {
+namespace {
+
+using namespace std::chrono_literals;
+using timing::Call;
+
+const std::vector<Call> kRecorded = {
+    {"command", {{"start to command", 1ms}}},
+    {"command", {{"command to command", 1ms}, {"detect", 4ms}}},
+    {"finish", {{"command to finish", 2ms}}},
+};
+
+class Replayed : public CoordinatorTest {
+ protected:
+  void make_replay() {
+    clock_ = ClockSetting{.kind = link::ClockKind::kReplayed};
+    make();
+    timing::Timing timing;
+    timing.build_id = "0a";
+    timing.runs = {{simulator_->world().uavs[0].name, 1, kRecorded}};
+    options_.uavs[0].replay.emplace(timing, timing::ReplaySetting{.mode = timing::Mode::kExact},
+                                    simulator_->world().uavs[0].name, 1);
+    options_.uavs[0].replayed_from = record::ReplayInfo{"a.timing", "exact", "", "pi", "0a"};
+    coordinator_ = std::make_unique<Coordinator>(*simulator_, recorder_, options_,
+                                                 [this] { return now_ += tick_; });
+  }
+  link::PeerId join(const std::string& build_id = "0a") {
+    link::Hello own = hello("", link::ClockKind::kReplayed);
+    own.build_id = build_id;
+    return server_->add_sut(own, {});
+  }
+  /// As a client sends the calls.
+  void send(link::PeerId peer, const std::vector<Call>& calls, Duration late = Duration(0)) {
+    ExecTime at{};
+    std::uint64_t sequence = 0;
+    for (const Call& call : calls) {
+      for (const link::StageTime& time : call.stages) at += time.computing;
+      link::Request next = request(++sequence, at + late, link::SetVelocity{});
+      if (call.call == "finish") next.body = link::Finish{true, "done", ""};
+      if (call.call == "sleep") next.body = link::Sleep{at};
+      next.stages = call.stages;
+      server_->deliver(peer, next);
+    }
+  }
+};
+
+TEST_F(Replayed, GivesEachCallItsTimeAndRecordsTheSource) {
+  make_replay();
+  const link::PeerId peer = join();
+  send(peer, kRecorded);
+  ASSERT_EQ(run().end, RunEnd::kFinished);
+  std::vector<std::vector<link::StageTime>> given;
+  for (const link::Message& message : server_->sent.at(peer)) {
+    if (const auto* welcome = std::get_if<link::Welcome>(&message))
+      given.push_back(welcome->computing);
+    if (const auto* reply = std::get_if<link::Reply>(&message)) given.push_back(reply->computing);
+  }
+  ASSERT_EQ(given.size(), 4u);
+  for (std::size_t i = 0; i < kRecorded.size(); ++i) {
+    EXPECT_EQ(given[i], kRecorded[i].stages) << i;
+    EXPECT_EQ(recorder_.interactions[i].stages.size(), kRecorded[i].stages.size());
+  }
+  EXPECT_EQ(recorder_.interactions[1].request_at, us(6000));
+  EXPECT_EQ(recorder_.interactions[1].stages[1], (record::StageTime{"detect", 4ms}));
+  EXPECT_EQ(recorder_.header.suts[0].replay, options_.uavs[0].replayed_from);
+  EXPECT_EQ(recorder_.header.suts[0].build_id, "0a");
+}
+
+TEST_F(Replayed, EndsTheRunAtTheFirstCallThatDiffers) {
+  std::vector<Call> other_call = kRecorded, other_stage = kRecorded;
+  other_call[1].call = "sleep";
+  other_stage[1].stages[1].stage = "track";
+  for (const auto& [calls, late, named] :
+       {std::tuple(other_call, 0ns, "\"sleep\""), std::tuple(other_stage, 0ns, "\"track\""),
+        std::tuple(kRecorded, 1ns, "1000001")}) {
+    make_replay();
+    const link::PeerId peer = join();
+    send(peer, calls, late);
+    const RunReport report = run();
+    EXPECT_EQ(report.end, RunEnd::kTimingDiffers) << named;
+    EXPECT_NE(report.reason.find(named), std::string::npos) << report.reason;
+    EXPECT_EQ(refusal(peer).reason, link::Refusal::Reason::kBadRequest);
+  }
+}
+
+TEST_F(Replayed, RefusesAnotherBuild) {
+  make_replay();
+  const link::PeerId peer = join("0b");
+  hooks_.should_stop = [] { return Ending{RunEnd::kInterrupted, "enough"}; };
+  run();
+  EXPECT_EQ(refusal(peer).reason, link::Refusal::Reason::kBadRequest);
+  EXPECT_NE(refusal(peer).message.find("0b"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tether::coordinator

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tether/record/messages.h>
+#include <tether/runner/trial.h>
+#include <tether/timing/replay.h>
+
+namespace tether::runner {
+
+/// What a condition with the clock "replayed" gives its SUTs.
+struct ReplayedTime {
+  std::vector<timing::Replay> replays;  ///< one for each UAV; empty: no time is replayed
+  record::ReplayInfo from;
+  std::vector<std::string> warnings;  ///< about the timing file, one line each
+};
+
+/// @throws Error(kBadFile) with the file if a timing file cannot be read, is of another scenario,
+/// or has not what the condition asks for.
+ReplayedTime replayed_time(const TrialSpec& spec);
+
+}  // namespace tether::runner

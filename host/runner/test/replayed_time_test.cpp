@@ -1,0 +1,61 @@
+#include "replayed_time.h"
+
+#include <gtest/gtest.h>
+
+#include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
+
+namespace tether::runner {
+namespace {
+
+class ReplayedTimeTest : public testing::Test {
+ protected:
+  ReplayedTimeTest() {
+    spec_.scenario = scenario::load_scenario(std::filesystem::path(TETHER_SOURCE_DIR) /
+                                             "data/scenarios/face_anchor.toml");
+    spec_.condition = spec_.scenario.conditions.front();
+    spec_.seed = 3;
+    spec_.condition.replay = scenario::ReplaySource{.timing = scratch_.path("a.timing")};
+    timing_.scenario = "face_anchor";
+    timing_.build_id = "0a";
+    timing_.board = "pi";
+    timing_.clock = "cpu";
+    timing_.runs = {{spec_.scenario.uavs[0].placement.name, 3, {{"finish", {{"a", Duration(5)}}}}}};
+  }
+  ReplayedTime load() {
+    timing::write_timing(scratch_.path("a.timing"), timing_);
+    return replayed_time(spec_);
+  }
+  std::string refused_subject() {
+    const Error error = bad_file_error([&] { load(); });
+    EXPECT_FALSE(error.where().file.empty());
+    return error.subject();
+  }
+
+  ScratchFolder scratch_;
+  TrialSpec spec_;
+  timing::Timing timing_;
+};
+
+TEST_F(ReplayedTimeTest, GivesEachUavItsTimeAndSaysWhereFrom) {
+  const ReplayedTime time = load();
+  ASSERT_EQ(time.replays.size(), 1u);
+  EXPECT_EQ(time.replays[0].given(), (std::vector<link::StageTime>{{"a", Duration(5)}}));
+  EXPECT_EQ(time.from, (record::ReplayInfo{"a.timing", "resampled", "", "pi", "0a"}));
+  EXPECT_EQ(time.warnings.size(), 1u);  // few samples
+  spec_.condition.replay.reset();
+  EXPECT_TRUE(load().replays.empty());
+}
+
+TEST_F(ReplayedTimeTest, RefusesTimingThatDoesNotFit) {
+  spec_.condition.replay->mode = scenario::ReplayMode::kExact;
+  spec_.seed = 4;
+  EXPECT_EQ(refused_subject(), timing_.runs[0].uav);
+  spec_.condition.replay->counted = spec_.condition.replay->timing;
+  EXPECT_EQ(refused_subject(), "cpu");
+  timing_.scenario = "other";
+  EXPECT_EQ(refused_subject(), "other");
+}
+
+}  // namespace
+}  // namespace tether::runner

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tether/link/messages.h>
+#include <tether/timing/timing.h>
+
+namespace tether::timing {
+
+/// How recorded time is charged.
+enum class Mode {
+  kExact,      ///< each call gets the times that it had in the run of the same UAV and seed
+  kResampled,  ///< drawn from the times of the stage, keyed by seed, UAV, stage and index
+  kScaled,     ///< the same × counted work of the new build / of the one that was recorded
+};
+/// "exact", "resampled", "scaled".
+std::string_view name(Mode mode);
+
+/// What stages are charged that the timing does not have.
+enum class UnknownStages {
+  kRefused,  ///< they end the run
+  kCounted,  ///< drawn from their times under a counted clock
+  kZero,
+};
+/// "refused", "counted", "zero".
+std::string_view name(UnknownStages unknown);
+
+struct ReplaySetting {
+  Mode mode = Mode::kResampled;
+  UnknownStages unknown = UnknownStages::kRefused;
+  /// The program that flies, under a counted clock: for kScaled and UnknownStages::kCounted.
+  std::optional<Timing> counted{};
+};
+
+/// Gives one SUT its recorded time. Pure logic: what it gives depends on the calls so far only. Not
+/// thread-safe.
+class Replay {
+ public:
+  /// @throws Error(kBadFile), without a file, if the timing has no run of the UAV (kExact: and of
+  /// the seed), too many stages, or a stage without counted work (kScaled).
+  Replay(const Timing& timing, const ReplaySetting& setting, const std::string& uav,
+         std::uint64_t seed);
+
+  /// What each stage takes until the next call.
+  const std::vector<link::StageTime>& given() const { return given_; }
+  /// Takes the next call of the SUT. The difference to what was recorded, which ends the run; none
+  /// if there is none.
+  std::optional<std::string> take(const std::string& call,
+                                  const std::vector<link::StageTime>& stages);
+  /// Whether the timing has that stage.
+  bool knows(const std::string& stage) const { return sources_.contains(stage); }
+  /// The build id that the program must have; none: any.
+  const std::optional<std::string>& required_build_id() const { return required_build_id_; }
+
+ private:
+  /// Times of a stage to draw from.
+  struct Source {
+    std::vector<double> times_ns;
+    double factor = 1.0;
+    std::uint64_t index = 0;
+  };
+  void give();
+  Duration draw(const std::string& stage, const Source& source) const;
+  std::optional<std::string> difference(const std::string& call,
+                                        const std::vector<link::StageTime>& stages) const;
+
+  UnknownStages unknown_;
+  std::string uav_;
+  std::uint64_t seed_;
+  std::optional<std::string> required_build_id_;
+  std::vector<Call> calls_;  // kExact: those that are expected
+  std::size_t next_ = 0;
+  std::map<std::string, Source> sources_;  // of the timing
+  std::map<std::string, Source> counted_;  // of stages that it does not have
+  std::vector<link::StageTime> given_;
+};
+
+}  // namespace tether::timing

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <tether/link/messages.h>
+#include <tether/record/reader.h>
+
+/// What programs computed between their calls, by stage: taken from records, and kept in timing
+/// files (docs/guide/timing.md).
+namespace tether::timing {
+
+/// A call of a SUT, and what was computed before it, each stage once.
+struct Call {
+  std::string call;  ///< a sensor's name, "command", "sleep" or "finish"
+  std::vector<link::StageTime> stages;
+  friend bool operator==(const Call&, const Call&) = default;
+};
+
+/// All calls of one SUT in one run.
+struct Run {
+  std::string uav;
+  std::uint64_t seed = 0;
+  std::vector<Call> calls;
+  friend bool operator==(const Run&, const Run&) = default;
+};
+
+/// Runs of one program in one scenario on one machine.
+struct Timing {
+  std::string scenario;
+  std::string program;      ///< name and version
+  std::string build_id;     ///< empty: it has none
+  std::string board;        ///< the target's name
+  std::string clock;        ///< as in TETHER_CLOCK
+  std::string recorded_at;  ///< when the newest run was recorded: UTC as in ISO 8601
+  /// Of the same program under a counted clock: mean ET of each stage [ns].
+  std::map<std::string, double> counted_ns{};
+  std::vector<Run> runs;
+  friend bool operator==(const Timing&, const Timing&) = default;
+};
+
+/// The timing of a record. Interactions without stages (records of Tether 0.1.0, other clients) are
+/// named by the calls around them.
+/// @throws Error(kBadFile) about the file if the run was not synchronised, or its SUTs differ in
+/// program or clock.
+Timing of_record(const record::Record& record, const std::filesystem::path& file,
+                 const std::string& recorded_at);
+
+/// Adds the runs of `more`, which was read from `file`.
+/// @throws Error(kBadFile) about `file` if scenario, program, machine or clock differ, or a run of
+/// the same UAV and seed is there.
+void add(Timing& timing, const Timing& more, const std::filesystem::path& file);
+
+/// Whether the file begins as a timing file does.
+bool is_timing_file(const std::filesystem::path& file);
+/// @throws Error(kBadFile) with file and line if it is missing, empty, truncated, damaged, or of
+/// another schema.
+Timing read_timing(const std::filesystem::path& file);
+/// Completely or not at all. @throws Error(kSetup) with the file.
+void write_timing(const std::filesystem::path& file, const Timing& timing);
+
+/// The times of each stage in all runs of the UAV [ns], in their order; of every UAV if the name is
+/// empty.
+std::map<std::string, std::vector<double>> samples_of(const Timing& timing,
+                                                      const std::string& uav = "");
+
+}  // namespace tether::timing

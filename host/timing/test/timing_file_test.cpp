@@ -1,0 +1,66 @@
+#include "sample_timing.h"
+
+#include <fstream>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include <tether/base_testing/scratch_folder.h>
+#include <tether/base_testing/thrown_error.h>
+#include <tether/os/text_file.h>
+
+namespace tether::timing {
+namespace {
+
+class TimingFile : public testing::Test {
+ protected:
+  void write(const std::string& text) { std::ofstream(file_) << text; }
+
+  ScratchFolder folder_;
+  std::filesystem::path file_ = folder_.path("board.timing");
+};
+
+TEST_F(TimingFile, KeepsEverything) {
+  Timing timing = sample_timing();
+  timing.counted_ns = {{"detect", 1234.5678901234567}, {"decide", 0.0}};
+  write_timing(file_, timing);
+  EXPECT_TRUE(is_timing_file(file_));
+  EXPECT_EQ(read_timing(file_), timing);
+}
+
+// A file that was cut anywhere is refused, and never read as a shorter one.
+TEST_F(TimingFile, RefusesEachTruncatedFile) {
+  write_timing(file_, sample_timing(1, 2));
+  const std::string whole = os::read_file(file_);
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    write(whole.substr(0, size));
+    bad_file_error([&] { read_timing(file_); });
+  }
+}
+
+TEST_F(TimingFile, NamesTheLineOfAFault) {
+  write_timing(file_, sample_timing(1, 2));
+  const std::string whole = os::read_file(file_);
+  const std::tuple<const char*, const char*, int> faults[] = {
+      {"tether-timing\t1", "tether-timing\t2", 1},
+      {"tether-timing\t1", "[scenario]", 1},
+      {"scenario", "world", 2},
+      {"run\tuav1\t1", "run\tuav1\t-1", 8},
+      {"run\tuav1\t1", "fly\tuav1\t1", 8},
+      {"call\tcamera\t", "call\tcamera\tlost\t", 9},
+      {"call\tcamera\tstart to camera\t", "call\tcamera\tstart to camera\t-", 9},
+      {"\tdetect\t", "\tcamera to command\t", 10},
+      {"end\t4", "end\t5", 13},
+      {"end\t4\n", "end\t4\nmore\n", 13},
+      {"run\tuav1\t1", "counted\tdetect\t-1\nrun\tuav1\t1", 8}};
+  for (const auto& [found, planted, line] : faults) {
+    std::string text = whole;
+    text.replace(text.find(found), std::string_view(found).size(), planted);
+    write(text);
+    const Error error = bad_file_error([&] { read_timing(file_); });
+    EXPECT_EQ(error.where(), (FileLocation{file_.string(), line})) << planted;
+  }
+}
+
+}  // namespace
+}  // namespace tether::timing

@@ -1,0 +1,87 @@
+#include "sample_timing.h"
+
+#include <gtest/gtest.h>
+
+#include <tether/base_testing/thrown_error.h>
+
+namespace tether::timing {
+namespace {
+
+record::Interaction interaction(std::string kind, std::int64_t request_ns, std::int64_t reply_ns) {
+  record::Interaction entry;
+  entry.uav = "uav1";
+  entry.kind = std::move(kind);
+  entry.sensor = entry.kind == record::kSensor ? "camera" : "";
+  entry.request_at = from_ns<ExecTime>(request_ns);
+  entry.reply_at = from_ns<ExecTime>(reply_ns);
+  return entry;
+}
+
+record::Record sample_record() {
+  record::Record record;
+  record.header.scenario = "face_anchor";
+  record.header.policy = record::kConservativeBarrier;
+  record.header.seed = 7;
+  record::SutInfo sut;
+  sut.uav = "uav1";
+  sut.sut = "sut 1.0";
+  sut.clock = "cpu";
+  sut.cpu_factor = 6.0;
+  sut.build_id = "0a";
+  record.header.suts = {sut};
+  record.interactions = {{{}, 0, interaction("sensor", 10, 40)},
+                         {{}, 1, interaction("command", 65, 65)}};
+  record.interactions[1].message.stages = {{"detect", Duration(20)},
+                                           {"camera to command", Duration(5)}};
+  return record;
+}
+
+TEST(Timing, TakesStagesOrNamesThemByCalls) {
+  const Timing timing = of_record(sample_record(), "a.mcap", "2026-11-20T10:00:00Z");
+  ASSERT_EQ(timing.runs.size(), 1u);
+  EXPECT_EQ(timing.clock, "cpu*6");
+  EXPECT_EQ(
+      timing.runs[0],
+      (timing::Run{"uav1",
+                   7,
+                   {{"camera", {{"start to camera", Duration(10)}}},
+                    {"command", {{"detect", Duration(20)}, {"camera to command", Duration(5)}}}}}));
+}
+
+TEST(Timing, RefusesRecordsWithoutMeasuredTime) {
+  record::Record free = sample_record(), replayed = free, mixed = free;
+  free.header.policy = record::kFreeRunning;
+  replayed.header.suts[0].replay.emplace();
+  mixed.header.suts.push_back(mixed.header.suts[0]);
+  mixed.header.suts[1].sut = "other";
+  for (const auto& [record, subject] : {std::pair(free, "policy"), std::pair(replayed, "uav1")}) {
+    const Error error = bad_file_error([&] { of_record(record, "a.mcap", ""); });
+    EXPECT_EQ(error.where().file, "a.mcap");
+    EXPECT_EQ(error.subject(), subject);
+  }
+  EXPECT_EQ(bad_file_error([&] { of_record(mixed, "a.mcap", ""); }).subject(), "uav1");
+}
+
+TEST(Timing, AddsRunsOfTheSameProgramOnly) {
+  Timing timing = sample_timing(1), more = timing;
+  more.runs[0].seed = 9;
+  more.recorded_at = "2026-11-21T00:00:00Z";
+  add(timing, more, "b.mcap");
+  EXPECT_EQ(timing.runs.size(), 2u);
+  EXPECT_EQ(timing.recorded_at, more.recorded_at);
+  EXPECT_EQ(samples_of(timing).at("detect").size(), 60u);
+  EXPECT_EQ(samples_of(timing, "uav2").size(), 0u);
+  const auto subject_of = [&](const Timing& other) {
+    return bad_file_error([&] { add(timing, other, "c.mcap"); }).subject();
+  };
+  EXPECT_EQ(subject_of(more), "seed");
+  Timing other = more;
+  other.build_id = "0b";
+  EXPECT_EQ(subject_of(other), "build id");
+  other = more;
+  other.scenario = "move_forward";
+  EXPECT_EQ(subject_of(other), "scenario");
+}
+
+}  // namespace
+}  // namespace tether::timing
