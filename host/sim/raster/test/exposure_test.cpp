@@ -154,7 +154,7 @@ TEST(Exposure, AveragesTheLightOfItsInstants) {
     flight.view.camera = small_camera(80, 60);
     flight.view.exposure_s = 0.01;
     const Drawing exposed = draw(exposing, flight.view);
-    constexpr int kPictures = 32;
+    constexpr int kPictures = 16;
     std::vector<double> light(exposed.rgb.size());
     for (int i = 0; i < kPictures; ++i) {
       Moment moment;
