@@ -165,9 +165,9 @@ std::string frame_svg(const record::Image& image, const std::optional<ReportedRo
   // If the two coincide, the solid line is visible between the dashes.
   if (roi) picture.drawings += framed(rect_of(*roi), kTracked, false);
   if (true_roi && true_roi->rect) picture.drawings += framed(*true_roi->rect, kTrue, true);
-  picture.lines.push_back(caption_line(kTracked, false,
-                                       roi ? "ROI tracked by the SUT, " + size_text(rect_of(*roi))
-                                           : "no ROI reported by the SUT for this image"));
+  picture.lines.push_back(caption_line(
+      kTracked, false,
+      roi ? "ROI tracked by the SUT, " + size_text(rect_of(*roi)) : "no ROI reported by the SUT"));
   if (true_roi) picture.lines.push_back(caption_line(kTrue, true, text_of(*true_roi)));
   return to_svg(picture);
 }

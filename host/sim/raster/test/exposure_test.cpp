@@ -151,9 +151,10 @@ TEST(Exposure, AveragesTheLightOfItsInstants) {
     const Scene exposed_scene(parts);
     Renderer exposing(exposed_scene);
     Flight flight(2.0);
+    flight.view.camera = small_camera(80, 60);
     flight.view.exposure_s = 0.01;
     const Drawing exposed = draw(exposing, flight.view);
-    constexpr int kPictures = 64;
+    constexpr int kPictures = 16;
     std::vector<double> light(exposed.rgb.size());
     for (int i = 0; i < kPictures; ++i) {
       Moment moment;
