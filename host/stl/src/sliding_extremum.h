@@ -55,7 +55,7 @@ class Wedge {
 template <class WindowOf>
 void slide(Extremum extremum, std::span<const double> values, std::size_t offset,
            WindowOf&& window_of, std::span<double> found) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr double kNeutral = std::numeric_limits<double>::infinity();
   const auto run = [&](double neutral, const auto& beats) {
     if (found.size() == 1) {  // what is asked most, without a wedge
       const Window window = window_of(0);
@@ -78,9 +78,9 @@ void slide(Extremum extremum, std::span<const double> values, std::size_t offset
     }
   };
   if (extremum == Extremum::kMin)
-    run(kInfinity, [](double a, double b) { return a < b; });
+    run(kNeutral, [](double a, double b) { return a < b; });
   else
-    run(-kInfinity, [](double a, double b) { return a > b; });
+    run(-kNeutral, [](double a, double b) { return a > b; });
 }
 
 }  // namespace tether::stl

@@ -104,7 +104,7 @@ class Workload {
   }
 
   Status run_round(bool counts) {
-    for (std::size_t i = 0; i < frames_.size(); ++i) step_by_step(frames_[i]);
+    for (const uav::CameraSample& frame : frames_) step_by_step(frame);
     tracker_.reset();
     for (std::size_t i = 0; i < frames_.size(); ++i) {
       std::optional<View> view;

@@ -31,6 +31,11 @@ record::Record fly(int seed) {
       run(tether({"run", file, "--quiet", "--seed", std::to_string(seed), "--out", out}),
           std::chrono::seconds(60));
   EXPECT_EQ(output.code, 0) << output.err;
+  const auto result = read_result(out);
+  EXPECT_EQ(result["outcome"], "goal_reached") << result["reason"];
+  EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
+  for (const auto& metric : result["metrics"]) EXPECT_TRUE(metric["value"].is_number()) << metric;
+  EXPECT_EQ(result["suts"][0]["details"]["status"], "reached");
   return read_record(out);
 }
 

@@ -40,9 +40,10 @@ TEST_P(ShippedScenario, ReachesItsGoalOnAFastComputer) {
   EXPECT_LE(std::abs(tasks[2]["results"]["bearing_rad"].get<double>()), 0.07);
 }
 
+// And closed_path: imu_drift_test.cpp.
 INSTANTIATE_TEST_SUITE_P(Tasks, ShippedScenario,
                          testing::Values("sensor_characterization", "relative_position",
-                                         "face_anchor", "move_forward", "closed_path", "mission"),
+                                         "face_anchor", "move_forward", "mission"),
                          [](const auto& one) { return std::string(one.param); });
 
 // The paper's Table IV.

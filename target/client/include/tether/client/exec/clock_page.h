@@ -78,7 +78,7 @@ Duration read_monotonic();
 /// kInvalid and the error of the system.
 struct SharedClockPage {
   struct Unmap {
-    void operator()(ClockPage* page) const;
+    void operator()(ClockPage* mapped) const;
   };
   std::unique_ptr<ClockPage, Unmap> page;
   os::FileDescriptor descriptor;
@@ -88,7 +88,7 @@ Result<SharedClockPage> make_clock_page();
 /// The same page in another process. Fails with kProtocol if `descriptor` is not a clock page.
 struct MappedClockPage {
   struct Unmap {
-    void operator()(const ClockPage* page) const;
+    void operator()(const ClockPage* mapped) const;
   };
   std::unique_ptr<const ClockPage, Unmap> page;
 };
