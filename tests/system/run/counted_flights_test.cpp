@@ -27,8 +27,8 @@ class CountedFlight : public testing::TestWithParam<Flight> {
     const auto out = folder_ / name;
     const auto command = tether({"run", file_, "--condition", "target", "--target",
                                  TETHER_SOURCE_DIR "/data/profiles/targets/counted_target.toml",
-                                 "--images", "--quiet", "--out", out});
-    const Output output = run(started_by(launcher, command));
+                                 "--quiet", "--out", out});
+    const Output output = run(started_by(launcher, command), std::chrono::minutes(4));
     EXPECT_LE(output.code, 1) << output.err;
     EXPECT_TRUE(read_result(out)["audit"]["passed"]);
     return out;
@@ -39,7 +39,7 @@ class CountedFlight : public testing::TestWithParam<Flight> {
       write_shipped_scenario(folder_.path(), GetParam().scenario, GetParam().changes);
 };
 
-// On all cores, where pictures are drawn ahead; then on one core beside others' load, from another
+// On all cores, with images drawn ahead; then on one core beside others' load, from another
 // environment and into another folder.
 TEST_P(CountedFlight, IsTheSameToTheByteUnderAnyLoad) {
   const auto alone = fly("alone", {"env"});
@@ -51,11 +51,11 @@ TEST_P(CountedFlight, IsTheSameToTheByteUnderAnyLoad) {
   EXPECT_EQ(timeless_result(alone), timeless_result(crowded));
 }
 
-// Cut short: the first seconds have all kinds of work.
+// Cut short: the first images have all kinds of work.
 const std::vector<Flight> kFlights = {
-    {"face_anchor", {{"\ntime_limit_s = 60", "\ntime_limit_s = 1"}}},
-    {"move_forward", {{"\ntime_limit_s = 90", "\ntime_limit_s = 1"}}},
-    {"mission", {{"\ntime_limit_s = 60", "\ntime_limit_s = 1"}}}};
+    {"face_anchor", {{"\ntime_limit_s = 60", "\ntime_limit_s = 0.7"}}},
+    {"move_forward", {{"\ntime_limit_s = 90", "\ntime_limit_s = 0.7"}}},
+    {"mission", {{"\ntime_limit_s = 60", "\ntime_limit_s = 0.7"}}}};
 
 INSTANTIATE_TEST_SUITE_P(Shipped, CountedFlight, testing::ValuesIn(kFlights),
                          [](const auto& one) { return one.param.scenario; });

@@ -52,6 +52,8 @@ std::vector<Flight> flights_of(const std::string& name,
   for (const scenario::Condition& condition : loaded.conditions)
     flights.push_back({name, condition.name, {}, false, why_skipped(condition)});
   for (const scenario::Target& target : targets) {
+    // face_anchor has a condition with it, and the emulator takes long for its many images.
+    if (target.name == "counted_host") continue;
     scenario::Condition condition = loaded.conditions.front();
     if (!why_not_on(condition, target).empty()) continue;
     place_on(condition, target);
