@@ -107,6 +107,8 @@ BENCHMARK_CAPTURE(judge_mission, eventually_for_5_s,
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(judge_mission, reaction, "always = \"reaction_time <= ", " s in 95 %\"\n")
     ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(judge_mission, deadline, "name = \"", "\"\nwithin_s = 700\n")
+    ->Unit(benchmark::kMillisecond);
 
 const stl::Formula kCondition = stl::Formula::at_least(0, 0.3);
 

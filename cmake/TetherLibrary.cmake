@@ -52,6 +52,17 @@ function(_tether_check_headers target include_dir)
   endif()
 endfunction()
 
+# What nearly every library includes is compiled once. Not with a cache of compiled files (ccache), which finds less
+# that way; nor in `dev`, which finds what a file forgot to include.
+if(CMAKE_UNITY_BUILD AND BUILD_TESTING AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/library_headers.cpp" CONTENT "\n")
+  add_library(tether_library_headers STATIC EXCLUDE_FROM_ALL "${PROJECT_BINARY_DIR}/library_headers.cpp")
+  target_link_libraries(tether_library_headers PRIVATE tether_compile_options)
+  target_precompile_headers(tether_library_headers PRIVATE
+    <algorithm> <array> <atomic> <chrono> <cmath> <condition_variable> <filesystem> <fstream> <functional> <map> <memory>
+    <mutex> <optional> <ranges> <set> <span> <sstream> <stop_token> <string> <thread> <variant> <vector>)
+endif()
+
 # What must be there before a source can be read (scripts/tidy).
 add_custom_target(tether_generated)
 
@@ -80,9 +91,14 @@ endif()
 # more than most cases. Its cases with their times are in test-results/<entry>.xml.
 #   LABELS   see tether_add_test
 #   TIMEOUT  seconds for the whole entry
+#   COST     see tether_add_test
+#   SERIAL   see tether_add_test; they become an entry of their own
 #   EVERY_CHANGE  of a test with the label "full": the cases (a --gtest_filter) that each change runs all the same
 function(_tether_register_test target name)
-  cmake_parse_arguments(ARG "" "TIMEOUT;EVERY_CHANGE" "LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT;EVERY_CHANGE;SERIAL;COST" "LABELS" ${ARGN})
+  if(NOT ARG_COST)
+    set(ARG_COST 0)
+  endif()
   target_precompile_headers(${target} REUSE_FROM tether_test_headers)
   # Small enough that two cores share one program.
   set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 8)
@@ -98,23 +114,28 @@ function(_tether_register_test target name)
     endif()
   endforeach()
   if(ARG_EVERY_CHANGE)
-    _tether_add_test_entry(${target} ${name}.full "-${ARG_EVERY_CHANGE}" "${ARG_LABELS}" ${ARG_TIMEOUT})
+    _tether_add_test_entry(${target} ${name}.full "-${ARG_EVERY_CHANGE}" "${ARG_LABELS}" ${ARG_TIMEOUT} ${ARG_COST})
     list(REMOVE_ITEM ARG_LABELS full)
   endif()
-  _tether_add_test_entry(${target} ${name} "${ARG_EVERY_CHANGE}" "${ARG_LABELS}" ${ARG_TIMEOUT})
+  if(ARG_SERIAL)
+    _tether_add_test_entry(${target} ${name}.alone "${ARG_SERIAL}" "${ARG_LABELS}" ${ARG_TIMEOUT} 0)
+    set_tests_properties(${name}.alone PROPERTIES RUN_SERIAL TRUE)
+    set(ARG_EVERY_CHANGE "-${ARG_SERIAL}")
+  endif()
+  _tether_add_test_entry(${target} ${name} "${ARG_EVERY_CHANGE}" "${ARG_LABELS}" ${ARG_TIMEOUT} ${ARG_COST})
 endfunction()
 
-function(_tether_add_test_entry target entry filter labels timeout)
+function(_tether_add_test_entry target entry filter labels timeout cost)
   if(filter)
     list(APPEND options "--gtest_filter=${filter}")
   endif()
   add_test(NAME ${entry} COMMAND ${target} --gtest_brief=1
     "--gtest_output=xml:${PROJECT_BINARY_DIR}/test-results/${entry}.xml" ${options})
-  set_tests_properties(${entry} PROPERTIES LABELS "${labels}" TIMEOUT ${timeout})
+  set_tests_properties(${entry} PROPERTIES LABELS "${labels}" TIMEOUT ${timeout} COST ${cost})
 endfunction()
 
 # tether_add_library(<name> SOURCES ... [PUBLIC ...] [PRIVATE ...] [TESTS ...] [TEST_LIBS ...]
-#                    [TESTING_SOURCES ...] [LABELS ...])
+#                    [TESTING_SOURCES ...] [LABELS ...] [COST <seconds>])
 #
 # Declares a folder of common/, target/ or host/ as target tether_<name> (alias tether::<name>):
 #   SOURCES         files below src/
@@ -122,14 +143,17 @@ endfunction()
 #   TESTS           files below test/, one executable tether_<name>_test
 #   TESTING_SOURCES fakes that other folders' tests use, as tether::<name>_testing, with headers in
 #                   testing/include
-#   LABELS          extra labels of the tests: input, threaded (see tether_add_test)
+#   LABELS, COST    of the tests: extra labels input and threaded; see tether_add_test
 function(tether_add_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE;TESTS;TEST_LIBS;TESTING_SOURCES;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "COST" "SOURCES;PUBLIC;PRIVATE;TESTS;TEST_LIBS;TESTING_SOURCES;LABELS" ${ARGN})
   set(target tether_${name})
   if(ARG_SOURCES)
     add_library(${target} STATIC ${ARG_SOURCES})
     target_include_directories(${target} PUBLIC include PRIVATE src)
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} tether_compile_options)
+    if(TARGET tether_library_headers)
+      target_precompile_headers(${target} REUSE_FROM tether_library_headers)
+    endif()
   else()
     add_library(${target} INTERFACE)
     target_include_directories(${target} INTERFACE include)
@@ -157,12 +181,14 @@ function(tether_add_library name)
     endif()
     target_compile_definitions(${target}_test PRIVATE
       TETHER_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TETHER_TEST_DIR="${CMAKE_CURRENT_SOURCE_DIR}/test")
-    _tether_register_test(${target}_test ${name} LABELS unit ${ARG_LABELS} TIMEOUT 600)
+    _tether_register_test(${target}_test ${name} LABELS unit ${ARG_LABELS} TIMEOUT 600 COST "${ARG_COST}")
   endif()
 endfunction()
 
-# tether_add_test(<name> SOURCES ... [LIBS ...] LABELS ... [TIMEOUT <seconds>] [EVERY_CHANGE <filter>])
+# tether_add_test(<name> SOURCES ... [LIBS ...] LABELS ... [TIMEOUT <seconds>] [COST <seconds>] [SERIAL <filter>] [EVERY_CHANGE <filter>])
 #
+# COST is what it takes, roughly, where that is long: long ones start first, so that none of them runs last and alone.
+# SERIAL are the cases (a --gtest_filter) beside which nothing may run, because their pace matters.
 # A GoogleTest executable below tests/, target <name>_test. LABELS say when it runs (CONTRIBUTING, "Which test runs where"):
 #   unit      first; in `scripts/test --full` under asan and ubsan as well
 #   system    whole programs
@@ -172,7 +198,7 @@ endfunction()
 #   board, arm64, gazebo   needs this part; not in `scripts/test --quick`
 #   full      in `scripts/test --full` only, but for the cases of EVERY_CHANGE
 function(tether_add_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT;EVERY_CHANGE" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT;COST;SERIAL;EVERY_CHANGE" "SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 600)
   endif()
@@ -181,7 +207,8 @@ function(tether_add_test name)
   target_compile_definitions(${name}_test PRIVATE
     TETHER_SOURCE_DIR="${PROJECT_SOURCE_DIR}" TETHER_BINARY_DIR="${PROJECT_BINARY_DIR}"
     TETHER_TEST_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
-  _tether_register_test(${name}_test ${name} LABELS ${ARG_LABELS} TIMEOUT ${ARG_TIMEOUT} EVERY_CHANGE "${ARG_EVERY_CHANGE}")
+  _tether_register_test(${name}_test ${name} LABELS ${ARG_LABELS} TIMEOUT ${ARG_TIMEOUT}
+    COST "${ARG_COST}" SERIAL "${ARG_SERIAL}" EVERY_CHANGE "${ARG_EVERY_CHANGE}")
 endfunction()
 
 # tether_add_program(<name> SOURCES ... LIBS ... [COMPONENT <component>]): an executable of apps/, installed as part of

@@ -26,6 +26,8 @@ packages_build=(
   libfmt-dev libcli11-dev libtomlplusplus-dev nlohmann-json3-dev
   gnuplot-nox
 )
+# The emulator whose instructions are counted.
+packages_demo=(qemu-user)
 packages_test=(git python3 libgtest-dev libgmock-dev libbenchmark-dev clang-format qemu-user)
 # The library as a user builds against it, and the manual pages.
 packages_test+=(make pkgconf mandoc)
@@ -39,6 +41,8 @@ packages_pack=(dpkg-dev file gzip)
 packages_arm64=(cmake ninja-build flatbuffers-compiler g++-aarch64-linux-gnu mmdebstrap qemu-user "${packages_pack[@]}")
 # Gazebo's plugin against Debian 11's packages, and the screen that Gazebo's cameras need.
 packages_gazebo=(cmake ninja-build g++ pkgconf mmdebstrap xvfb xauth)
+# mmdebstrap as anyone but root.
+[ "$(id -u)" -eq 0 ] || { packages_arm64+=(uidmap); packages_gazebo+=(uidmap); }
 # libFuzzer and the sanitizers of clang; llvm has what names functions in their reports.
 packages_fuzz=(clang-14 libclang-rt-14-dev llvm-14)
 packages_tidy=(git clang-tidy)
@@ -78,20 +82,26 @@ install_packages() {
 command -v node >/dev/null || packages_test+=(nodejs)
 command -v npm >/dev/null || packages_test+=(npm)
 
-# install_for build|test|fuzz|tidy|coverage|package|arm64|gazebo|docs
+# install_for PURPOSE...: build, demo, test, fuzz, tidy, coverage, package, arm64, gazebo or docs
 install_for() {
-  case "$1" in
-    build) install_packages "${packages_build[@]}" ;;
-    test) install_packages "${packages_build[@]}" "${packages_test[@]}" ;;
-    fuzz) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_fuzz[@]}" ;;
-    tidy) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_tidy[@]}" ;;
-    coverage) install_packages "${packages_build[@]}" "${packages_test[@]}" "${packages_coverage[@]}" ;;
-    package) install_packages "${packages_build[@]}" "${packages_pack[@]}" ;;
-    arm64) install_packages "${packages_arm64[@]}" ;;
-    gazebo) install_packages "${packages_gazebo[@]}" ;;
-    docs) install_packages "${packages_docs[@]}" ;;
-    *) fail "'$1': build, test, fuzz, tidy, coverage, package, arm64, gazebo or docs" ;;
-  esac
+  local purpose names=()
+  for purpose in "$@"; do
+    case "$purpose" in
+      build) names+=("${packages_build[@]}") ;;
+      demo) names+=("${packages_build[@]}" "${packages_demo[@]}") ;;
+      test) names+=("${packages_build[@]}" "${packages_test[@]}") ;;
+      fuzz) names+=("${packages_build[@]}" "${packages_test[@]}" "${packages_fuzz[@]}") ;;
+      tidy) names+=("${packages_build[@]}" "${packages_test[@]}" "${packages_tidy[@]}") ;;
+      coverage) names+=("${packages_build[@]}" "${packages_test[@]}" "${packages_coverage[@]}") ;;
+      package) names+=("${packages_build[@]}" "${packages_pack[@]}") ;;
+      arm64) names+=("${packages_arm64[@]}") ;;
+      gazebo) names+=("${packages_gazebo[@]}") ;;
+      docs) names+=("${packages_docs[@]}") ;;
+      *) fail "'$purpose': build, demo, test, fuzz, tidy, coverage, package, arm64, gazebo or docs" ;;
+    esac
+  done
+  mapfile -t names < <(printf '%s\n' "${names[@]}" | sort -u)
+  install_packages "${names[@]}"
 }
 
 # ---- building ------------------------------------------------------------------------------------

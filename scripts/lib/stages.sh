@@ -4,6 +4,7 @@
 stage_names=()
 stage_seconds=()
 began=$SECONDS
+declare -A beside_pids=()
 
 # begin_stages: forgets the results of an earlier run, and has the summary printed at the end of this one.
 begin_stages() {
@@ -18,6 +19,23 @@ stage() {
   stage_names+=("$1")
   "${@:2}"
   stage_seconds+=("$((SECONDS - since))")
+}
+
+# beside NAME COMMAND...: starts what mostly waits, such as a download. It runs beside the stages that follow, in a
+# process group of its own, until one of them awaits it.
+beside() {
+  mkdir -p "$ROOT/build"
+  setsid nice "${@:2}" >"$ROOT/build/$1.log" 2>&1 &
+  beside_pids[$1]=$!
+}
+
+# await NAME: prints what that command printed, and fails if it failed.
+await() {
+  local pid="${beside_pids[$1]}" status=0
+  wait "$pid" || status=$?
+  unset "beside_pids[$1]"
+  cat "$ROOT/build/$1.log"
+  return "$status"
 }
 
 # Cases of all test programs so far: "seconds<TAB>result<TAB>build: program.Suite.Case<TAB>why" a line.
@@ -43,6 +61,7 @@ cases() {
 # The last words of scripts/test, whatever it ended with.
 summary() {
   local status=$? i
+  for i in "${beside_pids[@]}"; do kill -- "-$i" 2>/dev/null || true; done
   printf '\n\033[1m== Seconds of each stage\033[0m\n'
   for i in "${!stage_names[@]}"; do
     printf '%6s  %s\n' "${stage_seconds[$i]:-failed}" "${stage_names[$i]}"

@@ -237,7 +237,7 @@ TEST(CommandLine, RejectsOptionsThatCannotBeCombined) {
 
 TEST(CommandLine, RejectsMissingUnknownAndInvalidArguments) {
   for (const char* arguments : {"",
-                                "land",
+                                "take_off",
                                 "face_anchor",
                                 "face_anchor --anchor b --precision-deg 0",
                                 "face_anchor --anchor b --precision-deg nan",

@@ -30,6 +30,7 @@ struct RunOptions {
   std::string listen;
   double real_time_factor = 0.0;
   std::optional<double> slowdown;
+  std::vector<std::string> settings;  ///< "KEY=VALUE"
   std::string unknown_stages;
   ReadingOptions reading;
   bool tunnel = false;

@@ -18,6 +18,7 @@
 #include <tether/os/text_file.h>
 #include <tether/report/page.h>
 #include <tether/report/report.h>
+#include <tether/report/sweep.h>
 #include <tether/runner/trial_folder.h>
 
 namespace tether::app {
@@ -70,6 +71,7 @@ std::vector<report::Table> run_tables(const campaign::CampaignResults& results) 
   const auto& trial = results.scenarios.front().conditions.front().trials.front();
   std::vector<report::Table> tables = {report::run_table(trial)};
   if (!trial.clauses.empty()) tables.push_back(report::clauses_table(trial));
+  if (!trial.energy.empty()) tables.push_back(report::energy_table(trial));
   tables.push_back(report::basis_table(results));
   return tables;
 }
@@ -113,8 +115,11 @@ int report(const ReportOptions& options, const std::stop_token&) {
 
 void print_campaign_summary(const std::filesystem::path& folder) {
   const campaign::CampaignResults results = campaign::read_campaign_results(folder);
+  const auto sweeps = report::sweeps_of(results);
+  for (const report::Sweep& sweep : sweeps) fmt::print("{}\n", to_text(report::sweep_table(sweep)));
   for (const auto& scenario : results.scenarios)
-    fmt::print("{}\n", to_text(report::paper_form_table(scenario)));
+    if (scenario.swept_from.empty())
+      fmt::print("{}\n", to_text(report::paper_form_table(scenario)));
   fmt::print(
       "Records and results: {0}\n"
       "Next steps:\n"

@@ -83,8 +83,7 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
 
 /// Rejects --tunnel if it has no effect.
 void require_use_of_tunnel(const runner::TrialSpec& spec) {
-  const auto& target = spec.condition.target;
-  if (!spec.uses_tunnel || (!spec.waits_for_sut && target && target->ssh)) return;
+  if (!spec.uses_tunnel || spec.sut_place() == runner::SutPlace::kBoard) return;
   throw Error(ErrorCode::kUsage,
               "--tunnel needs a SUT on a board. Select the board with --target "
               "ssh://[user@]board[:port] or a target file with its address, or omit --tunnel")
@@ -94,8 +93,12 @@ void require_use_of_tunnel(const runner::TrialSpec& spec) {
 runner::TrialSpec make_spec(const RunOptions& options) {
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
   runner::TrialSpec spec;
+  std::vector<scenario::Setting> settings;
+  for (const std::string& text : options.settings)
+    settings.push_back(scenario::parse_setting(text, std::filesystem::current_path()));
   spec.scenario = scenario::load_scenario(
-      find_file(shipped, scenario::ShippedKind::kScenario, options.scenario, FileKind::kScenario));
+      find_file(shipped, scenario::ShippedKind::kScenario, options.scenario, FileKind::kScenario),
+      settings);
   spec.scenario.record_images |= options.record_images;
   spec.scenario.world_options = world_options(options.reading, shipped);
   if (!options.profile.empty())
@@ -132,6 +135,20 @@ void print_contacts(const campaign::UavContacts& own) {
   fmt::print("  {:<24} {}\n", own.uav, text);
 }
 
+void print_energy(const campaign::UavEnergy& energy) {
+  std::string causes;
+  for (std::size_t i = 0; i < energy::kCauses; ++i)
+    causes += fmt::format("{}{} {:.4g} J", i == 0 ? "" : ", ",
+                          energy::name(static_cast<energy::Cause>(i)), energy.spent_J[i]);
+  const auto more = energy.more_flights();
+  fmt::print("  {:<24} {:.5g} J: {}\n", "energy of " + energy.uav,
+             campaign::total_J(energy.spent_J), causes);
+  fmt::print("  {:<24} {:.1f} % left of {:.1f} %{}; at least {:.4g} V\n", "charge of " + energy.uav,
+             100.0 * energy.charge_to, 100.0 * energy.charge_from,
+             more ? fmt::format(", enough for {:.1f} more such flights", *more) : "",
+             energy.least_voltage_V);
+}
+
 void print_clause(const judge::ClauseVerdict& clause) {
   const std::string margin =
       clause.margin ? fmt::format(", margin {:.4g} {}", *clause.margin, clause.unit) : "";
@@ -159,6 +176,7 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
                             : "");
   }
   for (const auto& clause : result.clauses) print_clause(clause);
+  for (const campaign::UavEnergy& energy : result.energy) print_energy(energy);
   for (const campaign::UavContacts& own : result.contacts) print_contacts(own);
   fmt::print("  {:<24} {:.3f} s in {:.3f} s of wall time, {} interactions\n", "simulated",
              to_seconds(result.sync.st_at_end), to_seconds(result.this_run.wall),
@@ -166,6 +184,9 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
   if (result.clock == scenario::name(scenario::Clock::kUnstamped))
     fmt::print("  {:<24} {}\n", "clock",
                "unstamped: the coordinator measured the SUT's time, which includes the link's");
+  if (!result.emulator.program.empty())
+    fmt::print("  {:<24} counted by {}, CPU model {}\n", "clock", result.emulator.program,
+               result.emulator.cpu_model);
   if (result.replay) fmt::print("  {:<24} {}\n", "time", campaign::describe_replay(result));
   if (!result.target.empty()) fmt::print("  {:<24} {}\n", "target", result.target);
   if (const auto& stops = result.sync.stops)

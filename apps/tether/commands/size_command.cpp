@@ -96,6 +96,10 @@ report::Board board_of(const scenario::ShippedFiles& shipped, const std::filesys
   if (condition.clock == scenario::Clock::kScripted)
     refuse_board(fmt::format("cannot be compared with condition \"{}\", whose time is scripted.",
                              condition.name));
+  if (condition.clock == scenario::Clock::kCounted || target.clock == scenario::Clock::kCounted)
+    refuse_board(
+        "cannot be compared, because counted targets have costs and no factor. Use conditions and "
+        "targets with the clock \"cpu\".");
   report::Board board{.name = file.filename().string(),
                       .slowdown = target.cpu_factor / condition.cpu_factor};
   if (const auto& interval = target.cpu_factor_interval) {

@@ -109,6 +109,14 @@ void add_run_command(CLI::App& program, Action& action) {
                       "recorded, instead of the condition's unknown_stages: refused, counted or "
                       "zero");
   command
+      ->add_option("--set", options->settings,
+                   "Replace a value of the scenario, given by its key's path: time_limit_s=30, "
+                   "cpu_factor=4 (of each [[condition]] that has it), "
+                   "sut.parameters.yaw_rate_deg_s=40; can be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command
       ->add_option("--listen", options->listen,
                    "Address for the SUT, host:port; port 0 selects a free port")
       ->capture_default_str();

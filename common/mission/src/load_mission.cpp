@@ -261,6 +261,10 @@ void require_possible(const Mission& mission, const Surroundings& surroundings) 
       if (time && *time > surroundings.time_limit)
         fail("has a time of " + seconds_text(*time) + ", beyond the scenario's time_limit_s of " +
              seconds_text(surroundings.time_limit) + ". Raise that, or shorten this.");
+    if (clause.condition && clause.condition->quantity->needs_battery() &&
+        !surroundings.has_battery)
+      fail("is about " + std::string(clause.condition->quantity->name) +
+           ", which needs a model of energy. Add 'energy' to the scenario's [[uav]].");
     if (!clause.condition || clause.condition->quantity->subject != Subject::kAnchor) continue;
     const std::vector<std::string>& anchors = surroundings.anchors;
     const std::vector<std::string_view> names(anchors.begin(), anchors.end());

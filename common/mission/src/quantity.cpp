@@ -17,6 +17,10 @@ std::span<const Unit> units() {
       Unit{"m/s", Dimension::kSpeed},
       Unit{"deg/s", Dimension::kYawRate, rad_from_deg(1.0)},
       Unit{"rad/s", Dimension::kYawRate},
+      Unit{"J", Dimension::kEnergy},
+      Unit{"kJ", Dimension::kEnergy, 1e3},
+      Unit{"Wh", Dimension::kEnergy, 3600.0},
+      Unit{"%", Dimension::kShare, 1e-2},
   };
   return kUnits;
 }
@@ -33,6 +37,10 @@ std::span<const Quantity> quantities() {
                "rotation about the vertical, without sign"},
       Quantity{"clearance", Dimension::kLength, Subject::kNone, false,
                "distance from the UAV to the nearest surface, such as a wall"},
+      Quantity{"energy_j", Dimension::kEnergy, Subject::kNone, false,
+               "what the battery lost since the start of the time that the clause is about"},
+      Quantity{"charge_left", Dimension::kShare, Subject::kNone, false,
+               "charge of the battery as a share of its capacity"},
       Quantity{"reaction_time", Dimension::kTime, Subject::kSensor, true,
                "from the instant of the newest image to the effect of a command, for each command"},
       Quantity{"data_age", Dimension::kTime, Subject::kSensor, true,

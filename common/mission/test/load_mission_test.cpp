@@ -136,6 +136,15 @@ within_s = 20
   }
 }
 
+TEST(Mission, NeedsABatteryForClausesAboutIt) {
+  for (const char* condition : {"charge_left >= 30 %", "energy_j <= 4 kJ"}) {
+    const Mission mission =
+        parsed(kTasks + "[[clause]]\nname = \"b\"\nalways = \"" + condition + "\"\n");
+    EXPECT_EQ(bad_file_error([&] { require_possible(mission, {{}, 60s}); }).subject(), "b");
+    EXPECT_NO_THROW(require_possible(mission, {{}, 60s, true}));
+  }
+}
+
 TEST(Mission, ShippedFilesAreGood) {
   for (const auto& entry : std::filesystem::directory_iterator(TETHER_SOURCE_DIR "/data/missions"))
     EXPECT_FALSE(load_mission(entry.path()).tasks.empty());

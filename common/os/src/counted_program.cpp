@@ -85,10 +85,11 @@ Environment CountFile::environment() const {
   return variables;
 }
 
-std::uint64_t CountFile::work() const {
-  std::uint64_t sum = 0;
-  for (const auto& count : page_->counts) sum += count.load(std::memory_order_relaxed);
-  return sum;
+Duration CountFile::computed() const {
+  std::uint64_t units = 0;
+  for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
+    units += page_->counts[kind].load(std::memory_order_relaxed) * emulator_.cost_units[kind];
+  return Duration(static_cast<std::int64_t>(units / static_cast<std::uint64_t>(kCostUnitsPerNs)));
 }
 
 }  // namespace tether::os

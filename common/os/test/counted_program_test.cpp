@@ -42,11 +42,11 @@ TEST_F(CountedProgram, HasAPageOfItsOwnWithTheCosts) {
   EXPECT_EQ(page.magic, CountPage::kMagic);
   EXPECT_EQ(page.cost_units, emulator_.cost_units);
 
-  EXPECT_EQ(counts.work(), 0u);
-  page.counts[2] = 5;
+  EXPECT_EQ(counts.computed(), Duration(0));
+  page.counts[2] = 5 * kCostUnitsPerNs;
   memory.seekp(0).write(reinterpret_cast<const char*>(&page), sizeof page).flush();
-  EXPECT_EQ(counts.work(), 5u);
-  EXPECT_EQ(other.work(), 0u);
+  EXPECT_EQ(counts.computed(), Duration(45));
+  EXPECT_EQ(other.computed(), Duration(0));
 }
 
 TEST_F(CountedProgram, NamesWhatIsMissing) {

@@ -259,8 +259,11 @@ std::size_t Table::choice(std::string_view key, std::span<const std::string_view
 }
 
 std::string Table::scalar_as_text(std::string_view key) const {
-  const Node& node = required(key);
-  if (raw(node).is_string()) return text(key);
+  return scalar_of(key, required(key));
+}
+
+std::string Table::scalar_of(std::string_view key, const Node& node) const {
+  if (raw(node).is_string()) return text_of(key, node, "a string");
   if (const auto* integer = raw(node).as_integer()) return std::to_string(integer->get());
   if (const auto* number = raw(node).as_floating_point()) return number_text(number->get());
   if (const auto* boolean = raw(node).as_boolean()) return boolean->get() ? "true" : "false";
@@ -325,6 +328,17 @@ std::vector<std::int64_t> Table::integers(std::string_view key, std::int64_t min
   return integers;
 }
 
+std::vector<std::string> Table::scalars_as_texts(std::string_view key) const {
+  std::vector<std::string> texts;
+  for (const Node* element : elements(key, "an array")) texts.push_back(scalar_of(key, *element));
+  if (texts.empty()) fail(key, "must have at least one value, but is empty");
+  return texts;
+}
+
+bool Table::is_table(std::string_view key) const {
+  return raw(required(key)).is_table();
+}
+
 Table Table::table(std::string_view key) const {
   const Node& node = required(key);
   if (!raw(node).is_table()) fail_type(key, node, "a table");
@@ -363,7 +377,7 @@ std::vector<Table> Table::tables_or_none(std::string_view key, Keys allowed) con
   return has(key) ? tables(key, allowed) : std::vector<Table>{};
 }
 
-void Document::Delete::operator()(const Node* node) const {
+void Document::Delete::operator()(Node* node) const {
   delete &as_table(*node);
 }
 
@@ -374,13 +388,54 @@ Document Document::load(const std::filesystem::path& file) {
 
 Document Document::parse(std::string_view text, const std::string& file) {
   try {
-    std::unique_ptr<const ::toml::table> tree =
-        std::make_unique<::toml::table>(::toml::parse(text, file));
-    return {std::unique_ptr<const Node, Delete>(&opaque(*tree.release())), file};
+    auto tree = std::make_unique<::toml::table>(::toml::parse(text, file));
+    return {std::unique_ptr<Node, Delete>(reinterpret_cast<Node*>(tree.release())),  // NOLINT
+            file};
   } catch (const ::toml::parse_error& error) {
     throw Error(ErrorCode::kBadFile, {file, line_of(error.source())},
                 "no valid TOML: " + std::string(error.description()));
   }
+}
+
+namespace {
+
+/// The number or boolean that `text` is, or itself, as if it stood on that line of the file.
+void replace_value(::toml::table& table, std::string_view key, const std::string& text, int line) {
+  const std::string before(static_cast<std::size_t>(std::max(0, line - 1)), '\n');
+  try {
+    ::toml::table parsed = ::toml::parse(before + "value = " + text);
+    ::toml::node* value = parsed.size() == 1 ? parsed.get("value") : nullptr;
+    if (value != nullptr && (value->is_number() || value->is_boolean())) {
+      value->visit([&](auto& own) { table.insert_or_assign(key, std::move(own)); });
+      return;
+    }
+  } catch (const ::toml::parse_error&) {  // a string
+  }
+  table.insert_or_assign(key, text);
+}
+
+std::size_t replace_in(::toml::node& node, std::string_view path, const std::string& text) {
+  std::size_t replaced = 0;
+  if (::toml::array* array = node.as_array()) {
+    for (::toml::node& element : *array) replaced += replace_in(element, path, text);
+    return replaced;
+  }
+  ::toml::table* table = node.as_table();
+  if (table == nullptr) return 0;
+  const std::size_t dot = path.find('.');
+  const std::string_view key = path.substr(0, dot);
+  ::toml::node* child = table->get(key);
+  if (child == nullptr) return 0;
+  if (dot != std::string_view::npos) return replace_in(*child, path.substr(dot + 1), text);
+  if (!child->is_value()) return 0;
+  replace_value(*table, key, text, line_of(child->source()));
+  return 1;
+}
+
+}  // namespace
+
+std::size_t Document::replace(std::string_view path, const std::string& text) {
+  return replace_in(reinterpret_cast<::toml::table&>(*tree_), path, text);  // NOLINT
 }
 
 Table Document::root() const {

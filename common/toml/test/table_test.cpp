@@ -175,6 +175,56 @@ TEST(Document, RefusesAFileThatCannotBeRead) {
   EXPECT_THAT(bad_file_error([&] { Document::load(large); }).what(), testing::HasSubstr("1048577"));
 }
 
+TEST(Table, ReadsScalarsOfAnArrayAsOnACommandLine) {
+  const Document file = Document::parse("a = [1, 2.5, true, \"x\"]\nb = []\nc = [[1]]\n", "f.toml");
+  EXPECT_THAT(file.root().scalars_as_texts("a"), ElementsAre("1", "2.5", "true", "x"));
+  for (const char* key : {"b", "c"})
+    EXPECT_EQ(bad_file_error([&] { (void)file.root().scalars_as_texts(key); }).subject(), key);
+}
+
+TEST(Document, ReplacesAValueWhereverThePathNamesOne) {
+  const std::string text =
+      "a = 1\n[b]\nc = 2.5\n[[d]]\ne = \"x\"\n[[d]]\nf = 3\n[[d]]\ne = \"y\"\n";
+  struct Case {
+    const char *path, *value;
+    std::size_t replaced;
+    std::function<bool(const Table&)> is_there;
+  };
+  const Case cases[] = {
+      {"a", "7", 1, [](const Table& t) { return t.integer("a", 0, 9) == 7; }},
+      {"b.c", "-0.5", 1, [](const Table& t) { return t.table("b").number("c", {}) == -0.5; }},
+      {"b.c", "true", 1, [](const Table& t) { return t.table("b").boolean("c"); }},
+      {"b.c", "1979-05-27", 1,
+       [](const Table& t) { return t.table("b").text("c") == "1979-05-27"; }},
+      {"b.c", "1\nz = 2", 1,
+       [](const Table& t) { return t.table("b").text("c") == "1\nz = 2" && !t.has("z"); }},
+      {"d.e", "new file.toml", 2,
+       [](const Table& t) {
+         const auto d = t.tables("d");
+         return d[0].text("e") == "new file.toml" && d[2].text("e") == "new file.toml" &&
+                d[1].integer("f", 0, 9) == 3;
+       }},
+      {"b", "1", 0, [](const Table& t) { return t.is_table("b"); }},
+      {"b.x", "1", 0, [](const Table& t) { return !t.table("b").has("x"); }},
+      {"a.b", "1", 0, [](const Table& t) { return t.integer("a", 0, 9) == 1; }},
+      {"", "1", 0, [](const Table& t) { return t.integer("a", 0, 9) == 1; }},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(std::string(c.path) + " = " + c.value);
+    Document document = Document::parse(text, "f.toml");
+    EXPECT_EQ(document.replace(c.path, c.value), c.replaced);
+    EXPECT_TRUE(c.is_there(document.root()));
+  }
+}
+
+TEST(Document, PlacesMistakesInAReplacedValueAtItsKey) {
+  Document document = Document::parse("a = 1\n\nb = 2\n", "f.toml");
+  document.replace("b", "-3");
+  const Error error = bad_file_error([&] { (void)document.root().number("b", {.min = 0.0}); });
+  EXPECT_EQ(error.where().line, 3);
+  EXPECT_EQ(error.subject(), "b");
+}
+
 TEST(ResultOf, IsAValueOrTheFailureOfWhatWasThrown) {
   const auto number = [](const std::string& text) {
     return result_of([&] { return Document::parse(text, "f.toml").root().number("k", {}); });

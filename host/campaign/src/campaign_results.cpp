@@ -57,7 +57,8 @@ CampaignResults read_campaign_results(const std::filesystem::path& folder) {
   results.manifest = read_manifest(folder);
   for (const CampaignManifest::Entry& entry : results.manifest.scenarios) {
     ScenarioResults scenario{
-        entry.scenario, entry.description, entry.paper_table, entry.metrics, {}};
+        entry.scenario,   entry.description, entry.paper_table, entry.metrics, {},
+        entry.swept_from, entry.settings};
     for (const std::string& condition : entry.conditions) {
       scenario.conditions.push_back(
           read_condition(folder, results.manifest, entry.scenario, condition, results.damaged));

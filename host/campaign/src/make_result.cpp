@@ -1,4 +1,5 @@
 #include "contacts.h"
+#include "energy.h"
 
 #include <algorithm>
 #include <chrono>
@@ -28,6 +29,8 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
   result.computing = condition.computing;
   result.real_time_factor = condition.real_time_factor;
   if (condition.target) result.target = condition.target->name;
+  for (const auto& [key, value] : scenario.settings) result.settings[key] = value;
+  result.emulator = emulator_of(condition);
   result.profiles = scenario::profile_names(scenario, condition);
   return result;
 }
@@ -155,9 +158,10 @@ std::string end_of(const record::Footer& footer) {
 
 // A crash comes first among the reasons: it often is the cause of the others.
 void settle(TrialResult& result, const std::string& reason_of_end, const std::string& crash = "") {
-  const bool ran = result.end == kEndFinished || result.end == kEndTimeLimit;
+  const bool was_cut = result.end == kEndTimeLimit || result.end == kEndBatteryEmpty;
+  const bool ran = result.end == kEndFinished || was_cut;
   if (!ran) return invalidate(result, reason_of_end.empty() ? result.end : reason_of_end);
-  std::string missed = result.end == kEndTimeLimit ? reason_of_end : why_missed(result);
+  std::string missed = was_cut ? reason_of_end : why_missed(result);
   if (!crash.empty()) missed = crash + (missed.empty() ? "" : "; " + missed);
   const bool reached = result.end == kEndFinished && missed.empty();
   result.outcome = reached ? Outcome::kGoalReached : Outcome::kGoalMissed;
@@ -192,6 +196,7 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   result.replay = replay_of(record);
   drop_metrics_of_missed_tasks(result, scenario);
   judge_missions(result, scenario, record);
+  result.energy = energy_of(record, result.tasks);
   result.versions = {{"tether", record.header.tether_version},
                      {"simulator", record.header.simulator}};
   for (const record::SutInfo& sut : record.header.suts) {
@@ -218,6 +223,18 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   return result;
 }
 
+record::EmulatorInfo emulator_of(const scenario::Condition& condition) {
+  record::EmulatorInfo info;
+  if (!condition.target || !condition.target->emulator) return info;
+  const os::Emulator& emulator = *condition.target->emulator;
+  info.program = emulator.program;
+  info.cpu_model = emulator.cpu_model;
+  for (std::size_t kind = 0; kind < kWorkClasses; ++kind)
+    info.costs.push_back({kWorkClassNames[kind], static_cast<double>(emulator.cost_units[kind]) /
+                                                     static_cast<double>(kCostUnitsPerNs)});
+  return info;
+}
+
 std::string describe_replay(const TrialResult& result) {
   if (!result.replay) return "";
   const record::ReplayInfo& from = result.replay->from;
@@ -241,6 +258,7 @@ void invalidate(TrialResult& result, const std::string& reason) {
   for (judge::ClauseVerdict& clause : result.clauses) {
     clause.met = false;
     clause.margin.reset();
+    clause.margins.clear();
     clause.decided_at.reset();
     clause.limited_by = reason;
   }

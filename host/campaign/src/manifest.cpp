@@ -7,16 +7,27 @@ namespace tether::campaign {
 namespace {
 
 Json json_of(const CampaignManifest::Entry& entry) {
-  return Json{{"scenario", entry.scenario},
-              {"description", entry.description},
-              {"paper_table", entry.paper_table},
-              {"conditions", entry.conditions},
-              {"metrics", entry.metrics}};
+  Json json{{"scenario", entry.scenario},
+            {"description", entry.description},
+            {"paper_table", entry.paper_table},
+            {"conditions", entry.conditions},
+            {"metrics", entry.metrics}};
+  if (entry.swept_from.empty()) return json;
+  json["swept_from"] = entry.swept_from;
+  for (const auto& [key, value] : entry.settings)
+    json["settings"].push_back(Json{{"key", key}, {"value", value}});
+  return json;
 }
 
 CampaignManifest::Entry read_entry(const JsonReader& json) {
-  return {json.text("scenario"), json.text("description"), json.text("paper_table"),
-          json.texts("conditions"), json.texts("metrics")};
+  CampaignManifest::Entry entry{json.text("scenario"), json.text("description"),
+                                json.text("paper_table"), json.texts("conditions"),
+                                json.texts("metrics")};
+  if (!json.has("swept_from")) return entry;
+  entry.swept_from = json.text("swept_from");
+  for (const JsonReader& setting : json.objects("settings"))
+    entry.settings.push_back({setting.text("key"), setting.text("value")});
+  return entry;
 }
 
 }  // namespace
@@ -28,7 +39,8 @@ CampaignManifest manifest_of(const scenario::Campaign& campaign, Settings settin
     std::vector<std::string> metrics;
     for (const scenario::Metric& metric : entry.scenario.metrics) metrics.push_back(metric.name);
     manifest.scenarios.push_back({entry.scenario.name, entry.scenario.description,
-                                  entry.paper_table, entry.conditions, std::move(metrics)});
+                                  entry.paper_table, entry.conditions, std::move(metrics),
+                                  entry.swept_from, entry.scenario.settings});
   }
   return manifest;
 }

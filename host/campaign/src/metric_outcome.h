@@ -40,6 +40,7 @@ MetricOutcome abeam_error(const scenario::Metric& metric, const record::Record& 
 MetricOutcome return_error(const scenario::Metric& metric, const record::Record& record);
 // Of what it touched:
 MetricOutcome collisions(const scenario::Metric& metric, const record::Record& record);
+MetricOutcome energy_spent(const scenario::Metric& metric, const record::Record& record);
 MetricOutcome min_clearance(const scenario::Metric& metric, const record::Record& record);
 // Of the SUT's own estimates:
 MetricOutcome bearing_error(const scenario::Metric& metric, const record::Record& record);

@@ -118,6 +118,7 @@ constexpr std::array kKinds = {
     Kind{"acquisition_time", acquisition_time},
     Kind{"collisions", collisions},
     Kind{"min_clearance_m", min_clearance},
+    Kind{"energy_j", energy_spent},
 };
 
 MetricOutcome compute(const scenario::Metric& metric, const record::Record& record) {

@@ -78,6 +78,8 @@ Json json_of(const judge::ClauseVerdict& clause) {
   for (const auto& [name, time] : kTimesOfClauses)
     if (clause.*time) json[name] = exact_seconds(*(clause.*time));
   json["limited_by"] = clause.limited_by;
+  for (const auto& [at, margin] : clause.margins)
+    json["margins"].push_back({{"at_s", exact_seconds(at)}, {"margin", margin}});
   return json;
 }
 
@@ -116,6 +118,27 @@ Json json_of(const UavContacts& own) {
   return json;
 }
 
+Json json_of(const energy::Energies_J& spent_J) {
+  Json json;
+  for (std::size_t i = 0; i < energy::kCauses; ++i)
+    json[std::string(name(static_cast<energy::Cause>(i)))] = spent_J[i];
+  return json;
+}
+
+Json json_of(const UavEnergy& energy) {
+  Json tasks = Json::array();
+  for (const auto& [task, spent_J] : energy.tasks)
+    tasks.push_back({{"task", task}, {"total_j", total_J(spent_J)}, {"spent_j", json_of(spent_J)}});
+  return Json{{"uav", energy.uav},
+              {"total_j", total_J(energy.spent_J)},
+              {"spent_j", json_of(energy.spent_J)},
+              {"charge_from", energy.charge_from},
+              {"charge_to", energy.charge_to},
+              {"more_flights", optional_number(energy.more_flights())},
+              {"least_voltage_v", energy.least_voltage_V},
+              {"tasks", tasks}};
+}
+
 Json json_of(const Warning& warning) {
   return Json{{"consequence", name(warning.consequence)},
               {"file", warning.where.file},
@@ -129,6 +152,12 @@ Json json_of(const std::vector<T>& elements) {
   Json array = Json::array();
   for (const T& element : elements) array.push_back(json_of(element));
   return array;
+}
+
+Json json_of(const record::EmulatorInfo& emulator) {
+  Json costs = Json::array();
+  for (const auto& [work, ns] : emulator.costs) costs.push_back(Json{{"work", work}, {"ns", ns}});
+  return Json{{"program", emulator.program}, {"cpu_model", emulator.cpu_model}, {"costs", costs}};
 }
 
 Json json_of(const SyncFigures& sync) {
@@ -205,6 +234,9 @@ judge::ClauseVerdict read_clause(const JsonReader& json) {
   for (const auto& [name, time] : kTimesOfClauses)
     if (json.has(name)) clause.*time = SimTime(json.seconds(name));
   clause.limited_by = json.text("limited_by");
+  if (json.has("margins"))
+    for (const JsonReader& margin : json.objects("margins"))
+      clause.margins.push_back({SimTime(margin.seconds("at_s")), margin.number("margin")});
   return clause;
 }
 
@@ -253,6 +285,25 @@ UavContacts read_contacts(const JsonReader& json) {
                    nearest.text("to")};
   }
   return own;
+}
+
+energy::Energies_J read_spent(const JsonReader& json) {
+  const JsonReader by_cause = json.object("spent_j");
+  energy::Energies_J spent_J{};
+  for (std::size_t i = 0; i < energy::kCauses; ++i)
+    spent_J[i] = by_cause.number(std::string(name(static_cast<energy::Cause>(i))).c_str());
+  return spent_J;
+}
+
+UavEnergy read_energy(const JsonReader& json) {
+  UavEnergy energy{.uav = json.text("uav"),
+                   .spent_J = read_spent(json),
+                   .charge_from = json.number("charge_from"),
+                   .charge_to = json.number("charge_to"),
+                   .least_voltage_V = json.number("least_voltage_v")};
+  for (const JsonReader& task : json.objects("tasks"))
+    energy.tasks.push_back({task.text("task"), read_spent(task)});
+  return energy;
 }
 
 TargetReport read_target(const JsonReader& json) {
@@ -314,6 +365,13 @@ Outcome read_outcome(const JsonReader& json) {
   return static_cast<Outcome>(found - kOutcomes.begin());
 }
 
+record::EmulatorInfo read_emulator(const JsonReader& json) {
+  record::EmulatorInfo emulator{json.text("program"), json.text("cpu_model"), {}};
+  for (const JsonReader& cost : json.objects("costs"))
+    emulator.costs.push_back({cost.text("work"), cost.number("ns")});
+  return emulator;
+}
+
 void read_trial(const JsonReader& json, TrialResult& result) {
   result.scenario = json.text("scenario");
   result.condition = json.text("condition");
@@ -324,6 +382,8 @@ void read_trial(const JsonReader& json, TrialResult& result) {
   if (result.clock == kScripted) result.computing = json.seconds("computing_s");
   result.real_time_factor = json.number("real_time_factor");
   if (json.has("target")) result.target = json.text("target");
+  if (json.has("settings")) result.settings = json.object("settings").all_texts();
+  if (json.has("emulator")) result.emulator = read_emulator(json.object("emulator"));
   if (json.has("replay")) result.replay = read_replay(json.object("replay"));
   if (json.has("profiles")) result.profiles = json.texts("profiles");
   result.outcome = read_outcome(json);
@@ -354,6 +414,8 @@ std::string to_json(const TrialResult& result) {
             {"cpu_factor", result.cpu_factor}};
   if (result.clock == kScripted) json["computing_s"] = exact_seconds(result.computing);
   if (!result.target.empty()) json["target"] = result.target;
+  if (!result.settings.empty()) json["settings"] = result.settings;
+  if (!result.emulator.program.empty()) json["emulator"] = json_of(result.emulator);
   if (result.replay) json["replay"] = json_of(*result.replay);
   json.update(Json{{"real_time_factor", result.real_time_factor},
                    {"profiles", result.profiles},
@@ -368,6 +430,7 @@ std::string to_json(const TrialResult& result) {
                    {"audit", json_of(result.audit)}});
   if (!result.tasks.empty()) json["tasks"] = json_of(result.tasks);
   if (!result.clauses.empty()) json["clauses"] = json_of(result.clauses);
+  if (!result.energy.empty()) json["energy"] = json_of(result.energy);
   if (!result.warnings.empty()) json["warnings"] = json_of(result.warnings);
   json.update(Json{{"versions", result.versions}, {"this_run", json_of(result.this_run)}});
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -387,6 +450,9 @@ TrialResult result_from_json(const std::string& text, const std::filesystem::pat
   if (json.has("clauses"))
     for (const JsonReader& clause : json.objects("clauses"))
       result.clauses.push_back(read_clause(clause));
+  if (json.has("energy"))
+    for (const JsonReader& energy : json.objects("energy"))
+      result.energy.push_back(read_energy(energy));
   for (const JsonReader& sut : json.objects("suts")) result.suts.push_back(read_sut(sut));
   result.sync = read_sync(json.object("sync"));
   if (json.has("contacts"))

@@ -61,12 +61,13 @@ TEST_F(Result, TextIsTheSameApartFromThisRun) {
 
 TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   const std::string plain = to_json(trial_);
-  for (const char* member :
-       {"\"target\":", "overshoot", "computing_s", "warnings", "\"tasks\"", "\"clauses\""})
+  for (const char* member : {"\"target\":", "overshoot", "computing_s", "warnings", "\"tasks\"",
+                             "\"clauses\"", "emulator", "\"energy\"", "\"margins\""})
     EXPECT_THAT(plain, testing::Not(HasSubstr(member)));
   trial_.clock = "scripted";
   trial_.computing = Duration(2'500'000);
   trial_.target = "slow_board";
+  trial_.emulator = {"qemu-x86_64", "Nehalem", {{"integer", 0.125}, {"load", 0.5}}};
   trial_.profiles = {"rig", "top"};
   trial_.metrics[0].min = 0.5;
   trial_.contacts.push_back({.uav = "uav2"});
@@ -77,7 +78,14 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   clause.unit = "m";
   clause.from = clause.to = clause.deadline = clause.decided_at = SimTime(milliseconds(1500));
   clause.limited_by = "1 m";
+  clause.margins = {{SimTime{}, 2.0}, {SimTime(milliseconds(1500)), 0.25}};
   trial_.clauses.push_back(clause);
+  trial_.energy = {{.uav = "uav1",
+                    .spent_J = {1, -2, 3, 4, 5, 6},
+                    .charge_from = 1.0,
+                    .charge_to = 0.5,
+                    .least_voltage_V = 11.25,
+                    .tasks = {{"find", {6, 5, 4, 3, 2, 1}}}}};
   trial_.warnings = {{Consequence::kMissing, {"w.sdf", 7}, "<include> of 'sun'", "is not found"},
                      {Consequence::kNoEffect, {}, "visual 'v'", "is plain"}};
   trial_.sync.stops = StopFigures{1200, Duration(73'000)};

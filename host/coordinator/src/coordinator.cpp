@@ -22,6 +22,8 @@ constexpr Duration kIdleWait = std::chrono::milliseconds(20);
 // A paced simulation may catch up this much ST after a late turn (rendering an image, say); two
 // steps at least.
 constexpr Duration kPaceCredit = std::chrono::milliseconds(50);
+// How long a UAV without power may fall before the run ends.
+constexpr Duration kFall = std::chrono::seconds(2);
 // How often the record is flushed, so that a killed run leaves most of it.
 constexpr Duration kFlushPeriod = std::chrono::seconds(1);
 
@@ -87,7 +89,7 @@ RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
 std::string_view name(RunEnd end) {
   constexpr std::string_view kNames[] = {"finished",      "time_limit",     "sut_lost",
                                          "sut_hung",      "simulator_lost", "interrupted",
-                                         "record_failed", "timing_differs"};
+                                         "battery_empty", "record_failed",  "timing_differs"};
   return kNames[static_cast<std::size_t>(end)];
 }
 
@@ -188,8 +190,21 @@ bool Coordinator::Impl::advance() {
   stepper_.advance_to(target);
   watchdog_.moved(now);
   release_ready();
+  watch_batteries();
   if (const auto over = watchdog_.over_time(st())) end(*over);
   return true;
+}
+
+// The end is far enough ahead that ST, which advances a turn at a time, cannot have passed it.
+void Coordinator::Impl::watch_batteries() {
+  if (!fallen_at_) {
+    const auto exhausted = stepper_.exhausted();
+    if (!exhausted) return;
+    fallen_at_ = grid().ceil(exhausted->at + kFall) + kStepsPerTurn * grid().dt();
+    fall_ = fmt::format("the battery of UAV \"{}\" was empty at ST {:.3f} s",
+                        world().uavs[exhausted->uav].name, to_seconds(exhausted->at));
+  }
+  if (st() >= *fallen_at_) end({RunEnd::kBatteryEmpty, fall_});
 }
 
 // The time of an unstamped client that computes may let ST advance for another SUT.
@@ -202,7 +217,8 @@ void Coordinator::Impl::read_timers(WallTime now) {
 // How far ST may advance in this turn.
 SimTime Coordinator::Impl::next_stop() const {
   const SimTime bound = is_synchronised() ? barrier_.lower_bound() : SimTime::max();
-  return std::min({bound, time_limit_, stepper_.next_due(), st() + kStepsPerTurn * grid().dt()});
+  return std::min({bound, time_limit_, fallen_at_.value_or(SimTime::max()), stepper_.next_due(),
+                   st() + kStepsPerTurn * grid().dt()});
 }
 
 // How much of that the pace allows.
@@ -230,16 +246,40 @@ void Coordinator::Impl::watch() {
     log_.flush();
   }
   for (Session& session : sessions_) {
+    if (!session.joined()) hear_emulated_start(session, now);
     if (!session.joined() || session.left) continue;
     const std::uint64_t moved = server_->moved_bytes(session.peer);
     if (std::exchange(session.moved_bytes, moved) != moved) watchdog_.heard(session.uav, now);
-    if (!hooks_.work_of || session.hello.clock != link::ClockKind::kCounted) continue;
-    const std::uint64_t work = hooks_.work_of(session.uav);
-    if (std::exchange(session.work, work) != work) watchdog_.heard(session.uav, now);
+    if (!hooks_.computed_by || session.hello.clock != link::ClockKind::kCounted) continue;
+    const Duration computed = hooks_.computed_by(session.uav);
+    if (std::exchange(session.computed, computed) != computed) watchdog_.heard(session.uav, now);
+    end_endless(session);
   }
   if (const auto overdue = watchdog_.overdue(parties(now), st())) end(*overdue);
   if (hooks_.on_status) hooks_.on_status(status(now));
   stop_if_asked();
+}
+
+// On a busy machine, an emulated program takes long to start. What it has computed is its time.
+void Coordinator::Impl::hear_emulated_start(Session& session, WallTime now) {
+  if (!hooks_.computed_by) return;
+  const Duration computed = hooks_.computed_by(session.uav);
+  if (std::exchange(session.computed, computed) != computed && computed < options_.connect_limit)
+    watchdog_.heard(session.uav, now);
+}
+
+// A counted SUT sends no progress, so ST waits for it. Once it has computed beyond the time limit,
+// whatever it requests next is too late, and ST advances to that limit.
+void Coordinator::Impl::end_endless(Session& session) {
+  constexpr Duration kMostUncharged = std::chrono::seconds(1);  // of the library, around a reply
+  if (!running_) return;
+  const ExecTime bound = barrier_.bound(session.uav);
+  if (std::exchange(session.last_bound, bound) != bound || !is_computing(session))
+    session.computed_before = session.computed;
+  const auto limit = from_ns<ExecTime>(to_ns(time_limit_));
+  const Duration computed = session.computed - session.computed_before - kMostUncharged;
+  if (is_computing(session) && bound < limit && computed > limit - bound)
+    barrier_.progress(session.uav, limit);
 }
 
 void Coordinator::Impl::stop_if_asked() {
@@ -260,6 +300,7 @@ Party Coordinator::Impl::party(const Session& session, WallTime now) const {
               .computing = is_computing(session),
               .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
               .silence = watchdog_.silence(session.uav, now),
+              .counted = session.hello.clock == link::ClockKind::kCounted,
               .received_bytes = session.received_bytes};
   for (const PendingInteraction& pending : session.open)
     party.reply_at = std::min(party.reply_at.value_or(ExecTime::max()), pending.entry.reply_at);

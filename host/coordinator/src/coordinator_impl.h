@@ -37,6 +37,7 @@ class Coordinator::Impl {
   bool is_repeatable() const;
   bool advance();
   SimTime next_stop() const;
+  void watch_batteries();
   SimTime paced(SimTime target, WallTime now);
   void read_timers(WallTime now);
   void watch();
@@ -44,6 +45,8 @@ class Coordinator::Impl {
   bool awaits_only_confirmation(const Session& session) const;
   Party party(const Session& session, WallTime now) const;
   std::vector<Party> parties(WallTime now) const;
+  void hear_emulated_start(Session& session, WallTime now);
+  void end_endless(Session& session);
   void stop_if_asked();
   void end(const Ending& ending);
   RunReport close_run();
@@ -106,6 +109,8 @@ class Coordinator::Impl {
   WallTime started_;      // construction; later, when every SUT had joined
   WallTime flushed_;      // last flush of the record
   Watchdog watchdog_;
+  std::optional<SimTime> fallen_at_;  // a battery is empty: when the run ends
+  std::string fall_;                  // the reason
   std::optional<Ending> ended_;
 };
 

@@ -226,6 +226,10 @@ void Coordinator::Impl::begin(Session& session, const link::Request& request, Wa
   PendingInteraction pending{.request = request, .entry = make_entry(session, request, now)};
   record::Interaction& entry = pending.entry;
   entry.request_at = charge(session, request, entry);
+  // What the threads of a concurrent SUT compute while others wait is not known.
+  if (!session.is_concurrent())
+    stepper_.computed(session.uav, same_instant(entry.request_at),
+                      entry.request_at - session.resumed_at);
   session.calls_in_step = st() > session.called_at ? 1 : session.calls_in_step + 1;
   session.called_at = st();
   entry.reply_at = accept(session, pending);

@@ -53,6 +53,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   session.last_hold = entry.wall_at_release - entry.wall_at_arrival;
   watchdog_.heard(session.uav, entry.wall_at_release);
   watchdog_.moved(entry.wall_at_release);
+  session.resumed_at = entry.reply_at;
   if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
   // A CPU clock adds what child processes computed during the call.
   if (session.plausibility)

@@ -4,19 +4,22 @@
 
 namespace tether::coordinator {
 
-void ReadForecast::requested(SimTime t, bool latest) {
-  if (replied_at_) pauses_[count_++ % kPauses] = t - *replied_at_;
+void ReadForecast::requested(SimTime t, bool latest, std::uint64_t index) {
+  if (expected_ && *expected_ != index) ++wrong_;
+  expected_.reset();
+  if (replied_at_) pauses_[pauses_seen_++ % kPauses] = t - *replied_at_;
+  ++reads_;
   replied_at_.reset();
   latest_ = latest;
 }
 
-std::optional<std::uint64_t> ReadForecast::next(const SensorSchedule& schedule) const {
-  if (!replied_at_ || count_ < kFewestPauses) return std::nullopt;
-  const auto end = pauses_.begin() + static_cast<std::ptrdiff_t>(std::min(count_, kPauses));
-  const auto [shortest, longest] = std::minmax_element(pauses_.begin(), end);
+std::optional<std::uint64_t> ReadForecast::next(const SensorSchedule& schedule) {
+  if (!replied_at_ || expected_ || pauses_seen_ < kPauses) return std::nullopt;
+  if (reads_ < kReadsForEachWrong * (wrong_ + 1)) return std::nullopt;
+  const auto [shortest, longest] = std::minmax_element(pauses_.begin(), pauses_.end());
   const std::uint64_t index = schedule.choose(*replied_at_ + *shortest, latest_).index;
-  if (schedule.choose(*replied_at_ + *longest, latest_).index != index) return std::nullopt;
-  return index;
+  if (schedule.choose(*replied_at_ + *longest, latest_).index == index) expected_ = index;
+  return expected_;
 }
 
 }  // namespace tether::coordinator

@@ -71,6 +71,21 @@ void RunLog::contact(SimTime st, const std::string& uav, const sim::Contact& con
               .uav = uav, .at = contact.at, .with = contact.with, .speed_m_s = contact.speed_m_s});
 }
 
+void RunLog::battery(SimTime st, const std::string& uav, const energy::Status& status) {
+  const auto& [lift, moving, idle, computing, sensors, resistance] = status.spent_J;
+  put(st, record::Battery{.uav = uav,
+                          .at = st,
+                          .voltage_V = status.voltage_V,
+                          .current_A = status.current_A,
+                          .charge = status.charge,
+                          .lift_J = lift,
+                          .moving_J = moving,
+                          .idle_J = idle,
+                          .computing_J = computing,
+                          .sensors_J = sensors,
+                          .resistance_J = resistance});
+}
+
 void RunLog::take_clearance(SimTime st, const std::string& uav, const sim::Clearance& clearance) {
   auto& least = footer_.clearances;
   auto own = std::ranges::find(least, uav, &record::Clearance::uav);

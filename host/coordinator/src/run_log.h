@@ -43,6 +43,7 @@ class RunLog {
   void ground_truth(const std::string& uav, const sim::GroundTruth& truth,
                     const std::optional<sim::Clearance>& clearance);
   void contact(SimTime st, const std::string& uav, const sim::Contact& contact);
+  void battery(SimTime st, const std::string& uav, const energy::Status& status);
   void annotation(SimTime st, record::Annotation annotation) { put(st, std::move(annotation)); }
   void stop(SimTime st, const record::Stop& stop);
   void image(SimTime st, const std::string& uav, const std::string& sensor,
@@ -64,8 +65,8 @@ class RunLog {
 
  private:
   using Message = std::variant<record::Interaction, record::CommandEffect, record::GroundTruth,
-                               record::Annotation, record::Stop, record::Contact, record::Image,
-                               record::RawImage>;
+                               record::Annotation, record::Stop, record::Contact, record::Battery,
+                               record::Image, record::RawImage>;
   struct Collected {
     SimTime st;
     std::pair<ExecTime, std::size_t> key;

@@ -14,7 +14,7 @@ std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSen
   const auto measurement = choose(schedule, read, t);
   if (!measurement) return std::nullopt;
   schedule.mark_read(*measurement);
-  sensors_[read.sensor].forecast.requested(t, read.latest);
+  sensors_[read.sensor].forecast.requested(t, read.latest, measurement->index);
   sensors_[read.sensor].forecasted.reset();
   const bool on_demand = !synchronised_ || !schedule.is_periodic();
   reads_.push_back({.call = call,
@@ -106,7 +106,7 @@ void Sampler::answered(std::uint64_t call, SimTime t) {
   Sensor& sensor = sensors_[read->sensor];
   if (sensor.is_drawn && !read->on_demand) {
     sensor.forecast.replied(t);
-    sensor.forecasted = sensor.forecast.next(sensor.schedule);
+    if (const auto index = sensor.forecast.next(sensor.schedule)) sensor.forecasted = index;
   }
   spares_.push_back(std::move(read->state));
   reads_.erase(read);

@@ -47,12 +47,16 @@ struct Session {
   std::optional<link::Finish> finish;
   bool left = false;  ///< finished or disconnected by the coordinator
 
+  ExecTime resumed_at{};  ///< ET of its last reply, from which on it computes
+
   /// Requests without a reply, in order; at most one for a serial SUT.
   std::vector<PendingInteraction> open;
   std::uint32_t received_bytes = 0;  ///< of its newest reply, if that takes long to arrive
   std::uint64_t moved_bytes = 0;     ///< of link::Server, when the limits were last checked
-  std::uint64_t work = 0;            ///< of RunHooks::work_of, when the limits were last checked
-  Duration last_hold{0};             ///< WT from the last request to its reply; 0: none yet
+  Duration computed{0};         ///< of RunHooks::computed_by, when the limits were last checked
+  Duration computed_before{0};  ///< that, when the SUT's bound was last seen to grow
+  ExecTime last_bound;          ///< then
+  Duration last_hold{0};        ///< WT from the last request to its reply; 0: none yet
 
   bool joined() const { return peer != 0; }
   bool is_concurrent() const { return hello.concurrent; }

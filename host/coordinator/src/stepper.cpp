@@ -27,6 +27,8 @@ Stepper::Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& bar
 
 void Stepper::reset(std::uint64_t seed) {
   ask([&](sim::Simulator& s) { s.reset(seed); });
+  for (std::size_t uav = 0; uav < samplers_.size(); ++uav)
+    has_battery_.push_back(ask([&](sim::Simulator& s) { return s.battery(uav).has_value(); }));
 }
 
 SimTime Stepper::next_ground_truth() const {
@@ -36,6 +38,7 @@ SimTime Stepper::next_ground_truth() const {
 SimTime Stepper::next_due() const {
   SimTime due = std::min(commands_.next_effect(), next_ground_truth());
   for (const Sampler& sampler : samplers_) due = std::min(due, sampler.next_due());
+  if (!computed_.empty()) due = std::min(due, computed_.begin()->first);
   return due;
 }
 
@@ -49,9 +52,32 @@ void Stepper::advance_to(SimTime to) {
 
 // Samples come first, so that they do not depend on commands that take effect at this boundary.
 void Stepper::act() {
+  charge_batteries();
   sample();
   apply_commands();
   log_ground_truth();
+}
+
+void Stepper::computed(std::size_t uav, SimTime t, Duration busy) {
+  if (!has_battery_[uav] || busy <= Duration(0)) return;
+  computed_.insert({grid_.floor(t) + grid_.dt(), {uav, busy}});
+}
+
+void Stepper::charge_batteries() {
+  while (!computed_.empty() && computed_.begin()->first <= st_) {
+    const Computed computed = computed_.begin()->second;
+    ask([&](sim::Simulator& s) { s.computed(computed.uav, computed.busy); });
+    computed_.erase(computed_.begin());
+  }
+}
+
+std::optional<Stepper::Exhausted> Stepper::exhausted() {
+  for (std::size_t uav = 0; uav < has_battery_.size(); ++uav) {
+    if (!has_battery_[uav]) continue;
+    const auto status = ask([&](sim::Simulator& s) { return s.battery(uav); });
+    if (status && status->empty_at) return Exhausted{uav, *status->empty_at};
+  }
+  return std::nullopt;
 }
 
 // No request of a SUT has a timestamp before its bound.
@@ -77,6 +103,9 @@ void Stepper::log_ground_truth() {
     const std::string& name = simulator_->world().uavs[uav].name;
     const auto truth = ask([&](sim::Simulator& s) { return s.ground_truth(uav); });
     log_->ground_truth(name, truth, ask([&](sim::Simulator& s) { return s.clearance(uav); }));
+    if (!has_battery_[uav]) continue;
+    const auto battery = ask([&](sim::Simulator& s) { return s.battery(uav); });
+    if (battery) log_->battery(st_, name, *battery);
   }
   log_contacts();
 }

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -48,6 +49,17 @@ class Stepper {
   /// Queues a command for the first boundary at or after `t`; returns that boundary.
   SimTime command(std::size_t uav, std::uint64_t sequence, const uav::VelocityCommand& command,
                   SimTime t);
+  /// The UAV's computer computed for `busy` until `t`. Its battery is charged from the first
+  /// boundary after `t` on: none that ST may already have reached. Without a battery, nothing
+  /// happens.
+  void computed(std::size_t uav, SimTime t, Duration busy);
+  /// When a battery was exhausted, if one was: of which UAV.
+  struct Exhausted {
+    std::size_t uav = 0;
+    SimTime at;
+  };
+  std::optional<Exhausted> exhausted();
+
   std::size_t waiting_commands(std::size_t uav) const { return commands_.waiting(uav); }
 
   Sampler& sampler(std::size_t uav) { return samplers_[uav]; }
@@ -58,6 +70,7 @@ class Stepper {
   void announce();
 
  private:
+  void charge_batteries();
   void sample();
   void apply_commands();
   void log_ground_truth();
@@ -79,6 +92,12 @@ class Stepper {
   Duration ground_truth_period_;
   std::vector<Sampler> samplers_;
   CommandQueue commands_;
+  struct Computed {
+    std::size_t uav = 0;
+    Duration busy{0};
+  };
+  std::multimap<SimTime, Computed> computed_;  // by when it is charged
+  std::vector<bool> has_battery_;              // by UAV; all false: energy is not simulated
   SimTime st_{};
   std::int64_t ground_truths_ = 0;  // instants logged so far
 };

@@ -29,6 +29,10 @@ std::string describe_missing(const std::vector<Party>& parties) {
                      uavs.size() == 1 ? "" : "s", fmt::join(uavs, "\", \""), to_seconds(waited));
 }
 
+const char* sign_of_life(const Party& party) {
+  return party.counted ? "message or counted work" : "message";
+}
+
 }  // namespace
 
 std::string describe_state(const Party& party) {
@@ -50,14 +54,14 @@ std::string describe_blocking(SimTime st, const std::vector<Party>& parties) {
   if (!blocker) return "";
   return fmt::format(
       "ST {:.6f} s{}: blocked on SUT \"{}\" (UAV \"{}\"), which has been {} for {:.1f} s "
-      "without a message; last message at ET {:.6f} s",
+      "without a {}; last message at ET {:.6f} s",
       to_seconds(st), waiting.empty() ? "" : fmt::format(" ({})", fmt::join(waiting, ", ")),
       blocker->sut, blocker->uav,
       blocker->received_bytes == 0
           ? "computing"
           : fmt::format("waiting for the rest of its reply (received {} bytes)",
                         blocker->received_bytes),
-      to_seconds(blocker->silence), to_seconds(blocker->bound));
+      to_seconds(blocker->silence), sign_of_life(*blocker), to_seconds(blocker->bound));
 }
 
 bool shows_life(const link::Message& message, const Standing& sut, link::ClockKind clock) {
@@ -114,8 +118,8 @@ std::optional<Ending> Watchdog::overdue(const std::vector<Party>& parties, SimTi
     if (running_ && party.computing && party.silence > limits_.hang)
       return Ending{
           RunEnd::kSutHung,
-          fmt::format("SUT \"{}\" of UAV \"{}\" timed out: no message for {} s (hang_limit_s){}",
-                      party.sut, party.uav, to_seconds(limits_.hang),
+          fmt::format("SUT \"{}\" of UAV \"{}\" timed out: no {} for {} s (hang_limit_s){}",
+                      party.sut, party.uav, sign_of_life(party), to_seconds(limits_.hang),
                       synchronised_ ? ": " + describe_blocking(st, parties) : "")};
   }
   return std::nullopt;

@@ -21,6 +21,7 @@ struct Party {
   ExecTime bound;                      ///< ET that it is known to have reached
   Duration silence{0};                 ///< WT since its last sign of life
   std::optional<ExecTime> reply_at{};  ///< of its open calls the earliest
+  bool counted = false;                ///< its work is counted, and a sign of life
   std::uint32_t received_bytes = 0;    ///< of a reply that takes long to arrive
 };
 

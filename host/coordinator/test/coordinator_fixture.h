@@ -84,8 +84,12 @@ inline std::string without_wall(const MemoryRecorder& recorder) {
 class CoordinatorTest : public testing::Test {
  protected:
   void make(std::size_t uavs = 1, Duration step = std::chrono::milliseconds(1)) {
+    make(sim::make_fake_world(uavs, step));
+  }
+  void make(sim::World world) {
+    const std::size_t uavs = world.uavs.size();
     recorder_ = {};
-    simulator_ = std::make_unique<sim::FakeSimulator>(sim::make_fake_world(uavs, step));
+    simulator_ = std::make_unique<sim::FakeSimulator>(std::move(world));
     options_.token = "secret";
     options_.uavs.assign(uavs,
                          {{kCameraTiming, kImuTiming, kRangeTiming}, latency_, clock_, cores_});

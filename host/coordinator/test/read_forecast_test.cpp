@@ -2,66 +2,95 @@
 
 #include <gtest/gtest.h>
 
+#include <tether/base/random.h>
+
 namespace tether::coordinator {
 namespace {
 
+using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// A sensor at 30 Hz, 37 ms late, whose SUT pauses for so long after each reply.
+/// A sensor with a period of 30 ms, 37 ms late, and a serial SUT that reads it.
+class Reader {
+ public:
+  void read(Duration pause, bool latest = false) {
+    t_ += pause;
+    const Measurement measurement = sensor_.choose(t_, latest);
+    sensor_.mark_read(measurement);
+    forecast_.requested(t_, latest, measurement.index);
+    t_ = std::max(t_, measurement.available_at);
+    EXPECT_EQ(forecast_.next(sensor_), std::nullopt) << "while a read is open";
+    forecast_.replied(t_);
+    last_ = measurement.index;
+  }
+  std::optional<std::uint64_t> next() { return forecast_.next(sensor_); }
+  std::uint64_t last() const { return last_; }
+
+ private:
+  SensorSchedule sensor_{
+      uav::PeriodicTiming{milliseconds(30), Duration(0), uav::ConstantDelay{milliseconds(37)}}, 0,
+      0};
+  ReadForecast forecast_;
+  SimTime t_{};
+  std::uint64_t last_ = 0;
+};
+
 struct Case {
   const char* what;
-  std::vector<int> pauses_ms;
+  std::vector<int> pauses_ms;  ///< before each read
   std::optional<std::uint64_t> next;
 };
 
 TEST(ReadForecast, IsWhatTheNextReadGetsAfterEachOfTheLastPauses) {
-  const SensorSchedule schedule{
-      uav::PeriodicTiming{milliseconds(30), Duration(0), uav::ConstantDelay{milliseconds(37)}}, 0,
-      0};
   const Case cases[] = {
-      {"no read before", {}, std::nullopt},
-      {"one pause", {20}, std::nullopt},
-      {"shorter than the period", {20, 20}, 3u},
-      {"of different lengths, with the same result", {2, 20}, 3u},
-      {"of different lengths, with different results", {20, 65}, std::nullopt},
-      {"longer than two periods", {61, 65, 63}, 8u},
-      {"an old exception", {20, 100, 20, 20, 20, 20}, 9u},
-      {"a recent exception", {20, 20, 20, 100, 20, 20}, std::nullopt},
+      {"too few reads", {0, 20, 20, 20, 20, 20, 20, 20}, std::nullopt},
+      {"shorter than the period", {0, 20, 20, 20, 20, 20, 20, 20, 20}, 9u},
+      {"of different lengths, with the same result", {0, 20, 20, 20, 20, 20, 20, 2, 20}, 9u},
+      {"with different results", {0, 20, 20, 20, 20, 20, 20, 20, 65}, std::nullopt},
+      {"longer than two periods", {0, 61, 65, 63, 61, 65, 63, 61, 65}, 18u},
+      {"an old exception", {0, 20, 20, 20, 100, 20, 20, 20, 20}, 11u},
+      {"a recent exception", {0, 20, 20, 20, 20, 20, 100, 20, 20}, std::nullopt},
   };
   for (const Case& c : cases) {
     SCOPED_TRACE(c.what);
-    SensorSchedule sensor = schedule;
-    ReadForecast forecast;
-    SimTime t{};
-    const auto read = [&] {
-      const Measurement measurement = sensor.choose(t, false);
-      sensor.mark_read(measurement);
-      forecast.requested(t, false);
-      t = std::max(t, measurement.available_at);
-      EXPECT_EQ(forecast.next(sensor), std::nullopt) << "while a read is open";
-      forecast.replied(t);
-    };
-    if (!c.pauses_ms.empty()) read();
-    for (const int pause_ms : c.pauses_ms) {
-      t += milliseconds(pause_ms);
-      read();
-    }
-    EXPECT_EQ(forecast.next(sensor), c.next);
+    Reader reader;
+    for (const int pause_ms : c.pauses_ms) reader.read(milliseconds(pause_ms));
+    EXPECT_EQ(reader.next(), c.next);
+    EXPECT_EQ(reader.next(), std::nullopt) << "the same again";
   }
 }
 
 // A read of the newest measurement may get the one that it had.
 TEST(ReadForecast, FollowsHowTheLastReadChose) {
-  SensorSchedule schedule{
-      uav::PeriodicTiming{milliseconds(30), Duration(0), uav::ConstantDelay{Duration(0)}}, 0, 0};
-  ReadForecast forecast;
-  for (int i = 0; i < 3; ++i) {
-    const SimTime t{milliseconds(i)};
-    schedule.mark_read(schedule.choose(t, true));
-    forecast.requested(t, true);
-    forecast.replied(t);
+  Reader reader;
+  reader.read(milliseconds(100));
+  for (int i = 0; i < 8; ++i) reader.read(milliseconds(1), true);
+  EXPECT_EQ(reader.next(), reader.last());
+}
+
+// Bursts of steady reads, then something else for a while: the next read after a burst is never
+// the one that was forecast.
+TEST(ReadForecast, IsInVainForAtMostOneInTen) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    KeyedRandom random({.seed = seed});
+    const std::uint64_t burst = 1 + random.bits() % 40, jitter_us = 1 + random.bits() % 60'000;
+    Reader reader;
+    std::size_t forecasts = 0, vain = 0;
+    for (std::size_t reads = 1; reads <= 300; ++reads) {
+      const bool is_first = random.bits() % burst == 0;
+      const auto expected = reader.next();
+      if (expected) ++forecasts;
+      // If nothing more is read, this one is in vain, too.
+      EXPECT_LE(10 * (vain + (expected ? 1 : 0)), reads - 1 + vain + (expected ? 1 : 0));
+      reader.read(is_first ? Duration(std::chrono::seconds(1))
+                           : Duration(microseconds(random.bits() % jitter_us)));
+      if (expected && *expected != reader.last()) ++vain;
+    }
+    if (burst > 30 && jitter_us < 20'000) {
+      EXPECT_GT(forecasts, 100u);
+    }
   }
-  EXPECT_EQ(forecast.next(schedule), 0u);
 }
 
 }  // namespace

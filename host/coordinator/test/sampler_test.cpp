@@ -106,7 +106,7 @@ TEST_F(Sampling, NoStateIsDroppedBeforeItIsRead) {
   }
 }
 
-// A read twice if it was forecast, and after two pauses the next one.
+// A read twice if it was forecast, and after nine reads the next one.
 TEST_F(Sampling, AnnouncesWhatWillBeRead) {
   for (const bool is_drawn : {true, false}) {
     sampler_.emplace(
@@ -122,7 +122,7 @@ TEST_F(Sampling, AnnouncesWhatWillBeRead) {
         });
     };
     SimTime st{}, t{};
-    for (std::uint64_t call = 1; call <= 5; ++call) {
+    for (std::uint64_t call = 1; call <= 11; ++call) {
       const SimTime reply_at = sampler_->plan(call, {0, false}, t)->available_at;
       for (; st <= reply_at; st += milliseconds(1)) sample(st, t);
       announce();
@@ -130,11 +130,12 @@ TEST_F(Sampling, AnnouncesWhatWillBeRead) {
       announce();
       t = reply_at + milliseconds(5);
     }
-    EXPECT_EQ(announced, is_drawn ? std::vector<std::uint64_t>({0, 1, 2, 3, 3, 4, 4, 5})
-                                  : std::vector<std::uint64_t>{});
+    EXPECT_EQ(announced,
+              is_drawn ? std::vector<std::uint64_t>({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 10, 10, 11})
+                       : std::vector<std::uint64_t>{});
     sampler_->close();
     announce();
-    EXPECT_EQ(announced.size(), is_drawn ? 8u : 0u);
+    EXPECT_EQ(announced.size(), is_drawn ? 14u : 0u);
   }
 }
 

@@ -118,6 +118,7 @@ class MemoryRecorder final : public record::Recorder {
   void write(SimTime, const record::Annotation& m) override { add(annotations, m); }
   void write(SimTime, const record::Stop& m) override { add(stops, m); }
   void write(SimTime at, const record::Contact& m) override { add(contacts, {at, m}); }
+  void write(SimTime, const record::Battery& m) override { add(batteries, m); }
   void write(SimTime, const record::Image& m) override { add(images, m); }
   void write(SimTime, const record::RawImage& m) override { add(raw_images, m); }
   void flush() override {}
@@ -132,6 +133,7 @@ class MemoryRecorder final : public record::Recorder {
   std::vector<record::Annotation> annotations;
   std::vector<record::Stop> stops;
   std::vector<std::pair<SimTime, record::Contact>> contacts;
+  std::vector<record::Battery> batteries;
   std::vector<record::Image> images;
   std::vector<record::RawImage> raw_images;
   std::optional<record::Footer> footer;

@@ -92,9 +92,9 @@ TEST(SensorSchedule, AgreesWithTheDefinitionUnderRandomDelays) {
   KeyedRandom random({.seed = 5});
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     SensorSchedule schedule(timing, seed, 9);
-    const auto available = [&](std::uint64_t k) {
-      return uav::sampling_instant(timing, k) + uav::draw(timing.delay, {seed, 9, k});
-    };
+    std::vector<SimTime> available;
+    for (std::uint64_t k = 0; k < 800; ++k)
+      available.push_back(uav::sampling_instant(timing, k) + uav::draw(timing.delay, {seed, 9, k}));
     std::uint64_t unread = 0;
     std::int64_t now = 0;
     for (int i = 0; i < 200; ++i) {
@@ -103,14 +103,14 @@ TEST(SensorSchedule, AgreesWithTheDefinitionUnderRandomDelays) {
       const bool latest = random.bits() % 4 == 0;
 
       std::optional<std::uint64_t> newest, next;
-      for (std::uint64_t k = 0; k < 800; ++k) {
-        if (available(k) <= t && (latest || k >= unread)) newest = k;
-        if (k >= unread && (!next || available(k) < available(*next))) next = k;
+      for (std::uint64_t k = 0; k < available.size(); ++k) {
+        if (available[k] <= t && (latest || k >= unread)) newest = k;
+        if (k >= unread && (!next || available[k] < available[*next])) next = k;
       }
       const std::uint64_t expected = newest.value_or(*next);
       const Measurement got = schedule.choose(t, latest);
       ASSERT_EQ(got.index, expected) << "seed " << seed << ", read " << i;
-      ASSERT_EQ(got.available_at, available(expected));
+      ASSERT_EQ(got.available_at, available.at(expected));
       ASSERT_GE(got.index, schedule.first_readable(t));
       schedule.mark_read(got);
       unread = std::max(unread, got.index + 1);

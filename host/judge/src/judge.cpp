@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,6 +17,9 @@
 // A clause is judged in its span: the part of the run that it is about. Clauses about quantities
 // are formulas of STL; their inner part is evaluated at every instant, and the margin is its
 // extremum in the span, which also shows where it is.
+//
+// Clauses share this work: margins of conditions that differ in their bounds only differ by a
+// constant. They are computed for the bound 0, once, and so is the place of their extremum.
 namespace tether::judge {
 namespace {
 
@@ -104,7 +110,7 @@ class Judge {
     return "";
   }
 
-  void judge_deadline(const Clause& clause, const Span& span, ClauseVerdict& verdict) const {
+  void judge_deadline(const Clause& clause, const Span& span, ClauseVerdict& verdict) {
     const std::string missing = why_not_reached(clause);
     const SimTime deadline = *verdict.deadline;
     const Duration left = deadline - span.to;
@@ -112,42 +118,65 @@ class Judge {
     verdict.decided_at = std::min(span.to, deadline);
     // Without the goal the margin is known only if the deadline has passed: it is no larger.
     if (missing.empty() || left < Duration(0)) verdict.margin = to_seconds(left);
-    verdict.limited_by = missing.empty() ? time_taken(uav_, span, record_) : missing;
+    for (const SimTime at : {span.from, span.to})
+      verdict.margins.push_back({at, to_seconds(deadline - at)});
+    verdict.limited_by = missing.empty() ? time_taken_in(span) : missing;
+  }
+
+  const std::string& time_taken_in(const Span& span) {
+    const auto [known, is_new] = times_taken_.try_emplace({span.from, span.to});
+    if (is_new) known->second = time_taken(uav_, span, record_);
+    return known->second;
+  }
+
+  /// What is added to margins for the bound 0 [SI].
+  static double shift_of(const Clause& clause, double before = 0.0) {
+    const Condition& condition = *clause.condition;
+    const double bound = condition.bound * condition.unit->si + before;
+    return condition.at_most == (clause.kind == Kind::kNever) ? -bound : bound;
   }
 
   // Events.
 
-  static double margin_of(const Condition& condition, double value) {
-    const double bound = condition.bound * condition.unit->si;
-    return condition.at_most ? bound - value : value - bound;
+  /// The events of a condition in a span, and their margins for the bound 0.
+  struct Events {
+    std::vector<Event> events;
+    std::vector<double> margins;
+  };
+
+  const Events& events_in(const Clause& clause, const Span& span) {
+    const Condition& condition = *clause.condition;
+    const bool grows = condition.at_most == (clause.kind == Kind::kNever);
+    const auto [known, is_new] =
+        events_.try_emplace({condition.quantity, condition.of, grows, span.from, span.to});
+    Events& of = known->second;
+    if (!is_new) return of;
+    of.events = events_of(condition, uav_, span, record_);
+    for (const Event& event : of.events) of.margins.push_back(grows ? event.value : -event.value);
+    return of;
   }
 
-  void judge_events(const Clause& clause, const Span& span, ClauseVerdict& verdict) const {
+  void judge_events(const Clause& clause, const Span& span, ClauseVerdict& verdict) {
     const Condition& condition = *clause.condition;
-    const double sign = clause.kind == Kind::kNever ? -1.0 : 1.0;
-    struct Margin {
-      double value;
-      const Event* event;
-    };
-    const std::vector<Event> events = events_of(condition, uav_, span, record_);
-    std::vector<Margin> margins;
-    for (const Event& event : events)
-      margins.push_back({sign * margin_of(condition, event.value), &event});
-    if (margins.empty()) {
+    const auto& [events, margins] = events_in(clause, span);
+    if (events.empty()) {
       verdict.limited_by = "there is no such command or read in this time";
       return;
     }
-    const auto first_miss =
-        std::ranges::find_if(margins, [](const Margin& margin) { return margin.value < 0.0; });
-    const SimTime missed_at = first_miss == margins.end() ? span.to : first_miss->event->at;
-    const std::size_t place = place_of(condition.share, margins.size());
-    std::nth_element(margins.begin(), margins.begin() + static_cast<std::ptrdiff_t>(place),
-                     margins.end(), [](const Margin& a, const Margin& b) {
-                       return std::pair(-a.value, a.event) < std::pair(-b.value, b.event);
-                     });
-    const Event& least = *margins[place].event;
-    settle(margins[place].value, condition, verdict);
-    verdict.decided_at = verdict.met || condition.share < 1.0 ? span.to : missed_at;
+    const double shift = shift_of(clause);
+    const std::size_t place =
+        place_in(margins, Pick::kAtShare, 0, margins.size() - 1, condition.share);
+    settle(margins[place] + shift, condition, verdict);
+    verdict.decided_at = span.to;
+    if (!verdict.met && condition.share == 1.0) {
+      const auto first_miss =
+          std::ranges::find_if(margins, [&](double margin) { return margin + shift < 0.0; });
+      verdict.decided_at = events[static_cast<std::size_t>(first_miss - margins.begin())].at;
+    }
+    follow(
+        clause, 0, margins.size() - 1, margins, shift, [&](std::size_t i) { return events[i].at; },
+        verdict);
+    const Event& least = events[place];
     verdict.limited_by = fmt::format("{:.4g} {} {}", least.value / condition.unit->si,
                                      condition.unit->name, at_text(least.at));
     if (least.reaction) verdict.limited_by += text_of(*least.reaction);
@@ -174,14 +203,17 @@ class Judge {
 
   // Signals.
 
-  stl::Formula inner(const Clause& clause, std::size_t signal) const {
-    const Condition& condition = *clause.condition;
-    const double bound = condition.bound * condition.unit->si;
-    const stl::Formula holds = condition.at_most ? stl::Formula::at_most(signal, bound)
-                                                 : stl::Formula::at_least(signal, bound);
-    if (clause.kind == Kind::kNever) return stl::Formula::negation(holds);
-    if (clause.hold == Duration(0)) return holds;
-    return stl::Formula::always({Duration(0), clause.hold}, holds);
+  /// Margins for the bound 0 at every instant.
+  const std::vector<double>& margins_of(const Clause& clause, std::size_t signal) {
+    const bool at_most = clause.condition->at_most, is_never = clause.kind == Kind::kNever;
+    const auto [known, is_new] = margins_.try_emplace({signal, at_most, is_never, clause.hold});
+    if (!is_new) return known->second;
+    stl::Formula holds =
+        at_most ? stl::Formula::at_most(signal, 0.0) : stl::Formula::at_least(signal, 0.0);
+    if (is_never) holds = stl::Formula::negation(holds);
+    if (clause.hold > Duration(0)) holds = stl::Formula::always({Duration(0), clause.hold}, holds);
+    known->second = stl::Evaluator(signals_.trace()).robustness(holds);
+    return known->second;
   }
 
   void judge_signal(const Clause& clause, const Span& span, ClauseVerdict& verdict) {
@@ -204,53 +236,76 @@ class Judge {
       return static_cast<std::size_t>(std::ranges::upper_bound(at, time) - at.begin() - 1);
     };
     const std::size_t first = in_effect(span.from), last = in_effect(until - clause.hold);
-    stl::Evaluator evaluator(signals_.trace());
-    const std::vector<double> margins = evaluator.robustness(inner(clause, *signal));
-    const std::size_t place = is_eventually ? best(margins, first, last)
-                              : clause.condition->share < 1.0
-                                  ? at_share(margins, first, last, clause.condition->share)
-                                  : worst(margins, first, last);
-    settle(margins[place], *clause.condition, verdict);
-    const double value = signals_.trace().signals[*signal].values[place];
-    verdict.decided_at = decided_at(clause, verdict.met, margins, first, last, until);
+    const std::vector<double>& margins = margins_of(clause, *signal);
+    const double share = clause.condition->share;
+    const std::size_t place =
+        place_in(margins, is_eventually ? Pick::kBest : Pick::kAtShare, first, last, share);
+    // Energy counts from the start of the span.
+    const std::vector<double>& values = signals_.trace().signals[*signal].values;
+    const double before = clause.condition->quantity->counts_from_start() ? values[first] : 0.0;
+    const double shift = shift_of(clause, before);
+    settle(margins[place] + shift, *clause.condition, verdict);
+    follow(
+        clause, first, last, margins, shift,
+        [&](std::size_t i) { return std::max(at[i], span.from); }, verdict);
+    const double value = values[place] - before;
+    verdict.decided_at = decided_at(clause, verdict.met, margins, shift, {first, last}, until);
     verdict.limited_by =
         fmt::format("{:.4g} {} {}", value / clause.condition->unit->si,
                     clause.condition->unit->name, at_text(std::max(at[place], span.from)));
   }
 
-  static std::size_t best(const std::vector<double>& margins, std::size_t first, std::size_t last) {
-    std::size_t place = first;
-    for (std::size_t i = first; i <= last; ++i)
-      if (margins[i] > margins[place]) place = i;
-    return place;
+  /// How the margin developed over the instants or events first … last.
+  template <class At>
+  static void follow(const Clause& clause, std::size_t first, std::size_t last,
+                     const std::vector<double>& margins, double shift, const At& at,
+                     ClauseVerdict& verdict) {
+    constexpr std::size_t kMost = 40;
+    const std::size_t stride = (last - first) / kMost + 1;
+    const bool is_eventually = clause.kind == Kind::kEventually;
+    const bool restarts = clause.condition->share < 1.0;
+    double extremum = margins[first];
+    for (std::size_t i = first; i <= last; ++i) {
+      extremum = is_eventually ? std::max(extremum, margins[i]) : std::min(extremum, margins[i]);
+      if ((i - first) % stride != 0 && i != last) continue;
+      verdict.margins.push_back({at(i), (extremum + shift) / clause.condition->unit->si});
+      if (restarts && i < last) extremum = margins[i + 1];
+    }
   }
-  static std::size_t worst(const std::vector<double>& margins, std::size_t first,
-                           std::size_t last) {
-    std::size_t place = first;
-    for (std::size_t i = first; i <= last; ++i)
-      if (margins[i] < margins[place]) place = i;
-    return place;
+
+  enum class Pick { kBest, kAtShare };
+
+  /// Index of the best of the margins first … last, or of the worst of the share that counts; the
+  /// first of equal ones.
+  std::size_t place_in(const std::vector<double>& margins, Pick pick, std::size_t first,
+                       std::size_t last, double share) {
+    const auto [known, is_new] = places_.try_emplace({&margins, pick, first, last, share});
+    if (!is_new) return known->second;
+    const auto begin = margins.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = margins.begin() + static_cast<std::ptrdiff_t>(last + 1);
+    const auto found = pick == Pick::kBest ? std::max_element(begin, end)
+                       : share == 1.0      ? std::min_element(begin, end)
+                                           : std::find(begin, end, at_share(begin, end, share));
+    return known->second = static_cast<std::size_t>(found - margins.begin());
   }
-  static std::size_t at_share(const std::vector<double>& margins, std::size_t first,
-                              std::size_t last, double share) {
-    std::vector<std::size_t> places;
-    for (std::size_t i = first; i <= last; ++i) places.push_back(i);
-    const auto place = static_cast<std::ptrdiff_t>(place_of(share, places.size()));
-    std::nth_element(places.begin(), places.begin() + place, places.end(),
-                     [&](std::size_t a, std::size_t b) {
-                       return std::pair(-margins[a], a) < std::pair(-margins[b], b);
-                     });
-    return places[static_cast<std::size_t>(place)];
+
+  template <class Iterator>
+  static double at_share(Iterator begin, Iterator end, double share) {
+    std::vector<double> sorted(begin, end);
+    const auto place = static_cast<std::ptrdiff_t>(place_of(share, sorted.size()));
+    std::nth_element(sorted.begin(), sorted.begin() + place, sorted.end(), std::greater<>());
+    return sorted[static_cast<std::size_t>(place)];
   }
 
   /// A condition that must hold throughout is missed when it first does not; one that must hold at
   /// some time is met when it has held long enough.
   SimTime decided_at(const Clause& clause, bool met, const std::vector<double>& margins,
-                     std::size_t first, std::size_t last, SimTime until) const {
+                     double shift, const std::pair<std::size_t, std::size_t>& places,
+                     SimTime until) const {
     const bool is_eventually = clause.kind == Kind::kEventually;
     if (met != is_eventually || clause.condition->share < 1.0) return until;
-    for (std::size_t i = first; i <= last; ++i) {
-      const bool decides = is_eventually ? margins[i] >= 0.0 : margins[i] < 0.0;
+    for (std::size_t i = places.first; i <= places.second; ++i) {
+      const bool decides = is_eventually ? margins[i] + shift >= 0.0 : margins[i] + shift < 0.0;
       if (decides) return std::min(until, signals_.trace().at[i] + clause.hold);
     }
     return until;
@@ -262,6 +317,15 @@ class Judge {
   std::vector<TaskSpan> tasks_;
   Span whole_;
   Signals signals_;
+
+  // What clauses share.
+  std::map<std::tuple<SimTime, SimTime>, std::string> times_taken_;
+  std::map<std::tuple<const mission::Quantity*, std::string, bool, SimTime, SimTime>, Events>
+      events_;
+  std::map<std::tuple<std::size_t, bool, bool, Duration>, std::vector<double>> margins_;
+  std::map<std::tuple<const std::vector<double>*, Pick, std::size_t, std::size_t, double>,
+           std::size_t>
+      places_;
 };
 
 }  // namespace

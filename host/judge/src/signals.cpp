@@ -51,7 +51,7 @@ struct Source {
   std::string_view quantity;
   Value value;
 };
-// One entry for each of mission::quantities() that is not of events.
+// One entry for each of mission::quantities() that is neither of events nor of the battery.
 constexpr std::array kSources = {
     Source{"bearing_error", bearing_error}, Source{"distance", distance},
     Source{"altitude", altitude},           Source{"speed", speed},
@@ -60,13 +60,30 @@ constexpr std::array kSources = {
 
 }  // namespace
 
-Signals::Signals(const std::string& uav, const record::Record& record) : record_(record) {
+Signals::Signals(const std::string& uav, const record::Record& record)
+    : uav_(uav), record_(record) {
   for (const auto& logged : record.ground_truth) {
     const bool is_new = trace_.at.empty() || logged.message.at > trace_.at.back();
     if (logged.message.uav != uav || !is_new) continue;
     truths_.push_back(&logged.message);
     trace_.at.push_back(logged.message.at);
   }
+}
+
+// The record has it at each ground truth, or not at all.
+std::optional<std::size_t> Signals::of_battery(const mission::Quantity& quantity) {
+  stl::Signal signal{std::string(quantity.name), {}};
+  for (const auto& [at, order, battery] : record_.batteries) {
+    if (battery.uav != uav_) continue;
+    const double value = quantity.name == "energy_j" ? battery.spent_J() : battery.charge;
+    if (!std::isfinite(value) || signal.values.size() == trace_.at.size() ||
+        battery.at != trace_.at[signal.values.size()])
+      return std::nullopt;
+    signal.values.push_back(value);
+  }
+  if (signal.values.size() != trace_.at.size()) return std::nullopt;
+  trace_.signals.push_back(std::move(signal));
+  return trace_.signals.size() - 1;
 }
 
 std::optional<std::size_t> Signals::find(const mission::Condition& condition) {
@@ -76,6 +93,7 @@ std::optional<std::size_t> Signals::find(const mission::Condition& condition) {
   const auto anchor = std::ranges::find(anchors, condition.of, &record::Anchor::name);
   const bool needs_anchor = condition.quantity->subject == mission::Subject::kAnchor;
   if (needs_anchor && anchor == anchors.end()) return std::nullopt;
+  if (condition.quantity->needs_battery()) return known->second = of_battery(*condition.quantity);
   const auto* source = std::ranges::find(kSources, condition.quantity->name, &Source::quantity);
   stl::Signal signal{std::string(condition.quantity->name), {}};
   for (const GroundTruth* truth : truths_) {

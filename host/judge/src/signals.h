@@ -22,6 +22,9 @@ class Signals {
   const stl::Trace& trace() const { return trace_; }
 
  private:
+  std::optional<std::size_t> of_battery(const mission::Quantity& quantity);
+
+  std::string uav_;
   const record::Record& record_;
   std::vector<const record::GroundTruth*> truths_;
   stl::Trace trace_;

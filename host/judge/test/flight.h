@@ -58,6 +58,20 @@ class Flight {
     add(record::kCommand, sent_s, sent_s).effect_at = st(effect_s);
     return *this;
   }
+  /// At each ground truth: 100 W from the start on, and 5 % of the charge each second.
+  Flight& battery() {
+    for (const auto& truth : record_.ground_truth) {
+      const double t_s = to_seconds(truth.at);
+      record_.batteries.push_back({truth.at,
+                                   order_++,
+                                   {.uav = "uav1",
+                                    .at = truth.at,
+                                    .charge = 1.0 - 0.05 * t_s,
+                                    .lift_J = 90.0 * t_s,
+                                    .idle_J = 10.0 * t_s}});
+    }
+    return *this;
+  }
   /// Ended by the time limit.
   Flight& cut(double end_s) {
     record_.footer->st_at_end = st(end_s);

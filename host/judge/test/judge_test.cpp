@@ -1,6 +1,8 @@
 #include "flight.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <gmock/gmock.h>
 
@@ -64,6 +66,57 @@ TEST(Judge, ConditionsOnSignals) {
            {R"(always = "yaw_rate <= 10 deg/s")", true, 10.0, 8.0, "0 deg/s"},
            {R"(always = "clearance >= 1 m")", false, {}, {}, "clearance"}})
     expect(mission(), c);
+}
+
+TEST(Judge, EnergyCountsFromTheStartOfTheClause) {
+  const Flight flight = mission().battery();
+  for (const Case& c : std::vector<Case>{
+           {R"(always = "energy_j <= 900 J")", true, 100.0, 8.0, "800 J at ST 8.000 s"},
+           {"during = [\"b\"]\nalways = \"energy_j <= 0.25 kJ\"", false, -0.05, 5.6, "0.3 kJ"},
+           {"during = [\"b\"]\nnever = \"energy_j >= 400 J\"", true, 100.0, 6.0, "300 J"},
+           {R"(always = "charge_left >= 50 %")", true, 10.0, 8.0, "60 % at ST 8.000 s"}})
+    expect(flight, c);
+  EXPECT_THAT(mission().verdict(R"(always = "energy_j <= 900 J")").limited_by,
+              HasSubstr("does not have energy_j"));
+}
+
+TEST(Judge, FollowsTheMarginOverTime) {
+  const Flight flight = mission();
+  const auto always = flight.verdict(R"(always = "altitude <= 9 m")").margins;
+  ASSERT_GT(always.size(), 20U);
+  EXPECT_LE(always.size(), 42U);
+  EXPECT_EQ(always.front(), (MarginAt{st(0), 9.0}));
+  EXPECT_EQ(always.back().at, st(8));
+  EXPECT_NEAR(always.back().margin, 1.0, 1e-9);
+  EXPECT_TRUE(std::ranges::is_sorted(always, std::greater<>(), &MarginAt::margin));
+  const auto eventually = flight.verdict(R"(eventually = "altitude >= 5 m")").margins;
+  EXPECT_TRUE(std::ranges::is_sorted(eventually, {}, &MarginAt::margin));
+  const auto deadline = flight.verdict("during = [\"a\"]\nwithin_s = 5").margins;
+  EXPECT_EQ(deadline, (std::vector<MarginAt>{{st(1), 5.0}, {st(3), 3.0}}));
+}
+
+// Clauses share their work, but not their verdicts.
+TEST(Judge, ClausesThatShareWorkAreJudgedAsAlone) {
+  const std::vector<std::string> clauses = {"always = \"altitude <= 9 m\"",
+                                            "always = \"altitude <= 5 m\"",
+                                            "never = \"altitude <= 5 m\"",
+                                            "always = \"altitude <= 5 m in 80 %\"",
+                                            "eventually = \"altitude <= 5 m\"",
+                                            "eventually = \"altitude >= 5 m\"\nfor_s = 2",
+                                            "eventually = \"altitude >= 6 m\"\nfor_s = 2",
+                                            "during = [\"b\"]\nalways = \"altitude <= 5 m\"",
+                                            "always = \"reaction_time <= 150 ms in 95 %\"",
+                                            "always = \"reaction_time <= 120 ms\"",
+                                            "never = \"reaction_time <= 100 ms\"",
+                                            "within_s = 7"};
+  Flight flight = mission().image(1.0, 1.05, 1.0).command(1.1, 1.12).image(2.0, 2.1, 2.0);
+  flight.command(2.15, 2.16);
+  std::string all;
+  for (const std::string& clause : clauses) all += "[[clause]]\n" + clause + "\n";
+  const auto together = flight.verdicts(all).clauses;
+  ASSERT_EQ(together.size(), clauses.size());
+  for (std::size_t i = 0; i < clauses.size(); ++i)
+    EXPECT_EQ(together[i], flight.verdict(clauses[i])) << clauses[i];
 }
 
 TEST(Judge, ClearanceOfEachInstant) {

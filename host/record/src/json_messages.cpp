@@ -108,6 +108,10 @@ void append_json(std::string& out, const Contact& message) {
   append_members(out, message);
 }
 
+void append_json(std::string& out, const Battery& message) {
+  append_members(out, message);
+}
+
 // The JSON of the SUT's is written as it is if it is an object, and as a string if it is not.
 void append_json(std::string& out, const Annotation& message) {
   MemberWriter writer(out);
@@ -186,6 +190,10 @@ Stop stop_from_json(std::string_view text) {
 
 Contact contact_from_json(std::string_view text) {
   return read_members<Contact>(parse_object(text));
+}
+
+Battery battery_from_json(std::string_view text) {
+  return read_members<Battery>(parse_object(text));
 }
 
 Annotation annotation_from_json(std::string_view text) {

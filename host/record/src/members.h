@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include <tether/record/messages.h>
+#include <tether/record/writer.h>
 
 /// The one list of the members of each message and each part of a record's metadata, for both
 /// directions. `io` is a writer or a reader: see json_members.h and json_metadata.cpp. It has
@@ -116,6 +117,28 @@ void members(auto& io, Maybe<Contact> auto& m) {
   io("speed_m_s", m.speed_m_s);
 }
 
+void members(auto& io, Maybe<Battery> auto& m) {
+  io("uav", m.uav);
+  io("at_ns", m.at);
+  io("voltage_v", m.voltage_V);
+  io("current_a", m.current_A);
+  io("charge", m.charge);
+  io("lift_j", m.lift_J);
+  io("moving_j", m.moving_J);
+  io("idle_j", m.idle_J);
+  io("computing_j", m.computing_J);
+  io("sensors_j", m.sensors_J);
+  io("resistance_j", m.resistance_J);
+}
+
+void members(auto& io, Maybe<Margin> auto& m) {
+  io("uav", m.uav);
+  io("clause", m.clause);
+  io("at_ns", m.at);
+  io("margin", m.margin);
+  io("unit", m.unit);
+}
+
 void members(auto& io, Maybe<Clearance> auto& m) {
   io("uav", m.uav);
   io("min_m", m.min_m);
@@ -207,6 +230,11 @@ void members(auto& io, Maybe<Anchor> auto& m) {
   io("q_WA", m.q_WA);
 }
 
+void members(auto& io, Maybe<WorkCost> auto& m) {
+  io("work", m.work);
+  io("ns", m.ns);
+}
+
 /// All but the target.
 void members(auto& io, Maybe<Header> auto& m) {
   io("schema_version", m.schema_version);
@@ -226,6 +254,10 @@ void members(auto& io, Maybe<Header> auto& m) {
   if (io.has("wall_at_start_ns", m.wall_at_start != WallTime{}))
     io("wall_at_start_ns", m.wall_at_start);
   io.flag("reports_contacts", m.reports_contacts);
+  if (!io.has("emulator", !m.emulator.program.empty())) return;
+  io("emulator", m.emulator.program);
+  io("cpu_model", m.emulator.cpu_model);
+  io.list("costs", m.emulator.costs);
 }
 
 /// All but the target's readings.

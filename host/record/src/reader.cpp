@@ -91,6 +91,8 @@ class RecordBuilder final : public McapVisitor {
     if (schema == kStopSchema.name) return &RecordBuilder::append<&Record::stops, stop_from_json>;
     if (schema == kContactSchema.name)
       return &RecordBuilder::append<&Record::contacts, contact_from_json>;
+    if (schema == kBatterySchema.name)
+      return &RecordBuilder::append<&Record::batteries, battery_from_json>;
     if (schema == kCompressedImageSchema.name)
       return options_.images ? &RecordBuilder::append<&Record::images, image_from_json>
                              : &RecordBuilder::skip;
@@ -136,6 +138,7 @@ SimTime last_time(const Record& record) {
   see(record.annotations);
   see(record.stops);
   see(record.contacts);
+  see(record.batteries);
   return last;
 }
 

@@ -1,9 +1,12 @@
+#include "json_members.h"
 #include "json_messages.h"
 #include "json_metadata.h"
 #include "json_text.h"
 #include "mcap_writer.h"
+#include "members.h"
 #include "schemas.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
 
@@ -86,6 +89,9 @@ class McapRecorder final : public Recorder {
   void write(SimTime at, const Contact& message) override {
     write_json(contacts_.of("/contacts", message.uav), at, message);
   }
+  void write(SimTime at, const Battery& message) override {
+    write_json(batteries_.of("/battery", message.uav), at, message);
+  }
   void write(SimTime at, const Image& message) override {
     write_json(images_.of("/images", message.uav, message.sensor), at, message);
   }
@@ -122,6 +128,7 @@ class McapRecorder final : public Recorder {
   Channels annotations_{mcap_, kAnnotationSchema};
   Channels stops_{mcap_, kStopSchema};
   Channels contacts_{mcap_, kContactSchema};
+  Channels batteries_{mcap_, kBatterySchema};
   Channels images_{mcap_, kCompressedImageSchema};
   Channels depths_{mcap_, kRawImageSchema};
   Channels labels_{mcap_, kRawImageSchema};
@@ -137,6 +144,7 @@ class NullRecorder final : public Recorder {
   void write(SimTime, const Annotation&) override {}
   void write(SimTime, const Stop&) override {}
   void write(SimTime, const Contact&) override {}
+  void write(SimTime, const Battery&) override {}
   void write(SimTime, const Image&) override {}
   void write(SimTime, const RawImage&) override {}
   void flush() override {}
@@ -147,6 +155,19 @@ class NullRecorder final : public Recorder {
 
 std::unique_ptr<Recorder> make_mcap_recorder(const std::filesystem::path& file) {
   return std::make_unique<McapRecorder>(file);
+}
+
+void write_margins(const std::filesystem::path& file, std::vector<Margin> margins) {
+  std::ranges::stable_sort(margins, {}, &Margin::at);
+  McapWriter mcap(file, kLibrary);
+  Channels channels(mcap, kMarginSchema);
+  for (const Margin& margin : margins) {
+    std::string& out = mcap.begin_message(channels.of("/margins", margin.uav),
+                                          static_cast<std::uint64_t>(to_ns(margin.at)));
+    append_members(out, margin);
+    mcap.end_message();
+  }
+  mcap.finish();
 }
 
 std::unique_ptr<Recorder> make_null_recorder() {

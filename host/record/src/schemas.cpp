@@ -152,6 +152,41 @@ const Schema kContactSchema{"tether.Contact", R"json({
   "required": ["uav", "at_ns", "with", "speed_m_s"]
 })json"};
 
+const Schema kBatterySchema{"tether.Battery", R"json({
+  "title": "tether.Battery",
+  "description": "The battery of a UAV, and the energy spent since ST 0, by cause.",
+  "type": "object",
+  "properties": {
+    "uav": {"type": "string"},
+    "at_ns": {"type": "integer"},
+    "voltage_v": {"type": ["number", "null"], "description": "at the terminals"},
+    "current_a": {"type": ["number", "null"]},
+    "charge": {"type": ["number", "null"], "description": "share of the capacity"},
+    "lift_j": {"type": ["number", "null"], "description": "what hovering takes"},
+    "moving_j": {"type": ["number", "null"], "description": "the rotors beyond that"},
+    "idle_j": {"type": ["number", "null"], "description": "the computer, idle"},
+    "computing_j": {"type": ["number", "null"], "description": "the computer's busy cores"},
+    "sensors_j": {"type": ["number", "null"], "description": "sensors and radio"},
+    "resistance_j": {"type": ["number", "null"], "description": "heat of the battery"}
+  },
+  "required": ["uav", "at_ns", "voltage_v", "current_a", "charge", "lift_j", "moving_j", "idle_j",
+               "computing_j", "sensors_j", "resistance_j"]
+})json"};
+
+const Schema kMarginSchema{"tether.Margin", R"json({
+  "title": "tether.Margin",
+  "description": "The margin of a clause as it stood at an instant.",
+  "type": "object",
+  "properties": {
+    "uav": {"type": "string"},
+    "clause": {"type": "string"},
+    "at_ns": {"type": "integer"},
+    "margin": {"type": ["number", "null"], "description": "negative: missed"},
+    "unit": {"type": "string"}
+  },
+  "required": ["uav", "clause", "at_ns", "margin", "unit"]
+})json"};
+
 const Schema kCompressedImageSchema{"foxglove.CompressedImage", R"json({
   "title": "foxglove.CompressedImage",
   "type": "object",

@@ -16,6 +16,8 @@ extern const Schema kGroundTruthSchema;
 extern const Schema kAnnotationSchema;
 extern const Schema kStopSchema;
 extern const Schema kContactSchema;
+extern const Schema kBatterySchema;
+extern const Schema kMarginSchema;
 /// Well-known schemas of Foxglove, by their names.
 extern const Schema kCompressedImageSchema;
 extern const Schema kRawImageSchema;

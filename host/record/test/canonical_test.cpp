@@ -21,6 +21,7 @@ Record sample() {
   record.annotations = {{st_ms(38), 1, annotation()}};
   record.stops = {{st_ms(50), 6, stop()}};
   record.contacts = {{st_ms(50), 7, contact()}};
+  record.batteries = {{st_ms(40), 8, battery()}};
   record.images = {{st_ms(41), 5, image()}};
   record.footer = footer();
   return record;

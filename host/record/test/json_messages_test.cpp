@@ -103,6 +103,7 @@ TEST(JsonMessages, FormIsStable) {
   check_form(texts, ground_truth(), ground_truth_from_json, kGroundTruthSchema);
   check_form(texts, annotation(), annotation_from_json, kAnnotationSchema);
   check_form(texts, image(), image_from_json, kCompressedImageSchema);
+  check_form(texts, battery(), battery_from_json, kBatterySchema);
   texts += json_of(sensor_interaction(), {.wall = false, .arrivals = false}) + "\n";
   texts += json_of(stop(), {.wall = false}) + "\n";
   append_frame_transform(texts, ground_truth(1234));
@@ -201,8 +202,10 @@ TEST(JsonMetadata, OptionalValuesHaveDefaults) {
   Header unread = header();
   unread.target.reset();
   unread.reports_contacts = false;
+  unread.emulator = {};
   EXPECT_FALSE(header_from_metadata(to_metadata(unread)).target);
   EXPECT_FALSE(header_from_metadata(to_metadata(unread)).reports_contacts);
+  EXPECT_EQ(header_from_metadata(to_metadata(unread)).emulator, EmulatorInfo{});
 
   Footer without_stops = footer();
   without_stops.stops = 0;
@@ -243,6 +246,7 @@ TEST(JsonMetadata, MissingAndWrongValuesAreNamed) {
   Header required = header();  // these may be left out
   required.target.reset();
   required.reports_contacts = false;
+  required.emulator = {};
   for (const auto& [name, unused] : to_metadata(required)) {
     StringMap values = to_metadata(required);
     values.erase(name);

@@ -149,6 +149,27 @@ TEST(ReadRecord, RejectsFilesThatAreNotRecords) {
   expect_rejected(file.path());
 }
 
+TEST(Recorder, BatteriesAreReadBack) {
+  const TemporaryFile file;
+  const auto recorder = make_mcap_recorder(file.path());
+  recorder->write(header());
+  recorder->write(st_ms(40), battery());
+  recorder->write(footer());
+  const Record read = read_record(file.path());
+  ASSERT_EQ(read.batteries.size(), 1U);
+  EXPECT_EQ(read.batteries[0].message, battery());
+  EXPECT_EQ(last_time(read), st_ms(40));
+}
+
+TEST(Margins, AreWrittenInTheOrderOfTime) {
+  const TemporaryFile file, sorted;
+  const Margin early{"a", "near", st_ms(1), 2.5, "m"}, late{"a", "in time", st_ms(3), -0.5, "s"};
+  write_margins(file.path(), {late, early});
+  write_margins(sorted.path(), {early, late});
+  EXPECT_EQ(file.bytes(), sorted.bytes());
+  EXPECT_NE(file.bytes().find("/margins/a"), std::string::npos);
+}
+
 TEST(ReadRecord, SkipsUnknownChannelsAndMetadata) {
   const TemporaryFile file;
   McapWriter writer(file.path(), "tether");

@@ -86,6 +86,10 @@ inline Contact contact() {
   return {"a", st_ms(42), "room \"1\"", 1.0 / 3.0};
 }
 
+inline Battery battery() {
+  return {"a", st_ms(40), 12.25, 6.5, 0.75, 1.0 / 3.0, -0.5, 2.0, 3.0, 4.0, 5.0};
+}
+
 inline CommandEffect command_effect(std::uint64_t sequence = 2) {
   return {"a", sequence, st_ms(41), 0.1, -0.0, 1e-300, 1.0 / 3.0};
 }
@@ -148,6 +152,7 @@ inline Header header() {
   header.target = TargetInfo{
       "my board", "ssh://pi@board", {{"governor", "ondemand"}, {"throttled", "0x50005"}}};
   header.reports_contacts = true;
+  header.emulator = {"qemu-x86_64", "Nehalem", {{"integer", 0.125}, {"load", 0.5}}};
   return header;
 }
 

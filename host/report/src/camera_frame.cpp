@@ -1,9 +1,10 @@
+#include "captioned_picture.h"
 #include "jpeg.h"
-#include "svg.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -86,16 +87,14 @@ std::string data_uri(const record::Image& image, ImageQuality quality) {
   return record::to_data_uri(image.png);
 }
 
-constexpr unsigned kCaptionLine_px = 22;
 constexpr const char* kTracked = "#ffd21f";
 constexpr const char* kTrue = "#4de1ff";
+constexpr const char* kDashes = R"( stroke-dasharray="7 4")";
 
-std::string caption_line(unsigned y_px, const char* colour, bool dashed, const std::string& text) {
-  return fmt::format(
-      R"(<line x1="10" x2="34" y1="{0}" y2="{0}" stroke="{1}" stroke-width="2.5"{2}/>)"
-      R"(<text x="42" y="{3}" font-size="14" fill="#f2f2f2">{4}</text>)"
-      "\n",
-      y_px - 5, colour, dashed ? R"( stroke-dasharray="7 4")" : "", y_px, escape_markup(text));
+CaptionedPicture::Line caption_line(const char* colour, bool dashed, std::string text) {
+  return {fmt::format(R"(<line x1="10" x2="34" y1="-5" y2="-5" stroke="{}" stroke-width="2.5"{}/>)",
+                      colour, dashed ? kDashes : ""),
+          std::move(text)};
 }
 
 // Pixel centres have whole coordinates in a ROI, and halves in the image.
@@ -104,7 +103,7 @@ std::string framed(const campaign::PixelRect& rect, const char* colour, bool das
       R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" fill="none" stroke="{}" stroke-width="2.5"{}/>)"
       "\n",
       rect.left_px + 0.5, rect.top_px + 0.5, rect.right_px - rect.left_px,
-      rect.bottom_px - rect.top_px, colour, dashed ? R"( stroke-dasharray="7 4")" : "");
+      rect.bottom_px - rect.top_px, colour, dashed ? kDashes : "");
 }
 
 campaign::PixelRect rect_of(const ReportedRoi& roi) {
@@ -156,29 +155,21 @@ std::optional<TrueRoi> find_true_roi(const record::Record& record, const record:
 std::string frame_svg(const record::Image& image, const std::optional<ReportedRoi>& roi,
                       const std::optional<TrueRoi>& true_roi, ImageQuality quality) {
   const PixelSize size = size_of_png(image.png);
-  const unsigned caption_px = 10 + kCaptionLine_px * (true_roi ? 3 : 2);
-  const std::string what = escape_markup(
-      fmt::format("{} / {}, ST {:.3f} s", image.uav, image.sensor, to_seconds(image.at)));
-  std::string svg = fmt::format(
-      R"(<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{4}" width="{0}" height="{1}" viewBox="0 0 {0} {1}" font-family="sans-serif">)"
-      "\n"
-      R"(<rect width="{0}" height="{1}" fill="#1b1b1b"/><image width="{0}" height="{2}" href="{3}"/>)"
-      "\n",
-      size.width, size.height + caption_px, size.height, data_uri(image, quality),
-      "Camera image, " + what);
+  CaptionedPicture picture{
+      size.width,
+      size.height,
+      data_uri(image, quality),
+      "Camera image",
+      fmt::format("{} / {}, ST {:.3f} s", image.uav, image.sensor, to_seconds(image.at)),
+      ""};
   // If the two coincide, the solid line is visible between the dashes.
-  if (roi) svg += framed(rect_of(*roi), kTracked, false);
-  if (true_roi && true_roi->rect) svg += framed(*true_roi->rect, kTrue, true);
-  unsigned y_px = size.height + kCaptionLine_px;
-  svg += fmt::format(R"(<text x="10" y="{}" font-size="14" fill="#f2f2f2">{}</text>)"
-                     "\n",
-                     y_px, what);
-  y_px += kCaptionLine_px;
-  svg += caption_line(y_px, kTracked, false,
-                      roi ? "ROI tracked by the SUT, " + size_text(rect_of(*roi))
-                          : "no ROI reported by the SUT for this image");
-  if (true_roi) svg += caption_line(y_px + kCaptionLine_px, kTrue, true, text_of(*true_roi));
-  return svg + "</svg>\n";
+  if (roi) picture.drawings += framed(rect_of(*roi), kTracked, false);
+  if (true_roi && true_roi->rect) picture.drawings += framed(*true_roi->rect, kTrue, true);
+  picture.lines.push_back(caption_line(kTracked, false,
+                                       roi ? "ROI tracked by the SUT, " + size_text(rect_of(*roi))
+                                           : "no ROI reported by the SUT for this image"));
+  if (true_roi) picture.lines.push_back(caption_line(kTrue, true, text_of(*true_roi)));
+  return to_svg(picture);
 }
 
 }  // namespace tether::report

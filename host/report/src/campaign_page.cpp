@@ -8,6 +8,7 @@
 #include <tether/report/page.h>
 #include <tether/report/paper_figures.h>
 #include <tether/report/report.h>
+#include <tether/report/sweep.h>
 
 // The page of a campaign: problems on top, then a section for each scenario, whose parts are built
 // by one function each in reading order, and the setup last. A part without data is empty.
@@ -87,7 +88,7 @@ std::string timelines_part(FigureMaker& figures, const std::vector<PlottedRun>& 
 const SeedRecords::OfCondition* with_images(const SeedRecords& records) {
   const SeedRecords::OfCondition* found = nullptr;
   for (const SeedRecords::OfCondition& one : records.records) {
-    if (one.record.images.empty()) continue;
+    if (one.record.images.empty() && one.record.raw_images.empty()) continue;
     if (found == nullptr || one.record.header.policy == record::kConservativeBarrier) found = &one;
   }
   return found;
@@ -120,6 +121,7 @@ std::string scenario_section(FigureMaker& figures, const campaign::ScenarioResul
   html += to_html(paper_form_table(scenario));
   if (const Table clauses = clauses_table(scenario); !clauses.rows.empty())
     html += to_html(clauses);
+  if (const Table energy = energy_table(scenario); !energy.rows.empty()) html += to_html(energy);
   html += optimism_part(scenario);
   html += distributions_part(figures, scenario);
   html += path_part(figures, records, runs);
@@ -128,6 +130,15 @@ std::string scenario_section(FigureMaker& figures, const campaign::ScenarioResul
   html += tables_part(scenario);
   html += problems_box(records.unreadable);
   return html + "</section>\n";
+}
+
+std::string sweep_section(FigureMaker& figures, const Sweep& sweep) {
+  std::string html = "<section>\n" + element("h2", sweep.scenario + ": sweep") +
+                     figures.plot(sweep_plot(sweep), "The bars are 95 % intervals (Wilson).");
+  for (const std::string& metric : sweep.points.front()->metrics)
+    html += figures.plot(sweep_plot(sweep, metric),
+                         "Means. Each circle is a trial; a dotted line is the limit.");
+  return html + folded("Table", to_html(sweep_table(sweep))) + "</section>\n";
 }
 
 }  // namespace
@@ -139,6 +150,7 @@ std::string campaign_page(const campaign::CampaignResults& results,
   std::string body = element("h1", name);
   if (!results.manifest.description.empty()) body += element("p", results.manifest.description);
   body += problems_box(problems(results)) + contents(results);
+  for (const Sweep& sweep : sweeps_of(results)) body += sweep_section(figures, sweep);
   std::size_t number = 0;
   for (const campaign::ScenarioResults& scenario : results.scenarios)
     body += scenario_section(figures, scenario, folder, ++number);

@@ -58,6 +58,7 @@ class Timeline {
     body_ += text(kLeft - 8, baseline(), "end", shortened(clause.name));
     if (clause.from && clause.to)
       body_ += rectangle(x(*clause.from), y_ + 9, x(*clause.to) - x(*clause.from), 4, ink);
+    body_ += drain(clause.margins);
     if (clause.deadline)
       body_ += rectangle(x(*clause.deadline) - 1, y_ + 2, 2, kRow - 4, Ink::kForeground);
     if (clause.decided_at)
@@ -85,6 +86,23 @@ class Timeline {
   }
 
  private:
+  /// The margin over time: from its largest value at the top of the lane to 0 in the middle; what
+  /// is missed lies below.
+  std::string drain(const std::vector<judge::MarginAt>& margins) const {
+    double largest = 0.0;
+    for (const judge::MarginAt& margin : margins)
+      largest = std::max(largest, std::abs(margin.margin));
+    if (margins.size() < 2 || largest == 0.0) return "";
+    std::string points;
+    for (const judge::MarginAt& margin : margins)
+      points += fmt::format("{:.1f},{:.1f} ", x(margin.at),
+                            y_ + kRow / 2 - (kRow / 2 - 1) * margin.margin / largest);
+    points.pop_back();
+    return fmt::format(
+        "<polyline points=\"{}\" style=\"fill:none;stroke-width:1.5\" class=\"tp-stroke-{}\"/>\n",
+        points, static_cast<std::size_t>(Ink::kForeground));
+  }
+
   void reach(SimTime time) { end_s_ = std::max(end_s_, to_seconds(time)); }
   double x(SimTime time) const {
     return kLeft + (kRight - kLeft) * to_seconds(time) / std::max(end_s_, 1e-9);

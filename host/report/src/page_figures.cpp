@@ -70,6 +70,16 @@ std::string frames_html(const record::Record& record, std::size_t shown) {
                         frame_svg(image, find_roi(record, image), find_true_roi(record, image),
                                   ImageQuality::kSmall));
   }
+  for (const bool depths : {true, false}) {
+    std::vector<const record::RawImage*> images;
+    for (const auto& logged : record.raw_images) {
+      if (is_depth(logged.message) == depths) images.push_back(&logged.message);
+    }
+    for (const std::size_t i : thinned(images.size(), shown)) {
+      html += fmt::format("<figure>{}</figure>\n",
+                          raw_frame_svg(record, *images[i], ImageQuality::kSmall));
+    }
+  }
   return html;
 }
 

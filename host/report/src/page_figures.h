@@ -21,7 +21,8 @@ class FigureMaker {
   explicit FigureMaker(std::size_t frame_groups);
   /// Empty if there is no plot.
   std::string plot(const std::optional<Plot>& plot, const std::string& caption);
-  /// At most four of the record's images, evenly over the run; empty if it has none.
+  /// At most four of the record's images, of its depths and of its labels each, evenly over the
+  /// run; empty if it has none.
   std::string frames(const record::Record& record) const;
 
  private:

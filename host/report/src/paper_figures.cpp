@@ -91,10 +91,16 @@ bool is_of(const PaperFigure& figure, std::string_view metric_kind, std::string_
 
 }  // namespace
 
+std::string_view without_clock(std::string_view condition) {
+  constexpr std::string_view kCounted = ", counted";
+  if (condition.ends_with(kCounted)) condition.remove_suffix(kCounted.size());
+  return condition;
+}
+
 const PaperFigure* PaperTable::find(std::string_view condition, std::string_view metric_kind,
                                     std::string_view metric_name) const {
   const auto found = std::ranges::find_if(figures, [&](const PaperFigure& figure) {
-    return figure.condition == condition && is_of(figure, metric_kind, metric_name);
+    return figure.condition == without_clock(condition) && is_of(figure, metric_kind, metric_name);
   });
   return found != figures.end() ? &*found : nullptr;
 }

@@ -8,6 +8,7 @@
 
 #include <tether/report/paper_figures.h>
 #include <tether/report/report.h>
+#include <tether/report/sweep.h>
 
 // The tables for people. A scenario has one in the paper's form with notes on each trial that is
 // missing or special, one with all statistics, one that compares its conditions, and one on the
@@ -69,7 +70,10 @@ void add_rows_of_paper_only(Table& table, const campaign::ScenarioResults& scena
                             const std::vector<Column>& columns, const PaperTable& paper) {
   if (std::ranges::none_of(columns, &Column::in_paper)) return;
   for (const std::string_view condition : paper.conditions()) {
-    if (scenario.find_condition(condition) != nullptr) continue;
+    const bool is_flown = std::ranges::any_of(scenario.conditions, [&](const auto& results) {
+      return without_clock(results.condition) == condition;
+    });
+    if (is_flown) continue;
     std::vector<std::string> row = {fmt::format("{} (paper only)", condition)};
     for (const Column& column : columns) {
       row.insert(row.end(), 2, kNone);
@@ -192,14 +196,21 @@ std::vector<Comparison> compare_where(const campaign::ScenarioResults& scenario,
   return comparisons;
 }
 
+// No SUT can be counted in free running. Beside a counted target, the CPU time of this machine is
+// the nearest to it.
+bool have_equal_clocks(const campaign::TrialResult& a, const campaign::TrialResult& b) {
+  if (!a.emulator.program.empty())
+    return b.condition == fmt::format("{}, no sync", without_clock(a.condition));
+  return a.clock == b.clock && a.cpu_factor == b.cpu_factor && a.target == b.target;
+}
+
 bool is_synchronised_twin(const campaign::ConditionResults& a,
                           const campaign::ConditionResults& b) {
   if (a.trials.empty() || b.trials.empty()) return false;
   const campaign::TrialResult &first_a = a.trials.front(), &first_b = b.trials.front();
   return first_a.policy == scenario::name(scenario::Policy::kConservativeBarrier) &&
          first_b.policy == scenario::name(scenario::Policy::kFreeRunning) &&
-         first_a.clock == first_b.clock && first_a.cpu_factor == first_b.cpu_factor &&
-         first_a.target == first_b.target && first_a.profiles == first_b.profiles;
+         have_equal_clocks(first_a, first_b) && first_a.profiles == first_b.profiles;
 }
 
 Table table_of(const campaign::ScenarioResults& scenario,
@@ -306,11 +317,14 @@ Table optimism_table(const campaign::ScenarioResults& scenario) {
 
 std::vector<Table> report_tables(const campaign::CampaignResults& results) {
   std::vector<Table> tables;
+  for (const Sweep& sweep : sweeps_of(results)) tables.push_back(sweep_table(sweep));
   for (const campaign::ScenarioResults& scenario : results.scenarios) {
     tables.push_back(paper_form_table(scenario));
     tables.push_back(details_table(scenario));
     if (Table clauses = clauses_table(scenario); !clauses.rows.empty())
       tables.push_back(std::move(clauses));
+    if (Table energy = energy_table(scenario); !energy.rows.empty())
+      tables.push_back(std::move(energy));
     if (!compare_conditions(scenario).empty()) tables.push_back(comparisons_table(scenario));
     if (!optimism(scenario).empty()) tables.push_back(optimism_table(scenario));
   }

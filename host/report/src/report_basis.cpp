@@ -52,6 +52,8 @@ std::string condition_text(const campaign::TrialResult& trial) {
     text += fmt::format(", real-time factor at most {}", trial.real_time_factor);
   }
   if (!trial.target.empty()) text += fmt::format(", target {}", trial.target);
+  if (!trial.emulator.program.empty())
+    text += fmt::format(", {} with CPU model {}", trial.emulator.program, trial.emulator.cpu_model);
   if (const std::string replay = campaign::describe_replay(trial); !replay.empty())
     text += ", time " + replay;
   for (const std::string& profile : trial.profiles) text += fmt::format(", profile {}", profile);

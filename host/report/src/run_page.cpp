@@ -88,13 +88,15 @@ std::string mission_part(const campaign::TrialResult& trial) {
   for (const campaign::SutResult& sut : trial.suts) {
     const std::string drawing = mission_timeline(trial, sut.uav);
     if (!drawing.empty())
-      html +=
-          figure(drawing,
-                 fmt::format("Tasks (bars) and clauses (lines) of {}. A line is the time that a "
-                             "clause is about, a stroke its deadline, a dot the time when it "
-                             "was decided; at the right, status and margin.",
-                             sut.uav),
-                 "plot");
+      html += figure(
+          drawing,
+          fmt::format(
+              "Tasks (bars) and clauses (lines) of {}. A line is the time that a "
+              "clause is about, a stroke its deadline, a dot the time when it "
+              "was decided; the thin curve, the margin as it drained, with 0 in the middle of "
+              "the lane; at the right, status and margin.",
+              sut.uav),
+          "plot");
   }
   return html + to_html(table);
 }
@@ -143,7 +145,9 @@ std::string run_page(const std::filesystem::path& folder) {
   Table metrics = run_table(trial);
   metrics.title.clear();
   std::erase(metrics.notes, trial.reason + ".");  // outcome_sentences has it
-  body += to_html(metrics) + mission_part(trial) + record_part(folder);
+  body += to_html(metrics) + mission_part(trial);
+  if (const Table energy = energy_table(trial); !energy.rows.empty()) body += to_html(energy);
+  body += record_part(folder);
   body += element("h2", "Setup and checks") + basis_html(results);
   return html_page(title, body);
 }

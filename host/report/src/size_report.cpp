@@ -78,10 +78,10 @@ std::string flattery_sentence(const SizeReport& report) {
 }  // namespace
 
 std::vector<CurvePoint> curve_points(const sizing::SuccessCurve& curve, double least, double most) {
-  constexpr int kPoints = 60;
+  constexpr int kSteps = 60;
   std::vector<CurvePoint> points;
-  for (int i = 0; i <= kPoints; ++i) {
-    const double slowdown = least * std::pow(most / least, static_cast<double>(i) / kPoints);
+  for (int i = 0; i <= kSteps; ++i) {
+    const double slowdown = least * std::pow(most / least, static_cast<double>(i) / kSteps);
     points.push_back({slowdown, curve.share(slowdown)});
   }
   return points;

@@ -65,6 +65,7 @@ void write_record(const std::filesystem::path& file, const record::Record& recor
   }
   for (const auto& contact : record.contacts) recorder->write(contact.at, contact.message);
   for (const auto& image : record.images) recorder->write(image.at, image.message);
+  for (const auto& image : record.raw_images) recorder->write(image.at, image.message);
   recorder->write(record::Footer{});
 }
 
@@ -82,6 +83,8 @@ class CampaignPage : public CampaignFixture {
         const SimTime at = record.interactions.back().at;
         record.images.push_back(
             {at, i, {"uav1", "camera", at, i, record::encode_png(12, 8, grey)}});
+        record.raw_images.push_back(
+            {at, i, {"uav1", "depth", at, i, 2, 1, std::vector<float>{1.0F, 2.0F}}});
       }
       write_record(folder_of(condition, 1) / "record.mcap", record);
     }
@@ -125,7 +128,7 @@ TEST_F(CampaignPage, HasItsPartsInReadingOrder) {
        "<h3>Camera images</h3>", "<summary>All statistics</summary>",
        "<summary>Differences between the conditions</summary>", "<h2>Setup and checks</h2>",
        "a machine"});
-  check_page(html, 9);  // two metrics, the path, two timelines, four images
+  check_page(html, 13);  // two metrics, the path, two timelines, four images, four of depths
   EXPECT_THAT(html, HasSubstr("data:image/jpeg;base64,"));
   EXPECT_EQ(html, page());
 }
@@ -169,7 +172,7 @@ TEST_F(CampaignPage, OfOneRunShowsItsOutcomeAndPlots) {
                          "the anchor is in the middle.",
                          "Time required (s)", "<h2>Contacts</h2>", "&lt;wall&gt;", "2.930", "3.800",
                          "<h2>Camera images</h2>"});
-  check_page(html, 8);  // timeline twice, lag, path, four images
+  check_page(html, 12);  // timeline twice, lag, path, four images, four of depths
 }
 
 TEST_F(CampaignPage, OfOneRunDoesNotNeedARecordButAResult) {

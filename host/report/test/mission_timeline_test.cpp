@@ -21,6 +21,7 @@ TEST(MissionTimeline, HasABarForEachTaskAndALaneForEachClause) {
   met.unit = "m";
   met.from = st(0);
   met.to = met.decided_at = st(20);
+  met.margins = {{st(0), 1.0}, {st(20), 0.25}};
   judge::ClauseVerdict missed{.uav = "uav1", .name = "early"};
   missed.deadline = st(40);
   trial.clauses = {met, missed, {.uav = "uav2", .name = "of another"}};
@@ -28,6 +29,7 @@ TEST(MissionTimeline, HasABarForEachTaskAndALaneForEachClause) {
   const std::string svg = mission_timeline(trial, "uav1");
   tinyxml2::XMLDocument document;
   ASSERT_EQ(document.Parse(svg.c_str()), tinyxml2::XML_SUCCESS);
+  EXPECT_NE(document.RootElement()->FirstChildElement("polyline"), nullptr);
   int circles = 0;
   std::string texts;
   for (const auto* e = document.RootElement()->FirstChildElement(); e;

@@ -90,6 +90,23 @@ TEST_F(Report, ShowsConditionsOfThePaperOnly) {
               ElementsAre("host (paper only)", "–", "–", "0", "0", "–", "–", "2.48", "0.033"));
 }
 
+TEST_F(Report, ComparesACountedConditionWithThatOfItsNameWithoutTheClock) {
+  ScenarioResults counted = results();
+  counted.conditions[1].condition = "target, counted";
+  for (TrialResult& trial : counted.conditions[1].trials) {
+    trial.condition = "target, counted";
+    trial.clock = "counted";
+    trial.emulator.program = "qemu-x86_64";
+  }
+  const Table table = paper_form_table(counted);
+  ASSERT_EQ(table.rows.size(), 3u);
+  EXPECT_EQ(table.rows[1].back(), "13.767") << "of the paper's target";
+  const auto found = optimism(counted);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[1].a, "target, counted");
+  EXPECT_EQ(found[1].b, "target, no sync");
+}
+
 TEST_F(Report, BeforeTheFirstTrialHasRowsWithoutNumbers) {
   std::filesystem::remove_all(out_ / "turn");
   for (const Table& table : report_tables(all())) EXPECT_FALSE(to_text(table).empty());

@@ -68,8 +68,12 @@ CampaignFiles files_of_trials(const scenario::Campaign& campaign,
     const sim::World world = sim::load_world(
         scenario::world_request(entry.scenario, campaign.seeds.front()), warnings.sink());
     files.insert(files.end(), world.files.begin(), world.files.end());
-    for (const std::string& name : entry.conditions)
-      find_back_end(entry.scenario.find_condition(name)->simulator).require_readable(world);
+    for (const std::string& name : entry.conditions) {
+      const scenario::Condition& condition = *entry.scenario.find_condition(name);
+      find_back_end(condition.simulator).require_readable(world);
+      sim::World copy = world;
+      scenario::resolve_energy(entry.scenario, condition, copy, warnings.sink());
+    }
     try_profiles(entry, world, warnings.sink());
   }
   for (const std::string& name : simulators(campaign)) {
@@ -93,6 +97,8 @@ campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
     arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
   if (is_slowed)
     arguments.insert(arguments.end(), {"--slowdown", fmt::format("{}", plan.condition->slowdown)});
+  for (const auto& [key, value] : plan.scenario->settings)
+    arguments.insert(arguments.end(), {"--set", fmt::format("{}={}", key, value)});
   if (plan.record_images) arguments.emplace_back("--images");
   const sim::WorldOptions& options = plan.scenario->world_options;
   if (options.is_tolerant) arguments.emplace_back("--tolerant");

@@ -5,14 +5,10 @@
 namespace tether::runner {
 namespace {
 
-bool runs_on_board(const TrialSpec& spec) {
-  return !spec.waits_for_sut && spec.condition.target && spec.condition.target->ssh;
-}
-
 bool may_distort(const TrialSpec& spec) {
   switch (spec.condition.clock) {
     case scenario::Clock::kWall:
-      return !runs_on_board(spec);
+      return spec.sut_place() != SutPlace::kBoard;
     case scenario::Clock::kUnstamped:  // this machine's time
       return true;
     case scenario::Clock::kCpu:

@@ -86,13 +86,13 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
                   fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()))
           .about(uav.placement.name);
     }
+  if (condition.target && condition.target->emulator) programs.push_back(os::find_counter_plugin());
   return programs;
 }
 
 void require_sut_programs(const scenario::Scenario& scenario,
                           const scenario::Condition& condition) {
   sut_programs(scenario, condition);
-  if (condition.target && condition.target->emulator) os::find_counter_plugin();
   require_cores(scenario, condition);
 }
 

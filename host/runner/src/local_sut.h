@@ -29,8 +29,9 @@ LocalSutCommand local_sut_command(const scenario::Sut& sut,
 /// first ones are the busiest. Empty: all CPUs (`cores` is 0), or there are too few.
 std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_t index);
 
-/// All programs that start the SUTs of a condition here, each once.
-/// @throws Error(kBadFile) at the scenario's file, about the UAV whose program does not exist.
+/// All programs that start the SUTs of a condition here, each once; last the plugin that counts.
+/// @throws Error(kBadFile) at the scenario's file, about the UAV whose program does not exist;
+/// Error(kSetup) without the plugin.
 std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenario,
                                                 const scenario::Condition& condition);
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <time.h>
 
+#include <tether/os/clock.h>
 #include <tether/os/process_table.h>
 
 namespace tether::runner {
@@ -18,16 +18,10 @@ constexpr Duration kLongestPause = std::chrono::seconds(2);
 // The two clocks cannot be read at the same instant.
 constexpr Duration kClockError = std::chrono::milliseconds(50);
 
-WallTime read(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return WallTime(std::chrono::seconds(t.tv_sec) + std::chrono::nanoseconds(t.tv_nsec));
-}
-
 }  // namespace
 
 HostClocks host_clocks() {
-  return {read(CLOCK_MONOTONIC), read(CLOCK_BOOTTIME)};
+  return {WallTime(os::read_clock(CLOCK_MONOTONIC)), WallTime(os::read_clock(CLOCK_BOOTTIME))};
 }
 
 std::optional<pid_t> stopped_process(pid_t group) {

@@ -34,9 +34,8 @@ using coordinator::RunEnd;
 
 /// Connects to the board of the condition and reserves it; none if the SUTs run here.
 std::unique_ptr<board::Board> hold_board(const TrialSpec& spec, const std::stop_token& stop) {
-  const auto& target = spec.condition.target;
-  if (spec.waits_for_sut || !target || !target->ssh) return nullptr;
-  return std::make_unique<board::Board>(*target->ssh, stop);
+  if (spec.sut_place() != SutPlace::kBoard) return nullptr;
+  return std::make_unique<board::Board>(*spec.condition.target->ssh, stop);
 }
 
 std::vector<campaign::TaskEnd> task_ends(const coordinator::RunReport& report) {
@@ -83,6 +82,14 @@ campaign::TrialResult unrecorded(const TrialSpec& spec, const coordinator::RunRe
   return setup_failure(spec, report.reason, false);  // not even a header
 }
 
+void write_margins(const TrialSpec& spec, const campaign::TrialResult& result) {
+  std::vector<record::Margin> margins;
+  for (const auto& clause : result.clauses)
+    for (const auto& [at, margin] : clause.margins)
+      margins.push_back({clause.uav, clause.name, at, margin, clause.unit});
+  if (!margins.empty()) record::write_margins(spec.folder / kMarginsFile, std::move(margins));
+}
+
 /// The result of a run, from its record. The record stays if there is too little memory to read it.
 campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted) try {
   const coordinator::RunReport& report = conducted.report;
@@ -100,6 +107,7 @@ campaign::TrialResult evaluate(const TrialSpec& spec, const Conducted& conducted
     campaign::invalidate(result, report.reason);
   else if (!verdict.passed())
     campaign::invalidate(result, "the record breaks the rules of time: " + result.audit->summary);
+  write_margins(spec, result);
   return result;
 } catch (const std::bad_alloc&) {
   return campaign::make_setup_failure(
@@ -129,6 +137,13 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
   const auto board = hold_board(spec, stop);
   const SimulatorSetup setup = simulator_setup(spec, world, observer, warnings, stop);
   const auto simulator = back_end.start(std::move(world), setup);
+  for (std::size_t uav = 0; uav < spec.scenario.uavs.size(); ++uav)
+    if (const auto& energy = spec.scenario.uavs[uav].energy;
+        energy && !simulator->get().battery(uav))
+      warnings.sink()({Consequence::kMissing,
+                       {energy->file.string(), 0},
+                       "energy",
+                       "is simulated by the embedded simulator only; this flight has no battery"});
   warnings.pass_on();
   try {
     const Conducted conducted =
@@ -171,6 +186,11 @@ std::string utc_now() {
 
 }  // namespace
 
+SutPlace TrialSpec::sut_place() const {
+  if (waits_for_sut) return SutPlace::kUnknown;
+  return condition.target && condition.target->ssh ? SutPlace::kBoard : SutPlace::kThisMachine;
+}
+
 campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_back_end,
                                 const TrialObserver& observer, const std::stop_token& stop) {
   // Errors in options and files are found before anything is written.
@@ -179,12 +199,14 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   WarningLog warnings(observer.on_warnings);
   sim::World world =
       sim::load_world(scenario::world_request(spec.scenario, spec.seed), warnings.sink());
+  scenario::resolve_energy(spec.scenario, spec.condition, world, warnings.sink());
   back_end.require_readable(world);
   const TrialInputs inputs{
       scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink()),
       replayed_time(spec)};
   world.step = spec.scenario.step;
-  if (is_local(spec)) require_sut_programs(spec.scenario, spec.condition);
+  if (spec.sut_place() == SutPlace::kThisMachine)
+    require_sut_programs(spec.scenario, spec.condition);
   TrialFolder folder(spec.folder, spec.earlier);
 
   const std::string started_at = utc_now();

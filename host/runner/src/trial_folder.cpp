@@ -36,6 +36,7 @@ struct OwnFile {
 constexpr OwnFile kOwnFiles[] = {
     {campaign::kResultFile, true},
     {kRecordFile, true},
+    {kMarginsFile},
     {kSimulatorLog, true},
     {kWarningsFile, true},
     {"sut-*.log", true},

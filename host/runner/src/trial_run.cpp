@@ -88,7 +88,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
     uav.timings = inputs.timings[i];
     uav.command_latency = spec.scenario.uavs[i].command_latency;
     uav.clock = clock;
-    uav.cores = is_local(spec) ? known_cores() : 0;
+    uav.cores = spec.sut_place() == SutPlace::kThisMachine ? known_cores() : 0;
     if (inputs.replayed.replays.empty()) continue;
     uav.replay = inputs.replayed.replays[i];
     uav.replayed_from = inputs.replayed.from;
@@ -108,6 +108,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
   options.header.condition = spec.condition.name;
   options.header.machine = os::describe_machine();
   options.header.target = target;
+  options.header.emulator = campaign::emulator_of(spec.condition);
   return options;
 }
 
@@ -153,10 +154,6 @@ std::string sut_address(const TrialSpec& spec, board::Board* board, const link::
 
 }  // namespace
 
-bool is_local(const TrialSpec& spec) {
-  return !spec.waits_for_sut && !(spec.condition.target && spec.condition.target->ssh);
-}
-
 TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimulator& simulator,
                    board::Board* board, const TrialObserver& observer, std::stop_token stop)
     : spec_(spec),
@@ -200,7 +197,7 @@ TrialEnd TrialRun::fly() {
   };
   hooks.read_target = [&] { return target_after_ = read_target(spec_, board_); };
   if (!sut_run_.counts.empty())
-    hooks.work_of = [&](std::size_t uav) { return sut_run_.counts[uav].work(); };
+    hooks.computed_by = [&](std::size_t uav) { return sut_run_.counts[uav].computed(); };
   end.report = coordinator_.run(*server_, hooks);
   refusals_.close();
   notes_ = stalls.notes(host_clocks());

@@ -30,9 +30,6 @@ struct TrialInputs {
   ReplayedTime replayed;
 };
 
-/// Whether the SUTs are started on this machine.
-bool is_local(const TrialSpec& spec);
-
 /// A run's report, and notes about it.
 struct Conducted {
   coordinator::RunReport report;

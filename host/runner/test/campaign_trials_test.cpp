@@ -19,11 +19,13 @@ class CampaignTrials : public testing::Test {
       : campaign_(scenario::load_campaign(std::filesystem::path(TETHER_SOURCE_DIR) /
                                           "data/campaigns/face_anchor.toml")) {
     for (auto& entry : campaign_.scenarios) {
+      fly_in_empty_world(entry.scenario, scratch_);
       for (auto& uav : entry.scenario.uavs) uav.sut.command = {"sh"};
       for (auto& condition : entry.scenario.conditions) condition.simulator = "fake";
     }
   }
 
+  ScratchFolder scratch_;
   scenario::Campaign campaign_;
 };
 

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include <tether/base/error.h>
+#include <tether/base_testing/scratch_folder.h>
 #include <tether/runner/back_end.h>
+#include <tether/scenario/scenario.h>
 #include <tether/sim_testing/fake_simulator.h>
 
 namespace tether::runner {
@@ -38,6 +40,12 @@ inline FindBackEnd fake_back_end(std::optional<std::string> lost = std::nullopt)
                 },
             .files = [] { return std::vector<std::filesystem::path>{"/fake/simulator"}; }};
   };
+}
+
+/// Flies the scenario in an empty world, which loads at once.
+inline void fly_in_empty_world(scenario::Scenario& scenario, const ScratchFolder& folder) {
+  scenario.world = folder.write("empty.sdf", "<sdf version='1.7'><world name='w'/></sdf>");
+  scenario.anchors.clear();
 }
 
 }  // namespace tether::runner

@@ -2,6 +2,8 @@
 
 #include "sut_environment.h"
 
+#include <cstdlib>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -96,6 +98,24 @@ TEST(LocalSut, ChecksTheProgramsAndCoresOfAScenario) {
   error = bad_file_error([&] { sut_programs(scenario, {}); });
   EXPECT_EQ(error.where().file, "/s.toml");
   EXPECT_EQ(error.subject(), "uav2");
+}
+
+TEST(LocalSut, NeedsThePluginForACountedTarget) {
+  const ScratchFolder scratch;
+  scenario::Scenario scenario;
+  scenario.uavs.resize(1);
+  scenario.uavs[0].sut.command = {"sh"};
+  scenario::Condition condition;
+  condition.target = target({"sh"}, "");
+  condition.target->emulator.emplace().program = "sh";
+  const std::string plugin = scratch.write("plugin.so", "");
+  ::setenv("TETHER_COUNTER_PLUGIN", plugin.c_str(), 1);
+  EXPECT_EQ(sut_programs(scenario, condition).back(), plugin);
+  ::setenv("TETHER_COUNTER_PLUGIN", scratch.path("none").c_str(), 1);
+  const Error error =
+      thrown_error(ErrorCode::kSetup, [&] { require_sut_programs(scenario, condition); });
+  EXPECT_EQ(error.subject(), "TETHER_COUNTER_PLUGIN");
+  ::unsetenv("TETHER_COUNTER_PLUGIN");
 }
 
 TEST(CpusFor, TakesTheLastCpusAndDifferentOnesForEachSut) {

@@ -20,6 +20,7 @@ class Trial : public testing::Test {
   Trial() {
     spec_.scenario = scenario::load_scenario(std::filesystem::path(TETHER_SOURCE_DIR) /
                                              "data/scenarios/face_anchor.toml");
+    fly_in_empty_world(spec_.scenario, scratch_);
     spec_.condition = spec_.scenario.conditions.front();
     spec_.condition.simulator = "fake";
     spec_.folder = scratch_.path("out");
@@ -80,7 +81,6 @@ TEST_F(Trial, IsInterruptedByAStopRequest) {
 }
 
 TEST_F(Trial, KeepsWarningsAndPassesThemOnBeforeTheRun) {
-  spec_.scenario.anchors.clear();
   spec_.scenario.world = scratch_.write(
       "w.sdf", "<sdf version='1.7'>\n<world name='w'>\n<bogus/>\n<bogus/></world></sdf>");
   std::vector<Warning> passed_on;

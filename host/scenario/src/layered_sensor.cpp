@@ -2,6 +2,7 @@
 
 #include "read_sensor_profile.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
@@ -33,6 +34,18 @@ void note(FileLocation& at, const SensorProfile& layer,
     if (!layer.lines.contains(key)) continue;
     at = layer.at(key);
     return;
+  }
+}
+
+/// Refuses the keys that do not fit the sensor's type in SDF.
+void refuse(const SensorProfile& layer, std::initializer_list<std::string_view> keys,
+            const sim::Sensor& sensor, std::string_view reason) {
+  for (const std::string_view key : keys) {
+    if (!layer.lines.contains(key)) continue;
+    throw Error(
+        ErrorCode::kBadFile, layer.at(key),
+        fmt::format("'{}' does not fit the camera '{}', because {}", key, sensor.name, reason))
+        .about(std::string(key));
   }
 }
 
@@ -94,12 +107,21 @@ void LayeredSensor::lay_timing(const SensorProfile& layer) {
 }
 
 void LayeredSensor::lay_model(const SensorProfile& layer, sim::CameraModel& camera) {
+  if (!uav::has_depth(camera.kind))
+    refuse(layer, {"min_m", "max_m"}, *sensor_, "it measures no depths");
+  if (camera.kind == uav::CameraKind::kSegmentation && layer.pixel_noise &&
+      *layer.pixel_noise != sim::Noise{}) {
+    refuse(layer, {"noise"}, *sensor_, "labels have no noise");
+  }
   remake_lens(camera.intrinsics, layer);
   if (layer.distortion) distort(camera.intrinsics, *layer.distortion);
   replace(camera.pixel_noise, layer.pixel_noise);
   replace(camera.exposure_s, layer.exposure_s);
   replace(camera.readout_s, layer.readout_s);
   note(shutter_at_, layer, {"exposure_ms", "readout_ms", "timing"});
+  replace(camera.depth_min_m, layer.min_m);
+  replace(camera.depth_max_m, layer.max_m);
+  note(limits_at_, layer, {"min_m", "max_m"});
 }
 
 void LayeredSensor::lay_model(const SensorProfile& layer, sim::ImuModel& imu) {
@@ -120,6 +142,10 @@ void LayeredSensor::lay_model(const SensorProfile& layer, sim::RangeModel& range
 }
 
 uav::SensorTiming LayeredSensor::finish() {
+  // A camera sees as far as it measures.
+  if (auto* camera = std::get_if<sim::CameraModel>(&sensor_->model)) {
+    camera->far_m = std::max(camera->far_m, camera->depth_max_m);
+  }
   std::visit([&](const auto& model) { check(model); }, sensor_->model);
   if (is_timed_) {
     const auto* periodic = std::get_if<uav::PeriodicTiming>(&timing_);
@@ -132,6 +158,7 @@ uav::SensorTiming LayeredSensor::finish() {
 // readout, since the rows of the next image follow.
 void LayeredSensor::check(const sim::CameraModel& camera) const {
   constexpr double kLongest_s = 1.0;
+  if (uav::has_depth(camera.kind)) check_limits(camera.depth_min_m, camera.depth_max_m);
   const auto refuse = [&](const std::string& problem) {
     throw Error(
         ErrorCode::kBadFile, shutter_at_,
@@ -150,13 +177,13 @@ void LayeredSensor::check(const sim::CameraModel& camera) const {
   }
 }
 
-void LayeredSensor::check(const sim::RangeModel& range) const {
-  if (range.min_m < range.max_m) return;
+void LayeredSensor::check_limits(double min_m, double max_m) const {
+  if (min_m < max_m) return;
   throw Error(
       ErrorCode::kBadFile, limits_at_,
-      fmt::format("the rangefinder '{}' has min_m = {:.6g} and max_m = {:.6g}. min_m must be "
-                  "less than max_m.",
-                  sensor_->name, range.min_m, range.max_m))
+      fmt::format("the sensor '{}' has min_m = {:.6g} and max_m = {:.6g}. min_m must be less than "
+                  "max_m.",
+                  sensor_->name, min_m, max_m))
       .about(sensor_->name);
 }
 

@@ -15,7 +15,8 @@ class LayeredSensor {
   explicit LayeredSensor(sim::Sensor& sensor);
 
   const sim::Sensor& sensor() const { return *sensor_; }
-  /// @throws Error(kBadFile) at a key of `layer` that a sensor of this kind does not support.
+  /// @throws Error(kBadFile) at a key of `layer` that a sensor of this kind does not support: also
+  ///   limits of a camera without depths, and noise of a segmentation camera.
   void lay(const SensorProfile& layer);
   /// After the last layer: sets the sensor's update rate and returns its timing.
   /// @throws Error(kBadFile), about the sensor, at the last layer that set one of two values that
@@ -29,11 +30,12 @@ class LayeredSensor {
   void lay_model(const SensorProfile& layer, sim::RangeModel& range);
   void check(const sim::CameraModel& camera) const;
   void check(const sim::ImuModel&) const {}
-  void check(const sim::RangeModel& range) const;
+  void check(const sim::RangeModel& range) const { check_limits(range.min_m, range.max_m); }
+  void check_limits(double min_m, double max_m) const;
 
   sim::Sensor* sensor_;
   uav::SensorTiming timing_;
-  FileLocation limits_at_;   // where a limit of a rangefinder was last set
+  FileLocation limits_at_;   // where a limit of distances was last set
   FileLocation shutter_at_;  // where a camera's shutter or period was last set
   bool is_timed_ = false;    // by a layer
 };

@@ -60,10 +60,95 @@ std::vector<std::string> read_conditions(const toml::Table& table, const Scenari
   return conditions;
 }
 
-CampaignScenario read_scenario(const toml::Table& table) {
+// Sweeps.
+
+using Settings = std::vector<Setting>;
+
+// One row for each key of the sweep, with all of its values; tables in it are parts of paths.
+void add_rows(const toml::Table& table, const std::string& path,
+              const std::filesystem::path& folder, std::vector<Settings>& rows) {
+  for (const std::string& key : table.keys()) {
+    if (path.empty() && key == "paired") continue;
+    if (table.is_table(key)) {
+      add_rows(table.table(key), path + key + ".", folder, rows);
+      continue;
+    }
+    rows.emplace_back();
+    std::set<std::string> seen;
+    for (const std::string& value : table.scalars_as_texts(key)) {
+      if (!seen.insert(value).second)
+        table.fail(key, fmt::format("has {} twice. Every point is flown once.", value));
+      rows.back().push_back(parse_setting(fmt::format("{}{}={}", path, key, value), folder));
+    }
+  }
+}
+
+std::vector<Settings> paired(const toml::Table& sweep, const std::vector<Settings>& rows) {
+  std::vector<Settings> points(rows.front().size());
+  for (const Settings& row : rows) {
+    if (row.size() != points.size())
+      sweep.fail("paired",
+                 fmt::format("needs as many values of each key, but '{}' has {} and "
+                             "'{}' {}. Make them equal, or remove 'paired' to fly all "
+                             "combinations.",
+                             rows.front().front().key, points.size(), row.front().key, row.size()));
+    for (std::size_t i = 0; i < points.size(); ++i) points[i].push_back(row[i]);
+  }
+  return points;
+}
+
+// One point without settings if there is no sweep.
+std::vector<Settings> read_sweep(const toml::Table& root, const std::filesystem::path& folder) {
+  constexpr std::size_t kMostPoints = 1000;
+  if (!root.has("sweep")) return {{}};
+  const toml::Table sweep = root.table("sweep");
+  std::vector<Settings> rows;
+  add_rows(sweep, "", folder, rows);
+  if (rows.empty()) root.fail("sweep", "must have a key of the scenario with an array of values.");
+  if (sweep.boolean_or("paired", false)) return paired(sweep, rows);
+  std::vector<Settings> points = {{}};
+  for (const Settings& row : rows) {
+    std::vector<Settings> longer;
+    for (const Settings& point : points) {
+      for (const Setting& setting : row) {
+        longer.push_back(point);
+        longer.back().push_back(setting);
+      }
+    }
+    points = std::move(longer);
+    if (points.size() > kMostPoints)
+      root.fail("sweep", fmt::format("has more than {} combinations. Use fewer values, or paired = "
+                                     "true to fly the first values together, then the second ones.",
+                                     kMostPoints));
+  }
+  return points;
+}
+
+std::string text_of(const Settings& settings) {
+  std::string text;
+  for (const auto& [key, value] : settings)
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", key, value);
+  return text;
+}
+
+// A mistake in a value of the sweep is one of the campaign file.
+Scenario load_point(const toml::Table& root, const std::filesystem::path& file,
+                    const Settings& point) {
+  if (point.empty()) return load_scenario(file);
+  try {
+    return load_scenario(file, point);
+  } catch (const Error& error) {
+    root.fail("sweep", fmt::format("with {}: {}", text_of(point), error.what()));
+  }
+}
+
+CampaignScenario read_scenario(const toml::Table& root, const toml::Table& table,
+                               const Settings& point) {
   constexpr std::array<std::string_view, 5> kTables = {"I", "II", "III", "IV", "V"};
   CampaignScenario entry;
-  entry.scenario = load_scenario(table.existing_file("file"));
+  const std::filesystem::path file = table.existing_file("file");
+  entry.scenario = load_point(root, file, point);
+  if (!point.empty()) entry.swept_from = load_scenario(file).name;
   entry.conditions = read_conditions(table, entry.scenario);
   if (table.has("profile")) {
     entry.profile = table.existing_file("profile");
@@ -79,21 +164,24 @@ Campaign load_campaign(const std::filesystem::path& file) {
   Campaign campaign;
   campaign.file = std::filesystem::absolute(file).lexically_normal();
   const toml::Document document = toml::Document::load(campaign.file);
-  const toml::Table root = document.root(
-      {"name", "description", "trials", "first_seed", "seeds", "images_of_first_seed", "scenario"});
+  const toml::Table root = document.root({"name", "description", "trials", "first_seed", "seeds",
+                                          "images_of_first_seed", "scenario", "sweep"});
   campaign.name = root.identifier("name");
   campaign.description = root.text_or("description", "");
   campaign.seeds = read_seeds(root);
   campaign.images_of_first_seed = root.boolean_or("images_of_first_seed", false);
+  const std::vector<Settings> points = read_sweep(root, campaign.file.parent_path());
   std::set<std::string> names;
   for (const toml::Table& table :
        root.tables("scenario", {"file", "conditions", "profile", "paper_table"})) {
-    campaign.scenarios.push_back(read_scenario(table));
-    const std::string& name = campaign.scenarios.back().scenario.name;
-    if (!names.insert(name).second) {
-      table.fail(
-          "file",
-          fmt::format("is a second scenario with the name \"{}\". Names must be unique.", name));
+    for (const Settings& point : points) {
+      campaign.scenarios.push_back(read_scenario(root, table, point));
+      const std::string& name = campaign.scenarios.back().scenario.name;
+      if (!names.insert(name).second) {
+        table.fail(
+            "file",
+            fmt::format("is a second scenario with the name \"{}\". Names must be unique.", name));
+      }
     }
   }
   return campaign;

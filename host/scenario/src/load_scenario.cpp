@@ -1,6 +1,7 @@
 #include "read_replay.h"
 #include "read_sensor_profile.h"
 #include "read_sut.h"
+#include "settings.h"
 
 #include <algorithm>
 #include <array>
@@ -71,7 +72,15 @@ UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_su
   uav.command_latency = table.duration_or("command_latency_ms", kLatency_ms, Duration{0});
   uav.profile = read_profile(table, scenario);
   read_sensors(table, scenario, uav);
+  if (table.has("energy")) {
+    uav.energy = load_energy(table.existing_file("energy"));
+    scenario.files.push_back(uav.energy->file);
+  }
   uav.sut = read_sut(table, default_sut, scenario);
+  if (uav.sut.mission)
+    mission::require_possible(*uav.sut.mission, {.anchors = scenario.anchors,
+                                                 .time_limit = scenario.time_limit,
+                                                 .has_battery = uav.energy.has_value()});
   return uav;
 }
 
@@ -80,7 +89,7 @@ void read_uavs(const toml::Table& root, Scenario& scenario) {
   std::set<std::string> names;
   for (const toml::Table& table :
        root.tables("uav", {"name", "model", "position_m", "yaw_deg", "yaw_spread_deg",
-                           "command_latency_ms", "profile", "sensors", "sut"})) {
+                           "command_latency_ms", "profile", "sensors", "energy", "sut"})) {
     scenario.uavs.push_back(read_uav(table, default_sut, scenario));
     const std::string& name = scenario.uavs.back().placement.name;
     if (!names.insert(name).second) {
@@ -210,7 +219,8 @@ const MetricKind& read_metric_kind(const toml::Table& table) {
 }
 
 std::string limit_key(const MetricKind& kind) {
-  return (kind.is_better_if_more ? "min" : "max") + unit_suffix(kind.unit);
+  return (kind.is_better_if_more ? "min" : "max") +
+         (kind.unit == "J" ? "_j" : unit_suffix(kind.unit));
 }
 
 void reject_unsupported(const toml::Table& table, const MetricKind& kind) {
@@ -273,7 +283,7 @@ void read_metrics(const toml::Table& root, Scenario& scenario) {
   std::set<std::string> names;
   for (const toml::Table& table : root.tables_or_none(
            "metric", {"name", "kind", "label", "uav", "anchor", "sensor", "threshold_deg", "max",
-                      "threshold_m_s", "max_s", "max_ms", "max_m", "max_deg", "min_m"})) {
+                      "threshold_m_s", "max_s", "max_ms", "max_m", "max_deg", "max_j", "min_m"})) {
     scenario.metrics.push_back(read_metric(table, scenario));
     const std::string& name = scenario.metrics.back().name;
     if (!names.insert(name).second) {
@@ -343,14 +353,16 @@ const Condition* Scenario::find_condition(std::string_view condition) const {
   return found == conditions.end() ? nullptr : &*found;
 }
 
-Scenario load_scenario(const std::filesystem::path& file) {
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings) {
   Scenario scenario;
   scenario.file = std::filesystem::absolute(file).lexically_normal();
-  const toml::Document document = toml::Document::load(scenario.file);
+  toml::Document document = toml::Document::load(scenario.file);
+  for (const Setting& setting : settings) apply(setting, document, scenario.file);
+  scenario.settings = settings;
   const toml::Table root = document.root(
       {"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s", "connect_limit_s",
        "max_contact_speed_m_s", "anchors", "uav", "sut", "condition", "metric", "record"});
-  scenario.name = root.identifier("name");
+  scenario.name = root.identifier("name") + name_suffix(settings);
   scenario.description = root.text_or("description", "");
   scenario.world = root.existing_file("world");
   scenario.files = {scenario.file, scenario.world};

@@ -1,3 +1,5 @@
+#include "read_power.h"
+
 #include <array>
 #include <cmath>
 
@@ -114,7 +116,7 @@ Target load_target(const std::filesystem::path& file) {
   const toml::Document document = toml::Document::load(target.file);
   const toml::Table root = document.root(
       {"name", "description", "address", "clock", "cpu_factor", "cpu_factor_interval", "cores",
-       "launcher", "program_folder", "emulator", "cpu_model", "sysroot", "cost_ns"});
+       "launcher", "program_folder", "emulator", "cpu_model", "sysroot", "cost_ns", "power"});
   target.name = root.identifier("name");
   if (slug(target.name).empty()) {
     root.fail("name", "must contain a letter or a digit, because it becomes the name of a folder.");
@@ -131,6 +133,7 @@ Target load_target(const std::filesystem::path& file) {
   target.launcher = read_launcher(root, target);
   target.emulator = read_emulator(root, target);
   if (target.emulator) target.launcher = {target.emulator->program};
+  if (root.has("power")) target.power = read_power(root.table("power", {"idle_w", "busy_core_w"}));
   target.program_folder = read_program_folder(root, target);
   return target;
 }

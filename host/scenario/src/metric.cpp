@@ -65,6 +65,10 @@ constexpr std::array kMetricKinds = {
                .is_better_if_more = true,
                .of_any_flight = true,
                .help = "least distance from the UAV's collision shapes to any other one"},
+    MetricKind{.name = "energy_j",
+               .label = "Energy",
+               .unit = "J",
+               .help = "what the UAV's battery lost until the SUT finished; needs 'energy'"},
 };
 
 }  // namespace

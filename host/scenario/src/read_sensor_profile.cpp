@@ -22,6 +22,9 @@ constexpr std::array<std::string_view, 3> kSensorKinds = {"camera", "imu", "rang
 struct KeyRule {
   std::string_view key;
   std::optional<SensorKind> kind{};  // none: of any
+  std::optional<SensorKind> other_kind{};
+
+  bool allows(SensorKind sensor) const { return !kind || kind == sensor || other_kind == sensor; }
 };
 
 constexpr std::array kKeys = {
@@ -41,8 +44,8 @@ constexpr std::array kKeys = {
     KeyRule{"readout_ms", SensorKind::kCamera},
     KeyRule{"angular_velocity_noise_rad_s", SensorKind::kImu},
     KeyRule{"linear_acceleration_noise_m_s2", SensorKind::kImu},
-    KeyRule{"min_m", SensorKind::kRange},
-    KeyRule{"max_m", SensorKind::kRange},
+    KeyRule{"min_m", SensorKind::kRange, SensorKind::kCamera},
+    KeyRule{"max_m", SensorKind::kRange, SensorKind::kCamera},
     KeyRule{"resolution_m", SensorKind::kRange},
     KeyRule{"field_of_view_deg", SensorKind::kRange},
     KeyRule{"dropout_probability", SensorKind::kRange},
@@ -53,7 +56,7 @@ constexpr std::array kKeys = {
 std::vector<std::string_view> keys_of(std::optional<SensorKind> kind) {
   std::vector<std::string_view> keys;
   for (const KeyRule& rule : kKeys) {
-    if (!kind || !rule.kind || rule.kind == kind) keys.push_back(rule.key);
+    if (!kind || rule.allows(*kind)) keys.push_back(rule.key);
   }
   return keys;
 }
@@ -191,13 +194,17 @@ void read_imu(const toml::Table& imu, SensorProfile& profile) {
   profile.linear_acceleration_noise = read_noise(imu, "linear_acceleration_noise_m_s2");
 }
 
-void read_range(const toml::Table& range, SensorProfile& profile) {
-  constexpr toml::Range kDistance_m{.min = 0.0, .max = 1e5};
+constexpr toml::Range kDistance_m{.min = 0.0, .max = 1e5};
+
+void read_limits(const toml::Table& sensor, SensorProfile& profile) {
   constexpr toml::Range kFarthest_m{.min = 0.0, .max = 1e5, .above_min = true};
+  profile.min_m = sensor.number_if("min_m", kDistance_m);
+  profile.max_m = sensor.number_if("max_m", kFarthest_m);
+}
+
+void read_range(const toml::Table& range, SensorProfile& profile) {
   constexpr toml::Range kFieldOfView_deg{.min = 0.0, .max = 180.0, .below_max = true};
   constexpr toml::Range kProbability{.min = 0.0, .max = 1.0};
-  profile.min_m = range.number_if("min_m", kDistance_m);
-  profile.max_m = range.number_if("max_m", kFarthest_m);
   profile.resolution_m = range.number_if("resolution_m", kDistance_m);
   profile.field_of_view_rad =
       scaled(range.number_if("field_of_view_deg", kFieldOfView_deg), rad_from_deg(1.0));
@@ -225,6 +232,7 @@ SensorProfile read_sensor_profile(const toml::Table& sensors, std::string_view n
   if (kind_key == KindKey::kRequired && !profile.kind) (void)sensor.text("kind");
   read_timing(sensor, files, profile);
   read_mounting(sensor, profile);
+  read_limits(sensor, profile);
   read_camera(sensor, profile);
   read_imu(sensor, profile);
   read_range(sensor, profile);
@@ -233,7 +241,7 @@ SensorProfile read_sensor_profile(const toml::Table& sensors, std::string_view n
 
 void require_kind(const SensorProfile& profile, std::string_view sensor, SensorKind kind) {
   for (const KeyRule& rule : kKeys) {
-    if (!rule.kind || rule.kind == kind || !profile.lines.contains(rule.key)) continue;
+    if (rule.allows(kind) || !profile.lines.contains(rule.key)) continue;
     throw Error(ErrorCode::kBadFile, profile.at(rule.key),
                 fmt::format("'{}' is a key of the kind \"{}\", but the sensor '{}' is of the kind "
                             "\"{}\"; {}",

@@ -30,6 +30,9 @@ void slow_down(Condition& condition, double slowdown) {
   if (condition.clock == Clock::kScripted) {
     const double computing_ns = static_cast<double>(condition.computing.count()) * slowdown;
     condition.computing = Duration(std::llround(computing_ns));
+  } else if (condition.clock == Clock::kCounted) {
+    for (std::uint64_t& units : condition.target->emulator->cost_units)
+      units = static_cast<std::uint64_t>(std::llround(static_cast<double>(units) * slowdown));
   } else {
     condition.cpu_factor *= slowdown;
   }

@@ -3,6 +3,7 @@
 #include "sensor_world.h"
 #include "test_files.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -92,6 +93,36 @@ TEST_F(Layered, EveryKeyOfARangefinderArrives) {
   EXPECT_THAT(values_of(model.noise), ElementsAre(0.01, 0.005, 0.0, 0.0, 0.0, 0.0));
   EXPECT_EQ(model.rays_S, sim::cone_of_rays(rad_from_deg(27)));
   EXPECT_GT(model.rays_S.size(), 1u);
+}
+
+// The SDF's camera sees up to 100 m.
+TEST_F(Layered, LimitsOfDepthsArriveAndTheCameraSeesAsFar) {
+  for (const auto kind : {uav::CameraKind::kDepth, uav::CameraKind::kRgbd}) {
+    for (const double max_m : {30.0, 300.0}) {
+      sim::Sensor camera = make_camera("camera");
+      auto& model = std::get<sim::CameraModel>(camera.model);
+      model.kind = kind;
+      lay(camera, {layer("camera", "max_m = 500\n"),
+                   layer("camera", fmt::format("min_m = 0.4\nmax_m = {}\n", max_m))});
+      EXPECT_THAT((std::vector{model.depth_min_m, model.depth_max_m, model.far_m}),
+                  ElementsAre(0.4, max_m, std::max(100.0, max_m)));
+    }
+  }
+}
+
+TEST_F(Layered, RefusesWhatACameraOfThatTypeCannotHave) {
+  const auto lay_on = [&](uav::CameraKind kind, const std::string& lines) {
+    sim::Sensor camera = make_camera("camera");
+    std::get<sim::CameraModel>(camera.model).kind = kind;
+    std::get<sim::CameraModel>(camera.model).depth_max_m = 20.0;
+    lay(camera, {layer("camera", "delay = { kind = \"constant\", ms = 5 }\n" + lines)});
+  };
+  using enum uav::CameraKind;
+  expect_refusal(5, "min_m", [&] { lay_on(kColor, "min_m = 1\n"); });
+  expect_refusal(5, "max_m", [&] { lay_on(kSegmentation, "max_m = 1\n"); });
+  expect_refusal(5, "noise", [&] { lay_on(kSegmentation, "noise = { stddev = 1 }\n"); });
+  EXPECT_NO_THROW(lay_on(kSegmentation, "noise = {}\n"));
+  expect_refusal(5, "camera", [&] { lay_on(kDepth, "min_m = 20\n"); });
 }
 
 // What a layer does not set stays.

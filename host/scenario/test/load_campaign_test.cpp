@@ -76,6 +76,47 @@ TEST_F(LoadCampaign, RefusesWhatCannotBeRun) {
     expect_refusal(change.line, change.subject, [&] { load_with(change.from, change.to); });
 }
 
+std::vector<std::string> names_of(const Campaign& campaign) {
+  std::vector<std::string> names;
+  for (const CampaignScenario& entry : campaign.scenarios) names.push_back(entry.scenario.name);
+  return names;
+}
+
+TEST_F(LoadCampaign, SweepsAllCombinationsOrPairs) {
+  const std::string keys = "time_limit_s = [5, 6]\ncondition.cpu_factor = [1, 2.5]\n";
+  const Campaign grid = load_with("[[scenario]]", "[sweep]\n" + keys + "[[scenario]]");
+  EXPECT_THAT(
+      names_of(grid),
+      ElementsAre("full-cpu_factor-1-time_limit_s-5", "full-cpu_factor-1-time_limit_s-6",
+                  "full-cpu_factor-2.5-time_limit_s-5", "full-cpu_factor-2.5-time_limit_s-6"));
+  EXPECT_EQ(grid.scenarios[2].scenario.find_condition("host")->cpu_factor, 2.5);
+  EXPECT_EQ(grid.scenarios[2].swept_from, "full");
+  EXPECT_THAT(
+      names_of(load_with("[[scenario]]", "[sweep]\npaired = true\n" + keys + "[[scenario]]")),
+      ElementsAre("full-cpu_factor-1-time_limit_s-5", "full-cpu_factor-2.5-time_limit_s-6"));
+}
+
+TEST_F(LoadCampaign, RefusesSweepsThatCannotBeFlown) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"sut.parameters.nonsense = [1]", "sweep"},
+      {"time_limit_s = [-1]", "sweep"},
+      {"time_limit_s = 5", "time_limit_s"},
+      {"time_limit_s = []", "time_limit_s"},
+      {"time_limit_s = [5, 5]", "time_limit_s"},
+      {"paired = true\ntime_limit_s = [5]\ncondition.cpu_factor = [1, 2]", "paired"},
+      {"paired = true", "sweep"},
+      {"", "sweep"}};
+  for (const auto& [text, subject] : cases) {
+    SCOPED_TRACE(text);
+    const Error error = bad_file_error([&, text = std::string(text)] {
+      load_with("[[scenario]]", "[sweep]\n" + text + "\n[[scenario]]");
+    });
+    EXPECT_EQ(error.subject(), subject);
+    EXPECT_TRUE(error.where().file.ends_with("campaign.toml")) << error.what();
+    EXPECT_GE(error.where().line, 5);
+  }
+}
+
 TEST_F(LoadCampaign, LocatesErrorsInTheScenario) {
   const auto file = write_project(scratch_, replaced(kFullScenario, "step_ms = 2", "step_ms = 0"));
   expect_refusal(4, "step_ms", [&] { load(kFullCampaign); });

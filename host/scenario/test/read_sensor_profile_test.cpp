@@ -48,7 +48,7 @@ TEST_F(ReadSensorProfile, KnowsTheLineOfEachKey) {
 
 TEST_F(ReadSensorProfile, RefusesKeysOfAnotherKind) {
   expect_refused(
-      {{"rate_hz = 25", "rate_hz = 25\nmin_m = 1", 8, "min_m"},
+      {{"rate_hz = 25", "rate_hz = 25\nresolution_m = 1", 8, "resolution_m"},
        {"min_m = 0.05", "exposure_ms = 3", 44, "exposure_ms"},
        {"min_m = 0.05", "angular_velocity_noise_rad_s = {}", 44, "angular_velocity_noise_rad_s"}});
   SensorProfile layer;

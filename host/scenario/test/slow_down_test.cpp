@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
@@ -26,6 +27,16 @@ TEST(SlowDown, MultipliesTheComputingTimeOfAScriptedClock) {
   condition.computing = std::chrono::milliseconds(20);
   slow_down(condition, 1.5);
   EXPECT_EQ(condition.computing, std::chrono::milliseconds(30));
+  EXPECT_EQ(condition.cpu_factor, 1.0);
+}
+
+TEST(SlowDown, MultipliesTheCostsOfACountedClock) {
+  Condition condition;
+  condition.clock = Clock::kCounted;
+  condition.target.emplace().emulator.emplace().cost_units = {3, 0, 10};
+  slow_down(condition, 1.5);
+  EXPECT_THAT(condition.target->emulator->cost_units,
+              testing::ElementsAre(5, 0, 15, 0, 0, 0, 0, 0, 0, 0));
   EXPECT_EQ(condition.cpu_factor, 1.0);
 }
 

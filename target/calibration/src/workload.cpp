@@ -9,10 +9,9 @@
 #include <optional>
 #include <utility>
 
-#include <time.h>
-
 #include <tether/base/text_table.h>
 #include <tether/base/units.h>
+#include <tether/os/clock.h>
 #include <tether/os/counted_program.h>
 #include <tether/vision/anchor_tracker.h>
 #include <tether/vision/relative_position.h>
@@ -26,12 +25,6 @@ namespace {
 
 /// Bearing and distance take so little that one alone is below what a clock can tell.
 constexpr int kPositionsPerImage = 2000;
-
-Duration read_clock(clockid_t clock) {
-  timespec t{};
-  ::clock_gettime(clock, &t);
-  return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
-}
 
 vision::TrackerOptions tracker_options() {
   vision::TrackerOptions options;
@@ -198,8 +191,8 @@ std::string difference(const std::optional<View>& seen, const View& expected) {
 }
 
 Stopwatch system_stopwatch() {
-  Stopwatch stopwatch{[] { return read_clock(CLOCK_PROCESS_CPUTIME_ID); },
-                      [] { return read_clock(CLOCK_MONOTONIC); }};
+  Stopwatch stopwatch{[] { return os::read_clock(CLOCK_PROCESS_CPUTIME_ID); },
+                      [] { return os::read_clock(CLOCK_MONOTONIC); }};
   if (const char* file = std::getenv("TETHER_COUNTS")) {
     // Shared, because a std::function is copied.
     if (const std::shared_ptr<CountPage> page = os::map_counts(file))

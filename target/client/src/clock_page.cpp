@@ -8,10 +8,10 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <tether/client/exec/clock_page.h>
+#include <tether/os/clock.h>
 
 namespace tether::client {
 namespace {
@@ -72,9 +72,7 @@ ExecTime ClockPage::now() const {
 }
 
 Duration read_monotonic() {
-  timespec t{};
-  ::clock_gettime(CLOCK_MONOTONIC, &t);
-  return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
+  return os::read_clock(CLOCK_MONOTONIC);
 }
 
 void SharedClockPage::Unmap::operator()(ClockPage* mapped) const {

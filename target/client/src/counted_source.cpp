@@ -30,6 +30,10 @@ constexpr const char* kProcessReason =
     "the program started a process, whose work is not counted. With the clock \"counted\", start "
     "processes before the program connects, and let them end; or use another clock";
 
+std::uint64_t branches(const CountPage& page) {
+  return page.counts[static_cast<std::size_t>(WorkClass::kBranch)].load();
+}
+
 class CountedSource final : public TimeSource {
  public:
   explicit CountedSource(os::MappedCounts page) : page_(std::move(page)) {
@@ -52,10 +56,13 @@ class CountedSource final : public TimeSource {
     const std::uint64_t total = total_units();
     before_ += since_resume(total);
     resumed_at_units_ = total;
+    resumed_at_work_ = work();
     return before_;
   }
 
   Status complete() const override {
+    if (work() == resumed_at_work_)
+      return unusable("its page of counts does not advance while the program computes");
     switch (static_cast<CountFault>(page_->fault.load())) {
       case CountFault::kNone:
         return ok_status();
@@ -75,6 +82,9 @@ class CountedSource final : public TimeSource {
     return total;
   }
 
+  // No program can do without branches between two readings, not even this library.
+  std::uint64_t work() const { return branches(*page_); }
+
   Duration since_resume(std::uint64_t total_units) const {
     return Duration(static_cast<std::int64_t>((total_units - resumed_at_units_) /
                                               static_cast<std::uint64_t>(kCostUnitsPerNs)));
@@ -83,11 +93,8 @@ class CountedSource final : public TimeSource {
   os::MappedCounts page_;
   mutable Duration before_{0};
   mutable std::uint64_t resumed_at_units_ = total_units();
+  mutable std::uint64_t resumed_at_work_ = work();
 };
-
-std::uint64_t branches(const CountPage& page) {
-  return page.counts[static_cast<std::size_t>(WorkClass::kBranch)].load();
-}
 
 /// A program that an emulated program started may run without the emulator.
 bool is_counted(const CountPage& page) {

@@ -11,8 +11,8 @@ namespace tether::client {
 
 /// Counted work × its costs. A reading is exact and does not depend on how the machine is loaded:
 /// from `elapsed_at_resume` to `elapsed` the same work takes the same time, whatever was counted
-/// before. `complete()` fails once two threads have computed at the same time, or a process was
-/// started. @pre the plugin counts in `page`
+/// before. `complete()` fails once two threads have computed at the same time, a process was
+/// started, or nothing was counted since the last reply. @pre the plugin counts in `page`
 std::unique_ptr<TimeSource> source_of(os::MappedCounts page);
 
 /// The clock of a program that runs under an emulator with Tether's plugin. `file`: its page of

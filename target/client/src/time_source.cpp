@@ -8,19 +8,15 @@
 #include <string>
 
 #include <pthread.h>
-#include <time.h>
 
 #include <tether/client/sut_clock.h>
+#include <tether/os/clock.h>
 #include <tether/os/process_table.h>
 
 namespace tether::client {
 namespace {
 
-Duration read_clock(clockid_t clock) {
-  timespec t{};
-  ::clock_gettime(clock, &t);
-  return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
-}
+using os::read_clock;
 
 Duration scaled(Duration measured, double factor) {
   if (factor == 1.0) return measured;

@@ -1,25 +1,14 @@
 #include "wall_timer.h"
 
-#include <cerrno>
-
-#include <time.h>
+#include <tether/os/clock.h>
 
 namespace tether::client {
 namespace {
 
 class SystemWallTimer final : public WallTimer {
  public:
-  Duration now() const override {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
-  }
-  void sleep_until(Duration instant) override {
-    if (instant <= now()) return;
-    const timespec t{instant.count() / 1'000'000'000, instant.count() % 1'000'000'000};
-    while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
-    }
-  }
+  Duration now() const override { return os::read_clock(CLOCK_MONOTONIC); }
+  void sleep_until(Duration instant) override { os::sleep_until(instant); }
 };
 
 }  // namespace

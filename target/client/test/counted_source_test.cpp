@@ -56,10 +56,12 @@ TEST_F(CountedSource, DoesNotCountWhileTheProgramIsHeld) {
   EXPECT_EQ(clock.now(), from_ns<ExecTime>(5));
 }
 
-TEST_F(CountedSource, IsNotCompleteIfThreadsComputeAtOnceOrAProcessWasStarted) {
+TEST_F(CountedSource, IsNotCompleteIfCountsStandStillOrThreadsComputeOrAProcessWasStarted) {
   const auto page_of_plugin = page();
   const auto source = source_of(os::map_counts(file_));
   EXPECT_EQ(page_of_plugin->watched.load(), 1u);
+  EXPECT_EQ(source->complete().failure().kind, Failure::Kind::kInvalid) << "counts stand still";
+  page_of_plugin->counts[static_cast<std::size_t>(WorkClass::kBranch)] += 1;
   EXPECT_TRUE(source->complete());
   for (const CountFault fault : {CountFault::kThreads, CountFault::kProcess}) {
     page_of_plugin->fault.store(static_cast<std::uint32_t>(fault));

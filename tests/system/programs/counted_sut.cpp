@@ -7,6 +7,7 @@
 //   meanwhile  a thread computes while the program waits for a reply
 //   from_start a thread has computed since before it joined
 //   process    starts a process
+//   endless    computes for ever after its flight
 //   native     runs itself again, without the emulator
 #include <condition_variable>
 #include <cstdint>
@@ -113,6 +114,7 @@ int main(int argc, char** argv) {
   // Meets the worker's next waking.
   if (mode == "meanwhile")
     for (int i = 0; i < 200; ++i) require(vehicle->sleep_for(10ms));
+  while (mode == "endless") work(1'000'000);
   require(vehicle->finish(true, "flown", "{}"));
   std::fflush(nullptr);
   std::_Exit(0);

@@ -15,8 +15,8 @@ class CountedRun : public RunTest {
  protected:
   /// `tether run` of the hover scenario with counted_sut in that mode.
   Command counted(const std::string& mode, const std::filesystem::path& out,
-                  const std::string& keys = kEmulator) const {
-    write_text(folder_ / "target.toml", keys + kCosts);
+                  const std::string& keys = kEmulator, const std::string& costs = kCosts) const {
+    write_text(folder_ / "target.toml", keys + costs);
     const auto scenario = write_hover_scenario(folder_.path(), mode,
                                                {{bad_sut_program().string(), COUNTED_SUT_PROGRAM}});
     return tether({"run", scenario, "--out", out, "--quiet", "--target", folder_ / "target.toml"},
@@ -46,6 +46,9 @@ TEST_F(CountedRun, IsTheSameToTheByte) {
   ASSERT_EQ(run(counted("good")).code, 0) << read_text(out_ / "sut-uav1.log");
   EXPECT_EQ(result()["clock"], "counted");
   EXPECT_EQ(result()["target"], "t");
+  EXPECT_EQ(result()["emulator"]["program"], "qemu-x86_64");
+  EXPECT_EQ(result()["emulator"]["cpu_model"], "Nehalem");
+  EXPECT_EQ(result()["emulator"]["costs"][1]["ns"], 1.1) << "of multiply";
   EXPECT_TRUE(result()["audit"]["passed"]);
   for (const int spinners : {0, 3}) {
     const std::vector<Spinner> load(static_cast<std::size_t>(spinners));
@@ -56,6 +59,17 @@ TEST_F(CountedRun, IsTheSameToTheByte) {
     EXPECT_EQ(read_text(again / "record.mcap"), read_text(out_ / "record.mcap"));
     EXPECT_EQ(timeless_result(again), timeless_result(out_));
   }
+}
+
+// However late it is noticed.
+TEST_F(CountedRun, EndsAProgramThatComputesForEverAtTheTimeLimit) {
+  const auto slow = substituted(kCosts, {{"integer = 0.3", "integer = 90"}});
+  for (const char* name : {"first", "second"}) {
+    ASSERT_EQ(run(counted("endless", folder_ / name, kEmulator, slow)).code, 1);
+    EXPECT_EQ(read_result(folder_ / name)["end"], "time_limit");
+  }
+  EXPECT_EQ(read_text(folder_ / "first" / "record.mcap"),
+            read_text(folder_ / "second" / "record.mcap"));
 }
 
 TEST_F(CountedRun, MayHaveThreadsThatOnlyWait) {

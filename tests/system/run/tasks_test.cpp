@@ -63,6 +63,9 @@ TEST(Inspection, AComputerThatIsTooSlowMissesAClause) {
     for (const auto& clause : result["clauses"])
       if (!clause["met"]) missed.push_back(clause["name"]);
     EXPECT_EQ(std::count(missed.begin(), missed.end(), "reaction"), code) << result["clauses"];
+    const auto& energy = result["energy"][0];
+    EXPECT_GT(energy["spent_j"]["computing"], 0.0) << energy;
+    EXPECT_EQ(energy["tasks"].size(), result["tasks"].size());
   }
 }
 

@@ -6,7 +6,6 @@
 #include <sys/types.h>
 
 #include <tether/base_testing/sanitizer.h>
-#include <tether/link/server.h>
 
 namespace tether::system_test {
 
@@ -15,9 +14,6 @@ inline constexpr bool kMemoryIsTethers = false;  // a sanitizer keeps what was f
 #else
 inline constexpr bool kMemoryIsTethers = true;
 #endif
-
-/// What `tether` may use more because of a hostile peer: what it queues for one, and a little.
-inline constexpr long kMostExtraMemory_KiB = (link::kMaxQueuedBytes >> 10) + 8 * 1024;
 
 /// Samples a process' largest memory until it ends or this is destroyed.
 class MemoryWatch {

@@ -7,8 +7,12 @@
 
 #include <tether/link/frame_socket.h>
 #include <tether/link/messages.h>
+#include <tether/link/server.h>
 
 namespace tether::system_test {
+
+/// What `tether` may use more because of a hostile peer: what it queues for one, and a little.
+inline constexpr long kMostExtraMemory_KiB = (link::kMaxQueuedBytes >> 10) + 8 * 1024;
 
 /// A connection to a run that sends any bytes.
 class RawPeer {

@@ -64,7 +64,7 @@ std::filesystem::path write_shipped_scenario(const std::filesystem::path& folder
                                              const std::string& name,
                                              const std::vector<Substitution>& substitutions) {
   const std::filesystem::path sources = TETHER_SOURCE_DIR "/data";
-  for (const char* data : {"worlds", "models", "profiles", "missions"})
+  for (const char* data : {"worlds", "models", "profiles", "missions", "energy"})
     std::filesystem::create_directory_symlink(sources / data, folder / data);
   const auto file = folder / "scenarios" / (name + ".toml");
   std::filesystem::create_directory(file.parent_path());

@@ -32,6 +32,9 @@ void Dynamics::reset() {
     flight.command = {};
     flight.state =
         uav::hover_state(*flight.airframe, world_.gravity_m_s2, yaw_rad(world_.uavs[i].X_WB.q));
+    if (!world_.uavs[i].energy) continue;
+    flight.meter.emplace(*world_.uavs[i].energy, *flight.airframe, world_.gravity_m_s2);
+    flight.sagging = *flight.airframe;
   }
   read_engine();
   recorder_.reset(X_WB_);
@@ -87,8 +90,13 @@ uav::Vec3 Dynamics::velocity_before(int engine_body, const uav::Vec3& p_W) const
 void Dynamics::apply_rotors(std::size_t uav) {
   Flight& flight = flights_[uav];
   const uav::BodyState body = body_state(uav);
-  const uav::Wrench wrench = uav::step(*flight.airframe, world_.gravity_m_s2, body, flight.command,
-                                       world_.step, flight.state);
+  const uav::MultirotorParameters& airframe = flight.meter ? flight.sagging : *flight.airframe;
+  if (flight.meter)
+    flight.sagging.max_rotor_speed_rad_s =
+        flight.airframe->max_rotor_speed_rad_s * flight.meter->speed_limit();
+  const uav::Wrench wrench =
+      uav::step(airframe, world_.gravity_m_s2, body, flight.command, world_.step, flight.state);
+  if (flight.meter) flight.meter->step(now_, world_.step, body, flight.state);
   mjtNum* out = data_->xfrc_applied + 6 * engine_body(uav);
   copy_to(rotate(body.q_WB, wrench.force_B), out);
   copy_to(rotate(body.q_WB, wrench.torque_B), out + 3);
@@ -108,6 +116,15 @@ void Dynamics::check_engine() const {
 
 bool Dynamics::contacts_dropped() const {
   return data_->warning[mjWARN_CONTACTFULL].number + data_->warning[mjWARN_CNSTRFULL].number > 0;
+}
+
+std::optional<energy::Status> Dynamics::battery(std::size_t uav) const {
+  if (!flights_[uav].meter) return std::nullopt;
+  return flights_[uav].meter->status();
+}
+
+void Dynamics::computed(std::size_t uav, Duration busy) {
+  if (flights_[uav].meter) flights_[uav].meter->computed(busy);
 }
 
 uav::BodyState Dynamics::body_state(std::size_t uav) const {

@@ -39,12 +39,16 @@ class Dynamics {
   ContactLog& contacts() { return contacts_; }
   /// Whether more contacts occurred at once than the engine keeps; those were ignored.
   bool contacts_dropped() const;
+  std::optional<energy::Status> battery(std::size_t uav) const;
+  void computed(std::size_t uav, Duration busy);
 
  private:
   struct Flight {
     const uav::MultirotorParameters* airframe;
     uav::VelocityCommand command;
     uav::MultirotorState state;
+    std::optional<energy::Meter> meter{};
+    uav::MultirotorParameters sagging{};  ///< the airframe, as far as the battery's voltage lets it
   };
 
   void apply_rotors(std::size_t uav);

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <string>
+#include <string_view>
 
 #include <assimp/BaseImporter.h>
 #include <assimp/Importer.hpp>
@@ -199,13 +201,28 @@ void keep_reader(Assimp::Importer& importer, const std::string& type) {
   }
 }
 
+// Pictures are not used, but Assimp refuses a file in which one has no name. It skips libraries
+// that it does not know.
+void hide_pictures(std::string& collada) {
+  constexpr std::string_view kLibrary = "library_images", kUnknown = "library_hidden";
+  static_assert(kLibrary.size() == kUnknown.size());
+  for (std::size_t at = 0; (at = collada.find(kLibrary, at)) != std::string::npos;) {
+    collada.replace(at, kLibrary.size(), kUnknown);
+  }
+}
+
 std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) {
-  const std::string bytes = os::read_file(file, kLargestMesh);
+  std::string bytes = os::read_file(file, kLargestMesh);
   const std::string type = type_of(file);
-  if (type == ".dae") check_collada(bytes, file);
+  if (type == ".dae") {
+    check_collada(bytes, file);
+    hide_pictures(bytes);
+  }
   auto importer = std::make_unique<Assimp::Importer>();
   keep_reader(*importer, type);
   importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  // Submeshes go by the names of nodes, as in Gazebo, not by their ids.
+  importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
   importer->SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // Of these bytes alone: a file could name any other. The importer deletes the object in the end,
   // but would leave it if it got another now; it does not read again.
@@ -218,6 +235,16 @@ std::unique_ptr<Assimp::Importer> import(const std::filesystem::path& file) {
   check_faces(*scene, file);
   importer->ApplyPostProcessing(aiProcess_Triangulate | aiProcess_FlipUVs);
   return importer;
+}
+
+// Moves the middle of its extent to the origin.
+void center(raster::Mesh& mesh) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto place = [axis](const raster::Mesh::Vertex& v) { return v.position[axis]; };
+    const auto [least, most] = std::ranges::minmax_element(mesh.vertices, {}, place);
+    const float middle = 0.5F * (place(*least) + place(*most));
+    for (raster::Mesh::Vertex& v : mesh.vertices) v.position[axis] -= middle;
+  }
 }
 
 }  // namespace
@@ -250,6 +277,7 @@ raster::Mesh MeshFiles::load(const MeshGeometry& mesh, const TextureScale& scale
                 mesh.submesh.empty() ? "has no triangle" : "has no submesh '" + mesh.submesh + "'")
         .about(mesh.submesh);
   }
+  if (mesh.is_centered) center(out);
   return out;
 }
 

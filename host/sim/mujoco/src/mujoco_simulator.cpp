@@ -91,6 +91,15 @@ class MujocoSimulator final : public Simulator {
     return dynamics_.clearance(uav);
   }
 
+  std::optional<energy::Status> battery(std::size_t uav) const override {
+    check_uav(uav);
+    return dynamics_.battery(uav);
+  }
+  void computed(std::size_t uav, Duration busy) override {
+    check_uav(uav);
+    dynamics_.computed(uav, busy);
+  }
+
   std::string description() const override {
     const std::string name = "MuJoCo " + engine_version();
     const std::string renderer = sensors_.renderer_name();

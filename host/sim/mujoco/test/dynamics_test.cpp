@@ -45,6 +45,51 @@ TEST(DynamicsTest, AWallStopsTheUav) {
   EXPECT_LT(front_m, 2.0) << "inside the wall, which begins at 1.9";
 }
 
+World world_with_battery(double charge, double resistance_ohm) {
+  World world = test_world();
+  energy::Model& model = world.uavs[0].energy.emplace();
+  model.propulsion = {.rotor_radius_m = 0.1, .efficiency = 0.7, .nominal_voltage_V = 11.1};
+  model.battery = {.capacity_C = 7560.0,
+                   .voltage_at_charge = {{0.0, 10.0}, {1.0, 12.6}},
+                   .resistance_ohm = resistance_ohm,
+                   .cut_off_V = 5.0,
+                   .initial_charge = charge};
+  return world;
+}
+
+TEST(DynamicsTest, ABatteryThatHoldsItsVoltageDoesNotChangeTheFlight) {
+  const World plain = test_world(), powered = world_with_battery(1.0, 0.01);
+  Dynamics without(plain, no_warnings()), with(powered, no_warnings());
+  for (Dynamics* dynamics : {&without, &with}) {
+    dynamics->set_command(0, {{1.0, 0.5, 0.5}, 0.5});
+    run(*dynamics, 1'000);
+  }
+  EXPECT_EQ(without.body_state(0).p_WB, with.body_state(0).p_WB);
+  EXPECT_FALSE(without.battery(0));
+  EXPECT_LT(with.battery(0)->charge, 1.0);
+}
+
+TEST(DynamicsTest, ASaggingBatteryLimitsTheClimb) {
+  World sagging = world_with_battery(0.3, 0.35);
+  const World plain = test_world();
+  Dynamics without(plain, no_warnings()), with(sagging, no_warnings());
+  for (Dynamics* dynamics : {&without, &with}) {
+    dynamics->set_command(0, {{0.0, 0.0, 2.0}, 0.0});
+    run(*dynamics, 400);
+  }
+  EXPECT_LT(with.body_state(0).v_WB.z, without.body_state(0).v_WB.z - 0.05);
+}
+
+TEST(DynamicsTest, AnEmptyBatteryDropsTheUav) {
+  const World world = world_with_battery(0.0005, 0.05);
+  Dynamics dynamics(world, no_warnings());
+  run(dynamics, 3'000);
+  ASSERT_TRUE(dynamics.battery(0)->empty_at);
+  EXPECT_LT(dynamics.body_state(0).p_WB.z, 0.3);
+  dynamics.reset();
+  EXPECT_FALSE(dynamics.battery(0)->empty_at);
+}
+
 TEST(DynamicsTest, LooseBodiesFallAndRest) {
   World world = test_world();
   Model loose = box_model("loose", {2.0, 0.0, 1.0}, {0.2, 0.2, 0.2}, {1.0, 0.0, 0.0}, false);

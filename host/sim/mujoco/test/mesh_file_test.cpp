@@ -10,6 +10,7 @@
 
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
+#include <tether/os/text_file.h>
 
 namespace tether::sim {
 namespace {
@@ -35,6 +36,16 @@ TEST(MeshFileTest, ReadsObjWithSubmeshAndScale) {
     EXPECT_NEAR(std::abs(v.position[1]), 0.5, 1e-6);
     EXPECT_NEAR(std::abs(v.position[2]), 1.0, 1e-6);
   }
+}
+
+TEST(MeshFileTest, CentersASubmesh) {
+  MeshGeometry mesh = mesh_file("triangle.dae");
+  mesh.is_centered = true;
+  const raster::Mesh triangle = load_mesh(mesh);
+  const auto& apex = triangle.vertices[triangle.triangles[0][2]].position;
+  EXPECT_NEAR(apex[0], -0.5, 1e-5);
+  EXPECT_NEAR(apex[1], 0.0, 1e-5);
+  EXPECT_NEAR(apex[2], 1.0, 1e-5);
 }
 
 TEST(MeshFileTest, KeepsTextureCoordinatesWithVDown) {
@@ -68,6 +79,31 @@ TEST(MeshFileTest, ColladaUnitsAndNodesButNotItsUpAxis) {
   EXPECT_NEAR(apex[0], 0.0, 1e-5);
   EXPECT_NEAR(apex[1], 3.0, 1e-5);
   EXPECT_NEAR(apex[2], 2.0, 1e-5);
+}
+
+// As 3ds Max writes it: the name of the node is not its id, and an image has no file.
+TEST(MeshFileTest, ColladaGoesByNamesOfNodesAndNeedsNoPictures) {
+  std::string text = os::read_file(mesh_file("triangle.dae").file);
+  const auto put = [&](const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  };
+  put("<node id=\"node\" name=\"node\">", "<node id=\"node-Body\" name=\"Body\"><node>");
+  put("<instance_geometry url=\"#tri\"/>",
+      "<instance_geometry url='#tri'><bind_material><technique_common>"
+      "<instance_material symbol='m' target='#material'/></technique_common></bind_material>"
+      "</instance_geometry></node>");
+  put("<triangles", "<triangles material='m'");
+  put("<library_visual_scenes>",
+      "<library_images><image id='picture'/></library_images><library_effects><effect id='effect'>"
+      "<profile_COMMON><technique sid='t'><phong><diffuse><texture texture='picture'/></diffuse>"
+      "</phong></technique></profile_COMMON></effect></library_effects><library_materials>"
+      "<material id='material'><instance_effect url='#effect'/></material></library_materials>"
+      "<library_visual_scenes>");
+  const ScratchFolder scratch;
+  const MeshGeometry mesh{scratch.write("max.dae", text), "Body", {1.0, 1.0, 1.0}};
+  EXPECT_EQ(load_mesh(mesh).triangles.size(), 1U);
 }
 
 TEST(MeshFileTest, RefusesAnUnknownSubmeshAndAnUnreadableFile) {

@@ -20,22 +20,12 @@ HWY_BEFORE_NAMESPACE();
 namespace tether::raster::HWY_NAMESPACE {
 namespace {
 
-// A layer's part of a tile, from one of its rows on.
-struct Part {
-  const Shading& shading;
-  const Layer& layer;
-  const Tile& tile;
-  int first_row, rows;
-
-  std::size_t first_pixel() const { return static_cast<std::size_t>(first_row) * kTile_px; }
-};
-
 // Calls `use` with each block of a tile.
 template <class Use>
 HWY_INLINE void for_each_part(const Shading& shading, const Layer& layer, const Tile& tile,
-                              const Use& use) {
+                              const TileIds& ids, const Use& use) {
   for (int row = 0; row < tile.height; row += Block::kRows) {
-    use(Part{shading, layer, tile, row, std::min(Block::kRows, tile.height - row)});
+    use(Part{shading, layer, tile, ids, row, std::min(Block::kRows, tile.height - row)});
   }
 }
 
@@ -49,112 +39,170 @@ HWY_INLINE void for_each_vector(const Part& part, const Use& use) {
   }
 }
 
+HWY_INLINE V depth_at(const Part& part, std::size_t at) {
+  const float* const inverse = part.ids.inverse_depth.data() + part.first_pixel() + at;
+  return Div(set(1.0F), hn::Load(D(), inverse));
+}
+
+// Puts places of surfaces into a block.
+HWY_INLINE void put_place(const Pixels& p, V z, const Normal& n, Cell& c) {
+  const V x = Mul(p.ray_x, z);
+  const V y = Mul(p.ray_y, z);
+  store(x, c.x);
+  store(y, c.y);
+  store(z, c.z);
+  store(dot(n.x, n.y, n.z, x, y, z), c.distance);
+  store(set(0.0F), c.diffuse);
+  store(set(0.0F), c.specular);
+}
+
+// Puts a flat triangle into vectors that see nothing else.
+template <bool kIsTextured>
+HWY_INLINE void put_flat(const Part& part, const Sight& of_part, const Block::Run& run, Block& b) {
+  const Sight sight = of_part;
+  const Facet f = *run.flat;  // copies: nothing that is stored can change them
+  const MaterialRow material = part.shading.scene.materials[f.material];
+  const Normal n{set(f.normal[0][0]), set(f.normal[1][0]), set(f.normal[2][0])};
+  for (const std::size_t at : b.places(run)) {
+    Cell& c = b.cell(at);
+    const Pixels p = sight.pixels(at);
+    const V z = depth_at(part, at);
+    put_place(p, z, n, c);
+    store(colour(material.base), c);
+    store(whole(static_cast<std::int32_t>(f.material)), c.material);
+    if (!kIsTextured) continue;
+    const TexturePoint point = texture_point(f, spot(f, p, z));
+    store(point.u, c.u);
+    store(point.v, c.v);
+    store(point.texels_per_pixel2, c.texels_per_pixel2);
+    store(level_of(material, point), c.level);
+  }
+}
+
 // Puts what some pixels see of a triangle into a block; the first into all of the vector.
 template <bool kIsFirst>
-HWY_INLINE void put_surface(const Part& part, const Facet& f, const Pixels& p, std::size_t at,
-                            hn::Mask<DI> same, Block& b) {
-  const PreparedScene& scene = part.shading.scene;
+HWY_INLINE void put_surface(const PreparedScene& scene, const Facet& f, const Spot& s,
+                            hn::Mask<DI> same, Block::Run& run, Cell& c) {
   const MaterialRow& material = scene.materials[f.material];
   const M mask = float_mask(same);
-  const auto put = [&](Block::Plane<float>& plane, V value) HWY_ATTR {
-    store(kIsFirst ? value : hn::IfThenElse(mask, value, load(plane, at)), plane, at);
+  const auto put = [&](Lanes<float>& to, V value) HWY_ATTR {
+    store(kIsFirst ? value : hn::IfThenElse(mask, value, load(to)), to);
   };
-  const auto put_whole = [&](Block::Plane<std::int32_t>& plane, VI value) HWY_ATTR {
-    hn::Store(kIsFirst ? value : hn::IfThenElse(same, value, load(plane, at)), DI(),
-              plane.data() + at);
+  const auto put_whole = [&](Lanes<std::int32_t>& to, VI value) HWY_ATTR {
+    store(kIsFirst ? value : hn::IfThenElse(same, value, load(to)), to);
   };
-  const Spot s = spot(f, p);
-  put(b.x, Mul(p.ray_x, s.z));
-  put(b.y, Mul(p.ray_y, s.z));
-  put(b.z, s.z);
+  const Normal n = normal_at(f, s);
+  put(c.nx, n.x);
+  put(c.ny, n.y);
+  put(c.nz, n.z);
+  put(c.r, set(material.base[0]));
+  put(c.g, set(material.base[1]));
+  put(c.b, set(material.base[2]));
+  put_whole(c.material, whole(static_cast<std::int32_t>(f.material)));
   const bool is_textured = material.first_level > 0;
-  Weights w{};
-  if (is_textured || f.is_flat == 0) w = weights(f, s);
-  const Normal n = f.is_flat != 0
-                       ? Normal{set(f.normal[0][0]), set(f.normal[1][0]), set(f.normal[2][0])}
-                       : normal(f, w);
-  put(b.nx, n.x);
-  put(b.ny, n.y);
-  put(b.nz, n.z);
-  put(b.r, set(material.base[0]));
-  put(b.g, set(material.base[1]));
-  put(b.b, set(material.base[2]));
-  put_whole(b.material, whole(static_cast<std::int32_t>(f.material)));
-  Block::Vector& vector = b.vectors[b.vector_count - 1];
-  vector.is_shiny = vector.is_shiny || material.is_shiny != 0;
-  vector.is_textured = vector.is_textured || is_textured;
-  if (!is_textured) {
-    put_whole(b.level, whole(0));
-    put_whole(b.next_share, whole(0));
-    put(b.u, set(0.0F));
-    put(b.v, set(0.0F));
-    put(b.texels_per_pixel2, set(1.0F));
-    return;
+  run.is_shiny = run.is_shiny || material.is_shiny != 0;
+  run.is_textured = run.is_textured || is_textured;
+  TexturePoint point{set(0.0F), set(0.0F), set(1.0F)};
+  if (is_textured) point = texture_point(f, s);
+  put(c.u, point.u);
+  put(c.v, point.v);
+  put(c.texels_per_pixel2, point.texels_per_pixel2);
+  put_whole(c.level, is_textured ? level_of(material, point) : whole(0));
+}
+
+// Puts several triangles, or a curved one, into vectors.
+HWY_INLINE void put_mixed(const Part& part, const Sight& sight, Block::Run& run, Block& b) {
+  for (const std::size_t at : b.places(run)) {
+    Cell& c = b.cell(at);
+    const Pixels p = sight.pixels(at);
+    const V z = depth_at(part, at);
+    const VU ids = hn::Load(DU(), b.ids.data() + at);
+    for_each_number(ids, [&](std::size_t index, hn::Mask<DI> same, auto is_first) HWY_ATTR {
+      const Facet& f = part.layer.facets[index];
+      put_surface<is_first.value>(part.shading.scene, f, spot(f, p, z), same, run, c);
+    });
+    put_place(p, z, normal_of(run, c), c);
   }
-  const TexturePoint point = texture_point(f, s, w);
-  const Filter filter = make_filter(scene, material, point);
-  put(b.u, point.u);
-  put(b.v, point.v);
-  put(b.texels_per_pixel2, filter.texels_per_pixel2);
-  put_whole(b.level, filter.level);
-  put_whole(b.next_share, filter.next_share);
+}
+
+// Finds the vectors of a block that see triangles.
+HWY_INLINE void find_runs(const Part& part, Block& b) {
+  std::size_t runs = 0;
+  std::uint16_t places = 0;
+  VU of_run = hn::Zero(DU());  // the triangle of the last run, if it is flat
+  for_each_vector(part, [&](std::size_t at) HWY_ATTR {
+    const VU ids = hn::Load(DU(), b.ids.data() + at);
+    const std::uint32_t one = hn::GetLane(ids);
+    if (!hn::AllTrue(DU(), hn::Eq(ids, of_run)) || one == 0) {
+      const bool is_one = hn::AllTrue(DU(), hn::Eq(ids, hn::Set(DU(), one)));
+      if (is_one && one == 0) return;
+      const Facet* flat = is_one ? &part.layer.facets[one - 1] : nullptr;
+      if (flat != nullptr && flat->is_flat == 0) flat = nullptr;
+      of_run = flat == nullptr ? hn::Zero(DU()) : ids;
+      if (flat != nullptr || runs == 0 || b.all_runs[runs - 1].flat != nullptr) {
+        b.all_runs[runs++] = {flat, places, places, false, false};
+      }
+    }
+    b.all_places[places++] = static_cast<std::uint16_t>(at);
+    b.all_runs[runs - 1].end = places;
+  });
+  b.run_count = runs;
 }
 
 // The colours of the triangles of `b.ids`, under all lights, before their textures.
 void light_block(const Part& part, Block& b) {
-  b.vector_count = 0;
-  for_each_vector(part, [&](std::size_t at) HWY_ATTR {
-    const VU ids = hn::Load(DU(), b.ids.data() + at);
-    if (hn::AllTrue(DU(), hn::Eq(ids, hn::Zero(DU())))) return;
-    b.vectors[b.vector_count++] = {static_cast<std::uint16_t>(at), false, false};
-    store(set(0.0F), b.diffuse, at);
-    store(set(0.0F), b.specular, at);
-    const Pixels p = pixels_at(part.shading.lens, part.layer, part.tile, part.first_pixel() + at);
-    for_each_facet(ids, [&](std::size_t index, hn::Mask<DI> same, auto is_first) HWY_ATTR {
-      put_surface<is_first.value>(part, part.layer.facets[index], p, at, same, b);
-    });
-  });
+  const Sight sight(part);
+  find_runs(part, b);
+  for (Block::Run& run : std::span(b.all_runs).first(b.run_count)) {
+    if (run.flat == nullptr) {
+      put_mixed(part, sight, run, b);
+      continue;
+    }
+    const MaterialRow& material = part.shading.scene.materials[run.flat->material];
+    run.is_shiny = material.is_shiny != 0;
+    run.is_textured = material.first_level > 0;
+    if (run.is_textured) {
+      put_flat<true>(part, sight, run, b);
+    } else {
+      put_flat<false>(part, sight, run, b);
+    }
+  }
   light_up(part.shading, part.layer, b);
 }
 
-HWY_INLINE Colour colour_at(const Block& b, std::size_t at) {
-  return {load(b.r, at), load(b.g, at), load(b.b, at)};
-}
-
 // At most 1.
-HWY_INLINE Colour lit_at(const Block& b, std::size_t at) {
-  const Colour c = colour_at(b, at);
+HWY_INLINE Colour lit(const Cell& cell) {
+  const Colour c = colour(cell);
   const V one = set(1.0F);
   return {hn::Min(c.r, one), hn::Min(c.g, one), hn::Min(c.b, one)};
-}
-
-HWY_INLINE void set_colour(const Colour& c, Block& b, std::size_t at) {
-  store(c.r, b.r, at);
-  store(c.g, b.g, at);
-  store(c.b, b.b, at);
 }
 
 // The same with textures and, if wanted, opacity.
 void shade_block(const Part& part, bool with_alpha, Block& b) {
   const PreparedScene& scene = part.shading.scene;
   light_block(part, b);
-  for (const Block::Vector& vector : b.active()) {
-    const std::size_t at = vector.at;
-    const V one = set(1.0F);
-    Texel texel{{one, one, one}, one};
-    if (vector.is_textured) {
-      texel =
-          sample(scene, load(b.level, at), load(b.next_share, at), load(b.u, at), load(b.v, at));
+  for (const Block::Run& run : b.runs()) {
+    if (!run.is_textured) continue;
+    for (const std::size_t at : b.places(run)) {
+      Cell& c = b.cell(at);
+      look_up(scene, load(c.level), load(c.u), load(c.v), c.lookups);
     }
-    set_colour(scaled(lit_at(b, at), texel.colour), b, at);
-    if (!with_alpha) continue;
-    const V alpha = of_material(load(b.material, at), scene.materials[0].alpha);
-    store(Mul(alpha, texel.alpha), b.alpha, at);
+  }
+  const V one = set(1.0F);
+  for (const Block::Run& run : b.runs()) {
+    for (const std::size_t at : b.places(run)) {
+      Cell& c = b.cell(at);
+      Texel texel{{one, one, one}, one};
+      if (run.is_textured) texel = sample(scene, load(c.level), c.lookups);
+      store(scaled(lit(c), texel.colour), c);
+      if (!with_alpha) continue;
+      store(Mul(of_material(run, c, scene.materials[0].alpha), texel.alpha), c.alpha);
+    }
   }
 }
 
-HWY_INLINE void load_ids(const Part& part, const TileIds& ids, Block& b) {
-  const auto* const first = ids.id.data() + part.first_pixel();
+HWY_INLINE void load_ids(const Part& part, Block& b) {
+  const auto* const first = part.ids.id.data() + part.first_pixel();
   std::copy_n(first, static_cast<std::size_t>(part.rows) * kTile_px, b.ids.data());
 }
 

@@ -26,15 +26,22 @@ struct Coverage {
 };
 
 /// The surface of a triangle as planes over the picture: p(x, y) = p0 + px·(x−x_ref) +
-/// py·(y−y_ref), in pixels.
+/// py·(y−y_ref), in pixels. Texture coordinates are those of corner 1, and what is added to them.
 struct alignas(32) Facet {
   float x_ref, y_ref;
   std::array<float, 3> inverse_depth;  ///< 1/z: value, and change along x and y [1/m]
   std::array<float, 3> second, third;  ///< weights of the second and third corner, over z
   float inverse_depth_low, inverse_depth_high;
-  std::array<float, 3> u, v;  ///< of corner 1; corners 2 and 3 less that
-  float u_x, u_y, v_x, v_y;   ///< changes of u/z and v/z along x and y, for u = v = 0 at corner 1
-  std::array<std::array<float, 3>, 3> normal;  ///< the same, in C
+  struct Coordinate {
+    float first;                 ///< of corner 1
+    std::array<float, 3> added;  ///< over z
+    float low, high;             ///< of what is added
+    /// In texels of the texture's largest size, along x and y: the change of what is added, over z,
+    /// and that of 1/z for one repetition.
+    std::array<float, 2> change, shrinkage;
+  };
+  Coordinate u, v;
+  std::array<std::array<float, 3>, 3> normal;  ///< in C: of corner 1; corners 2 and 3 less that
   std::int32_t is_flat;                        ///< −1: the normal is the same everywhere; else 0
   std::uint32_t material;
   std::uint32_t primitive;  ///< the same triangle has the same number in all layers

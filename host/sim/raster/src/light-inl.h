@@ -113,18 +113,19 @@ HWY_INLINE V spot_share(const LightRow& light, const Ray& ray) {
 }
 
 // Blinn's highlight: the cosine between the normal and the half of light and view, to a power.
-HWY_INLINE V highlight(const PreparedScene& scene, const Block& b, std::size_t at, const Ray& ray) {
-  const V x = load(b.x, at);
-  const V y = load(b.y, at);
-  const V z = load(b.z, at);
+HWY_INLINE V highlight(const PreparedScene& scene, const Block::Run& run, const Cell& c,
+                       const Ray& ray) {
+  const Normal n = normal_of(run, c);
+  const V x = load(c.x);
+  const V y = load(c.y);
+  const V z = load(c.z);
   const V view = Div(set(-1.0F), hn::Sqrt(dot(x, y, z, x, y, z)));
   const V hx = Add(Mul(ray.x, ray.over_length), Mul(x, view));
   const V hy = Add(Mul(ray.y, ray.over_length), Mul(y, view));
   const V hz = Add(Mul(ray.z, ray.over_length), Mul(z, view));
   const V length2 = hn::Max(dot(hx, hy, hz, hx, hy, hz), set(1e-20F));
-  const V cosine =
-      Div(dot(load(b.nx, at), load(b.ny, at), load(b.nz, at), hx, hy, hz), hn::Sqrt(length2));
-  const V exponent = of_material(load(b.material, at), scene.materials[0].shininess);
+  const V cosine = Div(dot(n.x, n.y, n.z, hx, hy, hz), hn::Sqrt(length2));
+  const V exponent = of_material(run, c, scene.materials[0].shininess);
   V result = set(0.0F);
   M rest = hn::Ge(exponent, set(0.0F));
   alignas(64) std::array<float, kMaxLanes> exponents;
@@ -143,55 +144,65 @@ HWY_INLINE V highlight(const PreparedScene& scene, const Block& b, std::size_t a
 template <bool kIsPlain>
 HWY_INLINE void add_light(const Shading& shading, const LightRow& row, Block& b) {
   const LightRow light = row;  // which nothing that is stored can change
+  const bool is_sun = !kIsPlain && light.is_directional;
   const V zero = set(0.0F);
-  for (const Block::Vector& vector : b.active()) {
-    const std::size_t at = vector.at;
-    const V x = load(b.x, at);
-    const V y = load(b.y, at);
-    const V z = load(b.z, at);
-    const Ray ray = !kIsPlain && light.is_directional ? sun_ray(light) : aim(light, x, y, z);
-    const V toward = dot(load(b.nx, at), load(b.ny, at), load(b.nz, at), ray.x, ray.y, ray.z);
-    V share = ray.share;
-    if (!kIsPlain && light.cos_cutoff >= -1.0F) share = Mul(share, spot_share(light, ray));
-    if (!kIsPlain && light.shadow >= 0) {
-      const auto map = static_cast<std::size_t>(light.shadow);
-      share = Mul(share, lit_share(shading.shadows[map], light, x, y, z));
+  const auto along = [&](const Normal& n) HWY_ATTR {
+    const auto& to = light.position;
+    const auto& d = light.direction;
+    return is_sun ? dot(n.x, n.y, n.z, set(-d[0]), set(-d[1]), set(-d[2]))
+                  : dot(n.x, n.y, n.z, set(to[0]), set(to[1]), set(to[2]));
+  };
+  for (const Block::Run& run : b.runs()) {
+    V light_along = along(normal_of(run, b.cell(b.all_places[run.first])));
+    for (const std::size_t at : b.places(run)) {
+      Cell& c = b.cell(at);
+      if (run.flat == nullptr) light_along = along(normal_of(run, c));
+      const V x = load(c.x);
+      const V y = load(c.y);
+      const V z = load(c.z);
+      const Ray ray = is_sun ? sun_ray(light) : aim(light, x, y, z);
+      const V toward = is_sun ? light_along : Sub(light_along, load(c.distance));
+      V share = ray.share;
+      if (!kIsPlain && light.cos_cutoff >= -1.0F) share = Mul(share, spot_share(light, ray));
+      if (!kIsPlain && light.shadow >= 0) {
+        const auto map = static_cast<std::size_t>(light.shadow);
+        share = Mul(share, lit_share(shading.shadows[map], light, x, y, z));
+      }
+      store(Add(load(c.diffuse), Mul(hn::Max(toward, zero), share)), c.diffuse);
+      if (kIsPlain || !light.has_specular || !run.is_shiny) continue;
+      const V shine = Mul(Mul(share, ray.length), highlight(shading.scene, run, c, ray));
+      const V faced = hn::IfThenElseZero(hn::Gt(toward, zero), shine);
+      store(Add(load(c.specular), faced), c.specular);
     }
-    store(Add(load(b.diffuse, at), Mul(hn::Max(toward, zero), share)), b.diffuse, at);
-    if (kIsPlain || !light.has_specular || !vector.is_shiny) continue;
-    const V shine = Mul(Mul(share, ray.length), highlight(shading.scene, b, at, ray));
-    const V faced = hn::IfThenElseZero(hn::Gt(toward, zero), shine);
-    store(Add(load(b.specular, at), faced), b.specular, at);
   }
 }
 
-// Adds `diffuse` and `specular`, of the colours of `light`, to the pixels' colours.
-HWY_INLINE void colour_light(const PreparedScene& scene, const LightRow& light, Block& b) {
-  const MaterialRow& first = scene.materials[0];
-  const auto add = [&](const Block::Vector& vector, Block::Plane<float>& amounts, const Rgb& colour,
-                       const std::array<float, 3>& own) HWY_ATTR {
-    const std::size_t at = vector.at;
-    const VI material = load(b.material, at);
-    const V amount = load(amounts, at);
-    store(set(0.0F), amounts, at);
-    const V r = Mul(set(colour[0]), of_material(material, own[0]));
-    const V g = Mul(set(colour[1]), of_material(material, own[1]));
-    const V blue = Mul(set(colour[2]), of_material(material, own[2]));
-    store(Add(load(b.r, at), Mul(amount, r)), b.r, at);
-    store(Add(load(b.g, at), Mul(amount, g)), b.g, at);
-    store(Add(load(b.b, at), Mul(amount, blue)), b.b, at);
+// Adds `amounts` of a light's colour to the pixels' colours, and clears them. `own` is that of the
+// first material.
+HWY_INLINE void add_colour(const Block::Run& run, const Rgb& of_light,
+                           const std::array<float, 3>& own, Lanes<float> Cell::*amounts, Block& b) {
+  const auto colour_of = [&](const Cell& c) HWY_ATTR {
+    return Colour{Mul(set(of_light[0]), of_material(run, c, own[0])),
+                  Mul(set(of_light[1]), of_material(run, c, own[1])),
+                  Mul(set(of_light[2]), of_material(run, c, own[2]))};
   };
-  for (const Block::Vector& vector : b.active()) {
-    add(vector, b.diffuse, light.diffuse, first.diffuse);
-    if (vector.is_shiny) add(vector, b.specular, light.specular, first.specular);
+  Colour by = colour_of(b.cell(b.all_places[run.first]));
+  for (const std::size_t at : b.places(run)) {
+    Cell& c = b.cell(at);
+    if (run.flat == nullptr) by = colour_of(c);
+    Colour sum = colour(c);
+    add_to(sum, by, load(c.*amounts));
+    store(sum, c);
+    store(set(0.0F), c.*amounts);
   }
 }
 
 // The colours of a block's surfaces under all lights, before their textures. Light of one colour is
 // added up before it is coloured.
 HWY_INLINE void light_up(const Shading& shading, const Layer& layer, Block& b) {
-  const auto is_shiny = [](const Block::Vector& vector) { return vector.is_shiny; };
-  const bool any_shiny = std::any_of(b.active().begin(), b.active().end(), is_shiny);
+  const bool any_shiny =
+      std::any_of(b.runs().begin(), b.runs().end(), [](const auto& run) { return run.is_shiny; });
+  const MaterialRow& first = shading.scene.materials[0];
   for (const LightRow& light : layer.lights) {
     const bool is_plain = !light.is_directional && light.cos_cutoff < -1.0F && light.shadow < 0 &&
                           !(light.has_specular && any_shiny);
@@ -200,7 +211,11 @@ HWY_INLINE void light_up(const Shading& shading, const Layer& layer, Block& b) {
     } else {
       add_light<false>(shading, light, b);
     }
-    if (light.is_last_of_colour) colour_light(shading.scene, light, b);
+    if (!light.is_last_of_colour) continue;
+    for (const Block::Run& run : b.runs()) {
+      add_colour(run, light.diffuse, first.diffuse, &Cell::diffuse, b);
+      if (run.is_shiny) add_colour(run, light.specular, first.specular, &Cell::specular, b);
+    }
   }
 }
 

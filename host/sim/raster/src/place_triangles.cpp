@@ -284,12 +284,9 @@ class Placer {
     const VertexLook& a = looks_[looks[0]];
     const VertexLook& b = looks_[looks[1]];
     const VertexLook& c = looks_[looks[2]];
-    facet.u = {a.uv[0], b.uv[0] - a.uv[0], c.uv[0] - a.uv[0]};
-    facet.v = {a.uv[1], b.uv[1] - a.uv[1], c.uv[1] - a.uv[1]};
-    facet.u_x = facet.u[1] * facet.second[1] + facet.u[2] * facet.third[1];
-    facet.u_y = facet.u[1] * facet.second[2] + facet.u[2] * facet.third[2];
-    facet.v_x = facet.v[1] * facet.second[1] + facet.v[2] * facet.third[1];
-    facet.v_y = facet.v[1] * facet.second[2] + facet.v[2] * facet.third[2];
+    const MaterialRow& material = scene_.materials[instance_->material];
+    set_coordinate(facet, {a.uv[0], b.uv[0], c.uv[0]}, material.texture_width, facet.u);
+    set_coordinate(facet, {a.uv[1], b.uv[1], c.uv[1]}, material.texture_height, facet.v);
     const auto na = rotated(transformation_.rotation, a.normal);
     facet.is_flat = a.normal == b.normal && a.normal == c.normal ? -1 : 0;
     if (facet.is_flat != 0) {
@@ -299,6 +296,22 @@ class Placer {
     const auto nb = rotated(transformation_.rotation, b.normal);
     const auto nc = rotated(transformation_.rotation, c.normal);
     for (std::size_t i = 0; i < 3; ++i) facet.normal[i] = {na[i], nb[i] - na[i], nc[i] - na[i]};
+  }
+
+  static void set_coordinate(const Facet& facet, const std::array<float, 3>& corners, float texels,
+                             Facet::Coordinate& out) {
+    const float second = corners[1] - corners[0];
+    const float third = corners[2] - corners[0];
+    out.first = corners[0];
+    out.low = std::min({0.0F, second, third});
+    out.high = std::max({0.0F, second, third});
+    for (std::size_t i = 0; i < 3; ++i) {
+      out.added[i] = second * facet.second[i] + third * facet.third[i];
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+      out.change[i] = texels * out.added[i + 1];
+      out.shrinkage[i] = texels * facet.inverse_depth[i + 1];
+    }
   }
 
   static constexpr double kSlack = 1.0 + 1e-5;  // of transformations in single precision

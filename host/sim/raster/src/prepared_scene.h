@@ -54,12 +54,17 @@ struct MaterialRow {
   float texture_width, texture_height;  ///< of its largest size
 };
 
-/// One size of a texture: height + 1 rows of width + 1 texels, the last of which are the first.
+/// Two texels of a texture, one below the other; R in the lowest byte.
+struct TexelPair {
+  std::uint32_t upper, lower;
+};
+
+/// One size of a texture: rows of pairs from row −1 on, of its columns from −1 to its width. So the
+/// four texels around any place are two neighbours.
 struct LevelRow {
-  std::int32_t first_texel;
-  std::int32_t width;
-  std::int32_t height;
-  std::int32_t unused;  ///< four numbers to a row
+  std::int32_t first_pair;            ///< that of row 0, column 0
+  std::int32_t stride;                ///< from a row to the next
+  float width_256ths, height_256ths;  ///< [texels/256]
 };
 
 struct PreparedInstance {
@@ -80,8 +85,8 @@ struct PreparedScene {
   std::vector<Cluster> clusters;
   std::vector<PreparedMesh> meshes;
   std::vector<MaterialRow> materials;
-  std::vector<std::uint32_t> texels;  ///< R in the lowest byte
-  std::vector<LevelRow> levels;       ///< the first is white; so is one after the last
+  std::vector<TexelPair> texels;
+  std::vector<LevelRow> levels;  ///< the first is white; so is one after the last
   std::vector<PreparedInstance> instances;
   std::vector<Light> lights;  ///< directions unit
   Rgb background{};

@@ -1,6 +1,7 @@
 #include "rasterize.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -243,25 +244,24 @@ void rasterize_on_grid(const Coverage& t, const Facet& facet, std::uint32_t id, 
   if (is_whole) hidden = std::max(hidden, range.low);
 }
 
-// The least of the three edges for each sample of a row, as whole numbers that doubles hold
-// exactly; as floats they keep their signs. @pre `count` is a multiple of the lanes.
-void least_edges(const Coverage& t, const std::int32_t* x, const std::int32_t* y, int count,
-                 float* out) {
+// An edge at each sample of a row: whole numbers that doubles hold exactly; as floats they keep
+// their signs. Or the least of that and `least`. @pre `count` is a multiple of the lanes.
+template <bool kIsFirst>
+HWY_INLINE void take_edge(const Coverage& t, std::size_t i, const std::int32_t* x,
+                          const std::int32_t* y, int count, float* least) {
   using DF = hn::Half<D>;
   using DD = hn::Rebind<double, DF>;
   const DD d;
   const hn::Rebind<std::int32_t, DD> di;
   const hn::Rebind<float, DD> df;
-  const auto edge = [&](std::size_t i, hn::Vec<DD> px, hn::Vec<DD> py) HWY_ATTR {
-    return hn::Add(hn::Add(hn::Mul(hn::Set(d, static_cast<double>(t.a[i])), px),
-                           hn::Mul(hn::Set(d, static_cast<double>(t.b[i])), py)),
-                   hn::Set(d, static_cast<double>(t.c[i])));
-  };
-  for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
-    const auto px = hn::PromoteTo(d, hn::LoadU(di, x + i));
-    const auto py = hn::PromoteTo(d, hn::LoadU(di, y + i));
-    const auto least = hn::Min(hn::Min(edge(0, px, py), edge(1, px, py)), edge(2, px, py));
-    hn::StoreU(hn::DemoteTo(df, least), df, out + i);
+  const auto a = hn::Set(d, static_cast<double>(t.a[i]));
+  const auto b = hn::Set(d, static_cast<double>(t.b[i]));
+  const auto c = hn::Set(d, static_cast<double>(t.c[i]));
+  for (int k = 0; k < count; k += static_cast<int>(hn::Lanes(d))) {
+    const auto px = hn::PromoteTo(d, hn::LoadU(di, x + k));
+    const auto py = hn::PromoteTo(d, hn::LoadU(di, y + k));
+    const auto edge = hn::DemoteTo(df, hn::Add(hn::Add(hn::Mul(a, px), hn::Mul(b, py)), c));
+    hn::StoreU(kIsFirst ? edge : hn::Min(edge, hn::LoadU(df, least + k)), df, least + k);
   }
 }
 
@@ -271,16 +271,21 @@ V in_pixels(const std::int32_t* samples) {
   return hn::Mul(hn::ConvertTo(d, hn::LoadU(DI(), samples)), hn::Set(d, 1.0F / kSubpixels));
 }
 
-// How much of a rectangle a triangle covers: nothing, because one edge is beyond it, or all.
-enum class Reach { kNone, kSome, kAll };
+// The edges of a triangle that part a rectangle's samples, as bits.
+struct Reach {
+  bool is_none;  ///< one edge is beyond them all
+  unsigned edges;
+};
 
-Reach reach(const Coverage& t, const FixedRect& r) {
-  Reach result = Reach::kAll;
+// Of those in `edges` only: all samples are inside of the others.
+Reach reach(const Coverage& t, const FixedRect& r, unsigned edges) {
+  Reach result{false, 0};
   for (std::size_t i = 0; i < 3; ++i) {
+    if ((edges >> i & 1U) == 0) continue;
     const auto x = std::minmax({std::int64_t{t.a[i]} * r.x_low, std::int64_t{t.a[i]} * r.x_high});
     const auto y = std::minmax({std::int64_t{t.b[i]} * r.y_low, std::int64_t{t.b[i]} * r.y_high});
-    if (x.second + y.second + t.c[i] < 0) return Reach::kNone;
-    if (x.first + y.first + t.c[i] < 0) result = Reach::kSome;
+    if (x.second + y.second + t.c[i] < 0) return {true, 0};
+    if (x.first + y.first + t.c[i] < 0) result.edges |= 1U << i;
   }
   return result;
 }
@@ -300,26 +305,33 @@ void rasterize_samples(const Coverage& t, const Facet& facet, std::uint32_t id, 
                        float& hidden) {
   const D d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  const Reach of_tile = reach(t, bounds);
+  const Reach of_tile = reach(t, bounds, 7U);
+  if (of_tile.is_none) return;
   const Depth depth(facet);
   const Depth::Range range = depth.range(bounds);
-  if (of_tile == Reach::kNone || (Target::kKeepsNearest && range.high <= hidden)) return;
+  if (Target::kKeepsNearest && range.high <= hidden) return;
   const Part part(tile, t.pixels);
   const VU ids = hn::Set(DU(), id);
   alignas(64) std::array<float, kTile_px> least{};
   const int whole_vectors = (part.columns + lanes - 1) / lanes * lanes;
   for (int row = part.first_row; row < part.first_row + part.rows; ++row) {
-    const Reach of_row = of_tile == Reach::kAll
-                             ? of_tile
-                             : reach(t, lens.samples_of_block(tile.x / kTile_px, tile.y + row));
-    if (of_row == Reach::kNone) continue;
+    const Reach of_row =
+        reach(t, lens.samples_of_block(tile.x / kTile_px, tile.y + row), of_tile.edges);
+    if (of_row.is_none) continue;
     const std::size_t sample = static_cast<std::size_t>(tile.y + row) * lens.stride() +
                                static_cast<std::size_t>(tile.x + part.first_column);
     const std::int32_t* const x = lens.x().data() + sample;
     const std::int32_t* const y = lens.y().data() + sample;
-    if (of_row == Reach::kSome) least_edges(t, x, y, whole_vectors, least.data());
+    for (unsigned rest = of_row.edges; rest != 0; rest &= rest - 1) {
+      const auto edge = static_cast<std::size_t>(std::countr_zero(rest));
+      if (rest == of_row.edges) {
+        take_edge<true>(t, edge, x, y, whole_vectors, least.data());
+      } else {
+        take_edge<false>(t, edge, x, y, whole_vectors, least.data());
+      }
+    }
     for (int c = 0; c < part.columns; c += lanes) {
-      const V edges = of_row == Reach::kAll ? hn::Zero(d) : hn::Load(d, least.data() + c);
+      const V edges = of_row.edges == 0 ? hn::Zero(d) : hn::Load(d, least.data() + c);
       const M inside = hn::Ge(edges, hn::Zero(d));
       if (hn::AllFalse(d, inside)) continue;
       const V depth_row = depth.row(in_pixels(y + c));
@@ -327,7 +339,7 @@ void rasterize_samples(const Coverage& t, const Facet& facet, std::uint32_t id, 
                   depth.at(depth_row, in_pixels(x + c)), ids);
     }
   }
-  if (of_tile == Reach::kAll) hidden = std::max(hidden, range.low);
+  if (of_tile.edges == 0) hidden = std::max(hidden, range.low);
 }
 
 template <class Target>

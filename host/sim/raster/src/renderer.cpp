@@ -1,6 +1,7 @@
 #include "exposure.h"
 #include "lens.h"
 #include "prepared_scene.h"
+#include "shade.h"
 #include "shadow_map.h"
 #include "strip_renderer.h"
 #include "worker_pool.h"
@@ -202,8 +203,7 @@ std::map<std::uint32_t, PixelBox> visible_boxes(std::span<const std::uint32_t> e
   for (std::size_t begin = 0; begin < entity.size();) {
     // Pixels of one entity that are beside each other.
     const std::size_t row = begin / width;
-    std::size_t end = begin + 1;
-    while (end < (row + 1) * width && entity[end] == entity[begin]) ++end;
+    const std::size_t end = end_of_run(entity.first((row + 1) * width), begin);
     if (entity[begin] != 0) {
       const int y = static_cast<int>(row);
       const int left = static_cast<int>(begin - row * width);

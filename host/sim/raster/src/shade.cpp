@@ -55,21 +55,13 @@ HWY_INLINE void store(const Colour& c, TileColours& to, std::size_t at) {
   hn::Store(c.b, d, to.b.data() + at);
 }
 
-// The triangles that several pixels see, by their numbers; 0: none.
-HWY_INLINE VI primitives(const Layer& layer, VU ids) {
-  const DI di;
-  const VI id = hn::BitCast(di, ids);
-  const std::int32_t one = hn::GetLane(id);
-  if (hn::AllTrue(di, hn::Eq(id, whole(one)))) {
-    if (one == 0) return whole(0);
-    const Facet& facet = layer.facets[static_cast<std::size_t>(one) - 1];
-    return whole(static_cast<std::int32_t>(facet.primitive));
-  }
-  const auto is_seen = hn::Gt(id, whole(0));
-  constexpr std::int32_t kFloats = sizeof(Facet) / sizeof(float);
-  const VI row = Mul(hn::Max(Sub(id, whole(1)), whole(0)), whole(kFloats));
-  const auto* const first = reinterpret_cast<const std::int32_t*>(&layer.facets[0].primitive);
-  return hn::IfThenElseZero(is_seen, hn::GatherIndex(di, first, row));
+// A number of the triangles that several pixels see; 0: none.
+HWY_INLINE VI of_facets(const Layer& layer, VU ids, const std::uint32_t Facet::*number) {
+  VI all = whole(0);
+  for_each_number(ids, [&](std::size_t index, hn::Mask<DI> same, auto) HWY_ATTR {
+    all = hn::IfThenElse(same, whole(static_cast<std::int32_t>(layer.facets[index].*number)), all);
+  });
+  return all;
 }
 
 // The mean light of a block over some layers. A pixel that sees a triangle in the middle layer is
@@ -92,7 +84,7 @@ class Mean {
       put(number, first_, at);
       put(number, last_, at);
       put(whole(1), count_, at);
-      put(primitives(layers_[middle_], ids_in(middle_, at)), primitive_, at);
+      put(of_facets(layers_[middle_], ids_in(middle_, at), &Facet::primitive), primitive_, at);
       store({set(0.0F), set(0.0F), set(0.0F)}, light_, part_.first_pixel() + at);
     });
     for (std::size_t k = 0; k < layers_.size(); ++k) {
@@ -102,11 +94,12 @@ class Mean {
   }
 
  private:
-  using Whole = Block::Plane<std::int32_t>;
+  using Whole = std::array<std::int32_t, Block::kPixels>;
 
   static void put(VI value, Whole& plane, std::size_t at) {
     hn::Store(value, DI(), plane.data() + at);
   }
+  static VI get(const Whole& plane, std::size_t at) { return hn::Load(DI(), plane.data() + at); }
   VU ids_in(std::size_t layer, std::size_t at) const {
     return hn::Load(DU(), ids_[layer].id.data() + part_.first_pixel() + at);
   }
@@ -118,14 +111,14 @@ class Mean {
 
   // Counts the pixels that see the same as in the middle layer, and shades the others.
   void add_layer(std::size_t k) {
-    const Part part{part_.shading, layers_[k], part_.tile, part_.first_row, part_.rows};
+    const Part part{part_.shading, layers_[k], part_.tile, ids_[k], part_.first_row, part_.rows};
     const VI number = whole(static_cast<std::int32_t>(k));
     for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
       const VU ids = ids_in(k, at);
-      const auto other = hn::Ne(primitives(layers_[k], ids), load(primitive_, at));
-      const VI first = load(first_, at);
-      const VI last = load(last_, at);
-      put(Add(load(count_, at), hn::IfThenZeroElse(other, whole(1))), count_, at);
+      const auto other = hn::Ne(of_facets(layers_[k], ids, &Facet::primitive), get(primitive_, at));
+      const VI first = get(first_, at);
+      const VI last = get(last_, at);
+      put(Add(get(count_, at), hn::IfThenZeroElse(other, whole(1))), count_, at);
       put(hn::IfThenElse(other, first, hn::Min(first, number)), first_, at);
       put(hn::IfThenElse(other, last, hn::Max(last, number)), last_, at);
       put(hn::VecFromMask(DI(), other), other_, at);
@@ -133,27 +126,28 @@ class Mean {
     });
     shade_block(part, false, b_);
     for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
-      const M other = float_mask(hn::Ne(load(other_, at), whole(0)));
+      const M other = float_mask(hn::Ne(get(other_, at), whole(0)));
       if (hn::AllFalse(D(), other)) return;
       const Colour own =
-          select(is_empty(b_, at), colour(part_.shading.scene.background), colour_at(b_, at));
+          select(is_empty(b_, at), colour(part_.shading.scene.background), colour(b_.cell(at)));
       add(light_of(part_.shading.table, own), hn::IfThenElseZero(other, set(share_)), at);
     });
   }
 
   void add_middle() {
-    load_ids(part_, ids_[middle_], b_);
+    load_ids(part_, b_);
     light_block(part_, b_);
     const LightTable& table = part_.shading.table;
-    for (const Block::Vector& vector : b_.active()) {
-      set_colour(
-          vector.is_textured ? moving_texture(vector.at) : light_of(table, lit_at(b_, vector.at)),
-          b_, vector.at);
+    for (const Block::Run& run : b_.runs()) {
+      for (const std::size_t at : b_.places(run)) {
+        Cell& c = b_.cell(at);
+        store(run.is_textured ? moving_texture(run, c, at) : light_of(table, lit(c)), c);
+      }
     }
     const Colour background = light_of(table, colour(part_.shading.scene.background));
     for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
-      add(select(is_empty(b_, at), background, colour_at(b_, at)),
-          Mul(to_float(load(count_, at)), set(share_)), at);
+      add(select(is_empty(b_, at), background, colour(b_.cell(at))),
+          Mul(to_float(get(count_, at)), set(share_)), at);
     });
   }
 
@@ -165,14 +159,17 @@ class Mean {
       if (hn::AllFalse(D(), here)) continue;
       rest = hn::AndNot(here, rest);
       const Layer& layer = layers_[k];
-      const Pixels p = pixels_at(part_.shading.lens, layer, part_.tile, part_.first_pixel() + at);
+      const Part part{part_.shading, layer, part_.tile, ids_[k], part_.first_row, part_.rows};
+      const Pixels p = Sight(part).pixels(at);
+      const V z =
+          Div(set(1.0F), hn::Load(D(), ids_[k].inverse_depth.data() + part_.first_pixel() + at));
       const VU ids = hn::IfThenElseZero(hn::RebindMask(DU(), here), ids_in(k, at));
-      for_each_facet(ids, [&](std::size_t index, hn::Mask<DI> pixels, auto) HWY_ATTR {
+      for_each_number(ids, [&](std::size_t index, hn::Mask<DI> pixels, auto) HWY_ATTR {
         const M same = float_mask(pixels);
         const Facet& facet = layer.facets[index];
-        const Weights w = weights(facet, spot(facet, p));
-        u = hn::IfThenElse(same, between_corners(facet.u, w), u);
-        v = hn::IfThenElse(same, between_corners(facet.v, w), v);
+        const TexturePoint point = texture_point(facet, spot(facet, p, z));
+        u = hn::IfThenElse(same, point.u, u);
+        v = hn::IfThenElse(same, point.v, v);
       });
     }
   }
@@ -185,11 +182,11 @@ class Mean {
   };
 
   // The first and the last layer are half a step within the ends of the way.
-  Way way_at(std::size_t at) const {
-    const VI first = load(first_, at);
-    const VI last = load(last_, at);
-    Way way{load(b_.u, at), load(b_.v, at), set(0.0F), set(0.0F), whole(1)};
-    const auto has_texture = hn::Gt(load(b_.level, at), whole(0));
+  Way way_at(const Block::Run& run, const Cell& c, std::size_t at) const {
+    const VI first = get(first_, at);
+    const VI last = get(last_, at);
+    Way way{load(c.u), load(c.v), set(0.0F), set(0.0F), whole(1)};
+    const auto has_texture = hn::Gt(load(c.level), whole(255));
     const M moves = float_mask(And(has_texture, hn::Lt(first, last)));
     if (hn::AllFalse(D(), moves)) return way;
     V u_first = way.u;
@@ -203,11 +200,10 @@ class Mean {
     way.du = Mul(Sub(u_last, u_first), longer);
     way.dv = Mul(Sub(v_last, v_first), longer);
     const PreparedScene& scene = part_.shading.scene;
-    const VI material = load(b_.material, at);
     const V length2 =
-        Div(squared_length(way.du, way.dv, of_material(material, scene.materials[0].texture_width),
-                           of_material(material, scene.materials[0].texture_height)),
-            load(b_.texels_per_pixel2, at));
+        Div(squared_length(way.du, way.dv, of_material(run, c, scene.materials[0].texture_width),
+                           of_material(run, c, scene.materials[0].texture_height)),
+            load(c.texels_per_pixel2));
     const V length = hn::Sqrt(hn::Min(length2, set(kMostTaps * kMostTaps)));
     way.taps = hn::Max(nearest(Add(length, set(kRoundUp))), whole(1));
     const M several = And(moves, float_mask(hn::Gt(way.taps, whole(1))));
@@ -219,18 +215,20 @@ class Mean {
     return way;
   }
 
-  Colour moving_texture(std::size_t at) const {
-    const Colour lit = lit_at(b_, at);
-    const Way way = way_at(at);
+  Colour moving_texture(const Block::Run& run, const Cell& c, std::size_t at) const {
+    const Colour own = lit(c);
+    const Way way = way_at(run, c, at);
     const V step = Div(set(1.0F), to_float(way.taps));
     Colour sum{set(0.0F), set(0.0F), set(0.0F)};
+    Lookups lookups;
     for (std::int32_t i = 0;; ++i) {
       const M counts = float_mask(hn::Gt(way.taps, whole(i)));
       if (hn::AllFalse(D(), counts)) return sum;
       const V along = Sub(Mul(set(static_cast<float>(i) + 0.5F), step), set(0.5F));
-      const Texel texel = sample(part_.shading.scene, load(b_.level, at), load(b_.next_share, at),
-                                 Add(way.u, Mul(way.du, along)), Add(way.v, Mul(way.dv, along)));
-      add_to(sum, light_of(part_.shading.table, scaled(lit, texel.colour)),
+      look_up(part_.shading.scene, load(c.level), Add(way.u, Mul(way.du, along)),
+              Add(way.v, Mul(way.dv, along)), lookups);
+      const Texel texel = sample(part_.shading.scene, load(c.level), lookups);
+      add_to(sum, light_of(part_.shading.table, scaled(own, texel.colour)),
              hn::IfThenElseZero(counts, step));
     }
   }
@@ -256,13 +254,13 @@ class Mean {
 void shade_on(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
               TilePixels& pixels) {
   Block b;
-  for_each_part(shading, layer, tile, [&](const Part& part) HWY_ATTR {
-    load_ids(part, ids, b);
+  for_each_part(shading, layer, tile, ids, [&](const Part& part) HWY_ATTR {
+    load_ids(part, b);
     shade_block(part, false, b);
     const Colour background = colour(shading.scene.background);
     for_each_vector(part, [&](std::size_t at) HWY_ATTR {
-      hn::Store(packed(select(is_empty(b, at), background, colour_at(b, at))), DU(),
-                pixels.rgb.data() + part.first_pixel() + at);
+      hn::Store(packed(select(is_empty(b, at), background, colour(b.cell(at)))), DU(),
+                pixels.data() + part.first_pixel() + at);
     });
   });
 }
@@ -270,21 +268,22 @@ void shade_on(const Shading& shading, const Layer& layer, const Tile& tile, cons
 void shade_mean_on(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
                    std::span<const TileIds> ids, TileColours& light) {
   Block b;
-  for_each_part(shading, layers[layers.size() / 2], tile,
+  const std::size_t middle = layers.size() / 2;
+  for_each_part(shading, layers[middle], tile, ids[middle],
                 [&](const Part& part) HWY_ATTR { Mean(part, layers, ids, b, light).add_up(); });
 }
 
 void shade_over_on(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
                    bool with_background, TileColours& colours) {
   Block b;
-  for_each_part(shading, layer, tile, [&](const Part& part) HWY_ATTR {
-    load_ids(part, ids, b);
+  for_each_part(shading, layer, tile, ids, [&](const Part& part) HWY_ATTR {
+    load_ids(part, b);
     shade_block(part, true, b);
     for_each_vector(part, [&](std::size_t at) HWY_ATTR {
       const std::size_t i = part.first_pixel() + at;
       const Colour before = with_background ? colour(shading.scene.background) : load(colours, i);
-      const Colour own = colour_at(b, at);
-      const Colour after = with_background ? own : mix(before, own, load(b.alpha, at));
+      const Colour own = colour(b.cell(at));
+      const Colour after = with_background ? own : mix(before, own, load(b.cell(at).alpha));
       store(select(is_empty(b, at), before, after), colours, i);
     });
   });
@@ -302,7 +301,7 @@ void add_light_on(const LightTable& table, const TileColours& colours, int layer
 
 void encode_colours_on(const TileColours& colours, TilePixels& pixels) {
   for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-    hn::Store(packed(load(colours, i)), DU(), pixels.rgb.data() + i);
+    hn::Store(packed(load(colours, i)), DU(), pixels.data() + i);
   }
 }
 
@@ -311,12 +310,12 @@ void encode_light_on(const LightTable& table, const TileColours& light, TilePixe
     const Colour c = load(light, i);
     const VU rgb =
         packed(byte_of_light(table, c.r), byte_of_light(table, c.g), byte_of_light(table, c.b));
-    hn::Store(rgb, DU(), pixels.rgb.data() + i);
+    hn::Store(rgb, DU(), pixels.data() + i);
   }
 }
 
 void store_row_on(const std::uint32_t* pixels, int count, std::uint8_t* rgb) {
-  const hn::CappedTag<std::uint8_t, 64> d;
+  const hn::CappedTag<std::uint8_t, 32> d;  // AVX-512 has no quick way to interleave 64
   const int lanes8 = static_cast<int>(hn::Lanes(d));
   int i = 0;
   for (; i + lanes8 <= count; i += lanes8) {
@@ -334,6 +333,24 @@ void store_row_on(const std::uint32_t* pixels, int count, std::uint8_t* rgb) {
   }
 }
 
+void find_entities_on(const Layer& layer, const TileIds& ids, TilePixels& entities) {
+  for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
+    const VI entity = of_facets(layer, hn::Load(DU(), ids.id.data() + i), &Facet::entity);
+    hn::Store(hn::BitCast(DU(), entity), DU(), entities.data() + i);
+  }
+}
+
+std::size_t end_of_run_on(std::span<const std::uint32_t> values, std::size_t begin) {
+  const VU first = hn::Set(DU(), values[begin]);
+  std::size_t end = begin + 1;
+  while (end + lanes() <= values.size() &&
+         hn::AllTrue(DU(), hn::Eq(hn::LoadU(DU(), values.data() + end), first))) {
+    end += lanes();
+  }
+  while (end < values.size() && values[end] == values[begin]) ++end;
+  return end;
+}
+
 }  // namespace tether::raster::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -347,6 +364,8 @@ HWY_EXPORT(add_light_on);
 HWY_EXPORT(encode_colours_on);
 HWY_EXPORT(encode_light_on);
 HWY_EXPORT(store_row_on);
+HWY_EXPORT(find_entities_on);
+HWY_EXPORT(end_of_run_on);
 
 void shade(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
            TilePixels& pixels) {
@@ -378,6 +397,14 @@ void encode_light(const LightTable& table, const TileColours& light, TilePixels&
 
 void store_row(const std::uint32_t* pixels, int count, std::uint8_t* rgb) {
   HWY_DYNAMIC_DISPATCH(store_row_on)(pixels, count, rgb);
+}
+
+void find_entities(const Layer& layer, const TileIds& ids, TilePixels& entities) {
+  HWY_DYNAMIC_DISPATCH(find_entities_on)(layer, ids, entities);
+}
+
+std::size_t end_of_run(std::span<const std::uint32_t> values, std::size_t begin) {
+  return HWY_DYNAMIC_DISPATCH(end_of_run_on)(values, begin);
 }
 
 }  // namespace tether::raster

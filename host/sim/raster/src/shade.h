@@ -22,10 +22,8 @@ struct Shading {
   const LightTable& table = light_table();
 };
 
-/// A tile's pixels, R in the lowest byte.
-struct TilePixels {
-  alignas(64) std::array<std::uint32_t, kTilePixels> rgb;
-};
+/// A tile's pixels, R in the lowest byte; or a number of each.
+struct alignas(64) TilePixels : std::array<std::uint32_t, kTilePixels> {};
 
 /// A tile's colours, 0..1, or its light, 0..LightTable::kWhite.
 struct TileColours {
@@ -53,5 +51,11 @@ void encode_light(const LightTable& table, const TileColours& light, TilePixels&
 
 /// Three bytes for each of a row's pixels.
 void store_row(const std::uint32_t* pixels, int count, std::uint8_t* rgb);
+
+/// The entities that a tile's pixels show.
+void find_entities(const Layer& layer, const TileIds& ids, TilePixels& entities);
+
+/// The first of `values` after `begin` that differs from that one.
+std::size_t end_of_run(std::span<const std::uint32_t> values, std::size_t begin);
 
 }  // namespace tether::raster

@@ -154,14 +154,14 @@ void StripRenderer::add_transparent(const Shading& shading, const Layer& layer, 
 void StripRenderer::darken_blind(const Lens& lens, const Tile& tile) {
   for (int row = 0; row < tile.height; ++row) {
     for (int column = 0; column < tile.width; ++column) {
-      if (is_blind(lens, tile, column, row)) pixels_.rgb[place_of(column, row)] = 0;
+      if (is_blind(lens, tile, column, row)) pixels_[place_of(column, row)] = 0;
     }
   }
 }
 
 void StripRenderer::store_rgb(const Job& job, const Tile& tile) const {
   for (int row = 0; row < tile.height; ++row) {
-    store_row(pixels_.rgb.data() + place_of(0, row), tile.width,
+    store_row(pixels_.data() + place_of(0, row), tile.width,
               job.picture.rgb.data() + 3 * place_in_picture(job.lens, tile, row));
   }
 }
@@ -183,14 +183,11 @@ void StripRenderer::store_depth(const Job& job, const Tile& tile) const {
   }
 }
 
-void StripRenderer::store_entities(const Job& job, const Tile& tile) const {
-  const std::size_t middle = ids_.size() / 2;
+void StripRenderer::store_entities(const Job& job, const Tile& tile) {
+  find_entities(layers_[layers_.size() / 2], ids_[ids_.size() / 2], pixels_);
   for (int row = 0; row < tile.height; ++row) {
-    std::uint32_t* const out = job.picture.entity.data() + place_in_picture(job.lens, tile, row);
-    for (int column = 0; column < tile.width; ++column) {
-      const std::uint32_t id = ids_[middle].id[place_of(column, row)];
-      out[column] = id == 0 ? 0 : layers_[middle].facets[id - 1].entity;
-    }
+    std::copy_n(pixels_.data() + place_of(0, row), tile.width,
+                job.picture.entity.data() + place_in_picture(job.lens, tile, row));
   }
 }
 

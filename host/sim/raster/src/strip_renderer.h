@@ -42,7 +42,7 @@ class StripRenderer {
   void darken_blind(const Lens& lens, const Tile& tile);
   void store_rgb(const Job& job, const Tile& tile) const;
   void store_depth(const Job& job, const Tile& tile) const;
-  void store_entities(const Job& job, const Tile& tile) const;
+  void store_entities(const Job& job, const Tile& tile);
 
   std::vector<Layer> layers_;
   std::vector<TileIds> ids_;  ///< of each layer, in the tile

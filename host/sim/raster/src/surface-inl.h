@@ -7,6 +7,7 @@
 
 #include "layer.h"
 #include "rasterize.h"
+#include "shade.h"
 #include "vector-inl.h"
 
 #include <array>
@@ -20,40 +21,73 @@ HWY_BEFORE_NAMESPACE();
 namespace tether::raster::HWY_NAMESPACE {
 namespace {
 
+// A layer's part of a tile, from one of its rows on.
+struct Part {
+  const Shading& shading;
+  const Layer& layer;
+  const Tile& tile;
+  const TileIds& ids;
+  int first_row, rows;
+
+  std::size_t first_pixel() const { return static_cast<std::size_t>(first_row) * kTile_px; }
+};
+
 // Where some pixels are in the undistorted picture, and the slopes of their rays.
 struct Pixels {
   V x, y;
   V ray_x, ray_y;
 };
 
-// Pixels of a tile from `at` on, all in one row.
-HWY_INLINE Pixels pixels_at(const Lens& lens, const Layer& layer, const Tile& tile,
-                            std::size_t at) {
-  const int column = tile.x + static_cast<int>(at % kTile_px);
-  const int row = tile.y + static_cast<int>(at / kTile_px);
-  Pixels p;
-  if (lens.is_grid()) {
-    p.x = Add(lane_numbers(), set(static_cast<float>(column)));
-    p.y = set(static_cast<float>(row));
-  } else {
-    const std::size_t sample =
-        static_cast<std::size_t>(row) * lens.stride() + static_cast<std::size_t>(column);
-    const V scale = set(1.0F / kSubpixels);
-    p.x = Mul(to_float(hn::LoadU(DI(), lens.x().data() + sample)), scale);
-    p.y = Mul(to_float(hn::LoadU(DI(), lens.y().data() + sample)), scale);
-  }
-  p.x = Add(p.x, set(static_cast<float>(layer.offset_x_px)));
-  p.y = Add(p.y, set(static_cast<float>(layer.offset_y_px)));
-  const Projection& view = layer.projection;
-  p.ray_x = Mul(Sub(p.x, set(static_cast<float>(view.cx))), set(static_cast<float>(1.0 / view.fx)));
-  p.ray_y = Mul(Sub(p.y, set(static_cast<float>(view.cy))), set(static_cast<float>(1.0 / view.fy)));
-  return p;
-}
+// The pixels of a part. A copy of what it takes: nothing that is stored can change it.
+class Sight {
+ public:
+  explicit Sight(const Part& part)
+      : lens_(part.shading.lens),
+        is_grid_(lens_.is_grid()),
+        x_(part.tile.x),
+        y_(part.tile.y + part.first_row),
+        offset_x_(static_cast<float>(part.layer.offset_x_px)),
+        offset_y_(static_cast<float>(part.layer.offset_y_px)),
+        cx_(static_cast<float>(part.layer.projection.cx)),
+        cy_(static_cast<float>(part.layer.projection.cy)),
+        per_fx_(static_cast<float>(1.0 / part.layer.projection.fx)),
+        per_fy_(static_cast<float>(1.0 / part.layer.projection.fy)) {}
 
-// Calls `use` with each triangle that some pixels see, with these pixels, and with whether it is
-// the first.
+  // From pixel `at` of the part on, all in one row.
+  HWY_INLINE Pixels pixels(std::size_t at) const {
+    const int column = x_ + static_cast<int>(at % kTile_px);
+    const int row = y_ + static_cast<int>(at / kTile_px);
+    Pixels p;
+    if (is_grid_) {
+      p.x = Add(Add(lane_numbers(), set(static_cast<float>(column))), set(offset_x_));
+      const float y = static_cast<float>(row) + offset_y_;
+      p.y = set(y);
+      p.ray_y = set((y - cy_) * per_fy_);
+    } else {
+      const std::size_t sample =
+          static_cast<std::size_t>(row) * lens_.stride() + static_cast<std::size_t>(column);
+      const V scale = set(1.0F / kSubpixels);
+      p.x = Mul(to_float(hn::LoadU(DI(), lens_.x().data() + sample)), scale);
+      p.y = Mul(to_float(hn::LoadU(DI(), lens_.y().data() + sample)), scale);
+      p.x = Add(p.x, set(offset_x_));
+      p.y = Add(p.y, set(offset_y_));
+      p.ray_y = Mul(Sub(p.y, set(cy_)), set(per_fy_));
+    }
+    p.ray_x = Mul(Sub(p.x, set(cx_)), set(per_fx_));
+    return p;
+  }
+
+ private:
+  const Lens& lens_;
+  bool is_grid_;
+  int x_, y_;
+  float offset_x_, offset_y_, cx_, cy_, per_fx_, per_fy_;
+};
+
+// Calls `use` with each number of some pixels that is not 0, less 1; with its pixels, and with
+// whether it is the first.
 template <class Use>
-HWY_INLINE void for_each_facet(VU ids, const Use& use) {
+HWY_INLINE void for_each_number(VU ids, const Use& use) {
   const DI di;
   const VI id = hn::BitCast(di, ids);
   auto rest = hn::Gt(id, whole(0));
@@ -90,93 +124,120 @@ struct Spot {
   V dx, dy, z;
 };
 
-HWY_INLINE Spot spot(const Facet& f, const Pixels& p) {
-  const V dx = Sub(p.x, set(f.x_ref));
-  const V dy = Sub(p.y, set(f.y_ref));
-  const V inverse = hn::Min(hn::Max(plane(f.inverse_depth, dx, dy), set(f.inverse_depth_low)),
-                            set(f.inverse_depth_high));
-  return {dx, dy, Div(set(1.0F), inverse)};
+HWY_INLINE Spot spot(const Facet& f, const Pixels& p, V z) {
+  return {Sub(p.x, set(f.x_ref)), Sub(p.y, set(f.y_ref)), z};
 }
 
-// The weights of the second and the third corner: within 0 and 1, for edges' sake.
-struct Weights {
-  V second, third;
-};
-
-HWY_INLINE Weights weights(const Facet& f, const Spot& s) {
-  const auto weight = [&](const std::array<float, 3>& over_z) HWY_ATTR {
-    return hn::Min(hn::Max(Mul(s.z, plane(over_z, s.dx, s.dy)), set(0.0F)), set(1.0F));
-  };
-  return {weight(f.second), weight(f.third)};
-}
-
-// Of the first corner, and what the others add to it.
-HWY_INLINE V added(const std::array<float, 3>& corners, const Weights& w) {
-  return Add(Mul(set(corners[1]), w.second), Mul(set(corners[2]), w.third));
-}
-HWY_INLINE V between_corners(const std::array<float, 3>& corners, const Weights& w) {
-  return Add(set(corners[0]), added(corners, w));
+// A value whose plane is over z, within the least and the most of the corners, for edges' sake.
+HWY_INLINE V value_at(const std::array<float, 3>& over_z, float low, float high, const Spot& s) {
+  return hn::Min(hn::Max(Mul(s.z, plane(over_z, s.dx, s.dy)), set(low)), set(high));
 }
 
 struct Normal {
   V x, y, z;
 };
 
-HWY_INLINE Normal normal(const Facet& f, const Weights& w) {
-  const V x = between_corners(f.normal[0], w);
-  const V y = between_corners(f.normal[1], w);
-  const V z = between_corners(f.normal[2], w);
+HWY_INLINE Normal normal_at(const Facet& f, const Spot& s) {
+  const auto& n = f.normal;
+  if (f.is_flat != 0) return {set(n[0][0]), set(n[1][0]), set(n[2][0])};
+  const V second = value_at(f.second, 0.0F, 1.0F, s);
+  const V third = value_at(f.third, 0.0F, 1.0F, s);
+  const auto mixed = [&](const std::array<float, 3>& corners) HWY_ATTR {
+    return Add(set(corners[0]), Add(Mul(set(corners[1]), second), Mul(set(corners[2]), third)));
+  };
+  const V x = mixed(n[0]);
+  const V y = mixed(n[1]);
+  const V z = mixed(n[2]);
   const V length2 = hn::Max(dot(x, y, z, x, y, z), set(1e-20F));
   const V scale = Div(set(1.0F), hn::Sqrt(length2));
   return {Mul(x, scale), Mul(y, scale), Mul(z, scale)};
 }
 
-// Some rows of a tile, step by step: each step goes over all pixels, a vector at a time. Pixels
-// that see different triangles share a vector from the second step on.
-struct Block {
-  static constexpr int kRows = 8;
-  static constexpr std::size_t kPixels = std::size_t{kRows} * kTile_px;
-  template <class T>
-  using Plane = std::array<T, kPixels>;
+template <class T>
+using Lanes = std::array<T, hn::MaxLanes(D())>;
 
-  // A vector with a triangle in it, from pixel `at` on.
-  struct Vector {
-    std::uint16_t at;
+// Where some pixels are on one size of a texture.
+struct Lookup {
+  alignas(64) Lanes<std::int32_t> pair;  // of PreparedScene::texels: the left one of four texels
+  Lanes<std::int32_t> x, y;              // between them, in the lowest 8 bits
+};
+using Lookups = std::array<Lookup, 2>;  // on a level and the next
+
+// The pixels of a vector.
+struct Cell {
+  alignas(64) Lanes<float> x, y, z;  // the surface's place in C
+  Lanes<float> nx, ny, nz;           // its normal, unless the run is of a flat triangle
+  Lanes<float> distance;             // from the origin, along the normal
+  Lanes<float> u, v;                 // in its texture
+  Lanes<float> texels_per_pixel2;    // of its largest size, squared; at least 1
+  Lanes<std::int32_t> level;         // 256 times the row of PreparedScene::levels
+  Lanes<std::int32_t> material;      // rows of PreparedScene::materials
+  Lanes<float> diffuse, specular;    // light that is not coloured yet
+  Lanes<float> r, g, b, alpha;       // the output
+  Lookups lookups;
+};
+
+// Some rows of a tile, step by step: each step goes over all pixels, a vector at a time. Pixels
+// that see different triangles share a vector from the second step on. So few rows stay in the
+// cache.
+struct Block {
+  static constexpr int kRows = 4;
+  static constexpr std::size_t kPixels = std::size_t{kRows} * kTile_px;
+
+  // Vectors that follow each other, with triangles in them.
+  struct Run {
+    const Facet* flat;         // the triangle of all their pixels, if it is one and flat; else null
+    std::uint16_t first, end;  // of `places`
     bool is_shiny, is_textured;
   };
 
-  alignas(64) Plane<std::uint32_t> ids;        // the input: 0 where nothing is to be shaded
-  alignas(64) Plane<float> x, y, z;            // the surface's place in C
-  alignas(64) Plane<float> nx, ny, nz;         // its normal
-  alignas(64) Plane<float> u, v;               // in its texture
-  alignas(64) Plane<float> texels_per_pixel2;  // of its largest size, squared; at least 1
-  alignas(64) Plane<std::int32_t> level;       // rows of PreparedScene::levels: this, then the next
-  alignas(64) Plane<std::int32_t> next_share;  // in 1/256
-  alignas(64) Plane<std::int32_t> material;    // rows of PreparedScene::materials
-  alignas(64) Plane<float> diffuse, specular;  // light that is not coloured yet
-  alignas(64) Plane<float> r, g, b, alpha;     // the output
-  std::array<Vector, kPixels> vectors;
-  std::size_t vector_count;
+  alignas(64) std::array<std::uint32_t, kPixels> ids;  // the input: 0 where nothing is to be shaded
+  std::array<Cell, kPixels / hn::MaxLanes(D())> cells;
+  std::array<Run, kPixels> all_runs;
+  std::array<std::uint16_t, kPixels> all_places;
+  std::size_t run_count;
 
-  std::span<const Vector> active() const { return {vectors.data(), vector_count}; }
+  Cell& cell(std::size_t at) { return cells[at / hn::MaxLanes(D())]; }
+  const Cell& cell(std::size_t at) const { return cells[at / hn::MaxLanes(D())]; }
+  std::span<const Run> runs() const { return {all_runs.data(), run_count}; }
+  std::span<const std::uint16_t> places(const Run& run) const {
+    return std::span(all_places).subspan(run.first, run.end - run.first);
+  }
 };
 
-HWY_INLINE V load(const Block::Plane<float>& plane, std::size_t at) {
-  return hn::Load(D(), plane.data() + at);
+HWY_INLINE V load(const Lanes<float>& from) {
+  return hn::Load(D(), from.data());
 }
-HWY_INLINE VI load(const Block::Plane<std::int32_t>& plane, std::size_t at) {
-  return hn::Load(DI(), plane.data() + at);
+HWY_INLINE VI load(const Lanes<std::int32_t>& from) {
+  return hn::Load(DI(), from.data());
 }
-HWY_INLINE void store(V value, Block::Plane<float>& plane, std::size_t at) {
-  hn::Store(value, D(), plane.data() + at);
+HWY_INLINE void store(V value, Lanes<float>& to) {
+  hn::Store(value, D(), to.data());
+}
+HWY_INLINE void store(VI value, Lanes<std::int32_t>& to) {
+  hn::Store(value, DI(), to.data());
+}
+
+HWY_INLINE Colour colour(const Cell& c) {
+  return {load(c.r), load(c.g), load(c.b)};
+}
+HWY_INLINE void store(const Colour& colour, Cell& c) {
+  store(colour.r, c.r);
+  store(colour.g, c.g);
+  store(colour.b, c.b);
+}
+
+HWY_INLINE Normal normal_of(const Block::Run& run, const Cell& c) {
+  if (run.flat == nullptr) return {load(c.nx), load(c.ny), load(c.nz)};
+  const auto& n = run.flat->normal;
+  return {set(n[0][0]), set(n[1][0]), set(n[2][0])};
 }
 
 // A number of each pixel's material, and that of the first material.
-HWY_INLINE V of_material(VI material, const float& of_first) {
+HWY_INLINE V of_material(const Block::Run& run, const Cell& c, const float& of_first) {
   constexpr std::int32_t kFloats = sizeof(MaterialRow) / sizeof(float);
-  const std::int32_t one = hn::GetLane(material);
-  if (hn::AllTrue(DI(), hn::Eq(material, whole(one)))) return set((&of_first)[one * kFloats]);
-  return hn::GatherIndex(D(), &of_first, Mul(material, whole(kFloats)));
+  if (run.flat != nullptr) return set((&of_first)[run.flat->material * kFloats]);
+  return hn::GatherIndex(D(), &of_first, Mul(load(c.material), whole(kFloats)));
 }
 
 }  // namespace

@@ -16,20 +16,26 @@ HWY_BEFORE_NAMESPACE();
 namespace tether::raster::HWY_NAMESPACE {
 namespace {
 
-// Texture coordinates, and how they change to the next pixel along x and y.
+// Texture coordinates, and the texels of the largest size from a pixel to the next, squared: along
+// x or y, whichever are more. At least 1.
 struct TexturePoint {
   V u, v;
-  V u_x, u_y, v_x, v_y;
+  V texels_per_pixel2;
 };
 
-HWY_INLINE TexturePoint texture_point(const Facet& f, const Spot& s, const Weights& w) {
-  const V u = added(f.u, w);
-  const V v = added(f.v, w);
-  const auto change = [&](float over_z, V value, std::size_t axis) HWY_ATTR {
-    return Mul(s.z, Sub(set(over_z), Mul(value, set(f.inverse_depth[axis]))));
+HWY_INLINE TexturePoint texture_point(const Facet& f, const Spot& s) {
+  const auto added = [&](const Facet::Coordinate& c)
+                         HWY_ATTR { return value_at(c.added, c.low, c.high, s); };
+  const V u = added(f.u);
+  const V v = added(f.v);
+  const auto squared_change = [&](std::size_t axis) HWY_ATTR {
+    const V of_u = Sub(set(f.u.change[axis]), Mul(u, set(f.u.shrinkage[axis])));
+    const V of_v = Sub(set(f.v.change[axis]), Mul(v, set(f.v.shrinkage[axis])));
+    return Add(Mul(of_u, of_u), Mul(of_v, of_v));
   };
-  return {Add(set(f.u[0]), u), Add(set(f.v[0]), v), change(f.u_x, u, 1),
-          change(f.u_y, u, 2), change(f.v_x, v, 1), change(f.v_y, v, 2)};
+  const V square = Mul(hn::Max(squared_change(0), squared_change(1)), Mul(s.z, s.z));
+  return {Add(set(f.u.first), u), Add(set(f.v.first), v),
+          hn::Min(hn::Max(square, set(1.0F)), set(1e12F))};
 }
 
 // Two numbers of 16 bits for each pixel: their products, and the upper halves of these.
@@ -69,92 +75,115 @@ struct Blend {
   VU red_blue, green_alpha;
 };
 
-// One axis of a lookup: the first of two texels, and the share of the second in 1/256.
-struct Axis {
-  VI first, share;
-};
-
-HWY_INLINE Axis axis(V repeated, VI size) {
-  const VI fixed = Sub(nearest(Mul(repeated, to_float(hn::ShiftLeft<8>(size)))), whole(128));
-  const VI first = hn::ShiftRight<8>(fixed);
-  return {Add(first, And(hn::BroadcastSignBit(first), size)), And(fixed, whole(0xFF))};
+// The upper byte of each half.
+HWY_INLINE VU upper_bytes(VU pair) {
+#if HWY_TARGET == HWY_SCALAR
+  return And(hn::ShiftRight<8>(pair), twice(0xFFU));
+#else
+  const hn::Repartition<std::uint16_t, DU> dh;
+  return hn::BitCast(DU(), hn::ShiftRight<8>(hn::BitCast(dh, pair)));
+#endif
 }
 
 HWY_INLINE void add_texel(Blend& sum, VU texel, VU weight) {
-  const VU low_bytes = twice(0xFFU);
-  sum.red_blue = Add(sum.red_blue, times(And(texel, low_bytes), weight));
-  sum.green_alpha = Add(sum.green_alpha, times(And(hn::ShiftRight<8>(texel), low_bytes), weight));
+  sum.red_blue = Add(sum.red_blue, times(And(texel, twice(0xFFU)), weight));
+  sum.green_alpha = Add(sum.green_alpha, times(upper_bytes(texel), weight));
 }
 
-// Texels with their right neighbours.
-struct Pair {
-  VU left, right;
+// The four texels around some places.
+struct Square {
+  VU upper_left, lower_left, upper_right, lower_right;
 };
 
-#if HWY_TARGET != HWY_SCALAR
-// The pairs of texels at several places, by one load each: instructions that gather are no quicker,
-// and those of AVX-512 slower.
-template <class DW>
-HWY_INLINE hn::Vec<DW> pairs(DW d, const std::uint32_t* texels, const std::int32_t* at) {
-  if constexpr (hn::MaxLanes(DW()) == 1) {
-    return hn::LoadU(d, reinterpret_cast<const std::uint64_t*>(texels + *at));
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE Square square_at(const TexelPair* pairs, const std::int32_t* places) {
+  const TexelPair& left = pairs[*places];
+  const TexelPair& right = pairs[*places + 1];
+  const DU du;
+  return {hn::Set(du, left.upper), hn::Set(du, left.lower), hn::Set(du, right.upper),
+          hn::Set(du, right.lower)};
+}
+#else
+// Two pairs for every fourth pixel, by one load each: instructions that gather are no quicker, and
+// those of AVX-512 slower.
+template <class DB>
+HWY_INLINE hn::Vec<DB> every_fourth(DB d, const TexelPair* pairs, const std::int32_t* at) {
+  if constexpr (hn::MaxLanes(DB()) == 4) {
+    return hn::LoadU(d, &pairs[*at].upper);
   } else {
-    const hn::Half<DW> half;
-    return hn::Combine(d, pairs(half, texels, at + hn::Lanes(half)), pairs(half, texels, at));
+    const hn::Half<DB> half;
+    return hn::Combine(d, every_fourth(half, pairs, at + hn::Lanes(half)),
+                       every_fourth(half, pairs, at));
   }
 }
-#endif
 
-HWY_INLINE Pair gather(const std::uint32_t* texels, VI at) {
-  const DU du;
-#if HWY_TARGET == HWY_SCALAR
-  const std::uint32_t* const left = texels + hn::GetLane(at);
-  return {hn::Set(du, left[0]), hn::Set(du, left[1])};
-#else
-  const hn::Repartition<std::uint64_t, DU> dw;
-  alignas(64) std::array<std::int32_t, kMaxLanes> places;
-  hn::Store(at, DI(), places.data());
-  const VU a = hn::BitCast(du, pairs(dw, texels, places.data()));
-  const VU b = hn::BitCast(du, pairs(dw, texels, places.data() + hn::Lanes(dw)));
-  return {hn::ConcatEven(du, b, a), hn::ConcatOdd(du, b, a)};
-#endif
+HWY_INLINE Square square_at(const TexelPair* pairs, const std::int32_t* places) {
+  const DU d;
+  const hn::Repartition<std::uint64_t, DU> d2;
+  const VU a = every_fourth(d, pairs, places);
+  const VU b = every_fourth(d, pairs, places + 1);
+  const VU c = every_fourth(d, pairs, places + 2);
+  const VU e = every_fourth(d, pairs, places + 3);
+  const auto left_ab = hn::BitCast(d2, hn::InterleaveLower(d, a, b));
+  const auto left_ce = hn::BitCast(d2, hn::InterleaveLower(d, c, e));
+  const auto right_ab = hn::BitCast(d2, hn::InterleaveUpper(d, a, b));
+  const auto right_ce = hn::BitCast(d2, hn::InterleaveUpper(d, c, e));
+  return {hn::BitCast(d, hn::InterleaveLower(d2, left_ab, left_ce)),
+          hn::BitCast(d, hn::InterleaveUpper(d2, left_ab, left_ce)),
+          hn::BitCast(d, hn::InterleaveLower(d2, right_ab, right_ce)),
+          hn::BitCast(d, hn::InterleaveUpper(d2, right_ab, right_ce))};
 }
+#endif
 
 // One size of a texture for each pixel.
 struct Level {
-  VI first_texel, width, height;
+  VI first_pair, stride;
+  V width, height;
 };
 
 HWY_INLINE Level level_at(const PreparedScene& scene, VI row) {
-  const DI di;
-  const std::int32_t first = hn::GetLane(row);
-  if (hn::AllTrue(di, hn::Eq(row, whole(first)))) {
-    const LevelRow& one = scene.levels[static_cast<std::size_t>(first)];
-    return {whole(one.first_texel), whole(one.width), whole(one.height)};
-  }
-  const VI at = hn::ShiftLeft<2>(row);
-  static_assert(sizeof(LevelRow) == 4 * sizeof(std::int32_t));
-  const std::int32_t* const rows = &scene.levels.front().first_texel;
-  return {hn::GatherIndex(di, rows, at), hn::GatherIndex(di, rows + 1, at),
-          hn::GatherIndex(di, rows + 2, at)};
+  Level all{whole(0), whole(0), set(0.0F), set(0.0F)};
+  const VU number = hn::BitCast(DU(), Add(row, whole(1)));
+  for_each_number(number, [&](std::size_t at, hn::Mask<DI> same, auto is_first) HWY_ATTR {
+    const LevelRow& one = scene.levels[at];
+    const Level level{whole(one.first_pair), whole(one.stride), set(one.width_256ths),
+                      set(one.height_256ths)};
+    if (is_first.value) {
+      all = level;
+      return;
+    }
+    const M mask = float_mask(same);
+    all = {hn::IfThenElse(same, level.first_pair, all.first_pair),
+           hn::IfThenElse(same, level.stride, all.stride),
+           hn::IfThenElse(mask, level.width, all.width),
+           hn::IfThenElse(mask, level.height, all.height)};
+  });
+  return all;
+}
+
+// Of `u` and `v` within 0 and 1.
+HWY_INLINE void look_up(const Level& level, V u, V v, Lookup& to) {
+  const VI x = Sub(nearest(Mul(u, level.width)), whole(128));
+  const VI y = Sub(nearest(Mul(v, level.height)), whole(128));
+  const VI row = Mul(hn::ShiftRight<8>(y), level.stride);
+  store(Add(Add(level.first_pair, hn::ShiftRight<8>(x)), row), to.pair);
+  store(x, to.x);
+  store(y, to.y);
 }
 
 // The four weights sum to 256 exactly.
-HWY_INLINE Blend bilinear(const std::uint32_t* texels, const Level& level, V u, V v) {
-  const Axis x = axis(u, level.width);
-  const Axis y = axis(v, level.height);
-  const VI stride = Add(level.width, whole(1));
-  const VI at = Add(Add(level.first_texel, x.first), Mul(y.first, stride));
-  const Pair upper = gather(texels, at);
-  const Pair lower = gather(texels, Add(at, stride));
-  const VU right = twice(x.share);
-  const VU below = twice(y.share);
+HWY_INLINE Blend bilinear(const TexelPair* pairs, const Lookup& from) {
+  const VI x = load(from.x);
+  const VI y = load(from.y);
+  const Square square = square_at(pairs, from.pair.data());
+  const VU right = twice(And(x, whole(0xFF)));
+  const VU below = twice(And(y, whole(0xFF)));
   const VU both = And(hn::ShiftRight<8>(Add(times(right, below), twice(128U))), twice(0xFFU));
   Blend sum{hn::Zero(DU()), hn::Zero(DU())};
-  add_texel(sum, upper.left, Add(Sub(Sub(twice(256U), right), below), both));
-  add_texel(sum, upper.right, Sub(right, both));
-  add_texel(sum, lower.left, Sub(below, both));
-  add_texel(sum, lower.right, both);
+  add_texel(sum, square.upper_left, Add(Sub(Sub(twice(256U), right), below), both));
+  add_texel(sum, square.upper_right, Sub(right, both));
+  add_texel(sum, square.lower_left, Sub(below, both));
+  add_texel(sum, square.lower_right, both);
   return sum;
 }
 
@@ -173,12 +202,6 @@ HWY_INLINE V high_half(VU pair) {
   return to_float(hn::BitCast(DI(), hn::ShiftRight<16>(pair)));
 }
 
-// Which size of a texture to look at, and how far to go to the next, in 1/256.
-struct Filter {
-  VI level, next_share;  // a row of PreparedScene::levels
-  V texels_per_pixel2;   // of the largest size, squared; at least 1
-};
-
 HWY_INLINE V squared_length(V u, V v, V width, V height) {
   const V x = Mul(u, width);
   const V y = Mul(v, height);
@@ -186,24 +209,18 @@ HWY_INLINE V squared_length(V u, V v, V width, V height) {
 }
 
 // 128 times the logarithm of x ≥ 1, to 1: the exponent, and a parabola through the fraction.
-HWY_INLINE V log2_times_128(V x) {
-  const VI bits = Sub(hn::BitCast(DI(), x), whole(0x3F800000));
-  const V fraction = Mul(to_float(And(bits, whole(0x7FFFFF))), set(1.0F / 8388608.0F));
-  const V curve = Mul(Mul(fraction, Sub(set(1.0F), fraction)), set(128.0F * 0.3437F));
-  return Add(Mul(to_float(bits), set(128.0F / 8388608.0F)), curve);
+HWY_INLINE VI log2_times_128(V x) {
+  const VI bits = hn::ShiftRight<16>(Sub(hn::BitCast(DI(), x), whole(0x3F800000)));
+  const VU fraction = hn::BitCast(DU(), And(bits, whole(0x7F)));
+  const VU curve = times_high(times(fraction, Sub(hn::Set(DU(), 0x80U), fraction)), twice(176U));
+  return Add(bits, hn::BitCast(DI(), curve));
 }
 
-// As OpenGL: by the longer of the changes to the next pixel along x and y.
-HWY_INLINE Filter make_filter(const PreparedScene& scene, const MaterialRow& m,
-                              const TexturePoint& p) {
-  const LevelRow& largest = scene.levels[static_cast<std::size_t>(m.first_level)];
-  const V width = set(static_cast<float>(largest.width));
-  const V height = set(static_cast<float>(largest.height));
-  const V longer = hn::Max(squared_length(p.u_x, p.v_x, width, height),
-                           squared_length(p.u_y, p.v_y, width, height));
-  const V square = hn::Min(hn::Max(longer, set(1.0F)), set(1e12F));
-  const VI level = hn::Min(nearest(log2_times_128(square)), whole(256 * (m.levels - 1)));
-  return {Add(hn::ShiftRight<8>(level), whole(m.first_level)), And(level, whole(0xFF)), square};
+// Which size of a texture to look at, and how far to go to the next: 256 times the row of
+// PreparedScene::levels. As OpenGL.
+HWY_INLINE VI level_of(const MaterialRow& m, const TexturePoint& p) {
+  return Add(hn::Min(log2_times_128(p.texels_per_pixel2), whole(256 * (m.levels - 1))),
+             whole(256 * m.first_level));
 }
 
 // Of numbers up to 2^16 − 256.
@@ -211,15 +228,27 @@ HWY_INLINE VU mix(VU a, VU b, VU share) {
   return Add(Sub(a, times_high(a, share)), times_high(b, share));
 }
 
-HWY_INLINE Texel sample(const PreparedScene& scene, VI level, VI next_share, V u, V v) {
-  const std::uint32_t* const texels = scene.texels.data();
+// Whether a level is looked at alone.
+HWY_INLINE bool is_one(VI level) {
+  return hn::AllTrue(DI(), hn::Eq(And(level, whole(0xFF)), whole(0)));
+}
+
+// Finds the texels of some places, on a level and the next.
+HWY_INLINE void look_up(const PreparedScene& scene, VI level, V u, V v, Lookups& to) {
   const V u_repeated = Sub(u, hn::Floor(u));
   const V v_repeated = Sub(v, hn::Floor(v));
-  Blend b = bilinear(texels, level_at(scene, level), u_repeated, v_repeated);
-  if (!hn::AllTrue(DI(), hn::Eq(next_share, whole(0)))) {
-    const Level next_level = level_at(scene, Add(level, whole(1)));
-    const Blend next = bilinear(texels, next_level, u_repeated, v_repeated);
-    const VU share = twice(hn::ShiftLeft<8>(next_share));
+  const VI row = hn::ShiftRight<8>(level);
+  look_up(level_at(scene, row), u_repeated, v_repeated, to[0]);
+  if (is_one(level)) return;
+  look_up(level_at(scene, Add(row, whole(1))), u_repeated, v_repeated, to[1]);
+}
+
+HWY_INLINE Texel sample(const PreparedScene& scene, VI level, const Lookups& from) {
+  const TexelPair* const texels = scene.texels.data();
+  Blend b = bilinear(texels, from[0]);
+  if (!is_one(level)) {
+    const Blend next = bilinear(texels, from[1]);
+    const VU share = twice(hn::ShiftLeft<8>(And(level, whole(0xFF))));
     b = {mix(b.red_blue, next.red_blue, share), mix(b.green_alpha, next.green_alpha, share)};
   }
   const V scale = set(kTexelScale);

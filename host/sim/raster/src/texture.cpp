@@ -68,13 +68,20 @@ Image make_smaller(const Image& from) {
 }
 
 void add_level(const Image& image, PreparedScene& scene) {
-  scene.levels.push_back(
-      {static_cast<std::int32_t>(scene.texels.size()), image.width, image.height, 0});
-  const auto width = static_cast<std::ptrdiff_t>(image.width);
-  for (int row = 0; row <= image.height; ++row) {
-    const auto first = image.texels.begin() + row % image.height * width;
-    scene.texels.insert(scene.texels.end(), first, first + width);
-    scene.texels.push_back(*first);
+  const int stride = image.width + 2;
+  const auto texel = [&](int x, int y) {
+    const int column = (x + image.width) % image.width;
+    const int row = (y + image.height) % image.height;
+    return image.texels[static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width) +
+                        static_cast<std::size_t>(column)];
+  };
+  scene.levels.push_back({static_cast<std::int32_t>(scene.texels.size()) + stride + 1, stride,
+                          256.0F * static_cast<float>(image.width),
+                          256.0F * static_cast<float>(image.height)});
+  for (int y = -1; y < image.height; ++y) {
+    for (int x = -1; x <= image.width; ++x) {
+      scene.texels.push_back({texel(x, y), texel(x, y + 1)});
+    }
   }
 }
 

@@ -146,19 +146,18 @@ TEST(Shade, ShowsTheUpperLeftPixelOfATextureAtItsUpperLeft) {
 // A texture's channel at a place, the slow way: bilinear on one size.
 double texel(const PreparedScene& scene, std::size_t level, double u, double v, unsigned shift) {
   const LevelRow& row = scene.levels[level];
-  const double x = (u - std::floor(u)) * row.width - 0.5;
-  const double y = (v - std::floor(v)) * row.height - 0.5;
+  const double x = (u - std::floor(u)) * row.width_256ths / 256.0 - 0.5;
+  const double y = (v - std::floor(v)) * row.height_256ths / 256.0 - 0.5;
   double sum = 0.0;
   for (int dy = 0; dy < 2; ++dy) {
     for (int dx = 0; dx < 2; ++dx) {
       const int column = static_cast<int>(std::floor(x)) + dx;
-      const int line = static_cast<int>(std::floor(y)) + dy;
-      const int at = (line + row.height) % row.height * (row.width + 1) +
-                     (column + row.width) % row.width + row.first_texel;
+      const int line = static_cast<int>(std::floor(y));
+      const int at = line * row.stride + column + row.first_pair;
       const double share = (dx == 0 ? 1.0 - (x - std::floor(x)) : x - std::floor(x)) *
                            (dy == 0 ? 1.0 - (y - std::floor(y)) : y - std::floor(y));
-      sum +=
-          share * static_cast<double>(scene.texels[static_cast<std::size_t>(at)] >> shift & 0xFFU);
+      const TexelPair& pair = scene.texels[static_cast<std::size_t>(at)];
+      sum += share * static_cast<double>((dy == 0 ? pair.upper : pair.lower) >> shift & 0xFFU);
     }
   }
   return sum;

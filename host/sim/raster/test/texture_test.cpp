@@ -7,12 +7,11 @@
 namespace tether::raster {
 namespace {
 
-// Each size is followed by its first column and its first row.
 TEST(Texture, IsAveragedExactlyAtOddSizes) {
   PreparedScene scene;
   EXPECT_EQ(add_texture({3, 1, {0, 0, 0, 255, 90, 0, 0, 255, 240, 0, 0, 255}}, scene), 2);
   ASSERT_EQ(scene.levels.size(), 2U);
-  EXPECT_EQ(scene.texels.back() & 0xFFU, 110U);
+  EXPECT_EQ(scene.texels.back().lower & 0xFFU, 110U);
 }
 
 TEST(Texture, WeightsPixelsByHowMuchOfThemIsCovered) {
@@ -21,17 +20,24 @@ TEST(Texture, WeightsPixelsByHowMuchOfThemIsCovered) {
               scene);
   // Two and a half pixels each: (10 + 20 + 15) / 2.5 and (15 + 40 + 50) / 2.5.
   const LevelRow& half = scene.levels[1];
-  ASSERT_EQ(half.width, 2);
-  const auto* const texels = scene.texels.data() + half.first_texel;
-  EXPECT_EQ(texels[0] & 0xFFU, 18U);
-  EXPECT_EQ(texels[1] & 0xFFU, 42U);
+  ASSERT_EQ(half.width_256ths, 512.0F);
+  const TexelPair* const pairs = scene.texels.data() + half.first_pair;
+  EXPECT_EQ(pairs[0].upper & 0xFFU, 18U);
+  EXPECT_EQ(pairs[1].upper & 0xFFU, 42U);
 }
 
-TEST(Texture, RepeatsItsFirstColumnAndRowAtItsEnd) {
+TEST(Texture, RepeatsColumnsAndRowsAcrossItsEdges) {
   PreparedScene scene;
   add_texture({2, 2, {1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 4, 0, 0, 0}}, scene);
-  const std::vector<std::uint32_t> largest(scene.texels.begin(), scene.texels.begin() + 9);
-  EXPECT_EQ(largest, (std::vector<std::uint32_t>{1, 2, 1, 3, 4, 3, 1, 2, 1}));
+  std::vector<std::uint32_t> upper;
+  std::vector<std::uint32_t> lower;
+  for (std::size_t i = 0; i < 12; ++i) {
+    upper.push_back(scene.texels[i].upper);
+    lower.push_back(scene.texels[i].lower);
+  }
+  EXPECT_EQ(upper, (std::vector<std::uint32_t>{4, 3, 4, 3, 2, 1, 2, 1, 4, 3, 4, 3}));
+  EXPECT_EQ(lower, (std::vector<std::uint32_t>{2, 1, 2, 1, 4, 3, 4, 3, 2, 1, 2, 1}));
+  EXPECT_EQ(scene.levels[0].first_pair, 5);
 }
 
 }  // namespace

@@ -67,8 +67,9 @@ std::string sdf(const PlaneGeometry& g) {
                               element("size", text(g.size_x_m) + " " + text(g.size_y_m)));
 }
 std::string sdf(const MeshGeometry& g) {
+  const std::string centered = g.is_centered ? element("center", "true") : "";
   const std::string part =
-      g.submesh.empty() ? "" : element("submesh", element("name", escaped(g.submesh)));
+      g.submesh.empty() ? "" : element("submesh", element("name", escaped(g.submesh)) + centered);
   return element("mesh", element("uri", "file://" + escaped(g.file.string())) + part +
                              element("scale", text(g.scale)));
 }

@@ -95,7 +95,7 @@ TEST_F(SdfText, WritesEveryShape) {
   const Visual box = uav.body.visuals[0];
   const std::vector<Geometry> shapes{CylinderGeometry{0.5, 2.0}, SphereGeometry{0.25},
                                      PlaneGeometry{{0.0, 1.0, 0.0}, 3.0, 4.0},
-                                     MeshGeometry{"/m/a&b.dae", "part", {1.0, 2.0, 3.0}}};
+                                     MeshGeometry{"/m/a&b.dae", "part", {1.0, 2.0, 3.0}, true}};
   uav.body.visuals.clear();
   for (const Geometry& shape : shapes) {
     uav.body.visuals.push_back(box);
@@ -113,6 +113,7 @@ TEST_F(SdfText, WritesEveryShape) {
   const sdf::Mesh& mesh = *link.VisualByIndex(3)->Geom()->MeshShape();
   EXPECT_EQ(mesh.Uri(), "file:///m/a&b.dae");
   EXPECT_EQ(mesh.Submesh(), "part");
+  EXPECT_TRUE(mesh.CenterSubmesh());
   EXPECT_EQ(mesh.Scale(), ignition::math::Vector3d(1.0, 2.0, 3.0));
 }
 

@@ -45,7 +45,7 @@ const ElementTable kElements = {
     {"ellipsoid", {"radii"}},
     {"plane", {"normal", "size"}},
     {"mesh", {"uri", "scale", "submesh"}},
-    {"submesh", {"name"}},
+    {"submesh", {"name", "center"}},
     {"material", {"ambient", "diffuse", "specular", "emissive", "pbr", "tether:texture_repeat"}},
     {"pbr", {"metal", "specular"}},
     {"metal", {"albedo_map"}},
@@ -261,7 +261,7 @@ class Walk {
     check_light_shape(source_, parent, element, warn_);
     check_distortion_center(source_, parent, element, warn_);
     // These two are read, and warned of, where a UAV is put together.
-    if (name != "tether:multirotor" && name != "joint") visit_children(element);
+    if (name != "tether:multirotor" && name != "joint" && name != "plugin") visit_children(element);
     return true;
   }
 
@@ -270,6 +270,8 @@ class Walk {
     const std::string& name = element->GetName();
     if (contains(kWithoutEffect, parent, name) || is_own_plugin(element)) return false;
     if (name == "inertial" && is_static(element)) return false;
+    if (purpose_ == SdfPurpose::kUav && parent == "model" && is_battery_plugin(element))
+      return true;
     if (!is_known(purpose_, parent, name)) {
       warn_at(source_, element, consequence_of(parent, name), unrepresented(parent, element),
               warn_);

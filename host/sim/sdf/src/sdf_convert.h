@@ -40,6 +40,11 @@ std::optional<Sensor> read_sensor(const SdfSource& source, const sdf::Sensor& se
 uav::MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPtr& model,
                                         const Link& body, double gravity_m_s2);
 
+/// A plugin of Gazebo's LinearBatteryPlugin.
+bool is_battery_plugin(const sdf::ElementPtr& element);
+/// The battery of a UAV by such a plugin of its model; none if it has none.
+std::optional<energy::Battery> read_battery(const SdfSource& source, const sdf::ElementPtr& model);
+
 /// The UAV of a model file, placed.
 Uav read_uav(const SdfSource& source, const UavPlacement& placement, double gravity_m_s2,
              const WarningSink& warn);

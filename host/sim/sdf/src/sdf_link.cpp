@@ -29,7 +29,7 @@ std::optional<MeshGeometry> read_mesh(const SdfSource& source, const sdf::Mesh& 
   const sdf::ElementPtr uri = find_path(mesh.Element(), {"uri"});
   if (!uri || mesh.Uri().empty()) refuse(source, mesh.Element(), "has no file name in <uri>");
   MeshGeometry geometry{source.find_resource(uri, mesh.Uri()), mesh.Submesh(),
-                        to_vec3(mesh.Scale())};
+                        to_vec3(mesh.Scale()), mesh.CenterSubmesh() && !mesh.Submesh().empty()};
   if (geometry.file.empty()) {
     warn_at(source, uri, Consequence::kMissing,
             "names '" + mesh.Uri() + "', which is not found; left out", warn);

@@ -70,6 +70,7 @@ void read_depth_limits(const SdfSource& source, const sdf::Camera& camera, Camer
            "has a near plane that is not in front of its far plane");
   }
   if (model.kind == uav::CameraKind::kDepth) model.far_m = model.depth_max_m;
+  model.depth_max_m = std::min(model.depth_max_m, model.far_m);
 }
 
 CameraModel read_camera(const SdfSource& source, const sdf::Camera& camera, uav::CameraKind kind,

@@ -104,6 +104,7 @@ Uav read_uav(const SdfSource& source, const UavPlacement& placement, double grav
   uav.X_WB = {placement.p_WB, uav::from_rpy(0.0, 0.0, placement.yaw_rad)};
   uav.body = read_link(source, body, warn);
   uav.airframe = read_airframe(source, model->Element(), uav.body, gravity_m_s2);
+  uav.battery = read_battery(source, model->Element());
   add_sensors(source, body, {}, warn, uav);
   add_fixed_links(source, *model, body, warn, uav);
   warn_of_moving_joints(source, *model, warn);

@@ -90,7 +90,8 @@ TEST(LoadWorld, NestedModelsBecomeSeparateModels) {
 
 TEST(LoadWorld, PlacesUavs) {
   const auto model = kSource / "data/models/hummingbird/model.sdf";
-  const auto file = kSource / "data/worlds/room.sdf";
+  const ScratchFolder folder;
+  const auto file = folder.write("w.sdf", world_sdf(""));
   const World world =
       load({file, {{"a", model, {1, 2, 3}, 0.5 * pi}, {"b", model, {4, 5, 6}, 0.0}}, {}}).world;
   ASSERT_EQ(world.uavs.size(), 2u);

@@ -163,7 +163,7 @@ TEST(ShippedFiles, AreSmall) {
 }
 
 TEST(ShippedFiles, AreAllNamedByTheirWorld) {
-  const World world = load({kProject / "data/worlds/room.sdf", {}, {}}).world;
+  const World& world = load_once("room").world;
   EXPECT_TRUE(world.files.contains(kProject / "data/worlds/room.sdf"));
   std::set<std::string> extensions;
   for (const auto& file : world.files) {

@@ -85,6 +85,24 @@ TEST(SdfLink, TakesTexturesOfPngAndJpegAndWarnsOfOthers) {
                                      "<albedo_map> of visual 'v'")));
 }
 
+TEST(SdfLink, ReadsWhetherASubmeshIsCentered) {
+  const ScratchFolder folder;
+  folder.write("m.obj", "");
+  const auto mesh_with = [&](const std::string& inside) {
+    const auto file = folder.write("w.sdf", link_sdf("<visual name='v'><geometry><mesh><uri>m.obj"
+                                                     "</uri>" +
+                                                     inside + "</mesh></geometry></visual>"));
+    const Loaded loaded = load({file, {}, {}, {}, {}});
+    EXPECT_THAT(loaded.warnings, IsEmpty()) << inside;
+    return std::get<MeshGeometry>(loaded.world.models.at(0).links.at(0).visuals.at(0).geometry);
+  };
+  EXPECT_FALSE(mesh_with("").is_centered);
+  EXPECT_FALSE(mesh_with("<submesh><name>a</name></submesh>").is_centered);
+  const MeshGeometry mesh = mesh_with("<submesh><name>a</name><center>true</center></submesh>");
+  EXPECT_TRUE(mesh.is_centered);
+  EXPECT_EQ(mesh.submesh, "a");
+}
+
 TEST(SdfLink, GoesWithoutMissingFilesIfAllowed) {
   const ScratchFolder folder;
   const auto file = folder.write("w.sdf", link_sdf(R"(<visual name='a'><geometry><mesh>

@@ -57,11 +57,14 @@ TEST_F(SdfSensor, ReadsOtherCameras) {
   const char* const clip =
       "<depth_camera><output>depths</output><clip><near>0.3</near><far>8</far></clip></"
       "depth_camera>";
+  const char* const far_clip = "<depth_camera><clip><far>50</far></clip></depth_camera>";
   for (const OtherCamera& c :
        {OtherCamera{"depth_camera", "", uav::CameraKind::kDepth, 0.1, 20.0, 0.1, 20.0},
         OtherCamera{"depth", clip, uav::CameraKind::kDepth, 0.1, 8.0, 0.3, 8.0},
         OtherCamera{"rgbd_camera", clip, uav::CameraKind::kRgbd, 0.1, 20.0, 0.3, 8.0},
         OtherCamera{"rgbd", "", uav::CameraKind::kRgbd, 0.1, 20.0, 0.1, 20.0},
+        OtherCamera{"rgbd", far_clip, uav::CameraKind::kRgbd, 0.1, 20.0, 0.1, 20.0},
+        OtherCamera{"depth", far_clip, uav::CameraKind::kDepth, 0.1, 50.0, 0.1, 50.0},
         OtherCamera{"segmentation", "", uav::CameraKind::kSegmentation, 0.1, 20.0, 0.0, 0.0},
         OtherCamera{"segmentation_camera", "", uav::CameraKind::kSegmentation, 0.1, 20.0, 0.0,
                     0.0}}) {

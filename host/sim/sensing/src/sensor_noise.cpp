@@ -1,5 +1,7 @@
 #include "sensor_noise.h"
 
+#include "drawn_noise.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -51,14 +53,10 @@ std::array<double, 256> make_quantiles() {
   return z;
 }
 
-std::uint8_t clamp_byte(int value) {
-  return static_cast<std::uint8_t>(std::clamp(value, 0, 255));
-}
-
 // What each of the 256 draws adds, in 1/256 of a grey level.
-std::array<std::int32_t, 256> pixel_deltas(double offset, double stddev) {
+PixelDeltas pixel_deltas(double offset, double stddev) {
   static const std::array<double, 256> kQuantiles = make_quantiles();
-  std::array<std::int32_t, 256> deltas{};
+  PixelDeltas deltas{};
   for (std::size_t i = 0; i < deltas.size(); ++i) {
     const double grey = std::clamp(255.0 * (offset + stddev * kQuantiles[i]), -256.0, 256.0);
     deltas[i] = static_cast<std::int32_t>(std::lround(256.0 * grey));
@@ -120,15 +118,8 @@ void add_depth_noise(const Noise& noise, const NoiseKey& key, std::span<float> d
 void add_pixel_noise(const Noise& noise, const NoiseKey& key, std::span<std::uint8_t> rgb) {
   const double offset = image_offset(noise, key);
   if (offset == 0.0 && noise.stddev == 0.0) return;
-  const std::array<std::int32_t, 256> deltas = pixel_deltas(offset, noise.stddev);
-  KeyedRandom random({key.seed, key.stream, key.index});
-  std::uint32_t bits = 0;
-  for (std::size_t i = 0; i < rgb.size(); ++i) {
-    if (i % 4 == 0) bits = random.bits();
-    const std::int32_t sum = rgb[i] * 256 + deltas[bits & 0xFFU] + 128;
-    bits >>= 8;
-    rgb[i] = clamp_byte(sum >> 8);
-  }
+  const PhiloxBlock first({key.seed, key.stream, key.index});
+  add_drawn(pixel_deltas(offset, noise.stddev), first, rgb);
 }
 
 }  // namespace tether::sim

@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 const uav::VelocityCommand kForward{{1.0, 0.2, 0.1}, 0.5};
 constexpr SimTime kCommanded{100ms};
-constexpr SimTime kObserved{900ms};
+constexpr SimTime kObserved{500ms};
 
 void add(const uav::Vec3& v, std::vector<double>& numbers) {
   numbers.insert(numbers.end(), {v.x, v.y, v.z});
@@ -78,7 +78,7 @@ Observation fly_in_pieces(Simulator& simulator, std::uint64_t seed) {
     simulator.capture(snapshot);
     observe(simulator, snapshot, random.bits());
   }
-  simulator.advance_to(SimTime(1500ms));
+  simulator.advance_to(SimTime(800ms));
   return observe(simulator, snapshot, 7);
 }
 

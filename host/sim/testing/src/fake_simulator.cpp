@@ -110,6 +110,7 @@ void FakeSimulator::reset(std::uint64_t seed) {
   bodies_.clear();
   for (const Uav& uav : world_.uavs) {
     bodies_.push_back({uav.X_WB.p, uav::yaw_rad(uav.X_WB.q), {}});
+    if (uav.energy) bodies_.back().meter.emplace(*uav.energy, uav.airframe, world_.gravity_m_s2);
   }
 }
 
@@ -126,6 +127,10 @@ void FakeSimulator::step() {
   for (Body& body : bodies_) {
     body.p_WB = body.p_WB + dt_s * velocity_W(body.yaw_rad, body.command);
     body.yaw_rad += dt_s * body.command.yaw_rate_rad_s;
+    const uav::MultirotorParameters& airframe =
+        world_.uavs[static_cast<std::size_t>(&body - bodies_.data())].airframe;
+    if (body.meter)
+      body.meter->step(now_, grid_.dt(), {}, uav::hover_state(airframe, world_.gravity_m_s2, 0.0));
   }
   now_ += grid_.dt();
   ++calls_.steps;
@@ -133,6 +138,17 @@ void FakeSimulator::step() {
 
 void FakeSimulator::check_uav(std::size_t uav) const {
   if (uav >= bodies_.size()) broken_call("no UAV of index " + std::to_string(uav));
+}
+
+std::optional<energy::Status> FakeSimulator::battery(std::size_t uav) const {
+  check_uav(uav);
+  if (!bodies_[uav].meter) return std::nullopt;
+  return bodies_[uav].meter->status();
+}
+
+void FakeSimulator::computed(std::size_t uav, Duration busy) {
+  check_uav(uav);
+  bodies_[uav].meter->computed(busy);
 }
 
 void FakeSimulator::apply(std::size_t uav, const uav::VelocityCommand& command) {

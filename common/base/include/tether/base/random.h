@@ -24,11 +24,20 @@ std::uint64_t random_stream(std::string_view uav, std::string_view sensor,
 std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
                                         std::array<std::uint32_t, 2> key);
 
+/// The arguments of `philox4x32` for the first four draws of `KeyedRandom` under a key. Each
+/// further four have a `counter[2]` that is greater by 1.
+struct PhiloxBlock {
+  explicit PhiloxBlock(const RandomKey& random_key);
+
+  std::array<std::uint32_t, 4> counter;
+  std::array<std::uint32_t, 2> key{};
+};
+
 /// A sequence of draws under one key, for quantities that need more than one number (the noise of
 /// an image, a truncated normal distribution). Cheap to make and to copy. Not thread-safe.
 class KeyedRandom {
  public:
-  explicit KeyedRandom(const RandomKey& key);
+  explicit KeyedRandom(const RandomKey& key) : next_(key) {}
 
   std::uint32_t bits();
   /// Uniform in [0, 1), 53 bits.
@@ -37,8 +46,7 @@ class KeyedRandom {
   double normal();
 
  private:
-  std::array<std::uint32_t, 2> key_;
-  std::array<std::uint32_t, 4> counter_;
+  PhiloxBlock next_;
   std::array<std::uint32_t, 4> block_{};
   int used_ = 4;
 };

@@ -74,10 +74,11 @@ Mission load_mission(const std::filesystem::path& file);
 /// What a mission can refer to.
 struct Surroundings {
   std::vector<std::string> anchors;
-  Duration time_limit{0};  ///< of the run
+  Duration time_limit{0};    ///< of the run
+  bool has_battery = false;  ///< the UAV has a model of energy
 };
-/// @throws Error(kBadFile) at a clause that no run can meet: it names another anchor, or its
-/// deadline is beyond the time limit.
+/// @throws Error(kBadFile) at a clause that no run can meet: it names another anchor, is
+/// about a battery that the UAV does not have, or its deadline is beyond the time limit.
 void require_possible(const Mission& mission, const Surroundings& surroundings);
 
 }  // namespace tether::mission

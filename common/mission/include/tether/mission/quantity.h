@@ -7,7 +7,7 @@
 /// What the clauses of a mission can be about.
 namespace tether::mission {
 
-enum class Dimension { kLength, kAngle, kTime, kSpeed, kYawRate };
+enum class Dimension { kLength, kAngle, kTime, kSpeed, kYawRate, kEnergy, kShare };
 
 /// A unit that people write.
 struct Unit {
@@ -30,6 +30,13 @@ struct Quantity {
   Subject subject = Subject::kNone;
   bool is_event = false;  ///< has values at commands or reads only, not at every instant
   std::string_view help;  ///< one line: the definition
+
+  /// Of the battery: the record has it only if the UAV has a model of energy.
+  bool needs_battery() const {
+    return dimension == Dimension::kEnergy || dimension == Dimension::kShare;
+  }
+  /// Its value is 0 at the start of the time of a clause.
+  bool counts_from_start() const { return dimension == Dimension::kEnergy; }
 };
 /// All, in the order in which help lists them.
 std::span<const Quantity> quantities();

@@ -44,8 +44,8 @@ class CountFile {
 
   /// What the emulator and the client library in the program need.
   Environment environment() const;
-  /// Grows as long as the program computes. Thread-safe.
-  std::uint64_t work() const;
+  /// What the program's work has cost so far. Thread-safe.
+  Duration computed() const;
 
  private:
   Emulator emulator_;

@@ -67,6 +67,8 @@ class Table {
   std::int64_t integer(std::string_view key, std::int64_t min, std::int64_t max) const;
   bool boolean(std::string_view key) const;
   std::vector<std::int64_t> integers(std::string_view key, std::int64_t min) const;
+  /// Strings, numbers and booleans as on a command line; at least one.
+  std::vector<std::string> scalars_as_texts(std::string_view key) const;
   /// A time span; the unit comes from the key's suffix (_s, _ms).
   Duration duration(std::string_view key, const Range& range) const;
   /// An existing regular file, relative to the folder of this file; absolute.
@@ -93,6 +95,7 @@ class Table {
 
   /// A string, number or boolean as on a command line.
   std::string scalar_as_text(std::string_view key) const;
+  bool is_table(std::string_view key) const;
 
   FileLocation where() const;
   FileLocation where(std::string_view key) const;
@@ -115,6 +118,7 @@ class Table {
                               std::string_view expected) const;
   std::vector<const Node*> elements(std::string_view key, std::string_view expected) const;
   std::string text_of(std::string_view key, const Node& node, std::string_view expected) const;
+  std::string scalar_of(std::string_view key, const Node& node) const;
   double number_of(std::string_view key, const Node& node, const Range& range) const;
   std::int64_t integer_of(std::string_view key, const Node& node, std::int64_t min,
                           std::int64_t max) const;
@@ -136,14 +140,19 @@ class Document {
   Table root(Keys allowed) const;
   Table root() const;
 
+  /// Replaces the value at a path ("uav.sensors.camera.rate_hz") wherever the file has it: of an
+  /// array of tables, in each one that does. `text`: a number or a boolean as in TOML; anything
+  /// else is a string. Returns how many values were replaced. Invalidates tables.
+  std::size_t replace(std::string_view path, const std::string& text);
+
  private:
   struct Delete {
-    void operator()(const Node* node) const;
+    void operator()(Node* node) const;
   };
-  Document(std::unique_ptr<const Node, Delete> tree, std::string file)
+  Document(std::unique_ptr<Node, Delete> tree, std::string file)
       : tree_(std::move(tree)), file_(std::move(file)) {}
 
-  std::unique_ptr<const Node, Delete> tree_;
+  std::unique_ptr<Node, Delete> tree_;
   std::string file_;
 };
 

@@ -25,6 +25,9 @@ struct CampaignManifest {
     std::string paper_table;  ///< "I" to "V"; empty: none
     std::vector<std::string> conditions;
     std::vector<std::string> metrics;  ///< names
+    /// Of a point of a sweep: the scenario without its settings, and these. Empty: none.
+    std::string swept_from{};
+    std::vector<scenario::Setting> settings{};
 
     friend bool operator==(const Entry&, const Entry&) = default;
   };

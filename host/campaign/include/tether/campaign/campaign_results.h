@@ -27,6 +27,9 @@ struct ScenarioResults {
   std::string paper_table;  ///< empty: none
   std::vector<std::string> metrics;
   std::vector<ConditionResults> conditions;
+  /// As in CampaignManifest::Entry.
+  std::string swept_from{};
+  std::vector<scenario::Setting> settings{};
 
   const ConditionResults* find_condition(std::string_view condition) const;
   /// Label, kind and unit of a metric, from any trial; nullptr if there is no trial.

@@ -12,6 +12,7 @@
 #include <tether/base/time.h>
 #include <tether/base/warning.h>
 #include <tether/campaign/metrics.h>
+#include <tether/energy/meter.h>
 #include <tether/judge/judge.h>
 #include <tether/record/reader.h>
 #include <tether/scenario/scenario.h>
@@ -42,6 +43,7 @@ inline constexpr std::string_view kEndSetupFailed = "setup_failed";
 inline constexpr std::string_view kEndInterrupted = "interrupted";
 inline constexpr std::string_view kEndFinished = "finished";
 inline constexpr std::string_view kEndTimeLimit = "time_limit";
+inline constexpr std::string_view kEndBatteryEmpty = "battery_empty";
 
 /// One SUT: its name and version, and what it reported about its task.
 struct SutResult {
@@ -117,6 +119,26 @@ struct SimulatorFigures {
   friend bool operator==(const SimulatorFigures&, const SimulatorFigures&) = default;
 };
 
+/// What a flight took from the battery of a UAV, until its SUT finished.
+struct UavEnergy {
+  struct OfTask {
+    std::string task;
+    energy::Energies_J spent_J{};
+    friend bool operator==(const OfTask&, const OfTask&) = default;
+  };
+  std::string uav;
+  energy::Energies_J spent_J{};  ///< by energy::Cause
+  double charge_from = 0.0;      ///< share of the capacity, at ST 0
+  double charge_to = 0.0;
+  double least_voltage_V = 0.0;
+  std::vector<OfTask> tasks{};  ///< of its mission, in the order in which they began
+
+  /// How many more such flights the charge that is left is enough for; none if none was used.
+  std::optional<double> more_flights() const;
+  friend bool operator==(const UavEnergy&, const UavEnergy&) = default;
+};
+double total_J(const energy::Energies_J& spent_J);
+
 /// Everything that may differ between two runs of the same trial with the same execution times.
 struct ThisRun {
   std::string started_at;  ///< ISO 8601, UTC
@@ -151,7 +173,10 @@ struct TrialResult {
   Duration computing{0};  ///< of clock "scripted": charged for each phase of computing
   std::optional<ReplayReport> replay{};  ///< of clock "replayed"
   double real_time_factor = 0.0;
-  std::string target{};  ///< its name; empty: the host as it is
+  std::string target{};             ///< its name; empty: the host as it is
+  record::EmulatorInfo emulator{};  ///< of a counted target
+  /// Values of the scenario's file that were replaced (`tether run --set`, sweeps).
+  std::map<std::string, std::string> settings{};
   /// Names of the profiles in use, in the order of their layers: a later one overrides an earlier.
   std::vector<std::string> profiles;
   Outcome outcome = Outcome::kFailed;
@@ -161,6 +186,7 @@ struct TrialResult {
   /// Of the missions, one UAV after the other; empty if no SUT has one.
   std::vector<judge::TaskSpan> tasks{};
   std::vector<judge::ClauseVerdict> clauses{};
+  std::vector<UavEnergy> energy{};  ///< of each UAV with a model of energy
   std::vector<SutResult> suts;
   SyncFigures sync;
   /// Of each UAV; empty: the trial did not run, or the result is of an earlier version.
@@ -198,6 +224,9 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
 /// For a trial that ran but whose numbers cannot be trusted: it counts as failed for `reason`, and
 /// no metric keeps its value.
 void invalidate(TrialResult& result, const std::string& reason);
+
+/// What counts the work of the condition's SUTs; without a program if nothing does.
+record::EmulatorInfo emulator_of(const scenario::Condition& condition);
 
 /// The result of a trial without a record, because it could not be set up.
 TrialResult make_setup_failure(const scenario::Scenario& scenario,

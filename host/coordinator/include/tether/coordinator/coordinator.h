@@ -69,6 +69,7 @@ enum class RunEnd {
   kSutHung,        ///< no message from a SUT within the limit
   kSimulatorLost,  ///< the simulator failed
   kInterrupted,    ///< `should_stop` of the caller requested it
+  kBatteryEmpty,   ///< the battery of a UAV was exhausted, and it fell
   kRecordFailed,   ///< the record could not be written; it has no end
   kTimingDiffers,  ///< a call or a stage of a SUT is not the one whose time is replayed
 };
@@ -126,9 +127,9 @@ struct RunHooks {
   std::function<void(const RunStatus&)> on_status;
   /// A connection was rejected, with the reason in one line.
   std::function<void(const std::string& address, const std::string& reason)> on_refused;
-  /// With clocks "counted": what the SUT of that UAV has computed so far, in any unit. As long as
-  /// it grows, the SUT is not hung.
-  std::function<std::uint64_t(std::size_t uav)> work_of;
+  /// With clocks "counted": how long the SUT of that UAV has computed so far, in ET, and what the
+  /// library in it has. As long as it grows, the SUT is not hung, and may take longer to join.
+  std::function<Duration(std::size_t uav)> computed_by;
   /// Reads the state of the SUTs' machine for the record. Called once after a run that had begun,
   /// when its SUTs have been notified of the end.
   std::function<record::Readings()> read_target;

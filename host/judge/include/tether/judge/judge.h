@@ -25,6 +25,14 @@ struct TaskSpan {
   friend bool operator==(const TaskSpan&, const TaskSpan&) = default;
 };
 
+/// The margin of a clause as it stood at one instant.
+struct MarginAt {
+  SimTime at;
+  double margin = 0.0;
+
+  friend bool operator==(const MarginAt&, const MarginAt&) = default;
+};
+
 /// Whether a clause is met, and by how much.
 struct ClauseVerdict {
   std::string uav;
@@ -38,6 +46,9 @@ struct ClauseVerdict {
   std::optional<SimTime> deadline{};    ///< none if it has none
   std::optional<SimTime> decided_at{};  ///< when the verdict could no longer change
   std::string limited_by{};             ///< one line: what made the margin no larger
+  /// How the margin developed, in `unit`, at no more than about 40 instants: the time that was
+  /// left, the worst value so far (eventually: the best), or with a share each value.
+  std::vector<MarginAt> margins{};
 
   friend bool operator==(const ClauseVerdict&, const ClauseVerdict&) = default;
 };

@@ -136,6 +136,24 @@ struct Contact {
   friend bool operator==(const Contact&, const Contact&) = default;
 };
 
+/// The battery of a UAV, and the energy that was spent since ST 0, by cause (energy::Cause). Only
+/// if the scenario gives the UAV a model of energy. Topic /battery/<uav>; log time = `at`, that of
+/// each ground truth.
+struct Battery {
+  std::string uav;
+  SimTime at;
+  double voltage_V = 0.0;  ///< at the terminals
+  double current_A = 0.0;
+  double charge = 0.0;  ///< share of the capacity
+  double lift_J = 0.0, moving_J = 0.0, idle_J = 0.0, computing_J = 0.0, sensors_J = 0.0,
+         resistance_J = 0.0;
+
+  double spent_J() const {
+    return lift_J + moving_J + idle_J + computing_J + sensors_J + resistance_J;
+  }
+  friend bool operator==(const Battery&, const Battery&) = default;
+};
+
 /// A message of the SUT for the record. Topic /task/<uav>; log time = ST when it arrived.
 struct Annotation {
   std::string uav;
@@ -244,6 +262,21 @@ struct TargetInfo {
   std::string address;  ///< "ssh://user@board"; empty: the host
   Readings before;      ///< before the first SUT was started
 };
+/// What a unit of one kind of work costs.
+struct WorkCost {
+  std::string work;  ///< a name of kWorkClassNames
+  double ns = 0.0;
+
+  friend bool operator==(const WorkCost&, const WorkCost&) = default;
+};
+/// What ran the SUTs of a counted target and counted their work.
+struct EmulatorInfo {
+  std::string program;    ///< "qemu-x86_64"; empty: the SUTs' work was not counted
+  std::string cpu_model;  ///< the emulated CPU
+  std::vector<WorkCost> costs;
+
+  friend bool operator==(const EmulatorInfo&, const EmulatorInfo&) = default;
+};
 /// Configuration of the run: written first (metadata record "tether"), as names and values.
 struct Header {
   int schema_version = kSchemaVersion;
@@ -262,6 +295,7 @@ struct Header {
   std::vector<Anchor> anchors;
   std::optional<TargetInfo> target{};  ///< none in records of Tether 0.1.0
   WallTime wall_at_start{};            ///< when the SUTs were started, all at ET 0; 0: unknown
+  EmulatorInfo emulator{};
   bool reports_contacts = false;  ///< the record has all contacts; else it has none, and none is
                                   ///< known
 };
@@ -279,7 +313,7 @@ struct Clearance {
 /// End of the run: written last (metadata record "tether.end"). A record without it is incomplete.
 struct Footer {
   /// "finished", "time_limit", "sut_lost", "sut_hung", "simulator_lost", "interrupted",
-  /// "timing_differs".
+  /// "battery_empty", "timing_differs".
   std::string end;
   std::string reason;  ///< one line
   SimTime st_at_end;

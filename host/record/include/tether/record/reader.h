@@ -37,6 +37,7 @@ struct Record {
   std::vector<Logged<Annotation>> annotations;
   std::vector<Logged<Stop>> stops;
   std::vector<Logged<Contact>> contacts;
+  std::vector<Logged<Battery>> batteries;
   std::vector<Logged<Image>> images;
   std::vector<Logged<RawImage>> raw_images;
   std::optional<Footer> footer;

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <tether/record/messages.h>
 
@@ -19,6 +21,7 @@ class Recorder {
   virtual void write(SimTime at, const Annotation& message) = 0;
   virtual void write(SimTime at, const Stop& message) = 0;
   virtual void write(SimTime at, const Contact& message) = 0;
+  virtual void write(SimTime at, const Battery& message) = 0;
   virtual void write(SimTime at, const Image& message) = 0;
   virtual void write(SimTime at, const RawImage& message) = 0;
   /// Passes everything written so far to the operating system (not necessarily to the disk).
@@ -35,6 +38,19 @@ class Recorder {
 /// @throws Error(kSetup) with the file if it cannot be created or written. The file then keeps what
 /// is whole: it reads back as the first messages. Nothing is written after a failure.
 std::unique_ptr<Recorder> make_mcap_recorder(const std::filesystem::path& file);
+
+/// The margin of a clause of a mission at an instant, judged after the run.
+struct Margin {
+  std::string uav;
+  std::string clause;
+  SimTime at;
+  double margin = 0.0;  ///< in `unit`; negative: missed
+  std::string unit;
+};
+/// Writes a file beside the record, to be opened together with it: an MCAP file whose topics
+/// /margins/<uav> have one message for each margin, in the order of time.
+/// @throws Error(kSetup) as make_mcap_recorder.
+void write_margins(const std::filesystem::path& file, std::vector<Margin> margins);
 
 /// Discards everything.
 std::unique_ptr<Recorder> make_null_recorder();

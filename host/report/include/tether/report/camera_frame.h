@@ -43,4 +43,13 @@ std::string frame_svg(const record::Image& image, const std::optional<ReportedRo
                       const std::optional<TrueRoi>& true_roi,
                       ImageQuality quality = ImageQuality::kLossless);
 
+/// Whether it has depths; otherwise it has labels.
+bool is_depth(const record::RawImage& image);
+
+/// Depths as colours from light (near) to dark (far), or a colour for each model that a label
+/// stands for, with a caption that says what the colours mean: one self-contained SVG.
+/// @pre one pixel or more
+std::string raw_frame_svg(const record::Record& record, const record::RawImage& image,
+                          ImageQuality quality = ImageQuality::kLossless);
+
 }  // namespace tether::report

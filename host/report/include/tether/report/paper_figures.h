@@ -17,6 +17,10 @@ struct PaperFigure {
   std::string_view metric_name = "";
 };
 
+/// The condition without ", counted", which only says how its time is measured: "host, counted" is
+/// compared with the paper's "host".
+std::string_view without_clock(std::string_view condition);
+
 struct PaperTable {
   std::string_view number;  ///< "I" to "V"
   std::string_view title;

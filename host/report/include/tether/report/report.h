@@ -59,6 +59,11 @@ Table clauses_table(const campaign::TrialResult& trial);
 /// none.
 Table clauses_table(const campaign::ScenarioResults& scenario);
 
+/// What the flight of a trial took from the batteries, by task and cause. No rows: no energy.
+Table energy_table(const campaign::TrialResult& trial);
+/// The same of a scenario, means by condition. No rows: no energy.
+Table energy_table(const campaign::ScenarioResults& scenario);
+
 /// All tables for people, in reading order.
 std::vector<Table> report_tables(const campaign::CampaignResults& results);
 

@@ -20,6 +20,13 @@
 
 namespace tether::runner {
 
+/// Where a trial's SUTs run.
+enum class SutPlace {
+  kThisMachine,
+  kBoard,
+  kUnknown,  ///< the user starts them
+};
+
 /// One trial to run.
 struct TrialSpec {
   scenario::Scenario scenario;
@@ -33,6 +40,8 @@ struct TrialSpec {
   bool uses_tunnel = false;
   /// The user starts the SUT. Otherwise the command of the scenario is started on the target.
   bool waits_for_sut = false;
+
+  SutPlace sut_place() const;
 };
 
 /// Callbacks of a trial.

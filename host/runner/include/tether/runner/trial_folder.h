@@ -12,6 +12,7 @@ namespace tether::runner {
 
 /// The record in a trial's folder.
 inline constexpr const char* kRecordFile = "record.mcap";
+inline constexpr const char* kMarginsFile = "margins.mcap";  ///< of the clauses of missions
 /// What is not simulated as written; there is none if nothing is.
 inline constexpr const char* kWarningsFile = "warnings.txt";
 /// Output of the simulator's processes.

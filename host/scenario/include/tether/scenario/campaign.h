@@ -17,9 +17,12 @@ struct CampaignScenario {
   std::string paper_table;
   /// Overrides the scenario's sensors (already part of `scenario`); absolute; empty: none.
   std::filesystem::path profile{};
+  /// Of a point of a sweep, whose values are the scenario's settings: the name of the scenario
+  /// without them. Empty: the campaign has no sweep.
+  std::string swept_from{};
 };
 
-/// A campaign file (TOML): scenarios × conditions × seeds.
+/// A campaign file (TOML): scenarios × points of the sweep × conditions × seeds.
 struct Campaign {
   std::filesystem::path file;  ///< absolute
   std::string name;            ///< letters, digits, '_', '-', '.'

@@ -49,7 +49,7 @@ struct SensorProfile {
   std::optional<ImageSize> size;
   std::optional<double> horizontal_fov_rad;  ///< without distortion
   std::optional<Distortion> distortion;
-  std::optional<sim::Noise> pixel_noise;
+  std::optional<sim::Noise> pixel_noise;  ///< of a depth camera, of depths [m]
   std::optional<double> exposure_s;
   std::optional<double> readout_s;
 
@@ -57,9 +57,11 @@ struct SensorProfile {
   std::optional<sim::Noise> angular_velocity_noise;
   std::optional<sim::Noise> linear_acceleration_noise;
 
-  // Of a rangefinder.
+  // Of a rangefinder, or of a camera that measures depths.
   std::optional<double> min_m;
   std::optional<double> max_m;
+
+  // Of a rangefinder.
   std::optional<double> resolution_m;
   std::optional<double> field_of_view_rad;
   std::optional<double> dropout_probability;

@@ -12,6 +12,7 @@
 #include <tether/base/time.h>
 #include <tether/mission/mission.h>
 #include <tether/scenario/clock.h>
+#include <tether/scenario/energy.h>
 #include <tether/scenario/metric.h>
 #include <tether/scenario/profile.h>
 #include <tether/scenario/target.h>
@@ -84,16 +85,32 @@ struct UavSetup {
   std::optional<Profile> profile;                ///< overrides SDF's sensors
   std::map<std::string, SensorProfile> sensors;  ///< by name; override the profile
   Duration command_latency{0};
+  std::optional<Energy> energy{};  ///< none: energy is not simulated
   Sut sut;  ///< its own, or the scenario's; own parameters override the scenario's
 };
+
+/// Replaces a value of a scenario file.
+struct Setting {
+  /// Path of a key that the file has, from its top or from [[condition]] or [[uav]]:
+  /// "time_limit_s", "condition.cpu_factor" or "cpu_factor", "sut.parameters.yaw_rate_deg_s".
+  std::string key;
+  std::string value;  ///< as on a command line
+
+  friend bool operator==(const Setting&, const Setting&) = default;
+};
+
+/// "KEY=VALUE", as an option. A VALUE that is a file in `folder` becomes an absolute path.
+/// @throws Error(kUsage), about the text, if it has no key or no value.
+Setting parse_setting(std::string_view text, const std::filesystem::path& folder);
 
 /// Softer contacts are landings: UAVs descend at less.
 inline constexpr double kHardContact_m_s = 0.5;
 
 struct Scenario {
   std::filesystem::path file;  ///< absolute
-  std::string name;            ///< letters, digits, '_', '-', '.'
+  std::string name;            ///< letters, digits, '_', '-', '.'; with settings, their values too
   std::string description;
+  std::vector<Setting> settings{};    ///< not of the file: values that were replaced
   std::filesystem::path world;        ///< absolute
   sim::WorldOptions world_options{};  ///< not of the file: how to read the world
   Duration step{std::chrono::milliseconds(1)};
@@ -123,10 +140,13 @@ struct Scenario {
 std::string slug(std::string_view name);
 
 /// Reads and checks a scenario (docs/guide/scenario.md). Paths in it are relative to its own
-/// folder.
+/// folder. The settings replace values of the file; the scenario's name then becomes
+/// "NAME-cpu_factor-2".
 /// @throws Error(kBadFile) with file and line, about the key, for TOML errors, an unknown key, a
-///   wrong type, a value out of its range, a missing file or key.
-Scenario load_scenario(const std::filesystem::path& file);
+///   wrong type, a value out of its range, a missing file or key. Error(kUsage), about the key, if
+///   a setting has a key that the file does not have.
+Scenario load_scenario(const std::filesystem::path& file,
+                       const std::vector<Setting>& settings = {});
 
 /// The world request of a trial: each UAV's start yaw is drawn from its spread, keyed by the seed.
 sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
@@ -146,8 +166,8 @@ void place_on(Condition& condition, Target target);
 /// so.
 void set_unknown_stages(Condition& condition, std::string_view name);
 
-/// Makes the condition's SUTs so many times slower: its factor, or the computing time of a scripted
-/// clock. The name becomes "NAME, 3.16 x slower".
+/// Makes the condition's SUTs so many times slower: its factor, the computing time of a scripted
+/// clock, or the costs of a counted one. The name becomes "NAME, 3.16 x slower".
 /// @throws Error(kUsage), about the condition, if its SUTs' time cannot be stretched.
 /// @pre slowdown > 0; it was not slowed down before.
 void slow_down(Condition& condition, double slowdown);
@@ -177,5 +197,12 @@ std::vector<std::vector<uav::SensorTiming>> resolve_sensors(const Scenario& scen
                                                             const Condition& condition,
                                                             sim::World& world,
                                                             const sim::WarningSink& warn);
+
+/// Gives the UAVs of `world` their models of energy, with the power of the condition's computer.
+/// @throws Error(kBadFile) with file and line, about "rotor" or "battery", if the battery cannot
+/// lift its UAV, or there is none.
+/// @pre as of `resolve_sensors`.
+void resolve_energy(const Scenario& scenario, const Condition& condition, sim::World& world,
+                    const sim::WarningSink& warn);
 
 }  // namespace tether::scenario

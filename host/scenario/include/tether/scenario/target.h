@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <tether/energy/meter.h>
 #include <tether/os/counted_program.h>
 #include <tether/scenario/clock.h>
 
@@ -34,6 +35,7 @@ struct Target {
   /// Where SUT programs named without '/' are: on the board, or on this host (absolute). Empty:
   /// in the PATH there; on this host, beside `tether` first.
   std::string program_folder;
+  std::optional<energy::Computer> power{};  ///< none: not known
   std::optional<os::Emulator> emulator{};  ///< with Clock::kCounted only; `launcher` then starts it
 };
 

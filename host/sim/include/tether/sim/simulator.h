@@ -9,6 +9,7 @@
 
 #include <tether/base/step_grid.h>
 #include <tether/base/time.h>
+#include <tether/energy/meter.h>
 #include <tether/sim/clearance.h>
 #include <tether/sim/contacts.h>
 #include <tether/sim/simulator_work.h>
@@ -87,6 +88,11 @@ class Simulator {
   virtual std::vector<Contact> take_contacts() = 0;
   /// From a UAV to whatever is nearest, at `now()`. None: not measured, or there is nothing else.
   virtual std::optional<Clearance> clearance(std::size_t uav) const = 0;
+
+  /// The battery at `now()`. None: the UAV has no model of energy, or it is not simulated.
+  virtual std::optional<energy::Status> battery(std::size_t /*uav*/) const { return std::nullopt; }
+  /// The UAV's computer computed for that long, summed over its cores (energy::Meter::computed).
+  virtual void computed(std::size_t /*uav*/, Duration /*busy*/) {}
 
   /// Name and version, for the record: "MuJoCo 2.2.2, software renderer".
   virtual std::string description() const = 0;

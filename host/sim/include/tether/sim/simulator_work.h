@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include <tether/base/time.h>
+#include <tether/os/clock.h>
 
 namespace tether::sim {
 
@@ -21,13 +22,10 @@ struct SimulatorWork {
 /// Measures the CPU time of the thread that it is used on.
 class CpuTimer {
  public:
-  CpuTimer() : begin_(thread_time()) {}
-  Duration elapsed() const { return thread_time() - begin_; }
+  Duration elapsed() const { return os::read_clock(CLOCK_THREAD_CPUTIME_ID) - begin_; }
 
  private:
-  static Duration thread_time();
-
-  Duration begin_;
+  Duration begin_ = os::read_clock(CLOCK_THREAD_CPUTIME_ID);
 };
 
 }  // namespace tether::sim

@@ -12,6 +12,7 @@
 #include <tether/base/error.h>
 #include <tether/base/time.h>
 #include <tether/base/warning.h>
+#include <tether/energy/meter.h>
 #include <tether/uav/catalogue.h>
 #include <tether/uav/math.h>
 #include <tether/uav/multirotor.h>
@@ -46,6 +47,7 @@ struct MeshGeometry {
   std::filesystem::path file;  ///< absolute, exists: .obj, .stl or .dae
   std::string submesh;         ///< empty: all
   uav::Vec3 scale{1.0, 1.0, 1.0};
+  bool is_centered = false;  ///< moved so that the middle of its extent is the origin
 };
 using Geometry = std::variant<BoxGeometry, CylinderGeometry, SphereGeometry, CapsuleGeometry,
                               EllipsoidGeometry, PlaneGeometry, MeshGeometry>;
@@ -126,6 +128,7 @@ struct Noise {
   double bias_stddev = 0.0;
   double dynamic_bias_stddev = 0.0;
   double dynamic_bias_correlation_time_s = 0.0;
+  friend bool operator==(const Noise&, const Noise&) = default;
 };
 
 struct CameraModel {
@@ -180,6 +183,9 @@ struct Uav {
   Link body;
   uav::MultirotorParameters airframe;
   std::vector<Sensor> sensors;
+  /// That of its SDF file; none: it has none. Used only if `energy` is made from it.
+  std::optional<energy::Battery> battery{};
+  std::optional<energy::Model> energy{};  ///< none: energy is not simulated
 };
 
 /// An anchor: a model of the world that SUTs receive in their catalogue.

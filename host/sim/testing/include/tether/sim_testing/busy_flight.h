@@ -20,7 +20,7 @@ struct Observation {
 World busy_world();
 /// The measurements of both UAVs of `busy_world` of a snapshot.
 Observation observe(Simulator& simulator, const Snapshot& snapshot, std::uint64_t index);
-/// Flies 0.9 s of `busy_world`, and observes the end.
+/// Flies 0.5 s of `busy_world`, and observes the end.
 Observation fly_in_one_piece(Simulator& simulator, std::uint64_t seed);
 /// The same with other measurements in between, with the advance in uneven pieces, and with the
 /// observation long after its instant.

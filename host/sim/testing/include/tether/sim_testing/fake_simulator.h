@@ -90,6 +90,9 @@ class FakeSimulator final : public Simulator {
   std::vector<Contact> take_contacts() override;
   /// To the plane x = 10 m, "wall", if contacts were planned.
   std::optional<Clearance> clearance(std::size_t uav) const override;
+  /// Of UAVs of the world with a model of energy: as if they hovered.
+  std::optional<energy::Status> battery(std::size_t uav) const override;
+  void computed(std::size_t uav, Duration busy) override;
   std::string description() const override { return "fake simulator"; }
 
  private:
@@ -97,6 +100,7 @@ class FakeSimulator final : public Simulator {
     uav::Vec3 p_WB;
     double yaw_rad = 0.0;
     uav::VelocityCommand command;
+    std::optional<energy::Meter> meter{};
   };
 
   void check_uav(std::size_t uav) const;

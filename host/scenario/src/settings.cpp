@@ -1,0 +1,47 @@
+#include "settings.h"
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+
+namespace tether::scenario {
+
+Setting parse_setting(std::string_view text, const std::filesystem::path& folder) {
+  const std::size_t sign = text.find('=');
+  if (sign == 0 || sign == std::string_view::npos || sign + 1 == text.size())
+    throw Error(ErrorCode::kUsage,
+                fmt::format("'{}' must be KEY=VALUE, for instance time_limit_s=30", text))
+        .about(std::string(text));
+  Setting setting{std::string(text.substr(0, sign)), std::string(text.substr(sign + 1))};
+  std::error_code ignored;
+  const std::filesystem::path file = folder / setting.value;
+  if (std::filesystem::is_regular_file(file, ignored))
+    setting.value = std::filesystem::absolute(file).lexically_normal().string();
+  return setting;
+}
+
+void apply(const Setting& setting, toml::Document& document, const std::filesystem::path& file) {
+  for (const char* from : {"", "condition.", "uav."})
+    if (document.replace(from + setting.key, setting.value) > 0) return;
+  throw Error(ErrorCode::kUsage, {file.string()},
+              fmt::format("has no value '{}' to replace. Give the path of a key that the file has, "
+                          "such as time_limit_s, condition.cpu_factor or sut.parameters.KEY",
+                          setting.key))
+      .about(setting.key);
+}
+
+std::string name_suffix(const std::vector<Setting>& settings) {
+  std::string suffix;
+  for (const auto& [key, value] : settings) {
+    const bool is_path = value.find('/') != std::string::npos;
+    suffix += "-" + key.substr(key.rfind('.') + 1) + "-" +
+              (is_path ? std::filesystem::path(value).stem().string() : value);
+  }
+  constexpr std::string_view kKept =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
+  for (char& c : suffix)
+    if (kKept.find(c) == std::string_view::npos) c = '-';
+  return suffix;
+}
+
+}  // namespace tether::scenario

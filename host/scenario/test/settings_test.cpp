@@ -1,0 +1,62 @@
+#include "test_files.h"
+
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <tether/scenario/scenario.h>
+
+namespace tether::scenario {
+namespace {
+
+class Settings : public testing::Test {
+ protected:
+  Scenario load(const std::vector<Setting>& settings) const {
+    return load_scenario(write_project(scratch_, kFullScenario), settings);
+  }
+  ScratchFolder scratch_;
+};
+
+TEST_F(Settings, ReplaceValuesByTheirPathFromTheTopAConditionOrAUav) {
+  EXPECT_EQ(load({{"time_limit_s", "7"}}).time_limit, std::chrono::seconds(7));
+  EXPECT_EQ(load({{"condition.cpu_factor", "9"}}).find_condition("host")->cpu_factor, 9);
+  EXPECT_EQ(load({{"cpu_factor", "9"}}).find_condition("host")->cpu_factor, 9);
+  EXPECT_EQ(load({{"yaw_spread_deg", "0"}}).uavs.front().yaw_spread_rad, 0.0);
+}
+
+TEST_F(Settings, AreInTheScenariosName) {
+  const std::string name = load({}).name;
+  EXPECT_EQ(load({{"time_limit_s", "7"}, {"condition.cpu_factor", "0.5"}}).name,
+            name + "-time_limit_s-7-cpu_factor-0.5");
+  const auto file = scratch_.write("far/other rig.toml", replaced(kRigProfile, "\"rig\"", "\"o\""));
+  EXPECT_EQ(load({{"uav.profile", file.string()}}).name, name + "-profile-other-rig");
+}
+
+TEST_F(Settings, NeedAKeyThatTheFileHas) {
+  try {
+    load({{"sut.parameters.nonsense", "1"}});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::kUsage);
+    EXPECT_EQ(error.subject(), "sut.parameters.nonsense");
+  }
+}
+
+TEST_F(Settings, AreCheckedAsTheFile) {
+  const Error error = bad_file_error([&] { load({{"time_limit_s", "-1"}}); });
+  EXPECT_EQ(error.subject(), "time_limit_s");
+  EXPECT_GT(error.where().line, 0);
+}
+
+TEST_F(Settings, AreKeyAndValueWithFilesAsAbsolutePaths) {
+  const auto file = scratch_.write("p.toml", "");
+  EXPECT_EQ(parse_setting("a.b=1=2", scratch_.path()), (Setting{"a.b", "1=2"}));
+  EXPECT_EQ(parse_setting("uav.profile=p.toml", scratch_.path()),
+            (Setting{"uav.profile", file.string()}));
+  for (const char* text : {"", "a", "=1", "a="})
+    EXPECT_THROW(parse_setting(text, scratch_.path()), Error) << text;
+}
+
+}  // namespace
+}  // namespace tether::scenario
