@@ -88,7 +88,7 @@ std::string to_text(const Comparison& comparison, const double* limit) {
       out += margin >= 1.0 ? fmt::format(", margin left {}x", fixed(margin, 2))
                            : fmt::format(", beyond the limit of {} %", percent(*limit));
     }
-    if (stage.few > 0) out += fmt::format(" (only {} samples)", stage.few);
+    if (stage.few > 0) out += fmt::format(" ({} of the {} samples needed)", stage.few, kFewSamples);
     out += '\n';
   }
   for (const std::string& stage : comparison.added)

@@ -54,8 +54,8 @@ std::vector<std::string> warnings(const std::vector<StageRow>& rows) {
   for (const StageRow& row : rows)
     if (row.count < kFewSamples)
       lines.push_back(
-          fmt::format("stage \"{}\" has only {} samples; with fewer than {}, its "
-                      "quantiles say little. Record more runs",
+          fmt::format("stage \"{}\": {} of the {} samples that its quantiles need. "
+                      "Record more runs",
                       row.stage, row.count, kFewSamples));
   return lines;
 }

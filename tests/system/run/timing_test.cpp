@@ -17,9 +17,9 @@ class TimingRun : public RunTest {
  protected:
   /// The hover scenario with counted_sut in that mode, and these keys instead of its clock.
   std::filesystem::path scenario(const std::string& mode, const std::string& clock) const {
-    return write_hover_scenario(folder_.path(), mode,
-                                {{bad_sut_program().string(), COUNTED_SUT_PROGRAM},
-                                 {"clock = \"cpu\"", clock}});
+    return write_hover_scenario(
+        folder_.path(), mode,
+        {{bad_sut_program().string(), COUNTED_SUT_PROGRAM}, {"clock = \"cpu\"", clock}});
   }
   void fly(const std::string& mode, const std::string& clock, const std::string& out,
            const std::vector<std::string>& options = {}) const {
@@ -87,10 +87,10 @@ TEST_F(TimingRun, ShowsASlowerStageWithoutTheBoard) {
   fly("good", "clock = \"cpu\"", "measured");
   fly("good", "clock = \"cpu\"", "old", counted);
   fly("slower", "clock = \"cpu\"", "new", counted);
-  ASSERT_EQ(timing({folder_ / "measured", "--counted", folder_ / "old", "--out",
-                    folder_ / "a.timing"})
-                .code,
-            0);
+  ASSERT_EQ(
+      timing({folder_ / "measured", "--counted", folder_ / "old", "--out", folder_ / "a.timing"})
+          .code,
+      0);
   ASSERT_EQ(timing({folder_ / "new", "--out", folder_ / "new.timing"}).code, 0);
   fly("slower", replayed("mode = \"resampled\""), "resampled");
   fly("slower",

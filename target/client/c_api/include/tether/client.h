@@ -475,21 +475,13 @@ tether_status tether_sleep_until(tether_vehicle* vehicle, int64_t et_ns) TETHER_
 tether_status tether_annotate(tether_vehicle* vehicle, const char* topic,
                               const char* json) TETHER_NOEXCEPT;
 
-/// Marks what the program computes from here on as a stage, until the matching tether_stage_end().
-/// Stages can be nested: the innermost one counts. The record then has what each stage computed
-/// (`tether timing`, docs/guide/timing.md). Takes no ET, and is no interaction. Under tether-exec
-/// each thread has its own stages; otherwise they are those of the vehicle. On a real UAV it does
-/// nothing.
-/// @param vehicle  the UAV
-/// @param stage  its name, 1 to 256 bytes without control characters: "detect", "decide", ...
-/// @return TETHER_OK; TETHER_INVALID for another name, or more than 254 stages between two calls;
-///   an @ref interaction error after the end of the run
+/// Begins a stage: the record has what is computed until tether_stage_end(). Of nested stages the
+/// innermost one counts; under tether-exec each thread has its own. Takes no ET, never blocks.
+/// @param vehicle  the UAV  @param stage  its name, 1 to 256 bytes without control characters
+/// @return TETHER_OK or an @ref interaction error; TETHER_INVALID for a bad name or too many stages
 tether_status tether_stage_begin(tether_vehicle* vehicle, const char* stage) TETHER_NOEXCEPT;
-/// Ends the stage that was begun last.
-/// @param vehicle  the UAV
-/// @return as tether_stage_begin(); TETHER_INVALID if no stage is open
+/// Ends the stage begun last. @param vehicle  the UAV  @return as above, or TETHER_INVALID if none
 tether_status tether_stage_end(tether_vehicle* vehicle) TETHER_NOEXCEPT;
-
 /// Ends the mission. Every later @ref interaction fails. A run whose SUT does not call this fails,
 /// because the SUT counts as lost.
 /// @param vehicle  the UAV  @param reached_goal  0 for no, else yes
