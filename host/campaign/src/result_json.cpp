@@ -291,7 +291,7 @@ energy::Energies_J read_spent(const JsonReader& json) {
   const JsonReader by_cause = json.object("spent_j");
   energy::Energies_J spent_J{};
   for (std::size_t i = 0; i < energy::kCauses; ++i)
-    spent_J[i] = by_cause.number(std::string(name(static_cast<energy::Cause>(i))).c_str());
+    spent_J[i] = by_cause.number(name(static_cast<energy::Cause>(i)));
   return spent_J;
 }
 

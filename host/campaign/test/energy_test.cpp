@@ -27,6 +27,12 @@ record::Record flight() {
   return record;
 }
 
+scenario::Metric metric() {
+  scenario::Metric metric;
+  metric.uav = "uav1";
+  return metric;
+}
+
 TEST(Energy, IsOfTheWholeFlightAndOfEachTask) {
   const auto energy = energy_of(flight(), {{"uav1", "a", st(2), st(5), "reached", ""},
                                            {"uav2", "b", st(2), st(5), "reached", ""}});
@@ -49,14 +55,14 @@ TEST(Energy, EndsWhenTheSutFinishes) {
   finish.st_at_arrival = finish.st_at_release = st(4);
   record.interactions.push_back({st(4), 0, finish});
   EXPECT_DOUBLE_EQ(total_J(energy_of(record, {})[0].spent_J), 420.0);
-  EXPECT_DOUBLE_EQ(*energy_spent({.uav = "uav1"}, record).value, 420.0);
+  EXPECT_DOUBLE_EQ(*energy_spent(metric(), record).value, 420.0);
 }
 
 TEST(Energy, IsMissingWithoutABattery) {
   record::Record record;
   record.header.suts.emplace_back().uav = "uav1";
   EXPECT_TRUE(energy_of(record, {}).empty());
-  EXPECT_FALSE(energy_spent({.uav = "uav1"}, record).value);
+  EXPECT_FALSE(energy_spent(metric(), record).value);
 }
 
 }  // namespace

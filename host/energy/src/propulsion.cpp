@@ -60,7 +60,7 @@ double propulsion_power_W(const uav::MultirotorParameters& airframe, const Propu
   for (std::size_t i = 0; i < airframe.rotors.size(); ++i) {
     const uav::Vec3 v_hub_B = v_B + cross(body.w_WB_B, airframe.rotors[i].p_BR);
     sum_W += std::max(
-        0.0, rotor_power(airframe, propulsion, rotors.rotor_speed_rad_s[i], v_hub_B).total_W());
+        0.0, rotor_power(airframe, propulsion, rotors.rotor_speed_rad_s[i], v_hub_B).total_w());
   }
   return sum_W / propulsion.efficiency;
 }
@@ -79,7 +79,7 @@ double level_flight_power_W(const uav::MultirotorParameters& airframe, const Pro
     sine = drag_N / thrust_N;
   }
   const uav::Vec3 v_hub_B{speed_m_s * std::sqrt(1.0 - sine * sine), 0.0, speed_m_s * sine};
-  return rotors * rotor_power(airframe, propulsion, speed_rad_s, v_hub_B).total_W() /
+  return rotors * rotor_power(airframe, propulsion, speed_rad_s, v_hub_B).total_w() /
          propulsion.efficiency;
 }
 

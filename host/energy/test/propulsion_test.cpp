@@ -19,7 +19,7 @@ TEST(Propulsion, HoverTakesThePowerOfTheReactionTorque) {
   const double speed = hover_speed_rad_s();
   const double thrust = kAirframe.mass_kg * kGravity_m_s2 / 4.0;
   const RotorPower power = rotor_power(kAirframe, kPropulsion, speed, {});
-  EXPECT_NEAR(power.total_W(), kAirframe.moment_coefficient_m * thrust * speed, 1e-9);
+  EXPECT_NEAR(power.total_w(), kAirframe.moment_coefficient_m * thrust * speed, 1e-9);
   // Ideal power of a disc: T^1.5 / sqrt(2 rho A).
   EXPECT_NEAR(power.induced_W, 1.15 * std::pow(thrust, 1.5) / std::sqrt(2.0 * 1.225 * M_PI * 0.01),
               1e-9);
@@ -49,7 +49,7 @@ TEST(Propulsion, FastFlightNeedsLittleInducedPower) {
 }
 
 TEST(Propulsion, RotorAtRestTakesNothing) {
-  EXPECT_EQ(rotor_power(kAirframe, kPropulsion, 0.0, {3, 1, -2}).total_W(), 0.0);
+  EXPECT_EQ(rotor_power(kAirframe, kPropulsion, 0.0, {3, 1, -2}).total_w(), 0.0);
 }
 
 // docs/guide/energy.md states these figures.

@@ -158,7 +158,9 @@ class Judge {
 
   void judge_events(const Clause& clause, const Span& span, ClauseVerdict& verdict) {
     const Condition& condition = *clause.condition;
-    const auto& [events, margins] = events_in(clause, span);
+    const Events& in_span = events_in(clause, span);
+    const std::vector<Event>& events = in_span.events;
+    const std::vector<double>& margins = in_span.margins;
     if (events.empty()) {
       verdict.limited_by = "there is no such command or read in this time";
       return;

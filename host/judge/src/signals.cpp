@@ -75,7 +75,7 @@ std::optional<std::size_t> Signals::of_battery(const mission::Quantity& quantity
   stl::Signal signal{std::string(quantity.name), {}};
   for (const auto& [at, order, battery] : record_.batteries) {
     if (battery.uav != uav_) continue;
-    const double value = quantity.name == "energy_j" ? battery.spent_J() : battery.charge;
+    const double value = quantity.name == "energy_j" ? battery.spent_j() : battery.charge;
     if (!std::isfinite(value) || signal.values.size() == trace_.at.size() ||
         battery.at != trace_.at[signal.values.size()])
       return std::nullopt;

@@ -22,7 +22,7 @@ void require_possible(const Energy& energy, const energy::Model& model, const si
          fmt::format("the rotor of \"{}\" needs {:.3g} W to hover, which is no more than its "
                      "induced power of {:.3g} W. Raise 'radius_m', lower 'induced_factor', or "
                      "correct the model's moment coefficient.",
-                     uav.name, power.total_W(), power.induced_W));
+                     uav.name, power.total_w(), power.induced_W));
   const double hover_W = energy::propulsion_power_W(uav.airframe, model.propulsion, hover, {});
   const double needed_W = hover_W + model.computer.idle_W + model.sensors_W;
   const energy::Discharge given =

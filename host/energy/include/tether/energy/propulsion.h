@@ -20,7 +20,7 @@ struct RotorPower {
   double induced_W = 0.0;    ///< accelerates the air
   double profile_W = 0.0;    ///< overcomes the drag of the blades
   double parasitic_W = 0.0;  ///< climbs, and overcomes the drag of the UAV; negative in descent
-  double total_W() const { return induced_W + profile_W + parasitic_W; }
+  double total_w() const { return induced_W + profile_W + parasitic_W; }
 };
 
 /// The power of one rotor.

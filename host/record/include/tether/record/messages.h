@@ -148,7 +148,7 @@ struct Battery {
   double lift_J = 0.0, moving_J = 0.0, idle_J = 0.0, computing_J = 0.0, sensors_J = 0.0,
          resistance_J = 0.0;
 
-  double spent_J() const {
+  double spent_j() const {
     return lift_J + moving_J + idle_J + computing_J + sensors_J + resistance_J;
   }
   friend bool operator==(const Battery&, const Battery&) = default;
