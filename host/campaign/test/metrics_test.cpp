@@ -185,6 +185,9 @@ TEST(ComputeMetrics, KnowEveryKindThatAScenarioMayAskFor) {
       R"({"anchor":"box","camera":"camera","image_index":7,"bearing_rad":0,"distance_m":1})");
   flight.finish(50);
   flight.record().header.reports_contacts = true;
+  record::Battery battery;
+  battery.uav = "uav1";
+  flight.record().batteries.push_back({SimTime{}, 0, battery});
   flight.record().footer.emplace().clearances = {{"uav1", 0.5, {}, "box"}};
   for (const scenario::MetricKind& kind : scenario::metric_kinds()) {
     const MetricValue value = flight.metric(std::string(kind.name));

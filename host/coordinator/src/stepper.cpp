@@ -23,12 +23,13 @@ Stepper::Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& bar
       log_(&log),
       grid_(simulator.grid()),
       ground_truth_period_(ground_truth_period),
-      samplers_(std::move(samplers)) {}
+      samplers_(std::move(samplers)),
+      has_battery_(samplers_.size()) {}
 
 void Stepper::reset(std::uint64_t seed) {
   ask([&](sim::Simulator& s) { s.reset(seed); });
   for (std::size_t uav = 0; uav < samplers_.size(); ++uav)
-    has_battery_.push_back(ask([&](sim::Simulator& s) { return s.battery(uav).has_value(); }));
+    has_battery_[uav] = ask([&](sim::Simulator& s) { return s.battery(uav).has_value(); });
 }
 
 SimTime Stepper::next_ground_truth() const {

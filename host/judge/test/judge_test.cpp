@@ -98,13 +98,13 @@ TEST(Judge, FollowsTheMarginOverTime) {
 // Clauses share their work, but not their verdicts.
 TEST(Judge, ClausesThatShareWorkAreJudgedAsAlone) {
   const std::vector<std::string> clauses = {"always = \"altitude <= 9 m\"",
-                                            "always = \"altitude <= 5 m\"",
-                                            "never = \"altitude <= 5 m\"",
+                                            "always = \"altitude <= 8 m\"",
+                                            "never = \"altitude <= 1 m\"",
                                             "always = \"altitude <= 5 m in 80 %\"",
                                             "eventually = \"altitude <= 5 m\"",
                                             "eventually = \"altitude >= 5 m\"\nfor_s = 2",
                                             "eventually = \"altitude >= 6 m\"\nfor_s = 2",
-                                            "during = [\"b\"]\nalways = \"altitude <= 5 m\"",
+                                            "during = [\"b\"]\nalways = \"altitude <= 8 m\"",
                                             "always = \"reaction_time <= 150 ms in 95 %\"",
                                             "always = \"reaction_time <= 120 ms\"",
                                             "never = \"reaction_time <= 100 ms\"",
