@@ -22,7 +22,7 @@ link::StageTime& StageLog::time_of_current() {
 }
 
 void StageLog::reach(ExecTime at) {
-  time_of_current().computing += at - reached_;
+  time_of_current().computing += std::max(Duration(0), at - reached_);
   reached_ = at;
 }
 

@@ -17,7 +17,7 @@ class StageLog {
   explicit StageLog(ExecTime start) : reached_(start) {}
 
   /// What was computed until `at` belongs to the innermost stage; if none is open, to what is
-  /// outside of stages. @pre `at` is not before an earlier one
+  /// outside of stages. Nothing if the clock went back: the request's timestamp shows that.
   void reach(ExecTime at);
   /// Instead of reach(), if the time is replayed: each stage that was computed under since the last
   /// call takes its time from `given`, once. `outside` names what is outside of stages; empty: not

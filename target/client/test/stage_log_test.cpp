@@ -34,6 +34,13 @@ TEST(StageLog, TheInnermostStageCounts) {
   EXPECT_EQ(log.times("a to b"), (Times{{"a to b", Duration(1)}}));
 }
 
+TEST(StageLog, ChargesNothingIfTheClockGoesBack) {
+  StageLog log(at(10));
+  log.reach(at(4));
+  log.reach(at(6));
+  EXPECT_EQ(log.times("a to b"), (Times{{"a to b", Duration(2)}}));
+}
+
 TEST(StageLog, RefusesNamesAndNumbersThatNoMessageCarries) {
   StageLog log(at(0));
   for (const std::string& name : {std::string(), std::string(257, 'x'), std::string("a\tb")})
