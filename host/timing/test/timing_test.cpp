@@ -55,7 +55,7 @@ TEST(Timing, RefusesRecordsWithoutMeasuredTime) {
   mixed.header.suts.push_back(mixed.header.suts[0]);
   mixed.header.suts[1].sut = "other";
   for (const auto& [record, subject] : {std::pair(free, "policy"), std::pair(replayed, "uav1")}) {
-    const Error error = bad_file_error([&] { of_record(record, "a.mcap", ""); });
+    const Error error = bad_file_error([&, &record = record] { of_record(record, "a.mcap", ""); });
     EXPECT_EQ(error.where().file, "a.mcap");
     EXPECT_EQ(error.subject(), subject);
   }
