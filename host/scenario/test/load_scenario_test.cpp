@@ -64,7 +64,7 @@ TEST_F(LoadScenario, ReadsWhatIsReplayed) {
         std::tuple(timing + "unknown_stages = \"counted\"", 2, "unknown_stages"),
         std::tuple(replayed + "timing = \"c.timing\"", 1, "timing"),
         std::tuple(timing + "mode = \"exact\"\nunknown_stages = \"zero\"", 3, "unknown_stages")})
-    expect_refusal(60 + line, subject, [&] { load(change(keys)); });
+    expect_refusal(60 + line, subject, [&, &keys = keys] { load(change(keys)); });
   expect_refusal(66, "clock", [&] { load_with("clock = \"wall\"", timing); });  // free running
 }
 
