@@ -20,13 +20,16 @@ namespace {
 
 constexpr Duration kPollPeriod = std::chrono::milliseconds(50);
 
-/// Applies the profiles of each condition to a copy of the world, so that errors in them are found
-/// before anything is written.
-void try_profiles(const scenario::CampaignScenario& entry, const sim::World& world,
-                  const WarningSink& warn) {
+/// Applies what each condition changes of UAVs to a copy of the world, so that errors in it are
+/// found before anything is written.
+void try_conditions(const scenario::CampaignScenario& entry, const sim::World& world,
+                    const FindBackEnd& find_back_end, const WarningSink& warn) {
   for (const std::string& name : entry.conditions) {
+    const scenario::Condition& condition = *entry.scenario.find_condition(name);
+    find_back_end(condition.simulator).require_readable(world);
     sim::World copy = world;
-    scenario::resolve_sensors(entry.scenario, *entry.scenario.find_condition(name), copy, warn);
+    scenario::resolve_energy(entry.scenario, condition, copy, warn);
+    scenario::resolve_sensors(entry.scenario, condition, copy, warn);
   }
 }
 
@@ -68,13 +71,7 @@ CampaignFiles files_of_trials(const scenario::Campaign& campaign,
     const sim::World world = sim::load_world(
         scenario::world_request(entry.scenario, campaign.seeds.front()), warnings.sink());
     files.insert(files.end(), world.files.begin(), world.files.end());
-    for (const std::string& name : entry.conditions) {
-      const scenario::Condition& condition = *entry.scenario.find_condition(name);
-      find_back_end(condition.simulator).require_readable(world);
-      sim::World copy = world;
-      scenario::resolve_energy(entry.scenario, condition, copy, warnings.sink());
-    }
-    try_profiles(entry, world, warnings.sink());
+    try_conditions(entry, world, find_back_end, warnings.sink());
   }
   for (const std::string& name : simulators(campaign)) {
     const auto own = find_back_end(name).files();
