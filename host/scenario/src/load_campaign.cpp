@@ -1,3 +1,5 @@
+#include "settings.h"
+
 #include <algorithm>
 #include <array>
 #include <set>
@@ -146,9 +148,11 @@ CampaignScenario read_scenario(const toml::Table& root, const toml::Table& table
                                const Settings& point) {
   constexpr std::array<std::string_view, 5> kTables = {"I", "II", "III", "IV", "V"};
   CampaignScenario entry;
-  const std::filesystem::path file = table.existing_file("file");
-  entry.scenario = load_point(root, file, point);
-  if (!point.empty()) entry.swept_from = load_scenario(file).name;
+  entry.scenario = load_point(root, table.existing_file("file"), point);
+  if (!point.empty()) {
+    const std::string& name = entry.scenario.name;
+    entry.swept_from = name.substr(0, name.size() - name_suffix(point).size());
+  }
   entry.conditions = read_conditions(table, entry.scenario);
   if (table.has("profile")) {
     entry.profile = table.existing_file("profile");
