@@ -40,6 +40,13 @@ sizing::Share reached_share(const campaign::ConditionResults& results) {
                         kConfidence);
 }
 
+/// Label and unit of a metric, from any trial; nullptr if there is none.
+const campaign::MetricValue* find_metric(const Sweep& sweep, const std::string& name) {
+  for (const campaign::ScenarioResults* point : sweep.points)
+    if (const campaign::MetricValue* found = point->find_metric(name)) return found;
+  return nullptr;
+}
+
 // The x axis.
 struct Axis {
   std::size_t key = 0;  ///< index into the settings
@@ -153,9 +160,7 @@ Table sweep_table(const Sweep& sweep) {
   table.text_columns = headings.size() + 1;
   headings.insert(headings.end(), {"Condition", "Goal reached", "95 % interval"});
   for (const std::string& name : first.metrics) {
-    const campaign::MetricValue* metric = nullptr;
-    for (const campaign::ScenarioResults* point : sweep.points)
-      if (metric == nullptr) metric = point->find_metric(name);
+    const campaign::MetricValue* metric = find_metric(sweep, name);
     headings.push_back(metric != nullptr ? with_unit(metric->label, metric->unit) : name);
     headings.push_back("95 % interval");
   }
@@ -208,9 +213,7 @@ std::optional<Plot> sweep_plot(const Sweep& sweep) {
 std::optional<Plot> sweep_plot(const Sweep& sweep, const std::string& metric) {
   const Axis axis = axis_of(sweep);
   const std::vector<Series> all = series_of(sweep, axis);
-  const campaign::MetricValue* value = nullptr;
-  for (const campaign::ScenarioResults* point : sweep.points)
-    if (value == nullptr) value = point->find_metric(metric);
+  const campaign::MetricValue* value = find_metric(sweep, metric);
   if (value == nullptr) return std::nullopt;
   Drawing drawing;
   std::vector<double> drawn;
