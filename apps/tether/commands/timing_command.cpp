@@ -113,7 +113,7 @@ int time_stages(const TimingOptions& options, const std::stop_token&) {
   if (!options.against.empty()) return print_change(timing, options);
   if (!options.counted.empty()) add_counted(timing, options.counted);
   const auto rows = timing::stage_rows(timing);
-  if (!options.csv.empty()) os::write_file_atomically(options.csv, timing::to_csv(rows));
+  if (!options.csv.empty()) os::write_file_atomically(options.csv, report::timing_csv(rows));
   if (!options.html.empty()) os::write_file_atomically(options.html, report::timing_page(timing));
   if (!options.out.empty()) timing::write_timing(options.out, timing);
   fmt::print("{}: {}, build {}, clock {}, on {}, recorded {}, {} runs\n\n{}", timing.scenario,

@@ -10,7 +10,6 @@
 #include <tether/base/text_table.h>
 #include <tether/report/table.h>
 #include <tether/report/timing_page.h>
-#include <tether/timing/stage_table.h>
 
 namespace tether::report {
 namespace {
@@ -80,6 +79,17 @@ std::string timing_page(const timing::Timing& timing) {
                   timing.build_id.empty() ? "unknown" : timing.build_id, timing.clock, timing.board,
                   timing.runs.size(), timing.recorded_at);
   return html_page(title, element("h1", title) + element("p", source) + to_html(table) + figures);
+}
+
+std::string timing_csv(const std::vector<timing::StageRow>& rows) {
+  Table table;
+  table.headings = {
+      {{"stage"}, {"count"}, {"median_s"}, {"p95_s"}, {"p99_s"}, {"worst_s"}, {"share"}}};
+  const auto text = [](double value) { return fmt::format("{}", value); };
+  for (const timing::StageRow& row : rows)
+    table.rows.push_back({row.stage, std::to_string(row.count), text(row.median_s), text(row.p95_s),
+                          text(row.p99_s), text(row.worst_s), text(row.share)});
+  return to_csv(table);
 }
 
 }  // namespace tether::report

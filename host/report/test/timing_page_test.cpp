@@ -24,5 +24,15 @@ TEST(TimingPage, HasARowAndAHistogramForEachStage) {
   EXPECT_EQ(count("<rect"), 31u);  // 30 times in bins of their own, and one stage of no time
 }
 
+TEST(TimingCsv, HasARowInSecondsForEachStage) {
+  timing::Timing timing;
+  timing.runs = {{"uav1", 1, {}}};
+  for (int i = 1; i <= 101; ++i)
+    timing.runs[0].calls.push_back({"command", {{"detect, \"fine\"", Duration(i * 1'000'000)}}});
+  EXPECT_EQ(timing_csv(timing::stage_rows(timing)),
+            "stage,count,median_s,p95_s,p99_s,worst_s,share\r\n"
+            "\"detect, \"\"fine\"\"\",101,0.051,0.096,0.1,0.101,1\r\n");
+}
+
 }  // namespace
 }  // namespace tether::report

@@ -15,13 +15,6 @@ std::string in_ms(double seconds) {
   return fixed(seconds * 1e3, 3);
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
-
 }  // namespace
 
 std::vector<StageRow> stage_rows(const Timing& timing) {
@@ -68,14 +61,6 @@ std::string to_text(const std::vector<StageRow>& rows) {
                      in_ms(row.p95_s), in_ms(row.p99_s), in_ms(row.worst_s),
                      fixed(row.share * 100.0, 1)});
   return text_table(lines);
-}
-
-std::string to_csv(const std::vector<StageRow>& rows) {
-  std::string out = "stage,count,median_s,p95_s,p99_s,worst_s,share\r\n";
-  for (const StageRow& row : rows)
-    out += fmt::format("{},{},{},{},{},{},{}\r\n", quoted(row.stage), row.count, row.median_s,
-                       row.p95_s, row.p99_s, row.worst_s, row.share);
-  return out;
 }
 
 }  // namespace tether::timing

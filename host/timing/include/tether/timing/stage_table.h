@@ -27,7 +27,5 @@ std::vector<std::string> warnings(const std::vector<StageRow>& rows);
 
 /// For a person, in milliseconds.
 std::string to_text(const std::vector<StageRow>& rows);
-/// RFC 4180, in seconds.
-std::string to_csv(const std::vector<StageRow>& rows);
 
 }  // namespace tether::timing
