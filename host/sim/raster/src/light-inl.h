@@ -31,12 +31,16 @@ HWY_INLINE V row(const std::array<float, 12>& m, std::size_t i, V x, V y, V z) {
 
 // The share of a light that reaches a surface, 0..1: bilinear between the four nearest pixels of
 // the light's picture. A surface outside of that picture is lit.
-HWY_INLINE V lit_share(const ShadowMap& map, const LightRow& light, V x, V y, V z) {
-  const V depth = row(light.to_shadow, 8, x, y, z);
-  const V least = set(1e-6F);
-  const V inverse = Div(set(1.0F), hn::Max(depth, least));
-  const V u = Mul(row(light.to_shadow, 0, x, y, z), inverse);
-  const V v = Mul(row(light.to_shadow, 4, x, y, z), inverse);
+HWY_INLINE V lit_share(const ShadowMap& map, const LightRow& light, const Normal& n, V x, V y,
+                       V z) {
+  const V offset = Mul(row(light.to_shadow, 8, x, y, z), set(map.offset_per_depth()));
+  const V px = Add(x, Mul(n.x, offset));
+  const V py = Add(y, Mul(n.y, offset));
+  const V pz = Add(z, Mul(n.z, offset));
+  const V depth = row(light.to_shadow, 8, px, py, pz);
+  const V inverse = Div(set(1.0F), hn::Max(depth, set(1e-6F)));
+  const V u = Mul(row(light.to_shadow, 0, px, py, pz), inverse);
+  const V v = Mul(row(light.to_shadow, 4, px, py, pz), inverse);
   const V zero = set(0.0F);
   const V last = set(static_cast<float>(ShadowMap::kSize_px - 1));
   const M is_seen = And(And(hn::Gt(depth, zero), And(hn::Ge(u, zero), hn::Lt(u, last))),
@@ -46,10 +50,9 @@ HWY_INLINE V lit_share(const ShadowMap& map, const LightRow& light, V x, V y, V 
   const V top = hn::Floor(hn::IfThenElseZero(is_seen, v));
   const VI at = Add(Mul(nearest(top), whole(ShadowMap::kSize_px)), nearest(left));
   const VI below = Add(at, whole(ShadowMap::kSize_px));
-  const V nearer = Div(set(1.0F), hn::Max(Sub(depth, set(map.bias_m())), least));
   const V across = Sub(u, left);
-  const V upper = mix(lit(map, at, nearer), lit(map, Add(at, whole(1)), nearer), across);
-  const V lower = mix(lit(map, below, nearer), lit(map, Add(below, whole(1)), nearer), across);
+  const V upper = mix(lit(map, at, inverse), lit(map, Add(at, whole(1)), inverse), across);
+  const V lower = mix(lit(map, below, inverse), lit(map, Add(below, whole(1)), inverse), across);
   return hn::IfThenElse(is_seen, mix(upper, lower, Sub(v, top)), set(1.0F));
 }
 
@@ -166,7 +169,7 @@ HWY_INLINE void add_light(const Shading& shading, const LightRow& row, Block& b)
       if (!kIsPlain && light.cos_cutoff >= -1.0F) share = Mul(share, spot_share(light, ray));
       if (!kIsPlain && light.shadow >= 0) {
         const auto map = static_cast<std::size_t>(light.shadow);
-        share = Mul(share, lit_share(shading.shadows[map], light, x, y, z));
+        share = Mul(share, lit_share(shading.shadows[map], light, normal_of(run, c), x, y, z));
       }
       store(Add(load(c.diffuse), Mul(hn::Max(toward, zero), share)), c.diffuse);
       if (kIsPlain || !light.has_specular || !run.is_shiny) continue;

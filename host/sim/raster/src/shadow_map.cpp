@@ -13,11 +13,9 @@ using uav::Vec3;
 
 constexpr double kWidest_rad = 1.3962634015954636;  // 80°
 constexpr double kNear_m = 0.05;
-constexpr float kLocalBias_m = 0.03F;
 // The sun is this many times as far away as the scene is large: its rays are as good as parallel,
 // and depths still differ.
 constexpr double kSunDistance = 1000.0;
-constexpr double kBiasTexels = 2.0;
 
 // The rotation that turns z to `direction`, which is unit.
 Quat rotation_from_z(const Vec3& direction) {
@@ -66,13 +64,11 @@ ShadowMap::ShadowMap(const PreparedScene& scene, const Light& light)
     : scene_(scene), lens_(camera(focal_px(light))) {
   Pose X_WL{light.p_WL, rotation_from_z(light.direction_W)};
   double near_m = kNear_m;
-  bias_m_ = kLocalBias_m;
   if (light.kind == LightKind::kDirectional) {
     const Sphere all = sphere_of_fixed(scene);
     const double distance_m = kSunDistance * all.radius_m;
     X_WL.p = all.centre - distance_m * light.direction_W;
     near_m = 0.5 * distance_m;
-    bias_m_ = static_cast<float>(kBiasTexels * 2.0 * all.radius_m / kSize_px);
   }
   const uav::CameraModel& c = lens_.camera();
   layer_.X_CW = inverse(X_WL);

@@ -28,10 +28,13 @@ class ShadowMap {
   std::array<double, 12> from_world() const;
   /// Row by row.
   const float* inverse_depth() const { return now_.data(); }
-  /// A surface up to this far behind a caster is lit, so that none shadows itself [m].
-  float bias_m() const { return bias_m_; }
+  /// A surface is looked up this far along its normal, per depth, so that none shadows itself at
+  /// any angle of the light: further than the pixels of the light's picture that are looked at.
+  float offset_per_depth() const { return kOffset_px / static_cast<float>(layer_.projection.fx); }
 
  private:
+  static constexpr float kOffset_px = 2.0F;
+
   void draw(const Selection& selection, std::vector<float>& map);
   void draw_tile(std::size_t index, std::vector<float>& map);
   void copy_tile(std::size_t index);
@@ -39,7 +42,6 @@ class ShadowMap {
   const PreparedScene& scene_;
   Lens lens_;
   Layer layer_;
-  float bias_m_ = 0.0F;
   std::vector<float> fixed_;
   std::vector<float> now_;
   std::vector<std::size_t> drawn_tiles_;  ///< that hold visuals of bodies

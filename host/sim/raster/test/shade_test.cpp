@@ -267,6 +267,30 @@ TEST(Shadows, DarkenWhatIsBehindTheirCaster) {
   }
 }
 
+// A floor under a light at a small angle: each row of the picture is a row of the floor.
+TEST(Shadows, FallOnNoSurfaceThatCastsThemItself) {
+  for (const LightKind kind : {LightKind::kDirectional, LightKind::kSpot}) {
+    for (const double elevation_rad : {0.06, 0.1, 0.3, 0.8, 1.5}) {
+      Mesh floor = rectangle(-20.0F, -20.0F, 20.0F, 20.0F, 0.0F);
+      SceneParts parts = dark_wall();
+      parts.meshes = {floor};
+      parts.materials[0].diffuse = {1.0F, 1.0F, 1.0F};
+      parts.instances[0].X_BV = {{0.0, 1.0, 0.0}, uav::from_axis_angle({1.0, 0.0, 0.0}, -1.6)};
+      Light light = head_light();
+      light.kind = kind;
+      light.direction_W = {std::cos(elevation_rad), std::sin(elevation_rad), 0.0};
+      light.p_WL = Vec3{0.0, 1.0, 5.0} - 10.0 * light.direction_W;
+      light.spot_half_angle_rad = 0.9;
+      parts.lights = {light};
+      const Drawing without = draw(Scene(parts), small_camera());
+      ASSERT_GT(without.at(80, 100)[0], 0) << static_cast<int>(kind) << ' ' << elevation_rad;
+      parts.lights[0].cast_shadows = true;
+      const Drawing with = draw(Scene(parts), small_camera());
+      EXPECT_EQ(with.rgb, without.rgb) << static_cast<int>(kind) << ' ' << elevation_rad;
+    }
+  }
+}
+
 TEST(LightTable, GivesBytesBack) {
   const LightTable& table = light_table();
   for (std::size_t i = 0; i < 256; ++i) {
