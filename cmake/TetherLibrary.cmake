@@ -173,7 +173,7 @@ function(tether_add_library name)
   endif()
   if(ARG_TESTS)
     add_executable(${target}_test ${ARG_TESTS})
-    target_include_directories(${target}_test PRIVATE src)
+    target_include_directories(${target}_test PRIVATE src test)
     target_link_libraries(${target}_test PRIVATE ${target} ${ARG_TEST_LIBS} ${ARG_PRIVATE}
       GTest::gmock GTest::gtest_main tether_test_options)
     if(ARG_TESTING_SOURCES)

@@ -1,0 +1,107 @@
+#include "pages/html.h"
+#include "pages/page_figures.h"
+#include "plots/svg.h"
+
+#include <fmt/format.h>
+
+#include <tether/report/size_report.h>
+#include <tether/report/table.h>
+
+namespace tether::report {
+namespace {
+
+std::string share_text(double value) {
+  return fmt::format("{:.0f} %", 100.0 * value);
+}
+
+std::string times_text(double value) {
+  return fmt::format("{:.3g}", value);
+}
+
+std::string verdict_text(BoardVerdict verdict) {
+  switch (verdict) {
+    case BoardVerdict::kSuffices:
+      return "sufficient";
+    case BoardVerdict::kDoesNot:
+      return "not sufficient";
+    case BoardVerdict::kUndecided:
+      break;
+  }
+  return "undecided";
+}
+
+Table boards_table(const SizeReport& report) {
+  Table table{
+      "Boards", {{{"board"}, {"slower"}, {"calibration"}, {"headroom"}, {"verdict"}}}, {}, {}};
+  const sizing::Answer& answer = report.synchronised.answer;
+  for (const Board& board : report.boards) {
+    table.rows.push_back(
+        {board.name, times_text(board.slowdown),
+         board.low ? fmt::format("{} to {}", times_text(*board.low), times_text(*board.high)) : "–",
+         fmt::format("{:.2g}", answer.threshold.estimate / board.slowdown),
+         verdict_text(verdict(board, answer))});
+  }
+  return table;
+}
+
+Table levels_table(const SizeReport& report) {
+  const double confidence = report.question.confidence;
+  Table table{
+      "All slowdowns that were flown",
+      {{{"slower"}, {"flights"}, {"reached"}, {"share"}, {"interval"}}},
+      {},
+      {fmt::format("Interval: Wilson's, {:.4g} %, of each slowdown alone.", 100.0 * confidence)}};
+  for (const sizing::Level& level : sizing::levels_of(report.synchronised.flights, confidence)) {
+    table.rows.push_back({times_text(level.slowdown), std::to_string(level.flights),
+                          std::to_string(level.reached), share_text(level.share.estimate),
+                          share_text(level.share.low) + " to " + share_text(level.share.high)});
+  }
+  return table;
+}
+
+Table basis_of(const SizeReport& report) {
+  const sizing::Question& question = report.question;
+  const sizing::Answer& answer = report.synchronised.answer;
+  Table table{"", {{{""}, {""}}}, {}, {}, 2};
+  table.rows = {
+      {"question", fmt::format("the largest slowdown at which {} of the flights reach the goal",
+                               share_text(question.success))},
+      {"searched",
+       fmt::format("{} to {} × slower than “{}”; at most {} flights", times_text(question.least),
+                   times_text(question.most), report.synchronised.condition, report.most_flights)},
+      {"method",
+       answer.basis == sizing::Basis::kLevels
+           ? "each slowdown alone, because no curve fits"
+           : fmt::format("logistic curve over the logarithm of the slowdown with lapse "
+                         "rate and floor, Bayesian, from {}",
+                         answer.basis == sizing::Basis::kMargins ? "the margins of the metrics"
+                                                                 : "reached and missed goals")},
+      {"fit", fmt::format("p = {:.2g} (posterior predictive; below 0.01 the curve is rejected)",
+                          answer.fit)}};
+  for (const auto& [name, value] : report.settings)
+    if (!name.starts_with("file ")) table.rows.push_back({name, value});
+  return table;
+}
+
+}  // namespace
+
+std::string size_page(const SizeReport& report) {
+  FigureMaker figures(1);
+  const std::vector<std::string> sentences = size_sentences(report);
+  std::string body = element("h1", report.scenario + ": how slow may the computer be?");
+  body += "<p class=\"verdict\"><strong>" + escape_markup(sentences.front()) + "</strong></p>\n";
+  for (std::size_t i = 1; i < sentences.size(); ++i) body += element("p", sentences[i]) + "\n";
+  body += figures.plot(
+      size_plot(report),
+      "Each dot is one flight. The line is the share of flights that reach the goal, the band its "
+      "interval. Shaded: the interval of the largest sufficient slowdown. Below: how far each "
+      "metric is within its limit, in shares of the limit.");
+  if (!report.boards.empty()) body += to_html(boards_table(report));
+  if (!report.not_flown.empty()) body += problems_box(report.not_flown);
+  body += folded("All slowdowns that were flown", to_html(levels_table(report)));
+  body += "<section id=\"basis\">\n" + element("h2", "Setup and checks") +
+          to_html(basis_of(report)) + "</section>\n";
+  return html_page(report.scenario + ": how slow may the computer be?", body);
+}
+
+}  // namespace tether::report

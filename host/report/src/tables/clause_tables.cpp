@@ -1,0 +1,105 @@
+#include "tables/report_format.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tether/report/report.h>
+
+// The clauses of missions: of a run, and over the trials of a campaign.
+namespace tether::report {
+namespace {
+
+std::string seconds_text(const std::optional<SimTime>& time) {
+  return time ? decimals(to_seconds(*time)) : kNone;
+}
+
+std::string margin_text(const judge::ClauseVerdict& clause) {
+  return clause.margin ? fmt::format("{} {}", decimals(*clause.margin), clause.unit) : kNone;
+}
+
+/// Wilson's interval of a share, of 95 %.
+campaign::Interval share_interval(std::size_t met, std::size_t n) {
+  constexpr double kZ = 1.959963984540054;
+  const double count = static_cast<double>(n), share = static_cast<double>(met) / count;
+  const double scale = 1.0 + kZ * kZ / count;
+  const double middle = (share + kZ * kZ / (2 * count)) / scale;
+  const double half =
+      kZ * std::sqrt(share * (1 - share) / count + kZ * kZ / (4 * count * count)) / scale;
+  return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
+}
+
+/// The clauses of a scenario, by UAV and name, in the order in which trials first have them.
+std::vector<judge::ClauseVerdict> clauses_of(const campaign::ScenarioResults& scenario) {
+  std::vector<judge::ClauseVerdict> all;
+  for (const auto& condition : scenario.conditions)
+    for (const campaign::TrialResult& trial : condition.trials)
+      for (const judge::ClauseVerdict& clause : trial.clauses)
+        if (std::ranges::none_of(all, [&](const auto& known) {
+              return known.uav == clause.uav && known.name == clause.name;
+            }))
+          all.push_back(clause);
+  return all;
+}
+
+std::vector<std::string> row_of(const judge::ClauseVerdict& clause,
+                                const campaign::ConditionResults& condition) {
+  std::size_t n = 0, met = 0;
+  std::vector<double> margins;
+  for (const campaign::TrialResult& trial : condition.trials) {
+    const bool counts = trial.outcome != campaign::Outcome::kFailed;
+    for (const judge::ClauseVerdict& own : trial.clauses) {
+      if (!counts || own.uav != clause.uav || own.name != clause.name) continue;
+      ++n;
+      met += own.met ? 1U : 0U;
+      if (own.margin) margins.push_back(*own.margin);
+    }
+  }
+  std::vector<std::string> row = {clause.name, condition.condition, fmt::format("{} of {}", met, n),
+                                  n > 0 ? interval(share_interval(met, n)) : kNone, clause.unit};
+  if (margins.empty()) {
+    row.insert(row.end(), 5, kNone);
+    return row;
+  }
+  const campaign::Summary s = campaign::summarise(margins);
+  row.insert(row.end(), {decimals(s.mean), interval(s.ci95), decimals(s.min), decimals(s.median),
+                         decimals(s.max)});
+  return row;
+}
+
+}  // namespace
+
+Table clauses_table(const campaign::TrialResult& trial) {
+  Table table;
+  table.title = "Clauses of the mission";
+  table.text_columns = 2;
+  table.headings = {single_headings(
+      {"Clause", "Verdict", "Margin", "From (s)", "To (s)", "Deadline (s)", "Decided (s)"})};
+  for (const judge::ClauseVerdict& clause : trial.clauses) {
+    table.rows.push_back({clause.name, clause.met ? "met" : "missed", margin_text(clause),
+                          seconds_text(clause.from), seconds_text(clause.to),
+                          seconds_text(clause.deadline), seconds_text(clause.decided_at)});
+    if (!clause.limited_by.empty())
+      table.notes.push_back(fmt::format("{}: {}.", clause.name, clause.limited_by));
+  }
+  return table;
+}
+
+Table clauses_table(const campaign::ScenarioResults& scenario) {
+  Table table;
+  table.title = fmt::format("Clauses of the missions of {}", scenario.scenario);
+  table.text_columns = 2;
+  table.headings = {
+      single_headings({"Clause", "Condition", "Met", "95 % interval of the share",
+                       "Unit of the margin", "Mean", "95 % interval", "Min", "Median", "Max"})};
+  for (const judge::ClauseVerdict& clause : clauses_of(scenario))
+    for (const auto& condition : scenario.conditions)
+      table.rows.push_back(row_of(clause, condition));
+  table.notes = {
+      "Interval of the share: Wilson's. Interval of the mean margin: Student's t. A "
+      "negative margin is by how much a clause was missed."};
+  return table;
+}
+
+}  // namespace tether::report

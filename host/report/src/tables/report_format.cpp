@@ -1,0 +1,59 @@
+#include "tables/report_format.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace tether::report {
+
+std::string decimals(double value) {
+  const std::string text = fmt::format("{:.3f}", value);
+  return text == "-0.000" ? "0.000" : text;
+}
+
+std::string decimals(const std::optional<double>& value) {
+  return value ? decimals(*value) : kNone;
+}
+
+std::string interval(const std::optional<campaign::Interval>& value) {
+  if (!value) return kNone;
+  return fmt::format("[{}, {}]", decimals(value->low), decimals(value->high));
+}
+
+std::string p_value(double p) {
+  return p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", p);
+}
+
+std::string exact(double value) {
+  return fmt::format("{}", value);
+}
+std::string exact(const std::optional<double>& value) {
+  return value ? exact(*value) : "";
+}
+
+bool has_crash(const campaign::TrialResult& trial) {
+  return std::ranges::any_of(trial.contacts, [](const auto& own) { return own.hard > 0; });
+}
+bool is_better_if_more(const campaign::MetricValue& metric) {
+  const auto* kind = scenario::find_metric_kind(metric.kind);
+  return kind != nullptr && kind->is_better_if_more;
+}
+std::string limit_text(const campaign::MetricValue& metric) {
+  if (metric.min) return "≥ " + exact(*metric.min);
+  return metric.max ? exact(*metric.max) : kNone;
+}
+std::string with_unit(const std::string& label, const std::string& unit) {
+  return unit == "1" ? label : fmt::format("{} ({})", label, unit);
+}
+
+std::string notes_of(const campaign::TrialResult& trial) {
+  return fmt::format("{}", fmt::join(trial.this_run.notes, "; "));
+}
+
+std::vector<Heading> single_headings(const std::vector<std::string>& texts) {
+  std::vector<Heading> headings;
+  for (const std::string& text : texts) headings.push_back({text, 1});
+  return headings;
+}
+
+}  // namespace tether::report
