@@ -150,7 +150,7 @@ HWY_INLINE void find_runs(const Part& part, Block& b) {
 }
 
 // The colours of the triangles of `b.ids`, under all lights, before their textures.
-void light_block(const Part& part, Block& b) {
+inline void light_block(const Part& part, Block& b) {
   const Sight sight(part);
   find_runs(part, b);
   for (Block::Run& run : std::span(b.all_runs).first(b.run_count)) {
@@ -178,7 +178,7 @@ HWY_INLINE Colour lit(const Cell& cell) {
 }
 
 // The same with textures and, if wanted, opacity.
-void shade_block(const Part& part, bool with_alpha, Block& b) {
+inline void shade_block(const Part& part, bool with_alpha, Block& b) {
   const PreparedScene& scene = part.shading.scene;
   light_block(part, b);
   for (const Block::Run& run : b.runs()) {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -58,7 +59,7 @@ HWY_INLINE V lit_share(const ShadowMap& map, const LightRow& light, const Normal
 
 // x^e, of x within 0 and 1 and e in 1/256: by squares and square roots.
 HWY_INLINE V power(V x, float e) {
-  auto rest = static_cast<std::uint32_t>(e * 256.0F + 0.5F);
+  auto rest = static_cast<std::uint32_t>(std::lround(e * 256.0F));
   V result = set(1.0F);
   V root = x;
   for (std::uint32_t bit = 128; (rest & 0xFFU) != 0; bit >>= 1U) {

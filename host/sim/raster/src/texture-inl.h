@@ -192,7 +192,7 @@ struct Texel {
   Colour colour;
   V alpha;
 };
-constexpr float kTexelScale = 1.0F / 65280.0F;
+inline constexpr float kTexelScale = 1.0F / 65280.0F;
 static_assert(65280.0F * kTexelScale == 1.0F, "white leaves a surface as it is");
 
 HWY_INLINE V low_half(VU pair) {
