@@ -10,7 +10,7 @@ uav::Vec3 point(const Mesh::Vertex& v) {
   return {v.position[0], v.position[1], v.position[2]};
 }
 
-Sphere sphere_around(const PreparedScene& scene, std::size_t first, std::size_t count) {
+Box box_around(const PreparedScene& scene, std::size_t first, std::size_t count) {
   uav::Vec3 low{scene.x[first], scene.y[first], scene.z[first]};
   uav::Vec3 high = low;
   for (std::size_t i = first; i < first + count; ++i) {
@@ -19,7 +19,7 @@ Sphere sphere_around(const PreparedScene& scene, std::size_t first, std::size_t 
     high = {std::max<double>(high.x, scene.x[i]), std::max<double>(high.y, scene.y[i]),
             std::max<double>(high.z, scene.z[i])};
   }
-  return {0.5 * (low + high), 0.5 * norm(high - low)};
+  return {low, high};
 }
 
 // A vertex twice, or three on one line exactly.
@@ -67,12 +67,14 @@ PreparedMesh add_mesh(const Mesh& mesh, PreparedScene& scene) {
         static_cast<std::uint32_t>(std::min(Cluster::kMaxTriangles, kept.size() - i));
     cluster.stride = (cluster.triangles + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
     add_corners(mesh, kept, i, scene);
-    cluster.bounds = sphere_around(scene, cluster.first_corner, std::size_t{3} * cluster.stride);
+    cluster.bounds =
+        box_around(scene, cluster.first_corner, std::size_t{3} * cluster.stride).sphere();
   }
   scene.triangles.insert(scene.triangles.end(), kept.begin(), kept.end());
   prepared.clusters = static_cast<std::uint32_t>(scene.clusters.size()) - prepared.first_cluster;
   if (!kept.empty()) {
-    prepared.bounds = sphere_around(scene, first_corner, scene.x.size() - first_corner);
+    prepared.box = box_around(scene, first_corner, scene.x.size() - first_corner);
+    prepared.bounds = prepared.box.sphere();
   }
   return prepared;
 }

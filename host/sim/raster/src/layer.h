@@ -57,9 +57,10 @@ struct LightRow {
   bool is_directional = false;
   bool has_specular = false;
   bool is_last_of_colour = true;  ///< the next light is of another colour, or there is none
-  /// Of the shadow's map; none: -1. From C to the light's picture: rows of u·z, v·z and z.
+  /// The first of its two shadow maps; none: -1.
   std::int32_t shadow = -1;
-  std::array<float, 12> to_shadow{};
+  /// From C to their pictures: rows of u·z, v·z and z.
+  std::array<std::array<float, 12>, 2> to_shadow{};
 };
 
 /// The picture's geometry: z = 1 is seen at (f·x + c).

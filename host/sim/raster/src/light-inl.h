@@ -32,16 +32,16 @@ HWY_INLINE V row(const std::array<float, 12>& m, std::size_t i, V x, V y, V z) {
 
 // The share of a light that reaches a surface, 0..1: bilinear between the four nearest pixels of
 // the light's picture. A surface outside of that picture is lit.
-HWY_INLINE V lit_share(const ShadowMap& map, const LightRow& light, const Normal& n, V x, V y,
-                       V z) {
-  const V offset = Mul(row(light.to_shadow, 8, x, y, z), set(map.offset_per_depth()));
+HWY_INLINE V lit_share(const ShadowMap& map, const std::array<float, 12>& to_map, const Normal& n,
+                       V x, V y, V z) {
+  const V offset = Mul(row(to_map, 8, x, y, z), set(map.offset_per_depth()));
   const V px = Add(x, Mul(n.x, offset));
   const V py = Add(y, Mul(n.y, offset));
   const V pz = Add(z, Mul(n.z, offset));
-  const V depth = row(light.to_shadow, 8, px, py, pz);
+  const V depth = row(to_map, 8, px, py, pz);
   const V inverse = Div(set(1.0F), hn::Max(depth, set(1e-6F)));
-  const V u = Mul(row(light.to_shadow, 0, px, py, pz), inverse);
-  const V v = Mul(row(light.to_shadow, 4, px, py, pz), inverse);
+  const V u = Mul(row(to_map, 0, px, py, pz), inverse);
+  const V v = Mul(row(to_map, 4, px, py, pz), inverse);
   const V zero = set(0.0F);
   const V last = set(static_cast<float>(ShadowMap::kSize_px - 1));
   const M is_seen = And(And(hn::Gt(depth, zero), And(hn::Ge(u, zero), hn::Lt(u, last))),
@@ -169,8 +169,11 @@ HWY_INLINE void add_light(const Shading& shading, const LightRow& row, Block& b)
       V share = ray.share;
       if (!kIsPlain && light.cos_cutoff >= -1.0F) share = Mul(share, spot_share(light, ray));
       if (!kIsPlain && light.shadow >= 0) {
-        const auto map = static_cast<std::size_t>(light.shadow);
-        share = Mul(share, lit_share(shading.shadows[map], light, normal_of(run, c), x, y, z));
+        const Normal n = normal_of(run, c);
+        const ShadowMap* map = &shading.shadows[static_cast<std::size_t>(light.shadow)];
+        for (const std::array<float, 12>& to_map : light.to_shadow) {
+          share = Mul(share, lit_share(*map++, to_map, n, x, y, z));
+        }
       }
       store(Add(load(c.diffuse), Mul(hn::Max(toward, zero), share)), c.diffuse);
       if (kIsPlain || !light.has_specular || !run.is_shiny) continue;

@@ -55,9 +55,11 @@ void place_lights(const PreparedScene& scene, const std::vector<ShadowMap>& shad
   for (const Light& light : scene.lights) {
     LightRow& row = layer.lights.emplace_back(make_row(light, layer.X_CW));
     if (!light.cast_shadows || shadows.empty()) continue;
-    row.shadow = map++;
-    row.to_shadow = from_camera(shadows[static_cast<std::size_t>(row.shadow)].from_world(),
-                                inverse(layer.X_CW));
+    row.shadow = map;
+    for (std::array<float, 12>& to : row.to_shadow) {
+      const ShadowMap& of_light = shadows[static_cast<std::size_t>(map++)];
+      to = from_camera(of_light.from_world(), inverse(layer.X_CW));
+    }
   }
   for (std::size_t i = 1; i < layer.lights.size(); ++i) {
     const LightRow& light = layer.lights[i];

@@ -16,6 +16,15 @@ struct Sphere {
   double radius_m = 0.0;
 };
 
+struct Box {
+  uav::Vec3 low, high;
+
+  uav::Vec3 centre() const { return 0.5 * (low + high); }
+  uav::Vec3 half() const { return 0.5 * (high - low); }
+  /// Around its corners.
+  Sphere sphere() const { return {centre(), norm(half())}; }
+};
+
 /// Triangles of a mesh that follow each other, transformed or culled at once. Meshes tend to have
 /// near ones in a row.
 struct Cluster {
@@ -38,6 +47,7 @@ struct PreparedMesh {
   std::uint32_t clusters = 0;
   std::uint32_t first_look = 0;
   std::uint32_t triangles = 0;
+  Box box;        ///< in V
   Sphere bounds;  ///< in V
 };
 

@@ -144,7 +144,9 @@ class Renderer::Work {
     if (!scene_.prepared().any_shadow) return;
     if (shadows_.empty()) {
       for (const Light& light : scene_.prepared().lights) {
-        if (light.cast_shadows) shadows_.emplace_back(scene_.prepared(), light);
+        if (!light.cast_shadows) continue;
+        shadows_.emplace_back(scene_.prepared(), light, ShadowMap::Casters::kFixed);
+        shadows_.emplace_back(scene_.prepared(), light, ShadowMap::Casters::kBodies);
       }
     }
     interpolate(view, 0.5 * (view.exposure_s + view.readout_s), moment_);

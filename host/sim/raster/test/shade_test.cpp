@@ -267,6 +267,30 @@ TEST(Shadows, DarkenWhatIsBehindTheirCaster) {
   }
 }
 
+// A screen of 0.2 m before a wall of 100 m, far from a block. The sun comes from the right.
+TEST(Shadows, AreSharpInALargeWorld) {
+  for (const bool is_body : {false, true}) {
+    SceneParts parts = dark_wall();
+    parts.meshes = {rectangle(-50.0F, -50.0F, 50.0F, 50.0F, 2.0F),
+                    rectangle(0.25F, -0.1F, 0.45F, 0.1F, 1.5F), box(1.0F)};
+    const Instance wall = parts.instances[0];
+    parts.instances = {wall, wall, wall};
+    parts.instances[1].mesh = 1;
+    if (is_body) parts.instances[1].body = 0;
+    parts.instances[2].mesh = 2;
+    parts.instances[2].X_BV.p = {is_body ? -40.0 : -4.0, 0.0, 1.5};
+    Light sun = head_light();
+    sun.kind = LightKind::kDirectional;
+    sun.direction_W = {-0.7, 0.0, 1.0};
+    sun.cast_shadows = true;
+    parts.lights = {sun};
+    const Drawing drawing = draw(Scene(parts), small_camera(640, 480));
+    int dark = 0;
+    for (int i = 0; i < 360; ++i) dark += drawing.at(i, 240)[0] < 50 ? 1 : 0;
+    EXPECT_NEAR(dark, 0.2 * 467.7 / 2.0, 3.0) << is_body;
+  }
+}
+
 // A floor under a light at a small angle: each row of the picture is a row of the floor.
 TEST(Shadows, FallOnNoSurfaceThatCastsThemItself) {
   for (const LightKind kind : {LightKind::kDirectional, LightKind::kSpot}) {
