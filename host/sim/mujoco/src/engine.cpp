@@ -1,5 +1,7 @@
 #include "engine.h"
 
+#include "box_contacts.h"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -51,6 +53,7 @@ void install_engine_handlers() {
 
 ModelPtr compile_model(const std::string& xml, const std::vector<ModelFile>& files) {
   install_engine_handlers();
+  install_box_contacts();
   constexpr const char* kName = "world.xml";
   MemoryFiles memory;
   memory.add(kName, xml.data(), xml.size());

@@ -35,6 +35,15 @@ World world_with_two() {
   return world;
 }
 
+// A disc as hull, far from the middle of a thin and wide floor, in a fall.
+World world_with_fall(double fall_m_s) {
+  World world = test_world();
+  world.uavs[0].X_WB.p = {8.5, -2.0, 3.0};
+  world.uavs[0].airframe.max_vertical_speed_m_s = fall_m_s;
+  world.uavs[0].body.collisions = {{"hull", {}, CylinderGeometry{0.26, 0.1}, 1.0}};
+  return world;
+}
+
 struct ContactCase {
   std::string name;
   World world;
@@ -81,6 +90,28 @@ const std::vector<ContactCase> kContactCases = {
 
 INSTANTIATE_TEST_SUITE_P(Flights, MujocoContactsTest, ::testing::ValuesIn(kContactCases),
                          [](const auto& named) { return named.param.name; });
+
+TEST(MujocoContactsTest, StopAUavThatFalls) {
+  for (const double fall_m_s : {1.0, 2.0, 3.0, 4.0, 6.0}) {
+    SCOPED_TRACE(fall_m_s);
+    const World world = world_with_fall(fall_m_s);
+    const auto simulator = make_simulator(world);
+    simulator->apply(0, {{0.0, 0.0, -fall_m_s}, 0.0});
+    double hit_m_s = 0.0, sunk_m = 0.0, fastest_m_s = 0.0;
+    for (auto t = SimTime(1ms); t <= SimTime(5s); t += 1ms) {
+      simulator->advance_to(t);
+      const GroundTruth truth = simulator->ground_truth(0);
+      sunk_m = std::max(sunk_m, 0.05 - truth.body.p_WB.z);
+      if (hit_m_s > 0.0) fastest_m_s = std::max(fastest_m_s, uav::norm(truth.body.v_WB));
+      for (const Contact& contact : simulator->take_contacts())
+        hit_m_s = std::max(hit_m_s, contact.speed_m_s);
+    }
+    EXPECT_GT(hit_m_s, 0.7 * fall_m_s);
+    EXPECT_LT(hit_m_s, fall_m_s + 0.1);
+    EXPECT_LT(fastest_m_s, fall_m_s + 0.1);
+    EXPECT_LT(sunk_m, 0.01);
+  }
+}
 
 TEST(MujocoContactsTest, DoNotDependOnHowTheAdvanceIsSplit) {
   const auto whole = make_simulator(world_with_wall());

@@ -1,0 +1,9 @@
+#pragma once
+
+namespace tether::sim {
+
+/// Makes the engine find the contacts of cylinders, ellipsoids and meshes with large boxes right.
+/// For the whole process; a second call does nothing.
+void install_box_contacts();
+
+}  // namespace tether::sim
