@@ -5,15 +5,20 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <new>
 #include <optional>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
 #include <tether/os/interrupt.h>
+#include <tether/runner/trial_server.h>
+#include <tether/sim_sdf/world_store.h>
 
 namespace {
 
@@ -38,13 +43,10 @@ int end(int code) {
   return std::fflush(stdout) == 0 && !std::ferror(stdout) ? code : fail_to_print(errno);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  open_standard_streams();
-  std::optional<tether::os::Interrupt> interrupt;  // until everything is printed
+/// Calls `command`, and prints the error with which it ends. @return the exit code.
+int with_errors_printed(const std::function<int()>& command) {
   try {
-    return end(tether::app::run_command_line(argc, argv, interrupt));
+    return end(command());
   } catch (const tether::Error& e) {
     say("tether: {}\n", e.what());
     return tether::exit_code(e.code());
@@ -59,4 +61,35 @@ int main(int argc, char** argv) {
     say("tether: internal error: {}\n", e.what());
     return tether::exit_code(tether::ErrorCode::kInternal);
   }
+}
+
+int serve_trials() {
+  tether::sim::WorldStore worlds;
+  return tether::runner::serve_trials(
+      {.prepare =
+           [&](const std::vector<std::string>& arguments) {
+             try {
+               tether::app::read_world_ahead(tether::app::parse_run(arguments), worlds);
+             } catch (const std::exception&) {  // the trial meets and prints the same one
+             }
+           },
+       .run =
+           [&](const std::vector<std::string>& arguments) {
+             std::optional<tether::os::Interrupt> interrupt;
+             return with_errors_printed([&] {
+               tether::app::RunOptions options = tether::app::parse_run(arguments);
+               options.worlds = &worlds;
+               interrupt.emplace();
+               return tether::app::run_one(options, interrupt->token());
+             });
+           }});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  open_standard_streams();
+  if (argc == 2 && argv[1] == tether::runner::kServeTrials) return serve_trials();
+  std::optional<tether::os::Interrupt> interrupt;  // until everything is printed
+  return with_errors_printed([&] { return tether::app::run_command_line(argc, argv, interrupt); });
 }

@@ -24,6 +24,7 @@
 #include <tether/report/junit.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/runner/trial_folder.h>
+#include <tether/runner/trial_server.h>
 #include <tether/scenario/campaign.h>
 #include <tether/scenario/shipped_files.h>
 
@@ -51,10 +52,10 @@ campaign::CampaignOutcome fly(const campaign::CampaignFolder& folder,
                               const scenario::Campaign& campaign, int jobs,
                               const std::function<void()>& check, const std::stop_token& stop) {
   ProgressBar bar;
+  runner::TrialServers servers;
   try {
     const auto outcome = campaign::run_campaign(
-        folder, campaign,
-        [&](const campaign::TrialPlan& plan) { return runner::run_trial_process(plan, stop); },
+        folder, campaign, [&](const campaign::TrialPlan& plan) { return servers.run(plan, stop); },
         {.jobs = jobs, .stop = stop, .wall = {}, .check = check},
         [&](const campaign::CampaignProgress& progress) { bar.show(progress); });
     bar.finish();

@@ -9,6 +9,10 @@
 #include <string_view>
 #include <vector>
 
+namespace tether::sim {
+class WorldStore;
+}
+
 /// The subcommands of `tether`, one file each; command_line.cpp parses their options. Each returns
 /// the exit code of the program. The long ones end early after a stop request.
 namespace tether::app {
@@ -39,9 +43,12 @@ struct RunOptions {
   bool quiet = false;
   bool force = false;
   std::filesystem::path junit;
+  sim::WorldStore* worlds = nullptr;  ///< that are in memory; null: none
 };
 /// Runs one trial and prints its result.
 int run_one(const RunOptions& options, const std::stop_token& stop);
+/// Reads the world of such a trial into `worlds`. @throws as run_one.
+void read_world_ahead(const RunOptions& options, sim::WorldStore& worlds);
 
 struct CampaignOptions {
   std::filesystem::path campaign;

@@ -28,6 +28,7 @@
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>
 #include <tether/scenario/shipped_files.h>
+#include <tether/sim_sdf/world_store.h>
 
 /// `tether run`: makes the specification of a trial from the options, runs it with the status on
 /// stderr, and prints the result.
@@ -119,6 +120,7 @@ runner::TrialSpec make_spec(const RunOptions& options) {
   }
   spec.waits_for_sut = std::holds_alternative<WaitForSut>(parse_target_option(options.target));
   spec.uses_tunnel = options.tunnel;
+  spec.worlds = options.worlds;
   require_use_of_tunnel(spec);
   return spec;
 }
@@ -243,6 +245,11 @@ int run_and_print(const RunOptions& options, const std::stop_token& stop) {
 int run_one(const RunOptions& options, const std::stop_token& stop) {
   return with_junit(options.junit, options.scenario.string(),
                     [&] { return run_and_print(options, stop); });
+}
+
+void read_world_ahead(const RunOptions& options, sim::WorldStore& worlds) {
+  const runner::TrialSpec spec = make_spec(options);
+  worlds.load(scenario::world_request(spec.scenario, spec.seed), nullptr);
 }
 
 }  // namespace tether::app

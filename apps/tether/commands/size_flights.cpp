@@ -90,8 +90,7 @@ bool SizeFlights::run(const std::vector<Key>& keys) {
   std::vector<const campaign::TrialPlan*> plans;
   for (const Key& key : keys) plans.push_back(missing_.at(key));
   const auto outcome = campaign::run_trials(
-      plans,
-      [&](const campaign::TrialPlan& plan) { return runner::run_trial_process(plan, stop_); },
+      plans, [&](const campaign::TrialPlan& plan) { return servers_.run(plan, stop_); },
       {.jobs = setup_.jobs,
        .stop = stop_,
        .wall = {},

@@ -14,6 +14,7 @@
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/run_campaign.h>
 #include <tether/report/size_report.h>
+#include <tether/runner/trial_server.h>
 #include <tether/scenario/campaign.h>
 #include <tether/sizing/sizing.h>
 
@@ -63,6 +64,7 @@ class SizeFlights {
   campaign::Settings settings_;
   campaign::CampaignFolder folder_;
   std::map<Key, const campaign::TrialPlan*> missing_;
+  runner::TrialServers servers_;
   bool has_margins_ = false;
   sizing::Sizing sizing_;
   std::uint64_t next_seed_ = 1;

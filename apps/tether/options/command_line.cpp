@@ -3,11 +3,14 @@
 #include "commands/commands.h"
 #include "terminal/say.h"
 
+#include <algorithm>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -76,7 +79,7 @@ void add_junit_option(CLI::App& command, std::filesystem::path& junit) {
                      "and clause, for continuous integration");
 }
 
-void add_run_command(CLI::App& program, Action& action) {
+std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
   const auto [command, options] =
       add_command(program, action, "run", "Run one trial of a scenario", run_one);
   command->add_option("scenario", options->scenario, "Name of a shipped scenario, or a file (TOML)")
@@ -142,6 +145,7 @@ void add_run_command(CLI::App& program, Action& action) {
   tether run face_anchor --profile ideal
   tether run face_anchor --simulator gazebo
   tether run face_anchor --images --out out/one)");
+  return options;
 }
 
 void add_campaign_command(CLI::App& program, Action& action) {
@@ -396,6 +400,16 @@ std::string suggestion(const CLI::App& program) {
 
 }  // namespace
 
+RunOptions parse_run(std::vector<std::string> arguments) {
+  CLI::App program;
+  Action ignored;
+  const auto options = add_run_command(program, ignored);
+  arguments.emplace_back("run");
+  std::reverse(arguments.begin(), std::prev(arguments.end()));  // CLI11 reads them from the end
+  program.parse(std::move(arguments));
+  return *options;
+}
+
 int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interrupt) {
   CLI::App program{"Tests in simulation whether a UAV's computer is fast enough for its task."};
   program.name("tether");
@@ -404,10 +418,10 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
   program.require_subcommand(1);
 
   Action action;
-  for (const auto add :
-       {add_run_command, add_campaign_command, add_size_command, add_report_command,
-        add_audit_command, add_timing_command, add_frames_command, add_plot_command,
-        add_world_command, add_target_command, add_list_command})
+  add_run_command(program, action);
+  for (const auto add : {add_campaign_command, add_size_command, add_report_command,
+                         add_audit_command, add_timing_command, add_frames_command,
+                         add_plot_command, add_world_command, add_target_command, add_list_command})
     add(program, action);
   try {
     program.parse(argc, argv);

@@ -1,5 +1,7 @@
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <set>
@@ -113,6 +115,7 @@ struct Image {
   const char* working_folder;  // nullptr: as it is
   const cpu_set_t* cpus;       // nullptr: all
   int death_signal;
+  const std::function<int()>& body;
 };
 
 void forget(pid_t process) {
@@ -125,6 +128,15 @@ std::vector<pid_t> orphans() {
   std::vector<pid_t> found = children_of(getpid());
   std::erase_if(found, [](pid_t child) { return started().processes.contains(child); });
   return found;
+}
+
+// What is the parent's alone: its lock, which is held during the fork, and its children.
+[[noreturn]] void call(const Image& image, int report) {
+  close(report);
+  started().processes.clear();
+  started().mutex.unlock();
+  prctl(PR_SET_NAME, image.program);
+  std::exit(image.body());
 }
 
 // Only makes calls that are safe after the fork of a program with threads. Writes to `report` why
@@ -140,6 +152,7 @@ std::vector<pid_t> orphans() {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
+  if (image.body) call(image, report);
   const bool is_placed =
       (!image.cpus || sched_setaffinity(0, sizeof *image.cpus, image.cpus) == 0) &&
       (!image.working_folder || chdir(image.working_folder) == 0);
@@ -152,7 +165,8 @@ std::vector<pid_t> orphans() {
 }  // namespace
 
 ChildProcess::ChildProcess(const ChildCommand& command)
-    : program_(find_program(command.arguments.at(0)).string()),
+    : program_(command.body ? command.arguments.at(0)
+                            : find_program(command.arguments.at(0)).string()),
       end_signal_(command.end_signal),
       grace_(command.grace) {
   std::vector<std::string> arguments = command.arguments;
@@ -168,7 +182,8 @@ ChildProcess::ChildProcess(const ChildCommand& command)
                     envp.data(),
                     command.working_folder.empty() ? nullptr : command.working_folder.c_str(),
                     command.cpus.empty() ? nullptr : &cpus,
-                    command.death_signal};
+                    command.death_signal,
+                    command.body};
   const pid_t parent = getpid();
   {
     const std::lock_guard lock(started().mutex);

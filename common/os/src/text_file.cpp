@@ -2,11 +2,18 @@
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <mutex>
+#include <optional>
 #include <sstream>
+#include <tuple>
+#include <utility>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <tether/base/error.h>
@@ -128,7 +135,43 @@ std::string last_line(const std::string& text) {
   return last;
 }
 
-std::string digest_of_file(const std::filesystem::path& file) {
+namespace {
+
+// What changes with a file's content.
+using Version = std::tuple<dev_t, ino_t, off_t, std::int64_t, std::int64_t>;
+
+constexpr std::int64_t kNanoseconds = 1'000'000'000;
+
+std::int64_t nanoseconds(const timespec& time) {
+  return time.tv_sec * kNanoseconds + time.tv_nsec;
+}
+
+std::optional<Version> version_of(const std::filesystem::path& file) {
+  struct stat found {};
+  if (stat(file.c_str(), &found) != 0) return std::nullopt;
+  return Version{found.st_dev, found.st_ino, found.st_size, nanoseconds(found.st_mtim),
+                 nanoseconds(found.st_ctim)};
+}
+
+// A file that changed within the last tick of its file system's clock can change again without
+// another time.
+bool is_settled(const Version& version) {
+  constexpr std::int64_t kCoarsestTick = 2 * kNanoseconds;
+  timespec now{};
+  clock_gettime(CLOCK_REALTIME, &now);
+  return std::get<4>(version) < nanoseconds(now) - kCoarsestTick;
+}
+
+struct Digests {
+  std::mutex mutex;
+  std::map<std::filesystem::path, std::pair<Version, std::string>> known;
+};
+Digests& digests() {
+  static Digests all;
+  return all;
+}
+
+std::string read_digest(const std::filesystem::path& file) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : read_file(file)) {
     hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
@@ -136,6 +179,24 @@ std::string digest_of_file(const std::filesystem::path& file) {
   char text[17];
   std::snprintf(text, sizeof text, "%016" PRIx64, hash);
   return text;
+}
+
+}  // namespace
+
+std::string digest_of_file(const std::filesystem::path& file) {
+  const std::optional<Version> version = version_of(file);
+  if (version) {
+    const std::lock_guard lock(digests().mutex);
+    const auto found = digests().known.find(file);
+    if (found != digests().known.end() && found->second.first == version)
+      return found->second.second;
+  }
+  std::string digest = read_digest(file);
+  if (version && is_settled(*version)) {
+    const std::lock_guard lock(digests().mutex);
+    digests().known[file] = {*version, digest};
+  }
+  return digest;
 }
 
 }  // namespace tether::os

@@ -1,5 +1,6 @@
 #include <cerrno>
 #include <csignal>
+#include <iostream>
 #include <iterator>
 #include <memory>
 #include <sstream>
@@ -58,6 +59,19 @@ TEST_F(Child, ReportsHowItEnded) {
     EXPECT_EQ(exit.code, c.code);
     EXPECT_EQ(exit.description, c.description);
   }
+}
+
+TEST_F(Child, CallsItsBodyInACopyOfThisProcessThatCanStartProgramsItself) {
+  int changed = 1;
+  const ChildExit exit = run({.arguments = {"a copy"}, .log = log_, .body = [&] {
+                                changed = 2;
+                                std::cout << "out" << std::flush;
+                                ChildProcess program(shell("exit 4"));
+                                program.wait(kPatience);
+                                return 3 + program.poll()->code;
+                              }});
+  EXPECT_EQ(exit.code, 7);
+  EXPECT_EQ(changed, 1);
 }
 
 TEST_F(Child, AddsVariablesToTheEnvironmentOfThisProcess) {

@@ -89,5 +89,26 @@ TEST(DigestOfFile, IsFnv1a) {
   EXPECT_EQ(digest_of_file(scratch.write("b", "foobar")), "85944171f73967e8");
 }
 
+TEST(DigestOfFile, ReadsAFileAgainOnlyAfterItChanged) {
+  const auto bytes_read = [] {
+    std::istringstream counters(read_whole("/proc/self/io"));
+    std::string name;
+    std::uintmax_t count = 0;
+    counters >> name >> count;  // "rchar: N", the first line
+    return count;
+  };
+  const fs::path old = "/bin/sh";
+  const std::string digest = digest_of_file(old);
+  const std::uintmax_t before = bytes_read();
+  EXPECT_EQ(digest_of_file(old), digest);
+  EXPECT_LT(bytes_read() - before, fs::file_size(old) / 2);
+
+  const ScratchFolder scratch;
+  const fs::path changed = scratch.write("a", "old");
+  digest_of_file(changed);
+  scratch.write("a", "new");  // as long, and maybe within a tick of the file system's clock
+  EXPECT_EQ(digest_of_file(changed), digest_of_file(scratch.write("b", "new")));
+}
+
 }  // namespace
 }  // namespace tether::os

@@ -16,6 +16,7 @@
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/folder_claim.h>
 #include <tether/campaign/refuse_folder.h>
+#include <tether/os/process_table.h>
 
 // A run locks its folder. A campaign locks its folder too, and alone the lock file in it. A run or
 // campaign in or below a campaign's folder shares that lock file, so that the campaign cannot start
@@ -83,6 +84,13 @@ void write_process(const os::FileDescriptor& file, const fs::path& path) {
     fail(path, "cannot be written", errno);
 }
 
+/// It started us, or the server that did (runner/trial_server.h).
+bool has_started_us(pid_t process) {
+  if (process == ::getppid()) return true;
+  const auto server = os::process_stat(::getppid());
+  return server && process == server->parent;
+}
+
 bool has_trial(const fs::path& campaign, const fs::path& folder) try {
   if (!fs::exists(campaign / kCampaignFile)) return false;
   const CampaignManifest manifest = read_manifest(campaign);
@@ -106,7 +114,7 @@ void share_campaign(const fs::path& root, const fs::path& whole, const fs::path&
   if (file) {
     const bool is_held = ::flock(file.get(), LOCK_SH | LOCK_NB) != 0;
     const pid_t process = process_in(file);
-    if (is_held && process == ::getppid()) return;
+    if (is_held && has_started_us(process)) return;
     if (!lock(file, LOCK_SH, path))
       refuse_busy(folder, fmt::format("a campaign is running in {}{}",
                                       root == whole ? "this folder" : root.string(),

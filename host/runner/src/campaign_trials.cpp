@@ -4,21 +4,14 @@
 #include <algorithm>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include <tether/base/error.h>
-#include <tether/campaign/campaign_folder.h>
-#include <tether/os/child_process.h>
+#include <tether/campaign/campaign_plan.h>
 #include <tether/os/program.h>
-#include <tether/os/text_file.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/sim_sdf/load_world.h>
 
 namespace tether::runner {
 
 namespace {
-
-constexpr Duration kPollPeriod = std::chrono::milliseconds(50);
 
 /// Applies what each condition changes of UAVs to a copy of the world, so that errors in it are
 /// found before anything is written.
@@ -43,12 +36,6 @@ void add_programs(const scenario::CampaignScenario& entry,
     for (const auto& program : sut_programs(entry.scenario, condition))
       if (std::find(files.begin(), files.end(), program) == files.end()) files.push_back(program);
   }
-}
-
-/// The second attempt keeps the log of the first.
-std::filesystem::path log_file(const campaign::TrialPlan& plan) {
-  const std::filesystem::path first = plan.folder / campaign::kTrialLog;
-  return std::filesystem::exists(first) ? plan.folder / campaign::kSecondTrialLog : first;
 }
 
 }  // namespace
@@ -78,49 +65,6 @@ CampaignFiles files_of_trials(const scenario::Campaign& campaign,
     files.insert(files.end(), own.begin(), own.end());
   }
   return {std::move(files), warnings.all()};
-}
-
-campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
-                                        const std::stop_token& stop) {
-  const std::filesystem::path log = log_file(plan);
-  const bool is_slowed = !plan.condition->slowed_from.empty();
-  const std::string& name_in_scenario =
-      is_slowed ? plan.condition->slowed_from : plan.condition->name;
-  std::vector<std::string> arguments = {
-      os::own_file().string(), "run",         plan.scenario->file.string(), "--condition",
-      name_in_scenario,        "--seed",      std::to_string(plan.seed),    "--out",
-      plan.folder.string(),    "--simulator", plan.condition->simulator,    "--quiet"};
-  if (!plan.profile.empty())
-    arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
-  if (is_slowed)
-    arguments.insert(arguments.end(), {"--slowdown", fmt::format("{}", plan.condition->slowdown)});
-  for (const auto& [key, value] : plan.scenario->settings)
-    arguments.insert(arguments.end(), {"--set", fmt::format("{}={}", key, value)});
-  if (plan.record_images) arguments.emplace_back("--images");
-  const sim::WorldOptions& options = plan.scenario->world_options;
-  if (options.is_tolerant) arguments.emplace_back("--tolerant");
-  if (options.replaces_missing_models)
-    arguments.insert(arguments.end(), {"--missing-models", "placeholder"});
-  // The grace period lets it end its own processes.
-  os::ChildProcess process({.arguments = std::move(arguments),
-                            .environment = {},
-                            .log = log,
-                            .grace = std::chrono::seconds(10)});
-  while (!process.wait(kPollPeriod)) {
-    if (stop.stop_requested()) process.terminate();
-  }
-  if (stop.stop_requested()) {
-    auto result = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
-                                               "interrupted by the user");
-    result.end = campaign::kEndInterrupted;
-    return result;
-  }
-  if (std::filesystem::exists(plan.folder / campaign::kResultFile))
-    return campaign::read_result(plan.folder);
-  const std::string why = os::last_line(os::read_whole(log));
-  throw Error(ErrorCode::kSetup,
-              fmt::format("the trial left no result: it {}{}; see {}", process.poll()->description,
-                          why.empty() ? "" : ": " + why, log.string()));
 }
 
 }  // namespace tether::runner

@@ -21,7 +21,7 @@
 #include <tether/record/reader.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>
-#include <tether/sim_sdf/load_world.h>
+#include <tether/sim_sdf/world_store.h>
 
 /// One trial: checks options and files, claims the folder, starts the board and the simulator,
 /// conducts the run (TrialRun), and writes the result, which is evaluated from the record. Failures
@@ -197,8 +197,9 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   const BackEnd back_end = find_back_end(spec.condition.simulator);
   scenario::require_clock(spec.scenario, spec.condition);
   WarningLog warnings(observer.on_warnings);
-  sim::World world =
-      sim::load_world(scenario::world_request(spec.scenario, spec.seed), warnings.sink());
+  sim::WorldStore none;
+  sim::World world = (spec.worlds ? *spec.worlds : none)
+                         .load(scenario::world_request(spec.scenario, spec.seed), warnings.sink());
   scenario::resolve_energy(spec.scenario, spec.condition, world, warnings.sink());
   back_end.require_readable(world);
   const TrialInputs inputs{

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
+
+#include <sys/mman.h>
 
 #include <tether/base/error.h>
 
@@ -22,6 +25,17 @@ std::string one_line(std::string text) {
 
 // The simulator checks the counters of warnings in mjData instead.
 void ignore_engine_warning(const char* /*message*/) {}
+
+// The engine clears its scratch memory (some 200 MB) once. By pages of 4 KiB, that takes a tenth of
+// a second of each trial.
+void* allocate_in_huge_pages(std::size_t size) {
+  constexpr std::size_t kHugePage = std::size_t{2} << 20, kAligned = 64;
+  const bool is_huge = size >= kHugePage;
+  void* memory = nullptr;
+  if (posix_memalign(&memory, is_huge ? kHugePage : kAligned, size) != 0) return nullptr;
+  if (is_huge) madvise(memory, size, MADV_HUGEPAGE);  // advice: without it, it is slower
+  return memory;
+}
 
 // The engine's file system of fixed-size tables (2 MB).
 class MemoryFiles {
@@ -49,6 +63,8 @@ class MemoryFiles {
 void install_engine_handlers() {
   mju_user_error = raise_engine_error;
   mju_user_warning = ignore_engine_warning;
+  mju_user_malloc = allocate_in_huge_pages;
+  mju_user_free = std::free;
 }
 
 ModelPtr compile_model(const std::string& xml, const std::vector<ModelFile>& files) {

@@ -45,6 +45,7 @@ bool is_battery_plugin(const sdf::ElementPtr& element);
 /// The battery of a UAV by such a plugin of its model; none if it has none.
 std::optional<energy::Battery> read_battery(const SdfSource& source, const sdf::ElementPtr& model);
 
+uav::Pose start_pose(const UavPlacement& placement);
 /// The UAV of a model file, placed.
 Uav read_uav(const SdfSource& source, const UavPlacement& placement, double gravity_m_s2,
              const WarningSink& warn);

@@ -89,6 +89,10 @@ void check_sensor_names(const SdfSource& source, const sdf::ElementPtr& model, c
 
 }  // namespace
 
+uav::Pose start_pose(const UavPlacement& placement) {
+  return {placement.p_WB, uav::from_rpy(0.0, 0.0, placement.yaw_rad)};
+}
+
 Uav read_uav(const SdfSource& source, const UavPlacement& placement, double gravity_m_s2,
              const WarningSink& warn) {
   const sdf::Model* model = source.root().Model();
@@ -101,7 +105,7 @@ Uav read_uav(const SdfSource& source, const UavPlacement& placement, double grav
 
   Uav uav;
   uav.name = placement.name;
-  uav.X_WB = {placement.p_WB, uav::from_rpy(0.0, 0.0, placement.yaw_rad)};
+  uav.X_WB = start_pose(placement);
   uav.body = read_link(source, body, warn);
   uav.airframe = read_airframe(source, model->Element(), uav.body, gravity_m_s2);
   uav.battery = read_battery(source, model->Element());

@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,6 +29,11 @@ struct ChildCommand {
   int end_signal = SIGTERM;                  ///< asks it to end
   int death_signal = SIGKILL;                ///< sent to it when this process ends
   Duration grace = std::chrono::seconds(1);  ///< from `end_signal` to SIGKILL
+  /// If set, the child is a copy of this process that calls this and exits with what it returns,
+  /// rather than a program. It has the memory of this process, but only the thread that starts it:
+  /// a process with other threads must not start such a child. `arguments` has one word, the name
+  /// that `ps` shows; `environment`, `cpus` and `working_folder` stay those of this process.
+  std::function<int()> body{};
 };
 
 /// Higher exit codes are this plus the signal that ended a program, as in shells.

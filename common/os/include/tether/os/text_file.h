@@ -34,7 +34,9 @@ std::string read_whole(const std::filesystem::path& file);
 std::string last_line(const std::string& text);
 
 /// A 64-bit FNV-1a digest of the content as 16 hexadecimal digits. It distinguishes versions; it is
-/// not cryptographic.
+/// not cryptographic. Thread-safe. The file is read again only after it changed: the digest is
+/// remembered while the file's number, size and times of change stay the same, once these times are
+/// older than the coarsest clock of a file system.
 /// @throws Error(kBadFile) as `read_file`.
 std::string digest_of_file(const std::filesystem::path& file);
 

@@ -2,16 +2,14 @@
 
 #include <filesystem>
 #include <set>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include <tether/base/warning.h>
-#include <tether/campaign/run_campaign.h>
 #include <tether/runner/back_end.h>
 #include <tether/scenario/campaign.h>
 
-/// The files that the trials of a campaign depend on, and how each trial is run.
+/// The files that the trials of a campaign depend on.
 namespace tether::runner {
 
 /// Names of the simulators of all conditions in the campaign.
@@ -28,10 +26,5 @@ struct CampaignFiles {
 /// a
 ///   file of a simulator is missing.
 CampaignFiles files_of_trials(const scenario::Campaign& campaign, const FindBackEnd& find_back_end);
-
-/// Runs a trial as a separate `tether run` process, so that a failure cannot affect other trials. A
-/// stop request ends it as interrupted. @throws Error(kSetup) if it leaves no result.
-campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
-                                        const std::stop_token& stop);
 
 }  // namespace tether::runner

@@ -18,6 +18,10 @@
 #include <tether/scenario/scenario.h>
 #include <tether/sim/simulator.h>
 
+namespace tether::sim {
+class WorldStore;
+}
+
 namespace tether::runner {
 
 /// Where a trial's SUTs run.
@@ -40,6 +44,7 @@ struct TrialSpec {
   bool uses_tunnel = false;
   /// The user starts the SUT. Otherwise the command of the scenario is started on the target.
   bool waits_for_sut = false;
+  sim::WorldStore* worlds = nullptr;  ///< that are in memory; null: none
 
   SutPlace sut_place() const;
 };

@@ -227,6 +227,8 @@ struct WorldOptions {
   /// Put an empty model in place of an included one that is not found, and leave out visuals,
   /// collisions and textures whose file is not found. Warns of each; otherwise they are errors.
   bool replaces_missing_models = false;
+
+  friend bool operator==(const WorldOptions&, const WorldOptions&) = default;
 };
 
 struct WorldRequest {

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tether/campaign/run_campaign.h>
+
+/// Trials in processes of their own that do not read their world again: a server, which is a
+/// process of this program, reads it once, and each trial is a copy of the server.
+namespace tether::runner {
+
+/// As its only argument, makes this program a server of trials.
+inline constexpr std::string_view kServeTrials = "--serve-trials";
+
+/// Runs trials, each by a server that does nothing else meanwhile. A failure of a trial cannot
+/// affect others. Thread-safe.
+class TrialServers {
+ public:
+  TrialServers();
+  ~TrialServers();
+
+  /// Runs a trial as `tether run` would. A stop request ends it as interrupted.
+  /// @throws Error(kSetup) if it leaves no result.
+  campaign::TrialResult run(const campaign::TrialPlan& plan, const std::stop_token& stop);
+
+ private:
+  class Server;
+  std::unique_ptr<Server> take();
+
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Server>> idle_;
+};
+
+/// What a server does with the arguments of `tether run`.
+struct TrialService {
+  /// Reads what the trial needs into memory. Its failures are left to `run`.
+  std::function<void(const std::vector<std::string>& arguments)> prepare;
+  /// Runs the trial, in a copy of the server. @return the exit code.
+  std::function<int(const std::vector<std::string>& arguments)> run;
+};
+/// Serves the process that started this one until it ends. @pre this process has one thread.
+/// @return the exit code.
+int serve_trials(const TrialService& service);
+
+}  // namespace tether::runner

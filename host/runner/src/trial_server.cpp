@@ -1,0 +1,199 @@
+#include <array>
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+#include <tether/base/system_reason.h>
+#include <tether/os/child_process.h>
+#include <tether/os/program.h>
+#include <tether/os/text_file.h>
+#include <tether/runner/trial_server.h>
+
+// Campaign and server exchange whole messages through a socket, which is the server's standard
+// input. A request is the trial's log, the name of its process and the arguments of `tether run`,
+// each ended by a zero byte; the reply says how the trial ended. An empty message asks to end the
+// trial that is running. Each side notices by the end of the stream that the other one has ended.
+namespace tether::runner {
+
+namespace {
+
+constexpr Duration kPollPeriod = std::chrono::milliseconds(50);
+constexpr char kEnd = '\0';
+constexpr std::string_view kStop = "stop";
+
+/// Waits for a message at most that long. None: there is none yet; empty: the other side has ended.
+std::optional<std::string> receive(int socket, Duration limit) {
+  pollfd readable{socket, POLLIN, 0};
+  const auto limit_ms = std::chrono::duration_cast<std::chrono::milliseconds>(limit).count();
+  if (poll(&readable, 1, static_cast<int>(limit_ms)) <= 0) return std::nullopt;
+  std::string message(std::size_t{1} << 17, kEnd);
+  const ssize_t length = recv(socket, message.data(), message.size(), 0);
+  message.resize(length > 0 ? static_cast<std::size_t>(length) : 0);
+  return message;
+}
+
+bool send_message(int socket, std::string_view text) {
+  return send(socket, text.data(), text.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
+}
+
+std::vector<std::string> words_of(const std::string& request) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at < request.size(); at += words.back().size() + 1)
+    words.push_back(request.substr(at, request.find(kEnd, at) - at));
+  return words;
+}
+
+/// The second attempt keeps the log of the first.
+std::filesystem::path log_file(const campaign::TrialPlan& plan) {
+  const std::filesystem::path first = plan.folder / campaign::kTrialLog;
+  return std::filesystem::exists(first) ? plan.folder / campaign::kSecondTrialLog : first;
+}
+
+std::vector<std::string> arguments_of(const campaign::TrialPlan& plan) {
+  const bool is_slowed = !plan.condition->slowed_from.empty();
+  std::vector<std::string> arguments = {
+      plan.scenario->file.string(),
+      "--condition",
+      is_slowed ? plan.condition->slowed_from : plan.condition->name,
+      "--seed",
+      std::to_string(plan.seed),
+      "--out",
+      plan.folder.string(),
+      "--simulator",
+      plan.condition->simulator,
+      "--quiet"};
+  if (!plan.profile.empty())
+    arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
+  if (is_slowed)
+    arguments.insert(arguments.end(), {"--slowdown", fmt::format("{}", plan.condition->slowdown)});
+  for (const auto& [key, value] : plan.scenario->settings)
+    arguments.insert(arguments.end(), {"--set", fmt::format("{}={}", key, value)});
+  if (plan.record_images) arguments.emplace_back("--images");
+  const sim::WorldOptions& options = plan.scenario->world_options;
+  if (options.is_tolerant) arguments.emplace_back("--tolerant");
+  if (options.replaces_missing_models)
+    arguments.insert(arguments.end(), {"--missing-models", "placeholder"});
+  return arguments;
+}
+
+os::Pipe make_sockets() {
+  std::array<int, 2> ends{};
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0)
+    throw Error(ErrorCode::kSetup, "cannot start a trial: no socket: " + reason_of(errno));
+  return {os::FileDescriptor(ends[0]), os::FileDescriptor(ends[1])};
+}
+
+}  // namespace
+
+class TrialServers::Server {
+ public:
+  Server() : Server(make_sockets()) {}
+
+  /// How a trial ended; none: the server has ended before that.
+  std::optional<std::string> run(const std::string& request, const std::stop_token& stop) {
+    if (!send_message(socket_.get(), request)) return std::nullopt;
+    for (bool is_stopping = false;;) {
+      const std::optional<std::string> reply = receive(socket_.get(), kPollPeriod);
+      if (reply) return reply->empty() ? std::nullopt : reply;
+      if (stop.stop_requested() && !std::exchange(is_stopping, true))
+        send_message(socket_.get(), kStop);
+    }
+  }
+  std::string end() {
+    process_.wait(std::chrono::seconds(1));
+    const auto& exit = process_.poll();
+    return exit ? exit->description : "did not answer";
+  }
+
+ private:
+  // It notices our end by the socket: it may be started by a thread that ends before this process.
+  explicit Server(os::Pipe sockets)
+      : process_({.arguments = {os::own_file().string(), std::string(kServeTrials)},
+                  .environment = {},
+                  .log = {},
+                  .input_pipe = sockets.read_end.get(),
+                  .death_signal = 0}),
+        socket_(std::move(sockets.write_end)) {}
+
+  os::ChildProcess process_;
+  os::FileDescriptor socket_;
+};
+
+TrialServers::TrialServers() = default;
+TrialServers::~TrialServers() = default;
+
+std::unique_ptr<TrialServers::Server> TrialServers::take() {
+  const std::lock_guard lock(mutex_);
+  if (idle_.empty()) return std::make_unique<Server>();
+  std::unique_ptr<Server> server = std::move(idle_.back());
+  idle_.pop_back();
+  return server;
+}
+
+campaign::TrialResult TrialServers::run(const campaign::TrialPlan& plan,
+                                        const std::stop_token& stop) {
+  const std::filesystem::path log = log_file(plan);
+  std::string request = log.string() + kEnd + plan.folder.filename().string() + kEnd;
+  for (const std::string& argument : arguments_of(plan)) request += argument + kEnd;
+  std::unique_ptr<Server> server = take();
+  const std::optional<std::string> end = server->run(request, stop);
+  const std::string how = end ? *end : "was lost with its server, which " + server->end();
+  if (end) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(server));
+  }
+  if (stop.stop_requested()) {
+    auto result = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
+                                               "interrupted by the user");
+    result.end = campaign::kEndInterrupted;
+    return result;
+  }
+  if (std::filesystem::exists(plan.folder / campaign::kResultFile))
+    return campaign::read_result(plan.folder);
+  const std::string why = os::last_line(os::read_whole(log));
+  throw Error(ErrorCode::kSetup, fmt::format("the trial left no result: it {}{}; see {}", how,
+                                             why.empty() ? "" : ": " + why, log.string()));
+}
+
+namespace {
+
+/// Runs one trial in a copy of this process. @return how it ended.
+std::string run_copy(const TrialService& service, const std::vector<std::string>& words) try {
+  const std::vector<std::string> arguments(words.begin() + 2, words.end());
+  service.prepare(arguments);
+  // The grace period lets it end its own processes.
+  os::ChildProcess trial({.arguments = {words[1]},
+                          .environment = {},
+                          .log = words[0],
+                          .grace = std::chrono::seconds(10),
+                          .body = [&] { return service.run(arguments); }});
+  while (!trial.wait(kPollPeriod)) {
+    const auto message = receive(STDIN_FILENO, Duration(0));
+    if (message && message->empty()) _exit(exit_code(ErrorCode::kSetup));  // ends the trial, too
+    if (message) trial.terminate();
+  }
+  return trial.poll()->description;
+} catch (const Error& e) {
+  return std::string("could not be started: ") + e.what();
+}
+
+}  // namespace
+
+int serve_trials(const TrialService& service) {
+  constexpr Duration kForever = std::chrono::hours(1);
+  for (;;) {
+    const std::optional<std::string> request = receive(STDIN_FILENO, kForever);
+    if (!request || *request == kStop) continue;
+    if (request->empty()) return 0;
+    if (!send_message(STDIN_FILENO, run_copy(service, words_of(*request)))) return 0;
+  }
+}
+
+}  // namespace tether::runner
