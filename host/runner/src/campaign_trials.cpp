@@ -46,9 +46,9 @@ void add_programs(const scenario::CampaignScenario& entry,
 }
 
 /// The second attempt keeps the log of the first.
-std::filesystem::path log_file(const campaign::TrialPlan& plan) {
-  const std::filesystem::path first = plan.folder / campaign::kTrialLog;
-  return std::filesystem::exists(first) ? plan.folder / campaign::kSecondTrialLog : first;
+std::filesystem::path log_file(const std::filesystem::path& folder) {
+  const std::filesystem::path first = folder / campaign::kTrialLog;
+  return std::filesystem::exists(first) ? folder / campaign::kSecondTrialLog : first;
 }
 
 }  // namespace
@@ -80,16 +80,18 @@ CampaignFiles files_of_trials(const scenario::Campaign& campaign,
   return {std::move(files), warnings.all()};
 }
 
-campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
-                                        const std::stop_token& stop) {
-  const std::filesystem::path log = log_file(plan);
+std::vector<std::string> trial_arguments(const campaign::TrialPlan& plan) {
   const bool is_slowed = !plan.condition->slowed_from.empty();
   const std::string& name_in_scenario =
       is_slowed ? plan.condition->slowed_from : plan.condition->name;
-  std::vector<std::string> arguments = {
-      os::own_file().string(), "run",         plan.scenario->file.string(), "--condition",
-      name_in_scenario,        "--seed",      std::to_string(plan.seed),    "--out",
-      plan.folder.string(),    "--simulator", plan.condition->simulator,    "--quiet"};
+  std::vector<std::string> arguments = {plan.scenario->file.string(),
+                                        "--condition",
+                                        name_in_scenario,
+                                        "--seed",
+                                        std::to_string(plan.seed),
+                                        "--simulator",
+                                        plan.condition->simulator,
+                                        "--quiet"};
   if (!plan.profile.empty())
     arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
   if (is_slowed)
@@ -101,6 +103,16 @@ campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
   if (options.is_tolerant) arguments.emplace_back("--tolerant");
   if (options.replaces_missing_models)
     arguments.insert(arguments.end(), {"--missing-models", "placeholder"});
+  return arguments;
+}
+
+std::optional<campaign::TrialResult> run_trial_command(const std::vector<std::string>& of_run,
+                                                       const std::filesystem::path& folder,
+                                                       const std::stop_token& stop) {
+  const std::filesystem::path log = log_file(folder);
+  std::vector<std::string> arguments = {os::own_file().string(), "run"};
+  arguments.insert(arguments.end(), of_run.begin(), of_run.end());
+  arguments.insert(arguments.end(), {"--out", folder.string()});
   // The grace period lets it end its own processes.
   os::ChildProcess process({.arguments = std::move(arguments),
                             .environment = {},
@@ -109,18 +121,22 @@ campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
   while (!process.wait(kPollPeriod)) {
     if (stop.stop_requested()) process.terminate();
   }
-  if (stop.stop_requested()) {
-    auto result = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
-                                               "interrupted by the user");
-    result.end = campaign::kEndInterrupted;
-    return result;
-  }
-  if (std::filesystem::exists(plan.folder / campaign::kResultFile))
-    return campaign::read_result(plan.folder);
+  if (stop.stop_requested()) return std::nullopt;
+  if (std::filesystem::exists(folder / campaign::kResultFile)) return campaign::read_result(folder);
   const std::string why = os::last_line(os::read_whole(log));
   throw Error(ErrorCode::kSetup,
               fmt::format("the trial left no result: it {}{}; see {}", process.poll()->description,
                           why.empty() ? "" : ": " + why, log.string()));
+}
+
+campaign::TrialResult run_trial_process(const campaign::TrialPlan& plan,
+                                        const std::stop_token& stop) {
+  if (auto result = run_trial_command(trial_arguments(plan), plan.folder, stop))
+    return std::move(*result);
+  auto interrupted = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
+                                                  "interrupted by the user");
+  interrupted.end = campaign::kEndInterrupted;
+  return interrupted;
 }
 
 }  // namespace tether::runner

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <stop_token>
 #include <string>
@@ -28,6 +29,15 @@ struct CampaignFiles {
 /// a
 ///   file of a simulator is missing.
 CampaignFiles files_of_trials(const scenario::Campaign& campaign, const FindBackEnd& find_back_end);
+
+/// The arguments of `tether run` for a trial, without --out.
+std::vector<std::string> trial_arguments(const campaign::TrialPlan& plan);
+
+/// Runs `tether run` with these arguments, which leaves its result and log in `folder`. None: a
+/// stop request ended it. @throws Error(kSetup) if it leaves no result.
+std::optional<campaign::TrialResult> run_trial_command(const std::vector<std::string>& of_run,
+                                                       const std::filesystem::path& folder,
+                                                       const std::stop_token& stop);
 
 /// Runs a trial as a separate `tether run` process, so that a failure cannot affect other trials. A
 /// stop request ends it as interrupted. @throws Error(kSetup) if it leaves no result.
