@@ -30,6 +30,7 @@ struct RunOptions {
   std::string listen;
   double real_time_factor = 0.0;
   std::optional<double> slowdown;
+  std::optional<double> cpu_time_scale;
   std::vector<std::string> settings;  ///< "KEY=VALUE"
   std::string unknown_stages;
   ReadingOptions reading;
@@ -43,11 +44,23 @@ struct RunOptions {
 /// Runs one trial and prints its result.
 int run_one(const RunOptions& options, const std::stop_token& stop);
 
+/// Trials that are flown by workers.
+struct ClusterOptions {
+  bool slurm = false;
+  std::vector<std::string> slurm_options;  ///< of sbatch
+  bool detach = false;                     ///< start workers, or have the user start them, and end
+  bool collects = false;  ///< goes on with the workers of an earlier call
+  bool scales_nodes = false;
+};
+
 struct CampaignOptions {
   std::filesystem::path campaign;
+  std::filesystem::path collect;  ///< folder of a campaign, which names everything else
+  std::filesystem::path cancel;   ///< the same
   std::filesystem::path out;
   std::string simulator;
-  int jobs = 1;
+  std::optional<int> jobs;
+  ClusterOptions cluster;
   ReadingOptions reading;
   bool resume = false;
   std::filesystem::path junit;
@@ -71,13 +84,20 @@ struct SizeOptions {
   double interval = 1.3;
   std::vector<double> between = {1.0, 40.0};
   std::size_t max_trials = 300;
-  int jobs = 1;
+  std::optional<int> jobs;
+  ClusterOptions cluster;
   ReadingOptions reading;
   bool resume = false;
   bool force = false;
 };
 /// Finds the slowest computer that is sufficient for a scenario.
 int size(const SizeOptions& options, const std::stop_token& stop);
+
+struct WorkerOptions {
+  std::filesystem::path folder;
+};
+/// Flies trials of a folder that machines share.
+int work(const WorkerOptions& options, const std::stop_token& stop);
 
 struct ReportOptions {
   std::filesystem::path folder;

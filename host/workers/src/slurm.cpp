@@ -107,7 +107,7 @@ class Slurm final : public Engine {
     std::vector<std::string> words = {
         "sbatch", "--parsable", fmt::format("--array=1-{}", order.tasks),
         "--job-name=" + round.settings().job, "--no-requeue", "--ntasks=1",
-        fmt::format("--cpus-per-task={}", order.cores),
+        order.cores > 0 ? fmt::format("--cpus-per-task={}", order.cores) : "--exclusive",
         "--output=" + (round.whole_path("logs") / "%a.log").string(),
         // sbatch reads the folder of the user's shell, which nodes need not have.
         "--chdir=/"};

@@ -27,7 +27,7 @@ struct Task {
 /// What a collector asks for.
 struct Order {
   std::size_t tasks = 1;
-  int cores = 1;                ///< of each task
+  int cores = 1;                ///< of each task; 0: a machine of its own
   std::set<std::string> avoid{};  ///< nodes on which trials were lost, if there are others
 };
 
