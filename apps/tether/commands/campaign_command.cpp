@@ -1,4 +1,5 @@
 #include "back_ends.h"
+#include "commands/cluster.h"
 #include "commands/commands.h"
 #include "options/file_kind.h"
 #include "options/junit_option.h"
@@ -11,6 +12,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <optional>
+#include <sstream>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -66,25 +70,98 @@ campaign::CampaignOutcome fly(const campaign::CampaignFolder& folder,
   }
 }
 
-int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
+/// @throws Error(kUsage) unless exactly one of them says which campaign.
+void require_one_campaign(const CampaignOptions& options) {
+  const int given = !options.campaign.empty() + !options.collect.empty() + !options.cancel.empty();
+  if (given == 1) return;
+  throw Error(ErrorCode::kUsage,
+              "give a campaign, or --collect FOLDER, or --cancel FOLDER, and only one of them.")
+      .about("campaign");
+}
+
+/// What --collect needs to go on.
+std::map<std::string, std::string> command_of(const CampaignOptions& options,
+                                              const scenario::Campaign& campaign) {
+  return {{"campaign", campaign.file.string()},
+          {"simulator", options.simulator},
+          {"missing_models", options.reading.missing_models},
+          {"tolerant", options.reading.tolerant ? "yes" : ""}};
+}
+
+/// The options with which the workers of the folder of --collect were started.
+CampaignOptions collecting(const CampaignOptions& options) {
+  if (options.collect.empty()) return options;
+  const auto recorded = recorded_command(options.collect);
+  const auto text = [&](const char* key) {
+    const auto found = recorded.find(key);
+    return found == recorded.end() ? std::string() : found->second;
+  };
+  CampaignOptions all = options;
+  all.campaign = text("campaign");
+  all.out = options.collect;
+  all.simulator = text("simulator");
+  all.reading = {.tolerant = !text("tolerant").empty(), .missing_models = text("missing_models")};
+  all.jobs = std::stoi(text("jobs"));
+  all.cluster.slurm = !text("slurm").empty();
+  all.cluster.scales_nodes = !text("scale_nodes").empty();
+  all.cluster.collects = true;
+  std::istringstream words(text("slurm_options"));
+  for (std::string word; std::getline(words, word);) all.cluster.slurm_options.push_back(word);
+  all.resume = true;
+  return all;
+}
+
+/// None: workers have not flown everything, which the user knows.
+std::optional<campaign::CampaignOutcome> fly_by_workers(
+    Cluster& cluster, const campaign::CampaignFolder& folder,
+    const std::vector<std::filesystem::path>& files, const std::stop_token& stop) {
+  std::vector<const campaign::TrialPlan*> plans;
+  for (const campaign::TrialPlan& plan : folder.missing()) plans.push_back(&plan);
+  ProgressBar bar;
+  const auto collected =
+      cluster.fly(plans, files, folder.finished(), stop,
+                  [&](const campaign::CampaignProgress& progress) { bar.show(progress); });
+  bar.finish();
+  if (!collected.losses.empty())
+    say("{} trials were lost by machines and flown again, or are reported as not flown.\n",
+        collected.losses.size());
+  if (collected.end != workers::CollectEnd::kComplete) return std::nullopt;
+  return collected.outcome;
+}
+
+int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
+  const CampaignOptions options = collecting(given);
   const scenario::Campaign campaign = load(options);
-  campaign::require_jobs_allowed(campaign, options.jobs);
-  require_ports(campaign, options.jobs);
+  require_workers_allowed(campaign, options.cluster);
+  const int jobs = jobs_of(options.jobs, options.cluster);
+  campaign::require_jobs_allowed(campaign, jobs);
+  require_ports(campaign, jobs);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out/campaigns") / campaign.name : options.out;
+  std::optional<Cluster> cluster;
+  if (uses_workers(options.cluster))
+    cluster.emplace(options.cluster, jobs, out, command_of(options, campaign));
   const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end);
   if (!warnings.empty())
     say("{}\n", summary_of(warnings, std::string(runner::kWarningsFile) + " of each trial"));
-  const campaign::Settings settings =
-      campaign::campaign_settings(campaign, versions_of(campaign, options.reading), files);
+  campaign::Settings versions = versions_of(campaign, options.reading);
+  if (cluster) versions["machine"] = kManyMachines;
+  const campaign::Settings settings = campaign::campaign_settings(campaign, versions, files);
   const campaign::CampaignFolder folder(
       out, campaign, settings,
       options.resume ? campaign::OpenMode::kResume : campaign::OpenMode::kFresh);
   for (const std::string& warning : folder.warnings()) say("warning: {}\n", warning);
 
-  const auto outcome = fly(
-      folder, campaign, options.jobs,
-      [&, &files = files] { campaign::require_unchanged(campaign, settings, files); }, stop);
+  campaign::CampaignOutcome outcome;
+  if (cluster) {
+    const auto flown = fly_by_workers(*cluster, folder, files, stop);
+    if (!flown) return options.cluster.detach ? 0 : exit_code(ErrorCode::kSetup);
+    outcome = *flown;
+  } else {
+    outcome = fly(
+        folder, campaign, jobs,
+        [&, &files = files] { campaign::require_unchanged(campaign, settings, files); }, stop);
+  }
   if (!options.junit.empty())
     os::write_file_atomically(options.junit,
                               report::to_junit(campaign::read_campaign_results(out), out));
@@ -100,7 +177,10 @@ int run_trials(const CampaignOptions& options, const std::stop_token& stop) {
 }  // namespace
 
 int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
-  return with_junit(options.junit, options.campaign.string(),
+  require_one_campaign(options);
+  if (!options.cancel.empty()) return cancel_jobs(options.cancel);
+  return with_junit(options.junit,
+                    (options.campaign.empty() ? options.collect : options.campaign).string(),
                     [&] { return run_trials(options, stop); });
 }
 

@@ -34,6 +34,7 @@ struct RunOptions {
   std::string listen;
   double real_time_factor = 0.0;
   std::optional<double> slowdown;
+  std::optional<double> cpu_time_scale;
   std::vector<std::string> settings;  ///< "KEY=VALUE"
   std::string unknown_stages;
   ReadingOptions reading;
@@ -50,11 +51,23 @@ int run_one(const RunOptions& options, const std::stop_token& stop);
 /// Reads the world of such a trial into `worlds`. @throws as run_one.
 void read_world_ahead(const RunOptions& options, sim::WorldStore& worlds);
 
+/// Trials that are flown by workers.
+struct ClusterOptions {
+  bool slurm = false;
+  std::vector<std::string> slurm_options;  ///< of sbatch
+  bool detach = false;                     ///< start workers, or have the user start them, and end
+  bool collects = false;                   ///< goes on with the workers of an earlier call
+  bool scales_nodes = false;
+};
+
 struct CampaignOptions {
   std::filesystem::path campaign;
+  std::filesystem::path collect;  ///< folder of a campaign, which names everything else
+  std::filesystem::path cancel;   ///< the same
   std::filesystem::path out;
   std::string simulator;
-  int jobs = 1;
+  std::optional<int> jobs;
+  ClusterOptions cluster;
   ReadingOptions reading;
   bool resume = false;
   std::filesystem::path junit;
@@ -78,13 +91,20 @@ struct SizeOptions {
   double interval = 1.3;
   std::vector<double> between = {1.0, 40.0};
   std::size_t max_trials = 300;
-  int jobs = 1;
+  std::optional<int> jobs;
+  ClusterOptions cluster;
   ReadingOptions reading;
   bool resume = false;
   bool force = false;
 };
 /// Finds the slowest computer that is sufficient for a scenario.
 int size(const SizeOptions& options, const std::stop_token& stop);
+
+struct WorkerOptions {
+  std::filesystem::path folder;
+};
+/// Flies trials of a folder that machines share.
+int work(const WorkerOptions& options, const std::stop_token& stop);
 
 struct ReportOptions {
   std::filesystem::path folder;

@@ -1,4 +1,5 @@
 #include "back_ends.h"
+#include "commands/cluster.h"
 #include "commands/commands.h"
 #include "commands/size_flights.h"
 #include "options/file_kind.h"
@@ -160,7 +161,8 @@ Plan make_plan(const SizeOptions& options) {
   }
   plan.flights.scenario = std::move(scenario);
   plan.flights.most = options.max_trials;
-  plan.flights.jobs = options.jobs;
+  plan.flights.jobs = jobs_of(options.jobs, options.cluster);
+  plan.flights.cluster = options.cluster;
   return plan;
 }
 

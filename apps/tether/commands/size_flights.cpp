@@ -44,6 +44,7 @@ SizeFlights::SizeFlights(const Setup& setup, const sizing::CurveGrid& grid,
       stop_(std::move(stop)),
       campaign_(make_campaign()),
       files_([&] {
+        require_workers_allowed(campaign_, setup.cluster);
         campaign::require_jobs_allowed(campaign_, setup.jobs);
         require_ports(campaign_, setup.jobs);
         const auto [files, warnings] = runner::files_of_trials(campaign_, find_back_end);
@@ -51,10 +52,16 @@ SizeFlights::SizeFlights(const Setup& setup, const sizing::CurveGrid& grid,
           say("{}\n", summary_of(warnings, std::string(runner::kWarningsFile) + " of each flight"));
         return files;
       }()),
-      settings_(campaign::campaign_settings(campaign_, versions_of(campaign_, reading), files_)),
+      settings_([&] {
+        campaign::Settings versions = versions_of(campaign_, reading);
+        if (uses_workers(setup.cluster)) versions["machine"] = kManyMachines;
+        return campaign::campaign_settings(campaign_, versions, files_);
+      }()),
       folder_(out, campaign_, settings_, mode),
       has_margins_(has_margins(setup.scenario)),
       sizing_(grid, has_margins_) {
+  if (uses_workers(setup.cluster))
+    cluster_.emplace(setup.cluster, setup.jobs, out, std::map<std::string, std::string>{});
   for (const std::string& warning : folder_.warnings()) say("warning: {}\n", warning);
   for (const campaign::TrialPlan& plan : folder_.missing())
     missing_[{plan.condition->name, plan.seed}] = &plan;
@@ -89,6 +96,10 @@ std::string SizeFlights::slowed_name(std::size_t condition, double slowdown) con
 bool SizeFlights::run(const std::vector<Key>& keys) {
   std::vector<const campaign::TrialPlan*> plans;
   for (const Key& key : keys) plans.push_back(missing_.at(key));
+  if (cluster_) {
+    const auto show_it = [&](const campaign::CampaignProgress& progress) { show(progress); };
+    return cluster_->fly(plans, files_, 0, stop_, show_it).end == workers::CollectEnd::kComplete;
+  }
   const auto outcome = campaign::run_trials(
       plans, [&](const campaign::TrialPlan& plan) { return servers_.run(plan, stop_); },
       {.jobs = setup_.jobs,
@@ -184,6 +195,7 @@ SizeFlights::End SizeFlights::fly(report::SizeReport& report) {
 void SizeFlights::show(const campaign::CampaignProgress& progress) {
   const std::size_t flown = report_->synchronised.flights.size();
   if (os::terminal_columns(STDERR_FILENO) > 0) {
+    if (progress.latest == nullptr) return;
     const sizing::Threshold& so_far = report_->synchronised.answer.threshold;
     line_.show(
         fmt::format("{} flights, at most {}; so far {:.2g} × [{:.2g}, {:.2g}]; flying {}, "

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "commands/cluster.h"
 #include "commands/commands.h"
 #include "terminal/status_line.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -31,6 +33,7 @@ class SizeFlights {
     std::vector<scenario::Condition> conditions;
     std::size_t most = 0;
     int jobs = 1;
+    ClusterOptions cluster{};
   };
   enum class End { kAnswered, kInterrupted, kFailing };
 
@@ -71,6 +74,7 @@ class SizeFlights {
   std::size_t failures_ = 0;  // of this run
   report::SizeReport* report_ = nullptr;
   StatusLine line_;
+  std::optional<Cluster> cluster_;
 };
 
 }  // namespace tether::app

@@ -79,6 +79,23 @@ void add_junit_option(CLI::App& command, std::filesystem::path& junit) {
                      "and clause, for continuous integration");
 }
 
+void add_cluster_options(CLI::App& command, ClusterOptions& cluster) {
+  command.add_flag("--slurm", cluster.slurm,
+                   "Have the trials flown by an array of Slurm jobs; the folder of --out must be "
+                   "shared with their nodes");
+  command
+      .add_option_function<std::string>(
+          "--slurm-options",
+          [&cluster](const std::string& text) {
+            cluster.slurm_options = CLI::detail::split_up(text);
+          },
+          "Further options of sbatch, as in \"--partition=fast --time=2:00:00\"")
+      ->type_name("TEXT");
+  command.add_flag("--scale-nodes", cluster.scales_nodes,
+                   "With the clock \"cpu\": scale CPU time by the speed of each node. Otherwise "
+                   "nodes of another speed than the first are refused");
+}
+
 std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
   const auto [command, options] =
       add_command(program, action, "run", "Run one trial of a scenario", run_one);
@@ -103,6 +120,11 @@ std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
       ->add_option("--real-time-factor", options->real_time_factor,
                    "Maximum speed of the simulation relative to the wall clock")
       ->check(CLI::Range(1e-3, 1e4));
+  command
+      ->add_option("--cpu-time-scale", options->cpu_time_scale,
+                   "With the clock \"cpu\": count CPU time so many times, because this machine is "
+                   "that much faster than the one of other runs")
+      ->check(CLI::Range(1e-3, 1e3));
   command
       ->add_option("--slowdown", options->slowdown,
                    "Make the SUT's computer so many times slower than the condition's")
@@ -153,14 +175,20 @@ void add_campaign_command(CLI::App& program, Action& action) {
                                               "Run the trials of a campaign: scenarios x "
                                               "conditions x seeds",
                                               run_campaign);
-  command->add_option("campaign", options->campaign, "Name of a shipped campaign, or a file (TOML)")
-      ->required();
+  command->add_option("campaign", options->campaign,
+                      "Name of a shipped campaign, or a file (TOML)");
   command->add_option("--out", options->out, "Folder for the trials [out/campaigns/CAMPAIGN]");
-  command
-      ->add_option(
-          "--jobs", options->jobs,
-          "Number of parallel trials. Rejected if parallel runs would distort measured time")
-      ->capture_default_str();
+  command->add_option("--jobs", options->jobs,
+                      "Number of parallel trials [1; with --slurm, one for each core]. Rejected if "
+                      "parallel runs would distort measured time");
+  add_cluster_options(*command, options->cluster);
+  command->add_flag("--detach", options->cluster.detach,
+                    "End as soon as the jobs are submitted; without --slurm, prepare the folder "
+                    "for workers that you start (tether worker)");
+  command->add_option(
+      "--collect", options->collect,
+      "Collect the results of workers in this folder, and have lost trials flown again");
+  command->add_option("--cancel", options->cancel, "Cancel the jobs of this folder");
   add_simulator_option(*command, options->simulator);
   add_junit_option(*command, options->junit);
   add_reading_options(*command, options->reading);
@@ -169,6 +197,7 @@ void add_campaign_command(CLI::App& program, Action& action) {
   command->footer(R"(Examples:
   tether campaign face_anchor --out out/campaign
   tether campaign face_anchor --out out/campaign --resume
+  tether campaign face_anchor --out /shared/campaign --slurm --slurm-options "--time=2:00:00"
   tether campaign face_anchor --simulator gazebo --out out/campaign_gazebo)");
 }
 
@@ -205,11 +234,11 @@ void add_size_command(CLI::App& program, Action& action) {
   command->add_option("--unsynchronised", options->unsynchronised,
                       "Condition without synchronisation to compare: fly it with the same "
                       "slowdowns and seeds, which doubles the flights");
-  command
-      ->add_option("--jobs", options->jobs,
-                   "Number of parallel flights. Rejected if parallel runs would distort measured "
-                   "time")
-      ->capture_default_str();
+  command->add_option(
+      "--jobs", options->jobs,
+      "Number of parallel flights [1; with --slurm, one for each core]. Rejected if "
+      "parallel runs would distort measured time");
+  add_cluster_options(*command, options->cluster);
   command->add_option("--out", options->out, "Folder for the flights [out/size/SCENARIO]");
   command->add_flag("--resume", options->resume, "Continue with the flights in the folder");
   command->add_flag("--force", options->force, "Remove the earlier flights in the folder");
@@ -224,6 +253,24 @@ Examples:
   tether size face_anchor --target six_times_slower --jobs 2
   tether size face_anchor --success 0.95 --interval 1.2 --max-trials 600
   tether size face_anchor --condition target --unsynchronised "target, no sync")");
+}
+
+void add_worker_command(CLI::App& program, Action& action) {
+  const auto [command, options] = add_command(
+      program, action, "worker",
+      "Fly trials of a campaign's folder that machines share, until none is left", work);
+  command
+      ->add_option("folder", options->folder,
+                   "Folder of a campaign that was started with --slurm or --detach")
+      ->required();
+  command->footer(
+      R"(Exit codes: 0 no trial is left, 2 the files or the speed of this machine differ, 3 this machine
+failed twice in a row, or the worker was ended.
+
+Examples:
+  tether campaign face_anchor --detach --out /shared/campaign
+  tether worker /shared/campaign
+  tether campaign --collect /shared/campaign)");
 }
 
 void add_report_command(CLI::App& program, Action& action) {
@@ -419,9 +466,10 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
 
   Action action;
   add_run_command(program, action);
-  for (const auto add : {add_campaign_command, add_size_command, add_report_command,
-                         add_audit_command, add_timing_command, add_frames_command,
-                         add_plot_command, add_world_command, add_target_command, add_list_command})
+  for (const auto add :
+       {add_campaign_command, add_size_command, add_worker_command, add_report_command,
+        add_audit_command, add_timing_command, add_frames_command, add_plot_command,
+        add_world_command, add_target_command, add_list_command})
     add(program, action);
   try {
     program.parse(argc, argv);

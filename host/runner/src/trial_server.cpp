@@ -51,36 +51,9 @@ std::vector<std::string> words_of(const std::string& request) {
 }
 
 /// The second attempt keeps the log of the first.
-std::filesystem::path log_file(const campaign::TrialPlan& plan) {
-  const std::filesystem::path first = plan.folder / campaign::kTrialLog;
-  return std::filesystem::exists(first) ? plan.folder / campaign::kSecondTrialLog : first;
-}
-
-std::vector<std::string> arguments_of(const campaign::TrialPlan& plan) {
-  const bool is_slowed = !plan.condition->slowed_from.empty();
-  std::vector<std::string> arguments = {
-      plan.scenario->file.string(),
-      "--condition",
-      is_slowed ? plan.condition->slowed_from : plan.condition->name,
-      "--seed",
-      std::to_string(plan.seed),
-      "--out",
-      plan.folder.string(),
-      "--simulator",
-      plan.condition->simulator,
-      "--quiet"};
-  if (!plan.profile.empty())
-    arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
-  if (is_slowed)
-    arguments.insert(arguments.end(), {"--slowdown", fmt::format("{}", plan.condition->slowdown)});
-  for (const auto& [key, value] : plan.scenario->settings)
-    arguments.insert(arguments.end(), {"--set", fmt::format("{}={}", key, value)});
-  if (plan.record_images) arguments.emplace_back("--images");
-  const sim::WorldOptions& options = plan.scenario->world_options;
-  if (options.is_tolerant) arguments.emplace_back("--tolerant");
-  if (options.replaces_missing_models)
-    arguments.insert(arguments.end(), {"--missing-models", "placeholder"});
-  return arguments;
+std::filesystem::path log_file(const std::filesystem::path& folder) {
+  const std::filesystem::path first = folder / campaign::kTrialLog;
+  return std::filesystem::exists(first) ? folder / campaign::kSecondTrialLog : first;
 }
 
 os::Pipe make_sockets() {
@@ -137,11 +110,38 @@ std::unique_ptr<TrialServers::Server> TrialServers::take() {
   return server;
 }
 
-campaign::TrialResult TrialServers::run(const campaign::TrialPlan& plan,
-                                        const std::stop_token& stop) {
-  const std::filesystem::path log = log_file(plan);
-  std::string request = log.string() + kEnd + plan.folder.filename().string() + kEnd;
-  for (const std::string& argument : arguments_of(plan)) request += argument + kEnd;
+std::vector<std::string> trial_arguments(const campaign::TrialPlan& plan) {
+  const bool is_slowed = !plan.condition->slowed_from.empty();
+  std::vector<std::string> arguments = {
+      plan.scenario->file.string(),
+      "--condition",
+      is_slowed ? plan.condition->slowed_from : plan.condition->name,
+      "--seed",
+      std::to_string(plan.seed),
+      "--simulator",
+      plan.condition->simulator,
+      "--quiet"};
+  if (!plan.profile.empty())
+    arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
+  if (is_slowed)
+    arguments.insert(arguments.end(), {"--slowdown", fmt::format("{}", plan.condition->slowdown)});
+  for (const auto& [key, value] : plan.scenario->settings)
+    arguments.insert(arguments.end(), {"--set", fmt::format("{}={}", key, value)});
+  if (plan.record_images) arguments.emplace_back("--images");
+  const sim::WorldOptions& options = plan.scenario->world_options;
+  if (options.is_tolerant) arguments.emplace_back("--tolerant");
+  if (options.replaces_missing_models)
+    arguments.insert(arguments.end(), {"--missing-models", "placeholder"});
+  return arguments;
+}
+
+std::optional<campaign::TrialResult> TrialServers::run(const std::vector<std::string>& of_run,
+                                                       const std::filesystem::path& folder,
+                                                       const std::stop_token& stop) {
+  const std::filesystem::path log = log_file(folder);
+  std::string request = log.string() + kEnd + folder.filename().string() + kEnd;
+  for (const std::string& argument : of_run) request += argument + kEnd;
+  request += "--out" + std::string(1, kEnd) + folder.string() + kEnd;
   std::unique_ptr<Server> server = take();
   const std::optional<std::string> end = server->run(request, stop);
   const std::string how = end ? *end : "was lost with its server, which " + server->end();
@@ -149,17 +149,20 @@ campaign::TrialResult TrialServers::run(const campaign::TrialPlan& plan,
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(server));
   }
-  if (stop.stop_requested()) {
-    auto result = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
-                                               "interrupted by the user");
-    result.end = campaign::kEndInterrupted;
-    return result;
-  }
-  if (std::filesystem::exists(plan.folder / campaign::kResultFile))
-    return campaign::read_result(plan.folder);
+  if (stop.stop_requested()) return std::nullopt;
+  if (std::filesystem::exists(folder / campaign::kResultFile)) return campaign::read_result(folder);
   const std::string why = os::last_line(os::read_whole(log));
   throw Error(ErrorCode::kSetup, fmt::format("the trial left no result: it {}{}; see {}", how,
                                              why.empty() ? "" : ": " + why, log.string()));
+}
+
+campaign::TrialResult TrialServers::run(const campaign::TrialPlan& plan,
+                                        const std::stop_token& stop) {
+  if (auto result = run(trial_arguments(plan), plan.folder, stop)) return std::move(*result);
+  auto interrupted = campaign::make_setup_failure(*plan.scenario, *plan.condition, plan.seed,
+                                                  "interrupted by the user");
+  interrupted.end = campaign::kEndInterrupted;
+  return interrupted;
 }
 
 namespace {

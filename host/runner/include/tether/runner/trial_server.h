@@ -1,8 +1,10 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -24,8 +26,12 @@ class TrialServers {
   TrialServers();
   ~TrialServers();
 
-  /// Runs a trial as `tether run` would. A stop request ends it as interrupted.
-  /// @throws Error(kSetup) if it leaves no result.
+  /// Does what `tether run` would with these arguments, which leaves its result and log in
+  /// `folder`. None: a stop request ended it. @throws Error(kSetup) if it leaves no result.
+  std::optional<campaign::TrialResult> run(const std::vector<std::string>& of_run,
+                                           const std::filesystem::path& folder,
+                                           const std::stop_token& stop);
+  /// The same for a trial of a campaign. A stop request ends it as interrupted.
   campaign::TrialResult run(const campaign::TrialPlan& plan, const std::stop_token& stop);
 
  private:
@@ -35,6 +41,9 @@ class TrialServers {
   std::mutex mutex_;
   std::vector<std::unique_ptr<Server>> idle_;
 };
+
+/// The arguments of `tether run` for a trial, without --out.
+std::vector<std::string> trial_arguments(const campaign::TrialPlan& plan);
 
 /// What a server does with the arguments of `tether run`.
 struct TrialService {

@@ -1,0 +1,147 @@
+#include "commands/commands.h"
+#include "terminal/say.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <tether/base/error.h>
+#include <tether/campaign/result.h>
+#include <tether/os/captured_run.h>
+#include <tether/os/program.h>
+#include <tether/os/text_file.h>
+#include <tether/runner/trial_server.h>
+#include <tether/stats/sample_statistics.h>
+#include <tether/toml/table.h>
+#include <tether/workers/files_check.h>
+#include <tether/workers/worker.h>
+
+/// `tether worker`: flies the trials of a shared folder on this machine.
+namespace tether::app {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+workers::WorkerName own_name() {
+  std::string node = variable("SLURMD_NODENAME");
+  if (node.empty()) {
+    char host[256] = "unknown";
+    (void)::gethostname(host, sizeof host - 1);
+    node = host;
+  }
+  node = os::file_name_of(node);
+  const std::string job = variable("SLURM_ARRAY_JOB_ID"), task = variable("SLURM_ARRAY_TASK_ID");
+  return {.id = node + "." + workers::unique_name(),
+          .node = node,
+          .task = task.empty() ? "" : job + "_" + task};
+}
+
+/// A folder of this machine, removed with the object.
+class Scratch {
+ public:
+  Scratch() {
+    std::string path = (fs::temp_directory_path() / "tether-worker-XXXXXX").string();
+    if (::mkdtemp(path.data()) == nullptr)
+      throw Error(ErrorCode::kSetup, {path},
+                  "cannot be made. Set TMPDIR to a folder of this machine with space for a trial.")
+          .about("TMPDIR");
+    path_ = path;
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// CPU time of the paper's image processing on this machine, by `tether-sut calibrate` [ms]. Of the
+/// rounds, a quick one counts: other load makes rounds slower, nothing makes them quicker.
+double measure_step_ms(const fs::path& scratch, const std::stop_token& stop) {
+  const fs::path file = scratch / "calibration.toml";
+  const os::Captured captured =
+      os::run_captured({os::find_program("tether-sut").string(), "calibrate", "--rounds", "10",
+                        "--out", file.string()},
+                       "", std::chrono::minutes(10), stop);
+  if (captured.code != 0)
+    throw Error(ErrorCode::kSetup, "this node cannot be measured: " + os::last_line(captured.err))
+        .about("tether-sut");
+  const toml::Document document = toml::Document::load(file);
+  for (const toml::Table& block : document.root().tables("block")) {
+    if (block.text("name") != "perception") continue;
+    std::vector<double> ms = block.numbers("cpu_ms", {.min = 0.0, .above_min = true});
+    std::ranges::sort(ms);
+    return stats::quantile(ms, 0.25);
+  }
+  throw Error(ErrorCode::kSetup, {file.string()}, "has no times of \"perception\".");
+}
+
+workers::Flight fly(runner::TrialServers& servers, const workers::Item& item, const fs::path& local,
+                    const std::stop_token& stop) {
+  using End = workers::Flight::End;
+  try {
+    auto result = servers.run(item.arguments, local, stop);
+    if (!result)
+      return {End::kStopped,
+              "the worker was told to end (cancelled, preempted, or over "
+              "its time limit)"};
+    if (result->end == campaign::kEndSetupFailed) return {End::kLost, result->reason};
+    if (!item.losses.empty()) {
+      result->this_run.attempts = static_cast<int>(item.losses.size()) + 1;
+      result->this_run.first_failure = item.losses.front();
+      campaign::write_result(local, *result);
+    }
+    say("{}: {}\n", item.folder, campaign::name(result->outcome));
+    return {};
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::kUsage || error.code() == ErrorCode::kBadFile) throw;
+    return {End::kLost, error.what()};
+  }
+}
+
+}  // namespace
+
+int work(const WorkerOptions& options, const std::stop_token& stop) {
+  const workers::SharedFolder folder(fs::absolute(options.folder));
+  const auto round = workers::newest_round(folder);
+  if (!round)
+    throw Error(ErrorCode::kSetup, {folder.root().string()},
+                "contains no trials for workers. Use a folder that this machine shares with the "
+                "one on which tether campaign was started (with --slurm or --detach).")
+        .about(folder.root().string());
+  std::error_code failed;
+  if (const auto found = round->settings().command.find("folder");
+      found != round->settings().command.end())
+    fs::current_path(found->second,
+                     failed);  // as for the campaign, whose SUTs may name files in it
+  workers::FilesCheck files(round->settings().files);
+  const Scratch scratch;
+  runner::TrialServers servers;
+  const workers::WorkerEnd end = workers::work(
+      *round, {.self = own_name(),
+               .scratch = scratch.path(),
+               .fly = [&](const workers::Item& item,
+                          const fs::path& local) { return fly(servers, item, local, stop); },
+               .check = [&] { files.require_unchanged(); },
+               .measure_ms = [&] { return measure_step_ms(scratch.path(), stop); },
+               .stop = stop});
+  fmt::print("{} flown, {} lost\n", end.flown, end.lost);
+  if (end.why_early.empty()) return 0;
+  say("tether: {}\n", end.why_early);
+  return exit_code(ErrorCode::kSetup);
+}
+
+}  // namespace tether::app
