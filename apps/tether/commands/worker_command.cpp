@@ -89,18 +89,18 @@ double measure_step_ms(const fs::path& scratch, const std::stop_token& stop) {
   throw Error(ErrorCode::kSetup, {file.string()}, "has no times of \"perception\".");
 }
 
-workers::Flight fly(const workers::Item& item, const fs::path& local, const std::stop_token& stop) {
+workers::Flight fly(const workers::Item& item, const fs::path& local, const std::string& node,
+                    const std::stop_token& stop) {
   using End = workers::Flight::End;
   try {
     auto result = runner::run_trial_command(item.arguments, local, stop);
     if (!result) return {End::kStopped, "the worker was told to end (cancelled, preempted, or over "
                                         "its time limit)"};
     if (result->end == campaign::kEndSetupFailed) return {End::kLost, result->reason};
-    if (!item.losses.empty()) {
-      result->this_run.attempts = static_cast<int>(item.losses.size()) + 1;
-      result->this_run.first_failure = item.losses.front();
-      campaign::write_result(local, *result);
-    }
+    result->this_run.node = node;
+    result->this_run.attempts = static_cast<int>(item.losses.size()) + 1;
+    if (!item.losses.empty()) result->this_run.first_failure = item.losses.front();
+    campaign::write_result(local, *result);
     say("{}: {}\n", item.folder, campaign::name(result->outcome));
     return {};
   } catch (const Error& error) {
@@ -125,11 +125,12 @@ int work(const WorkerOptions& options, const std::stop_token& stop) {
     fs::current_path(found->second, failed);  // as for the campaign, whose SUTs may name files in it
   workers::FilesCheck files(round->settings().files);
   const Scratch scratch;
+  const workers::WorkerName self = own_name();
   const workers::WorkerEnd end = workers::work(
-      *round, {.self = own_name(),
+      *round, {.self = self,
                .scratch = scratch.path(),
                .fly = [&](const workers::Item& item,
-                          const fs::path& local) { return fly(item, local, stop); },
+                          const fs::path& local) { return fly(item, local, self.node, stop); },
                .check = [&] { files.require_unchanged(); },
                .measure_ms = [&] { return measure_step_ms(scratch.path(), stop); },
                .stop = stop});

@@ -57,7 +57,7 @@ TEST_F(Report, NotesNameEverySpecialTrial) {
           "Excluded from means: host, seed 3: no port.", "Crash: host, seed 1: 'uav1' hit 'room'.",
           "Note: host, seed 1: a signal stopped the SUT; suspended.",
           "Excluded from means: target, seed 2: the SUT of 'uav1' did not finish.",
-          "Second attempt: target, seed 3. The first attempt failed during set-up: the port "
+          "Attempt 2: target, seed 3. The first attempt failed: the port "
           "was taken.",
           "target, seed 3: it was hot.",
           "No readable result for 2 trials of target, no sync (not run yet, or damaged)."));
