@@ -111,10 +111,9 @@ CampaignOptions collecting(const CampaignOptions& options) {
 }
 
 /// None: workers have not flown everything, which the user knows.
-std::optional<campaign::CampaignOutcome> fly_by_workers(Cluster& cluster,
-                                                        const campaign::CampaignFolder& folder,
-                                                        const std::vector<std::filesystem::path>& files,
-                                                        const std::stop_token& stop) {
+std::optional<campaign::CampaignOutcome> fly_by_workers(
+    Cluster& cluster, const campaign::CampaignFolder& folder,
+    const std::vector<std::filesystem::path>& files, const std::stop_token& stop) {
   std::vector<const campaign::TrialPlan*> plans;
   for (const campaign::TrialPlan& plan : folder.missing()) plans.push_back(&plan);
   ProgressBar bar;
@@ -179,7 +178,8 @@ int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
 int run_campaign(const CampaignOptions& options, const std::stop_token& stop) {
   require_one_campaign(options);
   if (!options.cancel.empty()) return cancel_jobs(options.cancel);
-  return with_junit(options.junit, (options.campaign.empty() ? options.collect : options.campaign).string(),
+  return with_junit(options.junit,
+                    (options.campaign.empty() ? options.collect : options.campaign).string(),
                     [&] { return run_trials(options, stop); });
 }
 

@@ -34,7 +34,8 @@ inline constexpr const char* kManyMachines = "those of workers";
 class Cluster {
  public:
   /// @param command what --collect needs to go on.
-  /// @throws Error(kUsage) and Error(kSetup) if there is no such engine, before anything is written.
+  /// @throws Error(kUsage) and Error(kSetup) if there is no such engine, before anything is
+  /// written.
   Cluster(const ClusterOptions& options, int jobs, std::filesystem::path out,
           std::map<std::string, std::string> command);
 

@@ -49,7 +49,7 @@ struct ClusterOptions {
   bool slurm = false;
   std::vector<std::string> slurm_options;  ///< of sbatch
   bool detach = false;                     ///< start workers, or have the user start them, and end
-  bool collects = false;  ///< goes on with the workers of an earlier call
+  bool collects = false;                   ///< goes on with the workers of an earlier call
   bool scales_nodes = false;
 };
 

@@ -94,8 +94,10 @@ workers::Flight fly(const workers::Item& item, const fs::path& local, const std:
   using End = workers::Flight::End;
   try {
     auto result = runner::run_trial_command(item.arguments, local, stop);
-    if (!result) return {End::kStopped, "the worker was told to end (cancelled, preempted, or over "
-                                        "its time limit)"};
+    if (!result)
+      return {End::kStopped,
+              "the worker was told to end (cancelled, preempted, or over "
+              "its time limit)"};
     if (result->end == campaign::kEndSetupFailed) return {End::kLost, result->reason};
     result->this_run.node = node;
     result->this_run.attempts = static_cast<int>(item.losses.size()) + 1;
@@ -122,7 +124,8 @@ int work(const WorkerOptions& options, const std::stop_token& stop) {
   std::error_code failed;
   if (const auto found = round->settings().command.find("folder");
       found != round->settings().command.end())
-    fs::current_path(found->second, failed);  // as for the campaign, whose SUTs may name files in it
+    fs::current_path(found->second,
+                     failed);  // as for the campaign, whose SUTs may name files in it
   workers::FilesCheck files(round->settings().files);
   const Scratch scratch;
   const workers::WorkerName self = own_name();

@@ -83,7 +83,9 @@ void add_cluster_options(CLI::App& command, ClusterOptions& cluster) {
   command
       .add_option_function<std::string>(
           "--slurm-options",
-          [&cluster](const std::string& text) { cluster.slurm_options = CLI::detail::split_up(text); },
+          [&cluster](const std::string& text) {
+            cluster.slurm_options = CLI::detail::split_up(text);
+          },
           "Further options of sbatch, as in \"--partition=fast --time=2:00:00\"")
       ->type_name("TEXT");
   command.add_flag("--scale-nodes", cluster.scales_nodes,
@@ -228,9 +230,10 @@ void add_size_command(CLI::App& program, Action& action) {
   command->add_option("--unsynchronised", options->unsynchronised,
                       "Condition without synchronisation to compare: fly it with the same "
                       "slowdowns and seeds, which doubles the flights");
-  command->add_option("--jobs", options->jobs,
-                      "Number of parallel flights [1; with --slurm, one for each core]. Rejected if "
-                      "parallel runs would distort measured time");
+  command->add_option(
+      "--jobs", options->jobs,
+      "Number of parallel flights [1; with --slurm, one for each core]. Rejected if "
+      "parallel runs would distort measured time");
   add_cluster_options(*command, options->cluster);
   command->add_option("--out", options->out, "Folder for the flights [out/size/SCENARIO]");
   command->add_flag("--resume", options->resume, "Continue with the flights in the folder");
@@ -249,9 +252,9 @@ Examples:
 }
 
 void add_worker_command(CLI::App& program, Action& action) {
-  const auto [command, options] =
-      add_command(program, action, "worker",
-                  "Fly trials of a campaign's folder that machines share, until none is left", work);
+  const auto [command, options] = add_command(
+      program, action, "worker",
+      "Fly trials of a campaign's folder that machines share, until none is left", work);
   command
       ->add_option("folder", options->folder,
                    "Folder of a campaign that was started with --slurm or --detach")
@@ -450,9 +453,8 @@ int run_command_line(int argc, char** argv, std::optional<os::Interrupt>& interr
   Action action;
   for (const auto add :
        {add_run_command, add_campaign_command, add_size_command, add_worker_command,
-        add_report_command,
-        add_audit_command, add_timing_command, add_frames_command, add_plot_command,
-        add_world_command, add_target_command, add_list_command})
+        add_report_command, add_audit_command, add_timing_command, add_frames_command,
+        add_plot_command, add_world_command, add_target_command, add_list_command})
     add(program, action);
   try {
     program.parse(argc, argv);

@@ -84,14 +84,9 @@ std::vector<std::string> trial_arguments(const campaign::TrialPlan& plan) {
   const bool is_slowed = !plan.condition->slowed_from.empty();
   const std::string& name_in_scenario =
       is_slowed ? plan.condition->slowed_from : plan.condition->name;
-  std::vector<std::string> arguments = {plan.scenario->file.string(),
-                                        "--condition",
-                                        name_in_scenario,
-                                        "--seed",
-                                        std::to_string(plan.seed),
-                                        "--simulator",
-                                        plan.condition->simulator,
-                                        "--quiet"};
+  std::vector<std::string> arguments = {
+      plan.scenario->file.string(), "--condition", name_in_scenario,          "--seed",
+      std::to_string(plan.seed),    "--simulator", plan.condition->simulator, "--quiet"};
   if (!plan.profile.empty())
     arguments.insert(arguments.end(), {"--profile", plan.profile.string()});
   if (is_slowed)

@@ -21,7 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 using campaign::TrialPlan;
 
-constexpr Duration kShortestPause = std::chrono::seconds(1), kLongestPause = std::chrono::seconds(15);
+constexpr Duration kShortestPause = std::chrono::seconds(1),
+                   kLongestPause = std::chrono::seconds(15);
 
 std::string name_of(const TrialPlan& plan) {
   return fmt::format("{}, {}, seed {}", plan.scenario->name, plan.condition->name, plan.seed);
@@ -111,7 +112,8 @@ class Collector {
     // The tasks of another collector, or of an earlier call, may not be visible yet.
     const int looks_without_tasks = is_own ? 1 : 3;
     bool has_arrived = !is_untouched;
-    const bool was_cancelled = is_cancelled(round);  // by an earlier call: what is left is flown now
+    const bool was_cancelled =
+        is_cancelled(round);  // by an earlier call: what is left is flown now
     for (int idle = 0, strangers = 0; idle < looks_without_tasks;) {
       if (setup_.stop.stop_requested()) return CollectEnd::kLeft;
       const Duration look = setup_.now();
@@ -211,7 +213,8 @@ class Collector {
   }
 
   void find_results() {
-    for_each_new_folder([&](const std::string& key, const TrialPlan& plan) { (void)take(key, plan); });
+    for_each_new_folder(
+        [&](const std::string& key, const TrialPlan& plan) { (void)take(key, plan); });
   }
 
   // What is left of trials that were not flown by workers, or could not be flown.
@@ -224,8 +227,8 @@ class Collector {
   bool take(const std::string& key, const TrialPlan& plan) {
     try {
       const campaign::TrialResult result = campaign::read_result(plan.folder);
-      const bool is_result = result.end != campaign::kEndSetupFailed &&
-                             result.end != campaign::kEndInterrupted;
+      const bool is_result =
+          result.end != campaign::kEndSetupFailed && result.end != campaign::kEndInterrupted;
       if (is_result) count(key, plan, result);
       return is_result;
     } catch (const Error&) {

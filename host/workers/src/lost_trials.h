@@ -13,8 +13,8 @@
 namespace tether::workers {
 
 /// Which trials were lost, and why. A trial without a result was lost if a worker says so, or if it
-/// is the first one without a result of a chunk whose worker has vanished: workers fly the trials of
-/// a chunk in order. The others of the chunk were not begun.
+/// is the first one without a result of a chunk whose worker has vanished: workers fly the trials
+/// of a chunk in order. The others of the chunk were not begun.
 class LostTrials {
  public:
   /// @param name_of for what a person reads.

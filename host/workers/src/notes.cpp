@@ -60,13 +60,12 @@ std::map<std::string, WorkerState> read_workers(const Round& round) {
     const Json json = object_of(round.folder().read(round.path("workers/" + name)).value_or(""));
     if (text_in(json, "worker") != name) continue;
     const auto beat = json.find("beat");
-    workers[name] = {.name = {name, text_in(json, "node"), text_in(json, "task")},
-                     .beat = beat != json.end() && beat->is_number_unsigned()
-                                 ? beat->get<std::uint64_t>()
-                                 : 0,
-                     .has_ended = is_set(json, "ended"),
-                     .why_early = text_in(json, "why"),
-                     .is_refused = is_set(json, "refused")};
+    workers[name] = {
+        .name = {name, text_in(json, "node"), text_in(json, "task")},
+        .beat = beat != json.end() && beat->is_number_unsigned() ? beat->get<std::uint64_t>() : 0,
+        .has_ended = is_set(json, "ended"),
+        .why_early = text_in(json, "why"),
+        .is_refused = is_set(json, "refused")};
   }
   return workers;
 }

@@ -82,7 +82,8 @@ std::string line_of(const Item& item) {
 }
 
 Item item_from(const Json& json) {
-  return {json.at("folder"), json.at("arguments"), json.value("losses", std::vector<std::string>{})};
+  return {json.at("folder"), json.at("arguments"),
+          json.value("losses", std::vector<std::string>{})};
 }
 
 }  // namespace
@@ -99,7 +100,8 @@ Round::Round(const SharedFolder& folder, std::size_t number)
     : folder_(&folder), number_(number), path_(round_folder(number)) {
   const fs::path file = whole_path("round.json");
   const auto text = folder.read(path("round.json"));
-  if (!text) throw Error(ErrorCode::kSetup, {file.string()}, "cannot be read.").about(file.string());
+  if (!text)
+    throw Error(ErrorCode::kSetup, {file.string()}, "cannot be read.").about(file.string());
   settings_ = from_json(*text, file, settings_from);
 }
 

@@ -117,7 +117,8 @@ bool SharedFolder::publish(const fs::path& local, const fs::path& staging,
     if (!from || !own) fail(whole, "cannot be created", errno);
     ssize_t copied = 0;
     constexpr std::size_t kAtOnce = 1 << 30;
-    while ((copied = ::sendfile(own.get(), from.get(), nullptr, kAtOnce)) > 0) {}
+    while ((copied = ::sendfile(own.get(), from.get(), nullptr, kAtOnce)) > 0) {
+    }
     if (copied < 0) fail(whole, "cannot be written", errno);
     ++operations_;
     if (::fsync(own.get()) != 0) fail(whole, "cannot be flushed", errno);

@@ -19,8 +19,8 @@ namespace {
 
 /// Options of sbatch that would break the array, or how it is found again.
 constexpr std::array<std::string_view, 12> kOwnOptions = {
-    "--array", "-a",     "--job-name",   "-J", "--wrap",     "--requeue",
-    "--wait",  "-W",     "--parsable",   "-o", "--output",   "--test-only"};
+    "--array", "-a", "--job-name", "-J", "--wrap",   "--requeue",
+    "--wait",  "-W", "--parsable", "-o", "--output", "--test-only"};
 
 std::string reason_in(const Answer& answer) {
   const std::size_t end = answer.err.find_last_not_of(" \n");
@@ -111,7 +111,8 @@ class Slurm final : public Engine {
         "--output=" + (round.whole_path("logs") / "%a.log").string(),
         // sbatch reads the folder of the user's shell, which nodes need not have.
         "--chdir=/"};
-    if (!order.avoid.empty()) words.push_back(fmt::format("--exclude={}", fmt::join(order.avoid, ",")));
+    if (!order.avoid.empty())
+      words.push_back(fmt::format("--exclude={}", fmt::join(order.avoid, ",")));
     words.insert(words.end(), settings_.options.begin(), settings_.options.end());
     words.push_back("--wrap=exec " + settings_.worker);
     return settings_.run(words);

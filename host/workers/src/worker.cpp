@@ -122,8 +122,7 @@ class Worker {
     fs::create_directories(local);
     const auto lose = [&](const std::string& why) {
       ++end_.lost;
-      round_.folder().create(round_.path(fmt::format("lost/{}", index)),
-                             text_of(setup_.self, why));
+      round_.folder().create(round_.path(fmt::format("lost/{}", index)), text_of(setup_.self, why));
     };
     Flight flight;
     try {

@@ -1,9 +1,9 @@
+#include "fake_cluster.h"
+
 #include <map>
 #include <thread>
 
 #include <gtest/gtest.h>
-
-#include "fake_cluster.h"
 
 namespace tether::workers {
 namespace {
@@ -38,7 +38,8 @@ TEST(Claims, NeedFewRequestsWhateverTheNumberOfChunks) {
   const auto round = create_round(fake.folder, 1, {.chunk = 1}, many_items(kChunks));
   const auto before = fake.folder.operations();
   Claims first(*round, {"first", "n", ""});
-  while (first.next()) {}
+  while (first.next()) {
+  }
   EXPECT_LE(fake.folder.operations() - before, kChunks + kChunks / 2);
   const auto then = fake.folder.operations();
   EXPECT_FALSE(Claims(*round, {"late", "n", ""}).next());

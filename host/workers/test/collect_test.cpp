@@ -1,9 +1,9 @@
+#include "fake_cluster.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
-
-#include "fake_cluster.h"
 
 namespace tether::workers {
 namespace {
@@ -143,7 +143,9 @@ TEST_F(Collect, ReportsATrialThatWasLostThreeTimesAsNotFlown) {
 }
 
 TEST_F(Collect, GivesUpWhereNothingFlies) {
-  const auto nothing = [&](const Round& round) { round.folder().create(round.path("workers/x"), ""); };
+  const auto nothing = [&](const Round& round) {
+    round.folder().create(round.path("workers/x"), "");
+  };
   engine_.rounds = {nothing, nothing, nothing, nothing};
   thrown_error(ErrorCode::kSetup, [&] { run(); });
   EXPECT_THAT(engine_.orders, SizeIs(kMostBarrenRounds));

@@ -1,8 +1,8 @@
+#include "fake_cluster.h"
+
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
-
-#include "fake_cluster.h"
 
 namespace tether::workers {
 namespace {
@@ -10,8 +10,8 @@ namespace {
 class NodeScale : public testing::Test {
  protected:
   double scale(const std::string& node, double ms, bool scales = false) {
-    const auto round = create_round(fake_.folder, ++rounds_,
-                                    {.measures_nodes = true, .scales_nodes = scales}, fake_.items());
+    const auto round = create_round(
+        fake_.folder, ++rounds_, {.measures_nodes = true, .scales_nodes = scales}, fake_.items());
     WorkerSetup setup = fake_.worker(node + std::to_string(rounds_), node);
     setup.measure_ms = [&, ms] { return ++measured_, ms; };
     return node_scale(*round, setup);

@@ -1,10 +1,10 @@
+#include "fake_cluster.h"
+
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
-
-#include "fake_cluster.h"
 
 namespace tether::workers {
 namespace {

@@ -51,8 +51,7 @@ TEST_F(SharedFolderTest, PublishesATrialInFewRequests) {
 
 TEST_F(SharedFolderTest, SaysWhatTheFileSystemRefuses) {
   scratch_.write("file", "");
-  const Error error =
-      thrown_error(ErrorCode::kSetup, [&] { folder_.create("file/claim", "a"); });
+  const Error error = thrown_error(ErrorCode::kSetup, [&] { folder_.create("file/claim", "a"); });
   EXPECT_EQ(error.subject(), scratch_.path("file/claim").string());
 }
 

@@ -1,9 +1,9 @@
+#include "fake_cluster.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
-
-#include "fake_cluster.h"
 
 namespace tether::workers {
 namespace {
@@ -51,7 +51,8 @@ TEST_F(SlurmTest, AvoidsNodesOnlyWhileThereAreOthers) {
 }
 
 TEST_F(SlurmTest, KnowsWhichTasksAreAlive) {
-  answers_["squeue"] = {{0, "12_1|RUNNING|n1|None\n12_2|PENDING||Resources\n12_3|TIMEOUT|n2|x\n", ""}};
+  answers_["squeue"] = {
+      {0, "12_1|RUNNING|n1|None\n12_2|PENDING||Resources\n12_3|TIMEOUT|n2|x\n", ""}};
   const auto tasks = *make()->tasks(*round_);
   ASSERT_THAT(tasks, SizeIs(3));
   EXPECT_TRUE(tasks[0].is_alive);

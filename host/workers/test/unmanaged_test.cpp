@@ -1,8 +1,8 @@
+#include "fake_cluster.h"
+
 #include <gtest/gtest.h>
 
 #include <tether/base_testing/thrown_error.h>
-
-#include "fake_cluster.h"
 
 namespace tether::workers {
 namespace {

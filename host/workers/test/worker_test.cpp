@@ -1,10 +1,10 @@
+#include "fake_cluster.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <tether/base/error.h>
 #include <tether/base_testing/thrown_error.h>
-
-#include "fake_cluster.h"
 
 namespace tether::workers {
 namespace {
@@ -17,7 +17,8 @@ class WorkerTest : public testing::Test {
   std::vector<std::string> lost() const { return fake_.folder.list(round_->path("lost")); }
 
   FakeCampaign fake_;
-  std::optional<Round> round_ = create_round(fake_.folder, 1, {.job = "j", .chunk = 2}, fake_.items());
+  std::optional<Round> round_ =
+      create_round(fake_.folder, 1, {.job = "j", .chunk = 2}, fake_.items());
 };
 
 TEST_F(WorkerTest, FliesEverythingOnceAndEnds) {

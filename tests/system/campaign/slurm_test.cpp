@@ -1,5 +1,6 @@
-#include "support/faults.h"
 #include "support/slurm.h"
+
+#include "support/faults.h"
 
 #include <csignal>
 
@@ -55,8 +56,7 @@ class Slurm : public RunTest {
     return write_campaign(folder_.path(), trials, "conditions = [\"host\"]\n");
   }
   Command campaign(const std::vector<std::string>& arguments) const {
-    return cluster_->in(
-        tether(with({{"campaign"}}, arguments).arguments, mark_));
+    return cluster_->in(tether(with({{"campaign"}}, arguments).arguments, mark_));
   }
   Command on_slurm(const std::filesystem::path& file) const {
     return campaign({file, "--slurm", "--out", out_});
@@ -147,8 +147,8 @@ TEST_F(Slurm, FliesWhatALostNodeHadInHandElsewhere) {
 }
 
 TEST_F(Slurm, FliesWhatATimeLimitEndedAgain) {
-  const Output output = run(
-      with(on_slurm(write_small_campaign(3, true)), {"--slurm-options", "--time=1"}), 240s);
+  const Output output =
+      run(with(on_slurm(write_small_campaign(3, true)), {"--slurm-options", "--time=1"}), 240s);
   EXPECT_EQ(output.code, 0) << output.err;
   expect_all(3, 1);
 }
@@ -219,8 +219,7 @@ TEST_F(Slurm, IsRefusedWhereThereIsNone) {
   EXPECT_EQ(absent.code, 3);
   EXPECT_THAT(absent.err, HasSubstr("--slurm"));
   EXPECT_FALSE(std::filesystem::exists(out_)) << "nothing was written";
-  const Output refused =
-      run(with(on_slurm(file), {"--slurm-options", "--partition=none"}));
+  const Output refused = run(with(on_slurm(file), {"--slurm-options", "--partition=none"}));
   EXPECT_EQ(refused.code, 3);
   EXPECT_THAT(refused.err, HasSubstr("partition"));
   EXPECT_THAT(refused.err, Not(HasSubstr("\n\n")));

@@ -53,16 +53,17 @@ std::string config(const std::filesystem::path& folder) {
   const std::vector<int> ports = free_ports(3);
   std::ostringstream text;
   text << "ClusterName=test\nSlurmctldHost=" << host << "(127.0.0.1)\nSlurmUser=" << own
-       << "\nSlurmdUser=" << own << "\nAuthType=auth/munge\nCredType=cred/munge\nAuthInfo=socket="
-       << at << "/munge.socket\nStateSaveLocation=" << at << "/state\nSlurmdSpoolDir=" << at
+       << "\nSlurmdUser=" << own
+       << "\nAuthType=auth/munge\nCredType=cred/munge\nAuthInfo=socket=" << at
+       << "/munge.socket\nStateSaveLocation=" << at << "/state\nSlurmdSpoolDir=" << at
        << "/spool-%n\nSlurmctldPidFile=" << at << "/slurmctld.pid\nSlurmdPidFile=" << at
        << "/slurmd-%n.pid\nSlurmctldPort=" << ports[0]
        << "\nProctrackType=proctrack/linuxproc\nTaskPlugin=task/none\nSelectType=select/cons_tres\n"
           "SelectTypeParameters=CR_CPU\nMpiDefault=none\nReturnToService=2\nSlurmdTimeout=5\n"
           "KillWait=5\nSchedulerParameters=sched_interval=1,batch_sched_delay=0\n";
   for (int node = 1; node <= 2; ++node)
-    text << "NodeName=n" << node << " NodeHostname=" << host << " NodeAddr=127.0.0.1 Port="
-         << ports[static_cast<std::size_t>(node)] << " CPUs=1\n";
+    text << "NodeName=n" << node << " NodeHostname=" << host
+         << " NodeAddr=127.0.0.1 Port=" << ports[static_cast<std::size_t>(node)] << " CPUs=1\n";
   text << "PartitionName=all Nodes=n1,n2 Default=YES State=UP\n";
   return text.str();
 }
@@ -84,12 +85,12 @@ SlurmCluster::SlurmCluster(const std::filesystem::path& folder)
   std::filesystem::permissions(folder, std::filesystem::perms(0755));
   write_text(conf_, config(folder));
   const std::string at = folder.string() + "/munge.";
-  daemons_[kMunge] = std::make_unique<os::ChildProcess>(os::ChildCommand{
-      .arguments = {"/usr/sbin/munged", "--foreground", "--force", "--key-file=" + at + "key",
-                    "--socket=" + at + "socket", "--pid-file=" + at + "pid",
-                    "--seed-file=" + at + "seed"},
-      .environment = {},
-      .log = folder / "munged.log"});
+  daemons_[kMunge] = std::make_unique<os::ChildProcess>(
+      os::ChildCommand{.arguments = {"/usr/sbin/munged", "--foreground", "--force",
+                                     "--key-file=" + at + "key", "--socket=" + at + "socket",
+                                     "--pid-file=" + at + "pid", "--seed-file=" + at + "seed"},
+                       .environment = {},
+                       .log = folder / "munged.log"});
   (void)wait_until([&] { return std::filesystem::exists(at + "socket"); });
   daemons_[kController] = std::make_unique<os::ChildProcess>(
       os::ChildCommand{.arguments = {"/usr/sbin/slurmctld", "-D", "-f", conf_},
@@ -134,8 +135,7 @@ std::vector<std::string> SlurmCluster::running() const {
 void SlurmCluster::lose_node(const std::string& node) {
   // What slurmd started knows its node by a variable; slurmd itself is this process's child.
   for (const pid_t process : os::all_processes()) {
-    const std::string variables =
-        '\0' + read_text("/proc/" + std::to_string(process) + "/environ");
+    const std::string variables = '\0' + read_text("/proc/" + std::to_string(process) + "/environ");
     if (variables.find('\0' + ("SLURM_CONF=" + conf_) + '\0') != std::string::npos &&
         variables.find('\0' + ("SLURMD_NODENAME=" + node) + '\0') != std::string::npos)
       ::kill(process, SIGKILL);
@@ -146,9 +146,7 @@ void SlurmCluster::lose_node(const std::string& node) {
 }
 
 void SlurmCluster::wait_until_idle() const {
-  (void)wait_until([&] {
-    return run(in({{"squeue", "--noheader"}})).out.empty();
-  });
+  (void)wait_until([&] { return run(in({{"squeue", "--noheader"}})).out.empty(); });
 }
 
 }  // namespace tether::system_test

@@ -57,7 +57,8 @@ inline constexpr std::size_t kMostBarrenRounds = 3;
 /// callers on any machines may do so at once: each trial gets one result. A trial that was lost
 /// kMostLosses times gets a result with the end kEndSetupFailed and the reasons.
 /// @pre the folders of the plans are below `folder`; their results are missing.
-/// @throws Error(kSetup) if the engine refuses, if its tasks end before they reach the folder, or if
+/// @throws Error(kSetup) if the engine refuses, if its tasks end before they reach the folder, or
+/// if
 ///   kMostBarrenRounds rounds had no result; as SharedFolder.
 Collected collect(const SharedFolder& folder, std::span<const campaign::TrialPlan* const> plans,
                   Engine& engine, const CollectSetup& setup);

@@ -17,8 +17,8 @@ namespace tether::workers {
 
 /// One task of a round's job.
 struct Task {
-  std::string name;  ///< as the worker knows it (WorkerName::task)
-  bool is_alive = false;    ///< it runs, or waits for a machine
+  std::string name;       ///< as the worker knows it (WorkerName::task)
+  bool is_alive = false;  ///< it runs, or waits for a machine
   bool is_waiting = false;
   std::string state{};  ///< in the engine's words
   std::string node{};   ///< empty: none yet
@@ -27,7 +27,7 @@ struct Task {
 /// What a collector asks for.
 struct Order {
   std::size_t tasks = 1;
-  int cores = 1;                ///< of each task; 0: a machine of its own
+  int cores = 1;                  ///< of each task; 0: a machine of its own
   std::set<std::string> avoid{};  ///< nodes on which trials were lost, if there are others
 };
 
@@ -63,8 +63,8 @@ std::unique_ptr<Engine> make_slurm(SlurmSettings settings);
 /// The cores of the cluster; none: no answer.
 std::optional<std::size_t> slurm_cores(const RunProgram& run);
 
-/// Workers that the user starts. One is alive while its file changes, by `now`, a monotonic clock of
-/// this machine: the clocks of other machines are not compared.
+/// Workers that the user starts. One is alive while its file changes, by `now`, a monotonic clock
+/// of this machine: the clocks of other machines are not compared.
 std::unique_ptr<Engine> make_unmanaged(std::function<Duration()> now);
 /// A worker whose file has not changed for so long counts as dead.
 inline constexpr Duration kSilence = std::chrono::minutes(3);

@@ -42,10 +42,10 @@ struct Item {
 
 /// What all trials of a round have in common.
 struct RoundSettings {
-  std::string job{};      ///< unique name of the job that starts the workers
-  std::size_t items = 0;  ///< set by create_round
-  std::size_t chunk = 1;  ///< trials that a worker claims at once
-  bool beats = false;     ///< workers must show that they are alive: no engine knows it
+  std::string job{};            ///< unique name of the job that starts the workers
+  std::size_t items = 0;        ///< set by create_round
+  std::size_t chunk = 1;        ///< trials that a worker claims at once
+  bool beats = false;           ///< workers must show that they are alive: no engine knows it
   bool measures_nodes = false;  ///< the trials' clock depends on the speed of the machine
   bool scales_nodes = false;    ///< and CPU time is scaled by it, instead of refusing unlike nodes
   std::map<std::string, std::string> files{};    ///< that every node must have: digest by path

@@ -16,8 +16,8 @@
 /// A stale listing is allowed: it costs time, never a result.
 namespace tether::workers {
 
-/// Thread-safe. Paths are relative to the root. Every function throws Error(kSetup) with the path if
-/// the file system refuses, unless it says otherwise.
+/// Thread-safe. Paths are relative to the root. Every function throws Error(kSetup) with the path
+/// if the file system refuses, unless it says otherwise.
 class SharedFolder {
  public:
   explicit SharedFolder(std::filesystem::path root) : root_(std::move(root)) {}

@@ -50,9 +50,9 @@ struct WorkerSetup {
 };
 
 struct WorkerEnd {
-  std::size_t flown = 0;      ///< results that are in the campaign's folder
+  std::size_t flown = 0;  ///< results that are in the campaign's folder
   std::size_t lost = 0;
-  std::string why_early{};    ///< it ended before nothing was left; empty: it did not
+  std::string why_early{};  ///< it ended before nothing was left; empty: it did not
 };
 
 /// Flies trials of the round until all are claimed, the machine fails twice in a row, or a stop is
@@ -78,7 +78,8 @@ class Claims {
   std::string text_;
   std::uint64_t key_;
   std::optional<std::size_t> shard_;
-  std::vector<std::size_t> free_;  // chunks of the shard when it was listed, those to try first last
+  std::vector<std::size_t>
+      free_;  // chunks of the shard when it was listed, those to try first last
 };
 
 /// How a worker fares, from its file.
