@@ -190,8 +190,9 @@ void Cluster::end_or_leave(const workers::Collected& collected, const std::stop_
         "Then type: tether campaign --collect {}\n",
         worker_command(out_), out);
   } else if (stop.stop_requested() && is_asked_to_cancel()) {
-    engine_->cancel(*workers::newest_round(workers::SharedFolder(fs::absolute(out_))));
-    say("tether: the jobs are cancelled.\n");
+    cancel_jobs(out_);
+  } else if (collected.end == workers::CollectEnd::kCancelled) {
+    say("tether: the jobs were cancelled. To continue, type: tether campaign --collect {}\n", out);
   } else {
     say("tether: the jobs go on. To collect their results, type: tether campaign --collect {}\n"
         "To cancel them: tether campaign --cancel {}\n",
@@ -217,7 +218,7 @@ int cancel_jobs(const fs::path& out) {
         .about(out.string());
   ClusterOptions options;
   options.slurm = !round->settings().command.at("slurm").empty();
-  make_engine(options, out)->cancel(*round);
+  workers::cancel(*round, *make_engine(options, out));
   say("tether: the jobs are cancelled; results are kept. To continue, type: tether campaign "
       "--collect {}\n",
       out.string());

@@ -90,7 +90,7 @@ double measure_step_ms(const fs::path& scratch, const std::stop_token& stop) {
 }
 
 workers::Flight fly(runner::TrialServers& servers, const workers::Item& item, const fs::path& local,
-                    const std::stop_token& stop) {
+                    const std::string& node, const std::stop_token& stop) {
   using End = workers::Flight::End;
   try {
     auto result = servers.run(item.arguments, local, stop);
@@ -99,11 +99,10 @@ workers::Flight fly(runner::TrialServers& servers, const workers::Item& item, co
               "the worker was told to end (cancelled, preempted, or over "
               "its time limit)"};
     if (result->end == campaign::kEndSetupFailed) return {End::kLost, result->reason};
-    if (!item.losses.empty()) {
-      result->this_run.attempts = static_cast<int>(item.losses.size()) + 1;
-      result->this_run.first_failure = item.losses.front();
-      campaign::write_result(local, *result);
-    }
+    result->this_run.node = node;
+    result->this_run.attempts = static_cast<int>(item.losses.size()) + 1;
+    if (!item.losses.empty()) result->this_run.first_failure = item.losses.front();
+    campaign::write_result(local, *result);
     say("{}: {}\n", item.folder, campaign::name(result->outcome));
     return {};
   } catch (const Error& error) {
@@ -130,14 +129,16 @@ int work(const WorkerOptions& options, const std::stop_token& stop) {
   workers::FilesCheck files(round->settings().files);
   const Scratch scratch;
   runner::TrialServers servers;
+  const workers::WorkerName self = own_name();
   const workers::WorkerEnd end = workers::work(
-      *round, {.self = own_name(),
-               .scratch = scratch.path(),
-               .fly = [&](const workers::Item& item,
-                          const fs::path& local) { return fly(servers, item, local, stop); },
-               .check = [&] { files.require_unchanged(); },
-               .measure_ms = [&] { return measure_step_ms(scratch.path(), stop); },
-               .stop = stop});
+      *round,
+      {.self = self,
+       .scratch = scratch.path(),
+       .fly = [&](const workers::Item& item,
+                  const fs::path& local) { return fly(servers, item, local, self.node, stop); },
+       .check = [&] { files.require_unchanged(); },
+       .measure_ms = [&] { return measure_step_ms(scratch.path(), stop); },
+       .stop = stop});
   fmt::print("{} flown, {} lost\n", end.flown, end.lost);
   if (end.why_early.empty()) return 0;
   say("tether: {}\n", end.why_early);

@@ -190,6 +190,7 @@ Json json_of(const ThisRun& run) {
             {"largest_lag_s", exact_seconds(run.largest_lag)},
             {"attempts", run.attempts}};
   if (!run.first_failure.empty()) json["first_failure"] = run.first_failure;
+  if (!run.node.empty()) json["node"] = run.node;
   if (run.target) json["target"] = json_of(*run.target);
   if (!run.notes.empty()) json["notes"] = run.notes;
   if (!run.sut_files.empty()) json["sut_files"] = run.sut_files;
@@ -345,6 +346,7 @@ ThisRun read_this_run(const JsonReader& json) {
   if (attempts < 1 || attempts > 1000) json.fail("attempts", "must be 1 to 1000");
   run.attempts = static_cast<int>(attempts);
   if (json.has("first_failure")) run.first_failure = json.text("first_failure");
+  if (json.has("node")) run.node = json.text("node");
   if (json.has("target")) run.target = read_target(json.object("target"));
   if (json.has("notes")) run.notes = json.texts("notes");
   if (json.has("sut_files")) run.sut_files = json.texts("sut_files");

@@ -41,14 +41,15 @@ class Collector {
     auto round = newest_round(folder_);
     const std::size_t before = round ? round->number() : 0;
     if (round && folder_.read(round->path("closed"))) round.reset();
-    bool is_own = false;
-    for (std::size_t number = before, barren = 0;; is_own = true) {
+    for (std::size_t number = before, barren = 0;;) {
+      bool is_own = false;
       if (!round) {
         take_or_remove_existing();
         keep_not_flown();
         if (is_complete()) return close(CollectEnd::kComplete);
         if (barren == kMostBarrenRounds) give_up();
         round = create_round(folder_, ++number, settings(), missing_items());
+        is_own = round.has_value();
         if (!round) round = newest_round(folder_);  // another collector was faster
         number = round->number();
       }
@@ -111,6 +112,8 @@ class Collector {
     // The tasks of another collector, or of an earlier call, may not be visible yet.
     const int looks_without_tasks = is_own ? 1 : 3;
     bool has_arrived = !is_untouched;
+    const bool was_cancelled =
+        is_cancelled(round);  // by an earlier call: what is left is flown now
     for (int idle = 0, strangers = 0; idle < looks_without_tasks;) {
       if (setup_.stop.stop_requested()) return CollectEnd::kLeft;
       const Duration look = setup_.now();
@@ -121,13 +124,18 @@ class Collector {
       const bool is_alive =
           !tasks || std::ranges::any_of(*tasks, [](const Task& task) { return task.is_alive; });
       has_arrived = has_arrived || !folder_.list(round.path("workers")).empty();
-      strangers = !has_arrived && has_ended_task() ? strangers + 1 : 0;
+      strangers = !has_arrived && !was_cancelled && has_ended_task() ? strangers + 1 : 0;
       if (strangers >= 2) refuse_strangers(round);
       idle = is_alive ? 0 : idle + 1;
       show(nullptr, nullptr);
+      if (!is_alive && !was_cancelled && is_cancelled(round)) return CollectEnd::kCancelled;
       if (idle < looks_without_tasks) setup_.sleep(pause(setup_.now() - look));
     }
     return std::nullopt;
+  }
+
+  bool is_cancelled(const Round& round) const {
+    return folder_.read(round.path(kCancelledFile)).has_value();
   }
 
   bool start(const Round& round) {
@@ -139,7 +147,8 @@ class Collector {
   }
 
   bool has_ended_task() const {
-    return std::ranges::any_of(last_tasks_, [](const Task& task) { return !task.is_alive; });
+    return std::ranges::any_of(
+        last_tasks_, [](const Task& task) { return !task.is_alive && !task.node.empty(); });
   }
 
   // Twenty times as long as looking took, so that looking costs little, however many trials.
@@ -151,7 +160,8 @@ class Collector {
   [[noreturn]] void refuse_strangers(const Round& round) {
     folder_.create(round.path("closed"), "");
     engine_tidy(round);
-    const auto ended = std::ranges::find(last_tasks_, false, &Task::is_alive);
+    const auto ended = std::ranges::find_if(
+        last_tasks_, [](const Task& task) { return !task.is_alive && !task.node.empty(); });
     std::string said;
     for (const std::string& log : folder_.list(round.path("logs")))
       if (said.empty()) said = last_line_of(round, log);
@@ -288,6 +298,16 @@ std::size_t chunk_for(std::size_t trials, std::size_t tasks) {
   constexpr std::size_t kClaimsPerTask = 8, kMost = 32;
   return std::clamp<std::size_t>(trials / (std::max<std::size_t>(1, tasks) * kClaimsPerTask), 1,
                                  kMost);
+}
+
+void cancel(const Round& round, Engine& engine) {
+  round.folder().create(round.path(kCancelledFile), "");  // first, so that nobody submits again
+  try {
+    engine.cancel(round);
+  } catch (...) {
+    round.folder().remove(round.path(kCancelledFile));
+    throw;
+  }
 }
 
 Collected collect(const SharedFolder& folder, std::span<const TrialPlan* const> plans,

@@ -177,6 +177,20 @@ TEST_F(Collect, StopsAndLeavesTheRound) {
   EXPECT_EQ(engine_.cancelled, 0);
 }
 
+// Whoever collects must not submit again what another process cancelled.
+TEST_F(Collect, EndsWhenTheJobsAreCancelledAndGoesOnLater) {
+  engine_.rounds = {[&](const Round& round) {
+                      vanish(2, "n1")(round);
+                      cancel(round, engine_);
+                    },
+                    fly()};
+  EXPECT_EQ(run().end, CollectEnd::kCancelled);
+  EXPECT_EQ(engine_.cancelled, 1);
+  EXPECT_THAT(engine_.orders, SizeIs(1));
+  EXPECT_EQ(run().end, CollectEnd::kComplete);
+  EXPECT_EQ(fake_.results(), 9u);
+}
+
 TEST_F(Collect, NeedsWorkersWhereNobodyStartsThem) {
   EXPECT_EQ(run().end, CollectEnd::kNeedsWorkers);
   work(*newest_round(fake_.folder), worker("n1"));

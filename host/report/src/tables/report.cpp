@@ -128,9 +128,9 @@ void add_crash_notes(Table& table, const campaign::ConditionResults& results) {
 void add_second_attempt_notes(Table& table, const campaign::ConditionResults& results) {
   for (const campaign::TrialResult& trial : results.trials) {
     if (trial.this_run.attempts > 1)
-      table.notes.push_back(
-          fmt::format("Second attempt: {}, seed {}. The first attempt failed during set-up: {}.",
-                      results.condition, trial.seed, trial.this_run.first_failure));
+      table.notes.push_back(fmt::format("Attempt {}: {}, seed {}. The first attempt failed: {}.",
+                                        trial.this_run.attempts, results.condition, trial.seed,
+                                        trial.this_run.first_failure));
   }
 }
 

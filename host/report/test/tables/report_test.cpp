@@ -50,17 +50,17 @@ TEST_F(Report, NotesNameEverySpecialTrial) {
   const Table table = paper_form_table(campaign.scenarios[0]);
   EXPECT_THAT(
       table.notes,
-      ElementsAre(
-          "Trials: host 3 of 3 (2 reached the goal); target 3 of 3 (3 reached the goal); "
-          "target, no sync 1 of 3 (1 reached the goal). Times are simulated time.",
-          "Paper: Table III, Section V; ten experiments per condition.",
-          "Excluded from means: host, seed 3: no port.", "Crash: host, seed 1: 'uav1' hit 'room'.",
-          "Note: host, seed 1: a signal stopped the SUT; suspended.",
-          "Excluded from means: target, seed 2: the SUT of 'uav1' did not finish.",
-          "Second attempt: target, seed 3. The first attempt failed during set-up: the port "
-          "was taken.",
-          "target, seed 3: it was hot.",
-          "No readable result for 2 trials of target, no sync (not run yet, or damaged)."));
+      ElementsAre("Trials: host 3 of 3 (2 reached the goal); target 3 of 3 (3 reached the goal); "
+                  "target, no sync 1 of 3 (1 reached the goal). Times are simulated time.",
+                  "Paper: Table III, Section V; ten experiments per condition.",
+                  "Excluded from means: host, seed 3: no port.",
+                  "Crash: host, seed 1: 'uav1' hit 'room'.",
+                  "Note: host, seed 1: a signal stopped the SUT; suspended.",
+                  "Excluded from means: target, seed 2: the SUT of 'uav1' did not finish.",
+                  "Attempt 2: target, seed 3. The first attempt failed: the port "
+                  "was taken.",
+                  "target, seed 3: it was hot.",
+                  "No readable result for 2 trials of target, no sync (not run yet, or damaged)."));
   EXPECT_EQ(campaign.damaged.size(), 1U);
   EXPECT_EQ(table.rows[1][5], "3.350") << "the mean of the trials that have a value";
 }

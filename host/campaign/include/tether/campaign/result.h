@@ -145,12 +145,13 @@ struct ThisRun {
   std::string machine;
   Duration wall{0};
   Duration largest_lag{0};               ///< depends on how far the simulator had advanced
-  int attempts = 1;                      ///< 2: the first one failed to set up
-  std::string first_failure;             ///< its reason
+  int attempts = 1;                      ///< more: the machine failed in the earlier ones
+  std::string first_failure;             ///< the reason of the first one
   std::optional<TargetReport> target{};  ///< none if it was not read
   std::vector<std::string> notes{};      ///< unintended stalls of the run, one line each
   std::vector<std::string> sut_files{};  ///< written by SUTs; paths in the trial's folder, sorted
   std::optional<SimulatorFigures> simulator{};  ///< none: not measured
+  std::string node{};  ///< the machine whose worker flew it; empty: no worker did
 
   friend bool operator==(const ThisRun&, const ThisRun&) = default;
 };

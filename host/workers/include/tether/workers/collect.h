@@ -35,8 +35,14 @@ struct CollectSetup {
 enum class CollectEnd {
   kComplete,      ///< each trial has a result, or was lost too often
   kLeft,          ///< stopped or detached; the round is open
+  kCancelled,     ///< another process cancelled the jobs
   kNeedsWorkers,  ///< the user has to start workers
 };
+
+/// In a round: its jobs were cancelled, and must not be submitted again by who is collecting.
+inline constexpr const char* kCancelledFile = "cancelled";
+/// Cancels the round's jobs. @throws as Engine::cancel.
+void cancel(const Round& round, Engine& engine);
 
 struct Collected {
   CollectEnd end = CollectEnd::kComplete;
