@@ -30,7 +30,7 @@ class RadioOfVehicle : public testing::Test {
     coordinator_.emplace(std::move(welcome),
                          [this](const auto& request) { return answer(request); });
     ConnectOptions options;
-    options.time = parse_time_source("scripted:1ms").value();
+    options.time = make_scripted_source(milliseconds(1));
     return connect(coordinator_->connect(), std::move(options)).value();
   }
 
