@@ -197,6 +197,7 @@ class CoordinatorHost {
     void write(SimTime at, const record::Stop& m) override { file_->write(at, m); }
     void write(SimTime at, const record::Contact& m) override { file_->write(at, m); }
     void write(SimTime at, const record::Battery& m) override { file_->write(at, m); }
+    void write(SimTime at, const record::RadioMessage& m) override { file_->write(at, m); }
     void write(SimTime at, const record::Image& m) override { file_->write(at, m); }
     void write(SimTime at, const record::RawImage& m) override { file_->write(at, m); }
     void flush() override { file_->flush(); }

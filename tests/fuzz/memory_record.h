@@ -24,6 +24,7 @@ class MemoryRecord final : public record::Recorder {
   }
   void write(SimTime at, const record::Contact& m) override { add(record.contacts, at, m); }
   void write(SimTime at, const record::Battery& m) override { add(record.batteries, at, m); }
+  void write(SimTime at, const record::RadioMessage& m) override { add(record.radio, at, m); }
   void write(SimTime at, const record::Image& m) override { add(record.images, at, m); }
   void write(SimTime at, const record::RawImage& m) override { add(record.raw_images, at, m); }
   void flush() override {}

@@ -44,6 +44,22 @@ std::vector<StageTime> read(
   return out;
 }
 
+template <class T>
+std::vector<T> values_of(const flatbuffers::Vector<T>* vector) {
+  if (vector == nullptr) return {};
+  std::vector<T> values(vector->size());
+  if (!values.empty()) std::memcpy(values.data(), vector->data(), values.size() * sizeof(T));
+  return values;
+}
+
+std::vector<std::string> texts_of(
+    const flatbuffers::Vector<flatbuffers::Offset<flatbuffers::String>>* vector) {
+  std::vector<std::string> texts;
+  if (vector == nullptr) return texts;
+  for (const flatbuffers::String* text : *vector) texts.push_back(text->str());
+  return texts;
+}
+
 // --- catalogue ----------------------------------------------------------------------------------
 
 uav::CameraProperties read(const wire::CameraProperties& c) {
@@ -52,9 +68,7 @@ uav::CameraProperties read(const wire::CameraProperties& c) {
                             static_cast<uav::CameraKind>(c.kind()),
                             c.min_m(),
                             c.max_m()};
-  if (const auto* models = c.models()) {
-    for (const flatbuffers::String* model : *models) out.models.push_back(model->str());
-  }
+  out.models = texts_of(c.models());
   return out;
 }
 
@@ -95,6 +109,7 @@ Result<Message> read(const wire::Welcome& welcome) {
   out.free_running = welcome.free_running();
   out.start = from_ns<ExecTime>(welcome.start_et_ns());
   out.computing = read(welcome.computing());
+  out.peers = texts_of(welcome.peers());
   return Message(std::move(out));
 }
 
@@ -114,6 +129,11 @@ Result<Message> read(const wire::Request& request) {
     out.body = Sleep{from_ns<ExecTime>(sleep->until_et_ns())};
   } else if (const auto* finish = request.body_as_FinishMission()) {
     out.body = Finish{finish->reached_goal(), finish->outcome()->str(), finish->details()->str()};
+  } else if (const auto* send = request.body_as_SendMessage()) {
+    out.body =
+        SendMessage{send->to() != nullptr ? send->to()->str() : "", values_of(send->bytes())};
+  } else if (const auto* receive = request.body_as_ReceiveMessage()) {
+    out.body = ReceiveMessage{Duration(receive->timeout_ns())};
   } else {
     return protocol_failure("request of unknown kind");
   }
@@ -121,14 +141,6 @@ Result<Message> read(const wire::Request& request) {
 }
 
 // --- reply --------------------------------------------------------------------------------------
-
-template <class T>
-std::vector<T> values_of(const flatbuffers::Vector<T>* vector) {
-  if (vector == nullptr) return {};
-  std::vector<T> values(vector->size());
-  if (!values.empty()) std::memcpy(values.data(), vector->data(), values.size() * sizeof(T));
-  return values;
-}
 
 uav::CameraSample read(const wire::CameraSample& s) {
   return {from_ns<SimTime>(s.sampled_at_st_ns()),
@@ -161,6 +173,9 @@ Result<Message> read(const wire::Reply& reply) {
   } else if (reply.sample_type() != wire::Sample::NONE) {
     return protocol_failure("sample of unknown kind");
   }
+  if (const auto* message = reply.message())
+    out.message = {message->from()->str(), from_ns<SimTime>(message->sent_at_st_ns()),
+                   from_ns<SimTime>(message->arrived_at_st_ns()), values_of(message->bytes())};
   return Message(std::move(out));
 }
 
@@ -177,7 +192,7 @@ Result<Message> read(const wire::Refusal& refusal) {
 }
 Result<Message> read(const wire::Progress& progress) {
   return Message(Progress{from_ns<ExecTime>(progress.reached_et_ns()), progress.stopped(),
-                          progress.received_bytes()});
+                          progress.received_bytes(), progress.dues_heard()});
 }
 Result<Message> read(const wire::Due& due) {
   return Message(Due{due.sequence(), from_ns<ExecTime>(due.reply_at_et_ns())});

@@ -117,6 +117,15 @@ Body write(FlatBufferBuilder& b, const Finish& finish) {
   return {wire::RequestBody::FinishMission,
           wire::CreateFinishMission(b, finish.reached_goal, outcome, details).Union()};
 }
+Body write(FlatBufferBuilder& b, const SendMessage& send) {
+  const auto bytes = b.CreateVector(send.bytes);
+  const auto to = b.CreateString(send.to);
+  return {wire::RequestBody::SendMessage, wire::CreateSendMessage(b, to, bytes).Union()};
+}
+Body write(FlatBufferBuilder& b, const ReceiveMessage& receive) {
+  return {wire::RequestBody::ReceiveMessage,
+          wire::CreateReceiveMessage(b, receive.timeout.count()).Union()};
+}
 
 // --- Reply --------------------------------------------------------------------------------------
 
@@ -175,9 +184,10 @@ Content write(FlatBufferBuilder& b, const Hello& hello, ImageSlot&) {
 Content write(FlatBufferBuilder& b, const Welcome& welcome, ImageSlot&) {
   const auto catalogue = write(b, welcome.catalogue);
   const StageTimes computing = write(b, welcome.computing);
-  return {wire::Content::Welcome,
-          wire::CreateWelcome(b, catalogue, welcome.free_running, to_ns(welcome.start), computing)
-              .Union()};
+  const auto peers = welcome.peers.empty() ? 0 : b.CreateVectorOfStrings(welcome.peers);
+  return {wire::Content::Welcome, wire::CreateWelcome(b, catalogue, welcome.free_running,
+                                                      to_ns(welcome.start), computing, peers)
+                                      .Union()};
 }
 Content write(FlatBufferBuilder& b, const Refusal& refusal, ImageSlot&) {
   const auto message = b.CreateString(refusal.message);
@@ -199,14 +209,22 @@ Content write(FlatBufferBuilder& b, const Reply& reply, ImageSlot& slot) {
     sample = std::visit([&](const auto& s) { return write(b, s, slot); }, *reply.sample);
   }
   const StageTimes computing = write(b, reply.computing);
+  Offset<wire::RadioMessage> message;
+  if (reply.message) {
+    const auto bytes = b.CreateVector(reply.message->bytes);
+    const auto from = b.CreateString(reply.message->from);
+    message = wire::CreateRadioMessage(b, from, to_ns(reply.message->sent_at),
+                                       to_ns(reply.message->arrived_at), bytes);
+  }
   return {wire::Content::Reply, wire::CreateReply(b, reply.sequence, to_ns(reply.resume_at),
-                                                  sample.kind, sample.at, computing)
+                                                  sample.kind, sample.at, computing, message)
                                     .Union()};
 }
 Content write(FlatBufferBuilder& b, const Progress& progress, ImageSlot&) {
-  return {wire::Content::Progress, wire::CreateProgress(b, to_ns(progress.reached),
-                                                        progress.stopped, progress.received_bytes)
-                                       .Union()};
+  return {wire::Content::Progress,
+          wire::CreateProgress(b, to_ns(progress.reached), progress.stopped,
+                               progress.received_bytes, progress.dues_heard)
+              .Union()};
 }
 Content write(FlatBufferBuilder& b, const Due& due, ImageSlot&) {
   return {wire::Content::Due, wire::CreateDue(b, due.sequence, to_ns(due.reply_at)).Union()};

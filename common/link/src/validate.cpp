@@ -136,6 +136,8 @@ void check(Checker& c, const Welcome& welcome) {
   check_entries(c, welcome.catalogue.anchors, "anchors");
   c.in("Welcome: ");
   check(c, welcome.computing, "computing");
+  c.require(welcome.peers.size() <= kMaxCatalogueEntries, "peers", "has too many entries");
+  for (const std::string& peer : welcome.peers) c.text(peer, kMaxNameBytes, "peers");
 }
 
 void check(Checker& c, const Refusal& refusal) {
@@ -157,6 +159,19 @@ void check(Checker& c, const Sleep& sleep) {
 void check(Checker& c, const Finish& finish) {
   c.text(finish.outcome, kMaxTextBytes, "outcome");
   if (!finish.details.empty()) json_object(c, finish.details, "details");
+}
+
+void check_radio(Checker& c, const std::vector<std::uint8_t>& bytes) {
+  c.require(bytes.size() <= kMaxRadioBytes, "bytes",
+            "has " + std::to_string(bytes.size()) + " bytes; at most " +
+                std::to_string(kMaxRadioBytes) + " are allowed");
+}
+void check(Checker& c, const SendMessage& send) {
+  c.text(send.to, kMaxNameBytes, "to");
+  check_radio(c, send.bytes);
+}
+void check(Checker& c, const ReceiveMessage& receive) {
+  c.timestamp(to_ns(receive.timeout), "timeout");
 }
 
 void check(Checker& c, const Request& request) {
@@ -197,6 +212,14 @@ void check(Checker& c, const Reply& reply) {
   c.require(reply.sequence > 0, "sequence", "is 0");
   c.timestamp(reply.resume_at, "resume_at");
   check(c, reply.computing, "computing");
+  if (reply.message) {
+    c.text(reply.message->from, kMaxNameBytes, "from");
+    c.timestamp(reply.message->sent_at, "sent_at");
+    c.timestamp(reply.message->arrived_at, "arrived_at");
+    c.require(reply.message->sent_at <= reply.message->arrived_at, "arrived_at",
+              "is before sent_at");
+    check_radio(c, reply.message->bytes);
+  }
   if (!reply.sample) return;
   const auto check_sample = [&c](const auto& sample) {
     c.timestamp(sample.sampled_at, "sampled_at");

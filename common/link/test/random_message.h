@@ -89,16 +89,25 @@ class RandomMessage {
     out.free_running = coin();
     out.start = time<ExecTime>();
     out.computing = stages();
+    out.peers.assign(random_.bits() % 3, text());
+    return out;
+  }
+
+  std::vector<std::uint8_t> bytes() {
+    std::vector<std::uint8_t> out(random_.bits() % 100);
+    for (auto& byte : out) byte = static_cast<std::uint8_t>(random_.bits());
     return out;
   }
 
   Message request() {
     Request out{1 + word() / 2, time<ExecTime>(), time<ExecTime>().time_since_epoch(), {}};
-    const std::uint32_t kind = random_.bits() % 4;
+    const std::uint32_t kind = random_.bits() % 6;
     if (kind == 0) out.body = ReadSensor{random_.bits() % 1000, coin(), coin()};
     if (kind == 1) out.body = SetVelocity{{vec3(), number()}};
     if (kind == 2) out.body = Sleep{time<ExecTime>()};
     if (kind == 3) out.body = Finish{coin(), text(), coin() ? json() : ""};
+    if (kind == 4) out.body = SendMessage{text(), bytes()};
+    if (kind == 5) out.body = ReceiveMessage{time<ExecTime>().time_since_epoch()};
     out.stages = stages();
     return out;
   }
@@ -125,6 +134,9 @@ class RandomMessage {
     if (kind == 2) out.sample = uav::RangeSample{time<SimTime>(), word(), number()};
     if (kind == 3) out.sample = uav::RangeSample{time<SimTime>(), word(), coin() ? kInf : -kInf};
     out.computing = stages();
+    const auto arrived = time<SimTime>();
+    if (coin())
+      out.message = RadioMessage{text(), SimTime{arrived.time_since_epoch() / 2}, arrived, bytes()};
     return out;
   }
 

@@ -66,6 +66,14 @@ TEST(Validate, Requests) {
   expect({"velocity command", request_with(SetVelocity{{{kNan, 0, 0}, 0}})});
   expect({"velocity command", request_with(SetVelocity{{{0, 0, 0}, 1e9}})});
   expect({"until", request_with(Sleep{from_ns<ExecTime>(-5)})});
+  expect({"bytes", request_with(SendMessage{"", std::vector<std::uint8_t>(kMaxRadioBytes + 1)})});
+  expect({"to", request_with(SendMessage{std::string(kMaxNameBytes + 1, 'u'), {}})});
+  expect({"timeout", request_with(ReceiveMessage{Duration(-1)})});
+  expect({"arrived_at",
+          Reply{.sequence = 1,
+                .resume_at = {},
+                .sample = {},
+                .message = RadioMessage{"u", from_ns<SimTime>(2), from_ns<SimTime>(1), {}}}});
   expect({"", request_with(Finish{true, "facing the anchor", ""})});
   expect({"outcome", request_with(Finish{true, std::string(5000, 'x'), ""})});
   expect({"details", request_with(Finish{true, "", "[1]"})});

@@ -87,9 +87,9 @@ RunOptions checked(RunOptions options, const sim::Simulator& simulator) {
 }  // namespace
 
 std::string_view name(RunEnd end) {
-  constexpr std::string_view kNames[] = {"finished",      "time_limit",     "sut_lost",
-                                         "sut_hung",      "simulator_lost", "interrupted",
-                                         "battery_empty", "record_failed",  "timing_differs"};
+  constexpr std::string_view kNames[] = {
+      "finished",    "time_limit",    "sut_lost",      "sut_hung",       "simulator_lost",
+      "interrupted", "battery_empty", "record_failed", "timing_differs", "flooded"};
   return kNames[static_cast<std::size_t>(end)];
 }
 
@@ -112,6 +112,8 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
       stepper_(simulator, barrier_, log_, options_.ground_truth_period,
                make_samplers(simulator, options_)),
       sessions_(make_sessions(world(), options_)),
+      uav_names_(names_of_uavs()),
+      medium_(options_.radio, options_.seed, uav_names_),
       time_limit_(simulator.grid().ceil(SimTime(options_.time_limit))),
       started_(host_clock_()),
       flushed_(started_),
@@ -167,7 +169,8 @@ void Coordinator::Impl::start() {
                                                   world(), world().uavs[session.uav]),
                                               .free_running = !is_synchronised(),
                                               .start = ExecTime{},
-                                              .computing = time_given(session)});
+                                              .computing = time_given(session),
+                                              .peers = peers_of(session)});
 }
 
 // Whether every run with these options has the same messages: no clock has a part in them.
@@ -218,7 +221,7 @@ void Coordinator::Impl::read_timers(WallTime now) {
 SimTime Coordinator::Impl::next_stop() const {
   const SimTime bound = is_synchronised() ? barrier_.lower_bound() : SimTime::max();
   return std::min({bound, time_limit_, fallen_at_.value_or(SimTime::max()), stepper_.next_due(),
-                   st() + kStepsPerTurn * grid().dt()});
+                   next_radio(), st() + kStepsPerTurn * grid().dt()});
 }
 
 // How much of that the pace allows.
@@ -334,6 +337,7 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
 // Notifies the SUTs that are still connected, then completes the record.
 RunReport Coordinator::Impl::close_run() {
   if (running_ && ended_->how != RunEnd::kSimulatorLost) stepper_.log_contacts();
+  if (running_) log_in_transit();
   record::Footer& footer = log_.footer();
   RunReport report{.end = ended_->how,
                    .reason = ended_->reason,

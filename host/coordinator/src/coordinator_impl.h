@@ -11,12 +11,14 @@
 #include <vector>
 
 #include <tether/coordinator/coordinator.h>
+#include <tether/radio/medium.h>
 #include <tether/sync/real_time_limit.h>
 
 namespace tether::coordinator {
 
 /// The loop of a run: receives messages of the SUTs (incoming.cpp), sends replies (outgoing.cpp),
-/// and advances ST in between (coordinator.cpp). The decisions are made by its parts:
+/// passes messages between UAVs (radio.cpp), and advances ST in between (coordinator.cpp). The
+/// decisions are made by its parts:
 ///
 ///     validator    whether a message of a SUT is allowed
 ///     barrier      which replies are held until when, and how far ST may advance
@@ -60,7 +62,7 @@ class Coordinator::Impl {
   void on_request(Session& session, const link::Request& request, WallTime now);
   void on_progress(Session& session, const link::Progress& progress, WallTime now);
   void on_annotation(Session& session, const link::Annotation& note);
-  void on_stop(Session& session, ExecTime at, WallTime now);
+  void on_stop(Session& session, const link::Progress& stop, WallTime now);
   static std::optional<ExecTime> earliest_due(const Session& session, ExecTime at);
   void on_refusal(Session& session, const link::Refusal& refusal);
   void check_replay(Session& session, const link::Request& request);
@@ -78,6 +80,26 @@ class Coordinator::Impl {
   Session* find(link::PeerId peer);
   void refuse(link::PeerId peer, link::Refusal::Reason reason, const std::string& message);
 
+  // Radio.
+  std::vector<std::string> names_of_uavs() const;
+  std::vector<std::string> peers_of(const Session& session) const;
+  void accept_send(const Session& session, const record::Interaction& entry,
+                   const link::SendMessage& send);
+  ExecTime accept_receive(Session& session, PendingInteraction& pending,
+                          const link::ReceiveMessage& receive);
+  std::optional<sync::SutTime> next_arrival() const;
+  SimTime next_radio() const;
+  void settle_radio();
+  radio::Link link_of(std::size_t uav, std::size_t other);
+  void take_arrival(radio::Arrival& arrival);
+  void promise(Session& session, PendingInteraction& pending, ExecTime reply_at);
+  static void receive(Session& session, record::Interaction& entry, link::Reply& reply,
+                      const std::vector<Session>& sessions);
+  void count_full_queue(const radio::Arrival& arrival);
+  void expel(Session& session, const Fault& fault);
+  void log_in_transit();
+  void log_arrival(const radio::Arrival& arrival);
+
   // Outgoing.
   void release_ready();
   void answer_free_running();
@@ -91,7 +113,7 @@ class Coordinator::Impl {
   const StepGrid& grid() const { return stepper_.grid(); }
   SimTime st() const { return stepper_.st(); }
 
-  const sim::Simulator* simulator_;
+  sim::Simulator* simulator_;
   const RunOptions options_;
   std::function<WallTime()> host_clock_;
   link::Server* server_ = nullptr;
@@ -102,7 +124,10 @@ class Coordinator::Impl {
   sync::BarrierSynchronizer barrier_;
   Stepper stepper_;
   std::vector<Session> sessions_;  // one per UAV, in the world's order
-  SimTime time_limit_;             // a step boundary
+  std::vector<std::string> uav_names_;
+  radio::Medium medium_;
+  std::vector<radio::Arrival> arrivals_;  // of one event
+  SimTime time_limit_;                    // a step boundary
   std::optional<sync::RealTimeLimit> pace_;
 
   bool running_ = false;  // every SUT has joined
@@ -111,6 +136,7 @@ class Coordinator::Impl {
   Watchdog watchdog_;
   std::optional<SimTime> fallen_at_;  // a battery is empty: when the run ends
   std::string fall_;                  // the reason
+  std::optional<Ending> expelled_;    // how the run ends once the other SUTs have finished
   std::optional<Ending> ended_;
 };
 

@@ -93,6 +93,12 @@ record::Header Coordinator::Impl::make_header() const {
   header.real_time_factor = options_.real_time_factor;
   header.wall_at_start = started_;
   header.reports_contacts = simulator_->reports_contacts();
+  if (sessions_.size() > 1) {
+    const bool is_ideal = options_.radio.model == radio::Model::kIdeal;
+    header.radio = {.model = is_ideal ? "ideal" : "log_distance",
+                    .least_delay = radio::least_delay(options_.radio),
+                    .data_rate_bit_s = is_ideal ? 0.0 : options_.radio.data_rate_bit_s};
+  }
   for (const Session& session : sessions_) {
     const sim::Uav& uav = world().uavs[session.uav];
     header.suts.push_back(

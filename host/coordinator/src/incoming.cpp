@@ -17,7 +17,7 @@ namespace tether::coordinator {
 namespace {
 
 /// In the order of Request's body.
-constexpr const char* kKinds[] = {"sensor", "command", "sleep", "finish"};
+constexpr const char* kKinds[] = {"sensor", "command", "sleep", "finish", "send", "receive"};
 
 }  // namespace
 
@@ -51,6 +51,7 @@ void Coordinator::Impl::on_message(link::PeerId peer, const link::Message& messa
     return join(peer, *hello);
   if (!session)
     return refuse(peer, link::Refusal::Reason::kBadMessage, "the first message must be a Hello");
+  if (session->left) return;
   const WallTime now = host_clock_();
   if (shows_life(message, standing(*session), session->hello.clock))
     watchdog_.heard(session->uav, now);
@@ -135,7 +136,7 @@ void Coordinator::Impl::on_progress(Session& session, const link::Progress& prog
   if (session.timer) return;  // its time is the coordinator's, not the client's
   if (const auto fault = fault_of(progress, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
-  if (progress.stopped) return on_stop(session, progress.reached, now);
+  if (progress.stopped) return on_stop(session, progress, now);
   barrier_.progress(session.uav, progress.reached);
   release_ready();
 }
@@ -157,9 +158,11 @@ std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session, 
 }
 
 // A concurrent SUT is stopped: replies that are due by then can be sent.
-void Coordinator::Impl::on_stop(Session& session, ExecTime at, WallTime now) {
-  log_.stop(st(), {session.uav_name, at, earliest_due(session, at), now});
-  barrier_.stop(session.uav, at);
+void Coordinator::Impl::on_stop(Session& session, const link::Progress& stop, WallTime now) {
+  const ExecTime at = stop.reached;
+  const bool is_same = barrier_.is_held(session.uav);  // see fault_of
+  if (!is_same) log_.stop(st(), {session.uav_name, at, earliest_due(session, at), now});
+  barrier_.stop(session.uav, at, stop.dues_heard >= session.newest_moved_due);
   release_ready();
 }
 
@@ -178,6 +181,8 @@ Standing Coordinator::Impl::standing(const Session& session) const {
           .st = st(),
           .calls_in_step = st() > session.called_at ? 0 : session.calls_in_step,
           .waiting_commands = stepper_.waiting_commands(session.uav),
+          .uavs = uav_names_,
+          .uav = session.uav,
           .sensors = stepper_.sampler(session.uav),
           .plausibility = session.plausibility ? &*session.plausibility : nullptr,
           .clock_cores = adds_up_cores ? cores : 0};
@@ -187,8 +192,9 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   // The Finish of one thread ends a concurrent SUT; later requests of its other threads are
   // dropped.
   if (session.is_concurrent() && session.finish) return;
-  if (const auto fault = fault_of(request, standing(session), now))
-    return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
+  const auto fault = fault_of(request, standing(session), now);
+  if (fault && fault->kind == Fault::Kind::kFlood) return expel(session, *fault);
+  if (fault) return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
   if (session.replay) check_replay(session, request);
   if (ended_) return;
   ++session.next_sequence;
@@ -234,9 +240,13 @@ void Coordinator::Impl::begin(Session& session, const link::Request& request, Wa
   session.called_at = st();
   entry.reply_at = accept(session, pending);
   if (is_synchronised()) {
-    barrier_.hold({session.uav, entry.reply_at, entry.sequence});
-    if (session.is_concurrent())
+    const bool receives = entry.kind == record::kReceive;
+    barrier_.hold({session.uav, entry.reply_at, entry.sequence,
+                   receives ? std::optional(radio::least_delay(options_.radio)) : std::nullopt});
+    if (session.is_concurrent()) {
+      ++session.dues_sent;
       server_->send(session.peer, link::Due{entry.sequence, entry.reply_at});
+    }
   }
   session.open.push_back(std::move(pending));
 }
@@ -289,6 +299,12 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
     pending.entry.sleep_until = sleep->until;
     return std::max(pending.entry.request_at, sleep->until);
   }
+  if (const auto* send = std::get_if<link::SendMessage>(&request.body)) {
+    accept_send(session, pending.entry, *send);
+    return pending.entry.request_at;
+  }
+  if (const auto* receive = std::get_if<link::ReceiveMessage>(&request.body))
+    return accept_receive(session, pending, *receive);
   session.finish = std::get<link::Finish>(request.body);
   session.finish->outcome = printable(session.finish->outcome);
   return pending.entry.request_at;

@@ -6,12 +6,14 @@
 namespace tether::coordinator {
 
 void Coordinator::Impl::release_ready() {
+  settle_radio();
   if (!is_synchronised()) return answer_free_running();
-  while (const auto grant = barrier_.release(st())) {
+  while (const auto grant = barrier_.release(st(), next_arrival())) {
     Session& session = sessions_[grant->sut];
     std::size_t i = 0;
     while (session.open[i].entry.sequence != grant->call) ++i;
     reply(session, i, grant->released_at);
+    settle_radio();
   }
 }
 
@@ -22,7 +24,9 @@ void Coordinator::Impl::answer_free_running() {
     for (std::size_t i = 0; i < session.open.size();) {
       PendingInteraction& pending = session.open[i];
       const Sampler::Read* read = stepper_.sampler(session.uav).find(pending.entry.sequence);
-      if (read && !read->captured) {
+      const bool waits = pending.entry.receive_until && !pending.is_promised &&
+                         *pending.entry.receive_until > same_instant(st());
+      if (waits || (read && !read->captured)) {
         ++i;
         continue;
       }
@@ -43,6 +47,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
                       .resume_at = entry.reply_at,
                       .sample = stepper_.measure(session.uav, entry),
                       .computing = time_given(session)};
+  if (pending.is_promised) receive(session, entry, message, sessions_);
   const std::optional<uav::CameraSample> image = image_to_record(session, pending.request, message);
   entry.st_at_release = st;
   entry.grid_error = std::max(entry.grid_error, same_instant(entry.reply_at) - st);
@@ -85,7 +90,7 @@ void Coordinator::Impl::leave(Session& session) {
   barrier_.remove(session.uav);
   server_->close(session.peer);
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.left; }))
-    end({RunEnd::kFinished, "every SUT has finished"});
+    end(expelled_.value_or(Ending{RunEnd::kFinished, "every SUT has finished"}));
 }
 
 }  // namespace tether::coordinator

@@ -103,6 +103,14 @@ void RunLog::stop(SimTime st, const record::Stop& stop) {
   put(st, stop);
 }
 
+// In the order of the medium, which is that of time.
+void RunLog::radio(SimTime st, record::RadioMessage message) {
+  if (collects_)
+    radio_.emplace_back(st, std::move(message));
+  else
+    ask([&] { recorder_->write(st, message); });
+}
+
 void RunLog::image(SimTime st, const std::string& uav, const std::string& sensor,
                    const uav::CameraSample& sample) {
   if (!sample.rgb.empty()) {
@@ -145,6 +153,8 @@ void RunLog::settle() {
   collects_ = false;
   for (Collected& collected : collected_) write(collected.st, collected.message);
   collected_.clear();
+  for (const auto& [st, message] : radio_) ask([&] { recorder_->write(st, message); });
+  radio_.clear();
 }
 
 // Inserts the message before those of other SUTs that have a greater key. Those of one SUT stay in

@@ -46,6 +46,7 @@ class RunLog {
   void battery(SimTime st, const std::string& uav, const energy::Status& status);
   void annotation(SimTime st, record::Annotation annotation) { put(st, std::move(annotation)); }
   void stop(SimTime st, const record::Stop& stop);
+  void radio(SimTime st, record::RadioMessage message);
   void image(SimTime st, const std::string& uav, const std::string& sensor,
              const uav::CameraSample& sample);
   void flush();
@@ -87,8 +88,9 @@ class RunLog {
   std::uint64_t images_ = 0;  // rendered because a SUT read them
   bool repeatable_ = false;
   bool collects_ = false;
-  std::map<std::string, Row> rows_;   // by UAV
-  std::vector<Collected> collected_;  // of one ST
+  std::map<std::string, Row> rows_;                              // by UAV
+  std::vector<Collected> collected_;                             // of one ST
+  std::vector<std::pair<SimTime, record::RadioMessage>> radio_;  // the same, after those
 };
 
 }  // namespace tether::coordinator

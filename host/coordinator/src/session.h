@@ -3,12 +3,14 @@
 #include "validator.h"
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <tether/link/messages.h>
 #include <tether/link/server.h>
+#include <tether/radio/medium.h>
 #include <tether/record/messages.h>
 #include <tether/sim/simulator.h>
 #include <tether/sync/barrier_synchronizer.h>
@@ -22,6 +24,7 @@ namespace tether::coordinator {
 struct PendingInteraction {
   link::Request request;
   record::Interaction entry;  ///< complete when the reply is sent
+  bool is_promised = false;   ///< a message is in the inbox for this call
 };
 
 /// The state of one SUT and its UAV.
@@ -46,6 +49,13 @@ struct Session {
   AnnotationBudget annotations;
   std::optional<link::Finish> finish;
   bool left = false;  ///< finished or disconnected by the coordinator
+
+  // Radio.
+  std::deque<radio::Arrival> inbox;  ///< arrived, in the order of time
+  std::size_t promised = 0;          ///< open calls that will receive one of them
+  std::size_t full_queues = 0;       ///< messages in a row that its queue had no room for
+  std::uint64_t dues_sent = 0;
+  std::uint64_t newest_moved_due = 0;  ///< number of the last Due that was earlier than announced
 
   ExecTime resumed_at{};  ///< ET of its last reply, from which on it computes
 

@@ -144,6 +144,18 @@ std::optional<uav::Sample> Stepper::measure(std::size_t uav, record::Interaction
   return sample;
 }
 
+radio::Link Stepper::link(std::size_t uav, std::size_t other) {
+  return ask([&](sim::Simulator& s) {
+    const uav::Vec3 p_W_m = s.ground_truth(uav).body.p_WB - s.ground_truth(other).body.p_WB;
+    const auto walls = s.walls_between(uav, other);
+    if (!walls)
+      throw Error(ErrorCode::kSetup,
+                  "the simulator cannot tell how many walls are between two UAVs; use the radio's "
+                  "model \"ideal\", or another simulator");
+    return radio::Link{.distance_m = uav::norm(p_W_m), .walls = *walls};
+  });
+}
+
 void Stepper::announce() {
   for (std::size_t uav = 0; uav < samplers_.size(); ++uav)
     samplers_[uav].announce(

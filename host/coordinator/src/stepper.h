@@ -12,6 +12,7 @@
 #include <vector>
 
 #include <tether/base/error.h>
+#include <tether/radio/link_budget.h>
 #include <tether/record/messages.h>
 #include <tether/sim/simulator.h>
 #include <tether/sync/barrier_synchronizer.h>
@@ -59,6 +60,9 @@ class Stepper {
     SimTime at;
   };
   std::optional<Exhausted> exhausted();
+
+  /// What lies between two UAVs now. @throws SimulatorFailure if the simulator cannot tell walls.
+  radio::Link link(std::size_t uav, std::size_t other);
 
   std::size_t waiting_commands(std::size_t uav) const { return commands_.waiting(uav); }
 

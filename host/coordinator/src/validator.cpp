@@ -1,9 +1,11 @@
 #include "validator.h"
 
+#include <algorithm>
 #include <variant>
 
 #include <fmt/format.h>
 
+#include <tether/base/printable.h>
 #include <tether/sync/barrier_synchronizer.h>
 
 namespace tether::coordinator {
@@ -92,13 +94,34 @@ MaybeFault body_fault(const link::Finish&, const Standing&) {
   return std::nullopt;
 }
 
+MaybeFault body_fault(const link::SendMessage& send, const Standing& sut) {
+  if (sut.calls_in_step >= kMaxMessagesInAStep)
+    return Fault{Kind::kFlood, fmt::format("more than {} requests at ST {:.6f} s, and one of them "
+                                           "sends another message by radio",
+                                           kMaxMessagesInAStep, to_seconds(sut.st))};
+  const auto found = std::ranges::find(sut.uavs, send.to);
+  const bool is_known = send.to.empty()
+                            ? sut.uavs.size() > 1
+                            : found != sut.uavs.end() &&
+                                  found != sut.uavs.begin() + static_cast<std::ptrdiff_t>(sut.uav);
+  if (is_known) return std::nullopt;
+  return Fault{Kind::kNotAvailable,
+               fmt::format("a message to {}, which is no other UAV of the run",
+                           send.to.empty() ? "all others" : "\"" + printable(send.to) + "\"")};
+}
+
+MaybeFault body_fault(const link::ReceiveMessage&, const Standing&) {
+  return std::nullopt;
+}
+
 MaybeFault stop_fault(ExecTime at, const Standing& sut) {
   if (!sut.concurrent)
     return Fault{Kind::kImpossibleStop, "a stop, which only concurrent SUTs may send"};
   if (at < sut.bound)
     return Fault{Kind::kImpossibleStop, fmt::format("a stop at ET {} ns after it had reached {} ns",
                                                     to_ns(at), to_ns(sut.bound))};
-  if (sut.held)
+  // The same stop again, for a message that has arrived meanwhile, is possible.
+  if (sut.held && at > sut.bound)
     return Fault{Kind::kImpossibleStop,
                  fmt::format("a stop at ET {} ns while it was stopped for a reply at {} ns",
                              to_ns(at), to_ns(sut.bound))};

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include <tether/link/messages.h>
@@ -19,6 +20,10 @@ namespace tether::coordinator {
 inline constexpr std::size_t kMaxCallsInAStep = 10'000;
 /// Limit per UAV: a latency of one second with a command every 15 us.
 inline constexpr std::size_t kMaxWaitingCommands = 65'536;
+/// Limits on the messages by radio that a SUT sends between two steps of ST, and in a row while its
+/// queue is full. A SUT that exceeds them loses its session; the others finish.
+inline constexpr std::size_t kMaxMessagesInAStep = 1'000;
+inline constexpr std::size_t kMaxFullQueues = 1'000;
 /// Limit on the annotations of a SUT in a run: two hours of 1 kB for each of 30 images a second.
 inline constexpr std::size_t kMaxAnnotatedBytes = std::size_t{256} << 20;
 
@@ -33,6 +38,7 @@ struct Fault {
     kAheadOfClock,   ///< a stamp later than the host clock allows
     kNotAvailable,   ///< the UAV has no such sensor, or the run no such call
     kBadValue,       ///< a velocity that is not finite or too large
+    kFlood,          ///< too many messages by radio
     kImpossibleStop  ///< a stop of a serial SUT, in the past, or while held
   };
   Kind kind;
@@ -53,6 +59,8 @@ struct Standing {
   SimTime st;
   std::size_t calls_in_step = 0;  ///< at this ST
   std::size_t waiting_commands = 0;
+  std::span<const std::string> uavs{};  ///< all of the run; its own is `uav`
+  std::size_t uav = 0;
   const Sampler& sensors;
   const sync::ClockPlausibility* plausibility = nullptr;  ///< nullptr: its clock is not checked
   int clock_cores = 0;  ///< cores whose time its CPU clock adds up; 0: another clock

@@ -119,6 +119,7 @@ class MemoryRecorder final : public record::Recorder {
   void write(SimTime, const record::Stop& m) override { add(stops, m); }
   void write(SimTime at, const record::Contact& m) override { add(contacts, {at, m}); }
   void write(SimTime, const record::Battery& m) override { add(batteries, m); }
+  void write(SimTime, const record::RadioMessage& m) override { add(radio, m); }
   void write(SimTime, const record::Image& m) override { add(images, m); }
   void write(SimTime, const record::RawImage& m) override { add(raw_images, m); }
   void flush() override {}
@@ -134,6 +135,7 @@ class MemoryRecorder final : public record::Recorder {
   std::vector<record::Stop> stops;
   std::vector<std::pair<SimTime, record::Contact>> contacts;
   std::vector<record::Battery> batteries;
+  std::vector<record::RadioMessage> radio;
   std::vector<record::Image> images;
   std::vector<record::RawImage> raw_images;
   std::optional<record::Footer> footer;

@@ -14,7 +14,9 @@ namespace tether::coordinator {
 /// A step of a scripted SUT: computes for so long, then sends a request.
 struct Act {
   Duration compute{0};
-  std::variant<link::ReadSensor, link::SetVelocity, Duration /* sleep */, link::Finish> what;
+  std::variant<link::ReadSensor, link::SetVelocity, Duration /* sleep */, link::Finish,
+               link::SendMessage, link::ReceiveMessage>
+      what;
 };
 using Script = std::vector<Act>;
 
@@ -46,7 +48,7 @@ class ScriptedThreads {
   /// Takes a message of the coordinator.
   void on_message(const link::Message& message) {
     if (const auto* welcome = std::get_if<link::Welcome>(&message)) begin(*welcome);
-    if (const auto* due = std::get_if<link::Due>(&message)) of(due->sequence)->due = due->reply_at;
+    if (const auto* due = std::get_if<link::Due>(&message)) on_due(*due);
     if (const auto* reply = std::get_if<link::Reply>(&message)) on_reply(*reply);
     if (!free_running_ && stop_sent_ && may_resume()) resume();
   }
@@ -74,6 +76,18 @@ class ScriptedThreads {
     for (Thread& t : threads_) compute(t);
     if (!free_running_) return run_to_stop();
     for (Thread& t : threads_) ask(t, et_);
+  }
+
+  // A second one moves the reply up: if it is stopped after that already, it stays so and says so.
+  void on_due(const link::Due& due) {
+    Thread& t = *of(due.sequence);
+    const bool stops_longer = t.due && stop_sent_ && due.reply_at <= et_;
+    t.due = due.reply_at;
+    ++dues_heard_;
+    if (stops_longer) deliver_(stop());
+  }
+  link::Progress stop() const {
+    return {.reached = et_, .stopped = true, .dues_heard = dues_heard_};
   }
 
   void on_reply(const link::Reply& reply) {
@@ -115,7 +129,7 @@ class ScriptedThreads {
       return a->requests_at < b->requests_at;
     });
     for (Thread* t : asking) ask(*t, t->requests_at);
-    deliver_(link::Progress{et_, true});
+    deliver_(stop());
     stop_sent_ = true;
   }
 
@@ -143,6 +157,7 @@ class ScriptedThreads {
   bool stop_sent_ = false;  // the stop was delivered
   ExecTime et_;
   std::uint64_t last_sequence_ = 0;
+  std::uint64_t dues_heard_ = 0;
 };
 
 }  // namespace tether::coordinator

@@ -108,6 +108,10 @@ std::string canonical(const Record& record, const CanonicalOptions& options) {
     append_log_time(out, logged.at);
     append_json(out, logged.message);
   });
+  append_lines(out, "radio", record.radio, [&](const Logged<RadioMessage>& logged) {
+    append_log_time(out, logged.at);
+    append_json(out, logged.message);
+  });
   append_lines(out, "image", record.images, [&](const Logged<Image>& logged) {
     append_image(out, logged.message, bytes_of(logged.message.png));
   });

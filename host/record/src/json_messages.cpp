@@ -112,6 +112,10 @@ void append_json(std::string& out, const Battery& message) {
   append_members(out, message);
 }
 
+void append_json(std::string& out, const RadioMessage& message) {
+  append_members(out, message);
+}
+
 // The JSON of the SUT's is written as it is if it is an object, and as a string if it is not.
 void append_json(std::string& out, const Annotation& message) {
   MemberWriter writer(out);
@@ -194,6 +198,10 @@ Contact contact_from_json(std::string_view text) {
 
 Battery battery_from_json(std::string_view text) {
   return read_members<Battery>(parse_object(text));
+}
+
+RadioMessage radio_message_from_json(std::string_view text) {
+  return read_members<RadioMessage>(parse_object(text));
 }
 
 Annotation annotation_from_json(std::string_view text) {

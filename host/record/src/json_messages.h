@@ -22,6 +22,7 @@ void append_json(std::string& out, const Annotation& message);
 void append_json(std::string& out, const Stop& message, JsonParts parts = {});
 void append_json(std::string& out, const Contact& message);
 void append_json(std::string& out, const Battery& message);
+void append_json(std::string& out, const RadioMessage& message);
 /// As foxglove.CompressedImage, with more members.
 void append_json(std::string& out, const Image& message);
 /// As foxglove.RawImage, with more members.
@@ -37,6 +38,7 @@ Annotation annotation_from_json(std::string_view text);
 Stop stop_from_json(std::string_view text);
 Contact contact_from_json(std::string_view text);
 Battery battery_from_json(std::string_view text);
+RadioMessage radio_message_from_json(std::string_view text);
 Image image_from_json(std::string_view text);
 RawImage raw_image_from_json(std::string_view text);
 

@@ -43,6 +43,12 @@ void members(auto& io, Maybe<StageTime> auto& m) {
   io.flag("unknown", m.is_unknown);
 }
 
+void members(auto& io, Maybe<ReceivedMessage> auto& m) {
+  io("from", m.from);
+  io("sequence", m.sequence);
+  io("arrived_at_ns", m.arrived_at);
+}
+
 void members(auto& io, Maybe<Interaction> auto& m) {
   io("uav", m.uav);
   io("sequence", m.sequence);
@@ -65,6 +71,9 @@ void members(auto& io, Maybe<Interaction> auto& m) {
     io.list("seen_anchors", io.value_of(m.seen_anchors));
   io.optional("effect_at_ns", m.effect_at);
   io.optional("sleep_until_ns", m.sleep_until);
+  io.optional("receive_until_ns", m.receive_until);
+  if (io.has("received", m.received.has_value()))
+    io.object("received", [&](auto& received) { members(received, io.value_of(m.received)); });
   if (io.arrivals()) {
     io("st_at_arrival_ns", m.st_at_arrival);
     io("lag_ns", m.lag);
@@ -115,6 +124,20 @@ void members(auto& io, Maybe<Contact> auto& m) {
   io("at_ns", m.at);
   io("with", m.with);
   io("speed_m_s", m.speed_m_s);
+}
+
+void members(auto& io, Maybe<RadioMessage> auto& m) {
+  io("uav", m.uav);
+  io("sequence", m.sequence);
+  io("to", m.to);
+  io("bytes", m.bytes);
+  io("sent_at_ns", m.sent_at);
+  io("at_ns", m.at);
+  io("outcome", m.outcome);
+  io.optional("began_at_ns", m.began_at);
+  io.optional("distance_m", m.distance_m);
+  io.optional("walls", m.walls);
+  io.optional("snr_db", m.snr_db);
 }
 
 void members(auto& io, Maybe<Battery> auto& m) {
@@ -254,6 +277,11 @@ void members(auto& io, Maybe<Header> auto& m) {
   if (io.has("wall_at_start_ns", m.wall_at_start != WallTime{}))
     io("wall_at_start_ns", m.wall_at_start);
   io.flag("reports_contacts", m.reports_contacts);
+  if (io.has("radio", !m.radio.model.empty())) {
+    io("radio", m.radio.model);
+    io("radio_least_delay_ns", m.radio.least_delay);
+    io("radio_data_rate_bit_s", m.radio.data_rate_bit_s);
+  }
   if (!io.has("emulator", !m.emulator.program.empty())) return;
   io("emulator", m.emulator.program);
   io("cpu_model", m.emulator.cpu_model);

@@ -93,6 +93,8 @@ class RecordBuilder final : public McapVisitor {
       return &RecordBuilder::append<&Record::contacts, contact_from_json>;
     if (schema == kBatterySchema.name)
       return &RecordBuilder::append<&Record::batteries, battery_from_json>;
+    if (schema == kRadioMessageSchema.name)
+      return &RecordBuilder::append<&Record::radio, radio_message_from_json>;
     if (schema == kCompressedImageSchema.name)
       return options_.images ? &RecordBuilder::append<&Record::images, image_from_json>
                              : &RecordBuilder::skip;
@@ -139,6 +141,7 @@ SimTime last_time(const Record& record) {
   see(record.stops);
   see(record.contacts);
   see(record.batteries);
+  see(record.radio);
   return last;
 }
 

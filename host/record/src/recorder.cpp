@@ -92,6 +92,9 @@ class McapRecorder final : public Recorder {
   void write(SimTime at, const Battery& message) override {
     write_json(batteries_.of("/battery", message.uav), at, message);
   }
+  void write(SimTime at, const RadioMessage& message) override {
+    write_json(radio_.of("/radio", {}), at, message);
+  }
   void write(SimTime at, const Image& message) override {
     write_json(images_.of("/images", message.uav, message.sensor), at, message);
   }
@@ -129,6 +132,7 @@ class McapRecorder final : public Recorder {
   Channels stops_{mcap_, kStopSchema};
   Channels contacts_{mcap_, kContactSchema};
   Channels batteries_{mcap_, kBatterySchema};
+  Channels radio_{mcap_, kRadioMessageSchema};
   Channels images_{mcap_, kCompressedImageSchema};
   Channels depths_{mcap_, kRawImageSchema};
   Channels labels_{mcap_, kRawImageSchema};
@@ -145,6 +149,7 @@ class NullRecorder final : public Recorder {
   void write(SimTime, const Stop&) override {}
   void write(SimTime, const Contact&) override {}
   void write(SimTime, const Battery&) override {}
+  void write(SimTime, const RadioMessage&) override {}
   void write(SimTime, const Image&) override {}
   void write(SimTime, const RawImage&) override {}
   void flush() override {}

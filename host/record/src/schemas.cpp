@@ -9,7 +9,7 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
   "properties": {
     "uav": {"type": "string"},
     "sequence": {"type": "integer", "minimum": 1},
-    "kind": {"type": "string", "enum": ["sensor", "command", "sleep", "finish"]},
+    "kind": {"type": "string", "enum": ["sensor", "command", "sleep", "finish", "send", "receive"]},
     "request_at_ns": {"type": "integer", "description": "ET when the request was issued"},
     "reply_at_ns": {"type": "integer", "description": "ET with which the SUT goes on"},
     "sensor": {"type": "string"},
@@ -37,6 +37,17 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
     },
     "effect_at_ns": {"type": "integer", "description": "first step boundary the command acts on"},
     "sleep_until_ns": {"type": "integer", "description": "ET at which the SUT asked to be woken"},
+    "receive_until_ns": {"type": "integer", "description": "ET of the request + timeout"},
+    "received": {
+      "type": "object",
+      "description": "the message that was received",
+      "properties": {
+        "from": {"type": "string", "description": "the sender's UAV"},
+        "sequence": {"type": "integer", "description": "of the sender's call"},
+        "arrived_at_ns": {"type": "integer"}
+      },
+      "required": ["from", "sequence", "arrived_at_ns"]
+    },
     "st_at_arrival_ns": {"type": "integer"},
     "lag_ns": {"type": "integer", "description": "request_at - st_at_arrival"},
     "st_at_release_ns": {"type": "integer"},
@@ -150,6 +161,27 @@ const Schema kContactSchema{"tether.Contact", R"json({
                   "description": "of approach along the contact's normal, before the impact"}
   },
   "required": ["uav", "at_ns", "with", "speed_m_s"]
+})json"};
+
+const Schema kRadioMessageSchema{"tether.RadioMessage", R"json({
+  "title": "tether.RadioMessage",
+  "description": "What became of a message between two UAVs. Log time: ST at at_ns.",
+  "type": "object",
+  "properties": {
+    "uav": {"type": "string", "description": "of the sender"},
+    "sequence": {"type": "integer", "minimum": 1, "description": "of the sender's call"},
+    "to": {"type": "string", "description": "the receiver's UAV"},
+    "bytes": {"type": "integer", "minimum": 0},
+    "sent_at_ns": {"type": "integer", "description": "ET of the sender's call"},
+    "at_ns": {"type": "integer", "description": "when it arrived, was lost, or the run ended"},
+    "outcome": {"type": "string", "enum": ["delivered", "noise", "collision", "half_duplex",
+                                           "queue_full", "too_long", "inbox_full", "waiting"]},
+    "began_at_ns": {"type": "integer", "description": "ST at which the transmission began"},
+    "distance_m": {"type": ["number", "null"]},
+    "walls": {"type": "integer", "minimum": 0, "description": "between the UAVs"},
+    "snr_db": {"type": ["number", "null"], "description": "signal to noise and interference"}
+  },
+  "required": ["uav", "sequence", "to", "bytes", "sent_at_ns", "at_ns", "outcome"]
 })json"};
 
 const Schema kBatterySchema{"tether.Battery", R"json({

@@ -17,6 +17,7 @@ extern const Schema kAnnotationSchema;
 extern const Schema kStopSchema;
 extern const Schema kContactSchema;
 extern const Schema kBatterySchema;
+extern const Schema kRadioMessageSchema;
 extern const Schema kMarginSchema;
 /// Well-known schemas of Foxglove, by their names.
 extern const Schema kCompressedImageSchema;

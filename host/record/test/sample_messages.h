@@ -82,6 +82,17 @@ inline Stop stop() {
   return {"a", et_ns(50'000'321), et_ns(50'000'000), from_ns<WallTime>(323'456'789)};
 }
 
+inline Interaction receive_interaction(std::uint64_t sequence = 5) {
+  Interaction message = interaction(kReceive, sequence);
+  message.receive_until = et_ns(60'000'000);
+  message.received = {"b", 3, st_ms(40)};
+  return message;
+}
+
+inline RadioMessage radio_message() {
+  return {"a", 3, "b", 100, st_ms(39), st_ms(40), "collision", st_ms(39), 12.5, 2, -3.5};
+}
+
 inline Contact contact() {
   return {"a", st_ms(42), "room \"1\"", 1.0 / 3.0};
 }

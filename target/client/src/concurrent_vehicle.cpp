@@ -66,7 +66,7 @@ Result<ConcurrentVehicle::Greeting> ConcurrentVehicle::greet(const Caller& calle
 }
 
 ConcurrentVehicle::ConcurrentVehicle(Caller caller, Greeting greeting, MappedClockPage clock)
-    : InteractingVehicle(std::move(greeting.welcome.catalogue)),
+    : InteractingVehicle(std::move(greeting.welcome.catalogue), std::move(greeting.welcome.peers)),
       caller_(std::move(caller)),
       clock_(std::move(clock)),
       free_running_(greeting.welcome.free_running) {

@@ -68,6 +68,9 @@ Status check(const link::Reply& reply, const link::Request& request, bool free_r
   if (reply.sample && uav::sampled_at(*reply.sample) > same_instant(reply.resume_at)) {
     return protocol_failure("its sample is from the future");
   }
+  if (reply.message && reply.message->arrived_at > same_instant(reply.resume_at)) {
+    return protocol_failure("its message is from the future");
+  }
   return ok_status();
 }
 
@@ -87,7 +90,9 @@ std::string name_of_call(const decltype(link::Request::body)& body,
   if (const auto* read = std::get_if<link::ReadSensor>(&body))
     return catalogue.sensors[read->sensor].name;
   if (std::holds_alternative<link::SetVelocity>(body)) return "command";
-  return std::holds_alternative<link::Sleep>(body) ? "sleep" : "finish";
+  if (std::holds_alternative<link::Sleep>(body)) return "sleep";
+  if (std::holds_alternative<link::SendMessage>(body)) return "send";
+  return std::holds_alternative<link::ReceiveMessage>(body) ? "receive" : "finish";
 }
 
 Failure InteractingVehicle::give_up(Failure failure) {
@@ -158,6 +163,32 @@ Result<uav::ImuSample> InteractingVehicle::read_imu(std::string_view sensor, Rea
 }
 Result<uav::RangeSample> InteractingVehicle::read_range(std::string_view sensor, Read read) {
   return this->read<uav::RangeSample>(sensor, read);
+}
+
+// --- radio --------------------------------------------------------------------------------------
+
+Status InteractingVehicle::send(std::string_view to, std::span<const std::uint8_t> bytes) {
+  if (!to.empty() && std::find(peers_.begin(), peers_.end(), to) == peers_.end()) {
+    std::string others;
+    for (const std::string& peer : peers_) others += (others.empty() ? "'" : ", '") + peer + "'";
+    return Failure{Failure::Kind::kInvalid,
+                   "there is no other UAV '" + std::string(to) + "'; " +
+                       (others.empty() ? "this is the only one" : "the others are " + others)};
+  }
+  if (peers_.empty())
+    return Failure{Failure::Kind::kInvalid, "there is no other UAV to send a message to"};
+  return status_of(interact(link::SendMessage{std::string(to), {bytes.begin(), bytes.end()}}));
+}
+
+Result<RadioMessage> InteractingVehicle::receive(Duration timeout) {
+  const Duration longest{link::kMaxTimestampNs / 2};
+  auto reply = interact(link::ReceiveMessage{std::clamp(timeout, Duration::zero(), longest)});
+  if (!reply) return reply.failure();
+  if (!reply->message)
+    return Failure{Failure::Kind::kNothingYet, "no message has arrived by the timeout"};
+  link::RadioMessage& message = *reply->message;
+  return RadioMessage{std::move(message.from), message.sent_at, message.arrived_at,
+                      std::move(message.bytes)};
 }
 
 // --- commands and the end -----------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <unistd.h>
 
@@ -39,12 +40,16 @@ class InteractingVehicle : public Vehicle {
   Result<uav::ImuSample> read_imu(std::string_view sensor, Read read) final;
   Result<uav::RangeSample> read_range(std::string_view sensor, Read read) final;
   Status command_velocity(const uav::VelocityCommand& command) final;
+  const std::vector<std::string>& peers() const final { return peers_; }
+  Status send(std::string_view to, std::span<const std::uint8_t> bytes) final;
+  Result<RadioMessage> receive(Duration timeout) final;
   Status finish(bool reached_goal, std::string_view outcome, std::string_view details_json) final;
 
  protected:
   using Body = decltype(link::Request::body);
 
-  explicit InteractingVehicle(uav::Catalogue catalogue) : catalogue_(std::move(catalogue)) {}
+  InteractingVehicle(uav::Catalogue catalogue, std::vector<std::string> peers)
+      : catalogue_(std::move(catalogue)), peers_(std::move(peers)) {}
 
   /// One interaction, from stamping the request to going on after its reply. After one that
   /// finishes the mission, `over` is set.
@@ -69,6 +74,7 @@ class InteractingVehicle : public Vehicle {
   Failure no_such_sensor(std::string_view sensor, uav::SensorKind kind) const;
 
   uav::Catalogue catalogue_;
+  std::vector<std::string> peers_;
   pid_t process_ = ::getpid();
   mutable std::mutex mutex_;
   std::optional<Failure> over_;  // guarded by mutex_

@@ -10,7 +10,7 @@ namespace tether::client {
 SimulatedVehicle::SimulatedVehicle(std::unique_ptr<link::Channel> channel, link::Welcome welcome,
                                    std::unique_ptr<TimeSource> source,
                                    std::unique_ptr<WallTimer> wall, Duration progress_period)
-    : InteractingVehicle(std::move(welcome.catalogue)),
+    : InteractingVehicle(std::move(welcome.catalogue), std::move(welcome.peers)),
       channel_(std::move(channel)),
       source_(std::move(source)),
       wall_(std::move(wall)),

@@ -40,6 +40,13 @@ class InterruptibleVehicle : public client::Vehicle {
   Status sleep_until(ExecTime until) override {
     return unless_interrupted([&] { return vehicle_->sleep_until(until); });
   }
+  const std::vector<std::string>& peers() const override { return vehicle_->peers(); }
+  Status send(std::string_view to, std::span<const std::uint8_t> bytes) override {
+    return unless_interrupted([&] { return vehicle_->send(to, bytes); });
+  }
+  Result<client::RadioMessage> receive(Duration timeout) override {
+    return unless_interrupted([&] { return vehicle_->receive(timeout); });
+  }
   Status annotate(std::string_view topic, std::string_view json) override {
     return vehicle_->annotate(topic, json);
   }

@@ -52,6 +52,7 @@ void Supervision::forward(Asked asked, ExecTime latest) {
   request.issued_at = std::max(std::min(request.issued_at, latest), last_sent_);
   open.issued_at = last_sent_ = request.issued_at;
   open.finishes = std::holds_alternative<link::Finish>(request.body);
+  open.receives = std::holds_alternative<link::ReceiveMessage>(request.body);
   open_.emplace(sequence_, std::move(open));
   outgoing_.emplace_back(std::move(request));
 }
@@ -60,12 +61,18 @@ void Supervision::forward(Asked asked, ExecTime latest) {
 
 Status Supervision::heard(const link::Due& due) {
   const auto found = open_.find(due.sequence);
-  if (found == open_.end() || found->second.due || free_running_) {
+  if (found == open_.end() || free_running_) {
     return wrong("an unexpected reply time", due.sequence);
   }
-  if (due.reply_at < found->second.issued_at)
-    return wrong("a reply time before the request", due.sequence);
-  found->second.due = due.reply_at;
+  Open& open = found->second;
+  if (due.reply_at < open.issued_at) return wrong("a reply time before the request", due.sequence);
+  if (open.due && (!open.receives || open.reply || due.reply_at > *open.due))
+    return wrong("another reply time", due.sequence);
+  // It is stopped, and does not go on without the reply: as if it had stopped for it.
+  const bool stops_longer = open.due && !running_ && due.reply_at <= stopped_at_;
+  open.due = due.reply_at;
+  ++dues_heard_;
+  if (stops_longer) outgoing_.emplace_back(stop_message());
   return ok_status();
 }
 
@@ -160,7 +167,11 @@ void Supervision::stopped(ExecTime at) {
   });
   for (Asked& asked : std::exchange(asked_, {})) forward(std::move(asked), stopped_at_);
   last_sent_ = stopped_at_;
-  outgoing_.emplace_back(link::Progress{stopped_at_, true});
+  outgoing_.emplace_back(stop_message());
+}
+
+link::Progress Supervision::stop_message() const {
+  return {.reached = stopped_at_, .stopped = true, .dues_heard = dues_heard_};
 }
 
 bool Supervision::may_go_on() const {

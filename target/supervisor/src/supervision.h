@@ -86,10 +86,12 @@ class Supervision {
     std::uint64_t callers_sequence = 0;
     ExecTime issued_at;
     bool finishes = false;
+    bool receives = false;  // a message may make its reply due earlier
     std::optional<ExecTime> due;
     std::optional<link::Reply> reply;
   };
 
+  link::Progress stop_message() const;
   void forward(Asked asked, ExecTime latest);
   void hand_out(Open open);
   void hand_out_what_is_there();
@@ -101,8 +103,9 @@ class Supervision {
   bool finished_ = false;
   std::optional<link::Refusal> why_over_;
   ExecTime stopped_at_;
-  ExecTime last_sent_;                  // no later stamp or Progress is before it
-  std::uint64_t sequence_ = 0;          // of the last request sent
+  ExecTime last_sent_;          // no later stamp or Progress is before it
+  std::uint64_t sequence_ = 0;  // of the last request sent
+  std::uint64_t dues_heard_ = 0;
   std::vector<Asked> asked_;            // not yet sent
   std::map<std::uint64_t, Open> open_;  // by sequence
   std::vector<link::Message> outgoing_;

@@ -43,6 +43,51 @@ class SupervisionTest : public testing::Test {
   Supervision group_{false, et(0ms)};
 };
 
+TEST_F(SupervisionTest, StopsEarlierForAMessageThatHasArrived) {
+  group_.asked(7, request(10ms, link::ReceiveMessage{30ms}));
+  group_.stopped(et(10ms));
+  ASSERT_TRUE(group_.heard(Due{1, et(40ms)}).ok());
+  group_.go_on();
+  group_.take_outgoing();
+  ASSERT_TRUE(group_.heard(Due{1, et(20ms)}).ok());
+  EXPECT_FALSE(group_.must_stop(et(19ms)));
+  EXPECT_TRUE(group_.must_stop(et(22ms)));
+  group_.stopped(et(22ms));
+  const auto stops = all<Progress>(group_.take_outgoing());
+  ASSERT_EQ(stops.size(), 1u);
+  EXPECT_EQ(stops[0].dues_heard, 2u);
+  EXPECT_FALSE(group_.may_go_on());
+  ASSERT_TRUE(group_.heard(Reply{1, et(20ms), {}}).ok());
+  EXPECT_TRUE(group_.may_go_on());
+}
+
+TEST_F(SupervisionTest, StaysStoppedForAMessageAndSaysSo) {
+  group_.asked(7, request(10ms, link::ReceiveMessage{30ms}));
+  group_.asked(8, request(10ms));
+  group_.stopped(et(12ms));
+  ASSERT_TRUE(group_.heard(Due{1, et(40ms)}).ok());
+  ASSERT_TRUE(group_.heard(Due{2, et(11ms)}).ok());
+  group_.take_outgoing();
+  ASSERT_TRUE(group_.heard(Due{1, et(12ms)}).ok());
+  const auto stops = all<Progress>(group_.take_outgoing());
+  ASSERT_EQ(stops.size(), 1u);
+  EXPECT_EQ(stops[0].reached, et(12ms));
+  EXPECT_TRUE(stops[0].stopped);
+  EXPECT_EQ(stops[0].dues_heard, 3u);
+  ASSERT_TRUE(group_.heard(Reply{2, et(11ms), {}}).ok());
+  EXPECT_FALSE(group_.may_go_on());
+}
+
+TEST_F(SupervisionTest, RefusesALaterDueAndOneForAnotherCall) {
+  group_.asked(7, request(10ms, link::ReceiveMessage{30ms}));
+  group_.asked(8, request(10ms));
+  group_.stopped(et(12ms));
+  ASSERT_TRUE(group_.heard(Due{1, et(40ms)}).ok());
+  ASSERT_TRUE(group_.heard(Due{2, et(40ms)}).ok());
+  EXPECT_FALSE(group_.heard(Due{1, et(41ms)}).ok());
+  EXPECT_FALSE(group_.heard(Due{2, et(39ms)}).ok());
+}
+
 TEST_F(SupervisionTest, StopsForARequestAndAgainForItsReply) {
   EXPECT_FALSE(group_.must_stop(et(10ms)));
   group_.asked(7, request(10ms));

@@ -33,6 +33,10 @@ struct tether_options {
   std::optional<tether::Duration> welcome_timeout;
 };
 
+struct tether_message {
+  tether::client::RadioMessage message;
+};
+
 /// Pixels of its own, or those that a subscription shows for as long as its callback runs.
 struct tether_image {
   explicit tether_image(tether::uav::CameraSample&& kept) : own(std::move(kept)), sample(&own) {}

@@ -68,6 +68,15 @@ class FakeVehicle final : public client::Vehicle {
     et = until;
     return status();
   }
+  const std::vector<std::string>& peers() const override { return others; }
+  Status send(std::string_view to, std::span<const std::uint8_t> bytes) override {
+    return say("to " + std::string(to) + ": " + std::string(bytes.begin(), bytes.end()));
+  }
+  Result<client::RadioMessage> receive(Duration timeout) override {
+    et += timeout;
+    if (failure) return *failure;
+    return client::RadioMessage{"uav2", from_ns<SimTime>(7), from_ns<SimTime>(9), {'h', 'i'}};
+  }
   Status annotate(std::string_view topic, std::string_view json) override {
     return say(std::string(topic) + " " + std::string(json));
   }
@@ -89,6 +98,7 @@ class FakeVehicle final : public client::Vehicle {
   std::vector<std::pair<std::string, client::Read>> reads;
   std::vector<uav::VelocityCommand> commands;
   std::vector<std::string> said;
+  std::vector<std::string> others{"uav2", "uav3"};
 
  private:
   template <class Sample>

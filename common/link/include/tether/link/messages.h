@@ -67,6 +67,7 @@ struct Welcome {
   ExecTime start;             ///< the SUT's ET begins here
   /// With the clock "replayed": what each stage takes until the first call.
   std::vector<StageTime> computing{};
+  std::vector<std::string> peers{};  ///< the other UAVs, to which messages can be sent
 };
 
 /// Coordinator → SUT: not accepted, or the run is over. SUT → coordinator: its execution time is
@@ -99,6 +100,18 @@ struct Finish {
   std::string details;  ///< JSON object: results of the task; may be empty
 };
 
+/// Longest message by radio [bytes].
+inline constexpr std::size_t kMaxRadioBytes = 64u << 10;
+/// Send a message by radio. The reply is due at once, and does not tell whether it will arrive.
+struct SendMessage {
+  std::string to;  ///< a UAV; empty: all others
+  std::vector<std::uint8_t> bytes;
+};
+/// Wait for the next message, until `timeout` after the request at most.
+struct ReceiveMessage {
+  Duration timeout{0};  ///< 0: of those that have arrived
+};
+
 /// SUT → coordinator: an interaction begins.
 struct Request {
   std::uint64_t sequence = 0;  ///< 1, 2, 3, …
@@ -107,10 +120,18 @@ struct Request {
   ExecTime issued_at;
   Duration previous_round_trip{0};  ///< WT on the SUT's side from issuing the previous request to
                                     ///< having its reply; 0: not measured
-  std::variant<ReadSensor, SetVelocity, Sleep, Finish> body;
+  std::variant<ReadSensor, SetVelocity, Sleep, Finish, SendMessage, ReceiveMessage> body;
   /// What was computed since the previous reply, each stage once, in the order of their beginning.
   /// Of a serial SUT that sends them, the sum is `issued_at` - the previous `resume_at`.
   std::vector<StageTime> stages{};
+};
+
+/// A message that has arrived by radio. Its sender sent it at ET `sent_at`.
+struct RadioMessage {
+  std::string from;  ///< a UAV
+  SimTime sent_at;
+  SimTime arrived_at;
+  std::vector<std::uint8_t> bytes;
 };
 
 /// Coordinator → SUT: the interaction ends.
@@ -120,11 +141,13 @@ struct Reply {
   std::optional<uav::Sample> sample;  ///< of ReadSensor; none if none was available
   /// With the clock "replayed": what each stage takes until the next call.
   std::vector<StageTime> computing{};
+  std::optional<RadioMessage> message{};  ///< of ReceiveMessage; none: none arrived in time
 };
 
 /// Coordinator → concurrent SUT under the barrier, as soon as a request has arrived: the time at
 /// which its reply is due. The SUT may run until its ET reaches `reply_at`, and is stopped there
-/// until the reply arrives.
+/// until the reply arrives. When a message arrives for an open ReceiveMessage, another Due follows,
+/// with an earlier time.
 struct Due {
   std::uint64_t sequence = 0;
   ExecTime reply_at;  ///< t_rep, ≥ the request's stamp
@@ -138,6 +161,8 @@ struct Progress {
   /// Bytes of a frame that takes long to arrive, so far; the SUT is waiting for the rest, and
   /// `reached` has no meaning. 0: it is not.
   std::uint32_t received_bytes = 0;
+  /// With `stopped`: how many Due messages had arrived. It has stopped for those, too.
+  std::uint64_t dues_heard = 0;
 };
 
 /// SUT → coordinator: an entry for the record (ROI, estimate, task phase). Takes no ET and gets no

@@ -10,6 +10,7 @@
 
 #include <tether/base/time.h>
 #include <tether/link/server.h>
+#include <tether/radio/settings.h>
 #include <tether/record/messages.h>
 #include <tether/record/writer.h>
 #include <tether/sim/simulator.h>
@@ -58,6 +59,7 @@ struct RunOptions {
   Duration ground_truth_period = std::chrono::milliseconds(10);  ///< of ST; > 0
   bool record_images = false;                                    ///< those that a SUT has read
   Duration image_period{0};  ///< least ST between two recorded images of one camera; 0: every one
+  radio::Settings radio{};   ///< between the UAVs
   record::Header header;  ///< filled in by the caller; the coordinator adds policy, timing and SUTs
 };
 
@@ -72,6 +74,7 @@ enum class RunEnd {
   kBatteryEmpty,   ///< the battery of a UAV was exhausted, and it fell
   kRecordFailed,   ///< the record could not be written; it has no end
   kTimingDiffers,  ///< a call or a stage of a SUT is not the one whose time is replayed
+  kFlooded,        ///< a SUT sent too many messages by radio; the others have finished since
 };
 std::string_view name(RunEnd end);
 

@@ -27,6 +27,11 @@ inline constexpr std::string_view kSensor = "sensor";
 inline constexpr std::string_view kCommand = "command";
 inline constexpr std::string_view kSleep = "sleep";
 inline constexpr std::string_view kFinish = "finish";
+inline constexpr std::string_view kSend = "send";
+inline constexpr std::string_view kReceive = "receive";
+
+/// Value of RadioMessage::outcome; others say why the message was lost.
+inline constexpr std::string_view kDelivered = "delivered";
 
 /// Where an anchor is seen in an image: the first and last column and row of its visible pixels.
 struct SeenAnchor {
@@ -44,13 +49,21 @@ struct StageTime {
   friend bool operator==(const StageTime&, const StageTime&) = default;
 };
 
+/// What a call of kind "receive" returned.
+struct ReceivedMessage {
+  std::string from;            ///< the sender's UAV
+  std::uint64_t sequence = 0;  ///< of the sender's call of kind "send"
+  SimTime arrived_at;
+  friend bool operator==(const ReceivedMessage&, const ReceivedMessage&) = default;
+};
+
 /// One request of a SUT and its reply. Topic /interactions; log time = ST at release.
 struct Interaction {
   std::string uav;
   /// 1, 2, 3, … for each SUT. The record has the interactions of a concurrent SUT in the order of
   /// their replies, without calls that were still open when the SUT finished.
   std::uint64_t sequence = 0;
-  std::string kind;     ///< kSensor, kCommand, kSleep or kFinish
+  std::string kind;     ///< kSensor, kCommand, kSleep, kFinish, kSend or kReceive
   ExecTime request_at;  ///< t_req
   ExecTime reply_at;    ///< t_rep
 
@@ -70,6 +83,10 @@ struct Interaction {
 
   std::optional<SimTime> effect_at;     ///< kind "command": first step boundary it acts on
   std::optional<ExecTime> sleep_until;  ///< kind "sleep": requested end of the sleep
+
+  // For kind "receive".
+  std::optional<ExecTime> receive_until{};    ///< request_at + timeout
+  std::optional<ReceivedMessage> received{};  ///< none: no message had arrived by then
 
   SimTime st_at_arrival;
   SimTime st_at_release;
@@ -152,6 +169,26 @@ struct Battery {
     return lift_J + moving_J + idle_J + computing_J + sensors_J + resistance_J;
   }
   friend bool operator==(const Battery&, const Battery&) = default;
+};
+
+/// What became of a message between two UAVs: written when it arrived or was lost, and at the end
+/// of the run if neither is known. A message to all UAVs has one for each of them. Topic /radio;
+/// log time = ST at `at`.
+struct RadioMessage {
+  std::string uav;             ///< the sender's
+  std::uint64_t sequence = 0;  ///< of its call of kind "send"
+  std::string to;              ///< the receiver's UAV
+  std::uint64_t bytes = 0;
+  SimTime sent_at;  ///< ET of the call
+  SimTime at;       ///< when it arrived, was lost, or the run ended
+  /// "delivered"; lost: "noise", "collision", "half_duplex", "queue_full", "too_long",
+  /// "inbox_full"; "waiting" at the end of the run.
+  std::string outcome;
+  std::optional<SimTime> began_at{};     ///< of the transmission
+  std::optional<double> distance_m{};    ///< between the UAVs; none: ideal, or not transmitted
+  std::optional<std::uint64_t> walls{};  ///< between them
+  std::optional<double> snr_db{};        ///< signal to noise and interference
+  friend bool operator==(const RadioMessage&, const RadioMessage&) = default;
 };
 
 /// A message of the SUT for the record. Topic /task/<uav>; log time = ST when it arrived.
@@ -277,6 +314,13 @@ struct EmulatorInfo {
 
   friend bool operator==(const EmulatorInfo&, const EmulatorInfo&) = default;
 };
+/// The radio between the UAVs. A record of one UAV has none.
+struct RadioInfo {
+  std::string model;             ///< "ideal" or "log_distance"; empty: none
+  Duration least_delay{0};       ///< of a message without bytes
+  double data_rate_bit_s = 0.0;  ///< 0: a message takes no time for its bytes
+  friend bool operator==(const RadioInfo&, const RadioInfo&) = default;
+};
 /// Configuration of the run: written first (metadata record "tether"), as names and values.
 struct Header {
   int schema_version = kSchemaVersion;
@@ -298,6 +342,7 @@ struct Header {
   EmulatorInfo emulator{};
   bool reports_contacts = false;  ///< the record has all contacts; else it has none, and none is
                                   ///< known
+  RadioInfo radio{};
 };
 
 /// How close a UAV came to anything else: to the nearest collision shape, at the instants of the

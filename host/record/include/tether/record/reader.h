@@ -38,6 +38,7 @@ struct Record {
   std::vector<Logged<Stop>> stops;
   std::vector<Logged<Contact>> contacts;
   std::vector<Logged<Battery>> batteries;
+  std::vector<Logged<RadioMessage>> radio;
   std::vector<Logged<Image>> images;
   std::vector<Logged<RawImage>> raw_images;
   std::optional<Footer> footer;

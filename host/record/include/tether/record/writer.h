@@ -22,6 +22,7 @@ class Recorder {
   virtual void write(SimTime at, const Stop& message) = 0;
   virtual void write(SimTime at, const Contact& message) = 0;
   virtual void write(SimTime at, const Battery& message) = 0;
+  virtual void write(SimTime at, const RadioMessage& message) = 0;
   virtual void write(SimTime at, const Image& message) = 0;
   virtual void write(SimTime at, const RawImage& message) = 0;
   /// Passes everything written so far to the operating system (not necessarily to the disk).

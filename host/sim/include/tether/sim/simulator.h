@@ -89,6 +89,12 @@ class Simulator {
   /// From a UAV to whatever is nearest, at `now()`. None: not measured, or there is nothing else.
   virtual std::optional<Clearance> clearance(std::size_t uav) const = 0;
 
+  /// Walls on the straight line between two UAVs at `now()`: what rays hit of everything but UAVs.
+  /// A wall is entered and left; of a surface without a back, each hit is a wall. None: not known.
+  virtual std::optional<int> walls_between(std::size_t /*uav*/, std::size_t /*other*/) {
+    return std::nullopt;
+  }
+
   /// The battery at `now()`. None: the UAV has no model of energy, or it is not simulated.
   virtual std::optional<energy::Status> battery(std::size_t /*uav*/) const { return std::nullopt; }
   /// The UAV's computer computed for that long, summed over its cores (energy::Meter::computed).

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -57,6 +58,16 @@ struct TimeAdvanceRequest {
   SutIndex sut = 0;
   ExecTime reply_at;
   CallId call = 0;
+  /// Of a call that waits for messages of other SUTs: the least time that a message takes. The
+  /// reply is sent when no other SUT can send one any more that would arrive before it.
+  std::optional<Duration> lookahead{};
+};
+
+/// An instant of one SUT. In the order of time; at one instant, in the order of indices.
+struct SutTime {
+  ExecTime at;
+  SutIndex sut = 0;
+  friend auto operator<=>(const SutTime&, const SutTime&) = default;
 };
 
 /// Permission to send the reply.
@@ -89,13 +100,20 @@ struct TimeAdvanceGrant {
 ///  - to a concurrent SUT it is sent while the SUT is stopped at an ET ≥ t. So no request with an
 ///    earlier stamp can follow, and its replies are sent in the order of (t, call), at any speed of
 ///    the simulator.
+///  - a call with a lookahead is released at t when each other SUT has a bound (of a held one, the
+///    timestamp of its reply) that is later than t − lookahead, or equal to it and of a greater
+///    index.
 /// Progress: if each computing SUT requests or reports progress again, and each concurrent one
 /// stops when a reply is due, every held call is released.
 ///
-/// Not thread-safe. Allocates only in `add`.
+/// Each function takes a number of steps that is logarithmic in the number of SUTs, except
+/// `slowest_computing`. Not thread-safe. Allocates only in `add`.
 class BarrierSynchronizer {
  public:
-  explicit BarrierSynchronizer(StepGrid grid) : grid_(grid) {}
+  explicit BarrierSynchronizer(StepGrid grid);
+  ~BarrierSynchronizer();
+  BarrierSynchronizer(BarrierSynchronizer&&) noexcept;
+  BarrierSynchronizer& operator=(BarrierSynchronizer&&) noexcept;
 
   /// A SUT joins, computing, with ET = `start`. @pre same_instant(start) ≥ the simulation's present
   /// ST.
@@ -109,8 +127,9 @@ class BarrierSynchronizer {
 
   /// All threads of a concurrent SUT are stopped since its ET was `at`, and all of its requests up
   /// to then have arrived; it resumes when each call due by then has been released.
-  /// @pre concurrent, at ≥ bound(sut).
-  void stop(SutIndex sut, ExecTime at);
+  /// `knows_moved`: it has stopped for the calls that were moved up, too. @pre concurrent, at ≥
+  /// bound(sut).
+  void stop(SutIndex sut, ExecTime at, bool knows_moved = true);
 
   /// A request of a computing SUT, stamped `issued_at`, arrived when the simulation was at `st`.
   /// The SUT's bound becomes `charged_at`; a concurrent one counts as running until its next stop.
@@ -122,14 +141,24 @@ class BarrierSynchronizer {
   /// open.
   void hold(const TimeAdvanceRequest& request);
 
+  /// A message has arrived for a held call: its reply is due earlier. A concurrent SUT waits for it
+  /// only from the next `stop` with `knows_moved` on. @pre the call is open, its request's
+  /// timestamp ≤ reply_at ≤ its present reply_at, floor(reply_at) ≥ ST.
+  void move_up(SutIndex sut, CallId call, ExecTime reply_at);
+
   /// The lower bound on the timestamps of later requests, at its step boundary: the simulation must
   /// not step past it. SimTime::max() without SUTs.
   SimTime lower_bound() const;
 
-  /// Releases the held call with the least (reply_at, SUT, call) of those that may be answered at
-  /// `st`, if there is one; call again until there is none. @pre st ≤ lower_bound(), every command
-  /// with effect ≤ st has been applied.
-  std::optional<TimeAdvanceGrant> release(SimTime st);
+  /// Releases the held call with the least (reply_at, SUT, call), if it may be answered at `st`;
+  /// call again until there is none. `message`: the next instant at which a message in transit may
+  /// arrive; a call with a lookahead that is not before it stays held. @pre st ≤ lower_bound(),
+  /// every command with effect ≤ st has been applied.
+  std::optional<TimeAdvanceGrant> release(SimTime st, const std::optional<SutTime>& message = {});
+
+  /// The least instant at which a SUT may still send something: its bound or, of a held one, the
+  /// timestamp of its reply. None without SUTs.
+  std::optional<SutTime> earliest() const;
 
   /// The SUT with the least bound of those that are not held: the simulation is blocked on it once
   /// ST has reached lower_bound(). None if all are held.
@@ -145,6 +174,8 @@ class BarrierSynchronizer {
   struct Call {
     CallId id = 0;
     ExecTime reply_at;
+    std::optional<Duration> lookahead;
+    bool is_moved = false;  // up, and its concurrent SUT has not stopped for it yet
   };
   struct Sut {
     SutKind kind = SutKind::kSerial;
@@ -155,13 +186,20 @@ class BarrierSynchronizer {
 
     bool is_serial() const { return kind == SutKind::kSerial; }
     bool is_computing() const { return !gone && !(is_serial() && !calls.empty()); }
-    bool waits_for(const Call& call) const { return is_serial() || call.reply_at <= stopped_at; }
+    bool waits_for(const Call& call) const {
+      return is_serial() || (!call.is_moved && call.reply_at <= stopped_at);
+    }
+    const Call* next_call() const;
   };
+  struct Trees;
 
-  bool may_resume(SutIndex sut, const Call& call, SimTime st) const;
+  void update(SutIndex sut);
+  bool may_resume(SutIndex sut, const Call& call, SimTime st,
+                  const std::optional<SutTime>& message) const;
 
   StepGrid grid_;
   std::vector<Sut> suts_;
+  std::unique_ptr<Trees> trees_;
 };
 
 }  // namespace tether::sync

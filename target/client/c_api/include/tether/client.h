@@ -26,7 +26,7 @@
 /// zero byte. The library never ends the program, prints nothing, and handles no signal.
 ///
 /// @anchor interaction
-/// **Interactions** are calls that talk to the coordinator: reads, commands, sleeps and
+/// **Interactions** are calls that talk to the coordinator: reads, commands, sleeps, messages and
 /// tether_finish(). They can block. An interaction error is TETHER_INVALID (an argument is wrong,
 /// or the mission is finished), TETHER_REFUSED, TETHER_DISCONNECTED, TETHER_PROTOCOL or
 /// TETHER_RUN_ENDED. After any of these except TETHER_INVALID, every later interaction of the
@@ -498,3 +498,5 @@ tether_status tether_finish(tether_vehicle* vehicle, int32_t reached_goal, const
 #endif
 
 /// @}
+
+#include <tether/client_radio.h>

@@ -119,6 +119,40 @@ class Subscription {
   std::unique_ptr<tether_subscription, Unsubscribe> c_;  // last: ends before the callback goes
 };
 
+/// A message that was received. It may outlive the vehicle.
+class Message {
+ public:
+  /// Takes ownership. @param message  of the C API; not NULL
+  explicit Message(tether_message* message) noexcept : message_(message) {}
+  /// @return the name of the UAV that sent it; owned by this
+  const char* from() const noexcept { return tether_message_from(message_.get()); }
+  /// @return its contents; owned by this
+  const std::uint8_t* bytes() const noexcept {
+    std::size_t size = 0;
+    return tether_message_bytes(message_.get(), &size);
+  }
+  /// @return number of its bytes
+  std::size_t size() const noexcept {
+    std::size_t size = 0;
+    tether_message_bytes(message_.get(), &size);
+    return size;
+  }
+  /// @return ET of the sender
+  ExecTime sent_at() const noexcept {
+    return ExecTime(Duration(tether_message_sent_at(message_.get())));
+  }
+  /// @return ST, not before sent_at()
+  SimTime arrived_at() const noexcept {
+    return SimTime(Duration(tether_message_arrived_at(message_.get())));
+  }
+
+ private:
+  struct Free {
+    void operator()(tether_message* message) const noexcept { tether_message_free(message); }
+  };
+  std::unique_ptr<tether_message, Free> message_;
+};
+
 /// The UAV as its own program sees it. Several threads can call it at the same time.
 class Vehicle {
  public:
@@ -224,6 +258,25 @@ class Vehicle {
   Status command_velocity(const Vec3& velocity_H_m_s, double yaw_rate_rad_s) noexcept {
     return Status::of(tether_command_velocity(get(), velocity_H_m_s.x, velocity_H_m_s.y,
                                               velocity_H_m_s.z, yaw_rate_rad_s));
+  }
+  /// @return the number of other UAVs
+  std::size_t peer_count() const noexcept { return tether_peer_count(get()); }
+  /// Another UAV by its index.
+  /// @param index  from 0  @return its name; nullptr if `index` is too large
+  const char* peer_at(std::size_t index) const noexcept { return tether_peer_at(get(), index); }
+  /// Sends a message by radio.
+  /// @param to  another UAV, or nullptr: all others  @param bytes  the message  @param size  of it
+  /// @return as tether_send()
+  Status send(const char* to, const void* bytes, std::size_t size) noexcept {
+    return Status::of(tether_send(get(), to, bytes, size));
+  }
+  /// Receives the next message, or waits for one.
+  /// @param timeout  not above 0: does not wait  @return as tether_receive()
+  Result<Message> receive(Duration timeout) noexcept {
+    tether_message* message = nullptr;
+    const tether_status got = tether_receive(get(), timeout.count(), &message);
+    if (got != TETHER_OK) return Failure::last(got);
+    return Message(message);
   }
   /// Waits in simulation.
   /// @param duration  not above 0: returns at once  @return as tether_sleep_for()

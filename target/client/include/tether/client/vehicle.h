@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tether/base/result.h>
 #include <tether/base/time.h>
@@ -18,6 +21,14 @@ enum class Read {
   /// The newest measurement that was not yet read, without waiting; kNothingYet if there is none,
   /// kInvalid for a sensor that measures on demand.
   kIfAvailable,
+};
+
+/// A message of another UAV's program.
+struct RadioMessage {
+  std::string from;    ///< name of the UAV
+  SimTime sent_at;     ///< the sender's ET at its `send`
+  SimTime arrived_at;  ///< ≥ sent_at
+  std::vector<std::uint8_t> bytes;
 };
 
 /// The UAV as its program sees it, simulated or real. Reads, commands, sleeps and `finish` are
@@ -48,6 +59,19 @@ class Vehicle {
   /// instant in the past returns at once (and is still an interaction).
   virtual Status sleep_for(Duration duration) = 0;
   virtual Status sleep_until(ExecTime until) = 0;
+
+  /// The other UAVs of the run, to which messages can be sent.
+  virtual const std::vector<std::string>& peers() const;
+  /// Sends a message by radio, to the UAV of that name, or to all others if `to` is empty. Returns
+  /// at the same ET; whether and when the message arrives is up to the radio. Fails with kInvalid
+  /// if there is no such UAV or no other one, for more than 65,536 bytes, and if the vehicle has no
+  /// radio.
+  virtual Status send(std::string_view to, std::span<const std::uint8_t> bytes);
+  /// The next message that has arrived; waits for one until `timeout` has passed. Messages are
+  /// received in the order of their arrival; those that arrive at one instant in the order of UAVs
+  /// in the scenario, and of one UAV in the order in which it sent them. kNothingYet if none has
+  /// arrived by the timeout.
+  virtual Result<RadioMessage> receive(Duration timeout);
 
   /// Writes a message into the record, without waiting for the coordinator. With a serial vehicle
   /// it takes no ET, but can wait for another thread's call. `json` is one JSON object.

@@ -87,6 +87,7 @@ class FakeSimulator final : public Simulator {
   }
   GroundTruth ground_truth(std::size_t uav) const override;
   bool reports_contacts() const override { return planned_contacts_.has_value(); }
+  std::optional<int> walls_between(std::size_t, std::size_t) override { return 0; }
   std::vector<Contact> take_contacts() override;
   /// To the plane x = 10 m, "wall", if contacts were planned.
   std::optional<Clearance> clearance(std::size_t uav) const override;

@@ -1,0 +1,175 @@
+#include "coordinator_impl.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <tether/link/codec.h>
+
+/// Messages between UAVs. The medium handles its events in the order of (time, UAV): each one when
+/// ST is at its step, and no SUT can send an earlier one any more. A message that arrives for an
+/// open receive makes its reply due at that instant.
+namespace tether::coordinator {
+
+std::vector<std::string> Coordinator::Impl::names_of_uavs() const {
+  std::vector<std::string> names;
+  for (const sim::Uav& uav : world().uavs) names.push_back(uav.name);
+  return names;
+}
+
+std::vector<std::string> Coordinator::Impl::peers_of(const Session& session) const {
+  std::vector<std::string> peers = uav_names_;
+  peers.erase(peers.begin() + static_cast<std::ptrdiff_t>(session.uav));
+  return peers;
+}
+
+// --- requests -----------------------------------------------------------------------------------
+
+void Coordinator::Impl::accept_send(const Session& session, const record::Interaction& entry,
+                                    const link::SendMessage& send) {
+  radio::Message message{.from = session.uav,
+                         .sequence = entry.sequence,
+                         .sent_at = same_instant(entry.request_at),
+                         .bytes = std::make_shared<const std::vector<std::uint8_t>>(send.bytes)};
+  if (!send.to.empty())
+    message.to = static_cast<std::size_t>(
+        std::ranges::find(sessions_, send.to, &Session::uav_name) - sessions_.begin());
+  medium_.send(std::move(message));
+}
+
+ExecTime Coordinator::Impl::accept_receive(Session& session, PendingInteraction& pending,
+                                           const link::ReceiveMessage& receive) {
+  record::Interaction& entry = pending.entry;
+  const ExecTime last = from_ns<ExecTime>(link::kMaxTimestampNs - 1);
+  entry.receive_until =
+      receive.timeout < last - entry.request_at ? entry.request_at + receive.timeout : last;
+  pending.is_promised = session.inbox.size() > session.promised;
+  if (!pending.is_promised) return *entry.receive_until;
+  ++session.promised;
+  return entry.request_at;
+}
+
+// --- events -------------------------------------------------------------------------------------
+
+std::optional<sync::SutTime> Coordinator::Impl::next_arrival() const {
+  const auto next = medium_.next();
+  if (!next) return std::nullopt;
+  return sync::SutTime{same_instant(next->at), next->uav};
+}
+
+// How far ST may advance before something is due here.
+SimTime Coordinator::Impl::next_radio() const {
+  SimTime due = SimTime::max();
+  if (const auto next = medium_.next()) due = std::max(grid().floor(next->at), st());
+  if (is_synchronised()) return due;
+  for (const Session& session : sessions_)
+    for (const PendingInteraction& pending : session.open)
+      if (pending.entry.receive_until)
+        due = std::min(due, grid().ceil(same_instant(*pending.entry.receive_until)));
+  return due;
+}
+
+void Coordinator::Impl::settle_radio() {
+  while (const auto next = next_arrival()) {
+    if (grid().floor(same_instant(next->at)) > st()) return;
+    const auto earliest = is_synchronised() ? barrier_.earliest() : std::nullopt;
+    if (earliest && *next > *earliest) return;
+    arrivals_.clear();
+    medium_.handle_next([this](std::size_t a, std::size_t b) { return link_of(a, b); }, arrivals_);
+    for (radio::Arrival& arrival : arrivals_) take_arrival(arrival);
+  }
+}
+
+radio::Link Coordinator::Impl::link_of(std::size_t uav, std::size_t other) {
+  return stepper_.link(uav, other);
+}
+
+void Coordinator::Impl::take_arrival(radio::Arrival& arrival) {
+  Session& receiver = sessions_[arrival.to];
+  if (arrival.outcome == radio::Outcome::kDelivered &&
+      receiver.inbox.size() >= options_.radio.inbox_messages)
+    arrival.outcome = radio::Outcome::kInboxFull;
+  log_arrival(arrival);
+  count_full_queue(arrival);
+  if (arrival.outcome != radio::Outcome::kDelivered || receiver.left) return;
+  const ExecTime arrived_at = same_instant(arrival.at);
+  receiver.inbox.push_back(std::move(arrival));
+  for (PendingInteraction& pending : receiver.open)
+    if (pending.entry.receive_until && !pending.is_promised &&
+        arrived_at <= *pending.entry.receive_until)
+      return promise(receiver, pending, std::max(arrived_at, pending.entry.request_at));
+}
+
+// The reply to an open call is due already at `reply_at`.
+void Coordinator::Impl::promise(Session& session, PendingInteraction& pending, ExecTime reply_at) {
+  pending.is_promised = true;
+  ++session.promised;
+  if (!is_synchronised()) return;
+  record::Interaction& entry = pending.entry;
+  if (reply_at == entry.reply_at) return;
+  entry.reply_at = reply_at;
+  barrier_.move_up(session.uav, entry.sequence, reply_at);
+  if (!session.is_concurrent()) return;
+  session.newest_moved_due = ++session.dues_sent;
+  server_->send(session.peer, link::Due{entry.sequence, reply_at});
+}
+
+// Takes the first message of the inbox.
+void Coordinator::Impl::receive(Session& session, record::Interaction& entry, link::Reply& reply,
+                                const std::vector<Session>& sessions) {
+  const radio::Arrival arrival = std::move(session.inbox.front());
+  session.inbox.pop_front();
+  --session.promised;
+  const std::string& from = sessions[arrival.message.from].uav_name;
+  entry.received = {from, arrival.message.sequence, arrival.at};
+  reply.message = {from, arrival.message.sent_at, arrival.at, *arrival.message.bytes};
+}
+
+// --- floods -------------------------------------------------------------------------------------
+
+void Coordinator::Impl::count_full_queue(const radio::Arrival& arrival) {
+  Session& sender = sessions_[arrival.message.from];
+  if (arrival.outcome != radio::Outcome::kQueueFull) {
+    sender.full_queues = 0;
+  } else if (!sender.left && ++sender.full_queues > kMaxFullQueues) {
+    expel(sender, {Fault::Kind::kFlood,
+                   fmt::format("more than {} messages in a row while its radio's queue was full",
+                               kMaxFullQueues)});
+  }
+}
+
+// Ends the session of one SUT. The others finish, and then the run ends with the reason.
+void Coordinator::Impl::expel(Session& session, const Fault& fault) {
+  refuse(session.peer, link::Refusal::Reason::kBadRequest, fault.what);
+  if (!expelled_)
+    expelled_ = {RunEnd::kFlooded,
+                 fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)};
+  leave(session);
+}
+
+// --- the record ---------------------------------------------------------------------------------
+
+void Coordinator::Impl::log_in_transit() {
+  for (const radio::Arrival& arrival : medium_.in_transit(st())) log_arrival(arrival);
+}
+
+void Coordinator::Impl::log_arrival(const radio::Arrival& arrival) {
+  const auto& [message, to, outcome, began_at, at, link, snr_db] = arrival;
+  record::RadioMessage entry{.uav = sessions_[message.from].uav_name,
+                             .sequence = message.sequence,
+                             .to = sessions_[to].uav_name,
+                             .bytes = message.bytes->size(),
+                             .sent_at = message.sent_at,
+                             .at = at,
+                             .outcome = std::string(name(outcome)),
+                             .began_at = began_at,
+                             .snr_db = snr_db};
+  if (link) {
+    entry.distance_m = link->distance_m;
+    entry.walls = static_cast<std::uint64_t>(link->walls);
+  }
+  log_.radio(st(), std::move(entry));
+}
+
+}  // namespace tether::coordinator

@@ -1,0 +1,229 @@
+#include "coordinator_fixture.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include <tether/base/random.h>
+#include <tether/radio/link_budget.h>
+
+// Messages between UAVs: the rules of time hold for them as for samples and commands.
+namespace tether::coordinator {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Act send(Duration compute, std::string to = "", std::size_t bytes = 10) {
+  return {compute, link::SendMessage{std::move(to), std::vector<std::uint8_t>(bytes, 7)}};
+}
+Act receive(Duration compute, Duration timeout) {
+  return {compute, link::ReceiveMessage{timeout}};
+}
+
+class RadioTest : public CoordinatorTest {
+ protected:
+  // "uav1", "uav2", …
+  RunReport run_all(std::vector<Script> scripts) {
+    make(scripts.size());
+    for (std::size_t i = 0; i < scripts.size(); ++i)
+      server_->add_sut(hello(name_of(i)), std::move(scripts[i]));
+    return run();
+  }
+  std::string name_of(std::size_t i) const { return simulator_->world().uavs[i].name; }
+  std::vector<link::Reply> replies_to(link::PeerId peer) {
+    std::vector<link::Reply> found;
+    for (const link::Message& message : server_->sent[peer])
+      if (const auto* reply = std::get_if<link::Reply>(&message)) found.push_back(*reply);
+    return found;
+  }
+  void set_channel() {
+    options_.radio.model = radio::Model::kLogDistance;
+    options_.radio.slot = microseconds(9);
+  }
+};
+
+TEST_F(RadioTest, AMessageIsReceivedAtTheInstantOfItsSending) {
+  const RunReport report = run_all({{send(microseconds(2'345)), finish(milliseconds(50))},
+                                    {receive(microseconds(100), milliseconds(20)), finish({})}});
+  ASSERT_EQ(report.end, RunEnd::kFinished) << report.reason;
+  const auto replies = replies_to(2);
+  ASSERT_TRUE(replies.at(0).message);
+  EXPECT_EQ(replies[0].resume_at, us(2'345));
+  EXPECT_EQ(replies[0].message->from, name_of(0));
+  EXPECT_EQ(replies[0].message->sent_at, same_instant(us(2'345)));
+  EXPECT_EQ(replies[0].message->arrived_at, same_instant(us(2'345)));
+  EXPECT_THAT(replies[0].message->bytes, testing::SizeIs(10));
+}
+
+TEST_F(RadioTest, AReceiveWithoutAMessageEndsAtItsTimeout) {
+  run_all({{finish(milliseconds(50))},
+           {receive(microseconds(100), microseconds(3'400)), receive({}, {}), finish({})}});
+  const auto replies = replies_to(2);
+  EXPECT_FALSE(replies.at(0).message);
+  EXPECT_EQ(replies[0].resume_at, us(3'500));
+  EXPECT_FALSE(replies.at(1).message);
+  EXPECT_EQ(replies[1].resume_at, us(3'500));
+}
+
+TEST_F(RadioTest, AMessageWaitsForItsReceiver) {
+  run_all(
+      {{send(microseconds(10)), send(microseconds(10)), finish(milliseconds(1))},
+       {receive(milliseconds(9), {}), receive({}, milliseconds(9)), receive({}, {}), finish({})}});
+  const auto replies = replies_to(2);
+  EXPECT_EQ(replies.at(0).message->arrived_at, same_instant(us(10)));
+  EXPECT_EQ(replies.at(1).message->arrived_at, same_instant(us(20)));
+  EXPECT_EQ(replies[1].resume_at, us(9'000));
+  EXPECT_FALSE(replies.at(2).message);
+}
+
+TEST_F(RadioTest, MessagesOfOneInstantAreOrderedBySenderAndSequence) {
+  run_all({{receive(milliseconds(5), {}), receive({}, {}), receive({}, {}), finish({})},
+           {send(milliseconds(1)), send({}), finish({})},
+           {send(milliseconds(1)), finish({})}});
+  std::vector<std::string> order;
+  for (const record::Interaction& entry : recorder_.interactions)
+    if (entry.received)
+      order.push_back(entry.received->from + " " + std::to_string(entry.received->sequence));
+  EXPECT_THAT(order, ElementsAre(name_of(1) + " 1", name_of(1) + " 2", name_of(2) + " 1"));
+}
+
+TEST_F(RadioTest, TheRecordHasEachMessageAtEachReceiver) {
+  set_channel();
+  run_all({{send(milliseconds(1)), finish(milliseconds(20))},
+           {finish(milliseconds(20))},
+           {finish(milliseconds(20))}});
+  ASSERT_THAT(recorder_.radio, testing::SizeIs(2));
+  const record::RadioMessage& entry = recorder_.radio[0];
+  EXPECT_EQ(entry.uav, name_of(0));
+  EXPECT_EQ(entry.sequence, 1u);
+  EXPECT_EQ(entry.to, name_of(1));
+  EXPECT_EQ(entry.bytes, 10u);
+  EXPECT_EQ(entry.sent_at, st_ms(1));
+  EXPECT_EQ(entry.outcome, record::kDelivered);
+  EXPECT_EQ(entry.at, *entry.began_at + radio::air_time(options_.radio, 10));
+  EXPECT_TRUE(entry.distance_m && entry.walls && entry.snr_db);
+  EXPECT_EQ(recorder_.header.radio.model, "log_distance");
+}
+
+TEST_F(RadioTest, WhatIsStillInTransitAtTheEndIsInTheRecord) {
+  options_.radio.delay = std::chrono::seconds(5);
+  run_all({{send(milliseconds(1)), finish({})}, {finish({})}});
+  ASSERT_THAT(recorder_.radio, testing::SizeIs(1));
+  EXPECT_EQ(recorder_.radio[0].outcome, "waiting");
+}
+
+TEST_F(RadioTest, AFullInboxLosesTheNewest) {
+  options_.radio.inbox_messages = 2;
+  run_all({{send({}), send({}), send({}), finish({})}, {finish(milliseconds(9))}});
+  std::vector<std::string> outcomes;
+  for (const auto& entry : recorder_.radio) outcomes.push_back(entry.outcome);
+  EXPECT_THAT(outcomes, ElementsAre("delivered", "delivered", "inbox_full"));
+}
+
+TEST_F(RadioTest, AFlooderLosesItsSessionAndTheOthersFinish) {
+  for (const bool in_one_step : {true, false}) {
+    set_channel();
+    options_.radio.queue_messages = 2;
+    const Duration pause = in_one_step ? Duration(0) : Duration(microseconds(2));
+    std::vector<Act> flood(4'000, send(pause, "", 60'000));
+    const RunReport report = run_all({flood, {finish(milliseconds(300))}});
+    EXPECT_EQ(report.end, RunEnd::kFlooded);
+    EXPECT_THAT(report.reason, HasSubstr(name_of(0)));
+    EXPECT_TRUE(report.suts.at(1).finish) << "the other one is unharmed";
+    EXPECT_EQ(refusal(1).reason, link::Refusal::Reason::kBadRequest);
+    EXPECT_LT(recorder_.radio.size(), 2'100u);
+  }
+}
+
+TEST_F(RadioTest, AMessageToNobodyIsAFault) {
+  for (const std::string& to : {std::string("nobody"), std::string("self")}) {
+    make(2);
+    server_->add_sut(hello(name_of(0)), {send({}, to == "self" ? name_of(0) : to)});
+    server_->add_sut(hello(name_of(1)), {finish(milliseconds(1))});
+    const RunReport report = run();
+    EXPECT_EQ(report.end, RunEnd::kSutLost);
+    EXPECT_THAT(report.reason, HasSubstr("no other UAV"));
+  }
+  EXPECT_EQ(run_all({{send({})}}).end, RunEnd::kSutLost) << "to all others, of which there is none";
+}
+
+TEST_F(RadioTest, FreeRunningDeliversToo) {
+  set_free_running(1.0);
+  const RunReport report = run_all({{receive({}, milliseconds(5)), send({}), finish({})},
+                                    {receive({}, milliseconds(500)), finish({})}});
+  ASSERT_EQ(report.end, RunEnd::kFinished) << report.reason;
+  EXPECT_FALSE(replies_to(1).at(0).message);
+  EXPECT_TRUE(replies_to(2).at(0).message);
+}
+
+// Whatever the order in which requests reach the coordinator, each SUT receives the same.
+TEST_F(RadioTest, SchedulesDoNotMatter) {
+  for (const bool has_channel : {false, true}) {
+    for (std::uint64_t program = 1; program <= 20; ++program) {
+      std::string first;
+      for (std::uint64_t schedule = 1; schedule <= 4; ++schedule) {
+        options_.radio = {};
+        if (has_channel) set_channel();
+        if (has_channel && program % 2) options_.radio.access = radio::Access::kTdma;
+        if (has_channel && program % 2) options_.radio.slot = milliseconds(1);
+        KeyedRandom random({.seed = program});
+        const std::size_t suts = 2 + random.bits() % 3;
+        std::vector<Script> scripts(suts);
+        for (Script& script : scripts) {
+          for (int k = 0; k < 60; ++k) {
+            const Duration compute = microseconds(50) * (random.bits() % 40);
+            const Duration timeout = microseconds(50) * (random.bits() % 60);
+            const std::uint32_t kind = random.bits() % 4;
+            if (kind == 0) script.push_back(send(compute, "", random.bits() % 300));
+            if (kind == 1) script.push_back(receive(compute, timeout));
+            if (kind == 2) script.push_back(sleep(compute, timeout));
+            if (kind == 3) script.push_back(turn(compute, 0.1));
+          }
+          script.push_back(finish({}));
+        }
+        make(suts);
+        for (std::size_t i = 0; i < suts; ++i) server_->add_sut(hello(name_of(i)), scripts[i]);
+        KeyedRandom order({.seed = schedule, .stream = 1});
+        server_->choose = [&](std::size_t waiting) { return order.bits() % waiting; };
+        ASSERT_EQ(run().end, RunEnd::kFinished);
+        std::string heard;
+        for (const record::Interaction& i : recorder_.interactions)
+          heard += i.uav + " " + i.kind + std::to_string(to_ns(i.reply_at)) +
+                   (i.received ? i.received->from + std::to_string(i.received->sequence) : "") +
+                   "\n";
+        for (const record::RadioMessage& m : recorder_.radio)
+          heard += m.uav + m.to + m.outcome + std::to_string(to_ns(m.at)) + "\n";
+        if (first.empty()) first = heard;
+        ASSERT_EQ(heard, first) << "program " << program << ", schedule " << schedule;
+      }
+    }
+  }
+}
+
+TEST_F(RadioTest, AConcurrentSutStopsForAMessage) {
+  make(2);
+  server_->add_threads(hello(name_of(0)),
+                       {{receive(microseconds(100), milliseconds(50)), finish(milliseconds(1))},
+                        {sleep({}, milliseconds(7)), sleep({}, milliseconds(70))}},
+                       microseconds(30));
+  server_->add_sut(hello(name_of(1)), {send(microseconds(5'250)), finish(milliseconds(100))});
+  const RunReport report = run();
+  ASSERT_EQ(report.end, RunEnd::kFinished) << report.reason;
+  const auto replies = replies_to(1);
+  ASSERT_TRUE(replies.at(0).message);
+  EXPECT_EQ(replies[0].resume_at, us(5'250));
+  EXPECT_TRUE(std::ranges::any_of(recorder_.stops, [](const record::Stop& stop) {
+    return stop.at >= us(5'250) && stop.at < us(8'000);
+  }));
+}
+
+}  // namespace
+}  // namespace tether::coordinator

@@ -1,0 +1,91 @@
+#include "scripted_coordinator.h"
+
+#include <optional>
+
+#include <gmock/gmock.h>
+
+#include <tether/client/simulated_vehicle.h>
+
+namespace tether::client {
+namespace {
+
+using std::chrono::milliseconds;
+
+class RadioOfVehicle : public testing::Test {
+ protected:
+  static link::Message greeting() {
+    link::Welcome welcome = welcome_with_sensors();
+    welcome.peers = {"other", "third"};
+    return welcome;
+  }
+  std::vector<link::Message> answer(const link::Request& request) {
+    link::Reply reply{request.sequence, request.issued_at, std::nullopt};
+    if (const auto* receive = std::get_if<link::ReceiveMessage>(&request.body)) {
+      reply.resume_at += receive->timeout;
+      reply.message = incoming_;
+    }
+    return {reply};
+  }
+  std::unique_ptr<Vehicle> vehicle(link::Message welcome = greeting()) {
+    coordinator_.emplace(std::move(welcome),
+                         [this](const auto& request) { return answer(request); });
+    ConnectOptions options;
+    options.time = make_scripted_source(milliseconds(1));
+    return connect(coordinator_->connect(), std::move(options)).value();
+  }
+
+  std::optional<link::RadioMessage> incoming_;
+  std::optional<ScriptedCoordinator> coordinator_;
+};
+
+TEST_F(RadioOfVehicle, SendsToAPeer) {
+  const auto sender = vehicle();
+  EXPECT_THAT(sender->peers(), testing::ElementsAre("other", "third"));
+  const std::vector<std::uint8_t> bytes{1, 2, 3};
+  ASSERT_TRUE(sender->send("third", bytes).ok());
+  const auto sent = std::get<link::SendMessage>(coordinator_->requests().at(0).body);
+  EXPECT_EQ(sent.to, "third");
+  EXPECT_EQ(sent.bytes, bytes);
+}
+
+TEST_F(RadioOfVehicle, RefusesUnknownPeersAndLongMessagesWithoutARequest) {
+  const auto sender = vehicle();
+  EXPECT_EQ(sender->send("nobody", {}).failure().kind, Failure::Kind::kInvalid);
+  const std::vector<std::uint8_t> long_one(link::kMaxRadioBytes + 1);
+  EXPECT_EQ(sender->send("other", long_one).failure().kind, Failure::Kind::kInvalid);
+  EXPECT_TRUE(coordinator_->requests().empty());
+  EXPECT_TRUE(sender->send("", {}).ok()) << "the vehicle is still usable";
+}
+
+TEST_F(RadioOfVehicle, HasNobodyToSendToAlone) {
+  const auto alone = vehicle(welcome_with_sensors());
+  EXPECT_EQ(alone->send("", {}).failure().kind, Failure::Kind::kInvalid);
+}
+
+TEST_F(RadioOfVehicle, ReceivesAMessage) {
+  incoming_ = {"other", from_ns<SimTime>(5), from_ns<SimTime>(6), {9}};
+  const auto receiver = vehicle();
+  const auto message = receiver->receive(milliseconds(3));
+  ASSERT_TRUE(message);
+  EXPECT_EQ(message->from, "other");
+  EXPECT_EQ(message->sent_at, from_ns<SimTime>(5));
+  EXPECT_EQ(message->arrived_at, from_ns<SimTime>(6));
+  EXPECT_THAT(message->bytes, testing::ElementsAre(9));
+}
+
+TEST_F(RadioOfVehicle, ReceivesNothingByTheTimeout) {
+  const auto receiver = vehicle();
+  EXPECT_EQ(receiver->receive(milliseconds(3)).failure().kind, Failure::Kind::kNothingYet);
+  EXPECT_EQ(receiver->receive(-milliseconds(3)).failure().kind, Failure::Kind::kNothingYet);
+  EXPECT_EQ(std::get<link::ReceiveMessage>(coordinator_->requests().at(1).body).timeout,
+            Duration(0));
+}
+
+TEST_F(RadioOfVehicle, RefusesAMessageFromTheFuture) {
+  incoming_ = {"other", from_ns<SimTime>(5), from_ns<SimTime>(60'000'000), {}};
+  const auto receiver = vehicle();
+  EXPECT_EQ(receiver->receive(milliseconds(3)).failure().kind, Failure::Kind::kProtocol);
+}
+
+}  // namespace
+}  // namespace tether::client
