@@ -1,5 +1,7 @@
+#include <array>
 #include <atomic>
 #include <cstdlib>
+#include <fstream>
 #include <new>
 #include <string_view>
 #include <system_error>
@@ -50,6 +52,29 @@ std::filesystem::path find_emulator(const Emulator& emulator) try {
   throw Error(ErrorCode::kSetup, "the emulator " + emulator.program +
                                      " is not installed. Install the package qemu-user")
       .about(emulator.program);
+}
+
+void require_emulated(const Emulator& emulator, const std::filesystem::path& program) {
+  constexpr std::string_view kElf =
+      "\x7f"
+      "ELF";
+  constexpr std::size_t kMachineAt = 18;
+  constexpr unsigned char kX86_64 = 62, kAarch64 = 183;
+  std::array<char, kMachineAt + 1> head{};
+  std::ifstream(program, std::ios::binary).read(head.data(), head.size());
+  const bool is_arm = emulator.program.ends_with("aarch64");
+  const bool is_script = !std::string_view(head.data(), head.size()).starts_with(kElf);
+  if (!is_script && static_cast<unsigned char>(head[kMachineAt]) == (is_arm ? kAarch64 : kX86_64))
+    return;
+  throw Error(ErrorCode::kSetup,
+              program.string() + " is " +
+                  (is_script ? "a script, which " + emulator.program +
+                                   " cannot run. Start its interpreter in 'command', by its "
+                                   "path: [\"/usr/bin/python3\", \"SCRIPT\"]"
+                             : "a program for another processor than that of " + emulator.program +
+                                   ". Build it for " + (is_arm ? "64-bit ARM" : "x86-64") +
+                                   ", or set another 'emulator' in the target file"))
+      .about(program.string());
 }
 
 void UnmapCounts::operator()(CountPage* page) const {

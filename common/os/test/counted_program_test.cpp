@@ -1,6 +1,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <map>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -47,6 +48,28 @@ TEST_F(CountedProgram, HasAPageOfItsOwnWithTheCosts) {
   memory.seekp(0).write(reinterpret_cast<const char*>(&page), sizeof page).flush();
   EXPECT_EQ(counts.computed(), Duration(45));
   EXPECT_EQ(other.computed(), Duration(0));
+}
+
+TEST_F(CountedProgram, IsOneOfTheEmulatorsProcessor) {
+  const auto elf = [&](const std::string& name, char machine) {
+    return scratch_.write(name, std::string("\x7f"
+                                            "ELF\2\1\1",
+                                            7) +
+                                    std::string(11, '\0') + machine);
+  };
+  const std::string arm = elf("arm", '\xb7'), x86 = elf("x86", '\x3e');
+  const std::string script = scratch_.write("script", "#!/bin/sh\nexec true\n");
+  const std::string empty = scratch_.write("empty", "");
+  for (const auto& [program, own, others] :
+       {std::tuple{"qemu-aarch64", arm, x86}, std::tuple{"qemu-x86_64", x86, arm}}) {
+    emulator_.program = program;
+    require_emulated(emulator_, own);
+    for (const std::string& other : {others, script, empty}) {
+      const Error error =
+          thrown_error(ErrorCode::kSetup, [&] { require_emulated(emulator_, other); });
+      EXPECT_EQ(error.subject(), other);
+    }
+  }
 }
 
 TEST_F(CountedProgram, NamesWhatIsMissing) {

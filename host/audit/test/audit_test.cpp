@@ -133,6 +133,19 @@ TEST(Audit, EtIsComparedOnlyWithKnownWallTimes) {
   EXPECT_EQ(growth_findings(record), 0);
 }
 
+TEST(Audit, AUavThatStartsInsideSomethingMayBePushedOut) {
+  Record record = generate({.seed = 4, .suts = 1});
+  record.header.reports_contacts = true;
+  const std::string& uav = record.header.suts[0].uav;
+  for (std::size_t i = 1; i < record.ground_truth.size(); ++i)
+    record.ground_truth[i].message.p_WB_m[2] += 0.3;
+  EXPECT_FALSE(audit(record).passed());
+  record.contacts.push_back({SimTime{}, 0, {uav, SimTime{}, "wall", 0.0}});
+  EXPECT_TRUE(audit(record).passed()) << to_text(audit(record));
+  record.contacts[0].message.at = SimTime(kSecond);
+  EXPECT_FALSE(audit(record).passed());
+}
+
 TEST(Audit, UnstampedRequestsAreANote) {
   Record record = generate({.suts = 1});
   record.header.suts[0].clock = "unstamped";

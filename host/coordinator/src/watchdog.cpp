@@ -25,6 +25,7 @@ std::string describe_missing(const std::vector<Party>& parties) {
     uavs.push_back(party.uav);
     waited = std::max(waited, party.silence);
   }
+  if (waited < kStillPeriod) return "";
   return fmt::format("waiting for the SUT{} of \"{}\" to connect ({:.1f} s so far)",
                      uavs.size() == 1 ? "" : "s", fmt::join(uavs, "\", \""), to_seconds(waited));
 }
@@ -128,6 +129,11 @@ std::optional<Ending> Watchdog::overdue(const std::vector<Party>& parties, SimTi
 std::string Watchdog::blocked(const std::vector<Party>& parties, SimTime st, WallTime now) const {
   if (now - moved_ < kStillPeriod) return "";
   if (!running_) return describe_missing(parties);
+  // A counted SUT sends nothing while it computes, and its work is a sign of life.
+  const auto computes = [](const Party& party) {
+    return party.counted && party.computing && party.silence < kStillPeriod;
+  };
+  if (std::any_of(parties.begin(), parties.end(), computes)) return "";
   return synchronised_ ? describe_blocking(st, parties) : "";
 }
 

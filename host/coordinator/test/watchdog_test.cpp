@@ -101,6 +101,13 @@ TEST(Watchdog, ReportsTheBlockingSutAfterASecondWithoutAMove) {
   const std::vector<Party> parties{computing("a", seconds(1))};
   EXPECT_EQ(watchdog.blocked(parties, kSt, at(milliseconds(7'999))), "");
   EXPECT_EQ(watchdog.blocked(parties, kSt, at(seconds(8))), describe_blocking(kSt, parties));
+  EXPECT_EQ(watchdog.blocked({computing("a", milliseconds(999))}, kSt, at(seconds(8))),
+            describe_blocking(kSt, {computing("a", milliseconds(999))}));
+  Party counted = computing("a", milliseconds(999));
+  counted.counted = true;
+  EXPECT_EQ(watchdog.blocked({counted}, kSt, at(seconds(8))), "");
+  counted.silence = seconds(1);
+  EXPECT_NE(watchdog.blocked({counted}, kSt, at(seconds(8))), "");
   Watchdog free_running = make(false);
   free_running.begin(WallTime{});
   EXPECT_EQ(free_running.blocked(parties, kSt, at(seconds(8))), "");
@@ -114,6 +121,7 @@ TEST(Watchdog, ReportsSutsThatHaveNotJoinedBeforeTheRun) {
     };
     EXPECT_EQ(blocked(computing("a", seconds(9))),
               "waiting for the SUT of \"b\" to connect (1.0 s so far)");
+    EXPECT_EQ(watchdog.blocked({absent("a", milliseconds(999))}, kSt, at(seconds(2))), "");
     EXPECT_EQ(blocked(absent("a", milliseconds(2500))),
               "waiting for the SUTs of \"a\", \"b\" to connect (2.5 s so far)");
   }

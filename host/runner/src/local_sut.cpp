@@ -58,6 +58,7 @@ LocalSutCommand local_sut_command(const scenario::Sut& sut,
     // tether-exec and launchers search for it in PATH only.
     program = file.string();
     const bool is_counted = target && target->emulator;
+    if (is_counted) os::require_emulated(*target->emulator, file);
     command.programs.push_back(is_counted ? os::find_emulator(*target->emulator)
                                           : os::find_program(words.front()));
     if (sut.concurrent && is_launched) command.programs.push_back(os::find_program(words[1]));

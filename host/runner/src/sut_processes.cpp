@@ -49,6 +49,13 @@ constexpr Duration kEndLimit = std::chrono::milliseconds(200);
 // How long the processes that local SUTs leave behind may take to end.
 constexpr Duration kOrphanGrace = std::chrono::seconds(1);
 
+/// A program that prints the error of its call ends its output with what it has reported itself.
+bool repeats(const std::string& output, const std::string& reason) {
+  constexpr std::string_view kBeforeMessage = ": ";
+  const auto at = reason.find(kBeforeMessage);
+  return at != std::string::npos && output.ends_with(reason.substr(at + kBeforeMessage.size()));
+}
+
 }  // namespace
 
 SutProcesses::~SutProcesses() {
@@ -94,10 +101,10 @@ bool SutProcesses::has_failed_to_connect(const std::string& address) {
   });
 }
 
-std::string SutProcesses::post_mortem() {
+std::string SutProcesses::post_mortem(const std::string& reason) {
   std::string text;
   for (Sut& sut : suts_)
-    if (sut.process->wait(kEndLimit)) text += "; " + describe_end(sut);
+    if (sut.process->wait(kEndLimit)) text += "; " + describe_end(sut, reason);
   return text;
 }
 
@@ -138,12 +145,13 @@ std::vector<std::string> SutProcesses::bring_back() {
   return warnings;
 }
 
-std::string SutProcesses::describe_end(Sut& sut) const {
+std::string SutProcesses::describe_end(Sut& sut, const std::string& reason) const {
   const std::string last = last_line(sut.log);
   const os::ChildExit& exit = *sut.process->poll();
   using board::SutEnd;
   const SutEnd end = board_ ? board_->end_of(exit, last) : SutEnd{{}, exit.description};
-  const bool is_complete = last.empty() || end.cause == board::SutEndCause::kNotStarted;
+  const bool is_complete =
+      last.empty() || repeats(last, reason) || end.cause == board::SutEndCause::kNotStarted;
   return fmt::format(
       "the SUT of UAV \"{}\" ({}) {}{}", sut.uav, sut.program, end.description,
       is_complete ? "" : fmt::format("; last line of {}: {}", sut.log.string(), last));

@@ -38,7 +38,8 @@ class SutProcesses {
   /// Whether a SUT has ended with that address in the last line of its output.
   bool has_failed_to_connect(const std::string& address);
   /// After the loss of a SUT: how processes ended, each after "; ". Empty if nothing is known.
-  std::string post_mortem();
+  /// Output is left out that ends with the last part of the reason, after ": ".
+  std::string post_mortem(const std::string& reason);
   /// Waits until finished SUTs have exited. Returns a note for each that was ended by a signal, or
   /// that did not exit.
   std::vector<std::string> await_exit();
@@ -54,7 +55,7 @@ class SutProcesses {
     std::string program;
     std::unique_ptr<os::ChildProcess> process;
   };
-  std::string describe_end(Sut& sut) const;
+  std::string describe_end(Sut& sut, const std::string& reason = "") const;
 
   board::Board* board_ = nullptr;
   std::vector<Sut> suts_;

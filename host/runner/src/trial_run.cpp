@@ -231,7 +231,7 @@ std::string TrialRun::explanation(const TrialEnd& end) {
   std::string text;
   if (may_have_stopped_sut(end))
     if (const auto stopped = suts_.stopped()) text += "; " + *stopped;
-  if (has_unexplained_sut(end)) text += suts_.post_mortem();
+  if (has_unexplained_sut(end)) text += suts_.post_mortem(end.report.reason);
   if (end.report.end == RunEnd::kSimulatorLost) text += simulator_.post_mortem();
   return text + reach_hint(end);
 }

@@ -69,8 +69,16 @@ TEST_F(Suts, ReportTheFirstEndWithTheLastLineOfItsOutput) {
 TEST_F(Suts, ReportSignals) {
   start({"exit 0", "kill -SEGV $$"});
   EXPECT_THAT(suts_.await_exit(), ElementsAre(HasSubstr("\"uav2\"")));
-  EXPECT_THAT(suts_.post_mortem(),
+  EXPECT_THAT(suts_.post_mortem(""),
               testing::EndsWith("was ended by signal 11 (Segmentation fault)"));
+}
+
+TEST_F(Suts, RepeatNoReasonThatTheyHaveReported) {
+  start({"echo 'sut: call failed: no disk: full' >&2; exit 4"});
+  EXPECT_THAT(suts_.post_mortem("the SUT ended the run: no disk: full"),
+              testing::EndsWith("exited with code 4"));
+  EXPECT_THAT(suts_.post_mortem("the SUT ended the run: no memory"),
+              testing::EndsWith("sut: call failed: no disk: full"));
 }
 
 /// A process in a session of its own without its parent or its environment, as daemons are.

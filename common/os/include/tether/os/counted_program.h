@@ -29,6 +29,10 @@ std::filesystem::path find_counter_plugin();
 /// The emulator's program. @throws Error(kSetup) with the package that has it.
 std::filesystem::path find_emulator(const Emulator& emulator);
 
+/// Emulators run programs of one processor, and no scripts. @throws Error(kSetup), about the
+/// program.
+void require_emulated(const Emulator& emulator, const std::filesystem::path& program);
+
 struct UnmapCounts {
   void operator()(CountPage* page) const;
 };
