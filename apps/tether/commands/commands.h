@@ -96,6 +96,7 @@ struct SizeOptions {
   ReadingOptions reading;
   bool resume = false;
   bool force = false;
+  std::filesystem::path junit;
 };
 /// Finds the slowest computer that is sufficient for a scenario.
 int size(const SizeOptions& options, const std::stop_token& stop);

@@ -3,6 +3,7 @@
 #include "commands/commands.h"
 #include "commands/size_flights.h"
 #include "options/file_kind.h"
+#include "options/junit_option.h"
 #include "options/simulator_option.h"
 #include "options/trial_options.h"
 #include "options/world_options.h"
@@ -20,6 +21,7 @@
 #include <tether/os/program.h>
 #include <tether/os/text_file.h>
 #include <tether/report/gnuplot.h>
+#include <tether/report/junit.h>
 #include <tether/report/size_report.h>
 #include <tether/scenario/shipped_files.h>
 
@@ -188,7 +190,9 @@ int code_of(const report::SizeReport& report) {
 
 }  // namespace
 
-int size(const SizeOptions& options, const std::stop_token& stop) {
+namespace {
+
+int find_size(const SizeOptions& options, const std::stop_token& stop) {
   Plan plan = make_plan(options);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out/size") / plan.report.scenario : options.out;
@@ -218,7 +222,16 @@ int size(const SizeOptions& options, const std::stop_token& stop) {
     return exit_code(ErrorCode::kSetup);
   }
   write_answer(plan.report, out);
+  if (!options.junit.empty())
+    os::write_file_atomically(options.junit, report::to_junit(plan.report, out));
   return code_of(plan.report);
+}
+
+}  // namespace
+
+int size(const SizeOptions& options, const std::stop_token& stop) {
+  return with_junit(options.junit, options.scenario.string(),
+                    [&] { return find_size(options, stop); });
 }
 
 }  // namespace tether::app

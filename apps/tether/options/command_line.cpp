@@ -74,9 +74,11 @@ void add_reading_options(CLI::App& command, ReadingOptions& reading) {
 }
 
 void add_junit_option(CLI::App& command, std::filesystem::path& junit) {
-  command.add_option("--junit", junit,
-                     "Also write the results as JUnit's XML: a test case for each outcome, metric "
-                     "and clause, for continuous integration");
+  command.add_option(
+      "--junit", junit,
+      "Also write the results as JUnit's XML for continuous integration: a test case "
+      "for each outcome, metric and clause; of tether size, for the answer and each "
+      "target");
 }
 
 void add_cluster_options(CLI::App& command, ClusterOptions& cluster) {
@@ -242,6 +244,7 @@ void add_size_command(CLI::App& program, Action& action) {
   command->add_option("--out", options->out, "Folder for the flights [out/size/SCENARIO]");
   command->add_flag("--resume", options->resume, "Continue with the flights in the folder");
   command->add_flag("--force", options->force, "Remove the earlier flights in the folder");
+  add_junit_option(*command, options->junit);
   add_simulator_option(*command, options->simulator);
   add_reading_options(*command, options->reading);
   command->footer(

@@ -28,7 +28,9 @@ ReplayedTime replayed_time(const TrialSpec& spec) {
   const timing::Timing timing = read(source.timing, spec.scenario);
   // In the order of the scenario's enumerators.
   timing::ReplaySetting setting{.mode = static_cast<timing::Mode>(source.mode),
-                                .unknown = static_cast<timing::UnknownStages>(source.unknown)};
+                                .unknown = static_cast<timing::UnknownStages>(source.unknown),
+                                .counted = {},
+                                .slowdown = spec.condition.slowdown};
   if (!source.counted.empty()) {
     setting.counted = read(source.counted, spec.scenario);
     if (setting.counted->clock != "counted")

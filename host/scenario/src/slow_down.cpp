@@ -11,8 +11,9 @@ namespace {
 std::string why_not_slower(const Condition& condition) {
   if (condition.target && condition.target->ssh)
     return "its SUTs run on a board, which cannot be slowed down. Use a virtual target.";
-  if (condition.clock == Clock::kReplayed)
-    return "its time is replayed as it was recorded. Use \"cpu\", \"wall\" or \"scripted\".";
+  if (condition.clock == Clock::kReplayed && condition.replay->mode == ReplayMode::kExact)
+    return "its time is replayed call by call, which a slower program would not repeat. Use mode "
+           "= \"resampled\" or \"scaled\".";
   if (condition.clock == Clock::kUnstamped)
     return "the clock \"unstamped\" has no factor. Use \"cpu\", \"wall\" or \"scripted\".";
   if (condition.clock == Clock::kWall && condition.policy == Policy::kFreeRunning)
@@ -33,7 +34,7 @@ void slow_down(Condition& condition, double slowdown) {
   } else if (condition.clock == Clock::kCounted) {
     for (std::uint64_t& units : condition.target->emulator->cost_units)
       units = static_cast<std::uint64_t>(std::llround(static_cast<double>(units) * slowdown));
-  } else {
+  } else if (condition.clock != Clock::kReplayed) {  // by timing::ReplaySetting
     condition.cpu_factor *= slowdown;
   }
   condition.slowed_from = condition.name;

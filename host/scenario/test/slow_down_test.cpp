@@ -40,13 +40,24 @@ TEST(SlowDown, MultipliesTheCostsOfACountedClock) {
   EXPECT_EQ(condition.cpu_factor, 1.0);
 }
 
+TEST(SlowDown, LeavesDrawnTimesToTheirReplay) {
+  Condition condition;
+  condition.clock = Clock::kReplayed;
+  condition.replay.emplace().mode = ReplayMode::kResampled;
+  slow_down(condition, 1.5);
+  EXPECT_EQ(condition.slowdown, 1.5);
+  EXPECT_EQ(condition.cpu_factor, 1.0);
+}
+
 TEST(SlowDown, RefusesWhatCannotBeStretched) {
-  Condition board, unstamped, free_wall;
+  Condition board, unstamped, free_wall, exact;
+  exact.clock = Clock::kReplayed;
+  exact.replay.emplace().mode = ReplayMode::kExact;
   board.target.emplace().ssh.emplace();
   unstamped.clock = Clock::kUnstamped;
   free_wall.clock = Clock::kWall;
   free_wall.policy = Policy::kFreeRunning;
-  for (Condition condition : {board, unstamped, free_wall}) {
+  for (Condition condition : {board, unstamped, free_wall, exact}) {
     condition.name = "c";
     EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { slow_down(condition, 2.0); }).subject(), "c");
     EXPECT_EQ(condition.name, "c");

@@ -80,6 +80,8 @@ Replay::Replay(const Timing& timing, const ReplaySetting& setting, const std::st
     for (const auto& [stage, times] : counted)
       if (unknown_ == UnknownStages::kCounted && !knows(stage)) counted_[stage].times_ns = times;
   }
+  for (auto* sources : {&sources_, &counted_})
+    for (auto& [stage, source] : *sources) source.factor *= setting.slowdown;
   if (const std::size_t stages = sources_.size() + counted_.size(); stages > link::kMaxStages)
     refuse(uav, fmt::format("has too many stages ({}). At most {} are allowed.", stages,
                             link::kMaxStages));

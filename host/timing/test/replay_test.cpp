@@ -56,6 +56,15 @@ TEST(Replay, ExactNamesTheFirstCallThatDiffers) {
   }
 }
 
+TEST(Replay, MultipliesTimesByTheSlowdown) {
+  const Timing timing = sample_timing();
+  Replay as_recorded(timing, {}, "uav1", 7), slower(timing, {.slowdown = 2.5}, "uav1", 7);
+  ASSERT_FALSE(as_recorded.given().empty());
+  for (std::size_t i = 0; i < as_recorded.given().size(); ++i)
+    EXPECT_NEAR(to_seconds(slower.given()[i].computing),
+                2.5 * to_seconds(as_recorded.given()[i].computing), 1e-9);
+}
+
 // What a stage is given depends on seed and index only, not on other stages or calls.
 TEST(Replay, ResampledDrawsByStageAndIndex) {
   const Timing timing = sample_timing();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <tether/campaign/campaign_plan.h>
 #include <tether/report/junit.h>
@@ -77,6 +78,13 @@ Case clause_case(const campaign::TrialResult& trial, const judge::ClauseVerdict&
   return one;
 }
 
+void add_start(Suite& suite, const campaign::TrialResult& trial) {
+  const std::string& started = trial.this_run.started_at;
+  if (started.size() >= suite.started_at.size())
+    suite.started_at = started.substr(0, suite.started_at.size());
+  if (!trial.this_run.machine.empty()) suite.machine = trial.this_run.machine;
+}
+
 void add_trial(Suite& suite, const campaign::TrialResult& trial,
                const std::filesystem::path& folder) {
   std::vector<Case> cases = {outcome_case(trial)};
@@ -90,10 +98,7 @@ void add_trial(Suite& suite, const campaign::TrialResult& trial,
     if (std::filesystem::exists(record)) one.output += "record: " + record.string() + "\n";
     suite.cases.push_back(std::move(one));
   }
-  const std::string& started = trial.this_run.started_at;
-  if (started.size() >= suite.started_at.size())
-    suite.started_at = started.substr(0, suite.started_at.size());
-  if (!trial.this_run.machine.empty()) suite.machine = trial.this_run.machine;
+  add_start(suite, trial);
 }
 
 std::string text_of(const Case& one, const std::string& suite) {
@@ -166,6 +171,33 @@ std::string to_junit(const campaign::CampaignResults& results,
     }
   }
   return text_of(suites);
+}
+
+std::string to_junit(const SizeReport& report, const std::filesystem::path& folder) {
+  const std::vector<std::string> sentences = size_sentences(report);
+  Suite suite{.name = "size of " + report.scenario};
+  double time_s = 0.0;
+  for (const campaign::TrialResult& trial : report.synchronised.trials) {
+    add_start(suite, trial);
+    time_s += to_seconds(trial.this_run.wall);
+  }
+  const auto add = [&](const std::string& name, const char* type, bool is_passed,
+                       const std::string& sentence) {
+    suite.cases.push_back({.trial = report.synchronised.condition,
+                           .name = name,
+                           .time_s = suite.cases.empty() ? time_s : 0.0,
+                           .kind = is_passed ? "" : "failure",
+                           .type = type,
+                           .message = is_passed ? "" : sentence,
+                           .output = sentence + "\nflights: " + folder.string() + "\n"});
+  };
+  add("answer", "answer", report.synchronised.answer.is_narrow,
+      fmt::format("{}", fmt::join(sentences, "\n")));
+  for (std::size_t i = 0; i < report.boards.size(); ++i)
+    add(report.boards[i].name, "board",
+        verdict(report.boards[i], report.synchronised.answer) == BoardVerdict::kSuffices,
+        sentences[1 + i]);
+  return text_of(std::vector<Suite>{suite});
 }
 
 std::string junit_of_error(const std::string& name, const std::string& message) {

@@ -1,4 +1,5 @@
 #include "campaign_fixture.h"
+#include "sample_size.h"
 
 #include <cstdlib>
 
@@ -77,6 +78,17 @@ TEST_F(Junit, HasASuiteForEachConditionOfACampaign) {
   EXPECT_THAT(cases_of(*host->NextSiblingElement()),
               ElementsAre("outcome", "Oscillations", "Time required", "outcome: error",
                           "outcome: error", "Oscillations: error", "Time required: error"));
+}
+
+TEST_F(Junit, OfASizeHasACaseForTheAnswerAndEachBoard) {
+  SizeReport report = sample_size();
+  report.boards.push_back({"old.toml", 9.0, {}, {}});
+  const XMLElement& all = suites(to_junit(report, out_));
+  EXPECT_THAT(cases_of(*all.FirstChildElement()),
+              ElementsAre("answer", "pi.toml", "old.toml: failure"));
+  report.synchronised.answer.is_narrow = false;
+  EXPECT_EQ(cases_of(*suites(to_junit(report, out_)).FirstChildElement()).front(),
+            "answer: failure");
 }
 
 TEST_F(Junit, OfWhatEndedBeforeThereWasAResult) {

@@ -36,6 +36,7 @@ struct ReplaySetting {
   UnknownStages unknown = UnknownStages::kRefused;
   /// The program that flies, under a counted clock: for kScaled and UnknownStages::kCounted.
   std::optional<Timing> counted{};
+  double slowdown = 1.0;  ///< all times are multiplied by it; kExact: 1
 };
 
 /// Gives one SUT its recorded time. Pure logic: what it gives depends on the calls so far only. Not
