@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include <tether/report/page.h>
 #include <tether/report/report.h>
 #include <tether/report/sweep.h>
+#include <tether/report/verdict.h>
 #include <tether/runner/trial_folder.h>
 
 namespace tether::app {
@@ -94,8 +96,17 @@ std::string rendered(const ReportOptions& options) {
   if (options.format == kHtml) return report::campaign_page(results, options.folder);
   if (options.format == "csv") return to_csv(report::trials_table(results));
   if (options.format == "summary-csv") return to_csv(report::summaries_table(results));
-  return joined(run ? run_tables(results) : report::report_tables(results),
-                options.format == "markdown" ? report::to_markdown : report::to_text);
+  const bool is_markdown = options.format == "markdown";
+  const std::vector<report::Verdict> verdicts = report::verdicts_of(results, options.folder);
+  std::vector<report::Table> tables = run ? run_tables(results) : report::report_tables(results);
+  for (const auto& points : report::by_scenario(verdicts) | std::views::reverse) {
+    if (report::Table stages = report::stages_table(points); !stages.rows.empty())
+      tables.insert(tables.begin(), std::move(stages));
+    tables.insert(tables.begin(), report::rulings_table(points));
+  }
+  return report::verdict_text(verdicts,
+                              is_markdown ? report::Markup::kMarkdown : report::Markup::kPlain) +
+         joined(tables, is_markdown ? report::to_markdown : report::to_text);
 }
 
 }  // namespace
@@ -115,6 +126,10 @@ int report(const ReportOptions& options, const std::stop_token&) {
 
 void print_campaign_summary(const std::filesystem::path& folder) {
   const campaign::CampaignResults results = campaign::read_campaign_results(folder);
+  const std::vector<report::Verdict> verdicts = report::verdicts_of(results, folder);
+  fmt::print("{}", report::verdict_text(verdicts, report::Markup::kPlain));
+  for (const auto& points : report::by_scenario(verdicts))
+    fmt::print("{}\n", to_text(report::rulings_table(points)));
   const auto sweeps = report::sweeps_of(results);
   for (const report::Sweep& sweep : sweeps) fmt::print("{}\n", to_text(report::sweep_table(sweep)));
   for (const auto& scenario : results.scenarios)

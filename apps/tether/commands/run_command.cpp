@@ -24,6 +24,7 @@
 #include <tether/os/text_file.h>
 #include <tether/report/junit.h>
 #include <tether/report/page.h>
+#include <tether/report/verdict.h>
 #include <tether/runner/trial.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>
@@ -166,6 +167,9 @@ void print_clause(const judge::ClauseVerdict& clause) {
 }
 
 void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& result) {
+  fmt::print("{}",
+             report::verdict_text(report::verdicts_of(report::results_of_run(result), spec.folder),
+                                  report::Markup::kPlain));
   const bool has_failed = result.outcome == campaign::Outcome::kFailed;  // its reason is an error
   fmt::print("{} under \"{}\", seed {}: {}{}\n", result.scenario, result.condition, result.seed,
              campaign::name(result.outcome), has_failed ? "" : ": " + result.reason);

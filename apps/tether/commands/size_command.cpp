@@ -168,12 +168,14 @@ Plan make_plan(const SizeOptions& options) {
   return plan;
 }
 
-void write_answer(const report::SizeReport& report, const std::filesystem::path& out) {
+void write_answer(report::SizeReport& report, const std::filesystem::path& out) {
+  report.pace = report::pace_near_answer(report, out);
   os::write_file_atomically(out / kSizeFile, report::size_json(report));
-  for (const std::string& sentence : report::size_sentences(report)) fmt::print("{}\n", sentence);
+  fmt::print("{}", report::answer_text(report::size_answers(report), report::size_advice(report),
+                                       report::Markup::kPlain));
   os::write_file_atomically(out / kSizeDrawing, report::draw_svg(report::size_plot(report)));
   os::write_file_atomically(out / campaign::kReportFile, report::size_page(report));
-  fmt::print("\nPage: {}\nDrawing: {}\nNumbers: {}\n", (out / campaign::kReportFile).string(),
+  fmt::print("Page: {}\nDrawing: {}\nNumbers: {}\n", (out / campaign::kReportFile).string(),
              (out / kSizeDrawing).string(), (out / kSizeFile).string());
 }
 

@@ -116,6 +116,9 @@ int time_stages(const TimingOptions& options, const std::stop_token&) {
   if (!options.csv.empty()) os::write_file_atomically(options.csv, report::timing_csv(rows));
   if (!options.html.empty()) os::write_file_atomically(options.html, report::timing_page(timing));
   if (!options.out.empty()) timing::write_timing(options.out, timing);
+  fmt::print("{}",
+             report::answer_text({report::timing_answer(rows)}, report::timing_advice(timing, rows),
+                                 report::Markup::kPlain));
   fmt::print("{}: {}, build {}, clock {}, on {}, recorded {}, {} runs\n\n{}", timing.scenario,
              timing.program, timing.build_id.empty() ? "unknown" : timing.build_id, timing.clock,
              timing.board, timing.recorded_at, timing.runs.size(), timing::to_text(rows));

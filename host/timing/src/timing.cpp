@@ -19,6 +19,8 @@ std::string clock_of(const record::SutInfo& sut) {
   return sut.clock;
 }
 
+}  // namespace
+
 Run run_of(const record::Record& record, const record::SutInfo& sut) {
   Run run{.uav = sut.uav, .seed = record.header.seed, .calls = {}};
   std::string previous = "start";
@@ -36,8 +38,6 @@ Run run_of(const record::Record& record, const record::SutInfo& sut) {
   }
   return run;
 }
-
-}  // namespace
 
 Timing of_record(const record::Record& record, const std::filesystem::path& file,
                  const std::string& recorded_at) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/campaign/campaign_plan.h>
 #include <tether/report/size_report.h>
 
 namespace tether::report {
@@ -28,51 +29,55 @@ std::string percent(double share) {
   return fmt::format("{:.4g} %", 100.0 * share);
 }
 
-std::string answer_sentence(const SizeReport& report) {
+Answer main_answer(const SizeReport& report) {
   const SizedCondition& sized = report.synchronised;
   const sizing::Threshold& threshold = sized.answer.threshold;
   const std::string evidence =
       fmt::format("{}; {} flights.", percent(report.question.confidence), sized.flights.size());
   if (sized.answer.is_below)
-    return fmt::format(
-        "Not sufficient: already at {} × the time of “{}”, fewer than {} of the flights reach the "
-        "goal, {}",
-        digits(report.question.least), sized.condition, percent(report.question.success), evidence);
+    return {"Not sufficient",
+            fmt::format(": already at {} × the time of “{}”, fewer than {} of the flights reach "
+                        "the goal, {}",
+                        digits(report.question.least), sized.condition,
+                        percent(report.question.success), evidence)};
   if (sized.answer.is_above)
-    return fmt::format("Sufficient up to {} × slower than “{}”, the most that was flown, {}",
-                       digits(report.question.most), sized.condition, evidence);
-  const char* unit = threshold.estimate < 1.0 ? "the computing time of" : "slower than";
-  return fmt::format("Sufficient up to {} × {} “{}” {}, {}", digits(threshold.estimate), unit,
-                     sized.condition, interval_text(threshold, report.question), evidence);
+    return {fmt::format("Sufficient up to {} × slower", digits(report.question.most)),
+            fmt::format(" than “{}”, the most that was flown, {}", sized.condition, evidence)};
+  const bool is_faster = threshold.estimate < 1.0;
+  return {fmt::format("Sufficient up to {} × {}", digits(threshold.estimate),
+                      is_faster ? "the computing time" : "slower"),
+          fmt::format(" {} “{}” {}, {}", is_faster ? "of" : "than", sized.condition,
+                      interval_text(threshold, report.question), evidence)};
 }
 
-std::string board_sentence(const Board& board, const sizing::Answer& answer) {
+Answer board_answer(const Board& board, const sizing::Answer& answer) {
   const double headroom = answer.threshold.estimate / board.slowdown;
   const std::string name = fmt::format("{} ({} ×)", board.name, digits(board.slowdown));
   switch (verdict(board, answer)) {
     case BoardVerdict::kSuffices:
-      return fmt::format("{} has {}{} × headroom.", name, answer.is_above ? "at least " : "",
-                         digits(headroom));
+      return {"Fast enough", fmt::format(": {} has {}{} × headroom.", name,
+                                         answer.is_above ? "at least " : "", digits(headroom))};
     case BoardVerdict::kDoesNot:
-      return fmt::format("{} is not sufficient: it is {}{} × too slow.", name,
-                         answer.is_below ? "more than " : "", digits(1.0 / headroom));
+      return {"Not fast enough",
+              fmt::format(": {} is {}{} × too slow.", name, answer.is_below ? "more than " : "",
+                          digits(1.0 / headroom))};
     case BoardVerdict::kUndecided:
       break;
   }
-  return fmt::format(
-      "{} may not be sufficient: {}.", name,
-      answer.is_above ? "no flight was as slow as that" : "it is too close to the limit");
+  return {"Undecided", fmt::format(": {} may not be fast enough, because {}.", name,
+                                   answer.is_above ? "no flight was as slow as that"
+                                                   : "it is too close to the limit")};
 }
 
-std::string flattery_sentence(const SizeReport& report) {
+Answer flattery(const SizeReport& report) {
   const SizedCondition& other = *report.unsynchronised;
   const double ratio =
       other.answer.threshold.estimate / report.synchronised.answer.threshold.estimate;
-  return fmt::format(
-      "Without synchronisation (“{}”), {}{} × slower would seem sufficient: {} × {}.",
-      other.condition, other.answer.is_above ? "at least " : "",
-      digits(other.answer.threshold.estimate), digits(ratio),
-      ratio >= 1.0 ? "too much" : "of what really is");
+  return {
+      "Without synchronisation",
+      fmt::format(" (“{}”), {}{} × slower would seem sufficient: {} × {}.", other.condition,
+                  other.answer.is_above ? "at least " : "", digits(other.answer.threshold.estimate),
+                  digits(ratio), ratio >= 1.0 ? "too much" : "of what really is")};
 }
 
 }  // namespace
@@ -94,25 +99,80 @@ BoardVerdict verdict(const Board& board, const sizing::Answer& answer) {
   return BoardVerdict::kUndecided;
 }
 
-std::vector<std::string> size_sentences(const SizeReport& report) {
+std::vector<Answer> size_answers(const SizeReport& report) {
   const sizing::Answer& answer = report.synchronised.answer;
-  std::vector<std::string> sentences = {answer_sentence(report)};
-  for (const Board& board : report.boards) sentences.push_back(board_sentence(board, answer));
-  if (report.unsynchronised) sentences.push_back(flattery_sentence(report));
+  std::vector<Answer> answers = {main_answer(report)};
+  for (const Board& board : report.boards) answers.push_back(board_answer(board, answer));
+  if (report.unsynchronised) answers.push_back(flattery(report));
   if (answer.basis == sizing::Basis::kLevels)
-    sentences.push_back(
-        "The success of the flights does not follow a smooth curve. The answer is that of single "
-        "slowdowns: the interval is from the largest one that is sufficient to the smallest one "
-        "that is not.");
+    answers.push_back(
+        {"No smooth curve",
+         " fits the success of the flights. The answer is that of single slowdowns: the interval "
+         "is from the largest one that is sufficient to the smallest one that is not."});
   if (!answer.is_narrow)
-    sentences.push_back(fmt::format(
-        "The interval is wider than a factor of {}, because {}. More flights: --max-trials and "
-        "--resume.",
-        digits(report.question.interval),
-        report.synchronised.flights.size() + report.not_flown.size() >= report.most_flights
-            ? fmt::format("{} flights are the most that were allowed", report.most_flights)
-            : "slowdowns in between could not be decided"));
+    answers.push_back(
+        {"Less sure than asked",
+         fmt::format(
+             ": the interval is wider than a factor of {}, because {}.",
+             digits(report.question.interval),
+             report.synchronised.flights.size() + report.not_flown.size() >= report.most_flights
+                 ? fmt::format("{} flights are the most that were allowed", report.most_flights)
+                 : "slowdowns in between could not be decided")});
+  return answers;
+}
+
+std::vector<std::string> size_sentences(const SizeReport& report) {
+  std::vector<std::string> sentences;
+  for (const Answer& answer : size_answers(report)) sentences.push_back(answer.lead + answer.rest);
   return sentences;
+}
+
+std::vector<std::string> size_advice(const SizeReport& report) {
+  const sizing::Answer& answer = report.synchronised.answer;
+  std::vector<std::string> advice;
+  if (!answer.is_narrow) advice.emplace_back("Fly more: `--max-trials`, with `--resume`.");
+  const bool is_short =
+      answer.is_below || std::ranges::any_of(report.boards, [&](const Board& board) {
+        return verdict(board, answer) == BoardVerdict::kDoesNot;
+      });
+  if (report.pace && !report.pace->stages.empty()) {
+    const timing::StageRow& stage = report.pace->stages.front();
+    advice.push_back(fmt::format("{}“{}” first: it takes {:.0f} % of the computing time.",
+                                 is_short ? "Speed up " : "For more headroom, speed up ",
+                                 stage.stage, 100.0 * stage.share));
+  }
+  if (answer.is_below)
+    advice.push_back(fmt::format("Search below {} ×: `--between {:.2g},{:.2g}`.",
+                                 digits(report.question.least), 0.1 * report.question.least,
+                                 report.question.least));
+  if (answer.is_above)
+    advice.push_back(fmt::format(
+        "To find the limit, search beyond {} ×: `--between {:.3g},{:.3g}`.",
+        digits(report.question.most), report.question.most, 10.0 * report.question.most));
+  if (report.boards.empty())
+    advice.emplace_back("To see the headroom of a board, name it: `--target FILE`.");
+  if (!report.unsynchronised)
+    advice.emplace_back(
+        "To see how much a test without synchronisation flatters: `--unsynchronised CONDITION`.");
+  return advice;
+}
+
+std::optional<Pace> pace_near_answer(const SizeReport& report,
+                                     const std::filesystem::path& folder) {
+  const campaign::TrialResult* nearest = nullptr;
+  double least = 0.0;
+  const SizedCondition& sized = report.synchronised;
+  for (std::size_t i = 0; i < sized.flights.size(); ++i) {
+    const double distance =
+        std::abs(std::log(sized.flights[i].slowdown / sized.answer.threshold.estimate));
+    if (nearest != nullptr && distance >= least) continue;
+    nearest = &sized.trials[i];
+    least = distance;
+  }
+  if (nearest == nullptr) return std::nullopt;
+  return read_pace(folder /
+                   campaign::trial_folder(report.scenario, nearest->condition, nearest->seed) /
+                   "record.mcap");
 }
 
 std::optional<double> margin_of(const campaign::MetricValue& metric) {

@@ -1,235 +1,226 @@
-#include "answers/verdict.h"
-
 #include "tables/report_format.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <functional>
 
+#include <boost/math/distributions/binomial.hpp>
 #include <fmt/format.h>
 
-// The sentences of a report. A verdict consists of one sentence on how often the goal was reached,
-// one per other condition on how it differs from the first, and one on throttled boards. Numbers
-// are rounded by the width of their confidence interval.
+#include <tether/campaign/campaign_plan.h>
+#include <tether/report/size_report.h>
+#include <tether/report/verdict.h>
+#include <tether/scenario/scenario.h>
+
 namespace tether::report {
 namespace {
 
-constexpr double kSignificant = 0.05;
+constexpr double kTail = 0.025;  // of an interval of 95 %
+constexpr std::size_t kMostFlights = 1000;
 
-// "Time required" → "time required"; "ROI error" stays.
-std::string in_a_sentence(std::string label) {
-  const bool is_word = label.size() > 1 && std::islower(static_cast<unsigned char>(label[1])) != 0;
-  if (is_word) label[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(label[0])));
-  return label;
+bool is_free_running(const campaign::TrialResult& trial) {
+  return trial.policy == scenario::name(scenario::Policy::kFreeRunning);
 }
 
-std::string joined_with_and(const std::vector<std::string>& parts) {
-  std::string text;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (i > 0) text += i + 1 == parts.size() ? " and " : ", ";
-    text += parts[i];
+bool is_unsound(const campaign::TrialResult& trial) {
+  return (trial.audit && !trial.audit->passed) || trial.sync.causality_violations > 0;
+}
+
+/// What of the flight missed its limit.
+std::vector<std::string> missed_in(const campaign::TrialResult& trial) {
+  std::vector<std::string> missed;
+  if (has_crash(trial)) missed.emplace_back("no crash");
+  if (trial.end == campaign::kEndTimeLimit) missed.emplace_back("the time limit");
+  if (trial.end == campaign::kEndBatteryEmpty) missed.emplace_back("the battery");
+  for (const judge::ClauseVerdict& clause : trial.clauses)
+    if (!clause.met) missed.push_back(fmt::format("“{}”", clause.name));
+  for (const campaign::MetricValue& metric : trial.metrics)
+    if (metric.value && !metric.is_met())
+      missed.push_back(fmt::format("{} {}{}", in_a_sentence(metric.label),
+                                   metric.max ? "≤ " + exact(*metric.max) : limit_text(metric),
+                                   metric.unit == "1" ? "" : " " + metric.unit));
+  const auto has_missed = [](const campaign::SutResult& sut) { return !sut.reached_goal; };
+  if (missed.empty() && std::ranges::any_of(trial.suts, has_missed))
+    missed.emplace_back("the program's own goal");
+  return missed;
+}
+
+bool has_limit(const campaign::TrialResult& trial) {
+  return !trial.clauses.empty() || std::ranges::any_of(trial.metrics, [](const auto& metric) {
+    return metric.max || metric.min;
+  });
+}
+
+void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
+  if (is_unsound(trial)) {
+    if (verdict.unsound++ == 0)
+      verdict.reason = trial.audit && !trial.audit->passed ? trial.audit->summary : trial.reason;
   }
-  return text;
-}
-
-// Decimals that show the interval's half width with one digit, or two where the first is below 5.
-int decimals_for(const campaign::MeanDifference& means) {
-  const double scale = means.ci95 && means.ci95->high > means.ci95->low
-                           ? 0.5 * (means.ci95->high - means.ci95->low)
-                           : std::abs(means.difference) / 10.0;
-  if (!(scale > 0.0)) return 1;
-  const int exponent = static_cast<int>(std::floor(std::log10(scale)));
-  const bool begins_low = scale < 5.0 * std::pow(10.0, exponent);
-  return std::clamp(-exponent + (begins_low ? 1 : 0), 0, 6);
-}
-
-std::string number(double value, int places) {
-  const std::string text = fmt::format("{:.{}f}", value, places);
-  const bool is_zero = text.find_first_of("123456789") == std::string::npos;
-  if (is_zero && text.starts_with('-')) return text.substr(1);
-  return text.starts_with('-') ? "−" + text.substr(1) : text;
-}
-
-std::string amount(double value, int places, const std::string& unit) {
-  return number(value, places) + (unit == "1" ? "" : " " + unit);
-}
-
-std::string interval_text(const std::optional<campaign::Interval>& interval, int places,
-                          bool negated) {
-  if (!interval) return "too few trials for an interval";
-  const double low = negated ? -interval->high : interval->low;
-  const double high = negated ? -interval->low : interval->high;
-  return fmt::format("95 % interval {} to {}", number(low, places), number(high, places));
-}
-
-bool contains_zero(const std::optional<campaign::Interval>& interval) {
-  return interval && interval->low <= 0.0 && interval->high >= 0.0;
-}
-
-bool is_significant(const Comparison& comparison) {
-  return comparison.ranks.p_two_sided < kSignificant && !contains_zero(comparison.means.ci95);
-}
-
-// The verdict.
-
-std::string goals_sentence(const campaign::ScenarioResults& scenario) {
-  std::vector<std::string> parts;
-  for (const campaign::ConditionResults& condition : scenario.conditions) {
-    parts.push_back(fmt::format("{} of {} trials on “{}”",
-                                condition.count(campaign::Outcome::kGoalReached), condition.planned,
-                                condition.condition));
-  }
-  return fmt::format("The SUT reached its goal within the limits in {}.", joined_with_and(parts));
-}
-
-std::string difference_text(const Comparison& c, const std::string& label) {
-  const int places = decimals_for(c.means);
-  const bool smaller = c.means.difference < 0.0;
-  return fmt::format("{} ({} by {}, {})", in_a_sentence(label), smaller ? "smaller" : "larger",
-                     amount(std::abs(c.means.difference), places, c.unit),
-                     interval_text(c.means.ci95, places, smaller));
-}
-
-std::string comparison_sentence(const campaign::ScenarioResults& scenario,
-                                const std::vector<Comparison>& comparisons,
-                                const std::string& first, const std::string& other) {
-  std::vector<std::string> differences, alike;
-  for (const Comparison& c : comparisons) {
-    const bool is_meant = c.a == other && c.b == first;
-    if (!is_meant) continue;
-    const std::string& label = scenario.find_metric(c.metric)->label;
-    if (is_significant(c)) {
-      differences.push_back(difference_text(c, label));
-    } else {
-      alike.push_back(in_a_sentence(label));
-    }
-  }
-  std::string text;
-  if (!differences.empty())
-    text += fmt::format(" “{}” differs significantly from “{}” in {}.", other, first,
-                        joined_with_and(differences));
-  if (!alike.empty())
-    text += fmt::format(" “{}” does not differ significantly from “{}” in {}.", other, first,
-                        joined_with_and(alike));
-  return text;
-}
-
-// Boards that reduced their clock frequency; empty: none.
-std::string throttled_sentence(const campaign::ScenarioResults& scenario) {
-  std::vector<std::string> parts;
-  for (const campaign::ConditionResults& condition : scenario.conditions) {
-    const auto throttled = std::ranges::count_if(condition.trials, [](const auto& trial) {
-      return trial.this_run.target && trial.this_run.target->is_spoiled;
-    });
-    if (throttled > 0)
-      parts.push_back(fmt::format("{} of {} trials on “{}”", throttled, condition.trials.size(),
-                                  condition.condition));
-  }
-  if (parts.empty()) return "";
-  return fmt::format(
-      " The board was throttled in {}: the times of these trials are not representative.",
-      joined_with_and(parts));
-}
-
-// Trials with a hard contact; empty: none.
-std::string crashes_sentence(const campaign::ScenarioResults& scenario) {
-  std::vector<std::string> parts;
-  for (const campaign::ConditionResults& condition : scenario.conditions) {
-    const auto crashed = std::ranges::count_if(condition.trials, has_crash);
-    if (crashed > 0)
-      parts.push_back(fmt::format("{} of {} trials on “{}”", crashed, condition.trials.size(),
-                                  condition.condition));
-  }
-  if (parts.empty()) return "";
-  return fmt::format(" A UAV crashed in {}.", joined_with_and(parts));
-}
-
-// Problems.
-
-void add_trial_problems(std::vector<std::string>& lines, const std::string& where,
-                        const campaign::TrialResult& trial) {
-  const std::string which = fmt::format("{}, seed {}", where, trial.seed);
   if (trial.outcome == campaign::Outcome::kFailed) {
-    lines.push_back(fmt::format("{}: failed, excluded from all means: {}", which, trial.reason));
+    if (verdict.failed++ == 0 && verdict.unsound == 0) verdict.reason = trial.reason;
     return;
   }
-  if (has_crash(trial)) lines.push_back(fmt::format("{}: {}", which, trial.reason));
+  ++verdict.flown;
+  if (trial.outcome == campaign::Outcome::kGoalReached) ++verdict.reached;
+  if (has_crash(trial)) ++verdict.crashed;
+  if (trial.this_run.target && trial.this_run.target->is_spoiled) ++verdict.throttled;
   for (const campaign::MetricValue& metric : trial.metrics) {
-    if (!metric.value)
-      lines.push_back(fmt::format("{}: no value of {}: {}", which, in_a_sentence(metric.label),
-                                  metric.missing_because));
+    const std::optional<double> margin = margin_of(metric);
+    if (margin && (!verdict.closest || *margin < verdict.closest->second))
+      verdict.closest = {metric.label, *margin};
   }
-  if (trial.audit && !trial.audit->passed)
-    lines.push_back(fmt::format("{}: audit: {}", which, trial.audit->summary));
-  if (trial.sync.causality_violations > 0)
-    lines.push_back(
-        fmt::format("{}: {} causality violations", which, trial.sync.causality_violations));
-  if (trial.this_run.target)
-    for (const std::string& warning : trial.this_run.target->warnings)
-      lines.push_back(fmt::format("{}: {}", which, warning));
-  for (const std::string& note : trial.this_run.notes)
-    lines.push_back(fmt::format("{}: {}", which, note));
+  if (trial.outcome == campaign::Outcome::kGoalReached) return;
+  for (const std::string& limit : missed_in(trial)) {
+    const auto known =
+        std::ranges::find(verdict.missed, limit, &std::pair<std::string, std::size_t>::first);
+    if (known == verdict.missed.end())
+      verdict.missed.emplace_back(limit, 1);
+    else
+      ++known->second;
+  }
 }
 
-void add_missing_seeds(std::vector<std::string>& lines, const std::string& where,
-                       const std::vector<std::uint64_t>& seeds,
-                       const campaign::ConditionResults& condition) {
-  std::vector<std::string> missing;
-  for (const std::uint64_t seed : seeds) {
-    if (std::ranges::find(condition.trials, seed, &campaign::TrialResult::seed) ==
-        condition.trials.end())
-      missing.push_back(std::to_string(seed));
+Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResults& results) {
+  const auto& trials = results.trials;
+  if (verdict.unsound > 0) return Ruling::kVoid;
+  if (verdict.flown == 0) return verdict.failed > 0 ? Ruling::kSetUpFailed : Ruling::kUndecided;
+  if (std::ranges::any_of(trials, is_free_running)) return Ruling::kFreeRunning;
+  const bool all = verdict.reached == verdict.flown;
+  if (all && std::ranges::none_of(trials, has_limit)) return Ruling::kNothingToDecide;
+  if (verdict.share->low >= kWantedSuccess) return Ruling::kFastEnough;
+  if (all) return Ruling::kFastEnoughSoFar;
+  const bool is_missed = verdict.share->high < kWantedSuccess || verdict.planned == 1;
+  // A board that was throttled could do better.
+  return is_missed && verdict.throttled == 0 ? Ruling::kNotFastEnough : Ruling::kUndecided;
+}
+
+ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
+  ConditionVerdict verdict{.condition = results.condition, .planned = results.planned};
+  for (const campaign::TrialResult& trial : results.trials) count(verdict, trial);
+  if (verdict.flown > 0) verdict.share = exact_interval(verdict.reached, verdict.flown);
+  std::ranges::stable_sort(verdict.missed, std::greater<>{},
+                           &std::pair<std::string, std::size_t>::second);
+  verdict.ruling = ruling_of(verdict, results);
+  return verdict;
+}
+
+/// How many flights would decide, if their share stays what it is. 0: very many.
+std::size_t flights_to_decide(const ConditionVerdict& verdict) {
+  const double share = static_cast<double>(verdict.reached) / static_cast<double>(verdict.flown);
+  for (std::size_t flown = verdict.flown + 1; flown <= kMostFlights; ++flown) {
+    const auto reached = static_cast<std::size_t>(std::lround(share * static_cast<double>(flown)));
+    const campaign::Interval interval = exact_interval(reached, flown);
+    if (interval.low >= kWantedSuccess || interval.high < kWantedSuccess) return flown;
   }
-  if (!missing.empty())
-    lines.push_back(fmt::format("{}: no readable result for seed{} {} (not run yet, or damaged)",
-                                where, missing.size() > 1 ? "s" : "", joined_with_and(missing)));
+  return 0;
+}
+
+void advise_on_pace(std::vector<Advice>& advice, const ConditionVerdict& lead) {
+  if (!lead.pace) return;
+  if (lead.pace->keeps_up())
+    advice.push_back({Advice::Kind::kTryFaster, lead.condition});
+  else
+    advice.push_back({Advice::Kind::kSpeedUpStage, lead.pace->stages.front().stage});
+}
+
+std::vector<Advice> advice_on(const ConditionVerdict& lead) {
+  using Kind = Advice::Kind;
+  std::vector<Advice> advice;
+  if (lead.failed > 0 && lead.unsound == 0) advice.push_back({Kind::kMendSetUp, lead.reason});
+  if (lead.throttled > 0) advice.push_back({Kind::kCoolBoard, lead.condition});
+  switch (lead.ruling) {
+    case Ruling::kVoid:
+      advice.push_back({Kind::kReadAudit, lead.condition});
+      break;
+    case Ruling::kSetUpFailed:
+      break;
+    case Ruling::kNotFastEnough:
+      advise_on_pace(advice, lead);
+      if (!lead.pace || !lead.pace->keeps_up())
+        advice.push_back({Kind::kFindThreshold, lead.condition});
+      break;
+    case Ruling::kUndecided:
+    case Ruling::kFastEnoughSoFar:
+      if (lead.flown > 0)
+        advice.push_back({Kind::kFlyMore, lead.condition, flights_to_decide(lead)});
+      if (lead.reached < lead.flown) advise_on_pace(advice, lead);
+      if (lead.flown > 0) advice.push_back({Kind::kFindThreshold, lead.condition});
+      break;
+    case Ruling::kFastEnough:
+      advice.push_back({Kind::kFindThreshold, lead.condition});
+      break;
+    case Ruling::kNothingToDecide:
+      advice.push_back({Kind::kSetLimit});
+      break;
+    case Ruling::kFreeRunning:
+      advice.push_back({Kind::kSynchronise});
+      break;
+  }
+  return advice;
+}
+
+std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
+                                      const campaign::ConditionResults& condition,
+                                      const std::filesystem::path& folder, bool is_run) {
+  std::vector<const campaign::TrialResult*> trials;
+  for (const campaign::TrialResult& trial : condition.trials)
+    if (trial.outcome != campaign::Outcome::kFailed && !is_free_running(trial))
+      trials.push_back(&trial);
+  std::ranges::stable_partition(trials, [](const campaign::TrialResult* trial) {
+    return trial->outcome == campaign::Outcome::kGoalMissed;
+  });
+  for (const campaign::TrialResult* trial : trials) {
+    const std::filesystem::path of_trial =
+        is_run
+            ? folder
+            : folder / campaign::trial_folder(scenario.scenario, condition.condition, trial->seed);
+    if (auto pace = read_pace(of_trial / "record.mcap")) return pace;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::string verdict(const campaign::ScenarioResults& scenario) {
-  std::string text = goals_sentence(scenario);
-  if (scenario.conditions.empty()) return text;
-  const std::vector<Comparison> comparisons = compare_conditions(scenario);
-  const std::string& first = scenario.conditions.front().condition;
-  for (const campaign::ConditionResults& other : scenario.conditions)
-    text += comparison_sentence(scenario, comparisons, first, other.condition);
-  return text + crashes_sentence(scenario) + throttled_sentence(scenario);
+campaign::Interval exact_interval(std::size_t reached, std::size_t flown) {
+  using Binomial = boost::math::binomial_distribution<double>;
+  const double n = static_cast<double>(flown), k = static_cast<double>(reached);
+  return {reached == 0 ? 0.0 : Binomial::find_lower_bound_on_p(n, k, kTail),
+          reached == flown ? 1.0 : Binomial::find_upper_bound_on_p(n, k, kTail)};
 }
 
-std::string optimism_sentence(const Comparison& comparison, const campaign::MetricValue& metric) {
-  const double hidden = comparison.means.difference;
-  const int places = decimals_for(comparison.means);
-  const bool smaller = hidden > 0.0;
-  const bool better = smaller != is_better_if_more(metric);
-  const std::string label = in_a_sentence(metric.label);
-  if (hidden == 0.0 || contains_zero(comparison.means.ci95))
-    return fmt::format(
-        "Without synchronisation, “{}” does not differ significantly in {}: {} ({}).", comparison.a,
-        label, amount(hidden, places, metric.unit),
-        interval_text(comparison.means.ci95, places, false));
-  const std::string size = amount(std::abs(hidden), places, metric.unit);
-  const std::string range = interval_text(comparison.means.ci95, places, !smaller);
-  const std::string start = fmt::format("Without synchronisation, “{}” appears ", comparison.a);
-  if (metric.unit == "s" || metric.unit == "ms")
-    return start + fmt::format("{} {} than it is ({}; {}).", size, better ? "faster" : "slower",
-                               label, range);
-  return start + fmt::format("{} than it is: {} {} by {} ({}).", better ? "better" : "worse", label,
-                             smaller ? "smaller" : "larger", size, range);
-}
-
-std::vector<std::string> problems(const campaign::CampaignResults& results) {
-  std::vector<std::string> lines;
-  for (const campaign::ScenarioResults& scenario : results.scenarios) {
-    for (const campaign::ConditionResults& condition : scenario.conditions) {
-      const std::string where = fmt::format("{}, {}", scenario.scenario, condition.condition);
-      for (const campaign::TrialResult& trial : condition.trials)
-        add_trial_problems(lines, where, trial);
-      add_missing_seeds(lines, where, results.manifest.seeds, condition);
-    }
+Verdict verdict_of(const campaign::ScenarioResults& scenario,
+                   const std::vector<std::optional<Pace>>& paces) {
+  Verdict verdict{.scenario = scenario.swept_from.empty() ? scenario.scenario : scenario.swept_from,
+                  .conditions = {}};
+  for (const scenario::Setting& setting : scenario.settings)
+    verdict.point +=
+        fmt::format("{}{} = {}", verdict.point.empty() ? "" : ", ", setting.key, setting.value);
+  for (const campaign::ConditionResults& condition : scenario.conditions) {
+    verdict.conditions.push_back(verdict_of(condition));
+    const std::size_t i = verdict.conditions.size() - 1;
+    if (i < paces.size()) verdict.conditions.back().pace = paces[i];
   }
-  lines.insert(lines.end(), results.damaged.begin(), results.damaged.end());
-  return lines;
+  // Of equal rulings, the condition whose program is the slowest.
+  const auto lead =
+      std::ranges::min_element(verdict.conditions, {}, [](const ConditionVerdict& condition) {
+        return std::pair(condition.ruling, condition.pace ? -condition.pace->p95_s : 0.0);
+      });
+  verdict.lead = static_cast<std::size_t>(lead - verdict.conditions.begin());
+  verdict.advice = advice_on(*lead);
+  return verdict;
+}
+
+std::vector<Verdict> verdicts_of(const campaign::CampaignResults& results,
+                                 const std::filesystem::path& folder) {
+  const bool is_run = std::filesystem::exists(folder / campaign::kResultFile);
+  std::vector<Verdict> verdicts;
+  for (const campaign::ScenarioResults& scenario : results.scenarios) {
+    std::vector<std::optional<Pace>> paces;
+    for (const campaign::ConditionResults& condition : scenario.conditions)
+      paces.push_back(pace_of_condition(scenario, condition, folder, is_run));
+    verdicts.push_back(verdict_of(scenario, paces));
+  }
+  return verdicts;
 }
 
 }  // namespace tether::report

@@ -10,6 +10,7 @@
 
 #include <tether/campaign/campaign_plan.h>
 #include <tether/report/junit.h>
+#include <tether/report/verdict.h>
 
 namespace tether::report {
 namespace {
@@ -28,6 +29,7 @@ struct Suite {
   std::string name;
   std::string started_at = "1970-01-01T00:00:00";  ///< without a zone, as the schema wants it
   std::string machine = "unknown";
+  std::string verdict{};  ///< empty: none
   std::vector<Case> cases{};
 
   std::ptrdiff_t count(std::string_view kind) const {
@@ -124,9 +126,15 @@ std::string text_of(const Suite& suite, std::size_t id) {
   for (const Case& one : suite.cases) time_s += one.time_s;
   std::string text = fmt::format(
       "  <testsuite id=\"{}\" package=\"tether\" name=\"{}\" timestamp=\"{}\" hostname=\"{}\" "
-      "tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\">\n    <properties/>\n",
+      "tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\">\n",
       id, escape_markup(suite.name), suite.started_at, escape_markup(suite.machine),
       suite.cases.size(), suite.count("failure"), suite.count("error"), time_s);
+  text += suite.verdict.empty()
+              ? "    <properties/>\n"
+              : fmt::format(
+                    "    <properties>\n      <property name=\"verdict\" value=\"{}\"/>\n    "
+                    "</properties>\n",
+                    escape_markup(suite.verdict));
   for (const Case& one : suite.cases) text += text_of(one, suite.name);
   return text + fmt::format("    <system-out>{}</system-out>\n    <system-err/>\n  </testsuite>\n",
                             escape_markup(output_of(suite)));
@@ -152,10 +160,15 @@ Case error_case(const std::string& trial, const std::string& message) {
 std::string to_junit(const campaign::CampaignResults& results,
                      const std::filesystem::path& folder) {
   const bool is_run = std::filesystem::exists(folder / campaign::kResultFile);
+  const std::vector<Verdict> verdicts = verdicts_of(results, folder);
   std::vector<Suite> suites;
-  for (const campaign::ScenarioResults& scenario : results.scenarios) {
-    for (const campaign::ConditionResults& condition : scenario.conditions) {
+  for (std::size_t i = 0; i < results.scenarios.size(); ++i) {
+    const campaign::ScenarioResults& scenario = results.scenarios[i];
+    for (std::size_t j = 0; j < scenario.conditions.size(); ++j) {
+      const campaign::ConditionResults& condition = scenario.conditions[j];
       Suite suite{.name = fmt::format("{}, {}", scenario.scenario, condition.condition)};
+      const Answer answer = answer_of(verdicts[i].conditions[j]);
+      suite.verdict = answer.lead + answer.rest;
       for (const std::uint64_t seed : results.manifest.seeds) {
         const auto trial = std::ranges::find(condition.trials, seed, &campaign::TrialResult::seed);
         if (trial == condition.trials.end())

@@ -1,7 +1,11 @@
-#include "answers/verdict.h"
+#include "answers/comparisons.h"
 #include "pages/html.h"
 #include "pages/page_figures.h"
+#include "pages/verdict_html.h"
 #include "plots/svg.h"
+
+#include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -9,9 +13,11 @@
 #include <tether/report/paper_figures.h>
 #include <tether/report/report.h>
 #include <tether/report/sweep.h>
+#include <tether/report/verdict.h>
 
-// The page of a campaign: problems on top, then a section for each scenario, whose parts are built
-// by one function each in reading order, and the setup last. A part without data is empty.
+// The page of a campaign: the answers with a picture and problems on top, then a section for each
+// scenario, whose parts are built by one function each in reading order, and the setup last. A part
+// without data is empty.
 namespace tether::report {
 namespace {
 
@@ -106,18 +112,29 @@ std::string frames_part(FigureMaker& figures, const SeedRecords& records) {
 std::string tables_part(const campaign::ScenarioResults& scenario) {
   std::string html = folded("All statistics", to_html(details_table(scenario)));
   if (!compare_conditions(scenario).empty())
-    html += folded("Differences between the conditions", to_html(comparisons_table(scenario)));
+    html += folded("Differences between the conditions",
+                   list(difference_sentences(scenario)) + to_html(comparisons_table(scenario)));
   return html;
 }
 
+/// What was compared, and where the time goes.
+std::string verdict_tables(const std::vector<Verdict>& points) {
+  std::string html = to_html(rulings_table(points));
+  const Table stages = stages_table(points);
+  if (stages.rows.empty()) return html;
+  return html + folded("Where the computing time goes: all stages", to_html(stages));
+}
+
 std::string scenario_section(FigureMaker& figures, const campaign::ScenarioResults& scenario,
-                             const std::filesystem::path& folder, std::size_t number) {
+                             const Verdict& verdict, const std::filesystem::path& folder,
+                             std::size_t number, bool has_answer) {
   const SeedRecords records = read_seed_records(scenario, folder);
   const std::vector<PlottedRun> runs = runs_of(records);
   std::string html = fmt::format("<section id=\"scenario-{}\">\n", number);
   html += element("h2", heading_of(scenario));
   if (!scenario.description.empty()) html += element("p", scenario.description);
-  html += "<p class=\"verdict\">" + escape_markup(verdict(scenario)) + "</p>\n";
+  if (has_answer) html += answer_html({verdict}, "h3");
+  if (scenario.swept_from.empty()) html += verdict_tables({verdict});
   html += to_html(paper_form_table(scenario));
   if (const Table clauses = clauses_table(scenario); !clauses.rows.empty())
     html += to_html(clauses);
@@ -132,8 +149,14 @@ std::string scenario_section(FigureMaker& figures, const campaign::ScenarioResul
   return html + "</section>\n";
 }
 
-std::string sweep_section(FigureMaker& figures, const Sweep& sweep) {
+std::string sweep_section(FigureMaker& figures, const Sweep& sweep,
+                          const std::vector<Verdict>& verdicts) {
+  std::vector<Verdict> points;
+  std::ranges::copy_if(verdicts, std::back_inserter(points), [&](const Verdict& verdict) {
+    return !verdict.point.empty() && verdict.scenario == sweep.scenario;
+  });
   std::string html = "<section>\n" + element("h2", sweep.scenario + ": sweep") +
+                     verdict_tables(points) +
                      figures.plot(sweep_plot(sweep), "The bars are 95 % intervals (Wilson).");
   for (const std::string& metric : sweep.points.front()->metrics)
     html += figures.plot(sweep_plot(sweep, metric),
@@ -148,12 +171,16 @@ std::string campaign_page(const campaign::CampaignResults& results,
   FigureMaker figures(results.scenarios.size());
   const std::string& name = results.manifest.name;
   std::string body = element("h1", name);
+  const std::vector<Verdict> verdicts = verdicts_of(results, folder);
+  const std::vector<std::vector<Verdict>> groups = by_scenario(verdicts);
+  body += groups.size() == 1 ? answer_html(groups.front()) : answers_html(groups);
+  body += verdict_picture_html(groups);
   if (!results.manifest.description.empty()) body += element("p", results.manifest.description);
   body += problems_box(problems(results)) + contents(results);
-  for (const Sweep& sweep : sweeps_of(results)) body += sweep_section(figures, sweep);
-  std::size_t number = 0;
-  for (const campaign::ScenarioResults& scenario : results.scenarios)
-    body += scenario_section(figures, scenario, folder, ++number);
+  for (const Sweep& sweep : sweeps_of(results)) body += sweep_section(figures, sweep, verdicts);
+  for (std::size_t i = 0; i < results.scenarios.size(); ++i)
+    body += scenario_section(figures, results.scenarios[i], verdicts[i], folder, i + 1,
+                             groups.size() > 1 && verdicts[i].point.empty());
   body += "<section id=\"basis\">\n" + element("h2", "Setup and checks") + basis_html(results) +
           "</section>\n";
   return html_page(name, body);

@@ -14,6 +14,9 @@
 namespace tether::report {
 namespace {
 
+// What is wider than the page scrolls, also by keyboard.
+const std::string kScroll = R"(<div class="scroll" tabindex="0">)";
+
 std::string spanned(const Heading& heading) {
   return heading.columns > 1 ? fmt::format(" colspan=\"{}\"", heading.columns) : "";
 }
@@ -60,7 +63,7 @@ std::string body_row(const std::vector<std::string>& row, std::size_t text_colum
 }  // namespace
 
 std::string to_html(const Table& table) {
-  std::string html = "<div class=\"scroll\"><table>\n";
+  std::string html = kScroll + "<table>\n";
   if (!table.title.empty()) html += element("caption", table.title) + "\n";
   html += head(table) + "<tbody>\n";
   for (const auto& row : table.rows) html += body_row(row, table.text_columns);
@@ -93,8 +96,8 @@ std::string folded(const std::string& summary, const std::string& inner) {
 
 std::string figure(const std::string& drawing, const std::string& caption,
                    const std::string& kind) {
-  return fmt::format("<figure class=\"{}\"><div class=\"scroll\">{}</div>{}</figure>\n", kind,
-                     drawing, caption.empty() ? "" : element("figcaption", caption));
+  return fmt::format("<figure class=\"{}\">{}{}</div>{}</figure>\n", kind, kScroll, drawing,
+                     caption.empty() ? "" : element("figcaption", caption));
 }
 
 std::string basis_html(const campaign::CampaignResults& results) {

@@ -22,7 +22,13 @@ p{margin:.6rem 0}
 .notes{margin:.3rem 0 0;padding:0;list-style:none}
 nav ul{display:flex;flex-wrap:wrap;gap:.3rem 1.2rem;padding:0;list-style:none}
 a{color:var(--accent)}
-.verdict{font-size:1.06rem}
+.answer{padding:.9rem 1.1rem;margin:1rem 0;border:1px solid var(--line);border-left:6px solid var(--accent);
+background:var(--band);border-radius:0 6px 6px 0}
+.answer p{margin:.35rem 0}
+.answer .first{font-size:1.25rem;line-height:1.4}
+.answer h2,.answer h3{border:0;margin:.9rem 0 0;padding:0;font-size:1rem}
+.answer ul{margin:.2rem 0 0;padding-left:1.2rem}
+:focus-visible{outline:3px solid var(--accent);outline-offset:2px}
 .optimism,.problems{padding:.7rem 1rem;border-left:4px solid var(--note-line);
 background:var(--note);border-radius:0 6px 6px 0;margin:.8rem 0}
 .optimism p{margin:.25rem 0;font-weight:600}
@@ -45,6 +51,9 @@ figure .scroll{margin:0}
 figure svg{display:block;max-width:100%;height:auto}
 .plot svg{width:100%;min-width:560px}
 figcaption{margin-top:.2rem}
+.pair .scroll{display:flex;flex-wrap:wrap;gap:.6rem 2rem}
+.pair svg{flex:1 1 300px;min-width:0}
+code{overflow-wrap:anywhere;font-size:.92em}
 .frames{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,330px),1fr));gap:1rem}
 .frames figure{margin:0}
 .frames svg{width:100%;border-radius:6px}

@@ -1,6 +1,7 @@
-#include "answers/verdict.h"
+#include "answers/comparisons.h"
 #include "pages/html.h"
 #include "pages/page_figures.h"
+#include "pages/verdict_html.h"
 #include "plots/mission_timeline.h"
 #include "plots/svg.h"
 #include "tables/report_format.h"
@@ -10,6 +11,7 @@
 #include <tether/base/error.h>
 #include <tether/report/page.h>
 #include <tether/report/report.h>
+#include <tether/report/verdict.h>
 
 namespace tether::report {
 namespace {
@@ -40,7 +42,7 @@ std::string outcome_sentences(const campaign::TrialResult& trial) {
 
 std::string plots_part(FigureMaker& figures, const record::Record& record) {
   std::vector<PlottedRun> runs;
-  std::string html;
+  std::string html = element("h2", "The flight");
   for (const record::SutInfo& sut : record.header.suts) {
     const PlottedRun run{&record, sut.uav, sut.uav, runs.size()};
     runs.push_back(run);
@@ -121,7 +123,10 @@ std::string record_part(const std::filesystem::path& folder) {
 }  // namespace
 
 campaign::CampaignResults read_run_results(const std::filesystem::path& folder) {
-  const campaign::TrialResult trial = campaign::read_result(folder);
+  return results_of_run(campaign::read_result(folder));
+}
+
+campaign::CampaignResults results_of_run(const campaign::TrialResult& trial) {
   campaign::ScenarioResults scenario;
   scenario.scenario = trial.scenario;
   for (const campaign::MetricValue& metric : trial.metrics) scenario.metrics.push_back(metric.name);
@@ -140,12 +145,16 @@ std::string run_page(const std::filesystem::path& folder) {
   const campaign::TrialResult& trial = trial_of(results);
   const std::string& title = results.manifest.name;
   std::string body = element("h1", title);
-  body += "<p class=\"verdict\">" + escape_markup(outcome_sentences(trial)) + "</p>\n";
-  body += problems_box(problems(results));
+  const std::vector<Verdict> verdicts = verdicts_of(results, folder);
+  body += answer_html(verdicts) + verdict_picture_html({verdicts});
+  body += element("p", outcome_sentences(trial)) + "\n" + problems_box(problems(results));
+  body += element("h2", "Metrics and limits");
   Table metrics = run_table(trial);
   metrics.title.clear();
   std::erase(metrics.notes, trial.reason + ".");  // outcome_sentences has it
   body += to_html(metrics) + mission_part(trial);
+  if (const Table stages = stages_table(verdicts); !stages.rows.empty())
+    body += element("h2", "Where the time goes") + to_html(stages);
   if (const Table energy = energy_table(trial); !energy.rows.empty()) body += to_html(energy);
   body += record_part(folder);
   body += element("h2", "Setup and checks") + basis_html(results);

@@ -1,5 +1,6 @@
 #include "pages/html.h"
 #include "pages/page_figures.h"
+#include "pages/verdict_html.h"
 #include "plots/svg.h"
 
 #include <fmt/format.h>
@@ -87,21 +88,20 @@ Table basis_of(const SizeReport& report) {
 
 std::string size_page(const SizeReport& report) {
   FigureMaker figures(1);
-  const std::vector<std::string> sentences = size_sentences(report);
-  std::string body = element("h1", report.scenario + ": how slow may the computer be?");
-  body += "<p class=\"verdict\"><strong>" + escape_markup(sentences.front()) + "</strong></p>\n";
-  for (std::size_t i = 1; i < sentences.size(); ++i) body += element("p", sentences[i]) + "\n";
+  std::string body = element("h1", report.scenario + ": how slow a computer is fast enough?");
+  body += answer_block(size_answers(report), size_advice(report));
   body += figures.plot(
       size_plot(report),
       "Each dot is one flight. The line is the share of flights that reach the goal, the band its "
       "interval. Shaded: the interval of the largest sufficient slowdown. Below: how far each "
       "metric is within its limit, in shares of the limit.");
   if (!report.boards.empty()) body += to_html(boards_table(report));
+  if (report.pace) body += to_html(stages_table(report.synchronised.condition, *report.pace));
   if (!report.not_flown.empty()) body += problems_box(report.not_flown);
   body += folded("All slowdowns that were flown", to_html(levels_table(report)));
   body += "<section id=\"basis\">\n" + element("h2", "Setup and checks") +
           to_html(basis_of(report)) + "</section>\n";
-  return html_page(report.scenario + ": how slow may the computer be?", body);
+  return html_page(report.scenario + ": how slow a computer is fast enough?", body);
 }
 
 }  // namespace tether::report

@@ -1,6 +1,8 @@
 #include "pages/html.h"
-#include "plots/inks.h"
+#include "pages/verdict_html.h"
+#include "plots/shapes.h"
 #include "plots/svg.h"
+#include "tables/report_format.h"
 
 #include <algorithm>
 #include <array>
@@ -21,11 +23,6 @@ std::string in_ms(double seconds) {
   return fixed(seconds * 1e3, 3);
 }
 
-std::string filled(Ink ink) {
-  return fmt::format("class=\"tp-fill-{}\" fill=\"{}\"", static_cast<std::size_t>(ink),
-                     light_colour(ink));
-}
-
 /// How often the stage took how long, from 0 to its worst time.
 std::string histogram(const timing::StageRow& row, const std::vector<double>& times_ns) {
   std::array<std::size_t, kBins> counts{};
@@ -44,16 +41,44 @@ std::string histogram(const timing::StageRow& row, const std::vector<double>& ti
     const double height_px = std::max(1.0, kBars_px * static_cast<double>(counts[i]) / highest);
     svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" {}/>",
                        kBin_px * static_cast<double>(i), kBars_px - height_px, kBin_px - 1.0,
-                       height_px, filled(series_ink(0)));
+                       height_px, fill_of(series_ink(0)));
   }
   svg += fmt::format(
       "<text x=\"0\" y=\"{0}\" {1}>0</text>"
       "<text x=\"{2}\" y=\"{0}\" text-anchor=\"end\" {1}>{3} ms</text></svg>",
-      kBars_px + 15.0, filled(Ink::kForeground), kBars_across_px, in_ms(row.worst_s));
+      kBars_px + 15.0, fill_of(Ink::kForeground), kBars_across_px, in_ms(row.worst_s));
   return svg;
 }
 
 }  // namespace
+
+Answer timing_answer(const std::vector<timing::StageRow>& rows) {
+  if (rows.empty()) return {"Nothing to decide", ": the runs have no calls."};
+  const timing::StageRow& most = rows.front();
+  return {fmt::format("“{}” takes {:.0f} % of the computing time", most.stage, 100.0 * most.share),
+          fmt::format(": {} at a time, and {} in 95 % of the {} times at most.",
+                      short_ms(most.median_s), short_ms(most.p95_s), most.count)};
+}
+
+std::vector<std::string> timing_advice(const timing::Timing& timing,
+                                       const std::vector<timing::StageRow>& rows) {
+  std::vector<std::string> advice;
+  if (rows.empty()) return advice;
+  const timing::StageRow& most = rows.front();
+  advice.push_back(
+      fmt::format("Speed up “{}” first: at half its time, all computing takes {:.0f} % less.",
+                  most.stage, 50.0 * most.share));
+  if (most.count < timing::kFewSamples)
+    advice.push_back(
+        fmt::format("Record more runs: “{}” has only {} of the {} samples that its "
+                    "times need.",
+                    most.stage, most.count, timing::kFewSamples));
+  advice.push_back(fmt::format(
+      "Times alone do not show whether the computer is fast enough. To find its headroom: "
+      "`tether size SCENARIO`, with the scenario of “{}”.",
+      timing.scenario));
+  return advice;
+}
 
 std::string timing_page(const timing::Timing& timing) {
   const auto rows = timing::stage_rows(timing);
@@ -78,7 +103,9 @@ std::string timing_page(const timing::Timing& timing) {
       fmt::format("{}, build {}, clock {}, on {}; {} runs, recorded {}", timing.program,
                   timing.build_id.empty() ? "unknown" : timing.build_id, timing.clock, timing.board,
                   timing.runs.size(), timing.recorded_at);
-  return html_page(title, element("h1", title) + element("p", source) + to_html(table) + figures);
+  return html_page(title, element("h1", title) +
+                              answer_block({timing_answer(rows)}, timing_advice(timing, rows)) +
+                              figures + to_html(table) + element("p", source));
 }
 
 std::string timing_csv(const std::vector<timing::StageRow>& rows) {

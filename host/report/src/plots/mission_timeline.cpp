@@ -1,6 +1,6 @@
 #include "plots/mission_timeline.h"
 
-#include "plots/inks.h"
+#include "plots/shapes.h"
 #include "plots/svg.h"
 
 #include <algorithm>
@@ -16,19 +16,12 @@ constexpr Ink kTask = Ink::kSeries;
 const Ink kMissed = series_ink(1);
 const Ink kMet = series_ink(2);
 
-std::string fill(Ink ink) {
-  return fmt::format("class=\"tp-fill-{}\"", static_cast<std::size_t>(ink));
-}
-
-std::string rectangle(double x, double y, double width, double height, Ink ink) {
-  return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" {}/>\n", x,
-                     y, std::max(width, 1.0), height, fill(ink));
+std::string duration_bar(double x, double y, double width, double height, Ink ink) {
+  return rectangle_svg(x, y, std::max(width, 1.0), height, ink);
 }
 
 std::string text(double x, double y, std::string_view anchor, const std::string& words) {
-  return fmt::format(
-      "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"12\" {}>{}</text>\n", x, y,
-      anchor, fill(Ink::kForeground), escape_markup(words));
+  return text_svg(x, y, words, anchor);
 }
 
 /// At most `most` characters.
@@ -48,7 +41,7 @@ class Timeline {
 
   void draw(const judge::TaskSpan& task) {
     body_ += text(kLeft - 8, baseline(), "end", shortened(task.task));
-    body_ += rectangle(x(task.from), y_ + 4, x(task.to) - x(task.from), kRow - 8, kTask);
+    body_ += duration_bar(x(task.from), y_ + 4, x(task.to) - x(task.from), kRow - 8, kTask);
     body_ += text(kRight + 8, baseline(), "start", shortened(task.status, 14));
     y_ += kRow;
   }
@@ -57,13 +50,13 @@ class Timeline {
     const Ink ink = clause.met ? kMet : kMissed;
     body_ += text(kLeft - 8, baseline(), "end", shortened(clause.name));
     if (clause.from && clause.to)
-      body_ += rectangle(x(*clause.from), y_ + 9, x(*clause.to) - x(*clause.from), 4, ink);
+      body_ += duration_bar(x(*clause.from), y_ + 9, x(*clause.to) - x(*clause.from), 4, ink);
     body_ += drain(clause.margins);
     if (clause.deadline)
-      body_ += rectangle(x(*clause.deadline) - 1, y_ + 2, 2, kRow - 4, Ink::kForeground);
+      body_ += duration_bar(x(*clause.deadline) - 1, y_ + 2, 2, kRow - 4, Ink::kForeground);
     if (clause.decided_at)
       body_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5\" {}/>\n",
-                           x(*clause.decided_at), y_ + 11, fill(ink));
+                           x(*clause.decided_at), y_ + 11, fill_of(ink));
     body_ += text(kRight + 8, baseline(), "start",
                   clause.margin ? fmt::format("{:+.3g} {}", *clause.margin, clause.unit)
                                 : std::string(clause.met ? "met" : "missed"));
@@ -74,7 +67,7 @@ class Timeline {
     const double step_s = step();
     for (double s = 0.0; s <= end_s_; s += step_s) {
       const double tick = x(SimTime(duration_from_seconds(s)));
-      body_ += rectangle(tick, kTop, 0.5, y_ - kTop, Ink::kMuted);
+      body_ += duration_bar(tick, kTop, 0.5, y_ - kTop, Ink::kMuted);
       body_ += text(tick, y_ + 16, "middle", fmt::format("{:g}", s));
     }
     body_ += text((kLeft + kRight) / 2, y_ + 34, "middle", "ST (s)");

@@ -1,6 +1,7 @@
 #include "tables/report_format.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include <fmt/format.h>
 
@@ -44,6 +45,25 @@ std::string limit_text(const campaign::MetricValue& metric) {
 }
 std::string with_unit(const std::string& label, const std::string& unit) {
   return unit == "1" ? label : fmt::format("{} ({})", label, unit);
+}
+
+std::string in_a_sentence(std::string label) {
+  const bool is_word = label.size() > 1 && std::islower(static_cast<unsigned char>(label[1])) != 0;
+  if (is_word) label[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(label[0])));
+  return label;
+}
+
+std::string short_ms(double seconds) {
+  return fmt::format("{:.{}f} ms", 1e3 * seconds, seconds < 0.01 ? 1 : 0);
+}
+
+std::string joined_with_and(const std::vector<std::string>& parts) {
+  std::string text;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i > 0) text += i + 1 == parts.size() ? " and " : ", ";
+    text += parts[i];
+  }
+  return text;
 }
 
 std::string notes_of(const campaign::TrialResult& trial) {

@@ -30,6 +30,12 @@ bool is_better_if_more(const campaign::MetricValue& metric);
 std::string limit_text(const campaign::MetricValue& metric);
 /// "Time required (s)"; counts have no unit.
 std::string with_unit(const std::string& label, const std::string& unit);
+/// "Time required" → "time required"; "ROI error" stays.
+std::string in_a_sentence(std::string label);
+/// "9.4 ms", "108 ms"
+std::string short_ms(double seconds);
+/// "a, b and c"
+std::string joined_with_and(const std::vector<std::string>& parts);
 /// Unexpected events of a run, in one line; empty: none.
 std::string notes_of(const campaign::TrialResult& trial);
 /// A row with a heading for each column.

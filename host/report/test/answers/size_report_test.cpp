@@ -16,7 +16,7 @@ TEST(SizeReport, AnswersFirstThenJudgesTheBoards) {
   ASSERT_THAT(sentences, SizeIs(2));
   EXPECT_EQ(sentences[0],
             "Sufficient up to 3.1 × slower than “target” [2.7, 3.6], 95 %; 10 flights.");
-  EXPECT_EQ(sentences[1], "pi.toml (1.9 ×) has 1.6 × headroom.");
+  EXPECT_EQ(sentences[1], "Fast enough: pi.toml (1.9 ×) has 1.6 × headroom.");
 }
 
 TEST(SizeReport, SaysWhenTheAnswerIsOutsideTheRange) {
@@ -56,6 +56,23 @@ TEST(SizeReport, ComparesWithTheUnsynchronisedCondition) {
   report.unsynchronised->answer.threshold = {6.2, 5.0, 7.0};
   EXPECT_EQ(size_sentences(report).back(),
             "Without synchronisation (“free”), 6.2 × slower would seem sufficient: 2 × too much.");
+}
+
+TEST(SizeReport, AdvisesOnTheStageAndOnWhatIsNotKnown) {
+  SizeReport report = sample_size();
+  report.boards.clear();
+  report.pace.emplace().stages = {{.stage = "detect", .share = 0.81}};
+  EXPECT_THAT(
+      size_advice(report),
+      testing::ElementsAre(
+          "For more headroom, speed up “detect” first: it takes 81 % of the computing time.",
+          HasSubstr("--target"), HasSubstr("--unsynchronised")));
+  report.synchronised.answer.is_below = true;
+  report.synchronised.answer.is_narrow = false;
+  EXPECT_THAT(size_advice(report),
+              testing::IsSupersetOf({HasSubstr("--max-trials"), HasSubstr("Speed up “detect”"),
+                                     HasSubstr("--between 0.1,1")}));
+  EXPECT_EQ(pace_near_answer(report, "/nonexistent"), std::nullopt);
 }
 
 TEST(SizeReport, ABoardSufficesIfAllOfItsCalibrationDoes) {

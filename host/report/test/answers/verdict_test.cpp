@@ -1,130 +1,221 @@
-#include "answers/verdict.h"
-
 #include "sample_results.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/report/verdict.h>
+
 namespace tether::report {
 namespace {
 
+using campaign::Outcome;
+using campaign::TrialResult;
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
 
-campaign::ScenarioResults scenario(const std::vector<double>& host,
-                                   const std::vector<double>& target) {
-  return sample_results({{"host", host}, {"target", target}});
+/// `reached` flights on "target" that reach the goal and `missed` that take longer than 5 s.
+campaign::ScenarioResults flights(std::size_t reached, std::size_t missed) {
+  std::vector<double> times_s(reached, 4.0);
+  times_s.resize(reached + missed, 6.0);
+  campaign::ScenarioResults scenario = sample_results({{"target", times_s}});
+  for (TrialResult& trial : scenario.conditions[0].trials) {
+    trial.policy = "conservative_barrier";
+    trial.end = campaign::kEndFinished;
+    trial.metrics[0].max = 5.0;
+    if (!trial.metrics[0].is_met()) trial.outcome = Outcome::kGoalMissed;
+  }
+  return scenario;
 }
 
-const std::vector<double> kFast = {1.8, 1.9, 2.0, 2.1, 2.2}, kSlow = {6.8, 6.9, 7.0, 7.1, 7.2};
-
-// Means 2 and 7, sd 0.158 of 5 each: Welch's interval is 5 ± 2.306 · 0.1 = 4.77 to 5.23.
-TEST(Verdict, StatesGoalsAndDifferences) {
-  EXPECT_EQ(
-      verdict(scenario(kFast, kSlow)),
-      "The SUT reached its goal within the limits in 5 of 5 trials on “host” and 5 of 5 trials "
-      "on “target”. “target” differs significantly from “host” in time required (larger by 5.00 "
-      "s, 95 % interval 4.77 to 5.23).");
-  EXPECT_EQ(
-      verdict(scenario(kSlow, kFast)),
-      "The SUT reached its goal within the limits in 5 of 5 trials on “host” and 5 of 5 trials "
-      "on “target”. “target” differs significantly from “host” in time required (smaller by 5.00 "
-      "s, 95 % interval 4.77 to 5.23).");
+Pace slow_pace() {
+  return {.uav = "uav1",
+          .seed = 1,
+          .stages = {{.stage = "detect", .count = 40, .median_s = 0.09, .share = 0.81}},
+          .camera = "camera",
+          .images = 40,
+          .read_hz = 9.0,
+          .offered_hz = 30.0,
+          .median_s = 0.1,
+          .p95_s = 0.11};
 }
 
-TEST(Verdict, CountsMissedGoalsAndThrottledBoards) {
-  campaign::ScenarioResults results = scenario({1, 2, 3}, {1.1, 2.1, 3.1});
-  std::vector<campaign::TrialResult>& trials = results.conditions[1].trials;
-  trials[0].outcome = campaign::Outcome::kGoalMissed;
-  trials[1].this_run.target.emplace().warnings = {"the target was throttled (under-voltage)"};
-  trials[2].this_run.target.emplace().is_spoiled = true;
-  EXPECT_EQ(
-      verdict(results),
-      "The SUT reached its goal within the limits in 3 of 3 trials on “host” and 2 of 3 trials "
-      "on “target”. “target” does not differ significantly from “host” in time required. The "
-      "board was throttled in 1 of 3 trials on “target”: the times of these trials are not "
-      "representative.");
+Ruling ruling_of(const campaign::ScenarioResults& scenario) {
+  return verdict_of(scenario).conditions[0].ruling;
 }
 
-std::string sentence(double difference, std::optional<campaign::Interval> interval,
-                     const std::string& label, const std::string& unit,
-                     const std::string& kind = "") {
-  Comparison comparison;
-  comparison.a = "target";
-  comparison.b = "target, no sync";
-  comparison.means.difference = difference;
-  comparison.means.ci95 = interval;
-  campaign::MetricValue metric;
-  metric.kind = kind;
-  metric.label = label;
-  metric.unit = unit;
-  return optimism_sentence(comparison, metric);
+// Exact intervals: 6 of 10 has 26 to 88 %, 7 of 10 35 to 93 %, 35 of 35 90.0 to 100 %.
+TEST(Verdict, RulesByTheExactIntervalOfTheShare) {
+  struct Case {
+    std::size_t reached, missed;
+    Ruling ruling;
+  };
+  for (const Case& c : {Case{0, 1, Ruling::kNotFastEnough},
+                        {1, 0, Ruling::kFastEnoughSoFar},
+                        {5, 5, Ruling::kNotFastEnough},
+                        {6, 4, Ruling::kNotFastEnough},
+                        {7, 3, Ruling::kUndecided},
+                        {10, 0, Ruling::kFastEnoughSoFar},
+                        {35, 0, Ruling::kFastEnoughSoFar},
+                        {36, 0, Ruling::kFastEnough},
+                        {98, 2, Ruling::kFastEnough},
+                        {9, 1, Ruling::kUndecided},
+                        {0, 0, Ruling::kUndecided}})
+    EXPECT_EQ(ruling_of(flights(c.reached, c.missed)), c.ruling) << c.reached << "+" << c.missed;
+  const campaign::Interval interval = exact_interval(7, 10);
+  EXPECT_NEAR(interval.low, 0.3475, 1e-4);
+  EXPECT_NEAR(interval.high, 0.9333, 1e-4);
 }
 
-TEST(Optimism, IsANumberWithItsIntervalIfSignificant) {
-  EXPECT_EQ(
-      sentence(5.263, {{4.69, 5.83}}, "Time required", "s"),
-      "Without synchronisation, “target” appears 5.3 s faster than it is (time required; 95 % "
-      "interval 4.7 to 5.8).");
-  EXPECT_EQ(
-      sentence(-5.263, {{-5.83, -4.69}}, "Time required", "s"),
-      "Without synchronisation, “target” appears 5.3 s slower than it is (time required; 95 % "
-      "interval 4.7 to 5.8).");
-  EXPECT_EQ(sentence(2.4, {{1.9, 2.9}}, "Oscillations", "1"),
-            "Without synchronisation, “target” appears better than it is: oscillations smaller by "
-            "2.4 (95 % interval 1.9 to 2.9).");
-  EXPECT_EQ(sentence(2.0, std::nullopt, "Oscillations", "1"),
-            "Without synchronisation, “target” appears better than it is: oscillations smaller by "
-            "2.00 (too few trials for an interval).");
-  EXPECT_EQ(sentence(0.012, {{-0.021, 0.045}}, "Position error", "m"),
-            "Without synchronisation, “target” does not differ significantly in position error: "
-            "0.012 m (95 % interval −0.021 to 0.045).");
+// What says nothing about the computer, or nothing yet.
+TEST(Verdict, HasAnswersBesideYesAndNo) {
+  struct Case {
+    const char* what;
+    void (*change)(campaign::ScenarioResults&);
+    Ruling ruling;
+    Advice::Kind advice;
+  };
+  using Kind = Advice::Kind;
+  const std::vector<Case> cases = {
+      {"no limit",
+       [](auto& s) {
+         for (auto& trial : s.conditions[0].trials) trial.metrics[0].max.reset();
+       },
+       Ruling::kNothingToDecide, Kind::kSetLimit},
+      {"free-running",
+       [](auto& s) {
+         for (auto& trial : s.conditions[0].trials) trial.policy = "free_running";
+       },
+       Ruling::kFreeRunning, Kind::kSynchronise},
+      {"set-up",
+       [](auto& s) {
+         for (auto& trial : s.conditions[0].trials) campaign::invalidate(trial, "no port");
+       },
+       Ruling::kSetUpFailed, Kind::kMendSetUp},
+      {"audit",
+       [](auto& s) {
+         s.conditions[0].trials[3].audit = campaign::AuditVerdict{false, "late"};
+         campaign::invalidate(s.conditions[0].trials[3], "the record breaks the rules of time");
+       },
+       Ruling::kVoid, Kind::kReadAudit},
+      {"causality", [](auto& s) { s.conditions[0].trials[3].sync.causality_violations = 1; },
+       Ruling::kVoid, Kind::kReadAudit},
+      {"throttled",
+       [](auto& s) {
+         for (auto& trial : s.conditions[0].trials) {
+           trial.outcome = Outcome::kGoalMissed;
+           trial.this_run.target.emplace().is_spoiled = true;
+         }
+       },
+       Ruling::kUndecided, Kind::kCoolBoard},
+  };
+  for (const Case& c : cases) {
+    campaign::ScenarioResults scenario = flights(40, 0);
+    c.change(scenario);
+    const Verdict verdict = verdict_of(scenario);
+    EXPECT_EQ(verdict.conditions[0].ruling, c.ruling) << c.what;
+    ASSERT_FALSE(verdict.advice.empty()) << c.what;
+    EXPECT_EQ(verdict.advice[0].kind, c.advice) << c.what;
+  }
 }
 
-TEST(Optimism, KnowsOfWhichMetricsMoreIsBetter) {
-  EXPECT_THAT(sentence(0.5, {{0.4, 0.6}}, "Least clearance", "m", "min_clearance_m"),
-              testing::HasSubstr("appears worse than it is: least clearance smaller by 0.5"));
+TEST(Verdict, CountsEachLimitThatWasMissed) {
+  campaign::ScenarioResults scenario = flights(3, 5);
+  std::vector<TrialResult>& trials = scenario.conditions[0].trials;
+  trials[3].clauses = {{.uav = "uav1", .name = "face", .met = false}};
+  trials[4].end = campaign::kEndTimeLimit;
+  trials[5].contacts = {{.uav = "uav1", .count = 1, .hard = 1}};
+  campaign::invalidate(trials[6], "the SUT was lost");
+  const ConditionVerdict condition = verdict_of(scenario).conditions[0];
+  EXPECT_EQ(condition.flown, 7u);
+  EXPECT_EQ(condition.failed, 1u);
+  EXPECT_EQ(condition.crashed, 1u);
+  EXPECT_THAT(condition.missed,
+              ElementsAre(std::pair("time required ≤ 5 s", 4u), std::pair("“face”", 1u),
+                          std::pair("the time limit", 1u), std::pair("no crash", 1u)));
+  EXPECT_EQ(condition.closest->first, "Time required");
+  EXPECT_NEAR(condition.closest->second, -0.2, 1e-12);
 }
 
-TEST(Verdict, CountsTrialsThatCrashed) {
-  campaign::ScenarioResults results = scenario({1, 2}, {1, 2});
-  EXPECT_EQ(verdict(results).find("crashed"), std::string::npos);
-  campaign::TrialResult& trial = results.conditions[1].trials[0];
-  trial.contacts = {{.uav = "uav1", .count = 3, .hard = 2}};
-  EXPECT_THAT(verdict(results), testing::HasSubstr("A UAV crashed in 1 of 2 trials on “target”."));
+TEST(Verdict, BeginsWithTheMostUrgentConditionThenTheSlowest) {
+  campaign::ScenarioResults scenario = flights(10, 0);
+  scenario.conditions.push_back(scenario.conditions[0]);
+  EXPECT_EQ(verdict_of(scenario, {Pace{.p95_s = 0.1}, Pace{.p95_s = 0.2}}).lead, 1u);
+  scenario.conditions.push_back(flights(5, 5).conditions[0]);
+  EXPECT_EQ(verdict_of(scenario, {Pace{}, Pace{.p95_s = 0.2}}).lead, 2u);
 }
 
-TEST(Problems, AreEachNamed) {
-  campaign::CampaignResults results;
-  results.manifest.seeds = {1, 2};
-  results.scenarios = {scenario({1, 2}, {1, 2})};
-  EXPECT_TRUE(problems(results).empty());
-  results.manifest.seeds = {1, 2, 3, 4};
-  results.scenarios = {scenario({1, 2, 3, 4}, {1, 2})};
-  std::vector<campaign::TrialResult>& host = results.scenarios[0].conditions[0].trials;
-  host[0].outcome = campaign::Outcome::kFailed;
-  host[0].reason = "the SUT was lost";
-  host[1].metrics[0].value.reset();
-  host[1].metrics[0].missing_because = "it did not finish";
-  host[2].audit = campaign::AuditVerdict{false, "FAILED: 1 finding"};
-  host[3].sync.causality_violations = 2;
-  host[3].reason = "'uav1' hit 'room'";
-  host[3].contacts = {{.uav = "uav1", .count = 1, .hard = 1}};
-  campaign::ThisRun& target = results.scenarios[0].conditions[1].trials[0].this_run;
-  target.target.emplace().warnings = {"it was hot"};
-  target.notes = {"a signal stopped the SUT", "this machine was suspended"};
-  results.damaged = {"turn/target/seed-0003/result.json: not a result"};
-  EXPECT_THAT(
-      problems(results),
-      ElementsAre("turn, host, seed 1: failed, excluded from all means: the SUT was lost",
-                  "turn, host, seed 2: no value of time required: it did not finish",
-                  "turn, host, seed 3: audit: FAILED: 1 finding",
-                  "turn, host, seed 4: 'uav1' hit 'room'",
-                  "turn, host, seed 4: 2 causality violations", "turn, target, seed 1: it was hot",
-                  "turn, target, seed 1: a signal stopped the SUT",
-                  "turn, target, seed 1: this machine was suspended",
-                  "turn, target: no readable result for seeds 3 and 4 (not run yet, or "
-                  "damaged)",
-                  "turn/target/seed-0003/result.json: not a result"));
+TEST(Verdict, SaysTheAnswerWithItsEvidenceAndWhatToDo) {
+  const std::vector<Verdict> verdicts = {verdict_of(flights(5, 5), {slow_pace()})};
+  EXPECT_EQ(verdict_text(verdicts, Markup::kMarkdown),
+            "**Not fast enough**: on “target” 5 of 10 flights miss the goal (missed: time required "
+            "≤ 5 s (5 flights)); the camera is read 9.0 times a second instead of 30, and “detect” "
+            "takes 81 % of the computing time.\n\n"
+            "- Speed up “detect” first. Computing takes up to 110 ms per image, and the camera has "
+            "one every 33 ms: it is 3.3 × too slow to read them all.\n"
+            "- To find how much faster the computer must be: `tether size SCENARIO --condition "
+            "\"target\" --between 0.1,2`\n\n");
+  const std::string plain = verdict_text(verdicts, Markup::kPlain);
+  EXPECT_THAT(plain, StartsWith("Not fast enough: on “target”"));
+  EXPECT_EQ(plain.find_first_of("*`"), std::string::npos);
+}
+
+TEST(Verdict, SaysWhatItsWordsRestOn) {
+  const auto text = [](const campaign::ScenarioResults& scenario) {
+    return verdict_text({verdict_of(scenario)}, Markup::kPlain);
+  };
+  EXPECT_THAT(text(flights(7, 3)), HasSubstr("Undecided: on “target” 3 of 10 flights miss"));
+  EXPECT_THAT(text(flights(7, 3)), HasSubstr("Fly more: if it goes on like this, "));
+  EXPECT_THAT(text(flights(10, 0)), HasSubstr("36 flights decide"));
+  EXPECT_THAT(text(flights(9, 1)), HasSubstr("so near to 9 of 10"));
+  EXPECT_THAT(text(flights(1, 0)), StartsWith("Fast enough in this flight: "));
+  EXPECT_THAT(text(flights(0, 1)), StartsWith("Not fast enough in this flight: "));
+  campaign::ScenarioResults part = flights(8, 0);
+  part.conditions[0].planned = 10;
+  campaign::invalidate(part.conditions[0].trials[0], "no port");
+  EXPECT_THAT(text(part),
+              HasSubstr("1 flight failed and is not counted. 2 flights have no result."));
+}
+
+TEST(Verdict, DoubtsTheComputerIsTheCauseIfEveryImageIsRead) {
+  Pace pace = slow_pace();
+  pace.read_hz = 30.0;
+  const Verdict verdict = verdict_of(flights(0, 10), {pace});
+  ASSERT_FALSE(verdict.advice.empty());
+  EXPECT_EQ(verdict.advice[0].kind, Advice::Kind::kTryFaster);
+}
+
+TEST(Verdict, OfASweepGroupsItsPointsByTheirRuling) {
+  std::vector<Verdict> verdicts;
+  for (const std::size_t missed : {0U, 0U, 10U}) {
+    campaign::ScenarioResults point = flights(10, missed);
+    point.swept_from = "turn";
+    point.settings = {{"cpu_factor", std::to_string(verdicts.size() + 1)}};
+    verdicts.push_back(verdict_of(point));
+  }
+  verdicts.push_back(verdict_of(flights(36, 0)));
+  const auto groups = by_scenario(verdicts);
+  ASSERT_EQ(groups.size(), 2u);
+  const std::vector<Answer> answers = answers_of(groups[0]);
+  ASSERT_EQ(answers.size(), 2u);
+  EXPECT_EQ(answers[0].lead, "Fast enough so far");
+  EXPECT_EQ(answers[0].rest,
+            ": “target” with cpu_factor = 1 (10 of 10 flights) and cpu_factor = 2 (10 of 10 "
+            "flights).");
+  EXPECT_EQ(answers[1].lead, "Not fast enough");
+  EXPECT_THAT(advice_of(groups[0])[0], StartsWith("With cpu_factor = 3: "));
+  EXPECT_EQ(rulings_table(groups[0]).rows.size(), 3u);
+}
+
+TEST(Verdict, TablesHaveHeadroomIntervalsAndStages) {
+  const std::vector<Verdict> verdicts = {verdict_of(flights(7, 3), {slow_pace()})};
+  EXPECT_THAT(rulings_table(verdicts).rows,
+              ElementsAre(ElementsAre("target", "undecided", "7 of 10", "35 to 93 %", "0.3 ×",
+                                      "Time required: 20 % beyond")));
+  const Table stages = stages_table(verdicts);
+  EXPECT_THAT(stages.rows,
+              ElementsAre(ElementsAre("target", "detect", "40", "90.000", "0.000", "81.0 %")));
+  EXPECT_THAT(stages.notes, ElementsAre(HasSubstr("Per image of “camera”: 100 ms of computing")));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 using tinyxml2::XMLElement;
 
 class Junit : public CampaignFixture {
@@ -59,6 +60,10 @@ TEST_F(Junit, HasACaseForTheOutcomeEachMetricAndEachClause) {
                                            "Time required: failure", "near", "early: failure"));
   EXPECT_EQ(suite.IntAttribute("tests"), 5);
   EXPECT_EQ(suite.IntAttribute("failures"), 3);
+  const XMLElement& property = *suite.FirstChildElement("properties")->FirstChildElement();
+  EXPECT_STREQ(property.Attribute("name"), "verdict");
+  EXPECT_THAT(property.Attribute("value"),
+              StartsWith("Not fast enough in this flight: on “target”"));
   EXPECT_STREQ(suite.Attribute("timestamp"), "2024-05-01T10:00:00");
   const std::string output = suite.FirstChildElement("system-out")->GetText();
   EXPECT_THAT(output, HasSubstr("[seed-0001 / near]\nmargin: 0.5 m\n"));

@@ -90,6 +90,22 @@ class CampaignPage : public CampaignFixture {
     }
   }
   std::string page() const { return campaign_page(all(), out_); }
+  // What screen readers and keyboards need: one h1, no level of headings left out, headings of
+  // tables with their scope, what scrolls can be reached.
+  static void expect_readable(const std::string& html) {
+    EXPECT_EQ(between(html, "<h1>", "</h1>").size(), 1u);
+    char level = '1';
+    for (const std::string& tag : between(html, "<h", ">")) {
+      if (tag.size() != 1 || tag[0] < '1' || tag[0] > '6') continue;
+      EXPECT_LE(tag[0], level + 1);
+      level = tag[0];
+    }
+    for (const std::string& attributes : between(html, "<th", ">"))
+      EXPECT_TRUE(attributes == "ead" || attributes.starts_with(" scope=")) << attributes;
+    for (const std::string& attributes : between(html, "<div class=\"scroll\"", ">"))
+      EXPECT_EQ(attributes, " tabindex=\"0\"");
+    EXPECT_EQ(between(html, "<main>", "</main>").size(), 1u);
+  }
   // Of what every page has: valid drawings, unique ids, nothing outside the page.
   static void check_page(const std::string& html, std::size_t drawings) {
     const auto found = between(html, "<svg", "</svg>");
@@ -103,6 +119,7 @@ class CampaignPage : public CampaignFixture {
     EXPECT_THAT(external_references(html), IsEmpty());
     EXPECT_THAT(html, Not(HasSubstr("<script")));
     EXPECT_THAT(html, Not(HasSubstr("<link")));
+    expect_readable(html);
   }
   static void expect_in_order(const std::string& html, const std::vector<std::string>& parts) {
     std::size_t from = 0;
@@ -119,8 +136,9 @@ TEST_F(CampaignPage, HasItsPartsInReadingOrder) {
   const std::string html = page();
   expect_in_order(
       html,
-      {"<h1>study</h1>", "turn (the paper&#39;s Table III)",
-       "<p class=\"verdict\">The SUT reached its goal", "<caption>Table III: Performance of",
+      {"<h1>study</h1>", "<strong>Fast enough so far</strong>: on “target” 3 of 3",
+       "<h2>What to do", "<svg", "turn (the paper&#39;s Table III)",
+       "<caption>What was compared</caption>", "all stages", "<caption>Table III: Performance of",
        "<h3>Optimism of the unsynchronised test</h3>",
        "<p>Without synchronisation, “target” does not",
        "<caption>Optimism of the unsynchronised test of turn</caption>", "<h3>All trials</h3>",
@@ -128,7 +146,8 @@ TEST_F(CampaignPage, HasItsPartsInReadingOrder) {
        "<h3>Camera images</h3>", "<summary>All statistics</summary>",
        "<summary>Differences between the conditions</summary>", "<h2>Setup and checks</h2>",
        "a machine"});
-  check_page(html, 13);  // two metrics, the path, two timelines, four images, four of depths
+  check_page(html,
+             14);  // flights, two metrics, the path, two timelines, four images, four of depths
   EXPECT_THAT(html, HasSubstr("data:image/jpeg;base64,"));
   EXPECT_EQ(html, page());
 }
@@ -139,12 +158,12 @@ TEST_F(CampaignPage, ListsFailuresAndNotesOnTop) {
   campaign::TrialResult noted = trial("target", 3, 2, 7.2);
   noted.this_run.notes = {"process <7> was stopped"};
   write(noted);
-  expect_in_order(
-      page(), {"<h2>Problems</h2>",
-               "turn, target, seed 2: failed, excluded from all means: no &lt;free&gt; "
-               "port",
-               "turn, target, seed 3: process &lt;7&gt; was stopped", "The SUT reached its goal",
-               "Note: target, seed 3: process &lt;7&gt; was stopped."});
+  expect_in_order(page(),
+                  {"1 flight failed and is not counted.", "<h2>Problems</h2>",
+                   "turn, target, seed 2: failed, excluded from all means: no &lt;free&gt; "
+                   "port",
+                   "turn, target, seed 3: process &lt;7&gt; was stopped", "What was compared",
+                   "Note: target, seed 3: process &lt;7&gt; was stopped."});
   EXPECT_THAT(run_page(folder_of("target", 3)),
               HasSubstr("turn, target, seed 3: process &lt;7&gt; was stopped"));
 }
@@ -152,7 +171,7 @@ TEST_F(CampaignPage, ListsFailuresAndNotesOnTop) {
 TEST_F(CampaignPage, WithoutRecordsHasTablesAndDistributions) {
   const std::string html = page();
   EXPECT_THAT(html, Not(HasSubstr("<h2>Problems</h2>")));
-  check_page(html, 2);
+  check_page(html, 3);
   scratch_.write("out/turn/host/seed-0001/record.mcap", "no record");
   expect_in_order(page(), {"<h2>Problems</h2>", "seed-0001/record.mcap"});
 }
@@ -168,11 +187,12 @@ TEST_F(CampaignPage, OfOneRunShowsItsOutcomeAndPlots) {
   write_records();
   const std::string html = run_page(folder_of("target", 1));
   expect_in_order(html, {"<h1>turn, target, seed 1</h1>",
+                         "<strong>Fast enough in this flight</strong>: on “target”",
                          "Goal reached: every SUT reached its goal within the limits. SUT of uav1: "
                          "the anchor is in the middle.",
                          "Time required (s)", "<h2>Contacts</h2>", "&lt;wall&gt;", "2.930", "3.800",
                          "<h2>Camera images</h2>"});
-  check_page(html, 12);  // timeline twice, lag, path, four images, four of depths
+  check_page(html, 13);  // flight, timeline twice, lag, path, four images, four of depths
 }
 
 TEST_F(CampaignPage, OfOneRunDoesNotNeedARecordButAResult) {

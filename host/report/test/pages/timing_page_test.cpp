@@ -19,6 +19,8 @@ TEST(TimingPage, HasARowAndAHistogramForEachStage) {
     return found;
   };
   EXPECT_EQ(count("<svg"), 2u);
+  EXPECT_LT(page.find("<strong>“detect &lt;1&gt;” takes 100 % of the computing time</strong>"),
+            page.find("<svg"));
   EXPECT_EQ(count("detect <1>"), 0u);
   EXPECT_GE(count("detect &lt;1&gt;"), 2u);
   EXPECT_EQ(count("<rect"), 31u);  // 30 times in bins of their own, and one stage of no time

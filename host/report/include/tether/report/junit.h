@@ -10,7 +10,8 @@ namespace tether::report {
 
 /// The results as JUnit's XML, as continuous integration reads it (schema of Apache Ant's JUnit
 /// task): a suite for each scenario and condition; for each trial a case for its outcome, for each
-/// metric and for each clause, with value or margin, limit and record. A trial that failed, or has
+/// metric and for each clause, with value or margin, limit and record. The property "verdict" of a
+/// suite is the answer (verdict.h). A trial that failed, or has
 /// no result, is an error; a missed goal, metric or clause is a failure.
 /// @param folder of the run or the campaign.
 std::string to_junit(const campaign::CampaignResults& results, const std::filesystem::path& folder);

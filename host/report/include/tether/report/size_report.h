@@ -10,6 +10,7 @@
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/result.h>
 #include <tether/report/plots.h>
+#include <tether/report/verdict.h>
 #include <tether/sizing/sizing.h>
 
 /// What `tether size` found: the answer in sentences, as a drawing, a page and JSON. Pure
@@ -53,12 +54,21 @@ struct SizeReport {
   /// The same slowdowns and seeds without synchronisation.
   std::optional<SizedCondition> unsynchronised{};
   std::vector<Board> boards{};
+  /// Of the flight whose slowdown is nearest to the answer; none: not known.
+  std::optional<Pace> pace{};
   std::vector<std::string> not_flown{};  ///< one line for each flight that failed, with its reason
   campaign::Settings settings{};
 };
 
 /// The answer and its evidence: one sentence, then one for each board, then what limits the answer.
+std::vector<Answer> size_answers(const SizeReport& report);
+/// The same without emphasis.
 std::vector<std::string> size_sentences(const SizeReport& report);
+
+/// What to do next; each one sentence.
+std::vector<std::string> size_advice(const SizeReport& report);
+/// The pace of the flight whose slowdown is nearest to the answer; none if it has no record.
+std::optional<Pace> pace_near_answer(const SizeReport& report, const std::filesystem::path& folder);
 
 /// Success over slowdown with the flights and the boards, and below it the margin of each limited
 /// metric.

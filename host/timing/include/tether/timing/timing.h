@@ -49,6 +49,9 @@ struct Timing {
 Timing of_record(const record::Record& record, const std::filesystem::path& file,
                  const std::string& recorded_at);
 
+/// The calls of one SUT of a record, however its time was measured.
+Run run_of(const record::Record& record, const record::SutInfo& sut);
+
 /// Adds the runs of `more`, which was read from `file`.
 /// @throws Error(kBadFile) about `file` if scenario, program, machine or clock differ, or a run of
 /// the same UAV and seed is there.

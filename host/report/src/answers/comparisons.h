@@ -6,13 +6,12 @@
 #include <tether/campaign/campaign_results.h>
 #include <tether/report/report.h>
 
-/// Results in sentences. Pure functions.
+/// Comparisons and problems in sentences. Pure functions.
 namespace tether::report {
 
-/// One paragraph: how often each condition reached the goal, and how the other conditions differ
-/// from the first. Two conditions differ significantly in a metric if the rank test gives p < 0.05
-/// and the interval of the difference does not contain zero.
-std::string verdict(const campaign::ScenarioResults& scenario);
+/// How the other conditions differ from the first. Two conditions differ significantly in a metric
+/// if the rank test gives p < 0.05 and the interval of the difference does not contain zero.
+std::vector<std::string> difference_sentences(const campaign::ScenarioResults& scenario);
 
 /// A comparison of `optimism` as a sentence: "Without synchronisation, “target” appears 5.3 s
 /// faster than it is (time required; 95 % interval 4.7 to 5.8)." If the interval contains zero, the

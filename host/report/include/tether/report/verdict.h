@@ -1,0 +1,129 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <tether/campaign/campaign_results.h>
+#include <tether/campaign/statistics.h>
+#include <tether/report/pace.h>
+#include <tether/report/table.h>
+
+/// Is this computer fast enough to fly that task? The answer as data, computed here alone, and its
+/// words, which terminal, Markdown, pages and JUnit share.
+namespace tether::report {
+
+/// The share of flights that must reach the goal, as of `tether size`.
+inline constexpr double kWantedSuccess = 0.9;
+
+/// The most urgent one first.
+enum class Ruling {
+  kVoid,             ///< a record breaks the rules of time
+  kSetUpFailed,      ///< no flight ran
+  kNotFastEnough,    ///< fewer than the wanted share reach the goal; or the only flight missed it
+  kUndecided,        ///< the flights show neither
+  kFastEnoughSoFar,  ///< every flight reached the goal, but they are too few to be sure
+  kFastEnough,       ///< at least the wanted share reach the goal
+  kNothingToDecide,  ///< every flight ended well, but the scenario sets no limit
+  kFreeRunning,      ///< not synchronised: the flights do not depend on the computer's speed alone
+};
+/// "not fast enough", …
+std::string_view name(Ruling ruling);
+
+/// One condition of a scenario.
+struct ConditionVerdict {
+  std::string condition;
+  Ruling ruling = Ruling::kUndecided;
+  std::size_t planned = 0;
+  std::size_t flown = 0;    ///< with a result that is no failure
+  std::size_t reached = 0;  ///< of these
+  std::size_t failed = 0;   ///< in the set-up or by a lost part: these say nothing
+  std::size_t crashed = 0;
+  std::size_t throttled = 0;  ///< the board reduced its clock frequency
+  std::size_t unsound = 0;    ///< audit not passed, or causality violations
+  /// The exact interval (Clopper and Pearson, 1934) of the share that reaches the goal, 95 %. None
+  /// if nothing has flown.
+  std::optional<campaign::Interval> share{};
+  /// Limits, deadlines and goals, and how many flights missed each; the most frequent first.
+  std::vector<std::pair<std::string, std::size_t>> missed{};
+  /// The metric that came closest to its limit in any flight, and how far it was within it, in
+  /// shares of the limit.
+  std::optional<std::pair<std::string, double>> closest{};
+  std::string reason{};  ///< of the first flight that failed, or is not sound
+  std::optional<Pace> pace{};
+};
+
+struct Advice {
+  enum class Kind {
+    kMendSetUp,      ///< subject: the reason
+    kReadAudit,      ///< subject: the condition
+    kCoolBoard,      ///< subject: the condition
+    kSpeedUpStage,   ///< subject: the stage
+    kTryFaster,      ///< it reads every image: is it the computer? subject: the condition
+    kFindThreshold,  ///< subject: the condition
+    kFlyMore,        ///< subject: the condition; flights: how many in all, 0: very many
+    kSetLimit,
+    kSynchronise,
+  };
+  Kind kind;
+  std::string subject{};
+  std::size_t flights = 0;
+};
+
+struct Verdict {
+  std::string scenario;                      ///< without the settings of a sweep
+  std::string point{};                       ///< of a sweep: "cpu_factor = 2"
+  std::vector<ConditionVerdict> conditions;  ///< in the order of the campaign; not empty
+  std::size_t lead = 0;          ///< the most urgent condition, with which the answer begins
+  std::vector<Advice> advice{};  ///< what to do next; the most useful first
+};
+
+/// The exact interval of a share, 95 %. @pre flown ≥ 1.
+campaign::Interval exact_interval(std::size_t reached, std::size_t flown);
+
+/// Pure. @param paces of each condition, in their order; may be shorter.
+/// @pre the scenario has a condition.
+Verdict verdict_of(const campaign::ScenarioResults& scenario,
+                   const std::vector<std::optional<Pace>>& paces = {});
+
+/// One for each scenario. The pace of a condition is that of the first record of a flight that
+/// missed the goal or, if none did, of the first record.
+/// @param folder of the run or the campaign
+std::vector<Verdict> verdicts_of(const campaign::CampaignResults& results,
+                                 const std::filesystem::path& folder);
+
+/// A sentence.
+struct Answer {
+  std::string lead;  ///< which is to stand out: "Not fast enough"
+  std::string rest;  ///< begins with ": " or a space
+};
+/// The condition's ruling with its evidence.
+Answer answer_of(const ConditionVerdict& condition);
+/// The answer, then those on the other conditions. Of a sweep: one for each ruling of a condition.
+/// @pre all are of one scenario; not empty.
+std::vector<Answer> answers_of(const std::vector<Verdict>& points);
+/// What to do next, with code between backticks. @pre as above.
+std::vector<std::string> advice_of(const std::vector<Verdict>& points);
+
+/// What was compared: a row per condition, with the flights, their interval, and the headroom.
+Table rulings_table(const std::vector<Verdict>& points);
+/// Where the time goes: a row per condition and stage; no rows if it is not known.
+Table stages_table(const std::vector<Verdict>& points);
+/// … of one condition.
+Table stages_table(const std::string& condition, const Pace& pace);
+
+/// The verdicts of each scenario, the points of a sweep together.
+std::vector<std::vector<Verdict>> by_scenario(std::vector<Verdict> verdicts);
+
+enum class Markup { kPlain, kMarkdown };
+/// Answers and advice as lines, with a line that is empty at the end.
+std::string answer_text(const std::vector<Answer>& answers, const std::vector<std::string>& advice,
+                        Markup markup);
+/// Answers and advice of all scenarios in the same way.
+std::string verdict_text(const std::vector<Verdict>& verdicts, Markup markup);
+
+}  // namespace tether::report

@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <map>
+
+#include <tether/base/error.h>
+#include <tether/report/pace.h>
+#include <tether/stats/sample_statistics.h>
+#include <tether/timing/timing.h>
+
+namespace tether::report {
+namespace {
+
+constexpr double kNearlyEvery = 0.95;
+
+double quantile(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  return stats::quantile(values, share);
+}
+
+const record::SensorInfo* find_camera(const record::Header& header, const std::string& uav,
+                                      const std::string& sensor) {
+  for (const record::SensorInfo& info : header.sensors)
+    if (info.uav == uav && info.name == sensor && info.kind.ends_with("camera")) return &info;
+  return nullptr;
+}
+
+/// What happened between two images of one camera.
+struct Intervals {
+  std::optional<ExecTime> previous;
+  double computing_s = 0.0;  ///< since the previous image
+  std::vector<double> between_s, computed_s;
+
+  void take_image(ExecTime at) {
+    if (previous) {
+      between_s.push_back(to_seconds(at - *previous));
+      computed_s.push_back(computing_s);
+    }
+    previous = at;
+    computing_s = 0.0;
+  }
+};
+
+// The same image read again, or none, is no image.
+bool is_image(const record::Interaction& entry, std::map<std::string, std::uint64_t>& newest) {
+  if (!entry.sampled_at) return false;
+  const auto [at, is_first] = newest.try_emplace(entry.sensor, entry.sample_index);
+  if (!is_first && at->second == entry.sample_index) return false;
+  at->second = entry.sample_index;
+  return true;
+}
+
+std::map<std::string, Intervals> intervals_of(const record::Record& record, const std::string& uav,
+                                              const timing::Run& run) {
+  std::map<std::string, Intervals> cameras;
+  for (const record::SensorInfo& info : record.header.sensors)
+    if (info.uav == uav && info.kind.ends_with("camera")) cameras[info.name];
+  std::map<std::string, std::uint64_t> newest;
+  auto call = run.calls.begin();
+  for (const auto& logged : record.interactions) {
+    const record::Interaction& entry = logged.message;
+    if (entry.uav != uav) continue;
+    double computing_s = 0.0;
+    for (const auto& time : call->stages) computing_s += to_seconds(time.computing);
+    ++call;
+    for (auto& [name, intervals] : cameras) intervals.computing_s += computing_s;
+    const auto camera = cameras.find(entry.sensor);
+    if (camera != cameras.end() && is_image(entry, newest))
+      camera->second.take_image(entry.reply_at);
+  }
+  return cameras;
+}
+
+Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
+  timing::Timing timing;
+  timing.runs = {timing::run_of(record, sut)};
+  Pace pace{.uav = sut.uav, .seed = record.header.seed, .stages = timing::stage_rows(timing)};
+  for (const auto& [name, intervals] : intervals_of(record, sut.uav, timing.runs.front())) {
+    const std::size_t images = intervals.between_s.size() + 1;
+    if (intervals.between_s.empty() || images <= pace.images) continue;
+    pace.camera = name;
+    pace.images = images;
+    const double between_s = quantile(intervals.between_s, 0.5);
+    pace.read_hz = between_s > 0.0 ? 1.0 / between_s : 0.0;
+    pace.median_s = quantile(intervals.computed_s, 0.5);
+    pace.p95_s = quantile(intervals.computed_s, 0.95);
+    const record::SensorInfo& info = *find_camera(record.header, sut.uav, name);
+    pace.offered_hz.reset();
+    if (info.periodic && info.period > Duration{0}) pace.offered_hz = 1.0 / to_seconds(info.period);
+  }
+  return pace;
+}
+
+}  // namespace
+
+std::optional<double> Pace::headroom() const {
+  if (!offered_hz || !(p95_s > 0.0)) return std::nullopt;
+  return 1.0 / (*offered_hz * p95_s);
+}
+
+bool Pace::keeps_up() const {
+  return offered_hz && read_hz >= kNearlyEvery * *offered_hz;
+}
+
+std::optional<Pace> pace_of(const record::Record& record) {
+  if (record.header.policy != record::kConservativeBarrier) return std::nullopt;
+  std::optional<Pace> slowest;
+  for (const record::SutInfo& sut : record.header.suts) {
+    const Pace pace = pace_of(record, sut);
+    if (pace.stages.empty()) continue;
+    if (!slowest || pace.p95_s > slowest->p95_s) slowest = pace;
+  }
+  return slowest;
+}
+
+std::optional<Pace> read_pace(const std::filesystem::path& record) try {
+  return pace_of(record::read_record(record));
+} catch (const Error&) {
+  return std::nullopt;
+}
+
+}  // namespace tether::report

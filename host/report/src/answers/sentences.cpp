@@ -1,0 +1,418 @@
+#include "tables/report_format.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <tether/base/text_table.h>
+#include <tether/report/verdict.h>
+
+// The words of a verdict.
+namespace tether::report {
+namespace {
+
+constexpr std::size_t kMostMissed = 3;  // that a sentence names
+constexpr double kLeastShare = 0.001;   // of a stage in tables
+
+std::string capital(std::string_view text) {
+  std::string with(text);
+  if (!with.empty() && with[0] >= 'a' && with[0] <= 'z') with[0] = static_cast<char>(with[0] - 32);
+  return with;
+}
+
+/// "9", "0.4"
+std::string rate(double hz) {
+  return fixed(hz, hz < 9.95 ? 1 : 0);
+}
+
+std::string headroom_text(const Pace& pace) {
+  const std::optional<double> headroom = pace.headroom();
+  return headroom ? fmt::format("{:.2g} ×", *headroom) : kNone;
+}
+
+std::string share(double value) {
+  return fmt::format("{:.0f} %", 100.0 * value);
+}
+
+std::string flights(std::size_t count) {
+  return fmt::format("{} flight{}", count, count == 1 ? "" : "s");
+}
+
+/// "the camera is read 9 times a second instead of 30, and “detect” takes 81 % of the computing
+/// time"; empty: not known.
+std::string pace_text(const Pace& pace) {
+  std::string text;
+  if (!pace.camera.empty()) {
+    text = fmt::format("the camera is read {} times a second", rate(pace.read_hz));
+    if (pace.offered_hz && !pace.keeps_up())
+      text += fmt::format(" instead of {}", rate(*pace.offered_hz));
+  }
+  if (!pace.stages.empty())
+    text += fmt::format("{}“{}” takes {} of the computing time", text.empty() ? "" : ", and ",
+                        pace.stages.front().stage, share(pace.stages.front().share));
+  return text;
+}
+
+/// "; missed: time required 5 s (3 flights), …"
+std::string missed_text(const ConditionVerdict& condition) {
+  std::vector<std::string> parts;
+  for (const auto& [limit, count] : condition.missed) {
+    if (parts.size() == kMostMissed) {
+      parts.push_back(fmt::format("{} more", condition.missed.size() - kMostMissed));
+      break;
+    }
+    parts.push_back(condition.flown == 1 ? limit : fmt::format("{} ({})", limit, flights(count)));
+  }
+  return parts.empty() ? "" : " (missed: " + joined_with_and(parts) + ")";
+}
+
+std::string goals_text(const ConditionVerdict& condition) {
+  return fmt::format("on “{}” {} of {} reach{} the goal within the limits", condition.condition,
+                     condition.reached, flights(condition.flown),
+                     condition.reached == 1 ? "es" : "");
+}
+
+std::string missed_goals_text(const ConditionVerdict& condition) {
+  const std::size_t missed = condition.flown - condition.reached;
+  std::string text = condition.flown == 1
+                         ? fmt::format("on “{}” the flight misses the goal", condition.condition)
+                         : fmt::format("on “{}” {} of {} miss{} the goal", condition.condition,
+                                       missed, flights(condition.flown), missed == 1 ? "es" : "");
+  return text + missed_text(condition);
+}
+
+/// What limits the evidence.
+std::string doubts_text(const ConditionVerdict& condition) {
+  std::string text;
+  if (condition.failed > 0 && condition.flown > 0)
+    text += fmt::format(" {} failed and {} not counted.", flights(condition.failed),
+                        condition.failed == 1 ? "is" : "are");
+  const std::size_t missing =
+      condition.planned - std::min(condition.planned, condition.flown + condition.failed);
+  if (missing > 0 && condition.flown + condition.failed > 0)
+    text += fmt::format(" {} ha{} no result.", flights(missing), missing == 1 ? "s" : "ve");
+  if (condition.throttled > 0)
+    text += fmt::format(" The board was throttled in {}: it could be faster than this.",
+                        flights(condition.throttled));
+  if (condition.crashed > 0)
+    text += fmt::format(" A UAV crashed in {}.", flights(condition.crashed));
+  return text;
+}
+
+/// Which share of flights is wanted: "9 of 10".
+constexpr const char* kWanted = "9 of 10";
+static_assert(kWantedSuccess == 0.9);
+
+std::string evidence_of(const ConditionVerdict& condition) {
+  const std::string pace = condition.pace ? pace_text(*condition.pace) : "";
+  const std::string with_pace = pace.empty() ? "." : "; " + pace + ".";
+  switch (condition.ruling) {
+    case Ruling::kVoid:
+      return fmt::format(
+          "{} of “{}” break{} the rules of time, so nothing is known of the computer ({}).",
+          flights(condition.unsound), condition.condition, condition.unsound == 1 ? "s" : "",
+          condition.reason);
+    case Ruling::kSetUpFailed:
+      return fmt::format("on “{}” {} failed, which says nothing about the computer ({}).",
+                         condition.condition, flights(condition.failed), condition.reason);
+    case Ruling::kNotFastEnough:
+      return missed_goals_text(condition) + with_pace;
+    case Ruling::kUndecided:
+      if (condition.flown == 0)
+        return fmt::format("no flight on “{}” has a result.", condition.condition);
+      return missed_goals_text(condition) + with_pace +
+             fmt::format(" So few flights show neither that {} reach it nor that fewer do.",
+                         kWanted);
+    case Ruling::kFastEnoughSoFar:
+    case Ruling::kFastEnough:
+      if (condition.planned == 1)
+        return fmt::format("on “{}” the flight reaches the goal within the limits",
+                           condition.condition) +
+               with_pace;
+      return goals_text(condition) + with_pace;
+    case Ruling::kNothingToDecide:
+      return fmt::format("on “{}” {} of {} end{} well, but the scenario sets no limit on them.",
+                         condition.condition, condition.reached, flights(condition.flown),
+                         condition.flown == 1 ? "s" : "");
+    case Ruling::kFreeRunning:
+      return fmt::format(
+          "“{}” is free-running (not synchronised), so its {} say{} nothing about the computer.",
+          condition.condition, flights(condition.flown), condition.flown == 1 ? "s" : "");
+  }
+  return "";
+}
+
+std::string lead_of(const ConditionVerdict& condition) {
+  const bool is_single = condition.planned == 1;
+  switch (condition.ruling) {
+    case Ruling::kVoid:
+      return "Void";
+    case Ruling::kSetUpFailed:
+      return "No answer, because the set-up failed";
+    case Ruling::kNotFastEnough:
+      return is_single ? "Not fast enough in this flight" : "Not fast enough";
+    case Ruling::kFastEnoughSoFar:
+      return is_single ? "Fast enough in this flight" : "Fast enough so far";
+    case Ruling::kFreeRunning:
+      return "No answer";
+    case Ruling::kUndecided:
+    case Ruling::kFastEnough:
+    case Ruling::kNothingToDecide:
+      break;
+  }
+  return capital(name(condition.ruling));
+}
+
+const ConditionVerdict& lead_of(const Verdict& verdict) {
+  return verdict.conditions[verdict.lead];
+}
+
+/// Of a sweep: each ruling of a condition with the points that have it.
+std::vector<Answer> sweep_answers(const std::vector<Verdict>& points) {
+  std::vector<Answer> answers;
+  for (std::size_t i = 0; i < points.front().conditions.size(); ++i) {
+    std::vector<std::pair<Ruling, std::vector<std::string>>> rulings;
+    for (const Verdict& point : points) {
+      const ConditionVerdict& at = point.conditions[i];
+      auto known = std::ranges::find(rulings, at.ruling, [](const auto& one) { return one.first; });
+      if (known == rulings.end()) known = rulings.insert(rulings.end(), {at.ruling, {}});
+      known->second.push_back(
+          fmt::format("{} ({} of {})", point.point, at.reached, flights(at.flown)));
+    }
+    for (const auto& [ruling, where] : rulings)
+      answers.push_back({capital(name(ruling)),
+                         fmt::format(": “{}” with {}.", points.front().conditions[i].condition,
+                                     joined_with_and(where))});
+  }
+  return answers;
+}
+
+std::string stage_advice(const Advice& advice, const ConditionVerdict& lead) {
+  std::string text = fmt::format("Speed up “{}” first.", advice.subject);
+  if (!lead.pace) return text;
+  const std::optional<double> headroom = lead.pace->headroom();
+  if (headroom && *headroom < 1.0)
+    text += fmt::format(
+        " Computing takes up to {} per image, and the camera has one every {}: it is {} × too slow "
+        "to read them all.",
+        short_ms(lead.pace->p95_s), short_ms(1.0 / *lead.pace->offered_hz),
+        fixed(1.0 / *headroom, 1));
+  return text;
+}
+
+std::string sentence_of(const Advice& advice, const Verdict& verdict) {
+  using Kind = Advice::Kind;
+  const ConditionVerdict& lead = lead_of(verdict);
+  switch (advice.kind) {
+    case Kind::kMendSetUp:
+      return fmt::format("Mend the cause of the failure, then fly again (`--resume`): {}.",
+                         advice.subject);
+    case Kind::kReadAudit:
+      return fmt::format(
+          "Read what `tether audit` says of the records of “{}”. If the program stamps its own "
+          "time, look there first.",
+          advice.subject);
+    case Kind::kCoolBoard:
+      return "Cool the board, or give it enough power (`tether target check`), and fly again.";
+    case Kind::kSpeedUpStage:
+      return stage_advice(advice, lead);
+    case Kind::kTryFaster:
+      return fmt::format(
+          "The program reads every image, so the computer may not be the cause. To see whether a "
+          "faster one would do: `tether size SCENARIO --condition \"{}\" --between 0.1,2`",
+          advice.subject);
+    case Kind::kFindThreshold:
+      return fmt::format("To find {}: `tether size SCENARIO --condition \"{}\"{}`",
+                         lead.ruling == Ruling::kNotFastEnough
+                             ? "how much faster the computer must be"
+                             : "the headroom, that is how much slower the computer may be",
+                         advice.subject,
+                         lead.ruling == Ruling::kNotFastEnough ? " --between 0.1,2" : "");
+    case Kind::kFlyMore:
+      if (lead.planned == 1)
+        return "One flight shows little. Fly a campaign of several seeds: `tether campaign`.";
+      if (advice.flights == 0)
+        return fmt::format("Fly more: the share is so near to {} that {} do not decide it.",
+                           kWanted, flights(lead.flown));
+      return fmt::format(
+          "Fly more: if it goes on like this, {} decide (`trials` in the campaign's file, then "
+          "`--resume`).",
+          flights(advice.flights));
+    case Kind::kSetLimit:
+      return "Give a metric of the scenario a limit (such as `max_s` of `time_required`), or fly a "
+             "mission with deadlines.";
+    case Kind::kSynchronise:
+      return "Fly a condition with `policy = \"conservative_barrier\"`.";
+  }
+  return "";
+}
+
+Table empty_stages_table() {
+  Table table;
+  table.title = "Where the computing time goes";
+  table.headings = {
+      single_headings({"Condition", "Stage", "Times", "Median (ms)", "95 % (ms)", "Share"})};
+  table.text_columns = 2;
+  return table;
+}
+
+void add_stages(Table& table, const std::string& where, const Pace& pace) {
+  for (const timing::StageRow& row : pace.stages)
+    if (row.share >= kLeastShare)
+      table.rows.push_back({where, row.stage, std::to_string(row.count),
+                            fixed(1e3 * row.median_s, 3), fixed(1e3 * row.p95_s, 3),
+                            fmt::format("{:.1f} %", 100.0 * row.share)});
+  std::string note = fmt::format("{}: seed {}. Stages below 0.1 % are left out.", where, pace.seed);
+  if (!pace.camera.empty())
+    note += fmt::format(
+        " Per image of “{}”: {} of computing, in 95 % of them at most {}; read {} times a "
+        "second{}.",
+        pace.camera, short_ms(pace.median_s), short_ms(pace.p95_s), rate(pace.read_hz),
+        pace.offered_hz ? fmt::format(", offered {} times", rate(*pace.offered_hz)) : "");
+  table.notes.push_back(note);
+}
+
+}  // namespace
+
+std::string_view name(Ruling ruling) {
+  switch (ruling) {
+    case Ruling::kVoid:
+      return "void";
+    case Ruling::kSetUpFailed:
+      return "set-up failed";
+    case Ruling::kNotFastEnough:
+      return "not fast enough";
+    case Ruling::kUndecided:
+      return "undecided";
+    case Ruling::kFastEnoughSoFar:
+      return "fast enough so far";
+    case Ruling::kFastEnough:
+      return "fast enough";
+    case Ruling::kNothingToDecide:
+      return "nothing to decide";
+    case Ruling::kFreeRunning:
+      break;
+  }
+  return "no answer (free-running)";
+}
+
+Answer answer_of(const ConditionVerdict& condition) {
+  return {lead_of(condition), ": " + evidence_of(condition) + doubts_text(condition)};
+}
+
+std::vector<Answer> answers_of(const std::vector<Verdict>& points) {
+  if (!points.front().point.empty()) return sweep_answers(points);
+  const Verdict& verdict = points.front();
+  std::vector<Answer> answers = {answer_of(lead_of(verdict))};
+  for (std::size_t i = 0; i < verdict.conditions.size(); ++i)
+    if (i != verdict.lead) answers.push_back(answer_of(verdict.conditions[i]));
+  return answers;
+}
+
+std::vector<std::string> advice_of(const std::vector<Verdict>& points) {
+  const auto urgent = std::ranges::min_element(
+      points, {}, [](const Verdict& point) { return lead_of(point).ruling; });
+  std::vector<std::string> sentences;
+  const std::string where = urgent->point.empty() ? "" : fmt::format("With {}: ", urgent->point);
+  for (const Advice& advice : urgent->advice)
+    sentences.push_back(where + sentence_of(advice, *urgent));
+  return sentences;
+}
+
+Table rulings_table(const std::vector<Verdict>& points) {
+  const bool is_sweep = !points.front().point.empty();
+  Table table;
+  table.title = "What was compared";
+  table.text_columns = is_sweep ? 3 : 2;
+  std::vector<std::string> headings = {"Condition",     "Fast enough?",       "Goal reached",
+                                       "95 % interval", "Headroom per image", "Closest limit"};
+  if (is_sweep) headings.insert(headings.begin(), "With");
+  table.headings = {single_headings(headings)};
+  for (const Verdict& point : points) {
+    for (const ConditionVerdict& one : point.conditions) {
+      const bool says_nothing = one.ruling == Ruling::kFreeRunning;
+      std::vector<std::string> row = {
+          one.condition,
+          std::string(name(one.ruling)),
+          fmt::format("{} of {}", one.reached, one.flown),
+          one.share && !says_nothing
+              ? fmt::format("{:.0f} to {:.0f} %", 100.0 * one.share->low, 100.0 * one.share->high)
+              : kNone,
+          one.pace ? headroom_text(*one.pace) : kNone,
+          one.closest
+              ? fmt::format("{}: {} {}", one.closest->first, share(std::abs(one.closest->second)),
+                            one.closest->second < 0.0 ? "beyond" : "left")
+              : kNone};
+      if (is_sweep) row.insert(row.begin(), point.point);
+      table.rows.push_back(std::move(row));
+    }
+  }
+  table.notes = {
+      fmt::format("Fast enough: {} flights or more reach the goal within the limits, by the exact "
+                  "interval (Clopper and Pearson). So far: all did, but they are too few to be "
+                  "sure.",
+                  kWanted),
+      "Headroom per image: how many times slower the program could compute and still read every "
+      "image of the camera, in 95 % of them; below 1, it skips images, which a task may bear. The "
+      "headroom of the whole task: tether size."};
+  return table;
+}
+
+Table stages_table(const std::vector<Verdict>& points) {
+  Table table = empty_stages_table();
+  for (const Verdict& point : points) {
+    for (const ConditionVerdict& one : point.conditions) {
+      const std::string where =
+          point.point.empty() ? one.condition : point.point + ", " + one.condition;
+      if (one.pace) add_stages(table, where, *one.pace);
+    }
+  }
+  return table;
+}
+
+Table stages_table(const std::string& condition, const Pace& pace) {
+  Table table = empty_stages_table();
+  add_stages(table, condition, pace);
+  return table;
+}
+
+std::vector<std::vector<Verdict>> by_scenario(std::vector<Verdict> verdicts) {
+  std::vector<std::vector<Verdict>> groups;
+  for (Verdict& verdict : verdicts) {
+    const bool continues = !verdict.point.empty() && !groups.empty() &&
+                           !groups.back().front().point.empty() &&
+                           groups.back().front().scenario == verdict.scenario;
+    if (!continues) groups.emplace_back();
+    groups.back().push_back(std::move(verdict));
+  }
+  return groups;
+}
+
+std::string answer_text(const std::vector<Answer>& answers, const std::vector<std::string>& advice,
+                        Markup markup) {
+  const bool is_markdown = markup == Markup::kMarkdown;
+  std::string text;
+  for (const Answer& answer : answers)
+    text += fmt::format("{0}{1}{0}{2}\n{3}", is_markdown ? "**" : "", answer.lead, answer.rest,
+                        is_markdown ? "\n" : "");
+  for (std::string one : advice) {
+    if (!is_markdown) std::erase(one, '`');
+    text += fmt::format("{}{}\n", is_markdown ? "- " : "  → ", one);
+  }
+  return text + "\n";
+}
+
+std::string verdict_text(const std::vector<Verdict>& verdicts, Markup markup) {
+  const auto groups = by_scenario(verdicts);
+  std::string text;
+  for (const std::vector<Verdict>& points : groups) {
+    if (groups.size() > 1)
+      text += fmt::format("{}{}\n\n", markup == Markup::kMarkdown ? "## " : "",
+                          points.front().scenario);
+    text += answer_text(answers_of(points), advice_of(points), markup);
+  }
+  return text;
+}
+
+}  // namespace tether::report

@@ -1,0 +1,99 @@
+#include "sample_record.h"
+
+#include <gtest/gtest.h>
+
+#include <tether/report/pace.h>
+
+namespace tether::report {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Ten reads a second of a camera with 20 images a second, each after 60 ms of "detect", 20 ms of
+/// it in every fourth one, and a command in between.
+record::Record record_of_reads() {
+  record::Record record = sample_record(21);
+  record::SensorInfo camera;
+  camera.uav = "uav1";
+  camera.name = "camera";
+  camera.kind = "camera";
+  camera.periodic = true;
+  camera.period = milliseconds(50);
+  record.header.sensors = {camera};
+  std::uint64_t i = 0;
+  for (auto& logged : record.interactions) {
+    record::Interaction& read = logged.message;
+    read.sensor = "camera";
+    read.sample_index = 2 * i;
+    read.sampled_at = read.st_at_release;
+    read.stages = {{"detect", milliseconds(i % 4 == 0 ? 20 : 60)}, {"decide", milliseconds(15)}};
+    ++i;
+  }
+  return record;
+}
+
+TEST(Pace, IsThatOfTheImages) {
+  const Pace pace = *pace_of(record_of_reads());
+  EXPECT_EQ(pace.uav, "uav1");
+  EXPECT_EQ(pace.seed, 1u);
+  EXPECT_EQ(pace.images, 21u);
+  EXPECT_NEAR(pace.read_hz, 10.0, 1e-9);
+  EXPECT_NEAR(*pace.offered_hz, 20.0, 1e-9);
+  EXPECT_NEAR(pace.median_s, 0.075, 1e-9);
+  EXPECT_NEAR(pace.p95_s, 0.075, 1e-9);
+  EXPECT_NEAR(*pace.headroom(), 50.0 / 75.0, 1e-9);
+  EXPECT_FALSE(pace.keeps_up());
+  ASSERT_EQ(pace.stages.size(), 2u);
+  EXPECT_EQ(pace.stages.front().stage, "detect");
+}
+
+TEST(Pace, CountsComputingBetweenImagesAndEachImageOnce) {
+  record::Record record = record_of_reads();
+  record.interactions[5].message.kind = record::kCommand;
+  record.interactions[5].message.sensor.clear();
+  record.interactions[6].message.sampled_at.reset();  // no image was available
+  record.interactions[8].message.sample_index = record.interactions[7].message.sample_index;
+  EXPECT_EQ(pace_of(record)->images, 18u);
+  EXPECT_GT(pace_of(record)->p95_s, 0.1) << "of the images with calls in between";
+}
+
+TEST(Pace, KeepsUpIfItReadsNearlyEveryImage) {
+  record::Record record = record_of_reads();
+  record.header.sensors[0].period = milliseconds(100);
+  EXPECT_TRUE(pace_of(record)->keeps_up());
+  record.header.sensors[0].periodic = false;
+  EXPECT_FALSE(pace_of(record)->keeps_up());
+  EXPECT_EQ(pace_of(record)->headroom(), std::nullopt) << "a camera on demand has no rate";
+}
+
+TEST(Pace, IsNotKnownWithoutSynchronisationCallsOrCamera) {
+  record::Record record = record_of_reads();
+  record.header.sensors.clear();
+  EXPECT_EQ(pace_of(record)->camera, "");
+  EXPECT_EQ(pace_of(record)->stages.size(), 2u);
+  record.header.policy = record::kFreeRunning;
+  EXPECT_FALSE(pace_of(record));
+  record = record_of_reads();
+  record.interactions.clear();
+  EXPECT_FALSE(pace_of(record));
+  EXPECT_FALSE(read_pace("/nonexistent/record.mcap"));
+}
+
+TEST(Pace, OfSeveralUavsIsThatOfTheSlowest) {
+  record::Record record = record_of_reads();
+  record::SutInfo fast = record.header.suts[0];
+  fast.uav = "uav2";
+  record.header.suts.push_back(fast);
+  record.header.sensors.push_back(record.header.sensors[0]);
+  record.header.sensors.back().uav = "uav2";
+  for (std::size_t i = 0; i < 21; ++i) {
+    auto copy = record.interactions[i];
+    copy.message.uav = "uav2";
+    copy.message.stages = {{"detect", milliseconds(1)}};
+    record.interactions.push_back(copy);
+  }
+  EXPECT_EQ(pace_of(record)->uav, "uav1");
+}
+
+}  // namespace
+}  // namespace tether::report
