@@ -97,7 +97,7 @@ class RandomMessage {
     const std::uint32_t kind = random_.bits() % 4;
     if (kind == 0) out.body = ReadSensor{random_.bits() % 1000, coin(), coin()};
     if (kind == 1) out.body = SetVelocity{{vec3(), number()}};
-    if (kind == 2) out.body = Sleep{time<ExecTime>()};
+    if (kind == 2) out.body = Sleep{time<ExecTime>(), coin()};
     if (kind == 3) out.body = Finish{coin(), text(), coin() ? json() : ""};
     out.stages = stages();
     return out;
