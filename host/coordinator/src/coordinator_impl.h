@@ -2,6 +2,7 @@
 
 #include "run_log.h"
 #include "session.h"
+#include "shared_boards.h"
 #include "stepper.h"
 #include "watchdog.h"
 
@@ -66,10 +67,11 @@ class Coordinator::Impl {
   void check_replay(Session& session, const link::Request& request);
   void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);
   Standing standing(const Session& session) const;
-  void begin(Session& session, const link::Request& request, WallTime now);
-  record::Interaction make_entry(const Session& session, const link::Request& request,
-                                 WallTime now) const;
-  ExecTime charge(Session& session, const link::Request& request, record::Interaction& entry);
+  static Duration own_work(Session& session, ExecTime stamp);
+  void settle_boards();
+  void begin(Session& session, const Arrived& arrived);
+  record::Interaction make_entry(const Session& session, const Arrived& arrived) const;
+  ExecTime charge(Session& session, const Arrived& arrived, record::Interaction& entry);
   ExecTime accept(Session& session, PendingInteraction& pending);
   ExecTime accept_read(Session& session, PendingInteraction& pending, const link::ReadSensor& read);
   ExecTime accept_command(Session& session, PendingInteraction& pending,
@@ -100,6 +102,7 @@ class Coordinator::Impl {
 
   RunLog log_;
   sync::BarrierSynchronizer barrier_;
+  SharedBoards boards_;
   Stepper stepper_;
   std::vector<Session> sessions_;  // one per UAV, in the world's order
   SimTime time_limit_;             // a step boundary
