@@ -41,7 +41,10 @@ struct TrialSpec {
   /// The user starts the SUT. Otherwise the command of the scenario is started on the target.
   bool waits_for_sut = false;
 
-  SutPlace sut_place() const;
+  /// Of that UAV's SUT.
+  SutPlace sut_place(std::size_t uav) const;
+  /// Whether some SUT is in that place.
+  bool has_sut_at(SutPlace place) const;
 };
 
 /// Callbacks of a trial.
