@@ -88,7 +88,7 @@ scenario::Condition make_condition(const scenario::Scenario& scenario, const Run
 
 /// Rejects --tunnel if it has no effect.
 void require_use_of_tunnel(const runner::TrialSpec& spec) {
-  if (!spec.uses_tunnel || spec.sut_place() == runner::SutPlace::kBoard) return;
+  if (!spec.uses_tunnel || spec.has_sut_at(runner::SutPlace::kBoard)) return;
   throw Error(ErrorCode::kUsage,
               "--tunnel needs a SUT on a board. Select the board with --target "
               "ssh://[user@]board[:port] or a target file with its address, or omit --tunnel")

@@ -126,7 +126,7 @@ Result<Message> read(const wire::Request& request) {
   } else if (const auto* set = request.body_as_SetVelocity()) {
     out.body = SetVelocity{{from_wire(*set->velocity_h_m_s()), set->yaw_rate_rad_s()}};
   } else if (const auto* sleep = request.body_as_Sleep()) {
-    out.body = Sleep{from_ns<ExecTime>(sleep->until_et_ns())};
+    out.body = Sleep{from_ns<ExecTime>(sleep->until_et_ns()), sleep->is_relative()};
   } else if (const auto* finish = request.body_as_FinishMission()) {
     out.body = Finish{finish->reached_goal(), finish->outcome()->str(), finish->details()->str()};
   } else if (const auto* send = request.body_as_SendMessage()) {

@@ -109,7 +109,8 @@ Body write(FlatBufferBuilder& b, const SetVelocity& set) {
           wire::CreateSetVelocity(b, &velocity, set.command.yaw_rate_rad_s).Union()};
 }
 Body write(FlatBufferBuilder& b, const Sleep& sleep) {
-  return {wire::RequestBody::Sleep, wire::CreateSleep(b, to_ns(sleep.until)).Union()};
+  return {wire::RequestBody::Sleep,
+          wire::CreateSleep(b, to_ns(sleep.until), sleep.is_relative).Union()};
 }
 Body write(FlatBufferBuilder& b, const Finish& finish) {
   const auto outcome = b.CreateString(finish.outcome);

@@ -104,7 +104,7 @@ class RandomMessage {
     const std::uint32_t kind = random_.bits() % 6;
     if (kind == 0) out.body = ReadSensor{random_.bits() % 1000, coin(), coin()};
     if (kind == 1) out.body = SetVelocity{{vec3(), number()}};
-    if (kind == 2) out.body = Sleep{time<ExecTime>()};
+    if (kind == 2) out.body = Sleep{time<ExecTime>(), coin()};
     if (kind == 3) out.body = Finish{coin(), text(), coin() ? json() : ""};
     if (kind == 4) out.body = SendMessage{text(), bytes()};
     if (kind == 5) out.body = ReceiveMessage{time<ExecTime>().time_since_epoch()};

@@ -29,6 +29,7 @@ Verdict audit(const record::Record& record) {
     check_rows(record, report);
     check_stops(record, grid, report);
     check_newness(record, report);
+    check_boards(record, report);
     check_commands(record, grid, report);
     check_order(record, grid, report);
   }

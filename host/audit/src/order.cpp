@@ -89,6 +89,8 @@ class ReleaseOrder {
     const bool is_awaited = wide(m.request_at) <= wide(m.st_at_release) && !ahead_.empty() &&
                             m.request_at < ahead_.front().entry->message.reply_at;
     // Without wall times, replies are in this order in any case.
+    // On a shared board, a request comes before its instant is known.
+    if (m.computed && !is_awaited) return [](const Entry&) { return false; };
     if (is_awaited || m.st_at_arrival < m.st_at_release || m.wall_at_arrival == WallTime{})
       return [](const Entry&) { return true; };
     return [&m](const Entry& sent) { return m.wall_at_arrival < sent.message.wall_at_release; };

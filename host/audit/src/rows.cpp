@@ -29,7 +29,9 @@ void check_growth(const Entry& entry, const record::SutInfo& info, const History
   if (sut.last_wall_at_release == WallTime{} || entry.message.wall_at_arrival == WallTime{}) {
     return;
   }
-  const Wide grown = wide(entry.message.request_at) - wide(sut.last_reply_at);
+  const Wide grown = entry.message.computed
+                         ? wide(*entry.message.computed)
+                         : wide(entry.message.request_at) - wide(sut.last_reply_at);
   const Wide elapsed = wide(entry.message.wall_at_arrival) - wide(sut.last_wall_at_release);
   if (const auto fault = growth_fault(info, grown, elapsed)) report.add(5, entry, "{}", *fault);
 }

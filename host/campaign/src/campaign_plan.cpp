@@ -69,19 +69,22 @@ std::vector<TrialPlan> plan_trials(const scenario::Campaign& campaign,
 }
 
 int parallel_trials(const TrialPlan& plan, int jobs) {
+  constexpr double kSimulatorLoad = 0.5, kShareInUse = 0.5;
   const scenario::Condition& condition = *plan.condition;
   // The SUTs of parallel trials would be bound to the same cores.
-  const bool is_bound = condition.target && condition.target->cores > 0;
-  if (is_by_wall(condition.clock) || is_bound || jobs == 1) return 1;
+  double load_of_suts = 0.0;
+  for (std::size_t uav = 0; uav < plan.scenario->uavs.size(); ++uav) {
+    const scenario::Condition own = for_uav(condition, uav);
+    const bool is_bound = own.target && own.target->cores > 0;
+    if (is_by_wall(own.clock) || is_bound) return 1;
+    load_of_suts += 1.0 / own.cpu_factor + kSimulatorLoad * condition.real_time_factor;
+  }
+  if (jobs == 1) return 1;
   if (condition.policy == scenario::Policy::kConservativeBarrier) return jobs;
   if (condition.simulator != "mujoco") return 1;
   // A stalling SUT computes for one part in `cpu_factor` of the time; the embedded simulator with
   // its camera took up to half a core at real time.
-  constexpr double kSimulatorLoad = 0.5, kShareInUse = 0.5;
-  const double load_of_one =
-      1.0 / condition.cpu_factor + kSimulatorLoad * condition.real_time_factor;
-  const double load = load_of_one * static_cast<double>(plan.scenario->uavs.size());
-  return std::max(1, static_cast<int>(kShareInUse * jobs / load));
+  return std::max(1, static_cast<int>(kShareInUse * jobs / load_of_suts));
 }
 
 std::vector<Batch> make_batches(const std::vector<const TrialPlan*>& plans, int jobs) {
@@ -110,7 +113,10 @@ void require_jobs_allowed(const scenario::Campaign& campaign, int jobs) {
         refuse_jobs(jobs, fmt::format("{} uses the simulator at {}, which serves one run at a "
                                       "time. Use --jobs 1.",
                                       where, condition.simulator));
-      if (is_by_wall(condition.clock))
+      bool has_wall_clock = false;
+      for (std::size_t uav = 0; uav < entry.scenario.uavs.size(); ++uav)
+        has_wall_clock = has_wall_clock || is_by_wall(for_uav(condition, uav).clock);
+      if (has_wall_clock)
         refuse_jobs(jobs, fmt::format("{} measures its SUT by the wall clock, which parallel "
                                       "trials would distort. Use --jobs 1, or clock = \"cpu\" or "
                                       "\"scripted\".",

@@ -17,6 +17,13 @@
 namespace tether::campaign {
 namespace {
 
+/// Of the computers, each once: "front, rear".
+std::string names_of(const scenario::Condition& condition) {
+  std::vector<std::string> names;
+  for (const scenario::Computer& computer : condition.computers) names.push_back(computer.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condition& condition,
                       std::uint64_t seed) {
   TrialResult result;
@@ -29,6 +36,7 @@ TrialResult result_of(const scenario::Scenario& scenario, const scenario::Condit
   result.computing = condition.computing;
   result.real_time_factor = condition.real_time_factor;
   if (condition.target) result.target = condition.target->name;
+  if (!condition.computers.empty()) result.target = names_of(condition);
   for (const auto& [key, value] : scenario.settings) result.settings[key] = value;
   result.emulator = emulator_of(condition);
   result.profiles = scenario::profile_names(scenario, condition);
@@ -170,11 +178,10 @@ void settle(TrialResult& result, const std::string& reason_of_end, const std::st
 }
 
 // If a board was throttled, the reason of the result says so.
-void take_target(TrialResult& result, const record::Record& record) {
-  if (!record.header.target) return;
-  const record::TargetInfo& info = *record.header.target;
-  TargetReport target{.name = info.name, .address = info.address, .before = info.before};
-  if (record.footer) target.after = record.footer->target_after;
+TargetReport report_of(TrialResult& result, const record::TargetInfo& info,
+                       const record::Readings& after) {
+  TargetReport target{
+      .name = info.name, .address = info.address, .before = info.before, .after = after};
   const bool is_board = !info.address.empty();
   for (const board::RunWarning& warning :
        board::run_warnings(target.before, target.after, is_board)) {
@@ -183,7 +190,7 @@ void take_target(TrialResult& result, const record::Record& record) {
     target.is_spoiled = true;
     result.reason += "; but " + warning.text;
   }
-  result.this_run.target = std::move(target);
+  return target;
 }
 
 }  // namespace
@@ -219,14 +226,25 @@ TrialResult make_result(const scenario::Scenario& scenario, const scenario::Cond
   const double max_speed_m_s = scenario.max_contact_speed_m_s;
   result.contacts = contacts_of(record, max_speed_m_s);
   settle(result, footer.reason, why_crashed(record, max_speed_m_s));
-  take_target(result, record);
+  if (record.header.target)
+    result.this_run.target =
+        report_of(result, *record.header.target,
+                  record.footer ? record.footer->target_after : record::Readings{});
   return result;
+}
+
+void add_target(TrialResult& result, const record::TargetInfo& info,
+                const record::Readings& after) {
+  result.this_run.more_targets.push_back(report_of(result, info, after));
 }
 
 record::EmulatorInfo emulator_of(const scenario::Condition& condition) {
   record::EmulatorInfo info;
-  if (!condition.target || !condition.target->emulator) return info;
-  const os::Emulator& emulator = *condition.target->emulator;
+  std::optional<scenario::Target> target = condition.target;
+  for (const scenario::Computer& computer : condition.computers)
+    if (computer.target && computer.target->emulator) target = computer.target;
+  if (!target || !target->emulator) return info;
+  const os::Emulator& emulator = *target->emulator;
   info.program = emulator.program;
   info.cpu_model = emulator.cpu_model;
   for (std::size_t kind = 0; kind < kWorkClasses; ++kind)

@@ -192,6 +192,8 @@ Json json_of(const ThisRun& run) {
   if (!run.first_failure.empty()) json["first_failure"] = run.first_failure;
   if (!run.node.empty()) json["node"] = run.node;
   if (run.target) json["target"] = json_of(*run.target);
+  for (const TargetReport& target : run.more_targets)
+    json["more_targets"].push_back(json_of(target));
   if (!run.notes.empty()) json["notes"] = run.notes;
   if (!run.sut_files.empty()) json["sut_files"] = run.sut_files;
   if (run.simulator)
@@ -348,6 +350,9 @@ ThisRun read_this_run(const JsonReader& json) {
   if (json.has("first_failure")) run.first_failure = json.text("first_failure");
   if (json.has("node")) run.node = json.text("node");
   if (json.has("target")) run.target = read_target(json.object("target"));
+  if (json.has("more_targets"))
+    for (const JsonReader& target : json.objects("more_targets"))
+      run.more_targets.push_back(read_target(target));
   if (json.has("notes")) run.notes = json.texts("notes");
   if (json.has("sut_files")) run.sut_files = json.texts("sut_files");
   if (json.has("simulator")) run.simulator = read_simulator(json.object("simulator"));

@@ -109,6 +109,7 @@ Coordinator::Impl::Impl(sim::Simulator& simulator, record::Recorder& recorder, R
       host_clock_(std::move(host_clock)),
       log_(recorder),
       barrier_(simulator.grid()),
+      boards_(options_),
       stepper_(simulator, barrier_, log_, options_.ground_truth_period,
                make_samplers(simulator, options_)),
       sessions_(make_sessions(world(), options_)),
@@ -276,13 +277,15 @@ void Coordinator::Impl::hear_emulated_start(Session& session, WallTime now) {
 void Coordinator::Impl::end_endless(Session& session) {
   constexpr Duration kMostUncharged = std::chrono::seconds(1);  // of the library, around a reply
   if (!running_) return;
-  const ExecTime bound = barrier_.bound(session.uav);
+  const ExecTime bound = session.resumed_at;
   if (std::exchange(session.last_bound, bound) != bound || !is_computing(session))
     session.computed_before = session.computed;
   const auto limit = from_ns<ExecTime>(to_ns(time_limit_));
   const Duration computed = session.computed - session.computed_before - kMostUncharged;
-  if (is_computing(session) && bound < limit && computed > limit - bound)
-    barrier_.progress(session.uav, limit);
+  if (!is_computing(session) || bound >= limit || computed <= limit - bound) return;
+  if (!boards_.shares(session.uav)) return barrier_.progress(session.uav, limit);
+  boards_.progress(session.uav, limit - bound);
+  settle_boards();
 }
 
 void Coordinator::Impl::stop_if_asked() {
@@ -293,6 +296,7 @@ void Coordinator::Impl::stop_if_asked() {
 // Whether the coordinator waits for the next message of the SUT.
 bool Coordinator::Impl::is_computing(const Session& session) const {
   if (!running_ || session.left) return false;
+  if (boards_.has_request(session.uav)) return false;
   return is_synchronised() ? !barrier_.is_held(session.uav) : session.open.empty();
 }
 
@@ -304,7 +308,8 @@ Party Coordinator::Impl::party(const Session& session, WallTime now) const {
               .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
               .silence = watchdog_.silence(session.uav, now),
               .counted = session.hello.clock == link::ClockKind::kCounted,
-              .received_bytes = session.received_bytes};
+              .received_bytes = session.received_bytes,
+              .computer = options_.uavs[session.uav].computer};
   for (const PendingInteraction& pending : session.open)
     party.reply_at = std::min(party.reply_at.value_or(ExecTime::max()), pending.entry.reply_at);
   return party;
@@ -330,7 +335,8 @@ RunStatus Coordinator::Impl::status(WallTime now) const {
   for (const Session& session : sessions_)
     status.et = std::max(status.et.value_or(ExecTime{}), barrier_.bound(session.uav));
   if (const auto slowest = barrier_.slowest_computing())
-    status.waiting_for = sessions_[*slowest].uav_name;
+    status.waiting_for =
+        sessions_[boards_.shares(*slowest) ? boards_.awaited(*slowest) : *slowest].uav_name;
   return status;
 }
 
@@ -370,6 +376,9 @@ RunReport Coordinator::Impl::close_run() {
   if (hooks_.read_target) footer.target_after = hooks_.read_target();
   if (report.end == RunEnd::kRecordFailed) return report;
   try {
+    for (const Session& session : sessions_)
+      for (const record::Annotation& note : session.notes)
+        if (same_instant(note.at) <= st()) log_.annotation(st(), note);
     log_.end();
   } catch (const RecordFailure& e) {
     report.reason = fmt::format("{}; the run ended with: {}", e.what(), report.reason);

@@ -2,6 +2,7 @@
 
 #include "run_log.h"
 #include "session.h"
+#include "shared_boards.h"
 #include "stepper.h"
 #include "watchdog.h"
 
@@ -68,10 +69,11 @@ class Coordinator::Impl {
   void check_replay(Session& session, const link::Request& request);
   void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);
   Standing standing(const Session& session) const;
-  void begin(Session& session, const link::Request& request, WallTime now);
-  record::Interaction make_entry(const Session& session, const link::Request& request,
-                                 WallTime now) const;
-  ExecTime charge(Session& session, const link::Request& request, record::Interaction& entry);
+  static Duration own_work(Session& session, ExecTime stamp);
+  void settle_boards();
+  void begin(Session& session, const Arrived& arrived);
+  record::Interaction make_entry(const Session& session, const Arrived& arrived) const;
+  ExecTime charge(Session& session, const Arrived& arrived, record::Interaction& entry);
   ExecTime accept(Session& session, PendingInteraction& pending);
   ExecTime accept_read(Session& session, PendingInteraction& pending, const link::ReadSensor& read);
   ExecTime accept_command(Session& session, PendingInteraction& pending,
@@ -122,6 +124,7 @@ class Coordinator::Impl {
 
   RunLog log_;
   sync::BarrierSynchronizer barrier_;
+  SharedBoards boards_;
   Stepper stepper_;
   std::vector<Session> sessions_;  // one per UAV, in the world's order
   std::vector<std::string> uav_names_;

@@ -114,12 +114,21 @@ record::Header Coordinator::Impl::make_header() const {
          .required_clock = {},
          .build_id = session.hello.build_id,
          .replay = options_.uavs[session.uav].replayed_from});
+    if (boards_.shares(session.uav)) {
+      header.suts.back().board = options_.boards[*options_.uavs[session.uav].board].name;
+      header.suts.back().pinned_core = options_.uavs[session.uav].pinned_core;
+    }
     if (const auto& required = options_.uavs[session.uav].clock)
       header.suts.back().required_clock = describe(*required);
     const uav::Catalogue catalogue = sim::make_catalogue(world(), uav);
     for (std::size_t i = 0; i < catalogue.sensors.size(); ++i)
       header.sensors.push_back(
           describe(uav.name, catalogue.sensors[i], options_.uavs[session.uav].timings[i]));
+  }
+  for (const Board& board : options_.boards) {
+    const bool is_shared =
+        std::ranges::any_of(header.suts, [&](const auto& sut) { return sut.board == board.name; });
+    if (is_shared) header.boards.push_back({board.name, board.cores});
   }
   for (const sim::PlacedAnchor& anchor : world().anchors)
     header.anchors.push_back(describe(anchor));

@@ -89,6 +89,7 @@ void Coordinator::Impl::break_off(Session& session, link::Refusal::Reason reason
 // Its Finish has arrived, and it is stopped. Nothing that it still does can change the result, so
 // it may disconnect before or after ST has caught up.
 bool Coordinator::Impl::awaits_only_confirmation(const Session& session) const {
+  if (boards_.has_finish(session.uav)) return true;
   return session.finish && !is_computing(session);
 }
 
@@ -137,6 +138,11 @@ void Coordinator::Impl::on_progress(Session& session, const link::Progress& prog
   if (const auto fault = fault_of(progress, standing(session), now))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
   if (progress.stopped) return on_stop(session, progress, now);
+  if (boards_.shares(session.uav)) {
+    if (!is_computing(session)) return;
+    boards_.progress(session.uav, own_work(session, progress.reached));
+    return settle_boards();
+  }
   barrier_.progress(session.uav, progress.reached);
   release_ready();
 }
@@ -144,6 +150,10 @@ void Coordinator::Impl::on_progress(Session& session, const link::Progress& prog
 void Coordinator::Impl::on_annotation(Session& session, const link::Annotation& note) {
   if (const auto fault = session.annotations.spend(note))
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
+  if (boards_.shares(session.uav) && is_computing(session)) {
+    boards_.add(session.uav, {note, own_work(session, note.at), st(), host_clock_()});
+    return settle_boards();
+  }
   log_.annotation(st(), {session.uav_name, note.at, note.topic, note.json});
 }
 
@@ -174,8 +184,10 @@ Standing Coordinator::Impl::standing(const Session& session) const {
           .concurrent = session.is_concurrent(),
           .finished = session.finish.has_value(),
           .held = running_ && barrier_.is_held(session.uav),
-          .bound = running_ ? barrier_.bound(session.uav) : ExecTime{},
-          .open_calls = session.open.size(),
+          .bound = boards_.shares(session.uav) ? session.own_bound
+                   : running_                  ? barrier_.bound(session.uav)
+                                               : ExecTime{},
+          .open_calls = session.open.size() + (boards_.has_request(session.uav) ? 1U : 0U),
           .received_bytes = session.received_bytes,
           .next_sequence = session.next_sequence,
           .st = st(),
@@ -198,7 +210,38 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   if (session.replay) check_replay(session, request);
   if (ended_) return;
   ++session.next_sequence;
-  begin(session, request, now);
+  if (boards_.shares(session.uav)) {
+    boards_.add(session.uav, {request, own_work(session, request.issued_at), st(), now});
+    return settle_boards();
+  }
+  begin(session, {request, st(), now});
+  stepper_.act();
+  release_ready();
+}
+
+// What a SUT on a shared board computed until `stamp`, as if alone. Not less than before.
+Duration Coordinator::Impl::own_work(Session& session, ExecTime stamp) {
+  session.own_bound = std::max(session.own_bound, stamp);
+  return session.own_bound - session.resumed_at;
+}
+
+// Handles the messages whose instant is known now, and tells the barrier how far the boards are.
+void Coordinator::Impl::settle_boards() {
+  while (const auto sent = boards_.next()) {
+    Session& session = sessions_[sent->uav];
+    if (const auto* note = std::get_if<link::Annotation>(&sent->what.message)) {
+      session.notes.push_back({session.uav_name, sent->at, note->topic, note->json});
+      continue;
+    }
+    const auto& request = std::get<link::Request>(sent->what.message);
+    begin(session, {request, sent->what.st, sent->what.wall, sent->at, sent->what.work});
+    if (session.finish)
+      boards_.leave(sent->uav);
+    else
+      boards_.resume(sent->uav, session.open.back().entry.reply_at);
+  }
+  for (const Session& session : sessions_)
+    if (boards_.shares(session.uav)) barrier_.progress(session.uav, boards_.bound(session.uav));
   stepper_.act();
   release_ready();
 }
@@ -208,7 +251,7 @@ void Coordinator::Impl::check_replay(Session& session, const link::Request& requ
   const auto* read = std::get_if<link::ReadSensor>(&request.body);
   const std::string call =
       read ? stepper_.sampler(session.uav).name(read->sensor) : kKinds[request.body.index()];
-  ExecTime due = barrier_.bound(session.uav);
+  ExecTime due = session.resumed_at;
   for (const link::StageTime& time : request.stages) due += time.computing;
   std::optional<std::string> difference = session.replay->take(call, request.stages);
   if (!difference && due != request.issued_at)
@@ -228,14 +271,14 @@ std::vector<link::StageTime> Coordinator::Impl::time_given(const Session& sessio
 
 // Plans a request and holds its reply. A concurrent SUT receives the time of its reply at once, so
 // that its other threads can run until then.
-void Coordinator::Impl::begin(Session& session, const link::Request& request, WallTime now) {
-  PendingInteraction pending{.request = request, .entry = make_entry(session, request, now)};
+void Coordinator::Impl::begin(Session& session, const Arrived& arrived) {
+  PendingInteraction pending{.request = arrived.request, .entry = make_entry(session, arrived)};
   record::Interaction& entry = pending.entry;
-  entry.request_at = charge(session, request, entry);
+  entry.request_at = charge(session, arrived, entry);
   // What the threads of a concurrent SUT compute while others wait is not known.
   if (!session.is_concurrent())
     stepper_.computed(session.uav, same_instant(entry.request_at),
-                      entry.request_at - session.resumed_at);
+                      entry.computed.value_or(entry.request_at - session.resumed_at));
   session.calls_in_step = st() > session.called_at ? 1 : session.calls_in_step + 1;
   session.called_at = st();
   entry.reply_at = accept(session, pending);
@@ -252,14 +295,15 @@ void Coordinator::Impl::begin(Session& session, const link::Request& request, Wa
 }
 
 record::Interaction Coordinator::Impl::make_entry(const Session& session,
-                                                  const link::Request& request,
-                                                  WallTime now) const {
+                                                  const Arrived& arrived) const {
+  const link::Request& request = arrived.request;
   record::Interaction entry;
   entry.uav = session.uav_name;
   entry.sequence = request.sequence;
   entry.kind = kKinds[request.body.index()];
-  entry.st_at_arrival = st();
-  entry.wall_at_arrival = now;
+  entry.st_at_arrival = arrived.st;
+  entry.wall_at_arrival = arrived.wall;
+  entry.computed = arrived.computed;
   entry.stamped = !session.timer && is_synchronised();
   if (entry.stamped)
     for (const link::StageTime& time : request.stages)
@@ -275,16 +319,18 @@ record::Interaction Coordinator::Impl::make_entry(const Session& session,
 
 // The timestamp of a request: the SUT's, or the coordinator's timer for an unstamped client, or ST
 // in free running.
-ExecTime Coordinator::Impl::charge(Session& session, const link::Request& request,
+ExecTime Coordinator::Impl::charge(Session& session, const Arrived& arrived,
                                    record::Interaction& entry) {
   if (!is_synchronised()) return same_instant(st());
-  const ExecTime stamp =
-      session.timer ? session.timer->pause(entry.wall_at_arrival) : request.issued_at;
-  const sync::Arrival arrival = barrier_.arrive(session.uav, stamp, st());
+  const ExecTime stamp = session.timer ? session.timer->pause(arrived.wall)
+                                       : arrived.sent_at.value_or(arrived.request.issued_at);
+  const sync::Arrival arrival = barrier_.arrive(session.uav, stamp, arrived.st);
   entry.lag = arrival.lag;
-  if (arrival.violation)
-    entry.violation =
-        fmt::format("{} by {} ns", name(arrival.violation->kind), arrival.violation->size.count());
+  Duration behind = arrival.violation ? arrival.violation->size : Duration(0);
+  if (arrived.computed) behind = session.resumed_at + *arrived.computed - arrived.request.issued_at;
+  if (behind > Duration(0))
+    entry.violation = fmt::format(
+        "{} by {} ns", name(sync::CausalityViolation::Kind::kRequestInThePast), behind.count());
   return arrival.charged_at;
 }
 
@@ -296,8 +342,11 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
   if (const auto* set = std::get_if<link::SetVelocity>(&request.body))
     return accept_command(session, pending, *set);
   if (const auto* sleep = std::get_if<link::Sleep>(&request.body)) {
-    pending.entry.sleep_until = sleep->until;
-    return std::max(pending.entry.request_at, sleep->until);
+    const ExecTime until = sleep->is_relative
+                               ? pending.entry.request_at + (sleep->until - request.issued_at)
+                               : sleep->until;
+    pending.entry.sleep_until = until;
+    return std::max(pending.entry.request_at, until);
   }
   if (const auto* send = std::get_if<link::SendMessage>(&request.body)) {
     accept_send(session, pending.entry, *send);

@@ -58,7 +58,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
   session.last_hold = entry.wall_at_release - entry.wall_at_arrival;
   watchdog_.heard(session.uav, entry.wall_at_release);
   watchdog_.moved(entry.wall_at_release);
-  session.resumed_at = entry.reply_at;
+  session.resumed_at = session.own_bound = entry.reply_at;
   if (session.timer) session.timer->resume(entry.wall_at_release, entry.reply_at);
   // A CPU clock adds what child processes computed during the call.
   if (session.plausibility)
@@ -66,6 +66,8 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
                                 session.hello.clock == link::ClockKind::kCpu
                                     ? entry.wall_at_arrival
                                     : entry.wall_at_release);
+  for (record::Annotation& note : session.notes) log_.annotation(st, std::move(note));
+  session.notes.clear();
   log_.interaction(st, entry);
   if (image) log_.image(st, session.uav_name, entry.sensor, *image);
   if (entry.kind == record::kFinish) leave(session);

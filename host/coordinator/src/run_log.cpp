@@ -182,8 +182,9 @@ bool RunLog::may_precede(const Collected& later, const Collected& earlier) {
     return reply->reply_at <= same_instant(later.st);
   const auto* other = std::get_if<record::Interaction>(&later.message);
   if (!other) return true;
-  const bool was_held =
-      other->st_at_arrival < later.st || other->wall_at_arrival < reply->wall_at_release;
+  // On a shared board, a request comes before its instant is known.
+  const bool was_held = !other->computed && (other->st_at_arrival < later.st ||
+                                             other->wall_at_arrival < reply->wall_at_release);
   const bool was_awaited =
       other->request_at <= same_instant(later.st) && other->request_at < reply->reply_at;
   return !was_held && !was_awaited;

@@ -27,6 +27,16 @@ struct PendingInteraction {
   bool is_promised = false;   ///< a message is in the inbox for this call
 };
 
+/// A request, and when it came and was sent.
+struct Arrived {
+  const link::Request& request;
+  SimTime st;
+  WallTime wall;
+  /// On a shared board: the board's ET, and what the SUT computed before it.
+  std::optional<ExecTime> sent_at{};
+  std::optional<Duration> computed{};
+};
+
 /// The state of one SUT and its UAV.
 struct Session {
   std::size_t uav = 0;  ///< index of the UAV in the world, and of the SUT in the barrier
@@ -58,6 +68,9 @@ struct Session {
   std::uint64_t newest_moved_due = 0;  ///< number of the last Due that was earlier than announced
 
   ExecTime resumed_at{};  ///< ET of its last reply, from which on it computes
+  /// On a shared board: what it is known to have computed since then, as if alone, added to that.
+  ExecTime own_bound{};
+  std::vector<record::Annotation> notes;  ///< on a shared board: to record before the next reply
 
   /// Requests without a reply, in order; at most one for a serial SUT.
   std::vector<PendingInteraction> open;

@@ -54,10 +54,11 @@ std::string describe_blocking(SimTime st, const std::vector<Party>& parties) {
   }
   if (!blocker) return "";
   return fmt::format(
-      "ST {:.6f} s{}: blocked on SUT \"{}\" (UAV \"{}\"), which has been {} for {:.1f} s "
+      "ST {:.6f} s{}: blocked on SUT \"{}\" (UAV \"{}\"{}), which has been {} for {:.1f} s "
       "without a {}; last message at ET {:.6f} s",
       to_seconds(st), waiting.empty() ? "" : fmt::format(" ({})", fmt::join(waiting, ", ")),
       blocker->sut, blocker->uav,
+      blocker->computer.empty() ? "" : fmt::format(" on \"{}\"", blocker->computer),
       blocker->received_bytes == 0
           ? "computing"
           : fmt::format("waiting for the rest of its reply (received {} bytes)",

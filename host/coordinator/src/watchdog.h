@@ -23,6 +23,7 @@ struct Party {
   std::optional<ExecTime> reply_at{};  ///< of its open calls the earliest
   bool counted = false;                ///< its work is counted, and a sign of life
   std::uint32_t received_bytes = 0;    ///< of a reply that takes long to arrive
+  std::string computer{};              ///< on which it runs; empty: all on the same
 };
 
 /// "it was computing; last message at ET 1.200000 s"

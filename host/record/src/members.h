@@ -83,6 +83,7 @@ void members(auto& io, Maybe<Interaction> auto& m) {
   io("stamped", m.stamped);
   io.optional("violation", m.violation);
   if (io.has("stages", !m.stages.empty())) io.list("stages", m.stages);
+  io.optional("computed_ns", m.computed);
   if (!io.wall()) return;
   io.object("wall", [&](auto& wall) {
     wall("arrival_ns", m.wall_at_arrival);
@@ -208,6 +209,16 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
   if (io.has("build_id", !m.build_id.empty())) io("build_id", m.build_id);
   if (io.has("replay", m.replay.has_value()))
     io.object("replay", [&](auto& replay) { members(replay, io.value_of(m.replay)); });
+  if (!io.has("board", !m.board.empty())) return;
+  io("board", m.board);
+  if (io.has("pinned_core", m.pinned_core.has_value()))
+    io.within("pinned_core", io.value_of(m.pinned_core), 0, kMostCores - 1);
+}
+
+void members(auto& io, Maybe<BoardInfo> auto& m) {
+  constexpr int kMostCores = 4096;
+  io("name", m.name);
+  io.within("cores", m.cores, 1, kMostCores);
 }
 
 void members(auto& io, Maybe<CameraInfo> auto& m) {
@@ -282,6 +293,7 @@ void members(auto& io, Maybe<Header> auto& m) {
     io("radio_least_delay_ns", m.radio.least_delay);
     io("radio_data_rate_bit_s", m.radio.data_rate_bit_s);
   }
+  if (io.has("boards", !m.boards.empty())) io.list("boards", m.boards);
   if (!io.has("emulator", !m.emulator.program.empty())) return;
   io("emulator", m.emulator.program);
   io("cpu_model", m.emulator.cpu_model);

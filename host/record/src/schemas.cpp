@@ -67,6 +67,10 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
         "required": ["stage", "computing_ns"]
       }
     },
+    "computed_ns": {
+      "type": "integer",
+      "description": "on a shared board: what was computed since the previous call"
+    },
     "wall": {
       "type": "object",
       "description": "host clock; differs from run to run",

@@ -32,7 +32,13 @@ void add_programs(const scenario::CampaignScenario& entry,
   for (const std::string& name : entry.conditions) {
     const scenario::Condition& condition = *entry.scenario.find_condition(name);
     scenario::require_clock(entry.scenario, condition);
-    if (condition.target && condition.target->ssh) continue;
+    for (const scenario::Computer& computer : condition.computers)
+      if (computer.by_hand)
+        throw Error(ErrorCode::kBadFile, computer.at,
+                    fmt::format("the SUTs of target \"{}\" are started by hand, which a campaign "
+                                "cannot wait for. Use tether run, or remove 'by_hand'",
+                                computer.name))
+            .about(computer.name);
     for (const auto& program : sut_programs(entry.scenario, condition))
       if (std::find(files.begin(), files.end(), program) == files.end()) files.push_back(program);
   }

@@ -5,10 +5,10 @@
 namespace tether::runner {
 namespace {
 
-bool may_distort(const TrialSpec& spec) {
-  switch (spec.condition.clock) {
+bool may_distort(const TrialSpec& spec, const scenario::Condition& own) {
+  switch (own.clock) {
     case scenario::Clock::kWall:
-      return spec.sut_place() != SutPlace::kBoard;
+      return spec.waits_for_sut || !own.target || !own.target->ssh;
     case scenario::Clock::kUnstamped:  // this machine's time
       return true;
     case scenario::Clock::kCpu:
@@ -33,7 +33,9 @@ int cameras_of(const sim::World& world) {
 }  // namespace
 
 int drawing_threads(const TrialSpec& spec, const sim::World& world, int cores) {
-  if (spec.condition.policy == scenario::Policy::kFreeRunning || may_distort(spec)) return 0;
+  if (spec.condition.policy == scenario::Policy::kFreeRunning) return 0;
+  for (std::size_t uav = 0; uav < spec.scenario.uavs.size(); ++uav)
+    if (may_distort(spec, for_uav(spec.condition, uav))) return 0;
   return std::clamp(cores - 1, 0, cameras_of(world));
 }
 

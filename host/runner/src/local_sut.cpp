@@ -33,16 +33,25 @@ std::string files_folder(const std::filesystem::path& folder) {
   return std::filesystem::absolute(folder).lexically_normal().string();
 }
 
+/// How many CPUs the SUTs before this one have.
+std::size_t first_cpu(const scenario::Condition& condition, std::size_t uav) {
+  std::size_t cpus = 0;
+  for (std::size_t other = 0; other < uav; ++other)
+    if (const auto target = for_uav(condition, other).target; target && !target->ssh)
+      cpus += static_cast<std::size_t>(target->cores);
+  return cpus;
+}
+
 void require_cores(const scenario::Scenario& scenario, const scenario::Condition& condition) {
   const std::size_t allowed = os::allowed_cpus().size(), suts = scenario.uavs.size();
-  const int cores = condition.target ? condition.target->cores : 0;
-  if (static_cast<std::size_t>(cores) * suts <= allowed) return;
-  throw Error(
-      ErrorCode::kBadFile, {condition.target->file.string()},
-      fmt::format("'cores' is too large ({} for each of {} SUTs). This process may use {} of "
-                  "this machine's",
-                  cores, suts, allowed))
-      .about("cores");
+  if (first_cpu(condition, suts) <= allowed) return;
+  for (std::size_t uav = 0; uav < suts; ++uav)
+    if (const auto target = for_uav(condition, uav).target; target && target->cores > 0)
+      throw Error(ErrorCode::kBadFile, {target->file.string()},
+                  fmt::format("'cores' is too large ({} for each of {} SUTs). This process may "
+                              "use {} of this machine's",
+                              target->cores, suts, allowed))
+          .about("cores");
 }
 
 }  // namespace
@@ -68,18 +77,24 @@ LocalSutCommand local_sut_command(const scenario::Sut& sut,
   return command;
 }
 
-std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_t index) {
-  const std::size_t count = static_cast<std::size_t>(cores), end = index * count;
-  if (end + count > allowed.size()) return {};
-  return {allowed.rbegin() + static_cast<std::ptrdiff_t>(end),
-          allowed.rbegin() + static_cast<std::ptrdiff_t>(end + count)};
+std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_t taken) {
+  const std::size_t count = static_cast<std::size_t>(cores);
+  if (taken + count > allowed.size()) return {};
+  return {allowed.rbegin() + static_cast<std::ptrdiff_t>(taken),
+          allowed.rbegin() + static_cast<std::ptrdiff_t>(taken + count)};
 }
 
 std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenario,
                                                 const scenario::Condition& condition) {
   std::vector<std::filesystem::path> programs;
-  for (const scenario::UavSetup& uav : scenario.uavs) try {
-      for (const auto& program : local_sut_command(uav.sut, condition.target).programs)
+  bool is_counted = false;
+  for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
+    const scenario::UavSetup& uav = scenario.uavs[i];
+    const auto target = for_uav(condition, i).target;
+    if ((target && target->ssh) || for_uav(condition, i).by_hand) continue;
+    is_counted = is_counted || (target && target->emulator);
+    try {
+      for (const auto& program : local_sut_command(uav.sut, target).programs)
         if (std::find(programs.begin(), programs.end(), program) == programs.end())
           programs.push_back(program);
     } catch (const Error& e) {
@@ -87,7 +102,8 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
                   fmt::format("the SUT of UAV \"{}\": {}", uav.placement.name, e.what()))
           .about(uav.placement.name);
     }
-  if (condition.target && condition.target->emulator) programs.push_back(os::find_counter_plugin());
+  }
+  if (is_counted) programs.push_back(os::find_counter_plugin());
   return programs;
 }
 
@@ -99,13 +115,14 @@ void require_sut_programs(const scenario::Scenario& scenario,
 
 os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
                            const std::filesystem::path& out, const std::filesystem::path& log) {
-  const auto& target = run.condition.target;
+  const auto target = for_uav(run.condition, index).target;
   auto environment = environment_of(uav.placement.name, index, run);
   environment.emplace_back("TETHER_OUT", files_folder(out));
   return {.arguments = local_sut_command(uav.sut, target).words,
           .environment = std::move(environment),
           .log = log,
-          .cpus = cpus_for(os::allowed_cpus(), target ? target->cores : 0, index)};
+          .cpus = cpus_for(os::allowed_cpus(), target ? target->cores : 0,
+                           first_cpu(run.condition, index))};
 }
 
 }  // namespace tether::runner

@@ -25,9 +25,9 @@ struct LocalSutCommand {
 LocalSutCommand local_sut_command(const scenario::Sut& sut,
                                   const std::optional<scenario::Target>& target);
 
-/// The CPUs for the SUT with that index: `cores` of those allowed, the last ones first, because the
-/// first ones are the busiest. Empty: all CPUs (`cores` is 0), or there are too few.
-std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_t index);
+/// The CPUs for a SUT: `cores` of those allowed, the last ones first, because the first ones are
+/// the busiest; so many are taken by others. Empty: all CPUs (`cores` is 0), or there are too few.
+std::vector<int> cpus_for(const std::vector<int>& allowed, int cores, std::size_t taken);
 
 /// All programs that start the SUTs of a condition here, each once; last the plugin that counts.
 /// @throws Error(kBadFile) at the scenario's file, about the UAV whose program does not exist;

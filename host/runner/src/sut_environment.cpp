@@ -46,24 +46,27 @@ SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::T
 }
 
 os::Environment environment_of(const std::string& uav, std::size_t index, const SutRun& run) {
-  os::Environment environment = {{"TETHER_ADDRESS", run.address},
-                                 {"TETHER_TOKEN", run.token},
-                                 {"TETHER_UAV", uav},
-                                 {"TETHER_CLOCK", to_text(clock_of(run.condition))}};
-  if (index < run.counts.size()) {
-    const os::Environment counting = run.counts[index].environment();
+  const auto own = run.addresses.find(index);
+  os::Environment environment = {
+      {"TETHER_ADDRESS", own == run.addresses.end() ? run.address : own->second},
+      {"TETHER_TOKEN", run.token},
+      {"TETHER_UAV", uav},
+      {"TETHER_CLOCK", to_text(clock_of(for_uav(run.condition, index)))}};
+  if (const auto counts = run.counts.find(index); counts != run.counts.end()) {
+    const os::Environment counting = counts->second.environment();
     environment.insert(environment.end(), counting.begin(), counting.end());
   }
   return environment;
 }
 
-std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run) {
+std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run, bool all) {
   std::string text;
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
+    if (!all && !for_uav(run.condition, i).by_hand) continue;
     const scenario::UavSetup& uav = scenario.uavs[i];
     for (const auto& [name, value] : environment_of(uav.placement.name, i, run))
       text += fmt::format("{}={} ", name, os::shell_word(value));
-    std::vector<std::string> words = sut_command(uav.sut, run.condition.target).words;
+    std::vector<std::string> words = sut_command(uav.sut, for_uav(run.condition, i).target).words;
     std::transform(words.begin(), words.end(), words.begin(), os::shell_word);
     text += fmt::format("{}\n", fmt::join(words, " "));
   }

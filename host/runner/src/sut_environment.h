@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,7 +20,8 @@ struct SutRun {
   std::string address;  ///< of the coordinator, host:port
   std::string token;
   scenario::Condition condition;
-  std::vector<os::CountFile> counts{};  ///< one for each SUT, if the condition's clock is "counted"
+  std::map<std::size_t, os::CountFile> counts{};   ///< of SUTs with the clock "counted", by index
+  std::map<std::size_t, std::string> addresses{};  ///< for SUTs on boards instead, by index
 };
 
 /// The clock of the SUTs under a condition.
@@ -39,7 +41,9 @@ SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::T
 /// index, to the run.
 os::Environment environment_of(const std::string& uav, std::size_t index, const SutRun& run);
 
-/// For a user who starts the SUTs: the command line of each, with its environment.
-std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run);
+/// For a user who starts SUTs: the command line of each, with its environment. `all`: of every SUT,
+/// not only of those on computers whose SUTs are started by hand.
+std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run,
+                             bool all = true);
 
 }  // namespace tether::runner

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -17,19 +19,19 @@ namespace {
 
 /// The command of a SUT on the board. Files of the scenario in its parameters are copied there.
 board::BoardSut board_sut(board::Board& board, const scenario::Scenario& scenario,
-                          const scenario::UavSetup& uav, const SutRun& run,
-                          const std::filesystem::path& log) {
+                          std::size_t index, const SutRun& run, const std::filesystem::path& log) {
+  const scenario::UavSetup& uav = scenario.uavs[index];
   scenario::Sut sut = uav.sut;
   for (auto& [key, value] : sut.parameters)
     if (std::binary_search(scenario.files.begin(), scenario.files.end(),
                            std::filesystem::path(value)))
       value = board.copy(value);
-  SutCommand command = sut_command(sut, run.condition.target);
+  SutCommand command = sut_command(sut, for_uav(run.condition, index).target);
   return {.uav = uav.placement.name,
           .words = std::move(command.words),
           .program = command.program,
           .concurrent = sut.concurrent,
-          .environment = environment_of(uav.placement.name, 0, run),
+          .environment = environment_of(uav.placement.name, index, run),
           .log = log};
 }
 
@@ -61,28 +63,31 @@ bool repeats(const std::string& output, const std::string& reason) {
 SutProcesses::~SutProcesses() {
   if (suts_.empty()) return;
   suts_.clear();
-  if (!board_) os::end_orphans(kOrphanGrace);
+  if (has_local_) os::end_orphans(kOrphanGrace);
 }
 
 void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
-                         const std::filesystem::path& folder, board::Board* board) {
-  board_ = board;
-  if (!board) os::adopt_orphans();
-  for (const scenario::UavSetup& uav : scenario.uavs) {
+                         const std::filesystem::path& folder,
+                         const std::vector<board::Board*>& boards) {
+  for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
+    if (for_uav(run.condition, i).by_hand) continue;
+    const scenario::UavSetup& uav = scenario.uavs[i];
+    board::Board* const board = boards.empty() ? nullptr : boards[i];
+    if (!board && !std::exchange(has_local_, true)) os::adopt_orphans();
     const std::string& name = uav.placement.name;
     Sut sut{.uav = name,
             .log = folder / fmt::format("sut-{}.log", name),
             .files = scenario.uavs.size() > 1 ? folder / name : folder,
             .program = {},
-            .process = {}};
+            .process = {},
+            .board = board};
     if (board) {
-      const board::BoardSut there = board_sut(*board, scenario, uav, run, sut.log);
+      const board::BoardSut there = board_sut(*board, scenario, i, run, sut.log);
       sut.program = fmt::format("{} on {}", there.words[there.program],
                                 scenario::to_string(board->connection().address()));
       sut.process = board->start(there);
     } else {
-      sut.process =
-          std::make_unique<os::ChildProcess>(local_sut(uav, run, suts_.size(), sut.files, sut.log));
+      sut.process = std::make_unique<os::ChildProcess>(local_sut(uav, run, i, sut.files, sut.log));
       sut.program = sut.process->program();
     }
     suts_.push_back(std::move(sut));
@@ -109,16 +114,20 @@ std::string SutProcesses::post_mortem(const std::string& reason) {
 }
 
 std::optional<std::string> SutProcesses::lost() {
-  return board_ ? board_->lost() : std::nullopt;
+  for (const Sut& sut : suts_)
+    if (sut.board)
+      if (auto why = sut.board->lost()) return why;
+  return std::nullopt;
 }
 
 std::optional<std::string> SutProcesses::stopped() const {
-  if (board_) return std::nullopt;
-  for (const Sut& sut : suts_)
+  for (const Sut& sut : suts_) {
+    if (sut.board) continue;
     if (const auto pid = stopped_process(sut.process->pid()))
       return fmt::format(
           "process {} of the SUT of UAV \"{}\" was stopped (by a signal or a debugger)", *pid,
           sut.uav);
+  }
   return std::nullopt;
 }
 
@@ -137,10 +146,14 @@ std::vector<std::string> SutProcesses::await_exit() {
 
 std::vector<std::string> SutProcesses::bring_back() {
   std::vector<std::string> warnings;
-  if (!board_ || !board_->end_suts()) return warnings;
+  std::map<board::Board*, bool> has_ended;
   for (const Sut& sut : suts_) {
+    if (!sut.board) continue;
+    const auto [ended, is_first] = has_ended.try_emplace(sut.board, false);
+    if (is_first) ended->second = sut.board->end_suts();
+    if (!ended->second) continue;
     std::filesystem::create_directories(sut.files);
-    if (auto warning = board_->bring_back(sut.uav, sut.files)) warnings.push_back(*warning);
+    if (auto warning = sut.board->bring_back(sut.uav, sut.files)) warnings.push_back(*warning);
   }
   return warnings;
 }
@@ -149,7 +162,7 @@ std::string SutProcesses::describe_end(Sut& sut, const std::string& reason) cons
   const std::string last = last_line(sut.log);
   const os::ChildExit& exit = *sut.process->poll();
   using board::SutEnd;
-  const SutEnd end = board_ ? board_->end_of(exit, last) : SutEnd{{}, exit.description};
+  const SutEnd end = sut.board ? sut.board->end_of(exit, last) : SutEnd{{}, exit.description};
   const bool is_complete =
       last.empty() || repeats(last, reason) || end.cause == board::SutEndCause::kNotStarted;
   return fmt::format(

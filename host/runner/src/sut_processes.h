@@ -14,7 +14,7 @@
 
 namespace tether::runner {
 
-/// The processes of a scenario's SUTs, here or on a board. They end with the object, and so do all
+/// The processes of a scenario's SUTs, here or on boards. They end with the object, and so do all
 /// processes that local SUTs have started, also in sessions of their own. Not thread-safe.
 class SutProcesses {
  public:
@@ -23,17 +23,18 @@ class SutProcesses {
   SutProcesses(const SutProcesses&) = delete;
   SutProcesses& operator=(const SutProcesses&) = delete;
 
-  /// Starts all of them, here or on `board`, which must outlive them. The output of each goes to
+  /// Starts all of them but those that the user starts, here or on their board, which must outlive
+  /// them; `boards` has one for each UAV, or null. Empty: all run here. The output of each goes to
   /// `folder`/sut-UAV.log, and its TETHER_OUT is `folder`, or `folder`/UAV if there are several.
   /// The scenario's files that parameters name are copied to the board. @throws Error(kSetup).
   void start(const scenario::Scenario& scenario, const SutRun& run,
-             const std::filesystem::path& folder, board::Board* board = nullptr);
+             const std::filesystem::path& folder, const std::vector<board::Board*>& boards = {});
 
   /// How the first SUT that has ended did so; none while all run.
   std::optional<std::string> early_end();
   /// Which local SUT's process was stopped by a signal or a debugger; none if none was.
   std::optional<std::string> stopped() const;
-  /// Why the board is out of reach; none if it is not, or there is no board.
+  /// Why a board is out of reach; none if none is.
   std::optional<std::string> lost();
   /// Whether a SUT has ended with that address in the last line of its output.
   bool has_failed_to_connect(const std::string& address);
@@ -54,10 +55,11 @@ class SutProcesses {
     std::filesystem::path files;  // its TETHER_OUT on this machine
     std::string program;
     std::unique_ptr<os::ChildProcess> process;
+    board::Board* board = nullptr;  // null: this machine
   };
   std::string describe_end(Sut& sut, const std::string& reason = "") const;
 
-  board::Board* board_ = nullptr;
+  bool has_local_ = false;
   std::vector<Sut> suts_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <limits>
+#include <map>
 #include <memory>
 #include <new>
 #include <vector>
@@ -32,10 +33,19 @@ namespace {
 
 using coordinator::RunEnd;
 
-/// Connects to the board of the condition and reserves it; none if the SUTs run here.
-std::unique_ptr<board::Board> hold_board(const TrialSpec& spec, const std::stop_token& stop) {
-  if (spec.sut_place() != SutPlace::kBoard) return nullptr;
-  return std::make_unique<board::Board>(*spec.condition.target->ssh, stop);
+/// Connects to the boards of the condition and reserves them.
+Boards hold_boards(const TrialSpec& spec, const std::stop_token& stop) {
+  Boards boards{.by_uav = std::vector<board::Board*>(spec.scenario.uavs.size()), .all = {}};
+  std::map<std::string, board::Board*> at;
+  for (std::size_t uav = 0; uav < boards.by_uav.size(); ++uav) {
+    if (spec.sut_place(uav) != SutPlace::kBoard) continue;
+    const scenario::SshAddress address = *for_uav(spec.condition, uav).target->ssh;
+    board::Board*& board = at[scenario::to_string(address)];
+    if (!board)
+      board = boards.all.emplace_back(std::make_unique<board::Board>(address, stop)).get();
+    boards.by_uav[uav] = board;
+  }
+  return boards;
 }
 
 std::vector<campaign::TaskEnd> task_ends(const coordinator::RunReport& report) {
@@ -134,7 +144,7 @@ SimulatorSetup simulator_setup(const TrialSpec& spec, const sim::World& world,
 campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::World world,
                           const TrialInputs& inputs, const TrialObserver& observer,
                           WarningLog& warnings, const std::stop_token& stop) {
-  const auto board = hold_board(spec, stop);
+  const Boards boards = hold_boards(spec, stop);
   const SimulatorSetup setup = simulator_setup(spec, world, observer, warnings, stop);
   const auto simulator = back_end.start(std::move(world), setup);
   for (std::size_t uav = 0; uav < spec.scenario.uavs.size(); ++uav)
@@ -147,8 +157,10 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
   warnings.pass_on();
   try {
     const Conducted conducted =
-        TrialRun(spec, inputs, *simulator, board.get(), observer, stop).conduct();
+        TrialRun(spec, inputs, *simulator, boards, observer, stop).conduct();
     auto result = evaluate(spec, conducted);
+    for (const MachineReadings& machine : conducted.others)
+      campaign::add_target(result, machine.info, machine.after);
     result.this_run.notes = conducted.notes;
     const auto& notes = inputs.replayed.warnings;
     result.this_run.notes.insert(result.this_run.notes.end(), notes.begin(), notes.end());
@@ -186,9 +198,16 @@ std::string utc_now() {
 
 }  // namespace
 
-SutPlace TrialSpec::sut_place() const {
-  if (waits_for_sut) return SutPlace::kUnknown;
-  return condition.target && condition.target->ssh ? SutPlace::kBoard : SutPlace::kThisMachine;
+SutPlace TrialSpec::sut_place(std::size_t uav) const {
+  const scenario::Condition own = for_uav(condition, uav);
+  if (waits_for_sut || own.by_hand) return SutPlace::kUnknown;
+  return own.target && own.target->ssh ? SutPlace::kBoard : SutPlace::kThisMachine;
+}
+
+bool TrialSpec::has_sut_at(SutPlace place) const {
+  for (std::size_t uav = 0; uav < scenario.uavs.size(); ++uav)
+    if (sut_place(uav) == place) return true;
+  return false;
 }
 
 campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_back_end,
@@ -206,8 +225,7 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
       scenario::resolve_sensors(spec.scenario, spec.condition, world, warnings.sink()),
       replayed_time(spec)};
   world.step = spec.scenario.step;
-  if (spec.sut_place() == SutPlace::kThisMachine)
-    require_sut_programs(spec.scenario, spec.condition);
+  if (spec.has_sut_at(SutPlace::kThisMachine)) require_sut_programs(spec.scenario, spec.condition);
   TrialFolder folder(spec.folder, spec.earlier);
 
   const std::string started_at = utc_now();

@@ -1,5 +1,6 @@
 #include "trial_run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <utility>
@@ -49,29 +50,67 @@ int known_cores() {
   return cores <= sync::kMostCores ? cores : 0;
 }
 
-/// The state of the SUTs' machine; empty if the user starts the SUTs.
-record::Readings read_target(const TrialSpec& spec, board::Board* board) {
-  if (spec.waits_for_sut) return {};
+/// The state of a board, or of this machine.
+record::Readings read_target(board::Board* board) {
   return board ? board::probe_board(board->connection(), board::ProbeDepth::kBrief)
                : board::probe_here(board::ProbeDepth::kBrief);
 }
 
-std::optional<record::TargetInfo> target_info(const TrialSpec& spec, board::Board* board) {
-  if (spec.waits_for_sut) return std::nullopt;
-  const auto& target = spec.condition.target;
-  return record::TargetInfo{
-      .name = target ? target->name : "host",
-      .address = board ? scenario::to_string(board->connection().address()) : "",
-      .before = read_target(spec, board)};
+/// The machine of that UAV's SUT.
+record::TargetInfo target_info(const TrialSpec& spec, board::Board* board, std::size_t uav) {
+  const scenario::Condition own = for_uav(spec.condition, uav);
+  return {.name = !own.computer.empty() ? own.computer
+                  : own.target          ? own.target->name
+                                        : "host",
+          .address = board ? scenario::to_string(board->connection().address()) : "",
+          .before = read_target(board)};
 }
 
-std::vector<os::CountFile> count_files(const TrialSpec& spec) {
-  std::vector<os::CountFile> counts;
-  const auto& target = spec.condition.target;
-  if (target && target->emulator)
-    for (std::size_t i = 0; i < spec.scenario.uavs.size(); ++i)
-      counts.emplace_back(*target->emulator);
+/// The UAVs with whose SUTs the machines of a run are first used. Empty: the user starts all SUTs.
+std::vector<std::size_t> first_on_machines(const TrialSpec& spec, const Boards& boards) {
+  std::vector<std::size_t> uavs;
+  for (std::size_t uav = 0; uav < boards.by_uav.size(); ++uav) {
+    const bool is_known = std::ranges::any_of(
+        uavs, [&](std::size_t other) { return boards.by_uav[other] == boards.by_uav[uav]; });
+    if (!is_known && spec.sut_place(uav) != SutPlace::kUnknown) uavs.push_back(uav);
+  }
+  return uavs;
+}
+
+std::optional<record::TargetInfo> first_target(const TrialSpec& spec, const Boards& boards) {
+  const auto machines = first_on_machines(spec, boards);
+  if (machines.empty()) return std::nullopt;
+  return target_info(spec, boards.by_uav[machines.front()], machines.front());
+}
+
+std::vector<MachineReadings> other_targets(const TrialSpec& spec, const Boards& boards) {
+  std::vector<MachineReadings> others;
+  for (const std::size_t uav : first_on_machines(spec, boards))
+    others.push_back(
+        {uav == 0 ? record::TargetInfo{} : target_info(spec, boards.by_uav[uav], uav), {}});
+  if (!others.empty()) others.erase(others.begin());
+  return others;
+}
+
+std::map<std::size_t, os::CountFile> count_files(const TrialSpec& spec) {
+  std::map<std::size_t, os::CountFile> counts;
+  for (std::size_t i = 0; i < spec.scenario.uavs.size(); ++i)
+    if (const auto target = for_uav(spec.condition, i).target; target && target->emulator)
+      counts.try_emplace(i, *target->emulator);
   return counts;
+}
+
+/// The computers that several SUTs share.
+void share_boards(const scenario::Condition& condition, coordinator::RunOptions& options) {
+  for (std::size_t i = 0; i < condition.computers.size(); ++i) {
+    if (!is_shared(condition, i)) continue;
+    for (std::size_t uav = 0; uav < options.uavs.size(); ++uav) {
+      if (condition.seats[uav].computer != i) continue;
+      options.uavs[uav].board = options.boards.size();
+      options.uavs[uav].pinned_core = condition.seats[uav].pinned_core;
+    }
+    options.boards.push_back({condition.computers[i].name, condition.computers[i].cores});
+  }
 }
 
 coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& inputs,
@@ -81,25 +120,27 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
   options.policy = spec.condition.policy == scenario::Policy::kFreeRunning
                        ? sync::SyncPolicy::kFreeRunning
                        : sync::SyncPolicy::kConservativeBarrier;
-  const coordinator::ClockSetting clock = clock_of(spec.condition);
   options.uavs.resize(inputs.timings.size());
   for (std::size_t i = 0; i < options.uavs.size(); ++i) {
     coordinator::UavOptions& uav = options.uavs[i];
     uav.timings = inputs.timings[i];
     uav.command_latency = spec.scenario.uavs[i].command_latency;
-    uav.clock = clock;
-    uav.cores = spec.sut_place() == SutPlace::kThisMachine ? known_cores() : 0;
+    const scenario::Condition own = for_uav(spec.condition, i);
+    uav.clock = clock_of(own);
+    uav.computer = own.computer;
+    uav.cores = spec.sut_place(i) == SutPlace::kThisMachine ? known_cores() : 0;
     if (inputs.replayed.replays.empty()) continue;
     uav.replay = inputs.replayed.replays[i];
     uav.replayed_from = inputs.replayed.from;
   }
+  share_boards(spec.condition, options);
   options.token = token;
   options.seed = spec.seed;
   options.real_time_factor = spec.condition.real_time_factor;
   options.time_limit = spec.scenario.time_limit;
   options.hang_limit = spec.scenario.hang_limit;
-  options.connect_limit =
-      spec.waits_for_sut ? Duration(std::chrono::hours(24)) : spec.scenario.connect_limit;
+  options.connect_limit = spec.has_sut_at(SutPlace::kUnknown) ? Duration(std::chrono::hours(24))
+                                                              : spec.scenario.connect_limit;
   options.ground_truth_period = spec.scenario.ground_truth_period;
   options.record_images = spec.scenario.record_images;
   options.image_period = spec.scenario.image_period;
@@ -124,61 +165,83 @@ void warm_up_cameras(sim::Simulator& simulator) {
   }
 }
 
-/// Where to listen. A board without a tunnel must be able to reach the address.
-link::Address listen_address(const TrialSpec& spec, const board::Board* board) {
+/// Where to listen. Boards without a tunnel must be able to reach the address.
+link::Address listen_address(const TrialSpec& spec, const Boards& boards) {
   if (spec.listen) return *spec.listen;
-  return {board && !spec.uses_tunnel ? board->host_address() : "127.0.0.1", 0};
+  if (boards.all.empty() || spec.uses_tunnel) return {"127.0.0.1", 0};
+  const std::string seen = boards.all.front()->host_address();
+  const bool is_one = std::ranges::all_of(
+      boards.all, [&](const auto& board) { return board->host_address() == seen; });
+  return {is_one ? seen : "0.0.0.0", 0};
 }
 
-std::unique_ptr<link::Server> listen(const TrialSpec& spec, const board::Board* board) try {
-  return link::listen_tcp(listen_address(spec, board), kHelloTimeout);
+std::unique_ptr<link::Server> listen(const TrialSpec& spec, const Boards& boards) try {
+  return link::listen_tcp(listen_address(spec, boards), kHelloTimeout);
 } catch (const Error& e) {
-  if (!board || spec.listen || spec.uses_tunnel) throw;
+  if (boards.all.empty() || spec.listen || spec.uses_tunnel) throw;
+  const std::string seen = boards.all.front()->host_address();
   throw Error(e.code(),
               fmt::format("{}; the board sees this machine at {}, which is not an address "
                           "of this machine. Use --tunnel, or --listen ADDRESS:PORT",
-                          e.what(), board->host_address()))
-      .about(board->host_address());
+                          e.what(), seen))
+      .about(seen);
 }
 
-/// The server's address for the SUTs.
+/// The server's address for the SUTs on that board, or here.
 std::string sut_address(const TrialSpec& spec, board::Board* board, const link::Server& server) {
   link::Address address = server.address();
-  if (!board) return link::to_string(address);
+  const bool is_any = address.host == "0.0.0.0" || address.host == "::";
+  if (!board) {
+    if (is_any && spec.has_sut_at(SutPlace::kBoard)) address.host = "127.0.0.1";
+    return link::to_string(address);
+  }
   if (spec.uses_tunnel)
     return fmt::format("127.0.0.1:{}", board->connection().forward_back(address.port));
-  const bool is_any = address.host == "0.0.0.0" || address.host == "::";
   if (is_any) address.host = board->host_address();
   return link::to_string(address);
+}
+
+/// Each board's, by UAV.
+std::map<std::size_t, std::string> addresses_of(const TrialSpec& spec, const Boards& boards,
+                                                const link::Server& server) {
+  std::map<std::size_t, std::string> addresses;
+  for (const auto& board : boards.all) {
+    const std::string address = sut_address(spec, board.get(), server);
+    for (std::size_t uav = 0; uav < boards.by_uav.size(); ++uav)
+      if (boards.by_uav[uav] == board.get()) addresses[uav] = address;
+  }
+  return addresses;
 }
 
 }  // namespace
 
 TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimulator& simulator,
-                   board::Board* board, const TrialObserver& observer, std::stop_token stop)
+                   const Boards& boards, const TrialObserver& observer, std::stop_token stop)
     : spec_(spec),
       simulator_(simulator),
-      board_(board),
+      boards_(boards),
       observer_(observer),
       stop_(std::move(stop)),
       token_(token_of_run()),
-      target_(target_info(spec, board)),
+      target_(first_target(spec, boards)),
       recorder_(record::make_mcap_recorder(spec.folder / kRecordFile)),
       coordinator_(simulator.get(), *recorder_, run_options(spec, inputs, token_, target_),
                    host_now),
-      server_(listen(spec, board)),
-      sut_run_{sut_address(spec, board, *server_), token_, spec.condition, count_files(spec)},
-      refusals_(observer.on_refused) {}
+      server_(listen(spec, boards)),
+      sut_run_{sut_address(spec, nullptr, *server_), token_, spec.condition, count_files(spec),
+               addresses_of(spec, boards, *server_)},
+      refusals_(observer.on_refused),
+      others_(other_targets(spec, boards)) {}
 
 Conducted TrialRun::conduct() {
-  if (board_ || !spec_.waits_for_sut) suts_.start(spec_.scenario, sut_run_, spec_.folder, board_);
+  if (!spec_.waits_for_sut) suts_.start(spec_.scenario, sut_run_, spec_.folder, boards_.by_uav);
   warm_up_cameras(simulator_.get());
-  if (spec_.waits_for_sut && observer_.on_listening)
-    observer_.on_listening(sut_instructions(spec_.scenario, sut_run_));
+  if (spec_.has_sut_at(SutPlace::kUnknown) && observer_.on_listening)
+    observer_.on_listening(sut_instructions(spec_.scenario, sut_run_, spec_.waits_for_sut));
   TrialEnd end = fly();
   end.report.reason += explanation(end);
   end_suts(end);
-  return {std::move(end.report), std::move(notes_), target_, target_after_};
+  return {std::move(end.report), std::move(notes_), target_, target_after_, std::move(others_)};
 }
 
 TrialEnd TrialRun::fly() {
@@ -195,13 +258,24 @@ TrialEnd TrialRun::fly() {
   hooks.on_refused = [&](const std::string& address, const std::string& reason) {
     refusals_.add(address, reason, !spec_.waits_for_sut && !have_all_joined_);
   };
-  hooks.read_target = [&] { return target_after_ = read_target(spec_, board_); };
+  hooks.read_target = [&] { return read_targets(); };
   if (!sut_run_.counts.empty())
-    hooks.computed_by = [&](std::size_t uav) { return sut_run_.counts[uav].computed(); };
+    hooks.computed_by = [&](std::size_t uav) {
+      const auto counts = sut_run_.counts.find(uav);
+      return counts == sut_run_.counts.end() ? Duration(0) : counts->second.computed();
+    };
   end.report = coordinator_.run(*server_, hooks);
   refusals_.close();
   notes_ = stalls.notes(host_clocks());
   return end;
+}
+
+/// The first one is for the record.
+record::Readings TrialRun::read_targets() {
+  const auto machines = first_on_machines(spec_, boards_);
+  for (std::size_t i = 0; i < machines.size(); ++i)
+    (i == 0 ? target_after_ : others_[i - 1].after) = read_target(boards_.by_uav[machines[i]]);
+  return target_after_;
 }
 
 std::optional<EarlyStop> TrialRun::early_stop() {
@@ -222,7 +296,7 @@ void TrialRun::watch(const coordinator::RunStatus& status, StallWatch& stalls) {
   if (observer_.on_status) observer_.on_status(status);
   const std::string stall = stalls.check(status, host_clocks());
   // on_listening has already asked the user to start the SUTs.
-  const bool is_known = spec_.waits_for_sut && status.joined == 0;
+  const bool is_known = spec_.has_sut_at(SutPlace::kUnknown) && status.joined == 0;
   if (!stall.empty() && !is_known && observer_.on_blocked) observer_.on_blocked(stall);
 }
 
@@ -238,14 +312,15 @@ std::string TrialRun::explanation(const TrialEnd& end) {
 
 /// What to try if a SUT on a board could not reach this machine.
 std::string TrialRun::reach_hint(const TrialEnd& end) {
-  if (!board_ || spec_.uses_tunnel || end.report.began) return "";
+  if (boards_.all.empty() || spec_.uses_tunnel || end.report.began) return "";
+  const std::string& address = sut_run_.addresses.begin()->second;
   const bool is_unreached = lacks_sut(end) || (end.report.end == RunEnd::kSutLost &&
-                                               suts_.has_failed_to_connect(sut_run_.address));
+                                               suts_.has_failed_to_connect(address));
   if (!is_unreached) return "";
   return fmt::format(
       "; if the board cannot reach {} (a firewall on this machine?), open a port and pass it with "
       "--listen, or use --tunnel",
-      sut_run_.address);
+      address);
 }
 
 void TrialRun::end_suts(const TrialEnd& end) {

@@ -30,6 +30,18 @@ struct TrialInputs {
   ReplayedTime replayed;
 };
 
+/// The boards of a run.
+struct Boards {
+  std::vector<board::Board*> by_uav;               ///< null: its SUT is not on a board
+  std::vector<std::unique_ptr<board::Board>> all;  ///< each once
+};
+
+/// One of the machines on which the SUTs run, before and after the run.
+struct MachineReadings {
+  record::TargetInfo info;
+  record::Readings after;
+};
+
 /// A run's report, and notes about it.
 struct Conducted {
   coordinator::RunReport report;
@@ -37,16 +49,16 @@ struct Conducted {
   // Not in the record of a repeatable run.
   std::optional<record::TargetInfo> target;  ///< none if the user starts the SUTs
   record::Readings target_after;
+  std::vector<MachineReadings> others;  ///< further machines of a mixed fleet
 };
 
 /// One run of the coordinator with its SUTs, in phases: start the SUTs, fly, find the cause of a
 /// failure, end the SUTs. The destructor closes the record. Not thread-safe.
 class TrialRun {
  public:
-  /// Opens the record and the server. The arguments must outlive the object; `board` is null if the
-  /// SUTs run here. @throws Error(kSetup).
+  /// Opens the record and the server. The arguments must outlive the object; @throws Error(kSetup).
   TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimulator& simulator,
-           board::Board* board, const TrialObserver& observer, std::stop_token stop);
+           const Boards& boards, const TrialObserver& observer, std::stop_token stop);
 
   /// Call it once. @throws Error(kSetup) if a SUT cannot be started, or the simulator is lost
   /// before the run.
@@ -54,6 +66,7 @@ class TrialRun {
 
  private:
   TrialEnd fly();
+  record::Readings read_targets();
   std::optional<EarlyStop> early_stop();
   void watch(const coordinator::RunStatus& status, StallWatch& stalls);
   std::string explanation(const TrialEnd& end);
@@ -62,7 +75,7 @@ class TrialRun {
 
   const TrialSpec& spec_;
   RunningSimulator& simulator_;
-  board::Board* board_;
+  const Boards& boards_;
   const TrialObserver& observer_;
   std::stop_token stop_;
   std::string token_;
@@ -73,6 +86,7 @@ class TrialRun {
   SutRun sut_run_;
   SutProcesses suts_;
   Refusals refusals_;
+  std::vector<MachineReadings> others_;
   bool have_all_joined_ = false;
   record::Readings target_after_;
   std::vector<std::string> notes_;

@@ -121,9 +121,9 @@ TEST(LocalSut, NeedsThePluginForACountedTarget) {
 TEST(CpusFor, TakesTheLastCpusAndDifferentOnesForEachSut) {
   const std::vector<int> allowed{0, 1, 4, 5, 9};
   EXPECT_THAT(cpus_for(allowed, 2, 0), ElementsAre(9, 5));
-  EXPECT_THAT(cpus_for(allowed, 2, 1), ElementsAre(4, 1));
+  EXPECT_THAT(cpus_for(allowed, 2, 2), ElementsAre(4, 1));
   EXPECT_THAT(cpus_for(allowed, 5, 0), ElementsAre(9, 5, 4, 1, 0));
-  EXPECT_THAT(cpus_for(allowed, 2, 2), IsEmpty());
+  EXPECT_THAT(cpus_for(allowed, 2, 4), IsEmpty());
   EXPECT_THAT(cpus_for(allowed, 0, 3), IsEmpty());
 }
 

@@ -1,3 +1,4 @@
+#include "read_computers.h"
 #include "read_replay.h"
 #include "read_sensor_profile.h"
 #include "read_sut.h"
@@ -76,6 +77,7 @@ UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_su
     uav.energy = load_energy(table.existing_file("energy"));
     scenario.files.push_back(uav.energy->file);
   }
+  uav.seat = read_seat(table, scenario);
   uav.sut = read_sut(table, default_sut, scenario);
   if (uav.sut.mission)
     mission::require_possible(*uav.sut.mission, {.anchors = scenario.anchors,
@@ -87,9 +89,9 @@ UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_su
 void read_uavs(const toml::Table& root, Scenario& scenario) {
   const std::optional<Sut> default_sut = read_default_sut(root, scenario);
   std::set<std::string> names;
-  for (const toml::Table& table :
-       root.tables("uav", {"name", "model", "position_m", "yaw_deg", "yaw_spread_deg",
-                           "command_latency_ms", "profile", "sensors", "energy", "sut"})) {
+  for (const toml::Table& table : root.tables(
+           "uav", {"name", "model", "position_m", "yaw_deg", "yaw_spread_deg", "command_latency_ms",
+                   "profile", "sensors", "energy", "sut", "target", "pinned_core"})) {
     scenario.uavs.push_back(read_uav(table, default_sut, scenario));
     const std::string& name = scenario.uavs.back().placement.name;
     if (!names.insert(name).second) {
@@ -158,8 +160,15 @@ Condition read_condition(const toml::Table& table, Scenario& scenario) {
   }
   condition.description = table.text_or("description", "");
   condition.policy = static_cast<Policy>(table.choice("policy", kPolicies));
+  const bool has_own = table.has("target") || table.has("clock");
+  if (table.has("shared") && (has_own || scenario.computers.empty()))
+    table.fail("shared",
+               "is for conditions under which the UAVs run on the tables [[target]], without "
+               "'clock' and 'target'.");
   if (table.has("target")) {
     read_target(table, condition, scenario);
+  } else if (!has_own && !scenario.computers.empty()) {
+    read_seats(table, condition, scenario);
   } else {
     read_clock(table, condition);
   }
@@ -178,10 +187,10 @@ Condition read_condition(const toml::Table& table, Scenario& scenario) {
 
 void read_conditions(const toml::Table& root, Scenario& scenario) {
   std::map<std::string, std::string> slugs;
-  for (const toml::Table& table :
-       root.tables("condition", {"name", "description", "policy", "clock", "cpu_factor",
-                                 "computing_ms", "real_time_factor", "profile", "target",
-                                 "simulator", "timing", "mode", "counted", "unknown_stages"})) {
+  for (const toml::Table& table : root.tables(
+           "condition", {"name", "description", "policy", "clock", "cpu_factor", "computing_ms",
+                         "real_time_factor", "profile", "target", "simulator", "timing", "mode",
+                         "counted", "unknown_stages", "shared"})) {
     scenario.conditions.push_back(read_condition(table, scenario));
     if (auto profile = read_profile(table, scenario)) {
       scenario.conditions.back().profiles.push_back(std::move(*profile));
@@ -359,15 +368,17 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
   toml::Document document = toml::Document::load(scenario.file);
   for (const Setting& setting : settings) apply(setting, document, scenario.file);
   scenario.settings = settings;
-  const toml::Table root = document.root(
-      {"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s", "connect_limit_s",
-       "max_contact_speed_m_s", "anchors", "uav", "sut", "condition", "metric", "record"});
+  const toml::Table root =
+      document.root({"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s",
+                     "connect_limit_s", "max_contact_speed_m_s", "anchors", "target", "uav", "sut",
+                     "condition", "metric", "record"});
   scenario.name = root.identifier("name") + name_suffix(settings);
   scenario.description = root.text_or("description", "");
   scenario.world = root.existing_file("world");
   scenario.files = {scenario.file, scenario.world};
   read_limits(root, scenario);
   read_anchors(root, scenario);
+  read_computers(root, scenario);
   read_uavs(root, scenario);
   read_conditions(root, scenario);
   read_metrics(root, scenario);

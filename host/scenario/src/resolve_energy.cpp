@@ -52,7 +52,8 @@ void resolve_energy(const Scenario& scenario, const Condition& condition, sim::W
                          uav.name, scenario.uavs[i].placement.model.string()));
       model.battery = *uav.battery;
     }
-    if (condition.target && condition.target->power) model.computer = *condition.target->power;
+    if (const auto target = for_uav(condition, i).target; target && target->power)
+      model.computer = *target->power;
     require_possible(energy, model, uav, world.gravity_m_s2);
     if (scenario.uavs[i].sut.concurrent)
       warn({Consequence::kMissing, energy.battery_at, "computing",

@@ -21,7 +21,7 @@ Setting parse_setting(std::string_view text, const std::filesystem::path& folder
 }
 
 void apply(const Setting& setting, toml::Document& document, const std::filesystem::path& file) {
-  for (const char* from : {"", "condition.", "uav."})
+  for (const char* from : {"", "condition.", "uav.", "target."})
     if (document.replace(from + setting.key, setting.value) > 0) return;
   throw Error(ErrorCode::kUsage, {file.string()},
               fmt::format("has no value '{}' to replace. Give the path of a key that the file has, "

@@ -21,22 +21,31 @@ std::string why_not_slower(const Condition& condition) {
   return "";
 }
 
+/// Of a Condition or a Computer.
+void stretch(auto& computer, double slowdown) {
+  if (computer.clock == Clock::kScripted) {
+    const double computing_ns = static_cast<double>(computer.computing.count()) * slowdown;
+    computer.computing = Duration(std::llround(computing_ns));
+  } else if (computer.clock == Clock::kCounted) {
+    for (std::uint64_t& units : computer.target->emulator->cost_units)
+      units = static_cast<std::uint64_t>(std::llround(static_cast<double>(units) * slowdown));
+  } else if (computer.clock != Clock::kReplayed) {  // by timing::ReplaySetting
+    computer.cpu_factor *= slowdown;
+  }
+}
+
 }  // namespace
 
 void slow_down(Condition& condition, double slowdown) {
-  if (const std::string why = why_not_slower(condition); !why.empty()) {
-    throw Error(ErrorCode::kUsage, fmt::format("condition \"{}\": {}", condition.name, why))
-        .about(condition.name);
-  }
-  if (condition.clock == Clock::kScripted) {
-    const double computing_ns = static_cast<double>(condition.computing.count()) * slowdown;
-    condition.computing = Duration(std::llround(computing_ns));
-  } else if (condition.clock == Clock::kCounted) {
-    for (std::uint64_t& units : condition.target->emulator->cost_units)
-      units = static_cast<std::uint64_t>(std::llround(static_cast<double>(units) * slowdown));
-  } else if (condition.clock != Clock::kReplayed) {  // by timing::ReplaySetting
-    condition.cpu_factor *= slowdown;
-  }
+  const auto require = [&](const Condition& own) {
+    if (const std::string why = why_not_slower(own); !why.empty())
+      throw Error(ErrorCode::kUsage, fmt::format("condition \"{}\": {}", condition.name, why))
+          .about(condition.name);
+  };
+  require(condition);
+  for (std::size_t uav = 0; uav < condition.seats.size(); ++uav) require(for_uav(condition, uav));
+  stretch(condition, slowdown);
+  for (Computer& computer : condition.computers) stretch(computer, slowdown);
   condition.slowed_from = condition.name;
   condition.slowdown = slowdown;
   condition.name = fmt::format("{}, {} x slower", condition.slowed_from, slowdown);

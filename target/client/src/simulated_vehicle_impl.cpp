@@ -131,20 +131,24 @@ Status SimulatedVehicle::sleep_for(Duration duration) {
   if (const Status good = usable(); !good) return good;
   const std::lock_guard lock(calls_);
   if (const Status good = usable(); !good) return good;  // others were first
-  return sleep_alone(add_within_bounds(begin_call(link::Sleep{}), duration));
+  return sleep_alone(add_within_bounds(begin_call(link::Sleep{}), duration), true);
 }
 
 Status SimulatedVehicle::sleep_until(ExecTime until) {
   if (const Status good = usable(); !good) return good;
   const std::lock_guard lock(calls_);
   if (const Status good = usable(); !good) return good;  // others were first
-  return sleep_alone(until);
+  return sleep_alone(until, false);
 }
 
-Status SimulatedVehicle::sleep_alone(ExecTime until) {
-  if (free_running_ == nullptr) return status_of(interact_alone(make_sleep(until)));
-  free_running_->sleep_until(until);
-  return ok_status();
+Status SimulatedVehicle::sleep_alone(ExecTime until, bool is_relative) {
+  if (free_running_ != nullptr) {
+    free_running_->sleep_until(until);
+    return ok_status();
+  }
+  link::Sleep sleep = make_sleep(until);
+  sleep.is_relative = is_relative;
+  return status_of(interact_alone(sleep));
 }
 
 Status SimulatedVehicle::annotate(std::string_view topic, std::string_view json) {

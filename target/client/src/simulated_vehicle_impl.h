@@ -45,7 +45,7 @@ class SimulatedVehicle final : public InteractingVehicle {
   template <class Change>
   Status change_stage(Change change);
   Result<link::Reply> ask(const link::Request& request);
-  Status sleep_alone(ExecTime until);
+  Status sleep_alone(ExecTime until, bool is_relative);
   /// Ends the run if a part of the SUT's computing is not measured.
   Status complete();
   /// @}

@@ -119,6 +119,41 @@ TEST_F(OnABoard, FilesGoThereAndComeBackAndATunnelTakesTheLink) {
   EXPECT_THAT(read_text(out_ / "sub dir/b"), HasSubstr("127.0.0.1:"));
 }
 
+// A board, a counted program, and one by CPU time, on one barrier, each with its own clock.
+TEST_F(OnABoard, AMixedFleetFliesWithTheClockAndTheReadingsOfEach) {
+  write_text(folder_ / "pi.toml", "name = \"pi\"\naddress = \"" + board_.address() + "\"\n");
+  const std::string targets =
+      "[[target]]\nname = \"pi\"\nfile = \"pi.toml\"\n"
+      "[[target]]\nname = \"counted\"\nfile = \"" TETHER_SOURCE_DIR
+      "/data/profiles/targets/counted_host.toml\"\n"
+      "[[target]]\nname = \"virtual\"\nclock = \"cpu\"\ncpu_factor = 3\n";
+  std::string uavs;
+  int x_m = 5;
+  for (const char* target : {"counted", "virtual"}) {
+    uavs += "[[uav]]\nname = \"" + std::string(target) +
+            "1\"\nmodel = \"" TETHER_SOURCE_DIR
+            "/data/models/hummingbird/model.sdf\"\nposition_m = [" +
+            std::to_string(x_m) + ", 0, 1]\ntarget = \"" + target + "\"\n[uav.sut]\ncommand = [\"" +
+            bad_sut_program() + "\", \"good\"]\n\n";
+    x_m += 5;
+  }
+  expect_good(
+      fly("good", "bad_sut",
+          {{"[[uav]]\nname = \"uav1\"\n", targets + "[[uav]]\nname = \"uav1\"\ntarget = \"pi\"\n"},
+           {"[sut]\n", uavs + "[sut]\n"},
+           {"clock = \"cpu\"\n\n", "\n"},
+           {"kind = \"time_required\"", "kind = \"time_required\"\nuav = \"uav1\""}}));
+  const auto suts = result()["suts"];
+  ASSERT_EQ(suts.size(), 3u);
+  EXPECT_EQ(suts[0]["clock"], "wall");
+  EXPECT_EQ(suts[1]["clock"], "counted");
+  EXPECT_EQ(suts[2]["clock"], "cpu");
+  EXPECT_EQ(result()["this_run"]["target"]["name"], "pi");
+  EXPECT_EQ(result()["this_run"]["target"]["address"], board_.address());
+  EXPECT_TRUE(result()["this_run"]["more_targets"][0]["before"].contains("load_average"));
+  EXPECT_EQ(audit_code(out_), 0);
+}
+
 // ---- What keeps a run from beginning
 
 TEST_F(OnABoard, AMissingProgramSupervisorOrLauncherIsNamed) {

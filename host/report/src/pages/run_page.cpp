@@ -2,6 +2,7 @@
 #include "pages/html.h"
 #include "pages/page_figures.h"
 #include "pages/verdict_html.h"
+#include "plots/board_lanes.h"
 #include "plots/mission_timeline.h"
 #include "plots/svg.h"
 #include "tables/report_format.h"
@@ -103,12 +104,24 @@ std::string mission_part(const campaign::TrialResult& trial) {
   return html + to_html(table);
 }
 
+std::string boards_part(const record::Record& record) {
+  std::string html;
+  for (const record::BoardInfo& board : record.header.boards)
+    if (const std::string drawing = board_lanes(record, board); !drawing.empty())
+      html += figure(drawing,
+                     fmt::format("Cores of \"{}\": which SUT computed when, and with which share. "
+                                 "While more compute than there are cores, each has less of one.",
+                                 board.name),
+                     "plot");
+  return html.empty() ? "" : element("h2", "Shared boards") + html;
+}
+
 std::string record_part(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "record.mcap";
   try {
     const record::Record record = record::read_record(file, {.images = true});
     FigureMaker figures(1);
-    std::string html = contacts_part(record) + plots_part(figures, record);
+    std::string html = contacts_part(record) + boards_part(record) + plots_part(figures, record);
     const std::string frames = figures.frames(record);
     if (!frames.empty()) html += element("h2", "Camera images") + frames;
     if (const std::string damage = record::describe_damage(record); !damage.empty())

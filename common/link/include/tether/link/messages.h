@@ -92,6 +92,9 @@ struct SetVelocity {
 /// Wait until ET `until` (in free running the client sleeps itself and does not send this).
 struct Sleep {
   ExecTime until;
+  /// The sleep ends as long after the request as `until` is after the request's stamp: on a board
+  /// that several programs share, the request is later than its stamp.
+  bool is_relative = false;
 };
 /// The SUT has finished. The reply confirms that this is in the record.
 struct Finish {

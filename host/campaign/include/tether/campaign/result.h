@@ -144,11 +144,12 @@ struct ThisRun {
   std::string started_at;  ///< ISO 8601, UTC
   std::string machine;
   Duration wall{0};
-  Duration largest_lag{0};               ///< depends on how far the simulator had advanced
-  int attempts = 1;                      ///< more: the machine failed in the earlier ones
-  std::string first_failure;             ///< the reason of the first one
-  std::optional<TargetReport> target{};  ///< none if it was not read
-  std::vector<std::string> notes{};      ///< unintended stalls of the run, one line each
+  Duration largest_lag{0};                   ///< depends on how far the simulator had advanced
+  int attempts = 1;                          ///< more: the machine failed in the earlier ones
+  std::string first_failure;                 ///< the reason of the first one
+  std::optional<TargetReport> target{};      ///< none if it was not read
+  std::vector<TargetReport> more_targets{};  ///< further machines of a mixed fleet
+  std::vector<std::string> notes{};          ///< unintended stalls of the run, one line each
   std::vector<std::string> sut_files{};  ///< written by SUTs; paths in the trial's folder, sorted
   std::optional<SimulatorFigures> simulator{};  ///< none: not measured
   std::string node{};  ///< the machine whose worker flew it; empty: no worker did
@@ -221,6 +222,9 @@ struct TaskEnd {
 /// adds audit, more versions, `started_at`.
 TrialResult make_result(const scenario::Scenario& scenario, const scenario::Condition& condition,
                         const record::Record& record, const std::vector<TaskEnd>& task_ends);
+
+/// Adds the readings of a further machine of a mixed fleet.
+void add_target(TrialResult& result, const record::TargetInfo& info, const record::Readings& after);
 
 /// For a trial that ran but whose numbers cannot be trusted: it counts as failed for `reason`, and
 /// no metric keeps its value.

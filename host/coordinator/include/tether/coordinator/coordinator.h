@@ -44,11 +44,24 @@ struct UavOptions {
   /// With the clock "replayed": gives the SUT its time, from where `replayed_from` says.
   std::optional<timing::Replay> replay{};
   std::optional<record::ReplayInfo> replayed_from{};
+  /// Index in RunOptions::boards of the computer that its SUT shares with others; none: it has one
+  /// of its own. The clock must then be given, and be kCpu, kScripted, kCounted or kReplayed.
+  std::optional<std::size_t> board{};
+  std::string computer{};  ///< where its SUT runs, for messages; empty: all run on the same
+  /// The core on which it runs; then only pinned programs run there.
+  std::optional<int> pinned_core{};
+};
+
+/// A virtual computer with several programs, which share its cores (sync::SharedCores).
+struct Board {
+  std::string name;
+  int cores = 1;  ///< ≥ 1
 };
 
 struct RunOptions {
   sync::SyncPolicy policy = sync::SyncPolicy::kConservativeBarrier;
   std::vector<UavOptions> uavs;   ///< one per UAV of the world, in its order
+  std::vector<Board> boards;      ///< free running ignores them
   std::string token;              ///< every SUT must send it; not empty
   std::uint64_t seed = 0;         ///< of noise and delays
   double real_time_factor = 0.0;  ///< limit on ST per WT; 0: none. Free running needs one

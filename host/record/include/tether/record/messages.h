@@ -101,6 +101,9 @@ struct Interaction {
   /// growth of ET since the previous reply; of a concurrent SUT, that of the calling thread. Empty:
   /// not measured (free running, a client without stages).
   std::vector<StageTime> stages{};
+  /// On a board that several SUTs share: what the SUT computed since its previous call. ET grew by
+  /// this, and by the time for which others had its share of the cores; the stages are this only.
+  std::optional<Duration> computed{};
 
   // Host clock; differs between runs. 0: not measured.
   WallTime wall_at_arrival;  ///< when the coordinator received the request
@@ -289,6 +292,16 @@ struct SutInfo {
   std::optional<ClockInfo> required_clock{};
   std::string build_id{};              ///< of the program; empty: it has none
   std::optional<ReplayInfo> replay{};  ///< clock "replayed"
+  std::string board{};  ///< Header::boards: the computer that it shares; empty: one of its own
+  std::optional<int> pinned_core{};  ///< of that computer; only pinned programs run there
+};
+/// A virtual computer whose cores several SUTs share: while n compute, each gets min(1, cores / n)
+/// of a core. A core with pinned programs is shared by these only.
+struct BoardInfo {
+  std::string name;
+  int cores = 1;
+
+  friend bool operator==(const BoardInfo&, const BoardInfo&) = default;
 };
 /// Readings of a machine by name, see host/board/src/target_probe.sh: "governor",
 /// "temperature_mc", … Values that are not available are left out.
@@ -337,6 +350,7 @@ struct Header {
   std::vector<SutInfo> suts;
   std::vector<SensorInfo> sensors;
   std::vector<Anchor> anchors;
+  std::vector<BoardInfo> boards{};     ///< that several SUTs share
   std::optional<TargetInfo> target{};  ///< none in records of Tether 0.1.0
   WallTime wall_at_start{};            ///< when the SUTs were started, all at ET 0; 0: unknown
   EmulatorInfo emulator{};

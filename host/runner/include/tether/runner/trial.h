@@ -46,7 +46,10 @@ struct TrialSpec {
   bool waits_for_sut = false;
   sim::WorldStore* worlds = nullptr;  ///< that are in memory; null: none
 
-  SutPlace sut_place() const;
+  /// Of that UAV's SUT.
+  SutPlace sut_place(std::size_t uav) const;
+  /// Whether some SUT is in that place.
+  bool has_sut_at(SutPlace place) const;
 };
 
 /// Callbacks of a trial.

@@ -40,6 +40,24 @@ struct ReplaySource {
   /// none.
   std::filesystem::path counted{};
 };
+/// A computer of a fleet: how the time of the SUTs on it is measured (as in Condition).
+struct Computer {
+  std::string name;  ///< of [[target]]
+  Clock clock = Clock::kCpu;
+  double cpu_factor = 1.0;
+  Duration computing{0};
+  std::optional<Target> target{};
+  int cores = 1;         ///< that several SUTs on it share
+  bool by_hand = false;  ///< the user starts the SUTs on it
+  FileLocation at{};
+};
+
+/// The computer on which the SUT of a UAV runs.
+struct Seat {
+  std::size_t computer = 0;          ///< index in Condition::computers
+  std::optional<int> pinned_core{};  ///< on which only pinned SUTs run
+};
+
 /// Where the SUT runs and how it is synchronised: "host", "target", "target, no sync" (paper,
 /// Section V).
 struct Condition {
@@ -58,6 +76,13 @@ struct Condition {
   std::vector<Profile> profiles{};
   /// Where the SUT runs; its clock and factor are those above. None: this host.
   std::optional<Target> target{};
+  /// The scenario's [[target]]s, if the UAVs run on these. The values above are then those of the
+  /// first UAV's, and `for_uav` has those of each. Empty: each UAV has such a computer of its own.
+  std::vector<Computer> computers{};
+  std::vector<Seat> seats{};  ///< by UAV, if there are computers
+  /// Of `for_uav`: name of that UAV's computer, and whether the user starts its SUT.
+  std::string computer{};
+  bool by_hand = false;
   /// "mujoco" or "gazebo"; a program may replace it by the address of an external simulator.
   std::string simulator = "mujoco";
   /// Of a condition that was slowed down: what of the scenario it is, and the slowdown that the
@@ -86,6 +111,9 @@ struct UavSetup {
   std::map<std::string, SensorProfile> sensors;  ///< by name; override the profile
   Duration command_latency{0};
   std::optional<Energy> energy{};  ///< none: energy is not simulated
+  /// The [[target]] on which its program runs, in conditions without a clock or target of their
+  /// own.
+  std::optional<Seat> seat{};
   Sut sut;  ///< its own, or the scenario's; own parameters override the scenario's
 };
 
@@ -119,7 +147,8 @@ struct Scenario {
   Duration connect_limit{std::chrono::seconds(30)};  ///< of WT until every SUT has joined
   /// A contact that is harder misses the goal (record::Contact::speed_m_s); inf: none does.
   double max_contact_speed_m_s = kHardContact_m_s;
-  std::vector<UavSetup> uavs;  ///< at least one
+  std::vector<Computer> computers{};  ///< [[target]]s
+  std::vector<UavSetup> uavs;         ///< at least one
   std::vector<std::string> anchors;
   FileLocation anchors_at{};          ///< of their key; empty: there is none
   std::vector<Condition> conditions;  ///< at least one; the first is the default
@@ -154,10 +183,24 @@ sim::WorldRequest world_request(const Scenario& scenario, std::uint64_t seed);
 /// Makes the profile the topmost layer of the scenario's sensors, under each condition.
 void lay_profile(Scenario& scenario, const Profile& profile);
 
-/// The reason why the condition's SUTs cannot run on that target; empty: they can.
+/// The condition as that UAV's SUT has it: with the clock and the target of its own computer only.
+Condition for_uav(const Condition& condition, std::size_t uav);
+
+/// Whether several SUTs share the cores of that computer.
+bool is_shared(const Condition& condition, std::size_t computer);
+
+/// Makes the SUTs run on the computers that the scenario's UAVs name; each on one of its own
+/// if not `shared`, and then the computers are named after the UAVs as well.
+/// @throws Error(kBadFile), about the target, if SUTs cannot share one of the computers: because of
+///   its clock, its cores or its address. @pre every UAV has a seat.
+void seat(const Scenario& scenario, Condition& condition, bool shared);
+
+/// The reason why the condition's SUTs cannot run on that target, each on one or as they share
+/// their computers; empty: they can.
 std::string why_not_on(const Condition& condition, const Target& target);
 
-/// Makes the condition's SUTs run on the target, whose clock replaces that of the condition.
+/// Makes the condition's SUTs run on the target, whose clock replaces that of the condition. If
+/// there are several computers, each becomes such a target, and SUTs that share one still do.
 /// @throws Error(kUsage), about the condition, with the reason of `why_not_on`.
 void place_on(Condition& condition, Target target);
 

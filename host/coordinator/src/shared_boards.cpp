@@ -1,0 +1,108 @@
+#include "shared_boards.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include <tether/base/error.h>
+
+namespace tether::coordinator {
+namespace {
+
+void require(bool condition, const char* what) {
+  if (!condition) throw Error(ErrorCode::kInternal, std::string("coordinator options: ") + what);
+}
+
+}  // namespace
+
+// A core with pinned programs is theirs alone, the others share the rest.
+SharedBoards::SharedBoards(const RunOptions& options) : seats_(options.uavs.size()) {
+  if (options.policy == sync::SyncPolicy::kFreeRunning) return;
+  for (std::size_t board = 0; board < options.boards.size(); ++board) {
+    std::vector<std::size_t> free;
+    std::map<int, std::vector<std::size_t>> pinned;
+    for (std::size_t uav = 0; uav < options.uavs.size(); ++uav) {
+      if (options.uavs[uav].board != board) continue;
+      const auto& core = options.uavs[uav].pinned_core;
+      (core ? pinned[*core] : free).push_back(uav);
+      require(!core || (*core >= 0 && *core < options.boards[board].cores), "no such core");
+    }
+    const int rest = options.boards[board].cores - static_cast<int>(pinned.size());
+    require(free.empty() || rest > 0, "every core has pinned programs");
+    seat(free, rest);
+    for (const auto& [core, uavs] : pinned) seat(uavs, 1);
+  }
+}
+
+void SharedBoards::seat(const std::vector<std::size_t>& uavs, int cores) {
+  require(uavs.size() <= sync::SharedCores::kMostPrograms, "too many programs on a board");
+  if (uavs.size() <= static_cast<std::size_t>(std::max(cores, 1))) return;
+  for (std::size_t i = 0; i < uavs.size(); ++i)
+    seats_[uavs[i]] = {.pool = pools_.size(), .program = i};
+  pools_.push_back({sync::SharedCores(cores, uavs.size()), uavs});
+}
+
+bool SharedBoards::has_request(std::size_t uav) const {
+  return shares(uav) && !at(uav).messages.empty() &&
+         std::holds_alternative<link::Request>(at(uav).messages.back().message);
+}
+
+bool SharedBoards::has_finish(std::size_t uav) const {
+  if (!has_request(uav)) return false;
+  const auto& request = std::get<link::Request>(at(uav).messages.back().message);
+  return std::holds_alternative<link::Finish>(request.body);
+}
+
+void SharedBoards::progress(std::size_t uav, Duration work) {
+  pools_[at(uav).pool].cores.progress(at(uav).program, work);
+}
+
+void SharedBoards::add(std::size_t uav, Stamped message) {
+  Seat& seat = *seats_[uav];
+  seat.messages.push_back(std::move(message));
+  if (seat.messages.size() == 1) ask(seat);
+}
+
+void SharedBoards::ask(const Seat& seat) {
+  pools_[seat.pool].cores.ask(seat.program, seat.messages.front().work);
+}
+
+void SharedBoards::resume(std::size_t uav, ExecTime when) {
+  pools_[at(uav).pool].cores.resume(at(uav).program, when);
+}
+
+void SharedBoards::leave(std::size_t uav) {
+  pools_[at(uav).pool].cores.leave(at(uav).program);
+  seats_[uav]->messages.clear();
+}
+
+ExecTime SharedBoards::bound(std::size_t uav) const {
+  return pools_[at(uav).pool].cores.bound(at(uav).program);
+}
+
+std::size_t SharedBoards::awaited(std::size_t uav) const {
+  if (!has_request(uav)) return uav;
+  std::size_t awaited = uav;
+  for (const std::size_t other : pools_[at(uav).pool].uavs)
+    if (!has_request(other) && (awaited == uav || bound(other) < bound(awaited))) awaited = other;
+  return awaited;
+}
+
+std::optional<SharedBoards::Sent> SharedBoards::next() {
+  for (Pool& pool : pools_) {
+    const auto stamp = pool.cores.next();
+    if (!stamp) continue;
+    const std::size_t uav = pool.uavs[stamp->program];
+    Seat& seat = *seats_[uav];
+    Sent sent{uav, stamp->at, std::move(seat.messages.front())};
+    seat.messages.pop_front();
+    if (std::holds_alternative<link::Annotation>(sent.what.message)) {
+      pool.cores.go_on(stamp->program);
+      if (!seat.messages.empty()) ask(seat);
+    }
+    return sent;
+  }
+  return std::nullopt;
+}
+
+}  // namespace tether::coordinator

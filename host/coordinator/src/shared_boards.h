@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include <tether/coordinator/coordinator.h>
+#include <tether/link/messages.h>
+#include <tether/sync/shared_cores.h>
+
+namespace tether::coordinator {
+
+/// What a SUT sent, with the stamp of its own work, and the ST and WT of its arrival.
+struct Stamped {
+  std::variant<link::Annotation, link::Request> message;
+  Duration work{0};  ///< computed since the SUT resumed, as if alone
+  SimTime st;
+  WallTime wall;
+};
+
+/// The SUTs whose programs share the cores of a board, and their messages until it is known when,
+/// on the board's time line, they were sent. Programs that have all cores that they can use to
+/// themselves are not in here: their own time is the board's.
+class SharedBoards {
+ public:
+  /// @throws Error(kInternal) if the boards of the options are not as documented.
+  explicit SharedBoards(const RunOptions& options);
+
+  bool shares(std::size_t uav) const { return seats_[uav].has_value(); }
+  /// Its request has arrived, and its instant is not known yet.
+  bool has_request(std::size_t uav) const;
+  bool has_finish(std::size_t uav) const;
+
+  /// @pre of the functions below: the SUT shares a board.
+  /// @{
+  void progress(std::size_t uav, Duration work);
+  void add(std::size_t uav, Stamped message);
+  /// It waits until then, or computes no more. After the request that `next` returned.
+  void resume(std::size_t uav, ExecTime at);
+  void leave(std::size_t uav);
+  /// Lower bound on the instants of its messages to come.
+  ExecTime bound(std::size_t uav) const;
+  /// Whose work has to be known for the next instant of its board: its own, or that of another.
+  std::size_t awaited(std::size_t uav) const;
+  /// @}
+
+  struct Sent {
+    std::size_t uav = 0;
+    ExecTime at;
+    Stamped what;
+  };
+  /// The next message of any SUT whose instant is known.
+  std::optional<Sent> next();
+
+ private:
+  struct Pool {
+    sync::SharedCores cores;
+    std::vector<std::size_t> uavs;  // by program
+  };
+  struct Seat {
+    std::size_t pool = 0;
+    std::size_t program = 0;
+    std::deque<Stamped> messages{};  // the first one is asked for
+  };
+
+  void seat(const std::vector<std::size_t>& uavs, int cores);
+  void ask(const Seat& seat);
+  const Seat& at(std::size_t uav) const { return *seats_[uav]; }
+
+  std::vector<Pool> pools_;
+  std::vector<std::optional<Seat>> seats_;  // by UAV
+};
+
+}  // namespace tether::coordinator

@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/scenario/scenario.h>
+
+// The computers of a fleet, and which SUTs share them.
+namespace tether::scenario {
+namespace {
+
+// The limit of sync::SharedCores.
+constexpr std::size_t kMostPrograms = 40;
+
+[[noreturn]] void fail(const Computer& computer, const std::string& what) {
+  throw Error(ErrorCode::kBadFile, computer.at,
+              fmt::format("target \"{}\": {}", computer.name, what))
+      .about(computer.name);
+}
+
+void require_sharable(const Condition& condition, std::size_t index) {
+  const Computer& computer = condition.computers[index];
+  std::size_t suts = 0;
+  std::set<int> pinned;
+  for (const Seat& seat : condition.seats) {
+    if (seat.computer != index) continue;
+    ++suts;
+    if (seat.pinned_core) pinned.insert(*seat.pinned_core);
+  }
+  if (suts > kMostPrograms)
+    fail(computer,
+         fmt::format("{} UAVs name it. At most {} can share a target", suts, kMostPrograms));
+  if (!pinned.empty() && *pinned.rbegin() >= computer.cores)
+    fail(computer, fmt::format("core {} has pinned programs, but there are {} cores, from 0 on. "
+                               "Lower 'pinned_core', or raise 'cores'",
+                               *pinned.rbegin(), computer.cores));
+  const bool has_free = std::ranges::any_of(condition.seats, [&](const Seat& seat) {
+    return seat.computer == index && !seat.pinned_core;
+  });
+  if (has_free && pinned.size() == static_cast<std::size_t>(computer.cores))
+    fail(computer, fmt::format("all {} cores have pinned programs, and none is left for the UAVs "
+                               "without 'pinned_core'. Raise 'cores', or pin these too",
+                               computer.cores));
+  const bool is_by_wall = computer.clock == Clock::kWall || computer.clock == Clock::kUnstamped;
+  if (suts > 1 && is_by_wall)
+    fail(
+        computer,
+        fmt::format("{} UAVs name it, but its clock is \"{}\". Programs that are held and go on at "
+                    "different times would give each other their share of its cores. Give each UAV "
+                    "a target of its own, or use the clock \"cpu\", \"counted\" or \"scripted\", "
+                    "for which sharing is modelled",
+                    suts, name(computer.clock)));
+}
+
+void require_other_addresses(const Condition& condition) {
+  std::map<std::string, const Computer*> at;
+  for (const Computer& computer : condition.computers) {
+    if (!computer.target || !computer.target->ssh) continue;
+    const auto [other, is_new] = at.emplace(to_string(*computer.target->ssh), &computer);
+    if (!is_new)
+      fail(computer, fmt::format("its address is {}, which is also that of \"{}\". Let the UAVs "
+                                 "name one target, or correct the address",
+                                 other->first, other->second->name));
+  }
+}
+
+}  // namespace
+
+Condition for_uav(const Condition& condition, std::size_t uav) {
+  Condition own = condition;
+  own.computers.clear();
+  own.seats.clear();
+  if (condition.computers.empty()) return own;
+  const Computer& computer = condition.computers[condition.seats[uav].computer];
+  own.computer = computer.name;
+  own.by_hand = computer.by_hand;
+  own.clock = computer.clock;
+  own.cpu_factor = computer.cpu_factor;
+  own.computing = computer.computing;
+  own.target = computer.target;
+  return own;
+}
+
+bool is_shared(const Condition& condition, std::size_t computer) {
+  return std::ranges::count(condition.seats, computer, &Seat::computer) > 1;
+}
+
+void seat(const Scenario& scenario, Condition& condition, bool shared) {
+  condition.computers.clear();
+  condition.seats.clear();
+  if (shared) condition.computers = scenario.computers;
+  for (const UavSetup& uav : scenario.uavs) {
+    condition.seats.push_back(*uav.seat);
+    if (shared) continue;
+    Computer own = scenario.computers[uav.seat->computer];
+    own.name += "-" + uav.placement.name;
+    condition.computers.push_back(std::move(own));
+    condition.seats.back().computer = condition.computers.size() - 1;
+  }
+  require_other_addresses(condition);
+  for (std::size_t i = 0; i < condition.computers.size(); ++i) require_sharable(condition, i);
+  const Condition first = for_uav(condition, 0);
+  condition.clock = first.clock;
+  condition.cpu_factor = first.cpu_factor;
+  condition.computing = first.computing;
+  condition.target = first.target;
+}
+
+}  // namespace tether::scenario

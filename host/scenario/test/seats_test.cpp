@@ -1,0 +1,131 @@
+#include "test_files.h"
+
+#include <gtest/gtest.h>
+
+#include <tether/scenario/scenario.h>
+
+// The computers of a fleet: [[target]], and who is on them.
+namespace tether::scenario {
+namespace {
+
+const std::string kFleet = R"(name = "fleet"
+world = "worlds/room.sdf"
+time_limit_s = 10
+[sut]
+command = ["sut"]
+[[target]]
+name = "front"
+clock = "cpu"
+cpu_factor = 3
+cores = 2
+[[target]]
+name = "rear"
+clock = "scripted"
+computing_ms = 4
+[[uav]]
+name = "a"
+model = "models/uav.sdf"
+position_m = [0, 0, 1]
+target = "front"
+[[uav]]
+name = "b"
+model = "models/uav.sdf"
+position_m = [3, 0, 1]
+target = "front"
+pinned_core = 1
+[[uav]]
+name = "c"
+model = "models/uav.sdf"
+position_m = [6, 0, 1]
+target = "rear"
+[[condition]]
+name = "shared"
+policy = "conservative_barrier"
+[[condition]]
+name = "each"
+policy = "conservative_barrier"
+shared = false
+[[condition]]
+name = "host"
+policy = "conservative_barrier"
+clock = "cpu"
+)";
+
+class Seats : public testing::Test {
+ protected:
+  Scenario load(const std::string& text) { return load_scenario(write_project(scratch_, text)); }
+  ScratchFolder scratch_;
+};
+
+TEST_F(Seats, EachUavRunsOnTheTargetThatItNames) {
+  const Scenario fleet = load(kFleet);
+  const Condition& shared = fleet.conditions[0];
+  EXPECT_EQ(shared.computers.size(), 2u);
+  EXPECT_EQ(shared.computers[0].cores, 2);
+  EXPECT_TRUE(is_shared(shared, 0));
+  EXPECT_FALSE(is_shared(shared, 1));
+  EXPECT_EQ(shared.seats[1].pinned_core, 1);
+  EXPECT_EQ(for_uav(shared, 1).cpu_factor, 3.0);
+  EXPECT_EQ(for_uav(shared, 2).clock, Clock::kScripted);
+  EXPECT_EQ(for_uav(shared, 2).computing, std::chrono::milliseconds(4));
+
+  const Condition& each = fleet.conditions[1];
+  ASSERT_EQ(each.computers.size(), 3u);
+  EXPECT_EQ(each.computers[1].name, "front-b");
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(is_shared(each, i));
+  EXPECT_EQ(for_uav(each, 1).cpu_factor, 3.0);
+  EXPECT_TRUE(fleet.conditions[2].computers.empty());
+  EXPECT_EQ(for_uav(fleet.conditions[2], 1).cpu_factor, 1.0);
+}
+
+TEST_F(Seats, SlowDownAndTargetsReachEveryComputerAndKeepWhoShares) {
+  Scenario fleet = load(kFleet);
+  Condition& shared = fleet.conditions[0];
+  slow_down(shared, 2.0);
+  EXPECT_EQ(for_uav(shared, 0).cpu_factor, 6.0);
+  EXPECT_EQ(for_uav(shared, 2).computing, std::chrono::milliseconds(8));
+  Target slow;
+  slow.clock = Clock::kCpu;
+  slow.cpu_factor = 7.0;
+  place_on(shared, slow);
+  EXPECT_EQ(for_uav(shared, 2).cpu_factor, 7.0);
+  EXPECT_TRUE(is_shared(shared, 0));
+  slow.clock = Clock::kWall;
+  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { place_on(shared, slow); }).subject(),
+            shared.name);
+}
+
+TEST_F(Seats, RefusesWhatCannotBe) {
+  const std::string board = "clock = \"wall\"\naddress = \"ssh://pi@rover\"\n";
+  scratch_.write("pi.toml", "name = \"pi\"\n" + board);
+  scratch_.write("same.toml", "name = \"same\"\n" + board);
+  const std::string front = "clock = \"cpu\"\ncpu_factor = 3\n",
+                    rear = "clock = \"scripted\"\ncomputing_ms = 4\n";
+  const WrongChange changes[] = {
+      {"target = \"rear\"", "target = \"back\"", 30, "target"},
+      {"pinned_core = 1", "pinned_core = 2", 25, "pinned_core"},
+      {"target = \"rear\"", "pinned_core = 0", 30, "pinned_core"},
+      {"name = \"rear\"", "name = \"front\"", 12, "name"},
+      {"cores = 2", "cores = 0", 10, "cores"},
+      {"cpu_factor = 3\ncores = 2", "cores = 1025", 9, "cores"},
+      {"clock = \"cpu\"\ncpu_factor = 3", "clock = \"wall\"", 7, "front"},
+      {"cores = 2", "cores = 1", 25, "pinned_core"},
+      {"target = \"rear\"\n", "", 30, "clock"},
+      {front, "file = \"pi.toml\"\n", 7, "front"},
+      {front, "", 6, "clock"},
+      {"shared = false", "shared = false\nclock = \"cpu\"", 37, "shared"},
+  };
+  for (const WrongChange& change : changes)
+    expect_refusal(change.line, change.subject,
+                   [&] { load(replaced(kFleet, change.from, change.to)); });
+  const std::string full =
+      replaced(replaced(kFleet, "cores = 2", "cores = 1"), "pinned_core = 1", "pinned_core = 0");
+  expect_refusal(7, "front", [&] { load(full); });
+  const std::string two = replaced(
+      replaced(replaced(kFleet, front, "file = \"pi.toml\"\n"), rear, "file = \"same.toml\"\n"),
+      "target = \"front\"\npinned_core = 1", "target = \"rear\"");
+  expect_refusal(9, "rear", [&] { load(two); });
+}
+
+}  // namespace
+}  // namespace tether::scenario
