@@ -215,7 +215,7 @@ TEST_F(Slurm, EndsWhereTheSharedFolderIsFullAndGoesOn) {
 
 TEST_F(Slurm, IsRefusedWhereThereIsNone) {
   const auto file = write_small_campaign(1, false);
-  const Output absent = run(with(on_slurm(file), {}, {{"SLURM_CONF", "/nowhere"}}));
+  const Output absent = run(with(on_slurm(file), {}, {{"PATH", "/nowhere"}}));
   EXPECT_EQ(absent.code, 3);
   EXPECT_THAT(absent.err, HasSubstr("--slurm"));
   EXPECT_FALSE(std::filesystem::exists(out_)) << "nothing was written";
