@@ -38,9 +38,9 @@ workers::Answer run_program(const std::vector<std::string>& words) {
   } catch (const Error&) {
     return {127, "", words.front() + ": not found"};
   }
-  const os::Captured captured = os::run_captured(words, "", std::chrono::seconds(60));
+  const os::Captured captured = os::run_captured(words, "", std::chrono::seconds(30));
   return {captured.timed_out ? 124 : captured.code, captured.out,
-          captured.timed_out ? "no answer within 60 s" : captured.err};
+          captured.timed_out ? "no answer within 30 s" : captured.err};
 }
 
 Duration now() {

@@ -55,7 +55,7 @@ class Collector {
       }
       const std::size_t flown = results_.size();
       if (const auto end = see_through(*round, is_own)) return close(*end);
-      lost_.add_losses_of(*round, results_, last_tasks_);
+      lost_.add_losses_of(*round, results_, last_tasks_, is_cancelled(*round));
       folder_.create(round->path("closed"), "");
       engine_tidy(*round);
       barren = results_.size() > flown ? 0 : barren + 1;

@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <tether/base/error.h>
 #include <tether/os/text_file.h>
 #include <tether/workers/files_check.h>
@@ -5,9 +7,13 @@
 namespace tether::workers {
 namespace {
 
-bool is_same(const struct stat& a, const struct stat& b) {
-  return a.st_size == b.st_size && a.st_ino == b.st_ino && a.st_dev == b.st_dev &&
-         a.st_mtim.tv_sec == b.st_mtim.tv_sec && a.st_mtim.tv_nsec == b.st_mtim.tv_nsec;
+/// All zero: there is no such file.
+std::array<std::uint64_t, 5> status_of(const std::filesystem::path& file) {
+  struct stat now {};
+  if (::stat(file.c_str(), &now) != 0) return {};
+  return {static_cast<std::uint64_t>(now.st_size), now.st_ino, now.st_dev,
+          static_cast<std::uint64_t>(now.st_mtim.tv_sec),
+          static_cast<std::uint64_t>(now.st_mtim.tv_nsec)};
 }
 
 }  // namespace
@@ -19,9 +25,9 @@ FilesCheck::FilesCheck(const std::map<std::string, std::string>& digests) {
 
 void FilesCheck::require_unchanged() {
   for (Seen& seen : files_) {
-    struct stat now {};
-    const bool exists = ::stat(seen.file.c_str(), &now) == 0;
-    if (exists && is_same(now, seen.status)) continue;
+    const auto now = status_of(seen.file);
+    const bool exists = now != std::array<std::uint64_t, 5>{};
+    if (exists && now == seen.status) continue;
     if (exists && os::digest_of_file(seen.file) == seen.digest) {
       seen.status = now;
       continue;

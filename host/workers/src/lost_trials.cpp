@@ -20,7 +20,7 @@ std::string end_of(const Note& claim, const std::vector<Task>& tasks) {
 }  // namespace
 
 void LostTrials::add_losses_of(const Round& round, const std::set<std::string>& results,
-                               const std::vector<Task>& tasks) {
+                               const std::vector<Task>& tasks, bool is_cancelled) {
   nodes_.clear();
   const auto workers = read_workers(round);
   for (const auto& [id, worker] : workers) {
@@ -40,6 +40,7 @@ void LostTrials::add_losses_of(const Round& round, const std::set<std::string>& 
         const Item& item = items.at(i - round.first_item({shard, 0}));
         if (results.contains(item.folder)) continue;
         losses_[item.folder] = item.losses;
+        if (is_cancelled) continue;
         const std::string number = std::to_string(i);
         if (std::ranges::binary_search(marks, number)) {
           const Note mark = read_note(folder, round.path("lost/" + number));

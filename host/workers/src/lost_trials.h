@@ -22,8 +22,9 @@ class LostTrials {
       : name_of_(std::move(name_of)) {}
 
   /// @param tasks what was last known of the round's tasks.
+  /// @param is_cancelled by the user, which no machine is to blame for.
   void add_losses_of(const Round& round, const std::set<std::string>& results,
-                     const std::vector<Task>& tasks);
+                     const std::vector<Task>& tasks, bool is_cancelled);
   /// Of the trial with that folder; one line each.
   std::vector<std::string> losses(const std::string& folder) const;
   /// On which trials were lost, or that were refused, in the last round.

@@ -115,11 +115,13 @@ bool SharedFolder::publish(const fs::path& local, const fs::path& staging,
     const os::FileDescriptor from(::open(entry.path().c_str(), O_RDONLY | O_CLOEXEC));
     const os::FileDescriptor own(::open(whole.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
     if (!from || !own) fail(whole, "cannot be created", errno);
-    ssize_t copied = 0;
     constexpr std::size_t kAtOnce = 1 << 30;
-    while ((copied = ::sendfile(own.get(), from.get(), nullptr, kAtOnce)) > 0) {
+    bool has_content = false;
+    for (ssize_t copied = 1; copied > 0; has_content = has_content || copied > 0) {
+      copied = ::sendfile(own.get(), from.get(), nullptr, kAtOnce);
+      if (copied < 0) fail(whole, "cannot be written", errno);
     }
-    if (copied < 0) fail(whole, "cannot be written", errno);
+    if (!has_content) continue;
     ++operations_;
     if (::fsync(own.get()) != 0) fail(whole, "cannot be flushed", errno);
   }

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
-
-#include <sys/stat.h>
 
 namespace tether::workers {
 
@@ -22,7 +22,7 @@ class FilesCheck {
   struct Seen {
     std::filesystem::path file;
     std::string digest;
-    struct stat status {};
+    std::array<std::uint64_t, 5> status{};  ///< what changes with the content
   };
   std::vector<Seen> files_;
 };
