@@ -38,14 +38,14 @@ class ReportCommand : public testing::Test {
 TEST_F(ReportCommand, MakesAPageOfACampaignAndOfARun) {
   ASSERT_EQ(run(tether({"report", out(), "--format", "html"})).code, 0);
   const std::string page = read_text(out() / "report.html");
-  EXPECT_EQ(drawings(page), 4u);  // one metric, the path, a timeline of each condition
+  EXPECT_EQ(drawings(page), 5u);  // all flights, one metric, the path, a timeline of each condition
   EXPECT_THAT(page, HasSubstr("“slow”"));
   EXPECT_EQ(run(tether({"campaign", *folder_ / "campaign.toml", "--out", out(), "--resume"})).code,
             0);
 
   const auto file = *folder_ / "one.html";
   ASSERT_EQ(run(tether({"report", one(), "--format", "html", "--out", file})).code, 0);
-  EXPECT_EQ(drawings(read_text(file)), 4u);  // timeline twice, lag, path
+  EXPECT_EQ(drawings(read_text(file)), 5u);  // the flight, timeline twice, lag, path
   EXPECT_FALSE(std::filesystem::exists(one() / "report.html"));
 }
 

@@ -114,8 +114,10 @@ std::string evidence_of(const ConditionVerdict& condition) {
           flights(condition.unsound), condition.condition, condition.unsound == 1 ? "s" : "",
           condition.reason);
     case Ruling::kSetUpFailed:
-      return fmt::format("on “{}” {} failed, which says nothing about the computer ({}).",
-                         condition.condition, flights(condition.failed), condition.reason);
+      return fmt::format(
+          "on “{}” the set-up or a part of it failed in {} ({}), which says nothing about the "
+          "computer.",
+          condition.condition, flights(condition.failed), condition.reason);
     case Ruling::kNotFastEnough:
       return missed_goals_text(condition) + with_pace;
     case Ruling::kUndecided:
@@ -149,7 +151,7 @@ std::string lead_of(const ConditionVerdict& condition) {
     case Ruling::kVoid:
       return "Void";
     case Ruling::kSetUpFailed:
-      return "No answer, because the set-up failed";
+      return "No answer";
     case Ruling::kNotFastEnough:
       return is_single ? "Not fast enough in this flight" : "Not fast enough";
     case Ruling::kFastEnoughSoFar:
@@ -206,8 +208,7 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
   const ConditionVerdict& lead = lead_of(verdict);
   switch (advice.kind) {
     case Kind::kMendSetUp:
-      return fmt::format("Mend the cause of the failure, then fly again (`--resume`): {}.",
-                         advice.subject);
+      return "Mend the cause of the failure, then fly again; a campaign goes on with `--resume`.";
     case Kind::kReadAudit:
       return fmt::format(
           "Read what `tether audit` says of the records of “{}”. If the program stamps its own "
@@ -314,7 +315,7 @@ std::vector<std::string> advice_of(const std::vector<Verdict>& points) {
   const auto urgent = std::ranges::min_element(
       points, {}, [](const Verdict& point) { return lead_of(point).ruling; });
   std::vector<std::string> sentences;
-  const std::string where = urgent->point.empty() ? "" : fmt::format("With {}: ", urgent->point);
+  const std::string where = urgent->point.empty() ? "" : fmt::format("{}: ", urgent->point);
   for (const Advice& advice : urgent->advice)
     sentences.push_back(where + sentence_of(advice, *urgent));
   return sentences;
@@ -323,7 +324,7 @@ std::vector<std::string> advice_of(const std::vector<Verdict>& points) {
 Table rulings_table(const std::vector<Verdict>& points) {
   const bool is_sweep = !points.front().point.empty();
   Table table;
-  table.title = "What was compared";
+  table.title = fmt::format("What was compared in {}", points.front().scenario);
   table.text_columns = is_sweep ? 3 : 2;
   std::vector<std::string> headings = {"Condition",     "Fast enough?",       "Goal reached",
                                        "95 % interval", "Headroom per image", "Closest limit"};

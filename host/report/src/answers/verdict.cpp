@@ -126,7 +126,7 @@ void advise_on_pace(std::vector<Advice>& advice, const ConditionVerdict& lead) {
 std::vector<Advice> advice_on(const ConditionVerdict& lead) {
   using Kind = Advice::Kind;
   std::vector<Advice> advice;
-  if (lead.failed > 0 && lead.unsound == 0) advice.push_back({Kind::kMendSetUp, lead.reason});
+  if (lead.failed > 0 && lead.unsound == 0) advice.push_back({Kind::kMendSetUp});
   if (lead.throttled > 0) advice.push_back({Kind::kCoolBoard, lead.condition});
   switch (lead.ruling) {
     case Ruling::kVoid:

@@ -59,7 +59,8 @@ code{overflow-wrap:anywhere;font-size:.92em}
 .frames svg{width:100%;border-radius:6px}
 @media print{main{max-width:none;padding:0}h2{break-after:avoid}.scroll{overflow:visible}
 .plot svg{min-width:0}table{font-size:8pt}th,td{padding:.15rem .35rem;white-space:normal}
-details{border:0;padding:0}}
+details{border:0;padding:0}
+details::details-content{content-visibility:visible;block-size:auto}}
 )";
 
 }  // namespace tether::report

@@ -203,7 +203,7 @@ TEST(Verdict, OfASweepGroupsItsPointsByTheirRuling) {
             ": “target” with cpu_factor = 1 (10 of 10 flights) and cpu_factor = 2 (10 of 10 "
             "flights).");
   EXPECT_EQ(answers[1].lead, "Not fast enough");
-  EXPECT_THAT(advice_of(groups[0])[0], StartsWith("With cpu_factor = 3: "));
+  EXPECT_THAT(advice_of(groups[0])[0], StartsWith("cpu_factor = 3: "));
   EXPECT_EQ(rulings_table(groups[0]).rows.size(), 3u);
 }
 

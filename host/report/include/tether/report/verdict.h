@@ -59,7 +59,7 @@ struct ConditionVerdict {
 
 struct Advice {
   enum class Kind {
-    kMendSetUp,      ///< subject: the reason
+    kMendSetUp,
     kReadAudit,      ///< subject: the condition
     kCoolBoard,      ///< subject: the condition
     kSpeedUpStage,   ///< subject: the stage
