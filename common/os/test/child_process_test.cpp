@@ -63,7 +63,7 @@ TEST_F(Child, ReportsHowItEnded) {
 
 TEST_F(Child, CallsItsBodyInACopyOfThisProcessThatCanStartProgramsItself) {
   int changed = 1;
-  const ChildExit exit = run({.arguments = {"a copy"}, .log = log_, .body = [&] {
+  const ChildExit exit = run({.arguments = {"a copy"}, .environment = {}, .log = log_, .body = [&] {
                                 changed = 2;
                                 std::cout << "out" << std::flush;
                                 ChildProcess program(shell("exit 4"));
