@@ -1,4 +1,7 @@
 #include "read_sensor_profile.h"
+#include "settings.h"
+
+#include <string_view>
 
 #include <tether/scenario/profile.h>
 #include <tether/toml/table.h>
@@ -6,10 +9,20 @@
 namespace tether::scenario {
 
 Profile load_profile(const std::filesystem::path& file) {
+  std::set<std::string> none;
+  return load_profile(file, {}, none);
+}
+
+Profile load_profile(const std::filesystem::path& file, const std::vector<Setting>& settings,
+                     std::set<std::string>& replaced) {
   Profile profile;
   profile.file = std::filesystem::absolute(file).lexically_normal();
   profile.files = {profile.file};
-  const toml::Document document = toml::Document::load(profile.file);
+  toml::Document document = toml::Document::load(profile.file);
+  for (const auto& [key, value] : settings) {
+    const std::string_view path = std::string_view(key).substr(key.starts_with("uav.") ? 4 : 0);
+    if (path.starts_with("sensors.") && document.replace(path, value) > 0) replaced.insert(key);
+  }
   const toml::Table root = document.root({"name", "description", "sensors"});
   profile.name = root.identifier("name");
   profile.description = root.text_or("description", "");

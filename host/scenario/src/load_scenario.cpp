@@ -366,7 +366,9 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
   Scenario scenario;
   scenario.file = std::filesystem::absolute(file).lexically_normal();
   toml::Document document = toml::Document::load(scenario.file);
-  for (const Setting& setting : settings) apply(setting, document, scenario.file);
+  std::vector<Setting> of_profiles;
+  for (const Setting& setting : settings)
+    if (!apply(setting, document)) of_profiles.push_back(setting);
   scenario.settings = settings;
   const toml::Table root =
       document.root({"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s",
@@ -381,6 +383,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
   read_computers(root, scenario);
   read_uavs(root, scenario);
   read_conditions(root, scenario);
+  apply_to_profiles(of_profiles, scenario);
   read_metrics(root, scenario);
   read_record(root, scenario);
   sort_files(scenario);

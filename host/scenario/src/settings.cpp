@@ -20,14 +20,30 @@ Setting parse_setting(std::string_view text, const std::filesystem::path& folder
   return setting;
 }
 
-void apply(const Setting& setting, toml::Document& document, const std::filesystem::path& file) {
+bool apply(const Setting& setting, toml::Document& scenario) {
   for (const char* from : {"", "condition.", "uav.", "target."})
-    if (document.replace(from + setting.key, setting.value) > 0) return;
-  throw Error(ErrorCode::kUsage, {file.string()},
-              fmt::format("has no value '{}' to replace. Give the path of a key that the file has, "
-                          "such as time_limit_s, condition.cpu_factor or sut.parameters.KEY",
-                          setting.key))
-      .about(setting.key);
+    if (scenario.replace(from + setting.key, setting.value) > 0) return true;
+  return false;
+}
+
+void apply_to_profiles(const std::vector<Setting>& settings, Scenario& scenario) {
+  if (settings.empty()) return;
+  std::set<std::string> replaced;
+  const auto reload = [&](Profile& profile) {
+    profile = load_profile(profile.file, settings, replaced);
+  };
+  for (UavSetup& uav : scenario.uavs)
+    if (uav.profile) reload(*uav.profile);
+  for (Condition& condition : scenario.conditions)
+    for (Profile& profile : condition.profiles) reload(profile);
+  for (const Setting& setting : settings)
+    if (!replaced.contains(setting.key))
+      throw Error(ErrorCode::kUsage, {scenario.file.string()},
+                  fmt::format("has no value '{}' to replace. Give the path of a key that the file "
+                              "or a profile of its sensors has, such as time_limit_s, "
+                              "condition.cpu_factor, sut.parameters.KEY or sensors.camera.rate_hz",
+                              setting.key))
+          .about(setting.key);
 }
 
 std::string name_suffix(const std::vector<Setting>& settings) {

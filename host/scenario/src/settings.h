@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -9,8 +10,14 @@
 
 namespace tether::scenario {
 
-/// @throws Error(kUsage), about the key, if the file does not have it.
-void apply(const Setting& setting, toml::Document& document, const std::filesystem::path& file);
+/// Replaces the value in the file of a scenario. @return false if the file does not have it.
+bool apply(const Setting& setting, toml::Document& scenario);
+/// Reads a profile, and replaces the values that it has; adds their keys to `replaced`.
+Profile load_profile(const std::filesystem::path& file, const std::vector<Setting>& settings,
+                     std::set<std::string>& replaced);
+/// Replaces the values of sensors in the profiles of the scenario's UAVs and conditions.
+/// @throws Error(kUsage), about the key, if none has it.
+void apply_to_profiles(const std::vector<Setting>& settings, Scenario& scenario);
 
 /// "-cpu_factor-2", of the last part of each key and its value (of a file, its stem).
 std::string name_suffix(const std::vector<Setting>& settings);

@@ -33,6 +33,17 @@ TEST_F(Settings, AreInTheScenariosName) {
   EXPECT_EQ(load({{"uav.profile", file.string()}}).name, name + "-profile-other-rig");
 }
 
+TEST_F(Settings, ReplaceValuesOfSensorsThatAProfileHas) {
+  for (const std::string from : {"", "uav."}) {
+    const std::string key = from + "sensors.camera.noise.stddev";
+    EXPECT_EQ(load({{key, "0.5"}}).uavs.front().profile->sensors.at("camera").pixel_noise->stddev,
+              0.5);
+    const Error error = bad_file_error([&] { load({{key, "-1"}}); });
+    EXPECT_EQ(error.subject(), "stddev");
+    EXPECT_EQ(std::filesystem::path(error.where().file).filename(), "rig.toml");
+  }
+}
+
 TEST_F(Settings, NeedAKeyThatTheFileHas) {
   try {
     load({{"sut.parameters.nonsense", "1"}});

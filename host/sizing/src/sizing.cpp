@@ -12,18 +12,27 @@ constexpr double kLeastFit = 0.01;
 // Every fourth flight looks for slowdowns below the threshold that are not sufficient.
 constexpr std::size_t kOneOf = 4;
 
-// The level up to `most` that is farthest from all that were flown.
-double loneliest(std::span<const double> levels, double most, std::span<const Flight> flights,
-                 std::span<const double> planned) {
-  double best = levels.front(), farthest = -1.0;
+// The level up to `most` where failures below the threshold are most likely: few flights are near
+// it, or many of those near it failed (an upper confidence bound of their share). A gap is thus
+// flown again until the check of the curve can see it.
+double most_suspicious(std::span<const double> levels, double most, std::span<const Flight> flights,
+                       std::span<const double> planned) {
+  constexpr double kNear = 0.12;  // log slowdown
+  double best = levels.front(), highest = -1.0;
   for (const double level : levels) {
     if (level > most) break;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Flight& flight : flights)
-      nearest = std::min(nearest, std::abs(std::log(level / flight.slowdown)));
-    for (const double other : planned)
-      nearest = std::min(nearest, std::abs(std::log(level / other)));
-    if (nearest > farthest) best = level, farthest = nearest;
+    const auto nearness = [&](double other) {
+      const double distance = std::log(level / other) / kNear;
+      return std::exp(-0.5 * distance * distance);
+    };
+    double near = 0.0, missed = 0.0;
+    for (const Flight& flight : flights) {
+      near += nearness(flight.slowdown);
+      if (!flight.reached) missed += nearness(flight.slowdown);
+    }
+    for (const double other : planned) near += nearness(other);
+    const double suspicion = (missed + 0.1) / (near + 1.0) + 0.5 / std::sqrt(near + 1.0);
+    if (suspicion > highest) best = level, highest = suspicion;
   }
   return best;
 }
@@ -91,7 +100,7 @@ std::vector<double> Sizing::next(std::size_t count) const {
   const double estimate = curve().threshold().estimate;
   for (std::size_t i = 0; i < count; ++i) {
     if ((flights_.size() + i) % kOneOf == kOneOf - 1)
-      next[i] = loneliest(levels, estimate, flights_, std::span(next).first(i));
+      next[i] = most_suspicious(levels, estimate, flights_, std::span(next).first(i));
   }
   return next;
 }

@@ -97,6 +97,16 @@ TEST(Sizing, IsNotFooledByAGap) {
   EXPECT_GE(before_gap, 9);
 }
 
+TEST(Sizing, FliesAgainWhereAFlightBelowTheThresholdFailed) {
+  const CurveGrid grid({.interval = 1.6, .least = 1.0, .most = 20.0});
+  Sizing sizing(grid, false);
+  for (const double level : grid.levels())
+    for (int i = 0; i < 2; ++i) sizing.add({level, true});
+  sizing.add({2.0, false});
+  while (sizing.flights().size() % 4 != 0) sizing.add({20.0, true});
+  EXPECT_NEAR(sizing.next(4).back(), 2.0, 0.2);
+}
+
 TEST(Sizing, AnswersByLevelsWhereNoCurveFits) {
   const CurveGrid grid({.interval = 1.6, .least = 1.0, .most = 20.0});
   Sizing sizing(grid, false);

@@ -100,5 +100,13 @@ TEST(SuccessCurve, FitsItsOwnFlightsOnly) {
   EXPECT_GT(curve_of(grid, Margins::kIgnored, bent).fit(bent), 0.05);
 }
 
+// Five failures at one slowdown among many flights that fit.
+TEST(SuccessCurve, DoesNotFitADipAtOneSlowdown) {
+  const CurveGrid grid(kOfCurve);
+  std::vector<Flight> flights = flights_of_curve(300, 0.2);
+  for (int i = 0; i < 8; ++i) flights.push_back({1.5, i < 3, std::nullopt});
+  EXPECT_LT(curve_of(grid, SuccessCurve::Margins::kIgnored, flights).fit(flights), 0.01);
+}
+
 }  // namespace
 }  // namespace tether::sizing

@@ -43,8 +43,9 @@ EndlessFlight::EndlessFlight(const fs::path& folder, const Variables& environmen
 
 std::optional<pid_t> find_process(const std::string& mark, const std::string& part) {
   for (const pid_t pid : processes_with_mark(mark))
-    if (read_text("/proc/" + std::to_string(pid) + "/cmdline").find(part) != std::string::npos)
-      return pid;
+    for (const char* words : {"/cmdline", "/comm"})  // a trial of a campaign only has a name
+      if (read_text("/proc/" + std::to_string(pid) + words).find(part) != std::string::npos)
+        return pid;
   return std::nullopt;
 }
 

@@ -79,8 +79,9 @@ class SuccessCurve {
   std::vector<double> next_levels(std::size_t count) const;
   /// Posterior predictive check (Gelman, Meng & Stern, Statistica Sinica 6, 1996): the probability
   /// that flights of such curves at the same slowdowns deviate from their curve as much as these
-  /// do, by χ² over groups of slowdowns and kinds of outcomes. Small: the flights are not of such a
-  /// curve.
+  /// do, by χ² over groups of slowdowns and kinds of outcomes: of all groups, or of the one that
+  /// deviates most, whichever is less likely (times 2, as for two tests). Small: the flights are
+  /// not of such a curve.
   double fit(std::span<const Flight> flights) const;
 
  private:
