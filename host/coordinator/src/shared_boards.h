@@ -62,11 +62,14 @@ class SharedBoards {
   struct Seat {
     std::size_t pool = 0;
     std::size_t program = 0;
-    std::deque<Stamped> messages{};  // the first one is asked for
+    /// Its progress arrives at any time; others' ST must not depend on when annotations arrive.
+    bool sends_progress = false;
+    std::deque<Stamped> messages{};
+    bool has_asked = false;  // for the first one
   };
 
-  void seat(const std::vector<std::size_t>& uavs, int cores);
-  void ask(const Seat& seat);
+  void seat(const RunOptions& options, const std::vector<std::size_t>& uavs, int cores);
+  void ask(std::size_t uav);
   const Seat& at(std::size_t uav) const { return *seats_[uav]; }
 
   std::vector<Pool> pools_;
