@@ -37,8 +37,8 @@ class SharedBoards {
   /// @{
   void progress(std::size_t uav, Duration work);
   void add(std::size_t uav, Stamped message);
-  /// It waits until then, or computes no more. After the request that `next` returned.
-  void resume(std::size_t uav, ExecTime at);
+  /// It waits until `when`, or computes no more. After the request that `next` returned.
+  void resume(std::size_t uav, ExecTime when);
   void leave(std::size_t uav);
   /// Lower bound on the instants of its messages to come.
   ExecTime bound(std::size_t uav) const;
