@@ -29,16 +29,22 @@ SharedBoards::SharedBoards(const RunOptions& options) : seats_(options.uavs.size
     }
     const int rest = options.boards[board].cores - static_cast<int>(pinned.size());
     require(free.empty() || rest > 0, "every core has pinned programs");
-    seat(free, rest);
-    for (const auto& [core, uavs] : pinned) seat(uavs, 1);
+    seat(options, free, rest);
+    for (const auto& [core, uavs] : pinned) seat(options, uavs, 1);
   }
 }
 
-void SharedBoards::seat(const std::vector<std::size_t>& uavs, int cores) {
+void SharedBoards::seat(const RunOptions& options, const std::vector<std::size_t>& uavs,
+                        int cores) {
   require(uavs.size() <= sync::SharedCores::kMostPrograms, "too many programs on a board");
   if (uavs.size() <= static_cast<std::size_t>(std::max(cores, 1))) return;
-  for (std::size_t i = 0; i < uavs.size(); ++i)
-    seats_[uavs[i]] = {.pool = pools_.size(), .program = i};
+  for (std::size_t i = 0; i < uavs.size(); ++i) {
+    const auto& clock = options.uavs[uavs[i]].clock;
+    require(clock.has_value(), "the clock on a shared board is needed");
+    seats_[uavs[i]] = {.pool = pools_.size(),
+                       .program = i,
+                       .sends_progress = clock->kind == link::ClockKind::kCpu};
+  }
   pools_.push_back({sync::SharedCores(cores, uavs.size()), uavs});
 }
 
@@ -58,13 +64,16 @@ void SharedBoards::progress(std::size_t uav, Duration work) {
 }
 
 void SharedBoards::add(std::size_t uav, Stamped message) {
-  Seat& seat = *seats_[uav];
-  seat.messages.push_back(std::move(message));
-  if (seat.messages.size() == 1) ask(seat);
+  seats_[uav]->messages.push_back(std::move(message));
+  ask(uav);
 }
 
-void SharedBoards::ask(const Seat& seat) {
+// Annotations wait for the request after them, unless progress tells of the SUT's work meanwhile.
+void SharedBoards::ask(std::size_t uav) {
+  Seat& seat = *seats_[uav];
+  if (seat.has_asked || seat.messages.empty() || !(has_request(uav) || seat.sends_progress)) return;
   pools_[seat.pool].cores.ask(seat.program, seat.messages.front().work);
+  seat.has_asked = true;
 }
 
 void SharedBoards::resume(std::size_t uav, ExecTime when) {
@@ -96,9 +105,10 @@ std::optional<SharedBoards::Sent> SharedBoards::next() {
     Seat& seat = *seats_[uav];
     Sent sent{uav, stamp->at, std::move(seat.messages.front())};
     seat.messages.pop_front();
+    seat.has_asked = false;
     if (std::holds_alternative<link::Annotation>(sent.what.message)) {
       pool.cores.go_on(stamp->program);
-      if (!seat.messages.empty()) ask(seat);
+      ask(uav);
     }
     return sent;
   }

@@ -37,8 +37,8 @@ class SharedBoards {
   /// @{
   void progress(std::size_t uav, Duration work);
   void add(std::size_t uav, Stamped message);
-  /// It waits until then, or computes no more. After the request that `next` returned.
-  void resume(std::size_t uav, ExecTime at);
+  /// It waits until `when`, or computes no more. After the request that `next` returned.
+  void resume(std::size_t uav, ExecTime when);
   void leave(std::size_t uav);
   /// Lower bound on the instants of its messages to come.
   ExecTime bound(std::size_t uav) const;
@@ -62,11 +62,14 @@ class SharedBoards {
   struct Seat {
     std::size_t pool = 0;
     std::size_t program = 0;
-    std::deque<Stamped> messages{};  // the first one is asked for
+    /// Its progress arrives at any time; others' ST must not depend on when annotations arrive.
+    bool sends_progress = false;
+    std::deque<Stamped> messages{};
+    bool has_asked = false;  // for the first one
   };
 
-  void seat(const std::vector<std::size_t>& uavs, int cores);
-  void ask(const Seat& seat);
+  void seat(const RunOptions& options, const std::vector<std::size_t>& uavs, int cores);
+  void ask(std::size_t uav);
   const Seat& at(std::size_t uav) const { return *seats_[uav]; }
 
   std::vector<Pool> pools_;

@@ -71,14 +71,17 @@ TEST_F(SharedBoard, SleepsAndAnnotationsAreOnTheTimeLineOfTheBoard) {
   const link::PeerId peer = server_->add_sut(hello(name(0)), {});
   server_->add_sut(hello(name(1)), {finish(milliseconds(100))});
   server_->deliver(peer, link::Annotation{us(1000), "task", "{}"});
-  server_->deliver(peer, request(1, us(3000), link::Sleep{us(13'000), true}));
-  bool is_woken = false;
+  bool is_asleep = false, is_woken = false;
   hooks_.should_stop = [&]() -> std::optional<Ending> {
-    if (of(0).size() == 1 && !std::exchange(is_woken, true))
+    if (!std::exchange(is_asleep, true))
+      server_->deliver(peer, request(1, us(3000), link::Sleep{us(13'000), true}));
+    if (server_->sent[peer].size() == 2 && !std::exchange(is_woken, true))
       server_->deliver(peer, request(2, us(16'000), link::Finish{true, "", ""}));
     return std::nullopt;
   };
-  ASSERT_EQ(run().end, RunEnd::kFinished);
+  const RunReport report = run();
+  ASSERT_EQ(report.end, RunEnd::kFinished) << report.reason;
+  EXPECT_EQ(of(0)[0].st_at_arrival, st_ms(0)) << "ST does not depend on when annotations arrive";
   EXPECT_EQ(recorder_.annotations.at(0).at, us(2000));
   EXPECT_EQ(of(0)[0].request_at, us(6000));
   EXPECT_EQ(of(0)[0].reply_at, us(16'000));

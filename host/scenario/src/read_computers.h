@@ -12,7 +12,7 @@ namespace tether::scenario {
 void read_computers(const toml::Table& root, Scenario& scenario);
 
 /// Reads on which of them the program of a UAV runs; none: it is not said.
-std::optional<Seat> read_seat(const toml::Table& uav, const Scenario& scenario);
+std::optional<Seat> read_seat(const toml::Table& table, const Scenario& scenario);
 
 /// Makes the SUTs of a condition without a clock or target of its own run on them.
 void read_seats(const toml::Table& table, Condition& condition, const Scenario& scenario);

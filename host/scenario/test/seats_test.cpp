@@ -124,7 +124,7 @@ TEST_F(Seats, RefusesWhatCannotBe) {
   const std::string two = replaced(
       replaced(replaced(kFleet, front, "file = \"pi.toml\"\n"), rear, "file = \"same.toml\"\n"),
       "target = \"front\"\npinned_core = 1", "target = \"rear\"");
-  expect_refusal(9, "rear", [&] { load(two); });
+  expect_refusal(11, "rear", [&] { load(two); });
 }
 
 }  // namespace

@@ -56,6 +56,7 @@ std::optional<SharedCores::Stamp> SharedCores::next() {
     if (is_unknown) return std::nullopt;
 
     const CoreUnits share = computing > cores_ ? per_ns_ * cores_ / computing : per_ns_;
+    assert(share > 0);
     Duration step = Duration::max();
     for (const Program& p : programs_) {
       if (p.phase == Phase::kComputing)

@@ -133,6 +133,8 @@ TEST_F(SimulatedVehicleTest, SleepsAreInteractions) {
   ASSERT_TRUE(vehicle_->sleep_for(-1h).ok());
   EXPECT_EQ(vehicle_->now(), ExecTime(20ms));
   EXPECT_EQ(coordinator_->requests().size(), 4u);
+  EXPECT_TRUE(std::get<link::Sleep>(coordinator_->requests()[0].body).is_relative);
+  EXPECT_FALSE(std::get<link::Sleep>(coordinator_->requests()[1].body).is_relative);
   ASSERT_TRUE(vehicle_->sleep_for(Duration::max()).ok());
   EXPECT_EQ(to_ns(vehicle_->now()), link::kMaxTimestampNs - 1);
 }
