@@ -29,8 +29,9 @@ record::RadioMessage message(std::int64_t sent_ms, std::int64_t at, std::string 
 }
 
 MetricValue value(const std::string& kind, const std::string& uav, const record::Record& record) {
-  scenario::Metric metric{
-      .name = kind, .kind = kind, .label = {}, .unit = {}, .uav = uav, .anchor = {}};
+  scenario::Metric metric;
+  metric.name = metric.kind = kind;
+  metric.uav = uav;
   return compute_metrics({&metric, 1}, record).front();
 }
 

@@ -15,6 +15,8 @@ namespace {
 constexpr std::string_view kWords[] = {"found", "here"};
 /// How often the one that has come says so: its messages may be lost.
 constexpr int kGreetings = 5;
+/// Until the UAV turns no more: what it measures before its way must not be the end of a turn.
+constexpr Duration kSettling = std::chrono::seconds(1);
 
 }  // namespace
 
@@ -88,6 +90,8 @@ Progress SearchPairTask::call(TaskContext& context) {
 
 Progress SearchPairTask::come(TaskContext& context) {
   if (const Status stopped = stop(context); !stopped) return TaskOutcome::failed(stopped.failure());
+  const Status still = pause(context, options_.imu, kSettling);
+  if (!still) return TaskOutcome::failed(still.failure());
   const Result<double> yaw_rad = get_yaw(context, options_.imu);
   if (!yaw_rad) return TaskOutcome::failed(yaw_rad.failure());
   const double way_m = std::hypot(options_.partner_ahead_m, options_.partner_left_m);
