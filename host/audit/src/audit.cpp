@@ -24,6 +24,7 @@ Verdict audit(const record::Record& record) {
   const Boundaries grid(record.header.step);
   check_consistency(record, grid, report);
   check_motion(record, report);
+  check_radio(record, grid, report);
   if (verdict.synchronised) {
     check_interactions(record, grid, report);
     check_rows(record, report);

@@ -27,6 +27,11 @@ void check_boards(const record::Record& record, Report& report);
 /// Rule 2 and the second half of rule 3: the effects of commands.
 void check_commands(const record::Record& record, const Boundaries& grid, Report& report);
 
+/// Messages between UAVs. Rule 0: each one that was sent has one fate at each receiver. For
+/// synchronised records also rule 1, no message is received before it can have arrived, and rule 3,
+/// none is received late or out of order.
+void check_radio(const record::Record& record, const Boundaries& grid, Report& report);
+
 /// Rules 3 and 4 across SUTs: replies are sent in the order of their timestamps, and ST never
 /// passes a SUT that can still act, in the order of the file and of wall time.
 void check_order(const record::Record& record, const Boundaries& grid, Report& report);

@@ -21,7 +21,7 @@ using record::Logged;
 
 bool is_known_kind(std::string_view kind) {
   return kind == record::kSensor || kind == record::kCommand || kind == record::kSleep ||
-         kind == record::kFinish;
+         kind == record::kFinish || kind == record::kSend || kind == record::kReceive;
 }
 
 // Largest deviation of the length of a rotation from 1.
@@ -147,13 +147,13 @@ class ConsistencyCheck {
                                missing, kMostOpenCalls)});
   }
 
-  // Rule 8: only a read that waits for its sensor's next measurement is held, and readings are of
-  // the state at release.
+  // Rule 8: only a read that waits for its sensor's next measurement is held, or a receive, and
+  // readings are of the state at release.
   void check_free_running(const Logged<Interaction>& entry) {
     const Interaction& message = entry.message;
     if (message.kind == record::kSensor) {
       check_free_reading(entry);
-    } else if (message.st_at_release != message.st_at_arrival) {
+    } else if (message.kind != record::kReceive && message.st_at_release != message.st_at_arrival) {
       report_.add(8, entry, "held from ST {} to {} in a free-running record",
                   ns(message.st_at_arrival), ns(message.st_at_release));
     }

@@ -42,6 +42,9 @@ MetricOutcome return_error(const scenario::Metric& metric, const record::Record&
 MetricOutcome collisions(const scenario::Metric& metric, const record::Record& record);
 MetricOutcome energy_spent(const scenario::Metric& metric, const record::Record& record);
 MetricOutcome min_clearance(const scenario::Metric& metric, const record::Record& record);
+// Of the radio:
+MetricOutcome delivery_ratio(const scenario::Metric& metric, const record::Record& record);
+MetricOutcome age_of_information(const scenario::Metric& metric, const record::Record& record);
 // Of the SUT's own estimates:
 MetricOutcome bearing_error(const scenario::Metric& metric, const record::Record& record);
 MetricOutcome distance_error(const scenario::Metric& metric, const record::Record& record);

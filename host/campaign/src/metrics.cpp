@@ -119,6 +119,8 @@ constexpr std::array kKinds = {
     Kind{"collisions", collisions},
     Kind{"min_clearance_m", min_clearance},
     Kind{"energy_j", energy_spent},
+    Kind{"delivery_ratio", delivery_ratio},
+    Kind{"age_of_information", age_of_information},
 };
 
 MetricOutcome compute(const scenario::Metric& metric, const record::Record& record) {

@@ -51,7 +51,7 @@ struct Source {
   std::string_view quantity;
   Value value;
 };
-// One entry for each of mission::quantities() that is neither of events nor of the battery.
+// One entry for each of mission::quantities() that is not of events, the battery or the radio.
 constexpr std::array kSources = {
     Source{"bearing_error", bearing_error}, Source{"distance", distance},
     Source{"altitude", altitude},           Source{"speed", speed},
@@ -86,6 +86,29 @@ std::optional<std::size_t> Signals::of_battery(const mission::Quantity& quantity
   return trace_.signals.size() - 1;
 }
 
+// The record has the messages in the order of `at`.
+std::size_t Signals::of_radio(const mission::Quantity& quantity) {
+  stl::Signal signal{std::string(quantity.name), {}};
+  const bool is_age = quantity.name == "information_age";
+  std::size_t next = 0;
+  double ended = 0.0, delivered = 0.0;
+  SimTime newest{};
+  for (const SimTime at : trace_.at) {
+    for (; next < record_.radio.size() && record_.radio[next].message.at <= at; ++next) {
+      const record::RadioMessage& message = record_.radio[next].message;
+      const bool has_arrived = message.outcome == record::kDelivered;
+      if (message.to == uav_ && has_arrived) newest = std::max(newest, message.sent_at);
+      if (message.uav != uav_ || message.outcome == "waiting") continue;
+      ended += 1.0;
+      delivered += has_arrived ? 1.0 : 0.0;
+    }
+    const double ratio = ended > 0.0 ? delivered / ended : 1.0;
+    signal.values.push_back(is_age ? to_seconds(at - newest) : ratio);
+  }
+  trace_.signals.push_back(std::move(signal));
+  return trace_.signals.size() - 1;
+}
+
 std::optional<std::size_t> Signals::find(const mission::Condition& condition) {
   const auto [known, is_new] = known_.try_emplace({condition.quantity->name, condition.of});
   if (!is_new) return known->second;
@@ -94,6 +117,7 @@ std::optional<std::size_t> Signals::find(const mission::Condition& condition) {
   const bool needs_anchor = condition.quantity->subject == mission::Subject::kAnchor;
   if (needs_anchor && anchor == anchors.end()) return std::nullopt;
   if (condition.quantity->needs_battery()) return known->second = of_battery(*condition.quantity);
+  if (condition.quantity->is_of_radio()) return known->second = of_radio(*condition.quantity);
   const auto* source = std::ranges::find(kSources, condition.quantity->name, &Source::quantity);
   stl::Signal signal{std::string(condition.quantity->name), {}};
   for (const GroundTruth* truth : truths_) {

@@ -22,6 +22,7 @@ class Signals {
   const stl::Trace& trace() const { return trace_; }
 
  private:
+  std::size_t of_radio(const mission::Quantity& quantity);
   std::optional<std::size_t> of_battery(const mission::Quantity& quantity);
 
   std::string uav_;

@@ -144,6 +144,7 @@ coordinator::RunOptions run_options(const TrialSpec& spec, const TrialInputs& in
   options.ground_truth_period = spec.scenario.ground_truth_period;
   options.record_images = spec.scenario.record_images;
   options.image_period = spec.scenario.image_period;
+  options.radio = spec.condition.radio.value_or(spec.scenario.radio);
   options.header.tether_version = version();
   options.header.scenario = spec.scenario.name;
   options.header.condition = spec.condition.name;

@@ -1,4 +1,5 @@
 #include "read_computers.h"
+#include "read_radio.h"
 #include "read_replay.h"
 #include "read_sensor_profile.h"
 #include "read_sut.h"
@@ -173,6 +174,7 @@ Condition read_condition(const toml::Table& table, Scenario& scenario) {
     read_clock(table, condition);
   }
   condition.replay = read_replay(table, condition, scenario);
+  if (table.has("radio")) condition.radio = read_radio(table);
   condition.real_time_factor = table.number_or("real_time_factor", kFactor, 0.0);
   if (condition.policy == Policy::kFreeRunning && condition.real_time_factor == 0.0) {
     table.fail(
@@ -190,7 +192,7 @@ void read_conditions(const toml::Table& root, Scenario& scenario) {
   for (const toml::Table& table : root.tables(
            "condition", {"name", "description", "policy", "clock", "cpu_factor", "computing_ms",
                          "real_time_factor", "profile", "target", "simulator", "timing", "mode",
-                         "counted", "unknown_stages", "shared"})) {
+                         "counted", "unknown_stages", "shared", "radio"})) {
     scenario.conditions.push_back(read_condition(table, scenario));
     if (auto profile = read_profile(table, scenario)) {
       scenario.conditions.back().profiles.push_back(std::move(*profile));
@@ -290,9 +292,10 @@ Metric read_metric(const toml::Table& table, const Scenario& scenario) {
 
 void read_metrics(const toml::Table& root, Scenario& scenario) {
   std::set<std::string> names;
-  for (const toml::Table& table : root.tables_or_none(
-           "metric", {"name", "kind", "label", "uav", "anchor", "sensor", "threshold_deg", "max",
-                      "threshold_m_s", "max_s", "max_ms", "max_m", "max_deg", "max_j", "min_m"})) {
+  for (const toml::Table& table :
+       root.tables_or_none("metric", {"name", "kind", "label", "uav", "anchor", "sensor",
+                                      "threshold_deg", "max", "threshold_m_s", "max_s", "max_ms",
+                                      "max_m", "max_deg", "max_j", "min_m", "min"})) {
     scenario.metrics.push_back(read_metric(table, scenario));
     const std::string& name = scenario.metrics.back().name;
     if (!names.insert(name).second) {
@@ -373,7 +376,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
   const toml::Table root =
       document.root({"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s",
                      "connect_limit_s", "max_contact_speed_m_s", "anchors", "target", "uav", "sut",
-                     "condition", "metric", "record"});
+                     "condition", "metric", "record", "radio"});
   scenario.name = root.identifier("name") + name_suffix(settings);
   scenario.description = root.text_or("description", "");
   scenario.world = root.existing_file("world");
@@ -382,6 +385,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
   read_anchors(root, scenario);
   read_computers(root, scenario);
   read_uavs(root, scenario);
+  scenario.radio = read_radio(root);
   read_conditions(root, scenario);
   apply_to_profiles(of_profiles, scenario);
   read_metrics(root, scenario);

@@ -69,6 +69,18 @@ constexpr std::array kMetricKinds = {
                .label = "Energy",
                .unit = "J",
                .help = "what the UAV's battery lost until the SUT finished; needs 'energy'"},
+    MetricKind{.name = "delivery_ratio",
+               .label = "Delivery ratio",
+               .unit = "1",
+               .is_better_if_more = true,
+               .of_any_flight = true,
+               .help = "share of the UAV's messages that arrived, counted at each receiver"},
+    MetricKind{.name = "age_of_information",
+               .label = "Age of information",
+               .unit = "s",
+               .of_any_flight = true,
+               .help = "mean age of the newest message that the UAV had from each other UAV, from "
+                       "the first one on"},
 };
 
 }  // namespace

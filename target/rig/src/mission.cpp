@@ -34,6 +34,9 @@ struct TaskMaker {
   TaskPointer operator()(const tasks::SearchOptions& options) const {
     return std::make_unique<tasks::SearchTask>(spec.anchor, options);
   }
+  TaskPointer operator()(const tasks::SearchPairOptions& options) const {
+    return std::make_unique<tasks::SearchPairTask>(spec.anchor, options);
+  }
   TaskPointer operator()(const tasks::HoldOptions& options) const {
     return std::make_unique<tasks::HoldTask>(options);
   }

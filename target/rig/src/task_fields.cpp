@@ -204,6 +204,18 @@ Fields fields(tasks::LandOptions& options, TaskSpec&) {
           time_limit(options.time_limit)};
 }
 
+Fields fields(tasks::SearchPairOptions& options, TaskSpec& spec) {
+  return joined(
+      {fields(options.search, spec),
+       {{"partner_ahead_m", "Where the other UAV starts: along the heading at the start",
+         plain(options.partner_ahead_m, -1000.0, 1000.0)},
+        {"partner_left_m", "... and to its left", plain(options.partner_left_m, -1000.0, 1000.0)},
+        {"gap_m", "Distance kept to it", plain(options.gap_m, 0.01, 1000.0)},
+        {"repeat_s", "Time between two messages", seconds(options.repeat)},
+        speed(options.speed_m_s),
+        imu(options.imu)}});
+}
+
 }  // namespace
 
 std::span<const TaskKind> task_kinds() {
@@ -224,7 +236,9 @@ std::span<const TaskKind> task_kinds() {
       TaskKind{"hold", "Hover for a time", tasks::HoldOptions{}},
       TaskKind{"inspect", "Keep the anchor ahead at a distance for a time",
                tasks::InspectOptions{}},
-      TaskKind{"land", "Descend until the UAV stands", tasks::LandOptions{}}};
+      TaskKind{"land", "Descend until the UAV stands", tasks::LandOptions{}},
+      TaskKind{"search_pair", "Turn until this UAV or another one sees the anchor; the other comes",
+               tasks::SearchPairOptions{}}};
   return kKinds;
 }
 

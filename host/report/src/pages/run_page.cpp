@@ -5,6 +5,7 @@
 #include "plots/board_lanes.h"
 #include "plots/mission_timeline.h"
 #include "plots/svg.h"
+#include "tables/radio_table.h"
 #include "tables/report_format.h"
 
 #include <fmt/format.h>
@@ -121,7 +122,10 @@ std::string record_part(const std::filesystem::path& folder) {
   try {
     const record::Record record = record::read_record(file, {.images = true});
     FigureMaker figures(1);
-    std::string html = contacts_part(record) + boards_part(record) + plots_part(figures, record);
+    std::string html = contacts_part(record) + boards_part(record);
+    if (const Table radio = radio_table(record); !radio.rows.empty())
+      html += element("h2", "Radio") + to_html(radio);
+    html += plots_part(figures, record);
     const std::string frames = figures.frames(record);
     if (!frames.empty()) html += element("h2", "Camera images") + frames;
     if (const std::string damage = record::describe_damage(record); !damage.empty())

@@ -3,6 +3,7 @@
 #include "renderer.h"
 #include "scene.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <tether/base/error.h>
@@ -91,6 +92,12 @@ class MujocoSimulator final : public Simulator {
     return dynamics_.clearance(uav);
   }
 
+  std::optional<int> walls_between(std::size_t uav, std::size_t other) override {
+    check_uav(std::max(uav, other));
+    capture(between_);
+    return sensors_.walls_between(between_, uav, other);
+  }
+
   std::optional<energy::Status> battery(std::size_t uav) const override {
     check_uav(uav);
     return dynamics_.battery(uav);
@@ -136,6 +143,7 @@ class MujocoSimulator final : public Simulator {
   Dynamics dynamics_;
   CollisionRays rays_;
   SensorSuite sensors_;
+  Snapshot between_;  // reused
   SimTime now_{};
   Duration stepping_{0};
   bool warned_ = false;

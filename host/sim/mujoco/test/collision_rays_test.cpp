@@ -75,5 +75,20 @@ TEST(CollisionRaysTest, MeasuresTheNearestWallAhead) {
       << "the floor, through its own body";
 }
 
+TEST(WallsBetween, CountsWallsButNoUavs) {
+  World world = test_world();
+  for (const double x_m : {3.0, 4.0, 8.0, 14.0})
+    world.uavs.push_back(test_uav("at" + std::to_string(x_m), {x_m, 0.0, 1.0}));
+  for (const double x_m : {2.0, 6.0, 10.0, 12.0})
+    world.models.push_back(
+        box_model("wall" + std::to_string(x_m), {x_m, 0.0, 1.0}, {0.2, 6.0, 3.0}, {1, 1, 1}));
+  const auto simulator = make_simulator(std::move(world));
+  EXPECT_EQ(simulator->walls_between(0, 1), 1);
+  EXPECT_EQ(simulator->walls_between(1, 0), 1);
+  EXPECT_EQ(simulator->walls_between(1, 2), 0);
+  EXPECT_EQ(simulator->walls_between(0, 3), 2) << "through two UAVs";
+  EXPECT_EQ(simulator->walls_between(4, 0), 4);
+}
+
 }  // namespace
 }  // namespace tether::sim

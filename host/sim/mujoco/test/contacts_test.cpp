@@ -1,6 +1,7 @@
 #include "test_simulator.h"
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -111,6 +112,17 @@ TEST(MujocoContactsTest, StopAUavThatFalls) {
     EXPECT_LT(fastest_m_s, fall_m_s + 0.1);
     EXPECT_LT(sunk_m, 0.01);
   }
+}
+
+TEST(MujocoContactsTest, UavsThatCollideNameEachOther) {
+  const auto simulator = make_simulator(world_with_two());
+  for (std::size_t i = 0; i < 2; ++i) simulator->apply(i, {{1.0, 0.0, 0.0}, 0.0});
+  simulator->advance_to(SimTime(4s));
+  std::map<std::size_t, std::string> first_with;
+  for (const Contact& contact : simulator->take_contacts())
+    first_with.try_emplace(contact.uav, contact.with);
+  EXPECT_EQ(first_with, (std::map<std::size_t, std::string>{{0, "beta"}, {1, "alpha"}}));
+  ASSERT_TRUE(simulator->clearance(0) && simulator->clearance(1));
 }
 
 TEST(MujocoContactsTest, DoNotDependOnHowTheAdvanceIsSplit) {

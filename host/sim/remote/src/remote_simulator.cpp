@@ -92,6 +92,12 @@ class RemoteSimulator final : public Simulator {
     return meter_.measure(uav, X_WB_);
   }
 
+  std::optional<int> walls_between(std::size_t uav, std::size_t other) override {
+    check_uav(std::max(uav, other));
+    capture(between_);
+    return sensors_.walls_between(between_, uav, other);
+  }
+
   std::string description() const override {
     const std::string renderer = sensors_.renderer_name();
     return renderer.empty() ? description_ : description_ + ", " + renderer;
@@ -177,6 +183,7 @@ class RemoteSimulator final : public Simulator {
   std::string description_;
   /// Not sent yet.
   std::vector<std::optional<uav::VelocityCommand>> commands_;
+  Snapshot between_;  // reused
   protocol::State state_;
   std::vector<uav::Pose> X_WB_;
   std::vector<BodyMotion> motions_;

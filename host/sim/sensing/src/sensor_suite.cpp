@@ -100,6 +100,30 @@ SimulatorWork SensorSuite::work() const {
   return work;
 }
 
+// A ray goes on behind each hit. The UAVs are put far away, so that none is hit.
+int SensorSuite::walls_between(const Snapshot& snapshot, std::size_t uav, std::size_t other) {
+  constexpr double kFarAway_m = 1e6;
+  constexpr double kBehind_m = 1e-3;
+  constexpr int kMostHits = 64;
+  for (std::size_t i = 0; i < X_WB_.size(); ++i) X_WB_[i] = layout_.pose_of(snapshot.state, i);
+  uav::Pose X_WS{X_WB_[uav].p, {}};
+  const uav::Vec3 way = X_WB_[other].p - X_WS.p;
+  double left_m = uav::norm(way);
+  if (left_m < kBehind_m) return 0;
+  const uav::Vec3 direction = (1.0 / left_m) * way;
+  for (std::size_t i = 0; i < world_.uavs.size(); ++i) X_WB_[i].p.z += kFarAway_m;
+  int hits = 0;
+  while (left_m > 0.0 && hits < kMostHits) {
+    double distance_m = 0.0;
+    rays_.cast({X_WS, {&direction, 1}, X_WB_, uav, left_m}, {&distance_m, 1});
+    if (distance_m >= left_m) break;
+    ++hits;
+    X_WS.p = X_WS.p + (distance_m + kBehind_m) * direction;
+    left_m -= distance_m + kBehind_m;
+  }
+  return (hits + 1) / 2;
+}
+
 std::string SensorSuite::renderer_name() const {
   return images_->renderer_name();
 }

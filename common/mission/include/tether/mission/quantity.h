@@ -32,9 +32,9 @@ struct Quantity {
   std::string_view help;  ///< one line: the definition
 
   /// Of the battery: the record has it only if the UAV has a model of energy.
-  bool needs_battery() const {
-    return dimension == Dimension::kEnergy || dimension == Dimension::kShare;
-  }
+  bool needs_battery() const { return dimension == Dimension::kEnergy || name == "charge_left"; }
+  /// Of the messages between UAVs.
+  bool is_of_radio() const { return name == "delivery_ratio" || name == "information_age"; }
   /// Its value is 0 at the start of the time of a clause.
   bool counts_from_start() const { return dimension == Dimension::kEnergy; }
 };

@@ -11,6 +11,7 @@
 
 #include <tether/base/time.h>
 #include <tether/mission/mission.h>
+#include <tether/radio/settings.h>
 #include <tether/scenario/clock.h>
 #include <tether/scenario/energy.h>
 #include <tether/scenario/metric.h>
@@ -70,7 +71,8 @@ struct Condition {
   /// With kScripted: the ET that each phase of computing takes, independent of its real time, > 0.
   /// Such a run is the same every time. With other clocks 0.
   Duration computing{0};
-  std::optional<ReplaySource> replay{};  ///< with kReplayed
+  std::optional<ReplaySource> replay{};    ///< with kReplayed
+  std::optional<radio::Settings> radio{};  ///< replaces that of the scenario
   /// Applied to every UAV's sensors in this order: the condition's own, then that of a campaign or
   /// the command line.
   std::vector<Profile> profiles{};
@@ -149,6 +151,7 @@ struct Scenario {
   double max_contact_speed_m_s = kHardContact_m_s;
   std::vector<Computer> computers{};  ///< [[target]]s
   std::vector<UavSetup> uavs;         ///< at least one
+  radio::Settings radio{};            ///< between them
   std::vector<std::string> anchors;
   FileLocation anchors_at{};          ///< of their key; empty: there is none
   std::vector<Condition> conditions;  ///< at least one; the first is the default

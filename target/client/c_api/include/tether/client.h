@@ -496,7 +496,5 @@ tether_status tether_finish(tether_vehicle* vehicle, int32_t reached_goal, const
 #ifdef __cplusplus
 }
 #endif
-
 /// @}
-
 #include <tether/client_radio.h>

@@ -16,6 +16,7 @@
 #include <tether/tasks/land_task.h>
 #include <tether/tasks/move_forward_task.h>
 #include <tether/tasks/relative_position_task.h>
+#include <tether/tasks/search_pair_task.h>
 #include <tether/tasks/search_task.h>
 #include <tether/tasks/sensor_characterization_task.h>
 #include <tether/tasks/task.h>
@@ -27,7 +28,7 @@ using TaskOptions =
     std::variant<tasks::SensorCharacterizationOptions, tasks::RelativePositionOptions,
                  tasks::FaceAnchorOptions, tasks::MoveForwardOptions, tasks::ClosedPathOptions,
                  tasks::GoToOptions, tasks::SearchOptions, tasks::HoldOptions,
-                 tasks::InspectOptions, tasks::LandOptions>;
+                 tasks::InspectOptions, tasks::LandOptions, tasks::SearchPairOptions>;
 
 struct TaskSpec {
   TaskOptions options;

@@ -54,6 +54,9 @@ class SensorSuite {
   /// Of pictures, since the last reset.
   SimulatorWork work() const;
 
+  /// As `Simulator::walls_between`, as of a snapshot.
+  int walls_between(const Snapshot& snapshot, std::size_t uav, std::size_t other);
+
   /// The renderer's name; empty before the first image.
   std::string renderer_name() const;
 

@@ -1,0 +1,122 @@
+#include "altered_record.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace tether::audit {
+namespace {
+
+using record::Record;
+
+record::Logged<record::Interaction> call(std::string uav, std::string kind, std::int64_t request_ns,
+                                         std::int64_t reply_ns, std::uint64_t sequence) {
+  record::Interaction m;
+  m.uav = std::move(uav);
+  m.kind = std::move(kind);
+  m.sequence = sequence;
+  m.request_at = from_ns<ExecTime>(request_ns);
+  m.reply_at = from_ns<ExecTime>(reply_ns);
+  m.st_at_arrival = from_ns<SimTime>(floor_ns(request_ns, kStep.count()));
+  m.st_at_release = from_ns<SimTime>(floor_ns(reply_ns, kStep.count()));
+  m.grid_error = same_instant(m.reply_at) - m.st_at_release;
+  set_lag(m);
+  return {m.st_at_release, 0, m};
+}
+
+// "a" sends at 1.5 ms; it arrives at "b" at 1.7 ms, who receives it, and then nothing until 4 ms.
+Record exchange() {
+  Record record;
+  record.header.policy = record::kConservativeBarrier;
+  record.header.step = kStep;
+  record.header.suts = {{.uav = "a", .sut = "s", .clock = "scripted"},
+                        {.uav = "b", .sut = "s", .clock = "scripted"}};
+  record.header.radio = {"log_distance", Duration(100'000), 8e6};
+  record.interactions = {
+      call("a", "send", 1'500'000, 1'500'000, 1), call("b", "receive", 1'000'000, 1'700'000, 1),
+      call("b", "receive", 2'000'000, 4'000'000, 2), call("a", "finish", 5'000'000, 5'000'000, 2),
+      call("b", "finish", 5'000'000, 5'000'000, 3)};
+  record::Interaction& received = record.interactions[1].message;
+  received.receive_until = from_ns<ExecTime>(3'000'000);
+  received.received = {"a", 1, from_ns<SimTime>(1'700'000)};
+  record.interactions[2].message.receive_until = from_ns<ExecTime>(4'000'000);
+  record.radio = {{SimTime(kStep),
+                   2,
+                   {.uav = "a",
+                    .sequence = 1,
+                    .to = "b",
+                    .bytes = 100,
+                    .sent_at = from_ns<SimTime>(1'500'000),
+                    .at = from_ns<SimTime>(1'700'000),
+                    .outcome = "delivered"}}};
+  for (std::size_t i = 0; i < record.interactions.size(); ++i)
+    record.interactions[i].order = i < 2 ? i : i + 1;
+  record.footer.emplace();
+  record.footer->end = "finished";
+  record.footer->st_at_end = from_ns<SimTime>(5'000'000);
+  record.footer->et_at_end = {from_ns<ExecTime>(5'000'000), from_ns<ExecTime>(5'000'000)};
+  set_figures(record);
+  return record;
+}
+
+TEST(AuditOfRadio, AcceptsAnExchange) {
+  EXPECT_TRUE(audit(exchange()).passed()) << to_text(audit(exchange()));
+}
+
+TEST(AuditOfRadio, FindsViolations) {
+  for (const Planted& planted : std::vector<Planted>{
+           {"to itself", {0, 1}, [](Record& r) { r.radio[0].message.to = "a"; }},
+           {"an unknown outcome",
+            {0},
+            [](Record& r) {
+              r.radio[0].message.outcome = "eaten";
+              r.interactions[1].message.received.reset();
+              r.interactions[1].message.receive_until = r.interactions[1].message.reply_at;
+            }},
+           {"two fates",
+            {0},
+            [](Record& r) {
+              r.radio.push_back(r.radio[0]);
+              r.radio[1].message.outcome = "noise";
+            }},
+           {"no fate", {0, 1}, [](Record& r) { r.radio.clear(); }},
+           {"not sent", {0}, [](Record& r) { r.interactions[0].message.kind = "finish"; }},
+           {"sent at another time",
+            {1},
+            [](Record& r) { r.radio[0].message.sent_at -= Duration(1); }},
+           {"faster than its bytes", {1}, [](Record& r) { r.radio[0].message.bytes = 101; }},
+           {"received before it arrived",
+            {1},
+            [](Record& r) {
+              r.radio[0].message.at += Duration(1);
+              r.interactions[1].message.received->arrived_at += Duration(1);
+            }},
+           {"another time of arrival",
+            {1},
+            [](Record& r) { r.interactions[1].message.received->arrived_at -= Duration(1); }},
+           {"received late",
+            {3},
+            [](Record& r) {
+              r.interactions[1].message.reply_at += Duration(1);
+              r.interactions[1].message.grid_error += Duration(1);
+              set_figures(r);
+            }},
+           {"missed",
+            {3},
+            [](Record& r) {
+              r.interactions[1].message.received.reset();
+              r.interactions[1].message.receive_until = r.interactions[1].message.reply_at;
+            }},
+           {"an early timeout", {7}, [](Record& r) {
+              *r.interactions[2].message.receive_until += Duration(1);
+            }}}) {
+    Record record = exchange();
+    planted.plant(record);
+    Rules rules = rules_of(record);
+    for (const int rule : planted.rules) EXPECT_TRUE(rules.contains(rule)) << planted.what;
+    EXPECT_FALSE(audit(record).passed()) << planted.what;
+  }
+}
+
+}  // namespace
+}  // namespace tether::audit
