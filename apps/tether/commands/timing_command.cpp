@@ -58,19 +58,14 @@ timing::Timing read_all(const std::vector<fs::path>& files) {
 /// The work of each stage under a counted clock.
 void add_counted(timing::Timing& timing, const std::vector<fs::path>& files) {
   const timing::Timing counted = read_all(files);
-  const auto refuse = [&](const std::string& what) {
-    throw Error(ErrorCode::kBadFile, {files.front().string()}, what).about("--counted");
-  };
-  if (counted.clock != "counted")
-    refuse(
-        fmt::format("was flown with the clock \"{}\". --counted needs a run under a counted "
-                    "target.",
-                    counted.clock));
-  if (counted.scenario != timing.scenario || counted.build_id != timing.build_id)
-    refuse(
-        fmt::format("is of scenario \"{}\" and build \"{}\", but the timing is of \"{}\" and "
-                    "\"{}\". Count the program that was measured.",
-                    counted.scenario, counted.build_id, timing.scenario, timing.build_id));
+  timing::require_counted(counted, files.front());
+  timing::require_scenario(counted, timing.scenario, files.front());
+  if (counted.build_id != timing.build_id)
+    throw Error(ErrorCode::kBadFile, {files.front().string()},
+                fmt::format("is of build \"{}\", but the timing is of \"{}\". Count the program "
+                            "that was measured.",
+                            counted.build_id, timing.build_id))
+        .about("--counted");
   for (const auto& [stage, times_ns] : timing::samples_of(counted))
     timing.counted_ns[stage] = stats::mean(times_ns);
 }
@@ -91,11 +86,7 @@ void require_fit(const TimingOptions& options) {
 
 int print_change(const timing::Timing& now, const TimingOptions& options) {
   const timing::Timing before = read_any(options.against);
-  if (now.scenario != before.scenario)
-    throw Error(
-        ErrorCode::kBadFile, {options.against.string()},
-        fmt::format("is of the scenario \"{}\", not of \"{}\"", before.scenario, now.scenario))
-        .about(before.scenario);
+  timing::require_scenario(before, now.scenario, options.against);
   if (now.board != before.board || now.clock != before.clock)
     say("warning: measured on \"{}\" with the clock \"{}\", before on \"{}\" with \"{}\"\n",
         now.board, now.clock, before.board, before.clock);

@@ -211,7 +211,7 @@ void add_size_command(CLI::App& program, Action& action) {
   command->add_option("--condition", options->condition,
                       "Condition to slow down [the scenario's first one]");
   command->add_option("--target", options->targets,
-                      "Virtual target to judge, several times if you like: name of a shipped "
+                      "Virtual target to evaluate, several times if you like: name of a shipped "
                       "target, or a file (TOML)");
   command
       ->add_option("--success", options->success,

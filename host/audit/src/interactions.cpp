@@ -38,10 +38,7 @@ class InteractionCheck {
     for (const record::SutInfo& sut : record_.header.suts)
       if (sut.replay)
         report_.note(
-            fmt::format("the time of UAV \"{}\" was replayed ({}) from {}, recorded {} on "
-                        "{}",
-                        sut.uav, sut.replay->mode, sut.replay->timing, sut.replay->recorded_at,
-                        sut.replay->board));
+            fmt::format("the time of UAV \"{}\" was {}", sut.uav, record::describe(*sut.replay)));
     if (unstamped > 0)
       report_.note(
           fmt::format("rule 6: {} interactions have timestamps of the coordinator, not of "

@@ -259,8 +259,7 @@ std::string describe_replay(const TrialResult& result) {
   const auto recorded = day_of(from.recorded_at), flown = day_of(result.this_run.started_at);
   const std::string age =
       recorded && flown ? fmt::format(" ({} days before)", (*flown - *recorded).count()) : "";
-  std::string text = fmt::format("replayed ({}) from {}, recorded {}{} on {}", from.mode,
-                                 from.timing, from.recorded_at, age, from.board);
+  std::string text = record::describe(from) + age;
   if (!result.replay->unknown_stages.empty())
     text += fmt::format("; not recorded: {}", fmt::join(result.replay->unknown_stages, ", "));
   return text;

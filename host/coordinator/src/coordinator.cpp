@@ -177,10 +177,7 @@ void Coordinator::Impl::start() {
 // Whether every run with these options has the same messages: no clock has a part in them.
 bool Coordinator::Impl::is_repeatable() const {
   return is_synchronised() && std::ranges::all_of(sessions_, [](const Session& session) {
-           const link::ClockKind clock = session.hello.clock;
-           return !session.is_concurrent() &&
-                  (clock == link::ClockKind::kScripted || clock == link::ClockKind::kCounted ||
-                   clock == link::ClockKind::kReplayed);
+           return !session.is_concurrent() && link::repeats(session.hello.clock);
          });
 }
 

@@ -10,12 +10,7 @@ namespace {
 
 timing::Timing read(const std::filesystem::path& file, const scenario::Scenario& scenario) {
   timing::Timing timing = timing::read_timing(file);
-  if (timing.scenario != scenario.name)
-    throw Error(ErrorCode::kBadFile, {file.string()},
-                fmt::format("is of the scenario \"{}\", not of \"{}\". Record this scenario, and "
-                            "write a file of its own.",
-                            timing.scenario, scenario.name))
-        .about(timing.scenario);
+  timing::require_scenario(timing, scenario.name, file);
   return timing;
 }
 
@@ -26,19 +21,13 @@ ReplayedTime replayed_time(const TrialSpec& spec) {
   if (!spec.condition.replay) return time;
   const scenario::ReplaySource& source = *spec.condition.replay;
   const timing::Timing timing = read(source.timing, spec.scenario);
-  // In the order of the scenario's enumerators.
-  timing::ReplaySetting setting{.mode = static_cast<timing::Mode>(source.mode),
-                                .unknown = static_cast<timing::UnknownStages>(source.unknown),
+  timing::ReplaySetting setting{.mode = source.mode,
+                                .unknown = source.unknown,
                                 .counted = {},
                                 .slowdown = spec.condition.slowdown};
   if (!source.counted.empty()) {
     setting.counted = read(source.counted, spec.scenario);
-    if (setting.counted->clock != "counted")
-      throw Error(ErrorCode::kBadFile, {source.counted.string()},
-                  fmt::format("is of runs under the clock \"{}\", but 'counted' needs \"counted\". "
-                              "Fly under a counted target, and write its timing.",
-                              setting.counted->clock))
-          .about(setting.counted->clock);
+    timing::require_counted(*setting.counted, source.counted);
   }
   try {
     for (const scenario::UavSetup& uav : spec.scenario.uavs)
@@ -47,7 +36,7 @@ ReplayedTime replayed_time(const TrialSpec& spec) {
     throw Error(e.code(), {source.timing.string()}, e.what()).about(e.subject());
   }
   time.from = {.timing = source.timing.filename().string(),
-               .mode = std::string(name(setting.mode)),
+               .mode = std::string(timing::kModes[static_cast<std::size_t>(setting.mode)]),
                .recorded_at = timing.recorded_at,
                .board = timing.board,
                .build_id = timing.build_id};

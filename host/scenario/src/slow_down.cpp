@@ -11,7 +11,7 @@ namespace {
 std::string why_not_slower(const Condition& condition) {
   if (condition.target && condition.target->ssh)
     return "its SUTs run on a board, which cannot be slowed down. Use a virtual target.";
-  if (condition.clock == Clock::kReplayed && condition.replay->mode == ReplayMode::kExact)
+  if (condition.clock == Clock::kReplayed && condition.replay->mode == timing::Mode::kExact)
     return "its time is replayed call by call, which a slower program would not repeat. Use mode "
            "= \"resampled\" or \"scaled\".";
   if (condition.clock == Clock::kUnstamped)

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <tether/base/enum_name.h>
 #include <tether/base/error.h>
 #include <tether/base/random.h>
 #include <tether/link/codec.h>
@@ -52,13 +51,6 @@ double ratio_of(const std::string& stage, const Timing& timing,
 }
 
 }  // namespace
-
-std::string_view name(Mode mode) {
-  return enum_name(mode, {"exact", "resampled", "scaled"});
-}
-std::string_view name(UnknownStages unknown) {
-  return enum_name(unknown, {"refused", "counted", "zero"});
-}
 
 Replay::Replay(const Timing& timing, const ReplaySetting& setting, const std::string& uav,
                std::uint64_t seed)

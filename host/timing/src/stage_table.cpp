@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kNsPerSecond = 1e9;
 
+}  // namespace
+
 std::string in_ms(double seconds) {
   return fixed(seconds * 1e3, 3);
 }
-
-}  // namespace
 
 std::vector<StageRow> stage_rows(const Timing& timing) {
   std::vector<StageRow> rows;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/link/messages.h>
 #include <tether/timing/timing.h>
 
 namespace tether::timing {
@@ -67,6 +68,23 @@ Timing of_record(const record::Record& record, const std::filesystem::path& file
     timing.runs.push_back(run_of(record, sut));
   }
   return timing;
+}
+
+void require_scenario(const Timing& timing, const std::string& scenario,
+                      const std::filesystem::path& file) {
+  if (timing.scenario != scenario)
+    refuse(file, timing.scenario,
+           fmt::format("is of the scenario \"{}\", not of \"{}\". Record this scenario, and write "
+                       "a file of its own.",
+                       timing.scenario, scenario));
+}
+
+void require_counted(const Timing& timing, const std::filesystem::path& file) {
+  if (timing.clock != link::name(link::ClockKind::kCounted))
+    refuse(file, timing.clock,
+           fmt::format("is of runs under the clock \"{}\", but counted work is needed. Fly under a "
+                       "counted target, and write its timing.",
+                       timing.clock));
 }
 
 void add(Timing& timing, const Timing& more, const std::filesystem::path& file) {

@@ -118,8 +118,10 @@ TEST(Replay, StagesThatAreUnknownAreTreatedAsAsked) {
     Replay replay(timing, {.unknown = unknown, .counted = counted}, "uav1", 1);
     EXPECT_FALSE(replay.knows(stage));
     const Times times = taken(replay, {stage});
-    EXPECT_EQ(replay.take("command", times).has_value(), charged < 0) << name(unknown) << stage;
-    EXPECT_EQ(times[0].computing.count(), std::max(charged, 0)) << name(unknown) << stage;
+    EXPECT_EQ(replay.take("command", times).has_value(), charged < 0)
+        << static_cast<int>(unknown) << stage;
+    EXPECT_EQ(times[0].computing.count(), std::max(charged, 0))
+        << static_cast<int>(unknown) << stage;
   }
 }
 

@@ -74,10 +74,7 @@ Result<std::unique_ptr<Vehicle>> connect_to_exec(const ConnectOptions& options) 
 /// SUT sends it too.
 Duration progress_period(const ConnectOptions& options, const link::Welcome& welcome) {
   if (welcome.free_running) return options.heartbeat_period;
-  const link::ClockKind kind = options.time->kind();
-  const bool repeats = kind == link::ClockKind::kScripted || kind == link::ClockKind::kCounted ||
-                       kind == link::ClockKind::kReplayed;
-  return repeats ? Duration::zero() : options.progress_period;
+  return link::repeats(options.time->kind()) ? Duration::zero() : options.progress_period;
 }
 
 }  // namespace

@@ -19,10 +19,6 @@ namespace {
 constexpr std::size_t kBins = 48;
 constexpr double kBin_px = 15.0, kBars_px = 150.0, kBars_across_px = kBin_px * kBins;
 
-std::string in_ms(double seconds) {
-  return fixed(seconds * 1e3, 3);
-}
-
 /// How often the stage took how long, from 0 to its worst time.
 std::string histogram(const timing::StageRow& row, const std::vector<double>& times_ns) {
   std::array<std::size_t, kBins> counts{};
@@ -46,7 +42,7 @@ std::string histogram(const timing::StageRow& row, const std::vector<double>& ti
   svg += fmt::format(
       "<text x=\"0\" y=\"{0}\" {1}>0</text>"
       "<text x=\"{2}\" y=\"{0}\" text-anchor=\"end\" {1}>{3} ms</text></svg>",
-      kBars_px + 15.0, fill_of(Ink::kForeground), kBars_across_px, in_ms(row.worst_s));
+      kBars_px + 15.0, fill_of(Ink::kForeground), kBars_across_px, timing::in_ms(row.worst_s));
   return svg;
 }
 
@@ -90,12 +86,12 @@ std::string timing_page(const timing::Timing& timing) {
       timing::warnings(rows)};
   std::string figures;
   for (const timing::StageRow& row : rows) {
-    table.rows.push_back({row.stage, std::to_string(row.count), in_ms(row.median_s),
-                          in_ms(row.p95_s), in_ms(row.p99_s), in_ms(row.worst_s),
-                          fixed(100.0 * row.share, 1) + " %"});
+    table.rows.push_back({row.stage, std::to_string(row.count), timing::in_ms(row.median_s),
+                          timing::in_ms(row.p95_s), timing::in_ms(row.p99_s),
+                          timing::in_ms(row.worst_s), fixed(100.0 * row.share, 1) + " %"});
     figures += figure(histogram(row, samples.at(row.stage)),
                       fmt::format("{}: {} times, median {} ms, worst {} ms", row.stage, row.count,
-                                  in_ms(row.median_s), in_ms(row.worst_s)),
+                                  timing::in_ms(row.median_s), timing::in_ms(row.worst_s)),
                       "plot");
   }
   const std::string title = timing.scenario + ": computing time by stage";

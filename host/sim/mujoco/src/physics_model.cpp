@@ -28,8 +28,8 @@ class PhysicsXml {
     for (const Collision& collision : link.collisions) {
       const std::string shape = describe(collision, X * collision.X_LC, is_static);
       if (shape.empty()) continue;
-      append(R"(<geom {} contype="{}" conaffinity="1" friction="{} 0.005 0.0001" solref="{} 1"/>)",
-             shape, is_static ? 0 : 1, collision.friction, kContactTime_s);
+      append(R"(<geom {} contype="{}" conaffinity="1" friction="{} 0.005 0.0001"/>)", shape,
+             is_static ? 0 : 1, collision.friction);
     }
   }
 
@@ -58,9 +58,6 @@ class PhysicsXml {
 
  private:
   static constexpr int kMaxContacts = 500;
-  // In which the depth of a contact goes back: a UAV that falls at 2 m/s sinks in by 4 mm. With the
-  // engine's 0.02 s it would be 15 mm; with less than 0.006 s, a hull rattles along a wall.
-  static constexpr double kContactTime_s = 0.006;
 
   template <class... Args>
   void append(fmt::format_string<Args...> format, Args&&... args) {

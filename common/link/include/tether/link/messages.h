@@ -31,6 +31,11 @@ enum class ClockKind : std::uint8_t {
   kReplayed = 5,
 };
 std::string_view name(ClockKind kind);
+/// Whether runs with this clock repeat to the byte: no clock of a machine has a part in it.
+constexpr bool repeats(ClockKind kind) {
+  return kind == ClockKind::kScripted || kind == ClockKind::kCounted ||
+         kind == ClockKind::kReplayed;
+}
 
 /// SUT → coordinator, first.
 struct Hello {

@@ -275,6 +275,11 @@ struct ReplayInfo {
 
   friend bool operator==(const ReplayInfo&, const ReplayInfo&) = default;
 };
+/// For a person: "replayed (exact) from FILE, recorded AT on BOARD".
+inline std::string describe(const ReplayInfo& from) {
+  return "replayed (" + from.mode + ") from " + from.timing + ", recorded " + from.recorded_at +
+         " on " + from.board;
+}
 struct SutInfo {
   std::string uav;
   std::string sut;              ///< name and version that the SUT reported

@@ -18,6 +18,7 @@
 #include <tether/scenario/profile.h>
 #include <tether/scenario/target.h>
 #include <tether/sim/world.h>
+#include <tether/timing/replay.h>
 #include <tether/uav/sensor_timing.h>
 
 /// Scenario files (TOML): everything that determines a run except the seed. All values here are
@@ -28,15 +29,11 @@ enum class Policy { kConservativeBarrier, kFreeRunning };
 /// As written in files: "conservative_barrier", "free_running".
 std::string_view name(Policy policy);
 
-/// How recorded time is charged, and what stages take that were not recorded (tether/timing).
-enum class ReplayMode { kExact, kResampled, kScaled };
-enum class UnknownStages { kRefused, kCounted, kZero };
-
 /// Where the time of SUTs with Clock::kReplayed comes from.
 struct ReplaySource {
   std::filesystem::path timing;  ///< a timing file; absolute
-  ReplayMode mode = ReplayMode::kResampled;
-  UnknownStages unknown = UnknownStages::kRefused;
+  timing::Mode mode = timing::Mode::kResampled;
+  timing::UnknownStages unknown = timing::UnknownStages::kRefused;
   /// A timing file of the program that flies, of a run under a counted clock; absolute; empty:
   /// none.
   std::filesystem::path counted{};

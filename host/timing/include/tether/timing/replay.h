@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -19,8 +20,8 @@ enum class Mode {
   kResampled,  ///< drawn from the times of the stage, keyed by seed, UAV, stage and index
   kScaled,     ///< the same × counted work of the new build / of the one that was recorded
 };
-/// "exact", "resampled", "scaled".
-std::string_view name(Mode mode);
+/// In the order of Mode.
+inline constexpr std::array<std::string_view, 3> kModes = {"exact", "resampled", "scaled"};
 
 /// What stages are charged that the timing does not have.
 enum class UnknownStages {
@@ -28,8 +29,8 @@ enum class UnknownStages {
   kCounted,  ///< drawn from their times under a counted clock
   kZero,
 };
-/// "refused", "counted", "zero".
-std::string_view name(UnknownStages unknown);
+/// In the order of UnknownStages.
+inline constexpr std::array<std::string_view, 3> kUnknownStages = {"refused", "counted", "zero"};
 
 struct ReplaySetting {
   Mode mode = Mode::kResampled;

@@ -25,6 +25,8 @@ std::vector<StageRow> stage_rows(const Timing& timing);
 /// One line for each stage with few samples.
 std::vector<std::string> warnings(const std::vector<StageRow>& rows);
 
+/// A time in milliseconds, for tables: "12.345".
+std::string in_ms(double seconds);
 /// For a person, in milliseconds.
 std::string to_text(const std::vector<StageRow>& rows);
 

@@ -57,6 +57,13 @@ Run run_of(const record::Record& record, const record::SutInfo& sut);
 /// the same UAV and seed is there.
 void add(Timing& timing, const Timing& more, const std::filesystem::path& file);
 
+/// @throws Error(kBadFile) about `file`, from which the timing was read, if it is of another
+/// scenario.
+void require_scenario(const Timing& timing, const std::string& scenario,
+                      const std::filesystem::path& file);
+/// @throws Error(kBadFile) about `file` if its runs were not under a counted clock.
+void require_counted(const Timing& timing, const std::filesystem::path& file);
+
 /// Whether the file begins as a timing file does.
 bool is_timing_file(const std::filesystem::path& file);
 /// @throws Error(kBadFile) with file and line if it is missing, empty, truncated, damaged, or of
