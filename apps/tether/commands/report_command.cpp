@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <ranges>
 #include <string>
 #include <vector>
 
@@ -99,11 +98,13 @@ std::string rendered(const ReportOptions& options) {
   const bool is_markdown = options.format == "markdown";
   const std::vector<report::Verdict> verdicts = report::verdicts_of(results, options.folder);
   std::vector<report::Table> tables = run ? run_tables(results) : report::report_tables(results);
-  for (const auto& points : report::by_scenario(verdicts) | std::views::reverse) {
+  std::vector<report::Table> first;
+  for (const auto& points : report::by_scenario(verdicts)) {
+    first.push_back(report::rulings_table(points));
     if (report::Table stages = report::stages_table(points); !stages.rows.empty())
-      tables.insert(tables.begin(), std::move(stages));
-    tables.insert(tables.begin(), report::rulings_table(points));
+      first.push_back(std::move(stages));
   }
+  tables.insert(tables.begin(), first.begin(), first.end());
   return report::verdict_text(verdicts,
                               is_markdown ? report::Markup::kMarkdown : report::Markup::kPlain) +
          joined(tables, is_markdown ? report::to_markdown : report::to_text);

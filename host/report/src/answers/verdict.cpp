@@ -166,8 +166,8 @@ std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
   for (const campaign::TrialResult& trial : condition.trials)
     if (trial.outcome != campaign::Outcome::kFailed && !is_free_running(trial))
       trials.push_back(&trial);
-  std::ranges::stable_partition(trials, [](const campaign::TrialResult* trial) {
-    return trial->outcome == campaign::Outcome::kGoalMissed;
+  std::ranges::stable_sort(trials, {}, [](const campaign::TrialResult* trial) {
+    return trial->outcome != campaign::Outcome::kGoalMissed;
   });
   for (const campaign::TrialResult* trial : trials) {
     const std::filesystem::path of_trial =
