@@ -34,6 +34,7 @@ TEST(DrawingThreads, AreNoneWhereTheyCouldDistortTheTimeOfTheProgram) {
   for (const Case& c : cases) {
     SCOPED_TRACE(c.what);
     TrialSpec spec;
+    spec.scenario.uavs.resize(1);
     spec.condition.clock = c.clock;
     spec.condition.policy = c.policy;
     spec.waits_for_sut = c.waits;
