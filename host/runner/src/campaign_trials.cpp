@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/os/program.h>
 #include <tether/runner/campaign_trials.h>

@@ -6,6 +6,7 @@
 #include <tether/base_testing/thrown_error.h>
 #include <tether/os/program.h>
 #include <tether/runner/campaign_trials.h>
+#include <tether/runner/trial_server.h>
 
 namespace tether::runner {
 namespace {

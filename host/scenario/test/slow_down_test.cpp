@@ -43,7 +43,7 @@ TEST(SlowDown, MultipliesTheCostsOfACountedClock) {
 TEST(SlowDown, LeavesDrawnTimesToTheirReplay) {
   Condition condition;
   condition.clock = Clock::kReplayed;
-  condition.replay.emplace().mode = ReplayMode::kResampled;
+  condition.replay.emplace().mode = timing::Mode::kResampled;
   slow_down(condition, 1.5);
   EXPECT_EQ(condition.slowdown, 1.5);
   EXPECT_EQ(condition.cpu_factor, 1.0);
@@ -52,7 +52,7 @@ TEST(SlowDown, LeavesDrawnTimesToTheirReplay) {
 TEST(SlowDown, RefusesWhatCannotBeStretched) {
   Condition board, unstamped, free_wall, exact;
   exact.clock = Clock::kReplayed;
-  exact.replay.emplace().mode = ReplayMode::kExact;
+  exact.replay.emplace().mode = timing::Mode::kExact;
   board.target.emplace().ssh.emplace();
   unstamped.clock = Clock::kUnstamped;
   free_wall.clock = Clock::kWall;
