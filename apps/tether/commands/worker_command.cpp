@@ -126,7 +126,8 @@ int work(const WorkerOptions& options, const std::stop_token& stop) {
       found != round->settings().command.end())
     fs::current_path(found->second,
                      failed);  // as for the campaign, whose SUTs may name files in it
-  workers::FilesCheck files(round->settings().files);
+  const auto& files = round->settings().files;
+  workers::require_same_files(files);
   const Scratch scratch;
   runner::TrialServers servers;
   const workers::WorkerName self = own_name();
@@ -136,7 +137,7 @@ int work(const WorkerOptions& options, const std::stop_token& stop) {
        .scratch = scratch.path(),
        .fly = [&](const workers::Item& item,
                   const fs::path& local) { return fly(servers, item, local, self.node, stop); },
-       .check = [&] { files.require_unchanged(); },
+       .check = [&] { workers::require_same_files(files); },
        .measure_ms = [&] { return measure_step_ms(scratch.path(), stop); },
        .stop = stop});
   fmt::print("{} flown, {} lost\n", end.flown, end.lost);

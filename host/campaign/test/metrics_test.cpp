@@ -189,6 +189,13 @@ TEST(ComputeMetrics, KnowEveryKindThatAScenarioMayAskFor) {
   battery.uav = "uav1";
   flight.record().batteries.push_back({SimTime{}, 0, battery});
   flight.record().footer.emplace().clearances = {{"uav1", 0.5, {}, "box"}};
+  record::RadioMessage message;
+  message.outcome = record::kDelivered;
+  for (const auto& [from, to] : {std::pair("uav1", "uav2"), std::pair("uav2", "uav1")}) {
+    message.uav = from;
+    message.to = to;
+    flight.record().radio.push_back({SimTime{}, 0, message});
+  }
   for (const scenario::MetricKind& kind : scenario::metric_kinds()) {
     const MetricValue value = flight.metric(std::string(kind.name));
     EXPECT_TRUE(value.value) << kind.name << ": " << value.missing_because;

@@ -11,15 +11,14 @@ TEST(FilesCheck, AcceptsTheSameContentOnly) {
   const ScratchFolder scratch;
   const auto a = scratch.write("a", "1"), b = scratch.write("b", "2");
   const auto digests = digests_of({a, b, a});
-  FilesCheck check(digests);
-  check.require_unchanged();
+  require_same_files(digests);
   scratch.write("b", "2");  // written again
-  check.require_unchanged();
+  require_same_files(digests);
   scratch.write("b", "3");
-  EXPECT_EQ(bad_file_error([&] { check.require_unchanged(); }).where().file, b.string());
-  EXPECT_EQ(bad_file_error([&] { FilesCheck{digests}; }).where().file, b.string());
+  EXPECT_EQ(bad_file_error([&] { require_same_files(digests); }).where().file, b.string());
+  EXPECT_EQ(bad_file_error([&] { require_same_files(digests); }).where().file, b.string());
   std::filesystem::remove(a);
-  EXPECT_EQ(bad_file_error([&] { check.require_unchanged(); }).where().file, a.string());
+  EXPECT_EQ(bad_file_error([&] { require_same_files(digests); }).where().file, a.string());
 }
 
 }  // namespace

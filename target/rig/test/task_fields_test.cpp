@@ -30,7 +30,7 @@ TEST(TaskFields, AreOfTheTasksInThePapersOrder) {
   for (const TaskKind& kind : task_kinds()) names.push_back(kind.name);
   EXPECT_THAT(names, ::testing::ElementsAre("sensor_characterization", "relative_position",
                                             "face_anchor", "move_forward", "closed_path", "go_to",
-                                            "search", "hold", "inspect", "land"));
+                                            "search", "hold", "inspect", "land", "search_pair"));
 }
 
 TEST(TaskFields, HaveUniqueNamesAndDescriptions) {

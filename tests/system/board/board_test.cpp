@@ -134,7 +134,7 @@ TEST_F(OnABoard, AMixedFleetFliesWithTheClockAndTheReadingsOfEach) {
             "1\"\nmodel = \"" TETHER_SOURCE_DIR
             "/data/models/hummingbird/model.sdf\"\nposition_m = [" +
             std::to_string(x_m) + ", 0, 1]\ntarget = \"" + target + "\"\n[uav.sut]\ncommand = [\"" +
-            bad_sut_program() + "\", \"good\"]\n\n";
+            bad_sut_program().string() + "\", \"good\"]\n\n";
     x_m += 5;
   }
   expect_good(
