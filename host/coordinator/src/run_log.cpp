@@ -153,7 +153,7 @@ void RunLog::settle() {
   collects_ = false;
   for (Collected& collected : collected_) write(collected.st, collected.message);
   collected_.clear();
-  for (const auto& [st, message] : radio_) ask([&] { recorder_->write(st, message); });
+  for (const auto& logged : radio_) ask([&] { recorder_->write(logged.first, logged.second); });
   radio_.clear();
 }
 

@@ -38,7 +38,8 @@ std::optional<Medium::Instant> Medium::next() const {
 void Medium::handle_next(const LinkOf& link_of, std::vector<Arrival>& out) {
   Event event = events_.top();
   events_.pop();
-  const auto [now, uav] = event.instant;
+  const SimTime now = event.instant.at;
+  const std::size_t uav = event.instant.uav;
   if (event.kind == Kind::kAttempt) return attempt(uav, now, link_of);
   if (settings_.model == Model::kLogDistance) {
     if (event.kind == Kind::kSend) return accept(std::move(event.message), out);

@@ -55,7 +55,8 @@ TEST(ReadRadio, RefusesKeysWithoutMeaningAndValuesOutOfRange) {
            {channel + "slot_ms = 0", "slot_ms"},
            {channel + "rate = 1", "rate"},
        }) {
-    const Error error = bad_file_error([&] { read("[radio]\n" + text); });
+    const std::string table = "[radio]\n" + text;
+    const Error error = bad_file_error([&] { read(table); });
     EXPECT_EQ(error.subject(), key) << text;
   }
 }

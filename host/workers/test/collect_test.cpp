@@ -126,7 +126,7 @@ TEST_F(Collect, DoesNotCountTrialsAsLostThatWereNotBegun) {
 TEST_F(Collect, ReportsATrialThatWasLostThreeTimesAsNotFlown) {
   const auto lose_one = [&](const Round& round) {
     WorkerSetup setup = worker("n" + std::to_string(workers_));
-    setup.fly = [this, own = setup.fly](const Item& item, const auto& local) {
+    setup.fly = [own = setup.fly](const Item& item, const auto& local) {
       if (item.folder == "turn/target/seed-0002") return Flight{Flight::End::kLost, "no memory"};
       return own(item, local);
     };

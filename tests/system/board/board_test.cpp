@@ -137,12 +137,13 @@ TEST_F(OnABoard, AMixedFleetFliesWithTheClockAndTheReadingsOfEach) {
             bad_sut_program().string() + "\", \"good\"]\n\n";
     x_m += 5;
   }
-  expect_good(
-      fly("good", "bad_sut",
-          {{"[[uav]]\nname = \"uav1\"\n", targets + "[[uav]]\nname = \"uav1\"\ntarget = \"pi\"\n"},
-           {"[sut]\n", uavs + "[sut]\n"},
-           {"clock = \"cpu\"\n\n", "\n"},
-           {"kind = \"time_required\"", "kind = \"time_required\"\nuav = \"uav1\""}}));
+  expect_good(on_board(flight(
+      "good", {},
+      {{bad_sut_program(), "bad_sut"},
+       {"[[uav]]\nname = \"uav1\"\n", targets + "[[uav]]\nname = \"uav1\"\ntarget = \"pi\"\n"},
+       {"[sut]\n", uavs + "[sut]\n"},
+       {"clock = \"cpu\"\n\n", "\n"},
+       {"kind = \"time_required\"", "kind = \"time_required\"\nuav = \"uav1\""}})));
   const auto suts = result()["suts"];
   ASSERT_EQ(suts.size(), 3u);
   EXPECT_EQ(suts[0]["clock"], "wall");

@@ -1,13 +1,16 @@
 #include "support/trials.h"
 
+#include <algorithm>
 #include <atomic>
 #include <map>
 #include <ostream>
 #include <regex>
 #include <thread>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <tether/os/machine.h>
 #include <tether/scenario/scenario.h>
 #include <tether/scenario/shipped_files.h>
 
@@ -26,6 +29,7 @@ struct Flight {
   std::optional<scenario::Target> target{};  // of the command line
   bool concurrent = false;
   std::string skipped{};  // why
+  double limit_s = 0.3;   // of ST
 
   std::string name() const {
     return scenario::slug(scenario + " " + condition + (target ? " on " + target->name : "") +
@@ -37,10 +41,12 @@ void PrintTo(const Flight& flight, std::ostream* stream) {
   *stream << flight.name();
 }
 
-std::string why_skipped(const scenario::Condition& condition) {
+std::string why_skipped(const scenario::Condition& condition, std::size_t suts) {
   if (condition.simulator != "mujoco") return "needs " + condition.simulator;
   if (!condition.target) return "";
   if (condition.target->ssh) return "needs a board";
+  if (static_cast<std::size_t>(condition.target->cores) * suts > os::allowed_cpus().size())
+    return "needs more cores";
   return condition.target->program_folder.empty() ? "" : "needs programs of another architecture";
 }
 
@@ -50,14 +56,19 @@ std::vector<Flight> flights_of(const std::string& name,
   const auto loaded =
       scenario::load_scenario(TETHER_SOURCE_DIR "/data/scenarios/" + name + ".toml");
   for (const scenario::Condition& condition : loaded.conditions)
-    flights.push_back({name, condition.name, {}, false, why_skipped(condition)});
+    flights.push_back({name,
+                       condition.name,
+                       {},
+                       false,
+                       why_skipped(condition, loaded.uavs.size()),
+                       std::max(0.3, 1.2 * to_seconds(condition.computing))});
   for (const scenario::Target& target : targets) {
     // face_anchor has a condition with it, and the emulator takes long for its many images.
     if (target.name == "counted_host") continue;
     scenario::Condition condition = loaded.conditions.front();
     if (!why_not_on(condition, target).empty()) continue;
     place_on(condition, target);
-    const std::string skipped = why_skipped(condition);
+    const std::string skipped = why_skipped(condition, loaded.uavs.size());
     flights.push_back({name, loaded.conditions.front().name, target, false, skipped});
     if (target.clock != Clock::kWall) continue;
     flights.push_back({name, loaded.conditions.front().name, target, true, skipped});
@@ -93,7 +104,8 @@ struct Landed {
 
 Landed fly(const Flight& flight) {
   const TempFolder folder;
-  std::vector<Substitution> changes{{"\ntime_limit_s = ", "\ntime_limit_s = 0.3  # "}};
+  std::vector<Substitution> changes{
+      {"\ntime_limit_s = ", fmt::format("\ntime_limit_s = {}  # ", flight.limit_s)}};
   const auto original = read_text(TETHER_SOURCE_DIR "/data/scenarios/" + flight.scenario + ".toml");
   const bool has_mission = original.find("\nmission = ") != std::string::npos;
   if (has_mission)  // without its clauses, whose deadlines are beyond this limit

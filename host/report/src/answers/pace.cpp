@@ -111,8 +111,10 @@ std::optional<Pace> pace_of(const record::Record& record) {
   return slowest;
 }
 
-std::optional<Pace> read_pace(const std::filesystem::path& record) try {
-  return pace_of(record::read_record(record));
+std::optional<Pace> read_pace(const std::filesystem::path& file) try {
+  const record::Record record = record::read_record(file);
+  if (!record::describe_damage(record).empty()) return std::nullopt;
+  return pace_of(record);
 } catch (const Error&) {
   return std::nullopt;
 }
