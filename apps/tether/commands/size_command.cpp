@@ -24,6 +24,7 @@
 #include <tether/report/junit.h>
 #include <tether/report/size_report.h>
 #include <tether/scenario/shipped_files.h>
+#include <tether/scenario/slowness.h>
 
 /// `tether size`: checks the question, flies until it is answered, and writes the answer.
 namespace tether::app {
@@ -88,26 +89,11 @@ report::Board board_of(const scenario::ShippedFiles& shipped, const std::filesys
                        const scenario::Condition& condition) {
   const std::filesystem::path file = shipped.find(scenario::ShippedKind::kTarget, given);
   require_kind(file, FileKind::kTarget);
-  const scenario::Target target = scenario::load_target(file);
-  const auto refuse_board = [&](const std::string& why) {
-    throw Error(ErrorCode::kUsage, {file.string()}, why).about(file.string());
-  };
-  if (target.ssh)
-    refuse_board(
-        "is a board without a factor. Calibrate it (tether-sut calibrate --write-target), "
-        "and give that file.");
-  if (condition.clock == scenario::Clock::kScripted)
-    refuse_board(fmt::format("cannot be compared with condition \"{}\", whose time is scripted.",
-                             condition.name));
-  if (condition.clock == scenario::Clock::kCounted || target.clock == scenario::Clock::kCounted)
-    refuse_board(
-        "cannot be compared, because counted targets have costs and no factor. Use conditions and "
-        "targets with the clock \"cpu\".");
-  report::Board board{.name = file.filename().string(),
-                      .slowdown = target.cpu_factor / condition.cpu_factor};
-  if (const auto& interval = target.cpu_factor_interval) {
-    board.low = interval->first / condition.cpu_factor;
-    board.high = interval->second / condition.cpu_factor;
+  const auto [factor, bounds] = scenario::slowness(scenario::load_target(file), condition);
+  report::Board board{.name = file.filename().string(), .slowdown = factor};
+  if (bounds) {
+    board.low = bounds->first;
+    board.high = bounds->second;
   }
   return board;
 }

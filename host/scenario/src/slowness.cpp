@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+#include <tether/scenario/slowness.h>
+
+namespace tether::scenario {
+namespace {
+
+std::string why_not_comparable(const Target& target, const Condition& condition) {
+  if (target.ssh)
+    return "is a board without a factor. Calibrate it (tether-sut calibrate --write-target), and "
+           "give that file.";
+  if (condition.clock == Clock::kScripted)
+    return fmt::format("cannot be compared with condition \"{}\", whose time is scripted.",
+                       condition.name);
+  if ((target.clock == Clock::kCounted) != (condition.clock == Clock::kCounted))
+    return fmt::format(
+        "cannot be compared with condition \"{}\": one has counted costs, the other "
+        "a factor. Use a condition with the clock \"{}\".",
+        condition.name, target.clock == Clock::kCounted ? "counted" : "cpu");
+  if (target.clock != Clock::kCounted) return "";
+  const os::Emulator& own = *condition.target->emulator;
+  if (own.program != target.emulator->program || own.cpu_model != target.emulator->cpu_model)
+    return fmt::format(
+        "cannot be compared with condition \"{}\", which counts with another "
+        "emulator or CPU model.",
+        condition.name);
+  return "";
+}
+
+Slowness by_costs(const os::Emulator& target, const os::Emulator& own) {
+  std::pair<double, double> bounds{HUGE_VAL, 0.0};
+  for (std::size_t i = 0; i < own.cost_units.size(); ++i) {
+    if (own.cost_units[i] == 0 && target.cost_units[i] == 0) continue;
+    const double ratio =
+        static_cast<double>(target.cost_units[i]) / static_cast<double>(own.cost_units[i]);
+    bounds = {std::min(bounds.first, ratio), std::max(bounds.second, ratio)};
+  }
+  return {std::sqrt(bounds.first * bounds.second), bounds};
+}
+
+}  // namespace
+
+Slowness slowness(const Target& target, const Condition& condition) {
+  const auto require = [&](const std::string& why) {
+    if (!why.empty())
+      throw Error(ErrorCode::kUsage, {target.file.string()}, why).about(target.file.string());
+  };
+  require(why_not_comparable(target, condition));
+  if (target.clock != Clock::kCounted) {
+    const double own = condition.cpu_factor;
+    Slowness result{.factor = target.cpu_factor / own};
+    if (const auto& bounds = target.cpu_factor_interval)
+      result.bounds = {bounds->first / own, bounds->second / own};
+    return result;
+  }
+  const Slowness result = by_costs(*target.emulator, *condition.target->emulator);
+  const bool is_known = result.bounds->first > 0.0 && std::isfinite(result.bounds->second);
+  require(is_known ? ""
+                   : fmt::format("cannot be compared with condition \"{}\": a kind of work costs "
+                                 "nothing in one of them.",
+                                 condition.name));
+  return result;
+}
+
+}  // namespace tether::scenario

@@ -1,0 +1,65 @@
+#include <gtest/gtest.h>
+
+#include <tether/base_testing/thrown_error.h>
+#include <tether/scenario/slowness.h>
+
+namespace tether::scenario {
+namespace {
+
+Target counted(std::initializer_list<std::uint64_t> costs) {
+  Target target;
+  target.file = "/counted.toml";
+  target.clock = Clock::kCounted;
+  os::Emulator& emulator = target.emulator.emplace();
+  emulator.program = "qemu-x86_64";
+  std::copy(costs.begin(), costs.end(), emulator.cost_units.begin());
+  return target;
+}
+Condition on(const Target& target) {
+  Condition condition;
+  condition.clock = target.clock;
+  condition.cpu_factor = target.cpu_factor;
+  condition.target = target;
+  return condition;
+}
+
+TEST(Slowness, IsTheRatioOfTheFactors) {
+  Target board;
+  board.clock = Clock::kCpu;
+  board.cpu_factor = 6.0;
+  Condition condition;
+  condition.clock = Clock::kCpu;
+  condition.cpu_factor = 2.0;
+  EXPECT_EQ(slowness(board, condition).factor, 3.0);
+  EXPECT_FALSE(slowness(board, condition).bounds);
+  board.cpu_factor_interval = {5.0, 8.0};
+  EXPECT_EQ(slowness(board, condition).bounds, std::pair(2.5, 4.0));
+}
+
+TEST(Slowness, OfCountedTargetsIsWithinTheRatiosOfTheirCosts) {
+  const Condition condition = on(counted({10, 20, 0, 40}));
+  const Slowness uneven = slowness(counted({20, 40, 0, 320}), condition);
+  EXPECT_EQ(uneven.bounds, std::pair(2.0, 8.0));
+  EXPECT_DOUBLE_EQ(uneven.factor, 4.0);
+  EXPECT_EQ(slowness(counted({60, 120, 0, 240}), condition).bounds, std::pair(6.0, 6.0));
+}
+
+TEST(Slowness, IsRefusedWhereThereIsNone) {
+  const Condition condition = on(counted({10, 20}));
+  Target over_ssh;
+  over_ssh.ssh.emplace();
+  Target by_factor;
+  by_factor.clock = Clock::kCpu;
+  Target of_another_model = counted({10, 20});
+  of_another_model.emulator->cpu_model = "another";
+  for (const Target& target :
+       {over_ssh, by_factor, of_another_model, counted({10, 20, 5}), counted({10, 0})})
+    EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { slowness(target, condition); }).subject(),
+              target.file.string());
+  Condition scripted;
+  scripted.clock = Clock::kScripted;
+  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { slowness(by_factor, scripted); }).subject(), "");
+}
+
+}  // namespace
+}  // namespace tether::scenario
