@@ -3,6 +3,7 @@
 #include "waiting.h"
 
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <signal.h>
@@ -39,23 +40,32 @@ class SignalFreezer final : public Freezer {
 
  private:
   // Processes whose parent ends while all are looked at become children of this one: a look counts
-  // only if these are still the same after it.
+  // only if these are still the same after it. The group's SIGSTOP may reach a process that is just
+  // leaving the group, which then stops outside, where the group's SIGCONT does not reach it. A
+  // process that was outside before and has stopped is stopped by its own will.
   bool all_stand_still() {
     const auto found = processes_.look();
     const auto rest = at_rest(found, share_memory);
     bool all = true;
+    std::set<pid_t> outside;
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (rest[i]) continue;
-      all = false;
-      const bool outside = found[i].group != 0 && found[i].group != group_;
-      if (outside && outside_.insert(found[i].id).second) ::kill(found[i].id, SIGSTOP);
+      if (!rest[i]) all = false;
+      if (found[i].group == 0 || found[i].group == group_) continue;
+      const pid_t process = found[i].id;
+      outside.insert(process);
+      const bool may_have_stopped_while_leaving = !known_outside_.contains(process);
+      if ((!rest[i] || may_have_stopped_while_leaving) && outside_.insert(process).second)
+        ::kill(process, SIGSTOP);
     }
-    return all && processes_.own_children() == own_children_of(found);
+    if (!all || processes_.own_children() != own_children_of(found)) return false;
+    known_outside_ = std::move(outside);
+    return true;
   }
 
   pid_t group_;
   ProcessTree processes_;
-  std::set<pid_t> outside_;  // stopped one by one, having left the group
+  std::set<pid_t> outside_;        // stopped one by one, having left the group
+  std::set<pid_t> known_outside_;  // at the end of the last freeze
 };
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "command.h"
 #include "freezer.h"
+#include "process_tree.h"
 #include "waiting.h"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -34,6 +36,29 @@ TEST(SignalFreezer, StopsACommandThatComputesAndLetsItGoOn) {
   }
   ::kill(*command, SIGKILL);
   ::waitpid(*command, nullptr, 0);
+}
+
+// The group's SIGSTOP may reach a process that is just about to leave the group: it stops outside,
+// where the group's SIGCONT does not reach it.
+TEST(SignalFreezer, LetsAProcessGoOnThatLeftItsGroupWhileItWasStopped) {
+  const auto command = start_command({"sh", "-c", "setsid sh -c 'kill -STOP $$; exit 7' & wait $!"},
+                                     "/nowhere/socket", std::nullopt);
+  ASSERT_TRUE(command);
+  const auto freezer = make_signal_freezer(*command, 0);
+  ASSERT_TRUE(freezer) << freezer.failure().message;
+  const ProcessTree tree(0);
+  const auto is_stopped_outside = [&](const ProcessState& process) {
+    return process.group != *command && state_of(process.id) == 'T';
+  };
+  ASSERT_TRUE(wait_until([&] { return std::ranges::any_of(tree.look(), is_stopped_outside); },
+                         std::chrono::seconds(10)));
+  ASSERT_TRUE((*freezer)->freeze());
+  (*freezer)->thaw();
+  int status = 0;
+  EXPECT_TRUE(wait_until([&] { return ::waitpid(*command, &status, WNOHANG) == *command; },
+                         std::chrono::seconds(10)));
+  EXPECT_EQ(WEXITSTATUS(status), 7);
+  tree.kill_all();
 }
 
 }  // namespace
