@@ -1,11 +1,10 @@
 #include "commands/cluster.h"
 
+#include "options/refuse_option.h"
 #include "terminal/say.h"
 
 #include <algorithm>
-#include <condition_variable>
 #include <iostream>
-#include <mutex>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,6 +14,7 @@
 #include <tether/campaign/campaign_plan.h>
 #include <tether/os/captured_run.h>
 #include <tether/os/clock.h>
+#include <tether/os/interrupt.h>
 #include <tether/os/program.h>
 #include <tether/os/shell_word.h>
 #include <tether/os/terminal.h>
@@ -45,13 +45,6 @@ workers::Answer run_program(const std::vector<std::string>& words) {
 
 Duration now() {
   return os::read_clock(CLOCK_MONOTONIC);
-}
-
-void sleep_unless_stopped(Duration pause, const std::stop_token& stop) {
-  std::mutex mutex;
-  std::condition_variable_any wake;
-  std::unique_lock lock(mutex);
-  wake.wait_for(lock, stop, pause, [] { return false; });
 }
 
 std::string worker_command(const fs::path& out) {
@@ -107,9 +100,6 @@ int jobs_of(const std::optional<int>& given, const ClusterOptions& options) {
 }
 
 void require_workers_allowed(const scenario::Campaign& campaign, const ClusterOptions& options) {
-  const auto refuse_option = [](const char* option, const char* why) {
-    throw Error(ErrorCode::kUsage, fmt::format("{}: {}", option, why)).about(option);
-  };
   if (!options.slurm && !options.slurm_options.empty())
     refuse_option("--slurm-options", "has no effect without --slurm.");
   if (!uses_workers(options)) {
@@ -164,7 +154,7 @@ workers::Collected Cluster::fly(std::span<const campaign::TrialPlan* const> plan
       .stop = stop,
       .detaches = options_.detach,
       .now = now,
-      .sleep = [&](Duration pause) { sleep_unless_stopped(pause, stop); },
+      .sleep = [&](Duration pause) { os::sleep_unless_stopped(pause, stop); },
       .tell = [](const std::string& line) { say("{}\n", line); },
       .progress = progress};
   const std::vector<campaign::TrialPlan> absolute = [&] {

@@ -4,6 +4,7 @@
 #include "commands/size_flights.h"
 #include "options/file_kind.h"
 #include "options/junit_option.h"
+#include "options/refuse_option.h"
 #include "options/simulator_option.h"
 #include "options/trial_options.h"
 #include "options/world_options.h"
@@ -34,10 +35,6 @@ namespace {
 constexpr double kLargestFactor = 1e4;  // as in files
 constexpr const char* kSizeFile = "size.json";
 constexpr const char* kSizeDrawing = "size.svg";
-
-[[noreturn]] void refuse_option(const std::string& option, const std::string& why) {
-  throw Error(ErrorCode::kUsage, option + ": " + why).about(option);
-}
 
 void require_share(const std::string& option, double share) {
   if (share > 0.0 && share < 1.0) return;

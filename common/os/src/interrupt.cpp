@@ -1,6 +1,8 @@
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <csignal>
+#include <mutex>
 #include <optional>
 #include <system_error>
 
@@ -72,6 +74,13 @@ void Interrupt::watch() {
     if (first && Steady::now() - *first > kSameInterrupt) _exit(128 + signal);
     if (!first) first = Steady::now();
   }
+}
+
+void sleep_unless_stopped(Duration limit, const std::stop_token& stop) {
+  std::mutex mutex;
+  std::unique_lock lock(mutex);
+  std::condition_variable_any wake;
+  wake.wait_for(lock, stop, limit, [] { return false; });
 }
 
 }  // namespace tether::os

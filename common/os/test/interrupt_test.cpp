@@ -59,5 +59,12 @@ TEST(Interrupt, LeavesSighupIgnoredAsNohupWants) {
   EXPECT_EQ(std::signal(SIGHUP, SIG_DFL), SIG_IGN);
 }
 
+TEST(SleepUnlessStopped, EndsWithAStopRequest) {
+  std::stop_source stop;
+  stop.request_stop();
+  sleep_unless_stopped(std::chrono::hours(1), stop.get_token());
+  sleep_unless_stopped(Duration(1), {});
+}
+
 }  // namespace
 }  // namespace tether::os

@@ -3,10 +3,8 @@
 
 #include <cerrno>
 #include <chrono>
-#include <condition_variable>
 #include <csignal>
 #include <cstdlib>
-#include <mutex>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -20,6 +18,7 @@
 #include <tether/board/board.h>
 #include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
+#include <tether/os/interrupt.h>
 #include <tether/os/memory_file.h>
 #include <tether/os/text_file.h>
 
@@ -90,12 +89,10 @@ Board::~Board() {
 
 /// Without it, the keeper releases the board.
 void Board::send_heartbeat(const std::stop_token& stop) const {
-  std::mutex mutex;
-  std::unique_lock lock(mutex);
-  std::condition_variable_any stopped;
   do {
     os::write_all(to_keeper_, "\n");
-  } while (!stopped.wait_for(lock, stop, kHeartbeat, [&] { return stop.stop_requested(); }));
+    os::sleep_unless_stopped(kHeartbeat, stop);
+  } while (!stop.stop_requested());
 }
 
 std::string Board::keeper_output() const {

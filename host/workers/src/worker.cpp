@@ -1,12 +1,12 @@
 #include "notes.h"
 
-#include <condition_variable>
 #include <mutex>
 #include <thread>
 
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
+#include <tether/os/interrupt.h>
 #include <tether/workers/worker.h>
 
 namespace tether::workers {
@@ -44,10 +44,8 @@ class Heart {
  public:
   explicit Heart(OwnState& state)
       : thread_([&state](const std::stop_token& stop) {
-          std::mutex mutex;
-          std::condition_variable_any wake;
-          for (std::unique_lock lock(mutex); !stop.stop_requested();) {
-            wake.wait_for(lock, stop, kBeatPeriod, [] { return false; });
+          while (!stop.stop_requested()) {
+            os::sleep_unless_stopped(kBeatPeriod, stop);
             try {
               if (!stop.stop_requested()) state.change([](WorkerState&) {});
             } catch (const Error&) {

@@ -3,6 +3,7 @@
 #include <stop_token>
 #include <thread>
 
+#include <tether/base/time.h>
 #include <tether/os/pipe.h>
 
 namespace tether::os {
@@ -29,5 +30,8 @@ class Interrupt {
   std::stop_source stop_;
   std::thread watcher_;
 };
+
+/// Sleeps for that long, or until a stop is requested.
+void sleep_unless_stopped(Duration limit, const std::stop_token& stop);
 
 }  // namespace tether::os
