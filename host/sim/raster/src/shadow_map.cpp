@@ -95,12 +95,12 @@ Sphere sphere_of_fixed(const PreparedScene& scene, const Wanted& is_wanted) {
 }
 
 // Around those whose shadows fall on something.
-Sphere sphere_of_casters(const PreparedScene& scene, const Sphere& all, const Vec3& light_W) {
+Sphere sphere_of_casters(const PreparedScene& scene, double fixed_radius_m, const Vec3& light_W) {
   constexpr double kLarge = 0.25;
   int left = 16;  // large visuals that are compared with all others
   return sphere_of_fixed(scene, [&](const PreparedInstance& i) {
     if (!i.cast_shadows) return false;
-    if (scene.meshes[i.mesh].bounds.radius_m < kLarge * all.radius_m || left-- <= 0) return true;
+    if (scene.meshes[i.mesh].bounds.radius_m < kLarge * fixed_radius_m || left-- <= 0) return true;
     return !is_backdrop(scene, i, light_W);
   });
 }
@@ -123,12 +123,13 @@ ShadowMap::ShadowMap(const PreparedScene& scene, const Light& light, Casters cas
     : scene_(scene),
       light_(light),
       casters_(casters),
-      all_fixed_(sphere_of_fixed(scene, [](const PreparedInstance&) { return true; })),
+      fixed_radius_m_(
+          sphere_of_fixed(scene, [](const PreparedInstance&) { return true; }).radius_m),
       lens_(camera()),
       map_(std::size_t{kSize_px} * kSize_px, 0.0F) {
-  const Sphere around = sphere_of_casters(scene, all_fixed_, light.direction_W);
-  aim_at(around);
-  if (casters == Casters::kFixed) draw({});
+  if (casters == Casters::kBodies) return;
+  aim_at(sphere_of_casters(scene, fixed_radius_m_, light.direction_W));
+  draw({});
 }
 
 void ShadowMap::aim_at(const Sphere& casters) {
@@ -138,7 +139,7 @@ void ShadowMap::aim_at(const Sphere& casters) {
   double focal_px = 0.5 * (kSize_px - 1);
   if (light_.kind == LightKind::kDirectional) {
     const double distance_m =
-        std::max(kSunPerCasters * casters.radius_m, kSunPerWorld * all_fixed_.radius_m);
+        std::max(kSunPerCasters * casters.radius_m, kSunPerWorld * fixed_radius_m_);
     X_WL.p = casters.centre - distance_m * light_.direction_W;
     near_m = 0.5 * distance_m;
     focal_px *= distance_m / casters.radius_m;

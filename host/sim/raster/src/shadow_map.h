@@ -22,7 +22,7 @@ class ShadowMap {
   static constexpr int kSize_px = 2048;
   enum class Casters { kFixed, kBodies };
 
-  /// Draws the casters if they are fixed.
+  /// Draws the casters if they are fixed; those of bodies need `update` first.
   ShadowMap(const PreparedScene& scene, const Light& light, Casters casters);
 
   /// Draws the visuals of bodies at these poses. Does nothing if the casters are fixed.
@@ -49,7 +49,7 @@ class ShadowMap {
   const PreparedScene& scene_;
   const Light& light_;
   Casters casters_;
-  Sphere all_fixed_;
+  double fixed_radius_m_;
   Lens lens_;
   Layer layer_;
   std::vector<float> map_;
