@@ -10,6 +10,7 @@
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/result.h>
+#include <tether/os/text_file.h>
 #include <tether/workers/collect.h>
 #include <tether/workers/worker.h>
 
@@ -174,9 +175,8 @@ class Collector {
   }
 
   std::string last_line_of(const Round& round, const std::string& log) const {
-    std::string text = folder_.read(round.path("logs/" + log)).value_or("");
-    while (!text.empty() && text.back() == '\n') text.pop_back();
-    return text.empty() ? "" : ": " + text.substr(text.rfind('\n') + 1);
+    const std::string last = os::last_line(folder_.read(round.path("logs/" + log)).value_or(""));
+    return last.empty() ? "" : ": " + last;
   }
 
   // Tasks that still wait would find nothing to do.

@@ -16,15 +16,9 @@ double quantile(std::vector<double> values, double share) {
   return stats::quantile(values, share);
 }
 
-const record::SensorInfo* find_camera(const record::Header& header, const std::string& uav,
-                                      const std::string& sensor) {
-  for (const record::SensorInfo& info : header.sensors)
-    if (info.uav == uav && info.name == sensor && info.kind.ends_with("camera")) return &info;
-  return nullptr;
-}
-
 /// What happened between two images of one camera.
 struct Intervals {
+  std::optional<double> offered_hz{};
   std::optional<ExecTime> previous;
   double computing_s = 0.0;  ///< since the previous image
   std::vector<double> between_s, computed_s;
@@ -52,7 +46,9 @@ std::map<std::string, Intervals> intervals_of(const record::Record& record, cons
                                               const timing::Run& run) {
   std::map<std::string, Intervals> cameras;
   for (const record::SensorInfo& info : record.header.sensors)
-    if (info.uav == uav && info.kind.ends_with("camera")) cameras[info.name];
+    if (info.uav == uav && info.kind.ends_with("camera") && cameras.try_emplace(info.name).second &&
+        info.periodic && info.period > Duration{0})
+      cameras[info.name].offered_hz = 1.0 / to_seconds(info.period);
   std::map<std::string, std::uint64_t> newest;
   auto call = run.calls.begin();
   for (const auto& logged : record.interactions) {
@@ -82,9 +78,7 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
     pace.read_hz = between_s > 0.0 ? 1.0 / between_s : 0.0;
     pace.median_s = quantile(intervals.computed_s, 0.5);
     pace.p95_s = quantile(intervals.computed_s, 0.95);
-    const record::SensorInfo& info = *find_camera(record.header, sut.uav, name);
-    pace.offered_hz.reset();
-    if (info.periodic && info.period > Duration{0}) pace.offered_hz = 1.0 / to_seconds(info.period);
+    pace.offered_hz = intervals.offered_hz;
   }
   return pace;
 }

@@ -1,6 +1,7 @@
 #include "plots/board_lanes.h"
 
 #include "plots/inks.h"
+#include "plots/shapes.h"
 #include "plots/svg.h"
 
 #include <algorithm>
@@ -48,17 +49,9 @@ CorePools pools_of(const record::Record& record, const std::string& board) {
   return pools;
 }
 
-std::string lane_text(double x, double y, std::string_view anchor, const std::string& words) {
-  return fmt::format(
-      "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" font-size=\"12\" class=\"tp-fill-0\">{}"
-      "</text>\n",
-      x, y, anchor, escape_markup(words));
-}
-
 std::string lane_part(double x, double y, double width, double height, Ink ink) {
-  return fmt::format(
-      "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" class=\"tp-fill-{}\"/>\n",
-      x, y, width, height, static_cast<std::size_t>(ink));
+  return fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\"{}/>\n", x,
+                     y, width, height, fill_of(ink));
 }
 
 /// Up to where the run is drawn: not more than so many parts.
@@ -112,17 +105,18 @@ std::string board_lanes(const record::Record& record, const record::BoardInfo& b
   for (const auto& [core, pool] : pools)
     for (const std::size_t sut : pool.suts) {
       body += lane_part(x, 6.0, 12.0, 12.0, series_ink(sut));
-      body += lane_text(x + 16.0, 16.0, "start", record.header.suts[sut].uav);
+      body += text_svg(x + 16.0, 16.0, record.header.suts[sut].uav);
       x += 100.0;
     }
   const std::size_t pinned = pools.size() - pools.count(INT_MAX);
   for (const auto& [core, pool] : pools) {
     const std::size_t cores =
         core == INT_MAX ? static_cast<std::size_t>(board.cores) - pinned : std::size_t{1};
-    body += lane_text(kLanesLeft - 8.0, y + 0.6 * kCoreHeight, "end",
-                      core != INT_MAX ? fmt::format("core {}", core)
-                      : cores == 1    ? std::string("1 core")
-                                      : fmt::format("{} cores", cores));
+    body += text_svg(kLanesLeft - 8.0, y + 0.6 * kCoreHeight,
+                     core != INT_MAX ? fmt::format("core {}", core)
+                     : cores == 1    ? std::string("1 core")
+                                     : fmt::format("{} cores", cores),
+                     "end");
     body += draw_pool(pool, cores, y, end_s);
     for (std::size_t i = 0; i <= cores; ++i)
       body += lane_part(kLanesLeft, y + kCoreHeight * static_cast<double>(i),
@@ -130,9 +124,9 @@ std::string board_lanes(const record::Record& record, const record::BoardInfo& b
     y += kCoreHeight * static_cast<double>(cores) + kPoolGap;
   }
   for (int i = 0; i <= 5; ++i)
-    body += lane_text(kLanesLeft + (kLanesRight - kLanesLeft) * i / 5.0, y + 12.0, "middle",
-                      fmt::format("{:.3g}", end_s * i / 5.0));
-  body += lane_text((kLanesLeft + kLanesRight) / 2.0, y + 28.0, "middle", "ST (s)");
+    body += text_svg(kLanesLeft + (kLanesRight - kLanesLeft) * i / 5.0, y + 12.0,
+                     fmt::format("{:.3g}", end_s * i / 5.0), "middle");
+  body += text_svg((kLanesLeft + kLanesRight) / 2.0, y + 28.0, "ST (s)", "middle");
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" viewBox=\"0 0 {:.0f} {:.0f}\" "
       "aria-label=\"{}\">\n{}</svg>\n",

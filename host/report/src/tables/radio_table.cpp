@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include <tether/stats/sample_statistics.h>
+
 namespace tether::report {
 namespace {
 
@@ -20,10 +22,7 @@ struct Link {
 };
 
 std::string mean(const std::vector<double>& values) {
-  if (values.empty()) return kNone;
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return fmt::format("{:.3f}", sum / static_cast<double>(values.size()));
+  return values.empty() ? kNone : fmt::format("{:.3f}", stats::mean(values));
 }
 
 std::string causes(const Link& link) {
