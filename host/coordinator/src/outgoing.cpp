@@ -88,7 +88,7 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
 void Coordinator::Impl::leave(Session& session) {
   session.left = true;
   session.open.clear();
-  stepper_.sampler(session.uav).close();
+  stepper_.close(session.uav);
   barrier_.remove(session.uav);
   server_->close(session.peer);
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.left; }))
