@@ -174,8 +174,8 @@ std::optional<Answer> slowest_board(const ConditionVerdict& condition) {
   if (!waits.empty())
     text +=
         fmt::format(" Of the wall time, the simulation waited {} alone.", joined_with_and(waits));
-  return Answer{"Slowest board",
-                text + fmt::format(" This is from seed {}.", condition.pace->seed)};
+  if (condition.planned > 1) text += fmt::format(" This is from seed {}.", condition.pace->seed);
+  return Answer{"Slowest board", text};
 }
 
 std::string lead_of(const ConditionVerdict& condition) {
@@ -229,6 +229,10 @@ std::vector<Answer> sweep_answers(const std::vector<Verdict>& points) {
   return answers;
 }
 
+bool is_one_board_for_all(const ConditionVerdict& condition) {
+  return condition.pace && !condition.pace->shared_board.empty() && condition.pace->boards.empty();
+}
+
 std::string stage_advice(const Advice& advice, const ConditionVerdict& lead) {
   std::string text = fmt::format("Speed up “{}” first.", advice.subject);
   if (!lead.pace) return text;
@@ -265,12 +269,14 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
           "faster one would do: `tether size SCENARIO --condition \"{}\" --between 0.1,2`",
           advice.subject);
     case Kind::kFindThreshold:
-      return fmt::format("To find {}: `tether size SCENARIO --condition \"{}\"{}`",
-                         lead.ruling == Ruling::kNotFastEnough
-                             ? "how much faster the computer must be"
-                             : "the headroom, that is how much slower the computer may be",
-                         advice.subject,
-                         lead.ruling == Ruling::kNotFastEnough ? " --between 0.1,2" : "");
+      return fmt::format(
+          "To find {}: `tether size SCENARIO --condition \"{}\"{}`{}",
+          lead.ruling == Ruling::kNotFastEnough
+              ? "how much faster the computer must be"
+              : "the headroom, that is how much slower the computer may be",
+          advice.subject, lead.ruling == Ruling::kNotFastEnough ? " --between 0.1,2" : "",
+          is_one_board_for_all(lead) ? "; to find how many UAVs it carries: `--axis uavs` instead"
+                                     : "");
     case Kind::kFlyMore:
       if (lead.planned == 1)
         return "One flight shows little. Fly a campaign of several seeds: `tether campaign`.";
@@ -308,13 +314,11 @@ void add_stages(Table& table, const std::string& where, const Pace& pace) {
   std::string note = fmt::format("{}: seed {}. Stages below 0.1 % are left out.", where, pace.seed);
   if (!pace.camera.empty())
     note += fmt::format(
-        " Per image of “{}”: {} of computing{}, in 95 % of them at most {}; read {} times a "
-        "second{}.",
+        " Per image of “{}”: {}{}, in 95 % of them at most {}; read {} times a second{}.",
         pace.camera, short_ms(pace.median_s),
-        pace.shared_board.empty()
-            ? ""
-            : fmt::format(" and waiting for the cores of “{}”, which is {} of it",
-                          pace.shared_board, share(pace.waiting)),
+        pace.shared_board.empty() ? " of computing"
+                                  : fmt::format(", {} of it waiting for the cores of “{}”",
+                                                share(pace.waiting), pace.shared_board),
         short_ms(pace.p95_s), rate(pace.read_hz),
         pace.offered_hz ? fmt::format(", offered {} times", rate(*pace.offered_hz)) : "");
   table.notes.push_back(note);

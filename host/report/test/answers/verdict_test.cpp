@@ -212,8 +212,9 @@ TEST(Verdict, SaysWhatAnImageCostsOnASharedBoard) {
               HasSubstr("an image costs 100 ms on “obc”, 48 % of it waiting for the cores that 2 "
                         "programs share, and “detect” takes 81 % of the computing time"));
   EXPECT_THAT(advice_of({verdict})[0], HasSubstr("Computing and waiting for cores take up to"));
+  EXPECT_THAT(advice_of({verdict})[1], HasSubstr("--axis uavs"));
   EXPECT_THAT(stages_table({verdict}).notes,
-              ElementsAre(HasSubstr("waiting for the cores of “obc”, which is 48 % of it")));
+              ElementsAre(HasSubstr(": 100 ms, 48 % of it waiting for the cores of “obc”,")));
 }
 
 TEST(Verdict, OfASweepGroupsItsPointsByTheirRuling) {
