@@ -43,6 +43,8 @@ class SharedBoard : public CoordinatorTest {
 
 TEST_F(SharedBoard, ComputingTakesAsManyTimesAsLongAsProgramsCompute) {
   make_shared(2, 1);
+  options_.uavs[1].computer = "obc";
+  remake();
   server_->add_sut(hello(name(0)), {turn(milliseconds(3), 0.1), finish(milliseconds(1))});
   server_->add_sut(hello(name(1)), {turn(milliseconds(5), 0.1), finish(milliseconds(0))});
   ASSERT_EQ(run().end, RunEnd::kFinished);
@@ -51,6 +53,7 @@ TEST_F(SharedBoard, ComputingTakesAsManyTimesAsLongAsProgramsCompute) {
   EXPECT_EQ(of(0)[1].request_at, us(8000));
   EXPECT_EQ(of(1)[0].request_at, us(9000)) << "2 of 5 ms were left at 6 ms, 1 at 8 ms";
   EXPECT_EQ(recorder_.header.suts[1].board, "obc");
+  EXPECT_EQ(recorder_.header.suts[1].computer, "obc");
   EXPECT_EQ(recorder_.header.boards, (std::vector<record::BoardInfo>{{"obc", 1}}));
 }
 

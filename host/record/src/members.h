@@ -209,6 +209,7 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
   if (io.has("build_id", !m.build_id.empty())) io("build_id", m.build_id);
   if (io.has("replay", m.replay.has_value()))
     io.object("replay", [&](auto& replay) { members(replay, io.value_of(m.replay)); });
+  if (io.has("computer", !m.computer.empty())) io("computer", m.computer);
   if (!io.has("board", !m.board.empty())) return;
   io("board", m.board);
   if (io.has("pinned_core", m.pinned_core.has_value()))

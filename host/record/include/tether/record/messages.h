@@ -299,6 +299,9 @@ struct SutInfo {
   std::optional<ReplayInfo> replay{};  ///< clock "replayed"
   std::string board{};  ///< Header::boards: the computer that it shares; empty: one of its own
   std::optional<int> pinned_core{};  ///< of that computer; only pinned programs run there
+  /// Name of the scenario's computer on which the SUT runs, shared or not. Empty: the scenario
+  /// describes none, or it is a record of Tether 0.1.0.
+  std::string computer{};
 };
 /// A virtual computer whose cores several SUTs share: while n compute, each gets min(1, cores / n)
 /// of a core. A core with pinned programs is shared by these only.
