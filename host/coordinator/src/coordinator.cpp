@@ -168,12 +168,19 @@ void Coordinator::Impl::start() {
   stepper_.act();
   log_.race_again();
   for (const Session& session : sessions_)
-    server_->send(session.peer, link::Welcome{.catalogue = sim::make_catalogue(
-                                                  world(), world().uavs[session.uav]),
+    server_->send(session.peer, link::Welcome{.catalogue = catalogue_of(session),
                                               .free_running = !is_synchronised(),
                                               .start = ExecTime{},
                                               .computing = time_given(session),
                                               .peers = peers_of(session)});
+}
+
+uav::Catalogue Coordinator::Impl::catalogue_of(const Session& session) const {
+  const sim::Uav& uav = world().uavs[session.uav];
+  uav::Catalogue catalogue = sim::make_catalogue(world(), uav);
+  if (stepper_.has_battery(session.uav))
+    catalogue.battery_capacity_C = uav.energy->battery.capacity_C;
+  return catalogue;
 }
 
 // Whether every run with these options has the same messages: no clock has a part in them.

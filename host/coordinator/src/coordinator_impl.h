@@ -37,6 +37,7 @@ class Coordinator::Impl {
   void turn();
   void start();
   record::Header make_header() const;
+  uav::Catalogue catalogue_of(const Session& session) const;
   bool is_repeatable() const;
   bool advance();
   SimTime next_stop() const;

@@ -17,7 +17,8 @@ namespace tether::coordinator {
 namespace {
 
 /// In the order of Request's body.
-constexpr const char* kKinds[] = {"sensor", "command", "sleep", "finish", "send", "receive"};
+constexpr const char* kKinds[] = {"sensor", "command", "sleep",  "finish",
+                                  "send",   "receive", "battery"};
 
 }  // namespace
 
@@ -191,6 +192,7 @@ Standing Coordinator::Impl::standing(const Session& session) const {
           .uavs = uav_names_,
           .uav = session.uav,
           .sensors = stepper_.sampler(session.uav),
+          .has_battery = stepper_.has_battery(session.uav),
           .plausibility = session.plausibility ? &*session.plausibility : nullptr,
           .clock_cores = adds_up_cores ? cores : 0};
 }
@@ -350,6 +352,7 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
   }
   if (const auto* receive = std::get_if<link::ReceiveMessage>(&request.body))
     return accept_receive(session, pending, *receive);
+  if (std::holds_alternative<link::ReadBattery>(request.body)) return pending.entry.request_at;
   session.finish = std::get<link::Finish>(request.body);
   session.finish->outcome = printable(session.finish->outcome);
   return pending.entry.request_at;

@@ -171,6 +171,13 @@ std::optional<uav::Sample> Stepper::measure(std::size_t uav, record::Interaction
   return sample;
 }
 
+// A reply goes when ST is at the boundary of its timestamp.
+uav::BatterySample Stepper::read_battery(std::size_t uav, record::Interaction& entry) {
+  const energy::Status now = *ask([&](sim::Simulator& s) { return s.battery(uav); });
+  entry.battery = {now.voltage_V, now.current_A, now.charge};
+  return {st_, now.voltage_V, now.current_A, now.charge};
+}
+
 radio::Link Stepper::link(std::size_t uav, std::size_t other) {
   return ask([&](sim::Simulator& s) {
     const uav::Vec3 p_W_m = s.ground_truth(uav).body.p_WB - s.ground_truth(other).body.p_WB;

@@ -75,6 +75,9 @@ class Stepper {
   void close(std::size_t uav);
   /// The sample for the read of this interaction, noted in it; none if it is not a read.
   std::optional<uav::Sample> measure(std::size_t uav, record::Interaction& entry);
+  bool has_battery(std::size_t uav) const { return has_battery_[uav]; }
+  /// The battery now, noted in the interaction. @pre has_battery(uav)
+  uav::BatterySample read_battery(std::size_t uav, record::Interaction& entry);
   /// Announces to the simulator what will be measured, so that it can draw meanwhile.
   void announce();
 
