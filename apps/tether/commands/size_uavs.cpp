@@ -122,6 +122,11 @@ scenario::Campaign campaign_of(const SizeOptions& options, const scenario::Scena
   return campaign;
 }
 
+std::string text_of(const campaign::TrialPlan& plan) {
+  const std::size_t uavs = plan.scenario->uavs.size();
+  return fmt::format("{} UAV{}, seed {}", uavs, uavs == 1 ? "" : "s", plan.seed);
+}
+
 /// The flights: a campaign that sweeps the number of UAVs, of which only those trials are run that
 /// the answer needs. Each flight has a seed of its own.
 class UavFlights {
@@ -195,8 +200,7 @@ class UavFlights {
   bool run(const std::vector<const campaign::TrialPlan*>& plans) {
     const auto show = [&](const campaign::CampaignProgress& progress) {
       if (progress.result != nullptr)
-        say("{}  {} UAVs, seed {}: {}\n", report::flights_of(*report_) + progress.done,
-            progress.latest->scenario->uavs.size(), progress.latest->seed,
+        say("{}  {}: {}\n", report::flights_of(*report_) + progress.done, text_of(*progress.latest),
             campaign::name(progress.result->outcome));
     };
     if (cluster_)
@@ -211,8 +215,7 @@ class UavFlights {
   void take(const campaign::TrialPlan& plan) {
     const campaign::TrialResult trial = campaign::read_result(plan.folder);
     if (trial.outcome == campaign::Outcome::kFailed) {
-      report_->not_flown.push_back(
-          fmt::format("{} UAVs, seed {}: {}", plan.scenario->uavs.size(), plan.seed, trial.reason));
+      report_->not_flown.push_back(fmt::format("{}: {}", text_of(plan), trial.reason));
       return;
     }
     report_->points[plan.scenario->uavs.size() - report_->question.least].trials.push_back(trial);

@@ -139,8 +139,7 @@ std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
       ->add_option("--set", options->settings,
                    "Replace a value of the scenario, given by its key's path: time_limit_s=30, "
                    "cpu_factor=4 (of each [[condition]] that has it), "
-                   "sut.parameters.yaw_rate_deg_s=40; uavs=2 flies the first two UAVs; can be "
-                   "repeated")
+                   "sut.parameters.yaw_rate_deg_s=40, uavs=2 (the first two); can be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -211,8 +210,7 @@ void add_size_command(CLI::App& program, Action& action) {
       ->required();
   command
       ->add_option("--axis", options->axis,
-                   "What to vary: slowdown, that is how slow the computer may be, or uavs, that is "
-                   "how many UAVs the board carries that they share")
+                   "What to vary: how slow the computer may be, or how many UAVs it carries")
       ->check(CLI::IsMember({"slowdown", "uavs"}))
       ->capture_default_str();
   command->add_option("--condition", options->condition,
@@ -229,8 +227,7 @@ void add_size_command(CLI::App& program, Action& action) {
                    "Confidence of the answer's interval, above 0 and below 1")
       ->capture_default_str();
   command->add_option("--interval", options->interval,
-                      "Stop when the upper bound of the answer is at most so many times its lower "
-                      "bound, at least 1.05 [1.3]");
+                      "Stop when its upper bound is at most so many times the lower one [1.3]");
   command
       ->add_option("--between", options->between,
                    "Slowdowns [1,40], or numbers of UAVs [1, all], to fly: LEAST,MOST")
@@ -247,9 +244,7 @@ void add_size_command(CLI::App& program, Action& action) {
       "Number of parallel flights [1; with --slurm, one for each core]. Rejected if "
       "parallel runs would distort measured time");
   add_cluster_options(*command, options->cluster);
-  command->add_option(
-      "--out", options->out,
-      "Folder for the flights [out/size/SCENARIO; of UAVs, out/size/SCENARIO-uavs]");
+  command->add_option("--out", options->out, "Folder [out/size/SCENARIO, of UAVs with -uavs]"); of UAVs, out/size/SCENARIO-uavs]");
   command->add_flag("--resume", options->resume, "Continue with the flights in the folder");
   command->add_flag("--force", options->force, "Remove the earlier flights in the folder");
   add_junit_option(*command, options->junit);

@@ -149,9 +149,8 @@ TEST_F(RunTest, SizeFindsHowManyUavsABoardCarries) {
        {"[[uav]]\n",
         "[[target]]\nname = \"obc\"\nclock = \"scripted\"\ncomputing_ms = 5\n\n"
         "[[uav]]\ntarget = \"obc\"\n"},
-       {"[sut]\n",
-        "[[uav]]\nname = \"uav2\"\ntarget = \"obc\"\nmodel = \"" TETHER_SOURCE_DIR
-        "/data/models/hummingbird/model.sdf\"\nposition_m = [5, 0, 1]\n\n[sut]\n"},
+       {"[sut]\n", "[[uav]]\nname = \"uav2\"\ntarget = \"obc\"\nmodel = \"" TETHER_SOURCE_DIR
+                   "/data/models/hummingbird/model.sdf\"\nposition_m = [5, 0, 1]\n\n[sut]\n"},
        {"clock = \"cpu\"\n\n", "\n"},
        {"kind = \"time_required\"", limit + "\"uav1\"\n[[metric]]\n" + limit + "\"uav2\""}});
   const Command size = tether({"size", scenario, "--axis", "uavs", "--success", "0.5",

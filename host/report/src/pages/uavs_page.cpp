@@ -2,6 +2,8 @@
 #include "pages/page_figures.h"
 #include "pages/verdict_html.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <tether/report/uavs_report.h>
@@ -57,9 +59,11 @@ std::string uavs_page(const UavsReport& report) {
                        "Each dot is the share of flights that reach the goal, with its exact "
                        "interval. Dotted: the share that is wanted.");
   body += to_html(uavs_table(report));
-  if (report.pace)
+  if (report.pace) {
+    const std::size_t uavs = std::max<std::size_t>(1, report.pace->programs);
     body += to_html(stages_table(
-        fmt::format("{}, {} UAVs", report.condition, report.pace->programs), *report.pace));
+        fmt::format("{}, {} UAV{}", report.condition, uavs, uavs == 1 ? "" : "s"), *report.pace));
+  }
   if (!report.not_flown.empty()) body += problems_box(report.not_flown);
   body += "<section id=\"basis\">\n" + element("h2", "Setup and checks") +
           to_html(setup_table(report)) + "</section>\n";
