@@ -127,6 +127,7 @@ class Mean {
     const Colour background = light_of(part_.shading.table, colour(part_.shading.scene.background));
     const auto add_here = [&](std::size_t at, const Colour& light) HWY_ATTR {
       const M other = float_mask(hn::Ne(get(other_, at), whole(0)));
+      if (hn::AllFalse(D(), other)) return;
       add(light, hn::IfThenElseZero(other, set(share_)), at);
     };
     for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
