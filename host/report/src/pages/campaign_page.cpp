@@ -170,7 +170,7 @@ std::string sweep_section(FigureMaker& figures, const Sweep& sweep,
   });
   std::string html = "<section>\n" + element("h2", sweep.scenario + ": sweep") +
                      verdict_tables(points) +
-                     figures.plot(sweep_plot(sweep), "The bars are 95 % intervals (Wilson).");
+                     figures.plot(sweep_plot(sweep), "The bars are exact 95 % intervals.");
   for (const std::string& metric : sweep.points.front()->metrics)
     html += figures.plot(sweep_plot(sweep, metric),
                          "Means. Each circle is a trial; a dotted line is the limit.");

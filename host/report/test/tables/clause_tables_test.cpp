@@ -56,9 +56,9 @@ TEST(ClauseTables, OfACampaign) {
   const Table table = clauses_table(scenario);
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_THAT(std::vector(table.rows[0].begin(), table.rows[0].begin() + 6),
-              ElementsAre("near", "host", "2 of 2", "[0.342, 1.000]", "m", "1.500"));
+              ElementsAre("near", "host", "2 of 2", "[0.158, 1.000]", "m", "1.500"));
   EXPECT_THAT(std::vector(table.rows[1].begin(), table.rows[1].begin() + 6),
-              ElementsAre("near", "target", "0 of 2", "[0.000, 0.658]", "m", "-1.000"));
+              ElementsAre("near", "target", "0 of 2", "[0.000, 0.842]", "m", "-1.000"));
 }
 
 }  // namespace
