@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <limits>
 
+#include <boost/math/distributions/binomial.hpp>
+
 #include <tether/sizing/by_levels.h>
 
 namespace tether::sizing {
@@ -39,6 +41,14 @@ std::vector<double> slowdowns_of(const Question& question) {
   }
 }
 
+Share exact_share(std::size_t reached, std::size_t flights, double confidence) {
+  using Binomial = boost::math::binomial_distribution<double>;
+  const double n = static_cast<double>(flights), k = static_cast<double>(reached);
+  const double tail = (1.0 - confidence) / 2.0;
+  return {k / n, reached == 0 ? 0.0 : Binomial::find_lower_bound_on_p(n, k, tail),
+          reached == flights ? 1.0 : Binomial::find_upper_bound_on_p(n, k, tail)};
+}
+
 std::vector<Level> levels_of(const Question& question, std::span<const Flight> flights,
                              double confidence) {
   std::vector<Level> levels = levels_without_flights(question);
@@ -50,7 +60,7 @@ std::vector<Level> levels_of(const Question& question, std::span<const Flight> f
     if (flight.reached) ++level.reached;
   }
   for (Level& level : levels)
-    level.share = level.flights > 0 ? exact_interval(level.reached, level.flights, confidence)
+    level.share = level.flights > 0 ? exact_share(level.reached, level.flights, confidence)
                                     : Share{0.0, 0.0, 1.0};
   return levels;
 }

@@ -30,6 +30,15 @@ TEST(ByLevels, SlowdownsHaveThreeDigitsAndStayInTheRange) {
   EXPECT_DOUBLE_EQ(slowdowns_of({.least = 1.0, .most = 10.0}).front(), 1.0);
 }
 
+// Clopper & Pearson by the method 5 of Newcombe, Statistics in Medicine 17 (1998), Table I.
+TEST(ByLevels, ExactIntervalIsThatOfNewcombesTable) {
+  const Share share = exact_share(81, 263, 0.95);
+  EXPECT_NEAR(share.low, 0.2527, 5e-5);
+  EXPECT_NEAR(share.high, 0.3676, 5e-5);
+  EXPECT_NEAR(exact_share(0, 20, 0.95).high, 0.1684, 5e-5);
+  EXPECT_EQ(exact_share(0, 20, 0.95).low, 0.0);
+}
+
 TEST(ByLevels, FlightsAtNearSlowdownsCountTogether) {
   std::vector<Flight> flights;
   for (const double slowdown : level_at(2.0).slowdowns) add(flights, slowdown, 1, 1);

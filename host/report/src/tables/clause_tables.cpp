@@ -19,19 +19,6 @@ std::string margin_text(const judge::ClauseVerdict& clause) {
   return clause.margin ? fmt::format("{} {}", decimals(*clause.margin), clause.unit) : kNone;
 }
 
-/// The clauses of a scenario, by UAV and name, in the order in which trials first have them.
-std::vector<judge::ClauseVerdict> clauses_of(const campaign::ScenarioResults& scenario) {
-  std::vector<judge::ClauseVerdict> all;
-  for (const auto& condition : scenario.conditions)
-    for (const campaign::TrialResult& trial : condition.trials)
-      for (const judge::ClauseVerdict& clause : trial.clauses)
-        if (std::ranges::none_of(all, [&](const auto& known) {
-              return known.uav == clause.uav && known.name == clause.name;
-            }))
-          all.push_back(clause);
-  return all;
-}
-
 std::vector<std::string> row_of(const judge::ClauseVerdict& clause,
                                 const campaign::ConditionResults& condition) {
   std::size_t n = 0, met = 0;
@@ -59,17 +46,33 @@ std::vector<std::string> row_of(const judge::ClauseVerdict& clause,
 
 }  // namespace
 
+std::vector<judge::ClauseVerdict> clauses_of(const campaign::ScenarioResults& scenario) {
+  std::vector<judge::ClauseVerdict> all;
+  for (const auto& condition : scenario.conditions)
+    for (const campaign::TrialResult& trial : condition.trials)
+      for (const judge::ClauseVerdict& clause : trial.clauses)
+        if (std::ranges::none_of(all, [&](const auto& known) {
+              return known.uav == clause.uav && known.name == clause.name;
+            }))
+          all.push_back(clause);
+  return all;
+}
+
 Table clauses_table(const campaign::TrialResult& trial) {
   Table table;
   table.title = "Clauses of the mission";
   table.text_columns = 2;
   table.headings = {single_headings(
       {"Clause", "Verdict", "Margin", "From (s)", "To (s)", "Deadline (s)", "Decided (s)"})};
+  const bool has_failed = trial.outcome == campaign::Outcome::kFailed;  // for one reason for all
   for (const judge::ClauseVerdict& clause : trial.clauses) {
-    table.rows.push_back({clause.name, clause.met ? "met" : "missed", margin_text(clause),
-                          seconds_text(clause.from), seconds_text(clause.to),
+    table.rows.push_back({clause.name,
+                          has_failed   ? "not evaluated"
+                          : clause.met ? "met"
+                                       : "missed",
+                          margin_text(clause), seconds_text(clause.from), seconds_text(clause.to),
                           seconds_text(clause.deadline), seconds_text(clause.decided_at)});
-    if (!clause.limited_by.empty())
+    if (!has_failed && !clause.limited_by.empty())
       table.notes.push_back(fmt::format("{}: {}.", clause.name, clause.limited_by));
   }
   return table;

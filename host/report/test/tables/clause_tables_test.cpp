@@ -22,6 +22,7 @@ judge::ClauseVerdict clause(double margin_m) {
 
 TEST(ClauseTables, OfARun) {
   campaign::TrialResult trial;
+  trial.outcome = campaign::Outcome::kGoalMissed;
   EXPECT_THAT(clauses_table(trial).rows, IsEmpty());
   trial.clauses = {clause(-0.5), {.uav = "uav1", .name = "far"}};
   const Table table = clauses_table(trial);
@@ -29,6 +30,16 @@ TEST(ClauseTables, OfARun) {
               ElementsAre(ElementsAre("near", "missed", "-0.500 m", "0.000", "2.000", "–", "2.000"),
                           ElementsAre("far", "missed", "–", "–", "–", "–", "–")));
   EXPECT_THAT(table.notes, ElementsAre("near: 1 m at ST 2.000 s."));
+}
+
+TEST(ClauseTables, OfARunThatFailed) {
+  campaign::TrialResult trial;
+  trial.outcome = campaign::Outcome::kFailed;
+  trial.clauses = {{.uav = "uav1", .name = "far"}};
+  trial.clauses[0].limited_by = "interrupted by the user";
+  const Table table = clauses_table(trial);
+  EXPECT_EQ(table.rows.at(0).at(1), "not evaluated");
+  EXPECT_THAT(table.notes, IsEmpty());
 }
 
 TEST(ClauseTables, OfACampaign) {

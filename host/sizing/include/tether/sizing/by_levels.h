@@ -14,10 +14,13 @@ struct Level {
   std::vector<double> slowdowns{};  ///< that may be flown, ascending, not empty
   std::size_t flights = 0;
   std::size_t reached = 0;
-  Share share{};  ///< as exact_interval; 0 to 1 without flights
+  Share share{};  ///< as exact_share; 0 to 1 without flights
 
   double middle() const { return slowdowns[slowdowns.size() / 2]; }
 };
+
+/// With the exact interval (Clopper & Pearson, Biometrika 26, 1934). @pre flights ≥ 1.
+Share exact_share(std::size_t reached, std::size_t flights, double confidence);
 
 /// All slowdowns of the question, in ascending order. A level is so wide that an interval that is
 /// narrow enough spans two and a half of them.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -43,8 +42,5 @@ struct Share {
   double low = 0.0;
   double high = 0.0;
 };
-
-/// The exact interval of a share (Clopper and Pearson, Biometrika 26, 1934). @pre flights ≥ 1.
-Share exact_interval(std::size_t reached, std::size_t flights, double confidence);
 
 }  // namespace tether::sizing
