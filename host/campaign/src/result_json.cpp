@@ -196,6 +196,7 @@ Json json_of(const ThisRun& run) {
     json["more_targets"].push_back(json_of(target));
   if (!run.notes.empty()) json["notes"] = run.notes;
   if (!run.sut_files.empty()) json["sut_files"] = run.sut_files;
+  if (!run.size_arguments.empty()) json["size_arguments"] = run.size_arguments;
   if (run.simulator)
     json["simulator"] = Json{{"stepping_s", exact_seconds(run.simulator->stepping)},
                              {"drawing_s", exact_seconds(run.simulator->drawing)},
@@ -355,6 +356,7 @@ ThisRun read_this_run(const JsonReader& json) {
       run.more_targets.push_back(read_target(target));
   if (json.has("notes")) run.notes = json.texts("notes");
   if (json.has("sut_files")) run.sut_files = json.texts("sut_files");
+  if (json.has("size_arguments")) run.size_arguments = json.texts("size_arguments");
   if (json.has("simulator")) run.simulator = read_simulator(json.object("simulator"));
   return run;
 }

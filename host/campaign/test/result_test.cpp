@@ -36,6 +36,7 @@ TEST_F(Result, ReadsBackWithEverythingMissing) {
   failed.this_run.notes = {"a SUT was stopped", "this machine was suspended"};
   failed.this_run.sut_files = {"flight.csv", "pictures/1.png"};
   failed.this_run.node = "n1";
+  failed.this_run.size_arguments = {"face_anchor", "--condition", "target, counted"};
   failed.this_run.simulator = {milliseconds(1), milliseconds(2), 5, 4, 3};
   write_result(scratch_.path(), failed);
   EXPECT_EQ(read_result(scratch_.path()), failed);

@@ -1,5 +1,6 @@
 #include "drawing_threads.h"
 #include "local_sut.h"
+#include "size_arguments.h"
 #include "trial_run.h"
 #include "warning_log.h"
 
@@ -18,6 +19,7 @@
 #include <tether/base/version.h>
 #include <tether/board/board.h>
 #include <tether/os/machine.h>
+#include <tether/os/program.h>
 #include <tether/os/text_file.h>
 #include <tether/record/reader.h>
 #include <tether/runner/trial.h>
@@ -197,6 +199,8 @@ campaign::TrialResult fly(const TrialSpec& spec, const BackEnd& back_end, sim::W
 /// Writes the result. @throws Error(kSetup) with the end of the run as well.
 void keep(const TrialSpec& spec, const TrialFolder& folder, campaign::TrialResult& result) try {
   result.this_run.sut_files = folder.files_of_suts();
+  result.this_run.size_arguments =
+      size_arguments(spec, scenario::ShippedFiles::of_program(os::own_file()));
   if (!result.warnings.empty()) {
     os::write_file_atomically(spec.folder / kWarningsFile,
                               grouped(result.warnings, std::numeric_limits<std::size_t>::max()));

@@ -131,12 +131,12 @@ std::optional<Pace> pace_of(const record::Record& record) {
   return found;
 }
 
-std::optional<Pace> read_pace(const std::filesystem::path& file) try {
+std::optional<Pace> read_pace(const std::filesystem::path& file) {
   const record::Record record = record::read_record(file);
-  if (!record::describe_damage(record).empty()) return std::nullopt;
+  if (const std::string damage = record::describe_damage(record); !damage.empty())
+    throw Error(ErrorCode::kBadFile, {file.string()}, "the record is " + damage)
+        .about(file.string());
   return pace_of(record);
-} catch (const Error&) {
-  return std::nullopt;
 }
 
 }  // namespace tether::report

@@ -1,3 +1,4 @@
+#include "answers/sufficient.h"
 #include "tables/report_format.h"
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/text_table.h>
+#include <tether/os/shell_word.h>
 #include <tether/report/verdict.h>
 
 // The words of a verdict.
@@ -104,6 +106,8 @@ std::string doubts_text(const ConditionVerdict& condition) {
                         flights(condition.throttled));
   if (condition.crashed > 0)
     text += fmt::format(" A UAV crashed in {}.", flights(condition.crashed));
+  if (!condition.unreadable.empty())
+    text += fmt::format(" The computing times are not known: {}.", condition.unreadable);
   return text;
 }
 
@@ -146,8 +150,10 @@ std::string evidence_of(const ConditionVerdict& condition) {
                          condition.flown == 1 ? "s" : "");
     case Ruling::kFreeRunning:
       return fmt::format(
-          "“{}” is free-running (not synchronised), so its {} say{} nothing about the computer.",
-          condition.condition, flights(condition.flown), condition.flown == 1 ? "s" : "");
+          "“{}” is free-running (not synchronised): {} of {} seem{} to pass, which says nothing "
+          "about the computer.",
+          condition.condition, condition.reached, flights(condition.flown),
+          condition.flown == 1 ? "s" : "");
   }
   return "";
 }
@@ -209,9 +215,9 @@ const Verdict& most_urgent(const std::vector<Verdict>& points) {
                                    [](const Verdict& point) { return lead_of(point).ruling; });
 }
 
-/// Of a sweep: each ruling of a condition with the points that have it.
+/// Of a sweep: what would do, and each ruling of a condition with the points that have it.
 std::vector<Answer> sweep_answers(const std::vector<Verdict>& points) {
-  std::vector<Answer> answers;
+  std::vector<Answer> answers = sufficient_factors(points);
   for (std::size_t i = 0; i < points.front().conditions.size(); ++i) {
     std::vector<std::pair<Ruling, std::vector<std::string>>> rulings;
     for (const Verdict& point : points) {
@@ -248,6 +254,40 @@ std::string stage_advice(const Advice& advice, const ConditionVerdict& lead) {
   return text;
 }
 
+/// "`tether size face_anchor --condition target`"; empty: it cannot fly this.
+std::string size_command(const ConditionVerdict& condition, bool searches_faster) {
+  if (condition.size_arguments.empty()) return "";
+  std::string command = "tether size";
+  for (const std::string& word : condition.size_arguments) command += " " + os::shell_word(word);
+  const bool names_target = std::ranges::count(condition.size_arguments, "--target") > 0;
+  if (searches_faster && !names_target) command += " --between 0.1,2";
+  return "`" + command + "`";
+}
+
+std::string faster_advice(const ConditionVerdict& lead) {
+  const std::string command = size_command(lead, true);
+  return "The program reads every image, so the computer may not be the cause. To see whether a "
+         "faster one would do" +
+         (command.empty() ? ", fly on one." : ": " + command);
+}
+
+std::string threshold_advice(const ConditionVerdict& lead) {
+  const bool is_too_slow = lead.ruling == Ruling::kNotFastEnough;
+  const std::string what = is_too_slow
+                               ? "how much faster the computer must be"
+                               : "the headroom, that is how much slower the computer may be";
+  const std::string command = size_command(lead, is_too_slow);
+  if (!command.empty())
+    return fmt::format("To find {}: {}{}", what, command,
+                       is_one_board_for_all(lead)
+                           ? "; to find how many UAVs it carries: `--axis uavs` instead"
+                           : "");
+  return fmt::format(
+      "`tether size` finds {}, for a scenario's own conditions on virtual targets. Write what was "
+      "flown here as one of them.",
+      what);
+}
+
 std::string sentence_of(const Advice& advice, const Verdict& verdict) {
   using Kind = Advice::Kind;
   const ConditionVerdict& lead = lead_of(verdict);
@@ -264,19 +304,9 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
     case Kind::kSpeedUpStage:
       return stage_advice(advice, lead);
     case Kind::kTryFaster:
-      return fmt::format(
-          "The program reads every image, so the computer may not be the cause. To see whether a "
-          "faster one would do: `tether size SCENARIO --condition \"{}\" --between 0.1,2`",
-          advice.subject);
+      return faster_advice(lead);
     case Kind::kFindThreshold:
-      return fmt::format(
-          "To find {}: `tether size SCENARIO --condition \"{}\"{}`{}",
-          lead.ruling == Ruling::kNotFastEnough
-              ? "how much faster the computer must be"
-              : "the headroom, that is how much slower the computer may be",
-          advice.subject, lead.ruling == Ruling::kNotFastEnough ? " --between 0.1,2" : "",
-          is_one_board_for_all(lead) ? "; to find how many UAVs it carries: `--axis uavs` instead"
-                                     : "");
+      return threshold_advice(lead);
     case Kind::kFlyMore:
       if (lead.planned == 1)
         return "One flight shows little. Fly a campaign of several seeds: `tether campaign`.";
@@ -368,6 +398,7 @@ std::vector<Answer> answers_of(const std::vector<Verdict>& points) {
     add_slowest(condition);
   };
   add(lead_of(verdict));
+  answers.front().rest += sufficient_condition(verdict);
   for (std::size_t i = 0; i < verdict.conditions.size(); ++i)
     if (i != verdict.lead) add(verdict.conditions[i]);
   return answers;

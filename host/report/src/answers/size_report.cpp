@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/report/size_report.h>
 
@@ -159,7 +160,7 @@ std::vector<std::string> size_advice(const SizeReport& report) {
 }
 
 std::optional<Pace> pace_near_answer(const SizeReport& report,
-                                     const std::filesystem::path& folder) {
+                                     const std::filesystem::path& folder) try {
   const campaign::TrialResult* nearest = nullptr;
   double least = 0.0;
   const SizedCondition& sized = report.synchronised;
@@ -174,6 +175,8 @@ std::optional<Pace> pace_near_answer(const SizeReport& report,
   return read_pace(folder /
                    campaign::trial_folder(report.scenario, nearest->condition, nearest->seed) /
                    "record.mcap");
+} catch (const Error&) {
+  return std::nullopt;
 }
 
 std::optional<double> margin_of(const campaign::MetricValue& metric) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/report/size_report.h>
 #include <tether/report/verdict.h>
@@ -95,6 +96,8 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
 
 ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
   ConditionVerdict verdict{.condition = results.condition, .planned = results.planned};
+  if (!results.trials.empty())
+    verdict.size_arguments = results.trials.front().this_run.size_arguments;
   for (const campaign::TrialResult& trial : results.trials) count(verdict, trial);
   if (verdict.flown > 0) verdict.share = exact_interval(verdict.reached, verdict.flown);
   std::ranges::stable_sort(verdict.missed, std::greater<>{},
@@ -158,9 +161,11 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
   return advice;
 }
 
+/// @param unreadable why the first record that cannot be read cannot; only if none can.
 std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
                                       const campaign::ConditionResults& condition,
-                                      const std::filesystem::path& folder, bool is_run) {
+                                      const std::filesystem::path& folder, bool is_run,
+                                      std::string& unreadable) {
   std::vector<const campaign::TrialResult*> trials;
   for (const campaign::TrialResult& trial : condition.trials)
     if (trial.outcome != campaign::Outcome::kFailed && !is_free_running(trial))
@@ -173,7 +178,14 @@ std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
         is_run
             ? folder
             : folder / campaign::trial_folder(scenario.scenario, condition.condition, trial->seed);
-    if (auto pace = read_pace(of_trial / "record.mcap")) return pace;
+    try {
+      if (auto pace = read_pace(of_trial / "record.mcap")) {
+        unreadable.clear();
+        return pace;
+      }
+    } catch (const Error& error) {
+      if (unreadable.empty()) unreadable = error.what();
+    }
   }
   return std::nullopt;
 }
@@ -189,6 +201,7 @@ Verdict verdict_of(const campaign::ScenarioResults& scenario,
                    const std::vector<std::optional<Pace>>& paces) {
   Verdict verdict{.scenario = scenario.swept_from.empty() ? scenario.scenario : scenario.swept_from,
                   .conditions = {}};
+  verdict.settings = scenario.settings;
   for (const scenario::Setting& setting : scenario.settings)
     verdict.point +=
         fmt::format("{}{} = {}", verdict.point.empty() ? "" : ", ", setting.key, setting.value);
@@ -213,9 +226,13 @@ std::vector<Verdict> verdicts_of(const campaign::CampaignResults& results,
   std::vector<Verdict> verdicts;
   for (const campaign::ScenarioResults& scenario : results.scenarios) {
     std::vector<std::optional<Pace>> paces;
+    std::vector<std::string> unreadable;
     for (const campaign::ConditionResults& condition : scenario.conditions)
-      paces.push_back(pace_of_condition(scenario, condition, folder, is_run));
+      paces.push_back(
+          pace_of_condition(scenario, condition, folder, is_run, unreadable.emplace_back()));
     verdicts.push_back(verdict_of(scenario, paces));
+    for (std::size_t i = 0; i < unreadable.size(); ++i)
+      verdicts.back().conditions[i].unreadable = unreadable[i];
   }
   return verdicts;
 }

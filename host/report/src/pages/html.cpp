@@ -14,8 +14,22 @@
 namespace tether::report {
 namespace {
 
-// What is wider than the page scrolls, also by keyboard.
-const std::string kScroll = R"(<div class="scroll" tabindex="0">)";
+/// What is wider than the page scrolls, also by keyboard; `name` is what a screen reader says
+/// there, as HTML.
+std::string scrolling(const std::string& name, const std::string& inner) {
+  return fmt::format(
+      "<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"{}\">{}</div>", name,
+      inner);
+}
+
+/// The name of the first picture, as HTML.
+std::string name_of(const std::string& drawing) {
+  constexpr std::string_view kName = "aria-label=\"";
+  const std::size_t at = drawing.find(kName);
+  if (at == std::string::npos) return "Figure";
+  const std::size_t begin = at + kName.size();
+  return drawing.substr(begin, drawing.find('"', begin) - begin);
+}
 
 std::string spanned(const Heading& heading) {
   return heading.columns > 1 ? fmt::format(" colspan=\"{}\"", heading.columns) : "";
@@ -62,12 +76,13 @@ std::string body_row(const std::vector<std::string>& row, std::size_t text_colum
 
 }  // namespace
 
-std::string to_html(const Table& table) {
-  std::string html = kScroll + "<table>\n";
-  if (!table.title.empty()) html += element("caption", table.title) + "\n";
-  html += head(table) + "<tbody>\n";
-  for (const auto& row : table.rows) html += body_row(row, table.text_columns);
-  html += "</tbody>\n</table></div>\n";
+std::string to_html(const Table& table, const std::string& name) {
+  const std::string own_name = escape_markup(table.title.empty() ? name : table.title);
+  std::string inner = table.title.empty() ? fmt::format("<table aria-label=\"{}\">\n", own_name)
+                                          : "<table>\n" + element("caption", table.title) + "\n";
+  inner += head(table) + "<tbody>\n";
+  for (const auto& row : table.rows) inner += body_row(row, table.text_columns);
+  std::string html = scrolling(own_name, inner + "</tbody>\n</table>") + "\n";
   if (table.notes.empty()) return html;
   html += "<ul class=\"notes\">";
   for (const std::string& note : table.notes) html += element("li", note);
@@ -96,7 +111,8 @@ std::string folded(const std::string& summary, const std::string& inner) {
 
 std::string figure(const std::string& drawing, const std::string& caption,
                    const std::string& kind) {
-  return fmt::format("<figure class=\"{}\">{}{}</div>{}</figure>\n", kind, kScroll, drawing,
+  return fmt::format("<figure class=\"{}\">{}{}</figure>\n", kind,
+                     scrolling(name_of(drawing), drawing),
                      caption.empty() ? "" : element("figcaption", caption));
 }
 
@@ -108,8 +124,9 @@ std::string basis_html(const campaign::CampaignResults& results) {
   const auto is_file = [](const auto& row) { return row.front().starts_with("file "); };
   std::copy_if(table.rows.begin(), table.rows.end(), std::back_inserter(files.rows), is_file);
   std::erase_if(table.rows, is_file);
-  std::string html = to_html(table);
-  if (!files.rows.empty()) html += folded("Digests of all files", to_html(files));
+  std::string html = to_html(table, "Setup and checks");
+  if (!files.rows.empty())
+    html += folded("Digests of all files", to_html(files, "Digests of all files"));
   return html;
 }
 

@@ -11,7 +11,8 @@
 namespace tether::report {
 
 /// A <table> with caption, headings with their scope, and the notes below.
-std::string to_html(const Table& table);
+/// @param name of a table without a title, for screen readers
+std::string to_html(const Table& table, const std::string& name = "Table");
 
 /// <tag>text</tag>
 std::string element(const std::string& tag, const std::string& text);

@@ -82,7 +82,7 @@ std::string contacts_part(const record::Record& record) {
     table.rows.push_back(
         {contact.uav, contact.with, decimals(to_seconds(contact.at)), decimals(contact.speed_m_s)});
   }
-  return title + to_html(table);
+  return title + to_html(table, "Contacts");
 }
 
 std::string mission_part(const campaign::TrialResult& trial) {
@@ -103,7 +103,7 @@ std::string mission_part(const campaign::TrialResult& trial) {
               sut.uav),
           "plot");
   }
-  return html + to_html(table);
+  return html + to_html(table, "Mission");
 }
 
 std::string boards_part(const record::Record& record) {
@@ -180,7 +180,7 @@ std::string run_page(const std::filesystem::path& folder) {
   Table metrics = run_table(trial);
   metrics.title.clear();
   std::erase(metrics.notes, trial.reason + ".");  // outcome_sentences has it
-  body += to_html(metrics) + mission_part(trial);
+  body += to_html(metrics, "Metrics and limits") + mission_part(trial);
   if (const Table stages = stages_table(verdicts); !stages.rows.empty())
     body += element("h2", "Where the time goes") + to_html(stages);
   if (const Table energy = energy_table(trial); !energy.rows.empty()) body += to_html(energy);

@@ -105,7 +105,7 @@ std::string size_page(const SizeReport& report) {
   if (!report.not_flown.empty()) body += problems_box(report.not_flown);
   body += folded("All slowdowns that were flown", to_html(levels_table(report)));
   body += "<section id=\"basis\">\n" + element("h2", "Setup and checks") +
-          to_html(basis_of(report)) + "</section>\n";
+          to_html(basis_of(report), "Setup and checks") + "</section>\n";
   return html_page(report.scenario + ": how slow a computer is fast enough?", body);
 }
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/text_table.h>
+#include <tether/os/shell_word.h>
 #include <tether/report/table.h>
 #include <tether/report/timing_page.h>
 
@@ -30,7 +31,7 @@ std::string histogram(const timing::StageRow& row, const std::vector<double>& ti
   const double highest = static_cast<double>(*std::ranges::max_element(counts));
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" role=\"img\" "
-      "font-size=\"12\"><title>{}</title>",
+      "font-size=\"12\" aria-label=\"{}\">",
       kBars_across_px, kBars_px + 20.0, escape_markup("Histogram of " + row.stage));
   for (std::size_t i = 0; i < kBins; ++i) {
     if (counts[i] == 0) continue;
@@ -71,8 +72,8 @@ std::vector<std::string> timing_advice(const timing::Timing& timing,
                     most.stage, most.count, timing::kFewSamples));
   advice.push_back(fmt::format(
       "Times alone do not show whether the computer is fast enough. To find its headroom: "
-      "`tether size SCENARIO`, with the scenario of “{}”.",
-      timing.scenario));
+      "`tether size {}` (of a scenario of your own: its file).",
+      os::shell_word(timing.scenario)));
   return advice;
 }
 

@@ -1,6 +1,7 @@
 #include "plots/plot_script.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -129,8 +130,13 @@ void add_way(Drawing& drawing, const PlottedRun& run, const Way& way, std::size_
   const double length_m = tick_m * (1.0 + 0.5 * static_cast<double>(index));
   drawing.add(ticks_of(fmt::format("ticks{}", index), way, length_m),
               "with vectors nohead linewidth 0.8", ink, "");
-  drawing.add(block_of(fmt::format("path{}", index), way.path), "with lines linewidth 2", ink,
-              run.label);
+  // Signs on the line, so that its colour is not all that tells it from others.
+  constexpr std::array kSigns = {7, 9, 11, 13, 1};  // of gnuplot: disc, triangles, diamond, cross
+  drawing.add(
+      block_of(fmt::format("path{}", index), way.path),
+      fmt::format("with linespoints linewidth 2 pointtype {} pointsize 0.6 pointinterval {}",
+                  kSigns[run.series % kSigns.size()], kPoints / 8),
+      ink, run.label);
   drawing.add(block_of(fmt::format("odometry{}", index), way.odometry),
               "with lines linewidth 1.4 dashtype '-'", ink, run.label + ", dead reckoning");
 }

@@ -68,7 +68,7 @@ std::string vertical_band(double low, double high, Ink ink) {
 }
 
 constexpr Ink kCurve = Ink::kSeries;
-constexpr Ink kUnsynchronised = Ink::kMuted;
+constexpr Ink kUnsynchronised = Ink::kAnchor;
 
 Ink board_ink(std::size_t board) {
   return series_ink(1 + board % (kSeriesInks - 2));

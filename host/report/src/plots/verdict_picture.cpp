@@ -1,6 +1,7 @@
 #include "plots/verdict_picture.h"
 
 #include "plots/shapes.h"
+#include "plots/svg.h"
 #include "tables/report_format.h"
 
 #include <algorithm>
@@ -48,16 +49,21 @@ bool has_bar(const ConditionVerdict& condition) {
   return condition.pace && !condition.pace->camera.empty() && condition.pace->median_s > 0.0;
 }
 
+/// "host: 24 ms, of it detect 100 %"
+std::string bar_text(const PictureRow& row) {
+  const Pace& pace = *row.condition->pace;
+  std::string text = fmt::format("{}: {}", row.label, short_ms(pace.median_s));
+  if (!pace.stages.empty())
+    text += fmt::format(", of it {} {:.0f} %", pace.stages.front().stage,
+                        100.0 * (1.0 - pace.waiting) * pace.stages.front().share);
+  if (pace.waiting > 0.0) text += fmt::format(", waiting for cores {:.0f} %", 100.0 * pace.waiting);
+  return text;
+}
+
 std::string bar(const PictureRow& row, double y, double px_per_s) {
   const Pace& pace = *row.condition->pace;
   const double own = 1.0 - pace.waiting;
-  std::string words = fmt::format("{}: {}", row.label, short_ms(pace.median_s));
-  if (!pace.stages.empty())
-    words += fmt::format(", of it {} {:.0f} %", pace.stages.front().stage,
-                         100.0 * own * pace.stages.front().share);
-  if (pace.waiting > 0.0)
-    words += fmt::format(", waiting for cores {:.0f} %", 100.0 * pace.waiting);
-  std::string svg = text_svg(0.0, y + 4.0, words, "start", 13);
+  std::string svg = text_svg(0.0, y + 4.0, bar_text(row), "start", 13);
   double x = 0.0;
   for (std::size_t i = 0; i < pace.stages.size(); ++i) {
     const double width = px_per_s * pace.median_s * own * pace.stages[i].share;
@@ -88,11 +94,14 @@ std::vector<PictureRow> picture_rows(const std::vector<std::vector<Verdict>>& gr
   return rows;
 }
 
-std::string drawing_of(const std::string& title, const std::string& body, double height) {
+/// @param words that a screen reader says in place of the picture
+std::string drawing_of(const std::string& title, const std::string& words, const std::string& body,
+                       double height) {
   return fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" viewBox=\"0 0 {:.0f} {:.0f}\" "
       "aria-label=\"{}\" font-family=\"sans-serif\">\n{}{}</svg>\n",
-      kPictureWidth, height, title, text_svg(0.0, 15.0, title, "start", 13), body);
+      kPictureWidth, height, escape_markup(title + words), text_svg(0.0, 15.0, title, "start", 13),
+      body);
 }
 
 }  // namespace
@@ -100,19 +109,22 @@ std::string drawing_of(const std::string& title, const std::string& body, double
 std::string verdict_picture(const std::vector<std::vector<Verdict>>& groups) {
   const std::vector<PictureRow> rows = picture_rows(groups);
   if (rows.empty()) return "";
-  std::string flights;
+  std::string flights, words, bars_words;
   double y = kPictureTop, most_s = 0.0;
   for (const PictureRow& row : rows) {
     flights += text_svg(0.0, y + 4.0, fmt::format("{}: {}", row.label, name(row.condition->ruling)),
                         "start", 13) +
                signs(*row.condition, y + 20.0);
+    words += fmt::format("; {}: {}, {} of {} reach the goal", row.label,
+                         name(row.condition->ruling), row.condition->reached, row.condition->flown);
     y += kPictureRow;
     if (!has_bar(*row.condition)) continue;
+    bars_words += "; " + bar_text(row);
     const Pace& pace = *row.condition->pace;
     most_s = std::max(
         {most_s, pace.median_s, pace.p95_s, pace.offered_hz ? 1.0 / *pace.offered_hz : 0.0});
   }
-  std::string drawings = drawing_of("Flights of each condition", flights, y);
+  std::string drawings = drawing_of("Flights of each condition", words, flights, y);
   if (!(most_s > 0.0)) return drawings;
   std::string bars;
   y = kPictureTop;
@@ -120,7 +132,7 @@ std::string verdict_picture(const std::vector<std::vector<Verdict>>& groups) {
     if (has_bar(*row.condition)) bars += bar(row, y, (kPictureWidth - 4.0) / most_s);
     y += kPictureRow;
   }
-  return drawings + drawing_of("Computing time per image", bars, y);
+  return drawings + drawing_of("Computing time per image", bars_words, bars, y);
 }
 
 }  // namespace tether::report

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 
 #include <fmt/format.h>
 
@@ -68,6 +69,13 @@ std::string joined_with_and(const std::vector<std::string>& parts) {
 
 std::string notes_of(const campaign::TrialResult& trial) {
   return fmt::format("{}", fmt::join(trial.this_run.notes, "; "));
+}
+
+std::optional<double> number_in(const std::string& text) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
 }
 
 std::vector<Heading> single_headings(const std::vector<std::string>& texts) {

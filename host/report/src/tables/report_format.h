@@ -38,6 +38,8 @@ std::string short_ms(double seconds);
 std::string joined_with_and(const std::vector<std::string>& parts);
 /// Unexpected events of a run, in one line; empty: none.
 std::string notes_of(const campaign::TrialResult& trial);
+/// The number that the whole text is; none: it is not one.
+std::optional<double> number_in(const std::string& text);
 /// A row with a heading for each column.
 std::vector<Heading> single_headings(const std::vector<std::string>& texts);
 

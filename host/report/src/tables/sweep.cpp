@@ -2,7 +2,6 @@
 #include "tables/report_format.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 
@@ -26,13 +25,6 @@ std::string short_value(const std::string& value) {
 
 std::string last_part(const std::string& key) {
   return key.substr(key.rfind('.') + 1);
-}
-
-std::optional<double> number_in(const std::string& text) {
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
 }
 
 sizing::Share reached_share(const campaign::ConditionResults& results) {

@@ -76,7 +76,7 @@ TEST(Pace, IsNotKnownWithoutSynchronisationCallsOrCamera) {
   record = record_of_reads();
   record.interactions.clear();
   EXPECT_FALSE(pace_of(record));
-  EXPECT_FALSE(read_pace("/nonexistent/record.mcap"));
+  EXPECT_THROW(read_pace("/nonexistent/record.mcap"), Error);
 }
 
 // 75 ms of own work are 150 ms of the board's time, half of it for the other program.

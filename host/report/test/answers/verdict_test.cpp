@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <tether/base_testing/scratch_folder.h>
 #include <tether/report/verdict.h>
 
 namespace tether::report {
@@ -11,7 +12,9 @@ namespace {
 using campaign::Outcome;
 using campaign::TrialResult;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 /// `reached` flights on "target" that reach the goal and `missed` that take longer than 5 s.
@@ -23,6 +26,7 @@ campaign::ScenarioResults flights(std::size_t reached, std::size_t missed) {
     trial.policy = "conservative_barrier";
     trial.end = campaign::kEndFinished;
     trial.metrics[0].max = 5.0;
+    trial.this_run.size_arguments = {"turn", "--condition", "target"};
     if (!trial.metrics[0].is_met()) trial.outcome = Outcome::kGoalMissed;
   }
   return scenario;
@@ -153,11 +157,71 @@ TEST(Verdict, SaysTheAnswerWithItsEvidenceAndWhatToDo) {
             "takes 81 % of the computing time.\n\n"
             "- Speed up “detect” first. Computing takes up to 110 ms per image, and the camera has "
             "one every 33 ms: it is 3.3 × too slow to read them all.\n"
-            "- To find how much faster the computer must be: `tether size SCENARIO --condition "
-            "\"target\" --between 0.1,2`\n\n");
+            "- To find how much faster the computer must be: `tether size turn --condition target "
+            "--between 0.1,2`\n\n");
   const std::string plain = verdict_text(verdicts, Markup::kPlain);
   EXPECT_THAT(plain, StartsWith("Not fast enough: on “target”"));
   EXPECT_EQ(plain.find_first_of("*`"), std::string::npos);
+}
+
+// A command that the user can type: of that scenario, and quoted.
+TEST(Verdict, NamesTheCommandThatFindsTheThreshold) {
+  const auto advice = [](std::size_t reached, std::vector<std::string> arguments) {
+    campaign::ScenarioResults scenario = flights(reached, 10 - reached);
+    scenario.conditions[0].trials[0].this_run.size_arguments = std::move(arguments);
+    return advice_of({verdict_of(scenario)}).back();
+  };
+  EXPECT_THAT(advice(10, {"/my own/s.toml", "--condition", "target, counted"}),
+              EndsWith("`tether size '/my own/s.toml' --condition 'target, counted'`"));
+  EXPECT_THAT(advice(0, {"turn", "--condition", "host"}), EndsWith("host --between 0.1,2`"));
+  EXPECT_THAT(advice(0, {"turn", "--condition", "host", "--target", "b.toml"}),
+              EndsWith("--target b.toml`"));  // of which the host's time is the unit
+  EXPECT_THAT(advice(0, {}), StartsWith("`tether size` finds how much faster"));
+}
+
+TEST(Verdict, NamesTheSlowestConditionThatWouldDo) {
+  campaign::ScenarioResults scenario = flights(0, 10);
+  scenario.conditions.push_back(flights(10, 0).conditions[0]);
+  scenario.conditions.push_back(flights(10, 0).conditions[0]);
+  scenario.conditions[1].condition = "slow host";
+  scenario.conditions[2].condition = "host";
+  Pace host = slow_pace(), slow_host = slow_pace();
+  host.median_s = 0.01;
+  slow_host.median_s = 0.025;
+  EXPECT_THAT(answers_of({verdict_of(scenario, {slow_pace(), slow_host, host})})[0].rest,
+              EndsWith(" “slow host” is fast enough so far: it computes 25 ms per image instead of "
+                       "100 ms, 4.0 × less."));
+  EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest,
+              EndsWith(" “slow host” is fast enough so far."));
+}
+
+TEST(Verdict, OfASweepOverTheFactorSaysHowSlowWouldDo) {
+  const auto point = [](const std::string& rate, const std::string& factor, std::size_t missed) {
+    campaign::ScenarioResults scenario = flights(10 - missed, missed);
+    scenario.settings = {{"rate_hz", rate}, {"cpu_factor", factor}};
+    return verdict_of(scenario);
+  };
+  const std::vector<Answer> answers =
+      answers_of({point("10", "12", 10), point("10", "2", 0), point("10", "6", 0),
+                  point("20", "2", 0), point("30", "2", 10), point("30", "6", 0)});
+  EXPECT_EQ(answers[0].lead, "Up to 6 × slower would do");
+  EXPECT_EQ(answers[0].rest,
+            ": “target” with rate_hz = 10 is fast enough so far at cpu_factor = 6, and not fast "
+            "enough at 12.");
+  EXPECT_EQ(answers[1].lead, "Up to 2 × slower would do");
+  EXPECT_THAT(answers[1].rest, EndsWith("at cpu_factor = 2, the largest that was flown."));
+  EXPECT_THAT(answers[2].lead, Not(HasSubstr("would do")));  // at 30: not even the least
+}
+
+TEST(Verdict, NamesARecordThatCannotBeRead) {
+  const ScratchFolder folder;
+  campaign::CampaignResults results;
+  results.scenarios = {flights(1, 0)};
+  folder.write("result.json", "{}");
+  folder.write("record.mcap", "no record");
+  const std::vector<Verdict> verdicts = verdicts_of(results, folder.path());
+  EXPECT_THAT(verdicts[0].conditions[0].unreadable, HasSubstr("record.mcap"));
+  EXPECT_THAT(answers_of(verdicts)[0].rest, HasSubstr("The computing times are not known: "));
 }
 
 TEST(Verdict, SaysWhatItsWordsRestOn) {
@@ -229,12 +293,13 @@ TEST(Verdict, OfASweepGroupsItsPointsByTheirRuling) {
   const auto groups = by_scenario(verdicts);
   ASSERT_EQ(groups.size(), 2u);
   const std::vector<Answer> answers = answers_of(groups[0]);
-  ASSERT_EQ(answers.size(), 2u);
-  EXPECT_EQ(answers[0].lead, "Fast enough so far");
-  EXPECT_EQ(answers[0].rest,
+  ASSERT_EQ(answers.size(), 3u);
+  EXPECT_EQ(answers[0].lead, "Up to 2 × slower would do");
+  EXPECT_EQ(answers[1].lead, "Fast enough so far");
+  EXPECT_EQ(answers[1].rest,
             ": “target” with cpu_factor = 1 (10 of 10 flights) and cpu_factor = 2 (10 of 10 "
             "flights).");
-  EXPECT_EQ(answers[1].lead, "Not fast enough");
+  EXPECT_EQ(answers[2].lead, "Not fast enough");
   EXPECT_THAT(advice_of(groups[0])[0], StartsWith("cpu_factor = 3: "));
   EXPECT_EQ(rulings_table(groups[0]).rows.size(), 3u);
 }

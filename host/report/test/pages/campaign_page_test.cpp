@@ -16,6 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::MatchesRegex;
 using testing::Not;
 
 // The texts between each `open` and the next `close`.
@@ -91,7 +92,8 @@ class CampaignPage : public CampaignFixture {
   }
   std::string page() const { return campaign_page(all(), out_); }
   // What screen readers and keyboards need: one h1, no level of headings left out, headings of
-  // tables with their scope, what scrolls can be reached.
+  // tables with their scope, what scrolls can be reached; both
+  // have names.
   static void expect_readable(const std::string& html) {
     EXPECT_EQ(between(html, "<h1>", "</h1>").size(), 1u);
     char level = '1';
@@ -103,7 +105,10 @@ class CampaignPage : public CampaignFixture {
     for (const std::string& attributes : between(html, "<th", ">"))
       EXPECT_TRUE(attributes == "ead" || attributes.starts_with(" scope=")) << attributes;
     for (const std::string& attributes : between(html, "<div class=\"scroll\"", ">"))
-      EXPECT_EQ(attributes, " tabindex=\"0\"");
+      EXPECT_THAT(attributes, MatchesRegex(" role=\"group\" tabindex=\"0\" aria-label=\"[^\"]+\""));
+    for (const std::string& table : between(html, "<table", "<tbody>"))
+      EXPECT_TRUE(table.starts_with(" aria-label=\"") || table.starts_with(">\n<caption>"))
+          << table;
     EXPECT_EQ(between(html, "<main>", "</main>").size(), 1u);
   }
   // Of what every page has: valid drawings, unique ids, nothing outside the page.

@@ -25,7 +25,8 @@ TEST(Html, ATableHasTheScopeOfItsHeadings) {
   const std::string html = to_html(table());
   EXPECT_EQ(
       html,
-      "<div class=\"scroll\" tabindex=\"0\"><table>\n<caption>a &lt;b&gt;</caption>\n<thead>\n"
+      "<div class=\"scroll\" role=\"group\" tabindex=\"0\" aria-label=\"a &lt;b&gt;\"><table>\n"
+      "<caption>a &lt;b&gt;</caption>\n<thead>\n"
       "<tr><td class=\"words\"></td><th scope=\"colgroup\" colspan=\"2\">Time (s)</th></tr>\n"
       "<tr><th scope=\"col\" class=\"words\">Where</th><th scope=\"col\">mean</th>"
       "<th scope=\"col\">sd</th></tr>\n</thead>\n<tbody>\n"
@@ -34,6 +35,8 @@ TEST(Html, ATableHasTheScopeOfItsHeadings) {
   Table bare = table();
   bare.headings = {{{"", 1}, {"", 2}}};
   EXPECT_THAT(to_html(bare), Not(HasSubstr("<thead>")));
+  bare.title.clear();
+  EXPECT_THAT(to_html(bare, "a<"), HasSubstr("aria-label=\"a&lt;\"><table aria-label=\"a&lt;\">"));
 }
 
 TEST(Html, TextsAreEscapedOnce) {
@@ -41,6 +44,8 @@ TEST(Html, TextsAreEscapedOnce) {
   EXPECT_EQ(list({"a<", "b"}), "<ul><li>a&lt;</li><li>b</li></ul>\n");
   EXPECT_THAT(folded("a<b", "<p>x</p>"), HasSubstr("<summary>a&lt;b</summary>\n<p>x</p>"));
   EXPECT_THAT(figure("<svg/>", "a<b", "plot"), HasSubstr("<figcaption>a&lt;b</figcaption>"));
+  EXPECT_THAT(figure("<svg aria-label=\"Path &amp; x\"/>", "", "plot"),
+              HasSubstr("tabindex=\"0\" aria-label=\"Path &amp; x\">"));
   EXPECT_EQ(problems_box({}), "");
   EXPECT_THAT(problems_box({"seed 3 <failed>"}), HasSubstr("<li>seed 3 &lt;failed&gt;</li>"));
 }

@@ -85,8 +85,14 @@ TEST(PathPlot, OverlaysRunsInTheirColours) {
   const record::Record a = sample_record(3), b = sample_record(4);
   const std::string script =
       path_plot({{{&a, "uav1", "host", 0}, {&b, "uav1", "target", 1}}})->script;
-  EXPECT_THAT(script, HasSubstr("$path0 with lines linewidth 2 linecolor rgb '#010203'"));
-  EXPECT_THAT(script, HasSubstr("$path1 with lines linewidth 2 linecolor rgb '#010204'"));
+  EXPECT_THAT(
+      script,
+      HasSubstr("$path0 with linespoints linewidth 2 pointtype 7 pointsize 0.6 pointinterval 100 "
+                "linecolor rgb '#010203'"));
+  EXPECT_THAT(
+      script,
+      HasSubstr("$path1 with linespoints linewidth 2 pointtype 9 pointsize 0.6 pointinterval 100 "
+                "linecolor rgb '#010204'"));
 }
 
 }  // namespace

@@ -32,7 +32,11 @@ TEST(VerdictPicture, HasASignForEachFlightAndABarForEachStage) {
   EXPECT_EQ(count(drawings, "<rect"), 3u);                 // two stages, the whole
   EXPECT_EQ(count(drawings, "stroke-dasharray"), 1u);      // the camera's period
   EXPECT_EQ(count(drawings, "not flown"), 0u);
-  EXPECT_EQ(count(drawings, "a &lt;b&gt;"), 2u);
+  EXPECT_EQ(count(drawings,
+                  "aria-label=\"Flights of each condition; a &lt;b&gt;: undecided, 3 of 5 "
+                  "reach the goal\""),
+            1u);
+  EXPECT_EQ(count(drawings, "aria-label=\"Computing time per image; a &lt;b&gt;: 50 ms"), 1u);
   tinyxml2::XMLDocument document;
   EXPECT_EQ(document.Parse(("<p>" + drawings + "</p>").c_str()), tinyxml2::XML_SUCCESS);
 }

@@ -57,7 +57,8 @@ struct Pace {
 /// times are not known), or has no interactions.
 std::optional<Pace> pace_of(const record::Record& record);
 
-/// Of a record on the disk; none if it is missing, unreadable, or damaged.
+/// Of a record on the disk. @throws Error(kBadFile), about the file, if it is missing, unreadable,
+/// or damaged.
 std::optional<Pace> read_pace(const std::filesystem::path& file);
 
 }  // namespace tether::report

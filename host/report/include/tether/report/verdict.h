@@ -55,6 +55,9 @@ struct ConditionVerdict {
   std::optional<std::pair<std::string, double>> closest{};
   std::string reason{};  ///< of the first flight that failed, or is not sound
   std::optional<Pace> pace{};
+  std::string unreadable{};  ///< why the pace is not known, of the first record; empty: it has none
+  /// As in campaign::ThisRun, of the first flight.
+  std::vector<std::string> size_arguments{};
 };
 
 struct Advice {
@@ -75,9 +78,10 @@ struct Advice {
 };
 
 struct Verdict {
-  std::string scenario;                      ///< without the settings of a sweep
-  std::string point{};                       ///< of a sweep: "cpu_factor = 2"
-  std::vector<ConditionVerdict> conditions;  ///< in the order of the campaign; not empty
+  std::string scenario;                       ///< without the settings of a sweep
+  std::string point{};                        ///< of a sweep: "cpu_factor = 2"
+  std::vector<scenario::Setting> settings{};  ///< … as values
+  std::vector<ConditionVerdict> conditions;   ///< in the order of the campaign; not empty
   std::size_t lead = 0;          ///< the most urgent condition, with which the answer begins
   std::vector<Advice> advice{};  ///< what to do next; the most useful first
 };
@@ -103,8 +107,9 @@ struct Answer {
 };
 /// The condition's ruling with its evidence.
 Answer answer_of(const ConditionVerdict& condition);
-/// The answer, then those on the other conditions. Of a sweep: one for each ruling of a condition.
-/// If a condition has several computers, a sentence on the slowest one follows its answer.
+/// The answer, then those on the other conditions. Of a sweep: up to which cpu_factor each
+/// condition is fast enough, then one answer for each ruling of a condition. If a condition has
+/// several computers, a sentence on the slowest one follows its answer.
 /// @pre all are of one scenario; not empty.
 std::vector<Answer> answers_of(const std::vector<Verdict>& points);
 /// What to do next, with code between backticks. @pre as above.

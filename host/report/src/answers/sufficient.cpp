@@ -1,0 +1,84 @@
+#include "answers/sufficient.h"
+
+#include "tables/report_format.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace tether::report {
+namespace {
+
+bool is_sufficient(Ruling ruling) {
+  return ruling == Ruling::kFastEnough || ruling == Ruling::kFastEnoughSoFar;
+}
+
+/// What was flown with one condition at one combination of the other values, by cpu_factor.
+using ByFactor = std::map<double, Ruling>;
+
+bool is_factor(const scenario::Setting& setting) {
+  return setting.key == "cpu_factor" || setting.key == "condition.cpu_factor";
+}
+
+/// " with rate_hz = 10"; empty: cpu_factor is the only value.
+std::string other_settings(const Verdict& point) {
+  std::string text;
+  for (const scenario::Setting& setting : point.settings)
+    if (!is_factor(setting))
+      text += fmt::format("{}{} = {}", text.empty() ? " with " : ", ", setting.key, setting.value);
+  return text;
+}
+
+std::optional<Answer> sufficient_factor(const std::string& what, const ByFactor& flown) {
+  const auto next =
+      std::ranges::find_if(flown, [](const auto& one) { return !is_sufficient(one.second); });
+  if (next == flown.begin()) return std::nullopt;
+  const auto [factor, ruling] = *std::prev(next);
+  return Answer{fmt::format("Up to {:g} × slower would do", factor),
+                fmt::format(": {} is {} at cpu_factor = {:g}, {}.", what, name(ruling), factor,
+                            next == flown.end()
+                                ? "the largest that was flown"
+                                : fmt::format("and {} at {:g}", name(next->second), next->first))};
+}
+
+}  // namespace
+
+std::string sufficient_condition(const Verdict& verdict) {
+  const ConditionVerdict& lead = verdict.conditions[verdict.lead];
+  if (lead.ruling != Ruling::kNotFastEnough) return "";
+  const auto computing_s = [](const ConditionVerdict& one) {
+    return one.pace ? one.pace->median_s : 0.0;
+  };
+  const ConditionVerdict* slowest = nullptr;
+  for (const ConditionVerdict& one : verdict.conditions)
+    if (is_sufficient(one.ruling) &&
+        (slowest == nullptr || computing_s(one) > computing_s(*slowest)))
+      slowest = &one;
+  if (slowest == nullptr) return "";
+  std::string text = fmt::format(" “{}” is {}", slowest->condition, name(slowest->ruling));
+  if (computing_s(*slowest) > 0.0 && computing_s(lead) > computing_s(*slowest))
+    text += fmt::format(": it computes {} per image instead of {}, {} × less",
+                        short_ms(computing_s(*slowest)), short_ms(computing_s(lead)),
+                        fixed(computing_s(lead) / computing_s(*slowest), 1));
+  return text + ".";
+}
+
+std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
+  std::vector<Answer> answers;
+  for (std::size_t i = 0; i < points.front().conditions.size(); ++i) {
+    std::map<std::string, ByFactor> flown;
+    for (const Verdict& point : points) {
+      const auto factor = std::ranges::find_if(point.settings, is_factor);
+      if (factor == point.settings.end()) return {};
+      if (const auto value = number_in(factor->value))
+        flown[fmt::format("“{}”{}", point.conditions[i].condition, other_settings(point))][*value] =
+            point.conditions[i].ruling;
+    }
+    for (const auto& [what, by_factor] : flown)
+      if (auto answer = sufficient_factor(what, by_factor)) answers.push_back(std::move(*answer));
+  }
+  return answers;
+}
+
+}  // namespace tether::report

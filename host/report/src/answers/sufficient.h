@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <tether/report/verdict.h>
+
+/// What would be fast enough, as far as the campaign's own flights show it. Pure functions.
+namespace tether::report {
+
+/// Of a scenario whose lead is not fast enough: the slowest of the conditions that are. Begins with
+/// a space; empty: there is none.
+std::string sufficient_condition(const Verdict& verdict);
+
+/// Of a sweep over cpu_factor: for each condition and combination of the other values, the largest
+/// factor up to which it is fast enough. @pre the points are of one scenario; not empty.
+std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points);
+
+}  // namespace tether::report

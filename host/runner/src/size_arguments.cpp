@@ -1,0 +1,50 @@
+#include "size_arguments.h"
+
+#include <algorithm>
+
+#include <tether/base/error.h>
+#include <tether/scenario/slowness.h>
+
+namespace tether::runner {
+namespace {
+
+std::string word_for(const std::filesystem::path& scenario, const scenario::ShippedFiles& shipped) {
+  std::error_code failed;
+  return std::filesystem::equivalent(shipped.folder() / "scenarios" / scenario.filename(), scenario,
+                                     failed)
+             ? scenario.stem().string()
+             : scenario.string();
+}
+
+/// Of the scenario's conditions, the one that was moved to a target of the command line.
+const scenario::Condition& moved_from(const TrialSpec& spec) {
+  const auto& all = spec.scenario.conditions;
+  const auto found = std::ranges::find_if(all, [&](const scenario::Condition& one) {
+    return spec.condition.name.starts_with(one.name + " on ");
+  });
+  return found == all.end() ? all.front() : *found;
+}
+
+}  // namespace
+
+std::vector<std::string> size_arguments(const TrialSpec& spec,
+                                        const scenario::ShippedFiles& shipped) try {
+  if (!spec.scenario.settings.empty() || !spec.condition.slowed_from.empty() || spec.waits_for_sut)
+    return {};
+  const scenario::Condition* own = spec.scenario.find_condition(spec.condition.name);
+  scenario::Condition slower = own != nullptr ? *own : moved_from(spec);
+  std::vector<std::string> words = {word_for(spec.scenario.file, shipped), "--condition",
+                                    slower.name};
+  if (own == nullptr) {
+    const auto& target = spec.condition.target;
+    if (!target || target->file.empty() || !slower.computers.empty()) return {};
+    scenario::slowness(*target, slower);
+    words.insert(words.end(), {"--target", target->file.string()});
+  }
+  scenario::slow_down(slower, 2.0);
+  return words;
+} catch (const Error&) {
+  return {};
+}
+
+}  // namespace tether::runner
