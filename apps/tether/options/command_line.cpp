@@ -244,7 +244,7 @@ void add_size_command(CLI::App& program, Action& action) {
       "Number of parallel flights [1; with --slurm, one for each core]. Rejected if "
       "parallel runs would distort measured time");
   add_cluster_options(*command, options->cluster);
-  command->add_option("--out", options->out, "Folder [out/size/SCENARIO, of UAVs with -uavs]"); of UAVs, out/size/SCENARIO-uavs]");
+  command->add_option("--out", options->out, "Folder [out/size/SCENARIO, of UAVs with -uavs]");
   command->add_flag("--resume", options->resume, "Continue with the flights in the folder");
   command->add_flag("--force", options->force, "Remove the earlier flights in the folder");
   add_junit_option(*command, options->junit);
