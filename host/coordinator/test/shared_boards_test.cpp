@@ -69,6 +69,21 @@ TEST_F(SharedBoard, PinnedProgramsShareTheirCoreOnly) {
   EXPECT_EQ(of(3)[0].computed, std::nullopt) << "it shares nothing";
 }
 
+TEST_F(SharedBoard, AFlooderLeavesItsShareOfTheCoresToTheOthers) {
+  for (const bool in_one_step : {true, false}) {
+    options_.radio.model = radio::Model::kLogDistance;
+    options_.radio.queue_messages = 2;
+    make_shared(2, 1);
+    const Duration pause = in_one_step ? Duration(0) : Duration(microseconds(2));
+    const Act send{pause, link::SendMessage{"", std::vector<std::uint8_t>(60'000)}};
+    server_->add_sut(hello(name(0)), Script(4'000, send));
+    server_->add_sut(hello(name(1)), {turn(milliseconds(200), 0.1), finish(milliseconds(100))});
+    const RunReport report = run();
+    EXPECT_EQ(report.end, RunEnd::kFlooded) << report.reason;
+    EXPECT_TRUE(report.suts.at(1).finish) << "the other one is unharmed";
+  }
+}
+
 TEST_F(SharedBoard, SleepsAndAnnotationsAreOnTheTimeLineOfTheBoard) {
   make_shared(2, 1);
   const link::PeerId peer = server_->add_sut(hello(name(0)), {});

@@ -89,6 +89,12 @@ inline Interaction receive_interaction(std::uint64_t sequence = 5) {
   return message;
 }
 
+inline Interaction battery_interaction(std::uint64_t sequence = 6) {
+  Interaction message = interaction(kBattery, sequence);
+  message.battery = {12.25, 6.5, 0.75};
+  return message;
+}
+
 inline RadioMessage radio_message() {
   return {"a", 3, "b", 100, st_ms(39), st_ms(40), "collision", st_ms(39), 12.5, 2, -3.5};
 }

@@ -2,6 +2,8 @@
 
 #include "sensor_world.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -80,6 +82,20 @@ TEST(ShippedFiles, EveryScenarioHasTheTimingsOfItsTask) {
        {"closed_path", "face_anchor", "mission", "move_forward", "relative_position"})
     EXPECT_EQ(timings(name), streaming) << name;
   EXPECT_EQ(timings("sensor_characterization"), on_demand);
+}
+
+// Else no computer is too slow for it. The characterization measures sensors, not a computer.
+TEST(ShippedFiles, EveryScenarioLimitsItsTimeOrWhatDependsOnIt) {
+  for (const auto& entry : std::filesystem::directory_iterator(source("scenarios"))) {
+    const Scenario scenario = load_scenario(entry.path());
+    if (scenario.name == "sensor_characterization") continue;
+    const bool has_mission = std::ranges::any_of(
+        scenario.uavs, [](const UavSetup& uav) { return uav.sut.mission.has_value(); });
+    const bool has_limit = std::ranges::any_of(scenario.metrics, [](const Metric& metric) {
+      return metric.max && (metric.kind == "time_required" || metric.kind == "abeam_error");
+    });
+    EXPECT_TRUE(has_mission || has_limit) << scenario.name;
+  }
 }
 
 TEST(ShippedFiles, TheIdealProfileLeavesNoErrorAndNoDelay) {

@@ -1,7 +1,6 @@
 #include <algorithm>
 
-#include <boost/math/distributions/binomial.hpp>
-
+#include <tether/sizing/by_levels.h>
 #include <tether/sizing/by_uavs.h>
 
 namespace tether::sizing {
@@ -12,18 +11,10 @@ constexpr std::size_t kProbes = 2;
 
 }  // namespace
 
-Share exact_interval(std::size_t reached, std::size_t flights, double confidence) {
-  using Binomial = boost::math::binomial_distribution<double>;
-  const double n = static_cast<double>(flights), k = static_cast<double>(reached);
-  const double tail = 0.5 * (1.0 - confidence);
-  return {k / n, reached == 0 ? 0.0 : Binomial::find_lower_bound_on_p(n, k, tail),
-          reached == flights ? 1.0 : Binomial::find_upper_bound_on_p(n, k, tail)};
-}
-
 UavAnswer answer_by_uavs(const UavQuestion& question, std::span<const UavLevel> levels) {
   UavAnswer answer{.carried = question.least - 1, .too_many = question.most + 1};
   for (const UavLevel& level : levels) {
-    const Share share = exact_interval(level.reached, level.flights, question.confidence);
+    const Share share = exact_share(level.reached, level.flights, question.confidence);
     if (share.low >= question.success) answer.carried = std::max(answer.carried, level.uavs);
     if (share.high < question.success) answer.too_many = std::min(answer.too_many, level.uavs);
   }

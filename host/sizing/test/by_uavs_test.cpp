@@ -10,17 +10,6 @@
 namespace tether::sizing {
 namespace {
 
-// As tables of Clopper and Pearson's interval have it: 36 flights without a miss show 90 %, and two
-// misses of two show less.
-TEST(ByUavs, TheIntervalOfAShareIsExact) {
-  EXPECT_GE(exact_interval(36, 36, 0.95).low, 0.9);
-  EXPECT_LT(exact_interval(35, 35, 0.95).low, 0.9004);
-  EXPECT_EQ(exact_interval(35, 35, 0.95).high, 1.0);
-  EXPECT_NEAR(exact_interval(0, 2, 0.95).high, 0.8419, 1e-4);
-  EXPECT_NEAR(exact_interval(7, 10, 0.95).low, 0.3475, 1e-4);
-  EXPECT_NEAR(exact_interval(7, 10, 0.95).high, 0.9333, 1e-4);
-}
-
 TEST(ByUavs, BisectsUntilTwoNeighboursAreLeftThenDecidesBoth) {
   const UavQuestion question{.most = 8};
   struct Case {

@@ -10,12 +10,11 @@
 #include <tether/report/size_report.h>
 #include <tether/report/verdict.h>
 #include <tether/scenario/scenario.h>
-#include <tether/sizing/by_uavs.h>
+#include <tether/sizing/by_levels.h>
 
 namespace tether::report {
 namespace {
 
-constexpr double kExactConfidence = 0.95;
 constexpr std::size_t kMostFlights = 1000;
 
 bool is_free_running(const campaign::TrialResult& trial) {
@@ -182,7 +181,7 @@ std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
 }  // namespace
 
 campaign::Interval exact_interval(std::size_t reached, std::size_t flown) {
-  const sizing::Share share = sizing::exact_interval(reached, flown, kExactConfidence);
+  const sizing::Share share = sizing::exact_share(reached, flown, 0.95);
   return {share.low, share.high};
 }
 

@@ -2,6 +2,7 @@
 
 #include <tether/report/size_report.h>
 #include <tether/report/uavs_report.h>
+#include <tether/sizing/by_levels.h>
 
 namespace tether::report {
 
@@ -34,7 +35,7 @@ std::string uavs_json(const UavsReport& report) {
     json["summary"].push_back(answer.lead + answer.rest);
   for (const sizing::UavLevel& level : uav_levels(report.points)) {
     const sizing::Share share =
-        sizing::exact_interval(level.reached, level.flights, question.confidence);
+        sizing::exact_share(level.reached, level.flights, question.confidence);
     json["levels"].push_back({{"uavs", level.uavs},
                               {"flights", level.flights},
                               {"reached", level.reached},

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <tether/report/uavs_report.h>
+#include <tether/sizing/by_levels.h>
 
 namespace tether::report {
 namespace {
@@ -21,7 +22,7 @@ Table uavs_table(const UavsReport& report) {
                    100.0 * report.question.confidence)}};
   for (const sizing::UavLevel& level : uav_levels(report.points)) {
     const sizing::Share share =
-        sizing::exact_interval(level.reached, level.flights, report.question.confidence);
+        sizing::exact_share(level.reached, level.flights, report.question.confidence);
     table.rows.push_back(
         {std::to_string(level.uavs), std::to_string(level.flights), std::to_string(level.reached),
          fmt::format("{:.0f} to {:.0f} %", 100.0 * share.low, 100.0 * share.high)});

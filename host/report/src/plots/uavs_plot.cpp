@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <tether/report/uavs_report.h>
+#include <tether/sizing/by_levels.h>
 
 namespace tether::report {
 
@@ -12,7 +13,7 @@ Plot uavs_plot(const UavsReport& report) {
   DataBlock shares("shares"), wanted("wanted");
   for (const sizing::UavLevel& level : uav_levels(report.points)) {
     const sizing::Share share =
-        sizing::exact_interval(level.reached, level.flights, report.question.confidence);
+        sizing::exact_share(level.reached, level.flights, report.question.confidence);
     shares.add(static_cast<double>(level.uavs), share.estimate, share.low, share.high);
   }
   wanted.add(least - 0.5, report.question.success);

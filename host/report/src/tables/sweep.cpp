@@ -36,8 +36,8 @@ std::optional<double> number_in(const std::string& text) {
 }
 
 sizing::Share reached_share(const campaign::ConditionResults& results) {
-  return sizing::wilson(results.count(campaign::Outcome::kGoalReached), results.trials.size(),
-                        kConfidence);
+  return sizing::exact_share(results.count(campaign::Outcome::kGoalReached), results.trials.size(),
+                             kConfidence);
 }
 
 /// Label and unit of a metric, from any trial; nullptr if there is none.

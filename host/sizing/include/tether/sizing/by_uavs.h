@@ -25,9 +25,6 @@ struct UavLevel {
   std::size_t reached = 0;
 };
 
-/// The exact interval of a share (Clopper and Pearson, Biometrika 26, 1934). @pre flights ≥ 1.
-Share exact_interval(std::size_t reached, std::size_t flights, double confidence);
-
 /// A level is sufficient if all of its exact interval is at or above the wanted share, and
 /// insufficient if all of it is below.
 struct UavAnswer {
