@@ -252,7 +252,8 @@ void add_size_command(CLI::App& program, Action& action) {
   add_reading_options(*command, options->reading);
   command->footer(
       R"(Exit codes: 0 every --target is sufficient, or none is given and the answer is as narrow as
---interval asks (of UAVs: decided), 1 not so, 2 wrong use or a bad file, 3 interrupted, or flights failed.
+--interval asks (of UAVs: decided), 1 not so, 2 wrong use or a bad file, 3 interrupted,
+or flights failed.
 
 Examples:
   tether size face_anchor --condition target
