@@ -244,7 +244,7 @@ void add_size_command(CLI::App& program, Action& action) {
       "Number of parallel flights [1; with --slurm, one for each core]. Rejected if "
       "parallel runs would distort measured time");
   add_cluster_options(*command, options->cluster);
-  command->add_option("--out", options->out, "Folder [out/size/SCENARIO, of UAVs with -uavs]"); of UAVs, out/size/SCENARIO-uavs]");
+  command->add_option("--out", options->out, "Folder [out/size/SCENARIO, of UAVs with -uavs]");
   command->add_flag("--resume", options->resume, "Continue with the flights in the folder");
   command->add_flag("--force", options->force, "Remove the earlier flights in the folder");
   add_junit_option(*command, options->junit);
@@ -252,7 +252,8 @@ void add_size_command(CLI::App& program, Action& action) {
   add_reading_options(*command, options->reading);
   command->footer(
       R"(Exit codes: 0 every --target is sufficient, or none is given and the answer is as narrow as
---interval asks (of UAVs: decided), 1 not so, 2 wrong use or a bad file, 3 interrupted, or flights failed.
+--interval asks (of UAVs: decided), 1 not so, 2 wrong use or a bad file, 3 interrupted,
+or flights failed.
 
 Examples:
   tether size face_anchor --condition target
