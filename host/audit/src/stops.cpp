@@ -132,9 +132,15 @@ class ConcurrentCheck {
     }
   }
 
-  // A request with the timestamp of the stop may have arrived after the stop.
+  // A request with the timestamp of the stop may have arrived after the stop. So may the message
+  // that moved a reply up, and the SUT may have resumed before it heard of that.
   static bool was_due(const record::Interaction& m, const record::Stop& stop) {
+    if (may_be_moved_up(m)) return false;
     return m.reply_at < stop.at || (m.reply_at == stop.at && m.request_at < stop.at);
+  }
+
+  static bool may_be_moved_up(const record::Interaction& m) {
+    return m.received && m.receive_until && m.reply_at < *m.receive_until;
   }
 
   std::size_t stops_before(const Entry& entry) const {
@@ -143,21 +149,29 @@ class ConcurrentCheck {
     return static_cast<std::size_t>(later - row_.stops.begin());
   }
 
-  // Rule 0: a stop names its reply. It is unknown whether one was due at the last stop of an
+  // Rule 0: a stop names its reply, the earliest one that the SUT knew of. Replies that a message
+  // moved up may come before it. It is unknown whether one was due at the last stop of an
   // interrupted run.
   void check_replies_of_stops() {
-    std::vector<std::optional<ExecTime>> earliest(row_.stops.size());
-    for (const Entry* entry : row_.interactions) {
-      const std::size_t stops = stops_before(*entry);
-      if (stops == 0) continue;
-      std::optional<ExecTime>& least = earliest[stops - 1];
-      least = std::min(least.value_or(entry->message.reply_at), entry->message.reply_at);
-    }
+    std::vector<std::vector<const record::Interaction*>> replies(row_.stops.size());
+    for (const Entry* entry : row_.interactions)
+      if (const std::size_t stops = stops_before(*entry); stops > 0)
+        replies[stops - 1].push_back(&entry->message);
     for (std::size_t i = 0; i < row_.stops.size(); ++i) {
-      const bool unknown = i + 1 == row_.stops.size() && !finished_ && !earliest[i];
-      if (unknown || row_.stops[i]->message.reply_at == earliest[i]) continue;
-      report_.add(0, *row_.stops[i], "stop for {}, but the next was {}",
-                  text(row_.stops[i]->message.reply_at), text(earliest[i]));
+      const std::optional<ExecTime>& named = row_.stops[i]->message.reply_at;
+      std::optional<ExecTime> earliest;  // of those that were due when the stop was reported
+      bool was_sent = false;
+      for (const record::Interaction* reply : replies[i]) {
+        was_sent |=
+            named == reply->reply_at || (may_be_moved_up(*reply) && named == reply->receive_until);
+        if (!may_be_moved_up(*reply))
+          earliest = std::min(earliest.value_or(reply->reply_at), reply->reply_at);
+      }
+      const bool unknown = i + 1 == row_.stops.size() && !finished_ && !earliest;
+      const bool fits = named ? was_sent && (!earliest || *named <= *earliest) : !earliest;
+      if (!unknown && !fits)
+        report_.add(0, *row_.stops[i], "stop for {}, but the next was {}", text(named),
+                    text(earliest));
     }
   }
 

@@ -118,5 +118,49 @@ TEST(AuditOfRadio, FindsViolations) {
   }
 }
 
+// "b" has several threads. It stops at 1.9 ms and resumes before it hears that its reply is due.
+Record concurrent_exchange() {
+  Record record = exchange();
+  record.header.suts[1].concurrent = true;
+  for (Entry& entry : record.interactions) entry.order = 10 * (entry.order + 1);
+  record.radio[0].order = 14;
+  record::Interaction& second = record.interactions[2].message;
+  second.request_at = from_ns<ExecTime>(2'500'000);
+  set_lag(second);
+  const auto add_stop = [&](std::uint64_t order, int st_ms, int at_us, int reply_at_us) {
+    record::Stop stop{"b", ExecTime(std::chrono::microseconds(at_us)), {}, {}};
+    if (reply_at_us > 0) stop.reply_at = ExecTime(std::chrono::microseconds(reply_at_us));
+    record.stops.push_back({SimTime(st_ms * kStep), order, stop});
+  };
+  add_stop(11, 1, 1'000, 0);
+  add_stop(12, 1, 1'900, 0);
+  add_stop(15, 1, 2'200, 1'700);
+  add_stop(35, 2, 2'500, 0);
+  add_stop(36, 4, 4'000, 4'000);
+  add_stop(55, 5, 5'000, 5'000);
+  set_figures(record);
+  return record;
+}
+
+TEST(AuditOfRadio, AcceptsThatAThreadedSutHearsOfAMessageAfterAStop) {
+  const Record record = concurrent_exchange();
+  EXPECT_TRUE(audit(record).passed()) << to_text(audit(record));
+  for (const Planted& planted : std::vector<Planted>{
+           {"it knew, and resumed",
+            {0},
+            [](Record& r) { r.stops[1].message.reply_at = r.stops[2].message.reply_at; }},
+           {"a stop without its reply",
+            {0},
+            [](Record& r) { r.stops[4].message.reply_at.reset(); }},
+           {"a reply that never came", {0}, [](Record& r) {
+              r.stops[3].message.reply_at = r.stops[3].message.at;
+            }}}) {
+    Record bad = concurrent_exchange();
+    planted.plant(bad);
+    set_figures(bad);
+    EXPECT_EQ(rules_of(bad), planted.rules) << planted.what;
+  }
+}
+
 }  // namespace
 }  // namespace tether::audit

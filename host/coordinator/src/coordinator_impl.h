@@ -65,7 +65,7 @@ class Coordinator::Impl {
   void on_progress(Session& session, const link::Progress& progress, WallTime now);
   void on_annotation(Session& session, const link::Annotation& note);
   void on_stop(Session& session, const link::Progress& stop, WallTime now);
-  static std::optional<ExecTime> earliest_due(const Session& session, ExecTime at);
+  static std::optional<ExecTime> earliest_due(const Session& session, const link::Progress& stop);
   void on_refusal(Session& session, const link::Refusal& refusal);
   void check_replay(Session& session, const link::Request& request);
   void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);

@@ -154,11 +154,13 @@ void Coordinator::Impl::on_annotation(Session& session, const link::Annotation& 
 }
 
 // The timestamp of the reply that caused a stop. No reply is sent before the SUT has stopped for
-// it, so it is one of the open calls that are due.
-std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session, ExecTime at) {
+// it, so it is one of the open calls that are due, and that the SUT knew to be due.
+std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session,
+                                                        const link::Progress& stop) {
   std::optional<ExecTime> earliest;
   for (const PendingInteraction& pending : session.open)
-    if (const ExecTime reply_at = pending.entry.reply_at; reply_at <= at)
+    if (const ExecTime reply_at = pending.entry.reply_at;
+        reply_at <= stop.reached && pending.moved_due <= stop.dues_heard)
       earliest = std::min(earliest.value_or(reply_at), reply_at);
   return earliest;
 }
@@ -167,7 +169,7 @@ std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session, 
 void Coordinator::Impl::on_stop(Session& session, const link::Progress& stop, WallTime now) {
   const ExecTime at = stop.reached;
   const bool is_same = barrier_.is_held(session.uav);  // see fault_of
-  if (!is_same) log_.stop(st(), {session.uav_name, at, earliest_due(session, at), now});
+  if (!is_same) log_.stop(st(), {session.uav_name, at, earliest_due(session, stop), now});
   barrier_.stop(session.uav, at, stop.dues_heard >= session.newest_moved_due);
   release_ready();
 }

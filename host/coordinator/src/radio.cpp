@@ -111,7 +111,7 @@ void Coordinator::Impl::promise(Session& session, PendingInteraction& pending, E
   entry.reply_at = reply_at;
   barrier_.move_up(session.uav, entry.sequence, reply_at);
   if (!session.is_concurrent()) return;
-  session.newest_moved_due = ++session.dues_sent;
+  session.newest_moved_due = pending.moved_due = ++session.dues_sent;
   server_->send(session.peer, link::Due{entry.sequence, reply_at});
 }
 

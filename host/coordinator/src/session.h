@@ -23,8 +23,9 @@ namespace tether::coordinator {
 /// A request between its arrival and its reply.
 struct PendingInteraction {
   link::Request request;
-  record::Interaction entry;  ///< complete when the reply is sent
-  bool is_promised = false;   ///< a message is in the inbox for this call
+  record::Interaction entry;    ///< complete when the reply is sent
+  bool is_promised = false;     ///< a message is in the inbox for this call
+  std::uint64_t moved_due = 0;  ///< number of the Due that moved its reply up; 0: none did
 };
 
 /// A request, and when it came and was sent.

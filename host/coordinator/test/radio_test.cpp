@@ -225,5 +225,33 @@ TEST_F(RadioTest, AConcurrentSutStopsForAMessage) {
   }));
 }
 
+// The first stop had not heard that a message moved the reply up: it resumes without it.
+TEST_F(RadioTest, AStopNamesOnlyRepliesThatItKnewOf) {
+  make(2);
+  const link::PeerId threads = add_silent(true, name_of(0));
+  const link::PeerId sender =
+      server_->add_sut(hello(name_of(1)), {send(milliseconds(1)), finish(milliseconds(50))});
+  const auto say = [&](std::int64_t at_us, bool stopped, std::uint64_t dues_heard, int times = 1) {
+    for (int i = 0; i < times; ++i)
+      server_->deliver(threads, link::Progress{us(at_us), stopped, 0, dues_heard});
+  };
+  server_->deliver(threads, request(1, us(100), link::ReceiveMessage{milliseconds(100)}));
+  say(100, true, 0);
+  say(2'000, false, 1, 20);
+  say(2'500, true, 1);
+  say(2'600, false, 1);
+  say(3'000, true, 2);
+  server_->deliver(threads, request(2, us(3'000), link::Finish{true, "done", "{}"}));
+  say(3'000, true, 3);
+  server_->choose = [&](std::size_t) { return server_->first_of(sender); };
+  const RunReport report = run();
+  ASSERT_EQ(report.end, RunEnd::kFinished) << report.reason;
+  ASSERT_GE(recorder_.stops.size(), 3U);
+  EXPECT_EQ(recorder_.stops[1].at, us(2'500));
+  EXPECT_EQ(recorder_.stops[1].reply_at, std::nullopt);
+  EXPECT_EQ(recorder_.stops[2].at, us(3'000));
+  EXPECT_EQ(recorder_.stops[2].reply_at, us(1'000));
+}
+
 }  // namespace
 }  // namespace tether::coordinator

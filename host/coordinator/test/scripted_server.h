@@ -57,6 +57,12 @@ class ScriptedServer final : public link::Server {
     std::get<link::Closed>(queue_.back().what).may_still_read = true;
   }
 
+  /// The place of the peer's first waiting message; 0: it has none.
+  std::size_t first_of(link::PeerId peer) const {
+    const auto found = std::ranges::find(queue_, peer, &link::Event::peer);
+    return found == queue_.end() ? 0 : static_cast<std::size_t>(found - queue_.begin());
+  }
+
   link::Address address() const override { return {"script", 0}; }
   std::span<link::Event> poll(Duration) override {
     ++polls;
