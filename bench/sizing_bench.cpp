@@ -131,7 +131,7 @@ Run run_adaptive(const sizing::CurveGrid& grid, const Kind& kind, const Fly& fly
     const bool is_last = sizing.flights().size() >= kMostFlights;
     const sizing::Answer answer = sizing.answer(is_last);
     if (answer.is_narrow || is_last) return {sizing.flights().size(), answer};
-    for (const double level : sizing.next(2)) sizing.add(fly(level, random));
+    for (const double slowdown : sizing.next(2)) sizing.add(fly(slowdown, random));
   }
 }
 

@@ -84,6 +84,7 @@ if(NOT TETHER_TARGET_ONLY)
     foreach(place IN ITEMS
         "data/:/usr/share/tether/"
         "examples/own-sut:/usr/share/doc/libtether-client-dev/examples/own-sut"
+        "examples/depth-camera:/usr/share/doc/libtether-client-dev/examples/depth-camera"
         "examples/own-simulator:../examples/own-simulator"
         "host/sim/protocol/schema/:/usr/share/tether/schema/"
         "target/client/c_api/include/:/usr/include/")
@@ -94,7 +95,12 @@ if(NOT TETHER_TARGET_ONLY)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/${guide}")
   endforeach()
   install(DIRECTORY "${documents}/guide" docs/adr docs/images DESTINATION "${destination}" COMPONENT tether)
-  install(FILES docs/design.md docs/results.md CHANGELOG.md DESTINATION "${destination}" COMPONENT tether)
+  file(READ CHANGELOG.md text)
+  string(REPLACE "](docs/" "](" text "${text}")
+  file(CONFIGURE OUTPUT "${documents}/CHANGELOG.md" CONTENT "${text}" @ONLY)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/CHANGELOG.md")
+  install(FILES docs/design.md docs/results.md docs/scale.md "${documents}/CHANGELOG.md"
+    DESTINATION "${destination}" COMPONENT tether)
   install(DIRECTORY examples/own-simulator DESTINATION "${destination}/examples" COMPONENT tether
     PATTERN build EXCLUDE)
 endif()

@@ -79,8 +79,13 @@ int run_campaign(const CampaignOptions& options, const std::stop_token& stop);
 /// campaign files have no spaces.
 inline constexpr std::string_view kSizePrefix = "size of ";
 
+/// What `tether size` leaves in its folder, beside the page and the flights.
+inline constexpr const char* kSizeFile = "size.json";
+inline constexpr const char* kSizeDrawing = "size.svg";
+
 struct SizeOptions {
   std::filesystem::path scenario;
+  std::string axis = "slowdown";  ///< or "uavs"
   std::string condition;
   std::string unsynchronised;
   std::vector<std::filesystem::path> targets;
@@ -88,8 +93,8 @@ struct SizeOptions {
   std::string simulator;
   double success = 0.9;
   double confidence = 0.95;
-  double interval = 1.3;
-  std::vector<double> between = {1.0, 40.0};
+  std::optional<double> interval;
+  std::optional<std::vector<double>> between;
   std::size_t max_trials = 300;
   std::optional<int> jobs;
   ClusterOptions cluster;

@@ -155,7 +155,8 @@ void print_energy(const campaign::UavEnergy& energy) {
              energy.least_voltage_V);
 }
 
-void print_clause(const judge::ClauseVerdict& clause) {
+void print_clause(const judge::ClauseVerdict& clause, bool is_evaluated) {
+  if (!is_evaluated) return fmt::print("  {:<24} not evaluated\n", clause.name);
   const std::string margin =
       clause.margin ? fmt::format(", margin {:.4g} {}", *clause.margin, clause.unit) : "";
   const std::string reason = clause.limited_by.empty() ? "" : "; " + clause.limited_by;
@@ -184,7 +185,7 @@ void print_result(const runner::TrialSpec& spec, const campaign::TrialResult& re
                : metric.min ? fmt::format("  (at least {:.4g})", *metric.min)
                             : "");
   }
-  for (const auto& clause : result.clauses) print_clause(clause);
+  for (const auto& clause : result.clauses) print_clause(clause, !has_failed);
   for (const campaign::UavEnergy& energy : result.energy) print_energy(energy);
   for (const campaign::UavContacts& own : result.contacts) print_contacts(own);
   fmt::print("  {:<24} {:.3f} s in {:.3f} s of wall time, {} interactions\n", "simulated",

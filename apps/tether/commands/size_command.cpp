@@ -2,6 +2,7 @@
 #include "commands/cluster.h"
 #include "commands/commands.h"
 #include "commands/size_flights.h"
+#include "commands/size_uavs.h"
 #include "options/file_kind.h"
 #include "options/junit_option.h"
 #include "options/refuse_option.h"
@@ -33,8 +34,6 @@ namespace tether::app {
 namespace {
 
 constexpr double kLargestFactor = 1e4;  // as in files
-constexpr const char* kSizeFile = "size.json";
-constexpr const char* kSizeDrawing = "size.svg";
 
 void require_share(const std::string& option, double share) {
   if (share > 0.0 && share < 1.0) return;
@@ -52,13 +51,12 @@ std::size_t least_flights(const sizing::Question& question) {
 }
 
 sizing::Question question_of(const SizeOptions& options) {
+  const std::vector<double> between = options.between.value_or(std::vector<double>{1.0, 40.0});
   const sizing::Question question{.success = options.success,
                                   .confidence = options.confidence,
-                                  .interval = options.interval,
-                                  .least = options.between.at(0),
-                                  .most = options.between.at(1)};
-  require_share("--success", question.success);
-  require_share("--confidence", question.confidence);
+                                  .interval = options.interval.value_or(1.3),
+                                  .least = between.at(0),
+                                  .most = between.at(1)};
   if (!(question.interval >= 1.05))
     refuse_option("--interval",
                   fmt::format("{} is less than 1.05. It is the upper bound of the answer "
@@ -215,8 +213,11 @@ int find_size(const SizeOptions& options, const std::stop_token& stop) {
 }  // namespace
 
 int size(const SizeOptions& options, const std::stop_token& stop) {
-  return with_junit(options.junit, options.scenario.string(),
-                    [&] { return find_size(options, stop); });
+  return with_junit(options.junit, options.scenario.string(), [&] {
+    require_share("--success", options.success);
+    require_share("--confidence", options.confidence);
+    return options.axis == "uavs" ? find_uavs(options, stop) : find_size(options, stop);
+  });
 }
 
 }  // namespace tether::app

@@ -76,9 +76,9 @@ scenario::Campaign SizeFlights::make_campaign() const {
   scenario::CampaignScenario entry{setup_.scenario, {}, ""};
   entry.scenario.conditions.clear();
   for (const scenario::Condition& condition : setup_.conditions) {
-    for (const double level : grid_.levels()) {
+    for (const double slowdown : grid_.slowdowns()) {
       entry.scenario.conditions.push_back(condition);
-      scenario::slow_down(entry.scenario.conditions.back(), level);
+      scenario::slow_down(entry.scenario.conditions.back(), slowdown);
       entry.conditions.push_back(entry.scenario.conditions.back().name);
     }
   }
@@ -87,8 +87,9 @@ scenario::Campaign SizeFlights::make_campaign() const {
 }
 
 std::string SizeFlights::slowed_name(std::size_t condition, double slowdown) const {
-  const auto level = std::ranges::find(grid_.levels(), slowdown) - grid_.levels().begin();
-  const std::size_t index = condition * grid_.levels().size() + static_cast<std::size_t>(level);
+  const std::vector<double>& all = grid_.slowdowns();
+  const auto place = std::ranges::find(all, slowdown) - all.begin();
+  const std::size_t index = condition * all.size() + static_cast<std::size_t>(place);
   return campaign_.scenarios.front().conditions.at(index);
 }
 
@@ -141,13 +142,14 @@ SizeFlights::End SizeFlights::fly_synchronised() {
     const std::size_t left = setup_.most - std::min<std::size_t>(setup_.most, next_seed_ - 1);
     report_->synchronised.answer = sizing_.answer(left == 0);
     if (report_->synchronised.answer.is_narrow || left == 0) return End::kAnswered;
-    const std::vector<double> levels = sizing_.next(std::min(at_once, left));
+    const std::vector<double> slowdowns = sizing_.next(std::min(at_once, left));
     std::vector<Key> keys;
-    for (const double level : levels) keys.emplace_back(slowed_name(0, level), next_seed_++);
+    for (const double slowdown : slowdowns)
+      keys.emplace_back(slowed_name(0, slowdown), next_seed_++);
     if (!run(keys)) return End::kInterrupted;
     const std::size_t before = report_->not_flown.size();
     for (std::size_t i = 0; i < keys.size(); ++i)
-      take(campaign::read_result(missing_.at(keys[i])->folder), levels[i], report_->synchronised,
+      take(campaign::read_result(missing_.at(keys[i])->folder), slowdowns[i], report_->synchronised,
            sizing_);
     failures_ += report_->not_flown.size() - before;
     if (failures_ >= kMostFailures) return End::kFailing;

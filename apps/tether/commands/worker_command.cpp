@@ -12,6 +12,7 @@
 #include <tether/campaign/result.h>
 #include <tether/os/captured_run.h>
 #include <tether/os/program.h>
+#include <tether/os/temporary_folder.h>
 #include <tether/os/text_file.h>
 #include <tether/runner/trial_server.h>
 #include <tether/stats/sample_statistics.h>
@@ -44,29 +45,6 @@ workers::WorkerName own_name() {
           .node = node,
           .task = task.empty() ? "" : job + "_" + task};
 }
-
-/// A folder of this machine, removed with the object.
-class Scratch {
- public:
-  Scratch() {
-    std::string path = (fs::temp_directory_path() / "tether-worker-XXXXXX").string();
-    if (::mkdtemp(path.data()) == nullptr)
-      throw Error(ErrorCode::kSetup, {path},
-                  "cannot be made. Set TMPDIR to a folder of this machine with space for a trial.")
-          .about("TMPDIR");
-    path_ = path;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// CPU time of the paper's image processing on this machine, by `tether-sut calibrate` [ms]. Of the
 /// rounds, a quick one counts: other load makes rounds slower, nothing makes them quicker.
@@ -128,7 +106,7 @@ int work(const WorkerOptions& options, const std::stop_token& stop) {
                      failed);  // as for the campaign, whose SUTs may name files in it
   const auto& files = round->settings().files;
   workers::require_same_files(files);
-  const Scratch scratch;
+  const os::TemporaryFolder scratch("tether-worker-");
   runner::TrialServers servers;
   const workers::WorkerName self = own_name();
   const workers::WorkerEnd end = workers::work(

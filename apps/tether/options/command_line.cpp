@@ -139,7 +139,7 @@ std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {
       ->add_option("--set", options->settings,
                    "Replace a value of the scenario, given by its key's path: time_limit_s=30, "
                    "cpu_factor=4 (of each [[condition]] that has it), "
-                   "sut.parameters.yaw_rate_deg_s=40; can be repeated")
+                   "sut.parameters.yaw_rate_deg_s=40, uavs=2 (the first two); can be repeated")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -208,8 +208,13 @@ void add_size_command(CLI::App& program, Action& action) {
       program, action, "size", "Find the slowest computer that is sufficient for a scenario", size);
   command->add_option("scenario", options->scenario, "Name of a shipped scenario, or a file (TOML)")
       ->required();
+  command
+      ->add_option("--axis", options->axis,
+                   "What to vary: how slow the computer may be, or how many UAVs it carries")
+      ->check(CLI::IsMember({"slowdown", "uavs"}))
+      ->capture_default_str();
   command->add_option("--condition", options->condition,
-                      "Condition to slow down [the scenario's first one]");
+                      "Condition to size [the scenario's first one]");
   command->add_option("--target", options->targets,
                       "Virtual target to evaluate, several times if you like: name of a shipped "
                       "target, or a file (TOML)");
@@ -221,15 +226,13 @@ void add_size_command(CLI::App& program, Action& action) {
       ->add_option("--confidence", options->confidence,
                    "Confidence of the answer's interval, above 0 and below 1")
       ->capture_default_str();
+  command->add_option("--interval", options->interval,
+                      "Stop when its upper bound is at most so many times the lower one [1.3]");
   command
-      ->add_option("--interval", options->interval,
-                   "Stop when the upper bound of the answer is at most so many times its lower "
-                   "bound, at least 1.05")
-      ->capture_default_str();
-  command->add_option("--between", options->between, "Slowdowns to fly: LEAST,MOST")
+      ->add_option("--between", options->between,
+                   "Slowdowns [1,40], or numbers of UAVs [1, all], to fly: LEAST,MOST")
       ->delimiter(',')
-      ->expected(2)
-      ->capture_default_str();
+      ->expected(2);
   command->add_option("--max-trials", options->max_trials, "Maximum number of flights")
       ->check(CLI::Range(1.0, 10000.0))
       ->capture_default_str();
@@ -241,7 +244,7 @@ void add_size_command(CLI::App& program, Action& action) {
       "Number of parallel flights [1; with --slurm, one for each core]. Rejected if "
       "parallel runs would distort measured time");
   add_cluster_options(*command, options->cluster);
-  command->add_option("--out", options->out, "Folder for the flights [out/size/SCENARIO]");
+  command->add_option("--out", options->out, "Folder [out/size/SCENARIO, of UAVs with -uavs]"); of UAVs, out/size/SCENARIO-uavs]");
   command->add_flag("--resume", options->resume, "Continue with the flights in the folder");
   command->add_flag("--force", options->force, "Remove the earlier flights in the folder");
   add_junit_option(*command, options->junit);
@@ -249,13 +252,14 @@ void add_size_command(CLI::App& program, Action& action) {
   add_reading_options(*command, options->reading);
   command->footer(
       R"(Exit codes: 0 every --target is sufficient, or none is given and the answer is as narrow as
---interval asks, 1 not so, 2 wrong use or a bad file, 3 interrupted, or flights failed.
+--interval asks (of UAVs: decided), 1 not so, 2 wrong use or a bad file, 3 interrupted, or flights failed.
 
 Examples:
   tether size face_anchor --condition target
   tether size face_anchor --target six_times_slower --jobs 2
   tether size face_anchor --success 0.95 --interval 1.2 --max-trials 600
-  tether size face_anchor --condition target --unsynchronised "target, no sync")");
+  tether size face_anchor --condition target --unsynchronised "target, no sync"
+  tether size four_on_one_board --axis uavs)");
 }
 
 void add_worker_command(CLI::App& program, Action& action) {

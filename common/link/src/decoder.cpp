@@ -106,6 +106,7 @@ Result<Message> read(const wire::Welcome& welcome) {
   for (const wire::Anchor* anchor : *catalogue.anchors()) {
     out.catalogue.anchors.push_back(read(*anchor));
   }
+  out.catalogue.battery_capacity_C = catalogue.battery_capacity_c();
   out.free_running = welcome.free_running();
   out.start = from_ns<ExecTime>(welcome.start_et_ns());
   out.computing = read(welcome.computing());
@@ -134,6 +135,8 @@ Result<Message> read(const wire::Request& request) {
         SendMessage{send->to() != nullptr ? send->to()->str() : "", values_of(send->bytes())};
   } else if (const auto* receive = request.body_as_ReceiveMessage()) {
     out.body = ReceiveMessage{Duration(receive->timeout_ns())};
+  } else if (request.body_as_ReadBattery()) {
+    out.body = ReadBattery{};
   } else {
     return protocol_failure("request of unknown kind");
   }
@@ -176,6 +179,9 @@ Result<Message> read(const wire::Reply& reply) {
   if (const auto* message = reply.message())
     out.message = {message->from()->str(), from_ns<SimTime>(message->sent_at_st_ns()),
                    from_ns<SimTime>(message->arrived_at_st_ns()), values_of(message->bytes())};
+  if (const auto* battery = reply.battery())
+    out.battery = {from_ns<SimTime>(battery->sampled_at_st_ns()), battery->voltage_v(),
+                   battery->current_a(), battery->charge()};
   return Message(std::move(out));
 }
 

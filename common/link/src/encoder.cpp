@@ -77,7 +77,8 @@ Offset<wire::Catalogue> write(FlatBufferBuilder& b, const uav::Catalogue& catalo
   for (const auto& anchor : catalogue.anchors) anchors.push_back(write(b, anchor));
   const auto uav = b.CreateString(catalogue.uav);
   const auto sensor_list = b.CreateVector(sensors);
-  return wire::CreateCatalogue(b, uav, sensor_list, b.CreateVector(anchors));
+  return wire::CreateCatalogue(b, uav, sensor_list, b.CreateVector(anchors),
+                               catalogue.battery_capacity_C);
 }
 
 // --- stages -------------------------------------------------------------------------------------
@@ -126,6 +127,9 @@ Body write(FlatBufferBuilder& b, const SendMessage& send) {
 Body write(FlatBufferBuilder& b, const ReceiveMessage& receive) {
   return {wire::RequestBody::ReceiveMessage,
           wire::CreateReceiveMessage(b, receive.timeout.count()).Union()};
+}
+Body write(FlatBufferBuilder& b, const ReadBattery&) {
+  return {wire::RequestBody::ReadBattery, wire::CreateReadBattery(b).Union()};
 }
 
 // --- Reply --------------------------------------------------------------------------------------
@@ -217,9 +221,16 @@ Content write(FlatBufferBuilder& b, const Reply& reply, ImageSlot& slot) {
     message = wire::CreateRadioMessage(b, from, to_ns(reply.message->sent_at),
                                        to_ns(reply.message->arrived_at), bytes);
   }
-  return {wire::Content::Reply, wire::CreateReply(b, reply.sequence, to_ns(reply.resume_at),
-                                                  sample.kind, sample.at, computing, message)
-                                    .Union()};
+  Offset<wire::BatterySample> battery;
+  if (reply.battery) {
+    battery =
+        wire::CreateBatterySample(b, to_ns(reply.battery->sampled_at), reply.battery->voltage_V,
+                                  reply.battery->current_A, reply.battery->charge);
+  }
+  return {wire::Content::Reply,
+          wire::CreateReply(b, reply.sequence, to_ns(reply.resume_at), sample.kind, sample.at,
+                            computing, message, battery)
+              .Union()};
 }
 Content write(FlatBufferBuilder& b, const Progress& progress, ImageSlot&) {
   return {wire::Content::Progress,

@@ -70,8 +70,8 @@ class TcpServer final : public Server {
   Duration hello_timeout_;
   std::vector<Event> events_;  // of the last poll
   Encoder encoder_;
-  std::vector<std::unique_ptr<Peer>> peers_;
-  std::vector<pollfd> watched_;  // the acceptor, then peers_ in order
+  std::vector<std::unique_ptr<Peer>> peers_;  // in the order of their ids
+  std::vector<pollfd> watched_;               // the acceptor, then peers_ in order
   PeerId next_id_ = 1;
   Peer::Deadline accept_paused_until_;
   bool is_crowded_ =
@@ -101,9 +101,8 @@ TcpServer::~TcpServer() {
 }
 
 Peer* TcpServer::find(PeerId id) {
-  const auto found = std::find_if(peers_.begin(), peers_.end(),
-                                  [id](const auto& peer) { return peer->id() == id; });
-  return found == peers_.end() ? nullptr : found->get();
+  const auto found = std::ranges::lower_bound(peers_, id, {}, &Peer::id);
+  return found == peers_.end() || (*found)->id() != id ? nullptr : found->get();
 }
 
 // --- sending ------------------------------------------------------------------------------------

@@ -135,6 +135,8 @@ void check(Checker& c, const Welcome& welcome) {
   c.in("Welcome: ");
   check_entries(c, welcome.catalogue.anchors, "anchors");
   c.in("Welcome: ");
+  c.finite(welcome.catalogue.battery_capacity_C, "battery_capacity_c");
+  c.require(welcome.catalogue.battery_capacity_C >= 0.0, "battery_capacity_c", "is negative");
   check(c, welcome.computing, "computing");
   c.require(welcome.peers.size() <= kMaxCatalogueEntries, "peers", "has too many entries");
   for (const std::string& peer : welcome.peers) c.text(peer, kMaxNameBytes, "peers");
@@ -173,6 +175,7 @@ void check(Checker& c, const SendMessage& send) {
 void check(Checker& c, const ReceiveMessage& receive) {
   c.timestamp(to_ns(receive.timeout), "timeout");
 }
+void check(Checker&, const ReadBattery&) {}
 
 void check(Checker& c, const Request& request) {
   c.in("Request: ");
@@ -219,6 +222,13 @@ void check(Checker& c, const Reply& reply) {
     c.require(reply.message->sent_at <= reply.message->arrived_at, "arrived_at",
               "is before sent_at");
     check_radio(c, reply.message->bytes);
+  }
+  if (reply.battery) {
+    c.timestamp(reply.battery->sampled_at, "sampled_at");
+    c.finite(reply.battery->voltage_V, "voltage_v");
+    c.finite(reply.battery->current_A, "current_a");
+    c.require(reply.battery->charge >= 0.0 && reply.battery->charge <= 1.0, "charge",
+              "is not within 0..1");
   }
   if (!reply.sample) return;
   const auto check_sample = [&c](const auto& sample) {

@@ -90,6 +90,7 @@ class RandomMessage {
     out.start = time<ExecTime>();
     out.computing = stages();
     out.peers.assign(random_.bits() % 3, text());
+    if (coin()) out.catalogue.battery_capacity_C = std::abs(number());
     return out;
   }
 
@@ -101,13 +102,14 @@ class RandomMessage {
 
   Message request() {
     Request out{1 + word() / 2, time<ExecTime>(), time<ExecTime>().time_since_epoch(), {}};
-    const std::uint32_t kind = random_.bits() % 6;
+    const std::uint32_t kind = random_.bits() % 7;
     if (kind == 0) out.body = ReadSensor{random_.bits() % 1000, coin(), coin()};
     if (kind == 1) out.body = SetVelocity{{vec3(), number()}};
     if (kind == 2) out.body = Sleep{time<ExecTime>(), coin()};
     if (kind == 3) out.body = Finish{coin(), text(), coin() ? json() : ""};
     if (kind == 4) out.body = SendMessage{text(), bytes()};
     if (kind == 5) out.body = ReceiveMessage{time<ExecTime>().time_since_epoch()};
+    if (kind == 6) out.body = ReadBattery{};
     out.stages = stages();
     return out;
   }
@@ -137,6 +139,7 @@ class RandomMessage {
     const auto arrived = time<SimTime>();
     if (coin())
       out.message = RadioMessage{text(), SimTime{arrived.time_since_epoch() / 2}, arrived, bytes()};
+    if (coin()) out.battery = uav::BatterySample{time<SimTime>(), number(), number(), 0.25};
     return out;
   }
 

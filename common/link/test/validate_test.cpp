@@ -32,6 +32,9 @@ Request request_with(decltype(Request::body) body, std::int64_t issued_ns = 0) {
 Reply reply_with(uav::Sample sample) {
   return {1, ExecTime{}, std::move(sample)};
 }
+Reply battery_reply(uav::BatterySample sample) {
+  return {.sequence = 1, .resume_at = {}, .sample = {}, .battery = sample};
+}
 Welcome welcome_with(uav::SensorDescription sensor) {
   Welcome welcome;
   welcome.catalogue.sensors = {std::move(sensor)};
@@ -74,6 +77,11 @@ TEST(Validate, Requests) {
                 .resume_at = {},
                 .sample = {},
                 .message = RadioMessage{"u", from_ns<SimTime>(2), from_ns<SimTime>(1), {}}}});
+  for (const double charge : {-0.1, 1.1, kNan})
+    expect({"charge", battery_reply({{}, 12.0, 1.0, charge})});
+  expect({"voltage_v", battery_reply({{}, kInf, 1.0, 0.5})});
+  expect({"current_a", battery_reply({{}, 12.0, kNan, 0.5})});
+  expect({"sampled_at", battery_reply({from_ns<SimTime>(-1), 12.0, 1.0, 0.5})});
   expect({"", request_with(Finish{true, "facing the anchor", ""})});
   expect({"outcome", request_with(Finish{true, std::string(5000, 'x'), ""})});
   expect({"details", request_with(Finish{true, "", "[1]"})});

@@ -25,6 +25,7 @@ Verdict audit(const record::Record& record) {
   check_consistency(record, grid, report);
   check_motion(record, report);
   check_radio(record, grid, report);
+  check_battery(record, report);
   if (verdict.synchronised) {
     check_interactions(record, grid, report);
     check_rows(record, report);

@@ -32,6 +32,9 @@ void check_commands(const record::Record& record, const Boundaries& grid, Report
 /// none is received late or out of order.
 void check_radio(const record::Record& record, const Boundaries& grid, Report& report);
 
+/// Rule 1 for readings of the battery: what it had at that ST, by the battery's channel.
+void check_battery(const record::Record& record, Report& report);
+
 /// Rules 3 and 4 across SUTs: replies are sent in the order of their timestamps, and ST never
 /// passes a SUT that can still act, in the order of the file and of wall time.
 void check_order(const record::Record& record, const Boundaries& grid, Report& report);

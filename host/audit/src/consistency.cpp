@@ -21,7 +21,8 @@ using record::Logged;
 
 bool is_known_kind(std::string_view kind) {
   return kind == record::kSensor || kind == record::kCommand || kind == record::kSleep ||
-         kind == record::kFinish || kind == record::kSend || kind == record::kReceive;
+         kind == record::kFinish || kind == record::kSend || kind == record::kReceive ||
+         kind == record::kBattery;
 }
 
 // Largest deviation of the length of a rotation from 1.

@@ -34,14 +34,6 @@ std::vector<std::string> ssh_words() {
   return words;
 }
 
-std::filesystem::path make_private_folder() {
-  // Not in the run's folder, because the path of a socket must be short.
-  std::string name = "/tmp/tether-ssh-XXXXXX";
-  if (!mkdtemp(name.data()))
-    throw Error(ErrorCode::kSetup, {name}, "cannot create a folder for the connection");
-  return name;
-}
-
 void append(std::vector<std::string>& words, std::initializer_list<std::string> more) {
   words.insert(words.end(), more);
 }
@@ -81,20 +73,8 @@ std::string explain_ssh(const std::string& output, const scenario::SshAddress& a
 }
 
 SshConnection::SshConnection(const scenario::SshAddress& address, std::stop_token stop)
-    : address_(address), stop_(std::move(stop)), folder_(make_private_folder()) {
-  try {
-    connect();
-  } catch (...) {
-    master_.reset();
-    std::filesystem::remove_all(folder_);
-    throw;
-  }
-}
-
-SshConnection::~SshConnection() {
-  master_.reset();
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
+    : address_(address), stop_(std::move(stop)), folder_("tether-ssh-", "/tmp") {
+  connect();
 }
 
 std::vector<std::string> SshConnection::words() const {

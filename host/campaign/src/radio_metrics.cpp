@@ -16,7 +16,7 @@ MetricOutcome delivery_ratio(const scenario::Metric& metric, const record::Recor
   int sent = 0, delivered = 0;
   for (const auto& logged : record.radio) {
     const record::RadioMessage& message = logged.message;
-    if (message.uav != metric.uav || message.outcome == "waiting") continue;
+    if (message.uav != metric.uav || message.outcome == record::kWaiting) continue;
     ++sent;
     delivered += message.outcome == record::kDelivered ? 1 : 0;
   }

@@ -158,20 +158,29 @@ void Coordinator::Impl::start() {
   for (Session& session : sessions_) {
     barrier_.add(ExecTime{},
                  session.is_concurrent() ? sync::SutKind::kConcurrent : sync::SutKind::kSerial);
-    if (session.hello.clock == link::ClockKind::kUnstamped)
+    if (session.hello.clock == link::ClockKind::kUnstamped) {
       session.timer.emplace(ExecTime{}, started_);
+      unstamped_.push_back(session.uav);
+    }
     if (const auto bound = bound_of(session.hello, session.cores); bound && is_synchronised())
       session.plausibility.emplace(*bound, ExecTime{}, started_);
   }
   stepper_.act();
   log_.race_again();
   for (const Session& session : sessions_)
-    server_->send(session.peer, link::Welcome{.catalogue = sim::make_catalogue(
-                                                  world(), world().uavs[session.uav]),
+    server_->send(session.peer, link::Welcome{.catalogue = catalogue_of(session),
                                               .free_running = !is_synchronised(),
                                               .start = ExecTime{},
                                               .computing = time_given(session),
                                               .peers = peers_of(session)});
+}
+
+uav::Catalogue Coordinator::Impl::catalogue_of(const Session& session) const {
+  const sim::Uav& uav = world().uavs[session.uav];
+  uav::Catalogue catalogue = sim::make_catalogue(world(), uav);
+  if (stepper_.has_battery(session.uav))
+    catalogue.battery_capacity_C = uav.energy->battery.capacity_C;
+  return catalogue;
 }
 
 // Whether every run with these options has the same messages: no clock has a part in them.
@@ -185,6 +194,7 @@ bool Coordinator::Impl::is_repeatable() const {
 bool Coordinator::Impl::advance() {
   const WallTime now = host_clock_();
   read_timers(now);
+  for (const std::size_t uav : std::exchange(expelled_from_boards_, {})) settle_board(uav);
   release_ready();
   const SimTime target = paced(next_stop(), now);
   if (target <= st()) return false;
@@ -210,9 +220,8 @@ void Coordinator::Impl::watch_batteries() {
 
 // The time of an unstamped client that computes may let ST advance for another SUT.
 void Coordinator::Impl::read_timers(WallTime now) {
-  for (const Session& session : sessions_)
-    if (session.timer && is_computing(session))
-      barrier_.progress(session.uav, session.timer->read(now));
+  for (const std::size_t uav : unstamped_)
+    if (is_computing(sessions_[uav])) barrier_.progress(uav, sessions_[uav].timer->read(now));
 }
 
 // How far ST may advance in this turn.
@@ -282,7 +291,7 @@ void Coordinator::Impl::end_endless(Session& session) {
   if (!is_computing(session) || bound >= limit || computed <= limit - bound) return;
   if (!boards_.shares(session.uav)) return barrier_.progress(session.uav, limit);
   boards_.progress(session.uav, limit - bound);
-  settle_boards();
+  settle_board(session.uav);
 }
 
 void Coordinator::Impl::stop_if_asked() {

@@ -37,6 +37,7 @@ class Coordinator::Impl {
   void turn();
   void start();
   record::Header make_header() const;
+  uav::Catalogue catalogue_of(const Session& session) const;
   bool is_repeatable() const;
   bool advance();
   SimTime next_stop() const;
@@ -70,7 +71,7 @@ class Coordinator::Impl {
   void break_off(Session& session, link::Refusal::Reason reason, const Fault& fault);
   Standing standing(const Session& session) const;
   static Duration own_work(Session& session, ExecTime stamp);
-  void settle_boards();
+  void settle_board(std::size_t uav);
   void begin(Session& session, const Arrived& arrived);
   record::Interaction make_entry(const Session& session, const Arrived& arrived) const;
   ExecTime charge(Session& session, const Arrived& arrived, record::Interaction& entry);
@@ -126,7 +127,9 @@ class Coordinator::Impl {
   sync::BarrierSynchronizer barrier_;
   SharedBoards boards_;
   Stepper stepper_;
-  std::vector<Session> sessions_;  // one per UAV, in the world's order
+  std::vector<Session> sessions_;               // one per UAV, in the world's order
+  std::map<link::PeerId, std::size_t> joined_;  // index of the session of each SUT
+  std::vector<std::size_t> unstamped_;          // indices of those that the coordinator times
   std::vector<std::string> uav_names_;
   radio::Medium medium_;
   std::vector<radio::Arrival> arrivals_;  // of one event
@@ -140,6 +143,7 @@ class Coordinator::Impl {
   std::optional<SimTime> fallen_at_;  // a battery is empty: when the run ends
   std::string fall_;                  // the reason
   std::optional<Ending> expelled_;    // how the run ends once the other SUTs have finished
+  std::vector<std::size_t> expelled_from_boards_;  // SUTs whose share the others have from now on
   std::optional<Ending> ended_;
 };
 

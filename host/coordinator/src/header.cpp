@@ -113,7 +113,8 @@ record::Header Coordinator::Impl::make_header() const {
          .computing = session.hello.computing,
          .required_clock = {},
          .build_id = session.hello.build_id,
-         .replay = options_.uavs[session.uav].replayed_from});
+         .replay = options_.uavs[session.uav].replayed_from,
+         .computer = options_.uavs[session.uav].computer});
     if (boards_.shares(session.uav)) {
       header.suts.back().board = options_.boards[*options_.uavs[session.uav].board].name;
       header.suts.back().pinned_core = options_.uavs[session.uav].pinned_core;

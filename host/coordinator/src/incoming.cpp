@@ -17,14 +17,14 @@ namespace tether::coordinator {
 namespace {
 
 /// In the order of Request's body.
-constexpr const char* kKinds[] = {"sensor", "command", "sleep", "finish", "send", "receive"};
+constexpr const char* kKinds[] = {"sensor", "command", "sleep",  "finish",
+                                  "send",   "receive", "battery"};
 
 }  // namespace
 
 Session* Coordinator::Impl::find(link::PeerId peer) {
-  const auto session = std::find_if(sessions_.begin(), sessions_.end(),
-                                    [&](const Session& s) { return s.peer == peer; });
-  return session == sessions_.end() ? nullptr : &*session;
+  const auto joined = joined_.find(peer);
+  return joined == joined_.end() ? nullptr : &sessions_[joined->second];
 }
 
 void Coordinator::Impl::refuse(link::PeerId peer, link::Refusal::Reason reason,
@@ -107,13 +107,9 @@ void Coordinator::Impl::on_closed(link::PeerId peer, const Failure& failure) {
 }
 
 void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
-  std::vector<std::string> uavs;
   std::vector<bool> taken;
-  for (const Session& session : sessions_) {
-    uavs.push_back(session.uav_name);
-    taken.push_back(session.joined());
-  }
-  const auto admitted = admit(hello, options_.token, uavs, taken);
+  for (const Session& session : sessions_) taken.push_back(session.joined());
+  const auto admitted = admit(hello, options_.token, uav_names_, taken);
   if (const auto* refusal = std::get_if<link::Refusal>(&admitted))
     return refuse(peer, refusal->reason, refusal->message);
 
@@ -123,12 +119,12 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   if (const auto fault = build_fault(hello, session.replay))
     return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
   session.peer = peer;
+  joined_[peer] = session.uav;
   session.hello = hello;
   session.hello.token.clear();
   session.hello.sut = printable(hello.sut);
   watchdog_.moved(host_clock_());
-  if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.joined(); }))
-    start();
+  if (joined_.size() == sessions_.size()) start();
 }
 
 void Coordinator::Impl::on_progress(Session& session, const link::Progress& progress,
@@ -141,7 +137,7 @@ void Coordinator::Impl::on_progress(Session& session, const link::Progress& prog
   if (boards_.shares(session.uav)) {
     if (!is_computing(session)) return;
     boards_.progress(session.uav, own_work(session, progress.reached));
-    return settle_boards();
+    return settle_board(session.uav);
   }
   barrier_.progress(session.uav, progress.reached);
   release_ready();
@@ -152,7 +148,7 @@ void Coordinator::Impl::on_annotation(Session& session, const link::Annotation& 
     return break_off(session, link::Refusal::Reason::kBadMessage, *fault);
   if (boards_.shares(session.uav) && is_computing(session)) {
     boards_.add(session.uav, {note, own_work(session, note.at), st(), host_clock_()});
-    return settle_boards();
+    return settle_board(session.uav);
   }
   log_.annotation(st(), {session.uav_name, note.at, note.topic, note.json});
 }
@@ -196,6 +192,7 @@ Standing Coordinator::Impl::standing(const Session& session) const {
           .uavs = uav_names_,
           .uav = session.uav,
           .sensors = stepper_.sampler(session.uav),
+          .has_battery = stepper_.has_battery(session.uav),
           .plausibility = session.plausibility ? &*session.plausibility : nullptr,
           .clock_cores = adds_up_cores ? cores : 0};
 }
@@ -212,7 +209,7 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   ++session.next_sequence;
   if (boards_.shares(session.uav)) {
     boards_.add(session.uav, {request, own_work(session, request.issued_at), st(), now});
-    return settle_boards();
+    return settle_board(session.uav);
   }
   begin(session, {request, st(), now});
   stepper_.act();
@@ -225,9 +222,10 @@ Duration Coordinator::Impl::own_work(Session& session, ExecTime stamp) {
   return session.own_bound - session.resumed_at;
 }
 
-// Handles the messages whose instant is known now, and tells the barrier how far the boards are.
-void Coordinator::Impl::settle_boards() {
-  while (const auto sent = boards_.next()) {
+// Handles the messages whose instant is known now, and tells the barrier how far the board is.
+// After each change of what is known of one of its SUTs.
+void Coordinator::Impl::settle_board(std::size_t uav) {
+  while (const auto sent = boards_.next(uav)) {
     Session& session = sessions_[sent->uav];
     if (const auto* note = std::get_if<link::Annotation>(&sent->what.message)) {
       session.notes.push_back({session.uav_name, sent->at, note->topic, note->json});
@@ -240,8 +238,8 @@ void Coordinator::Impl::settle_boards() {
     else
       boards_.resume(sent->uav, session.open.back().entry.reply_at);
   }
-  for (const Session& session : sessions_)
-    if (boards_.shares(session.uav)) barrier_.progress(session.uav, boards_.bound(session.uav));
+  for (const std::size_t other : boards_.sharing(uav))
+    barrier_.progress(other, boards_.bound(other));
   stepper_.act();
   release_ready();
 }
@@ -354,6 +352,7 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
   }
   if (const auto* receive = std::get_if<link::ReceiveMessage>(&request.body))
     return accept_receive(session, pending, *receive);
+  if (std::holds_alternative<link::ReadBattery>(request.body)) return pending.entry.request_at;
   session.finish = std::get<link::Finish>(request.body);
   session.finish->outcome = printable(session.finish->outcome);
   return pending.entry.request_at;
@@ -363,11 +362,11 @@ ExecTime Coordinator::Impl::accept(Session& session, PendingInteraction& pending
 ExecTime Coordinator::Impl::accept_read(Session& session, PendingInteraction& pending,
                                         const link::ReadSensor& read) {
   record::Interaction& entry = pending.entry;
-  Sampler& sampler = stepper_.sampler(session.uav);
-  entry.sensor = sampler.name(read.sensor);
+  entry.sensor = stepper_.sampler(session.uav).name(read.sensor);
   entry.latest = read.latest;
   entry.only_if_available = read.only_if_available;
-  const auto measurement = sampler.plan(entry.sequence, read, same_instant(entry.request_at));
+  const auto measurement =
+      stepper_.plan(session.uav, entry.sequence, read, same_instant(entry.request_at));
   if (!measurement) return entry.request_at;
 
   entry.sample_index = measurement->index;

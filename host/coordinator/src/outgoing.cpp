@@ -47,6 +47,7 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
                       .resume_at = entry.reply_at,
                       .sample = stepper_.measure(session.uav, entry),
                       .computing = time_given(session)};
+  if (entry.kind == record::kBattery) message.battery = stepper_.read_battery(session.uav, entry);
   if (pending.is_promised) receive(session, entry, message, sessions_);
   const std::optional<uav::CameraSample> image = image_to_record(session, pending.request, message);
   entry.st_at_release = st;
@@ -88,7 +89,7 @@ std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(
 void Coordinator::Impl::leave(Session& session) {
   session.left = true;
   session.open.clear();
-  stepper_.sampler(session.uav).close();
+  stepper_.close(session.uav);
   barrier_.remove(session.uav);
   server_->close(session.peer);
   if (std::all_of(sessions_.begin(), sessions_.end(), [](const Session& s) { return s.left; }))

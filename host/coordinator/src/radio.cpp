@@ -146,6 +146,9 @@ void Coordinator::Impl::expel(Session& session, const Fault& fault) {
     expelled_ = {RunEnd::kFlooded,
                  fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)};
   leave(session);
+  if (!boards_.shares(session.uav)) return;
+  boards_.leave(session.uav);
+  expelled_from_boards_.push_back(session.uav);
 }
 
 // --- the record ---------------------------------------------------------------------------------

@@ -88,12 +88,11 @@ void RunLog::battery(SimTime st, const std::string& uav, const energy::Status& s
 
 void RunLog::take_clearance(SimTime st, const std::string& uav, const sim::Clearance& clearance) {
   auto& least = footer_.clearances;
-  auto own = std::ranges::find(least, uav, &record::Clearance::uav);
-  if (own == least.end()) {
-    own = least.insert(own, {uav, std::numeric_limits<double>::infinity(), {}, {}});
-  }
-  if (clearance.distance_m >= own->min_m) return;
-  *own = {uav, clearance.distance_m, st, std::string(clearance.to)};
+  const auto [place, is_new] = clearance_at_.try_emplace(uav, least.size());
+  if (is_new) least.push_back({uav, std::numeric_limits<double>::infinity(), {}, {}});
+  record::Clearance& own = least[place->second];
+  if (clearance.distance_m < own.min_m)
+    own = {uav, clearance.distance_m, st, std::string(clearance.to)};
 }
 
 void RunLog::stop(SimTime st, const record::Stop& stop) {

@@ -85,7 +85,8 @@ class RunLog {
 
   record::Recorder* recorder_;
   record::Footer footer_;
-  std::uint64_t images_ = 0;  // rendered because a SUT read them
+  std::map<std::string, std::size_t> clearance_at_;  // in the footer, by UAV
+  std::uint64_t images_ = 0;                         // rendered because a SUT read them
   bool repeatable_ = false;
   bool collects_ = false;
   std::map<std::string, Row> rows_;                              // by UAV

@@ -97,22 +97,20 @@ std::size_t SharedBoards::awaited(std::size_t uav) const {
   return awaited;
 }
 
-std::optional<SharedBoards::Sent> SharedBoards::next() {
-  for (Pool& pool : pools_) {
-    const auto stamp = pool.cores.next();
-    if (!stamp) continue;
-    const std::size_t uav = pool.uavs[stamp->program];
-    Seat& seat = *seats_[uav];
-    Sent sent{uav, stamp->at, std::move(seat.messages.front())};
-    seat.messages.pop_front();
-    seat.has_asked = false;
-    if (std::holds_alternative<link::Annotation>(sent.what.message)) {
-      pool.cores.go_on(stamp->program);
-      ask(uav);
-    }
-    return sent;
+std::optional<SharedBoards::Sent> SharedBoards::next(std::size_t uav) {
+  Pool& pool = pools_[at(uav).pool];
+  const auto stamp = pool.cores.next();
+  if (!stamp) return std::nullopt;
+  const std::size_t sender = pool.uavs[stamp->program];
+  Seat& seat = *seats_[sender];
+  Sent sent{sender, stamp->at, std::move(seat.messages.front())};
+  seat.messages.pop_front();
+  seat.has_asked = false;
+  if (std::holds_alternative<link::Annotation>(sent.what.message)) {
+    pool.cores.go_on(stamp->program);
+    ask(sender);
   }
-  return std::nullopt;
+  return sent;
 }
 
 }  // namespace tether::coordinator

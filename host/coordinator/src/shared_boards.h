@@ -51,8 +51,13 @@ class SharedBoards {
     ExecTime at;
     Stamped what;
   };
-  /// The next message of any SUT whose instant is known.
-  std::optional<Sent> next();
+  /// The next message whose instant is known of the SUTs that share cores with this one.
+  /// @pre it shares a board, also below.
+  std::optional<Sent> next(std::size_t uav);
+  /// The SUTs that share cores with this one, and itself.
+  const std::vector<std::size_t>& sharing(std::size_t uav) const {
+    return pools_[at(uav).pool].uavs;
+  }
 
  private:
   struct Pool {

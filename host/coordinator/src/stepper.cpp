@@ -24,7 +24,12 @@ Stepper::Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& bar
       grid_(simulator.grid()),
       ground_truth_period_(ground_truth_period),
       samplers_(std::move(samplers)),
-      has_battery_(samplers_.size()) {}
+      has_battery_(samplers_.size()) {
+  for (std::size_t uav = 0; uav < samplers_.size(); ++uav) {
+    due_.add();
+    note_change(uav);
+  }
+}
 
 void Stepper::reset(std::uint64_t seed) {
   ask([&](sim::Simulator& s) { s.reset(seed); });
@@ -37,8 +42,8 @@ SimTime Stepper::next_ground_truth() const {
 }
 
 SimTime Stepper::next_due() const {
-  SimTime due = std::min(commands_.next_effect(), next_ground_truth());
-  for (const Sampler& sampler : samplers_) due = std::min(due, sampler.next_due());
+  SimTime due =
+      std::min({commands_.next_effect(), next_ground_truth(), same_instant(due_.least())});
   if (!computed_.empty()) due = std::min(due, computed_.begin()->first);
   return due;
 }
@@ -86,8 +91,29 @@ void Stepper::sample() {
   const Sampler::Capture capture = [this](sim::Snapshot& snapshot) {
     ask([&](sim::Simulator& s) { s.capture(snapshot); });
   };
-  for (std::size_t uav = 0; uav < samplers_.size(); ++uav)
+  while (same_instant(due_.least()) <= st_) {
+    const std::size_t uav = due_.first();
     samplers_[uav].sample(st_, same_instant(barrier_->bound(uav)), capture);
+    note_change(uav);
+  }
+}
+
+// After each change of a sampler.
+void Stepper::note_change(std::size_t uav) {
+  due_.set(uav, same_instant(samplers_[uav].next_due()));
+  changed_.insert(uav);
+}
+
+std::optional<Measurement> Stepper::plan(std::size_t uav, std::uint64_t call,
+                                         const link::ReadSensor& read, SimTime t) {
+  auto measurement = samplers_[uav].plan(call, read, t);
+  note_change(uav);
+  return measurement;
+}
+
+void Stepper::close(std::size_t uav) {
+  samplers_[uav].close();
+  note_change(uav);
 }
 
 void Stepper::apply_commands() {
@@ -137,11 +163,19 @@ std::optional<uav::Sample> Stepper::measure(std::size_t uav, record::Interaction
     return s.measure(state, uav, read->sensor, read->measurement.index);
   });
   sampler.answered(entry.sequence, same_instant(entry.reply_at));
+  note_change(uav);
   if (const auto* image = std::get_if<uav::CameraSample>(&sample)) {
     log_->count_image();
     if (image->knows_anchors) entry.seen_anchors = describe(image->seen_anchors);
   }
   return sample;
+}
+
+// A reply goes when ST is at the boundary of its timestamp.
+uav::BatterySample Stepper::read_battery(std::size_t uav, record::Interaction& entry) {
+  const energy::Status now = *ask([&](sim::Simulator& s) { return s.battery(uav); });
+  entry.battery = {now.voltage_V, now.current_A, now.charge};
+  return {st_, now.voltage_V, now.current_A, now.charge};
 }
 
 radio::Link Stepper::link(std::size_t uav, std::size_t other) {
@@ -157,11 +191,12 @@ radio::Link Stepper::link(std::size_t uav, std::size_t other) {
 }
 
 void Stepper::announce() {
-  for (std::size_t uav = 0; uav < samplers_.size(); ++uav)
+  for (const std::size_t uav : changed_)
     samplers_[uav].announce(
         [&](const sim::Snapshot& state, std::size_t sensor, std::uint64_t index) {
           ask([&](sim::Simulator& s) { s.expect(state, uav, sensor, index); });
         });
+  changed_.clear();
 }
 
 }  // namespace tether::coordinator

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include <tether/record/messages.h>
 #include <tether/sim/simulator.h>
 #include <tether/sync/barrier_synchronizer.h>
+#include <tether/sync/least_tree.h>
 
 namespace tether::coordinator {
 
@@ -66,14 +68,21 @@ class Stepper {
 
   std::size_t waiting_commands(std::size_t uav) const { return commands_.waiting(uav); }
 
-  Sampler& sampler(std::size_t uav) { return samplers_[uav]; }
   const Sampler& sampler(std::size_t uav) const { return samplers_[uav]; }
+  /// As those of its Sampler.
+  std::optional<Measurement> plan(std::size_t uav, std::uint64_t call, const link::ReadSensor& read,
+                                  SimTime t);
+  void close(std::size_t uav);
   /// The sample for the read of this interaction, noted in it; none if it is not a read.
   std::optional<uav::Sample> measure(std::size_t uav, record::Interaction& entry);
+  bool has_battery(std::size_t uav) const { return has_battery_[uav]; }
+  /// The battery now, noted in the interaction. @pre has_battery(uav)
+  uav::BatterySample read_battery(std::size_t uav, record::Interaction& entry);
   /// Announces to the simulator what will be measured, so that it can draw meanwhile.
   void announce();
 
  private:
+  void note_change(std::size_t uav);
   void charge_batteries();
   void sample();
   void apply_commands();
@@ -95,6 +104,8 @@ class Stepper {
   StepGrid grid_;
   Duration ground_truth_period_;
   std::vector<Sampler> samplers_;
+  sync::LeastTree due_;            // of each sampler
+  std::set<std::size_t> changed_;  // samplers that may have something to announce
   CommandQueue commands_;
   struct Computed {
     std::size_t uav = 0;

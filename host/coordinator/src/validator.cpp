@@ -114,6 +114,11 @@ MaybeFault body_fault(const link::ReceiveMessage&, const Standing&) {
   return std::nullopt;
 }
 
+MaybeFault body_fault(const link::ReadBattery&, const Standing& sut) {
+  if (sut.has_battery) return std::nullopt;
+  return Fault{Kind::kNotAvailable, "a read of the battery, but the UAV has none"};
+}
+
 MaybeFault stop_fault(ExecTime at, const Standing& sut) {
   if (!sut.concurrent)
     return Fault{Kind::kImpossibleStop, "a stop, which only concurrent SUTs may send"};

@@ -62,6 +62,7 @@ struct Standing {
   std::span<const std::string> uavs{};  ///< all of the run; its own is `uav`
   std::size_t uav = 0;
   const Sampler& sensors;
+  bool has_battery = false;
   const sync::ClockPlausibility* plausibility = nullptr;  ///< nullptr: its clock is not checked
   int clock_cores = 0;  ///< cores whose time its CPU clock adds up; 0: another clock
 };

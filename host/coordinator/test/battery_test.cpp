@@ -1,5 +1,7 @@
 #include "coordinator_fixture.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include <tether/energy/meter.h>
@@ -45,6 +47,34 @@ TEST_F(CoordinatorBattery, EndsTheRunSomeTimeAfterABatteryWasEmpty) {
   EXPECT_EQ(recorder_.footer->end, "battery_empty");
   EXPECT_GT(report.st, st_ms(2000));
   EXPECT_LT(report.st, st_ms(3000));
+}
+
+// What it computes until its call is drawn after it.
+TEST_F(CoordinatorBattery, ReadsTheBatteryAtTheBoundaryOfTheReply) {
+  make(world_with_battery(0.5));
+  run({{std::chrono::microseconds(20'400), link::ReadBattery{}}, finish(milliseconds(20))});
+  const auto& sent = server_->sent.at(1);
+  EXPECT_EQ(std::get<link::Welcome>(sent.at(0)).catalogue.battery_capacity_C, 7200.0);
+  const auto reply = std::get<link::Reply>(sent.at(1));
+  ASSERT_TRUE(reply.battery);
+  EXPECT_EQ(reply.resume_at, us(20'400));
+  EXPECT_EQ(reply.battery->sampled_at, st_ms(20));
+  const auto logged = std::ranges::find(recorder_.batteries, st_ms(20), &record::Battery::at);
+  ASSERT_NE(logged, recorder_.batteries.end());
+  const record::Interaction& read = recorder_.interactions.at(0);
+  EXPECT_EQ(read.kind, record::kBattery);
+  EXPECT_EQ(read.battery,
+            (record::BatteryReading{logged->voltage_V, logged->current_A, logged->charge}));
+  EXPECT_EQ(*reply.battery,
+            (uav::BatterySample{st_ms(20), logged->voltage_V, logged->current_A, logged->charge}));
+  EXPECT_LT(logged->charge, 0.5);
+}
+
+TEST_F(CoordinatorBattery, RefusesToReadABatteryThatIsNotThere) {
+  const RunReport report = run({{milliseconds(1), link::ReadBattery{}}});
+  EXPECT_EQ(report.end, RunEnd::kSutLost);
+  EXPECT_EQ(std::get<link::Welcome>(server_->sent.at(1).at(0)).catalogue.battery_capacity_C, 0.0);
+  EXPECT_EQ(refusal(1).reason, link::Refusal::Reason::kBadRequest);
 }
 
 TEST_F(CoordinatorBattery, WritesNoBatteryWithoutAModelOfEnergy) {

@@ -43,6 +43,8 @@ class SharedBoard : public CoordinatorTest {
 
 TEST_F(SharedBoard, ComputingTakesAsManyTimesAsLongAsProgramsCompute) {
   make_shared(2, 1);
+  options_.uavs[1].computer = "obc";
+  remake();
   server_->add_sut(hello(name(0)), {turn(milliseconds(3), 0.1), finish(milliseconds(1))});
   server_->add_sut(hello(name(1)), {turn(milliseconds(5), 0.1), finish(milliseconds(0))});
   ASSERT_EQ(run().end, RunEnd::kFinished);
@@ -51,6 +53,7 @@ TEST_F(SharedBoard, ComputingTakesAsManyTimesAsLongAsProgramsCompute) {
   EXPECT_EQ(of(0)[1].request_at, us(8000));
   EXPECT_EQ(of(1)[0].request_at, us(9000)) << "2 of 5 ms were left at 6 ms, 1 at 8 ms";
   EXPECT_EQ(recorder_.header.suts[1].board, "obc");
+  EXPECT_EQ(recorder_.header.suts[1].computer, "obc");
   EXPECT_EQ(recorder_.header.boards, (std::vector<record::BoardInfo>{{"obc", 1}}));
 }
 
@@ -64,6 +67,21 @@ TEST_F(SharedBoard, PinnedProgramsShareTheirCoreOnly) {
   EXPECT_EQ(of(2)[0].request_at, us(6000));
   EXPECT_EQ(of(3)[0].request_at, us(2000));
   EXPECT_EQ(of(3)[0].computed, std::nullopt) << "it shares nothing";
+}
+
+TEST_F(SharedBoard, AFlooderLeavesItsShareOfTheCoresToTheOthers) {
+  for (const bool in_one_step : {true, false}) {
+    options_.radio.model = radio::Model::kLogDistance;
+    options_.radio.queue_messages = 2;
+    make_shared(2, 1);
+    const Duration pause = in_one_step ? Duration(0) : Duration(microseconds(2));
+    const Act send{pause, link::SendMessage{"", std::vector<std::uint8_t>(60'000)}};
+    server_->add_sut(hello(name(0)), Script(4'000, send));
+    server_->add_sut(hello(name(1)), {turn(milliseconds(200), 0.1), finish(milliseconds(100))});
+    const RunReport report = run();
+    EXPECT_EQ(report.end, RunEnd::kFlooded) << report.reason;
+    EXPECT_TRUE(report.suts.at(1).finish) << "the other one is unharmed";
+  }
 }
 
 TEST_F(SharedBoard, SleepsAndAnnotationsAreOnTheTimeLineOfTheBoard) {

@@ -111,6 +111,12 @@ TEST_F(Validator, ReadsNeedASensorOfTheUav) {
   expect(Kind::kNotAvailable, request(link::ReadSensor{1, false, true}));
 }
 
+TEST_F(Validator, ReadsOfTheBatteryNeedOne) {
+  expect(Kind::kNotAvailable, request(link::ReadBattery{}));
+  sut_.has_battery = true;
+  expect(std::nullopt, request(link::ReadBattery{}));
+}
+
 TEST_F(Validator, LimitsVelocitiesAndWaitingCommands) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   expect(Kind::kBadValue, request(link::SetVelocity{{{nan, 0, 0}, 0}}));

@@ -98,7 +98,7 @@ std::size_t Signals::of_radio(const mission::Quantity& quantity) {
       const record::RadioMessage& message = record_.radio[next].message;
       const bool has_arrived = message.outcome == record::kDelivered;
       if (message.to == uav_ && has_arrived) newest = std::max(newest, message.sent_at);
-      if (message.uav != uav_ || message.outcome == "waiting") continue;
+      if (message.uav != uav_ || message.outcome == record::kWaiting) continue;
       ended += 1.0;
       delivered += has_arrived ? 1.0 : 0.0;
     }

@@ -49,6 +49,12 @@ void members(auto& io, Maybe<ReceivedMessage> auto& m) {
   io("arrived_at_ns", m.arrived_at);
 }
 
+void members(auto& io, Maybe<BatteryReading> auto& m) {
+  io("voltage_v", m.voltage_V);
+  io("current_a", m.current_A);
+  io("charge", m.charge);
+}
+
 void members(auto& io, Maybe<Interaction> auto& m) {
   io("uav", m.uav);
   io("sequence", m.sequence);
@@ -74,6 +80,8 @@ void members(auto& io, Maybe<Interaction> auto& m) {
   io.optional("receive_until_ns", m.receive_until);
   if (io.has("received", m.received.has_value()))
     io.object("received", [&](auto& received) { members(received, io.value_of(m.received)); });
+  if (io.has("battery", m.battery.has_value()))
+    io.object("battery", [&](auto& battery) { members(battery, io.value_of(m.battery)); });
   if (io.arrivals()) {
     io("st_at_arrival_ns", m.st_at_arrival);
     io("lag_ns", m.lag);
@@ -209,6 +217,7 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
   if (io.has("build_id", !m.build_id.empty())) io("build_id", m.build_id);
   if (io.has("replay", m.replay.has_value()))
     io.object("replay", [&](auto& replay) { members(replay, io.value_of(m.replay)); });
+  if (io.has("computer", !m.computer.empty())) io("computer", m.computer);
   if (!io.has("board", !m.board.empty())) return;
   io("board", m.board);
   if (io.has("pinned_core", m.pinned_core.has_value()))

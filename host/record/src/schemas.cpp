@@ -9,7 +9,8 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
   "properties": {
     "uav": {"type": "string"},
     "sequence": {"type": "integer", "minimum": 1},
-    "kind": {"type": "string", "enum": ["sensor", "command", "sleep", "finish", "send", "receive"]},
+    "kind": {"type": "string", "enum": ["sensor", "command", "sleep", "finish", "send", "receive",
+                                      "battery"]},
     "request_at_ns": {"type": "integer", "description": "ET when the request was issued"},
     "reply_at_ns": {"type": "integer", "description": "ET with which the SUT goes on"},
     "sensor": {"type": "string"},
@@ -47,6 +48,16 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
         "arrived_at_ns": {"type": "integer"}
       },
       "required": ["from", "sequence", "arrived_at_ns"]
+    },
+    "battery": {
+      "type": "object",
+      "description": "what was read of the battery, at st_at_release",
+      "properties": {
+        "voltage_v": {"type": ["number", "null"], "description": "at the terminals"},
+        "current_a": {"type": ["number", "null"]},
+        "charge": {"type": ["number", "null"], "description": "share of the capacity"}
+      },
+      "required": ["voltage_v", "current_a", "charge"]
     },
     "st_at_arrival_ns": {"type": "integer"},
     "lag_ns": {"type": "integer", "description": "request_at - st_at_arrival"},

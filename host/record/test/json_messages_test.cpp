@@ -105,6 +105,7 @@ TEST(JsonMessages, FormIsStable) {
   check_form(texts, image(), image_from_json, kCompressedImageSchema);
   check_form(texts, battery(), battery_from_json, kBatterySchema);
   check_form(texts, receive_interaction(), interaction_from_json, kInteractionSchema);
+  check_form(texts, battery_interaction(), interaction_from_json, kInteractionSchema);
   check_form(texts, radio_message(), radio_message_from_json, kRadioMessageSchema);
   texts += json_of(sensor_interaction(), {.wall = false, .arrivals = false}) + "\n";
   texts += json_of(stop(), {.wall = false}) + "\n";

@@ -89,6 +89,12 @@ inline Interaction receive_interaction(std::uint64_t sequence = 5) {
   return message;
 }
 
+inline Interaction battery_interaction(std::uint64_t sequence = 6) {
+  Interaction message = interaction(kBattery, sequence);
+  message.battery = {12.25, 6.5, 0.75};
+  return message;
+}
+
 inline RadioMessage radio_message() {
   return {"a", 3, "b", 100, st_ms(39), st_ms(40), "collision", st_ms(39), 12.5, 2, -3.5};
 }
@@ -141,7 +147,8 @@ inline Header header() {
   header.real_time_factor = 0.3;
   header.suts = {{"a", "tether-sut 0.1.0", "cpu", 6.5, Duration(2'000'000), false, 4, 40.5,
                   Duration(8), ClockInfo{"scripted", 7.5, Duration(9)}, "0a",
-                  ReplayInfo{"board.timing", "exact", "2026-11-23T06:00:00Z", "pi", "0b"}},
+                  ReplayInfo{"board.timing", "exact", "2026-11-23T06:00:00Z", "pi", "0b"}, "",
+                  std::nullopt, "front"},
                  {"b", "other", "wall", 1.0, {}, true}};
   header.sensors = {
       {"a", "camera", "camera", true, Duration(33'333'333), Duration(5), Duration(7), Duration(8)},

@@ -371,7 +371,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
   toml::Document document = toml::Document::load(scenario.file);
   std::vector<Setting> of_profiles;
   for (const Setting& setting : settings)
-    if (!apply(setting, document)) of_profiles.push_back(setting);
+    if (setting.key != kUavCount && !apply(setting, document)) of_profiles.push_back(setting);
   scenario.settings = settings;
   const toml::Table root =
       document.root({"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s",
@@ -390,6 +390,8 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
   apply_to_profiles(of_profiles, scenario);
   read_metrics(root, scenario);
   read_record(root, scenario);
+  for (const Setting& setting : settings)
+    if (setting.key == kUavCount) keep_first_uavs(scenario, setting.value);
   sort_files(scenario);
   return scenario;
 }

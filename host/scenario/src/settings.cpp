@@ -1,5 +1,8 @@
 #include "settings.h"
 
+#include <algorithm>
+#include <charconv>
+
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
@@ -18,6 +21,35 @@ Setting parse_setting(std::string_view text, const std::filesystem::path& folder
   if (std::filesystem::is_regular_file(file, ignored))
     setting.value = std::filesystem::absolute(file).lexically_normal().string();
   return setting;
+}
+
+void keep_first_uavs(Scenario& scenario, const std::string& count) {
+  std::size_t kept = 0;
+  const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), kept);
+  if (error != std::errc() || end != count.data() + count.size() || kept < 1 ||
+      kept > scenario.uavs.size())
+    throw Error(ErrorCode::kUsage, {scenario.file.string()},
+                fmt::format("has {} UAVs, of which {}={} cannot be flown. Use a whole number from "
+                            "1 to {}",
+                            scenario.uavs.size(), kUavCount, count, scenario.uavs.size()))
+        .about(std::string(kUavCount));
+  scenario.uavs.resize(kept);
+  std::erase_if(scenario.metrics, [&](const Metric& metric) {
+    return std::ranges::none_of(
+        scenario.uavs, [&](const UavSetup& uav) { return uav.placement.name == metric.uav; });
+  });
+  for (Condition& condition : scenario.conditions) {
+    if (condition.computers.empty()) continue;
+    condition.seats.resize(kept);
+    std::vector<Computer> computers;
+    for (std::size_t i = 0; i < condition.computers.size(); ++i) {
+      if (std::ranges::count(condition.seats, i, &Seat::computer) == 0) continue;
+      for (Seat& seat : condition.seats)
+        if (seat.computer == i) seat.computer = computers.size();
+      computers.push_back(condition.computers[i]);
+    }
+    condition.computers = std::move(computers);
+  }
 }
 
 bool apply(const Setting& setting, toml::Document& scenario) {

@@ -12,6 +12,9 @@ namespace tether::scenario {
 
 /// Replaces the value in the file of a scenario. @return false if the file does not have it.
 bool apply(const Setting& setting, toml::Document& scenario);
+/// Keeps as many UAVs as `count` says, the first ones of the file, with the metrics and computers
+/// that are theirs. @throws Error(kUsage), about kUavCount, if there are not so many.
+void keep_first_uavs(Scenario& scenario, const std::string& count);
 /// Reads a profile, and replaces the values that it has; adds their keys to `replaced`.
 Profile load_profile(const std::filesystem::path& file, const std::vector<Setting>& settings,
                      std::set<std::string>& replaced);

@@ -78,6 +78,29 @@ TEST_F(Seats, EachUavRunsOnTheTargetThatItNames) {
   EXPECT_EQ(for_uav(fleet.conditions[2], 1).cpu_factor, 1.0);
 }
 
+TEST_F(Seats, ASettingKeepsTheFirstUavsWithTheirMetricsAndComputers) {
+  std::string text = kFleet;
+  for (const char* uav : {"a", "b", "c"})
+    text += std::string("[[metric]]\nkind = \"time_required\"\nuav = \"") + uav + "\"\n";
+  const std::filesystem::path file = write_project(scratch_, text);
+  const Scenario two = load_scenario(file, {{"uavs", "2"}});
+  EXPECT_EQ(two.name, "fleet-uavs-2");
+  EXPECT_EQ(two.uavs.size(), 2u);
+  ASSERT_EQ(two.metrics.size(), 2u);
+  EXPECT_EQ(two.metrics[1].uav, "b");
+  ASSERT_EQ(two.conditions[0].computers.size(), 1u) << "nothing runs on the other one";
+  EXPECT_TRUE(is_shared(two.conditions[0], 0));
+  EXPECT_EQ(two.conditions[1].computers.size(), 2u);
+  EXPECT_EQ(for_uav(two.conditions[1], 1).computer, "front-b");
+  EXPECT_FALSE(is_shared(load_scenario(file, {{"uavs", "1"}}).conditions[0], 0));
+  for (const char* wrong : {"0", "4", "2.5", "-1", ""}) {
+    const Error error = thrown_error(ErrorCode::kUsage, [&] {
+      load_scenario(file, {{"uavs", wrong}});
+    });
+    EXPECT_EQ(error.subject(), "uavs") << wrong;
+  }
+}
+
 TEST_F(Seats, SlowDownAndTargetsReachEveryComputerAndKeepWhoShares) {
   Scenario fleet = load(kFleet);
   Condition& shared = fleet.conditions[0];

@@ -19,6 +19,8 @@ constexpr double kTouching_m = 1e-3;
 /// What a UAV leaves when it is lifted by this, it stands on.
 constexpr double kLift_m = 0.02;
 constexpr double kFarFromAnchors_m = 50.0;
+/// More than distances are rounded by.
+constexpr double kRounding_m = 1e-6;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -57,6 +59,9 @@ struct ClearanceMeter::Shape {
   std::span<const Vec3> vertices;  ///< of a mesh, in `vertices_`
   Bounds bounds{};
   std::optional<Vec3> plane_normal_S{};  ///< of a plane, which has no `bounds`
+  /// The shape is within `reach_m` of this point of W, or of its moving body.
+  Vec3 p_WC{};
+  double reach_m = 0.0;
 
   Pose pose(std::span<const Pose> X_WB) const { return body ? X_WB[*body] * X_BS : X_BS; }
   Convex at(const Pose& X_WS) const { return {geometry, vertices, X_WS}; }
@@ -91,7 +96,12 @@ void ClearanceMeter::add(const Link& link, const Pose& X_BL, std::optional<std::
       is_complete_ = is_complete_ && !shape.vertices.empty();
       if (shape.vertices.empty()) continue;
     }
-    if (!shape.plane_normal_S) shape.bounds = bounds_of(shape.at({}));
+    if (!shape.plane_normal_S) {
+      shape.bounds = bounds_of(shape.at({}));
+      const Vec3 centre = transform(shape.X_BS, shape.bounds.centre);
+      shape.reach_m = norm(shape.bounds.half_m) + (body ? norm(centre) : 0.0);
+      if (!body) shape.p_WC = centre;
+    }
     shapes_.push_back(shape);
   }
 }
@@ -119,6 +129,10 @@ std::optional<Clearance> ClearanceMeter::measure(std::size_t uav,
         const Vec3 down_W = rotate(other.X_BS.q, -1.0 * *other.plane_normal_S);
         candidate_m = other.height_m(support_point(here, down_W)) - rounding_m(here);
       } else {
+        // In a fleet, most others are far away.
+        const Vec3 apart_W = centre_W - (other.body ? X_WB[*other.body].p : other.p_WC);
+        const double beyond_m = nearest.distance_m + radius_m + other.reach_m + kRounding_m;
+        if (dot(apart_W, apart_W) > beyond_m * beyond_m) continue;
         const Pose X_WS = other.pose(X_WB);
         const Vec3 centre_S = rotate(inverse(X_WS.q), centre_W - X_WS.p);
         if (distance_m(other.bounds, centre_S) - radius_m >= nearest.distance_m) continue;

@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include <tether/base/random.h>
 #include <tether/sizing/sizing.h>
 
 namespace tether::sizing {
@@ -12,17 +14,17 @@ constexpr double kLeastFit = 0.01;
 // Every fourth flight looks for slowdowns below the threshold that are not sufficient.
 constexpr std::size_t kOneOf = 4;
 
-// The level up to `most` where failures below the threshold are most likely: few flights are near
-// it, or many of those near it failed (an upper confidence bound of their share). A gap is thus
-// flown again until the check of the curve can see it.
-double most_suspicious(std::span<const double> levels, double most, std::span<const Flight> flights,
-                       std::span<const double> planned) {
+// The slowdown up to `most` where failures below the threshold are most likely: few flights are
+// near it, or many of those near it failed (an upper confidence bound of their share). A gap is
+// thus flown again until the check of the curve can see it.
+double most_suspicious(std::span<const double> slowdowns, double most,
+                       std::span<const Flight> flights, std::span<const double> planned) {
   constexpr double kNear = 0.12;  // log slowdown
-  double best = levels.front(), highest = -1.0;
-  for (const double level : levels) {
-    if (level > most) break;
+  constexpr std::size_t kStep = 4;
+  double best = slowdowns.front(), highest = -1.0;
+  for (std::size_t i = 0; i < slowdowns.size() && slowdowns[i] <= most; i += kStep) {
     const auto nearness = [&](double other) {
-      const double distance = std::log(level / other) / kNear;
+      const double distance = std::log(slowdowns[i] / other) / kNear;
       return std::exp(-0.5 * distance * distance);
     };
     double near = 0.0, missed = 0.0;
@@ -32,9 +34,26 @@ double most_suspicious(std::span<const double> levels, double most, std::span<co
     }
     for (const double other : planned) near += nearness(other);
     const double suspicion = (missed + 0.1) / (near + 1.0) + 0.5 / std::sqrt(near + 1.0);
-    if (suspicion > highest) best = level, highest = suspicion;
+    if (suspicion > highest) best = slowdowns[i], highest = suspicion;
   }
   return best;
+}
+
+double any_of(std::span<const double> slowdowns, std::size_t flight) {
+  KeyedRandom random({flight, random_stream("", "", "neighbourhood of a slowdown"), 0});
+  const double place = random.uniform() * static_cast<double>(slowdowns.size());
+  return slowdowns[static_cast<std::size_t>(place)];
+}
+
+// Those around `slowdown`, as many as in a level; at an end of the range, those next to it.
+std::span<const double> neighbourhood(const Question& question, std::span<const double> slowdowns,
+                                      double slowdown) {
+  constexpr double kShareOfInterval = 0.4;
+  const double reach = std::exp(0.5 * kShareOfInterval * std::log(question.interval));
+  const double low = std::min(slowdown / reach, slowdowns.back() / (reach * reach));
+  const double high = std::max(slowdown * reach, slowdowns.front() * (reach * reach));
+  const auto begin = std::ranges::lower_bound(slowdowns, low);
+  return {begin, std::ranges::upper_bound(slowdowns, high)};
 }
 
 }  // namespace
@@ -61,15 +80,15 @@ Answer Sizing::current() const {
   Answer answer{.basis = basis_, .fit = fit_};
   bool is_done = false;
   if (basis_ == Basis::kLevels) {
-    const LevelAnswer levels = answer_by_levels(question, grid_.levels(), flights_);
+    const LevelAnswer levels = answer_by_levels(question, flights_);
     answer.threshold = levels.threshold;
     is_done = levels.is_done;
   } else {
     answer.threshold = curve().threshold();
   }
   Threshold& threshold = answer.threshold;
-  answer.is_above = threshold.low >= grid_.levels().back();
-  answer.is_below = threshold.high <= grid_.levels().front();
+  answer.is_above = threshold.low >= grid_.slowdowns().back();
+  answer.is_below = threshold.high <= grid_.slowdowns().front();
   is_done = is_done || answer.is_above || answer.is_below ||
             threshold.high <= question.interval * threshold.low;
   answer.is_narrow = is_done && flights_.size() >= kLeastFlights;
@@ -92,15 +111,22 @@ Answer Sizing::answer(bool is_last) {
 }
 
 std::vector<double> Sizing::next(std::size_t count) const {
-  const std::vector<double>& levels = grid_.levels();
-  if (basis_ == Basis::kLevels)
-    return std::vector<double>(count,
-                               levels[answer_by_levels(grid_.question(), levels, flights_).next]);
-  std::vector<double> next = curve().next_levels(count);
+  const std::vector<double>& slowdowns = grid_.slowdowns();
+  const Question& question = grid_.question();
+  std::vector<double> next;
+  if (basis_ == Basis::kLevels) {
+    const Level level = answer_by_levels(question, flights_).next;
+    while (next.size() < count)
+      next.push_back(any_of(level.slowdowns, flights_.size() + next.size()));
+    return next;
+  }
+  next = curve().next_slowdowns(count);
   const double estimate = curve().threshold().estimate;
   for (std::size_t i = 0; i < count; ++i) {
-    if ((flights_.size() + i) % kOneOf == kOneOf - 1)
-      next[i] = most_suspicious(levels, estimate, flights_, std::span(next).first(i));
+    const std::size_t flight = flights_.size() + i;
+    if (flight % kOneOf == kOneOf - 1)
+      next[i] = most_suspicious(slowdowns, estimate, flights_, std::span(next).first(i));
+    next[i] = any_of(neighbourhood(question, slowdowns, next[i]), flight);
   }
   return next;
 }

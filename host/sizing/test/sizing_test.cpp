@@ -1,5 +1,6 @@
 #include <cmath>
 #include <functional>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -19,7 +20,7 @@ Answer size(Sizing& sizing, std::uint64_t seed, const Fly& fly) {
     const bool is_last = sizing.flights().size() >= kMost;
     const Answer answer = sizing.answer(is_last);
     if (answer.is_narrow || is_last) return answer;
-    for (const double level : sizing.next(2)) sizing.add(fly(level, random.uniform()));
+    for (const double slowdown : sizing.next(2)) sizing.add(fly(slowdown, random.uniform()));
   }
 }
 
@@ -100,17 +101,17 @@ TEST(Sizing, IsNotFooledByAGap) {
 TEST(Sizing, FliesAgainWhereAFlightBelowTheThresholdFailed) {
   const CurveGrid grid({.interval = 1.6, .least = 1.0, .most = 20.0});
   Sizing sizing(grid, false);
-  for (const double level : grid.levels())
-    for (int i = 0; i < 2; ++i) sizing.add({level, true});
+  for (std::size_t i = 0; i < grid.slowdowns().size(); i += 2)
+    sizing.add({grid.slowdowns()[i], true});
   sizing.add({2.0, false});
   while (sizing.flights().size() % 4 != 0) sizing.add({20.0, true});
-  EXPECT_NEAR(sizing.next(4).back(), 2.0, 0.2);
+  EXPECT_NEAR(sizing.next(4).back(), 2.0, 0.4);
 }
 
 TEST(Sizing, AnswersByLevelsWhereNoCurveFits) {
   const CurveGrid grid({.interval = 1.6, .least = 1.0, .most = 20.0});
   Sizing sizing(grid, false);
-  for (const double level : grid.levels()) {
+  for (const double level : grid.slowdowns()) {
     for (int i = 0; i < 3; ++i) sizing.add({level, level < 3.0 || (level > 4.5 && level < 9.0)});
   }
   const Answer answer = sizing.answer(true);
@@ -126,11 +127,50 @@ TEST(Sizing, LeavesMarginsThatDoNotFit) {
   Sizing sizing(grid, true);
   KeyedRandom random({1, 1, 1});
   for (int i = 0; i < 200; ++i) {
-    const double level = grid.levels()[static_cast<std::size_t>(i) % grid.levels().size()];
+    const double level = grid.slowdowns()[static_cast<std::size_t>(i) % grid.slowdowns().size()];
     const bool reached = random.uniform() < 1.0 / (1.0 + std::pow(level / 5.0, 6.0));
     sizing.add({level, reached, reached ? 0.4 * random.uniform() : -0.004 * random.uniform()});
   }
   EXPECT_EQ(sizing.answer(true).basis, Basis::kCurve);
+}
+
+// One slowdown where all succeed, between others where they do not, is not an answer.
+TEST(Sizing, SpreadsFlightsAlsoAtTheEndsOfTheRange) {
+  const CurveGrid grid({.least = 1.0, .most = 20.0});
+  for (const bool reached : {false, true}) {
+    Sizing sizing(grid, false);
+    for (int i = 0; i < 30; ++i)
+      for (const double slowdown : sizing.next(2)) sizing.add({slowdown, reached});
+    std::set<double> near_end;
+    for (const Flight& flight : sizing.flights()) {
+      EXPECT_GE(flight.slowdown, 1.0);
+      EXPECT_LE(flight.slowdown, 20.0);
+      const double from_end = reached ? 20.0 / flight.slowdown : flight.slowdown / 1.0;
+      if (from_end < 1.12) near_end.insert(flight.slowdown);
+    }
+    EXPECT_GE(near_end.size(), 5U) << reached;
+  }
+}
+
+TEST(Sizing, IsNotFooledByOneGoodSlowdownAtTheEnd) {
+  const CurveGrid grid({.least = 1.0, .most = 20.0});
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    const Answer answer = size(grid, i, [](double x, double uniform) {
+      return Flight{x, x < 8.0 || x >= 19.9 || uniform < 0.7};
+    });
+    EXPECT_FALSE(answer.is_above) << i;
+  }
+}
+
+TEST(Sizing, AnswersByLevelsWhereNeighboursDisagree) {
+  const CurveGrid grid({.interval = 1.6, .least = 1.0, .most = 20.0});
+  Sizing sizing(grid, false);
+  for (const double slowdown : grid.slowdowns()) {
+    const double tooth = std::log(slowdown) / 0.07;
+    for (int i = 0; i < 2; ++i)
+      sizing.add({slowdown, slowdown < 5.0 || tooth - std::floor(tooth) < 0.6});
+  }
+  EXPECT_EQ(sizing.answer(true).basis, Basis::kLevels);
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
-#include "least_tree.h"
-
 #include <algorithm>
 #include <cassert>
 #include <utility>
 
 #include <tether/sync/barrier_synchronizer.h>
+#include <tether/sync/least_tree.h>
 
 namespace tether::sync {
 

@@ -8,15 +8,13 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
-#include <system_error>
 #include <utility>
-
-#include <stdlib.h>
 
 #include <tether/base/text_table.h>
 #include <tether/calibration/profile_text.h>
 #include <tether/os/child_process.h>
 #include <tether/os/program.h>
+#include <tether/os/temporary_folder.h>
 #include <tether/os/text_file.h>
 #include <tether/toml/table.h>
 
@@ -40,41 +38,11 @@ struct EmulatedMachine {
 constexpr EmulatedMachine kMachines[] = {{"x86_64", "qemu-x86_64", "Nehalem"},
                                          {"aarch64", "qemu-aarch64", "cortex-a72"}};
 
-/// A folder for as long as the object lives.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::error_code error;
-    const auto parent = std::filesystem::temp_directory_path(error);
-    std::string path =
-        ((error ? std::filesystem::path("/tmp") : parent) / "tether-count-XXXXXX").string();
-    if (::mkdtemp(path.data()) != nullptr) path_ = path;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string last_line(const std::string& text) {
-  const std::size_t end = text.find_last_not_of('\n');
-  if (end == std::string::npos) return "";
-  const std::size_t begin = text.rfind('\n', end);
-  return text.substr(begin == std::string::npos ? 0 : begin + 1, end - begin);
-}
-
 /// @throws Error
 Calibration counted_by(const CalibrateOptions& options, const os::Emulator& emulator,
                        const TellRound& tell) {
-  const ScratchFolder folder;
-  const auto out = folder.path() / "counts.toml", log = folder.path() / "log";
+  const os::TemporaryFolder folder("tether-count-");
+  const auto out = folder / "counts.toml", log = folder / "log";
   const std::string program = options.program.empty()
                                   ? os::own_file().string()
                                   : std::filesystem::absolute(options.program).string();
@@ -91,7 +59,7 @@ Calibration counted_by(const CalibrateOptions& options, const os::Emulator& emul
   if (child.poll()->code != 0)
     throw Error(ErrorCode::kSetup, program + " under " + emulator.program + " " +
                                        child.poll()->description +
-                                       "; its last line: " + last_line(os::read_file(log)));
+                                       "; its last line: " + os::last_line(os::read_file(log)));
   Result<Calibration> counted = load_calibration(out.string());
   if (!counted) throw Error(ErrorCode::kBadFile, counted.failure().message);
   return std::move(counted).value();

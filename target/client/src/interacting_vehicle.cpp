@@ -71,6 +71,9 @@ Status check(const link::Reply& reply, const link::Request& request, bool free_r
   if (reply.message && reply.message->arrived_at > same_instant(reply.resume_at)) {
     return protocol_failure("its message is from the future");
   }
+  if (reply.battery && reply.battery->sampled_at > same_instant(reply.resume_at)) {
+    return protocol_failure("its battery is from the future");
+  }
   return ok_status();
 }
 
@@ -92,6 +95,7 @@ std::string name_of_call(const decltype(link::Request::body)& body,
   if (std::holds_alternative<link::SetVelocity>(body)) return "command";
   if (std::holds_alternative<link::Sleep>(body)) return "sleep";
   if (std::holds_alternative<link::SendMessage>(body)) return "send";
+  if (std::holds_alternative<link::ReadBattery>(body)) return "battery";
   return std::holds_alternative<link::ReceiveMessage>(body) ? "receive" : "finish";
 }
 
@@ -163,6 +167,18 @@ Result<uav::ImuSample> InteractingVehicle::read_imu(std::string_view sensor, Rea
 }
 Result<uav::RangeSample> InteractingVehicle::read_range(std::string_view sensor, Read read) {
   return this->read<uav::RangeSample>(sensor, read);
+}
+
+Result<uav::BatterySample> InteractingVehicle::read_battery() {
+  if (catalogue_.battery_capacity_C <= 0.0) {
+    return Failure{Failure::Kind::kInvalid,
+                   "this UAV has no battery: its scenario has no 'energy' for it, or its simulator "
+                   "does not simulate batteries"};
+  }
+  auto reply = interact(link::ReadBattery{});
+  if (!reply) return reply.failure();
+  if (!reply->battery) return give_up(protocol_failure("it has no state of the battery"));
+  return *reply->battery;
 }
 
 // --- radio --------------------------------------------------------------------------------------

@@ -39,6 +39,7 @@ class InteractingVehicle : public Vehicle {
   Result<uav::CameraSample> read_camera(std::string_view sensor, Read read) final;
   Result<uav::ImuSample> read_imu(std::string_view sensor, Read read) final;
   Result<uav::RangeSample> read_range(std::string_view sensor, Read read) final;
+  Result<uav::BatterySample> read_battery() final;
   Status command_velocity(const uav::VelocityCommand& command) final;
   const std::vector<std::string>& peers() const final { return peers_; }
   Status send(std::string_view to, std::span<const std::uint8_t> bytes) final;

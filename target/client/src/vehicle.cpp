@@ -1,6 +1,6 @@
 #include <tether/client/vehicle.h>
 
-// What vehicles without a radio do.
+// What vehicles without a radio, or without a battery that can be read, do.
 namespace tether::client {
 namespace {
 
@@ -15,6 +15,10 @@ const std::vector<std::string>& Vehicle::peers() const {
 
 Status Vehicle::send(std::string_view, std::span<const std::uint8_t>) {
   return kNoRadio;
+}
+
+Result<uav::BatterySample> Vehicle::read_battery() {
+  return Failure{Failure::Kind::kInvalid, "the battery of this vehicle cannot be read"};
 }
 
 Result<RadioMessage> Vehicle::receive(Duration) {

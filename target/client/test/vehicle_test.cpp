@@ -22,6 +22,10 @@ struct Deaf final : Vehicle {
   uav::Catalogue catalogue_;
 };
 
+TEST(Vehicle, HasNoBatteryByDefault) {
+  EXPECT_EQ(Deaf().read_battery().failure().kind, Failure::Kind::kInvalid);
+}
+
 TEST(Vehicle, HasNoRadioByDefault) {
   Deaf vehicle;
   EXPECT_TRUE(vehicle.peers().empty());

@@ -31,6 +31,9 @@ class InterruptibleVehicle : public client::Vehicle {
   Result<uav::RangeSample> read_range(std::string_view sensor, client::Read read) override {
     return unless_interrupted([&] { return vehicle_->read_range(sensor, read); });
   }
+  Result<uav::BatterySample> read_battery() override {
+    return unless_interrupted([&] { return vehicle_->read_battery(); });
+  }
   Status command_velocity(const uav::VelocityCommand& command) override {
     return unless_interrupted([&] { return vehicle_->command_velocity(command); });
   }

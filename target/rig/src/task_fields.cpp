@@ -196,6 +196,8 @@ Fields fields(tasks::InspectOptions& options, TaskSpec& spec) {
         speed(options.speed_m_s),
         {"yaw_rate_deg_s", "Maximum yaw rate", degrees(options.yaw_rate_rad_s, 0.01, 720.0)},
         {"lost_limit_s", "Maximum time without seeing the anchor", seconds(options.lost_limit)},
+        {"least_charge", "It ends below this share of the battery's capacity; 0: not read",
+         share(options.least_charge)},
         time_limit(options.time_limit)}});
 }
 

@@ -37,6 +37,11 @@ Progress InspectTask::step(TaskContext& context) {
   const Result<std::optional<Sight>> sight = look(context, anchor_);
   if (!sight) return TaskOutcome::failed(sight.failure());
   ++images_;
+  if (options_.least_charge > 0.0) {
+    const Result<uav::BatterySample> battery = context.vehicle().read_battery();
+    if (!battery) return TaskOutcome::failed(battery.failure());
+    if (battery->charge < options_.least_charge) return TaskOutcome::not_reached("battery low");
+  }
   if (!*sight || !(*sight)->position.distance_m) {
     held_since_.reset();
     if (context.vehicle().now() - seen_at_ > options_.lost_limit)

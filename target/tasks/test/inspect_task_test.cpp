@@ -26,6 +26,15 @@ TEST(InspectTask, EndsIfItLosesTheAnchor) {
   EXPECT_EQ(fly(brief, {}).outcome.reason, "time limit");
 }
 
+TEST(InspectTask, EndsIfTheBatteryIsLow) {
+  const InspectOptions options{.duration = std::chrono::seconds(30), .least_charge = 0.5};
+  InspectTask task("blue_box", options);
+  const Flight flight = fly(task, {.endurance = std::chrono::seconds(20)});
+  EXPECT_EQ(flight.outcome.reason, "battery low");
+  EXPECT_NEAR(flight.result("duration_s"), 10.0, 0.1);
+  EXPECT_TRUE(fly(task, {}).outcome.failure.has_value()) << "without a battery";
+}
+
 TEST(InspectTask, CountsOnlyTimeWithoutABreak) {
   InspectTask task("blue_box", {.distance_m = 4.0,
                                 .duration = std::chrono::seconds(3),

@@ -160,6 +160,17 @@ Result<uav::RangeSample> PlanarVehicle::read_range(std::string_view sensor, clie
   return reading;
 }
 
+Result<uav::BatterySample> PlanarVehicle::read_battery() {
+  if (!options_.endurance) return Vehicle::read_battery();
+  if (const Status status = begin_interaction(); !status) return status.failure();
+  const Duration since_start = now_.time_since_epoch();
+  return uav::BatterySample{
+      .sampled_at = SimTime(since_start),
+      .voltage_V = 12.0,
+      .current_A = 6.0,
+      .charge = std::max(0.0, 1.0 - to_seconds(since_start) / to_seconds(*options_.endurance))};
+}
+
 Status PlanarVehicle::command_velocity(const uav::VelocityCommand& command) {
   if (Status status = begin_interaction(); !status) return status;
   command_ = command;

@@ -74,6 +74,29 @@ TEST_F(Arm64, FliesAsTheTargetOfASynchronisedRun) {
   EXPECT_THAT(read_record(folder_ / "out").header.suts.at(0).sut, HasSubstr("(aarch64)"));
 }
 
+TEST_F(Arm64, IsTheSameToTheByteUnderTheCountedClock) {
+  const auto target = folder_ / "counted_arm64.toml";
+  const auto quoted = [](const char* path) { return '"' + (kSources / path).string() + '"'; };
+  write_text(
+      target,
+      substituted(read_text(kSources / "data/profiles/targets/counted_host.toml"),
+                  {{"qemu-x86_64\"\n", "qemu-aarch64\"\n"},
+                   {"\"Nehalem\"", "\"cortex-a72\"\nprogram_folder = " + quoted("build/arm64/bin") +
+                                       "\nsysroot = " + quoted("build/sysroot-arm64")}}));
+  const auto scenario = write_shipped_scenario(folder_.path(), "face_anchor",
+                                               {{"\ntime_limit_s = 60", "\ntime_limit_s = 0.4"}});
+  for (const std::string out : {"first", "second"}) {
+    const Output output = run(tether({"run", scenario, "--condition", "host", "--target", target,
+                                      "--out", folder_ / out, "--quiet"}),
+                              100s);
+    ASSERT_EQ(output.code, 1) << output.err;
+  }
+  EXPECT_THAT(read_record(folder_ / "first").header.suts.at(0).sut, HasSubstr("(aarch64)"));
+  EXPECT_GT(read_result(folder_ / "first")["sync"]["interactions"], 5);
+  EXPECT_TRUE(read_text(folder_ / "first/record.mcap") ==
+              read_text(folder_ / "second/record.mcap"));
+}
+
 // Every image is tracked, and every command given, as on this machine.
 TEST_F(Arm64, ComputesWhatThisMachineComputes) {
   fly("here", face_sut());

@@ -140,5 +140,32 @@ TEST(Reproduce, ReportsThePapersCampaignWhateverFailed) {
   }
 }
 
+// Alone, a UAV needs 3.5 s; two on one core wait for each other.
+TEST_F(RunTest, SizeFindsHowManyUavsABoardCarries) {
+  const std::string limit = "kind = \"time_required\"\nmax_s = 3.9\nuav = ";
+  const auto scenario = write_hover_scenario(
+      folder_.path(), "good",
+      {{"time_limit_s = 5", "time_limit_s = 10"},
+       {"[[uav]]\n",
+        "[[target]]\nname = \"obc\"\nclock = \"scripted\"\ncomputing_ms = 5\n\n"
+        "[[uav]]\ntarget = \"obc\"\n"},
+       {"[sut]\n", "[[uav]]\nname = \"uav2\"\ntarget = \"obc\"\nmodel = \"" TETHER_SOURCE_DIR
+                   "/data/models/hummingbird/model.sdf\"\nposition_m = [5, 0, 1]\n\n[sut]\n"},
+       {"clock = \"cpu\"\n\n", "\n"},
+       {"kind = \"time_required\"", limit + "\"uav1\"\n[[metric]]\n" + limit + "\"uav2\""}});
+  const Command size = tether({"size", scenario, "--axis", "uavs", "--success", "0.5",
+                               "--confidence", "0.8", "--max-trials", "12", "--out", out_},
+                              mark_);
+  const Output output = run(size);
+  ASSERT_EQ(output.code, 0) << output.err;
+  EXPECT_THAT(output.out, testing::StartsWith("This board carries 1 UAV ")) << output.out;
+  const auto answer = nlohmann::json::parse(read_text(out_ / "size.json"));
+  EXPECT_EQ(answer["answer"]["carried"], 1);
+  EXPECT_EQ(answer["flights"].size(), 8u);
+  EXPECT_TRUE(std::filesystem::exists(out_ / "report.html"));
+  const Output again = run(with(size, {"--resume"}));
+  EXPECT_EQ(again.out, output.out) << "the flights are there";
+}
+
 }  // namespace
 }  // namespace tether::system_test

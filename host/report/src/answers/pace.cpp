@@ -1,3 +1,5 @@
+#include "answers/board_pace.h"
+
 #include <algorithm>
 #include <map>
 
@@ -20,16 +22,19 @@ double quantile(std::vector<double> values, double share) {
 struct Intervals {
   std::optional<double> offered_hz{};
   std::optional<ExecTime> previous;
-  double computing_s = 0.0;  ///< since the previous image
-  std::vector<double> between_s, computed_s;
+  double cost_s = 0.0, waited_s = 0.0;  ///< since the previous image
+  std::vector<double> between_s, costs_s;
+  double all_costs_s = 0.0, all_waited_s = 0.0;  ///< of the images in `costs_s`
 
   void take_image(ExecTime at) {
     if (previous) {
       between_s.push_back(to_seconds(at - *previous));
-      computed_s.push_back(computing_s);
+      costs_s.push_back(cost_s);
+      all_costs_s += cost_s;
+      all_waited_s += waited_s;
     }
     previous = at;
-    computing_s = 0.0;
+    cost_s = waited_s = 0.0;
   }
 };
 
@@ -51,13 +56,22 @@ std::map<std::string, Intervals> intervals_of(const record::Record& record, cons
       cameras[info.name].offered_hz = 1.0 / to_seconds(info.period);
   std::map<std::string, std::uint64_t> newest;
   auto call = run.calls.begin();
+  ExecTime resumed{};
   for (const auto& logged : record.interactions) {
     const record::Interaction& entry = logged.message;
     if (entry.uav != uav) continue;
-    double computing_s = 0.0;
-    for (const auto& time : call->stages) computing_s += to_seconds(time.computing);
+    double cost_s = 0.0, waited_s = 0.0;
+    for (const auto& time : call->stages) cost_s += to_seconds(time.computing);
+    if (entry.computed) {  // on a shared board
+      cost_s = to_seconds(entry.request_at - resumed);
+      waited_s = to_seconds(entry.request_at - resumed - *entry.computed);
+    }
+    resumed = entry.reply_at;
     ++call;
-    for (auto& [name, intervals] : cameras) intervals.computing_s += computing_s;
+    for (auto& [name, intervals] : cameras) {
+      intervals.cost_s += cost_s;
+      intervals.waited_s += waited_s;
+    }
     const auto camera = cameras.find(entry.sensor);
     if (camera != cameras.end() && is_image(entry, newest))
       camera->second.take_image(entry.reply_at);
@@ -69,6 +83,14 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
   timing::Timing timing;
   timing.runs = {timing::run_of(record, sut)};
   Pace pace{.uav = sut.uav, .seed = record.header.seed, .stages = timing::stage_rows(timing)};
+  const auto shares = [&](const record::SutInfo& other) {
+    return other.board == sut.board && other.pinned_core == sut.pinned_core;
+  };
+  const auto programs = std::ranges::count_if(record.header.suts, shares);
+  if (!sut.board.empty() && programs > 1) {
+    pace.shared_board = sut.board;
+    pace.programs = static_cast<std::size_t>(programs);
+  }
   for (const auto& [name, intervals] : intervals_of(record, sut.uav, timing.runs.front())) {
     const std::size_t images = intervals.between_s.size() + 1;
     if (intervals.between_s.empty() || images <= pace.images) continue;
@@ -76,8 +98,10 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
     pace.images = images;
     const double between_s = quantile(intervals.between_s, 0.5);
     pace.read_hz = between_s > 0.0 ? 1.0 / between_s : 0.0;
-    pace.median_s = quantile(intervals.computed_s, 0.5);
-    pace.p95_s = quantile(intervals.computed_s, 0.95);
+    pace.median_s = quantile(intervals.costs_s, 0.5);
+    pace.p95_s = quantile(intervals.costs_s, 0.95);
+    pace.waiting =
+        intervals.all_costs_s > 0.0 ? intervals.all_waited_s / intervals.all_costs_s : 0.0;
     pace.offered_hz = intervals.offered_hz;
   }
   return pace;
@@ -96,13 +120,15 @@ bool Pace::keeps_up() const {
 
 std::optional<Pace> pace_of(const record::Record& record) {
   if (record.header.policy != record::kConservativeBarrier) return std::nullopt;
-  std::optional<Pace> slowest;
-  for (const record::SutInfo& sut : record.header.suts) {
-    const Pace pace = pace_of(record, sut);
-    if (pace.stages.empty()) continue;
-    if (!slowest || pace.p95_s > slowest->p95_s) slowest = pace;
-  }
-  return slowest;
+  std::vector<Pace> paces;
+  for (const record::SutInfo& sut : record.header.suts) paces.push_back(pace_of(record, sut));
+  const Pace* slowest = nullptr;
+  for (const Pace& pace : paces)
+    if (!pace.stages.empty() && (!slowest || pace.p95_s > slowest->p95_s)) slowest = &pace;
+  if (!slowest) return std::nullopt;
+  Pace found = *slowest;
+  found.boards = board_paces(record, paces);
+  return found;
 }
 
 std::optional<Pace> read_pace(const std::filesystem::path& file) {

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 
 #include <tether/base/text_table.h>
-#include <tether/os/shell_word.h>
 #include <tether/report/verdict.h>
 
 // The words of a verdict.
@@ -15,7 +15,8 @@ namespace tether::report {
 namespace {
 
 constexpr std::size_t kMostMissed = 3;  // that a sentence names
-constexpr double kLeastShare = 0.001;   // of a stage in tables
+constexpr std::size_t kMostBoards = 3;
+constexpr double kLeastShare = 0.001;  // of a stage in tables
 
 std::string capital(std::string_view text) {
   std::string with(text);
@@ -49,6 +50,11 @@ std::string pace_text(const Pace& pace) {
     text = fmt::format("the camera is read {} times a second", rate(pace.read_hz));
     if (pace.offered_hz && !pace.keeps_up())
       text += fmt::format(" instead of {}", rate(*pace.offered_hz));
+    if (!pace.shared_board.empty())
+      text += fmt::format(
+          ", an image costs {} on “{}”, {} of it waiting for the cores that {} "
+          "programs share",
+          short_ms(pace.median_s), pace.shared_board, share(pace.waiting), pace.programs);
   }
   if (!pace.stages.empty())
     text += fmt::format("{}“{}” takes {} of the computing time", text.empty() ? "" : ", and ",
@@ -151,6 +157,32 @@ std::string evidence_of(const ConditionVerdict& condition) {
   return "";
 }
 
+/// The slowest computer of a fleet: by the cost of an image or, without images, by how long the
+/// others waited for it.
+std::optional<Answer> slowest_board(const ConditionVerdict& condition) {
+  if (!condition.pace || condition.pace->boards.empty()) return std::nullopt;
+  std::vector<BoardPace> boards = condition.pace->boards;
+  std::ranges::stable_sort(boards, std::greater<>{}, [](const BoardPace& board) {
+    return std::pair(board.p95_s, board.alone.value_or(0.0));
+  });
+  std::vector<std::string> costs, waits;
+  for (const BoardPace& board : boards) {
+    if (board.p95_s > 0.0 && costs.size() < kMostBoards)
+      costs.push_back(fmt::format("{} on “{}” ({}; at most {} in 95 %)", short_ms(board.median_s),
+                                  board.board, joined_with_and(board.uavs), short_ms(board.p95_s)));
+    if (board.alone && waits.size() < kMostBoards)
+      waits.push_back(fmt::format("{} for “{}”", share(*board.alone), board.board));
+  }
+  if (costs.empty() && waits.empty()) return std::nullopt;
+  std::string text = fmt::format(": “{}” of “{}”.", boards.front().board, condition.condition);
+  if (!costs.empty()) text += fmt::format(" An image costs {}.", joined_with_and(costs));
+  if (!waits.empty())
+    text +=
+        fmt::format(" Of the wall time, the simulation waited {} alone.", joined_with_and(waits));
+  if (condition.planned > 1) text += fmt::format(" This is from seed {}.", condition.pace->seed);
+  return Answer{"Slowest board", text};
+}
+
 std::string lead_of(const ConditionVerdict& condition) {
   const bool is_single = condition.planned == 1;
   switch (condition.ruling) {
@@ -176,6 +208,12 @@ const ConditionVerdict& lead_of(const Verdict& verdict) {
   return verdict.conditions[verdict.lead];
 }
 
+/// Of a sweep: the point whose answer comes first.
+const Verdict& most_urgent(const std::vector<Verdict>& points) {
+  return *std::ranges::min_element(points, {},
+                                   [](const Verdict& point) { return lead_of(point).ruling; });
+}
+
 /// Of a sweep: what would do, and each ruling of a condition with the points that have it.
 std::vector<Answer> sweep_answers(const std::vector<Verdict>& points) {
   std::vector<Answer> answers = sufficient_factors(points);
@@ -196,47 +234,23 @@ std::vector<Answer> sweep_answers(const std::vector<Verdict>& points) {
   return answers;
 }
 
+bool is_one_board_for_all(const ConditionVerdict& condition) {
+  return condition.pace && !condition.pace->shared_board.empty() && condition.pace->boards.empty();
+}
+
 std::string stage_advice(const Advice& advice, const ConditionVerdict& lead) {
   std::string text = fmt::format("Speed up “{}” first.", advice.subject);
   if (!lead.pace) return text;
   const std::optional<double> headroom = lead.pace->headroom();
   if (headroom && *headroom < 1.0)
     text += fmt::format(
-        " Computing takes up to {} per image, and the camera has one every {}: it is {} × too slow "
-        "to read them all.",
+        " {} up to {} per image, and the camera has one every {}: it is {} × too slow to read them "
+        "all.",
+        lead.pace->shared_board.empty() ? "Computing takes"
+                                        : "Computing and waiting for cores take",
         short_ms(lead.pace->p95_s), short_ms(1.0 / *lead.pace->offered_hz),
         fixed(1.0 / *headroom, 1));
   return text;
-}
-
-/// "`tether size face_anchor --condition target`"; empty: it cannot fly this.
-std::string size_command(const ConditionVerdict& condition, bool searches_faster) {
-  if (condition.size_arguments.empty()) return "";
-  std::string command = "tether size";
-  for (const std::string& word : condition.size_arguments) command += " " + os::shell_word(word);
-  const bool names_target = std::ranges::count(condition.size_arguments, "--target") > 0;
-  if (searches_faster && !names_target) command += " --between 0.1,2";
-  return "`" + command + "`";
-}
-
-std::string faster_advice(const ConditionVerdict& lead) {
-  const std::string command = size_command(lead, true);
-  return "The program reads every image, so the computer may not be the cause. To see whether a "
-         "faster one would do" +
-         (command.empty() ? ", fly on one." : ": " + command);
-}
-
-std::string threshold_advice(const ConditionVerdict& lead) {
-  const bool is_too_slow = lead.ruling == Ruling::kNotFastEnough;
-  const std::string what = is_too_slow
-                               ? "how much faster the computer must be"
-                               : "the headroom, that is how much slower the computer may be";
-  const std::string command = size_command(lead, is_too_slow);
-  if (!command.empty()) return fmt::format("To find {}: {}", what, command);
-  return fmt::format(
-      "`tether size` finds {}, for a scenario's own conditions on virtual targets. Write what was "
-      "flown here as one of them.",
-      what);
 }
 
 std::string sentence_of(const Advice& advice, const Verdict& verdict) {
@@ -257,7 +271,10 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
     case Kind::kTryFaster:
       return faster_advice(lead);
     case Kind::kFindThreshold:
-      return threshold_advice(lead);
+      return threshold_advice(lead) +
+             (is_one_board_for_all(lead)
+                  ? "; to find how many UAVs it carries: `--axis uavs` instead"
+                  : "");
     case Kind::kFlyMore:
       if (lead.planned == 1)
         return "One flight shows little. Fly a campaign of several seeds: `tether campaign`.";
@@ -295,9 +312,12 @@ void add_stages(Table& table, const std::string& where, const Pace& pace) {
   std::string note = fmt::format("{}: seed {}. Stages below 0.1 % are left out.", where, pace.seed);
   if (!pace.camera.empty())
     note += fmt::format(
-        " Per image of “{}”: {} of computing, in 95 % of them at most {}; read {} times a "
-        "second{}.",
-        pace.camera, short_ms(pace.median_s), short_ms(pace.p95_s), rate(pace.read_hz),
+        " Per image of “{}”: {}{}, in 95 % of them at most {}; read {} times a second{}.",
+        pace.camera, short_ms(pace.median_s),
+        pace.shared_board.empty() ? " of computing"
+                                  : fmt::format(", {} of it waiting for the cores of “{}”",
+                                                share(pace.waiting), pace.shared_board),
+        short_ms(pace.p95_s), rate(pace.read_hz),
         pace.offered_hz ? fmt::format(", offered {} times", rate(*pace.offered_hz)) : "");
   table.notes.push_back(note);
 }
@@ -331,22 +351,33 @@ Answer answer_of(const ConditionVerdict& condition) {
 }
 
 std::vector<Answer> answers_of(const std::vector<Verdict>& points) {
-  if (!points.front().point.empty()) return sweep_answers(points);
+  std::vector<Answer> answers;
+  const auto add_slowest = [&](const ConditionVerdict& condition) {
+    if (auto slowest = slowest_board(condition)) answers.push_back(*std::move(slowest));
+  };
+  if (!points.front().point.empty()) {
+    answers = sweep_answers(points);
+    add_slowest(lead_of(most_urgent(points)));
+    return answers;
+  }
   const Verdict& verdict = points.front();
-  std::vector<Answer> answers = {answer_of(lead_of(verdict))};
+  const auto add = [&](const ConditionVerdict& condition) {
+    answers.push_back(answer_of(condition));
+    add_slowest(condition);
+  };
+  add(lead_of(verdict));
   answers.front().rest += sufficient_condition(verdict);
   for (std::size_t i = 0; i < verdict.conditions.size(); ++i)
-    if (i != verdict.lead) answers.push_back(answer_of(verdict.conditions[i]));
+    if (i != verdict.lead) add(verdict.conditions[i]);
   return answers;
 }
 
 std::vector<std::string> advice_of(const std::vector<Verdict>& points) {
-  const auto urgent = std::ranges::min_element(
-      points, {}, [](const Verdict& point) { return lead_of(point).ruling; });
+  const Verdict& urgent = most_urgent(points);
   std::vector<std::string> sentences;
-  const std::string where = urgent->point.empty() ? "" : fmt::format("{}: ", urgent->point);
-  for (const Advice& advice : urgent->advice)
-    sentences.push_back(where + sentence_of(advice, *urgent));
+  const std::string where = urgent.point.empty() ? "" : fmt::format("{}: ", urgent.point);
+  for (const Advice& advice : urgent.advice)
+    sentences.push_back(where + sentence_of(advice, urgent));
   return sentences;
 }
 

@@ -108,8 +108,9 @@ std::vector<Answer> size_answers(const SizeReport& report) {
   if (answer.basis == sizing::Basis::kLevels)
     answers.push_back(
         {"No smooth curve",
-         " fits the success of the flights. The answer is that of single slowdowns: the interval "
-         "is from the largest one that is sufficient to the smallest one that is not."});
+         " fits the flights: near slowdowns differ more in success than such a curve allows. The "
+         "answer is by neighbourhoods of slowdowns: the interval is from the largest one that is "
+         "sufficient to the smallest one that is not."});
   if (!answer.is_narrow)
     answers.push_back(
         {"Less sure than asked",

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 
-#include <boost/math/distributions/binomial.hpp>
 #include <fmt/format.h>
 
 #include <tether/base/error.h>
@@ -12,11 +11,11 @@
 #include <tether/report/size_report.h>
 #include <tether/report/verdict.h>
 #include <tether/scenario/scenario.h>
+#include <tether/sizing/by_levels.h>
 
 namespace tether::report {
 namespace {
 
-constexpr double kTail = 0.025;  // of an interval of 95 %
 constexpr std::size_t kMostFlights = 1000;
 
 bool is_free_running(const campaign::TrialResult& trial) {
@@ -194,10 +193,8 @@ std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
 }  // namespace
 
 campaign::Interval exact_interval(std::size_t reached, std::size_t flown) {
-  using Binomial = boost::math::binomial_distribution<double>;
-  const double n = static_cast<double>(flown), k = static_cast<double>(reached);
-  return {reached == 0 ? 0.0 : Binomial::find_lower_bound_on_p(n, k, kTail),
-          reached == flown ? 1.0 : Binomial::find_upper_bound_on_p(n, k, kTail)};
+  const sizing::Share share = sizing::exact_share(reached, flown, 0.95);
+  return {share.low, share.high};
 }
 
 Verdict verdict_of(const campaign::ScenarioResults& scenario,

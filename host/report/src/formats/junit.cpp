@@ -10,6 +10,7 @@
 
 #include <tether/campaign/campaign_plan.h>
 #include <tether/report/junit.h>
+#include <tether/report/uavs_report.h>
 #include <tether/report/verdict.h>
 
 namespace tether::report {
@@ -210,6 +211,24 @@ std::string to_junit(const SizeReport& report, const std::filesystem::path& fold
     add(report.boards[i].name, "board",
         verdict(report.boards[i], report.synchronised.answer) == BoardVerdict::kSuffices,
         sentences[1 + i]);
+  return text_of(std::vector<Suite>{suite});
+}
+
+std::string to_junit(const UavsReport& report, const std::filesystem::path& folder) {
+  Suite suite{.name = "size of " + report.scenario};
+  Case answer{.trial = report.condition, .name = "answer", .type = "answer"};
+  for (const UavsPoint& point : report.points)
+    for (const campaign::TrialResult& trial : point.trials) {
+      add_start(suite, trial);
+      answer.time_s += to_seconds(trial.this_run.wall);
+    }
+  for (const Answer& one : uavs_answers(report)) answer.output += one.lead + one.rest + "\n";
+  if (!report.answer.is_decided()) {
+    answer.kind = "failure";
+    answer.message = answer.output;
+  }
+  answer.output += "flights: " + folder.string() + "\n";
+  suite.cases = {answer};
   return text_of(std::vector<Suite>{suite});
 }
 

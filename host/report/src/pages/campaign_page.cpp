@@ -47,6 +47,20 @@ std::string optimism_part(const campaign::ScenarioResults& scenario) {
   return html + "</div>\n" + to_html(optimism_table(scenario));
 }
 
+std::string clauses_part(FigureMaker& figures, const campaign::ScenarioResults& scenario) {
+  const Table table = clauses_table(scenario);
+  if (table.rows.empty()) return "";
+  std::string plots;
+  for (const judge::ClauseVerdict& clause : clauses_of(scenario))
+    plots += figures.plot(margin_plot(scenario, clause), "");
+  if (!plots.empty())
+    plots = element("p",
+                    "Each point is one trial, as in “All trials”. Left of the line at 0, the "
+                    "clause was missed by that much.") +
+            plots;
+  return to_html(table) + folded("Margins of the clauses in all trials", plots);
+}
+
 std::string distributions_part(FigureMaker& figures, const campaign::ScenarioResults& scenario) {
   std::string html;
   for (const std::string& metric : scenario.metrics)
@@ -136,8 +150,7 @@ std::string scenario_section(FigureMaker& figures, const campaign::ScenarioResul
   if (has_answer) html += answer_html({verdict}, "h3");
   if (scenario.swept_from.empty()) html += verdict_tables({verdict});
   html += to_html(paper_form_table(scenario));
-  if (const Table clauses = clauses_table(scenario); !clauses.rows.empty())
-    html += to_html(clauses);
+  html += clauses_part(figures, scenario);
   if (const Table energy = energy_table(scenario); !energy.rows.empty()) html += to_html(energy);
   html += optimism_part(scenario);
   html += distributions_part(figures, scenario);
@@ -157,7 +170,7 @@ std::string sweep_section(FigureMaker& figures, const Sweep& sweep,
   });
   std::string html = "<section>\n" + element("h2", sweep.scenario + ": sweep") +
                      verdict_tables(points) +
-                     figures.plot(sweep_plot(sweep), "The bars are 95 % intervals (Wilson).");
+                     figures.plot(sweep_plot(sweep), "The bars are exact 95 % intervals.");
   for (const std::string& metric : sweep.points.front()->metrics)
     html += figures.plot(sweep_plot(sweep, metric),
                          "Means. Each circle is a trial; a dotted line is the limit.");

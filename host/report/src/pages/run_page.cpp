@@ -4,6 +4,7 @@
 #include "pages/verdict_html.h"
 #include "plots/board_lanes.h"
 #include "plots/mission_timeline.h"
+#include "plots/radio_lanes.h"
 #include "plots/svg.h"
 #include "tables/radio_table.h"
 #include "tables/report_format.h"
@@ -117,15 +118,25 @@ std::string boards_part(const record::Record& record) {
   return html.empty() ? "" : element("h2", "Shared boards") + html;
 }
 
+std::string radio_part(const record::Record& record) {
+  const std::string drawing = radio_lanes(record);
+  if (drawing.empty()) return "";
+  return element("h2", "Radio") +
+         figure(drawing,
+                "Messages of each link by the time at which they were sent: upwards those that "
+                "arrived, downwards those that were lost. At the right, the share that arrived, "
+                "and the median of their delays.",
+                "plot") +
+         to_html(radio_table(record));
+}
+
 std::string record_part(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "record.mcap";
   try {
     const record::Record record = record::read_record(file, {.images = true});
     FigureMaker figures(1);
     std::string html = contacts_part(record) + boards_part(record);
-    if (const Table radio = radio_table(record); !radio.rows.empty())
-      html += element("h2", "Radio") + to_html(radio);
-    html += plots_part(figures, record);
+    html += radio_part(record) + plots_part(figures, record);
     const std::string frames = figures.frames(record);
     if (!frames.empty()) html += element("h2", "Camera images") + frames;
     if (const std::string damage = record::describe_damage(record); !damage.empty())

@@ -47,15 +47,19 @@ Table boards_table(const SizeReport& report) {
 
 Table levels_table(const SizeReport& report) {
   const double confidence = report.question.confidence;
-  Table table{
-      "All slowdowns that were flown",
-      {{{"slower"}, {"flights"}, {"reached"}, {"share"}, {"interval"}}},
-      {},
-      {fmt::format("Interval: Wilson's, {:.4g} %, of each slowdown alone.", 100.0 * confidence)}};
-  for (const sizing::Level& level : sizing::levels_of(report.synchronised.flights, confidence)) {
-    table.rows.push_back({times_text(level.slowdown), std::to_string(level.flights),
-                          std::to_string(level.reached), share_text(level.share.estimate),
-                          share_text(level.share.low) + " to " + share_text(level.share.high)});
+  Table table{"All slowdowns that were flown",
+              {{{"slower"}, {"flights"}, {"reached"}, {"share"}, {"interval"}}},
+              {},
+              {fmt::format("Interval: exact (Clopper and Pearson), {:.4g} %, of each row alone.",
+                           100.0 * confidence)}};
+  for (const sizing::Level& level :
+       sizing::levels_of(report.question, report.synchronised.flights, confidence)) {
+    if (level.flights == 0) continue;
+    table.rows.push_back(
+        {times_text(level.slowdowns.front()) + " to " + times_text(level.slowdowns.back()),
+         std::to_string(level.flights), std::to_string(level.reached),
+         share_text(level.share.estimate),
+         share_text(level.share.low) + " to " + share_text(level.share.high)});
   }
   return table;
 }
@@ -72,7 +76,7 @@ Table basis_of(const SizeReport& report) {
                    times_text(question.most), report.synchronised.condition, report.most_flights)},
       {"method",
        answer.basis == sizing::Basis::kLevels
-           ? "each slowdown alone, because no curve fits"
+           ? "each neighbourhood of slowdowns alone, because no curve fits"
            : fmt::format("logistic curve over the logarithm of the slowdown with lapse "
                          "rate and floor, Bayesian, from {}",
                          answer.basis == sizing::Basis::kMargins ? "the margins of the metrics"

@@ -58,8 +58,9 @@ std::string verdict_picture_html(const std::vector<std::vector<Verdict>>& groups
   if (drawing.empty()) return "";
   return figure(drawing,
                 "Each sign is one flight: a dot reached the goal, a cross missed it, a ring failed "
-                "and is not counted. A bar is the median computing time per image, by stage; its "
-                "thin end is the time that 95 % of the images stay within. Dashed: the time until "
+                "and is not counted. A bar is the median computing time per image, by stage, and "
+                "grey for waiting for shared cores; its thin end is the time that 95 % of the "
+                "images stay within. Dashed: the time until "
                 "the camera's next image.",
                 "pair");
 }

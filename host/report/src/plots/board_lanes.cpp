@@ -50,7 +50,7 @@ CorePools pools_of(const record::Record& record, const std::string& board) {
 }
 
 std::string lane_part(double x, double y, double width, double height, Ink ink) {
-  return fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\"{}/>\n", x,
+  return fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" {}/>\n", x,
                      y, width, height, fill_of(ink));
 }
 

@@ -60,8 +60,9 @@ std::string rows_script(const std::vector<Row>& rows) {
          range_script("y", static_cast<double>(rows.size()) + 0.5, 0.5) + "set grid noytics\n";
 }
 
-std::string values_range(const std::vector<Row>& rows) {
+std::string values_range(const std::vector<Row>& rows, bool with_zero) {
   std::vector<double> all;
+  if (with_zero) all.push_back(0.0);
   for (const Row& row : rows) all.insert(all.end(), row.values.begin(), row.values.end());
   const auto [least, largest] = std::minmax_element(all.begin(), all.end());
   double low = *least, high = *largest;
@@ -85,19 +86,16 @@ std::vector<Row> rows_of(const campaign::ScenarioResults& scenario, const std::s
   return rows;
 }
 
-}  // namespace
-
-std::optional<Plot> distribution_plot(const campaign::ScenarioResults& scenario,
-                                      const std::string& metric) {
-  const campaign::MetricValue* value = scenario.find_metric(metric);
-  const std::vector<Row> rows = rows_of(scenario, metric);
-  if (value == nullptr || std::ranges::all_of(rows, &std::vector<double>::empty, &Row::values))
-    return std::nullopt;
-  Frame frame{.left_px = left_margin_px(rows),
-              .top_px = 10,
-              .x_label = with_unit(value->label, value->unit)};
+/// `zero_matters`: a line there parts what is met from what is missed.
+std::optional<Plot> plot_of(const std::vector<Row>& rows, const std::string& label,
+                            const std::string& scenario, bool zero_matters) {
+  if (std::ranges::all_of(rows, &std::vector<double>::empty, &Row::values)) return std::nullopt;
+  Frame frame{.left_px = left_margin_px(rows), .top_px = 10, .x_label = label};
   frame.height_px = frame.top_px + frame.bottom_px + kRow_px * static_cast<int>(rows.size());
-  std::string script = frame_script(frame) + values_range(rows) + rows_script(rows);
+  std::string script = frame_script(frame) + values_range(rows, zero_matters) + rows_script(rows);
+  if (zero_matters)
+    script += fmt::format("set arrow from 0,graph 0 to 0,graph 1 nohead linecolor {} back\n",
+                          gnuplot_colour(Ink::kForeground));
   Drawing drawing;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     script += box_script(rows[i], i);
@@ -107,8 +105,30 @@ std::optional<Plot> distribution_plot(const campaign::ScenarioResults& scenario,
     drawing.add(points, "with points pointtype 7 pointsize 0.55", series_ink(i), "");
   }
   return Plot{script + drawing.script(),
-              fmt::format("{} of all trials of {}, by condition",
-                          with_unit(value->label, value->unit), scenario.scenario)};
+              fmt::format("{} of all trials of {}, by condition", label, scenario)};
+}
+
+}  // namespace
+
+std::optional<Plot> distribution_plot(const campaign::ScenarioResults& scenario,
+                                      const std::string& metric) {
+  const campaign::MetricValue* value = scenario.find_metric(metric);
+  if (value == nullptr) return std::nullopt;
+  return plot_of(rows_of(scenario, metric), with_unit(value->label, value->unit), scenario.scenario,
+                 false);
+}
+
+std::optional<Plot> margin_plot(const campaign::ScenarioResults& scenario,
+                                const judge::ClauseVerdict& clause) {
+  std::vector<Row> rows;
+  for (const campaign::ConditionResults& condition : scenario.conditions) {
+    Row& row = rows.emplace_back(Row{condition.condition, condition.planned, {}});
+    for (const campaign::TrialResult& trial : condition.trials)
+      for (const judge::ClauseVerdict& own : trial.clauses)
+        if (own.uav == clause.uav && own.name == clause.name && own.margin)
+          row.values.push_back(*own.margin);
+  }
+  return plot_of(rows, with_unit("Margin of " + clause.name, clause.unit), scenario.scenario, true);
 }
 
 }  // namespace tether::report

@@ -64,13 +64,7 @@ class Timeline {
   }
 
   std::string svg() {
-    const double step_s = step();
-    for (double s = 0.0; s <= end_s_; s += step_s) {
-      const double tick = x(SimTime(duration_from_seconds(s)));
-      body_ += duration_bar(tick, kTop, 0.5, y_ - kTop, Ink::kMuted);
-      body_ += text(tick, y_ + 16, "middle", fmt::format("{:g}", s));
-    }
-    body_ += text((kLeft + kRight) / 2, y_ + 34, "middle", "ST (s)");
+    body_ += time_axis_svg(kLeft, kRight, kTop, y_, end_s_);
     const std::string title = fmt::format("Tasks and clauses of {} over simulated time", uav_);
     return fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" viewBox=\"0 0 {:.0f} {:.0f}\" "
@@ -101,13 +95,6 @@ class Timeline {
     return kLeft + (kRight - kLeft) * to_seconds(time) / std::max(end_s_, 1e-9);
   }
   double baseline() const { return y_ + 15; }
-  /// Of the ticks: 1, 2 or 5 times a power of ten, at most ten of them.
-  double step() const {
-    const double power = std::pow(10.0, std::floor(std::log10(std::max(end_s_, 1e-9) / 10)));
-    for (const double factor : {1.0, 2.0, 5.0})
-      if (end_s_ / (factor * power) <= 10.0) return factor * power;
-    return 10.0 * power;
-  }
 
   std::string uav_;
   double end_s_ = 0.0;

@@ -131,10 +131,13 @@ void add_curve(Drawing& drawing, const SizedCondition& sized, const std::string&
 void add_levels(Drawing& drawing, const SizeReport& report) {
   DataBlock levels("levels");
   const double confidence = report.question.confidence;
-  for (const sizing::Level& level : sizing::levels_of(report.synchronised.flights, confidence))
-    levels.add(level.slowdown, level.share.estimate, level.share.low, level.share.high);
+  for (const sizing::Level& level :
+       sizing::levels_of(report.question, report.synchronised.flights, confidence)) {
+    if (level.flights > 0)
+      levels.add(level.middle(), level.share.estimate, level.share.low, level.share.high);
+  }
   drawing.add(levels, "with yerrorbars pointtype 5 pointsize 0.4", kCurve,
-              fmt::format("share of each slowdown, {:.4g} % interval", 100.0 * confidence));
+              fmt::format("share of near slowdowns, {:.4g} % interval", 100.0 * confidence));
 }
 
 std::string success_script(const SizeReport& report) {

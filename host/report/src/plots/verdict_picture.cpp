@@ -55,20 +55,24 @@ std::string bar_text(const PictureRow& row) {
   std::string text = fmt::format("{}: {}", row.label, short_ms(pace.median_s));
   if (!pace.stages.empty())
     text += fmt::format(", of it {} {:.0f} %", pace.stages.front().stage,
-                        100.0 * pace.stages.front().share);
+                        100.0 * (1.0 - pace.waiting) * pace.stages.front().share);
+  if (pace.waiting > 0.0) text += fmt::format(", waiting for cores {:.0f} %", 100.0 * pace.waiting);
   return text;
 }
 
 std::string bar(const PictureRow& row, double y, double px_per_s) {
   const Pace& pace = *row.condition->pace;
+  const double own = 1.0 - pace.waiting;
   std::string svg = text_svg(0.0, y + 4.0, bar_text(row), "start", 13);
   double x = 0.0;
   for (std::size_t i = 0; i < pace.stages.size(); ++i) {
-    const double width = px_per_s * pace.median_s * pace.stages[i].share;
+    const double width = px_per_s * pace.median_s * own * pace.stages[i].share;
     if (width < 0.5) break;  // the others take less
     svg += rectangle_svg(x, y + 12.0, width, 14.0, series_ink(i + 2));
     x += width;
   }
+  if (pace.waiting > 0.0)
+    svg += rectangle_svg(x, y + 12.0, px_per_s * pace.median_s * pace.waiting, 14.0, Ink::kMuted);
   svg += rectangle_svg(0.0, y + 18.0, std::max(1.0, px_per_s * pace.p95_s), 2.0, Ink::kForeground);
   if (pace.offered_hz)
     svg += fmt::format(

@@ -1,11 +1,11 @@
 #include "tables/report_format.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include <tether/report/report.h>
+#include <tether/report/verdict.h>
 
 // The clauses of missions: of a run, and over the trials of a campaign.
 namespace tether::report {
@@ -17,30 +17,6 @@ std::string seconds_text(const std::optional<SimTime>& time) {
 
 std::string margin_text(const judge::ClauseVerdict& clause) {
   return clause.margin ? fmt::format("{} {}", decimals(*clause.margin), clause.unit) : kNone;
-}
-
-/// Wilson's interval of a share, of 95 %.
-campaign::Interval share_interval(std::size_t met, std::size_t n) {
-  constexpr double kZ = 1.959963984540054;
-  const double count = static_cast<double>(n), share = static_cast<double>(met) / count;
-  const double scale = 1.0 + kZ * kZ / count;
-  const double middle = (share + kZ * kZ / (2 * count)) / scale;
-  const double half =
-      kZ * std::sqrt(share * (1 - share) / count + kZ * kZ / (4 * count * count)) / scale;
-  return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
-}
-
-/// The clauses of a scenario, by UAV and name, in the order in which trials first have them.
-std::vector<judge::ClauseVerdict> clauses_of(const campaign::ScenarioResults& scenario) {
-  std::vector<judge::ClauseVerdict> all;
-  for (const auto& condition : scenario.conditions)
-    for (const campaign::TrialResult& trial : condition.trials)
-      for (const judge::ClauseVerdict& clause : trial.clauses)
-        if (std::ranges::none_of(all, [&](const auto& known) {
-              return known.uav == clause.uav && known.name == clause.name;
-            }))
-          all.push_back(clause);
-  return all;
 }
 
 std::vector<std::string> row_of(const judge::ClauseVerdict& clause,
@@ -57,7 +33,7 @@ std::vector<std::string> row_of(const judge::ClauseVerdict& clause,
     }
   }
   std::vector<std::string> row = {clause.name, condition.condition, fmt::format("{} of {}", met, n),
-                                  n > 0 ? interval(share_interval(met, n)) : kNone, clause.unit};
+                                  n > 0 ? interval(exact_interval(met, n)) : kNone, clause.unit};
   if (margins.empty()) {
     row.insert(row.end(), 5, kNone);
     return row;
@@ -70,17 +46,33 @@ std::vector<std::string> row_of(const judge::ClauseVerdict& clause,
 
 }  // namespace
 
+std::vector<judge::ClauseVerdict> clauses_of(const campaign::ScenarioResults& scenario) {
+  std::vector<judge::ClauseVerdict> all;
+  for (const auto& condition : scenario.conditions)
+    for (const campaign::TrialResult& trial : condition.trials)
+      for (const judge::ClauseVerdict& clause : trial.clauses)
+        if (std::ranges::none_of(all, [&](const auto& known) {
+              return known.uav == clause.uav && known.name == clause.name;
+            }))
+          all.push_back(clause);
+  return all;
+}
+
 Table clauses_table(const campaign::TrialResult& trial) {
   Table table;
   table.title = "Clauses of the mission";
   table.text_columns = 2;
   table.headings = {single_headings(
       {"Clause", "Verdict", "Margin", "From (s)", "To (s)", "Deadline (s)", "Decided (s)"})};
+  const bool has_failed = trial.outcome == campaign::Outcome::kFailed;  // for one reason for all
   for (const judge::ClauseVerdict& clause : trial.clauses) {
-    table.rows.push_back({clause.name, clause.met ? "met" : "missed", margin_text(clause),
-                          seconds_text(clause.from), seconds_text(clause.to),
+    table.rows.push_back({clause.name,
+                          has_failed   ? "not evaluated"
+                          : clause.met ? "met"
+                                       : "missed",
+                          margin_text(clause), seconds_text(clause.from), seconds_text(clause.to),
                           seconds_text(clause.deadline), seconds_text(clause.decided_at)});
-    if (!clause.limited_by.empty())
+    if (!has_failed && !clause.limited_by.empty())
       table.notes.push_back(fmt::format("{}: {}.", clause.name, clause.limited_by));
   }
   return table;
@@ -97,7 +89,8 @@ Table clauses_table(const campaign::ScenarioResults& scenario) {
     for (const auto& condition : scenario.conditions)
       table.rows.push_back(row_of(clause, condition));
   table.notes = {
-      "Interval of the share: Wilson's. Interval of the mean margin: Student's t. A "
+      "Interval of the share: exact (Clopper and Pearson). Interval of the mean margin: Student's "
+      "t. A "
       "negative margin is by how much a clause was missed."};
   return table;
 }

@@ -3,10 +3,7 @@
 #include "tables/report_format.h"
 
 #include <algorithm>
-#include <map>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -15,17 +12,7 @@
 namespace tether::report {
 namespace {
 
-struct Link {
-  std::size_t sent = 0, delivered = 0;
-  std::map<std::string, std::size_t> lost;  // by cause
-  std::vector<double> delays_ms, distances_m;
-};
-
-std::string mean(const std::vector<double>& values) {
-  return values.empty() ? kNone : fmt::format("{:.3f}", stats::mean(values));
-}
-
-std::string causes(const Link& link) {
+std::string causes(const RadioLink& link) {
   std::string text;
   for (const auto& [cause, count] : link.lost)
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, cause);
@@ -35,38 +22,52 @@ std::string causes(const Link& link) {
 
 }  // namespace
 
-Table radio_table(const record::Record& record) {
-  std::map<std::pair<std::string, std::string>, Link> links;
+std::optional<double> RadioLink::delivery_ratio() const {
+  std::size_t settled = delivered;
+  for (const auto& [cause, count] : lost) settled += count;
+  if (settled == 0) return std::nullopt;
+  return static_cast<double>(delivered) / static_cast<double>(settled);
+}
+
+RadioLinks radio_links(const record::Record& record) {
+  RadioLinks links;
   for (const auto& logged : record.radio) {
     const record::RadioMessage& message = logged.message;
-    Link& link = links[{message.uav, message.to}];
-    ++link.sent;
+    RadioLink& link = links[{message.uav, message.to}];
+    ++link.messages;
     if (message.distance_m) link.distances_m.push_back(*message.distance_m);
-    if (message.outcome != record::kDelivered) {
+    if (message.outcome == record::kDelivered) {
+      ++link.delivered;
+      link.delays_s.push_back(to_seconds(message.at - message.sent_at));
+    } else if (message.outcome != record::kWaiting) {
       ++link.lost[message.outcome];
-      continue;
     }
-    ++link.delivered;
-    link.delays_ms.push_back(1e3 * to_seconds(message.at - message.sent_at));
   }
+  for (auto& [ends, link] : links) std::ranges::sort(link.delays_s);
+  return links;
+}
+
+Table radio_table(const record::Record& record) {
   Table table;
   table.text_columns = 3;
   table.headings = {
       single_headings({"From", "To", "Lost", "Messages", "Arrived (%)", "Mean delay (ms)",
                        "Longest delay (ms)", "Mean distance (m)"})};
-  for (const auto& [ends, link] : links) {
-    const bool has_delay = !link.delays_ms.empty();
+  for (const auto& [ends, link] : radio_links(record)) {
+    const auto ratio = link.delivery_ratio();
+    const auto& delays = link.delays_s;
     table.rows.push_back(
-        {ends.first, ends.second, causes(link), std::to_string(link.sent),
-         fmt::format("{:.1f}",
-                     100.0 * static_cast<double>(link.delivered) / static_cast<double>(link.sent)),
-         mean(link.delays_ms),
-         has_delay ? fmt::format("{:.3f}", *std::ranges::max_element(link.delays_ms)) : kNone,
-         mean(link.distances_m)});
+        {ends.first, ends.second, causes(link), std::to_string(link.messages),
+         ratio ? fmt::format("{:.1f}", 100.0 * *ratio) : kNone,
+         delays.empty() ? kNone : decimals(1e3 * stats::mean(delays)),
+         delays.empty() ? kNone : decimals(1e3 * delays.back()),
+         link.distances_m.empty() ? kNone : decimals(stats::mean(link.distances_m))});
   }
-  if (!links.empty())
-    table.notes = {fmt::format("Radio: {}. A message to all UAVs counts once for each.",
-                               record.header.radio.model)};
+  if (!table.rows.empty())
+    table.notes = {
+        fmt::format("Radio: {}. A message to all UAVs counts once for each. Messages "
+                    "that were on their way at the end are neither arrived nor lost.",
+                    record.header.radio.model)};
   return table;
 }
 

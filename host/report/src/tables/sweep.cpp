@@ -28,8 +28,8 @@ std::string last_part(const std::string& key) {
 }
 
 sizing::Share reached_share(const campaign::ConditionResults& results) {
-  return sizing::wilson(results.count(campaign::Outcome::kGoalReached), results.trials.size(),
-                        kConfidence);
+  return sizing::exact_share(results.count(campaign::Outcome::kGoalReached), results.trials.size(),
+                             kConfidence);
 }
 
 /// Label and unit of a metric, from any trial; nullptr if there is none.

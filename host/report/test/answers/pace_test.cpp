@@ -79,6 +79,31 @@ TEST(Pace, IsNotKnownWithoutSynchronisationCallsOrCamera) {
   EXPECT_THROW(read_pace("/nonexistent/record.mcap"), Error);
 }
 
+// 75 ms of own work are 150 ms of the board's time, half of it for the other program.
+TEST(Pace, OnASharedBoardIncludesWaitingForItsCores) {
+  record::Record record = record_of_reads();
+  record.header.suts[0].board = "obc";
+  record.header.suts.push_back(record.header.suts[0]);
+  record.header.suts[1].uav = "uav2";
+  EXPECT_EQ(pace_of(record)->waiting, 0.0) << "nothing was shared so far";
+  for (std::size_t i = 0; i < record.interactions.size(); ++i) {
+    record::Interaction& read = record.interactions[i].message;
+    read.request_at = ExecTime(milliseconds(180 * i + 150));
+    read.reply_at = ExecTime(milliseconds(180 * (i + 1)));
+    read.stages = {{"detect", milliseconds(75)}};
+    read.computed = milliseconds(75);
+  }
+  const Pace pace = *pace_of(record);
+  EXPECT_EQ(pace.shared_board, "obc");
+  EXPECT_EQ(pace.programs, 2u);
+  EXPECT_NEAR(pace.median_s, 0.15, 1e-9);
+  EXPECT_NEAR(pace.p95_s, 0.15, 1e-9);
+  EXPECT_NEAR(pace.waiting, 0.5, 1e-9);
+  EXPECT_NEAR(*pace.headroom(), 1.0 / 3.0, 1e-9);
+  record.header.suts[1].pinned_core = 0;
+  EXPECT_EQ(pace_of(record)->shared_board, "") << "it has the other cores to itself";
+}
+
 TEST(Pace, OfSeveralUavsIsThatOfTheSlowest) {
   record::Record record = record_of_reads();
   record::SutInfo fast = record.header.suts[0];

@@ -45,7 +45,7 @@ TEST(SizeReport, SaysWhatLimitsTheAnswer) {
   report.synchronised.answer.basis = sizing::Basis::kLevels;
   const std::vector<std::string> sentences = size_sentences(report);
   ASSERT_THAT(sentences, SizeIs(4));
-  EXPECT_THAT(sentences[2], HasSubstr("single slowdowns"));
+  EXPECT_THAT(sentences[2], HasSubstr("by neighbourhoods of slowdowns"));
   EXPECT_THAT(sentences[3], HasSubstr("wider than a factor of 1.3"));
 }
 

@@ -249,6 +249,38 @@ TEST(Verdict, DoubtsTheComputerIsTheCauseIfEveryImageIsRead) {
   EXPECT_EQ(verdict.advice[0].kind, Advice::Kind::kTryFaster);
 }
 
+TEST(Verdict, NamesTheSlowestBoardOfAFleet) {
+  Pace pace = slow_pace();
+  pace.boards = {{.board = "pi", .uavs = {"uav1"}, .median_s = 0.04, .p95_s = 0.05, .alone = 0.61},
+                 {.board = "nano", .uavs = {"uav2", "uav3"}, .median_s = 0.1, .p95_s = 0.11}};
+  const auto answers = [&] { return answers_of({verdict_of(flights(0, 10), {pace})}); };
+  ASSERT_EQ(answers().size(), 2u);
+  EXPECT_EQ(answers()[1].lead, "Slowest board");
+  EXPECT_EQ(answers()[1].rest,
+            ": “nano” of “target”. An image costs 100 ms on “nano” (uav2 and uav3; at most 110 ms "
+            "in 95 %) and 40 ms on “pi” (uav1; at most 50 ms in 95 %). Of the wall time, the "
+            "simulation waited 61 % for “pi” alone. This is from seed 1.");
+  for (BoardPace& board : pace.boards) board.median_s = board.p95_s = 0.0;
+  EXPECT_THAT(answers()[1].rest, StartsWith(": “pi” of “target”. Of the wall time"));
+  pace.boards[0].alone.reset();
+  EXPECT_EQ(answers().size(), 1u) << "nothing is known of the boards";
+}
+
+TEST(Verdict, SaysWhatAnImageCostsOnASharedBoard) {
+  Pace pace = slow_pace();
+  pace.shared_board = "obc";
+  pace.programs = 2;
+  pace.waiting = 0.48;
+  const Verdict verdict = verdict_of(flights(0, 10), {pace});
+  EXPECT_THAT(answers_of({verdict})[0].rest,
+              HasSubstr("an image costs 100 ms on “obc”, 48 % of it waiting for the cores that 2 "
+                        "programs share, and “detect” takes 81 % of the computing time"));
+  EXPECT_THAT(advice_of({verdict})[0], HasSubstr("Computing and waiting for cores take up to"));
+  EXPECT_THAT(advice_of({verdict})[1], HasSubstr("--axis uavs"));
+  EXPECT_THAT(stages_table({verdict}).notes,
+              ElementsAre(HasSubstr(": 100 ms, 48 % of it waiting for the cores of “obc”,")));
+}
+
 TEST(Verdict, OfASweepGroupsItsPointsByTheirRuling) {
   std::vector<Verdict> verdicts;
   for (const std::size_t missed : {0U, 0U, 10U}) {

@@ -36,6 +36,22 @@ TEST(DistributionPlot, LabelsHaveUnitAndNumberOfMissingTrials) {
   EXPECT_THAT(script(scenario), HasSubstr("'Time required (s)'"));
 }
 
+TEST(MarginPlot, HasAPointForEachTrialAndALineAtZero) {
+  campaign::ScenarioResults scenario = sample_results({{"host", {1, 2}}, {"target", {3}}});
+  judge::ClauseVerdict near{.uav = "uav1", .name = "near", .unit = "m"};
+  EXPECT_FALSE(margin_plot(scenario, near));
+  for (auto* trial : {&scenario.conditions[0].trials[0], &scenario.conditions[1].trials[0]}) {
+    near.margin = near.margin ? 0.5 : 0.25;
+    trial->clauses = {{.uav = "uav2", .name = "near"}, near};
+  }
+  const std::string plot = margin_plot(scenario, near).value().script;
+  EXPECT_THAT(plot, HasSubstr("'Margin of near (m)'"));
+  EXPECT_THAT(plot, HasSubstr("$trials0 << END\n0.25 "));
+  EXPECT_THAT(plot, HasSubstr("$trials1 << END\n0.5 "));
+  EXPECT_THAT(plot, HasSubstr("'host (1 of 2)'"));
+  EXPECT_THAT(plot, HasSubstr("set xrange [-")) << "0 is in the range";
+}
+
 TEST(DistributionPlot, NeedsAValue) {
   campaign::ScenarioResults scenario = sample_results({{"host", {1}}});
   EXPECT_FALSE(distribution_plot(scenario, "oscillations"));

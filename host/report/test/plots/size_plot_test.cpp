@@ -33,7 +33,7 @@ TEST(SizePlot, IsDrawnOnEachBasis) {
   report.unsynchronised = report.synchronised;
   EXPECT_THAT(draw_svg(size_plot(report)), HasSubstr("without synchronisation"));
   report.synchronised.answer.basis = sizing::Basis::kLevels;
-  EXPECT_THAT(draw_svg(size_plot(report)), HasSubstr("share of each slowdown"));
+  EXPECT_THAT(draw_svg(size_plot(report)), HasSubstr("share of near slowdowns"));
 }
 
 }  // namespace

@@ -41,6 +41,14 @@ TEST(VerdictPicture, HasASignForEachFlightAndABarForEachStage) {
   EXPECT_EQ(document.Parse(("<p>" + drawings + "</p>").c_str()), tinyxml2::XML_SUCCESS);
 }
 
+TEST(VerdictPicture, HasAPartForWaitingForCores) {
+  Verdict shared = verdict();
+  shared.conditions[0].pace->waiting = 0.5;
+  const std::string drawings = verdict_picture({{shared}});
+  EXPECT_EQ(count(drawings, "<rect"), 4u);
+  EXPECT_EQ(count(drawings, "50 ms, of it detect 40 %, waiting for cores 50 %"), 1u);
+}
+
 TEST(VerdictPicture, ShowsWhatIsKnown) {
   Verdict without = verdict();
   without.conditions[0].pace.reset();

@@ -22,6 +22,7 @@ judge::ClauseVerdict clause(double margin_m) {
 
 TEST(ClauseTables, OfARun) {
   campaign::TrialResult trial;
+  trial.outcome = campaign::Outcome::kGoalMissed;
   EXPECT_THAT(clauses_table(trial).rows, IsEmpty());
   trial.clauses = {clause(-0.5), {.uav = "uav1", .name = "far"}};
   const Table table = clauses_table(trial);
@@ -29,6 +30,16 @@ TEST(ClauseTables, OfARun) {
               ElementsAre(ElementsAre("near", "missed", "-0.500 m", "0.000", "2.000", "–", "2.000"),
                           ElementsAre("far", "missed", "–", "–", "–", "–", "–")));
   EXPECT_THAT(table.notes, ElementsAre("near: 1 m at ST 2.000 s."));
+}
+
+TEST(ClauseTables, OfARunThatFailed) {
+  campaign::TrialResult trial;
+  trial.outcome = campaign::Outcome::kFailed;
+  trial.clauses = {{.uav = "uav1", .name = "far"}};
+  trial.clauses[0].limited_by = "interrupted by the user";
+  const Table table = clauses_table(trial);
+  EXPECT_EQ(table.rows.at(0).at(1), "not evaluated");
+  EXPECT_THAT(table.notes, IsEmpty());
 }
 
 TEST(ClauseTables, OfACampaign) {
@@ -45,9 +56,9 @@ TEST(ClauseTables, OfACampaign) {
   const Table table = clauses_table(scenario);
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_THAT(std::vector(table.rows[0].begin(), table.rows[0].begin() + 6),
-              ElementsAre("near", "host", "2 of 2", "[0.342, 1.000]", "m", "1.500"));
+              ElementsAre("near", "host", "2 of 2", "[0.158, 1.000]", "m", "1.500"));
   EXPECT_THAT(std::vector(table.rows[1].begin(), table.rows[1].begin() + 6),
-              ElementsAre("near", "target", "0 of 2", "[0.000, 0.658]", "m", "-1.000"));
+              ElementsAre("near", "target", "0 of 2", "[0.000, 0.842]", "m", "-1.000"));
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ TEST(RadioTable, HasARowForEachLink) {
   ASSERT_EQ(table.rows.size(), 2U);
   EXPECT_THAT(table.rows[0], ElementsAre("a", "b", "1 noise, 1 queue full", "4", "50.0", "2.000",
                                          "3.000", "2.500"));
-  EXPECT_EQ(table.rows[1][4], "0.0");
+  EXPECT_EQ(table.rows[1][2], "none");
+  EXPECT_EQ(table.rows[1][4], "–") << "it was on its way";
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST(SweepTable, HasSuccessAndMeansOfEachPoint) {
   const auto fast = point({{"f", "1"}}, {1, 1});
   const Table table = sweep_table({"turn", {&fast, &slow}});
   ASSERT_EQ(table.rows.size(), 2u);
-  EXPECT_THAT(table.rows[1], ElementsAre("2", "host", "1 of 2", "9 to 91 %", "3.000", testing::_));
+  EXPECT_THAT(table.rows[1], ElementsAre("2", "host", "1 of 2", "1 to 99 %", "3.000", testing::_));
 }
 
 TEST(SweepPlot, IsOverTheKeyWithTheMostValues) {

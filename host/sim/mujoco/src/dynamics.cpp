@@ -48,9 +48,11 @@ void Dynamics::set_command(std::size_t uav, const uav::VelocityCommand& command)
 
 void Dynamics::step() {
   recorder_.begin_step(X_WB_);
-  for (std::size_t i = 0; i < flights_.size(); ++i) apply_rotors(i);
+  for (std::size_t i = 0; i < flights_.size(); ++i) fly(i);
   std::copy_n(data_->qvel, qvel_before_.size(), qvel_before_.begin());
-  mj_step(model_.get(), data_.get());
+  mj_step1(model_.get(), data_.get());
+  for (std::size_t i = 0; i < flights_.size(); ++i) apply_rotors(i);
+  mj_step2(model_.get(), data_.get());
   check_engine();
   log_contacts();
   read_engine();
@@ -87,7 +89,8 @@ uav::Vec3 Dynamics::velocity_before(int engine_body, const uav::Vec3& p_W) const
   return vec3_from(qvel) + cross(rotate(X_WB.q, vec3_from(qvel + 3)), p_W - X_WB.p);
 }
 
-void Dynamics::apply_rotors(std::size_t uav) {
+// The controller and the rotors.
+void Dynamics::fly(std::size_t uav) {
   Flight& flight = flights_[uav];
   const uav::BodyState body = body_state(uav);
   const uav::MultirotorParameters& airframe = flight.meter ? flight.sagging : *flight.airframe;
@@ -97,9 +100,25 @@ void Dynamics::apply_rotors(std::size_t uav) {
   const uav::Wrench wrench =
       uav::step(airframe, world_.gravity_m_s2, body, flight.command, world_.step, flight.state);
   if (flight.meter) flight.meter->step(now_, world_.step, body, flight.state);
-  mjtNum* out = data_->xfrc_applied + 6 * engine_body(uav);
-  copy_to(rotate(body.q_WB, wrench.force_B), out);
-  copy_to(rotate(body.q_WB, wrench.torque_B), out + 3);
+  flight.force_W = rotate(body.q_WB, wrench.force_B);
+  flight.torque_W = rotate(body.q_WB, wrench.torque_B);
+}
+
+// Adds a force on the centre of mass and a torque, as the engine adds xfrc_applied, to the bit. But
+// for each body, the engine makes the whole columns of a Jacobian that is 0 except for this body's
+// joint: the steps of a fleet would take a time that grows with its square. Between the engine's
+// two halves, passive forces are 0: none are enabled.
+void Dynamics::apply_rotors(std::size_t uav) {
+  const int body = engine_body(uav), joint = qvel_address(uav);
+  const uav::Vec3 from_com =
+      vec3_from(data_->xipos + 3 * body) - vec3_from(data_->subtree_com + 3 * body);
+  const Flight& flight = flights_[uav];
+  for (int i = joint; i < joint + 6; ++i) {
+    const uav::Vec3 turning = vec3_from(data_->cdof + 6 * i);
+    const uav::Vec3 moving = vec3_from(data_->cdof + 6 * i + 3) + cross(turning, from_com);
+    data_->qfrc_passive[i] = dot(moving, flight.force_W);
+    data_->qfrc_applied[i] = dot(turning, flight.torque_W);
+  }
 }
 
 // The engine resets a world when its state becomes unusable. A run must not continue then.

@@ -49,8 +49,10 @@ class Dynamics {
     uav::MultirotorState state;
     std::optional<energy::Meter> meter{};
     uav::MultirotorParameters sagging{};  ///< the airframe, as far as the battery's voltage lets it
+    uav::Vec3 force_W{}, torque_W{};      ///< of the rotors, in this step
   };
 
+  void fly(std::size_t uav);
   void apply_rotors(std::size_t uav);
   void log_contacts();
   uav::Vec3 velocity_before(int engine_body, const uav::Vec3& p_W) const;

@@ -1,9 +1,12 @@
 #include "dynamics.h"
 
+#include "conversions.h"
+#include "physics_model.h"
 #include "test_simulator.h"
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -43,6 +46,39 @@ TEST(DynamicsTest, AWallStopsTheUav) {
   const double front_m = dynamics.body_state(0).p_WB.x + 0.2;
   EXPECT_GT(front_m, 1.7);
   EXPECT_LT(front_m, 2.0) << "inside the wall, which begins at 1.9";
+}
+
+// What the fleet's flights rely on: both ways of applying a force give the same bytes.
+TEST(DynamicsTest, RotorsActToTheBitAsForcesThatTheEngineApplies) {
+  World world = test_world();
+  world.uavs.push_back(testing::test_uav("beta", {1.0, 0.3, 2.0}));
+  world.uavs[1].X_WB.q = uav::from_rpy(0.3, -0.2, 2.0);
+  const uav::VelocityCommand command{{1.0, -0.4, -0.5}, 0.6};
+  Dynamics dynamics(world, no_warnings());
+  const ModelPtr model = make_physics_model(world, no_warnings());
+  const DataPtr data = make_data(*model);
+  std::vector<uav::MultirotorState> states;
+  for (std::size_t i = 0; i < 2; ++i) {
+    dynamics.set_command(i, command);
+    states.push_back(uav::hover_state(world.uavs[i].airframe, world.gravity_m_s2,
+                                      uav::yaw_rad(world.uavs[i].X_WB.q)));
+  }
+  for (int step = 0; step < 3'000; ++step) {  // both fly against each other, and on the ground
+    for (std::size_t i = 0; i < 2; ++i) {
+      const uav::BodyState body = dynamics.body_state(i);
+      const uav::Wrench wrench = uav::step(world.uavs[i].airframe, world.gravity_m_s2, body,
+                                           command, world.step, states[i]);
+      mjtNum* const out = data->xfrc_applied + 6 * engine_body(i);
+      copy_to(rotate(body.q_WB, wrench.force_B), out);
+      copy_to(rotate(body.q_WB, wrench.torque_B), out + 3);
+    }
+    dynamics.step();
+    mj_step(model.get(), data.get());
+    for (std::size_t i = 0; i < 2; ++i)
+      ASSERT_EQ(dynamics.body_state(i).p_WB, vec3_from(data->qpos + qpos_address(i)))
+          << "UAV " << i << " in step " << step;
+  }
+  EXPECT_FALSE(dynamics.contacts().take().empty());
 }
 
 World world_with_battery(double charge, double resistance_ohm) {

@@ -177,8 +177,10 @@ HWY_INLINE Colour lit(const Cell& cell) {
   return {hn::Min(c.r, one), hn::Min(c.g, one), hn::Min(c.b, one)};
 }
 
-// The same with textures and, if wanted, opacity.
-inline void shade_block(const Part& part, bool with_alpha, Block& b) {
+// The same with textures. Calls `use` with the place in the block of each vector with triangles,
+// with their colours, and with what returns their opacities.
+template <class Use>
+HWY_INLINE void shade_block(const Part& part, Block& b, const Use& use) {
   const PreparedScene& scene = part.shading.scene;
   light_block(part, b);
   for (const Block::Run& run : b.runs()) {
@@ -186,17 +188,18 @@ inline void shade_block(const Part& part, bool with_alpha, Block& b) {
     for (const std::size_t at : b.places(run)) {
       Cell& c = b.cell(at);
       look_up(scene, load(c.level), load(c.u), load(c.v), c.lookups);
+      prefetch(scene, load(c.level), c.lookups);
     }
   }
   const V one = set(1.0F);
   for (const Block::Run& run : b.runs()) {
     for (const std::size_t at : b.places(run)) {
-      Cell& c = b.cell(at);
+      const Cell& c = b.cell(at);
       Texel texel{{one, one, one}, one};
       if (run.is_textured) texel = sample(scene, load(c.level), c.lookups);
-      store(scaled(lit(c), texel.colour), c);
-      if (!with_alpha) continue;
-      store(Mul(of_material(run, c, scene.materials[0].alpha), texel.alpha), c.alpha);
+      use(at, scaled(lit(c), texel.colour), [&]() HWY_ATTR {
+        return Mul(of_material(run, c, scene.materials[0].alpha), texel.alpha);
+      });
     }
   }
 }

@@ -11,15 +11,12 @@ uav::Vec3 point(const Mesh::Vertex& v) {
 }
 
 Box box_around(const PreparedScene& scene, std::size_t first, std::size_t count) {
-  uav::Vec3 low{scene.x[first], scene.y[first], scene.z[first]};
-  uav::Vec3 high = low;
+  Box box = Box::none();
   for (std::size_t i = first; i < first + count; ++i) {
-    low = {std::min<double>(low.x, scene.x[i]), std::min<double>(low.y, scene.y[i]),
-           std::min<double>(low.z, scene.z[i])};
-    high = {std::max<double>(high.x, scene.x[i]), std::max<double>(high.y, scene.y[i]),
-            std::max<double>(high.z, scene.z[i])};
+    const uav::Vec3 p{scene.x[i], scene.y[i], scene.z[i]};
+    box.include({p, p});
   }
-  return {low, high};
+  return box;
 }
 
 // A vertex twice, or three on one line exactly.

@@ -164,8 +164,10 @@ HWY_INLINE void add_light(const Shading& shading, const LightRow& row, Block& b)
       const V x = load(c.x);
       const V y = load(c.y);
       const V z = load(c.z);
+      const V toward = hn::Max(is_sun ? light_along : Sub(light_along, load(c.distance)), zero);
+      // A side that is turned away needs no shadows.
+      if (!kIsPlain && hn::AllTrue(D(), hn::Eq(toward, zero))) continue;
       const Ray ray = is_sun ? sun_ray(light) : aim(light, x, y, z);
-      const V toward = is_sun ? light_along : Sub(light_along, load(c.distance));
       V share = ray.share;
       if (!kIsPlain && light.cos_cutoff >= -1.0F) share = Mul(share, spot_share(light, ray));
       if (!kIsPlain && light.shadow >= 0) {
@@ -175,7 +177,7 @@ HWY_INLINE void add_light(const Shading& shading, const LightRow& row, Block& b)
           share = Mul(share, lit_share(*map++, to_map, n, x, y, z));
         }
       }
-      store(Add(load(c.diffuse), Mul(hn::Max(toward, zero), share)), c.diffuse);
+      store(Add(load(c.diffuse), Mul(toward, share)), c.diffuse);
       if (kIsPlain || !light.has_specular || !run.is_shiny) continue;
       const V shine = Mul(Mul(share, ray.length), highlight(shading.scene, run, c, ray));
       const V faced = hn::IfThenElseZero(hn::Gt(toward, zero), shine);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <tether/sim_raster/scene.h>
@@ -19,6 +21,16 @@ struct Sphere {
 struct Box {
   uav::Vec3 low, high;
 
+  static constexpr Box none() {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    return {{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  }
+  bool is_empty() const { return low.x > high.x; }
+  void include(const Box& more) {
+    low = {std::min(low.x, more.low.x), std::min(low.y, more.low.y), std::min(low.z, more.low.z)};
+    high = {std::max(high.x, more.high.x), std::max(high.y, more.high.y),
+            std::max(high.z, more.high.z)};
+  }
   uav::Vec3 centre() const { return 0.5 * (low + high); }
   uav::Vec3 half() const { return 0.5 * (high - low); }
   /// Around its corners.

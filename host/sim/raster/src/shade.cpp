@@ -124,13 +124,17 @@ class Mean {
       put(hn::VecFromMask(DI(), other), other_, at);
       hn::Store(hn::IfThenElseZero(hn::RebindMask(DU(), other), ids), DU(), b_.ids.data() + at);
     });
-    shade_block(part, false, b_);
-    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
+    const Colour background = light_of(part_.shading.table, colour(part_.shading.scene.background));
+    const auto add_here = [&](std::size_t at, const Colour& light) HWY_ATTR {
       const M other = float_mask(hn::Ne(get(other_, at), whole(0)));
       if (hn::AllFalse(D(), other)) return;
-      const Colour own =
-          select(is_empty(b_, at), colour(part_.shading.scene.background), colour(b_.cell(at)));
-      add(light_of(part_.shading.table, own), hn::IfThenElseZero(other, set(share_)), at);
+      add(light, hn::IfThenElseZero(other, set(share_)), at);
+    };
+    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
+      if (hn::AllTrue(D(), is_empty(b_, at))) add_here(at, background);
+    });
+    shade_block(part, b_, [&](std::size_t at, const Colour& own, const auto&) HWY_ATTR {
+      add_here(at, select(is_empty(b_, at), background, light_of(part_.shading.table, own)));
     });
   }
 
@@ -256,11 +260,13 @@ void shade_on(const Shading& shading, const Layer& layer, const Tile& tile, cons
   Block b;
   for_each_part(shading, layer, tile, ids, [&](const Part& part) HWY_ATTR {
     load_ids(part, b);
-    shade_block(part, false, b);
-    const Colour background = colour(shading.scene.background);
-    for_each_vector(part, [&](std::size_t at) HWY_ATTR {
-      hn::Store(packed(select(is_empty(b, at), background, colour(b.cell(at)))), DU(),
-                pixels.data() + part.first_pixel() + at);
+    const VU background = packed(colour(shading.scene.background));
+    const auto put = [&](std::size_t at, VU pixel) HWY_ATTR {
+      hn::Store(pixel, DU(), pixels.data() + part.first_pixel() + at);
+    };
+    for_each_vector(part, [&](std::size_t at) HWY_ATTR { put(at, background); });
+    shade_block(part, b, [&](std::size_t at, const Colour& c, const auto&) HWY_ATTR {
+      put(at, hn::IfThenElse(hn::RebindMask(DU(), is_empty(b, at)), background, packed(c)));
     });
   });
 }
@@ -278,13 +284,16 @@ void shade_over_on(const Shading& shading, const Layer& layer, const Tile& tile,
   Block b;
   for_each_part(shading, layer, tile, ids, [&](const Part& part) HWY_ATTR {
     load_ids(part, b);
-    shade_block(part, true, b);
-    for_each_vector(part, [&](std::size_t at) HWY_ATTR {
-      const std::size_t i = part.first_pixel() + at;
-      const Colour before = with_background ? colour(shading.scene.background) : load(colours, i);
-      const Colour own = colour(b.cell(at));
-      const Colour after = with_background ? own : mix(before, own, load(b.cell(at).alpha));
-      store(select(is_empty(b, at), before, after), colours, i);
+    const auto put = [&](std::size_t at, const Colour& c)
+                         HWY_ATTR { store(c, colours, part.first_pixel() + at); };
+    if (with_background) {
+      for_each_vector(part,
+                      [&](std::size_t at) HWY_ATTR { put(at, colour(shading.scene.background)); });
+    }
+    shade_block(part, b, [&](std::size_t at, const Colour& c, const auto& alpha) HWY_ATTR {
+      const Colour before = load(colours, part.first_pixel() + at);
+      const Colour after = with_background ? c : mix(before, c, alpha());
+      put(at, select(is_empty(b, at), before, after));
     });
   });
 }

@@ -35,26 +35,17 @@ uav::CameraModel camera() {
   return c;
 }
 
-// Around spheres, at least 1 cm.
-class Around {
- public:
-  void add(const Vec3& c, double radius_m) {
-    const Vec3 r{radius_m, radius_m, radius_m};
-    const Vec3 low = c - r;
-    const Vec3 high = c + r;
-    low_ = {std::min(low_.x, low.x), std::min(low_.y, low.y), std::min(low_.z, low.z)};
-    high_ = {std::max(high_.x, high.x), std::max(high_.y, high.y), std::max(high_.z, high.z)};
-  }
-  Sphere sphere() const {
-    constexpr double kLeast_m = 0.01;
-    if (low_.x > high_.x) return {{}, kLeast_m};
-    return {0.5 * (low_ + high_), std::max(kLeast_m, 0.5 * norm(high_ - low_))};
-  }
+Box around(const Vec3& centre, double radius_m) {
+  const Vec3 r{radius_m, radius_m, radius_m};
+  return {centre - r, centre + r};
+}
 
- private:
-  Vec3 low_{kMaxCoordinate_m, kMaxCoordinate_m, kMaxCoordinate_m};
-  Vec3 high_ = -1.0 * low_;
-};
+// Around all casters, at least 1 cm.
+Sphere sphere_of(const Box& casters) {
+  constexpr double kLeast_m = 0.01;
+  if (casters.is_empty()) return {{}, kLeast_m};
+  return {casters.centre(), std::max(kLeast_m, casters.sphere().radius_m)};
+}
 
 // How far a fixed visual's box reaches in a direction.
 double reach_m(const PreparedScene& scene, const PreparedInstance& i, const Vec3& direction_W) {
@@ -86,12 +77,12 @@ bool is_backdrop(const PreparedScene& scene, const PreparedInstance& slab, const
 
 template <class Wanted>
 Sphere sphere_of_fixed(const PreparedScene& scene, const Wanted& is_wanted) {
-  Around around;
+  Box box = Box::none();
   for (const PreparedInstance& i : scene.instances) {
     const Sphere& s = scene.meshes[i.mesh].bounds;
-    if (i.body < 0 && is_wanted(i)) around.add(transform(i.X_BV, s.centre), s.radius_m);
+    if (i.body < 0 && is_wanted(i)) box.include(around(transform(i.X_BV, s.centre), s.radius_m));
   }
-  return around.sphere();
+  return sphere_of(box);
 }
 
 // Around those whose shadows fall on something.
@@ -161,11 +152,11 @@ void ShadowMap::update(std::span<const Pose> X_WB, std::optional<std::size_t> hi
   }
   drawn_tiles_.clear();
   layer_.X_WB.assign(X_WB.begin(), X_WB.end());
-  Around around;
+  Box bodies = Box::none();
   for (std::size_t i = 0; i < scene_.body_radii_m.size(); ++i) {
-    if (i != hidden) around.add(X_WB[i].p, scene_.body_radii_m[i]);
+    if (i != hidden) bodies.include(around(X_WB[i].p, scene_.body_radii_m[i]));
   }
-  aim_at(around.sphere());
+  aim_at(sphere_of(bodies));
   draw(hidden);
 }
 

@@ -173,7 +173,7 @@ struct Cell {
   Lanes<std::int32_t> level;         // 256 times the row of PreparedScene::levels
   Lanes<std::int32_t> material;      // rows of PreparedScene::materials
   Lanes<float> diffuse, specular;    // light that is not coloured yet
-  Lanes<float> r, g, b, alpha;       // the output
+  Lanes<float> r, g, b;              // under its lights, before the texture
   Lookups lookups;
 };
 

@@ -11,6 +11,8 @@
 #include <array>
 #include <cstdint>
 
+#include <hwy/cache_control.h>
+
 // Textures: trilinear, repeated, in the bytes' own values.
 HWY_BEFORE_NAMESPACE();
 namespace tether::raster::HWY_NAMESPACE {
@@ -241,6 +243,14 @@ HWY_INLINE void look_up(const PreparedScene& scene, VI level, V u, V v, Lookups&
   look_up(level_at(scene, row), u_repeated, v_repeated, to[0]);
   if (is_one(level)) return;
   look_up(level_at(scene, Add(row, whole(1))), u_repeated, v_repeated, to[1]);
+}
+
+// Asks for texels ahead of time: the textures of a picture are larger than the nearest caches.
+HWY_INLINE void prefetch(const PreparedScene& scene, VI level, const Lookups& places) {
+  const std::size_t count = is_one(level) ? 1 : places.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const std::int32_t pair : places[i].pair) hwy::Prefetch(scene.texels.data() + pair);
+  }
 }
 
 HWY_INLINE Texel sample(const PreparedScene& scene, VI level, const Lookups& from) {

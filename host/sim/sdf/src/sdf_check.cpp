@@ -270,8 +270,10 @@ class Walk {
     const std::string& name = element->GetName();
     if (contains(kWithoutEffect, parent, name) || is_own_plugin(element)) return false;
     if (name == "inertial" && is_static(element)) return false;
-    if (purpose_ == SdfPurpose::kUav && parent == "model" && is_battery_plugin(element))
+    if (purpose_ == SdfPurpose::kUav && parent == "model" && is_battery_plugin(element)) {
+      warn_of_ignored(source_, element, warn_);
       return true;
+    }
     if (!is_known(purpose_, parent, name)) {
       warn_at(source_, element, consequence_of(parent, name), unrepresented(parent, element),
               warn_);

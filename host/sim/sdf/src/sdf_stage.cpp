@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <fstream>
 #include <optional>
 #include <string_view>
@@ -55,13 +54,6 @@ class LineKeeper : public tinyxml2::XMLPrinter {
  private:
   int line_ = 1;
 };
-
-fs::path make_folder() {
-  std::string name = (fs::temp_directory_path() / "tether-sdf-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr)
-    throw Error(ErrorCode::kSetup, {name}, "cannot be created: " + reason_of(errno));
-  return name;
-}
 
 void write(const fs::path& file, const XMLDocument& document) {
   LineKeeper printer;
@@ -126,19 +118,8 @@ std::string name_of(const XMLElement& include) {
 
 SdfStage::SdfStage(const fs::path& file, const ModelPath& path, const WorldOptions& options,
                    const WarningSink& warn)
-    : path_(path), options_(options), warn_(warn), folder_(make_folder()) {
-  try {
-    stage(file);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-    throw;
-  }
-}
-
-SdfStage::~SdfStage() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
+    : path_(path), options_(options), warn_(warn), folder_("tether-sdf-") {
+  stage(file);
 }
 
 std::string SdfStage::original_of(const std::string& copy) const {

@@ -12,6 +12,7 @@
 
 #include <tinyxml2.h>
 
+#include <tether/os/temporary_folder.h>
 #include <tether/sim/world.h>
 
 namespace tether::sim {
@@ -27,9 +28,6 @@ class SdfStage {
   /// room for the copies.
   SdfStage(const std::filesystem::path& file, const ModelPath& path, const WorldOptions& options,
            const WarningSink& warn);
-  ~SdfStage();
-  SdfStage(const SdfStage&) = delete;
-  SdfStage& operator=(const SdfStage&) = delete;
 
   struct File {
     std::filesystem::path original;  ///< absolute
@@ -54,7 +52,7 @@ class SdfStage {
   const ModelPath& path_;
   const WorldOptions& options_;
   const WarningSink& warn_;
-  std::filesystem::path folder_;
+  os::TemporaryFolder folder_;
   std::vector<File> files_;
   std::set<std::filesystem::path> open_;  ///< their includes are being resolved
   std::map<std::string, std::unique_ptr<tinyxml2::XMLDocument>> originals_;

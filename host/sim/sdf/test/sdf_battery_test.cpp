@@ -34,6 +34,19 @@ TEST_F(SdfBattery, IsThatOfGazebosPlugin) {
   EXPECT_DOUBLE_EQ(battery->resistance_ohm, 0.061523);
 }
 
+TEST_F(SdfBattery, OfGazebo11IsKnownByItsFile) {
+  const std::string model =
+      with(kUav, "<link name='body'>",
+           "<plugin name='pack' filename='libLinearBatteryPlugin.so'><link_name>body</link_name>"
+           "<capacity>2</capacity>\n"
+           "<open_circuit_voltage_constant_coef>12</open_circuit_voltage_constant_coef>"
+           "<smooth_current_tau>1.9</smooth_current_tau></plugin>\n<link name='body'>");
+  EXPECT_DOUBLE_EQ(read(model).battery.value().capacity_C, 7200.0);
+  const std::vector<Warning> all = load(request(model)).warnings;
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_THAT(all[0].subject, ::testing::HasSubstr("smooth_current_tau"));
+}
+
 TEST_F(SdfBattery, IsMissingWithoutThePlugin) {
   EXPECT_FALSE(read(kUav).battery);
 }

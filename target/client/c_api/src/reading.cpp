@@ -152,4 +152,14 @@ tether_status tether_read_range(tether_vehicle* vehicle, const char* sensor, tet
   return read_struct(vehicle, sensor, mode, &tether::client::Vehicle::read_range, out, size);
 }
 
+tether_status tether_read_battery(tether_vehicle* vehicle, tether_battery_sample* out,
+                                  size_t size) noexcept {
+  if (!can_take(out, size) || !are_given(vehicle)) return TETHER_INVALID;
+  return guarded([&] {
+    const auto sample = vehicle->vehicle->read_battery();
+    if (sample) put(to_c(*sample, vehicle->vehicle->catalogue()), out, size);
+    return status_of(sample);
+  });
+}
+
 }  // extern "C"

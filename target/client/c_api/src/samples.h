@@ -2,6 +2,7 @@
 
 #include <tether/base/time.h>
 #include <tether/client.h>
+#include <tether/uav/catalogue.h>
 #include <tether/uav/samples.h>
 
 /// Measurements as <tether/client.h> has them.
@@ -24,6 +25,13 @@ inline tether_imu_sample to_c(const uav::ImuSample& sample) {
 }
 inline tether_range_sample to_c(const uav::RangeSample& sample) {
   return {to_ns(sample.sampled_at), sample.index, sample.range_m};
+}
+
+/// `catalogue`: that of the UAV.
+inline tether_battery_sample to_c(const uav::BatterySample& sample,
+                                  const uav::Catalogue& catalogue) {
+  return {to_ns(sample.sampled_at), sample.voltage_V, sample.current_A, sample.charge,
+          catalogue.battery_capacity_C};
 }
 
 }  // namespace tether::c_api

@@ -56,6 +56,15 @@ TEST_F(CppApi, KnowsTheCatalogue) {
   EXPECT_EQ(box->color().z, 0.85);
 }
 
+TEST_F(CppApi, ReadsTheBattery) {
+  const auto battery = vehicle_.read_battery();
+  ASSERT_TRUE(battery.ok());
+  EXPECT_EQ(battery->charge, 0.75);
+  EXPECT_EQ(api::sampled_at(*battery).time_since_epoch().count(), 14);
+  fake_->failure = Failure{Failure::Kind::kInvalid, "no battery"};
+  EXPECT_EQ(vehicle_.read_battery().failure().code(), api::Code::kInvalid);
+}
+
 TEST_F(CppApi, StagesEndWithTheirObjects) {
   {
     const api::Stage outer(vehicle_, "decide");

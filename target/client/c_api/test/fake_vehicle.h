@@ -39,6 +39,7 @@ class FakeVehicle final : public client::Vehicle {
              model, uav::CameraKind::kSegmentation, 0.0, 0.0, {"wall", "blue_box"}}}};
     catalogue_.anchors = {{"blue_box", uav::AnchorShape::kBox, {0.4, 0.5, 0.6}, {0.05, 0.15, 0.85}},
                           {"ball", uav::AnchorShape::kSphere, {0.2, 0.2, 0.2}, {1.0, 0.0, 0.0}}};
+    catalogue_.battery_capacity_C = 7200.0;
     image.rgb.assign(24, 7);
     image.rgb.back() = 9;
   }
@@ -55,6 +56,10 @@ class FakeVehicle final : public client::Vehicle {
   }
   Result<uav::RangeSample> read_range(std::string_view sensor, client::Read read) override {
     return answer(sensor, read, range);
+  }
+  Result<uav::BatterySample> read_battery() override {
+    if (failure) return *failure;
+    return uav::BatterySample{from_ns<SimTime>(14), 12.5, 6.0, 0.75};
   }
   Status command_velocity(const uav::VelocityCommand& command) override {
     commands.push_back(command);

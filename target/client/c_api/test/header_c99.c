@@ -49,6 +49,13 @@ LIES_AT(tether_range_sample, sampled_at_ns, 0);
 LIES_AT(tether_range_sample, index, 8);
 LIES_AT(tether_range_sample, range_m, 16);
 
+HOLDS(battery_sample, sizeof(tether_battery_sample) >= 40);
+LIES_AT(tether_battery_sample, sampled_at_ns, 0);
+LIES_AT(tether_battery_sample, voltage_v, 8);
+LIES_AT(tether_battery_sample, current_a, 16);
+LIES_AT(tether_battery_sample, charge, 24);
+LIES_AT(tether_battery_sample, capacity_c, 32);
+
 HOLDS(status, sizeof(tether_status) == 4);
 HOLDS(statuses, TETHER_OK == 0 && TETHER_INVALID == 1 && TETHER_NOTHING_YET == 2 && TETHER_REFUSED == 3 &&
                     TETHER_DISCONNECTED == 4 && TETHER_PROTOCOL == 5 && TETHER_TIMEOUT == 6 &&

@@ -102,6 +102,22 @@ TEST(ReadRange, ClearsItsOutputOnFailure) {
   EXPECT_EQ(sample.range_m, 0.0);
 }
 
+TEST(ReadBattery, GivesEveryField) {
+  const Flown flown;
+  tether_battery_sample sample;
+  ASSERT_EQ(tether_read_battery(flown.vehicle, &sample, sizeof sample), TETHER_OK);
+  EXPECT_EQ(sample.sampled_at_ns, 14);
+  EXPECT_EQ(sample.voltage_v, 12.5);
+  EXPECT_EQ(sample.current_a, 6.0);
+  EXPECT_EQ(sample.charge, 0.75);
+  EXPECT_EQ(sample.capacity_c, 7200.0);
+  EXPECT_EQ(tether_read_battery(nullptr, &sample, sizeof sample), TETHER_INVALID);
+  EXPECT_EQ(tether_read_battery(flown.vehicle, nullptr, sizeof sample), TETHER_INVALID);
+  flown.fake->failure = Failure{Failure::Kind::kInvalid, "no battery"};
+  EXPECT_EQ(tether_read_battery(flown.vehicle, &sample, sizeof sample), TETHER_INVALID);
+  EXPECT_EQ(sample.charge, 0.0) << "a failed read clears its output";
+}
+
 TEST(Reading, WrongArgumentsReachNoVehicle) {
   const Flown flown;
   tether_range_sample sample;

@@ -119,6 +119,8 @@ struct SendMessage {
 struct ReceiveMessage {
   Duration timeout{0};  ///< 0: of those that have arrived
 };
+/// Read the battery, if the catalogue has one. The reply is due at once.
+struct ReadBattery {};
 
 /// SUT → coordinator: an interaction begins.
 struct Request {
@@ -128,7 +130,8 @@ struct Request {
   ExecTime issued_at;
   Duration previous_round_trip{0};  ///< WT on the SUT's side from issuing the previous request to
                                     ///< having its reply; 0: not measured
-  std::variant<ReadSensor, SetVelocity, Sleep, Finish, SendMessage, ReceiveMessage> body;
+  std::variant<ReadSensor, SetVelocity, Sleep, Finish, SendMessage, ReceiveMessage, ReadBattery>
+      body;
   /// What was computed since the previous reply, each stage once, in the order of their beginning.
   /// Of a serial SUT that sends them, the sum is `issued_at` - the previous `resume_at`.
   std::vector<StageTime> stages{};
@@ -149,7 +152,8 @@ struct Reply {
   std::optional<uav::Sample> sample;  ///< of ReadSensor; none if none was available
   /// With the clock "replayed": what each stage takes until the next call.
   std::vector<StageTime> computing{};
-  std::optional<RadioMessage> message{};  ///< of ReceiveMessage; none: none arrived in time
+  std::optional<RadioMessage> message{};        ///< of ReceiveMessage; none: none arrived in time
+  std::optional<uav::BatterySample> battery{};  ///< of ReadBattery
 };
 
 /// Coordinator → concurrent SUT under the barrier, as soon as a request has arrived: the time at

@@ -69,6 +69,7 @@ struct Catalogue {
   std::string uav;
   std::vector<SensorDescription> sensors;
   std::vector<Anchor> anchors;
+  double battery_capacity_C = 0.0;  ///< [A s]; 0: its battery cannot be read
 
   /// nullptr if there is none of that name.
   const SensorDescription* find_sensor(std::string_view sensor) const;

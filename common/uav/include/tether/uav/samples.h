@@ -56,6 +56,15 @@ struct RangeSample {
                                                              ///< closer than the minimum (REP-117)
 };
 
+/// The battery at one instant.
+struct BatterySample {
+  SimTime sampled_at;
+  double voltage_V = 0.0;  ///< at the terminals, under load
+  double current_A = 0.0;  ///< drawn from it
+  double charge = 0.0;     ///< share of the capacity that is left; [0, 1]
+  friend bool operator==(const BatterySample&, const BatterySample&) = default;
+};
+
 using Sample = std::variant<CameraSample, ImuSample, RangeSample>;
 
 SimTime sampled_at(const Sample& sample);

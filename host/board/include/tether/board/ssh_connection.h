@@ -11,6 +11,7 @@
 
 #include <tether/os/captured_run.h>
 #include <tether/os/child_process.h>
+#include <tether/os/temporary_folder.h>
 #include <tether/scenario/target.h>
 
 namespace tether::board {
@@ -26,9 +27,6 @@ class SshConnection {
   /// Connects. A stop request ends waiting and the commands that run over the connection. @throws
   /// Error(kSetup) about the address, with advice.
   explicit SshConnection(const scenario::SshAddress& address, std::stop_token stop = {});
-  ~SshConnection();
-  SshConnection(const SshConnection&) = delete;
-  SshConnection& operator=(const SshConnection&) = delete;
 
   /// The command that runs a POSIX sh on the board. The shell reads its script, the first
   /// `script_bytes` of its standard input; the rest is the input of the script. Therefore lists of
@@ -47,7 +45,7 @@ class SshConnection {
 
   const scenario::SshAddress& address() const { return address_; }
   /// A folder private to this process; removed with the connection.
-  const std::filesystem::path& folder() const { return folder_; }
+  const std::filesystem::path& folder() const { return folder_.path(); }
 
  private:
   std::vector<std::string> words() const;
@@ -55,7 +53,7 @@ class SshConnection {
 
   scenario::SshAddress address_;
   std::stop_token stop_;
-  std::filesystem::path folder_;
+  os::TemporaryFolder folder_;
   std::unique_ptr<os::ChildProcess> master_;
 };
 

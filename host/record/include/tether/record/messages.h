@@ -29,9 +29,11 @@ inline constexpr std::string_view kSleep = "sleep";
 inline constexpr std::string_view kFinish = "finish";
 inline constexpr std::string_view kSend = "send";
 inline constexpr std::string_view kReceive = "receive";
+inline constexpr std::string_view kBattery = "battery";
 
-/// Value of RadioMessage::outcome; others say why the message was lost.
+/// Values of RadioMessage::outcome; others say why the message was lost.
 inline constexpr std::string_view kDelivered = "delivered";
+inline constexpr std::string_view kWaiting = "waiting";  ///< at the end of the run
 
 /// Where an anchor is seen in an image: the first and last column and row of its visible pixels.
 struct SeenAnchor {
@@ -57,13 +59,21 @@ struct ReceivedMessage {
   friend bool operator==(const ReceivedMessage&, const ReceivedMessage&) = default;
 };
 
+/// What a call of kind "battery" returned.
+struct BatteryReading {
+  double voltage_V = 0.0;
+  double current_A = 0.0;
+  double charge = 0.0;  ///< share of the capacity
+  friend bool operator==(const BatteryReading&, const BatteryReading&) = default;
+};
+
 /// One request of a SUT and its reply. Topic /interactions; log time = ST at release.
 struct Interaction {
   std::string uav;
   /// 1, 2, 3, … for each SUT. The record has the interactions of a concurrent SUT in the order of
   /// their replies, without calls that were still open when the SUT finished.
   std::uint64_t sequence = 0;
-  std::string kind;     ///< kSensor, kCommand, kSleep, kFinish, kSend or kReceive
+  std::string kind;     ///< kSensor, kCommand, kSleep, kFinish, kSend, kReceive or kBattery
   ExecTime request_at;  ///< t_req
   ExecTime reply_at;    ///< t_rep
 
@@ -87,6 +97,8 @@ struct Interaction {
   // For kind "receive".
   std::optional<ExecTime> receive_until{};    ///< request_at + timeout
   std::optional<ReceivedMessage> received{};  ///< none: no message had arrived by then
+
+  std::optional<BatteryReading> battery{};  ///< kind "battery": at st_at_release
 
   SimTime st_at_arrival;
   SimTime st_at_release;
@@ -299,6 +311,9 @@ struct SutInfo {
   std::optional<ReplayInfo> replay{};  ///< clock "replayed"
   std::string board{};  ///< Header::boards: the computer that it shares; empty: one of its own
   std::optional<int> pinned_core{};  ///< of that computer; only pinned programs run there
+  /// Name of the scenario's computer on which the SUT runs, shared or not. Empty: the scenario
+  /// describes none, or it is a record of Tether 0.1.0.
+  std::string computer{};
 };
 /// A virtual computer whose cores several SUTs share: while n compute, each gets min(1, cores / n)
 /// of a core. A core with pinned programs is shared by these only.

@@ -11,6 +11,18 @@
 
 namespace tether::report {
 
+/// What one of the computers of a fleet contributed to a run.
+struct BoardPace {
+  std::string board;                ///< its name in the scenario
+  std::vector<std::string> uavs{};  ///< in the record's order
+  /// Of the UAV on it whose images cost most, as in Pace. 0: none reads images.
+  double median_s = 0.0;
+  double p95_s = 0.0;
+  /// The share of wall time in which programs of no other computer computed: all others were held,
+  /// or had finished. None: not measured.
+  std::optional<double> alone{};
+};
+
 /// How fast the program of one run worked, and on what it spent its computing time.
 struct Pace {
   std::string uav{};
@@ -22,8 +34,17 @@ struct Pace {
   std::size_t images = 0;
   double read_hz = 0.0;                ///< one over the median ST between two images
   std::optional<double> offered_hz{};  ///< none if the camera has no rate of its own
-  double median_s = 0.0;               ///< computing per image: ET between two images
-  double p95_s = 0.0;                  ///< of 95 % of the images
+  /// Cost of an image: computing between two images and, on a shared board, waiting for its cores.
+  double median_s = 0.0;
+  double p95_s = 0.0;  ///< of 95 % of the images
+
+  // Of a board that several programs share. If it has one of its own: empty, 0 and 0.
+  std::string shared_board{};
+  std::size_t programs = 0;  ///< that share its cores, this one among them
+  double waiting = 0.0;      ///< share of the cost of all images: others had the cores
+
+  /// Of a fleet with several computers; empty: of no such fleet, or not known.
+  std::vector<BoardPace> boards{};
 
   /// How many times slower the program could compute, and still 95 % of its images would take no
   /// longer than the camera's period. None without a camera with a rate.
@@ -32,7 +53,7 @@ struct Pace {
   bool keeps_up() const;
 };
 
-/// Of the SUT that computes most for an image. None if the run was not synchronised (its computing
+/// Of the SUT whose images cost most. None if the run was not synchronised (its computing
 /// times are not known), or has no interactions.
 std::optional<Pace> pace_of(const record::Record& record);
 

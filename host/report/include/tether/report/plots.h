@@ -49,4 +49,8 @@ std::optional<Plot> path_plot(std::span<const PlottedRun> runs);
 std::optional<Plot> distribution_plot(const campaign::ScenarioResults& scenario,
                                       const std::string& metric);
 
+/// The same for the margins of a clause of the missions, with a line at 0: what is below is missed.
+std::optional<Plot> margin_plot(const campaign::ScenarioResults& scenario,
+                                const judge::ClauseVerdict& clause);
+
 }  // namespace tether::report

@@ -55,6 +55,8 @@ Table run_table(const campaign::TrialResult& trial);
 
 /// The clauses of the missions of a run, with what limited each; no rows if there are none.
 Table clauses_table(const campaign::TrialResult& trial);
+/// The clauses of a scenario, by UAV and name, in the order in which trials first have them.
+std::vector<judge::ClauseVerdict> clauses_of(const campaign::ScenarioResults& scenario);
 /// A row per clause and condition: trials that met it, and their margins; no rows if there are
 /// none.
 Table clauses_table(const campaign::ScenarioResults& scenario);

@@ -18,8 +18,8 @@ struct Sweep {
 /// One for each scenario that was swept. The results must outlive them.
 std::vector<Sweep> sweeps_of(const campaign::CampaignResults& results);
 
-/// A row per point and condition: the values, the share of trials that reach the goal with Wilson's
-/// 95 % interval, and the mean of each metric with its 95 % interval.
+/// A row per point and condition: the values, the share of trials that reach the goal with its
+/// exact 95 % interval, and the mean of each metric with its 95 % interval.
 Table sweep_table(const Sweep& sweep);
 
 /// The share of trials that reach the goal over the key with the most values, with a series

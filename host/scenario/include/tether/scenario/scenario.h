@@ -119,12 +119,16 @@ struct UavSetup {
 /// Replaces a value of a scenario file.
 struct Setting {
   /// Path of a key that the file has, from its top or from [[condition]] or [[uav]]:
-  /// "time_limit_s", "condition.cpu_factor" or "cpu_factor", "sut.parameters.yaw_rate_deg_s".
+  /// "time_limit_s", "condition.cpu_factor" or "cpu_factor", "sut.parameters.yaw_rate_deg_s". Or
+  /// kUavCount.
   std::string key;
   std::string value;  ///< as on a command line
 
   friend bool operator==(const Setting&, const Setting&) = default;
 };
+
+/// The key of a setting that is in no file: the first so many UAVs of the file are flown.
+inline constexpr std::string_view kUavCount = "uavs";
 
 /// "KEY=VALUE", as an option. A VALUE that is a file in `folder` becomes an absolute path.
 /// @throws Error(kUsage), about the text, if it has no key or no value.

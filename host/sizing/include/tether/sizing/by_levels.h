@@ -9,31 +9,33 @@
 /// The answer where no curve fits: level by level, without assuming how the share falls.
 namespace tether::sizing {
 
-/// The flights at one slowdown.
+/// A neighbourhood of slowdowns, and its flights.
 struct Level {
-  double slowdown = 1.0;
+  std::vector<double> slowdowns{};  ///< that may be flown, ascending, not empty
   std::size_t flights = 0;
   std::size_t reached = 0;
-  Share share{};  ///< with Wilson's interval (JASA 22, 1927)
+  Share share{};  ///< as exact_share; 0 to 1 without flights
+
+  double middle() const { return slowdowns[slowdowns.size() / 2]; }
 };
 
-/// @pre flights ≥ 1.
-Share wilson(std::size_t reached, std::size_t flights, double confidence);
+/// With the exact interval (Clopper & Pearson, Biometrika 26, 1934). @pre flights ≥ 1.
+Share exact_share(std::size_t reached, std::size_t flights, double confidence);
 
-/// Every slowdown that was flown, in ascending order.
-std::vector<Level> levels_of(std::span<const Flight> flights, double confidence);
+/// All slowdowns of the question, in ascending order. A level is so wide that an interval that is
+/// narrow enough spans two and a half of them.
+std::vector<Level> levels_of(const Question& question, std::span<const Flight> flights,
+                             double confidence);
 
 struct LevelAnswer {
   /// The slowdown up to which each level is sufficient: the interval is from the largest level
-  /// below the first insufficient one that is sufficient itself, to that first one. A level is
-  /// sufficient if its whole interval is at or above the wanted share, and insufficient if all of
-  /// it is below. 0 and infinity: there is no such level.
+  /// below the first insufficient one that is sufficient itself (its middle), to the end of that
+  /// first one. A level is sufficient if its whole interval is at or above the wanted share, and
+  /// insufficient if all of it is below. 0 and infinity: there is no such level.
   Threshold threshold{};
-  std::size_t next = 0;  ///< index of the level to fly next
+  Level next{};          ///< the level to fly next
   bool is_done = false;  ///< narrow enough, or no level between the bounds is worth more flights
 };
-/// @param levels that may be flown, ascending.
-LevelAnswer answer_by_levels(const Question& question, std::span<const double> levels,
-                             std::span<const Flight> flights);
+LevelAnswer answer_by_levels(const Question& question, std::span<const Flight> flights);
 
 }  // namespace tether::sizing

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 /// What `tether size` asks, and what it learns from each flight.
 namespace tether::sizing {
@@ -12,6 +13,10 @@ struct Question {
   double least = 1.0;        ///< slowdowns to fly: between these, 0 < least < most
   double most = 40.0;
 };
+
+/// The slowdowns that may be flown: 10^(k/160), rounded to three digits, within the question's
+/// range. Ascending.
+std::vector<double> slowdowns_of(const Question& question);
 
 /// The outcome of a flight.
 struct Flight {

@@ -13,7 +13,7 @@ namespace tether::sizing {
 enum class Basis {
   kMargins,  ///< a curve that the margins of the flights fit, too
   kCurve,    ///< a curve that reached and missed goals fit
-  kLevels,   ///< no curve fits: each slowdown for itself
+  kLevels,   ///< no curve fits: each neighbourhood of slowdowns for itself
 };
 
 struct Answer {
@@ -40,7 +40,11 @@ class Sizing {
   /// The answer so far. Checks the fit once it would be final.
   /// @param is_last no more flights can be flown.
   Answer answer(bool is_last = false);
-  /// The slowdowns of the next `count` flights. @pre answer() was not narrow enough.
+  /// The slowdowns of the next `count` flights. They are spread over a neighbourhood, so that the
+  /// answer does not depend on what one slowdown does: success need not fall steadily (whole
+  /// periods of a camera make steps). At an end of the range, the neighbourhood is inside of it.
+  /// The spread depends on the number of flights before, and on nothing else. @pre answer() was not
+  /// narrow enough.
   std::vector<double> next(std::size_t count) const;
   /// The curve of the answer; of kLevels, that of reached and missed goals.
   const SuccessCurve& curve() const;

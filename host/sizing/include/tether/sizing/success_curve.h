@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,8 +25,8 @@ class CurveGrid {
   explicit CurveGrid(const Question& question);
 
   const Question& question() const { return question_; }
-  /// The slowdowns that are flown: 10^(k/40), rounded to three digits, within the question's range.
-  const std::vector<double>& levels() const { return levels_; }
+  /// The slowdowns that may be flown: slowdowns_of(question()).
+  const std::vector<double>& slowdowns() const { return slowdowns_; }
 
  private:
   friend class SuccessCurve;
@@ -37,18 +38,21 @@ class CurveGrid {
   struct Curve {
     double middle = 0.0, width = 0.0;  // log slowdown
     const Ends* ends = nullptr;
+    double follows(double log_slowdown) const;  // without lapses and floor
     double share(double log_slowdown) const;
   };
   void add_curve(double middle, double width, const Ends& ends, double first, double last);
 
   Question question_;
-  std::vector<double> levels_;
+  std::vector<double> slowdowns_;
+  std::vector<double> planned_;  // of slowdowns_, those that next_slowdowns chooses from
   std::vector<double> middles_, widths_;
   std::vector<Ends> ends_;
   std::vector<Curve> curves_;
-  std::vector<float> threshold_;             // of each curve, log slowdown
-  std::vector<std::size_t> by_threshold_;    // indices of curves
-  std::vector<std::vector<float>> success_;  // of each level, each curve's share
+  std::vector<float> threshold_;           // of each curve, log slowdown
+  std::vector<std::size_t> by_threshold_;  // indices of curves
+  // Of each planned slowdown and each pair of middle and width: logistic((middle − x) / width).
+  std::vector<std::vector<float>> follows_;
 
  public:
   CurveGrid(const CurveGrid&) = delete;
@@ -74,24 +78,28 @@ class SuccessCurve {
   Threshold threshold() const;
   /// Of successful flights at a slowdown: the mean, and an interval as above.
   Share share(double slowdown) const;
-  /// The levels to fly next, one for each of `count` flights that are flown at the same time. After
-  /// each of them, its expected outcome is taken as observed.
-  std::vector<double> next_levels(std::size_t count) const;
+  /// The slowdowns to fly next, one for each of `count` flights that are flown at the same time.
+  /// After each of them, its expected outcome is taken as observed.
+  std::vector<double> next_slowdowns(std::size_t count) const;
   /// Posterior predictive check (Gelman, Meng & Stern, Statistica Sinica 6, 1996): the probability
   /// that flights of such curves at the same slowdowns deviate from their curve as much as these
-  /// do, by χ² over groups of slowdowns and kinds of outcomes: of all groups, or of the one that
-  /// deviates most, whichever is less likely (times 2, as for two tests). Small: the flights are
-  /// not of such a curve.
+  /// do, whichever is least likely (times 3, as for three tests): χ² over groups of slowdowns and
+  /// kinds of outcomes, of all groups or of the one that deviates most; or how alike the outcomes
+  /// of neighbours in slowdown are, which tells of steps that are narrower than a group. Small: the
+  /// flights are not of such a curve.
   double fit(std::span<const Flight> flights) const;
 
  private:
-  std::size_t draw(double uniform) const;
   void normalise();
 
   const CurveGrid& grid_;
-  std::size_t scales_;         // of the margin; 1 if it is ignored
-  std::vector<float> joint_;   // of curve and scale: [curve * scales_ + scale]; sums to 1
+  std::size_t scales_;  // of the margin; 1 if it is ignored
+  // Of curve and scale: [(pair * scales_ + scale) * ends + end], where pair is of middle and width;
+  // sums to 1.
+  std::vector<float> joint_;
+  std::vector<char> is_kept_;  // [pair * scales_ + scale]: false if it has no weight any more
   std::vector<float> weight_;  // of each curve; sums to 1
+  mutable std::optional<Threshold> threshold_{};  // once it was asked for
 };
 
 }  // namespace tether::sizing

@@ -492,9 +492,9 @@ tether_status tether_finish(tether_vehicle* vehicle, int32_t reached_goal, const
                             const char* details_json) TETHER_NOEXCEPT;
 
 /// @}
-
 #ifdef __cplusplus
 }
 #endif
 /// @}
+#include <tether/client_battery.h>
 #include <tether/client_radio.h>

@@ -223,6 +223,13 @@ class Vehicle {
   Result<RangeSample> read_range(const char* sensor, Read read = Read::kNext) noexcept {
     return read_struct<RangeSample>(tether_read_range, sensor, read);
   }
+  /// Reads the battery. @return as tether_read_battery()
+  Result<BatterySample> read_battery() noexcept {
+    BatterySample sample{};
+    const tether_status got = tether_read_battery(get(), &sample, sizeof sample);
+    if (got != TETHER_OK) return Failure::last(got);
+    return sample;
+  }
 
   /// Delivers the images of a camera, in a thread of the library. Needs tether-exec.
   /// @param sensor  its name  @param on_image  is called as `on_image(ImageView)`; must not throw

@@ -307,12 +307,17 @@ inline Result<Image> ImageView::copy() const noexcept {
   return Image(image);
 }
 
-using ImageInfo = tether_image_info;      ///< description of an image
-using ImuSample = tether_imu_sample;      ///< measurement of an IMU
-using RangeSample = tether_range_sample;  ///< measurement of a rangefinder
+using ImageInfo = tether_image_info;          ///< description of an image
+using ImuSample = tether_imu_sample;          ///< measurement of an IMU
+using RangeSample = tether_range_sample;      ///< measurement of a rangefinder
+using BatterySample = tether_battery_sample;  ///< the battery at one instant
 
 /// When a measurement was taken. @param sample  the measurement  @return ST
 inline SimTime sampled_at(const ImuSample& sample) noexcept {
+  return SimTime(Duration(sample.sampled_at_ns));
+}
+/// When the battery was read. @param sample  the battery  @return ST
+inline SimTime sampled_at(const BatterySample& sample) noexcept {
   return SimTime(Duration(sample.sampled_at_ns));
 }
 /// When a measurement was taken. @param sample  the measurement  @return ST

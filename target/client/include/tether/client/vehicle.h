@@ -52,6 +52,10 @@ class Vehicle {
   virtual Result<uav::ImuSample> read_imu(std::string_view sensor, Read read = Read::kNext) = 0;
   virtual Result<uav::RangeSample> read_range(std::string_view sensor, Read read = Read::kNext) = 0;
 
+  /// The battery now; a program can tell from its catalogue whether it has one. Fails with kInvalid
+  /// if not.
+  virtual Result<uav::BatterySample> read_battery();
+
   /// Flies with this velocity until the next command.
   virtual Status command_velocity(const uav::VelocityCommand& command) = 0;
 

@@ -20,6 +20,7 @@ struct InspectOptions {
   Duration lost_limit = std::chrono::seconds(3);     ///< without seeing the anchor; "anchor lost"
   Duration time_limit = std::chrono::seconds(60);    ///< of the SUT's clock; then "time limit"
   int max_images = 100'000;                          ///< in case that clock is stopped
+  double least_charge = 0.0;  ///< share of the battery's; below it, "battery low"; 0: not read
 };
 
 /// Keeps the anchor straight ahead at a distance, until it was within the tolerances of both for a

@@ -35,7 +35,8 @@ class PlanarVehicle : public client::Vehicle {
     /// What a rangefinder's measurement takes, in turn.
     std::vector<Duration> range_delays{std::chrono::milliseconds(30)};
     Duration image_delay = std::chrono::milliseconds(20);
-    bool clock_stands_still = false;  ///< `now` always says 0, whatever happens
+    std::optional<Duration> endurance{};  ///< of its battery; none: it has no battery
+    bool clock_stands_still = false;      ///< `now` always says 0, whatever happens
     /// Speed of `now` relative to the samples' timestamps; other than 1 without synchronisation.
     double clock_factor = 1.0;
     Duration imu_period = std::chrono::milliseconds(5);
@@ -61,6 +62,8 @@ class PlanarVehicle : public client::Vehicle {
   Result<uav::CameraSample> read_camera(std::string_view sensor, client::Read read) override;
   Result<uav::ImuSample> read_imu(std::string_view sensor, client::Read read) override;
   Result<uav::RangeSample> read_range(std::string_view sensor, client::Read read) override;
+  /// Full at the start, and empty after `Options::endurance`.
+  Result<uav::BatterySample> read_battery() override;
   Status command_velocity(const uav::VelocityCommand& command) override;
   Status sleep_for(Duration duration) override;
   Status sleep_until(ExecTime until) override;

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace tether::os {
+
+/// A new folder that only this user can enter, removed with the object.
+class TemporaryFolder {
+ public:
+  /// Its name is `prefix` and six characters. @throws Error(kSetup) if it cannot be made.
+  explicit TemporaryFolder(const std::string& prefix);
+  TemporaryFolder(const std::string& prefix, const std::filesystem::path& parent);
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// The path of a name in the folder.
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace tether::os

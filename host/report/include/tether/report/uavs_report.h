@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tether/campaign/campaign_results.h>
+#include <tether/report/plots.h>
+#include <tether/report/verdict.h>
+#include <tether/sizing/by_uavs.h>
+
+/// What `tether size --axis uavs` found: how many UAVs a board carries, in sentences, as a drawing,
+/// a page and JSON. Pure functions, but for the drawing program of the page.
+namespace tether::report {
+
+/// The flights with the first so many UAVs of the scenario; none of them failed.
+struct UavsPoint {
+  std::size_t uavs = 1;
+  std::vector<campaign::TrialResult> trials{};
+};
+
+struct UavsReport {
+  std::string scenario{};
+  std::string condition{};
+  std::string board{};  ///< name of the target that the UAVs share
+  int cores = 1;        ///< of the board
+  sizing::UavQuestion question{};
+  std::size_t most_flights = 0;
+  sizing::UavAnswer answer{};
+  std::vector<UavsPoint> points{};  ///< those that were flown, in ascending order
+  /// Of a flight with the fewest UAVs that are too many or, if there are none, with the most that
+  /// were flown; none: not known.
+  std::optional<Pace> pace{};
+  std::vector<std::string> not_flown{};  ///< one line for each flight that failed, with its reason
+  campaign::Settings settings{};
+};
+
+std::vector<sizing::UavLevel> uav_levels(const std::vector<UavsPoint>& points);
+std::size_t flights_of(const UavsReport& report);
+
+/// The answer with its evidence, then what limits it.
+std::vector<Answer> uavs_answers(const UavsReport& report);
+/// What to do next; each one sentence.
+std::vector<std::string> uavs_advice(const UavsReport& report);
+/// The share of flights that reach the goal over the number of UAVs, with exact intervals.
+Plot uavs_plot(const UavsReport& report);
+/// One self-contained page. @throws Error(kSetup) if gnuplot is missing or fails.
+std::string uavs_page(const UavsReport& report);
+/// The content of `size.json` (docs/guide/size.md).
+std::string uavs_json(const UavsReport& report);
+/// One case, which fails if the answer is not decided. @param folder of the flights
+std::string to_junit(const UavsReport& report, const std::filesystem::path& folder);
+
+}  // namespace tether::report

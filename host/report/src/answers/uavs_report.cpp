@@ -1,0 +1,100 @@
+#include "tables/report_format.h"
+
+#include <fmt/format.h>
+
+#include <tether/report/uavs_report.h>
+
+namespace tether::report {
+namespace {
+
+std::string uavs(std::size_t count) {
+  return fmt::format("{} UAV{}", count, count == 1 ? "" : "s");
+}
+
+std::string in_percent(double share) {
+  return fmt::format("{:.4g} %", 100.0 * share);
+}
+
+/// "with 1 UAV 36 of 36 flights reach the goal, with 2 UAVs 0 of 2"
+std::string evidence_of(const UavsReport& report) {
+  std::vector<std::string> parts;
+  for (const sizing::UavLevel& level : uav_levels(report.points))
+    parts.push_back(fmt::format("with {} {} of {}{}", uavs(level.uavs), level.reached,
+                                level.flights, parts.empty() ? " flights reach the goal" : ""));
+  return parts.empty() ? "nothing was flown" : joined_with_and(parts);
+}
+
+std::string lead_of(const UavsReport& report) {
+  const auto& [carried, too_many, next] = report.answer;
+  const std::size_t least = report.question.least, most = report.question.most;
+  if (!report.answer.is_decided())
+    return fmt::format("This board carries {} to {}", carried < least ? 0 : carried,
+                       uavs(too_many - 1));
+  if (carried < least) return fmt::format("This board does not carry {}", uavs(least));
+  return fmt::format("This board carries {}{}", carried == most ? "at least " : "", uavs(carried));
+}
+
+}  // namespace
+
+std::vector<sizing::UavLevel> uav_levels(const std::vector<UavsPoint>& points) {
+  std::vector<sizing::UavLevel> levels;
+  for (const UavsPoint& point : points) {
+    if (point.trials.empty()) continue;
+    sizing::UavLevel& level = levels.emplace_back();
+    level.uavs = point.uavs;
+    level.flights = point.trials.size();
+    for (const campaign::TrialResult& trial : point.trials)
+      if (trial.outcome == campaign::Outcome::kGoalReached) ++level.reached;
+  }
+  return levels;
+}
+
+std::size_t flights_of(const UavsReport& report) {
+  std::size_t flights = 0;
+  for (const UavsPoint& point : report.points) flights += point.trials.size();
+  return flights;
+}
+
+std::vector<Answer> uavs_answers(const UavsReport& report) {
+  std::vector<Answer> answers = {
+      {lead_of(report),
+       fmt::format(" (“{}” under “{}”, {} of the flights wanted): {}; {}; {} flights.",
+                   report.board, report.condition, in_percent(report.question.success),
+                   evidence_of(report), in_percent(report.question.confidence),
+                   flights_of(report))}};
+  if (report.pace && !report.pace->shared_board.empty() && !report.pace->camera.empty())
+    answers.push_back(
+        {"What sharing costs",
+         fmt::format(": with {}, an image costs {} on the board, {:.0f} % of it waiting for cores.",
+                     uavs(report.pace->programs), short_ms(report.pace->median_s),
+                     100.0 * report.pace->waiting)});
+  if (!report.answer.is_decided())
+    answers.push_back(
+        {"Less sure than asked",
+         fmt::format(": {} flights are the most that were allowed.", report.most_flights)});
+  return answers;
+}
+
+std::vector<std::string> uavs_advice(const UavsReport& report) {
+  std::vector<std::string> advice;
+  const sizing::UavAnswer& answer = report.answer;
+  if (!answer.is_decided()) advice.emplace_back("Fly more: `--max-trials`, with `--resume`.");
+  if (answer.is_decided() && answer.carried == report.question.most)
+    advice.emplace_back(
+        "To find the limit, add UAVs to the scenario, or fly more of them with `--between`.");
+  if (answer.is_decided() && answer.carried < report.question.least && report.question.least > 1)
+    advice.push_back(fmt::format("Try fewer: `--between 1,{}`.", report.question.least));
+  if (answer.too_many <= report.question.most) {
+    if (report.pace && !report.pace->stages.empty())
+      advice.push_back(fmt::format(
+          "To carry more, speed up “{}” first: it takes {:.0f} % of the computing time.",
+          report.pace->stages.front().stage, 100.0 * report.pace->stages.front().share));
+    advice.push_back(
+        fmt::format("To see how much faster the board must be to carry all: `tether "
+                    "size SCENARIO --condition \"{}\" --between 0.1,2`",
+                    report.condition));
+  }
+  return advice;
+}
+
+}  // namespace tether::report
