@@ -244,7 +244,7 @@ class UavFlights {
 
 /// Of a flight with too many UAVs or, without one, with the most.
 std::optional<report::Pace> pace_of_limit(const report::UavsReport& report,
-                                          const std::filesystem::path& out) {
+                                          const std::filesystem::path& out) try {
   const campaign::TrialResult* trial = nullptr;
   for (const report::UavsPoint& point : report.points) {
     if (point.trials.empty()) continue;
@@ -254,6 +254,8 @@ std::optional<report::Pace> pace_of_limit(const report::UavsReport& report,
   if (trial == nullptr) return std::nullopt;
   return report::read_pace(
       out / campaign::trial_folder(trial->scenario, trial->condition, trial->seed) / "record.mcap");
+} catch (const Error&) {
+  return std::nullopt;
 }
 
 void write_uavs(report::UavsReport& report, const std::filesystem::path& out) {

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <tether/base/text_table.h>
-#include <tether/os/shell_word.h>
 #include <tether/report/verdict.h>
 
 // The words of a verdict.
@@ -254,40 +253,6 @@ std::string stage_advice(const Advice& advice, const ConditionVerdict& lead) {
   return text;
 }
 
-/// "`tether size face_anchor --condition target`"; empty: it cannot fly this.
-std::string size_command(const ConditionVerdict& condition, bool searches_faster) {
-  if (condition.size_arguments.empty()) return "";
-  std::string command = "tether size";
-  for (const std::string& word : condition.size_arguments) command += " " + os::shell_word(word);
-  const bool names_target = std::ranges::count(condition.size_arguments, "--target") > 0;
-  if (searches_faster && !names_target) command += " --between 0.1,2";
-  return "`" + command + "`";
-}
-
-std::string faster_advice(const ConditionVerdict& lead) {
-  const std::string command = size_command(lead, true);
-  return "The program reads every image, so the computer may not be the cause. To see whether a "
-         "faster one would do" +
-         (command.empty() ? ", fly on one." : ": " + command);
-}
-
-std::string threshold_advice(const ConditionVerdict& lead) {
-  const bool is_too_slow = lead.ruling == Ruling::kNotFastEnough;
-  const std::string what = is_too_slow
-                               ? "how much faster the computer must be"
-                               : "the headroom, that is how much slower the computer may be";
-  const std::string command = size_command(lead, is_too_slow);
-  if (!command.empty())
-    return fmt::format("To find {}: {}{}", what, command,
-                       is_one_board_for_all(lead)
-                           ? "; to find how many UAVs it carries: `--axis uavs` instead"
-                           : "");
-  return fmt::format(
-      "`tether size` finds {}, for a scenario's own conditions on virtual targets. Write what was "
-      "flown here as one of them.",
-      what);
-}
-
 std::string sentence_of(const Advice& advice, const Verdict& verdict) {
   using Kind = Advice::Kind;
   const ConditionVerdict& lead = lead_of(verdict);
@@ -306,7 +271,10 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
     case Kind::kTryFaster:
       return faster_advice(lead);
     case Kind::kFindThreshold:
-      return threshold_advice(lead);
+      return threshold_advice(lead) +
+             (is_one_board_for_all(lead)
+                  ? "; to find how many UAVs it carries: `--axis uavs` instead"
+                  : "");
     case Kind::kFlyMore:
       if (lead.planned == 1)
         return "One flight shows little. Fly a campaign of several seeds: `tether campaign`.";

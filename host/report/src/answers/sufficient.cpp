@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <tether/base/text_table.h>
+#include <tether/os/shell_word.h>
+
 namespace tether::report {
 namespace {
 
@@ -40,6 +43,16 @@ std::optional<Answer> sufficient_factor(const std::string& what, const ByFactor&
                             next == flown.end()
                                 ? "the largest that was flown"
                                 : fmt::format("and {} at {:g}", name(next->second), next->first))};
+}
+
+/// "`tether size face_anchor --condition target`"; empty: it cannot fly this.
+std::string size_command(const ConditionVerdict& condition, bool searches_faster) {
+  if (condition.size_arguments.empty()) return "";
+  std::string command = "tether size";
+  for (const std::string& word : condition.size_arguments) command += " " + os::shell_word(word);
+  const bool names_target = std::ranges::count(condition.size_arguments, "--target") > 0;
+  if (searches_faster && !names_target) command += " --between 0.1,2";
+  return "`" + command + "`";
 }
 
 }  // namespace
@@ -79,6 +92,26 @@ std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points) {
       if (auto answer = sufficient_factor(what, by_factor)) answers.push_back(std::move(*answer));
   }
   return answers;
+}
+
+std::string faster_advice(const ConditionVerdict& lead) {
+  const std::string command = size_command(lead, true);
+  return "The program reads every image, so the computer may not be the cause. To see whether a "
+         "faster one would do" +
+         (command.empty() ? ", fly on one." : ": " + command);
+}
+
+std::string threshold_advice(const ConditionVerdict& lead) {
+  const bool is_too_slow = lead.ruling == Ruling::kNotFastEnough;
+  const std::string what = is_too_slow
+                               ? "how much faster the computer must be"
+                               : "the headroom, that is how much slower the computer may be";
+  const std::string command = size_command(lead, is_too_slow);
+  if (!command.empty()) return fmt::format("To find {}: {}", what, command);
+  return fmt::format(
+      "`tether size` finds {}, for a scenario's own conditions on virtual targets. Write what was "
+      "flown here as one of them.",
+      what);
 }
 
 }  // namespace tether::report

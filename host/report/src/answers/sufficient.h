@@ -16,4 +16,8 @@ std::string sufficient_condition(const Verdict& verdict);
 /// factor up to which it is fast enough. @pre the points are of one scenario; not empty.
 std::vector<Answer> sufficient_factors(const std::vector<Verdict>& points);
 
+/// What to do next to find the threshold, with the command of `tether size` if it can fly this.
+std::string faster_advice(const ConditionVerdict& lead);
+std::string threshold_advice(const ConditionVerdict& lead);
+
 }  // namespace tether::report

@@ -108,8 +108,8 @@ struct Answer {
 /// The condition's ruling with its evidence.
 Answer answer_of(const ConditionVerdict& condition);
 /// The answer, then those on the other conditions. Of a sweep: up to which cpu_factor each
-/// condition is fast enough, then one answer for each ruling of a condition. If a condition has
-/// several computers, a sentence on the slowest one follows its answer.
+/// condition is fast enough, then one answer for each ruling of a condition.
+/// If a condition has several computers, a sentence on the slowest one follows its answer.
 /// @pre all are of one scenario; not empty.
 std::vector<Answer> answers_of(const std::vector<Verdict>& points);
 /// What to do next, with code between backticks. @pre as above.
