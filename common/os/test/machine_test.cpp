@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <tether/os/machine.h>
 
@@ -19,6 +20,18 @@ TEST(Machine, HasAtLeastTheCoresThatThisProcessMayUse) {
   EXPECT_GE(machine_cores(), static_cast<int>(cpus.size()));
   EXPECT_GE(separate_cores(), 1);
   EXPECT_LE(separate_cores(), static_cast<int>(cpus.size()));
+}
+
+TEST(Machine, AllowsAsManyDescriptorsAsTheHardLimit) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit few{before.rlim_cur - 10, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  EXPECT_EQ(allow_descriptors(1), few.rlim_cur) << "never fewer";
+  EXPECT_EQ(allow_descriptors(before.rlim_cur), before.rlim_cur);
+  const rlim_t most = std::min<rlim_t>(before.rlim_max, 1'000'000);
+  EXPECT_LE(allow_descriptors(most + 1), before.rlim_max);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
 }
 
 }  // namespace

@@ -477,6 +477,14 @@ TEST(PlantedViolations, AContactIsNone) {
   EXPECT_TRUE(audit(record).passed()) << to_text(audit(record));
 }
 
+TEST(PlantedViolations, StAheadOfAnExpelledSutIsNone) {
+  Record record = generate({.seed = 7});
+  std::ranges::find(kPlanted, std::string("st_ahead_of_running_sut_at_end"), &Planted::what)
+      ->plant(record);
+  record.footer->expelled = {record.header.suts.back().uav};
+  EXPECT_TRUE(audit(record).passed()) << to_text(audit(record));
+}
+
 TEST(PlantedViolations, CoverEveryRule) {
   Rules covered;
   for (const Planted& planted : kPlanted)

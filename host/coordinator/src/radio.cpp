@@ -145,6 +145,7 @@ void Coordinator::Impl::expel(Session& session, const Fault& fault) {
   if (!expelled_)
     expelled_ = {RunEnd::kFlooded,
                  fmt::format("the SUT of UAV \"{}\" sent {}", session.uav_name, fault.what)};
+  log_.footer().expelled.push_back(session.uav_name);
   leave(session);
   if (!boards_.shares(session.uav)) return;
   boards_.leave(session.uav);

@@ -138,6 +138,7 @@ TEST_F(RadioTest, AFlooderLosesItsSessionAndTheOthersFinish) {
     EXPECT_EQ(report.end, RunEnd::kFlooded);
     EXPECT_THAT(report.reason, HasSubstr(name_of(0)));
     EXPECT_TRUE(report.suts.at(1).finish) << "the other one is unharmed";
+    EXPECT_THAT(recorder_.footer.value().expelled, ElementsAre(name_of(0)));
     EXPECT_EQ(refusal(1).reason, link::Refusal::Reason::kBadRequest);
     EXPECT_LT(recorder_.radio.size(), 2'100u);
   }

@@ -47,6 +47,8 @@ class MetadataWriter {
       text += text.size() > 1 ? "," : "";
       if constexpr (Time<Item>) {
         append_json_integer(text, to_ns(item));
+      } else if constexpr (std::is_same_v<Item, std::string>) {
+        append_json_string(text, item);
       } else {
         append_members(text, item);
       }
@@ -87,6 +89,9 @@ class MetadataReader {
       if constexpr (Time<Item>) {
         if (!element.is_number_integer()) fail(name, "has an element that is not an integer");
         items.push_back(from_ns<Item>(element.get<std::int64_t>()));
+      } else if constexpr (std::is_same_v<Item, std::string>) {
+        if (!element.is_string()) fail(name, "has an element that is not a string");
+        items.push_back(element.get<std::string>());
       } else {
         items.push_back(read_members<Item>(element));
       }

@@ -321,6 +321,7 @@ void members(auto& io, Maybe<Footer> auto& m) {
   io("largest_lag_ns", m.largest_lag);
   io("largest_grid_error_ns", m.largest_grid_error);
   if (io.has("clearances", !m.clearances.empty())) io.list("clearances", m.clearances);
+  if (io.has("expelled", !m.expelled.empty())) io.list("expelled", m.expelled);
   if (!io.has("stops", m.stops > 0)) return;
   io("stops", m.stops);
   io("largest_overshoot_ns", m.largest_overshoot);

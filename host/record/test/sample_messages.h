@@ -188,6 +188,7 @@ inline Footer footer() {
   footer.stops = 1;
   footer.largest_overshoot = Duration(321);
   footer.clearances = {{"a", 0.25, st_ms(40), "room"}, {"b", 0.0, st_ms(0), "floor"}};
+  footer.expelled = {"b"};
   footer.target_after = {{"temperature_mc", "82500"}};
   return footer;
 }

@@ -176,7 +176,19 @@ link::Address listen_address(const TrialSpec& spec, const Boards& boards) {
   return {is_one ? seen : "0.0.0.0", 0};
 }
 
+// Without descriptors, connections would wait until the time limit for SUTs to connect.
+void allow_connections(std::size_t uavs) {
+  constexpr std::size_t kOfRun = 64, kOfEach = 8;  // more than are used
+  const std::size_t needed = kOfRun + kOfEach * uavs;
+  const std::size_t allowed = os::allow_descriptors(needed);
+  if (allowed < needed)
+    throw Error(ErrorCode::kSetup, fmt::format("a run of {} UAVs needs {} open files, but only {} "
+                                               "are allowed; raise the limit (ulimit -Hn {})",
+                                               uavs, needed, allowed, needed));
+}
+
 std::unique_ptr<link::Server> listen(const TrialSpec& spec, const Boards& boards) try {
+  allow_connections(spec.scenario.uavs.size());
   return link::listen_tcp(listen_address(spec, boards), kHelloTimeout);
 } catch (const Error& e) {
   if (boards.all.empty() || spec.listen || spec.uses_tunnel) throw;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -18,5 +19,9 @@ int separate_cores();
 
 /// The CPUs that this process may run on, ascending.
 std::vector<int> allowed_cpus();
+
+/// Raises the number of descriptors that this process, and those that it starts, may have open to
+/// `count`, if fewer are allowed. How many are allowed then: fewer if the system allows no more.
+std::size_t allow_descriptors(std::size_t count);
 
 }  // namespace tether::os

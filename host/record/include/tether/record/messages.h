@@ -392,7 +392,7 @@ struct Clearance {
 /// End of the run: written last (metadata record "tether.end"). A record without it is incomplete.
 struct Footer {
   /// "finished", "time_limit", "sut_lost", "sut_hung", "simulator_lost", "interrupted",
-  /// "battery_empty", "timing_differs".
+  /// "battery_empty", "timing_differs", "flooded".
   std::string end;
   std::string reason;  ///< one line
   SimTime st_at_end;
@@ -408,6 +408,7 @@ struct Footer {
   Duration largest_overshoot{0};  ///< largest Stop::at − Stop::reply_at
   /// Of the UAVs whose clearance was measured.
   std::vector<Clearance> clearances{};
+  std::vector<std::string> expelled{};  ///< UAVs whose SUTs lost their sessions in the run
 };
 
 }  // namespace tether::record
