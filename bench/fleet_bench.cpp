@@ -37,7 +37,7 @@
 // its record and the embedded simulator, over loopback to a process with one thread for each UAV.
 // Each program reads every sample of the IMU, or every image, and commands a velocity. Clocks are
 // scripted, so that the flights are the same in every run.
-//   fleet_bench [SECONDS OF ST]
+//   fleet_bench [SECONDS OF ST [1|16|64|256|camera]]
 // All figures are milliseconds for each UAV and second of ST. CPU time does not depend much on what
 // else the machine does; wall time does. In real time are flights with UAVs × wall ≤ 1000.
 //   barrier  the coordinator and the link: all that is not in the other columns
@@ -206,7 +206,7 @@ coordinator::RunOptions run_options(const sim::World& world, Duration seconds) {
   for (const sim::Uav& uav : world.uavs) {
     coordinator::UavOptions own;
     for (const sim::Sensor& sensor : uav.sensors)
-      own.timings.push_back(uav::PeriodicTiming{
+      own.timings.emplace_back(uav::PeriodicTiming{
           .period = Duration(std::llround(1e9 / sensor.update_rate_hz)), .delay = {}});
     options.uavs.push_back(own);
   }

@@ -171,10 +171,6 @@ int code_of(const report::SizeReport& report) {
   return is_answered ? 0 : 1;
 }
 
-}  // namespace
-
-namespace {
-
 int find_size(const SizeOptions& options, const std::stop_token& stop) {
   Plan plan = make_plan(options);
   const std::filesystem::path out =

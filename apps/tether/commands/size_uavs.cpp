@@ -74,8 +74,8 @@ void require_shared_board(const scenario::Condition& condition, const std::strin
                          condition.policy == scenario::Policy::kConservativeBarrier;
   if (!is_shared)
     refuse_option("--axis",
-                  fmt::format("uavs needs a synchronised condition under which all UAVs, and at "
-                              "least two, share one [[target]]. \"{}\" of {} is not so.",
+                  fmt::format("uavs needs a synchronised condition in which all UAVs, at least "
+                              "two, share one [[target]] (found: \"{}\" of {}).",
                               condition.name, scenario));
 }
 

@@ -204,8 +204,9 @@ void add_campaign_command(CLI::App& program, Action& action) {
 }
 
 void add_size_command(CLI::App& program, Action& action) {
-  const auto [command, options] = add_command(
-      program, action, "size", "Find the slowest computer that is sufficient for a scenario", size);
+  const auto [command, options] =
+      add_command(program, action, "size",
+                  "Find the slowest sufficient computer, or how many UAVs it carries", size);
   command->add_option("scenario", options->scenario, "Name of a shipped scenario, or a file (TOML)")
       ->required();
   command
@@ -244,7 +245,8 @@ void add_size_command(CLI::App& program, Action& action) {
       "Number of parallel flights [1; with --slurm, one for each core]. Rejected if "
       "parallel runs would distort measured time");
   add_cluster_options(*command, options->cluster);
-  command->add_option("--out", options->out, "Folder [out/size/SCENARIO, of UAVs with -uavs]");
+  command->add_option("--out", options->out,
+                      "Output folder [out/size/SCENARIO; for UAVs, SCENARIO-uavs]");
   command->add_flag("--resume", options->resume, "Continue with the flights in the folder");
   command->add_flag("--force", options->force, "Remove the earlier flights in the folder");
   add_junit_option(*command, options->junit);
@@ -252,7 +254,7 @@ void add_size_command(CLI::App& program, Action& action) {
   add_reading_options(*command, options->reading);
   command->footer(
       R"(Exit codes: 0 every --target is sufficient, or none is given and the answer is as narrow as
---interval asks (of UAVs: decided), 1 not so, 2 wrong use or a bad file, 3 interrupted,
+--interval asks (of UAVs: decided), 1 otherwise, 2 wrong use or a bad file, 3 interrupted,
 or flights failed.
 
 Examples:

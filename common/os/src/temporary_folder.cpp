@@ -26,7 +26,7 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix, const std::filesyste
     const std::string reason = "cannot be made: " + reason_of(errno);
     throw Error(ErrorCode::kSetup, {name},
                 parent == usual_parent()
-                    ? reason + ". Set TMPDIR to a folder of this machine with space"
+                    ? reason + ". Make space there, or set TMPDIR to another folder"
                     : reason);
   }
   path_ = name;

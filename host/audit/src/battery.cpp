@@ -23,8 +23,11 @@ void check(const Entry& entry, const std::vector<const Battery*>& logged, Report
   // Between two messages of the channel, only the charge is known to lie between theirs.
   const double least = after == logged.end() ? 0.0 : (*after)->charge;
   if (before.at == at ? read != then : !(read.charge >= least && read.charge <= before.charge))
-    report.add(1, entry, "a charge of {} was read at ST {}, but the battery had {} at ST {}",
-               read.charge, ns(at), before.charge, ns(before.at));
+    report.add(1, entry,
+               "{} V, {} A and a charge of {} were read at ST {}, but the battery had {} V, {} A "
+               "and {} at ST {}",
+               read.voltage_V, read.current_A, read.charge, ns(at), then.voltage_V, then.current_A,
+               then.charge, ns(before.at));
 }
 
 }  // namespace

@@ -73,7 +73,9 @@ std::string explain_ssh(const std::string& output, const scenario::SshAddress& a
 }
 
 SshConnection::SshConnection(const scenario::SshAddress& address, std::stop_token stop)
-    : address_(address), stop_(std::move(stop)), folder_("tether-ssh-", "/tmp") {
+    : address_(address),
+      stop_(std::move(stop)),
+      folder_("tether-ssh-", "/tmp") {  // the path of a socket must be short
   connect();
 }
 

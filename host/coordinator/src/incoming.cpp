@@ -165,11 +165,12 @@ std::optional<ExecTime> Coordinator::Impl::earliest_due(const Session& session,
   return earliest;
 }
 
-// A concurrent SUT is stopped: replies that are due by then can be sent.
+// A concurrent SUT is stopped: replies that are due by then can be sent. It reports the same stop
+// again if a message has moved up the reply that it waits for.
 void Coordinator::Impl::on_stop(Session& session, const link::Progress& stop, WallTime now) {
   const ExecTime at = stop.reached;
-  const bool is_same = barrier_.is_held(session.uav);  // see fault_of
-  if (!is_same) log_.stop(st(), {session.uav_name, at, earliest_due(session, stop), now});
+  if (std::exchange(session.stopped_at, at) != at)
+    log_.stop(st(), {session.uav_name, at, earliest_due(session, stop), now});
   barrier_.stop(session.uav, at, stop.dues_heard >= session.newest_moved_due);
   release_ready();
 }

@@ -130,11 +130,12 @@ void Coordinator::Impl::receive(Session& session, record::Interaction& entry, li
 
 void Coordinator::Impl::count_full_queue(const radio::Arrival& arrival) {
   Session& sender = sessions_[arrival.message.from];
+  constexpr std::size_t kDroppedPerQueued = 9;  // that a radio may be overloaded by for ever
   if (arrival.outcome != radio::Outcome::kQueueFull) {
-    sender.full_queues = 0;
+    sender.full_queues -= std::min(sender.full_queues, kDroppedPerQueued);
   } else if (!sender.left && ++sender.full_queues > kMaxFullQueues) {
     expel(sender, {Fault::Kind::kFlood,
-                   fmt::format("more than {} messages in a row while its radio's queue was full",
+                   fmt::format("more than {} messages beyond ten times what its radio could send",
                                kMaxFullQueues)});
   }
 }

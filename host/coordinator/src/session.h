@@ -64,11 +64,12 @@ struct Session {
   // Radio.
   std::deque<radio::Arrival> inbox;  ///< arrived, in the order of time
   std::size_t promised = 0;          ///< open calls that will receive one of them
-  std::size_t full_queues = 0;       ///< messages in a row that its queue had no room for
+  std::size_t full_queues = 0;       ///< messages without room, beyond nine for each that was sent
   std::uint64_t dues_sent = 0;
   std::uint64_t newest_moved_due = 0;  ///< number of the last Due that was earlier than announced
 
-  ExecTime resumed_at{};  ///< ET of its last reply, from which on it computes
+  std::optional<ExecTime> stopped_at;  ///< ET of the last stop in the record
+  ExecTime resumed_at{};               ///< ET of its last reply, from which on it computes
   /// On a shared board: what it is known to have computed since then, as if alone, added to that.
   ExecTime own_bound{};
   std::vector<record::Annotation> notes;  ///< on a shared board: to record before the next reply

@@ -20,8 +20,9 @@ namespace tether::coordinator {
 inline constexpr std::size_t kMaxCallsInAStep = 10'000;
 /// Limit per UAV: a latency of one second with a command every 15 us.
 inline constexpr std::size_t kMaxWaitingCommands = 65'536;
-/// Limits on the messages by radio that a SUT sends between two steps of ST, and in a row while its
-/// queue is full. A SUT that exceeds them loses its session; the others finish.
+/// Limits on the messages by radio that a SUT sends between two steps of ST, and on those for which
+/// its queue has no room (`Session::full_queues`). A SUT that exceeds them loses its session; the
+/// others finish.
 inline constexpr std::size_t kMaxMessagesInAStep = 1'000;
 inline constexpr std::size_t kMaxFullQueues = 1'000;
 /// Limit on the annotations of a SUT in a run: two hours of 1 kB for each of 30 images a second.

@@ -129,18 +129,19 @@ TEST_F(RadioTest, AFullInboxLosesTheNewest) {
 }
 
 TEST_F(RadioTest, AFlooderLosesItsSessionAndTheOthersFinish) {
-  for (const bool in_one_step : {true, false}) {
+  // All in one step; while the queue is full; and while it has room now and then.
+  const std::vector<std::pair<int, std::size_t>> floods{{0, 60'000}, {2, 60'000}, {100, 1'000}};
+  for (const auto& [pause_us, bytes] : floods) {
     set_channel();
     options_.radio.queue_messages = 2;
-    const Duration pause = in_one_step ? Duration(0) : Duration(microseconds(2));
-    std::vector<Act> flood(4'000, send(pause, "", 60'000));
+    std::vector<Act> flood(4'000, send(microseconds(pause_us), "", bytes));
     const RunReport report = run_all({flood, {finish(milliseconds(300))}});
     EXPECT_EQ(report.end, RunEnd::kFlooded);
     EXPECT_THAT(report.reason, HasSubstr(name_of(0)));
     EXPECT_TRUE(report.suts.at(1).finish) << "the other one is unharmed";
     EXPECT_THAT(recorder_.footer.value().expelled, ElementsAre(name_of(0)));
     EXPECT_EQ(refusal(1).reason, link::Refusal::Reason::kBadRequest);
-    EXPECT_LT(recorder_.radio.size(), 2'100u);
+    EXPECT_LT(recorder_.radio.size(), flood.size());
   }
 }
 
@@ -252,6 +253,32 @@ TEST_F(RadioTest, AStopNamesOnlyRepliesThatItKnewOf) {
   EXPECT_EQ(recorder_.stops[1].reply_at, std::nullopt);
   EXPECT_EQ(recorder_.stops[2].at, us(3'000));
   EXPECT_EQ(recorder_.stops[2].reply_at, us(1'000));
+}
+
+// A message that arrives while the SUT is stopped for the reply's timeout moves that reply up, and
+// the SUT reports its stop again.
+TEST_F(RadioTest, AStopThatIsReportedAgainIsOneStop) {
+  make(2);
+  const link::PeerId threads = add_silent(true, name_of(0));
+  const link::PeerId sender =
+      server_->add_sut(hello(name_of(1)), {send(microseconds(700)), finish(milliseconds(50))});
+  server_->deliver(threads, request(1, us(100), link::ReceiveMessage{microseconds(900)}));
+  for (const std::uint64_t dues_heard : {1U, 2U})
+    server_->deliver(threads, link::Progress{us(1'000), true, 0, dues_heard});
+  server_->deliver(threads, request(2, us(1'100), link::Finish{true, "done", "{}"}));
+  server_->deliver(threads, link::Progress{us(1'200), true, 0, 3});
+  // Both join; then the receive and its stop arrive before the message.
+  std::size_t picks = 0;
+  server_->choose = [&](std::size_t) {
+    return server_->first_of(picks++ == 1 || picks > 4 ? sender : threads);
+  };
+  const RunReport report = run();
+  ASSERT_EQ(report.end, RunEnd::kFinished) << report.reason;
+  ASSERT_TRUE(replies_to(threads).at(0).message);
+  EXPECT_EQ(replies_to(threads)[0].resume_at, us(700));
+  ASSERT_EQ(recorder_.stops.size(), 2U);
+  EXPECT_EQ(recorder_.stops[0].at, us(1'000));
+  EXPECT_EQ(recorder_.stops[0].reply_at, us(1'000));
 }
 
 }  // namespace

@@ -29,10 +29,12 @@ const scenario::Condition& moved_from(const TrialSpec& spec) {
 
 std::vector<std::string> size_arguments(const TrialSpec& spec,
                                         const scenario::ShippedFiles& shipped) try {
-  if (!spec.scenario.settings.empty() || !spec.condition.slowed_from.empty() || spec.waits_for_sut)
+  if (!spec.scenario.settings.empty() || spec.scenario.has_laid_profile ||
+      !spec.condition.slowed_from.empty() || spec.waits_for_sut)
     return {};
   const scenario::Condition* own = spec.scenario.find_condition(spec.condition.name);
   scenario::Condition slower = own != nullptr ? *own : moved_from(spec);
+  if (spec.condition.simulator != slower.simulator) return {};
   std::vector<std::string> words = {word_for(spec.scenario.file, shipped), "--condition",
                                     slower.name};
   if (own == nullptr) {

@@ -183,12 +183,12 @@ void allow_connections(std::size_t uavs) {
   const std::size_t allowed = os::allow_descriptors(needed);
   if (allowed < needed)
     throw Error(ErrorCode::kSetup, fmt::format("a run of {} UAVs needs {} open files, but only {} "
-                                               "are allowed; raise the limit (ulimit -Hn {})",
+                                               "are allowed. Raise the hard limit (as root: ulimit "
+                                               "-Hn {}, or nofile in /etc/security/limits.conf)",
                                                uavs, needed, allowed, needed));
 }
 
 std::unique_ptr<link::Server> listen(const TrialSpec& spec, const Boards& boards) try {
-  allow_connections(spec.scenario.uavs.size());
   return link::listen_tcp(listen_address(spec, boards), kHelloTimeout);
 } catch (const Error& e) {
   if (boards.all.empty() || spec.listen || spec.uses_tunnel) throw;
@@ -240,7 +240,7 @@ TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimu
       recorder_(record::make_mcap_recorder(spec.folder / kRecordFile)),
       coordinator_(simulator.get(), *recorder_, run_options(spec, inputs, token_, target_),
                    host_now),
-      server_(listen(spec, boards)),
+      server_((allow_connections(spec.scenario.uavs.size()), listen(spec, boards))),
       sut_run_{sut_address(spec, nullptr, *server_), token_, spec.condition, count_files(spec),
                addresses_of(spec, boards, *server_)},
       refusals_(observer.on_refused),

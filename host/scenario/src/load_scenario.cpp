@@ -398,6 +398,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
 
 void lay_profile(Scenario& scenario, const Profile& profile) {
   for (Condition& condition : scenario.conditions) condition.profiles.push_back(profile);
+  scenario.has_laid_profile = true;
   add_files(scenario, profile.files);
   sort_files(scenario);
 }

@@ -135,21 +135,21 @@ void SuccessCurve::observe(const Flight& flight) {
 void SuccessCurve::normalise() {
   threshold_.reset();
   weight_.assign(grid_.curves_.size(), 0.0F);
-  is_kept_.assign(joint_.size() / kEnds, true);
+  std::vector<float> of_blocks(joint_.size() / kEnds, 0.0F);
   double sum = 0.0;
-  for (std::size_t block = 0; block < is_kept_.size(); ++block) {
+  for (std::size_t block = 0; block < of_blocks.size(); ++block) {
     const float* const joint = &joint_[block * kEnds];
     float* const weight = &weight_[block / scales_ * kEnds];
-    float of_block = 0.0F;
     for (std::size_t e = 0; e < kEnds; ++e) weight[e] += joint[e];
-    for (std::size_t e = 0; e < kEnds; ++e) of_block += joint[e];
-    sum += of_block;
-    is_kept_[block] = of_block >= kLost;
+    for (std::size_t e = 0; e < kEnds; ++e) of_blocks[block] += joint[e];
+    sum += of_blocks[block];
   }
   assert(sum > 0.0);
   const auto factor = static_cast<float>(1.0 / sum);
   for (float& weight : weight_) weight *= factor;
+  is_kept_.resize(of_blocks.size());
   for (std::size_t block = 0; block < is_kept_.size(); ++block) {
+    is_kept_[block] = of_blocks[block] >= kLost * sum;
     float* const joint = &joint_[block * kEnds];
     const float scaled = is_kept_[block] ? factor : 0.0F;
     for (std::size_t e = 0; e < kEnds; ++e) joint[e] *= scaled;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <tether/base/text_table.h>
+#include <tether/os/shell_word.h>
 #include <tether/report/verdict.h>
 
 // The words of a verdict.
@@ -253,6 +254,15 @@ std::string stage_advice(const Advice& advice, const ConditionVerdict& lead) {
   return text;
 }
 
+/// For a condition of a scenario as it is.
+std::string uavs_advice(const ConditionVerdict& lead) {
+  const std::vector<std::string>& words = lead.size_arguments;
+  constexpr std::size_t kOwnCondition = 3;  // SCENARIO --condition NAME
+  if (!is_one_board_for_all(lead) || words.size() != kOwnCondition) return "";
+  return fmt::format("; to find how many UAVs it carries: `tether size {} {} {} --axis uavs`",
+                     os::shell_word(words[0]), words[1], os::shell_word(words[2]));
+}
+
 std::string sentence_of(const Advice& advice, const Verdict& verdict) {
   using Kind = Advice::Kind;
   const ConditionVerdict& lead = lead_of(verdict);
@@ -271,10 +281,7 @@ std::string sentence_of(const Advice& advice, const Verdict& verdict) {
     case Kind::kTryFaster:
       return faster_advice(lead);
     case Kind::kFindThreshold:
-      return threshold_advice(lead) +
-             (is_one_board_for_all(lead)
-                  ? "; to find how many UAVs it carries: `--axis uavs` instead"
-                  : "");
+      return threshold_advice(lead) + uavs_advice(lead);
     case Kind::kFlyMore:
       if (lead.planned == 1)
         return "One flight shows little. Fly a campaign of several seeds: `tether campaign`.";

@@ -71,7 +71,7 @@ std::string sufficient_condition(const Verdict& verdict) {
   if (slowest == nullptr) return "";
   std::string text = fmt::format(" “{}” is {}", slowest->condition, name(slowest->ruling));
   if (computing_s(*slowest) > 0.0 && computing_s(lead) > computing_s(*slowest))
-    text += fmt::format(": it computes {} per image instead of {}, {} × less",
+    text += fmt::format(": an image costs {} instead of {}, {} × less",
                         short_ms(computing_s(*slowest)), short_ms(computing_s(lead)),
                         fixed(computing_s(lead) / computing_s(*slowest), 1));
   return text + ".";

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <tether/os/shell_word.h>
 #include <tether/report/uavs_report.h>
 
 namespace tether::report {
@@ -27,6 +28,10 @@ std::string evidence_of(const UavsReport& report) {
 std::string lead_of(const UavsReport& report) {
   const auto& [carried, too_many, next] = report.answer;
   const std::size_t least = report.question.least, most = report.question.most;
+  if (!report.answer.is_decided() && too_many > most)
+    return carried < least
+               ? fmt::format("It is not known whether this board carries {}", uavs(least))
+               : fmt::format("This board carries at least {}", uavs(carried));
   if (!report.answer.is_decided())
     return fmt::format("This board carries {} to {}", carried < least ? 0 : carried,
                        uavs(too_many - 1));
@@ -91,8 +96,8 @@ std::vector<std::string> uavs_advice(const UavsReport& report) {
           report.pace->stages.front().stage, 100.0 * report.pace->stages.front().share));
     advice.push_back(
         fmt::format("To see how much faster the board must be to carry all: `tether "
-                    "size SCENARIO --condition \"{}\" --between 0.1,2`",
-                    report.condition));
+                    "size {} --condition {} --between 0.1,2`",
+                    os::shell_word(report.scenario), os::shell_word(report.condition)));
   }
   return advice;
 }

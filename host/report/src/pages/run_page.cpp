@@ -127,7 +127,7 @@ std::string radio_part(const record::Record& record) {
                 "arrived, downwards those that were lost. At the right, the share that arrived, "
                 "and the median of their delays.",
                 "plot") +
-         to_html(radio_table(record));
+         to_html(radio_table(record), "Radio");
 }
 
 std::string record_part(const std::filesystem::path& folder) {

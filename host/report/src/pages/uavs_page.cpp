@@ -34,7 +34,7 @@ Table setup_table(const UavsReport& report) {
   Table table{"", {{{""}, {""}}}, {}, {}, 2};
   table.rows = {
       {"question",
-       fmt::format("the largest number of UAVs with which {:.0f} % of the flights reach "
+       fmt::format("the largest number of UAVs with which {:.4g} % of the flights reach "
                    "the goal",
                    100.0 * report.question.success)},
       {"searched", fmt::format("the first {} to {} UAVs of the scenario; at most {} flights",
@@ -67,7 +67,7 @@ std::string uavs_page(const UavsReport& report) {
   }
   if (!report.not_flown.empty()) body += problems_box(report.not_flown);
   body += "<section id=\"basis\">\n" + element("h2", "Setup and checks") +
-          to_html(setup_table(report)) + "</section>\n";
+          to_html(setup_table(report), "Setup and checks") + "</section>\n";
   return html_page(title, body);
 }
 

@@ -1,5 +1,8 @@
 #include "plots/plot_script.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include <tether/report/uavs_report.h>
@@ -25,7 +28,8 @@ Plot uavs_plot(const UavsReport& report) {
                 "flights");
   const Frame frame{.x_label = fmt::format("UAVs on “{}”", report.board),
                     .y_label = "goal reached"};
-  return {frame_script(frame) + range_script("x", least - 0.5, most + 0.5) + "set xtics 1\n" +
+  return {frame_script(frame) + range_script("x", least - 0.5, most + 0.5) +
+              fmt::format("set xtics {}\n", std::max(1.0, std::floor((most - least) / 16))) +
               range_script("y", -0.05, 1.05) +
               "set ytics ('0 %%' 0, '25 %%' 0.25, '50 %%' 0.5, '75 %%' 0.75, '100 %%' 1)\n" +
               drawing.script(),

@@ -40,7 +40,7 @@ TEST(UavsReport, AnswersFirst) {
                         {{{1, 36, 36}, {2, 2, 0}}, "This board carries 1 UAV", 1},
                         {{{4, 36, 36}}, "This board carries at least 4 UAVs", 1},
                         {{{1, 2, 0}}, "This board does not carry 1 UAV", 1},
-                        {{{2, 36, 36}, {3, 9, 8}}, "This board carries 2 to 4 UAVs", 2}}) {
+                        {{{2, 36, 36}, {3, 9, 8}}, "This board carries at least 2 UAVs", 2}}) {
     const auto answers = uavs_answers(report_of(c.levels));
     EXPECT_EQ(answers.front().lead, c.lead);
     EXPECT_EQ(answers.size(), c.sentences) << c.lead;

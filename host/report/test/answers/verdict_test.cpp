@@ -189,7 +189,7 @@ TEST(Verdict, NamesTheSlowestConditionThatWouldDo) {
   host.median_s = 0.01;
   slow_host.median_s = 0.025;
   EXPECT_THAT(answers_of({verdict_of(scenario, {slow_pace(), slow_host, host})})[0].rest,
-              EndsWith(" “slow host” is fast enough so far: it computes 25 ms per image instead of "
+              EndsWith(" “slow host” is fast enough so far: an image costs 25 ms instead of "
                        "100 ms, 4.0 × less."));
   EXPECT_THAT(answers_of({verdict_of(scenario)})[0].rest,
               EndsWith(" “slow host” is fast enough so far."));
@@ -271,12 +271,15 @@ TEST(Verdict, SaysWhatAnImageCostsOnASharedBoard) {
   pace.shared_board = "obc";
   pace.programs = 2;
   pace.waiting = 0.48;
-  const Verdict verdict = verdict_of(flights(0, 10), {pace});
+  Verdict verdict = verdict_of(flights(0, 10), {pace});
+  verdict.conditions[0].size_arguments = {"pair", "--condition", "one for all"};
   EXPECT_THAT(answers_of({verdict})[0].rest,
               HasSubstr("an image costs 100 ms on “obc”, 48 % of it waiting for the cores that 2 "
                         "programs share, and “detect” takes 81 % of the computing time"));
   EXPECT_THAT(advice_of({verdict})[0], HasSubstr("Computing and waiting for cores take up to"));
-  EXPECT_THAT(advice_of({verdict})[1], HasSubstr("--axis uavs"));
+  EXPECT_THAT(advice_of({verdict})[1],
+              HasSubstr("; to find how many UAVs it carries: `tether size pair --condition "
+                        "'one for all' --axis uavs`"));
   EXPECT_THAT(stages_table({verdict}).notes,
               ElementsAre(HasSubstr(": 100 ms, 48 % of it waiting for the cores of “obc”,")));
 }

@@ -42,7 +42,7 @@ void warn_of_ignored(const SdfSource& source, const sdf::ElementPtr& battery_plu
   for_each_child(battery_plugin, [&](const sdf::ElementPtr& child) {
     if (std::ranges::find(kRead, child->GetName()) == kRead.end())
       warn_at(source, child, Consequence::kNoEffect,
-              "is not read of a battery, whose loads are those of the energy file; ignored", warn);
+              "has no effect: the loads of a battery are those of the energy file", warn);
   });
 }
 

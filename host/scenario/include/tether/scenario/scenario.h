@@ -144,6 +144,7 @@ struct Scenario {
   std::vector<Setting> settings{};    ///< not of the file: values that were replaced
   std::filesystem::path world;        ///< absolute
   sim::WorldOptions world_options{};  ///< not of the file: how to read the world
+  bool has_laid_profile = false;      ///< not of the file: see lay_profile
   Duration step{std::chrono::milliseconds(1)};
   Duration time_limit{0};                            ///< of ST
   Duration hang_limit{std::chrono::seconds(30)};     ///< of WT without a message from a SUT
