@@ -118,7 +118,8 @@ TEST(AuditOfRadio, FindsViolations) {
   }
 }
 
-// "b" has several threads. It stops at 1.9 ms and resumes before it hears that its reply is due.
+// "b" has several threads. It stops at 1.9 ms for the end of a sleep, and resumes before it hears
+// that another reply is due since 1.7 ms.
 Record concurrent_exchange() {
   Record record = exchange();
   record.header.suts[1].concurrent = true;
@@ -133,11 +134,17 @@ Record concurrent_exchange() {
     record.stops.push_back({SimTime(st_ms * kStep), order, stop});
   };
   add_stop(11, 1, 1'000, 0);
-  add_stop(12, 1, 1'900, 0);
+  add_stop(12, 1, 1'900, 1'900);
   add_stop(15, 1, 2'200, 1'700);
   add_stop(35, 2, 2'500, 0);
   add_stop(36, 4, 4'000, 4'000);
   add_stop(55, 5, 5'000, 5'000);
+  for (Entry& entry : record.interactions)
+    if (entry.message.uav == "b" && entry.message.sequence > 1) ++entry.message.sequence;
+  Entry sleep = call("b", "sleep", 1'200'000, 1'900'000, 2);
+  sleep.order = 13;
+  sleep.message.sleep_until = sleep.message.reply_at;
+  record.interactions.insert(record.interactions.begin() + 1, sleep);
   set_figures(record);
   return record;
 }
@@ -149,6 +156,9 @@ TEST(AuditOfRadio, AcceptsThatAThreadedSutHearsOfAMessageAfterAStop) {
            {"it knew, and resumed",
             {0},
             [](Record& r) { r.stops[1].message.reply_at = r.stops[2].message.reply_at; }},
+           {"a reply to a sleep after a later one",
+            {0, 5},
+            [](Record& r) { std::swap(r.interactions[1].message, r.interactions[2].message); }},
            {"a stop without its reply",
             {0},
             [](Record& r) { r.stops[4].message.reply_at.reset(); }},
