@@ -178,7 +178,7 @@ link::Address listen_address(const TrialSpec& spec, const Boards& boards) {
 
 // Without descriptors, connections would wait until the time limit for SUTs to connect.
 void allow_connections(std::size_t uavs) {
-  constexpr std::size_t kOfRun = 64, kOfEach = 8;  // more than are used
+  constexpr std::size_t kOfRun = 48, kOfEach = 8;  // more than are used
   const std::size_t needed = kOfRun + kOfEach * uavs;
   const std::size_t allowed = os::allow_descriptors(needed);
   if (allowed < needed)

@@ -110,7 +110,9 @@ struct Landed {
 Landed fly(const Flight& flight) {
   const TempFolder folder;
   std::vector<Substitution> changes{
-      {"\ntime_limit_s = ", fmt::format("\ntime_limit_s = {}  # ", flight.limit_s)}};
+      // emulated programs start slowly
+      {"\ntime_limit_s = ",
+       fmt::format("\nconnect_limit_s = 170\ntime_limit_s = {}  # ", flight.limit_s)}};
   const auto original = read_text(TETHER_SOURCE_DIR "/data/scenarios/" + flight.scenario + ".toml");
   const bool has_mission = original.find("\nmission = ") != std::string::npos;
   if (has_mission)  // without its clauses, whose deadlines are beyond this limit
@@ -121,7 +123,6 @@ Landed fly(const Flight& flight) {
   std::vector<std::string> words{"run",   file,          "--quiet", "--condition", flight.condition,
                                  "--out", folder / "out"};
   if (flight.target) words.insert(words.end(), {"--target", flight.target->file});
-  words.insert(words.end(), {"--set", "connect_limit_s=170"});  // emulated programs start slowly
   Landed landed{run(tether(words), std::chrono::minutes(3)), {}};
   if (std::filesystem::exists(folder / "out/result.json"))
     landed.result = read_result(folder / "out");
