@@ -110,13 +110,14 @@ struct Landed {
 Landed fly(const Flight& flight) {
   const TempFolder folder;
   std::vector<Substitution> changes{
-      // emulated programs start slowly
-      {"\ntime_limit_s = ",
+      {"\ntime_limit_s = ",  // emulated programs start slowly
        fmt::format("\nconnect_limit_s = 170\ntime_limit_s = {}  # ", flight.limit_s)}};
   const auto original = read_text(TETHER_SOURCE_DIR "/data/scenarios/" + flight.scenario + ".toml");
-  const bool has_mission = original.find("\nmission = ") != std::string::npos;
-  if (has_mission)  // without its clauses, whose deadlines are beyond this limit
-    changes.emplace_back("\nmission = ", "\nfiles.mission = ");
+  const std::string mission =
+      "\nmission = ";  // without clauses: their deadlines are beyond limit_s
+  for (auto at = original.find(mission); at != std::string::npos;
+       at = original.find(mission, at + 1))
+    changes.emplace_back(mission, "\nfiles.mission = ");
   if (flight.concurrent) changes.emplace_back("[sut]", "[sut]\nconcurrent = true");
   const auto file = write_shipped_scenario(folder.path(), flight.scenario, changes);
   write_bare_worlds(folder / "worlds");
