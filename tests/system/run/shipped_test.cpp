@@ -65,7 +65,7 @@ std::vector<Flight> flights_of(const std::string& name,
                        {},
                        false,
                        why_skipped(condition, loaded.uavs.size()),
-                       std::max(0.3, 3.0 * to_seconds(condition.computing))});
+                       std::max(0.3, 12.0 * to_seconds(condition.computing))});
   }
   for (const scenario::Target& target : targets) {
     // face_anchor has a condition with it, and the emulator takes long for its many images.
