@@ -6,7 +6,6 @@
 #include "options/file_kind.h"
 #include "options/junit_option.h"
 #include "options/refuse_option.h"
-#include "options/simulator_option.h"
 #include "options/trial_options.h"
 #include "options/world_options.h"
 #include "terminal/say.h"
@@ -119,15 +118,7 @@ Plan make_plan(const SizeOptions& options) {
   plan.report.question = question_of(options);
   plan.report.most_flights = options.max_trials;
   const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
-  const std::filesystem::path file =
-      shipped.find(scenario::ShippedKind::kScenario, options.scenario);
-  require_kind(file, FileKind::kScenario);
-  scenario::Scenario scenario = scenario::load_scenario(file);
-  scenario.world_options = world_options(options.reading, shipped);
-  if (!options.simulator.empty()) {
-    parse_simulator_option(options.simulator);
-    for (auto& condition : scenario.conditions) condition.simulator = options.simulator;
-  }
+  scenario::Scenario scenario = load_sized_scenario(options);
   const scenario::Condition own = pick_condition(scenario, options.condition);
   if (own.cpu_factor * plan.report.question.most > kLargestFactor)
     refuse_option("--between",
@@ -175,15 +166,9 @@ int find_size(const SizeOptions& options, const std::stop_token& stop) {
   Plan plan = make_plan(options);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out/size") / plan.report.scenario : options.out;
-  const auto mode = options.force    ? campaign::OpenMode::kReplace
-                    : options.resume ? campaign::OpenMode::kResume
-                                     : campaign::OpenMode::kFresh;
   const sizing::CurveGrid grid(plan.report.question);
-  SizeFlights flights(plan.flights, grid, options.reading, out, mode, stop);
-  for (const char* old : {kSizeFile, kSizeDrawing}) {
-    std::error_code ignored;
-    std::filesystem::remove(out / old, ignored);
-  }
+  SizeFlights flights(plan.flights, grid, options.reading, out, open_mode(options), stop);
+  remove_earlier_answer(out);
   const SizeFlights::End end = flights.fly(plan.report);
   const std::string again =
       fmt::format("tether size {} --out {} --resume, with the options of this call",

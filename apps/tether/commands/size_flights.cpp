@@ -1,6 +1,8 @@
 #include "commands/size_flights.h"
 
 #include "back_ends.h"
+#include "options/file_kind.h"
+#include "options/simulator_option.h"
 #include "options/trial_options.h"
 #include "options/world_options.h"
 #include "terminal/say.h"
@@ -10,16 +12,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <tether/os/program.h>
 #include <tether/os/terminal.h>
 #include <tether/runner/campaign_trials.h>
 #include <tether/runner/trial_folder.h>
 #include <tether/scenario/scenario.h>
+#include <tether/scenario/shipped_files.h>
 
 namespace tether::app {
 
 namespace {
-
-constexpr std::size_t kMostFailures = 3;
 
 bool has_margins(const scenario::Scenario& scenario) {
   return std::ranges::any_of(scenario.metrics, [](const scenario::Metric& metric) {
@@ -35,6 +37,33 @@ std::string name_of_campaign(const scenario::Scenario& scenario) {
 }
 
 }  // namespace
+
+scenario::Scenario load_sized_scenario(const SizeOptions& options,
+                                       const std::vector<scenario::Setting>& settings) {
+  const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
+  const std::filesystem::path file =
+      shipped.find(scenario::ShippedKind::kScenario, options.scenario);
+  require_kind(file, FileKind::kScenario);
+  scenario::Scenario scenario = scenario::load_scenario(file, settings);
+  scenario.world_options = world_options(options.reading, shipped);
+  if (options.simulator.empty()) return scenario;
+  parse_simulator_option(options.simulator);
+  for (auto& condition : scenario.conditions) condition.simulator = options.simulator;
+  return scenario;
+}
+
+campaign::OpenMode open_mode(const SizeOptions& options) {
+  return options.force    ? campaign::OpenMode::kReplace
+         : options.resume ? campaign::OpenMode::kResume
+                          : campaign::OpenMode::kFresh;
+}
+
+void remove_earlier_answer(const std::filesystem::path& out) {
+  for (const char* old : {kSizeFile, kSizeDrawing}) {
+    std::error_code ignored;
+    std::filesystem::remove(out / old, ignored);
+  }
+}
 
 SizeFlights::SizeFlights(const Setup& setup, const sizing::CurveGrid& grid,
                          const ReadingOptions& reading, const std::filesystem::path& out,
@@ -152,7 +181,7 @@ SizeFlights::End SizeFlights::fly_synchronised() {
       take(campaign::read_result(missing_.at(keys[i])->folder), slowdowns[i], report_->synchronised,
            sizing_);
     failures_ += report_->not_flown.size() - before;
-    if (failures_ >= kMostFailures) return End::kFailing;
+    if (failures_ >= kMostFailedFlights) return End::kFailing;
   }
 }
 

@@ -22,6 +22,17 @@
 
 namespace tether::app {
 
+/// `tether size` gives up after so many failed flights, whatever it varies.
+inline constexpr std::size_t kMostFailedFlights = 3;
+
+/// The scenario of the options, with these values replaced.
+/// @throws as load_scenario; Error(kUsage) if an option cannot be used.
+scenario::Scenario load_sized_scenario(const SizeOptions& options,
+                                       const std::vector<scenario::Setting>& settings = {});
+campaign::OpenMode open_mode(const SizeOptions& options);
+/// An answer must not be there while flights for another one are flown.
+void remove_earlier_answer(const std::filesystem::path& out);
+
 /// The flights of `tether size`: a campaign whose conditions are the slowed ones, of which only
 /// those trials are run that the statistics ask for. Each flight has a seed of its own: flights
 /// with the same seed succeed and fail together, and say less than their number.

@@ -2,10 +2,9 @@
 
 #include "back_ends.h"
 #include "commands/cluster.h"
-#include "options/file_kind.h"
+#include "commands/size_flights.h"
 #include "options/junit_option.h"
 #include "options/refuse_option.h"
-#include "options/simulator_option.h"
 #include "options/trial_options.h"
 #include "options/world_options.h"
 #include "terminal/say.h"
@@ -22,7 +21,6 @@
 #include <tether/base/error.h>
 #include <tether/campaign/campaign_folder.h>
 #include <tether/campaign/run_campaign.h>
-#include <tether/os/program.h>
 #include <tether/os/text_file.h>
 #include <tether/report/gnuplot.h>
 #include <tether/report/uavs_report.h>
@@ -30,28 +28,16 @@
 #include <tether/runner/trial_folder.h>
 #include <tether/runner/trial_server.h>
 #include <tether/scenario/campaign.h>
-#include <tether/scenario/shipped_files.h>
 
 namespace tether::app {
 
 namespace {
 
-constexpr std::size_t kMostFailedFlights = 3;
-
 /// The scenario with its first so many UAVs; all of them without a number.
 scenario::Scenario load(const SizeOptions& options, std::optional<std::size_t> uavs) {
-  const auto shipped = scenario::ShippedFiles::of_program(os::own_file());
-  const std::filesystem::path file =
-      shipped.find(scenario::ShippedKind::kScenario, options.scenario);
-  require_kind(file, FileKind::kScenario);
   std::vector<scenario::Setting> settings;
   if (uavs) settings = {{std::string(scenario::kUavCount), std::to_string(*uavs)}};
-  scenario::Scenario scenario = scenario::load_scenario(file, settings);
-  scenario.world_options = world_options(options.reading, shipped);
-  if (options.simulator.empty()) return scenario;
-  parse_simulator_option(options.simulator);
-  for (auto& condition : scenario.conditions) condition.simulator = options.simulator;
-  return scenario;
+  return load_sized_scenario(options, settings);
 }
 
 void require_for_uavs(const SizeOptions& options) {
@@ -144,10 +130,7 @@ class UavFlights {
           if (uses_workers(options.cluster)) versions["machine"] = kManyMachines;
           return campaign::campaign_settings(campaign_, versions, files_);
         }()),
-        folder_(out, campaign_, settings_,
-                options.force    ? campaign::OpenMode::kReplace
-                : options.resume ? campaign::OpenMode::kResume
-                                 : campaign::OpenMode::kFresh) {
+        folder_(out, campaign_, settings_, open_mode(options)) {
     if (uses_workers(options.cluster))
       cluster_.emplace(options.cluster, jobs_, out, std::map<std::string, std::string>{});
     for (const std::string& warning : folder_.warnings()) say("warning: {}\n", warning);
@@ -287,10 +270,7 @@ int find_uavs(const SizeOptions& options, const std::stop_token& stop) {
       options.out.empty() ? std::filesystem::path("out/size") / (all.name + "-uavs") : options.out;
   UavFlights flights(options, campaign_of(options, all, condition.name, report.question), out,
                      stop);
-  for (const char* old : {kSizeFile, kSizeDrawing}) {
-    std::error_code ignored;
-    std::filesystem::remove(out / old, ignored);
-  }
+  remove_earlier_answer(out);
   const UavFlights::End end = flights.fly(report);
   if (end != UavFlights::End::kAnswered) {
     for (const std::string& line : report.not_flown) say("tether: {}\n", line);
