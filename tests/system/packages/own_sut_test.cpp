@@ -66,12 +66,8 @@ TEST_P(OwnSut, BuiltByCMakeFliesToItsGoal) {
   expect_goal("by_cmake");
 }
 
-TEST_P(OwnSut, BuiltByMakeFliesToItsGoal) {
-  expect_goal("by_make");
-}
-
 /// The library finds tether-exec by itself; the program is the same.
-TEST_P(OwnSut, FliesToItsGoalUnderTetherExec) {
+TEST_P(OwnSut, BuiltByMakeFliesToItsGoalUnderTetherExec) {
   expect_goal("by_make", "board", {{"\", \"blue_box\"]", "\", \"blue_box\"]\nconcurrent = true"}});
 }
 

@@ -74,11 +74,6 @@ TEST_F(ScriptedRun, IsTheSameOnOneCore) {
   expect_same_runs(out("one_core"), out("all_cores"));
 }
 
-TEST_F(ScriptedRun, IsAnotherWithAnotherSeed) {
-  fly("other_seed", {"--images", "--seed", "2"});
-  EXPECT_FALSE(timeless_record(out("first")) == timeless_record(out("other_seed")));
-}
-
 // ---- Two UAVs
 
 /// A second UAV beside the first, turned the other way.
@@ -117,20 +112,6 @@ TEST(TwoUavs, FlyUnderOneBarrierAndRepeat) {
     EXPECT_TRUE(std::ranges::any_of(record.commands, [&](const auto& command) {
       return command.message.uav == uav && command.message.yaw_rate_rad_s != 0.0;
     })) << uav;
-}
-
-// Started by Tether itself, each with its own CPU time.
-TEST(TwoUavs, PassTheAuditWithRealTimes) {
-  const TempFolder folder;
-  const auto scenario = write_face_scenario(folder.path(), kTwoUavs);
-  const Output output =
-      run(tether({"run", scenario, "--condition", "target", "--out", folder / "out"}));
-  EXPECT_LE(output.code, 1) << output.err;
-  EXPECT_EQ(read_result(folder / "out")["end"], "finished");
-  EXPECT_EQ(read_result(folder / "out")["suts"].size(), 2u);
-  EXPECT_EQ(audit_code(folder / "out"), 0);
-  for (const char* log : {"sut-uav1.log", "sut-uav2.log"})
-    EXPECT_TRUE(std::filesystem::exists(folder / "out" / log)) << log;
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "support/trials.h"
 
 #include <cmath>
+#include <future>
+#include <iterator>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -20,12 +22,10 @@ Planar operator-(const Planar& a, const Planar& b) {
   return {a.x_m - b.x_m, a.y_m - b.y_m};
 }
 
-/// The closed path on a scripted clock, with ground truth at every step.
+/// The closed path on a scripted clock. Ground truth comes every 10 ms.
 record::Record fly(int seed) {
   const TempFolder folder;
-  const auto file = write_shipped_scenario(
-      folder.path(), "closed_path",
-      {scripted_host(2), {"ground_truth_period_ms = 10", "ground_truth_period_ms = 1"}});
+  const auto file = write_shipped_scenario(folder.path(), "closed_path", {scripted_host(2)});
   const auto out = folder / "out";
   const Output output =
       run(tether({"run", file, "--quiet", "--seed", std::to_string(seed), "--out", out}),
@@ -80,20 +80,23 @@ double yaw_rad(const record::GroundTruth& truth) {
   return std::atan2(2.0 * (q[0] * q[3] + q[1] * q[2]), 1.0 - 2.0 * (q[2] * q[2] + q[3] * q[3]));
 }
 
-/// Ground truth by instant, in the start-heading frame of a reckoning.
+/// Ground truth by instant, up to 10 ms old, in the start-heading frame of a reckoning.
 class Truth {
  public:
   Truth(const record::Record& record, SimTime start) {
     for (const auto& logged : record.ground_truth) at_[logged.message.at] = &logged.message;
-    start_ = at_.at(start);
+    start_ = newest(start);
   }
 
   Planar position(SimTime at) const {
-    const auto& p = at_.at(at)->p_WB_m;
+    const auto& p = newest(at)->p_WB_m;
     return turned({p[0] - start_->p_WB_m[0], p[1] - start_->p_WB_m[1]});
   }
 
  private:
+  const record::GroundTruth* newest(SimTime at) const {
+    return std::prev(at_.upper_bound(at))->second;
+  }
   Planar turned(const Planar& p_W) const {
     const double c = std::cos(yaw_rad(*start_));
     const double s = std::sin(yaw_rad(*start_));
@@ -115,20 +118,24 @@ double predicted_drift_m(double sigma_m_s2, int rest_readings, double period_s, 
 }
 
 TEST(ImuDrift, TheShippedImuDriftsAsItsNoisePredicts) {
-  constexpr int kFlights = 10;
+  constexpr int kFlights = 6;
   double squares_m2 = 0.0;
   double t_s = 0.0;
-  for (int seed = 1; seed <= kFlights; ++seed) {
-    const auto record = fly(seed);
+  const auto add = [&](const record::Record& record) {
     const Reckoning reckoned = reckoning(record);
     const Planar error = reckoned.p_H0B - Truth(record, reckoned.first).position(reckoned.last);
     squares_m2 += error.x_m * error.x_m + error.y_m * error.y_m;
     t_s = to_seconds(reckoned.last - reckoned.first);
+  };
+  for (int seed = 1; seed <= kFlights; seed += 2) {
+    auto other = std::async(std::launch::async, fly, seed + 1);
+    add(fly(seed));
+    add(other.get());
   }
   const double drift_m = std::sqrt(squares_m2 / (2 * kFlights));
   const double predicted_m = predicted_drift_m(0.0124, 20, 0.05, t_s);
-  // Twenty values: within 35 % but for one case in thirty.
-  EXPECT_NEAR(drift_m, predicted_m, 0.35 * predicted_m) << "over " << t_s << " s";
+  // Twelve values: within 45 % but for one case in thirty.
+  EXPECT_NEAR(drift_m, predicted_m, 0.45 * predicted_m) << "over " << t_s << " s";
 }
 
 }  // namespace

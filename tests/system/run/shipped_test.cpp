@@ -16,7 +16,9 @@
 
 /// Every shipped program flies under every shipped condition and target that claims to support it.
 /// What is shipped is found when the test starts, so a new file joins by itself. Each flight is so
-/// short that few goals are reached; system_tasks flies them to their ends.
+/// short that few goals are reached; system_tasks flies them to their ends. At each change, all
+/// conditions and every fourth pair of a scenario and a target ("Data"); the other pairs before a
+/// release ("Pairs").
 namespace tether::system_test {
 namespace {
 
@@ -30,6 +32,7 @@ struct Flight {
   bool concurrent = false;
   std::string skipped{};  // why
   double limit_s = 0.3;   // of ST
+  bool each_change = true;
 
   std::string name() const {
     return scenario::slug(scenario + " " + condition + (target ? " on " + target->name : "") +
@@ -52,8 +55,10 @@ std::string why_skipped(const scenario::Condition& condition, std::size_t suts) 
   return are_there ? "" : "needs programs for ARM: run scripts/build-arm64";
 }
 
+/// `first_pair`: which of the targets is the first that flies at each change.
 std::vector<Flight> flights_of(const std::string& name,
-                               const std::vector<scenario::Target>& targets) {
+                               const std::vector<scenario::Target>& targets,
+                               std::size_t first_pair) {
   std::vector<Flight> flights;
   const auto loaded =
       scenario::load_scenario(TETHER_SOURCE_DIR "/data/scenarios/" + name + ".toml");
@@ -67,28 +72,32 @@ std::vector<Flight> flights_of(const std::string& name,
                        why_skipped(condition, loaded.uavs.size()),
                        std::max(0.3, 12.0 * to_seconds(condition.computing))});
   }
-  for (const scenario::Target& target : targets) {
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const scenario::Target& target = targets[i];
     // face_anchor has a condition with it, and the emulator takes long for its many images.
     if (target.name == "counted_host") continue;
     scenario::Condition condition = loaded.conditions.front();
     if (!why_not_on(condition, target).empty()) continue;
     place_on(condition, target);
     const std::string skipped = why_skipped(condition, loaded.uavs.size());
-    flights.push_back({name, loaded.conditions.front().name, target, false, skipped});
-    if (target.clock != Clock::kWall) continue;
-    flights.push_back({name, loaded.conditions.front().name, target, true, skipped});
+    for (const bool concurrent : {false, true})
+      if (!concurrent || target.clock == Clock::kWall)
+        flights.push_back({name, loaded.conditions.front().name, target, concurrent, skipped, 0.3,
+                           (i + first_pair) % 4 == 0});
   }
   return flights;
 }
 
-std::vector<Flight> shipped_flights() {
+std::vector<Flight> shipped_flights(bool each_change) {
   const scenario::ShippedFiles shipped(TETHER_SOURCE_DIR "/data");
   std::vector<scenario::Target> targets;
   for (const auto& [name, description] : shipped.list(ShippedKind::kTarget))
     targets.push_back(scenario::load_target(shipped.find(ShippedKind::kTarget, name)));
   std::vector<Flight> flights;
+  std::size_t first_pair = 0;
   for (const auto& [name, description] : shipped.list(ShippedKind::kScenario))
-    for (Flight& flight : flights_of(name, targets)) flights.push_back(std::move(flight));
+    for (Flight& flight : flights_of(name, targets, first_pair++))
+      if (flight.each_change == each_change) flights.push_back(std::move(flight));
   return flights;
 }
 
@@ -134,7 +143,8 @@ class ShippedFlight : public testing::TestWithParam<Flight> {
  protected:
   /// Two at a time, because a flight waits as often as it computes.
   static void SetUpTestSuite() {
-    const std::vector<Flight> flights = shipped_flights();
+    const auto* suite = testing::UnitTest::GetInstance()->current_test_suite();
+    const auto flights = shipped_flights(std::string(suite->name()).starts_with("Data"));
     std::vector<Landed> landed(flights.size());
     std::atomic<std::size_t> next = 0;
     const auto work = [&] {
@@ -159,12 +169,15 @@ TEST_P(ShippedFlight, Flies) {
   EXPECT_GT(result["sync"]["interactions"], 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Data, ShippedFlight, testing::ValuesIn(shipped_flights()),
-                         [](const auto& one) {
-                           std::string name = one.param.name();
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+std::string case_name(const testing::TestParamInfo<Flight>& one) {
+  std::string name = one.param.name();
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Data, ShippedFlight, testing::ValuesIn(shipped_flights(true)), case_name);
+INSTANTIATE_TEST_SUITE_P(Pairs, ShippedFlight, testing::ValuesIn(shipped_flights(false)),
+                         case_name);
 
 }  // namespace
 }  // namespace tether::system_test
