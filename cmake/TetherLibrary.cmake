@@ -9,6 +9,7 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 option(TETHER_WARNINGS_AS_ERRORS "Treat every compiler warning as an error" ON)
 set(TETHER_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize=, e.g. address,undefined")
+set(TETHER_OPTIMISE_BUSY "" CACHE STRING "How libraries that are BUSY are optimised where others are not, e.g. -O1")
 
 add_library(tether_compile_options INTERFACE)
 target_compile_options(tether_compile_options INTERFACE
@@ -135,7 +136,7 @@ function(_tether_add_test_entry target entry filter labels timeout cost)
 endfunction()
 
 # tether_add_library(<name> SOURCES ... [PUBLIC ...] [PRIVATE ...] [TESTS ...] [TEST_LIBS ...]
-#                    [TESTING_SOURCES ...] [LABELS ...] [COST <seconds>])
+#                    [TESTING_SOURCES ...] [LABELS ...] [COST <seconds>] [BUSY])
 #
 # Declares a folder of common/, target/ or host/ as target tether_<name> (alias tether::<name>):
 #   SOURCES         files below src/
@@ -144,14 +145,17 @@ endfunction()
 #   TESTING_SOURCES fakes that other folders' tests use, as tether::<name>_testing, with headers in
 #                   testing/include
 #   LABELS, COST    of the tests: extra labels input and threaded; see tether_add_test
+#   BUSY            its tests compute for long: optimised in the preset asan, where compiling takes most of the time
 function(tether_add_library name)
-  cmake_parse_arguments(ARG "" "COST" "SOURCES;PUBLIC;PRIVATE;TESTS;TEST_LIBS;TESTING_SOURCES;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "BUSY" "COST" "SOURCES;PUBLIC;PRIVATE;TESTS;TEST_LIBS;TESTING_SOURCES;LABELS" ${ARGN})
   set(target tether_${name})
   if(ARG_SOURCES)
     add_library(${target} STATIC ${ARG_SOURCES})
     target_include_directories(${target} PUBLIC include PRIVATE src)
     target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} tether_compile_options)
-    if(TARGET tether_library_headers)
+    if(ARG_BUSY AND TETHER_OPTIMISE_BUSY)
+      target_compile_options(${target} PRIVATE ${TETHER_OPTIMISE_BUSY})
+    elseif(TARGET tether_library_headers)
       target_precompile_headers(${target} REUSE_FROM tether_library_headers)
     endif()
   else()
