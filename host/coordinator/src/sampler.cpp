@@ -17,10 +17,8 @@ std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSen
   sensors_[read.sensor].forecast.requested(t, read.latest, measurement->index);
   sensors_[read.sensor].forecasted.reset();
   const bool on_demand = !synchronised_ || !schedule.is_periodic();
-  reads_.push_back({.call = call,
-                    .sensor = read.sensor,
-                    .measurement = *measurement,
-                    .on_demand = on_demand});
+  reads_.push_back(
+      {.call = call, .sensor = read.sensor, .measurement = *measurement, .on_demand = on_demand});
   return measurement;
 }
 

@@ -10,9 +10,8 @@ namespace {
 TEST(CaptureStore, KeepsStatesFromAnIndexOn) {
   CaptureStore store;
   for (std::uint64_t i = 0; i < 5; ++i)
-    store.add(i, std::make_shared<sim::Snapshot>(
-                     sim::Snapshot{.at = from_ns<SimTime>(static_cast<std::int64_t>(i) * 10),
-                                   .state = {}}));
+    store.add(i, std::make_shared<sim::Snapshot>(sim::Snapshot{
+                     .at = from_ns<SimTime>(static_cast<std::int64_t>(i) * 10), .state = {}}));
   store.drop_before(3);
   EXPECT_EQ(store.size(), 2u);
   EXPECT_EQ(store.find(2), nullptr);

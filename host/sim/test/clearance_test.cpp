@@ -87,17 +87,17 @@ TEST(ClearanceMeter, InAFleetTheNearestIsThatOfAllPairs) {
   for (const MovingBody& body : moving_bodies(fleet)) X_WB.push_back(body.X_WB);
   const ClearanceMeter meter(fleet, {});
   for (std::size_t i = 0; i < fleet.uavs.size(); ++i) {
-    std::pair<double, std::string> nearest{1e9, ""};
+    std::pair<double, std::size_t> nearest{1e9, 0};
     for (std::size_t k = 0; k < fleet.uavs.size(); ++k) {
       if (k == i) continue;
       World pair = fleet;
       pair.uavs = {fleet.uavs[i], fleet.uavs[k]};
       const auto clearance = ClearanceMeter(pair, {}).measure(0, std::vector{X_WB[i], X_WB[k]});
-      nearest = std::min(nearest, {clearance->distance_m, std::string(clearance->to)});
+      nearest = std::min(nearest, {clearance->distance_m, k});
     }
     const auto clearance = meter.measure(i, X_WB);
     EXPECT_EQ(clearance->distance_m, nearest.first);
-    EXPECT_EQ(clearance->to, nearest.second);
+    EXPECT_EQ(clearance->to, fleet.uavs[nearest.second].name);
   }
 }
 

@@ -68,7 +68,7 @@ class ClearanceMeter {
   const World& world_;
   std::map<MeshKey, std::vector<uav::Vec3>> vertices_;  ///< Shapes refer to them.
   std::vector<Shape> shapes_;
-  std::vector<Ball> balls_;                           ///< of each shape
+  std::vector<Ball> balls_;                          ///< of each shape
   std::vector<std::vector<std::size_t>> of_bodies_;  ///< their shapes
   std::vector<uav::Pose> starts_;
   bool is_complete_ = true;
