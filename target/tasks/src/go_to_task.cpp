@@ -25,7 +25,8 @@ Progress GoToTask::initialise(TaskContext& context) {
   if (!imu) return TaskOutcome::failed(imu.failure());
   if (const Status stopped = stop(context); !stopped) return TaskOutcome::failed(stopped.failure());
   reckoning_ = std::make_unique<DeadReckoning>((*imu)->X_BS.q);
-  return calibrate(context, options_.imu, options_.rest_time, limit_, *reckoning_);
+  return calibrate(context, options_.imu, {options_.settle_time, options_.rest_time}, limit_,
+                   *reckoning_);
 }
 
 Progress GoToTask::step(TaskContext& context) {

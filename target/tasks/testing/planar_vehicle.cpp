@@ -13,7 +13,7 @@ constexpr double kStep_s = 1e-3;
 constexpr double kGravity_m_s2 = 9.81;
 constexpr double kWall_m = 10.0;
 constexpr Duration kImagePeriod = std::chrono::nanoseconds(33'333'333);
-constexpr double kFloor_m_s2 = 10.0;  // what stops it there
+constexpr double kFloor_m_s2 = 1000.0;  // what stops it there
 constexpr double kMaxAcceleration_m_s2 = 3.0;
 constexpr double kMaxYawAcceleration_rad_s2 = 6.0;
 
@@ -56,7 +56,7 @@ PlanarVehicle::PlanarVehicle(const Options& options)
   const uav::Anchor& anchor = catalogue_.anchors.front();
   with_anchor_.boxes = {{rotate(about_z(direction), {options.anchor_distance_m, 0, 0}), direction,
                          anchor.size_m, anchor.color_rgb}};
-  states_.push_back({{}, {}, {}, options.start_yaw_rad, 0.0});
+  states_.push_back({{}, options.start_velocity_m_s, {}, options.start_yaw_rad, 0.0});
 }
 
 ExecTime PlanarVehicle::now() const {
