@@ -53,8 +53,8 @@ Field settling(Duration& value) {
   return {"settle_s", "Pause after the final stop, by the IMU's timestamps", seconds(value, 0.0)};
 }
 
-Field speed(double& value) {
-  return {"speed_m_s", "Speed of the motion", plain(value, 0.001, 5.0)};
+Field speed(double& value, double least_m_s = 0.001) {
+  return {"speed_m_s", "Speed of the motion", plain(value, least_m_s, 5.0)};
 }
 
 /// When an estimate has converged.
@@ -204,7 +204,7 @@ Fields fields(tasks::InspectOptions& options, TaskSpec& spec) {
 }
 
 Fields fields(tasks::LandOptions& options, TaskSpec&) {
-  return joined({{speed(options.speed_m_s), imu(options.imu)},
+  return joined({{speed(options.speed_m_s, 0.15), imu(options.imu)},
                  rest(options.settle_time, options.rest_time),
                  {time_limit(options.time_limit)}});
 }

@@ -1,6 +1,7 @@
 #include "dead_reckoning.h"
 #include "motion.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <tether/tasks/land_task.h>
@@ -11,6 +12,8 @@ namespace {
 
 constexpr Duration kPeriod = std::chrono::milliseconds(500);
 constexpr double kSlow = 0.5;  // of the speed
+/// A smaller change of speed can be over before the IMU is read again.
+constexpr double kLeastChange_m_s = 0.15;
 /// Of the change of speed that was commanded: what a UAV that flies deviates from it at most.
 constexpr double kDeviation = 0.7;
 
@@ -50,11 +53,12 @@ Progress LandTask::step(TaskContext& context) {
   if (!reading) return TaskOutcome::failed(reading.failure());
   reckoning_->update(*reading);
   if (reckoning_->read_at() - switched_at_ < kPeriod) return std::nullopt;
-  const double change_m_s = reckoning_->velocity_m_s().z - v_at_switch_m_s_;
-  if (std::abs(change_m_s / change_wanted_m_s_ - 1.0) > kDeviation)
+  const double changed_m_s = reckoning_->velocity_m_s().z - v_at_switch_m_s_;
+  if (std::abs(changed_m_s / change_wanted_m_s_ - 1.0) > kDeviation)
     return TaskOutcome::goal_reached();
   const bool was_slow = v_wanted_m_s_ > -options_.speed_m_s;
-  return sink(context, was_slow ? options_.speed_m_s : kSlow * options_.speed_m_s);
+  const double change_m_s = std::max(kSlow * options_.speed_m_s, kLeastChange_m_s);
+  return sink(context, options_.speed_m_s - (was_slow ? 0.0 : change_m_s));
 }
 
 void LandTask::finalise(TaskContext& context, TaskOutcome& outcome) {

@@ -6,6 +6,7 @@
 #include <tether/base/time.h>
 #include <tether/tasks/loop_limit.h>
 #include <tether/tasks/task.h>
+#include <tether/uav/math.h>
 
 namespace tether::tasks {
 
@@ -25,7 +26,9 @@ struct GoToOptions {
 };
 
 /// Stops, and then flies to a position relative to where it came to rest, by dead reckoning with
-/// the IMU, at a constant heading. Annotates its odometry. Results: "duration_s" (ET), "end_x_m",
+/// the IMU, at a constant heading. The height is that of the commands: thrust changes the vertical
+/// speed faster than an IMU is read, which then shows what follows a change instead of the change.
+/// Annotates its odometry. Results: "duration_s" (ET), "end_x_m",
 /// "end_y_m", "end_z_m" (dead-reckoned, in the start-heading frame H0).
 class GoToTask : public Task {
  public:
@@ -40,7 +43,11 @@ class GoToTask : public Task {
  private:
   GoToOptions options_;
   LoopLimit limit_;
-  std::unique_ptr<class DeadReckoning> reckoning_;  ///< of the current run
+
+  // Of the current run.
+  std::unique_ptr<class DeadReckoning> reckoning_;
+  uav::Vec3 p_H0B_;
+  double v_up_m_s_ = 0.0;  ///< of the last command
 };
 
 }  // namespace tether::tasks

@@ -10,7 +10,7 @@
 namespace tether::tasks {
 
 struct LandOptions {
-  double speed_m_s = 0.3;  ///< of the descent, the larger of the two; > 0
+  double speed_m_s = 0.3;  ///< of the descent, the larger of the two; ≥ 0.15
   std::string imu = "imu";
   /// Pause after the stop, by the IMU's timestamps, while the UAV comes to rest; ≥ 0.
   Duration settle_time = std::chrono::seconds(1);
@@ -22,7 +22,7 @@ struct LandOptions {
 
 /// Descends until it stands on something. An IMU measures the same at a constant speed as on the
 /// floor, and can miss the impact between two readings. So the task switches every half second, by
-/// the IMU's timestamps, between the speed of the descent and half of it: it has landed when the
+/// the IMU's timestamps, between the speed of the descent and a slower one: it has landed when the
 /// UAV does not follow. Results: "duration_s" (ET), "descended_m" (dead-reckoned, to the last
 /// switch).
 class LandTask : public Task {

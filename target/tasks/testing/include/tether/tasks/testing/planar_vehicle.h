@@ -27,11 +27,12 @@ class PlanarVehicle : public client::Vehicle {
     std::pair<Duration, Duration> anchor_hidden{};  ///< from, until
     double start_yaw_rad = 0.0;
     uav::Vec3 start_velocity_m_s{};  ///< in the world
-    double camera_ahead_m = 0.0;     ///< its mounting
-    double height_m = 1000.0;        ///< of the start above the floor
-    uav::Quat q_BS_imu{};            ///< the IMU's mounting
-    uav::Vec3 imu_bias_m_s2{};       ///< of the specific force
-    bool imu_is_stuck = false;       ///< it reports a UAV that never moves
+    double max_acceleration_m_s2 = 3.0;
+    double camera_ahead_m = 0.0;  ///< its mounting
+    double height_m = 1000.0;     ///< of the start above the floor
+    uav::Quat q_BS_imu{};         ///< the IMU's mounting
+    uav::Vec3 imu_bias_m_s2{};    ///< of the specific force
+    bool imu_is_stuck = false;    ///< it reports a UAV that never moves
     Duration compute_per_image{0};
     /// What a rangefinder's measurement takes, in turn.
     std::vector<Duration> range_delays{std::chrono::milliseconds(30)};
