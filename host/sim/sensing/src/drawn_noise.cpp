@@ -32,29 +32,46 @@ HWY_INLINE Words product(Words a, std::uint32_t b) {
 #endif
 }
 
-// As `philox4x32` (tether/base/random.h), of kBlocks blocks.
+struct Counters {
+  Words c0, c1, c2, c3;
+};
+
+HWY_INLINE void mix(Counters& c, Words key0, Words key1) {
+  const Words p0 = product(c.c0, 0xD2511F53U);
+  const Words p1 = product(c.c2, 0xCD9E8D57U);
+  c = {hn::Xor(hn::Xor(hn::ShiftRight<32>(p1), c.c1), key0), p1,
+       hn::Xor(hn::Xor(hn::ShiftRight<32>(p0), c.c3), key1), p0};
+}
+
+// As `philox4x32` (tether/base/random.h), of kBlocks blocks; two vectors at a time, because each
+// round waits for the last one.
 void draw(const PhiloxBlock& first, std::uint64_t* words) {
   const DW d;
-  const auto pair = [&](Words low, Words high) HWY_ATTR {
-    return hn::Or(hn::And(low, hn::Set(d, 0xFFFFFFFFU)), hn::ShiftLeft<32>(high));
+  const auto counters = [&](std::size_t i) HWY_ATTR {
+    return Counters{hn::Set(d, first.counter[0]), hn::Set(d, first.counter[1]),
+                    hn::Add(hn::Set(d, first.counter[2]), hn::Iota(d, i)),
+                    hn::Set(d, first.counter[3])};
   };
-  for (std::size_t i = 0; i < kBlocks; i += hn::Lanes(d)) {
-    Words c0 = hn::Set(d, first.counter[0]);
-    Words c1 = hn::Set(d, first.counter[1]);
-    Words c2 = hn::Add(hn::Set(d, first.counter[2]), hn::Iota(d, i));
-    Words c3 = hn::Set(d, first.counter[3]);
+  const auto store = [&](const Counters& c, std::uint64_t* to) HWY_ATTR {
+    const auto pair = [&](Words low, Words high) HWY_ATTR {
+      return hn::Or(hn::And(low, hn::Set(d, 0xFFFFFFFFU)), hn::ShiftLeft<32>(high));
+    };
+    hn::StoreInterleaved2(pair(c.c0, c.c1), pair(c.c2, c.c3), d, to);
+  };
+  for (std::size_t i = 0; i < kBlocks; i += 2 * hn::Lanes(d)) {
+    Counters a = counters(i);
+    Counters b = counters(i + hn::Lanes(d));
     std::array<std::uint32_t, 2> key = first.key;
     for (int round = 0; round < 10; ++round) {
-      const Words p0 = product(c0, 0xD2511F53U);
-      const Words p1 = product(c2, 0xCD9E8D57U);
-      c0 = hn::Xor(hn::Xor(hn::ShiftRight<32>(p1), c1), hn::Set(d, key[0]));
-      c2 = hn::Xor(hn::Xor(hn::ShiftRight<32>(p0), c3), hn::Set(d, key[1]));
-      c1 = p1;
-      c3 = p0;
+      const Words key0 = hn::Set(d, key[0]);
+      const Words key1 = hn::Set(d, key[1]);
+      mix(a, key0, key1);
+      mix(b, key0, key1);
       key[0] += 0x9E3779B9U;
       key[1] += 0xBB67AE85U;
     }
-    hn::StoreInterleaved2(pair(c0, c1), pair(c2, c3), d, words + 2 * i);
+    store(a, words + 2 * i);
+    store(b, words + 2 * (i + hn::Lanes(d)));
   }
 }
 
