@@ -125,7 +125,7 @@ void SutProcesses::start_group(const scenario::Scenario& scenario, const SutRun&
 
 std::optional<std::string> SutProcesses::early_end() {
   for (Sut& sut : suts_)
-    if (sut.process->poll()) return describe_end(sut);
+    if (sut.process->poll() && !has_ended_well(sut)) return describe_end(sut);
   return std::nullopt;
 }
 
@@ -138,7 +138,8 @@ bool SutProcesses::has_failed_to_connect(const std::string& address) {
 std::string SutProcesses::post_mortem(const std::string& reason) {
   std::string text;
   for (Sut& sut : suts_)
-    if (sut.process->wait(kEndLimit)) text += "; " + describe_end(sut, reason);
+    if (sut.process->wait(kEndLimit) && !has_ended_well(sut))
+      text += "; " + describe_end(sut, reason);
   return text;
 }
 
@@ -157,6 +158,11 @@ std::optional<std::string> SutProcesses::stopped() const {
                          sut.name);
   }
   return std::nullopt;
+}
+
+// The process of a group ends after its SUTs, which tell why.
+bool SutProcesses::has_ended_well(Sut& sut) {
+  return sut.uav.empty() && sut.process->poll()->code == 0;
 }
 
 std::vector<std::string> SutProcesses::await_exit() {

@@ -62,6 +62,7 @@ class SutProcesses {
   };
   void start_group(const scenario::Scenario& scenario, const SutRun& run, const SutGroup& group,
                    const std::filesystem::path& folder, board::Board* board);
+  static bool has_ended_well(Sut& sut);
   std::string describe_end(Sut& sut, const std::string& reason = "") const;
 
   bool has_local_ = false;

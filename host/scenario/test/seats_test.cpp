@@ -170,10 +170,11 @@ TEST_F(Seats, RefusesWhatCannotBe) {
   const std::string full =
       replaced(replaced(kFleet, "cores = 2", "cores = 1"), "pinned_core = 1", "pinned_core = 0");
   expect_refusal(7, "front", [&] { load(full); });
-  const std::string two = replaced(
-      replaced(replaced(kFleet, front, "file = \"pi.toml\"\n"), rear, "file = \"same.toml\"\n"),
-      "target = \"front\"\npinned_core = 1", "target = \"rear\"");
-  expect_refusal(11, "rear", [&] { load(two); });
+  const std::string two =
+      replaced(replaced(replaced(kFleet, front + "cores = 2\n", "file = \"pi.toml\"\n"), rear,
+                        "file = \"same.toml\"\n"),
+               "target = \"front\"\npinned_core = 1", "target = \"rear\"");
+  expect_refusal(10, "rear", [&] { load(two); });
 }
 
 }  // namespace
