@@ -1,6 +1,6 @@
 #include "layered_sensor.h"
 
-#include "read_sensor_profile.h"
+#include "tables/read_sensor_profile.h"
 
 #include <algorithm>
 #include <cmath>

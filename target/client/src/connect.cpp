@@ -1,6 +1,6 @@
 #include "build_id.h"
-#include "concurrent_vehicle.h"
-#include "simulated_vehicle_impl.h"
+#include "vehicle/concurrent_vehicle.h"
+#include "vehicle/simulated_vehicle_impl.h"
 
 #include <utility>
 #include <variant>

@@ -1,4 +1,4 @@
-#include "counted_source.h"
+#include "clocks/counted_source.h"
 
 #include <cstdlib>
 #include <locale>

@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-/// What `--target FILE` changes in a run. Each key: host/scenario/test/load_target_test.cpp; how
-/// the program is started: host/runner/test.
+/// What `--target FILE` changes in a run. Each key: host/scenario/test/files/load_target_test.cpp;
+/// how the program is started: host/runner/test.
 namespace tether::system_test {
 namespace {
 

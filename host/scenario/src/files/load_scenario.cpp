@@ -1,0 +1,420 @@
+#include "files/settings.h"
+#include "tables/read_computers.h"
+#include "tables/read_radio.h"
+#include "tables/read_replay.h"
+#include "tables/read_sensor_profile.h"
+#include "tables/read_sut.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include <fmt/format.h>
+
+#include <tether/base/units.h>
+#include <tether/scenario/scenario.h>
+#include <tether/toml/table.h>
+
+// Reads a scenario table by table: each function reads one table, checks it with what was read
+// before it, and adds the files that the table names to the scenario's.
+namespace tether::scenario {
+namespace {
+
+constexpr std::array<std::string_view, 2> kPolicies = {"conservative_barrier", "free_running"};
+constexpr std::array<std::string_view, 6> kClocks = {"wall",      "cpu",     "scripted",
+                                                     "unstamped", "counted", "replayed"};
+constexpr std::array<std::string_view, 2> kSimulators = {"mujoco", "gazebo"};
+
+constexpr double kLongestRun_s = 7 * 24 * 3600.0;
+
+// Profiles.
+
+void add_files(Scenario& scenario, const std::vector<std::filesystem::path>& more) {
+  scenario.files.insert(scenario.files.end(), more.begin(), more.end());
+}
+
+void sort_files(Scenario& scenario) {
+  std::sort(scenario.files.begin(), scenario.files.end());
+  const auto last = std::unique(scenario.files.begin(), scenario.files.end());
+  scenario.files.erase(last, scenario.files.end());
+}
+
+std::optional<Profile> read_profile(const toml::Table& table, Scenario& scenario) {
+  if (!table.has("profile")) return std::nullopt;
+  Profile profile = load_profile(table.existing_file("profile"));
+  add_files(scenario, profile.files);
+  return profile;
+}
+
+// UAVs.
+
+void read_sensors(const toml::Table& table, Scenario& scenario, UavSetup& uav) {
+  if (!table.has("sensors")) return;
+  const toml::Table sensors = table.table("sensors");
+  for (const std::string& name : sensors.keys()) {
+    uav.sensors.emplace(name,
+                        read_sensor_profile(sensors, name, KindKey::kOptional, scenario.files));
+  }
+}
+
+UavSetup read_uav(const toml::Table& table, const std::optional<Sut>& default_sut,
+                  Scenario& scenario) {
+  constexpr toml::Range kCoordinate_m{.min = -1e5, .max = 1e5};
+  constexpr toml::Range kYaw_deg{.min = -360.0, .max = 360.0};
+  constexpr toml::Range kYawSpread_deg{.min = 0.0, .max = 180.0};
+  constexpr toml::Range kLatency_ms{.min = 0.0, .max = 10'000.0};
+  UavSetup uav;
+  uav.placement.name = table.identifier("name");
+  uav.placement.model = table.existing_file("model");
+  scenario.files.push_back(uav.placement.model);
+  const auto position_m = table.numbers("position_m", 3, kCoordinate_m);
+  uav.placement.p_WB = {position_m[0], position_m[1], position_m[2]};
+  uav.placement.yaw_rad = rad_from_deg(table.number_or("yaw_deg", kYaw_deg, 0.0));
+  uav.yaw_spread_rad = rad_from_deg(table.number_or("yaw_spread_deg", kYawSpread_deg, 0.0));
+  uav.command_latency = table.duration_or("command_latency_ms", kLatency_ms, Duration{0});
+  uav.profile = read_profile(table, scenario);
+  read_sensors(table, scenario, uav);
+  if (table.has("energy")) {
+    uav.energy = load_energy(table.existing_file("energy"));
+    scenario.files.push_back(uav.energy->file);
+  }
+  uav.seat = read_seat(table, scenario);
+  uav.sut = read_sut(table, default_sut, scenario);
+  if (uav.sut.mission)
+    mission::require_possible(*uav.sut.mission, {.anchors = scenario.anchors,
+                                                 .time_limit = scenario.time_limit,
+                                                 .has_battery = uav.energy.has_value()});
+  return uav;
+}
+
+void read_uavs(const toml::Table& root, Scenario& scenario) {
+  const std::optional<Sut> default_sut = read_default_sut(root, scenario);
+  std::set<std::string> names;
+  for (const toml::Table& table : root.tables(
+           "uav", {"name", "model", "position_m", "yaw_deg", "yaw_spread_deg", "command_latency_ms",
+                   "profile", "sensors", "energy", "sut", "target", "pinned_core"})) {
+    scenario.uavs.push_back(read_uav(table, default_sut, scenario));
+    const std::string& name = scenario.uavs.back().placement.name;
+    if (!names.insert(name).second) {
+      table.fail(
+          "name",
+          fmt::format("is \"{}\", which is also the name of another UAV. Names must be unique.",
+                      name));
+    }
+  }
+}
+
+// Conditions.
+
+// Some keys and values need a certain clock or policy.
+void read_clock(const toml::Table& table, Condition& condition) {
+  constexpr toml::Range kFactor{.min = 1e-3, .max = 1e4};
+  constexpr toml::Range kComputing_ms{.min = 1e-3, .max = 60'000.0};
+  if (!table.has("clock")) {
+    table.fail("clock", "is missing. Add it, or a 'target' whose file specifies the clock.");
+  }
+  condition.clock = static_cast<Clock>(table.choice("clock", kClocks));
+  if (condition.clock == Clock::kCounted)
+    table.fail("clock",
+               "is \"counted\", which needs an emulator and costs. Name a 'target' whose file has "
+               "them, instead of this key.");
+  condition.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
+  if (condition.clock != Clock::kCpu && table.has("cpu_factor")) {
+    table.fail("cpu_factor", "scales CPU time, so it needs clock = \"cpu\".");
+  }
+  const bool is_scripted = condition.clock == Clock::kScripted;
+  if (is_scripted) condition.computing = table.duration("computing_ms", kComputing_ms);
+  if (!is_scripted && table.has("computing_ms")) {
+    table.fail("computing_ms",
+               "replaces the measured computing time, so it needs clock = \"scripted\".");
+  }
+  const bool needs_barrier =
+      is_scripted || condition.clock == Clock::kUnstamped || condition.clock == Clock::kReplayed;
+  if (needs_barrier && condition.policy == Policy::kFreeRunning) {
+    table.fail("clock", fmt::format("is \"{}\", which needs policy = \"conservative_barrier\", "
+                                    "because free running uses the wall clock.",
+                                    name(condition.clock)));
+  }
+}
+
+// The target's file specifies how the time of its SUTs is measured.
+void read_target(const toml::Table& table, Condition& condition, Scenario& scenario) {
+  for (const char* key : {"clock", "cpu_factor", "computing_ms"}) {
+    if (table.has(key))
+      table.fail(key, "is specified by the target's file. Remove this key, or 'target'.");
+  }
+  Target target = load_target(table.existing_file("target"));
+  if (const std::string why = why_not_on(condition, target); !why.empty()) {
+    table.fail("target", fmt::format("cannot be used here: {}", why));
+  }
+  scenario.files.push_back(target.file);
+  place_on(condition, std::move(target));
+}
+
+Condition read_condition(const toml::Table& table, Scenario& scenario) {
+  constexpr toml::Range kFactor{.min = 1e-3, .max = 1e4};
+  Condition condition;
+  condition.name = table.text("name");
+  if (slug(condition.name).empty()) {
+    table.fail("name",
+               "must contain a letter or a digit, because it becomes the name of a folder.");
+  }
+  condition.description = table.text_or("description", "");
+  condition.policy = static_cast<Policy>(table.choice("policy", kPolicies));
+  const bool has_own = table.has("target") || table.has("clock");
+  if (table.has("shared") && (has_own || scenario.computers.empty()))
+    table.fail("shared",
+               "is for conditions under which the UAVs run on the tables [[target]], without "
+               "'clock' and 'target'.");
+  if (table.has("target")) {
+    read_target(table, condition, scenario);
+  } else if (!has_own && !scenario.computers.empty()) {
+    read_seats(table, condition, scenario);
+  } else {
+    read_clock(table, condition);
+  }
+  condition.replay = read_replay(table, condition, scenario);
+  if (table.has("radio")) condition.radio = read_radio(table);
+  condition.real_time_factor = table.number_or("real_time_factor", kFactor, 0.0);
+  if (condition.policy == Policy::kFreeRunning && condition.real_time_factor == 0.0) {
+    table.fail(
+        "real_time_factor",
+        "is missing. policy = \"free_running\" needs it: the seconds of ST per second of wall "
+        "time.");
+  }
+  if (table.has("simulator"))
+    condition.simulator = kSimulators[table.choice("simulator", kSimulators)];
+  return condition;
+}
+
+void read_conditions(const toml::Table& root, Scenario& scenario) {
+  std::map<std::string, std::string> slugs;
+  for (const toml::Table& table : root.tables(
+           "condition", {"name", "description", "policy", "clock", "cpu_factor", "computing_ms",
+                         "real_time_factor", "profile", "target", "simulator", "timing", "mode",
+                         "counted", "unknown_stages", "shared", "radio"})) {
+    scenario.conditions.push_back(read_condition(table, scenario));
+    if (auto profile = read_profile(table, scenario)) {
+      scenario.conditions.back().profiles.push_back(std::move(*profile));
+    }
+    const std::string& name = scenario.conditions.back().name;
+    const auto [other, is_new] = slugs.emplace(slug(name), name);
+    if (!is_new) {
+      table.fail("name", fmt::format("is \"{}\", too similar to the condition \"{}\". Names must "
+                                     "differ in their letters and digits.",
+                                     name, other->second));
+    }
+  }
+}
+
+// Metrics.
+
+std::vector<std::string> uav_names(const Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const UavSetup& uav : scenario.uavs) names.push_back(uav.placement.name);
+  return names;
+}
+
+// The one that is named, or the only one there is.
+std::string choose(const toml::Table& table, std::string_view key,
+                   const std::vector<std::string>& candidates) {
+  if (!table.has(key) && candidates.size() == 1) return candidates.front();
+  const std::vector<std::string_view> allowed(candidates.begin(), candidates.end());
+  return candidates[table.choice(key, allowed)];
+}
+
+const MetricKind& read_metric_kind(const toml::Table& table) {
+  std::vector<std::string_view> names;
+  for (const MetricKind& kind : metric_kinds()) names.push_back(kind.name);
+  return metric_kinds()[table.choice("kind", names)];
+}
+
+std::string limit_key(const MetricKind& kind) {
+  return (kind.is_better_if_more ? "min" : "max") +
+         (kind.unit == "J" ? "_j" : unit_suffix(kind.unit));
+}
+
+void reject_unsupported(const toml::Table& table, const MetricKind& kind) {
+  const std::pair<std::string_view, bool> supported[] = {
+      {"anchor", kind.needs_anchor},
+      {"sensor", kind.needs_sensor},
+      {"threshold_deg", kind.default_threshold_deg.has_value()},
+      {"threshold_m_s", kind.has_speed_threshold}};
+  for (const auto& [key, is_supported] : supported) {
+    if (is_supported || !table.has(key)) continue;
+    table.fail(key, fmt::format("is not supported by metric kind \"{}\".", kind.name));
+  }
+  const std::string limit = limit_key(kind);
+  for (const std::string& key : table.keys()) {
+    const bool is_limit = key.starts_with("max") || key.starts_with("min");
+    if (!is_limit || key == limit) continue;
+    table.fail(key, fmt::format("is not the limit of metric kind \"{}\". Did you mean '{}'?",
+                                kind.name, limit));
+  }
+}
+
+Metric read_metric(const toml::Table& table, const Scenario& scenario) {
+  constexpr toml::Range kLimit{.min = 0.0, .max = 1e9};
+  constexpr toml::Range kThreshold_deg{.min = 0.0, .max = 180.0};
+  constexpr toml::Range kThreshold_m_s{.min = 0.0, .max = 1e9};
+  const MetricKind& kind = read_metric_kind(table);
+  reject_unsupported(table, kind);
+  Metric metric;
+  metric.kind = kind.name;
+  metric.unit = kind.unit;
+  metric.uav = choose(table, "uav", uav_names(scenario));
+  const bool is_alone = scenario.uavs.size() == 1;
+  metric.name = table.has("name") ? table.identifier("name")
+                : is_alone        ? metric.kind
+                                  : metric.kind + "_" + metric.uav;
+  metric.label = table.text_or(
+      "label", is_alone ? std::string(kind.label) : fmt::format("{}, {}", kind.label, metric.uav));
+  if (kind.needs_anchor) metric.anchor = choose(table, "anchor", scenario.anchors);
+  if (kind.needs_sensor) {
+    metric.sensor = table.text("sensor");
+    metric.line = table.where("sensor").line;
+  }
+  const double threshold_deg = kind.default_threshold_deg.value_or(0.0);
+  metric.threshold_rad =
+      rad_from_deg(table.number_or("threshold_deg", kThreshold_deg, threshold_deg));
+  if (kind.has_speed_threshold) {
+    const double allowed_m_s = scenario.max_contact_speed_m_s;
+    metric.threshold_m_s =
+        table.number_or("threshold_m_s", kThreshold_m_s,
+                        std::isfinite(allowed_m_s) ? allowed_m_s : kHardContact_m_s);
+  }
+  metric.of_any_flight = kind.of_any_flight;
+  const std::string limit = limit_key(kind);
+  if (table.has(limit))
+    (kind.is_better_if_more ? metric.min : metric.max) = table.number(limit, kLimit);
+  return metric;
+}
+
+void read_metrics(const toml::Table& root, Scenario& scenario) {
+  std::set<std::string> names;
+  for (const toml::Table& table :
+       root.tables_or_none("metric", {"name", "kind", "label", "uav", "anchor", "sensor",
+                                      "threshold_deg", "max", "threshold_m_s", "max_s", "max_ms",
+                                      "max_m", "max_deg", "max_j", "min_m", "min"})) {
+    scenario.metrics.push_back(read_metric(table, scenario));
+    const std::string& name = scenario.metrics.back().name;
+    if (!names.insert(name).second) {
+      table.fail(table.has("name") ? "name" : "kind",
+                 fmt::format("makes a second metric \"{}\". Give it another 'name'.", name));
+    }
+  }
+}
+
+// The rest.
+
+void read_anchors(const toml::Table& root, Scenario& scenario) {
+  scenario.anchors = root.texts_or_none("anchors");
+  if (root.has("anchors")) scenario.anchors_at = root.where("anchors");
+  const std::set<std::string> distinct(scenario.anchors.begin(), scenario.anchors.end());
+  if (distinct.size() < scenario.anchors.size()) root.fail("anchors", "names an anchor twice.");
+}
+
+void read_record(const toml::Table& root, Scenario& scenario) {
+  if (!root.has("record")) return;
+  const toml::Table record =
+      root.table("record", {"ground_truth_period_ms", "images", "image_period_ms"});
+  constexpr toml::Range kImagePeriod_ms{.min = 0.0, .max = 1e6};
+  const toml::Range period_ms{.min = to_seconds(scenario.step) * 1e3, .max = 1e6};
+  scenario.ground_truth_period =
+      record.duration_or("ground_truth_period_ms", period_ms, scenario.ground_truth_period);
+  scenario.record_images = record.boolean_or("images", scenario.record_images);
+  scenario.image_period =
+      record.duration_or("image_period_ms", kImagePeriod_ms, scenario.image_period);
+}
+
+void read_limits(const toml::Table& root, Scenario& scenario) {
+  constexpr toml::Range kStep_ms{.min = 0.01, .max = 100.0};
+  constexpr toml::Range kSpan_s{.min = 0.0, .max = kLongestRun_s, .above_min = true};
+  constexpr toml::Range kSpeed_m_s{.min = 0.0, .with_inf = true};
+  scenario.step = root.duration_or("step_ms", kStep_ms, scenario.step);
+  scenario.time_limit = root.duration("time_limit_s", kSpan_s);
+  scenario.hang_limit = root.duration_or("hang_limit_s", kSpan_s, scenario.hang_limit);
+  scenario.connect_limit = root.duration_or("connect_limit_s", kSpan_s, scenario.connect_limit);
+  scenario.max_contact_speed_m_s =
+      root.number_or("max_contact_speed_m_s", kSpeed_m_s, scenario.max_contact_speed_m_s);
+}
+
+}  // namespace
+
+std::string_view name(Policy policy) {
+  return kPolicies[static_cast<std::size_t>(policy)];
+}
+std::string_view name(Clock clock) {
+  return kClocks[static_cast<std::size_t>(clock)];
+}
+
+std::string slug(std::string_view name) {
+  std::string slug;
+  for (const char c : name) {
+    const bool upper = c >= 'A' && c <= 'Z';
+    const bool kept = upper || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (kept) slug += upper ? static_cast<char>(c - 'A' + 'a') : c;
+    if (!kept && !slug.empty() && slug.back() != '-') slug += '-';
+  }
+  while (slug.ends_with('-')) slug.pop_back();
+  return slug;
+}
+
+const Condition* Scenario::find_condition(std::string_view condition) const {
+  const auto found = std::ranges::find(conditions, condition, &Condition::name);
+  return found == conditions.end() ? nullptr : &*found;
+}
+
+Scenario load_scenario(const std::filesystem::path& file, const std::vector<Setting>& settings) {
+  Scenario scenario;
+  scenario.file = std::filesystem::absolute(file).lexically_normal();
+  toml::Document document = toml::Document::load(scenario.file);
+  std::vector<Setting> of_profiles;
+  for (const Setting& setting : settings)
+    if (setting.key != kUavCount && !apply(setting, document)) of_profiles.push_back(setting);
+  scenario.settings = settings;
+  const toml::Table root =
+      document.root({"name", "description", "world", "step_ms", "time_limit_s", "hang_limit_s",
+                     "connect_limit_s", "max_contact_speed_m_s", "anchors", "target", "uav", "sut",
+                     "condition", "metric", "record", "radio"});
+  scenario.name = root.identifier("name") + name_suffix(settings);
+  scenario.description = root.text_or("description", "");
+  scenario.world = root.existing_file("world");
+  scenario.files = {scenario.file, scenario.world};
+  read_limits(root, scenario);
+  read_anchors(root, scenario);
+  read_computers(root, scenario);
+  read_uavs(root, scenario);
+  scenario.radio = read_radio(root);
+  read_conditions(root, scenario);
+  apply_to_profiles(of_profiles, scenario);
+  read_metrics(root, scenario);
+  read_record(root, scenario);
+  for (const Setting& setting : settings)
+    if (setting.key == kUavCount) keep_first_uavs(scenario, setting.value);
+  sort_files(scenario);
+  return scenario;
+}
+
+void lay_profile(Scenario& scenario, const Profile& profile) {
+  for (Condition& condition : scenario.conditions) condition.profiles.push_back(profile);
+  scenario.has_laid_profile = true;
+  add_files(scenario, profile.files);
+  sort_files(scenario);
+}
+
+std::vector<std::string> profile_names(const Scenario& scenario, const Condition& condition) {
+  std::vector<std::string> names;
+  for (const UavSetup& uav : scenario.uavs) {
+    const bool is_new =
+        uav.profile && std::find(names.begin(), names.end(), uav.profile->name) == names.end();
+    if (is_new) names.push_back(uav.profile->name);
+  }
+  for (const Profile& profile : condition.profiles) {
+    std::erase(names, profile.name);
+    names.push_back(profile.name);
+  }
+  return names;
+}
+
+}  // namespace tether::scenario

@@ -1,0 +1,95 @@
+#include "files/settings.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include <fmt/format.h>
+
+#include <tether/base/error.h>
+
+namespace tether::scenario {
+
+Setting parse_setting(std::string_view text, const std::filesystem::path& folder) {
+  const std::size_t sign = text.find('=');
+  if (sign == 0 || sign == std::string_view::npos || sign + 1 == text.size())
+    throw Error(ErrorCode::kUsage,
+                fmt::format("'{}' must be KEY=VALUE, for instance time_limit_s=30", text))
+        .about(std::string(text));
+  Setting setting{std::string(text.substr(0, sign)), std::string(text.substr(sign + 1))};
+  std::error_code ignored;
+  const std::filesystem::path file = folder / setting.value;
+  if (std::filesystem::is_regular_file(file, ignored))
+    setting.value = std::filesystem::absolute(file).lexically_normal().string();
+  return setting;
+}
+
+void keep_first_uavs(Scenario& scenario, const std::string& count) {
+  std::size_t kept = 0;
+  const auto [end, error] = std::from_chars(count.data(), count.data() + count.size(), kept);
+  if (error != std::errc() || end != count.data() + count.size() || kept < 1 ||
+      kept > scenario.uavs.size())
+    throw Error(ErrorCode::kUsage, {scenario.file.string()},
+                fmt::format("has {} UAVs, of which {}={} cannot be flown. Use a whole number from "
+                            "1 to {}",
+                            scenario.uavs.size(), kUavCount, count, scenario.uavs.size()))
+        .about(std::string(kUavCount));
+  scenario.uavs.resize(kept);
+  std::erase_if(scenario.metrics, [&](const Metric& metric) {
+    return std::ranges::none_of(
+        scenario.uavs, [&](const UavSetup& uav) { return uav.placement.name == metric.uav; });
+  });
+  for (Condition& condition : scenario.conditions) {
+    if (condition.computers.empty()) continue;
+    condition.seats.resize(kept);
+    std::vector<Computer> computers;
+    for (std::size_t i = 0; i < condition.computers.size(); ++i) {
+      if (std::ranges::count(condition.seats, i, &Seat::computer) == 0) continue;
+      for (Seat& seat : condition.seats)
+        if (seat.computer == i) seat.computer = computers.size();
+      computers.push_back(condition.computers[i]);
+    }
+    condition.computers = std::move(computers);
+  }
+}
+
+bool apply(const Setting& setting, toml::Document& scenario) {
+  for (const char* from : {"", "condition.", "uav.", "target."})
+    if (scenario.replace(from + setting.key, setting.value) > 0) return true;
+  return false;
+}
+
+void apply_to_profiles(const std::vector<Setting>& settings, Scenario& scenario) {
+  if (settings.empty()) return;
+  std::set<std::string> replaced;
+  const auto reload = [&](Profile& profile) {
+    profile = load_profile(profile.file, settings, replaced);
+  };
+  for (UavSetup& uav : scenario.uavs)
+    if (uav.profile) reload(*uav.profile);
+  for (Condition& condition : scenario.conditions)
+    for (Profile& profile : condition.profiles) reload(profile);
+  for (const Setting& setting : settings)
+    if (!replaced.contains(setting.key))
+      throw Error(ErrorCode::kUsage, {scenario.file.string()},
+                  fmt::format("has no value '{}' to replace. Give the path of a key that the file "
+                              "or a profile of its sensors has, such as time_limit_s, "
+                              "condition.cpu_factor, sut.parameters.KEY or sensors.camera.rate_hz",
+                              setting.key))
+          .about(setting.key);
+}
+
+std::string name_suffix(const std::vector<Setting>& settings) {
+  std::string suffix;
+  for (const auto& [key, value] : settings) {
+    const bool is_path = value.find('/') != std::string::npos;
+    suffix += "-" + key.substr(key.rfind('.') + 1) + "-" +
+              (is_path ? std::filesystem::path(value).stem().string() : value);
+  }
+  constexpr std::string_view kKept =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.";
+  for (char& c : suffix)
+    if (kKept.find(c) == std::string_view::npos) c = '-';
+  return suffix;
+}
+
+}  // namespace tether::scenario

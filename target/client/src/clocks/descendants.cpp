@@ -1,0 +1,64 @@
+#include "clocks/descendants.h"
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <tether/os/process_table.h>
+
+namespace tether::client {
+namespace {
+
+Duration duration_of(const timeval& t) {
+  return std::chrono::seconds(t.tv_sec) + std::chrono::microseconds(t.tv_usec);
+}
+
+/// None: it was waited for.
+std::optional<Duration> used_by(pid_t process) {
+  clockid_t clock{};
+  timespec t{};
+  if (::clock_getcpuclockid(process, &clock) != 0 || ::clock_gettime(clock, &t) != 0) return {};
+  return std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec);
+}
+
+// What a process knows of those for which it has waited is read before its living children. The
+// kernel marks a child ('X') before it adds the child's CPU time to the parent's.
+void add_below(pid_t process, LivingDescendants& sum) {
+  for (const pid_t child : os::children_of(process)) {
+    const auto used = used_by(child);
+    const auto stat = os::process_stat(child);
+    if (!used || !stat || stat->state == 'X') continue;
+    sum.used += *used + stat->waited_children;
+    if (stat->ignores_child_end) sum.deaf = child;
+    add_below(child, sum);
+  }
+}
+
+}  // namespace
+
+Duration used_by_waited_children() {
+  rusage used{};
+  ::getrusage(RUSAGE_CHILDREN, &used);
+  return duration_of(used.ru_utime) + duration_of(used.ru_stime);
+}
+
+bool has_children() {
+  siginfo_t ignored{};
+  return ::waitid(P_ALL, 0, &ignored, WEXITED | WNOHANG | WNOWAIT | __WALL) == 0;
+}
+
+LivingDescendants living_descendants() {
+  LivingDescendants sum;
+  add_below(::getpid(), sum);
+  return sum;
+}
+
+bool ignores_child_end() {
+  struct sigaction action {};
+  ::sigaction(SIGCHLD, nullptr, &action);
+  return action.sa_handler == SIG_IGN || (action.sa_flags & SA_NOCLDWAIT) != 0;
+}
+
+}  // namespace tether::client

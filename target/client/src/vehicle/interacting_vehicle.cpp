@@ -1,0 +1,224 @@
+#include "vehicle/interacting_vehicle.h"
+
+#include <algorithm>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include <tether/base/printable.h>
+#include <tether/link/codec.h>
+
+// What serial and concurrent vehicles have in common: making requests, checking arguments against
+// the catalogue, and checking replies against the rules of time (docs/design.md section 2).
+namespace tether::client {
+namespace {
+
+/// The sensor kind that delivers a sample type; samples and sensor kinds are in the same order.
+template <class Sample>
+constexpr uav::SensorKind kind_of() {
+  if constexpr (std::is_same_v<Sample, uav::CameraSample>) return uav::SensorKind::kCamera;
+  if constexpr (std::is_same_v<Sample, uav::ImuSample>) return uav::SensorKind::kImu;
+  return uav::SensorKind::kRange;
+}
+
+/// Of a camera: whether the image has the size and the arrays that the catalogue promised.
+Status check_image(const uav::Sample& sample, const uav::SensorDescription& sensor) {
+  const auto* image = std::get_if<uav::CameraSample>(&sample);
+  const auto* camera = std::get_if<uav::CameraProperties>(&sensor.properties);
+  if (image == nullptr || camera == nullptr) return ok_status();
+  const auto failure = [&sensor](const std::string& what) {
+    return protocol_failure("its image has other " + what + " than the catalogue gives for '" +
+                            sensor.name + "'");
+  };
+  if (image->width_px != camera->model.width_px || image->height_px != camera->model.height_px)
+    return failure("sizes");
+  const bool is_complete =
+      image->rgb.empty() != uav::has_color(camera->kind) &&
+      image->depth_m.empty() != uav::has_depth(camera->kind) &&
+      image->labels.empty() == (camera->kind != uav::CameraKind::kSegmentation);
+  return is_complete ? ok_status() : failure("contents");
+}
+
+}  // namespace
+
+Failure to_failure(const link::Refusal& refusal) {
+  const bool ended = refusal.reason == link::Refusal::Reason::kRunEnded;
+  const std::string why = printable(refusal.message);
+  return {ended ? Failure::Kind::kRunEnded : Failure::Kind::kRefused,
+          why.empty() ? "the coordinator refused the connection without giving a reason" : why};
+}
+
+Failure protocol_failure(const std::string& what) {
+  return {Failure::Kind::kProtocol, "protocol violation in the coordinator's reply: " + what};
+}
+
+Failure mission_finished() {
+  return {Failure::Kind::kInvalid, "the mission is finished; no more calls are possible"};
+}
+
+Status check(const link::Reply& reply, const link::Request& request, bool free_running) {
+  if (reply.sequence != request.sequence) {
+    return protocol_failure("it answers request " + std::to_string(reply.sequence) + ", not " +
+                            std::to_string(request.sequence));
+  }
+  if (free_running) return ok_status();
+  if (reply.resume_at < request.issued_at)
+    return protocol_failure("its time is before the request");
+  if (reply.sample && uav::sampled_at(*reply.sample) > same_instant(reply.resume_at)) {
+    return protocol_failure("its sample is from the future");
+  }
+  if (reply.message && reply.message->arrived_at > same_instant(reply.resume_at)) {
+    return protocol_failure("its message is from the future");
+  }
+  if (reply.battery && reply.battery->sampled_at > same_instant(reply.resume_at)) {
+    return protocol_failure("its battery is from the future");
+  }
+  return ok_status();
+}
+
+ExecTime add_within_bounds(ExecTime et, Duration duration) {
+  const ExecTime last = from_ns<ExecTime>(link::kMaxTimestampNs - 1);
+  if (duration <= Duration::zero()) return et;
+  return duration >= last - et ? last : et + duration;
+}
+
+link::Sleep make_sleep(ExecTime until) {
+  const ExecTime last = from_ns<ExecTime>(link::kMaxTimestampNs - 1);
+  return {std::clamp(until, ExecTime{}, last)};
+}
+
+std::string name_of_call(const decltype(link::Request::body)& body,
+                         const uav::Catalogue& catalogue) {
+  if (const auto* read = std::get_if<link::ReadSensor>(&body))
+    return catalogue.sensors[read->sensor].name;
+  if (std::holds_alternative<link::SetVelocity>(body)) return "command";
+  if (std::holds_alternative<link::Sleep>(body)) return "sleep";
+  if (std::holds_alternative<link::SendMessage>(body)) return "send";
+  if (std::holds_alternative<link::ReadBattery>(body)) return "battery";
+  return std::holds_alternative<link::ReceiveMessage>(body) ? "receive" : "finish";
+}
+
+Failure InteractingVehicle::give_up(Failure failure) {
+  const std::lock_guard lock(mutex_);
+  if (!over_) over_ = failure;
+  return failure;
+}
+
+Status InteractingVehicle::usable() const {
+  if (!is_of_this_process()) {
+    return Failure{Failure::Kind::kInvalid, "this vehicle belongs to process " +
+                                                std::to_string(process_) +
+                                                "; a forked child must make its own connection"};
+  }
+  const std::lock_guard lock(mutex_);
+  return over_ ? Status(*over_) : ok_status();
+}
+
+// --- sensors ------------------------------------------------------------------------------------
+
+template <class Sample>
+Result<Sample> InteractingVehicle::read(std::string_view sensor, Read read) {
+  const uav::SensorDescription* const found = catalogue_.find_sensor(sensor);
+  if (found == nullptr || found->kind() != kind_of<Sample>()) {
+    return no_such_sensor(sensor, kind_of<Sample>());
+  }
+  if (read == Read::kIfAvailable && found->rate_hz <= 0.0) {
+    return Failure{Failure::Kind::kInvalid,
+                   "'" + found->name +
+                       "' measures on demand, so no measurement is available before the call. "
+                       "Read it with kNext or kLatest"};
+  }
+  const auto index = static_cast<std::uint32_t>(found - catalogue_.sensors.data());
+  auto reply = interact(link::ReadSensor{index, read == Read::kLatest, read == Read::kIfAvailable});
+  if (!reply) return reply.failure();
+  return take_sample<Sample>(std::move(*reply), *found, read);
+}
+
+template <class Sample>
+Result<Sample> InteractingVehicle::take_sample(link::Reply reply,
+                                               const uav::SensorDescription& sensor, Read read) {
+  if (!reply.sample && read == Read::kIfAvailable) {
+    return Failure{Failure::Kind::kNothingYet, "'" + sensor.name + "' has no new measurement yet"};
+  }
+  auto* const sample = reply.sample ? std::get_if<Sample>(&*reply.sample) : nullptr;
+  if (sample == nullptr) {
+    return give_up(protocol_failure("it has no sample of sensor '" + sensor.name + "'"));
+  }
+  if (const Status good = check_image(*reply.sample, sensor); !good) return give_up(good.failure());
+  return std::move(*sample);
+}
+
+Failure InteractingVehicle::no_such_sensor(std::string_view sensor, uav::SensorKind kind) const {
+  std::string available;
+  for (const auto& s : catalogue_.sensors) {
+    available += (available.empty() ? "" : ", ") + std::string(s.kind_name()) + " '" + s.name + "'";
+  }
+  return {Failure::Kind::kInvalid, "there is no " + std::string(uav::name(kind)) + " '" +
+                                       std::string(sensor) + "'; this UAV has " +
+                                       (available.empty() ? "no sensors" : available)};
+}
+
+Result<uav::CameraSample> InteractingVehicle::read_camera(std::string_view sensor, Read read) {
+  return this->read<uav::CameraSample>(sensor, read);
+}
+Result<uav::ImuSample> InteractingVehicle::read_imu(std::string_view sensor, Read read) {
+  return this->read<uav::ImuSample>(sensor, read);
+}
+Result<uav::RangeSample> InteractingVehicle::read_range(std::string_view sensor, Read read) {
+  return this->read<uav::RangeSample>(sensor, read);
+}
+
+Result<uav::BatterySample> InteractingVehicle::read_battery() {
+  if (catalogue_.battery_capacity_C <= 0.0) {
+    return Failure{Failure::Kind::kInvalid,
+                   "this UAV has no battery: its scenario has no 'energy' for it, or its simulator "
+                   "does not simulate batteries"};
+  }
+  auto reply = interact(link::ReadBattery{});
+  if (!reply) return reply.failure();
+  if (!reply->battery) return give_up(protocol_failure("it has no state of the battery"));
+  return *reply->battery;
+}
+
+// --- radio --------------------------------------------------------------------------------------
+
+Status InteractingVehicle::send(std::string_view to, std::span<const std::uint8_t> bytes) {
+  if (!to.empty() && std::find(peers_.begin(), peers_.end(), to) == peers_.end()) {
+    std::string others;
+    for (const std::string& peer : peers_) others += (others.empty() ? "'" : ", '") + peer + "'";
+    return Failure{Failure::Kind::kInvalid,
+                   "there is no other UAV '" + std::string(to) + "'; " +
+                       (others.empty() ? "this is the only one" : "the others are " + others)};
+  }
+  if (peers_.empty())
+    return Failure{Failure::Kind::kInvalid, "there is no other UAV to send a message to"};
+  return status_of(interact(link::SendMessage{std::string(to), {bytes.begin(), bytes.end()}}));
+}
+
+Result<RadioMessage> InteractingVehicle::receive(Duration timeout) {
+  const Duration longest{link::kMaxTimestampNs / 2};
+  auto reply = interact(link::ReceiveMessage{std::clamp(timeout, Duration::zero(), longest)});
+  if (!reply) return reply.failure();
+  if (!reply->message)
+    return Failure{Failure::Kind::kNothingYet, "no message has arrived by the timeout"};
+  link::RadioMessage& message = *reply->message;
+  return RadioMessage{std::move(message.from), message.sent_at, message.arrived_at,
+                      std::move(message.bytes)};
+}
+
+// --- commands and the end -----------------------------------------------------------------------
+
+Status InteractingVehicle::command_velocity(const uav::VelocityCommand& command) {
+  return status_of(interact(link::SetVelocity{command}));
+}
+
+Status InteractingVehicle::finish(bool reached_goal, std::string_view outcome,
+                                  std::string_view details_json) {
+  Status done = status_of(
+      interact(link::Finish{reached_goal, std::string(outcome), std::string(details_json)}));
+  if (done) close();
+  return done;
+}
+
+}  // namespace tether::client

@@ -1,0 +1,76 @@
+#pragma once
+
+#include "clocks/free_running_clock.h"
+#include "clocks/interaction_clock.h"
+#include "clocks/wall_timer.h"
+#include "vehicle/interacting_vehicle.h"
+#include "vehicle/progress_reporter.h"
+#include "vehicle/stage_log.h"
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <tether/client/simulated_vehicle.h>
+
+namespace tether::client {
+
+/// A UAV in the simulator, reached over a channel whose handshake is done. Serial: one call at a
+/// time talks to the coordinator, the others wait for it.
+class SimulatedVehicle final : public InteractingVehicle {
+ public:
+  /// `progress_period` 0: no progress messages. In free running they are a sign of life, no more.
+  SimulatedVehicle(std::unique_ptr<link::Channel> channel, link::Welcome welcome,
+                   std::unique_ptr<TimeSource> source, std::unique_ptr<WallTimer> wall,
+                   Duration progress_period);
+  ~SimulatedVehicle() override;
+
+  ExecTime now() const override { return clock_->now(); }
+  Status sleep_for(Duration duration) override;
+  Status sleep_until(ExecTime until) override;
+  Status annotate(std::string_view topic, std::string_view json) override;
+  Status begin_stage(std::string_view stage) override;
+  Status end_stage() override;
+
+ private:
+  Result<link::Reply> interact(Body body) override;
+  void close() override;
+
+  /// What the calls do while they hold `calls_`.
+  /// @{
+  Result<link::Reply> interact_alone(Body body);
+  /// The SUT stops computing for that call: its timestamp.
+  ExecTime begin_call(const Body& body);
+  template <class Change>
+  Status change_stage(Change change);
+  Result<link::Reply> ask(const link::Request& request);
+  Status sleep_alone(ExecTime until, bool is_relative);
+  /// Ends the run if a part of the SUT's computing is not measured.
+  Status complete();
+  /// @}
+
+  /// Sends a Progress unless the SUT waits for a reply. From the reporter's thread.
+  bool report_progress();
+  std::unique_ptr<link::Channel> channel_;
+  std::unique_ptr<TimeSource> source_;
+  std::unique_ptr<WallTimer> wall_;
+  std::unique_ptr<InteractionClock> clock_;
+  FreeRunningClock* free_running_ = nullptr;  // clock_, if that is its policy
+
+  std::mutex calls_;  // taken before sending_; guards what is below sending_
+
+  // A progress message is stamped and sent under this lock, and whatever else is sent takes it
+  // after having held the clock: so no progress message follows a request, or is stamped later than
+  // one.
+  std::mutex sending_;
+
+  std::uint64_t sequence_ = 0;
+  StageLog stages_;
+  std::string previous_call_ = "start";
+  std::vector<link::StageTime> given_;  // of a replayed clock: the time of stages to come
+  Duration previous_round_trip_{0};
+  std::unique_ptr<ProgressReporter> progress_;  // last: its thread uses the others
+};
+
+}  // namespace tether::client

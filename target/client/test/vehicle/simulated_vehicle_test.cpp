@@ -1,0 +1,271 @@
+#include "clocks/fake_wall_timer.h"
+#include "scripted_coordinator.h"
+#include "vehicle/simulated_vehicle_impl.h"
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <tether/base/random.h>
+#include <tether/client_testing/manual_time_source.h>
+
+namespace tether::client {
+namespace {
+
+using namespace std::chrono_literals;
+using client_testing::ManualTimeSource;
+using link::Reply;
+using link::Request;
+
+const uav::CameraSample kImage{from_ns<SimTime>(0), 3, 4, 2, std::vector<std::uint8_t>(24, 5)};
+
+std::vector<link::Message> one(link::Message message) {
+  return {std::move(message)};
+}
+
+class SimulatedVehicleTest : public testing::Test {
+ protected:
+  void start(ScriptedCoordinator::Answer answer = ScriptedCoordinator::grant_at_once,
+             bool free_running = false) {
+    link::Welcome welcome = welcome_with_sensors();
+    welcome.free_running = free_running;
+    coordinator_ = std::make_unique<ScriptedCoordinator>(welcome, std::move(answer));
+    auto wall = std::make_unique<FakeWallTimer>();
+    wall_ = wall.get();
+    vehicle_ = std::make_unique<SimulatedVehicle>(coordinator_->connect(), welcome,
+                                                  std::make_unique<ManualTimeSource>(source_),
+                                                  std::move(wall), Duration::zero());
+  }
+  /// `result` is a Result or a Status.
+  template <class T>
+  static void expect_failure(const T& result, Failure::Kind kind, const std::string& value = "") {
+    ASSERT_FALSE(result.ok());
+    EXPECT_EQ(result.failure().kind, kind);
+    EXPECT_NE(result.failure().message.find(value), std::string::npos) << result.failure().message;
+  }
+
+  ManualTimeSource source_{link::ClockKind::kCpu, 4.0};
+  std::unique_ptr<ScriptedCoordinator> coordinator_;
+  std::unique_ptr<SimulatedVehicle> vehicle_;
+  FakeWallTimer* wall_ = nullptr;
+};
+
+TEST_F(SimulatedVehicleTest, ReadsEachSensorByItsIndex) {
+  start([](const Request& r) {
+    const auto& read = std::get<link::ReadSensor>(r.body);
+    uav::Sample sample = kImage;
+    if (read.sensor == 1) sample = uav::ImuSample{SimTime{}, 1, {1, 2, 3}, {}, {}};
+    if (read.sensor == 2) sample = uav::RangeSample{SimTime{}, 2, 1.5};
+    return one(Reply{r.sequence, r.issued_at, sample});
+  });
+  EXPECT_EQ(vehicle_->read_camera("camera", Read::kNext)->rgb, kImage.rgb);
+  EXPECT_EQ(vehicle_->read_imu("imu", Read::kNext)->angular_velocity_rad_s, (uav::Vec3{1, 2, 3}));
+  EXPECT_EQ(vehicle_->read_range("down", Read::kLatest)->range_m, 1.5);
+  const auto requests = coordinator_->requests();
+  ASSERT_EQ(requests.size(), 3u);
+  EXPECT_FALSE(std::get<link::ReadSensor>(requests[1].body).latest);
+  EXPECT_TRUE(std::get<link::ReadSensor>(requests[2].body).latest);
+  EXPECT_EQ(requests[2].sequence, 3u);
+}
+
+TEST_F(SimulatedVehicleTest, ReadsWhatIsAvailable) {
+  start([](const Request& r) {
+    const bool first = r.sequence == 1;
+    Reply reply{r.sequence, r.issued_at, std::nullopt};
+    if (!first) reply.sample = uav::RangeSample{SimTime{}, 2, 1.5};
+    return one(reply);
+  });
+  expect_failure(vehicle_->read_range("down", Read::kIfAvailable), Failure::Kind::kNothingYet);
+  EXPECT_EQ(vehicle_->read_range("down", Read::kIfAvailable)->range_m, 1.5);
+  EXPECT_TRUE(std::get<link::ReadSensor>(coordinator_->requests()[0].body).only_if_available);
+  expect_failure(vehicle_->read_imu("imu", Read::kIfAvailable), Failure::Kind::kInvalid);
+  EXPECT_FALSE(vehicle_->is_concurrent());
+}
+
+TEST_F(SimulatedVehicleTest, SendsNothingForWrongArguments) {
+  start();
+  for (const std::string name : {"nose", "imu"}) {
+    expect_failure(vehicle_->read_camera(name, Read::kNext), Failure::Kind::kInvalid, name);
+  }
+  expect_failure(vehicle_->read_range("x", Read::kNext), Failure::Kind::kInvalid, "camera");
+  expect_failure(vehicle_->command_velocity({{1e9, 0, 0}, 0}), Failure::Kind::kInvalid);
+  expect_failure(vehicle_->annotate("roi", "nonsense"), Failure::Kind::kInvalid);
+  EXPECT_TRUE(coordinator_->requests().empty());
+  const uav::VelocityCommand command{{1, -2, 0.5}, 0.25};
+  ASSERT_TRUE(vehicle_->command_velocity(command).ok());
+  EXPECT_EQ(coordinator_->requests().at(0).sequence, 1u);
+  EXPECT_EQ(std::get<link::SetVelocity>(coordinator_->requests().at(0).body).command, command);
+}
+
+/// Rule 5: the next stamp is the last reply's plus what was computed since, to the
+/// nanosecond.
+TEST_F(SimulatedVehicleTest, StampsGrowOnlyByComputing) {
+  start([](const Request& r) {
+    KeyedRandom random({5, 1, r.sequence});
+    return one(Reply{r.sequence, r.issued_at + Duration(random.bits() % 40'000'000), {}});
+  });
+  ExecTime expected{};
+  for (std::uint64_t i = 1; i <= 500; ++i) {
+    KeyedRandom random({5, 2, i});
+    const Duration computed(random.bits() % 30'000'000);
+    source_.advance(computed);
+    ASSERT_EQ(vehicle_->now(), expected + computed);
+    ASSERT_TRUE((i % 3 == 0 ? vehicle_->sleep_for(1ms) : vehicle_->command_velocity({})).ok());
+    ASSERT_EQ(coordinator_->requests().back().issued_at, expected + computed);
+    expected += computed + Duration(KeyedRandom({5, 1, i}).bits() % 40'000'000);
+    ASSERT_EQ(vehicle_->now(), expected);
+  }
+}
+
+TEST_F(SimulatedVehicleTest, SleepsAreInteractions) {
+  start([](const Request& r) {
+    return one(Reply{r.sequence, std::max(r.issued_at, std::get<link::Sleep>(r.body).until), {}});
+  });
+  source_.advance(2ms);
+  ASSERT_TRUE(vehicle_->sleep_for(10ms).ok());
+  EXPECT_EQ(vehicle_->now(), ExecTime(12ms));
+  ASSERT_TRUE(vehicle_->sleep_until(ExecTime(20ms)).ok());
+  EXPECT_EQ(vehicle_->now(), ExecTime(20ms));
+  ASSERT_TRUE(vehicle_->sleep_until(ExecTime(-5ms)).ok());
+  ASSERT_TRUE(vehicle_->sleep_for(-1h).ok());
+  EXPECT_EQ(vehicle_->now(), ExecTime(20ms));
+  EXPECT_EQ(coordinator_->requests().size(), 4u);
+  EXPECT_TRUE(std::get<link::Sleep>(coordinator_->requests()[0].body).is_relative);
+  EXPECT_FALSE(std::get<link::Sleep>(coordinator_->requests()[1].body).is_relative);
+  ASSERT_TRUE(vehicle_->sleep_for(Duration::max()).ok());
+  EXPECT_EQ(to_ns(vehicle_->now()), link::kMaxTimestampNs - 1);
+}
+
+TEST_F(SimulatedVehicleTest, AnnotationsAreStampedAndFree) {
+  start();
+  source_.advance(3ms);
+  ASSERT_TRUE(vehicle_->annotate("roi", R"({"u": 1})").ok());
+  EXPECT_EQ(vehicle_->now(), ExecTime(3ms));
+  source_.advance(1ms);
+  ASSERT_TRUE(vehicle_->command_velocity({}).ok());
+  const auto heard = coordinator_->heard();
+  const auto& annotation = std::get<link::Annotation>(heard.at(0));
+  EXPECT_EQ(annotation.at, ExecTime(3ms));
+  EXPECT_EQ(annotation.topic, "roi");
+  EXPECT_EQ(annotation.json, R"({"u": 1})");
+  EXPECT_EQ(std::get<Request>(heard.at(1)).issued_at, ExecTime(4ms));
+}
+
+TEST_F(SimulatedVehicleTest, ReportsTheLastRoundTrip) {
+  start([this](const Request& r) {
+    wall_->advance(Duration(1000) * r.sequence);
+    return ScriptedCoordinator::grant_at_once(r);
+  });
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(vehicle_->command_velocity({}).ok());
+  const auto requests = coordinator_->requests();
+  EXPECT_EQ(requests[0].previous_round_trip, Duration(0));
+  EXPECT_EQ(requests[1].previous_round_trip, Duration(1000));
+  EXPECT_EQ(requests[2].previous_round_trip, Duration(2000));
+}
+
+TEST_F(SimulatedVehicleTest, FinishEndsTheMission) {
+  start();
+  ASSERT_TRUE(vehicle_->finish(true, "facing the anchor", R"({"error_rad": 0.01})").ok());
+  const auto requests = coordinator_->requests();
+  const auto& finish = std::get<link::Finish>(requests.at(0).body);
+  EXPECT_TRUE(finish.reached_goal);
+  EXPECT_EQ(finish.outcome, "facing the anchor");
+  EXPECT_EQ(finish.details, R"({"error_rad": 0.01})");
+  expect_failure(vehicle_->command_velocity({}), Failure::Kind::kInvalid);
+  expect_failure(vehicle_->annotate("a", "{}"), Failure::Kind::kInvalid);
+  expect_failure(vehicle_->sleep_for(1ms), Failure::Kind::kInvalid);
+}
+
+TEST_F(SimulatedVehicleTest, RefusalEndsEveryLaterCall) {
+  using Reason = link::Refusal::Reason;
+  for (const auto& [reason, kind] : {std::pair(Reason::kRunEnded, Failure::Kind::kRunEnded),
+                                     std::pair(Reason::kBadRequest, Failure::Kind::kRefused)}) {
+    start([refusal = link::Refusal{reason, "time limit of 60 s"}](const Request&) {
+      return one(refusal);
+    });
+    expect_failure(vehicle_->command_velocity({}), kind, "time limit of 60 s");
+    expect_failure(vehicle_->sleep_for(1ms), kind, "time limit of 60 s");
+    EXPECT_EQ(coordinator_->requests().size(), 1u);
+  }
+}
+
+TEST_F(SimulatedVehicleTest, ReportsLostCoordinator) {
+  start();
+  coordinator_.reset();
+  expect_failure(vehicle_->command_velocity({}), Failure::Kind::kDisconnected);
+  EXPECT_EQ(vehicle_->now(), ExecTime{});
+}
+
+TEST_F(SimulatedVehicleTest, RefusesRepliesThatBreakTheRules) {
+  const auto sample_reply = [](Duration after, uav::Sample sample) {
+    return [after, sample](const Request& r) {
+      return one(Reply{r.sequence, r.issued_at + after, sample});
+    };
+  };
+  const std::vector<ScriptedCoordinator::Answer> answers{
+      [](const Request& r) {
+        return one(Reply{r.sequence + 1, r.issued_at, kImage});
+      },
+      sample_reply(-1ns, kImage),
+      sample_reply(0ns, uav::RangeSample{}),
+      sample_reply(0ns, uav::CameraSample{SimTime(1ms) + 1ns, 0, 4, 2, kImage.rgb}),  // the future
+      sample_reply(0ns, uav::CameraSample{SimTime{}, 0, 2, 4, kImage.rgb}),           // its size
+      sample_reply(0ns, uav::CameraSample{SimTime{}, 0, 4, 2, {}, std::vector(8, 1.0F)}),
+      sample_reply(0ns, uav::CameraSample{SimTime{}, 0, 4, 2, kImage.rgb, std::vector(8, 1.0F)}),
+      ScriptedCoordinator::grant_at_once,  // no sample
+      [](const Request&) { return one(link::Welcome{}); },
+  };
+  for (const auto& answer : answers) {
+    source_ = ManualTimeSource(link::ClockKind::kCpu, 4.0);
+    start(answer);
+    source_.advance(1ms);
+    expect_failure(vehicle_->read_camera("camera", Read::kNext), Failure::Kind::kProtocol);
+    expect_failure(vehicle_->command_velocity({}), Failure::Kind::kProtocol);
+  }
+}
+
+TEST_F(SimulatedVehicleTest, DoesNotHoldEtInFreeRunning) {
+  start(
+      [this](const Request& r) {
+        wall_->advance(5ms);
+        return one(Reply{r.sequence, from_ns<ExecTime>(0), {}});
+      },
+      true);
+  wall_->advance(10ms);
+  source_.advance(40ms);  // 10 ms of CPU on a target four times slower
+  ASSERT_TRUE(vehicle_->command_velocity({}).ok());
+  EXPECT_EQ(coordinator_->requests().at(0).issued_at, ExecTime(40ms));
+  EXPECT_EQ(vehicle_->now(), ExecTime(45ms));
+  ASSERT_TRUE(vehicle_->sleep_for(20ms).ok());
+  ASSERT_TRUE(vehicle_->annotate("task", "{}").ok());
+  EXPECT_EQ(vehicle_->now(), ExecTime(65ms));
+  EXPECT_EQ(wall_->slept(), 50ms);
+  EXPECT_EQ(coordinator_->requests().size(), 1u);
+}
+
+class IncompleteSource final : public TimeSource {
+ public:
+  link::ClockKind kind() const override { return link::ClockKind::kCpu; }
+  Duration elapsed() const override { return Duration(0); }
+  Status complete() const override { return Failure{Failure::Kind::kRefused, "not measured"}; }
+};
+
+TEST(SimulatedVehicle, EndsTheRunIfAPartOfItsTimeIsNotMeasured) {
+  ScriptedCoordinator coordinator(link::Welcome{});
+  ConnectOptions options;
+  options.time = std::make_unique<IncompleteSource>();
+  const auto vehicle = connect(coordinator.connect(), std::move(options)).value();
+  for (const Status& status : {vehicle->sleep_for(Duration(1)), vehicle->command_velocity({})})
+    EXPECT_EQ(status.failure().kind, Failure::Kind::kRefused);
+  EXPECT_TRUE(coordinator.wait_for([](const link::Message& message) {
+    const auto* refusal = std::get_if<link::Refusal>(&message);
+    return refusal != nullptr && refusal->message == "not measured";
+  }));
+  EXPECT_TRUE(coordinator.requests().empty());
+}
+
+}  // namespace
+}  // namespace tether::client
