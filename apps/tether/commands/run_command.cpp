@@ -1,11 +1,11 @@
 #include "back_ends.h"
 #include "commands/commands.h"
-#include "options/file_kind.h"
 #include "options/junit_option.h"
 #include "options/simulator_option.h"
 #include "options/target_option.h"
 #include "options/trial_options.h"
-#include "options/world_options.h"
+#include "reading/file_kind.h"
+#include "reading/world_options.h"
 #include "terminal/say.h"
 #include "terminal/status_line.h"
 

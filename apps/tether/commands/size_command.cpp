@@ -1,13 +1,13 @@
 #include "back_ends.h"
-#include "commands/cluster.h"
+#include "cluster/cluster.h"
 #include "commands/commands.h"
 #include "commands/size_flights.h"
 #include "commands/size_uavs.h"
-#include "options/file_kind.h"
 #include "options/junit_option.h"
 #include "options/refuse_option.h"
 #include "options/trial_options.h"
-#include "options/world_options.h"
+#include "reading/file_kind.h"
+#include "reading/world_options.h"
 #include "terminal/say.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 #include "commands/size_flights.h"
 
 #include "back_ends.h"
-#include "options/file_kind.h"
 #include "options/simulator_option.h"
 #include "options/trial_options.h"
-#include "options/world_options.h"
+#include "reading/file_kind.h"
+#include "reading/world_options.h"
 #include "terminal/say.h"
 
 #include <algorithm>

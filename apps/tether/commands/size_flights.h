@@ -1,6 +1,6 @@
 #pragma once
 
-#include "commands/cluster.h"
+#include "cluster/cluster.h"
 #include "commands/commands.h"
 #include "terminal/status_line.h"
 

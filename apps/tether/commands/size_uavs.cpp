@@ -1,12 +1,12 @@
 #include "commands/size_uavs.h"
 
 #include "back_ends.h"
-#include "commands/cluster.h"
+#include "cluster/cluster.h"
 #include "commands/size_flights.h"
 #include "options/junit_option.h"
 #include "options/refuse_option.h"
 #include "options/trial_options.h"
-#include "options/world_options.h"
+#include "reading/world_options.h"
 #include "terminal/say.h"
 
 #include <algorithm>

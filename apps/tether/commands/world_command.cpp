@@ -1,6 +1,6 @@
 #include "back_ends.h"
 #include "commands/commands.h"
-#include "options/world_options.h"
+#include "reading/world_options.h"
 
 #include <limits>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "options/file_kind.h"
+#include "reading/file_kind.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include "commands/commands.h"
-#include "options/file_kind.h"
+#include "reading/file_kind.h"
 #include "terminal/say.h"
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "options/world_options.h"
+#include "reading/world_options.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "commands/commands.h"
-#include "options/file_kind.h"
-#include "options/output_folder.h"
+#include "reading/file_kind.h"
+#include "records/output_folder.h"
 #include "terminal/say.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "options/output_folder.h"
+#include "records/output_folder.h"
 
 #include <fmt/format.h>
 #include <fnmatch.h>

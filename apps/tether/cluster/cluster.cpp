@@ -1,4 +1,8 @@
-#include "commands/cluster.h"
+// What `tether campaign` and `tether size` do when other machines fly the trials: choose the engine
+// that starts workers (Slurm, or the user), refuse what cannot be flown there, collect, and leave
+// or cancel what was started. The protocol itself is in host/workers.
+
+#include "cluster/cluster.h"
 
 #include "options/refuse_option.h"
 #include "terminal/say.h"
