@@ -47,16 +47,6 @@ const std::map<std::string, NumericType, std::less<>> kNumericTypes = {
 };
 constexpr NumericType kQuaternionPose{7, 7, false, "seven numbers"};
 
-/// What SDF declares the document to be, the latest version of it. Read once.
-const sdf::ElementPtr& root_description() {
-  static const sdf::ElementPtr root = [] {
-    auto element = std::make_shared<sdf::Element>();
-    sdf::initFile("root.sdf", element);
-    return element;
-  }();
-  return root;
-}
-
 /// What SDF declares of the child `name`; null where it does not know one.
 sdf::ElementPtr child_description(const sdf::ElementPtr& parent, const std::string& name) {
   const sdf::ElementPtr child = parent->GetElementDescription(name);
@@ -184,6 +174,16 @@ class NumberCheck {
 
 }  // namespace
 
+const sdf::ElementPtr& sdf_description() {
+  // Never destroyed: it has some ten thousand elements.
+  static const auto& root = *new sdf::ElementPtr([] {
+    auto element = std::make_shared<sdf::Element>();
+    sdf::initFile("root.sdf", element);
+    return element;
+  }());
+  return root;
+}
+
 std::optional<std::vector<double>> parse_numbers(const std::string& text) {
   std::vector<double> numbers;
   std::istringstream words(text);
@@ -202,7 +202,7 @@ std::optional<std::vector<double>> parse_numbers(const std::string& text) {
 void check_numbers(const std::string& file, const tinyxml2::XMLDocument& xml) {
   const XMLElement* root = xml.RootElement();
   if (root == nullptr || std::string_view(root->Name()) != "sdf") return;
-  NumberCheck(file).visit(*root, root_description());
+  NumberCheck(file).visit(*root, sdf_description());
 }
 
 }  // namespace tether::sim

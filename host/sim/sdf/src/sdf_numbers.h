@@ -4,11 +4,17 @@
 #include <string>
 #include <vector>
 
+#include <sdf/Element.hh>
+
 namespace tinyxml2 {
 class XMLDocument;
 }
 
 namespace tether::sim {
+
+/// What SDF declares a document to be, in its latest version. Reading it takes a tenth of a second,
+/// so this is done once. Copy it to change it.
+const sdf::ElementPtr& sdf_description();
 
 /// The numbers of a text, separated by blanks; none if anything in it is not a number. "inf" and
 /// "nan" are numbers; a magnitude beyond a double's is not.

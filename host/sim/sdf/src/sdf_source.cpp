@@ -5,6 +5,7 @@
 #include "sdf_source.h"
 
 #include "file_kind.h"
+#include "sdf_numbers.h"
 #include "sdf_rules.h"
 
 #include <algorithm>
@@ -127,15 +128,10 @@ auto ask_library(const fs::path& file, Question question) try {
               "libsdformat cannot read it (" + std::string(error.what()) + ")");
 }
 
-/// A description of SDF to read a file into. Making one anew takes a tenth of a second.
+/// Of any SDF document, to read a file into.
 sdf::SDFPtr empty_sdf() {
-  static const sdf::SDFPtr blank = [] {
-    auto sdf = std::make_shared<sdf::SDF>();
-    sdf::init(sdf);
-    return sdf;
-  }();
   auto sdf = std::make_shared<sdf::SDF>();
-  sdf->Root(blank->Root()->Clone());
+  sdf->Root(sdf_description()->Clone());
   return sdf;
 }
 
