@@ -1,3 +1,6 @@
+// Whole files: replaced by way of a file beside them, read with a limit, and their digests, which
+// are remembered for as long as the file system shows that a file did not change.
+
 #include <cerrno>
 #include <cinttypes>
 #include <cstdint>

@@ -1,3 +1,7 @@
+// Turns what happened into messages of the record. For a repeatable run, the messages of one ST are
+// collected by `put`, which brings them into their order, and written by `settle`; otherwise each
+// is written at once. The figures of the footer are counted on the way.
+
 #include "run_log.h"
 
 #include <algorithm>

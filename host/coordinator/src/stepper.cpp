@@ -1,3 +1,7 @@
+// One step boundary: `sample` takes what sensors are due, then commands take effect, then ground
+// truth, contacts and batteries are logged. `next_due` is the next boundary at which any of these
+// has something to do; up to there the simulator advances in one call.
+
 #include "stepper.h"
 
 #include <algorithm>

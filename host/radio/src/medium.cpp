@@ -1,3 +1,7 @@
+// A queue of events in the order of (time, UAV): `accept` queues a message at its sender, `plan`
+// and `attempt` decide when it may be transmitted, `begin` starts the transmission, and `receive`
+// decides at each receiver what became of it. Every draw has a key, so none depends on the others.
+
 #include <algorithm>
 #include <tuple>
 #include <utility>

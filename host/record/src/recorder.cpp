@@ -1,3 +1,6 @@
+// Puts messages into an MCAP file: Channels makes a channel for each topic when its first message
+// comes, and McapWriter packs the messages into chunks.
+
 #include "json_members.h"
 #include "json_messages.h"
 #include "json_metadata.h"

@@ -1,3 +1,6 @@
+// The JSON schemas of the record's topics, as they are written into each file: ours, then
+// Foxglove's.
+
 #include "schemas.h"
 
 namespace tether::record {

@@ -1,3 +1,6 @@
+// Most shapes are far away. A ball around each is compared first, then its smallest box, and only
+// for what may be the nearest the exact distance of two convex shapes (convex.h).
+
 #include "convex.h"
 
 #include <algorithm>

@@ -1,3 +1,6 @@
+// Names, reads and writes the files of a round (round.h has the layout). A file that others may
+// read appears by a rename, and a claim is a file that only one worker can create.
+
 #include <algorithm>
 #include <charconv>
 #include <sstream>

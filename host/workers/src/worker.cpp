@@ -1,3 +1,7 @@
+// Worker is the loop: claim a chunk, fly its items on this machine's own disk, copy each result
+// into the shared folder and rename it there. OwnState is its file in the round, and Heart a thread
+// that keeps that file fresh where nobody else knows whether the worker is alive.
+
 #include "notes.h"
 
 #include <mutex>

@@ -1,3 +1,6 @@
+// Assimp reads a file with the one reader of its type; MeshCollector collects triangles,
+// normals and texture coordinates from its scene, with the limits against hostile files.
+
 #include "mesh_file.h"
 
 #include "collada_check.h"

@@ -1,3 +1,6 @@
+// Reads a file as XML, stages what its <include> elements lead to, depth first, rewrites the URIs
+// to the copies, and prints the copy so that each element keeps its line.
+
 #include "sdf_stage.h"
 
 #include "file_kind.h"
