@@ -85,7 +85,7 @@ TEST_P(KilledCampaign, KeepsWhatIsFinishedAndGoesOn) {
   expect_resumes(first);
 }
 
-INSTANTIATE_TEST_SUITE_P(Moments, KilledCampaign, testing::Values("", "joined", "pausing"),
+INSTANTIATE_TEST_SUITE_P(Moments, KilledCampaign, testing::Values("", "joined"),
                          [](const auto& moment) {
                            return moment.param.empty() ? "between_trials" : moment.param;
                          });

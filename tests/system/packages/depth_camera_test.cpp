@@ -53,6 +53,12 @@ class DepthCamera : public testing::Test {
     return out;
   }
 
+  /// Flown once.
+  static const fs::path& flown_c() {
+    static const fs::path out = flown("approach_c", {"--images"});
+    return out;
+  }
+
   static inline std::unique_ptr<TempFolder> folder_;
 };
 
@@ -62,7 +68,8 @@ double gap_m(const record::GroundTruth& truth) {
 }
 
 TEST_F(DepthCamera, BothProgramsFlyAlike) {
-  const fs::path c = flown("approach_c", {"--images"}), cpp = flown("approach_cpp", {"--images"});
+  const fs::path& c = flown_c();
+  const fs::path cpp = flown("approach_cpp", {"--images"});
   const auto in_c = read_result(c), in_cpp = read_result(cpp);
   EXPECT_TRUE(in_c["audit"]["passed"]) << in_c["audit"]["summary"];
   EXPECT_EQ(in_c["suts"][0]["outcome"], "is there");
@@ -104,7 +111,7 @@ TEST_F(DepthCamera, BothProgramsFlyAlike) {
 }
 
 TEST_F(DepthCamera, FramesAreExtracted) {
-  const fs::path out = flown("approach_c", {"--images", "--force"});
+  const fs::path& out = flown_c();
   const Output frames = run(tether({"frames", out / "record.mcap"}), std::chrono::seconds(60));
   EXPECT_EQ(frames.code, 0) << frames.err;
   int of_depth = 0, of_labels = 0, of_colors = 0;

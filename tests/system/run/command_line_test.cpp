@@ -175,21 +175,7 @@ TEST_F(RunCommand, TakesItsFolderFromScenarioConditionAndSeed) {
               HasSubstr("time_required"));
 }
 
-// ---- The face-anchor task under each condition, and its audit
-
-TEST(FaceAnchor, PassesTheAuditUnderEachCondition) {
-  const TempFolder folder;
-  for (const std::string condition : {"target", "target, no sync"}) {
-    const auto out = folder / condition;
-    const Output output = run(tether({"run", write_face_scenario(folder.path()), "--condition",
-                                      condition, "--seed", "5", "--out", out}));
-    EXPECT_LE(output.code, 1) << output.err;
-    EXPECT_EQ(read_result(out)["end"], "finished");
-    EXPECT_EQ(read_result(out)["policy"],
-              condition == "target, no sync" ? "free_running" : "conservative_barrier");
-    EXPECT_EQ(audit_code(out), 0) << condition;
-  }
-}
+// ---- Images
 
 // A record may come from anybody: foreign names in it lead nowhere else.
 TEST(FaceAnchorImages, AreInTheRecordWhenAskedForAndDrawnIntoTheFolder) {

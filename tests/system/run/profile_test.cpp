@@ -6,38 +6,12 @@
 #include <gtest/gtest.h>
 
 /// Profiles from the command line and from a campaign. How layers are merged and what is refused:
-/// host/scenario/test.
+/// host/scenario/test. What a profile's delay costs: acquisition_test.cpp.
 namespace tether::system_test {
 namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-/// The shipped scenario under a scripted clock, with few images, and that profile laid on top.
-nlohmann::json characterize(const std::string& profile) {
-  const TempFolder folder;
-  const auto scenario =
-      write_shipped_scenario(folder.path(), "sensor_characterization",
-                             {scripted_host(1), {"acquisitions = 100", "acquisitions = 5"}});
-  const Output output = run(tether({"run", scenario, "--quiet", "--condition", "host", "--profile",
-                                    profile, "--out", folder / "out"}));
-  EXPECT_EQ(output.code, 0) << output.err;
-  EXPECT_EQ(output.err, "");
-  auto result = read_result(folder / "out");
-  EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
-  for (const auto& metric : result["metrics"])
-    if (metric["name"] == "camera_acquisition_time") result["camera_ms"] = metric["value"];
-  return result;
-}
-
-TEST(Profile, OfIdealSensorsCostsNothingAndThatOfThePaperItsMean) {
-  const auto ideal = characterize("ideal");
-  EXPECT_EQ(ideal["camera_ms"], 0.0);
-  EXPECT_THAT(ideal["profiles"], ElementsAre("paper_table_1", "ideal"));
-  const auto paper = characterize("paper_table_1");
-  EXPECT_NEAR(paper["camera_ms"], 37.4, 1e-6);
-  EXPECT_THAT(paper["profiles"], ElementsAre("paper_table_1")) << "the scenario's own, laid on top";
-}
 
 // Metrics and reports take the true ROI from the record's camera, so that must be the one that gave
 // the images. What means nothing to the UAV is warned of.
