@@ -355,6 +355,11 @@ void flight(std::size_t uavs, bool with_cameras, Duration seconds) {
       each_ms(bare_exchanges(uavs, report.interactions / uavs)),
       static_cast<double>(report.interactions) / static_cast<double>(uavs) / to_seconds(report.st),
       static_cast<double>(bytes) * 1e-3 / static_cast<double>(uavs) / to_seconds(report.st));
+  if (with_cameras) {
+    const sim::SimulatorWork work = *simulator.work();
+    fmt::print("{} pictures on {} threads, {} of them drawn ahead, {} in vain\n", work.pictures,
+               threads_ahead + 1, work.drawn_ahead, work.drawn_in_vain);
+  }
   std::fflush(stdout);
 }
 
