@@ -28,7 +28,7 @@ void Coordinator::Impl::answer_free_running() {
       const Sampler::Read* read = stepper_.sampler(session.uav).find(pending.entry.sequence);
       const bool waits = pending.entry.receive_until && !pending.is_promised &&
                          *pending.entry.receive_until > same_instant(st());
-      if (waits || (read && !read->captured)) {
+      if (waits || (read && !read->state)) {
         ++i;
         continue;
       }
