@@ -319,6 +319,7 @@ struct Flight {
   double seconds = 0.0;  ///< ST
   std::uint64_t interactions = 0;
   std::uintmax_t bytes = 0;
+  sim::SimulatorWork work;
 };
 
 Flight fly_fleet(const sim::World& world, bool with_cameras, Duration seconds, Accounts& accounts) {
@@ -348,7 +349,8 @@ Flight fly_fleet(const sim::World& world, bool with_cameras, Duration seconds, A
                       .programs = wait_for(programs),
                       .seconds = to_seconds(report.st),
                       .interactions = report.interactions,
-                      .bytes = std::filesystem::file_size(file)};
+                      .bytes = std::filesystem::file_size(file),
+                      .work = *simulator.work()};
   std::filesystem::remove(file);
   if (report.end != coordinator::RunEnd::kFinished) throw std::runtime_error(report.reason);
   return flight;
@@ -376,6 +378,9 @@ void print_row(std::size_t uavs, bool with_cameras, Duration seconds) {
       each_ms(bare_exchanges(uavs, whole.interactions / uavs)),
       static_cast<double>(whole.interactions) / uav_seconds,
       static_cast<double>(whole.bytes) * 1e-3 / uav_seconds);
+  if (with_cameras)
+    fmt::print("{} pictures, {} of them drawn ahead, {} in vain\n", whole.work.pictures,
+               whole.work.drawn_ahead, whole.work.drawn_in_vain);
   std::fflush(stdout);
 }
 

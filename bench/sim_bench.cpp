@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <hwy/highway.h>
 #include <mujoco/mujoco.h>
 
 #include <tether/sim/world.h>
@@ -73,8 +74,25 @@ void BM_steps_engine_alone(benchmark::State& state) {
 }
 BENCHMARK(BM_steps_engine_alone);
 
-// Images along a flight down the corridor, noise and all.
-void images(benchmark::State& state, int width_px, int height_px) {
+// Instructions that may be used while this exists.
+class Instructions {
+ public:
+  explicit Instructions(std::int64_t targets) { choose(targets); }
+  ~Instructions() { choose(0); }
+  Instructions(const Instructions&) = delete;
+  Instructions& operator=(const Instructions&) = delete;
+
+ private:
+  static void choose(std::int64_t targets) {
+    hwy::SetSupportedTargetsForTest(targets);
+    hwy::GetChosenTarget().DeInit();
+  }
+};
+
+// Images along a flight down the corridor, noise and all. `targets`: the processor's instructions
+// that may be used; 0: all.
+void images(benchmark::State& state, int width_px, int height_px, std::int64_t targets) {
+  const Instructions instructions(targets);
   World world = corridor();
   const std::size_t camera = camera_of(world);
   auto& model = std::get<CameraModel>(world.uavs[0].sensors[camera].model);
@@ -92,17 +110,25 @@ void images(benchmark::State& state, int width_px, int height_px) {
     simulator->capture(snapshot);
     benchmark::DoNotOptimize(simulator->measure(snapshot, 0, camera, index++));
   }
-  state.SetLabel(simulator->description());
+  state.SetLabel(simulator->description() + ", " + raster::Renderer::instructions());
   count_items(state, "images", 1.0);
 }
 void BM_images_640x480(benchmark::State& state) {
-  images(state, 640, 480);
+  images(state, 640, 480, 0);
 }
 void BM_images_320x240(benchmark::State& state) {
-  images(state, 320, 240);
+  images(state, 320, 240, 0);
 }
-BENCHMARK(BM_images_640x480)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(BM_images_320x240)->MeasureProcessCPUTime()->UseRealTime()->Unit(benchmark::kMillisecond);
+void BM_images_640x480_avx2(benchmark::State& state) {
+  images(state, 640, 480, HWY_AVX2);
+}
+void BM_images_320x240_avx2(benchmark::State& state) {
+  images(state, 320, 240, HWY_AVX2);
+}
+BENCHMARK(BM_images_640x480)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_images_320x240)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_images_640x480_avx2)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_images_320x240_avx2)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 
 // What shutter and lens cost: the images of two cameras in one place along the same flight, one
 // with them and one without. `times_plain` is how many times the CPU time the one takes.

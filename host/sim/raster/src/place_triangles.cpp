@@ -103,6 +103,22 @@ void set_edge(Coverage& coverage, std::size_t i, const FixedPoint& p, const Fixe
       -static_cast<std::int64_t>(a) * p.x - static_cast<std::int64_t>(b) * p.y - (owns ? 0 : 1);
 }
 
+// Whether a small triangle covers no pixel of a grid, like most of those of a far mesh.
+bool is_between_pixels(const Coverage& t) {
+  constexpr int kFew = 8;
+  const PixelRect& p = t.pixels;
+  if ((p.x_high - p.x_low + 1) * (p.y_high - p.y_low + 1) > kFew) return false;
+  for (int y = p.y_low; y <= p.y_high; ++y) {
+    for (int x = p.x_low; x <= p.x_high; ++x) {
+      const auto is_inside = [&](std::size_t i) {
+        return t.c[i] + kSubpixels * (std::int64_t{t.a[i]} * x + std::int64_t{t.b[i]} * y) >= 0;
+      };
+      if (is_inside(0) && is_inside(1) && is_inside(2)) return false;
+    }
+  }
+  return true;
+}
+
 class Placer {
  public:
   Placer(const PreparedScene& scene, const Lens& lens, const Strip& strip,
@@ -212,13 +228,15 @@ class Placer {
     pixels.y_low = std::max(pixels.y_low, strip_.first_row);
     pixels.y_high = std::min(pixels.y_high, strip_.first_row + strip_.rows - 1);
     if (pixels.is_empty()) return;
-    Coverage& coverage = layer_.coverage.emplace_back();
+    Coverage coverage{};
     coverage.pixels = pixels;
     const FixedPoint& second = area < 0 ? r : q;
     const FixedPoint& third = area < 0 ? q : r;
     set_edge(coverage, 0, p, second);
     set_edge(coverage, 1, second, third);
     set_edge(coverage, 2, third, p);
+    if (lens_.is_grid() && is_between_pixels(coverage)) return;
+    layer_.coverage.push_back(coverage);
     add_facet(lens_.seen_part(bounds));
     add_to_tiles(pixels);
   }

@@ -3,6 +3,7 @@
 #include "rasterize.h"
 #include "test_scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -57,6 +58,17 @@ TEST(Rasterize, CoversEachPixelOfASheetOnce) {
       EXPECT_EQ(wrong, 0U) << "seed " << seed << ", distorted: " << !lens.is_grid();
     }
   }
+}
+
+// Of 80,000 triangles in 19,200 pixels.
+TEST(PlaceTriangles, LeavesOutSmallTrianglesBetweenPixels) {
+  const Lens lens(small_camera());
+  const Scene scene(plain_parts(crumpled_sheet(1, 200, 5.0F), {1, 1, 1}));
+  const Layer layer = placed(scene, lens);
+  const std::vector<int> counts = cover_counts(layer, lens);
+  EXPECT_EQ(std::ranges::count(counts, 1), 160 * 120);
+  EXPECT_LE(layer.coverage.size(), 160U * 120U);
+  EXPECT_EQ(layer.facets.size(), layer.coverage.size());
 }
 
 TEST(Rasterize, CoversEachPixelOnceBeforeTheNearPlaneAndFarBeyondThePicture) {
