@@ -27,6 +27,17 @@ TEST(CommandLine, OptionsEndWhereTheCommandBegins) {
   EXPECT_THAT(separated.settings.command, ElementsAre("-fly"));
 }
 
+TEST(CommandLine, HasTheGroupOfSeveralPrograms) {
+  const Parsed group = parse_command_line({"--group=s", "--members", "3", "--verbose"});
+  ASSERT_FALSE(group.notice);
+  EXPECT_EQ(group.settings.group, "s");
+  EXPECT_EQ(group.settings.members, 3);
+  const Parsed member = parse_command_line({"--group", "s", "fly", "--members"});
+  ASSERT_FALSE(member.notice);
+  EXPECT_EQ(member.settings.members, 0);
+  EXPECT_THAT(member.settings.command, ElementsAre("fly", "--members"));
+}
+
 TEST(CommandLine, PrintsHelpVersionAndErrors) {
   struct Case {
     std::vector<std::string> arguments;
@@ -40,7 +51,15 @@ TEST(CommandLine, PrintsHelpVersionAndErrors) {
                         {{"--"}, 2, "command"},
                         {{"--loud", "fly"}, 2, "--loud"},
                         {{"--freezer", "ice", "fly"}, 2, "'ice'"},
-                        {{"--freezer"}, 2, "--freezer"}};
+                        {{"--freezer"}, 2, "--freezer"},
+                        {{"--group"}, 2, "--group"},
+                        {{"--group", "s"}, 2, "command"},
+                        {{"--members", "2"}, 2, "--group"},
+                        {{"--group", "s", "--members", "0"}, 2, "'0'"},
+                        {{"--group", "s", "--members", "2x"}, 2, "'2x'"},
+                        {{"--group", "s", "--members=2", "fly"}, 2, "--group"},
+                        {{"--verbose", "--group=s", "fly"}, 2, "--verbose"},
+                        {{"--freezer=auto", "--group=s", "fly"}, 2, "--freezer"}};
   for (const Case& c : cases) {
     const Parsed parsed = parse_command_line(c.arguments);
     ASSERT_TRUE(parsed.notice) << c.text;

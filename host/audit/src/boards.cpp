@@ -5,12 +5,15 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-// Rule 5 on boards that several SUTs share: while n compute, each gets min(1, cores / n) of a core.
+// Rule 5 on boards that several SUTs share. On a real one all of them stop at one ET: one that went
+// on would have the cores of one that is held. On a virtual one, while n compute, each gets min(1,
+// cores / n) of a core.
 // The record says from when to when each SUT computed, and how much. So the number of computing
 // SUTs is known at every instant, and with it what each could have computed: nothing is scheduled
 // here.
@@ -106,11 +109,37 @@ class PoolCheck {
   std::vector<Point> points_;
 };
 
+// Each SUT of a real board has stopped whenever another one has, up to its own last stop. Later
+// ones are not its own if it had finished, or are missing because the run ended.
+void check_equal_stops(const record::BoardInfo& board, const std::map<std::string, SutRow>& rows,
+                       Report& report) {
+  std::map<ExecTime, const record::Logged<record::Stop>*> stops;
+  for (const auto& [uav, row] : rows)
+    if (row.info->board == board.name)
+      for (const auto* stop : row.stops) stops.try_emplace(stop->message.at, stop);
+  for (const auto& [uav, row] : rows) {
+    if (row.info->board != board.name) continue;
+    if (!row.info->concurrent)
+      report.add("the SUT of \"" + uav + "\" shares the board \"" + board.name +
+                 "\", but is not stopped with its other SUTs");
+    std::set<ExecTime> own;
+    for (const auto* stop : row.stops) own.insert(stop->message.at);
+    for (const auto& [at, stop] : stops)
+      if (!own.empty() && at <= *own.rbegin() && !own.contains(at))
+        report.add(5, *stop, "stop at ET {}, at which \"{}\" did not stop on the same board",
+                   ns(at), uav);
+  }
+}
+
 }  // namespace
 
 void check_boards(const record::Record& record, Report& report) {
   const auto rows = rows_of(record);
   for (const record::BoardInfo& board : record.header.boards) {
+    if (board.is_real) {
+      check_equal_stops(board, rows, report);
+      continue;
+    }
     std::map<std::optional<int>, std::vector<const SutRow*>> pools;  // by the pinned core
     for (const auto& [uav, row] : rows)
       if (row.info->board == board.name) pools[row.info->pinned_core].push_back(&row);

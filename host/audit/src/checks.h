@@ -21,7 +21,8 @@ void check_stops(const record::Record& record, const Boundaries& grid, Report& r
 /// Rule 1: whether each read returned the right measurement, given the previous reads.
 void check_newness(const record::Record& record, Report& report);
 
-/// Rule 5 on boards that several SUTs share: each computes with its share of the cores.
+/// Rule 5 on boards that several SUTs share: on a virtual one, each computes with its share of the
+/// cores; on a real one, all of them stop together.
 void check_boards(const record::Record& record, Report& report);
 
 /// Rule 2 and the second half of rule 3: the effects of commands.

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -70,6 +71,30 @@ TEST(Boards, ANanosecondTooEarlyOrTooLateIsFound) {
   record::Record unknown = board_record(2, kSound);
   unknown.interactions[0].message.computed.reset();
   EXPECT_EQ(findings(unknown), 1u);
+}
+
+/// Two SUTs on a real board; the ETs at which each stopped.
+record::Record stops_record(const std::vector<std::int64_t>& a,
+                            const std::vector<std::int64_t>& b) {
+  record::Record record;
+  record.header.boards = {{"obc", 0, true}};
+  for (const auto& [uav, stops] : {std::pair("a", a), std::pair("b", b)}) {
+    record.header.suts.push_back(
+        {.uav = uav, .sut = "", .clock = "wall", .concurrent = true, .board = "obc"});
+    for (const std::int64_t at : stops)
+      record.stops.push_back({{}, 0, {uav, from_ns<ExecTime>(at), std::nullopt, {}}});
+  }
+  return record;
+}
+
+TEST(Boards, AStopOfOneSutOfARealBoardIsFound) {
+  EXPECT_EQ(findings(stops_record({1, 5, 9}, {1, 5, 9})), 0u);
+  EXPECT_EQ(findings(stops_record({1, 5, 9}, {1, 5})), 0u) << "b has finished";
+  EXPECT_EQ(findings(stops_record({1, 5, 9}, {1, 9})), 1u);
+  EXPECT_EQ(findings(stops_record({1, 5, 9}, {1, 6, 9})), 2u);
+  record::Record other = stops_record({1, 5, 9}, {1, 9});
+  other.header.suts[1].board = "another";
+  EXPECT_EQ(findings(other), 0u);
 }
 
 TEST(Boards, NothingIsFoundWhereTheWorkOfAnotherIsNotKnown) {

@@ -228,7 +228,8 @@ std::optional<std::string> Board::bring_back(const std::string& uav,
   // A SUT must not replace files that this machine writes to the folder.
   const os::Captured unpacked =
       os::run_captured({"tar", "-x", "-f", "-", "--no-same-owner", "--exclude=./record.mcap",
-                        "--exclude=./result.json", "--exclude=./sut-*.log", "-C", folder.string()},
+                        "--exclude=./result.json", "--exclude=./sut-*.log",
+                        "--exclude=./exec-*.log", "-C", folder.string()},
                        files.out, kCopyLimit);
   if (unpacked.code != 0) return failed(os::last_line(unpacked.err));
   return std::nullopt;

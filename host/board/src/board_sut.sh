@@ -1,6 +1,6 @@
 # Runs one SUT on a board. Needs only a POSIX sh, such as busybox; sent over SSH.
 #
-# Variables: folder (of the run), uav, program, supervisor (tether-exec for a concurrent SUT; else empty),
+# Variables: folder (of the run), uav, program, supervisor (tether-exec; empty: none is needed),
 # launcher (of the target; may be empty). Functions: join exports the environment of the SUT, and run_sut
 # starts "$program" in a new session. Exit code: that of the SUT, or 128 + the signal that ended it; 120
 # after a line "tether: REASON" if it could not be started.
@@ -62,7 +62,7 @@ program=$(found "$wanted") ||
   fail "the board has no program \"$wanted\" (nor ${wanted##*/} in PATH=$PATH). Install it there, or set program_folder in a target file"
 [ -x "$program" ] || fail "$program is not executable; on the board, type: chmod +x $program"
 [ -z "$supervisor" ] || command -v "$supervisor" >/dev/null ||
-  fail "the board has no program \"$supervisor\", which a concurrent SUT needs (PATH=$PATH). Install the package tether-sut there"
+  fail "the board has no program \"$supervisor\", which concurrent SUTs and several SUTs on one board need (PATH=$PATH). Install the package tether-sut there"
 if [ -z "$launcher" ]; then
   require_machine "$program"
 else

@@ -25,10 +25,10 @@ std::string assign(const std::string& name, const std::string& value) {
 
 std::string sut_prologue(const BoardSut& sut) {
   const auto program = sut.words.begin() + static_cast<std::ptrdiff_t>(sut.program);
-  const std::size_t launcher = sut.concurrent ? 1 : 0;
-  std::string text = assign("uav", sut.uav) + assign("program", *program) +
-                     assign("supervisor", sut.concurrent ? sut.words.front() : "") +
-                     assign("launcher", sut.program > launcher ? sut.words[launcher] : "");
+  std::string text =
+      assign("uav", sut.uav) + assign("program", *program) +
+      assign("supervisor", sut.supervisor > 0 ? sut.words.front() : "") +
+      assign("launcher", sut.program > sut.supervisor ? sut.words[sut.supervisor] : "");
   text += "join() {\n";
   for (const auto& [name, value] : sut.environment)
     text += fmt::format("{}={}\nexport {}\n", name, os::shell_word(value), name);

@@ -20,7 +20,7 @@ class HeldBoard : public testing::Test {
     return {.uav = "uav1",
             .words = {"sh", "-c", script},
             .program = 0,
-            .concurrent = false,
+            .supervisor = 0,
             .environment = {{"TETHER_UAV", "uav1"}},
             .log = log_};
   }

@@ -22,7 +22,7 @@ TEST(Assign, AssignsAnyValue) {
 const BoardSut kSut{.uav = "uav 1",
                     .words = {"printf", "%s|", "it's", "$HOME", "two words"},
                     .program = 0,
-                    .concurrent = false,
+                    .supervisor = 0,
                     .environment = {{"TETHER_TOKEN", "a 'b' $c"}},
                     .log = {}};
 
@@ -45,11 +45,15 @@ TEST(SutPrologue, NamesProgramSupervisorAndLauncher) {
   BoardSut sut = kSut;
   sut.words = {"tether-exec", "taskset", "1", "fly", "task"};
   sut.program = 3;
-  sut.concurrent = true;
+  sut.supervisor = 1;
   EXPECT_EQ(said_by(sut_prologue(sut) + show), "fly|tether-exec|taskset");
   sut.words = {"tether-exec", "fly", "task"};
   sut.program = 1;
   EXPECT_EQ(said_by(sut_prologue(sut) + show), "fly|tether-exec|");
+  sut.words = {"tether-exec", "--group", "/s", "taskset", "1", "fly", "task"};
+  sut.program = 5;
+  sut.supervisor = 3;
+  EXPECT_EQ(said_by(sut_prologue(sut) + show), "fly|tether-exec|taskset");
 }
 
 }  // namespace

@@ -112,6 +112,11 @@ class Coordinator::Impl {
                                                    const link::Reply& reply) const;
 
   bool is_synchronised() const { return options_.policy == sync::SyncPolicy::kConservativeBarrier; }
+  /// Its SUT shares a real board, so all of its threads have to stop with those of the others.
+  bool stops_with_others(std::size_t uav) const {
+    const auto& board = options_.uavs[uav].board;
+    return is_synchronised() && board && options_.boards[*board].is_real;
+  }
   const sim::World& world() const { return simulator_->world(); }
   const StepGrid& grid() const { return stepper_.grid(); }
   SimTime st() const { return stepper_.st(); }

@@ -115,7 +115,7 @@ record::Header Coordinator::Impl::make_header() const {
          .build_id = session.hello.build_id,
          .replay = options_.uavs[session.uav].replayed_from,
          .computer = options_.uavs[session.uav].computer});
-    if (boards_.shares(session.uav)) {
+    if (boards_.shares(session.uav) || stops_with_others(session.uav)) {
       header.suts.back().board = options_.boards[*options_.uavs[session.uav].board].name;
       header.suts.back().pinned_core = options_.uavs[session.uav].pinned_core;
     }
@@ -129,7 +129,9 @@ record::Header Coordinator::Impl::make_header() const {
   for (const Board& board : options_.boards) {
     const bool is_shared =
         std::ranges::any_of(header.suts, [&](const auto& sut) { return sut.board == board.name; });
-    if (is_shared) header.boards.push_back({board.name, board.cores});
+    if (is_shared)
+      header.boards.push_back(
+          {.name = board.name, .cores = board.is_real ? 0 : board.cores, .is_real = board.is_real});
   }
   for (const sim::PlacedAnchor& anchor : world().anchors)
     header.anchors.push_back(describe(anchor));

@@ -116,6 +116,10 @@ void Coordinator::Impl::join(link::PeerId peer, const link::Hello& hello) {
   Session& session = sessions_[std::get<std::size_t>(admitted)];
   if (const auto fault = clock_fault(hello, options_.uavs[session.uav].clock))
     return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
+  if (!hello.concurrent && stops_with_others(session.uav))
+    return refuse(peer, link::Refusal::Reason::kBadRequest,
+                  "the SUT shares its board with others, so it must be stopped together with them: "
+                  "start all of them under tether-exec --group");
   if (const auto fault = build_fault(hello, session.replay))
     return refuse(peer, link::Refusal::Reason::kBadRequest, *fault);
   session.peer = peer;

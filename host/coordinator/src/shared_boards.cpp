@@ -19,6 +19,7 @@ void require(bool condition, const char* what) {
 SharedBoards::SharedBoards(const RunOptions& options) : seats_(options.uavs.size()) {
   if (options.policy == sync::SyncPolicy::kFreeRunning) return;
   for (std::size_t board = 0; board < options.boards.size(); ++board) {
+    if (options.boards[board].is_real) continue;
     std::vector<std::size_t> free;
     std::map<int, std::vector<std::size_t>> pinned;
     for (std::size_t uav = 0; uav < options.uavs.size(); ++uav) {

@@ -227,7 +227,8 @@ void members(auto& io, Maybe<SutInfo> auto& m) {
 void members(auto& io, Maybe<BoardInfo> auto& m) {
   constexpr int kMostCores = 4096;
   io("name", m.name);
-  io.within("cores", m.cores, 1, kMostCores);
+  if (io.has("is_real", m.is_real)) io("is_real", m.is_real);
+  io.within("cores", m.cores, m.is_real ? 0 : 1, kMostCores);
 }
 
 void members(auto& io, Maybe<CameraInfo> auto& m) {

@@ -33,13 +33,25 @@ std::string files_folder(const std::filesystem::path& folder) {
   return std::filesystem::absolute(folder).lexically_normal().string();
 }
 
-/// How many CPUs the SUTs before this one have.
+/// How many CPUs the SUTs before this one have. Those of one real board have the same ones.
 std::size_t first_cpu(const scenario::Condition& condition, std::size_t uav) {
+  const auto boards = real_boards(condition, condition.seats.size());
+  const auto has_own = [&](std::size_t sut) {
+    return std::ranges::none_of(boards, [sut](const scenario::RealBoard& board) {
+      return board.uavs.front() != sut && std::ranges::count(board.uavs, sut) > 0;
+    });
+  };
   std::size_t cpus = 0;
   for (std::size_t other = 0; other < uav; ++other)
-    if (const auto target = for_uav(condition, other).target; target && !target->ssh)
+    if (const auto target = for_uav(condition, other).target;
+        target && !target->ssh && has_own(other))
       cpus += static_cast<std::size_t>(target->cores);
   return cpus;
+}
+
+std::vector<int> cpus_of(const scenario::Condition& condition, std::size_t uav) {
+  const auto target = for_uav(condition, uav).target;
+  return cpus_for(os::allowed_cpus(), target ? target->cores : 0, first_cpu(condition, uav));
 }
 
 void require_cores(const scenario::Scenario& scenario, const scenario::Condition& condition) {
@@ -57,8 +69,9 @@ void require_cores(const scenario::Scenario& scenario, const scenario::Condition
 }  // namespace
 
 LocalSutCommand local_sut_command(const scenario::Sut& sut,
-                                  const std::optional<scenario::Target>& target) {
-  auto [words, program_at] = sut_command(sut, target);
+                                  const std::optional<scenario::Target>& target,
+                                  const std::string& group) {
+  auto [words, program_at, supervisor] = sut_command(sut, target, group);
   const bool is_launched = target && !target->launcher.empty();
   std::string& program = words[program_at];
   const auto file = is_launched ? find_launched(program, *target) : os::find_program(program);
@@ -70,7 +83,8 @@ LocalSutCommand local_sut_command(const scenario::Sut& sut,
     if (is_counted) os::require_emulated(*target->emulator, file);
     command.programs.push_back(is_counted ? os::find_emulator(*target->emulator)
                                           : os::find_program(words.front()));
-    if (sut.concurrent && is_launched) command.programs.push_back(os::find_program(words[1]));
+    if (supervisor > 0 && is_launched)
+      command.programs.push_back(os::find_program(words[supervisor]));
   }
   command.programs.push_back(file);
   command.words = std::move(words);
@@ -88,13 +102,16 @@ std::vector<std::filesystem::path> sut_programs(const scenario::Scenario& scenar
                                                 const scenario::Condition& condition) {
   std::vector<std::filesystem::path> programs;
   bool is_counted = false;
+  std::vector<std::string> groups(scenario.uavs.size());
+  for (const scenario::RealBoard& board : real_boards(condition, scenario.uavs.size()))
+    for (const std::size_t uav : board.uavs) groups[uav] = board.name;
   for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
     const scenario::UavSetup& uav = scenario.uavs[i];
     const auto target = for_uav(condition, i).target;
     if ((target && target->ssh) || for_uav(condition, i).by_hand) continue;
     is_counted = is_counted || (target && target->emulator);
     try {
-      for (const auto& program : local_sut_command(uav.sut, target).programs)
+      for (const auto& program : local_sut_command(uav.sut, target, groups[i]).programs)
         if (std::find(programs.begin(), programs.end(), program) == programs.end())
           programs.push_back(program);
     } catch (const Error& e) {
@@ -115,14 +132,24 @@ void require_sut_programs(const scenario::Scenario& scenario,
 
 os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
                            const std::filesystem::path& out, const std::filesystem::path& log) {
-  const auto target = for_uav(run.condition, index).target;
+  const SutGroup* const group = group_of(run, index);
   auto environment = environment_of(uav.placement.name, index, run);
   environment.emplace_back("TETHER_OUT", files_folder(out));
-  return {.arguments = local_sut_command(uav.sut, target).words,
+  return {.arguments = local_sut_command(uav.sut, for_uav(run.condition, index).target,
+                                         group ? group->socket : "")
+                           .words,
           .environment = std::move(environment),
           .log = log,
-          .cpus = cpus_for(os::allowed_cpus(), target ? target->cores : 0,
-                           first_cpu(run.condition, index))};
+          .cpus = cpus_of(run.condition, index)};
+}
+
+os::ChildCommand local_group(const scenario::Scenario& scenario, const SutRun& run,
+                             const SutGroup& group, const std::filesystem::path& log) {
+  const std::size_t first = group.uavs.front();
+  return {.arguments = group_command(group),
+          .environment = environment_of(scenario.uavs[first].placement.name, first, run),
+          .log = log,
+          .cpus = cpus_of(run.condition, first)};
 }
 
 }  // namespace tether::runner

@@ -23,7 +23,8 @@ struct LocalSutCommand {
 /// be one of this machine.
 /// @throws Error(kSetup) if a program does not exist.
 LocalSutCommand local_sut_command(const scenario::Sut& sut,
-                                  const std::optional<scenario::Target>& target);
+                                  const std::optional<scenario::Target>& target,
+                                  const std::string& group = "");
 
 /// The CPUs for a SUT: `cores` of those allowed, the last ones first, because the first ones are
 /// the busiest; so many are taken by others. Empty: all CPUs (`cores` is 0), or there are too few.
@@ -43,5 +44,8 @@ void require_sut_programs(const scenario::Scenario& scenario, const scenario::Co
 /// output goes to `log`. @throws Error(kSetup) if `out` cannot be created.
 os::ChildCommand local_sut(const scenario::UavSetup& uav, const SutRun& run, std::size_t index,
                            const std::filesystem::path& out, const std::filesystem::path& log);
+/// How to start the process of a group, which gets the environment and the CPUs of its SUTs.
+os::ChildCommand local_group(const scenario::Scenario& scenario, const SutRun& run,
+                             const SutGroup& group, const std::filesystem::path& log);
 
 }  // namespace tether::runner

@@ -30,9 +30,24 @@ std::vector<std::string> command_line(const scenario::Sut& sut) {
   return words;
 }
 
-SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::Target>& target) {
-  SutCommand command{{}, 0};
-  if (sut.concurrent) command.words.emplace_back("tether-exec");
+const SutGroup* group_of(const SutRun& run, std::size_t uav) {
+  const auto found = std::ranges::find_if(
+      run.groups, [uav](const SutGroup& group) { return std::ranges::count(group.uavs, uav) > 0; });
+  return found == run.groups.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> group_command(const SutGroup& group) {
+  return {"tether-exec", "--group", group.socket, "--members", std::to_string(group.uavs.size())};
+}
+
+SutCommand sut_command(const scenario::Sut& sut, const std::optional<scenario::Target>& target,
+                       const std::string& group) {
+  SutCommand command;
+  if (!group.empty())
+    command.words = {"tether-exec", "--group", group};
+  else if (sut.concurrent)
+    command.words = {"tether-exec"};
+  command.supervisor = command.words.size();
   std::vector<std::string> words = command_line(sut);
   if (target) {
     std::string& program = words.front();
@@ -61,14 +76,18 @@ os::Environment environment_of(const std::string& uav, std::size_t index, const 
 
 std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run, bool all) {
   std::string text;
-  for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
-    if (!all && !for_uav(run.condition, i).by_hand) continue;
-    const scenario::UavSetup& uav = scenario.uavs[i];
-    for (const auto& [name, value] : environment_of(uav.placement.name, i, run))
+  const auto add = [&](std::size_t uav, std::vector<std::string> words) {
+    for (const auto& [name, value] : environment_of(scenario.uavs[uav].placement.name, uav, run))
       text += fmt::format("{}={} ", name, os::shell_word(value));
-    std::vector<std::string> words = sut_command(uav.sut, for_uav(run.condition, i).target).words;
     std::transform(words.begin(), words.end(), words.begin(), os::shell_word);
     text += fmt::format("{}\n", fmt::join(words, " "));
+  };
+  for (std::size_t i = 0; i < scenario.uavs.size(); ++i) {
+    const scenario::Condition own = for_uav(run.condition, i);
+    if (!all && !own.by_hand) continue;
+    const SutGroup* const group = group_of(run, i);
+    if (group && group->uavs.front() == i) add(i, group_command(*group));
+    add(i, sut_command(scenario.uavs[i].sut, own.target, group ? group->socket : "").words);
   }
   return text;
 }

@@ -26,11 +26,13 @@ board::BoardSut board_sut(board::Board& board, const scenario::Scenario& scenari
     if (std::binary_search(scenario.files.begin(), scenario.files.end(),
                            std::filesystem::path(value)))
       value = board.copy(value);
-  SutCommand command = sut_command(sut, for_uav(run.condition, index).target);
+  const SutGroup* const group = group_of(run, index);
+  SutCommand command =
+      sut_command(sut, for_uav(run.condition, index).target, group ? group->socket : "");
   return {.uav = uav.placement.name,
           .words = std::move(command.words),
           .program = command.program,
-          .concurrent = sut.concurrent,
+          .supervisor = command.supervisor,
           .environment = environment_of(uav.placement.name, index, run),
           .log = log};
 }
@@ -74,8 +76,11 @@ void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
     const scenario::UavSetup& uav = scenario.uavs[i];
     board::Board* const board = boards.empty() ? nullptr : boards[i];
     if (!board && !std::exchange(has_local_, true)) os::adopt_orphans();
+    const SutGroup* const group = group_of(run, i);
+    if (group && group->uavs.front() == i) start_group(scenario, run, *group, folder, board);
     const std::string& name = uav.placement.name;
     Sut sut{.uav = name,
+            .name = fmt::format("the SUT of UAV \"{}\"", name),
             .log = folder / fmt::format("sut-{}.log", name),
             .files = scenario.uavs.size() > 1 ? folder / name : folder,
             .program = {},
@@ -94,9 +99,33 @@ void SutProcesses::start(const scenario::Scenario& scenario, const SutRun& run,
   }
 }
 
+void SutProcesses::start_group(const scenario::Scenario& scenario, const SutRun& run,
+                               const SutGroup& group, const std::filesystem::path& folder,
+                               board::Board* board) {
+  Sut process{.uav = "",
+              .name = fmt::format("the group of \"{}\"", group.name),
+              .log = folder / fmt::format("exec-{}.log", group.name),
+              .files = {},
+              .program = "tether-exec",
+              .process = {},
+              .board = board};
+  const std::size_t first = group.uavs.front();
+  if (board)
+    // No UAV has a space in its name.
+    process.process = board->start(
+        {.uav = "group " + group.name,
+         .words = group_command(group),
+         .environment = environment_of(scenario.uavs[first].placement.name, first, run),
+         .log = process.log});
+  else
+    process.process =
+        std::make_unique<os::ChildProcess>(local_group(scenario, run, group, process.log));
+  suts_.push_back(std::move(process));
+}
+
 std::optional<std::string> SutProcesses::early_end() {
   for (Sut& sut : suts_)
-    if (sut.process->poll()) return describe_end(sut);
+    if (sut.process->poll() && !has_ended_well(sut)) return describe_end(sut);
   return std::nullopt;
 }
 
@@ -109,7 +138,8 @@ bool SutProcesses::has_failed_to_connect(const std::string& address) {
 std::string SutProcesses::post_mortem(const std::string& reason) {
   std::string text;
   for (Sut& sut : suts_)
-    if (sut.process->wait(kEndLimit)) text += "; " + describe_end(sut, reason);
+    if (sut.process->wait(kEndLimit) && !has_ended_well(sut))
+      text += "; " + describe_end(sut, reason);
   return text;
 }
 
@@ -124,21 +154,23 @@ std::optional<std::string> SutProcesses::stopped() const {
   for (const Sut& sut : suts_) {
     if (sut.board) continue;
     if (const auto pid = stopped_process(sut.process->pid()))
-      return fmt::format(
-          "process {} of the SUT of UAV \"{}\" was stopped (by a signal or a debugger)", *pid,
-          sut.uav);
+      return fmt::format("process {} of {} was stopped (by a signal or a debugger)", *pid,
+                         sut.name);
   }
   return std::nullopt;
+}
+
+// The process of a group ends after its SUTs, which tell why.
+bool SutProcesses::has_ended_well(Sut& sut) {
+  return sut.uav.empty() && sut.process->poll()->code == 0;
 }
 
 std::vector<std::string> SutProcesses::await_exit() {
   std::vector<std::string> notes;
   for (Sut& sut : suts_)
     if (!sut.process->wait(kExitLimit))
-      notes.push_back(fmt::format(
-          "the SUT of UAV \"{}\" ({}) had finished but did not exit within {} s; it was "
-          "ended",
-          sut.uav, sut.program, to_seconds(kExitLimit)));
+      notes.push_back(fmt::format("{} ({}) had finished but did not exit within {} s; it was ended",
+                                  sut.name, sut.program, to_seconds(kExitLimit)));
     else if (sut.process->poll()->code > os::kSignalled)
       notes.push_back("after it had finished: " + describe_end(sut));
   return notes;
@@ -148,7 +180,7 @@ std::vector<std::string> SutProcesses::bring_back() {
   std::vector<std::string> warnings;
   std::map<board::Board*, bool> has_ended;
   for (const Sut& sut : suts_) {
-    if (!sut.board) continue;
+    if (!sut.board || sut.uav.empty()) continue;
     const auto [ended, is_first] = has_ended.try_emplace(sut.board, false);
     if (is_first) ended->second = sut.board->end_suts();
     if (!ended->second) continue;
@@ -166,7 +198,7 @@ std::string SutProcesses::describe_end(Sut& sut, const std::string& reason) cons
   const bool is_complete =
       last.empty() || repeats(last, reason) || end.cause == board::SutEndCause::kNotStarted;
   return fmt::format(
-      "the SUT of UAV \"{}\" ({}) {}{}", sut.uav, sut.program, end.description,
+      "{} ({}) {}{}", sut.name, sut.program, end.description,
       is_complete ? "" : fmt::format("; last line of {}: {}", sut.log.string(), last));
 }
 

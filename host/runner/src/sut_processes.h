@@ -24,9 +24,11 @@ class SutProcesses {
   SutProcesses& operator=(const SutProcesses&) = delete;
 
   /// Starts all of them but those that the user starts, here or on their board, which must outlive
-  /// them; `boards` has one for each UAV, or null. Empty: all run here. The output of each goes to
-  /// `folder`/sut-UAV.log, and its TETHER_OUT is `folder`, or `folder`/UAV if there are several.
-  /// The scenario's files that parameters name are copied to the board. @throws Error(kSetup).
+  /// them; `boards` has one for each UAV, or null. Empty: all run here. Those of a group of the run
+  /// have one more process, which starts and stops their programs, with its output in
+  /// `folder`/exec-BOARD.log. The output of each SUT goes to `folder`/sut-UAV.log, and its
+  /// TETHER_OUT is `folder`, or `folder`/UAV if there are several. The scenario's files that
+  /// parameters name are copied to the board. @throws Error(kSetup).
   void start(const scenario::Scenario& scenario, const SutRun& run,
              const std::filesystem::path& folder, const std::vector<board::Board*>& boards = {});
 
@@ -50,13 +52,17 @@ class SutProcesses {
 
  private:
   struct Sut {
-    std::string uav;
+    std::string uav;   // empty: it is the process of a group
+    std::string name;  // for messages
     std::filesystem::path log;
     std::filesystem::path files;  // its TETHER_OUT on this machine
     std::string program;
     std::unique_ptr<os::ChildProcess> process;
     board::Board* board = nullptr;  // null: this machine
   };
+  void start_group(const scenario::Scenario& scenario, const SutRun& run, const SutGroup& group,
+                   const std::filesystem::path& folder, board::Board* board);
+  static bool has_ended_well(Sut& sut);
   std::string describe_end(Sut& sut, const std::string& reason = "") const;
 
   bool has_local_ = false;

@@ -35,23 +35,6 @@ namespace {
 
 using coordinator::RunEnd;
 
-/// @throws Error(kUsage), about the board, if several SUTs would run on it.
-void require_board_each(const TrialSpec& spec) {
-  std::map<std::string, std::string> uavs;  // by the board's address
-  for (std::size_t i = 0; i < spec.scenario.uavs.size(); ++i) {
-    if (spec.sut_place(i) != SutPlace::kBoard) continue;
-    const std::string address = scenario::to_string(*for_uav(spec.condition, i).target->ssh);
-    const auto [other, is_new] = uavs.emplace(address, spec.scenario.uavs[i].placement.name);
-    if (is_new) continue;
-    throw Error(ErrorCode::kUsage,
-                fmt::format("the SUTs of UAVs \"{}\" and \"{}\" would run on one board, {}: one "
-                            "that is held would give its share of the cores to the other. Give "
-                            "each a board of its own with [[target]], or use a virtual target",
-                            other->second, spec.scenario.uavs[i].placement.name, address))
-        .about(address);
-  }
-}
-
 /// Connects to the boards of the condition and reserves them.
 Boards hold_boards(const TrialSpec& spec, const std::stop_token& stop) {
   Boards boards{.by_uav = std::vector<board::Board*>(spec.scenario.uavs.size()), .all = {}};
@@ -236,7 +219,6 @@ campaign::TrialResult run_trial(const TrialSpec& spec, const FindBackEnd& find_b
   // Errors in options and files are found before anything is written.
   const BackEnd back_end = find_back_end(spec.condition.simulator);
   scenario::require_clock(spec.scenario, spec.condition);
-  require_board_each(spec);
   WarningLog warnings(observer.on_warnings);
   sim::WorldStore none;
   sim::World world = (spec.worlds ? *spec.worlds : none)

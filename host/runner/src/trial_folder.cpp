@@ -40,6 +40,7 @@ constexpr OwnFile kOwnFiles[] = {
     {kSimulatorLog, true},
     {kWarningsFile, true},
     {"sut-*.log", true},
+    {"exec-*.log", true},
     {campaign::kReportFile},
     {"junit.xml"},
     {"plots/*.svg"},

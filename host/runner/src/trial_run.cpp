@@ -102,8 +102,13 @@ std::map<std::size_t, os::CountFile> count_files(const TrialSpec& spec) {
 
 /// The computers that several SUTs share.
 void share_boards(const scenario::Condition& condition, coordinator::RunOptions& options) {
+  for (const scenario::RealBoard& board : real_boards(condition, options.uavs.size())) {
+    for (const std::size_t uav : board.uavs) options.uavs[uav].board = options.boards.size();
+    options.boards.push_back({.name = board.name, .is_real = true});
+  }
   for (std::size_t i = 0; i < condition.computers.size(); ++i) {
-    if (!is_shared(condition, i)) continue;
+    const bool is_real = condition.computers[i].clock == scenario::Clock::kWall;
+    if (is_real || !is_shared(condition, i)) continue;
     for (std::size_t uav = 0; uav < options.uavs.size(); ++uav) {
       if (condition.seats[uav].computer != i) continue;
       options.uavs[uav].board = options.boards.size();
@@ -226,6 +231,28 @@ std::map<std::size_t, std::string> addresses_of(const TrialSpec& spec, const Boa
   return addresses;
 }
 
+/// The groups of SUTs that share a real board. Their sockets are where only their user can connect:
+/// in a private folder or, of SUTs that the user starts, with a name that nobody else can guess.
+std::vector<SutGroup> groups_of(const TrialSpec& spec, const Boards& boards,
+                                std::optional<os::TemporaryFolder>& folder) {
+  constexpr std::size_t kLetters = 12;
+  std::vector<SutGroup> groups;
+  for (scenario::RealBoard& real : real_boards(spec.condition, spec.scenario.uavs.size())) {
+    const std::size_t first = real.uavs.front();
+    const board::Board* const board = boards.by_uav[first];
+    const std::string name = "group" + std::to_string(groups.size());
+    std::string socket = "/tmp/tether-" + link::make_token().substr(0, kLetters);
+    if (board) {
+      socket = board->folder() + "/" + name;
+    } else if (spec.sut_place(first) == SutPlace::kThisMachine) {
+      if (!folder) folder.emplace("tether-groups-");
+      socket = *folder / name;
+    }
+    groups.push_back({std::move(real.name), std::move(real.uavs), std::move(socket)});
+  }
+  return groups;
+}
+
 }  // namespace
 
 TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimulator& simulator,
@@ -241,8 +268,12 @@ TrialRun::TrialRun(const TrialSpec& spec, const TrialInputs& inputs, RunningSimu
       coordinator_(simulator.get(), *recorder_, run_options(spec, inputs, token_, target_),
                    host_now),
       server_((allow_connections(spec.scenario.uavs.size()), listen(spec, boards))),
-      sut_run_{sut_address(spec, nullptr, *server_), token_, spec.condition, count_files(spec),
-               addresses_of(spec, boards, *server_)},
+      sut_run_{sut_address(spec, nullptr, *server_),
+               token_,
+               spec.condition,
+               count_files(spec),
+               addresses_of(spec, boards, *server_),
+               groups_of(spec, boards, groups_folder_)},
       refusals_(observer.on_refused),
       others_(other_targets(spec, boards)) {}
 

@@ -15,6 +15,7 @@
 
 #include <tether/board/board.h>
 #include <tether/coordinator/coordinator.h>
+#include <tether/os/temporary_folder.h>
 #include <tether/record/writer.h>
 #include <tether/runner/back_end.h>
 #include <tether/runner/trial.h>
@@ -83,6 +84,7 @@ class TrialRun {
   std::unique_ptr<record::Recorder> recorder_;
   coordinator::Coordinator coordinator_;
   std::unique_ptr<link::Server> server_;
+  std::optional<os::TemporaryFolder> groups_folder_;  // for groups on this machine
   SutRun sut_run_;
   SutProcesses suts_;
   Refusals refusals_;

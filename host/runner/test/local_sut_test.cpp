@@ -3,6 +3,9 @@
 #include "sut_environment.h"
 
 #include <cstdlib>
+#include <sstream>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -46,6 +49,38 @@ TEST(SutCommand, StartsAConcurrentProgramUnderTetherExec) {
   const auto command = sut_command(concurrent, target({"emulate"}, "/arm/bin"));
   EXPECT_THAT(command.words, ElementsAre("tether-exec", "emulate", "/arm/bin/fly", "task"));
   EXPECT_EQ(command.words[command.program], "/arm/bin/fly");
+}
+
+TEST(SutCommand, JoinsTheGroupOfItsBoard) {
+  const auto command = sut_command(kSut, target({"emulate"}, "/arm/bin"), "/s");
+  EXPECT_THAT(command.words, ElementsAre("tether-exec", "--group", "/s", "emulate", "/arm/bin/fly",
+                                         "task", "--max-frames", "5", "--to", "box"));
+  EXPECT_EQ(command.program, 4u);
+  EXPECT_EQ(command.supervisor, 3u);
+  EXPECT_THAT(group_command({"board", {1, 4}, "/s"}),
+              ElementsAre("tether-exec", "--group", "/s", "--members", "2"));
+}
+
+// For a user who starts the programs: the group comes before its first program.
+TEST(SutInstructions, HaveOneGroupForTheProgramsOfABoard) {
+  scenario::Scenario scenario;
+  scenario.uavs.resize(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    scenario.uavs[i].placement.name = "uav" + std::to_string(i);
+    scenario.uavs[i].sut.command = {"fly"};
+  }
+  const SutRun run{"127.0.0.1:4000", "token", {}, {}, {}, {{"board", {1, 2}, "/s"}}};
+  EXPECT_EQ(group_of(run, 0), nullptr);
+  ASSERT_NE(group_of(run, 2), nullptr);
+  std::vector<std::string> commands;
+  std::istringstream lines(sut_instructions(scenario, run));
+  for (std::string line; std::getline(lines, line);) commands.push_back(line);
+  using testing::EndsWith;
+  EXPECT_THAT(commands,
+              ElementsAre(EndsWith(" fly"), EndsWith(" tether-exec --group /s --members 2"),
+                          EndsWith(" tether-exec --group /s fly"),
+                          EndsWith(" tether-exec --group /s fly")));
+  EXPECT_THAT(commands.front(), testing::Not(testing::HasSubstr("--group")));
 }
 
 TEST(LocalSut, AcceptsAProgramOfAnotherMachineWithALauncher) {

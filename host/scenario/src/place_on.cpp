@@ -18,13 +18,13 @@ std::string why_not_on(const Condition& condition, const Target& target) {
         "because free running uses the wall clock.",
         target.name);
   }
-  for (std::size_t i = 0; i < condition.computers.size(); ++i)
-    if (target.clock == Clock::kWall && is_shared(condition, i))
+  for (const Seat& seat : condition.seats)
+    if (target.clock == Clock::kWall && seat.pinned_core)
       return fmt::format(
-          "several SUTs share the target \"{}\", but \"{}\" has a wall clock: SUTs that are held "
-          "would give their share of its cores to the others. Use a target with the clock \"cpu\" "
-          "or \"counted\", or a condition with shared = false.",
-          condition.computers[i].name, target.name);
+          "a UAV has a 'pinned_core' of the target \"{}\", which needs a modelled computer, but "
+          "\"{}\" has a wall clock. Use a target with the clock \"cpu\" or \"counted\", or remove "
+          "'pinned_core'.",
+          condition.computers[seat.computer].name, target.name);
   if (target.ssh && condition.computers.size() > 1)
     return fmt::format(
         "{} targets cannot all be the board at {}. Give each [[target]] a file of its own.",
@@ -42,6 +42,7 @@ void place_on(Condition& condition, Target target) {
     computer.cpu_factor = target.cpu_factor;
     computer.computing = Duration{0};
     computer.target = target;
+    if (target.clock == Clock::kWall) computer.cores = 0;
     if (target.clock != Clock::kWall) computer.target->cores = 0;
   }
   condition.clock = target.clock;

@@ -24,7 +24,7 @@ Computer read_computer(const toml::Table& table, Scenario& scenario) {
     scenario.files.push_back(target.file);
     computer.clock = target.clock;
     computer.cpu_factor = target.cpu_factor;
-    computer.cores = std::max(1, target.cores);
+    computer.cores = target.cores;
     // Those of a modelled computer are no cores of this machine.
     if (target.clock != Clock::kWall) target.cores = 0;
     computer.target = std::move(target);
@@ -43,7 +43,16 @@ Computer read_computer(const toml::Table& table, Scenario& scenario) {
     computer.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
   }
   computer.by_hand = table.boolean_or("by_hand", false);
-  computer.cores = static_cast<int>(table.integer_or("cores", 1, kMostSharedCores, computer.cores));
+  if (computer.clock == Clock::kWall) {
+    if (table.has("cores"))
+      table.fail("cores",
+                 "is that of a modelled computer, but the clock is \"wall\". Remove this key; to "
+                 "bind programs on this machine to fewer cores, set 'cores' in a target file.");
+    computer.cores = 0;
+  } else {
+    computer.cores = static_cast<int>(
+        table.integer_or("cores", 1, kMostSharedCores, std::max(1, computer.cores)));
+  }
   return computer;
 }
 
@@ -77,6 +86,13 @@ std::optional<Seat> read_seat(const toml::Table& table, const Scenario& scenario
     seat.pinned_core =
         static_cast<int>(table.integer_or("pinned_core", 0, kMostSharedCores - 1, 0));
     const Computer& computer = scenario.computers[seat.computer];
+    if (computer.clock == Clock::kWall)
+      table.fail(
+          "pinned_core",
+          fmt::format("needs a modelled computer, but the clock of target \"{}\" is \"wall\". "
+                      "Remove this key, or start the program with a launcher such as "
+                      "taskset in a target file.",
+                      computer.name));
     if (*seat.pinned_core >= computer.cores)
       table.fail("pinned_core",
                  fmt::format("is {}, but target \"{}\" has {} cores, numbered from 0 on.",

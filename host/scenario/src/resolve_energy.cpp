@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <tether/energy/propulsion.h>
@@ -35,6 +37,14 @@ void require_possible(const Energy& energy, const energy::Model& model, const si
                      uav.name, needed_W, given.voltage_V, model.battery.cut_off_V));
 }
 
+/// A SUT under tether-exec: its threads may compute while others wait.
+bool is_supervised(const Scenario& scenario, const Condition& condition, std::size_t uav) {
+  if (scenario.uavs[uav].sut.concurrent) return true;
+  return std::ranges::any_of(
+      real_boards(condition, scenario.uavs.size()),
+      [uav](const RealBoard& board) { return std::ranges::count(board.uavs, uav) > 0; });
+}
+
 }  // namespace
 
 void resolve_energy(const Scenario& scenario, const Condition& condition, sim::World& world,
@@ -55,9 +65,10 @@ void resolve_energy(const Scenario& scenario, const Condition& condition, sim::W
     if (const auto target = for_uav(condition, i).target; target && target->power)
       model.computer = *target->power;
     require_possible(energy, model, uav, world.gravity_m_s2);
-    if (scenario.uavs[i].sut.concurrent)
+    if (is_supervised(scenario, condition, i))
       warn({Consequence::kMissing, energy.battery_at, "computing",
-            "of a concurrent SUT is not known; its computer is charged as idle"});
+            "of a SUT that is concurrent, or shares a real board, is not known; its computer is "
+            "charged as idle"});
     uav.energy = std::move(model);
   }
 }

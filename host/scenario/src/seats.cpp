@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include <fmt/format.h>
@@ -22,6 +23,7 @@ constexpr std::size_t kMostPrograms = 40;
 
 void require_sharable(const Condition& condition, std::size_t index) {
   const Computer& computer = condition.computers[index];
+  if (computer.clock == Clock::kWall) return;  // nothing is modelled
   std::size_t suts = 0;
   std::set<int> pinned;
   for (const Seat& seat : condition.seats) {
@@ -43,15 +45,6 @@ void require_sharable(const Condition& condition, std::size_t index) {
     fail(computer, fmt::format("all {} cores have pinned programs, and none is left for the UAVs "
                                "without 'pinned_core'. Raise 'cores', or pin these too",
                                computer.cores));
-  const bool is_by_wall = computer.clock == Clock::kWall || computer.clock == Clock::kUnstamped;
-  if (suts > 1 && is_by_wall)
-    fail(
-        computer,
-        fmt::format("{} UAVs name it, but its clock is \"{}\". Programs that are held and go on at "
-                    "different times would give each other their share of its cores. Give each UAV "
-                    "a target of its own, or use the clock \"cpu\", \"counted\" or \"scripted\", "
-                    "for which sharing is modelled",
-                    suts, name(computer.clock)));
 }
 
 void require_other_addresses(const Condition& condition) {
@@ -85,6 +78,23 @@ Condition for_uav(const Condition& condition, std::size_t uav) {
 
 bool is_shared(const Condition& condition, std::size_t computer) {
   return std::ranges::count(condition.seats, computer, &Seat::computer) > 1;
+}
+
+std::vector<RealBoard> real_boards(const Condition& condition, std::size_t uavs) {
+  std::vector<RealBoard> boards;
+  for (std::size_t i = 0; i < condition.computers.size(); ++i) {
+    if (condition.computers[i].clock != Clock::kWall || !is_shared(condition, i)) continue;
+    RealBoard& board = boards.emplace_back();
+    board.name = condition.computers[i].name;
+    for (std::size_t uav = 0; uav < condition.seats.size(); ++uav)
+      if (condition.seats[uav].computer == i) board.uavs.push_back(uav);
+  }
+  const bool is_one_for_all =
+      condition.computers.empty() && condition.target && condition.target->ssh;
+  if (!is_one_for_all || uavs < 2) return boards;
+  boards.push_back({condition.target->name, std::vector<std::size_t>(uavs)});
+  std::iota(boards.back().uavs.begin(), boards.back().uavs.end(), std::size_t{0});
+  return boards;
 }
 
 void seat(const Scenario& scenario, Condition& condition, bool shared) {

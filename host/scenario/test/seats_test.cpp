@@ -114,8 +114,33 @@ TEST_F(Seats, SlowDownAndTargetsReachEveryComputerAndKeepWhoShares) {
   EXPECT_EQ(for_uav(shared, 2).cpu_factor, 7.0);
   EXPECT_TRUE(is_shared(shared, 0));
   slow.clock = Clock::kWall;
-  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { place_on(shared, slow); }).subject(),
-            shared.name);
+  EXPECT_EQ(thrown_error(ErrorCode::kUsage, [&] { place_on(shared, slow); }).subject(), shared.name)
+      << "one is pinned";
+  shared.seats[1].pinned_core.reset();
+  place_on(shared, slow);
+  const auto boards = real_boards(shared, 3);
+  ASSERT_EQ(boards.size(), 1u);
+  EXPECT_EQ(boards[0].name, "front");
+  EXPECT_EQ(boards[0].uavs, (std::vector<std::size_t>{0, 1}));
+}
+
+TEST_F(Seats, RealBoardsAreThoseWithAWallClockAndSeveralUavs) {
+  const Scenario fleet = load(kFleet);
+  EXPECT_TRUE(real_boards(fleet.conditions[0], 3).empty()) << "its computers are modelled";
+  const Scenario wall = load(
+      replaced(replaced(kFleet, "clock = \"cpu\"\ncpu_factor = 3\ncores = 2", "clock = \"wall\""),
+               "pinned_core = 1", ""));
+  ASSERT_EQ(real_boards(wall.conditions[0], 3).size(), 1u);
+  EXPECT_EQ(real_boards(wall.conditions[0], 3)[0].uavs.size(), 2u);
+  EXPECT_TRUE(real_boards(wall.conditions[1], 3).empty()) << "not shared";
+  Condition on_host;
+  on_host.clock = Clock::kWall;
+  EXPECT_TRUE(real_boards(on_host, 3).empty());
+  on_host.target.emplace().name = "pi";
+  on_host.target->ssh = SshAddress{"pi@rover"};
+  EXPECT_TRUE(real_boards(on_host, 1).empty());
+  ASSERT_EQ(real_boards(on_host, 3).size(), 1u);
+  EXPECT_EQ(real_boards(on_host, 3)[0].uavs, (std::vector<std::size_t>{0, 1, 2}));
 }
 
 TEST_F(Seats, RefusesWhatCannotBe) {
@@ -131,10 +156,11 @@ TEST_F(Seats, RefusesWhatCannotBe) {
       {"name = \"rear\"", "name = \"front\"", 12, "name"},
       {"cores = 2", "cores = 0", 10, "cores"},
       {"cpu_factor = 3\ncores = 2", "cores = 1025", 9, "cores"},
-      {"clock = \"cpu\"\ncpu_factor = 3", "clock = \"wall\"", 7, "front"},
+      {"clock = \"cpu\"\ncpu_factor = 3", "clock = \"wall\"", 9, "cores"},
+      {front + "cores = 2", "clock = \"wall\"", 23, "pinned_core"},
       {"cores = 2", "cores = 1", 25, "pinned_core"},
       {"target = \"rear\"\n", "", 30, "clock"},
-      {front, "file = \"pi.toml\"\n", 7, "front"},
+      {front, "file = \"pi.toml\"\n", 9, "cores"},
       {front, "", 6, "clock"},
       {"shared = false", "shared = false\nclock = \"cpu\"", 37, "shared"},
   };
@@ -144,10 +170,11 @@ TEST_F(Seats, RefusesWhatCannotBe) {
   const std::string full =
       replaced(replaced(kFleet, "cores = 2", "cores = 1"), "pinned_core = 1", "pinned_core = 0");
   expect_refusal(7, "front", [&] { load(full); });
-  const std::string two = replaced(
-      replaced(replaced(kFleet, front, "file = \"pi.toml\"\n"), rear, "file = \"same.toml\"\n"),
-      "target = \"front\"\npinned_core = 1", "target = \"rear\"");
-  expect_refusal(11, "rear", [&] { load(two); });
+  const std::string two =
+      replaced(replaced(replaced(kFleet, front + "cores = 2\n", "file = \"pi.toml\"\n"), rear,
+                        "file = \"same.toml\"\n"),
+               "target = \"front\"\npinned_core = 1", "target = \"rear\"");
+  expect_refusal(10, "rear", [&] { load(two); });
 }
 
 }  // namespace

@@ -76,6 +76,8 @@ class CgroupFreezer final : public Freezer {
   CgroupFreezer(FileDescriptor freeze, FileDescriptor events)
       : freeze_(std::move(freeze)), events_(std::move(events)) {}
 
+  void add(pid_t /*group*/) override {}  // it has entered the cgroup itself
+  void remove(pid_t /*group*/) override {}
   std::string name() const override { return "cgroup"; }
   Status freeze() override {
     if (const Status done = write_state('1'); !done) return done;

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include <fcntl.h>
 #include <signal.h>
@@ -17,12 +18,30 @@ namespace {
 
 using os::FileDescriptor;
 
-/// What the child runs, between fork and exec. Returns only if something fails, leaving errno.
-void become(char* const* arguments, const std::optional<Cgroup>& cgroup, pid_t parent) {
+/// Puts the child where its command belongs; false: the system refuses, with the reason in errno.
+bool settle(const Command& command, const std::string& socket) {
+  const auto [folder, input, output, errors] = command.descriptors;
+  if (folder >= 0 && ::fchdir(folder) != 0) return false;
+  for (const auto& [from, to] : {std::pair(input, STDIN_FILENO), std::pair(output, STDOUT_FILENO),
+                                 std::pair(errors, STDERR_FILENO)})
+    if (from >= 0 && ::dup2(from, to) < 0) return false;
+  if (command.environment) {
+    ::clearenv();
+    // putenv does not change what it points to.
+    for (const auto& variable : *command.environment) ::putenv(const_cast<char*>(variable.c_str()));
+  }
+  return ::setenv("TETHER_EXEC", socket.c_str(), 1) == 0;
+}
+
+/// What the child runs, between fork and exec: this process has one thread. Returns only if
+/// something fails, leaving errno.
+void become(char* const* arguments, const Command& command, const std::string& socket,
+            const std::optional<Cgroup>& cgroup, pid_t parent) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(1);  // it died before the line above
   if (cgroup && !cgroup->enter()) return;
+  if (!settle(command, socket)) return;
   if (::isatty(STDIN_FILENO) == 1) {
     const int nothing = ::open("/dev/null", O_RDONLY);
     if (nothing >= 0) ::dup2(nothing, STDIN_FILENO);
@@ -35,13 +54,12 @@ void become(char* const* arguments, const std::optional<Cgroup>& cgroup, pid_t p
 
 }  // namespace
 
-Result<pid_t> start_command(const std::vector<std::string>& command, const std::string& socket,
+Result<pid_t> start_command(const Command& command, const std::string& socket,
                             const std::optional<Cgroup>& cgroup) {
   std::vector<char*> arguments;
   // execvp does not change what it points to.
-  for (const auto& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
+  for (const auto& word : command.words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  ::setenv("TETHER_EXEC", socket.c_str(), 1);
 
   // The child's errno comes through a pipe that a successful exec closes.
   int ends[2];
@@ -53,7 +71,7 @@ Result<pid_t> start_command(const std::vector<std::string>& command, const std::
   const pid_t self = ::getpid();
   const pid_t child = ::fork();
   if (child == 0) {
-    become(arguments.data(), cgroup, self);
+    become(arguments.data(), command, socket, cgroup, self);
     const int error = errno;
     static_cast<void>(!::write(writing.get(), &error, sizeof error));
     ::_exit(127);
@@ -63,7 +81,7 @@ Result<pid_t> start_command(const std::vector<std::string>& command, const std::
   int error = 0;
   if (child > 0 && ::read(reading.get(), &error, sizeof error) <= 0) return child;
   if (child > 0) ::waitpid(child, nullptr, 0);
-  return Failure{Failure::Kind::kInvalid, "cannot start '" + command.front() +
+  return Failure{Failure::Kind::kInvalid, "cannot start '" + command.words.front() +
                                               "': " + std::strerror(child > 0 ? error : errno)};
 }
 

@@ -4,6 +4,9 @@
 #include "process_tree.h"
 
 #include <cerrno>
+#include <filesystem>
+#include <set>
+#include <system_error>
 
 #include <fcntl.h>
 #include <signal.h>
@@ -13,14 +16,14 @@
 namespace tether::supervisor {
 namespace {
 
-/// Reads process groups until the other end is gone; returns the last one.
-pid_t read_until_end(int pipe) {
-  pid_t group = 0;
+/// Reads process groups until the other end is gone; a negative one is to be forgotten.
+std::set<pid_t> read_until_end(int pipe) {
+  std::set<pid_t> groups;
   pid_t next = 0;
   while (true) {
     const ssize_t size = ::read(pipe, &next, sizeof next);
-    if (size == static_cast<ssize_t>(sizeof next)) group = next;
-    if (size == 0 || (size < 0 && errno != EINTR)) return group;
+    if (size == static_cast<ssize_t>(sizeof next) && groups.erase(-next) == 0) groups.insert(next);
+    if (size == 0 || (size < 0 && errno != EINTR)) return groups;
   }
 }
 
@@ -36,12 +39,11 @@ void guard(int pipe, const std::string& folder, const std::string& cgroup) {
   for (int other = 3; other < 64; ++other) {
     if (other != pipe) ::close(other);
   }
-  const pid_t group = read_until_end(pipe);
-  if (group > 0) ::kill(-group, SIGKILL);
-  kill_all_with("TETHER_EXEC=" + folder + "/socket");
+  for (const pid_t group : read_until_end(pipe)) ::kill(-group, SIGKILL);
+  kill_all_with("TETHER_EXEC=" + folder + "/");
   if (!cgroup.empty()) remove_cgroup(cgroup);
-  ::unlink((folder + "/socket").c_str());
-  ::rmdir(folder.c_str());
+  std::error_code ignored;
+  std::filesystem::remove_all(folder, ignored);
 }
 
 }  // namespace
@@ -66,6 +68,10 @@ Guardian::~Guardian() {
 
 void Guardian::watch(pid_t group) {
   static_cast<void>(!::write(pipe_.get(), &group, sizeof group));
+}
+
+void Guardian::forget(pid_t group) {
+  watch(-group);
 }
 
 }  // namespace tether::supervisor

@@ -14,6 +14,8 @@ class Joining {
   explicit Joining(Duration limit) : limit_(limit) {}
 
   void asked(Duration now) { asked_at_ = now; }
+  /// It has not asked yet, and can still do so.
+  bool is_to_come() const { return !asked_at_ && !over_; }
   /// After Welcome, refusal, a lost connection or an interrupt; permanent.
   void over() { over_ = true; }
 

@@ -122,15 +122,15 @@ int children_at_rest(const std::vector<ProcessState>& processes, const std::vect
   return count;
 }
 
-/// Kills what has the variable; false: nothing has.
-bool kill_some_with(const std::string& variable) {
+/// Kills what has such a variable; false: nothing has.
+bool kill_some_with(const std::string& beginning) {
   bool found = false;
   const std::unique_ptr<DIR, int (*)(DIR*)> folder(::opendir("/proc"), &::closedir);
   while (const dirent* entry = folder ? ::readdir(folder.get()) : nullptr) {
     const pid_t process = std::atoi(entry->d_name);
     if (process <= 0) continue;
     const std::string text = '\0' + read_text("/proc/" + std::string(entry->d_name) + "/environ");
-    if (text.find('\0' + variable + '\0') == std::string::npos) continue;
+    if (text.find('\0' + beginning) == std::string::npos) continue;
     found = ::kill(process, SIGKILL) == 0 || found;
   }
   return found;
@@ -202,8 +202,8 @@ void ProcessTree::kill_all() const {
       kLongestFreeze);
 }
 
-void kill_all_with(const std::string& variable) {
-  wait_until([&variable] { return !kill_some_with(variable); }, kLongestFreeze);
+void kill_all_with(const std::string& beginning) {
+  wait_until([&beginning] { return !kill_some_with(beginning); }, kLongestFreeze);
 }
 
 }  // namespace tether::supervisor

@@ -49,8 +49,8 @@ class ProcessTree {
   pid_t except_;
 };
 
-/// Kills all processes of the machine that were started with `variable` ("NAME=VALUE") in their
-/// environment, wherever they belong.
-void kill_all_with(const std::string& variable);
+/// Kills all processes of the machine that were started with a variable in their environment that
+/// begins with `beginning` ("NAME=VALUE"), wherever they belong.
+void kill_all_with(const std::string& beginning);
 
 }  // namespace tether::supervisor

@@ -22,18 +22,20 @@ std::vector<pid_t> own_children_of(const std::vector<ProcessState>& processes) {
 
 class SignalFreezer final : public Freezer {
  public:
-  SignalFreezer(pid_t group, pid_t guardian) : group_(group), processes_(guardian) {}
+  explicit SignalFreezer(pid_t guardian) : processes_(guardian) {}
 
+  void add(pid_t group) override { groups_.insert(group); }
+  void remove(pid_t group) override { groups_.erase(group); }
   std::string name() const override { return "signal"; }
   Status freeze() override {
-    ::kill(-group_, SIGSTOP);
+    for (const pid_t group : groups_) ::kill(-group, SIGSTOP);
     if (wait_until([this] { return all_stand_still(); }, kLongestFreeze)) return ok_status();
     return Failure{Failure::Kind::kTimeout,
                    "a thread of the command does not stop on SIGSTOP (--freezer cgroup stops "
                    "more)"};
   }
   void thaw() override {
-    ::kill(-group_, SIGCONT);
+    for (const pid_t group : groups_) ::kill(-group, SIGCONT);
     for (const pid_t process : outside_) ::kill(process, SIGCONT);
     outside_.clear();
   }
@@ -50,7 +52,7 @@ class SignalFreezer final : public Freezer {
     std::set<pid_t> outside;
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (!rest[i]) all = false;
-      if (found[i].group == 0 || found[i].group == group_) continue;
+      if (found[i].group == 0 || groups_.contains(found[i].group)) continue;
       const pid_t process = found[i].id;
       outside.insert(process);
       const bool may_have_stopped_while_leaving = !known_outside_.contains(process);
@@ -62,7 +64,7 @@ class SignalFreezer final : public Freezer {
     return true;
   }
 
-  pid_t group_;
+  std::set<pid_t> groups_;
   ProcessTree processes_;
   std::set<pid_t> outside_;        // stopped one by one, having left the group
   std::set<pid_t> known_outside_;  // at the end of the last freeze
@@ -70,9 +72,9 @@ class SignalFreezer final : public Freezer {
 
 }  // namespace
 
-Result<std::unique_ptr<Freezer>> make_signal_freezer(pid_t group, pid_t guardian) {
+Result<std::unique_ptr<Freezer>> make_signal_freezer(pid_t guardian) {
   if (ProcessTree::is_listed()) {
-    return std::unique_ptr<Freezer>(std::make_unique<SignalFreezer>(group, guardian));
+    return std::unique_ptr<Freezer>(std::make_unique<SignalFreezer>(guardian));
   }
   return Failure{Failure::Kind::kInvalid,
                  "this kernel does not list the children of processes (CONFIG_PROC_CHILDREN)"};

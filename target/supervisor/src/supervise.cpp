@@ -1,8 +1,9 @@
-#include "command.h"
 #include "freezer.h"
 #include "guardian.h"
+#include "membership.h"
 #include "process_tree.h"
 #include "supervisor.h"
+#include "waiting.h"
 
 #include <cerrno>
 #include <cstdlib>
@@ -11,16 +12,17 @@
 #include <optional>
 #include <utility>
 
-#include <sched.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <sys/signalfd.h>
+#include <unistd.h>
 
 #include <tether/supervisor/supervise.h>
 
-// What is around the Supervisor: signals, a private folder with the socket for the command's
-// threads, a cgroup where there is one, the guardian that clears up, and the command itself.
+// What is around the Supervisor: signals, a private folder with the sockets for the commands'
+// threads, a cgroup where there is one, and the guardian that clears up. And the other end of a
+// group: the process that gives a command to it.
 namespace tether::supervisor {
 namespace {
 
@@ -49,16 +51,6 @@ std::string make_private_folder() {
   return ::mkdtemp(path.data()) == nullptr ? "" : path;
 }
 
-/// Before the command's threads, so that a stop comes when it is due. Returns what was allowed.
-const char* raise_priority() {
-  ::prctl(PR_SET_TIMERSLACK, 1);
-  sched_param parameters{};
-  parameters.sched_priority = 1;
-  if (::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0) return "real-time priority";
-  if (::setpriority(PRIO_PROCESS, 0, -20) == 0) return "nice -20";
-  return "ordinary priority (neither SCHED_FIFO nor a nice below 0 is allowed)";
-}
-
 /// The cgroup to use, if there is to be one.
 Result<std::optional<Cgroup>> choose_cgroup(FreezerChoice choice, const Say& say) {
   if (choice == FreezerChoice::kSignal) return std::optional<Cgroup>();
@@ -69,39 +61,94 @@ Result<std::optional<Cgroup>> choose_cgroup(FreezerChoice choice, const Say& say
   return std::optional<Cgroup>();
 }
 
-Result<std::unique_ptr<Freezer>> make_freezer(const std::optional<Cgroup>& cgroup, pid_t command,
-                                              pid_t guardian) {
-  return cgroup ? make_cgroup_freezer(*cgroup) : make_signal_freezer(command, guardian);
+Result<std::unique_ptr<Freezer>> make_freezer(const std::optional<Cgroup>& cgroup, pid_t guardian) {
+  return cgroup ? make_cgroup_freezer(*cgroup) : make_signal_freezer(guardian);
 }
 
-int supervise_in(const std::string& folder, const Settings& settings,
-                 const std::optional<Cgroup>& cgroup, Guardian& guardian,
-                 os::FileDescriptor signals, const Say& say) {
+/// The socket at which the members' processes give their commands; gone with the object.
+class GroupSocket {
+ public:
+  explicit GroupSocket(std::string path) : path_(std::move(path)) {}
+  ~GroupSocket() {
+    if (is_there_) ::unlink(path_.c_str());
+  }
+  GroupSocket(const GroupSocket&) = delete;
+  GroupSocket& operator=(const GroupSocket&) = delete;
+
+  Result<os::FileDescriptor> listen() {
+    auto listener = client::listen_local(path_);
+    is_there_ = bool(listener);
+    return listener;
+  }
+
+ private:
+  std::string path_;
+  bool is_there_ = false;
+};
+
+int supervise_in(Surroundings& around, const Settings& settings, const Say& say) {
+  auto freezer = make_freezer(around.cgroup, around.guardian.process());
+  if (!freezer) return fail(say, 3, freezer.failure().message);
+  around.freezer = std::move(*freezer);
   auto clock = client::make_clock_page();
   if (!clock) return fail(say, 3, clock.failure().message);
-  const std::string path = folder + "/socket";
-  auto listener = client::listen_local(path);
-  if (!listener) return fail(say, 3, listener.failure().message);
-  const auto command = start_command(settings.command, path, cgroup);
-  if (!command) return fail(say, 2, command.failure().message);
-  guardian.watch(*command);
-  auto freezer = make_freezer(cgroup, *command, guardian.process());
-  if (!freezer) return fail(say, 3, freezer.failure().message);
-  say("stopping the command by " + (*freezer)->name());
-  const char* const priority = raise_priority();
+  around.clock = std::move(*clock);
 
-  Supervisor supervisor(settings, *command, std::move(*clock), std::move(*listener),
-                        std::move(signals), std::move(*freezer), say);
+  Supervisor supervisor(settings, around, say);
+  GroupSocket socket(settings.group);
+  if (settings.members > 0) {
+    auto listener = socket.listen();
+    if (!listener) return fail(say, 3, listener.failure().message);
+    supervisor.listen(std::move(*listener));
+    say("stopping " + std::to_string(settings.members) + " programs together by " +
+        around.freezer->name());
+  } else {
+    if (const Status started = supervisor.start(); !started)
+      return fail(say, 2, started.failure().message);
+    say("stopping the command by " + around.freezer->name());
+  }
   const int exit_code = supervisor.run();
-  ProcessTree(guardian.process()).kill_all();
-  if (settings.verbose) say(supervisor.statistics() + "  with " + priority);
+  ProcessTree(around.guardian.process()).kill_all();
+  if (settings.verbose) say(supervisor.statistics());
   return exit_code;
+}
+
+/// How long the process of the group may take to start.
+constexpr Duration kJoinLimit = std::chrono::seconds(10);
+
+/// Gives the command to the group, passes signals on, and ends as the command does.
+int join(const Settings& settings, const os::FileDescriptor& signals, const Say& say) {
+  auto socket = client::connect_local(settings.group);
+  wait_until(
+      [&] {
+        if (!socket) socket = client::connect_local(settings.group);
+        return bool(socket);
+      },
+      kJoinLimit);
+  if (!socket)
+    return fail(say, 3, "no group at " + settings.group + ". Start it with --group and --members");
+  const int group = socket->descriptor();
+  if (const Status sent = send_program(group, settings.uav, settings.command); !sent)
+    return fail(say, 3, sent.failure().message);
+  while (true) {
+    pollfd entries[] = {{signals.get(), POLLIN, 0}, {group, POLLIN, 0}};
+    if (::poll(entries, 2, -1) < 0) continue;
+    signalfd_siginfo info{};
+    while (::read(signals.get(), &info, sizeof info) == static_cast<ssize_t>(sizeof info))
+      if (info.ssi_signo != SIGCHLD) send_signal(group, static_cast<int>(info.ssi_signo));
+    if (entries[1].revents == 0) continue;
+    const auto end = receive_end(group);
+    if (!end) return fail(say, 3, "the process of the group has ended, and the command with it");
+    if (!end->message.empty()) say(end->message);
+    return end->code;
+  }
 }
 
 }  // namespace
 
 int supervise(const Settings& settings, const Say& say) {
   os::FileDescriptor signals = catch_signals();
+  if (!settings.group.empty() && settings.members == 0) return join(settings, signals, say);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   const std::string folder = make_private_folder();
   if (folder.empty())
@@ -110,7 +157,8 @@ int supervise(const Settings& settings, const Say& say) {
   Guardian guardian(folder, cgroup && *cgroup ? (*cgroup)->path() : "");
   if (!cgroup) return fail(say, 3, cgroup.failure().message);
   if (!guardian.is_there()) return fail(say, 3, "cannot start the clean-up process");
-  return supervise_in(folder, settings, *cgroup, guardian, std::move(signals), say);
+  Surroundings around{folder, *cgroup, guardian, std::move(signals), nullptr, {}};
+  return supervise_in(around, settings, say);
 }
 
 }  // namespace tether::supervisor

@@ -3,19 +3,22 @@
 #include <algorithm>
 #include <cerrno>
 #include <utility>
-#include <variant>
 
+#include <sched.h>
 #include <signal.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/signalfd.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
-#include <tether/client/simulated_vehicle.h>
+#include <tether/client/exec/local_socket.h>
 
 // The loop of tether-exec, on one thread. Each round waits for signals, the coordinator, the
-// program's connections or the next due time; passes messages to Supervision, which decides when
-// the program must stop and may continue; and carries that out with the freezer and the shared
-// clock page. While the program is stopped, its connections are not read, except once after each
-// stop.
+// programs' connections or the next due time; has each member pass messages to its Supervision;
+// and carries out with the freezer and the shared clock page what Group decides: when all programs
+// must stop and may continue. While they are stopped, their connections are not read, except once
+// after each stop.
 namespace tether::supervisor {
 namespace {
 
@@ -26,57 +29,140 @@ using client::read_monotonic;
 constexpr Duration kProgressPeriod = std::chrono::milliseconds(2);
 /// In free running, where it is only a sign of life.
 constexpr Duration kHeartbeatPeriod = std::chrono::milliseconds(500);
-constexpr Duration kConnectTimeout = std::chrono::seconds(10);
-/// A command that is told to end may take so long before it is killed, half of it stopped.
-constexpr Duration kGrace = std::chrono::seconds(2);
 
 int exit_code_from(int status) {
   return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
 }
 
+/// Before the commands' threads, so that a stop comes when it is due. Returns what was allowed.
+const char* raise_priority() {
+  ::prctl(PR_SET_TIMERSLACK, 1);
+  sched_param parameters{};
+  parameters.sched_priority = 1;
+  if (::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0) return "real-time priority";
+  if (::setpriority(PRIO_PROCESS, 0, -20) == 0) return "nice -20";
+  return "ordinary priority (neither SCHED_FIFO nor a nice below 0 is allowed)";
+}
+
 }  // namespace
 
-Supervisor::Supervisor(const Settings& settings, pid_t command, client::SharedClockPage clock,
-                       os::FileDescriptor listener, os::FileDescriptor signals,
-                       std::unique_ptr<Freezer> freezer, Say say)
+Supervisor::Supervisor(const Settings& settings, Surroundings& surroundings, Say say)
     : settings_(settings),
-      command_(command),
-      clock_(std::move(clock)),
-      signals_(std::move(signals)),
-      freezer_(std::move(freezer)),
-      callers_(std::move(listener), clock_.descriptor),
+      around_(surroundings),
       say_(std::move(say)),
-      joining_(client::ConnectOptions().welcome_timeout) {}
+      expected_(settings.members == 0 ? 1 : static_cast<std::size_t>(settings.members)) {}
 
 int Supervisor::run() {
-  while (!exit_code_) {
+  while (!is_complete() || !have_all_ended()) {
     wait();
     take_signals();
-    hear_coordinator();
-    hear_callers();
+    hear_starters();
+    for (auto& member : members_) member->hear_coordinator(entries_);
+    if (runs())
+      for (auto& member : members_) member->hear_callers(entries_);
+    begin();
     hold_while_joining();
     stop_if_due();
-    if (failed_) break;
+    if (failed_) return 3;
     report_progress();
-    send_outgoing();
+    for (auto& member : members_) member->send_outgoing();
     go_on();
-    hand_out_answers();
-    check_interrupt();
+    for (auto& member : members_) {
+      member->hand_out_answers();
+      member->check_interrupt(read_monotonic(), runs());
+    }
   }
-  return failed_ ? 3 : *exit_code_;
+  return settings_.members == 0 && !members_.empty() ? *members_.front()->exit_code() : 0;
 }
 
 std::string Supervisor::statistics() const {
-  return statistics_.report(clock_.page->now().time_since_epoch());
+  return statistics_.report(around_.clock.page->now().time_since_epoch()) + "  with " + priority_;
+}
+
+// --- members ------------------------------------------------------------------------------------
+
+Status Supervisor::start() {
+  Program program;
+  program.uav = settings_.uav;
+  program.command.words = settings_.command;
+  os::FileDescriptor none;
+  return add(program, none);
+}
+
+Status Supervisor::add(Program& program, os::FileDescriptor& starter) {
+  const std::string path = around_.folder + "/" + std::to_string(members_.size());
+  auto listener = client::listen_local(path);
+  if (!listener) return listener.failure();
+  const auto command = start_command(program.command, path, around_.cgroup);
+  if (!command) {
+    ::unlink(path.c_str());  // for the next one
+    return command.failure();
+  }
+  around_.guardian.watch(*command);
+  around_.freezer->add(*command);
+  members_.push_back(
+      std::make_unique<Member>(settings_,
+                               Started{program.uav, *command, std::move(*listener),
+                                       std::move(program.descriptors[3]), std::move(starter)},
+                               around_.clock, say_));
+  // After the commands have started, because they would inherit it.
+  if (is_complete()) priority_ = raise_priority();
+  return ok_status();
+}
+
+bool Supervisor::have_all_ended() const {
+  return std::ranges::all_of(members_,
+                             [](const auto& member) { return member->exit_code().has_value(); });
+}
+
+void Supervisor::hear_starters() {
+  if (!listener_) return;
+  while (os::FileDescriptor accepted = client::accept_local(listener_))
+    starters_.push_back(std::move(accepted));
+  std::erase_if(starters_, [this](os::FileDescriptor& starter) { return take_program(starter); });
+  for (auto& member : members_) hear_starter(*member);
+}
+
+/// False: it has not sent its program yet.
+bool Supervisor::take_program(os::FileDescriptor& starter) {
+  auto program = receive_program(starter.get());
+  if (!program && program.failure().kind == Failure::Kind::kTimeout) return false;
+  if (!program) return true;  // gone
+  const auto refuse = [&](int code, const std::string& why) {
+    send_end(starter.get(), {code, why});
+    return true;
+  };
+  const bool is_known = std::ranges::any_of(
+      members_, [&](const auto& member) { return member->uav() == program->uav; });
+  if (is_complete()) return refuse(3, "the group has all of its members");
+  if (is_known) return refuse(3, "the group already has a program for UAV '" + program->uav + "'");
+  if (const Status started = add(*program, starter); !started) {
+    ++failed_to_start_;
+    return refuse(2, started.failure().message);
+  }
+  return true;
+}
+
+// The member's process passes signals on. If it is gone, nobody wants the command any more.
+void Supervisor::hear_starter(Member& member) {
+  while (member.starter() >= 0) {
+    const auto signal = receive_signal(member.starter());
+    if (signal == 0) return;
+    if (!signal) {
+      member.kill();
+      return;
+    }
+    member.interrupt(*signal);
+  }
 }
 
 // --- waiting ------------------------------------------------------------------------------------
 
 void Supervisor::wait() {
-  entries_.assign({{signals_.get(), POLLIN, 0}});
-  entries_.push_back({channel_ ? channel_->descriptor() : -1, POLLIN, 0});
-  // While the group is stopped, it sends nothing.
-  if (group_runs()) callers_.add_to(entries_);
+  entries_.assign({{around_.signals.get(), POLLIN, 0}});
+  if (listener_) entries_.push_back({listener_.get(), POLLIN, 0});
+  for (const auto& starter : starters_) entries_.push_back({starter.get(), POLLIN, 0});
+  for (const auto& member : members_) member->add_to(entries_, runs());
   timespec timeout{};
   const auto wake = next_wake();
   if (wake) {
@@ -89,228 +175,109 @@ void Supervisor::wait() {
 
 std::optional<Duration> Supervisor::next_wake() const {
   std::optional<Duration> wake;
-  const auto consider = [&wake](Duration instant) {
-    if (!wake || instant < *wake) wake = instant;
+  const auto consider = [&wake](std::optional<Duration> instant) {
+    if (instant && (!wake || *instant < *wake)) wake = instant;
   };
-  if (interrupted_at_) {
-    const bool half_over = read_monotonic() >= *interrupted_at_ + kGrace / 2;
-    consider(*interrupted_at_ + (half_over ? kGrace : kGrace / 2));
+  const Duration now = read_monotonic();
+  bool is_over = true;
+  for (const auto& member : members_) {
+    consider(member->next_wake(now));
+    if (held_) consider(member->joining().until());
+    if (Supervision* supervision = member->supervision(); supervision && !supervision->is_over())
+      is_over = false;
   }
-  if (const auto until = joining_.until(); held_ && until) consider(*until);
-  if (!supervision_ || !supervision_->is_running() || supervision_->is_over()) return wake;
+  if (!has_begun_ || !group_.is_running() || is_over) return wake;
   consider(next_progress_);
-  if (const auto stop = supervision_->stop_at()) consider(clock_.page->state().mono_at(*stop));
+  if (const auto stop = group_.stop_at()) consider(around_.clock.page->state().mono_at(*stop));
   return wake;
 }
 
 void Supervisor::take_signals() {
   signalfd_siginfo info{};
-  while (::read(signals_.get(), &info, sizeof info) == static_cast<ssize_t>(sizeof info)) {
+  while (::read(around_.signals.get(), &info, sizeof info) == static_cast<ssize_t>(sizeof info)) {
     if (info.ssi_signo == SIGCHLD) {
       reap();
-    } else {
-      interrupt(static_cast<int>(info.ssi_signo));
+      continue;
     }
+    expected_ = members_.size() + failed_to_start_;  // no more are wanted
+    for (auto& member : members_) member->interrupt(static_cast<int>(info.ssi_signo));
   }
 }
 
+// What is left of a command's process group is killed, and what has left that, with the last one.
 void Supervisor::reap() {
   int status = 0;
   for (pid_t ended = 0; (ended = ::waitpid(-1, &status, WNOHANG)) > 0;) {
-    if (ended == command_) exit_code_ = exit_code_from(status);
-  }
-}
-
-void Supervisor::interrupt(int signal) {
-  if (interrupted_at_) {
-    ::kill(-command_, SIGKILL);
-    return;
-  }
-  interrupted_at_ = read_monotonic();
-  joining_.over();
-  ::kill(-command_, signal);
-}
-
-// The command hears the signal when it runs next: as soon as the coordinator lets it or, if that
-// takes half of its time, without.
-void Supervisor::check_interrupt() {
-  if (!interrupted_at_) return;
-  const Duration since = read_monotonic() - *interrupted_at_;
-  if (since >= kGrace / 2 && !group_runs()) {
-    refuse_all({link::Refusal::Reason::kRunEnded, "tether-exec was interrupted"});
-  }
-  if (since >= kGrace) ::kill(-command_, SIGKILL);
-}
-
-// --- the callers --------------------------------------------------------------------------------
-
-Callers::Events Supervisor::caller_events() {
-  return {
-      [this](CallerId caller, link::Message message) { on_message(caller, std::move(message)); },
-      [this](CallerId caller) {
-        if (supervision_) supervision_->gone(caller);
-      }};
-}
-
-void Supervisor::hear_callers() {
-  if (group_runs()) callers_.receive(entries_, caller_events());
-}
-
-void Supervisor::on_message(CallerId caller, link::Message message) {
-  if (auto* hello = std::get_if<link::Hello>(&message)) return on_hello(caller, *hello);
-  auto* const request = std::get_if<link::Request>(&message);
-  auto* const annotation = std::get_if<link::Annotation>(&message);
-  if (supervision_ && request != nullptr) return supervision_->asked(caller, std::move(*request));
-  if (supervision_ && annotation != nullptr) return supervision_->annotated(std::move(*annotation));
-  callers_.drop(caller);
-}
-
-void Supervisor::on_hello(CallerId caller, const link::Hello& hello) {
-  using Reason = link::Refusal::Reason;
-  if (hello.protocol_version != link::kProtocolVersion) {
-    return callers_.send(caller, link::Refusal{Reason::kVersion,
-                                               "tether-exec and the program's library have "
-                                               "different protocol versions"});
-  }
-  if (!settings_.uav.empty() && !hello.uav.empty() && hello.uav != settings_.uav) {
-    return callers_.send(
-        caller, link::Refusal{Reason::kUav, "this tether-exec is for UAV '" + settings_.uav + "'"});
-  }
-  if (welcome_) return callers_.send(caller, *welcome_);
-  if (refusal_) return callers_.send(caller, *refusal_);
-  waiting_.push_back(caller);
-  if (!channel_) connect(hello);
-}
-
-void Supervisor::hand_out_answers() {
-  if (!supervision_) return;
-  for (Answer& answer : supervision_->take_answers()) {
-    if (answer.message) {
-      callers_.send(answer.caller, *answer.message);
-    } else {
-      callers_.drop(answer.caller);
+    for (auto& member : members_) {
+      if (member->process() != ended || member->exit_code()) continue;
+      member->kill();
+      member->ended(exit_code_from(status));
+      around_.freezer->remove(ended);
+      around_.guardian.forget(ended);
     }
   }
-}
-
-// --- the coordinator ----------------------------------------------------------------------------
-
-void Supervisor::connect(const link::Hello& hello) {
-  auto channel = link::connect_tcp(settings_.coordinator, kConnectTimeout);
-  if (!channel) return lose_coordinator(channel.failure());
-  channel_ = std::move(*channel);
-  link::Hello own;
-  own.sut = hello.sut;
-  own.uav = settings_.uav.empty() ? hello.uav : settings_.uav;
-  own.clock = link::ClockKind::kWall;
-  own.cpu_factor = settings_.factor;
-  own.token = settings_.token;
-  own.concurrent = true;
-  // If it does not go out, the coordinator may have said why before it closed.
-  static_cast<void>(channel_->send(own));
-  joining_.asked(read_monotonic());
-}
-
-void Supervisor::hear_coordinator() {
-  if (!channel_ || entries_[1].revents == 0) return;
-  while (channel_) {
-    auto message = channel_->receive_within(Duration::zero());
-    if (message) {
-      on_message(std::move(*message));
-    } else if (message.failure().kind == Failure::Kind::kTimeout) {
-      return;
-    } else {
-      return lose_coordinator(message.failure());
-    }
-  }
-}
-
-void Supervisor::on_message(link::Message message) {
-  Status good = ok_status();
-  if (auto* refusal = std::get_if<link::Refusal>(&message)) return refuse_all(std::move(*refusal));
-  auto* const welcome = std::get_if<link::Welcome>(&message);
-  if (welcome != nullptr && !supervision_) return on_welcome(std::move(*welcome));
-  const auto* const due = std::get_if<link::Due>(&message);
-  auto* const reply = std::get_if<link::Reply>(&message);
-  if (supervision_ && due != nullptr) {
-    good = supervision_->heard(*due);
-  } else if (supervision_ && reply != nullptr) {
-    good = supervision_->heard(std::move(*reply));
-  } else {
-    good = Failure{Failure::Kind::kProtocol,
-                   "protocol violation: unexpected message from the coordinator"};
-  }
-  if (!good) lose_coordinator(good.failure());
-}
-
-void Supervisor::on_welcome(link::Welcome welcome) {
-  if (welcome.free_running && settings_.factor != 1.0) {
-    return refuse_all({link::Refusal::Reason::kBadRequest,
-                       "TETHER_CLOCK wall*FACTOR is not allowed in free-running mode, where ST "
-                       "follows the wall clock"});
-  }
-  progress_period_ = welcome.free_running ? kHeartbeatPeriod : kProgressPeriod;
-  next_progress_ = read_monotonic() + progress_period_;
-  supervision_.emplace(welcome.free_running, welcome.start);
-  clock_.page->publish({welcome.start, read_monotonic(), settings_.factor, true});
-  joining_.over();
-  welcome_ = std::move(welcome);
-  for (const CallerId caller : std::exchange(waiting_, {})) callers_.send(caller, *welcome_);
-}
-
-void Supervisor::send_outgoing() {
-  if (!supervision_) return;
-  for (const link::Message& message : supervision_->take_outgoing()) {
-    // The refusal that may be the reason is read next.
-    if (channel_) static_cast<void>(channel_->send(message));
-  }
-}
-
-void Supervisor::lose_coordinator(const Failure& failure) {
-  channel_.reset();
-  joining_.over();
-  const bool was_over = supervision_ && supervision_->is_over();
-  if (supervision_) supervision_->end(std::nullopt);
-  if (!was_over && !(supervision_ && supervision_->is_finished())) say_(failure.message);
-  for (const CallerId caller : std::exchange(waiting_, {})) callers_.drop(caller);
-}
-
-void Supervisor::refuse_all(link::Refusal refusal) {
-  channel_.reset();
-  joining_.over();
-  if (supervision_) return supervision_->end(std::move(refusal));
-  refusal_ = std::move(refusal);
-  for (const CallerId caller : std::exchange(waiting_, {})) callers_.send(caller, *refusal_);
 }
 
 // --- stopping and going on ----------------------------------------------------------------------
 
+/// From when all members have asked to join until all have got their answer. Not earlier: the first
+/// one would keep the others from asking.
+bool Supervisor::must_hold(Duration now) const {
+  return is_complete() &&
+         std::ranges::none_of(members_, [](const auto& m) { return m->joining().is_to_come(); }) &&
+         std::ranges::any_of(members_,
+                             [&](const auto& m) { return m->joining().must_be_stopped(now); });
+}
+
+/// ET starts when all that have asked to join have got their answer.
+void Supervisor::begin() {
+  const bool is_awaited = std::ranges::any_of(
+      members_, [](const auto& member) { return member->joining().until().has_value(); });
+  if (is_awaited) return;
+  const bool begins = !has_begun_;
+  for (auto& member : members_) {
+    Supervision* const supervision = member->supervision();
+    if (!supervision || supervision->is_over() || group_.has(*supervision)) continue;
+    if (!begins) {
+      member->refuse_all({link::Refusal::Reason::kBadRequest,
+                          "the other programs of the group have begun without this one"});
+      continue;
+    }
+    group_.add(*supervision);
+    const link::Welcome& welcome = member->welcome();
+    const Duration now = read_monotonic();
+    progress_period_ = welcome.free_running ? kHeartbeatPeriod : kProgressPeriod;
+    next_progress_ = now + progress_period_;
+    around_.clock.page->publish({welcome.start, now, settings_.factor, true});
+    has_begun_ = true;
+  }
+}
+
 void Supervisor::hold_while_joining() {
-  const bool must_hold = joining_.must_be_stopped(read_monotonic());
-  if (must_hold == held_) return;
-  held_ = must_hold;
-  if (!held_) return freezer_->thaw();
-  if (const Status frozen = freezer_->freeze(); !frozen) return give_up(frozen.failure());
-  callers_.receive_all(caller_events());
+  const bool must = must_hold(read_monotonic());
+  if (must == held_) return;
+  held_ = must;
+  if (!held_) return around_.freezer->thaw();
+  if (const Status frozen = around_.freezer->freeze(); !frozen) return give_up(frozen.failure());
+  for (auto& member : members_) member->hear_all_callers();
 }
 
 void Supervisor::stop_if_due() {
-  if (!supervision_ || !supervision_->is_running()) return;
-  if (supervision_->must_stop(clock_.page->now())) stop();
+  if (has_begun_ && runs() && group_.must_stop(around_.clock.page->now())) stop();
 }
 
 void Supervisor::stop() {
-  const auto due = supervision_->stop_at();
+  const auto due = group_.stop_at();
   const Duration began = read_monotonic();
-  if (const Status frozen = freezer_->freeze(); !frozen) return give_up(frozen.failure());
+  if (const Status frozen = around_.freezer->freeze(); !frozen) return give_up(frozen.failure());
   const Duration mono = read_monotonic();
-  ClockState state = clock_.page->state();
+  const ClockState state = around_.clock.page->state();
   const ExecTime at = state.at(mono);
-  clock_.page->publish({at, mono, state.factor, false});
+  around_.clock.page->publish({at, mono, state.factor, false});
   statistics_.froze(mono - began);
   if (due && at >= *due) statistics_.overshot(at - *due);
-  callers_.receive_all(caller_events());
-  supervision_->stopped(at);
+  for (auto& member : members_) member->hear_all_callers();
+  group_.stopped(at);
 }
 
 // The coordinator hears nothing more: from how far ET has come meanwhile it would conclude that the
@@ -318,26 +285,30 @@ void Supervisor::stop() {
 void Supervisor::give_up(const Failure& failure) {
   say_(failure.message + "; the command is killed");
   failed_ = true;
-  ::kill(-command_, SIGKILL);
-  channel_.reset();
+  for (auto& member : members_) {
+    member->kill();
+    member->ended(3, failure.message + "; the command is killed");
+  }
 }
 
 void Supervisor::go_on() {
-  if (!supervision_ || group_runs() || !supervision_->may_go_on()) return;
-  supervision_->go_on();
-  hand_out_answers();
+  if (group_.is_running() || !group_.may_go_on()) return;
+  group_.go_on();
+  for (auto& member : members_) member->hand_out_answers();
   // ET goes on before the threads do: the time that a thaw takes is charged, not given away.
   const Duration began = read_monotonic();
-  clock_.page->publish({supervision_->stopped_at(), began, settings_.factor, true});
-  freezer_->thaw();
+  around_.clock.page->publish({group_.stopped_at(), began, settings_.factor, true});
+  around_.freezer->thaw();
   const Duration now = read_monotonic();
   statistics_.thawed(now - began);
   next_progress_ = now + progress_period_;
 }
 
 void Supervisor::report_progress() {
-  if (!supervision_ || !group_runs() || read_monotonic() < next_progress_) return;
-  supervision_->progressed(clock_.page->now());
+  if (!has_begun_ || !runs() || read_monotonic() < next_progress_) return;
+  const ExecTime now = around_.clock.page->now();
+  for (auto& member : members_)
+    if (Supervision* const supervision = member->supervision()) supervision->progressed(now);
   next_progress_ = read_monotonic() + progress_period_;
 }
 

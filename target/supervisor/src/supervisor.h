@@ -1,10 +1,11 @@
 #pragma once
 
-#include "callers.h"
 #include "freezer.h"
-#include "joining.h"
+#include "group.h"
+#include "guardian.h"
+#include "member.h"
+#include "membership.h"
 #include "statistics.h"
-#include "supervision.h"
 
 #include <memory>
 #include <optional>
@@ -20,76 +21,76 @@
 
 namespace tether::supervisor {
 
-/// The loop around Supervision: one thread that waits for the command's threads, the coordinator,
-/// signals and the next instant at which the command must be stopped.
+/// What is around the commands; it outlives them.
+struct Surroundings {
+  std::string folder;  ///< private
+  std::optional<Cgroup> cgroup;
+  Guardian& guardian;
+  os::FileDescriptor signals;  ///< a signalfd of SIGCHLD, SIGINT, SIGTERM and SIGHUP
+  std::unique_ptr<Freezer> freezer;
+  client::SharedClockPage clock;
+};
+
+/// The loop around Group: one thread that waits for the commands' threads, the coordinator, signals
+/// and the next instant at which the commands must be stopped.
 class Supervisor {
  public:
-  /// `signals` is a signalfd of SIGCHLD, SIGINT, SIGTERM and SIGHUP.
-  Supervisor(const Settings& settings, pid_t command, client::SharedClockPage clock,
-             os::FileDescriptor listener, os::FileDescriptor signals,
-             std::unique_ptr<Freezer> freezer, Say say);
+  Supervisor(const Settings& settings, Surroundings& surroundings, Say say);
 
-  /// Until the command ends. Returns its exit code, 128 + signal if one ended it, or 3 if it could
-  /// not be stopped; then it has been killed.
+  /// Starts the program whose command the settings have. Fails with kInvalid.
+  Status start();
+  /// Gets the commands of the members, as many as the settings say, from this socket.
+  void listen(os::FileDescriptor listener) { listener_ = std::move(listener); }
+
+  /// Until all commands have ended. Returns the exit code of the program that `start` started, 128
+  /// + signal if one ended it, or else 0; 3 if a command could not be stopped: all of them have
+  /// been killed then.
   int run();
   std::string statistics() const;
 
  private:
+  // Members.
+  Status add(Program& program, os::FileDescriptor& starter);
+  void hear_starters();
+  bool take_program(os::FileDescriptor& starter);
+  void hear_starter(Member& member);
+  bool is_complete() const { return members_.size() + failed_to_start_ >= expected_; }
+  bool have_all_ended() const;
+
   // Waiting.
   void wait();
   std::optional<Duration> next_wake() const;
   void take_signals();
   void reap();
-  void interrupt(int signal);
-  void check_interrupt();
-
-  // The callers.
-  void hear_callers();
-  void on_message(CallerId caller, link::Message message);
-  void on_hello(CallerId caller, const link::Hello& hello);
-  void hand_out_answers();
-  Callers::Events caller_events();
-
-  // The coordinator.
-  void connect(const link::Hello& hello);
-  void hear_coordinator();
-  void on_message(link::Message message);
-  void on_welcome(link::Welcome welcome);
-  void send_outgoing();
-  void lose_coordinator(const Failure& failure);
-  void refuse_all(link::Refusal refusal);
 
   // Stopping and going on.
+  bool must_hold(Duration now) const;
+  void begin();
   void hold_while_joining();
   void stop_if_due();
   void stop();
   void give_up(const Failure& failure);
   void go_on();
   void report_progress();
-  bool group_runs() const { return !held_ && (!supervision_ || supervision_->is_running()); }
+  bool runs() const { return !held_ && group_.is_running(); }
 
   const Settings& settings_;
-  pid_t command_;
-  client::SharedClockPage clock_;
-  os::FileDescriptor signals_;
-  std::unique_ptr<Freezer> freezer_;
-  Callers callers_;
+  Surroundings& around_;
   Say say_;
+  std::size_t expected_;
+  std::size_t failed_to_start_ = 0;
 
-  std::unique_ptr<link::Channel> channel_;  // to the coordinator, from the first Hello on
-  std::vector<CallerId> waiting_;           // for the Welcome
-  Joining joining_;
-  bool held_ = false;  // stopped for joining
-  std::optional<link::Welcome> welcome_;
-  std::optional<link::Refusal> refusal_;    // no Welcome will come any more
-  std::optional<Supervision> supervision_;  // from the Welcome on
+  os::FileDescriptor listener_;               // for members' processes
+  std::vector<os::FileDescriptor> starters_;  // whose program has not arrived yet
+  std::vector<std::unique_ptr<Member>> members_;
+  Group group_;
+  bool held_ = false;       // stopped for joining
+  bool has_begun_ = false;  // ET advances
   Duration progress_period_{0};
-  Duration next_progress_{0};  // on the monotonic clock, as what follows
-
-  std::optional<Duration> interrupted_at_;
-  std::optional<int> exit_code_;  // of the command
-  bool failed_ = false;           // it could not be stopped
-  std::vector<pollfd> entries_;   // as the last wait left them
+  Duration next_progress_{0};    // on the monotonic clock
+  bool failed_ = false;          // a command could not be stopped
+  std::vector<pollfd> entries_;  // as the last wait left them
+  std::string priority_;
   Statistics statistics_;
 };
 

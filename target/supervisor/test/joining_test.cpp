@@ -10,7 +10,9 @@ using namespace std::chrono_literals;
 TEST(Joining, HoldsTheCommandFromTheRequestToTheAnswerOrItsLimit) {
   Joining joining(10s);
   EXPECT_FALSE(joining.must_be_stopped(1s));
+  EXPECT_TRUE(joining.is_to_come());
   joining.asked(2s);
+  EXPECT_FALSE(joining.is_to_come());
   EXPECT_TRUE(joining.must_be_stopped(2s));
   EXPECT_TRUE(joining.must_be_stopped(11s));
   EXPECT_FALSE(joining.must_be_stopped(12s));

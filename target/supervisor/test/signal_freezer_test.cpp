@@ -23,11 +23,12 @@ char state_of(pid_t process) {
 }
 
 TEST(SignalFreezer, StopsACommandThatComputesAndLetsItGoOn) {
-  const auto command =
-      start_command({"sh", "-c", "while :; do :; done"}, "/nowhere/socket", std::nullopt);
+  const auto command = start_command({.words = {"sh", "-c", "while :; do :; done"}},
+                                     "/nowhere/socket", std::nullopt);
   ASSERT_TRUE(command);
-  const auto freezer = make_signal_freezer(*command, 0);
+  const auto freezer = make_signal_freezer(0);
   ASSERT_TRUE(freezer) << freezer.failure().message;
+  (*freezer)->add(*command);
   for (int round = 0; round < 3; ++round) {
     ASSERT_TRUE((*freezer)->freeze());
     EXPECT_EQ(state_of(*command), 'T');
@@ -41,11 +42,13 @@ TEST(SignalFreezer, StopsACommandThatComputesAndLetsItGoOn) {
 // The group's SIGSTOP may reach a process that is just about to leave the group: it stops outside,
 // where the group's SIGCONT does not reach it.
 TEST(SignalFreezer, LetsAProcessGoOnThatLeftItsGroupWhileItWasStopped) {
-  const auto command = start_command({"sh", "-c", "setsid sh -c 'kill -STOP $$; exit 7' & wait $!"},
-                                     "/nowhere/socket", std::nullopt);
+  const auto command =
+      start_command({.words = {"sh", "-c", "setsid sh -c 'kill -STOP $$; exit 7' & wait $!"}},
+                    "/nowhere/socket", std::nullopt);
   ASSERT_TRUE(command);
-  const auto freezer = make_signal_freezer(*command, 0);
+  const auto freezer = make_signal_freezer(0);
   ASSERT_TRUE(freezer) << freezer.failure().message;
+  (*freezer)->add(*command);
   const ProcessTree tree(0);
   const auto is_stopped_outside = [&](const ProcessState& process) {
     return process.group != *command && state_of(process.id) == 'T';

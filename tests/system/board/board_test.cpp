@@ -119,8 +119,10 @@ TEST_F(OnABoard, FilesGoThereAndComeBackAndATunnelTakesTheLink) {
   EXPECT_THAT(read_text(out_ / "sub dir/b"), HasSubstr("127.0.0.1:"));
 }
 
-// A board, a counted program, and one by CPU time, on one barrier, each with its own clock.
+// A board with the programs of two UAVs, a counted program, and one by CPU time, on one barrier,
+// each with its own clock.
 TEST_F(OnABoard, AMixedFleetFliesWithTheClockAndTheReadingsOfEach) {
+  board_.install("tether-exec", TETHER_EXEC_PROGRAM);
   write_text(folder_ / "pi.toml", "name = \"pi\"\naddress = \"" + board_.address() + "\"\n");
   const std::string targets =
       "[[target]]\nname = \"pi\"\nfile = \"pi.toml\"\n"
@@ -129,12 +131,13 @@ TEST_F(OnABoard, AMixedFleetFliesWithTheClockAndTheReadingsOfEach) {
       "[[target]]\nname = \"virtual\"\nclock = \"cpu\"\ncpu_factor = 3\n";
   std::string uavs;
   int x_m = 5;
-  for (const char* target : {"counted", "virtual"}) {
+  for (const char* target : {"counted", "virtual", "pi"}) {
     uavs += "[[uav]]\nname = \"" + std::string(target) +
             "1\"\nmodel = \"" TETHER_SOURCE_DIR
             "/data/models/hummingbird/model.sdf\"\nposition_m = [" +
             std::to_string(x_m) + ", 0, 1]\ntarget = \"" + target + "\"\n[uav.sut]\ncommand = [\"" +
-            bad_sut_program().string() + "\", \"good\"]\n\n";
+            (target == std::string("pi") ? "bad_sut" : bad_sut_program().string()) +
+            "\", \"good\"]\n\n";
     x_m += 5;
   }
   expect_good(on_board(flight(
@@ -145,10 +148,16 @@ TEST_F(OnABoard, AMixedFleetFliesWithTheClockAndTheReadingsOfEach) {
        {"clock = \"cpu\"\n\n", "\n"},
        {"kind = \"time_required\"", "kind = \"time_required\"\nuav = \"uav1\""}})));
   const auto suts = result()["suts"];
-  ASSERT_EQ(suts.size(), 3u);
+  ASSERT_EQ(suts.size(), 4u);
   EXPECT_EQ(suts[0]["clock"], "wall");
   EXPECT_EQ(suts[1]["clock"], "counted");
   EXPECT_EQ(suts[2]["clock"], "cpu");
+  EXPECT_EQ(suts[3]["clock"], "wall");
+  for (const char* log : {"sut-uav1.log", "sut-pi1.log"})
+    EXPECT_THAT(read_text(out_ / log), HasSubstr("joined"));
+  const record::Record record = read_record(out_);
+  EXPECT_EQ(record.header.suts[0].board, "pi");
+  EXPECT_EQ(record.header.suts[3].board, "pi");
   EXPECT_EQ(result()["this_run"]["target"]["name"], "pi");
   EXPECT_EQ(result()["this_run"]["target"]["address"], board_.address());
   EXPECT_TRUE(result()["this_run"]["more_targets"][0]["before"].contains("load_average"));

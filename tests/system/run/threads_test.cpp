@@ -1,6 +1,9 @@
 #include "support/faults.h"
 
+#include <algorithm>
 #include <csignal>
+#include <map>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -100,6 +103,41 @@ TEST_P(Threads, StartProgramsMeanwhile) {
 
 INSTANTIATE_TEST_SUITE_P(Freezers, Threads, testing::Values("cgroup", "signal"),
                          [](const auto& freezer) { return freezer.param; });
+
+// ---- Of several UAVs on one board
+
+/// Both on one real board, each with a child that has left the process group, and that fails if it
+/// computes while ET stands still; the simulator holds the board nine tenths of the time.
+TEST_F(RunTest, ProgramsOfOneBoardAreStoppedTogether) {
+  const std::string board = "[[target]]\nname = \"board\"\nclock = \"wall\"\n",
+                    other = "[[uav]]\nname = \"uav2\"\nmodel = \"" TETHER_SOURCE_DIR
+                            "/data/models/hummingbird/model.sdf\"\nposition_m = [5, 0, 1]\n"
+                            "target = \"board\"\n\n";
+  const Output ended = run(with(
+      flight(
+          "apart", {"--quiet"},
+          {{"[\"" + bad_sut_program().string() + "\", \"apart\"]",
+            "[\"" THREADS_SUT_PROGRAM "\", \"apart\", \"0.3\"]"},
+           {"[[uav]]\nname = \"uav1\"\n", board + "[[uav]]\nname = \"uav1\"\ntarget = \"board\"\n"},
+           {"[sut]\n", other + "[sut]\n"},
+           {"clock = \"cpu\"\n\n", "\n"},
+           {"kind = \"time_required\"", "kind = \"time_required\"\nuav = \"uav1\""},
+           {"hang_limit_s = 2", "hang_limit_s = 20"}}),
+      {"--real-time-factor", "0.1"}));
+  EXPECT_EQ(ended.code, 0) << ended.err << read_text(out_ / "exec-board.log");
+  EXPECT_EQ(audit_code(out_), 0);
+  for (const char* uav : {"uav1", "uav2"})
+    EXPECT_EQ(read_text(out_ / ("sut-" + std::string(uav) + ".log")), "{}\n");
+  const record::Record record = read_record(out_);
+  ASSERT_EQ(record.header.boards.size(), 1u);
+  EXPECT_TRUE(record.header.boards[0].is_real);
+  std::map<std::string, std::set<ExecTime>> stops;
+  for (const auto& [at, order, stop] : record.stops) stops[stop.uav].insert(stop.at);
+  const ExecTime common = std::min(*stops.at("uav1").rbegin(), *stops.at("uav2").rbegin());
+  for (auto& [uav, times] : stops) times.erase(times.upper_bound(common), times.end());
+  EXPECT_GT(stops["uav1"].size(), 10u);
+  EXPECT_EQ(stops["uav1"], stops["uav2"]);
+}
 
 // ---- How it ends, without a coordinator
 

@@ -87,7 +87,11 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
     return other.board == sut.board && other.pinned_core == sut.pinned_core;
   };
   const auto programs = std::ranges::count_if(record.header.suts, shares);
-  if (!sut.board.empty() && programs > 1) {
+  // How long a program waited for cores is known of a modelled board only.
+  const bool is_real = std::ranges::any_of(record.header.boards, [&](const auto& board) {
+    return board.name == sut.board && board.is_real;
+  });
+  if (!sut.board.empty() && !is_real && programs > 1) {
     pace.shared_board = sut.board;
     pace.programs = static_cast<std::size_t>(programs);
   }

@@ -106,15 +106,28 @@ std::string mission_part(const campaign::TrialResult& trial) {
   return html + to_html(table, "Mission");
 }
 
+std::vector<std::string> uavs_on(const record::Record& record, const record::BoardInfo& board) {
+  std::vector<std::string> uavs;
+  for (const record::SutInfo& sut : record.header.suts)
+    if (sut.board == board.name) uavs.push_back(sut.uav);
+  return uavs;
+}
+
 std::string boards_part(const record::Record& record) {
   std::string html;
   for (const record::BoardInfo& board : record.header.boards)
-    if (const std::string drawing = board_lanes(record, board); !drawing.empty())
+    if (board.is_real) {
+      html += element("p", fmt::format("The programs of {} ran and were stopped together on the "
+                                       "real board \"{}\". Its operating system shared the cores: "
+                                       "which one computed when is not known.",
+                                       joined_with_and(uavs_on(record, board)), board.name));
+    } else if (const std::string drawing = board_lanes(record, board); !drawing.empty()) {
       html += figure(drawing,
                      fmt::format("Cores of \"{}\": which SUT computed when, and with which share. "
                                  "While more compute than there are cores, each has less of one.",
                                  board.name),
                      "plot");
+    }
   return html.empty() ? "" : element("h2", "Shared boards") + html;
 }
 

@@ -40,7 +40,9 @@ Table setup_table(const UavsReport& report) {
       {"searched", fmt::format("the first {} to {} UAVs of the scenario; at most {} flights",
                                report.question.least, report.question.most, report.most_flights)},
       {"board",
-       fmt::format("{}, {} core{}", report.board, report.cores, report.cores == 1 ? "" : "s")},
+       report.cores == 0 ? report.board  // a real one
+                         : fmt::format("{}, {} core{}", report.board, report.cores,
+                                       report.cores == 1 ? "" : "s")},
       {"method",
        "bisection, then flights with both neighbours of the answer until their exact "
        "intervals decide"}};

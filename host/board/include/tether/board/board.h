@@ -22,7 +22,7 @@ struct BoardSut {
   std::string uav;
   std::vector<std::string> words;  ///< its command line on the board
   std::size_t program = 0;         ///< index of the program in `words`
-  bool concurrent = false;         ///< `words` starts with tether-exec
+  std::size_t supervisor = 0;      ///< how many words of tether-exec `words` starts with
   os::Environment environment;
   std::filesystem::path log;  ///< on this machine; for stdout and stderr of the SUT
 };
@@ -54,6 +54,9 @@ class Board {
   SshConnection& connection() { return connection_; }
   /// The address at which the board sees this machine.
   const std::string& host_address() const { return host_address_; }
+
+  /// Of the run, on the board; private to it, and removed with it.
+  const std::string& folder() const { return folder_; }
 
   /// Copies a file to the board; returns its path there. @throws Error(kSetup) about the file.
   std::string copy(const std::filesystem::path& file);

@@ -45,17 +45,20 @@ struct UavOptions {
   std::optional<timing::Replay> replay{};
   std::optional<record::ReplayInfo> replayed_from{};
   /// Index in RunOptions::boards of the computer that its SUT shares with others; none: it has one
-  /// of its own. The clock must then be given, and be kCpu, kScripted, kCounted or kReplayed.
+  /// of its own. The clock must then be given: kWall on a real one, otherwise kCpu, kScripted,
+  /// kCounted or kReplayed.
   std::optional<std::size_t> board{};
   std::string computer{};  ///< where its SUT runs, for messages; empty: all run on the same
   /// The core on which it runs; then only pinned programs run there.
   std::optional<int> pinned_core{};
 };
 
-/// A virtual computer with several programs, which share its cores (sync::SharedCores).
+/// A computer with several programs, which share its cores: a virtual one (sync::SharedCores), or
+/// a real one, on which they run and are stopped as one group (tether-exec).
 struct Board {
   std::string name;
-  int cores = 1;  ///< ≥ 1
+  int cores = 1;         ///< ≥ 1; ignored of a real one
+  bool is_real = false;  ///< only concurrent SUTs are accepted on it, unless in free running
 };
 
 struct RunOptions {

@@ -315,11 +315,13 @@ struct SutInfo {
   /// describes none, or it is a record of Tether 0.1.0.
   std::string computer{};
 };
-/// A virtual computer whose cores several SUTs share: while n compute, each gets min(1, cores / n)
-/// of a core. A core with pinned programs is shared by these only.
+/// A computer whose cores several SUTs share. On a virtual one, while n compute, each gets min(1,
+/// cores / n) of a core; a core with pinned programs is shared by these only. On a real one, its
+/// operating system shares the cores, and all of its SUTs stop together.
 struct BoardInfo {
   std::string name;
-  int cores = 1;
+  int cores = 1;         ///< of a real one 0
+  bool is_real = false;  ///< not in records of Tether 0.1.0
 
   friend bool operator==(const BoardInfo&, const BoardInfo&) = default;
 };

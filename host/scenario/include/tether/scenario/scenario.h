@@ -45,7 +45,7 @@ struct Computer {
   double cpu_factor = 1.0;
   Duration computing{0};
   std::optional<Target> target{};
-  int cores = 1;         ///< that several SUTs on it share
+  int cores = 1;         ///< that several SUTs on it share; of a real one 0, they are not modelled
   bool by_hand = false;  ///< the user starts the SUTs on it
   FileLocation at{};
 };
@@ -193,6 +193,16 @@ Condition for_uav(const Condition& condition, std::size_t uav);
 
 /// Whether several SUTs share the cores of that computer.
 bool is_shared(const Condition& condition, std::size_t computer);
+
+/// A real computer with the SUTs of several UAVs, which compete for its cores: they run and are
+/// stopped together (DESIGN section 2, "Several programs on one board").
+struct RealBoard {
+  std::string name;               ///< of the computer, or the target
+  std::vector<std::size_t> uavs;  ///< two at least
+};
+/// Those of a condition: computers with a wall clock that several UAVs name, and a board over SSH
+/// on which all SUTs run. `uavs`: how many there are.
+std::vector<RealBoard> real_boards(const Condition& condition, std::size_t uavs);
 
 /// Makes the SUTs run on the computers that the scenario's UAVs name; each on one of its own
 /// if not `shared`, and then the computers are named after the UAVs as well.

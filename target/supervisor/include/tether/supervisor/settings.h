@@ -13,12 +13,16 @@ enum class FreezerChoice { kAuto, kCgroup, kSignal };
 
 /// Settings from the command line and the environment.
 struct Settings {
-  std::vector<std::string> command;
+  std::vector<std::string> command{};  ///< empty if `members` > 0
+  /// Socket of the group to which the command belongs, or that starts `members` commands. Empty:
+  /// the command is alone.
+  std::string group{};
+  int members = 0;  ///< 0: this process has a command
   FreezerChoice freezer = FreezerChoice::kAuto;
-  bool verbose = false;
-  link::Address coordinator;
-  std::string token;
-  std::string uav;      ///< empty: the one that the program names, or the only one
+  bool verbose = false;  ///< not with a group's command, nor `freezer`
+  link::Address coordinator{};
+  std::string token{};
+  std::string uav{};    ///< empty: the one that the program names, or the only one
   double factor = 1.0;  ///< of the wall clock
 };
 

@@ -17,6 +17,9 @@ using Say = std::function<void(const std::string&)>;
 /// processes. Returns the command's exit code, 128 + the signal that ended it, 2 if it cannot be
 /// started, or 3 if the set-up failed or the command could not be stopped.
 ///
+/// A group's process does this for the commands that others give to it, and returns 0 once they
+/// have ended. A group's command runs there, and its exit code is returned here.
+///
 /// Changes the signal mask, the priority and TETHER_EXEC of the whole process, which must have one
 /// thread and no children.
 int supervise(const Settings& settings, const Say& say);
