@@ -110,9 +110,9 @@ int time_stages(const TimingOptions& options, const std::stop_token&) {
   fmt::print("{}",
              report::answer_text({report::timing_answer(rows)}, report::timing_advice(timing, rows),
                                  report::Markup::kPlain));
-  fmt::print("{}: {}, build {}, clock {}, on {}, recorded {}, {} runs\n\n{}", timing.scenario,
+  fmt::print("{}: {}, build {}, clock {}, on {}, recorded {}, {}\n\n{}", timing.scenario,
              timing.program, timing.build_id.empty() ? "unknown" : timing.build_id, timing.clock,
-             timing.board, timing.recorded_at, timing.runs.size(), timing::to_text(rows));
+             timing.board, timing.recorded_at, timing::runs_text(timing), timing::to_text(rows));
   for (const std::string& warning : timing::warnings(rows)) say("warning: {}\n", warning);
   return 0;
 }

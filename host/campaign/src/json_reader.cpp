@@ -108,6 +108,10 @@ std::vector<std::uint64_t> JsonReader::counts(std::string_view key) const {
                                  "an array of non-negative integers");
 }
 
+std::vector<double> JsonReader::numbers(std::string_view key) const {
+  return elements<double>(key, &Json::is_number, "an array of numbers");
+}
+
 std::map<std::string, std::string> JsonReader::all_texts() const {
   std::map<std::string, std::string> texts;
   for (const auto& [key, value] : object_->items()) texts.emplace(key, text(key));

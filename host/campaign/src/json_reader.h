@@ -39,6 +39,7 @@ class JsonReader {
   std::vector<JsonReader> objects(std::string_view key) const;
   std::vector<std::string> texts(std::string_view key) const;
   std::vector<std::uint64_t> counts(std::string_view key) const;
+  std::vector<double> numbers(std::string_view key) const;
   /// Every member; each must be a string.
   std::map<std::string, std::string> all_texts() const;
 

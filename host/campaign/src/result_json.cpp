@@ -80,6 +80,8 @@ Json json_of(const judge::ClauseVerdict& clause) {
   json["limited_by"] = clause.limited_by;
   for (const auto& [at, margin] : clause.margins)
     json["margins"].push_back({{"at_s", exact_seconds(at)}, {"margin", margin}});
+  if (!clause.quantiles.empty()) json["quantiles"] = clause.quantiles;
+  if (clause.limit) json["limit"] = *clause.limit;
   return json;
 }
 
@@ -241,6 +243,8 @@ judge::ClauseVerdict read_clause(const JsonReader& json) {
   if (json.has("margins"))
     for (const JsonReader& margin : json.objects("margins"))
       clause.margins.push_back({SimTime(margin.seconds("at_s")), margin.number("margin")});
+  if (json.has("quantiles")) clause.quantiles = json.numbers("quantiles");
+  if (json.has("limit")) clause.limit = json.number("limit");
   return clause;
 }
 

@@ -63,8 +63,9 @@ TEST_F(Result, TextIsTheSameApartFromThisRun) {
 
 TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   const std::string plain = to_json(trial_);
-  for (const char* member : {"\"target\":", "overshoot", "computing_s", "warnings", "\"tasks\"",
-                             "\"clauses\"", "emulator", "\"energy\"", "\"margins\""})
+  for (const char* member :
+       {"\"target\":", "overshoot", "computing_s", "warnings", "\"tasks\"", "\"clauses\"",
+        "emulator", "\"energy\"", "\"margins\"", "\"quantiles\""})
     EXPECT_THAT(plain, testing::Not(HasSubstr(member)));
   trial_.clock = "scripted";
   trial_.computing = Duration(2'500'000);
@@ -81,6 +82,8 @@ TEST_F(Result, ReadsBackWithEveryOptionalPart) {
   clause.from = clause.to = clause.deadline = clause.decided_at = SimTime(milliseconds(1500));
   clause.limited_by = "1 m";
   clause.margins = {{SimTime{}, 2.0}, {SimTime(milliseconds(1500)), 0.25}};
+  clause.quantiles = {0.5, 0.75};
+  clause.limit = 1.0;
   trial_.clauses.push_back(clause);
   trial_.energy = {{.uav = "uav1",
                     .spent_J = {1, -2, 3, 4, 5, 6},

@@ -138,10 +138,13 @@ class Judge {
 
   // Events.
 
+  static constexpr std::size_t kQuantiles = 20;
+
   /// The events of a condition in a span, and their margins for the bound 0.
   struct Events {
     std::vector<Event> events;
     std::vector<double> margins;
+    std::vector<double> sorted;  ///< their values
   };
 
   const Events& events_in(const Clause& clause, const Span& span) {
@@ -152,7 +155,11 @@ class Judge {
     Events& of = known->second;
     if (!is_new) return of;
     of.events = events_of(condition, uav_, span, record_);
-    for (const Event& event : of.events) of.margins.push_back(grows ? event.value : -event.value);
+    for (const Event& event : of.events) {
+      of.margins.push_back(grows ? event.value : -event.value);
+      of.sorted.push_back(event.value);
+    }
+    std::ranges::sort(of.sorted);
     return of;
   }
 
@@ -161,10 +168,15 @@ class Judge {
     const Events& in_span = events_in(clause, span);
     const std::vector<Event>& events = in_span.events;
     const std::vector<double>& margins = in_span.margins;
+    verdict.limit = condition.bound;
     if (events.empty()) {
       verdict.limited_by = "there is no such command or read in this time";
       return;
     }
+    for (std::size_t i = 0; i <= kQuantiles; ++i)
+      verdict.quantiles.push_back(
+          in_span.sorted[(i * (events.size() - 1) + kQuantiles - 1) / kQuantiles] /
+          condition.unit->si);
     const double shift = shift_of(clause);
     const std::size_t place =
         place_in(margins, Pick::kAtShare, 0, margins.size() - 1, condition.share);

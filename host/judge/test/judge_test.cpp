@@ -179,6 +179,15 @@ TEST(Judge, ReactionsAgesAndLoops) {
            {R"(always = "loop_jitter of eye <= 0.3 s")", true, 0.05, 8.0, "0.25 s"},
            {R"(always = "reaction_time of nose <= 1 s")", false, {}, {}, "no such command"}})
     expect(flight, c);
+  const ClauseVerdict times = flight.verdict(R"(always = "reaction_time <= 600 ms in 50 %")");
+  ASSERT_EQ(times.quantiles.size(), 21U);
+  EXPECT_NEAR(times.quantiles[0], 300.0, 1e-9);
+  EXPECT_NEAR(times.quantiles[10], 500.0, 1e-9);
+  EXPECT_NEAR(times.quantiles[20], 1000.0, 1e-9);
+  EXPECT_EQ(times.limit, 600.0);
+  const ClauseVerdict none = flight.verdict(R"(always = "reaction_time of nose <= 1 s")");
+  EXPECT_TRUE(none.quantiles.empty());
+  EXPECT_EQ(none.limit, 1.0);
 }
 
 TEST(Judge, ReactionsInFreeRunningAreInSt) {

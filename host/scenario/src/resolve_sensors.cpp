@@ -155,6 +155,31 @@ void require_sensors_of_metrics(const Scenario& scenario, const UavSetup& setup,
   }
 }
 
+void require_sensors_of_clauses(const UavSetup& setup, Sensors& sensors) {
+  if (!setup.sut.mission) return;
+  for (const mission::Clause& clause : setup.sut.mission->clauses) {
+    if (!clause.condition || clause.condition->quantity->subject != mission::Subject::kSensor)
+      continue;
+    const std::string& name = clause.condition->of;
+    if (!name.empty() && find_sensor(sensors, name) == nullptr)
+      refuse_name(setup, sensors, name, clause.where);
+    const auto is_meant = [&](const LayeredSensor& sensor) {
+      return sensor.sensor().kind() == uav::SensorKind::kCamera &&
+             (name.empty() || sensor.sensor().name == name);
+    };
+    if (clause.condition->quantity->name == "reaction_time" &&
+        std::ranges::none_of(sensors, is_meant))
+      throw Error(
+          ErrorCode::kBadFile, clause.where,
+          fmt::format("the clause \"{}\" is about a reaction time, which needs a camera, "
+                      "but {}. Name a camera.",
+                      clause.name,
+                      name.empty() ? fmt::format("the UAV '{}' has none", setup.placement.name)
+                                   : fmt::format("'{}' is none", name)))
+          .about(clause.name);
+  }
+}
+
 const UavSetup& setup_of(const Scenario& scenario, const std::string& uav) {
   for (const UavSetup& setup : scenario.uavs) {
     if (setup.placement.name == uav) return setup;
@@ -171,6 +196,7 @@ std::vector<uav::SensorTiming> resolve(const Scenario& scenario, const Condition
   lay_setup(setup, sensors);
   for (const Profile& profile : condition.profiles) ProfileLayer(profile, uav, sensors).lay(warn);
   require_sensors_of_metrics(scenario, setup, sensors);
+  require_sensors_of_clauses(setup, sensors);
 
   std::vector<uav::SensorTiming> timings;
   for (LayeredSensor& sensor : sensors) timings.push_back(sensor.finish());

@@ -111,6 +111,26 @@ TEST_F(ResolveSensors, AnEntryAppliesToTheSensorOfItsNameAndKindOrTheOnlyOneOfIt
   EXPECT_EQ(max_m(1, 2), 2.0);
 }
 
+TEST_F(ResolveSensors, RefusesClausesAboutSensorsThatTheUavLacks) {
+  const auto fly = [&](std::size_t uav, const std::string& condition) {
+    const auto file =
+        scratch_.write("mission.toml", "[[task]]\ntask = \"land\"\n\n[[clause]]\nalways = \"" +
+                                           condition + " <= 1 s\"\n");
+    scenario_.uavs[uav].sut.mission = mission::load_mission(file);
+  };
+  for (const char* known : {"reaction_time", "reaction_time of camera", "data_age of range"}) {
+    fly(0, known);
+    EXPECT_NO_THROW((void)resolve()) << known;
+  }
+  fly(0, "loop_period of nose");
+  expect_refused(4, "nose");
+  fly(0, "reaction_time of imu");
+  expect_refused(4, "mission: always reaction_time of imu <= 1 s");
+  scenario_.uavs[0].sut.mission.reset();
+  fly(1, "reaction_time");
+  expect_refused(4, "mission: always reaction_time <= 1 s");
+}
+
 TEST_F(ResolveSensors, WarnsOfAKindThatTheUavLacks) {
   lay("p.toml", "[sensors.front]\nkind = \"camera\"\nnoise = {}\n");
   resolve();

@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cstdint>
+#include <set>
+#include <string>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -68,6 +71,17 @@ Timing of_record(const record::Record& record, const std::filesystem::path& file
     timing.runs.push_back(run_of(record, sut));
   }
   return timing;
+}
+
+std::string runs_text(const Timing& timing) {
+  std::set<std::string> uavs;
+  std::set<std::uint64_t> seeds;
+  for (const Run& run : timing.runs) {
+    uavs.insert(run.uav);
+    seeds.insert(run.seed);
+  }
+  return fmt::format("{} run{}{}", seeds.size(), seeds.size() == 1 ? "" : "s",
+                     uavs.size() > 1 ? fmt::format(" of {} UAVs", uavs.size()) : "");
 }
 
 void require_scenario(const Timing& timing, const std::string& scenario,

@@ -62,6 +62,15 @@ TEST(Timing, RefusesRecordsWithoutMeasuredTime) {
   EXPECT_EQ(bad_file_error([&] { of_record(mixed, "a.mcap", ""); }).subject(), "uav1");
 }
 
+TEST(Timing, UavsOfOneFlightAreOneRun) {
+  Timing timing = sample_timing(1);
+  EXPECT_EQ(runs_text(timing), "1 run");
+  timing.runs.push_back({"uav2", timing.runs[0].seed, {}});
+  EXPECT_EQ(runs_text(timing), "1 run of 2 UAVs");
+  timing.runs.push_back({"uav1", timing.runs[0].seed + 1, {}});
+  EXPECT_EQ(runs_text(timing), "2 runs of 2 UAVs");
+}
+
 TEST(Timing, AddsRunsOfTheSameProgramOnly) {
   Timing timing = sample_timing(1), more = timing;
   more.runs[0].seed = 9;

@@ -78,6 +78,10 @@ void add_shares_alone(std::vector<BoardPace>& boards, const record::Record& reco
   for (std::size_t i = 0; i < boards.size(); ++i) boards[i].alone = to_seconds(alone[i]) / all_s;
 }
 
+void extend(std::pair<double, double>& range, double value) {
+  range = {std::min(range.first, value), std::max(range.second, value)};
+}
+
 }  // namespace
 
 std::vector<BoardPace> board_paces(const record::Record& record, std::span<const Pace> paces) {
@@ -97,6 +101,45 @@ std::vector<BoardPace> board_paces(const record::Record& record, std::span<const
   if (boards.size() < 2) return {};
   add_shares_alone(boards, record, index_of);
   return boards;
+}
+
+const BoardPace& slowest_of(std::span<const BoardPace> boards) {
+  return *std::ranges::max_element(boards, {}, [](const BoardPace& board) {
+    return std::pair(board.p95_s, board.alone.value_or(0.0));
+  });
+}
+
+std::vector<BoardPace> over_flights(std::span<const std::vector<BoardPace>> flights) {
+  std::vector<BoardPace> all;
+  for (const std::vector<BoardPace>& flight : flights) {
+    if (flight.empty()) continue;
+    if (all.empty()) all = std::vector<BoardPace>(flight.size());
+    for (std::size_t i = 0; i < std::min(all.size(), flight.size()); ++i) {
+      BoardPace& sum = all[i];
+      const BoardPace& board = flight[i];
+      if (sum.board.empty())
+        sum = {.board = board.board,
+               .uavs = board.uavs,
+               .flights = 0,
+               .p95_range_s = {board.p95_s, board.p95_s}};
+      ++sum.flights;
+      sum.slowest_in += &slowest_of(flight) == &board ? 1U : 0U;
+      sum.median_s += board.median_s;
+      sum.p95_s += board.p95_s;
+      extend(sum.p95_range_s, board.p95_s);
+      if (!board.alone) continue;
+      if (!sum.alone) sum.alone_range = {*board.alone, *board.alone};
+      sum.alone = sum.alone.value_or(0.0) + *board.alone;
+      extend(sum.alone_range, *board.alone);
+    }
+  }
+  for (BoardPace& board : all) {
+    const auto count = static_cast<double>(board.flights);
+    board.median_s /= count;
+    board.p95_s /= count;
+    if (board.alone) *board.alone /= count;
+  }
+  return all;
 }
 
 }  // namespace tether::report

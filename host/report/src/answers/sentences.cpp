@@ -1,3 +1,4 @@
+#include "answers/board_pace.h"
 #include "answers/sufficient.h"
 #include "tables/report_format.h"
 
@@ -158,30 +159,12 @@ std::string evidence_of(const ConditionVerdict& condition) {
   return "";
 }
 
-/// The slowest computer of a fleet: by the cost of an image or, without images, by how long the
-/// others waited for it.
-std::optional<Answer> slowest_board(const ConditionVerdict& condition) {
-  if (!condition.pace || condition.pace->boards.empty()) return std::nullopt;
-  std::vector<BoardPace> boards = condition.pace->boards;
-  std::ranges::stable_sort(boards, std::greater<>{}, [](const BoardPace& board) {
-    return std::pair(board.p95_s, board.alone.value_or(0.0));
-  });
-  std::vector<std::string> costs, waits;
-  for (const BoardPace& board : boards) {
-    if (board.p95_s > 0.0 && costs.size() < kMostBoards)
-      costs.push_back(fmt::format("{} on “{}” ({}; at most {} in 95 %)", short_ms(board.median_s),
-                                  board.board, joined_with_and(board.uavs), short_ms(board.p95_s)));
-    if (board.alone && waits.size() < kMostBoards)
-      waits.push_back(fmt::format("{} for “{}”", share(*board.alone), board.board));
-  }
-  if (costs.empty() && waits.empty()) return std::nullopt;
-  std::string text = fmt::format(": “{}” of “{}”.", boards.front().board, condition.condition);
-  if (!costs.empty()) text += fmt::format(" An image costs {}.", joined_with_and(costs));
-  if (!waits.empty())
-    text +=
-        fmt::format(" Of the wall time, the simulation waited {} alone.", joined_with_and(waits));
-  if (condition.planned > 1) text += fmt::format(" This is from seed {}.", condition.pace->seed);
-  return Answer{"Slowest board", text};
+/// " (50 ms to 70 ms)": the least and the largest of several flights; empty for one.
+template <class Text>
+std::string spread(const BoardPace& board, const std::pair<double, double>& range,
+                   const Text& text) {
+  if (board.flights < 2) return "";
+  return fmt::format(" ({} to {})", text(range.first), text(range.second));
 }
 
 std::string lead_of(const ConditionVerdict& condition) {
@@ -351,6 +334,37 @@ std::string_view name(Ruling ruling) {
       break;
   }
   return "no answer (free-running)";
+}
+
+std::optional<Answer> slowest_board(const ConditionVerdict& condition) {
+  if (!condition.pace || condition.pace->boards.empty()) return std::nullopt;
+  std::vector<BoardPace> boards = condition.pace->boards;
+  const BoardPace slowest = slowest_of(boards);
+  std::ranges::stable_sort(boards, std::greater<>{}, [](const BoardPace& board) {
+    return std::pair(board.p95_s, board.alone.value_or(0.0));
+  });
+  std::vector<std::string> costs, waits;
+  for (const BoardPace& board : boards) {
+    if (board.p95_s > 0.0 && costs.size() < kMostBoards)
+      costs.push_back(fmt::format("{} on “{}” ({}; at most {} in 95 %{})", short_ms(board.median_s),
+                                  board.board, joined_with_and(board.uavs), short_ms(board.p95_s),
+                                  spread(board, board.p95_range_s, short_ms)));
+    if (board.alone && waits.size() < kMostBoards)
+      waits.push_back(fmt::format("{}{} for “{}”", share(*board.alone),
+                                  spread(board, board.alone_range, share), board.board));
+  }
+  if (costs.empty() && waits.empty()) return std::nullopt;
+  std::string text = fmt::format(": “{}” of “{}”", slowest.board, condition.condition);
+  if (slowest.flights > 1)
+    text += fmt::format(", in {} of {} flights", slowest.slowest_in, slowest.flights);
+  text += '.';
+  if (!costs.empty()) text += fmt::format(" An image costs {}.", joined_with_and(costs));
+  if (!waits.empty())
+    text +=
+        fmt::format(" Of the wall time, the simulation waited {} alone.", joined_with_and(waits));
+  if (slowest.flights > 1)
+    text += " These are means over the flights, with the least and the largest of a flight.";
+  return Answer{"Slowest board", text};
 }
 
 Answer answer_of(const ConditionVerdict& condition) {

@@ -1,3 +1,4 @@
+#include "answers/board_pace.h"
 #include "tables/report_format.h"
 
 #include <algorithm>
@@ -161,6 +162,7 @@ std::vector<Advice> advice_on(const ConditionVerdict& lead) {
   return advice;
 }
 
+/// Of the first of the trials whose record can be read; its boards are those of all trials.
 /// @param unreadable why the first record that cannot be read cannot; only if none can.
 std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
                                       const campaign::ConditionResults& condition,
@@ -173,6 +175,8 @@ std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
   std::ranges::stable_sort(trials, {}, [](const campaign::TrialResult* trial) {
     return trial->outcome != campaign::Outcome::kGoalMissed;
   });
+  std::optional<Pace> first;
+  std::vector<std::vector<BoardPace>> boards;
   for (const campaign::TrialResult* trial : trials) {
     const std::filesystem::path of_trial =
         is_run
@@ -180,14 +184,18 @@ std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
             : folder / campaign::trial_folder(scenario.scenario, condition.condition, trial->seed);
     try {
       if (auto pace = read_pace(of_trial / "record.mcap")) {
-        unreadable.clear();
-        return pace;
+        boards.push_back(pace->boards);
+        if (!first) first = std::move(pace);
+        if (first->boards.empty()) break;
       }
     } catch (const Error& error) {
       if (unreadable.empty()) unreadable = error.what();
     }
   }
-  return std::nullopt;
+  if (!first) return std::nullopt;
+  unreadable.clear();
+  if (boards.size() > 1) first->boards = over_flights(boards);
+  return first;
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -30,7 +32,7 @@ struct Suite {
   std::string name;
   std::string started_at = "1970-01-01T00:00:00";  ///< without a zone, as the schema wants it
   std::string machine = "unknown";
-  std::string verdict{};  ///< empty: none
+  std::vector<std::pair<std::string, std::string>> properties{};
   std::vector<Case> cases{};
 
   std::ptrdiff_t count(std::string_view kind) const {
@@ -130,12 +132,10 @@ std::string text_of(const Suite& suite, std::size_t id) {
       "tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{:.3f}\">\n",
       id, escape_markup(suite.name), suite.started_at, escape_markup(suite.machine),
       suite.cases.size(), suite.count("failure"), suite.count("error"), time_s);
-  text += suite.verdict.empty()
-              ? "    <properties/>\n"
-              : fmt::format(
-                    "    <properties>\n      <property name=\"verdict\" value=\"{}\"/>\n    "
-                    "</properties>\n",
-                    escape_markup(suite.verdict));
+  text += "    <properties>\n";
+  for (const auto& [name, value] : suite.properties)
+    text += fmt::format("      <property name=\"{}\" value=\"{}\"/>\n", name, escape_markup(value));
+  text += "    </properties>\n";
   for (const Case& one : suite.cases) text += text_of(one, suite.name);
   return text + fmt::format("    <system-out>{}</system-out>\n    <system-err/>\n  </testsuite>\n",
                             escape_markup(output_of(suite)));
@@ -169,7 +169,9 @@ std::string to_junit(const campaign::CampaignResults& results,
       const campaign::ConditionResults& condition = scenario.conditions[j];
       Suite suite{.name = fmt::format("{}, {}", scenario.scenario, condition.condition)};
       const Answer answer = answer_of(verdicts[i].conditions[j]);
-      suite.verdict = answer.lead + answer.rest;
+      suite.properties.emplace_back("verdict", answer.lead + answer.rest);
+      if (const auto slowest = slowest_board(verdicts[i].conditions[j]))
+        suite.properties.emplace_back("slowest board", slowest->lead + slowest->rest);
       for (const std::uint64_t seed : results.manifest.seeds) {
         const auto trial = std::ranges::find(condition.trials, seed, &campaign::TrialResult::seed);
         if (trial == condition.trials.end())

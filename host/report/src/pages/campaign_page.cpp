@@ -50,15 +50,24 @@ std::string optimism_part(const campaign::ScenarioResults& scenario) {
 std::string clauses_part(FigureMaker& figures, const campaign::ScenarioResults& scenario) {
   const Table table = clauses_table(scenario);
   if (table.rows.empty()) return "";
-  std::string plots;
-  for (const judge::ClauseVerdict& clause : clauses_of(scenario))
+  std::string plots, times;
+  for (const judge::ClauseVerdict& clause : clauses_of(scenario)) {
     plots += figures.plot(margin_plot(scenario, clause), "");
+    times += figures.plot(times_plot(scenario, clause), "");
+  }
   if (!plots.empty())
     plots = element("p",
                     "Each point is one trial, as in “All trials”. Left of the line at 0, the "
                     "clause was missed by that much.") +
             plots;
-  return to_html(table) + folded("Margins of the clauses in all trials", plots);
+  if (!times.empty())
+    times = element("h3", "Reaction times and loops") +
+            element("p",
+                    "Each trial has 21 points, the quantiles of its times from 0 to 100 %. The box "
+                    "spans the quartiles, the thick line is the median, and the thin one is the "
+                    "limit.") +
+            times + to_html(times_table(scenario));
+  return to_html(table) + folded("Margins of the clauses in all trials", plots) + times;
 }
 
 std::string distributions_part(FigureMaker& figures, const campaign::ScenarioResults& scenario) {

@@ -97,9 +97,9 @@ std::string timing_page(const timing::Timing& timing) {
   }
   const std::string title = timing.scenario + ": computing time by stage";
   const std::string source =
-      fmt::format("{}, build {}, clock {}, on {}; {} runs, recorded {}", timing.program,
+      fmt::format("{}, build {}, clock {}, on {}; {}, recorded {}", timing.program,
                   timing.build_id.empty() ? "unknown" : timing.build_id, timing.clock, timing.board,
-                  timing.runs.size(), timing.recorded_at);
+                  timing::runs_text(timing), timing.recorded_at);
   return html_page(title, element("h1", title) +
                               answer_block({timing_answer(rows)}, timing_advice(timing, rows)) +
                               figures + to_html(table) + element("p", source));

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -18,6 +22,7 @@ constexpr int kRow_px = 46;
 struct Row {
   std::string condition;
   std::size_t planned = 0;
+  std::size_t flown = 0;  ///< trials with a value
   std::vector<double> values;
 };
 
@@ -47,8 +52,8 @@ std::string box_script(const Row& row, std::size_t index) {
 }
 
 std::string row_label(const Row& row) {
-  if (row.values.size() == row.planned) return row.condition;
-  return fmt::format("{} ({} of {})", row.condition, row.values.size(), row.planned);
+  if (row.flown == row.planned) return row.condition;
+  return fmt::format("{} ({} of {})", row.condition, row.flown, row.planned);
 }
 
 std::string rows_script(const std::vector<Row>& rows) {
@@ -60,9 +65,9 @@ std::string rows_script(const std::vector<Row>& rows) {
          range_script("y", static_cast<double>(rows.size()) + 0.5, 0.5) + "set grid noytics\n";
 }
 
-std::string values_range(const std::vector<Row>& rows, bool with_zero) {
+std::string values_range(const std::vector<Row>& rows, std::optional<double> limit) {
   std::vector<double> all;
-  if (with_zero) all.push_back(0.0);
+  if (limit) all.push_back(*limit);
   for (const Row& row : rows) all.insert(all.end(), row.values.begin(), row.values.end());
   const auto [least, largest] = std::minmax_element(all.begin(), all.end());
   double low = *least, high = *largest;
@@ -81,21 +86,44 @@ int left_margin_px(const std::vector<Row>& rows) {
 
 std::vector<Row> rows_of(const campaign::ScenarioResults& scenario, const std::string& metric) {
   std::vector<Row> rows;
-  for (const campaign::ConditionResults& condition : scenario.conditions)
-    rows.push_back({condition.condition, condition.planned, condition.values(metric)});
+  for (const campaign::ConditionResults& condition : scenario.conditions) {
+    std::vector<double> values = condition.values(metric);
+    const std::size_t flown = values.size();
+    rows.push_back({condition.condition, condition.planned, flown, std::move(values)});
+  }
   return rows;
 }
 
-/// `zero_matters`: a line there parts what is met from what is missed.
+/// The rows of a clause: of each trial, what `values_of` takes from the verdict on it.
+template <class ValuesOf>
+std::vector<Row> rows_of(const campaign::ScenarioResults& scenario,
+                         const judge::ClauseVerdict& clause, const ValuesOf& values_of) {
+  std::vector<Row> rows;
+  for (const campaign::ConditionResults& condition : scenario.conditions) {
+    Row& row = rows.emplace_back(Row{condition.condition, condition.planned, 0, {}});
+    for (const campaign::TrialResult& trial : condition.trials)
+      for (const judge::ClauseVerdict& own : trial.clauses) {
+        if (own.uav != clause.uav || own.name != clause.name) continue;
+        const std::vector<double> values = values_of(own);
+        row.flown += values.empty() ? 0U : 1U;
+        row.values.insert(row.values.end(), values.begin(), values.end());
+      }
+  }
+  return rows;
+}
+
+/// `limit`: a line there parts what is met from what is missed.
 std::optional<Plot> plot_of(const std::vector<Row>& rows, const std::string& label,
-                            const std::string& scenario, bool zero_matters) {
+                            const std::string& scenario, std::optional<double> limit) {
   if (std::ranges::all_of(rows, &std::vector<double>::empty, &Row::values)) return std::nullopt;
   Frame frame{.left_px = left_margin_px(rows), .top_px = 10, .x_label = label};
   frame.height_px = frame.top_px + frame.bottom_px + kRow_px * static_cast<int>(rows.size());
-  std::string script = frame_script(frame) + values_range(rows, zero_matters) + rows_script(rows);
-  if (zero_matters)
-    script += fmt::format("set arrow from 0,graph 0 to 0,graph 1 nohead linecolor {} back\n",
-                          gnuplot_colour(Ink::kForeground));
+  std::string script = frame_script(frame) + values_range(rows, limit) + rows_script(rows);
+  if (limit)
+    script += fmt::format(
+        "set arrow from {0:.7g},graph 0 to {0:.7g},graph 1 nohead linecolor {1} "
+        "back\n",
+        *limit, gnuplot_colour(Ink::kForeground));
   Drawing drawing;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     script += box_script(rows[i], i);
@@ -115,20 +143,21 @@ std::optional<Plot> distribution_plot(const campaign::ScenarioResults& scenario,
   const campaign::MetricValue* value = scenario.find_metric(metric);
   if (value == nullptr) return std::nullopt;
   return plot_of(rows_of(scenario, metric), with_unit(value->label, value->unit), scenario.scenario,
-                 false);
+                 std::nullopt);
 }
 
 std::optional<Plot> margin_plot(const campaign::ScenarioResults& scenario,
                                 const judge::ClauseVerdict& clause) {
-  std::vector<Row> rows;
-  for (const campaign::ConditionResults& condition : scenario.conditions) {
-    Row& row = rows.emplace_back(Row{condition.condition, condition.planned, {}});
-    for (const campaign::TrialResult& trial : condition.trials)
-      for (const judge::ClauseVerdict& own : trial.clauses)
-        if (own.uav == clause.uav && own.name == clause.name && own.margin)
-          row.values.push_back(*own.margin);
-  }
-  return plot_of(rows, with_unit("Margin of " + clause.name, clause.unit), scenario.scenario, true);
+  const auto rows = rows_of(scenario, clause, [](const judge::ClauseVerdict& own) {
+    return own.margin ? std::vector{*own.margin} : std::vector<double>{};
+  });
+  return plot_of(rows, with_unit("Margin of " + clause.name, clause.unit), scenario.scenario, 0.0);
+}
+
+std::optional<Plot> times_plot(const campaign::ScenarioResults& scenario,
+                               const judge::ClauseVerdict& clause) {
+  const auto rows = rows_of(scenario, clause, std::mem_fn(&judge::ClauseVerdict::quantiles));
+  return plot_of(rows, with_unit(clause.name, clause.unit), scenario.scenario, clause.limit);
 }
 
 }  // namespace tether::report

@@ -6,6 +6,7 @@
 
 #include <tether/report/report.h>
 #include <tether/report/verdict.h>
+#include <tether/stats/sample_statistics.h>
 
 // The clauses of missions: of a run, and over the trials of a campaign.
 namespace tether::report {
@@ -44,17 +45,33 @@ std::vector<std::string> row_of(const judge::ClauseVerdict& clause,
   return row;
 }
 
+/// The quantiles of all trials, sorted.
+std::vector<double> quantiles_of(const judge::ClauseVerdict& clause,
+                                 const campaign::ConditionResults& condition) {
+  std::vector<double> all;
+  for (const campaign::TrialResult& trial : condition.trials)
+    for (const judge::ClauseVerdict& own : trial.clauses)
+      if (own.uav == clause.uav && own.name == clause.name)
+        all.insert(all.end(), own.quantiles.begin(), own.quantiles.end());
+  std::ranges::sort(all);
+  return all;
+}
+
 }  // namespace
 
 std::vector<judge::ClauseVerdict> clauses_of(const campaign::ScenarioResults& scenario) {
   std::vector<judge::ClauseVerdict> all;
   for (const auto& condition : scenario.conditions)
     for (const campaign::TrialResult& trial : condition.trials)
-      for (const judge::ClauseVerdict& clause : trial.clauses)
-        if (std::ranges::none_of(all, [&](const auto& known) {
-              return known.uav == clause.uav && known.name == clause.name;
-            }))
+      for (const judge::ClauseVerdict& clause : trial.clauses) {
+        const auto known = std::ranges::find_if(all, [&](const auto& other) {
+          return other.uav == clause.uav && other.name == clause.name;
+        });
+        if (known == all.end())
           all.push_back(clause);
+        else if (!known->limit)  // that trial failed
+          known->limit = clause.limit;
+      }
   return all;
 }
 
@@ -92,6 +109,23 @@ Table clauses_table(const campaign::ScenarioResults& scenario) {
       "Interval of the share: exact (Clopper and Pearson). Interval of the mean margin: Student's "
       "t. A "
       "negative margin is by how much a clause was missed."};
+  return table;
+}
+
+Table times_table(const campaign::ScenarioResults& scenario) {
+  Table table;
+  table.title = fmt::format("Reaction times and loops of {}", scenario.scenario);
+  table.text_columns = 3;
+  table.headings = {
+      single_headings({"Clause", "Condition", "Unit", "Limit", "Median", "95 %", "Worst"})};
+  for (const judge::ClauseVerdict& clause : clauses_of(scenario))
+    for (const auto& condition : scenario.conditions) {
+      const std::vector<double> all = quantiles_of(clause, condition);
+      if (all.empty()) continue;
+      table.rows.push_back({clause.name, condition.condition, clause.unit, decimals(clause.limit),
+                            decimals(stats::quantile(all, 0.5)),
+                            decimals(stats::quantile(all, 0.95)), decimals(all.back())});
+    }
   return table;
 }
 

@@ -323,6 +323,8 @@ std::vector<Table> report_tables(const campaign::CampaignResults& results) {
     tables.push_back(details_table(scenario));
     if (Table clauses = clauses_table(scenario); !clauses.rows.empty())
       tables.push_back(std::move(clauses));
+    if (Table times = times_table(scenario); !times.rows.empty())
+      tables.push_back(std::move(times));
     if (Table energy = energy_table(scenario); !energy.rows.empty())
       tables.push_back(std::move(energy));
     if (!compare_conditions(scenario).empty()) tables.push_back(comparisons_table(scenario));

@@ -259,9 +259,16 @@ TEST(Verdict, NamesTheSlowestBoardOfAFleet) {
   EXPECT_EQ(answers()[1].rest,
             ": “nano” of “target”. An image costs 100 ms on “nano” (uav2 and uav3; at most 110 ms "
             "in 95 %) and 40 ms on “pi” (uav1; at most 50 ms in 95 %). Of the wall time, the "
-            "simulation waited 61 % for “pi” alone. This is from seed 1.");
+            "simulation waited 61 % for “pi” alone.");
   for (BoardPace& board : pace.boards) board.median_s = board.p95_s = 0.0;
   EXPECT_THAT(answers()[1].rest, StartsWith(": “pi” of “target”. Of the wall time"));
+  pace.boards[0].flights = 10;
+  pace.boards[0].slowest_in = 9;
+  pace.boards[0].alone_range = {0.5, 0.7};
+  EXPECT_EQ(answers()[1].rest,
+            ": “pi” of “target”, in 9 of 10 flights. Of the wall time, the simulation waited 61 % "
+            "(50 % to 70 %) for “pi” alone. These are means over the flights, with the least and "
+            "the largest of a flight.");
   pace.boards[0].alone.reset();
   EXPECT_EQ(answers().size(), 1u) << "nothing is known of the boards";
 }

@@ -52,6 +52,22 @@ TEST(MarginPlot, HasAPointForEachTrialAndALineAtZero) {
   EXPECT_THAT(plot, HasSubstr("set xrange [-")) << "0 is in the range";
 }
 
+TEST(TimesPlot, HasTheQuantilesOfEachTrialAndALineAtTheLimit) {
+  campaign::ScenarioResults scenario = sample_results({{"host", {1, 2}}, {"target", {3}}});
+  judge::ClauseVerdict reaction{.uav = "uav1", .name = "reaction", .unit = "ms", .limit = 150.0};
+  EXPECT_FALSE(times_plot(scenario, reaction));
+  reaction.quantiles = {80.0, 90.0, 100.0};
+  scenario.conditions[0].trials[1].clauses = {reaction};
+  reaction.quantiles = {200.0, 220.0, 240.0};
+  scenario.conditions[1].trials[0].clauses = {reaction};
+  const std::string plot = times_plot(scenario, reaction).value().script;
+  EXPECT_THAT(plot, HasSubstr("'reaction (ms)'"));
+  EXPECT_THAT(plot, HasSubstr("set arrow from 150,graph 0"));
+  EXPECT_THAT(plot, HasSubstr("$trials0 << END\n80 "));
+  EXPECT_THAT(plot, HasSubstr("$trials1 << END\n200 "));
+  EXPECT_THAT(plot, HasSubstr("'host (1 of 2)' 1, 'target' 2"));
+}
+
 TEST(DistributionPlot, NeedsAValue) {
   campaign::ScenarioResults scenario = sample_results({{"host", {1}}});
   EXPECT_FALSE(distribution_plot(scenario, "oscillations"));

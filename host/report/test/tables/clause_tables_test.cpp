@@ -42,6 +42,19 @@ TEST(ClauseTables, OfARunThatFailed) {
   EXPECT_THAT(table.notes, IsEmpty());
 }
 
+TEST(ClauseTables, TimesOfACampaign) {
+  campaign::ScenarioResults scenario = sample_results({{"host", {1, 2}}, {"target", {3}}});
+  EXPECT_THAT(times_table(scenario).rows, IsEmpty());
+  judge::ClauseVerdict reaction{.uav = "uav1", .name = "reaction", .unit = "ms"};
+  scenario.conditions[0].trials[0].clauses = {reaction};  // a flight that failed
+  reaction.limit = 150.0;
+  reaction.quantiles = {80.0, 90.0, 100.0};
+  scenario.conditions[0].trials[1].clauses = {reaction};
+  EXPECT_THAT(
+      times_table(scenario).rows,
+      ElementsAre(ElementsAre("reaction", "host", "ms", "150.000", "90.000", "99.000", "100.000")));
+}
+
 TEST(ClauseTables, OfACampaign) {
   campaign::ScenarioResults scenario = sample_results({{"host", {1, 2}}, {"target", {3, 4, 5}}});
   EXPECT_THAT(clauses_table(scenario).rows, IsEmpty());

@@ -49,6 +49,10 @@ struct ClauseVerdict {
   /// How the margin developed, in `unit`, at no more than about 40 instants: the time that was
   /// left, the worst value so far (eventually: the best), or with a share each value.
   std::vector<MarginAt> margins{};
+  /// Of a condition on commands or reads, such as `reaction_time`: the quantiles of its values at
+  /// 0, 5, … 100 %, in `unit`. Empty for other clauses, and if there were none.
+  std::vector<double> quantiles{};
+  std::optional<double> limit{};  ///< of these values, in `unit`
 
   friend bool operator==(const ClauseVerdict&, const ClauseVerdict&) = default;
 };

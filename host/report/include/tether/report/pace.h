@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tether/record/reader.h>
@@ -21,6 +22,12 @@ struct BoardPace {
   /// The share of wall time in which programs of no other computer computed: all others were held,
   /// or had finished. None: not measured.
   std::optional<double> alone{};
+
+  // Over several flights, the above are means.
+  std::size_t flights = 1;
+  std::size_t slowest_in = 0;               ///< flights in which it was the slowest
+  std::pair<double, double> p95_range_s{};  ///< least and largest of a flight
+  std::pair<double, double> alone_range{};
 };
 
 /// How fast the program of one run worked, and on what it spent its computing time.

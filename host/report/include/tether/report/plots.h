@@ -53,4 +53,9 @@ std::optional<Plot> distribution_plot(const campaign::ScenarioResults& scenario,
 std::optional<Plot> margin_plot(const campaign::ScenarioResults& scenario,
                                 const judge::ClauseVerdict& clause);
 
+/// The same for the times of a clause on commands or reads, such as reaction times, with a line at
+/// its limit: the quantiles of each trial. None if no trial has such times.
+std::optional<Plot> times_plot(const campaign::ScenarioResults& scenario,
+                               const judge::ClauseVerdict& clause);
+
 }  // namespace tether::report

@@ -60,6 +60,9 @@ std::vector<judge::ClauseVerdict> clauses_of(const campaign::ScenarioResults& sc
 /// A row per clause and condition: trials that met it, and their margins; no rows if there are
 /// none.
 Table clauses_table(const campaign::ScenarioResults& scenario);
+/// A row per clause on commands or reads, such as reaction times, and condition: quantiles over all
+/// its trials; no rows if there are none.
+Table times_table(const campaign::ScenarioResults& scenario);
 
 /// What the flight of a trial took from the batteries, by task and cause. No rows: no energy.
 Table energy_table(const campaign::TrialResult& trial);

@@ -107,6 +107,8 @@ struct Answer {
 };
 /// The condition's ruling with its evidence.
 Answer answer_of(const ConditionVerdict& condition);
+/// The slowest computer of a fleet, over all flights of the condition. None: there are not several.
+std::optional<Answer> slowest_board(const ConditionVerdict& condition);
 /// The answer, then those on the other conditions. Of a sweep: up to which cpu_factor each
 /// condition is fast enough, then one answer for each ruling of a condition.
 /// If a condition has several computers, a sentence on the slowest one follows its answer.

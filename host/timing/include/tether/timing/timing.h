@@ -52,6 +52,9 @@ Timing of_record(const record::Record& record, const std::filesystem::path& file
 /// The calls of one SUT of a record, however its time was measured.
 Run run_of(const record::Record& record, const record::SutInfo& sut);
 
+/// How many flights these are, for people: "2 runs", "1 run of 2 UAVs".
+std::string runs_text(const Timing& timing);
+
 /// Adds the runs of `more`, which was read from `file`.
 /// @throws Error(kBadFile) about `file` if scenario, program, machine or clock differ, or a run of
 /// the same UAV and seed is there.
