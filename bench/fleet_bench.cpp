@@ -39,10 +39,12 @@
 // scripted, so that the flights are the same in every run.
 //   fleet_bench [SECONDS OF ST [1|16|64|256|camera]]
 // All figures are milliseconds for each UAV and second of ST. CPU time does not depend much on what
-// else the machine does; wall time does. In real time are flights with UAVs × wall ≤ 1000.
+// else the machine does; wall time does. In real time are flights with UAVs × wall ≤ 1000. Each
+// flight is flown twice: to read the CPU time of the parts takes time itself, so the wall time, the
+// host's CPU time and the programs' are those of a flight in which the parts are not measured.
 //   barrier  the coordinator and the link: all that is not in the other columns
 //   physics  steps, and what lies within: rotors, controllers, contacts
-//   sensors  states and samples; pictures, also those of other threads
+//   sensors  states and samples; all that other threads draw
 //   truth    the ground truth, for the record: poses, clearances, contacts
 //   record   writing it
 // The yardsticks, in the same program: the steps of the engine alone with the same world, and as
@@ -64,9 +66,11 @@ class Account {
  public:
   template <class F>
   auto measure(F&& f) {
+    if (!is_open) return f();
     const Timed timed(*this);
     return f();
   }
+  bool is_open = true;
   Duration sum() const { return sum_ - calls_ * overhead(); }
   static Duration overhead() {
     static const Duration overhead = [] {
@@ -94,6 +98,10 @@ class Account {
 };
 
 struct Accounts {
+  explicit Accounts(bool are_open) {
+    for (Account* part : all()) part->is_open = are_open;
+  }
+  std::array<Account*, 4> all() { return {&physics, &sensors, &truth, &record}; }
   Account physics, sensors, truth, record;
 };
 
@@ -303,11 +311,19 @@ Duration bare_exchanges(std::size_t peers, std::uint64_t each) {
 
 // --- the flights --------------------------------------------------------------------------------
 
-void flight(std::size_t uavs, bool with_cameras, Duration seconds) {
-  const sim::World world = make_world(uavs, with_cameras);
+struct Flight {
+  Duration wall{0};
+  Duration coordinator{0};  ///< CPU time of the host's thread
+  Duration ahead{0};        ///< and of those that draw ahead
+  Duration programs{0};
+  double seconds = 0.0;  ///< ST
+  std::uint64_t interactions = 0;
+  std::uintmax_t bytes = 0;
+};
+
+Flight fly_fleet(const sim::World& world, bool with_cameras, Duration seconds, Accounts& accounts) {
   const int threads_ahead =
       with_cameras ? static_cast<int>(std::max(1U, std::thread::hardware_concurrency())) - 1 : 0;
-  Accounts accounts;
   TimedSimulator simulator(sim::make_mujoco_simulator(
                                world, [](const Warning&) {}, threads_ahead),
                            accounts);
@@ -318,43 +334,48 @@ void flight(std::size_t uavs, bool with_cameras, Duration seconds) {
     return WallTime(std::chrono::steady_clock::now().time_since_epoch());
   });
   const auto server = link::listen_tcp({"127.0.0.1", 0}, 60s);
-  const pid_t programs = start_threads(uavs, [&](std::size_t i) {
+  const pid_t programs = start_threads(world.uavs.size(), [&](std::size_t i) {
     fly(server->address(), world.uavs[i].name, with_cameras, seconds);
   });
   const Duration begin = cpu_of_thread();
+  const Duration begin_of_all = os::read_clock(CLOCK_PROCESS_CPUTIME_ID);
   const coordinator::RunReport report = coordinator.run(*server);
   const Duration own = cpu_of_thread() - begin;
-  const Duration flying = wait_for(programs);
-  const auto bytes = std::filesystem::file_size(file);
+  const Duration all = os::read_clock(CLOCK_PROCESS_CPUTIME_ID) - begin_of_all;
+  const Flight flight{.wall = report.wall,
+                      .coordinator = own,
+                      .ahead = all - own,
+                      .programs = wait_for(programs),
+                      .seconds = to_seconds(report.st),
+                      .interactions = report.interactions,
+                      .bytes = std::filesystem::file_size(file)};
   std::filesystem::remove(file);
   if (report.end != coordinator::RunEnd::kFinished) throw std::runtime_error(report.reason);
+  return flight;
+}
 
-  const auto each_ms = [&](Duration d) {
-    return 1e3 * to_seconds(d) / static_cast<double>(uavs) / to_seconds(report.st);
-  };
-  const Account* const parts[] = {&accounts.physics, &accounts.sensors, &accounts.truth,
-                                  &accounts.record};
-  Duration in_parts{0};
-  Duration measuring{0};
-  for (const Account* part : parts) {
-    in_parts += part->sum();
-    measuring += part->calls() * Account::overhead();
-  }
-  // Pictures drawn by this thread are in its samples.
-  const Duration host = own - 2 * measuring;
-  const Duration drawn_ahead =
-      threads_ahead > 0 ? std::max(Duration(0), simulator.work()->drawing - accounts.sensors.sum())
-                        : Duration(0);
+void print_row(std::size_t uavs, bool with_cameras, Duration seconds) {
+  const sim::World world = make_world(uavs, with_cameras);
+  Accounts closed(false);
+  const Flight whole = fly_fleet(world, with_cameras, seconds, closed);
+  Accounts parts(true);
+  const Flight measured = fly_fleet(world, with_cameras, seconds, parts);
+  Duration barrier = measured.coordinator;
+  for (const Account* part : parts.all())
+    barrier -= part->sum() + 2 * part->calls() * Account::overhead();
+
+  const double uav_seconds = static_cast<double>(uavs) * whole.seconds;
+  const auto each_ms = [&](Duration d) { return 1e3 * to_seconds(d) / uav_seconds; };
   fmt::print(
       "{:5} {:>7} | {:6.2f} {:8.2f} | {:7.2f} {:7.2f} {:7.2f} {:7.2f} {:7.2f} | {:7.2f} |"
       " {:6.2f} {:6.2f} | {:6.1f} {:6.1f}\n",
-      uavs, with_cameras ? "camera" : "imu", each_ms(report.wall), each_ms(host + drawn_ahead),
-      each_ms(host - in_parts), each_ms(accounts.physics.sum()),
-      each_ms(accounts.sensors.sum() + drawn_ahead), each_ms(accounts.truth.sum()),
-      each_ms(accounts.record.sum()), each_ms(flying), each_ms(engine_alone(world, seconds)),
-      each_ms(bare_exchanges(uavs, report.interactions / uavs)),
-      static_cast<double>(report.interactions) / static_cast<double>(uavs) / to_seconds(report.st),
-      static_cast<double>(bytes) * 1e-3 / static_cast<double>(uavs) / to_seconds(report.st));
+      uavs, with_cameras ? "camera" : "imu", each_ms(whole.wall),
+      each_ms(whole.coordinator + whole.ahead), each_ms(barrier), each_ms(parts.physics.sum()),
+      each_ms(parts.sensors.sum() + measured.ahead), each_ms(parts.truth.sum()),
+      each_ms(parts.record.sum()), each_ms(whole.programs), each_ms(engine_alone(world, seconds)),
+      each_ms(bare_exchanges(uavs, whole.interactions / uavs)),
+      static_cast<double>(whole.interactions) / uav_seconds,
+      static_cast<double>(whole.bytes) * 1e-3 / uav_seconds);
   std::fflush(stdout);
 }
 
@@ -372,8 +393,8 @@ int main(int argc, char** argv) {
   try {
     const std::string_view only = argc > 2 ? argv[2] : "";
     for (const std::size_t uavs : {1U, 16U, 64U, 256U})
-      if (only.empty() || only == std::to_string(uavs)) flight(uavs, false, seconds);
-    if (only.empty() || only == "camera") flight(16, true, seconds);
+      if (only.empty() || only == std::to_string(uavs)) print_row(uavs, false, seconds);
+    if (only.empty() || only == "camera") print_row(16, true, seconds);
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 3;

@@ -1,8 +1,8 @@
-#include "mixer.h"
 #include "velocity_controller.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <tether/base/units.h>
 #include <tether/uav/multirotor.h>
@@ -12,18 +12,6 @@ namespace {
 
 double speed_for(const MultirotorParameters& parameters, double thrust_N) {
   return std::sqrt(thrust_N / parameters.thrust_coefficient);
-}
-
-/// First-order lag towards the wanted speeds, exact for a set-point that holds over the step.
-void advance_rotors(const MultirotorParameters& parameters, const RotorThrusts& wanted, double dt_s,
-                    MultirotorState& state) {
-  const double up = -std::expm1(-dt_s / parameters.time_constant_up_s);
-  const double down = -std::expm1(-dt_s / parameters.time_constant_down_s);
-  for (std::size_t i = 0; i < parameters.rotors.size(); ++i) {
-    double& speed = state.rotor_speed_rad_s[i];
-    const double target = speed_for(parameters, wanted[i]);
-    speed += (target > speed ? up : down) * (target - speed);
-  }
 }
 
 /// Thrust, reaction torque and drag of all rotors at their speeds (Furrer et al., eqs. 5 to 8).
@@ -70,7 +58,9 @@ MultirotorParameters hummingbird() {
 
 MultirotorState hover_state(const MultirotorParameters& parameters, double gravity_m_s2,
                             double yaw_rad) {
-  const RotorThrusts thrusts = mix(parameters, {parameters.mass_kg * gravity_m_s2, {}});
+  const RotorThrusts thrusts =
+      Mixer(parameters)
+          .mix({parameters.mass_kg * gravity_m_s2, {}}, max_rotor_thrust_N(parameters));
   MultirotorState state;
   for (std::size_t i = 0; i < parameters.rotors.size(); ++i) {
     state.rotor_speed_rad_s[i] = speed_for(parameters, thrusts[i]);
@@ -79,16 +69,32 @@ MultirotorState hover_state(const MultirotorParameters& parameters, double gravi
   return state;
 }
 
-Wrench step(const MultirotorParameters& parameters, double gravity_m_s2, const BodyState& body,
-            const VelocityCommand& command, Duration dt, MultirotorState& state) {
-  const double dt_s = to_seconds(dt);
-  const Demand demand = control(parameters, gravity_m_s2, body, command, dt_s, state);
-  advance_rotors(parameters, mix(parameters, demand), dt_s, state);
+Multirotor::Multirotor(MultirotorParameters parameters, double gravity_m_s2, Duration step)
+    : parameters_(std::move(parameters)),
+      gravity_m_s2_(gravity_m_s2),
+      dt_s_(to_seconds(step)),
+      up_(-std::expm1(-dt_s_ / parameters_.time_constant_up_s)),
+      down_(-std::expm1(-dt_s_ / parameters_.time_constant_down_s)),
+      mixer_(parameters_) {}
+
+Wrench Multirotor::step(const BodyState& body, const VelocityCommand& command,
+                        MultirotorState& state) const {
+  const Demand demand = control(parameters_, gravity_m_s2_, body, command, dt_s_, state);
+  advance_rotors(mixer_.mix(demand, max_rotor_thrust_N(parameters_)), state);
 
   const Vec3 v_B = rotate(inverse(body.q_WB), body.v_WB);
-  Wrench wrench = rotor_wrench(parameters, body, v_B, state);
-  wrench.force_B = wrench.force_B - parameters.linear_drag_N_s_m * v_B;
+  Wrench wrench = rotor_wrench(parameters_, body, v_B, state);
+  wrench.force_B = wrench.force_B - parameters_.linear_drag_N_s_m * v_B;
   return wrench;
+}
+
+// First-order lag towards the wanted speeds, exact for a set-point that holds over the step.
+void Multirotor::advance_rotors(const RotorThrusts& wanted, MultirotorState& state) const {
+  for (std::size_t i = 0; i < parameters_.rotors.size(); ++i) {
+    double& speed = state.rotor_speed_rad_s[i];
+    const double target = speed_for(parameters_, wanted[i]);
+    speed += (target > speed ? up_ : down_) * (target - speed);
+  }
 }
 
 }  // namespace tether::uav

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "mixer.h"
-
 #include <tether/uav/multirotor.h>
 
 namespace tether::uav {

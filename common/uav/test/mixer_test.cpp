@@ -1,11 +1,10 @@
-#include "mixer.h"
-
 #include <cmath>
 #include <numbers>
 
 #include <gmock/gmock.h>
 
 #include <tether/base/random.h>
+#include <tether/uav/multirotor.h>
 
 namespace tether::uav {
 namespace {
@@ -19,6 +18,10 @@ MultirotorParameters ring(int count, double first_rad) {
     p.rotors.push_back({{0.2 * std::cos(angle), 0.2 * std::sin(angle), 0}, i % 2 == 0 ? 1 : -1});
   }
   return p;
+}
+
+RotorThrusts mix(const MultirotorParameters& p, const Demand& demand) {
+  return Mixer(p).mix(demand, max_rotor_thrust_N(p));
 }
 
 /// The thrust and torque of these thrusts: the inverse of `mix` within the limits.

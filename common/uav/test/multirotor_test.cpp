@@ -23,7 +23,7 @@ TEST(HoverState, IsAnEquilibriumOfTheHummingbirdWellBelowFullThrust) {
   MultirotorState state = hover_state(p, kGravity, 0.7);
   BodyState body;
   body.q_WB = from_rpy(0, 0, 0.7);
-  const Wrench wrench = step(p, kGravity, body, {}, kDt, state);
+  const Wrench wrench = Multirotor(p, kGravity, kDt).step(body, {}, state);
   EXPECT_NEAR(wrench.force_B.z, p.mass_kg * kGravity, 1e-9);
   EXPECT_NEAR(std::hypot(wrench.force_B.x, wrench.force_B.y), 0, 1e-12);
   EXPECT_LT(norm(wrench.torque_B), 1e-9);
@@ -62,8 +62,7 @@ TEST(Step, RotorsSpinUpFasterThanDown) {
   const auto change_after_10ms = [&p](double climb_m_s) {
     FlyingBody uav(p);
     const double before = uav.state.rotor_speed_rad_s[0];
-    for (int i = 0; i < 10; ++i)
-      step(p, kGravity, uav.body, {{0, 0, climb_m_s}, 0}, kDt, uav.state);
+    for (int i = 0; i < 10; ++i) uav.multirotor().step(uav.body, {{0, 0, climb_m_s}, 0}, uav.state);
     return uav.state.rotor_speed_rad_s[0] - before;
   };
   EXPECT_GT(change_after_10ms(0.5), 0.0);
@@ -75,14 +74,14 @@ TEST(Step, DragOpposesTheMotionAcrossTheRotors) {
   BodyState body;
   body.v_WB = {2, 0, 0};
   MultirotorState state = hover_state(p, kGravity, 0);
-  const double rotors = -step(p, kGravity, body, {{2, 0, 0}, 0}, kDt, state).force_B.x;
+  const double rotors = -Multirotor(p, kGravity, kDt).step(body, {{2, 0, 0}, 0}, state).force_B.x;
   double speeds = 0;
   for (const double speed : state.rotor_speed_rad_s) speeds += speed;
   EXPECT_NEAR(rotors, 2 * p.drag_coefficient * speeds, 1e-9);
 
   p.linear_drag_N_s_m = 0.1;
   state = hover_state(p, kGravity, 0);
-  const double both = -step(p, kGravity, body, {{2, 0, 0}, 0}, kDt, state).force_B.x;
+  const double both = -Multirotor(p, kGravity, kDt).step(body, {{2, 0, 0}, 0}, state).force_B.x;
   EXPECT_NEAR(both - rotors, 0.2, 0.001);
 }
 
@@ -97,7 +96,7 @@ TEST(Step, NonFiniteInputGivesANonFiniteWrench) {
       {{}, {{}, nan}}};
   for (const auto& [body, command] : inputs) {
     MultirotorState state = hover_state(p, kGravity, 0);
-    const Wrench wrench = step(p, kGravity, body, command, kDt, state);
+    const Wrench wrench = Multirotor(p, kGravity, kDt).step(body, command, state);
     EXPECT_FALSE(std::isfinite(wrench.force_B.z) && std::isfinite(wrench.torque_B.z));
   }
 }

@@ -6,16 +6,18 @@
 
 namespace tether::uav {
 
-/// The multirotor flying in free space: a semi-implicit Euler integrator around `step`, at 1 kHz.
+/// The multirotor flying in free space: a semi-implicit Euler integrator around its steps, at 1
+/// kHz.
 class FlyingBody {
  public:
   explicit FlyingBody(MultirotorParameters parameters = hummingbird(), double yaw = 0.0)
-      : parameters_(std::move(parameters)), state(hover_state(parameters_, kGravity, yaw)) {
+      : multirotor_(std::move(parameters), kGravity, kDt),
+        state(hover_state(multirotor_.parameters(), kGravity, yaw)) {
     body.q_WB = from_rpy(0, 0, yaw);
   }
 
   Wrench advance(const VelocityCommand& command) {
-    const Wrench wrench = step(parameters_, kGravity, body, command, kDt, state);
+    const Wrench wrench = multirotor_.step(body, command, state);
     integrate(wrench);
     return wrench;
   }
@@ -35,14 +37,15 @@ class FlyingBody {
 
   double yaw() const { return yaw_rad(body.q_WB); }
   double tilt() const { return std::acos(rotate(body.q_WB, {0, 0, 1}).z); }
-  const MultirotorParameters& parameters() const { return parameters_; }
+  const Multirotor& multirotor() const { return multirotor_; }
+  const MultirotorParameters& parameters() const { return multirotor_.parameters(); }
 
   static constexpr double kGravity = 9.81;
   static constexpr Duration kDt = std::chrono::milliseconds(1);
   static constexpr double kDt_s = 1e-3;
 
  private:
-  MultirotorParameters parameters_;
+  Multirotor multirotor_;
 
  public:
   BodyState body;
@@ -53,10 +56,10 @@ class FlyingBody {
  private:
   void integrate(const Wrench& wrench) {
     const Vec3 force_W = rotate(body.q_WB, wrench.force_B) + disturbance_force_W;
-    body.v_WB = body.v_WB + (kDt_s / parameters_.mass_kg) * force_W - Vec3{0, 0, kGravity * kDt_s};
+    body.v_WB = body.v_WB + (kDt_s / parameters().mass_kg) * force_W - Vec3{0, 0, kGravity * kDt_s};
     body.p_WB = body.p_WB + kDt_s * body.v_WB;
 
-    const Vec3& inertia = parameters_.inertia_kg_m2;
+    const Vec3& inertia = parameters().inertia_kg_m2;
     const Vec3& w = body.w_WB_B;
     const Vec3 torque = wrench.torque_B + disturbance_torque_B -
                         cross(w, {inertia.x * w.x, inertia.y * w.y, inertia.z * w.z});

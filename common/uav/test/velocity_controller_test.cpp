@@ -128,9 +128,7 @@ TEST(VelocityController, RespectsTheParametersLimits) {
 TEST(VelocityController, DoesNotUnwindAfterBeingHeld) {
   FlyingBody uav;
   const BodyState held = uav.body;
-  for (int i = 0; i < 5000; ++i)
-    step(uav.parameters(), FlyingBody::kGravity, held, {{1, 0, 0}, 1.0}, FlyingBody::kDt,
-         uav.state);
+  for (int i = 0; i < 5000; ++i) uav.multirotor().step(held, {{1, 0, 0}, 1.0}, uav.state);
   uav.fly({}, 6.0);
   EXPECT_LT(std::abs(uav.yaw()), 0.7);
   EXPECT_LT(norm(uav.body.v_WB), 0.05);

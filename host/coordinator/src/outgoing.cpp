@@ -8,6 +8,8 @@ namespace tether::coordinator {
 void Coordinator::Impl::release_ready() {
   settle_radio();
   if (!is_synchronised()) return answer_free_running();
+  // While one picture is drawn for its reply, other threads draw those of the other SUTs.
+  if (sessions_.size() > 1) stepper_.announce();
   while (const auto grant = barrier_.release(st(), next_arrival())) {
     Session& session = sessions_[grant->sut];
     std::size_t i = 0;
@@ -26,7 +28,7 @@ void Coordinator::Impl::answer_free_running() {
       const Sampler::Read* read = stepper_.sampler(session.uav).find(pending.entry.sequence);
       const bool waits = pending.entry.receive_until && !pending.is_promised &&
                          *pending.entry.receive_until > same_instant(st());
-      if (waits || (read && !read->captured)) {
+      if (waits || (read && !read->state)) {
         ++i;
         continue;
       }

@@ -17,11 +17,8 @@ std::optional<Measurement> Sampler::plan(std::uint64_t call, const link::ReadSen
   sensors_[read.sensor].forecast.requested(t, read.latest, measurement->index);
   sensors_[read.sensor].forecasted.reset();
   const bool on_demand = !synchronised_ || !schedule.is_periodic();
-  reads_.push_back({.call = call,
-                    .sensor = read.sensor,
-                    .measurement = *measurement,
-                    .on_demand = on_demand,
-                    .state = take_spare()});
+  reads_.push_back(
+      {.call = call, .sensor = read.sensor, .measurement = *measurement, .on_demand = on_demand});
   return measurement;
 }
 
@@ -34,17 +31,10 @@ std::optional<Measurement> Sampler::choose(const SensorSchedule& schedule,
                        : schedule.choose_free_running(t, read.latest);
 }
 
-sim::Snapshot Sampler::take_spare() {
-  if (spares_.empty()) return {};
-  sim::Snapshot spare = std::move(spares_.back());
-  spares_.pop_back();
-  return spare;
-}
-
 SimTime Sampler::next_due() const {
   SimTime due = SimTime::max();
   for (const Read& read : reads_)
-    if (read.on_demand && !read.captured)
+    if (read.on_demand && !read.state)
       due = std::min(due, grid_.floor(read.measurement.sampled_at));
   if (!synchronised_ || closed_) return due;
   for (const Sensor& sensor : sensors_)
@@ -55,10 +45,9 @@ SimTime Sampler::next_due() const {
 
 void Sampler::sample(SimTime st, SimTime earliest, const Capture& capture) {
   for (Read& read : reads_) {
-    if (!read.on_demand || read.captured) continue;
+    if (!read.on_demand || read.state) continue;
     if (grid_.floor(read.measurement.sampled_at) > st) continue;
-    capture(read.state);
-    read.captured = true;
+    read.state = capture();
   }
   if (!synchronised_ || closed_) return;
   for (std::size_t i = 0; i < sensors_.size(); ++i) sample_periodic(i, st, earliest, capture);
@@ -69,7 +58,7 @@ void Sampler::sample_periodic(std::size_t sensor, SimTime st, SimTime earliest,
   Sensor& state = sensors_[sensor];
   auto instant = state.schedule.sampling_instant(state.next_capture);
   while (instant && grid_.floor(*instant) <= st) {
-    capture(state.captures.add(state.next_capture));
+    state.captures.add(state.next_capture, capture());
     instant = state.schedule.sampling_instant(++state.next_capture);
     state.captures.drop_before(first_needed(sensor, earliest));
   }
@@ -91,7 +80,7 @@ const Sampler::Read* Sampler::find(std::uint64_t call) const {
 
 const sim::Snapshot* Sampler::find_state(const Read& read) const {
   if (!read.on_demand) return sensors_[read.sensor].captures.find(read.measurement.index);
-  return read.captured ? &read.state : nullptr;
+  return read.state.get();
 }
 
 const sim::Snapshot& Sampler::state_of(const Read& read) const {
@@ -108,7 +97,6 @@ void Sampler::answered(std::uint64_t call, SimTime t) {
     sensor.forecast.replied(t);
     if (const auto index = sensor.forecast.next(sensor.schedule)) sensor.forecasted = index;
   }
-  spares_.push_back(std::move(read->state));
   reads_.erase(read);
 }
 

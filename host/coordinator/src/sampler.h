@@ -33,7 +33,8 @@ class Sampler {
     ReadForecast forecast{};
     std::optional<std::uint64_t> forecasted{};  ///< a measurement that is not yet announced
   };
-  using Capture = std::function<void(sim::Snapshot&)>;
+  /// The simulator's state at the present ST.
+  using Capture = std::function<SharedState()>;
   using Announce =
       std::function<void(const sim::Snapshot&, std::size_t sensor, std::uint64_t index)>;
 
@@ -59,9 +60,8 @@ class Sampler {
     std::uint32_t sensor = 0;
     Measurement measurement;
     bool on_demand = false;  ///< it has a state of its own …
-    bool captured = false;   ///< … which is captured in `state`
+    SharedState state{};     ///< … once that is captured
     bool announced = false;
-    sim::Snapshot state{};
   };
   /// nullptr if this call is not a read.
   const Read* find(std::uint64_t call) const;
@@ -81,14 +81,12 @@ class Sampler {
   void sample_periodic(std::size_t sensor, SimTime st, SimTime earliest, const Capture& capture);
   std::uint64_t first_needed(std::size_t sensor, SimTime earliest) const;
   const sim::Snapshot* find_state(const Read& read) const;
-  sim::Snapshot take_spare();
 
   std::vector<Sensor> sensors_;
   StepGrid grid_;
   bool synchronised_;
   bool closed_ = false;
-  std::vector<Read> reads_;            // in the order of their calls
-  std::vector<sim::Snapshot> spares_;  // storage to reuse
+  std::vector<Read> reads_;  // in the order of their calls
 };
 
 }  // namespace tether::coordinator

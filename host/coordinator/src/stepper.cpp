@@ -88,8 +88,10 @@ std::optional<Stepper::Exhausted> Stepper::exhausted() {
 
 // No request of a SUT has a timestamp before its bound.
 void Stepper::sample() {
-  const Sampler::Capture capture = [this](sim::Snapshot& snapshot) {
-    ask([&](sim::Simulator& s) { s.capture(snapshot); });
+  const Sampler::Capture capture = [this] {
+    return states_.at(st_, [this](sim::Snapshot& snapshot) {
+      ask([&](sim::Simulator& s) { s.capture(snapshot); });
+    });
   };
   while (same_instant(due_.least()) <= st_) {
     const std::size_t uav = due_.first();

@@ -104,6 +104,7 @@ class Stepper {
   StepGrid grid_;
   Duration ground_truth_period_;
   std::vector<Sampler> samplers_;
+  StatePool states_;
   sync::LeastTree due_;            // of each sampler
   std::set<std::size_t> changed_;  // samplers that may have something to announce
   CommandQueue commands_;

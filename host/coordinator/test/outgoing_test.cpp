@@ -18,6 +18,19 @@ TEST_F(CoordinatorTest, RendersOnlyImagesThatAreRead) {
   EXPECT_EQ(simulator_->calls().measure, 1u);
 }
 
+// Those that wait for their instant, and those that are available at the request.
+TEST_F(CoordinatorTest, AnnouncesTheImagesOfAllSutsBeforeItsFirstReply) {
+  make(3);
+  for (const char* uav : {"uav0", "uav1", "uav2"})
+    server_->add_sut(hello(uav), {read(milliseconds(1), kCamera), read(milliseconds(23), kCamera),
+                                  read(milliseconds(60), kCamera), finish(Duration(1))});
+  std::vector<std::size_t> announced;
+  simulator_->on_measure(
+      [&](std::size_t, std::size_t) { announced.push_back(simulator_->expected().size()); });
+  EXPECT_EQ(run().end, RunEnd::kFinished);
+  EXPECT_THAT(announced, testing::ElementsAre(3u, 3u, 3u, 6u, 6u, 6u, 9u, 9u, 9u));
+}
+
 // Images are 33 ms apart. The SUT gets all of them.
 TEST_F(CoordinatorTest, RecordsAllImagesOrThoseOfTheImagePeriod) {
   options_.record_images = true;

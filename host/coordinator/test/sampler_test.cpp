@@ -26,9 +26,9 @@ class Sampling : public testing::Test {
                      synchronised);
   }
   void sample(SimTime st, SimTime earliest) {
-    sampler_->sample(st, earliest, [&](sim::Snapshot& snapshot) {
-      snapshot.at = st;
+    sampler_->sample(st, earliest, [&] {
       ++captures_;
+      return std::make_shared<sim::Snapshot>(sim::Snapshot{.at = st, .state = {}});
     });
   }
   static constexpr StepGrid kGrid{milliseconds(1)};

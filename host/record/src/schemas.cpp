@@ -53,9 +53,9 @@ const Schema kInteractionSchema{"tether.Interaction", R"json({
       "type": "object",
       "description": "what was read of the battery, at st_at_release",
       "properties": {
-        "voltage_v": {"type": ["number", "null"], "description": "at the terminals"},
-        "current_a": {"type": ["number", "null"]},
-        "charge": {"type": ["number", "null"], "description": "share of the capacity"}
+        "voltage_v": {"type": "number", "description": "at the terminals"},
+        "current_a": {"type": "number"},
+        "charge": {"type": "number", "description": "share of the capacity"}
       },
       "required": ["voltage_v", "current_a", "charge"]
     },
@@ -105,10 +105,10 @@ const Schema kCommandEffectSchema{"tether.CommandEffect", R"json({
     "uav": {"type": "string"},
     "sequence": {"type": "integer", "minimum": 1, "description": "of its interaction"},
     "applied_at_ns": {"type": "integer"},
-    "vx_H_m_s": {"type": ["number", "null"]},
-    "vy_H_m_s": {"type": ["number", "null"]},
-    "vz_H_m_s": {"type": ["number", "null"]},
-    "yaw_rate_rad_s": {"type": ["number", "null"]}
+    "vx_H_m_s": {"type": "number"},
+    "vy_H_m_s": {"type": "number"},
+    "vz_H_m_s": {"type": "number"},
+    "yaw_rate_rad_s": {"type": "number"}
   },
   "required": ["uav", "sequence", "applied_at_ns", "vx_H_m_s", "vy_H_m_s", "vz_H_m_s",
                "yaw_rate_rad_s"]
@@ -121,12 +121,12 @@ const Schema kGroundTruthSchema{"tether.GroundTruth", R"json({
   "properties": {
     "uav": {"type": "string"},
     "at_ns": {"type": "integer"},
-    "p_WB_m": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 3, "maxItems": 3},
-    "q_WB": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 4, "maxItems": 4,
+    "p_WB_m": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
+    "q_WB": {"type": "array", "items": {"type": "number"}, "minItems": 4, "maxItems": 4,
              "description": "w x y z"},
-    "v_WB_m_s": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 3, "maxItems": 3},
-    "w_WB_B_rad_s": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 3, "maxItems": 3},
-    "clearance_m": {"type": ["number", "null"], "description": "distance to the nearest surface"}
+    "v_WB_m_s": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
+    "w_WB_B_rad_s": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
+    "clearance_m": {"type": "number", "description": "distance to the nearest surface"}
   },
   "required": ["uav", "at_ns", "p_WB_m", "q_WB", "v_WB_m_s", "w_WB_B_rad_s"]
 })json"};
@@ -139,7 +139,7 @@ const Schema kAnnotationSchema{"tether.Annotation", R"json({
     "uav": {"type": "string"},
     "at_ns": {"type": "integer", "description": "ET"},
     "topic": {"type": "string"},
-    "data": {"type": "object"}
+    "data": {"type": "object", "properties": {}}
   },
   "required": ["uav", "at_ns", "topic", "data"]
 })json"};
@@ -172,7 +172,7 @@ const Schema kContactSchema{"tether.Contact", R"json({
     "uav": {"type": "string"},
     "at_ns": {"type": "integer", "description": "ST at which both touched for the first time"},
     "with": {"type": "string", "description": "name of the model or UAV"},
-    "speed_m_s": {"type": ["number", "null"],
+    "speed_m_s": {"type": "number",
                   "description": "of approach along the contact's normal, before the impact"}
   },
   "required": ["uav", "at_ns", "with", "speed_m_s"]
@@ -192,9 +192,9 @@ const Schema kRadioMessageSchema{"tether.RadioMessage", R"json({
     "outcome": {"type": "string", "enum": ["delivered", "noise", "collision", "half_duplex",
                                            "queue_full", "too_long", "inbox_full", "waiting"]},
     "began_at_ns": {"type": "integer", "description": "ST at which the transmission began"},
-    "distance_m": {"type": ["number", "null"]},
+    "distance_m": {"type": "number"},
     "walls": {"type": "integer", "minimum": 0, "description": "between the UAVs"},
-    "snr_db": {"type": ["number", "null"], "description": "signal to noise and interference"}
+    "snr_db": {"type": "number", "description": "signal to noise and interference"}
   },
   "required": ["uav", "sequence", "to", "bytes", "sent_at_ns", "at_ns", "outcome"]
 })json"};
@@ -206,15 +206,15 @@ const Schema kBatterySchema{"tether.Battery", R"json({
   "properties": {
     "uav": {"type": "string"},
     "at_ns": {"type": "integer"},
-    "voltage_v": {"type": ["number", "null"], "description": "at the terminals"},
-    "current_a": {"type": ["number", "null"]},
-    "charge": {"type": ["number", "null"], "description": "share of the capacity"},
-    "lift_j": {"type": ["number", "null"], "description": "what hovering takes"},
-    "moving_j": {"type": ["number", "null"], "description": "the rotors beyond that"},
-    "idle_j": {"type": ["number", "null"], "description": "the computer, idle"},
-    "computing_j": {"type": ["number", "null"], "description": "the computer's busy cores"},
-    "sensors_j": {"type": ["number", "null"], "description": "sensors and radio"},
-    "resistance_j": {"type": ["number", "null"], "description": "heat of the battery"}
+    "voltage_v": {"type": "number", "description": "at the terminals"},
+    "current_a": {"type": "number"},
+    "charge": {"type": "number", "description": "share of the capacity"},
+    "lift_j": {"type": "number", "description": "what hovering takes"},
+    "moving_j": {"type": "number", "description": "the rotors beyond that"},
+    "idle_j": {"type": "number", "description": "the computer, idle"},
+    "computing_j": {"type": "number", "description": "the computer's busy cores"},
+    "sensors_j": {"type": "number", "description": "sensors and radio"},
+    "resistance_j": {"type": "number", "description": "heat of the battery"}
   },
   "required": ["uav", "at_ns", "voltage_v", "current_a", "charge", "lift_j", "moving_j", "idle_j",
                "computing_j", "sensors_j", "resistance_j"]
@@ -228,7 +228,7 @@ const Schema kMarginSchema{"tether.Margin", R"json({
     "uav": {"type": "string"},
     "clause": {"type": "string"},
     "at_ns": {"type": "integer"},
-    "margin": {"type": ["number", "null"], "description": "negative: missed"},
+    "margin": {"type": "number", "description": "negative: missed"},
     "unit": {"type": "string"}
   },
   "required": ["uav", "clause", "at_ns", "margin", "unit"]

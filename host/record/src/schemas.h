@@ -2,7 +2,9 @@
 
 #include <string_view>
 
-/// JSON schemas of the topics, for readers that show or check messages.
+/// JSON schemas of the topics, for readers that show or plot messages. Foxglove shows no topic with
+/// a property that has several types, or that is an object without "properties": so a number that
+/// is not finite, null in the message, is a "number" in the schema.
 namespace tether::record {
 
 struct Schema {

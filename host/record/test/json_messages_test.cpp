@@ -50,6 +50,24 @@ void check_form(std::string& texts, const Message& message, Message (*read)(std:
     EXPECT_TRUE(written.contains(name.get<std::string>())) << schema.name << " " << name;
 }
 
+/// What Foxglove needs to show a topic.
+void check_property(const json& property, const std::string& where) {
+  ASSERT_TRUE(property.at("type").is_string()) << where;
+  if (property.at("type") == "array") check_property(property.at("items"), where + "[]");
+  if (property.at("type") != "object") return;
+  ASSERT_TRUE(property.contains("properties")) << where;
+  for (const auto& [name, inner] : property.at("properties").items())
+    check_property(inner, where + "." + name);
+}
+
+TEST(JsonMessages, SchemasAreAsFoxgloveReadsThem) {
+  for (const Schema* schema :
+       {&kInteractionSchema, &kCommandEffectSchema, &kGroundTruthSchema, &kAnnotationSchema,
+        &kStopSchema, &kContactSchema, &kBatterySchema, &kRadioMessageSchema, &kMarginSchema,
+        &kCompressedImageSchema, &kRawImageSchema, &kFrameTransformSchema})
+    check_property(json::parse(schema->json), std::string(schema->name));
+}
+
 TEST(JsonMessages, RawImagesKeepEveryNumber) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
   RawImage depths{"uav1", "depth", from_ns<SimTime>(1'500'000'002), 3,

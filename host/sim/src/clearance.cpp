@@ -59,9 +59,6 @@ struct ClearanceMeter::Shape {
   std::span<const Vec3> vertices;  ///< of a mesh, in `vertices_`
   Bounds bounds{};
   std::optional<Vec3> plane_normal_S{};  ///< of a plane, which has no `bounds`
-  /// The shape is within `reach_m` of this point of W, or of its moving body.
-  Vec3 p_WC{};
-  double reach_m = 0.0;
 
   Pose pose(std::span<const Pose> X_WB) const { return body ? X_WB[*body] * X_BS : X_BS; }
   Convex at(const Pose& X_WS) const { return {geometry, vertices, X_WS}; }
@@ -69,6 +66,13 @@ struct ClearanceMeter::Shape {
   double height_m(const Vec3& p_W) const {
     return dot(rotate(X_BS.q, *plane_normal_S), p_W - X_BS.p);
   }
+};
+
+/// A ball around a shape: all that is read of the many that are far away.
+struct ClearanceMeter::Ball {
+  std::optional<std::size_t> body;  ///< around its origin; none: around p_WC
+  Vec3 p_WC{};
+  double radius_m = kInfinity;  ///< of a plane too
 };
 
 ClearanceMeter::ClearanceMeter(const World& world, const MeshVertices& vertices) : world_(world) {
@@ -79,6 +83,7 @@ ClearanceMeter::ClearanceMeter(const World& world, const MeshVertices& vertices)
     add(*body.link, {}, starts_.size(), body.uav ? body.uav->name : body.model->name, vertices);
     starts_.push_back(body.X_WB);
   }
+  of_bodies_.resize(starts_.size());
 }
 
 ClearanceMeter::~ClearanceMeter() = default;
@@ -96,13 +101,17 @@ void ClearanceMeter::add(const Link& link, const Pose& X_BL, std::optional<std::
       is_complete_ = is_complete_ && !shape.vertices.empty();
       if (shape.vertices.empty()) continue;
     }
+    Ball ball{.body = body};
     if (!shape.plane_normal_S) {
       shape.bounds = bounds_of(shape.at({}));
       const Vec3 centre = transform(shape.X_BS, shape.bounds.centre);
-      shape.reach_m = norm(shape.bounds.half_m) + (body ? norm(centre) : 0.0);
-      if (!body) shape.p_WC = centre;
+      ball.radius_m = norm(shape.bounds.half_m) + (body ? norm(centre) : 0.0);
+      if (!body) ball.p_WC = centre;
     }
+    if (body) of_bodies_.resize(*body + 1);
+    if (body) of_bodies_[*body].push_back(shapes_.size());
     shapes_.push_back(shape);
+    balls_.push_back(ball);
   }
 }
 
@@ -116,34 +125,56 @@ std::span<const Vec3> ClearanceMeter::vertices_of(const MeshGeometry& mesh,
 std::optional<Clearance> ClearanceMeter::measure(std::size_t uav,
                                                  std::span<const Pose> X_WB) const {
   if (!is_complete_) return std::nullopt;
-  Clearance nearest{kInfinity, {}};
-  for (const Shape& own : shapes_) {
-    if (own.body != uav) continue;
-    const Convex here = own.at(own.pose(X_WB));
-    const Vec3 centre_W = transform(here.X_WS, own.bounds.centre);
-    const double radius_m = norm(own.bounds.half_m);
-    for (const Shape& other : shapes_) {
-      if (other.body == uav) continue;
-      double candidate_m = 0.0;
-      if (other.plane_normal_S) {
-        const Vec3 down_W = rotate(other.X_BS.q, -1.0 * *other.plane_normal_S);
-        candidate_m = other.height_m(support_point(here, down_W)) - rounding_m(here);
-      } else {
-        // In a fleet, most others are far away.
-        const Vec3 apart_W = centre_W - (other.body ? X_WB[*other.body].p : other.p_WC);
-        const double beyond_m = nearest.distance_m + radius_m + other.reach_m + kRounding_m;
-        if (dot(apart_W, apart_W) > beyond_m * beyond_m) continue;
-        const Pose X_WS = other.pose(X_WB);
-        const Vec3 centre_S = rotate(inverse(X_WS.q), centre_W - X_WS.p);
-        if (distance_m(other.bounds, centre_S) - radius_m >= nearest.distance_m) continue;
-        candidate_m = sim::distance_m(here, other.at(X_WS));
-      }
-      candidate_m = std::max(0.0, candidate_m);
-      if (candidate_m < nearest.distance_m) nearest = {candidate_m, other.owner};
-    }
-  }
+  Nearest nearest;
+  for (const std::size_t own : of_bodies_[uav]) find_nearest(shapes_[own], X_WB, nearest);
   if (nearest.distance_m == kInfinity) return std::nullopt;
-  return nearest;
+  return Clearance{nearest.distance_m, shapes_[nearest.shape].owner};
+}
+
+// In a fleet, most others are far away. The one with the nearest centre tells how far is too far.
+void ClearanceMeter::find_nearest(const Shape& own, std::span<const Pose> X_WB,
+                                  Nearest& nearest) const {
+  const Convex here = own.at(own.pose(X_WB));
+  const Vec3 centre_W = transform(here.X_WS, own.bounds.centre);
+  const double radius_m = norm(own.bounds.half_m);
+  const auto squared_to_centre = [&](const Ball& ball) {
+    const Vec3 apart_W = centre_W - (ball.body ? X_WB[*ball.body].p : ball.p_WC);
+    return dot(apart_W, apart_W);
+  };
+  const auto compare_to = [&](std::size_t other) {
+    const double distance_m = distance_between(here, own, shapes_[other], X_WB, nearest.distance_m);
+    nearest = std::min(nearest, {distance_m, other});
+  };
+
+  std::size_t first = shapes_.size();
+  double least_squared = kInfinity;
+  for (std::size_t i = 0; i < balls_.size(); ++i) {
+    if (balls_[i].body == own.body) continue;
+    const double squared = squared_to_centre(balls_[i]);
+    if (squared < least_squared) first = i;
+    least_squared = std::min(least_squared, squared);
+  }
+  if (first == shapes_.size()) return;
+  compare_to(first);
+  for (std::size_t i = 0; i < balls_.size(); ++i) {
+    if (balls_[i].body == own.body || i == first) continue;
+    const double beyond_m = nearest.distance_m + radius_m + balls_[i].radius_m + kRounding_m;
+    if (squared_to_centre(balls_[i]) <= beyond_m * beyond_m) compare_to(i);
+  }
+}
+
+// Or any number above `enough_m`, if the distance is above it.
+double ClearanceMeter::distance_between(const Convex& here, const Shape& own, const Shape& other,
+                                        std::span<const Pose> X_WB, double enough_m) {
+  if (other.plane_normal_S) {
+    const Vec3 down_W = rotate(other.X_BS.q, -1.0 * *other.plane_normal_S);
+    return std::max(0.0, other.height_m(support_point(here, down_W)) - rounding_m(here));
+  }
+  const Pose X_WS = other.pose(X_WB);
+  const Vec3 centre_W = transform(here.X_WS, own.bounds.centre);
+  const Vec3 centre_S = rotate(inverse(X_WS.q), centre_W - X_WS.p);
+  const double least_m = distance_m(other.bounds, centre_S) - norm(own.bounds.half_m);
+  return least_m > enough_m ? kInfinity : std::max(0.0, sim::distance_m(here, other.at(X_WS)));
 }
 
 // The owner of a fixed shape above the point, if there is none below it; empty: the point is not

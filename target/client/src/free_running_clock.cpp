@@ -1,7 +1,6 @@
 #include "free_running_clock.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace tether::client {
 
@@ -16,6 +15,7 @@ FreeRunningClock::FreeRunningClock(const TimeSource& source, WallTimer& wall, Ex
       wall_(&wall),
       start_(start),
       wall_at_start_(wall.now()),
+      computing_since_(wall_at_start_),
       accounted_(source.elapsed()) {}
 
 ExecTime FreeRunningClock::now() const {
@@ -34,10 +34,7 @@ Duration FreeRunningClock::wall_of_target() const {
   const Duration here = wall_->now();
   if (phase_ == Phase::kStalling) return std::max(here, stall_until_);
   if (phase_ != Phase::kComputing || source_->factor() <= 1.0) return here;
-  // Of the target's time, 1/factor has gone by here already.
-  const Duration on_target = source_->elapsed() - accounted_;
-  const double missing = 1.0 - 1.0 / source_->factor();
-  return here + Duration(std::llround(static_cast<double>(on_target.count()) * missing));
+  return std::max(here, computing_since_ + (source_->elapsed() - accounted_));
 }
 
 ExecTime FreeRunningClock::begin() {
@@ -55,6 +52,7 @@ ExecTime FreeRunningClock::begin() {
 
 void FreeRunningClock::end(ExecTime) {
   const std::lock_guard lock(mutex_);
+  computing_since_ = wall_->now();
   accounted_ = source_->elapsed();
   phase_ = Phase::kComputing;
 }

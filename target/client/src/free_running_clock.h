@@ -10,9 +10,10 @@
 namespace tether::client {
 
 /// Time in free running (DESIGN section 2, rule 8): the wall clock since the Welcome; nothing is
-/// held. A virtual target slower than this machine is imitated by stalling: before each call, for
-/// the time that the slower machine would have needed longer for the CPU time used since the last
-/// one. The clock shows that time from when the CPU time was used, not only from the stall on.
+/// held. A virtual target slower than this machine is imitated by stalling: before each call, until
+/// the slower machine would have done what was computed since the last one. Time for which the
+/// program waited for a core of this machine is not added, unless it waited longer than that. The
+/// clock shows the target's time from when the CPU time was used, not only from the stall on.
 class FreeRunningClock final : public InteractionClock {
  public:
   /// @pre source.factor() ≥ 1. `source` and `wall` must outlive it.
@@ -42,8 +43,9 @@ class FreeRunningClock final : public InteractionClock {
 
   mutable std::mutex mutex_;  // not held while stalling or sleeping; guards what follows
   Phase phase_ = Phase::kComputing;
-  Duration accounted_;      // of the source, when the computing began
-  Duration stall_until_{};  // on the wall clock, while stalling
+  Duration computing_since_;  // on the wall clock
+  Duration accounted_;        // of the source, when the computing began
+  Duration stall_until_{};    // on the wall clock, while stalling
 };
 
 }  // namespace tether::client

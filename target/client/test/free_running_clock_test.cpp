@@ -45,6 +45,19 @@ TEST_F(FreeRunning, StallsOnceForWhatTheSlowerTargetNeedsLonger) {
   EXPECT_EQ(wall_.slept(), 30ms);
 }
 
+TEST_F(FreeRunning, WaitingForACoreOfThisMachineIsPartOfTheStall) {
+  compute(10ms);
+  wall_.advance(25ms);  // another process had the core
+  EXPECT_EQ(clock_.now(), from_ns<ExecTime>(100) + 40ms);
+  EXPECT_EQ(clock_.begin(), from_ns<ExecTime>(100) + 40ms);
+  EXPECT_EQ(wall_.slept(), 5ms);
+  clock_.end(ExecTime{});
+  compute(10ms);
+  wall_.advance(40ms);  // longer than the target computes
+  EXPECT_EQ(clock_.begin(), from_ns<ExecTime>(100) + 90ms);
+  EXPECT_EQ(wall_.slept(), 5ms);
+}
+
 TEST_F(FreeRunning, SleepsOnTheWallClockAfterStalling) {
   compute(1ms);
   clock_.sleep_until(from_ns<ExecTime>(100) + 20ms);

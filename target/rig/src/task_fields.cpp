@@ -53,8 +53,8 @@ Field settling(Duration& value) {
   return {"settle_s", "Pause after the final stop, by the IMU's timestamps", seconds(value, 0.0)};
 }
 
-Field speed(double& value) {
-  return {"speed_m_s", "Speed of the motion", plain(value, 0.001, 5.0)};
+Field speed(double& value, double least_m_s = 0.001) {
+  return {"speed_m_s", "Speed of the motion", plain(value, least_m_s, 5.0)};
 }
 
 /// When an estimate has converged.
@@ -149,22 +149,24 @@ Fields fields(tasks::ClosedPathOptions& options, TaskSpec& spec) {
 Field imu(std::string& name) {
   return {"imu", "Name of the IMU, or the device of a real one", TextField{&name}};
 }
-Field rest(Duration& value) {
-  return {"rest_s", "Pause before the start, in which the IMU's bias is measured",
-          seconds(value, 0.0)};
+/// The pauses before the start of dead reckoning.
+Fields rest(Duration& settle_time, Duration& rest_time) {
+  return {{"settle_s", "Pause after the stop, by the IMU's timestamps", seconds(settle_time, 0.0)},
+          {"rest_s", "The pause after that, in which the IMU's bias is measured",
+           seconds(rest_time, 0.0)}};
 }
 
 Fields fields(tasks::GoToOptions& options, TaskSpec&) {
-  return {{"ahead_m", "Goal: distance along the heading at the start",
-           plain(options.ahead_m, -1000.0, 1000.0)},
-          {"left_m", "... to its left", plain(options.left_m, -1000.0, 1000.0)},
-          {"up_m", "... and up", plain(options.up_m, -1000.0, 1000.0)},
-          speed(options.speed_m_s),
-          {"tolerance_m", "The goal is reached within this distance",
-           plain(options.tolerance_m, 0.001, 100.0)},
-          imu(options.imu),
-          rest(options.rest_time),
-          time_limit(options.time_limit)};
+  return joined({{{"ahead_m", "Goal: distance along the heading at the start",
+                   plain(options.ahead_m, -1000.0, 1000.0)},
+                  {"left_m", "... to its left", plain(options.left_m, -1000.0, 1000.0)},
+                  {"up_m", "... and up", plain(options.up_m, -1000.0, 1000.0)},
+                  speed(options.speed_m_s),
+                  {"tolerance_m", "The goal is reached within this distance",
+                   plain(options.tolerance_m, 0.001, 100.0)},
+                  imu(options.imu)},
+                 rest(options.settle_time, options.rest_time),
+                 {time_limit(options.time_limit)}});
 }
 
 Fields fields(tasks::SearchOptions& options, TaskSpec& spec) {
@@ -202,8 +204,9 @@ Fields fields(tasks::InspectOptions& options, TaskSpec& spec) {
 }
 
 Fields fields(tasks::LandOptions& options, TaskSpec&) {
-  return {speed(options.speed_m_s), imu(options.imu), rest(options.rest_time),
-          time_limit(options.time_limit)};
+  return joined({{speed(options.speed_m_s, 0.15), imu(options.imu)},
+                 rest(options.settle_time, options.rest_time),
+                 {time_limit(options.time_limit)}});
 }
 
 Fields fields(tasks::SearchPairOptions& options, TaskSpec& spec) {

@@ -29,10 +29,11 @@ class DeadReckoning {
   /// nothing.
   void update(const uav::ImuSample& reading);
 
-  const uav::Vec3& position_m() const { return p_; }    ///< in H0
-  const uav::Vec3& velocity_m_s() const { return v_; }  ///< in H0
-  double yaw_rad() const { return yaw_; }               ///< since the start, in (−π, π]
-  double path_length_m() const { return length_m_; }    ///< horizontal
+  SimTime read_at() const { return last_ ? last_->sampled_at : SimTime(); }  ///< the last reading
+  const uav::Vec3& position_m() const { return p_; }                         ///< in H0
+  const uav::Vec3& velocity_m_s() const { return v_; }                       ///< in H0
+  double yaw_rad() const { return yaw_; }             ///< since the start, in (−π, π]
+  double path_length_m() const { return length_m_; }  ///< horizontal
 
  private:
   struct Reading {

@@ -1,15 +1,21 @@
 #include "dead_reckoning.h"
 #include "motion.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <tether/tasks/land_task.h>
 #include <tether/tasks/task_context.h>
 
 namespace tether::tasks {
 namespace {
 
-// Of the speed of the descent: more than the first is sinking, less than the second is standing.
-constexpr double kSinking = 0.7;
-constexpr double kStanding = 0.3;
+constexpr Duration kPeriod = std::chrono::milliseconds(500);
+constexpr double kSlow = 0.5;  // of the speed
+/// A smaller change of speed can be over before the IMU is read again.
+constexpr double kLeastChange_m_s = 0.15;
+/// Of the change of speed that was commanded: what a UAV that flies deviates from it at most.
+constexpr double kDeviation = 0.7;
 
 }  // namespace
 
@@ -20,14 +26,24 @@ LandTask::~LandTask() = default;
 
 Progress LandTask::initialise(TaskContext& context) {
   limit_.start(context.vehicle().now());
-  is_sinking_ = false;
+  v_wanted_m_s_ = z_at_switch_m_ = 0.0;
   const auto imu = context.sensor(options_.imu, uav::SensorKind::kImu);
   if (!imu) return TaskOutcome::failed(imu.failure());
   if (const Status stopped = stop(context); !stopped) return TaskOutcome::failed(stopped.failure());
   reckoning_ = std::make_unique<DeadReckoning>((*imu)->X_BS.q);
-  if (Progress end = calibrate(context, options_.imu, options_.rest_time, limit_, *reckoning_))
+  if (Progress end = calibrate(context, options_.imu, {options_.settle_time, options_.rest_time},
+                               limit_, *reckoning_))
     return end;
-  const Status sinking = context.vehicle().command_velocity({{0, 0, -options_.speed_m_s}, 0.0});
+  return sink(context, options_.speed_m_s);
+}
+
+Progress LandTask::sink(TaskContext& context, double speed_m_s) {
+  change_wanted_m_s_ = -speed_m_s - v_wanted_m_s_;
+  v_wanted_m_s_ = -speed_m_s;
+  v_at_switch_m_s_ = reckoning_->velocity_m_s().z;
+  z_at_switch_m_ = reckoning_->position_m().z;
+  switched_at_ = reckoning_->read_at();
+  const Status sinking = context.vehicle().command_velocity({{0, 0, v_wanted_m_s_}, 0.0});
   return sinking ? std::nullopt : Progress(TaskOutcome::failed(sinking.failure()));
 }
 
@@ -36,16 +52,19 @@ Progress LandTask::step(TaskContext& context) {
   const Result<uav::ImuSample> reading = context.vehicle().read_imu(options_.imu);
   if (!reading) return TaskOutcome::failed(reading.failure());
   reckoning_->update(*reading);
-  const double sinking_m_s = -reckoning_->velocity_m_s().z;
-  is_sinking_ = is_sinking_ || sinking_m_s > kSinking * options_.speed_m_s;
-  const bool has_landed = is_sinking_ && sinking_m_s < kStanding * options_.speed_m_s;
-  return has_landed ? Progress(TaskOutcome::goal_reached()) : std::nullopt;
+  if (reckoning_->read_at() - switched_at_ < kPeriod) return std::nullopt;
+  const double changed_m_s = reckoning_->velocity_m_s().z - v_at_switch_m_s_;
+  if (std::abs(changed_m_s / change_wanted_m_s_ - 1.0) > kDeviation)
+    return TaskOutcome::goal_reached();
+  const bool was_slow = v_wanted_m_s_ > -options_.speed_m_s;
+  const double change_m_s = std::max(kSlow * options_.speed_m_s, kLeastChange_m_s);
+  return sink(context, options_.speed_m_s - (was_slow ? 0.0 : change_m_s));
 }
 
 void LandTask::finalise(TaskContext& context, TaskOutcome& outcome) {
   fail_on(stop(context), outcome);
   outcome.results["duration_s"] = to_seconds(limit_.elapsed(context.vehicle().now()));
-  if (reckoning_) outcome.results["descended_m"] = -reckoning_->position_m().z;
+  outcome.results["descended_m"] = -z_at_switch_m_;
 }
 
 }  // namespace tether::tasks

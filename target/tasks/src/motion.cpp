@@ -65,7 +65,7 @@ Status pause(TaskContext& context, const std::string& imu, Duration time) {
   return ok_status();
 }
 
-Progress calibrate(TaskContext& context, const std::string& imu, Duration time, LoopLimit& limit,
+Progress calibrate(TaskContext& context, const std::string& imu, const Rest& rest, LoopLimit& limit,
                    DeadReckoning& reckoning) {
   std::optional<SimTime> began_at;
   while (true) {
@@ -73,11 +73,12 @@ Progress calibrate(TaskContext& context, const std::string& imu, Duration time, 
     const Result<uav::ImuSample> reading = context.vehicle().read_imu(imu);
     if (!reading) return TaskOutcome::failed(reading.failure());
     began_at = began_at.value_or(reading->sampled_at);
-    if (reading->sampled_at - *began_at >= time) {
+    const Duration rested = reading->sampled_at - *began_at;
+    if (rested >= rest.settle_time + rest.measure_time) {
       reckoning.update(*reading);
       return std::nullopt;
     }
-    reckoning.calibrate(*reading);
+    if (rested >= rest.settle_time) reckoning.calibrate(*reading);
   }
 }
 

@@ -43,9 +43,14 @@ Result<double> get_yaw(TaskContext& context, std::string_view imu);
 /// now. Fails (kInvalid) when a thousand readings in a row bring no later instant.
 Status pause(TaskContext& context, const std::string& imu, Duration time);
 
-/// Reads the IMU at rest for `time`, by the instants of its readings: their bias, and the start of
-/// dead reckoning. Ends the task at its limit.
-Progress calibrate(TaskContext& context, const std::string& imu, Duration time, LoopLimit& limit,
+/// A pause after a stop, by the instants of the IMU's readings.
+struct Rest {
+  Duration settle_time;   ///< while the UAV comes to rest
+  Duration measure_time;  ///< while the IMU's bias is measured
+};
+/// Reads the IMU during `rest`: its bias, and the start of dead reckoning. Ends the task at its
+/// limit.
+Progress calibrate(TaskContext& context, const std::string& imu, const Rest& rest, LoopLimit& limit,
                    DeadReckoning& reckoning);
 
 /// The anchor in one image.

@@ -102,6 +102,7 @@ Progress SearchPairTask::come(TaskContext& context) {
   go.left_m = std::max(way_m - options_.gap_m, 0.0) * std::sin(direction_rad);
   go.speed_m_s = options_.speed_m_s;
   go.imu = options_.imu;
+  go.settle_time = Duration(0);  // it has settled
   go.time_limit =
       std::max(options_.search.time_limit - limit_.elapsed(context.vehicle().now()), Duration(1));
   GoToTask going(go);

@@ -23,6 +23,24 @@ TEST(GoToTask, FliesToARelativePosition) {
   EXPECT_FALSE(flight.notes("odometry").empty());
 }
 
+TEST(GoToTask, ComesToRestBeforeItMeasuresTheBias) {
+  GoToTask task({.ahead_m = 2.0});
+  const Flight flight = fly(
+      task, {.start_velocity_m_s = {-0.8, 0.4, 0.0}, .imu_period = std::chrono::milliseconds(1)});
+  ASSERT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
+  const uav::Vec3 came_to_rest_at{-0.8 * 0.3 / 2, 0.4 * 0.3 / 2, 0.0};
+  EXPECT_LT(norm(flight.vehicle.position() - came_to_rest_at - uav::Vec3{2.0, 0.0, 0.0}), 0.25);
+}
+
+// The vertical acceleration is over before the IMU is read again.
+TEST(GoToTask, ClimbsByItsCommands) {
+  GoToTask task({.ahead_m = 0.0, .up_m = 0.6});
+  const Flight flight =
+      fly(task, {.max_acceleration_m_s2 = 100.0, .imu_period = std::chrono::milliseconds(50)});
+  ASSERT_TRUE(flight.outcome.reached()) << flight.outcome.reason;
+  EXPECT_NEAR(flight.vehicle.position().z, 0.45, 0.05);
+}
+
 TEST(GoToTask, EndsAtItsLimits) {
   GoToTask slow({.ahead_m = 10.0, .time_limit = std::chrono::seconds(4)});
   EXPECT_EQ(fly(slow, {}).outcome.reason, "time limit");

@@ -13,8 +13,7 @@ constexpr double kStep_s = 1e-3;
 constexpr double kGravity_m_s2 = 9.81;
 constexpr double kWall_m = 10.0;
 constexpr Duration kImagePeriod = std::chrono::nanoseconds(33'333'333);
-constexpr double kFloor_m_s2 = 10.0;  // what stops it there
-constexpr double kMaxAcceleration_m_s2 = 3.0;
+constexpr double kFloor_m_s2 = 1000.0;  // what stops it there
 constexpr double kMaxYawAcceleration_rad_s2 = 6.0;
 
 uav::Catalogue make_catalogue(const PlanarVehicle::Options& options) {
@@ -56,7 +55,7 @@ PlanarVehicle::PlanarVehicle(const Options& options)
   const uav::Anchor& anchor = catalogue_.anchors.front();
   with_anchor_.boxes = {{rotate(about_z(direction), {options.anchor_distance_m, 0, 0}), direction,
                          anchor.size_m, anchor.color_rgb}};
-  states_.push_back({{}, {}, {}, options.start_yaw_rad, 0.0});
+  states_.push_back({{}, options.start_velocity_m_s, {}, options.start_yaw_rad, 0.0});
 }
 
 ExecTime PlanarVehicle::now() const {
@@ -83,7 +82,7 @@ PlanarVehicle::State PlanarVehicle::next(const State& state) const {
   after.yaw_rate_rad_s += std::clamp(command_.yaw_rate_rad_s - state.yaw_rate_rad_s, -turn, turn);
   after.yaw_rad += after.yaw_rate_rad_s * kStep_s;
   const Vec3 wanted = rotate(about_z(state.yaw_rad), command_.velocity_H_m_s);
-  after.v_W = towards(state.v_W, wanted, kMaxAcceleration_m_s2 * kStep_s);
+  after.v_W = towards(state.v_W, wanted, options_.max_acceleration_m_s2 * kStep_s);
   const bool is_on_floor = state.p_W.z <= -options_.height_m && state.v_W.z < 0.0;
   if (is_on_floor) after.v_W.z = std::min(0.0, state.v_W.z + kFloor_m_s2 * kStep_s);
   after.a_W = (1.0 / kStep_s) * (after.v_W - state.v_W);

@@ -21,7 +21,8 @@ Dynamics::Dynamics(const World& world, const WarningSink& warn, const MeshFiles&
       qvel_before_(static_cast<std::size_t>(model_->nv)),
       meter_(world, [&](const MeshGeometry& mesh) { return meshes.corners(mesh); }) {
   meter_.warn_of_starts(warn);
-  for (const Uav& uav : world.uavs) flights_.push_back({&uav.airframe, {}, {}});
+  for (const Uav& uav : world.uavs)
+    flights_.push_back({{uav.airframe, world.gravity_m_s2, world.step}, {}, {}});
   reset();
 }
 
@@ -29,12 +30,10 @@ void Dynamics::reset() {
   mj_resetData(model_.get(), data_.get());
   for (std::size_t i = 0; i < flights_.size(); ++i) {
     Flight& flight = flights_[i];
+    const Uav& uav = world_.uavs[i];
     flight.command = {};
-    flight.state =
-        uav::hover_state(*flight.airframe, world_.gravity_m_s2, yaw_rad(world_.uavs[i].X_WB.q));
-    if (!world_.uavs[i].energy) continue;
-    flight.meter.emplace(*world_.uavs[i].energy, *flight.airframe, world_.gravity_m_s2);
-    flight.sagging = *flight.airframe;
+    flight.state = uav::hover_state(uav.airframe, world_.gravity_m_s2, yaw_rad(uav.X_WB.q));
+    if (uav.energy) flight.meter.emplace(*uav.energy, uav.airframe, world_.gravity_m_s2);
   }
   read_engine();
   recorder_.reset(X_WB_);
@@ -93,12 +92,10 @@ uav::Vec3 Dynamics::velocity_before(int engine_body, const uav::Vec3& p_W) const
 void Dynamics::fly(std::size_t uav) {
   Flight& flight = flights_[uav];
   const uav::BodyState body = body_state(uav);
-  const uav::MultirotorParameters& airframe = flight.meter ? flight.sagging : *flight.airframe;
   if (flight.meter)
-    flight.sagging.max_rotor_speed_rad_s =
-        flight.airframe->max_rotor_speed_rad_s * flight.meter->speed_limit();
-  const uav::Wrench wrench =
-      uav::step(airframe, world_.gravity_m_s2, body, flight.command, world_.step, flight.state);
+    flight.multirotor.limit_rotor_speed(world_.uavs[uav].airframe.max_rotor_speed_rad_s *
+                                        flight.meter->speed_limit());
+  const uav::Wrench wrench = flight.multirotor.step(body, flight.command, flight.state);
   if (flight.meter) flight.meter->step(now_, world_.step, body, flight.state);
   flight.force_W = rotate(body.q_WB, wrench.force_B);
   flight.torque_W = rotate(body.q_WB, wrench.torque_B);

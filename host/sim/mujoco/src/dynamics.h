@@ -44,12 +44,11 @@ class Dynamics {
 
  private:
   struct Flight {
-    const uav::MultirotorParameters* airframe;
+    uav::Multirotor multirotor;
     uav::VelocityCommand command;
     uav::MultirotorState state;
     std::optional<energy::Meter> meter{};
-    uav::MultirotorParameters sagging{};  ///< the airframe, as far as the battery's voltage lets it
-    uav::Vec3 force_W{}, torque_W{};      ///< of the rotors, in this step
+    uav::Vec3 force_W{}, torque_W{};  ///< of the rotors, in this step
   };
 
   void fly(std::size_t uav);

@@ -57,6 +57,7 @@ TEST(DynamicsTest, RotorsActToTheBitAsForcesThatTheEngineApplies) {
   Dynamics dynamics(world, no_warnings());
   const ModelPtr model = make_physics_model(world, no_warnings());
   const DataPtr data = make_data(*model);
+  const uav::Multirotor multirotor(world.uavs[0].airframe, world.gravity_m_s2, world.step);
   std::vector<uav::MultirotorState> states;
   for (std::size_t i = 0; i < 2; ++i) {
     dynamics.set_command(i, command);
@@ -66,8 +67,7 @@ TEST(DynamicsTest, RotorsActToTheBitAsForcesThatTheEngineApplies) {
   for (int step = 0; step < 3'000; ++step) {  // both fly against each other, and on the ground
     for (std::size_t i = 0; i < 2; ++i) {
       const uav::BodyState body = dynamics.body_state(i);
-      const uav::Wrench wrench = uav::step(world.uavs[i].airframe, world.gravity_m_s2, body,
-                                           command, world.step, states[i]);
+      const uav::Wrench wrench = multirotor.step(body, command, states[i]);
       mjtNum* const out = data->xfrc_applied + 6 * engine_body(i);
       copy_to(rotate(body.q_WB, wrench.force_B), out);
       copy_to(rotate(body.q_WB, wrench.torque_B), out + 3);

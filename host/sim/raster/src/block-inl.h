@@ -188,7 +188,6 @@ HWY_INLINE void shade_block(const Part& part, Block& b, const Use& use) {
     for (const std::size_t at : b.places(run)) {
       Cell& c = b.cell(at);
       look_up(scene, load(c.level), load(c.u), load(c.v), c.lookups);
-      prefetch(scene, load(c.level), c.lookups);
     }
   }
   const V one = set(1.0F);

@@ -245,14 +245,6 @@ HWY_INLINE void look_up(const PreparedScene& scene, VI level, V u, V v, Lookups&
   look_up(level_at(scene, Add(row, whole(1))), u_repeated, v_repeated, to[1]);
 }
 
-// Asks for texels ahead of time: the textures of a picture are larger than the nearest caches.
-HWY_INLINE void prefetch(const PreparedScene& scene, VI level, const Lookups& places) {
-  const std::size_t count = is_one(level) ? 1 : places.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    for (const std::int32_t pair : places[i].pair) hwy::Prefetch(scene.texels.data() + pair);
-  }
-}
-
 HWY_INLINE Texel sample(const PreparedScene& scene, VI level, const Lookups& from) {
   const TexelPair* const texels = scene.texels.data();
   Blend b = bilinear(texels, from[0]);

@@ -5,6 +5,8 @@
 #include "sdf_mend.h"
 
 #include <cmath>
+#include <filesystem>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -139,16 +141,23 @@ void check_and_load(SdfSource& source, SdfPurpose purpose, const WarningSink& wa
 
 void add_uavs(const WorldRequest& request, const WarningSink& warn, World& world) {
   std::set<std::string> names;
+  std::map<std::filesystem::path, Uav> read;  // each file is read once
   for (const UavPlacement& placement : request.uavs) {
     if (!names.insert(placement.name).second) {
       throw Error(ErrorCode::kBadFile,
                   "two UAVs have the name '" + placement.name + "'; give each a unique name")
           .about(placement.name);
     }
-    SdfSource source(placement.model, request.options, warn);
-    check_and_load(source, SdfPurpose::kUav, warn);
-    world.uavs.push_back(read_uav(source, placement, world.gravity_m_s2, warn));
-    world.files.merge(source.files());
+    const auto [known, is_new] = read.try_emplace(placement.model);
+    if (is_new) {
+      SdfSource source(placement.model, request.options, warn);
+      check_and_load(source, SdfPurpose::kUav, warn);
+      known->second = read_uav(source, world.gravity_m_s2, warn);
+      world.files.merge(source.files());
+    }
+    Uav& uav = world.uavs.emplace_back(known->second);
+    uav.name = placement.name;
+    uav.X_WB = start_pose(placement);
   }
 }
 

@@ -49,9 +49,8 @@ void warn_of_ignored(const SdfSource& source, const sdf::ElementPtr& battery_plu
 std::optional<energy::Battery> read_battery(const SdfSource& source, const sdf::ElementPtr& model);
 
 uav::Pose start_pose(const UavPlacement& placement);
-/// The UAV of a model file, placed.
-Uav read_uav(const SdfSource& source, const UavPlacement& placement, double gravity_m_s2,
-             const WarningSink& warn);
+/// The UAV of a model file, without a name or place.
+Uav read_uav(const SdfSource& source, double gravity_m_s2, const WarningSink& warn);
 
 /// The model `name` of the world as an anchor.
 /// @throws Error(kBadFile) about `name`: not a model, or not one untextured box, cylinder or

@@ -93,8 +93,7 @@ uav::Pose start_pose(const UavPlacement& placement) {
   return {placement.p_WB, uav::from_rpy(0.0, 0.0, placement.yaw_rad)};
 }
 
-Uav read_uav(const SdfSource& source, const UavPlacement& placement, double gravity_m_s2,
-             const WarningSink& warn) {
+Uav read_uav(const SdfSource& source, double gravity_m_s2, const WarningSink& warn) {
   const sdf::Model* model = source.root().Model();
   if (model == nullptr) {
     throw Error(ErrorCode::kBadFile, {source.file().string(), 0},
@@ -104,8 +103,6 @@ Uav read_uav(const SdfSource& source, const UavPlacement& placement, double grav
   const sdf::Link& body = find_body_link(source, *model);
 
   Uav uav;
-  uav.name = placement.name;
-  uav.X_WB = start_pose(placement);
   uav.body = read_link(source, body, warn);
   uav.airframe = read_airframe(source, model->Element(), uav.body, gravity_m_s2);
   uav.battery = read_battery(source, model->Element());

@@ -46,7 +46,16 @@ std::optional<uav::Sample> AheadDrawer::take(const PictureKey& key) {
     jobs_.erase(job);
     return std::nullopt;
   }
-  done_.wait(lock, [&] { return job->state == State::kDone; });
+  while (job->state != State::kDone) {
+    const auto other = std::ranges::find_if(jobs_, [&](const Job& waiting) {
+      return waiting.state == State::kWaiting && waiting.key.at <= key.at;
+    });
+    if (other == jobs_.end()) {
+      done_.wait(lock);
+    } else {
+      draw(other, threads_.size(), lock);
+    }
+  }
   --work_.drawn_in_vain;
   Job taken = std::move(*job);
   jobs_.erase(job);
@@ -82,27 +91,27 @@ void AheadDrawer::serve(std::size_t worker) {
       return ends_ || job != jobs_.end();
     });
     if (ends_) return;
-    job->state = State::kBegun;
-    ++work_.pictures, ++work_.drawn_ahead, ++work_.drawn_in_vain;
-    lock.unlock();
-    const CpuTimer timer;
-    draw(*job, worker);
-    const Duration time = timer.elapsed();
-    lock.lock();
-    work_.drawing += time;
-    job->state = State::kDone;
-    if (job->is_dropped) jobs_.erase(job);
-    done_.notify_all();
+    draw(job, worker, lock);
   }
 }
 
 // No other thread touches a picture that is being drawn.
-void AheadDrawer::draw(Job& job, std::size_t worker) {
+void AheadDrawer::draw(Jobs::iterator job, std::size_t worker, std::unique_lock<std::mutex>& lock) {
+  job->state = State::kBegun;
+  ++work_.pictures, ++work_.drawn_ahead, ++work_.drawn_in_vain;
+  lock.unlock();
+  const CpuTimer timer;
   try {
-    job.sample = draw_(worker, job.key, job.snapshot);
+    job->sample = draw_(worker, job->key, job->snapshot);
   } catch (...) {
-    job.failure = std::current_exception();
+    job->failure = std::current_exception();
   }
+  const Duration time = timer.elapsed();
+  lock.lock();
+  work_.drawing += time;
+  job->state = State::kDone;
+  if (job->is_dropped) jobs_.erase(job);
+  done_.notify_all();
 }
 
 }  // namespace tether::sim

@@ -32,8 +32,8 @@ struct PictureKey {
 /// one thread at a time. The destructor waits for pictures that are being drawn.
 class AheadDrawer {
  public:
-  /// Draws the picture of a snapshot on thread `worker` (0, 1, …). Called by several threads, with
-  /// different workers.
+  /// Draws the picture of a snapshot on thread `worker` (0, 1, …; after the last, the thread that
+  /// calls `take`). Called by several threads, with different workers.
   using Draw =
       std::function<uav::Sample(std::size_t worker, const PictureKey&, const Snapshot& snapshot)>;
   /// Pictures of one sensor that are kept; an image may have 200 MB.
@@ -48,8 +48,9 @@ class AheadDrawer {
   /// Draws this picture as soon as a thread is free. Does nothing if the picture is known, or if
   /// `kMostPerSensor` of its sensor are.
   void expect(const PictureKey& key, const Snapshot& snapshot);
-  /// The picture; waits for it if it is being drawn. None if no thread has begun to draw it; then
-  /// none will. Drops earlier pictures of the sensor, in vain. @throws what `Draw` threw for it.
+  /// The picture. If it is being drawn, waits for it, and meanwhile draws others of snapshots that
+  /// are not later. None if no thread has begun to draw it; then none will. Drops earlier pictures
+  /// of the sensor, in vain. @throws what `Draw` threw for it.
   std::optional<uav::Sample> take(const PictureKey& key);
   /// Drops every picture, and waits until no thread draws; counts from 0 again.
   void reset();
@@ -69,7 +70,7 @@ class AheadDrawer {
   using Jobs = std::list<Job>;
 
   void serve(std::size_t worker);
-  void draw(Job& job, std::size_t worker);
+  void draw(Jobs::iterator job, std::size_t worker, std::unique_lock<std::mutex>& lock);
   Jobs::iterator drop(Jobs::iterator job);
 
   const Draw draw_;

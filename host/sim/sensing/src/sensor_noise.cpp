@@ -53,13 +53,13 @@ std::array<double, 256> make_quantiles() {
   return z;
 }
 
-// What each of the 256 draws adds, in 1/256 of a grey level.
+// What each of the 256 draws adds: grey levels, rounded to 1/256 first.
 PixelDeltas pixel_deltas(double offset, double stddev) {
   static const std::array<double, 256> kQuantiles = make_quantiles();
   PixelDeltas deltas{};
   for (std::size_t i = 0; i < deltas.size(); ++i) {
     const double grey = std::clamp(255.0 * (offset + stddev * kQuantiles[i]), -256.0, 256.0);
-    deltas[i] = static_cast<std::int32_t>(std::lround(256.0 * grey));
+    deltas[i] = static_cast<std::int16_t>((std::lround(256.0 * grey) + 128) >> 8);
   }
   return deltas;
 }

@@ -25,7 +25,8 @@ SensorSuite::SensorSuite(const World& world, const BackEnd& back_end, const Warn
   ahead_ = std::make_unique<AheadDrawer>(
       back_end.threads_ahead,
       [this](std::size_t worker, const PictureKey& key, const Snapshot& snapshot) {
-        return draw(*images_ahead_[worker], snapshot, key.uav, key.sensor, key.index);
+        ImageMaker& images = worker < images_ahead_.size() ? *images_ahead_[worker] : *images_;
+        return draw(images, snapshot, key.uav, key.sensor, key.index);
       });
 }
 

@@ -1,6 +1,7 @@
 #include "ahead_drawer.h"
 
 #include <array>
+#include <atomic>
 #include <semaphore>
 
 #include <gtest/gtest.h>
@@ -12,6 +13,8 @@ namespace tether::sim {
 namespace {
 
 constexpr std::uint64_t kFails = 7;
+// Drawers: thread 0, and the one that takes pictures.
+constexpr std::size_t kCaller = 1, kNobody = 9;
 
 PictureKey key(std::uint64_t index, std::size_t sensor = 0) {
   return {0, sensor, index, SimTime(std::chrono::milliseconds(index))};
@@ -43,15 +46,21 @@ class AheadDrawerTest : public ::testing::Test {
   struct Gate {
     std::counting_semaphore<2> has_begun{0};
     std::counting_semaphore<2> open{0};
+    Gate* opens = nullptr;  // when it is drawn
+    std::atomic<std::size_t> worker{kNobody};
   };
   std::array<Gate, 10> gates_;
-  AheadDrawer drawer_{
-      1, [this](std::size_t, const PictureKey& picture, const Snapshot& snapshot) -> uav::Sample {
-        gates_[picture.index].has_begun.release();
-        gates_[picture.index].open.acquire();
-        if (picture.index == kFails) throw Error(ErrorCode::kSetup, "lost");
-        return uav::RangeSample{picture.at, picture.index, snapshot.state.at(0)};
-      }};
+  AheadDrawer drawer_{kCaller,
+                      [this](std::size_t worker, const PictureKey& picture,
+                             const Snapshot& snapshot) -> uav::Sample {
+                        Gate& gate = gates_[picture.index];
+                        gate.worker = worker;
+                        gate.has_begun.release();
+                        if (gate.opens != nullptr) gate.opens->open.release();
+                        gate.open.acquire();
+                        if (picture.index == kFails) throw Error(ErrorCode::kSetup, "lost");
+                        return uav::RangeSample{picture.at, picture.index, snapshot.state.at(0)};
+                      }};
 };
 
 TEST_F(AheadDrawerTest, ReturnsAPictureOnceThatWasBegun) {
@@ -78,6 +87,19 @@ TEST_F(AheadDrawerTest, LeavesToTheCallerWhatNoThreadHasBegun) {
   EXPECT_EQ(take(5), 5.0);
   EXPECT_EQ(drawn(), 2u);
   EXPECT_EQ(in_vain(), 1u);
+}
+
+// Picture 2 is drawn while the thread draws picture 3, which waits for it here; picture 4 is later.
+TEST_F(AheadDrawerTest, TheCallerDrawsAnotherPictureWhileItWaits) {
+  gates_[2].opens = &gates_[3];
+  begin(3);
+  expect(2, 1);
+  expect(4, 1);
+  open(2);
+  EXPECT_EQ(take(3), 3.0);
+  EXPECT_EQ(gates_[2].worker, kCaller);
+  EXPECT_NE(gates_[4].worker, kCaller);
+  EXPECT_EQ(take(2, 1), 2.0);
 }
 
 TEST_F(AheadDrawerTest, ThrowsTheErrorOfTheThread) {

@@ -80,17 +80,68 @@ struct MultirotorState {
   friend bool operator==(const MultirotorState&, const MultirotorState&) = default;
 };
 
+/// Collective thrust and torques about the centre of mass, body axes [N, N m].
+struct Demand {
+  double thrust_N = 0.0;
+  Vec3 torque_B_N_m;
+};
+
+using RotorThrusts = std::array<double, MultirotorState::kMaxRotors>;  // [N]
+
+double max_rotor_thrust_N(const MultirotorParameters& parameters);
+
+/// Divides a demand among the rotors of a layout.
+class Mixer {
+ public:
+  explicit Mixer(const MultirotorParameters& parameters);
+
+  /// Thrust of each rotor that produces `demand`, by the pseudo-inverse of the layout's allocation
+  /// matrix: the least sum of squares where there are more than four rotors. All within
+  /// [0, limit_N]; where that is not enough, yaw torque is scaled down first, then roll and pitch
+  /// torque.
+  RotorThrusts mix(const Demand& demand, double limit_N) const;
+
+ private:
+  using Vec4 = std::array<double, 4>;  // thrust, roll, pitch, yaw
+
+  RotorThrusts thrusts_for(Vec4 wanted) const;
+
+  std::size_t count_;
+  std::array<Vec4, MultirotorState::kMaxRotors> effects_{};  // of one newton: columns of A
+  std::array<Vec4, 4> gram_{};                               // lower Cholesky factor of A·Aᵀ
+};
+
 /// Rotors at hover thrust and the controller at rest, heading along `yaw_rad`.
 MultirotorState hover_state(const MultirotorParameters& parameters, double gravity_m_s2,
                             double yaw_rad);
 
-/// One step of controller and rotors: cascaded velocity → attitude → body rate → rotor speeds
-/// (geometric attitude error after Lee, Leok, McClamroch, CDC 2010), first-order rotors, thrust,
-/// reaction torque and rotor drag.
-///
-/// Call once per step with the state at its beginning; apply the returned wrench for the whole
-/// step. Deterministic, allocates nothing, never fails: non-finite input gives a non-finite wrench.
-Wrench step(const MultirotorParameters& parameters, double gravity_m_s2, const BodyState& body,
-            const VelocityCommand& command, Duration dt, MultirotorState& state);
+/// A multirotor with its controller, stepped in a world. What its steps need of the parameters
+/// alone is computed once.
+class Multirotor {
+ public:
+  Multirotor(MultirotorParameters parameters, double gravity_m_s2, Duration step);
+
+  const MultirotorParameters& parameters() const { return parameters_; }
+  /// Rotors that turn faster slow down to this.
+  void limit_rotor_speed(double rad_s) { parameters_.max_rotor_speed_rad_s = rad_s; }
+
+  /// One step of controller and rotors: cascaded velocity → attitude → body rate → rotor speeds
+  /// (geometric attitude error after Lee, Leok, McClamroch, CDC 2010), first-order rotors, thrust,
+  /// reaction torque and rotor drag.
+  ///
+  /// Call once per step with the state at its beginning; apply the returned wrench for the whole
+  /// step. Deterministic, allocates nothing, never fails: non-finite input gives a non-finite
+  /// wrench.
+  Wrench step(const BodyState& body, const VelocityCommand& command, MultirotorState& state) const;
+
+ private:
+  void advance_rotors(const RotorThrusts& wanted, MultirotorState& state) const;
+
+  MultirotorParameters parameters_;
+  double gravity_m_s2_;
+  double dt_s_;
+  double up_, down_;  // shares of the way to the wanted speed within a step
+  Mixer mixer_;
+};
 
 }  // namespace tether::uav

@@ -2,10 +2,10 @@
 
 namespace tether::gazebo_plugin {
 
-Flights::Flights(const sim::protocol::Open& open)
-    : gravity_m_s2_(open.gravity_m_s2), step_(open.step) {
+Flights::Flights(const sim::protocol::Open& open) : gravity_m_s2_(open.gravity_m_s2) {
   for (const sim::protocol::UavDescription& uav : open.uavs) {
-    flights_.push_back({uav.airframe, uav::yaw_rad(uav.X_WB.q), {}, {}});
+    flights_.push_back(
+        {{uav.airframe, gravity_m_s2_, open.step}, uav::yaw_rad(uav.X_WB.q), {}, {}});
   }
   reset();
 }
@@ -13,7 +13,8 @@ Flights::Flights(const sim::protocol::Open& open)
 void Flights::reset() {
   for (Flight& flight : flights_) {
     flight.command = {};
-    flight.state = uav::hover_state(flight.airframe, gravity_m_s2_, flight.start_yaw_rad);
+    flight.state =
+        uav::hover_state(flight.multirotor.parameters(), gravity_m_s2_, flight.start_yaw_rad);
   }
 }
 
@@ -23,7 +24,7 @@ void Flights::set_command(std::size_t uav, const uav::VelocityCommand& command) 
 
 uav::Wrench Flights::step(std::size_t uav, const uav::BodyState& body) {
   Flight& flight = flights_[uav];
-  return uav::step(flight.airframe, gravity_m_s2_, body, flight.command, step_, flight.state);
+  return flight.multirotor.step(body, flight.command, flight.state);
 }
 
 }  // namespace tether::gazebo_plugin

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,6 +16,8 @@
 #include <tether/sim/world.h>
 
 namespace tether::sim {
+
+struct Convex;
 
 /// From a UAV to the nearest of the other collision shapes.
 struct Clearance {
@@ -46,15 +50,26 @@ class ClearanceMeter {
 
  private:
   struct Shape;
+  struct Ball;
+  struct Nearest {
+    double distance_m = std::numeric_limits<double>::infinity();
+    std::size_t shape = 0;
+    auto operator<=>(const Nearest&) const = default;
+  };
 
   void add(const Link& link, const uav::Pose& X_BL, std::optional<std::size_t> body,
            std::string_view owner, const MeshVertices& vertices);
   std::span<const uav::Vec3> vertices_of(const MeshGeometry& mesh, const MeshVertices& vertices);
+  void find_nearest(const Shape& own, std::span<const uav::Pose> X_WB, Nearest& nearest) const;
+  static double distance_between(const Convex& here, const Shape& own, const Shape& other,
+                                 std::span<const uav::Pose> X_WB, double enough_m);
   std::string_view shape_overhead(const uav::Vec3& p_W) const;
 
   const World& world_;
   std::map<MeshKey, std::vector<uav::Vec3>> vertices_;  ///< Shapes refer to them.
   std::vector<Shape> shapes_;
+  std::vector<Ball> balls_;                          ///< of each shape
+  std::vector<std::vector<std::size_t>> of_bodies_;  ///< their shapes
   std::vector<uav::Pose> starts_;
   bool is_complete_ = true;
 };

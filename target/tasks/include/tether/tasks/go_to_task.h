@@ -6,6 +6,7 @@
 #include <tether/base/time.h>
 #include <tether/tasks/loop_limit.h>
 #include <tether/tasks/task.h>
+#include <tether/uav/math.h>
 
 namespace tether::tasks {
 
@@ -16,15 +17,19 @@ struct GoToOptions {
   double speed_m_s = 0.5;     ///< maximum; > 0
   double tolerance_m = 0.15;  ///< the goal is reached within this distance; > 0
   std::string imu = "imu";
-  /// Pause before the start, by the IMU's timestamps, in which its bias is measured; ≥ 0.
+  /// Pause after the stop, by the IMU's timestamps, while the UAV comes to rest; ≥ 0.
+  Duration settle_time = std::chrono::seconds(1);
+  /// The pause after that, in which the IMU's bias is measured; ≥ 0.
   Duration rest_time = std::chrono::seconds(1);
   Duration time_limit = std::chrono::seconds(60);  ///< of the SUT's clock; then "time limit"
   int max_readings = 200'000;                      ///< in case that clock is stopped
 };
 
-/// Flies to a position relative to its start by dead reckoning with the IMU, at a constant heading.
-/// Annotates its odometry. Results: "duration_s" (ET), "end_x_m", "end_y_m", "end_z_m"
-/// (dead-reckoned, in the start-heading frame H0).
+/// Stops, and then flies to a position relative to where it came to rest, by dead reckoning with
+/// the IMU, at a constant heading. The height is that of the commands: thrust changes the vertical
+/// speed faster than an IMU is read, which then shows what follows a change instead of the change.
+/// Annotates its odometry. Results: "duration_s" (ET), "end_x_m",
+/// "end_y_m", "end_z_m" (dead-reckoned, in the start-heading frame H0).
 class GoToTask : public Task {
  public:
   explicit GoToTask(const GoToOptions& options = {});
@@ -38,7 +43,11 @@ class GoToTask : public Task {
  private:
   GoToOptions options_;
   LoopLimit limit_;
-  std::unique_ptr<class DeadReckoning> reckoning_;  ///< of the current run
+
+  // Of the current run.
+  std::unique_ptr<class DeadReckoning> reckoning_;
+  uav::Vec3 p_H0B_;
+  double v_up_m_s_ = 0.0;  ///< of the last command
 };
 
 }  // namespace tether::tasks

@@ -23,14 +23,13 @@ class Flights {
 
  private:
   struct Flight {
-    uav::MultirotorParameters airframe;
+    uav::Multirotor multirotor;
     double start_yaw_rad = 0.0;
     uav::VelocityCommand command;
     uav::MultirotorState state;
   };
 
   double gravity_m_s2_ = 0.0;
-  Duration step_{0};
   std::vector<Flight> flights_;
 };
 

@@ -26,6 +26,8 @@ class PlanarVehicle : public client::Vehicle {
     bool anchor_is_there = true;
     std::pair<Duration, Duration> anchor_hidden{};  ///< from, until
     double start_yaw_rad = 0.0;
+    uav::Vec3 start_velocity_m_s{};  ///< in the world
+    double max_acceleration_m_s2 = 3.0;
     double camera_ahead_m = 0.0;  ///< its mounting
     double height_m = 1000.0;     ///< of the start above the floor
     uav::Quat q_BS_imu{};         ///< the IMU's mounting
