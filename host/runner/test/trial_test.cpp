@@ -67,14 +67,6 @@ TEST_F(Trial, FailsIfTheSimulatorIsLostOrCannotBeStarted) {
   EXPECT_EQ(result.reason, "not installed");
 }
 
-TEST_F(Trial, RefusesSeveralSutsOnOneBoard) {
-  spec_.scenario.uavs.push_back(spec_.scenario.uavs.front());
-  spec_.condition.target.emplace().ssh = scenario::SshAddress{"pi@rover", 22};
-  const auto start = [&] { run_trial(spec_, fake_back_end(), observer_, stop_.get_token()); };
-  EXPECT_EQ(thrown_error(ErrorCode::kUsage, start).subject(), "ssh://pi@rover:22");
-  EXPECT_FALSE(std::filesystem::exists(spec_.folder));
-}
-
 // If the user starts the SUT, with its command line.
 TEST_F(Trial, IsInterruptedByAStopRequest) {
   observer_.on_status = [&](const coordinator::RunStatus&) { stop_.request_stop(); };

@@ -272,7 +272,9 @@ void Supervisor::stop() {
   if (const Status frozen = around_.freezer->freeze(); !frozen) return give_up(frozen.failure());
   const Duration mono = read_monotonic();
   const ClockState state = around_.clock.page->state();
-  const ExecTime at = state.at(mono);
+  // Later than each due time and stamp: at equal times, the reply to one member can have to wait
+  // for what another one, which is stopped too, could still send.
+  const ExecTime at = state.at(mono) + Duration(1);
   around_.clock.page->publish({at, mono, state.factor, false});
   statistics_.froze(mono - began);
   if (due && at >= *due) statistics_.overshot(at - *due);

@@ -98,6 +98,7 @@ struct Sut {
   ExecTime known{};                        // its bound
   std::vector<Request> undated;            // the coordinator has not said when they are due
   std::map<std::uint64_t, ExecTime> dues;  // of what is open, by sequence
+  std::map<std::uint64_t, ExecTime> issued;
   std::vector<ExecTime> stops;
   std::uint64_t calls = 0, answered = 0;
   bool has_finished = false;
@@ -114,7 +115,7 @@ class Fleet {
 
   void move() {
     Sut& sut = suts_[random_.bits() % suts_.size()];
-    switch (random_.bits() % 6) {
+    switch (random_.bits() % 7) {
       case 0:
         return let_time_pass();
       case 1:
@@ -126,6 +127,8 @@ class Fleet {
         return tell_dues(sut);
       case 4:
         return reply();
+      case 5:
+        return move_up(sut);
       default:
         return supervise();
     }
@@ -154,8 +157,8 @@ class Fleet {
   void call(Sut& sut, bool finishes) {
     if (!group_.is_running() || sut.supervision.is_over() || sut.calls - sut.answered > 3) return;
     ++sut.calls;
-    sut.supervision.asked(kCaller,
-                          finishes ? call_at(now_, link::Finish{true, "done", ""}) : call_at(now_));
+    sut.supervision.asked(kCaller, finishes ? call_at(now_, link::Finish{true, "done", ""})
+                                            : call_at(now_, link::ReceiveMessage{}));
   }
 
   // What the coordinator hears.
@@ -165,6 +168,7 @@ class Fleet {
         if (const auto* asked = std::get_if<Request>(&message)) {
           ASSERT_GE(asked->issued_at, sut.known);
           sut.undated.push_back(*asked);
+          sut.issued[asked->sequence] = asked->issued_at;
           sut.known = asked->issued_at;
         } else if (const auto* progress = std::get_if<Progress>(&message)) {
           ASSERT_GE(progress->reached, sut.known);
@@ -204,6 +208,15 @@ class Fleet {
     ASSERT_TRUE(sut.supervision.heard(Due{asked.sequence, due}).ok());
     sut.dues[asked.sequence] = due;
     if (std::holds_alternative<link::Finish>(asked.body)) finishing_[&sut] = asked.sequence;
+  }
+
+  // A message arrives for a call, maybe at an ET that the group has passed.
+  void move_up(Sut& sut) {
+    if (sut.dues.empty() || sut.has_finished || finishing_.contains(&sut)) return;
+    auto& [sequence, due] = *sut.dues.begin();
+    due = std::max(sut.issued[sequence], due - Duration(random_.bits() % 5'000'000));
+    ASSERT_TRUE(sut.supervision.heard(Due{sequence, due}).ok());
+    take_outgoing();
   }
 
   // The earliest reply of all, if ST can be there: each SUT that can still act has come so far.

@@ -91,6 +91,7 @@ Pace pace_of(const record::Record& record, const record::SutInfo& sut) {
   const bool is_real = std::ranges::any_of(record.header.boards, [&](const auto& board) {
     return board.name == sut.board && board.is_real;
   });
+  pace.shares_real_board = is_real;
   if (!sut.board.empty() && !is_real && programs > 1) {
     pace.shared_board = sut.board;
     pace.programs = static_cast<std::size_t>(programs);

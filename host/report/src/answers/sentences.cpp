@@ -230,8 +230,9 @@ std::string stage_advice(const Advice& advice, const ConditionVerdict& lead) {
     text += fmt::format(
         " {} up to {} per image, and the camera has one every {}: it is {} × too slow to read them "
         "all.",
-        lead.pace->shared_board.empty() ? "Computing takes"
-                                        : "Computing and waiting for cores take",
+        lead.pace->shared_board.empty() && !lead.pace->shares_real_board
+            ? "Computing takes"
+            : "Computing and waiting for cores take",
         short_ms(lead.pace->p95_s), short_ms(1.0 / *lead.pace->offered_hz),
         fixed(1.0 / *headroom, 1));
   return text;
@@ -304,9 +305,10 @@ void add_stages(Table& table, const std::string& where, const Pace& pace) {
     note += fmt::format(
         " Per image of “{}”: {}{}, in 95 % of them at most {}; read {} times a second{}.",
         pace.camera, short_ms(pace.median_s),
-        pace.shared_board.empty() ? " of computing"
-                                  : fmt::format(", {} of it waiting for the cores of “{}”",
-                                                share(pace.waiting), pace.shared_board),
+        pace.shares_real_board      ? " of computing and waiting for cores"
+        : pace.shared_board.empty() ? " of computing"
+                                    : fmt::format(", {} of it waiting for the cores of “{}”",
+                                                  share(pace.waiting), pace.shared_board),
         short_ms(pace.p95_s), rate(pace.read_hz),
         pace.offered_hz ? fmt::format(", offered {} times", rate(*pace.offered_hz)) : "");
   table.notes.push_back(note);

@@ -79,6 +79,16 @@ TEST(Pace, IsNotKnownWithoutSynchronisationCallsOrCamera) {
   EXPECT_THROW(read_pace("/nonexistent/record.mcap"), Error);
 }
 
+TEST(Pace, OnARealBoardDoesNotTellWaitingApart) {
+  record::Record record = record_of_reads();
+  record.header.boards = {{"obc", 0, true}};
+  record.header.suts[0].board = "obc";
+  record.header.suts.push_back(record.header.suts[0]);
+  record.header.suts[1].uav = "uav2";
+  EXPECT_TRUE(pace_of(record)->shares_real_board);
+  EXPECT_EQ(pace_of(record)->shared_board, "");
+}
+
 // 75 ms of own work are 150 ms of the board's time, half of it for the other program.
 TEST(Pace, OnASharedBoardIncludesWaitingForItsCores) {
   record::Record record = record_of_reads();
@@ -95,6 +105,7 @@ TEST(Pace, OnASharedBoardIncludesWaitingForItsCores) {
   }
   const Pace pace = *pace_of(record);
   EXPECT_EQ(pace.shared_board, "obc");
+  EXPECT_FALSE(pace.shares_real_board);
   EXPECT_EQ(pace.programs, 2u);
   EXPECT_NEAR(pace.median_s, 0.15, 1e-9);
   EXPECT_NEAR(pace.p95_s, 0.15, 1e-9);

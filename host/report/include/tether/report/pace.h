@@ -45,7 +45,9 @@ struct Pace {
   double median_s = 0.0;
   double p95_s = 0.0;  ///< of 95 % of the images
 
-  // Of a board that several programs share. If it has one of its own: empty, 0 and 0.
+  /// Several programs share a real board: times include waiting for its cores, which is not known.
+  bool shares_real_board = false;
+  // Of a modelled board that several programs share. Otherwise: empty, 0 and 0.
   std::string shared_board{};
   std::size_t programs = 0;  ///< that share its cores, this one among them
   double waiting = 0.0;      ///< share of the cost of all images: others had the cores
