@@ -125,6 +125,20 @@ TEST_F(SharedBoard, IsNotSharedInFreeRunning) {
   EXPECT_EQ(recorder_.header.boards.size(), 0u);
 }
 
+TEST_F(SharedBoard, IsNotModelledIfItIsRealAndThenNeedsConcurrentSuts) {
+  make_shared(2, 1);
+  options_.boards[0].is_real = true;
+  remake();
+  const link::PeerId serial = server_->add_sut(hello(name(0)), {});
+  for (const std::size_t uav : {0U, 1U})
+    server_->add_threads(hello(name(uav)), {{finish(milliseconds(3))}});
+  ASSERT_EQ(run().end, RunEnd::kFinished);
+  EXPECT_EQ(refusal(serial).reason, link::Refusal::Reason::kBadRequest);
+  EXPECT_EQ(of(0)[0].request_at, us(3000));
+  EXPECT_EQ(recorder_.header.suts[1].board, "obc");
+  EXPECT_EQ(recorder_.header.boards, (std::vector<record::BoardInfo>{{"obc", 0, true}}));
+}
+
 // Random programs, and messages in a random order: the instants are those of a naive scheduler, the
 // rules hold, and every order gives the same record.
 TEST_F(SharedBoard, InstantsAndRecordsAreTheSameInAnyOrderOfMessages) {
