@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <set>
+#include <utility>
 
 namespace tether::judge {
 namespace {
@@ -14,6 +16,7 @@ using record::Interaction;
 /// A measurement that the SUT had.
 struct Sample {
   SimTime had_at;
+  std::uint64_t sequence = 0;  ///< of its read
   SimTime sampled_at;
 };
 
@@ -43,9 +46,12 @@ class Calls {
     for (const Interaction* i : of_kind(record::kSensor)) {
       const bool is_wanted =
           sensor.empty() ? !of_cameras || cameras_.contains(i->sensor) : i->sensor == sensor;
-      if (is_wanted && i->sampled_at) samples.push_back({times_.answered(*i), *i->sampled_at});
+      if (is_wanted && i->sampled_at)
+        samples.push_back({times_.answered(*i), i->sequence, *i->sampled_at});
     }
-    std::ranges::stable_sort(samples, {}, &Sample::had_at);
+    std::ranges::stable_sort(samples, {}, [](const Sample& sample) {
+      return std::pair(sample.had_at, sample.sequence);
+    });
     return samples;
   }
   const Times& times() const { return times_; }
@@ -64,7 +70,11 @@ void with_newest(const Calls& calls, const std::vector<Sample>& samples, const T
   const Sample* newest = nullptr;
   for (const Interaction* command : calls.of_kind(record::kCommand)) {
     const SimTime sent = calls.times().sent(*command);
-    for (; had < samples.size() && samples[had].had_at <= sent; ++had)
+    // In free running, the next read can be answered in the step of ST in which this command came.
+    const auto had_before = [&](const Sample& sample) {
+      return std::pair(sample.had_at, sample.sequence) < std::pair(sent, command->sequence);
+    };
+    for (; had < samples.size() && had_before(samples[had]); ++had)
       if (!newest || samples[had].sampled_at > newest->sampled_at) newest = &samples[had];
     if (newest) take(*command, sent, *newest);
   }

@@ -98,6 +98,7 @@ class Flight {
     record::Interaction interaction;
     interaction.uav = "uav1";
     interaction.kind = kind;
+    interaction.sequence = order_ + 1;
     interaction.request_at = same_instant(st(sent_s));
     interaction.reply_at = same_instant(st(answered_s));
     interaction.st_at_arrival = st(sent_s);

@@ -199,6 +199,13 @@ TEST(Judge, ReactionsInFreeRunningAreInSt) {
   EXPECT_NEAR(*flight.verdict(R"(always = "reaction_time <= 1 s")").margin, 0.7, 1e-9);
 }
 
+TEST(Judge, AnImageThatWasReadAfterACommandIsNotItsImage) {
+  Flight flight = mission();
+  flight.image(3.0, 3.0, 3.0).command(3.4, 3.4).image(3.4, 3.4, 3.4).command(3.9, 3.9);
+  EXPECT_NEAR(flight.verdict(R"(always = "reaction_time <= 1 s")").quantiles.at(0), 0.4, 1e-9);
+  EXPECT_NEAR(flight.verdict(R"(always = "data_age <= 1 s")").quantiles.at(20), 0.5, 1e-9);
+}
+
 TEST(Judge, NeedsGroundTruth) {
   Flight flight = mission();
   flight.record().ground_truth.clear();

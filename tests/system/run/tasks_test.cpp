@@ -65,9 +65,9 @@ INSTANTIATE_TEST_SUITE_P(Tasks, SlowComputer,
                                          Slow{"move_forward", 60}, Slow{"closed_path", 150}),
                          [](const auto& one) { return std::string(one.param.scenario); });
 
-// Its goals are reached all the same: what a slow computer spoils is the reaction time.
+// Its goals are reached late: what a slow computer spoils is the reaction time.
 TEST(Inspection, AComputerThatIsTooSlowMissesAClause) {
-  for (const auto& [computing_ms, code] : {std::pair(10, 0), std::pair(160, 1)}) {
+  for (const auto& [computing_ms, code] : {std::pair(10, 0), std::pair(50, 1)}) {
     const TempFolder folder;
     const auto result = fly(folder, "inspect_room", computing_ms, code);
     EXPECT_TRUE(result["audit"]["passed"]) << result["audit"]["summary"];
