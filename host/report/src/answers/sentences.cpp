@@ -63,19 +63,6 @@ std::string pace_text(const Pace& pace) {
   return text;
 }
 
-/// Of one flight, without counts.
-std::string missed_text(const MissedLimits& missed, bool of_one) {
-  std::vector<std::string> parts;
-  for (const auto& [limit, count] : missed) {
-    if (parts.size() == kMostMissed) {
-      parts.push_back(fmt::format("{} more", missed.size() - kMostMissed));
-      break;
-    }
-    parts.push_back(of_one ? limit : fmt::format("{} ({})", limit, flights(count)));
-  }
-  return joined_with_and(parts);
-}
-
 std::string goals_text(const ConditionVerdict& condition) {
   return fmt::format("on “{}” {} of {} reach{} the goal within the limits", condition.condition,
                      condition.reached, flights(condition.flown),
@@ -354,8 +341,16 @@ std::string_view name(Ruling ruling) {
   return "no answer (free-running)";
 }
 
-std::string missed_text(const MissedLimits& missed) {
-  return missed_text(missed, false);
+std::string missed_text(const MissedLimits& missed, bool of_one) {
+  std::vector<std::string> parts;
+  for (const auto& [limit, count] : missed) {
+    if (parts.size() == kMostMissed) {
+      parts.push_back(fmt::format("{} more", missed.size() - kMostMissed));
+      break;
+    }
+    parts.push_back(of_one ? limit : fmt::format("{} ({})", limit, flights(count)));
+  }
+  return joined_with_and(parts);
 }
 
 std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* const> trials,

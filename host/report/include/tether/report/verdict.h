@@ -41,8 +41,9 @@ MissedLimits missed_limits(std::span<const campaign::TrialResult* const> trials)
 /// If the flight missed nothing but a limit of a metric without a value: why it has none. Else
 /// empty.
 std::string missed_without_value(const campaign::TrialResult& trial);
-/// "time required ≤ 5 s (3 flights), the time limit (1 flight) and 2 more"
-std::string missed_text(const MissedLimits& missed);
+/// "time required ≤ 5 s (3 flights), the time limit (1 flight) and 2 more"; of one flight, without
+/// the counts.
+std::string missed_text(const MissedLimits& missed, bool of_one = false);
 
 /// One condition of a scenario.
 struct ConditionVerdict {
