@@ -1,14 +1,9 @@
-#include "back_ends.h"
-#include "cluster/cluster.h"
 #include "commands/commands.h"
 #include "commands/size_flights.h"
 #include "commands/size_uavs.h"
 #include "options/junit_option.h"
 #include "options/refuse_option.h"
 #include "options/trial_options.h"
-#include "reading/file_kind.h"
-#include "reading/world_options.h"
-#include "terminal/say.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +16,6 @@
 #include <tether/base/error.h>
 #include <tether/os/program.h>
 #include <tether/os/text_file.h>
-#include <tether/report/gnuplot.h>
 #include <tether/report/junit.h>
 #include <tether/report/size_report.h>
 #include <tether/scenario/shipped_files.h>
@@ -41,12 +35,6 @@ void require_share(const std::string& option, double share) {
                             share == 1.0 ? "No number of flights shows that all succeed; use a "
                                            "share such as 0.95."
                                          : "Use a share such as 0.9."));
-}
-
-/// Even if all flights succeed, fewer than this say nothing about the share with that confidence.
-std::size_t least_flights(const sizing::Question& question) {
-  return static_cast<std::size_t>(
-      std::ceil(std::log(1.0 - question.confidence) / std::log(question.success)));
 }
 
 sizing::Question question_of(const SizeOptions& options) {
@@ -69,13 +57,7 @@ sizing::Question question_of(const SizeOptions& options) {
   if (question.most < question.interval * question.least)
     refuse_option("--between", fmt::format("{},{} is narrower than --interval {}.", question.least,
                                            question.most, question.interval));
-  if (options.max_trials < least_flights(question))
-    refuse_option(
-        "--max-trials",
-        fmt::format("{} flights cannot show a success of {} with a confidence of {}, even if all "
-                    "succeed. Use at least {}.",
-                    options.max_trials, question.success, question.confidence,
-                    least_flights(question)));
+  require_enough_trials(options, 1.0 - question.confidence);
   return question;
 }
 
@@ -134,21 +116,7 @@ Plan make_plan(const SizeOptions& options) {
     require_comparable(own, plan.flights.conditions.back());
   }
   plan.flights.scenario = std::move(scenario);
-  plan.flights.most = options.max_trials;
-  plan.flights.jobs = jobs_of(options.jobs, options.cluster);
-  plan.flights.cluster = options.cluster;
   return plan;
-}
-
-void write_answer(report::SizeReport& report, const std::filesystem::path& out) {
-  report.pace = report::pace_near_answer(report, out);
-  os::write_file_atomically(out / kSizeFile, report::size_json(report));
-  fmt::print("{}", report::answer_text(report::size_answers(report), report::size_advice(report),
-                                       report::Markup::kPlain));
-  os::write_file_atomically(out / kSizeDrawing, report::draw_svg(report::size_plot(report)));
-  os::write_file_atomically(out / campaign::kReportFile, report::size_page(report));
-  fmt::print("Page: {}\nDrawing: {}\nNumbers: {}\n", (out / campaign::kReportFile).string(),
-             (out / kSizeDrawing).string(), (out / kSizeFile).string());
 }
 
 int code_of(const report::SizeReport& report) {
@@ -167,28 +135,17 @@ int find_size(const SizeOptions& options, const std::stop_token& stop) {
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out/size") / plan.report.scenario : options.out;
   const sizing::CurveGrid grid(plan.report.question);
-  SizeFlights flights(plan.flights, grid, options.reading, out, open_mode(options), stop);
-  remove_earlier_answer(out);
-  const SizeFlights::End end = flights.fly(plan.report);
-  const std::string again =
-      fmt::format("tether size {} --out {} --resume, with the options of this call",
-                  options.scenario.string(), out.string());
-  if (end == SizeFlights::End::kInterrupted) {
-    say("tether: interrupted after {} flights; to continue, type: {}\n",
-        plan.report.synchronised.flights.size(), again);
-    return exit_code(ErrorCode::kSetup);
-  }
-  if (end == SizeFlights::End::kFailing) {
-    for (const std::string& line : plan.report.not_flown) say("tether: {}\n", line);
-    say("tether: {} flights failed, which says nothing about the computer. Mend the cause; to "
-        "continue, type: {}\n",
-        plan.report.not_flown.size(), again);
-    return exit_code(ErrorCode::kSetup);
-  }
-  write_answer(plan.report, out);
+  SizeFlights flights(options, plan.flights, grid, out, stop);
+  report::SizeReport& report = plan.report;
+  if (const auto end = flights.fly(report); end != SizeTrials::End::kAnswered)
+    return flights.say_why(end);
+  report.pace = report::pace_near_answer(report, out);
+  write_answer({report::size_answers(report), report::size_advice(report),
+                report::size_json(report), report::size_plot(report), report::size_page(report)},
+               out);
   if (!options.junit.empty())
-    os::write_file_atomically(options.junit, report::to_junit(plan.report, out));
-  return code_of(plan.report);
+    os::write_file_atomically(options.junit, report::to_junit(report, out));
+  return code_of(report);
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ void add_cluster_options(CLI::App& command, ClusterOptions& cluster) {
       ->type_name("TEXT");
   command.add_flag("--scale-nodes", cluster.scales_nodes,
                    "With the clock \"cpu\": scale CPU time by the speed of each node. Otherwise "
-                   "nodes of another speed than the first are refused");
+                   "nodes of another speed than the first are rejected");
 }
 
 std::shared_ptr<RunOptions> add_run_command(CLI::App& program, Action& action) {

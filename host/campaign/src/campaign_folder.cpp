@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -23,6 +25,14 @@ bool holds_anything(const fs::path& folder) {
   if (!failed) return false;
   throw Error(ErrorCode::kSetup, {folder.string()}, "cannot be read: " + failed.message() + ".")
       .about(folder.string());
+}
+
+std::set<std::string> names_in(const fs::path& folder) {
+  std::set<std::string> names;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none))
+    names.insert(entry.path().filename().string());
+  return names;
 }
 
 void require_same(const fs::path& folder, const Settings& then, const Settings& now,
@@ -126,9 +136,14 @@ void CampaignFolder::remove_existing() const {
       .about(folder_.string());
 }
 
+// One listing for each condition: most of the trials that tether size plans never fly.
 void CampaignFolder::find_missing(const scenario::Campaign& campaign) {
+  std::map<std::string, std::set<std::string>> trials_in;  // by the folder of the condition
   for (TrialPlan& plan : plan_trials(campaign, folder_)) {
-    if (has_usable_result(plan)) {
+    const fs::path condition = plan.folder.parent_path();
+    const auto [listed, is_new] = trials_in.try_emplace(condition.string());
+    if (is_new) listed->second = names_in(condition);
+    if (listed->second.contains(plan.folder.filename().string()) && has_usable_result(plan)) {
       ++finished_;
     } else {
       missing_.push_back(std::move(plan));

@@ -98,4 +98,9 @@ std::string unit_suffix(std::string_view unit) {
   return unit == "1" ? std::string() : "_" + std::string(unit);
 }
 
+std::string limit_key(const MetricKind& kind) {
+  return (kind.is_better_if_more ? "min" : "max") +
+         (kind.unit == "J" ? "_j" : unit_suffix(kind.unit));
+}
+
 }  // namespace tether::scenario

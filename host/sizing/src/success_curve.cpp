@@ -98,9 +98,12 @@ void CurveGrid::add_curve(double middle, double width, const Ends& ends, double 
 
 SuccessCurve::SuccessCurve(const CurveGrid& grid, Margins margins)
     : grid_(grid), scales_(margins == Margins::kLinear ? kScales : 1) {
+  // Beside its logarithmic steps, the prior rises with the square root of the width: flights must
+  // show that a curve is steep, because a search that takes a flat one for steep ends too early.
   for (std::size_t i = 0; i < grid.curves_.size() / kEnds * scales_; ++i)
     for (std::size_t e = 0; e < kEnds; ++e)
-      joint_.push_back(static_cast<float>(grid.ends_[e].prior));
+      joint_.push_back(static_cast<float>(grid.ends_[e].prior *
+                                          std::sqrt(grid.curves_[i / scales_ * kEnds].width)));
   normalise();
 }
 

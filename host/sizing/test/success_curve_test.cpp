@@ -104,7 +104,7 @@ TEST(SuccessCurve, DoesNotFitADipAtOneSlowdown) {
 TEST(SuccessCurve, DoesNotFitTeethThatAreNarrowerThanAGroup) {
   const CurveGrid grid(kOfCurve);
   std::vector<Flight> teeth, spread;
-  for (std::size_t i = 0; i < 60; ++i) {
+  for (std::size_t i = 0; i < 72; ++i) {
     const double slowdown = grid.slowdowns()[100 + i];
     teeth.push_back({slowdown, i % 6 < 3});
     spread.push_back({slowdown, KeyedRandom({i, 1, 3}).uniform() < 0.5});

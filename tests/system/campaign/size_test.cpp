@@ -50,7 +50,7 @@ TEST_F(Size, FindsTheSlowestSufficientComputerAlsoAfterCtrlC) {
   EXPECT_EQ(found["schema"], 1);
   EXPECT_EQ(found["scenario"], "hover");
   EXPECT_EQ(found["condition"], "host");
-  EXPECT_EQ(found["summary"].size(), 1U);
+  EXPECT_THAT(found["summary"][1].get<std::string>(), StartsWith("Missed: time required ≤ 3.5 s"));
   EXPECT_EQ(found["question"]["between"], (nlohmann::json{1.0, 20.0}));
   EXPECT_EQ(found["answer"]["where"], "within");
   EXPECT_EQ(found["answer"]["narrow"], true);
@@ -63,6 +63,17 @@ TEST_F(Size, FindsTheSlowestSufficientComputerAlsoAfterCtrlC) {
 
   ASSERT_EQ(run(size({"--between", "1,20"}, "whole"), kLongest).code, 0);
   EXPECT_EQ(answer("whole")["flights"], found["flights"]) << "the interruption changed the flights";
+}
+
+// The program reaches its goal, but sends no estimates.
+TEST_F(Size, EndsWithoutAnAnswerIfALimitedMetricNeverHasAValue) {
+  write_hover_scenario(
+      folder_.path(), "good",
+      {kScripted, {"kind = \"time_required\"", "kind = \"estimate_error\"\nmax_m = 1.0"}});
+  const Output output = run(size({"--between", "1,2"}), kLongest);
+  EXPECT_EQ(output.code, 3) << output.out;
+  EXPECT_THAT(output.err, HasSubstr("estimate error has no value"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/size.json"));
 }
 
 // Beside this limit, how fast the machine is makes no difference.
@@ -79,6 +90,11 @@ TEST_F(Size, EndsByWhetherTheBoardSuffices) {
 }
 
 TEST_F(Size, RefusesAWrongQuestionBeforeItWrites) {
+  write_hover_scenario(folder_.path(), "good", {kScripted});
+  const Output undecided = run(size({}));
+  EXPECT_EQ(undecided.code, 2);
+  EXPECT_THAT(undecided.err, HasSubstr("hover.toml:"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
   write_hover_scenario(folder_.path(), "good", {kScripted, limit("3.5")});
   for (const auto& [option, value] : {std::pair{"--success", "1"},
                                       {"--confidence", "0"},

@@ -144,4 +144,10 @@ std::optional<Pace> read_pace(const std::filesystem::path& file) {
   return pace_of(record);
 }
 
+PaceOrReason pace_or_reason(const std::filesystem::path& file) try {
+  return {read_pace(file), ""};
+} catch (const Error& error) {
+  return {std::nullopt, error.what()};
+}
+
 }  // namespace tether::report

@@ -64,19 +64,6 @@ std::string pace_text(const Pace& pace) {
   return text;
 }
 
-/// "; missed: time required 5 s (3 flights), …"
-std::string missed_text(const ConditionVerdict& condition) {
-  std::vector<std::string> parts;
-  for (const auto& [limit, count] : condition.missed) {
-    if (parts.size() == kMostMissed) {
-      parts.push_back(fmt::format("{} more", condition.missed.size() - kMostMissed));
-      break;
-    }
-    parts.push_back(condition.flown == 1 ? limit : fmt::format("{} ({})", limit, flights(count)));
-  }
-  return parts.empty() ? "" : " (missed: " + joined_with_and(parts) + ")";
-}
-
 std::string goals_text(const ConditionVerdict& condition) {
   return fmt::format("on “{}” {} of {} reach{} the goal within the limits", condition.condition,
                      condition.reached, flights(condition.flown),
@@ -89,7 +76,8 @@ std::string missed_goals_text(const ConditionVerdict& condition) {
                          ? fmt::format("on “{}” the flight misses the goal", condition.condition)
                          : fmt::format("on “{}” {} of {} miss{} the goal", condition.condition,
                                        missed, flights(condition.flown), missed == 1 ? "es" : "");
-  return text + missed_text(condition);
+  if (condition.missed.empty()) return text;
+  return text + " (missed: " + missed_text(condition.missed, condition.flown == 1) + ")";
 }
 
 /// What limits the evidence.
@@ -367,6 +355,28 @@ std::optional<Answer> slowest_board(const ConditionVerdict& condition) {
   if (slowest.flights > 1)
     text += " These are means over the flights, with the least and the largest of a flight.";
   return Answer{"Slowest board", text};
+}
+
+std::string missed_text(const MissedLimits& missed, bool of_one) {
+  std::vector<std::string> parts;
+  for (const auto& [limit, count] : missed) {
+    if (parts.size() == kMostMissed) {
+      parts.push_back(fmt::format("{} more", missed.size() - kMostMissed));
+      break;
+    }
+    parts.push_back(of_one ? limit : fmt::format("{} ({})", limit, flights(count)));
+  }
+  return joined_with_and(parts);
+}
+
+std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* const> trials,
+                                       const std::string& unreadable) {
+  std::vector<Answer> answers;
+  if (const MissedLimits missed = missed_limits(trials); !missed.empty())
+    answers.push_back({"Missed", ": " + missed_text(missed) + "."});
+  if (!unreadable.empty())
+    answers.push_back({"The computing times are not known", ": " + unreadable + "."});
+  return answers;
 }
 
 Answer answer_of(const ConditionVerdict& condition) {

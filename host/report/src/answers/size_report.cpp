@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
-#include <tether/base/error.h>
 #include <tether/campaign/campaign_plan.h>
 #include <tether/report/size_report.h>
 
@@ -120,6 +120,10 @@ std::vector<Answer> size_answers(const SizeReport& report) {
              report.synchronised.flights.size() + report.not_flown.size() >= report.most_flights
                  ? fmt::format("{} flights are the most that were allowed", report.most_flights)
                  : "slowdowns in between could not be decided")});
+  std::vector<const campaign::TrialResult*> trials;
+  for (const campaign::TrialResult& trial : report.synchronised.trials) trials.push_back(&trial);
+  std::ranges::move(answers_on_flights(trials, report.pace.unreadable),
+                    std::back_inserter(answers));
   return answers;
 }
 
@@ -137,8 +141,8 @@ std::vector<std::string> size_advice(const SizeReport& report) {
       answer.is_below || std::ranges::any_of(report.boards, [&](const Board& board) {
         return verdict(board, answer) == BoardVerdict::kDoesNot;
       });
-  if (report.pace && !report.pace->stages.empty()) {
-    const timing::StageRow& stage = report.pace->stages.front();
+  if (report.pace.pace && !report.pace.pace->stages.empty()) {
+    const timing::StageRow& stage = report.pace.pace->stages.front();
     advice.push_back(fmt::format("{}“{}” first: it takes {:.0f} % of the computing time.",
                                  is_short ? "Speed up " : "For more headroom, speed up ",
                                  stage.stage, 100.0 * stage.share));
@@ -159,8 +163,7 @@ std::vector<std::string> size_advice(const SizeReport& report) {
   return advice;
 }
 
-std::optional<Pace> pace_near_answer(const SizeReport& report,
-                                     const std::filesystem::path& folder) try {
+PaceOrReason pace_near_answer(const SizeReport& report, const std::filesystem::path& folder) {
   const campaign::TrialResult* nearest = nullptr;
   double least = 0.0;
   const SizedCondition& sized = report.synchronised;
@@ -171,12 +174,10 @@ std::optional<Pace> pace_near_answer(const SizeReport& report,
     nearest = &sized.trials[i];
     least = distance;
   }
-  if (nearest == nullptr) return std::nullopt;
-  return read_pace(folder /
-                   campaign::trial_folder(report.scenario, nearest->condition, nearest->seed) /
-                   "record.mcap");
-} catch (const Error&) {
-  return std::nullopt;
+  if (nearest == nullptr) return {};
+  return pace_or_reason(folder /
+                        campaign::trial_folder(report.scenario, nearest->condition, nearest->seed) /
+                        "record.mcap");
 }
 
 std::optional<double> margin_of(const campaign::MetricValue& metric) {

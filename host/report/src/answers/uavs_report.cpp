@@ -1,7 +1,11 @@
 #include "tables/report_format.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 
+#include <tether/campaign/campaign_plan.h>
 #include <tether/os/shell_word.h>
 #include <tether/report/uavs_report.h>
 
@@ -54,6 +58,27 @@ std::vector<sizing::UavLevel> uav_levels(const std::vector<UavsPoint>& points) {
   return levels;
 }
 
+std::vector<UavsLevel> levels_of(const UavsReport& report) {
+  std::vector<UavsLevel> levels;
+  for (const sizing::UavLevel& level : uav_levels(report.points))
+    levels.push_back(
+        {level, sizing::exact_share(level.reached, level.flights, report.question.confidence)});
+  return levels;
+}
+
+PaceOrReason pace_at_limit(const UavsReport& report, const std::filesystem::path& folder) {
+  const campaign::TrialResult* trial = nullptr;
+  for (const UavsPoint& point : report.points) {
+    if (point.trials.empty()) continue;
+    trial = &point.trials.front();
+    if (point.uavs >= report.answer.too_many) break;
+  }
+  if (trial == nullptr) return {};
+  return pace_or_reason(folder /
+                        campaign::trial_folder(trial->scenario, trial->condition, trial->seed) /
+                        "record.mcap");
+}
+
 std::size_t flights_of(const UavsReport& report) {
   std::size_t flights = 0;
   for (const UavsPoint& point : report.points) flights += point.trials.size();
@@ -67,16 +92,21 @@ std::vector<Answer> uavs_answers(const UavsReport& report) {
                    report.board, report.condition, in_percent(report.question.success),
                    evidence_of(report), in_percent(report.question.confidence),
                    flights_of(report))}};
-  if (report.pace && !report.pace->shared_board.empty() && !report.pace->camera.empty())
+  if (const auto& pace = report.pace.pace;
+      pace && !pace->shared_board.empty() && !pace->camera.empty())
     answers.push_back(
         {"What sharing costs",
          fmt::format(": with {}, an image costs {} on the board, {:.0f} % of it waiting for cores.",
-                     uavs(report.pace->programs), short_ms(report.pace->median_s),
-                     100.0 * report.pace->waiting)});
+                     uavs(pace->programs), short_ms(pace->median_s), 100.0 * pace->waiting)});
   if (!report.answer.is_decided())
     answers.push_back(
         {"Less sure than asked",
          fmt::format(": {} flights are the most that were allowed.", report.most_flights)});
+  std::vector<const campaign::TrialResult*> trials;
+  for (const UavsPoint& point : report.points)
+    for (const campaign::TrialResult& trial : point.trials) trials.push_back(&trial);
+  std::ranges::move(answers_on_flights(trials, report.pace.unreadable),
+                    std::back_inserter(answers));
   return answers;
 }
 
@@ -90,10 +120,10 @@ std::vector<std::string> uavs_advice(const UavsReport& report) {
   if (answer.is_decided() && answer.carried < report.question.least && report.question.least > 1)
     advice.push_back(fmt::format("Try fewer: `--between 1,{}`.", report.question.least));
   if (answer.too_many <= report.question.most) {
-    if (report.pace && !report.pace->stages.empty())
+    if (const auto& pace = report.pace.pace; pace && !pace->stages.empty())
       advice.push_back(fmt::format(
           "To carry more, speed up “{}” first: it takes {:.0f} % of the computing time.",
-          report.pace->stages.front().stage, 100.0 * report.pace->stages.front().share));
+          pace->stages.front().stage, 100.0 * pace->stages.front().share));
     advice.push_back(
         fmt::format("To see how much faster the board must be to carry all: `tether "
                     "size {} --condition {} --between 0.1,2`",

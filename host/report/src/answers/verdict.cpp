@@ -27,7 +27,7 @@ bool is_unsound(const campaign::TrialResult& trial) {
   return (trial.audit && !trial.audit->passed) || trial.sync.causality_violations > 0;
 }
 
-/// What of the flight missed its limit.
+/// What of the flight missed its limit. Empty: at most metrics without a value.
 std::vector<std::string> missed_in(const campaign::TrialResult& trial) {
   std::vector<std::string> missed;
   if (has_crash(trial)) missed.emplace_back("no crash");
@@ -70,15 +70,6 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
     if (margin && (!verdict.closest || *margin < verdict.closest->second))
       verdict.closest = {metric.label, *margin};
   }
-  if (trial.outcome == campaign::Outcome::kGoalReached) return;
-  for (const std::string& limit : missed_in(trial)) {
-    const auto known =
-        std::ranges::find(verdict.missed, limit, &std::pair<std::string, std::size_t>::first);
-    if (known == verdict.missed.end())
-      verdict.missed.emplace_back(limit, 1);
-    else
-      ++known->second;
-  }
 }
 
 Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResults& results) {
@@ -99,10 +90,13 @@ ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
   ConditionVerdict verdict{.condition = results.condition, .planned = results.planned};
   if (!results.trials.empty())
     verdict.size_arguments = results.trials.front().this_run.size_arguments;
-  for (const campaign::TrialResult& trial : results.trials) count(verdict, trial);
+  std::vector<const campaign::TrialResult*> flown;
+  for (const campaign::TrialResult& trial : results.trials) {
+    count(verdict, trial);
+    if (trial.outcome != campaign::Outcome::kFailed) flown.push_back(&trial);
+  }
+  verdict.missed = missed_limits(flown);
   if (verdict.flown > 0) verdict.share = exact_interval(verdict.reached, verdict.flown);
-  std::ranges::stable_sort(verdict.missed, std::greater<>{},
-                           &std::pair<std::string, std::size_t>::second);
   verdict.ruling = ruling_of(verdict, results);
   return verdict;
 }
@@ -182,15 +176,12 @@ std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
         is_run
             ? folder
             : folder / campaign::trial_folder(scenario.scenario, condition.condition, trial->seed);
-    try {
-      if (auto pace = read_pace(of_trial / "record.mcap")) {
-        boards.push_back(pace->boards);
-        if (!first) first = std::move(pace);
-        if (first->boards.empty()) break;
-      }
-    } catch (const Error& error) {
-      if (unreadable.empty()) unreadable = error.what();
-    }
+    auto [pace, reason] = pace_or_reason(of_trial / "record.mcap");
+    if (unreadable.empty()) unreadable = reason;
+    if (!pace) continue;
+    boards.push_back(pace->boards);
+    if (!first) first = std::move(pace);
+    if (first->boards.empty()) break;
   }
   if (!first) return std::nullopt;
   unreadable.clear();
@@ -199,6 +190,34 @@ std::optional<Pace> pace_of_condition(const campaign::ScenarioResults& scenario,
 }
 
 }  // namespace
+
+std::string missed_without_value(const campaign::TrialResult& trial) {
+  if (trial.outcome != campaign::Outcome::kGoalMissed || !missed_in(trial).empty()) return "";
+  for (const campaign::MetricValue& metric : trial.metrics)
+    if (!metric.is_met())
+      return fmt::format("{} has no value: {}", in_a_sentence(metric.label),
+                         metric.missing_because);
+  return "";
+}
+
+MissedLimits missed_limits(std::span<const campaign::TrialResult* const> trials) {
+  MissedLimits all;
+  for (const campaign::TrialResult* trial : trials) {
+    if (trial->outcome != campaign::Outcome::kGoalMissed) continue;
+    std::vector<std::string> limits = missed_in(*trial);
+    if (limits.empty()) limits = {missed_without_value(*trial)};
+    std::erase(limits, "");
+    for (const std::string& limit : limits) {
+      const auto known = std::ranges::find(all, limit, &MissedLimits::value_type::first);
+      if (known == all.end())
+        all.emplace_back(limit, 1);
+      else
+        ++known->second;
+    }
+  }
+  std::ranges::stable_sort(all, std::greater<>{}, &MissedLimits::value_type::second);
+  return all;
+}
 
 campaign::Interval exact_interval(std::size_t reached, std::size_t flown) {
   const sizing::Share share = sizing::exact_share(reached, flown, 0.95);

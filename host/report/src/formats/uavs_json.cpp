@@ -2,7 +2,6 @@
 
 #include <tether/report/size_report.h>
 #include <tether/report/uavs_report.h>
-#include <tether/sizing/by_levels.h>
 
 namespace tether::report {
 
@@ -33,15 +32,12 @@ std::string uavs_json(const UavsReport& report) {
       {"settings", report.settings}};
   for (const Answer& answer : uavs_answers(report))
     json["summary"].push_back(answer.lead + answer.rest);
-  for (const sizing::UavLevel& level : uav_levels(report.points)) {
-    const sizing::Share share =
-        sizing::exact_share(level.reached, level.flights, question.confidence);
+  for (const auto& [level, share] : levels_of(report))
     json["levels"].push_back({{"uavs", level.uavs},
                               {"flights", level.flights},
                               {"reached", level.reached},
                               {"low", share.low},
                               {"high", share.high}});
-  }
   for (const UavsPoint& point : report.points)
     for (const campaign::TrialResult& trial : point.trials)
       json["flights"].push_back({{"uavs", point.uavs},

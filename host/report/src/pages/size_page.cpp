@@ -100,8 +100,8 @@ std::string size_page(const SizeReport& report) {
       "interval. Shaded: the interval of the largest sufficient slowdown. Below: how far each "
       "metric is within its limit, in shares of the limit.");
   if (!report.boards.empty()) body += to_html(boards_table(report));
-  if (report.pace)
-    body += to_html(stages_table(report.synchronised.condition + ", near the limit", *report.pace));
+  if (const auto& pace = report.pace.pace)
+    body += to_html(stages_table(report.synchronised.condition + ", near the limit", *pace));
   if (!report.not_flown.empty()) body += problems_box(report.not_flown);
   body += folded("All slowdowns that were flown", to_html(levels_table(report)));
   body += "<section id=\"basis\">\n" + element("h2", "Setup and checks") +

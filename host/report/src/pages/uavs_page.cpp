@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <tether/report/uavs_report.h>
-#include <tether/sizing/by_levels.h>
 
 namespace tether::report {
 namespace {
@@ -20,13 +19,10 @@ Table uavs_table(const UavsReport& report) {
       {fmt::format("Interval: the exact one (Clopper and Pearson), {:.4g} %, of each number "
                    "alone.",
                    100.0 * report.question.confidence)}};
-  for (const sizing::UavLevel& level : uav_levels(report.points)) {
-    const sizing::Share share =
-        sizing::exact_share(level.reached, level.flights, report.question.confidence);
+  for (const auto& [level, share] : levels_of(report))
     table.rows.push_back(
         {std::to_string(level.uavs), std::to_string(level.flights), std::to_string(level.reached),
          fmt::format("{:.0f} to {:.0f} %", 100.0 * share.low, 100.0 * share.high)});
-  }
   return table;
 }
 
@@ -62,10 +58,10 @@ std::string uavs_page(const UavsReport& report) {
                        "Each dot is the share of flights that reach the goal, with its exact "
                        "interval. Dotted: the share that is wanted.");
   body += to_html(uavs_table(report));
-  if (report.pace) {
-    const std::size_t uavs = std::max<std::size_t>(1, report.pace->programs);
+  if (const auto& pace = report.pace.pace) {
+    const std::size_t uavs = std::max<std::size_t>(1, pace->programs);
     body += to_html(stages_table(
-        fmt::format("{}, {} UAV{}", report.condition, uavs, uavs == 1 ? "" : "s"), *report.pace));
+        fmt::format("{}, {} UAV{}", report.condition, uavs, uavs == 1 ? "" : "s"), *pace));
   }
   if (!report.not_flown.empty()) body += problems_box(report.not_flown);
   body += "<section id=\"basis\">\n" + element("h2", "Setup and checks") +

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <tether/report/uavs_report.h>
-#include <tether/sizing/by_levels.h>
 
 namespace tether::report {
 
@@ -14,11 +13,8 @@ Plot uavs_plot(const UavsReport& report) {
   const auto least = static_cast<double>(report.question.least),
              most = static_cast<double>(report.question.most);
   DataBlock shares("shares"), wanted("wanted");
-  for (const sizing::UavLevel& level : uav_levels(report.points)) {
-    const sizing::Share share =
-        sizing::exact_share(level.reached, level.flights, report.question.confidence);
+  for (const auto& [level, share] : levels_of(report))
     shares.add(static_cast<double>(level.uavs), share.estimate, share.low, share.high);
-  }
   wanted.add(least - 0.5, report.question.success);
   wanted.add(most + 0.5, report.question.success);
   Drawing drawing;

@@ -13,10 +13,11 @@ using testing::SizeIs;
 
 TEST(SizeReport, AnswersFirstThenJudgesTheBoards) {
   const std::vector<std::string> sentences = size_sentences(sample_size());
-  ASSERT_THAT(sentences, SizeIs(2));
+  ASSERT_THAT(sentences, SizeIs(3));
   EXPECT_EQ(sentences[0],
             "Sufficient up to 3.1 × slower than “target” [2.7, 3.6], 95 %; 10 flights.");
   EXPECT_EQ(sentences[1], "Fast enough: pi.toml (1.9 ×) has 1.6 × headroom.");
+  EXPECT_EQ(sentences[2], "Missed: time required ≤ 6.5 s (5 flights).");
 }
 
 TEST(SizeReport, SaysWhenTheAnswerIsOutsideTheRange) {
@@ -44,7 +45,7 @@ TEST(SizeReport, SaysWhatLimitsTheAnswer) {
   report.synchronised.answer.is_narrow = false;
   report.synchronised.answer.basis = sizing::Basis::kLevels;
   const std::vector<std::string> sentences = size_sentences(report);
-  ASSERT_THAT(sentences, SizeIs(4));
+  ASSERT_THAT(sentences, SizeIs(5));
   EXPECT_THAT(sentences[2], HasSubstr("by neighbourhoods of slowdowns"));
   EXPECT_THAT(sentences[3], HasSubstr("wider than a factor of 1.3"));
 }
@@ -54,14 +55,14 @@ TEST(SizeReport, ComparesWithTheUnsynchronisedCondition) {
   report.unsynchronised = report.synchronised;
   report.unsynchronised->condition = "free";
   report.unsynchronised->answer.threshold = {6.2, 5.0, 7.0};
-  EXPECT_EQ(size_sentences(report).back(),
+  EXPECT_EQ(size_sentences(report)[2],
             "Without synchronisation (“free”), 6.2 × slower would seem sufficient: 2 × too much.");
 }
 
 TEST(SizeReport, AdvisesOnTheStageAndOnWhatIsNotKnown) {
   SizeReport report = sample_size();
   report.boards.clear();
-  report.pace.emplace().stages = {{.stage = "detect", .share = 0.81}};
+  report.pace.pace.emplace().stages = {{.stage = "detect", .share = 0.81}};
   EXPECT_THAT(
       size_advice(report),
       testing::ElementsAre(
@@ -72,7 +73,14 @@ TEST(SizeReport, AdvisesOnTheStageAndOnWhatIsNotKnown) {
   EXPECT_THAT(size_advice(report),
               testing::IsSupersetOf({HasSubstr("--max-trials"), HasSubstr("Speed up “detect”"),
                                      HasSubstr("--between 0.1,1")}));
-  EXPECT_EQ(pace_near_answer(report, "/nonexistent"), std::nullopt);
+}
+
+TEST(SizeReport, NamesTheRecordWithoutWhichComputingTimesAreNotKnown) {
+  SizeReport report = sample_size();
+  report.pace = pace_near_answer(report, "/nonexistent");
+  EXPECT_EQ(report.pace.pace, std::nullopt);
+  EXPECT_THAT(size_sentences(report).back(),
+              testing::AllOf(HasSubstr("not known"), HasSubstr("/nonexistent/turn/")));
 }
 
 TEST(SizeReport, ABoardSufficesIfAllOfItsCalibrationDoes) {

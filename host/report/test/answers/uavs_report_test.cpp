@@ -53,14 +53,17 @@ TEST(UavsReport, AnswersFirst) {
 
 TEST(UavsReport, SaysWhatSharingCostsAndWhatToDo) {
   UavsReport report = report_of({{2, 36, 36}, {3, 2, 0}});
-  report.pace = Pace{.stages = {{.stage = "detect", .share = 0.8}},
-                     .camera = "camera",
-                     .median_s = 0.12,
-                     .shared_board = "obc",
-                     .programs = 3,
-                     .waiting = 0.66};
+  report.pace.pace = Pace{.stages = {{.stage = "detect", .share = 0.8}},
+                          .camera = "camera",
+                          .median_s = 0.12,
+                          .shared_board = "obc",
+                          .programs = 3,
+                          .waiting = 0.66};
   EXPECT_EQ(uavs_answers(report)[1].rest,
             ": with 3 UAVs, an image costs 120 ms on the board, 66 % of it waiting for cores.");
+  report.pace = pace_at_limit(report, "/nonexistent");
+  EXPECT_THAT(uavs_answers(report).back().rest, HasSubstr("/nonexistent/"));
+  report.pace.pace = Pace{.stages = {{.stage = "detect", .share = 0.8}}};
   EXPECT_THAT(uavs_advice(report)[0], HasSubstr("speed up “detect” first"));
   EXPECT_THAT(uavs_advice(report_of({{4, 36, 36}}))[0], StartsWith("To find the limit"));
   EXPECT_THAT(uavs_advice(report_of({{2, 3, 3}}))[0], StartsWith("Fly more"));

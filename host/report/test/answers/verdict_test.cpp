@@ -141,6 +141,18 @@ TEST(Verdict, CountsEachLimitThatWasMissed) {
   EXPECT_NEAR(condition.closest->second, -0.2, 1e-12);
 }
 
+TEST(Verdict, KnowsAFlightThatMissedOnlyForWantOfAValue) {
+  TrialResult trial = flights(0, 1).conditions[0].trials[0];
+  EXPECT_EQ(missed_without_value(trial), "");
+  trial.metrics[0].value.reset();
+  trial.metrics[0].missing_because = "no estimates";
+  EXPECT_EQ(missed_without_value(trial), "time required has no value: no estimates");
+  EXPECT_EQ(missed_limits(std::vector<const TrialResult*>{&trial})[0].first,
+            missed_without_value(trial));
+  trial.end = campaign::kEndTimeLimit;
+  EXPECT_EQ(missed_without_value(trial), "");
+}
+
 TEST(Verdict, BeginsWithTheMostUrgentConditionThenTheSlowest) {
   campaign::ScenarioResults scenario = flights(10, 0);
   scenario.conditions.push_back(scenario.conditions[0]);

@@ -229,11 +229,6 @@ const MetricKind& read_metric_kind(const toml::Table& table) {
   return metric_kinds()[table.choice("kind", names)];
 }
 
-std::string limit_key(const MetricKind& kind) {
-  return (kind.is_better_if_more ? "min" : "max") +
-         (kind.unit == "J" ? "_j" : unit_suffix(kind.unit));
-}
-
 void reject_unsupported(const toml::Table& table, const MetricKind& kind) {
   const std::pair<std::string_view, bool> supported[] = {
       {"anchor", kind.needs_anchor},
@@ -285,6 +280,7 @@ Metric read_metric(const toml::Table& table, const Scenario& scenario) {
   }
   metric.of_any_flight = kind.of_any_flight;
   const std::string limit = limit_key(kind);
+  metric.limit_line = table.where(table.has(limit) ? limit : "kind").line;
   if (table.has(limit))
     (kind.is_better_if_more ? metric.min : metric.max) = table.number(limit, kLimit);
   return metric;

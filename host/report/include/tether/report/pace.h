@@ -69,5 +69,11 @@ std::optional<Pace> pace_of(const record::Record& record);
 /// Of a record on the disk. @throws Error(kBadFile), about the file, if it is missing, unreadable,
 /// or damaged.
 std::optional<Pace> read_pace(const std::filesystem::path& file);
+/// The same, or why it is not known: one line, empty if there is nothing to know.
+struct PaceOrReason {
+  std::optional<Pace> pace{};
+  std::string unreadable{};
+};
+PaceOrReason pace_or_reason(const std::filesystem::path& file);
 
 }  // namespace tether::report

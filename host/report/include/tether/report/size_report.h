@@ -54,8 +54,7 @@ struct SizeReport {
   /// The same slowdowns and seeds without synchronisation.
   std::optional<SizedCondition> unsynchronised{};
   std::vector<Board> boards{};
-  /// Of the flight whose slowdown is nearest to the answer; none: not known.
-  std::optional<Pace> pace{};
+  PaceOrReason pace{};                   ///< of the flight whose slowdown is nearest to the answer
   std::vector<std::string> not_flown{};  ///< one line for each flight that failed, with its reason
   campaign::Settings settings{};
 };
@@ -67,8 +66,8 @@ std::vector<std::string> size_sentences(const SizeReport& report);
 
 /// What to do next; each one sentence.
 std::vector<std::string> size_advice(const SizeReport& report);
-/// The pace of the flight whose slowdown is nearest to the answer; none if it has no record.
-std::optional<Pace> pace_near_answer(const SizeReport& report, const std::filesystem::path& folder);
+/// The pace of the flight whose slowdown is nearest to the answer.
+PaceOrReason pace_near_answer(const SizeReport& report, const std::filesystem::path& folder);
 
 /// Success over slowdown with the flights and the boards, and below it the margin of each limited
 /// metric.

@@ -9,6 +9,7 @@
 #include <tether/campaign/campaign_results.h>
 #include <tether/report/plots.h>
 #include <tether/report/verdict.h>
+#include <tether/sizing/by_levels.h>
 #include <tether/sizing/by_uavs.h>
 
 /// What `tether size --axis uavs` found: how many UAVs a board carries, in sentences, as a drawing,
@@ -19,6 +20,11 @@ namespace tether::report {
 struct UavsPoint {
   std::size_t uavs = 1;
   std::vector<campaign::TrialResult> trials{};
+};
+/// What they say, with the exact interval of their share.
+struct UavsLevel {
+  sizing::UavLevel level{};
+  sizing::Share share{};
 };
 
 struct UavsReport {
@@ -31,13 +37,16 @@ struct UavsReport {
   sizing::UavAnswer answer{};
   std::vector<UavsPoint> points{};  ///< those that were flown, in ascending order
   /// Of a flight with the fewest UAVs that are too many or, if there are none, with the most that
-  /// were flown; none: not known.
-  std::optional<Pace> pace{};
+  /// were flown.
+  PaceOrReason pace{};
   std::vector<std::string> not_flown{};  ///< one line for each flight that failed, with its reason
   campaign::Settings settings{};
 };
 
 std::vector<sizing::UavLevel> uav_levels(const std::vector<UavsPoint>& points);
+/// Those of the report that were flown, in ascending order.
+std::vector<UavsLevel> levels_of(const UavsReport& report);
+PaceOrReason pace_at_limit(const UavsReport& report, const std::filesystem::path& folder);
 std::size_t flights_of(const UavsReport& report);
 
 /// The answer with its evidence, then what limits it.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,6 +35,16 @@ enum class Ruling {
 /// "not fast enough", …
 std::string_view name(Ruling ruling);
 
+/// Limits, deadlines and goals, and how many flights missed each; the most frequent first.
+using MissedLimits = std::vector<std::pair<std::string, std::size_t>>;
+MissedLimits missed_limits(std::span<const campaign::TrialResult* const> trials);
+/// If the flight missed nothing but a limit of a metric without a value: why it has none. Else
+/// empty.
+std::string missed_without_value(const campaign::TrialResult& trial);
+/// "time required ≤ 5 s (3 flights), the time limit (1 flight) and 2 more"; of one flight, without
+/// the counts.
+std::string missed_text(const MissedLimits& missed, bool of_one = false);
+
 /// One condition of a scenario.
 struct ConditionVerdict {
   std::string condition;
@@ -48,8 +59,7 @@ struct ConditionVerdict {
   /// The exact interval (Clopper and Pearson, 1934) of the share that reaches the goal, 95 %. None
   /// if nothing has flown.
   std::optional<campaign::Interval> share{};
-  /// Limits, deadlines and goals, and how many flights missed each; the most frequent first.
-  std::vector<std::pair<std::string, std::size_t>> missed{};
+  MissedLimits missed{};
   /// The metric that came closest to its limit in any flight, and how far it was within it, in
   /// shares of the limit.
   std::optional<std::pair<std::string, double>> closest{};
@@ -105,6 +115,10 @@ struct Answer {
   std::string lead;  ///< which is to stand out: "Not fast enough"
   std::string rest;  ///< begins with ": " or a space
 };
+/// What `tether size` adds to an answer that rests on these flights: what those missed that did not
+/// reach the goal, and why no computing times are known (empty: they are).
+std::vector<Answer> answers_on_flights(std::span<const campaign::TrialResult* const> trials,
+                                       const std::string& unreadable);
 /// The condition's ruling with its evidence.
 Answer answer_of(const ConditionVerdict& condition);
 /// The slowest computer of a fleet, over all flights of the condition. None: there are not several.

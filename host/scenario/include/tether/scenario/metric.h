@@ -24,6 +24,7 @@ struct Metric {
   std::optional<double> min{};  ///< in `unit`; the goal is missed below it
   double threshold_m_s = 0.0;   ///< 0 if the kind has none
   bool of_any_flight = false;   ///< as its kind
+  int limit_line = 0;           ///< of its limit or, without one, of its kind
 };
 
 /// A kind of metric and the keys that it supports.
@@ -49,5 +50,7 @@ const MetricKind* find_metric_kind(std::string_view name);
 /// The unit as a suffix of keys: "max" (or "min") + this is the key of a limit ("_s", "_m", "_deg",
 /// "" for counts).
 std::string unit_suffix(std::string_view unit);
+/// The key of the kind's limit: "max_s", "min", …
+std::string limit_key(const MetricKind& kind);
 
 }  // namespace tether::scenario
