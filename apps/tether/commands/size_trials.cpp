@@ -1,10 +1,10 @@
 #include "commands/size_trials.h"
 
 #include "back_ends.h"
-#include "reading/file_kind.h"
 #include "options/refuse_option.h"
 #include "options/simulator_option.h"
 #include "options/trial_options.h"
+#include "reading/file_kind.h"
 #include "reading/world_options.h"
 #include "terminal/say.h"
 

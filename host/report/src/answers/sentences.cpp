@@ -17,8 +17,7 @@ namespace tether::report {
 namespace {
 
 constexpr std::size_t kMostMissed = 3;  // that a sentence names
-constexpr std::size_t kMostBoards = 3;
-constexpr double kLeastShare = 0.001;  // of a stage in tables
+constexpr double kLeastShare = 0.001;   // of a stage in tables
 
 std::string capital(std::string_view text) {
   std::string with(text);
@@ -34,10 +33,6 @@ std::string rate(double hz) {
 std::string headroom_text(const Pace& pace) {
   const std::optional<double> headroom = pace.headroom();
   return headroom ? fmt::format("{:.2g} ×", *headroom) : kNone;
-}
-
-std::string share(double value) {
-  return fmt::format("{:.0f} %", 100.0 * value);
 }
 
 std::string flights(std::size_t count) {
@@ -56,11 +51,11 @@ std::string pace_text(const Pace& pace) {
       text += fmt::format(
           ", an image costs {} on “{}”, {} of it waiting for the cores that {} "
           "programs share",
-          short_ms(pace.median_s), pace.shared_board, share(pace.waiting), pace.programs);
+          short_ms(pace.median_s), pace.shared_board, share_text(pace.waiting), pace.programs);
   }
   if (!pace.stages.empty())
     text += fmt::format("{}“{}” takes {} of the computing time", text.empty() ? "" : ", and ",
-                        pace.stages.front().stage, share(pace.stages.front().share));
+                        pace.stages.front().stage, share_text(pace.stages.front().share));
   return text;
 }
 
@@ -145,14 +140,6 @@ std::string evidence_of(const ConditionVerdict& condition) {
           condition.flown == 1 ? "s" : "");
   }
   return "";
-}
-
-/// " (50 ms to 70 ms)": the least and the largest of several flights; empty for one.
-template <class Text>
-std::string spread(const BoardPace& board, const std::pair<double, double>& range,
-                   const Text& text) {
-  if (board.flights < 2) return "";
-  return fmt::format(" ({} to {})", text(range.first), text(range.second));
 }
 
 std::string lead_of(const ConditionVerdict& condition) {
@@ -296,7 +283,7 @@ void add_stages(Table& table, const std::string& where, const Pace& pace) {
         pace.shares_real_board      ? " of computing and waiting for cores"
         : pace.shared_board.empty() ? " of computing"
                                     : fmt::format(", {} of it waiting for the cores of “{}”",
-                                                  share(pace.waiting), pace.shared_board),
+                                                  share_text(pace.waiting), pace.shared_board),
         short_ms(pace.p95_s), rate(pace.read_hz),
         pace.offered_hz ? fmt::format(", offered {} times", rate(*pace.offered_hz)) : "");
   table.notes.push_back(note);
@@ -324,37 +311,6 @@ std::string_view name(Ruling ruling) {
       break;
   }
   return "no answer (free-running)";
-}
-
-std::optional<Answer> slowest_board(const ConditionVerdict& condition) {
-  if (!condition.pace || condition.pace->boards.empty()) return std::nullopt;
-  std::vector<BoardPace> boards = condition.pace->boards;
-  const BoardPace slowest = slowest_of(boards);
-  std::ranges::stable_sort(boards, std::greater<>{}, [](const BoardPace& board) {
-    return std::pair(board.p95_s, board.alone.value_or(0.0));
-  });
-  std::vector<std::string> costs, waits;
-  for (const BoardPace& board : boards) {
-    if (board.p95_s > 0.0 && costs.size() < kMostBoards)
-      costs.push_back(fmt::format("{} on “{}” ({}; at most {} in 95 %{})", short_ms(board.median_s),
-                                  board.board, joined_with_and(board.uavs), short_ms(board.p95_s),
-                                  spread(board, board.p95_range_s, short_ms)));
-    if (board.alone && waits.size() < kMostBoards)
-      waits.push_back(fmt::format("{}{} for “{}”", share(*board.alone),
-                                  spread(board, board.alone_range, share), board.board));
-  }
-  if (costs.empty() && waits.empty()) return std::nullopt;
-  std::string text = fmt::format(": “{}” of “{}”", slowest.board, condition.condition);
-  if (slowest.flights > 1)
-    text += fmt::format(", in {} of {} flights", slowest.slowest_in, slowest.flights);
-  text += '.';
-  if (!costs.empty()) text += fmt::format(" An image costs {}.", joined_with_and(costs));
-  if (!waits.empty())
-    text +=
-        fmt::format(" Of the wall time, the simulation waited {} alone.", joined_with_and(waits));
-  if (slowest.flights > 1)
-    text += " These are means over the flights, with the least and the largest of a flight.";
-  return Answer{"Slowest board", text};
 }
 
 std::string missed_text(const MissedLimits& missed, bool of_one) {
@@ -434,10 +390,10 @@ Table rulings_table(const std::vector<Verdict>& points) {
               ? fmt::format("{:.0f} to {:.0f} %", 100.0 * one.share->low, 100.0 * one.share->high)
               : kNone,
           one.pace ? headroom_text(*one.pace) : kNone,
-          one.closest
-              ? fmt::format("{}: {} {}", one.closest->first, share(std::abs(one.closest->second)),
-                            one.closest->second < 0.0 ? "beyond" : "left")
-              : kNone};
+          one.closest ? fmt::format("{}: {} {}", one.closest->first,
+                                    share_text(std::abs(one.closest->second)),
+                                    one.closest->second < 0.0 ? "beyond" : "left")
+                      : kNone};
       if (is_sweep) row.insert(row.begin(), point.point);
       table.rows.push_back(std::move(row));
     }

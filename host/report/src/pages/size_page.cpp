@@ -2,6 +2,7 @@
 #include "pages/page_figures.h"
 #include "pages/verdict_html.h"
 #include "plots/svg.h"
+#include "tables/report_format.h"
 
 #include <fmt/format.h>
 
@@ -10,10 +11,6 @@
 
 namespace tether::report {
 namespace {
-
-std::string share_text(double value) {
-  return fmt::format("{:.0f} %", 100.0 * value);
-}
 
 std::string times_text(double value) {
   return fmt::format("{:.3g}", value);

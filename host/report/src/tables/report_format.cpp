@@ -54,6 +54,10 @@ std::string in_a_sentence(std::string label) {
   return label;
 }
 
+std::string share_text(double value) {
+  return fmt::format("{:.0f} %", 100.0 * value);
+}
+
 std::string short_ms(double seconds) {
   return fmt::format("{:.{}f} ms", 1e3 * seconds, seconds < 0.01 ? 1 : 0);
 }

@@ -34,6 +34,8 @@ std::string with_unit(const std::string& label, const std::string& unit);
 std::string in_a_sentence(std::string label);
 /// "9.4 ms", "108 ms"
 std::string short_ms(double seconds);
+/// "81 %"
+std::string share_text(double value);
 /// "a, b and c"
 std::string joined_with_and(const std::vector<std::string>& parts);
 /// Unexpected events of a run, in one line; empty: none.
