@@ -138,14 +138,16 @@ std::optional<Clearance> ClearanceMeter::measure(std::size_t uav,
 void ClearanceMeter::find_nearest(const Shape& own, std::span<const Pose> X_WB,
                                   Nearest& nearest) const {
   const Convex here = own.at(own.pose(X_WB));
-  const Vec3 centre_W = transform(here.X_WS, own.bounds.centre);
-  const double radius_m = norm(own.bounds.half_m);
+  const Ball around{.body = {},
+                    .p_WC = transform(here.X_WS, own.bounds.centre),
+                    .radius_m = norm(own.bounds.half_m)};
   const auto squared_to_centre = [&](const Ball& ball) {
-    const Vec3 apart_W = centre_W - (ball.body ? X_WB[*ball.body].p : ball.p_WC);
+    const Vec3 apart_W = around.p_WC - (ball.body ? X_WB[*ball.body].p : ball.p_WC);
     return dot(apart_W, apart_W);
   };
   const auto compare_to = [&](std::size_t other) {
-    const double distance_m = distance_between(here, own, shapes_[other], X_WB, nearest.distance_m);
+    const double distance_m =
+        distance_between(here, around, shapes_[other], X_WB, nearest.distance_m);
     nearest = std::min(nearest, {distance_m, other});
   };
 
@@ -161,22 +163,21 @@ void ClearanceMeter::find_nearest(const Shape& own, std::span<const Pose> X_WB,
   compare_to(first);
   for (std::size_t i = 0; i < balls_.size(); ++i) {
     if (balls_[i].body == own.body || i == first) continue;
-    const double beyond_m = nearest.distance_m + radius_m + balls_[i].radius_m + kRounding_m;
+    const double beyond_m = nearest.distance_m + around.radius_m + balls_[i].radius_m + kRounding_m;
     if (squared_to_centre(balls_[i]) <= beyond_m * beyond_m) compare_to(i);
   }
 }
 
 // Or any number above `enough_m`, if the distance is above it.
-double ClearanceMeter::distance_between(const Convex& here, const Shape& own, const Shape& other,
+double ClearanceMeter::distance_between(const Convex& here, const Ball& around, const Shape& other,
                                         std::span<const Pose> X_WB, double enough_m) {
   if (other.plane_normal_S) {
     const Vec3 down_W = rotate(other.X_BS.q, -1.0 * *other.plane_normal_S);
     return std::max(0.0, other.height_m(support_point(here, down_W)) - rounding_m(here));
   }
   const Pose X_WS = other.pose(X_WB);
-  const Vec3 centre_W = transform(here.X_WS, own.bounds.centre);
-  const Vec3 centre_S = rotate(inverse(X_WS.q), centre_W - X_WS.p);
-  const double least_m = distance_m(other.bounds, centre_S) - norm(own.bounds.half_m);
+  const Vec3 centre_S = rotate(inverse(X_WS.q), around.p_WC - X_WS.p);
+  const double least_m = distance_m(other.bounds, centre_S) - around.radius_m;
   return least_m > enough_m ? kInfinity : std::max(0.0, sim::distance_m(here, other.at(X_WS)));
 }
 

@@ -87,6 +87,11 @@ void add_shares_alone(std::vector<BoardPace>& boards, const record::Record& reco
   for (std::size_t i = 0; i < boards.size(); ++i) boards[i].alone = to_seconds(alone[i]) / all_s;
 }
 
+/// Greater for a slower board.
+std::pair<double, double> slowness(const BoardPace& board) {
+  return {board.p95_s, board.alone.value_or(0.0)};
+}
+
 void extend(std::pair<double, double>& range, double value) {
   range = {std::min(range.first, value), std::max(range.second, value)};
 }
@@ -121,9 +126,7 @@ std::vector<BoardPace> board_paces(const record::Record& record, std::span<const
 }
 
 const BoardPace& slowest_of(std::span<const BoardPace> boards) {
-  return *std::ranges::max_element(boards, {}, [](const BoardPace& board) {
-    return std::pair(board.p95_s, board.alone.value_or(0.0));
-  });
+  return *std::ranges::max_element(boards, {}, slowness);
 }
 
 std::vector<BoardPace> over_flights(std::span<const std::vector<BoardPace>> flights) {
@@ -162,10 +165,8 @@ std::vector<BoardPace> over_flights(std::span<const std::vector<BoardPace>> flig
 std::optional<Answer> slowest_board(const ConditionVerdict& condition) {
   if (!condition.pace || condition.pace->boards.empty()) return std::nullopt;
   std::vector<BoardPace> boards = condition.pace->boards;
-  const BoardPace slowest = slowest_of(boards);
-  std::ranges::stable_sort(boards, std::greater<>{}, [](const BoardPace& board) {
-    return std::pair(board.p95_s, board.alone.value_or(0.0));
-  });
+  std::ranges::stable_sort(boards, std::greater<>{}, slowness);
+  const BoardPace& slowest = boards.front();
   std::vector<std::string> costs, waits;
   for (const BoardPace& board : boards) {
     if (board.p95_s > 0.0 && costs.size() < kMostBoards)

@@ -61,7 +61,7 @@ class ClearanceMeter {
            std::string_view owner, const MeshVertices& vertices);
   std::span<const uav::Vec3> vertices_of(const MeshGeometry& mesh, const MeshVertices& vertices);
   void find_nearest(const Shape& own, std::span<const uav::Pose> X_WB, Nearest& nearest) const;
-  static double distance_between(const Convex& here, const Shape& own, const Shape& other,
+  static double distance_between(const Convex& here, const Ball& around, const Shape& other,
                                  std::span<const uav::Pose> X_WB, double enough_m);
   std::string_view shape_overhead(const uav::Vec3& p_W) const;
 
