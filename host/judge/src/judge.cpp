@@ -78,6 +78,7 @@ class Judge {
   ClauseVerdict judge(const Clause& clause) {
     ClauseVerdict verdict{.uav = uav_, .name = clause.name};
     verdict.unit = clause.condition ? clause.condition->unit->name : "s";
+    if (clause.condition) verdict.limit = clause.condition->bound;
     const std::optional<Span> span = span_of(clause, verdict);
     if (!span) return verdict;
     verdict.from = span->from;
@@ -113,6 +114,7 @@ class Judge {
   void judge_deadline(const Clause& clause, const Span& span, ClauseVerdict& verdict) {
     const std::string missing = why_not_reached(clause);
     const SimTime deadline = *verdict.deadline;
+    verdict.limit = to_seconds(deadline - span.from);
     const Duration left = deadline - span.to;
     verdict.met = missing.empty() && left >= Duration(0);
     verdict.decided_at = std::min(span.to, deadline);
@@ -168,7 +170,6 @@ class Judge {
     const Events& in_span = events_in(clause, span);
     const std::vector<Event>& events = in_span.events;
     const std::vector<double>& margins = in_span.margins;
-    verdict.limit = condition.bound;
     if (events.empty()) {
       verdict.limited_by = "there is no such command or read in this time";
       return;

@@ -91,8 +91,9 @@ TEST(Judge, FollowsTheMarginOverTime) {
   EXPECT_TRUE(std::ranges::is_sorted(always, std::greater<>(), &MarginAt::margin));
   const auto eventually = flight.verdict(R"(eventually = "altitude >= 5 m")").margins;
   EXPECT_TRUE(std::ranges::is_sorted(eventually, {}, &MarginAt::margin));
-  const auto deadline = flight.verdict("during = [\"a\"]\nwithin_s = 5").margins;
-  EXPECT_EQ(deadline, (std::vector<MarginAt>{{st(1), 5.0}, {st(3), 3.0}}));
+  const ClauseVerdict deadline = flight.verdict("during = [\"a\"]\nwithin_s = 5");
+  EXPECT_EQ(deadline.margins, (std::vector<MarginAt>{{st(1), 5.0}, {st(3), 3.0}}));
+  EXPECT_EQ(deadline.limit, 5.0);
 }
 
 // Clauses share their work, but not their verdicts.

@@ -189,6 +189,11 @@ std::optional<double> margin_of(const campaign::MetricValue& metric) {
   return within / std::abs(limit);
 }
 
+std::optional<double> margin_of(const judge::ClauseVerdict& clause) {
+  if (!clause.margin || !clause.limit || *clause.limit == 0.0) return std::nullopt;
+  return *clause.margin / std::abs(*clause.limit);
+}
+
 sizing::Flight flight_of(const campaign::TrialResult& trial, double slowdown) {
   sizing::Flight flight{slowdown, trial.outcome == campaign::Outcome::kGoalReached, std::nullopt};
   for (const campaign::MetricValue& metric : trial.metrics) {

@@ -65,11 +65,14 @@ void count(ConditionVerdict& verdict, const campaign::TrialResult& trial) {
   if (trial.outcome == campaign::Outcome::kGoalReached) ++verdict.reached;
   if (has_crash(trial)) ++verdict.crashed;
   if (trial.this_run.target && trial.this_run.target->is_spoiled) ++verdict.throttled;
-  for (const campaign::MetricValue& metric : trial.metrics) {
-    const std::optional<double> margin = margin_of(metric);
+  const auto compare = [&](const std::string& label, std::optional<double> margin) {
     if (margin && (!verdict.closest || *margin < verdict.closest->second))
-      verdict.closest = {metric.label, *margin};
-  }
+      verdict.closest = {label, *margin};
+  };
+  for (const campaign::MetricValue& metric : trial.metrics)
+    compare(metric.label, margin_of(metric));
+  for (const judge::ClauseVerdict& clause : trial.clauses)
+    compare(fmt::format("“{}”", clause.name), margin_of(clause));
 }
 
 Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResults& results) {

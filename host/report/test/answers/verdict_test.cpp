@@ -139,6 +139,9 @@ TEST(Verdict, CountsEachLimitThatWasMissed) {
                           std::pair("the time limit", 1u), std::pair("no crash", 1u)));
   EXPECT_EQ(condition.closest->first, "Time required");
   EXPECT_NEAR(condition.closest->second, -0.2, 1e-12);
+  trials[0].clauses = {
+      {.uav = "uav1", .name = "turn", .margin = -90.0, .unit = "ms", .limit = 150.0}};
+  EXPECT_EQ(verdict_of(scenario).conditions[0].closest, std::pair(std::string("“turn”"), -0.6));
 }
 
 TEST(Verdict, KnowsAFlightThatMissedOnlyForWantOfAValue) {

@@ -52,7 +52,8 @@ struct ClauseVerdict {
   /// Of a condition on commands or reads, such as `reaction_time`: the quantiles of its values at
   /// 0, 5, … 100 %, in `unit`. Empty for other clauses, and if there were none.
   std::vector<double> quantiles{};
-  std::optional<double> limit{};  ///< of these values, in `unit`
+  /// The bound of the condition, or the time from `from` to the deadline, in `unit`.
+  std::optional<double> limit{};
 
   friend bool operator==(const ClauseVerdict&, const ClauseVerdict&) = default;
 };

@@ -84,6 +84,8 @@ std::string size_json(const SizeReport& report);
 /// A metric's distance from its limit in shares of the limit, negative beyond it. None without a
 /// value or a limit, and for counts, which do not vary continuously.
 std::optional<double> margin_of(const campaign::MetricValue& metric);
+/// The same of a clause.
+std::optional<double> margin_of(const judge::ClauseVerdict& clause);
 /// The flight for the statistics. Its margin is that of its worst metric, if that agrees with the
 /// outcome. @pre the trial did not fail.
 sizing::Flight flight_of(const campaign::TrialResult& trial, double slowdown);

@@ -60,8 +60,8 @@ struct ConditionVerdict {
   /// if nothing has flown.
   std::optional<campaign::Interval> share{};
   MissedLimits missed{};
-  /// The metric that came closest to its limit in any flight, and how far it was within it, in
-  /// shares of the limit.
+  /// The metric or clause that came closest to its limit in any flight, and how far it was within
+  /// it, in shares of the limit.
   std::optional<std::pair<std::string, double>> closest{};
   std::string reason{};  ///< of the first flight that failed, or is not sound
   std::optional<Pace> pace{};
