@@ -2,7 +2,7 @@
 
 #include "command_queue.h"
 #include "run_log.h"
-#include "sampler.h"
+#include "sensors/sampler.h"
 
 #include <cstddef>
 #include <cstdint>

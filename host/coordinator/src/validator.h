@@ -1,6 +1,6 @@
 #pragma once
 
-#include "sampler.h"
+#include "sensors/sampler.h"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
-#include "json_messages.h"
-#include "json_text.h"
-#include "mcap_format.h"
+#include "json/json_messages.h"
+#include "json/json_text.h"
+#include "mcap/mcap_format.h"
 
 #include <algorithm>
 #include <string_view>

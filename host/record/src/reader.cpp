@@ -1,8 +1,8 @@
 #include "damage.h"
-#include "json_messages.h"
-#include "json_metadata.h"
-#include "mcap_reader.h"
-#include "schemas.h"
+#include "json/json_messages.h"
+#include "json/json_metadata.h"
+#include "json/schemas.h"
+#include "mcap/mcap_reader.h"
 
 #include <algorithm>
 #include <limits>

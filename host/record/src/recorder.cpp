@@ -1,13 +1,13 @@
 // Puts messages into an MCAP file: Channels makes a channel for each topic when its first message
 // comes, and McapWriter packs the messages into chunks.
 
-#include "json_members.h"
-#include "json_messages.h"
-#include "json_metadata.h"
-#include "json_text.h"
-#include "mcap_writer.h"
-#include "members.h"
-#include "schemas.h"
+#include "json/json_members.h"
+#include "json/json_messages.h"
+#include "json/json_metadata.h"
+#include "json/json_text.h"
+#include "json/members.h"
+#include "json/schemas.h"
+#include "mcap/mcap_writer.h"
 
 #include <algorithm>
 #include <map>

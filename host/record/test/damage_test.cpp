@@ -1,4 +1,4 @@
-#include "json_messages.h"
+#include "json/json_messages.h"
 #include "raw_records.h"
 #include "sample_messages.h"
 

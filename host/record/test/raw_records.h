@@ -1,7 +1,7 @@
 #pragma once
 
-#include "bytes.h"
-#include "mcap_format.h"
+#include "mcap/bytes.h"
+#include "mcap/mcap_format.h"
 
 #include <string_view>
 #include <vector>

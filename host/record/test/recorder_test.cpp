@@ -1,5 +1,5 @@
-#include "json_metadata.h"
-#include "mcap_writer.h"
+#include "json/json_metadata.h"
+#include "mcap/mcap_writer.h"
 #include "sample_messages.h"
 
 #include <string>

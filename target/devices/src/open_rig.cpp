@@ -1,8 +1,8 @@
+#include "camera/open_camera.h"
 #include "clock.h"
-#include "iio_folder.h"
-#include "imu_device.h"
-#include "open_camera.h"
-#include "range_device.h"
+#include "iio/iio_folder.h"
+#include "iio/imu_device.h"
+#include "iio/range_device.h"
 #include "rig_vehicle.h"
 
 #include <memory>

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "camera_device.h"
+#include "camera/camera_device.h"
 #include "clock.h"
-#include "imu_device.h"
-#include "range_device.h"
+#include "iio/imu_device.h"
+#include "iio/range_device.h"
 
 #include <memory>
 #include <mutex>

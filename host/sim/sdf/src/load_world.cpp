@@ -1,8 +1,8 @@
 // Assembles a World from the parts that the other files of this library convert: models with their
 // links, lights, physics and scene from the world's file, then the UAVs, then the anchors.
 
-#include "sdf_convert.h"
-#include "sdf_mend.h"
+#include "checks/sdf_mend.h"
+#include "convert/sdf_convert.h"
 
 #include <cmath>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "sdf_convert.h"
+#include "convert/sdf_convert.h"
 
 #include <algorithm>
 

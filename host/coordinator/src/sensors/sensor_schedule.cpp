@@ -1,0 +1,92 @@
+#include "sensors/sensor_schedule.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tether::coordinator {
+
+SensorSchedule::SensorSchedule(uav::SensorTiming timing, std::uint64_t seed, std::uint64_t stream)
+    : timing_(std::move(timing)), seed_(seed), stream_(stream) {}
+
+Measurement SensorSchedule::periodic(const uav::PeriodicTiming& timing, std::uint64_t index) const {
+  const SimTime sampled_at = uav::sampling_instant(timing, index);
+  return {index, sampled_at, sampled_at + uav::draw(timing.delay, {seed_, stream_, index})};
+}
+
+std::optional<std::uint64_t> SensorSchedule::newest_sampled(const uav::PeriodicTiming& timing,
+                                                            SimTime t) {
+  const Duration since_phase = t.time_since_epoch() - timing.phase;
+  if (since_phase < Duration(0)) return std::nullopt;
+  return static_cast<std::uint64_t>(since_phase / timing.period);
+}
+
+// Walks back from the last measurement that was sampled by t. Delays may reorder what becomes
+// available, so the first hit from the newest side is the answer.
+std::optional<Measurement> SensorSchedule::newest_available(const uav::PeriodicTiming& timing,
+                                                            SimTime t, std::uint64_t first) const {
+  const auto newest = newest_sampled(timing, t);
+  if (!newest) return std::nullopt;
+  for (std::uint64_t k = *newest + 1; k-- > first;) {
+    const Measurement candidate = periodic(timing, k);
+    if (candidate.available_at <= t) return candidate;
+  }
+  return std::nullopt;
+}
+
+// The least availability from `first` on: no later measurement can beat one that is available
+// before it is sampled.
+Measurement SensorSchedule::next_available(const uav::PeriodicTiming& timing,
+                                           std::uint64_t first) const {
+  Measurement best = periodic(timing, first);
+  for (std::uint64_t k = first + 1; uav::sampling_instant(timing, k) < best.available_at; ++k) {
+    const Measurement candidate = periodic(timing, k);
+    if (candidate.available_at < best.available_at) best = candidate;
+  }
+  return best;
+}
+
+Measurement SensorSchedule::choose(SimTime t, bool latest) const {
+  if (const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_)) {
+    if (const auto there = choose_available(t, latest)) return *there;
+    return next_available(*timing, unread_);
+  }
+  const auto& timing = std::get<uav::OnDemandTiming>(timing_);
+  return {unread_, t, t + uav::draw(timing.delay, {seed_, stream_, unread_})};
+}
+
+Measurement SensorSchedule::choose_free_running(SimTime t, bool latest) const {
+  const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_);
+  if (!timing) return {unread_, t, t};
+  if (const auto there = choose_available_free_running(t, latest)) return *there;
+  const SimTime next = uav::sampling_instant(*timing, unread_);
+  return {unread_, next, next};
+}
+
+std::optional<Measurement> SensorSchedule::choose_available(SimTime t, bool latest) const {
+  return newest_available(std::get<uav::PeriodicTiming>(timing_), t, latest ? 0 : unread_);
+}
+
+std::optional<Measurement> SensorSchedule::choose_available_free_running(SimTime t,
+                                                                         bool latest) const {
+  const auto newest = newest_sampled(std::get<uav::PeriodicTiming>(timing_), t);
+  if (!newest || !(latest || *newest >= unread_)) return std::nullopt;
+  return Measurement{*newest, t, t};
+}
+
+void SensorSchedule::mark_read(const Measurement& measurement) {
+  unread_ = std::max(unread_, measurement.index + 1);
+}
+
+std::optional<SimTime> SensorSchedule::sampling_instant(std::uint64_t index) const {
+  const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_);
+  return timing ? std::optional(uav::sampling_instant(*timing, index)) : std::nullopt;
+}
+
+std::uint64_t SensorSchedule::first_readable(SimTime t) const {
+  const auto* timing = std::get_if<uav::PeriodicTiming>(&timing_);
+  if (!timing) return unread_;
+  const auto newest = newest_available(*timing, t, 0);
+  return newest ? newest->index : 0;
+}
+
+}  // namespace tether::coordinator

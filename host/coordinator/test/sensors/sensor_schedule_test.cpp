@@ -1,0 +1,123 @@
+#include "sensors/sensor_schedule.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace tether::coordinator {
+namespace {
+
+using std::chrono::milliseconds;
+SimTime ms(std::int64_t value) {
+  return SimTime(milliseconds(value));
+}
+
+SensorSchedule camera(Duration delay, Duration phase = Duration(0)) {
+  return {uav::PeriodicTiming{milliseconds(33), phase, uav::ConstantDelay{delay}}, 0, 0};
+}
+
+struct PeriodicCase {
+  const char* what;
+  std::int64_t read_ms;
+  bool latest;
+  Measurement expected;
+};
+
+// Period 33 ms, delay 10 ms; measurement 1 (available at 43 ms) has been read.
+TEST(SensorSchedule, PeriodicReads) {
+  SensorSchedule schedule = camera(milliseconds(10));
+  schedule.mark_read({1, ms(33), ms(43)});
+  const PeriodicCase cases[] = {
+      {"nothing new: waits for the next", 44, false, {2, ms(66), ms(76)}},
+      {"the next is sampled but not yet available", 70, false, {2, ms(66), ms(76)}},
+      {"the next is available", 76, false, {2, ms(66), ms(76)}},
+      {"the newest is taken, the one between is skipped", 150, false, {4, ms(132), ms(142)}},
+      {"latest: the last one again", 70, true, {1, ms(33), ms(43)}},
+      {"latest: a newer one if there is one", 80, true, {2, ms(66), ms(76)}},
+  };
+  for (const auto& c : cases)
+    EXPECT_EQ(schedule.choose(ms(c.read_ms), c.latest), c.expected) << c.what;
+}
+
+TEST(SensorSchedule, OnDemandMeasuresAtTheRequestAndDeliversADelayLater) {
+  SensorSchedule schedule(uav::OnDemandTiming{uav::ConstantDelay{milliseconds(98)}}, 0, 0);
+  const auto t = from_ns<SimTime>(1'234'567);
+  const Measurement first = schedule.choose(t, false);
+  EXPECT_EQ(first, (Measurement{0, t, t + milliseconds(98)}));
+  schedule.mark_read(first);
+  EXPECT_EQ(schedule.choose(t, false).index, 1u);
+  EXPECT_FALSE(schedule.sampling_instant(0));
+}
+
+// Free running: measurement 1 (of 33 ms) has been read.
+TEST(SensorSchedule, FreeRunningReadsGetTheStateAtOnceOncePerPeriod) {
+  SensorSchedule schedule = camera(milliseconds(10));
+  schedule.mark_read({1, ms(40), ms(40)});
+  const PeriodicCase cases[] = {
+      {"that of the period was read: waits for the next", 44, false, {2, ms(66), ms(66)}},
+      {"latest: now, again", 44, true, {1, ms(44), ms(44)}},
+      {"a new period: now", 70, false, {2, ms(70), ms(70)}},
+      {"periods that passed by are not read later", 150, false, {4, ms(150), ms(150)}},
+  };
+  for (const auto& c : cases)
+    EXPECT_EQ(schedule.choose_free_running(ms(c.read_ms), c.latest), c.expected) << c.what;
+  EXPECT_EQ(camera(Duration(0), milliseconds(5)).choose_free_running(ms(0), true),
+            (Measurement{0, ms(5), ms(5)}))
+      << "before the phase";
+  const SensorSchedule on_demand(uav::OnDemandTiming{uav::ConstantDelay{milliseconds(98)}}, 0, 0);
+  EXPECT_EQ(on_demand.choose_free_running(ms(7), false), (Measurement{0, ms(7), ms(7)}));
+}
+
+// Synchronised and in free running; measurement 1 (of 33 ms, available at 43 ms) has been read.
+TEST(SensorSchedule, ReadsIfAvailableDoNotWait) {
+  SensorSchedule schedule = camera(milliseconds(10));
+  schedule.mark_read({1, ms(33), ms(43)});
+  EXPECT_FALSE(schedule.choose_available(ms(75), false));
+  EXPECT_EQ(schedule.choose_available(ms(75), true), (Measurement{1, ms(33), ms(43)}));
+  EXPECT_EQ(schedule.choose_available(ms(76), false), (Measurement{2, ms(66), ms(76)}));
+  EXPECT_FALSE(schedule.choose_available_free_running(ms(65), false));
+  EXPECT_EQ(schedule.choose_available_free_running(ms(65), true), (Measurement{1, ms(65), ms(65)}));
+  EXPECT_EQ(schedule.choose_available_free_running(ms(66), false),
+            (Measurement{2, ms(66), ms(66)}));
+  EXPECT_FALSE(camera(Duration(0), milliseconds(5)).choose_available(ms(4), true));
+}
+
+// Against the definition, by trying every measurement: random delays up to several periods reorder
+// what becomes available.
+TEST(SensorSchedule, AgreesWithTheDefinitionUnderRandomDelays) {
+  const uav::PeriodicTiming timing{Duration(100), Duration(17),
+                                   uav::NormalDelay{Duration(150), Duration(120)}};
+  KeyedRandom random({.seed = 5});
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    SensorSchedule schedule(timing, seed, 9);
+    std::vector<SimTime> available;
+    for (std::uint64_t k = 0; k < 800; ++k)
+      available.push_back(uav::sampling_instant(timing, k) + uav::draw(timing.delay, {seed, 9, k}));
+    std::uint64_t unread = 0;
+    std::int64_t now = 0;
+    for (int i = 0; i < 200; ++i) {
+      now += random.bits() % 300;
+      const auto t = from_ns<SimTime>(now);
+      const bool latest = random.bits() % 4 == 0;
+
+      std::optional<std::uint64_t> newest, next;
+      for (std::uint64_t k = 0; k < available.size(); ++k) {
+        if (available[k] <= t && (latest || k >= unread)) newest = k;
+        if (k >= unread && (!next || available[k] < available[*next])) next = k;
+      }
+      const std::uint64_t expected = newest.value_or(*next);
+      const Measurement got = schedule.choose(t, latest);
+      ASSERT_EQ(got.index, expected) << "seed " << seed << ", read " << i;
+      ASSERT_EQ(got.available_at, available.at(expected));
+      ASSERT_GE(got.index, schedule.first_readable(t));
+      schedule.mark_read(got);
+      unread = std::max(unread, got.index + 1);
+      now = std::max(now, to_ns(got.available_at));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tether::coordinator

@@ -1,0 +1,371 @@
+// Checks every element of a parsed SDF file before it is converted. Tables list the elements that
+// Tether represents; a walk over the file warns of all others and applies the rules of values
+// (sdf_rules.h). Some checks of lights and lenses need more than one element.
+
+#include "checks/sdf_check.h"
+
+#include "files/sdf_numbers.h"
+#include "files/sdf_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string_view>
+
+#include <ignition/math/Vector2.hh>
+
+namespace tether::sim {
+
+namespace {
+
+using Names = std::set<std::string, std::less<>>;
+using ElementTable = std::map<std::string, Names, std::less<>>;
+
+/// The elements of SDF that Tether represents, by parent.
+const ElementTable kElements = {
+    {"sdf", {"world", "model"}},
+    {"world", {"physics", "gravity", "scene", "light", "model", "frame"}},
+    {"physics", {"max_step_size"}},
+    {"scene", {"ambient", "background", "shadows"}},
+    {"model", {"static", "link", "pose", "frame", "model"}},
+    {"frame", {"pose"}},
+    {"link", {"pose", "inertial", "visual", "collision"}},
+    {"inertial", {"mass", "pose", "inertia"}},
+    {"inertia", {"ixx", "iyy", "izz", "ixy", "ixz", "iyz"}},
+    {"visual", {"pose", "geometry", "material", "cast_shadows", "transparency"}},
+    {"collision", {"pose", "geometry", "surface"}},
+    {"surface", {"friction"}},
+    {"friction", {"ode"}},
+    {"ode", {"mu"}},
+    {"geometry", {"empty", "box", "cylinder", "sphere", "capsule", "ellipsoid", "plane", "mesh"}},
+    {"box", {"size"}},
+    {"cylinder", {"radius", "length"}},
+    {"sphere", {"radius"}},
+    {"capsule", {"radius", "length"}},
+    {"ellipsoid", {"radii"}},
+    {"plane", {"normal", "size"}},
+    {"mesh", {"uri", "scale", "submesh"}},
+    {"submesh", {"name", "center"}},
+    {"material", {"ambient", "diffuse", "specular", "emissive", "pbr", "tether:texture_repeat"}},
+    {"pbr", {"metal", "specular"}},
+    {"metal", {"albedo_map"}},
+    {"specular", {"albedo_map"}},
+    {"light",
+     {"pose", "diffuse", "specular", "attenuation", "direction", "spot", "cast_shadows",
+      "intensity"}},
+    {"attenuation", {"range", "constant", "linear", "quadratic"}},
+    {"spot", {"inner_angle", "outer_angle", "falloff"}},
+    {"sensor", {"pose", "update_rate", "camera", "imu", "ray", "lidar"}},
+    {"camera",
+     {"pose", "horizontal_fov", "image", "clip", "noise", "distortion", "lens", "depth_camera"}},
+    {"depth_camera", {"clip"}},
+    {"image", {"width", "height", "format"}},
+    {"clip", {"near", "far"}},
+    {"distortion", {"k1", "k2", "k3", "p1", "p2", "center"}},
+    {"lens", {"intrinsics"}},
+    {"intrinsics", {"fx", "fy", "cx", "cy"}},
+    {"noise",
+     {"type", "mean", "stddev", "bias_mean", "bias_stddev", "dynamic_bias_stddev",
+      "dynamic_bias_correlation_time"}},
+    {"imu", {"angular_velocity", "linear_acceleration"}},
+    {"angular_velocity", {"x", "y", "z"}},
+    {"linear_acceleration", {"x", "y", "z"}},
+    {"x", {"noise"}},
+    {"y", {"noise"}},
+    {"z", {"noise"}},
+    {"ray", {"scan", "range", "noise"}},
+    {"lidar", {"scan", "range", "noise"}},
+    {"scan", {"horizontal", "vertical"}},
+    {"horizontal", {"samples", "resolution", "min_angle", "max_angle"}},
+    {"vertical", {"samples", "resolution", "min_angle", "max_angle"}},
+    {"range", {"min", "max", "resolution"}},
+};
+
+/// Elements that only a world or only a UAV's model may have.
+const ElementTable kWorldElements = {{"link", {"light"}}};
+const ElementTable kUavElements = {{"link", {"sensor"}}, {"model", {"tether:multirotor", "joint"}}};
+
+/// Elements that change nothing of what is simulated: windows, topics, pacing, and what SDF demands
+/// but other elements already imply.
+const ElementTable kWithoutEffect = {
+    {"world", {"gui"}},
+    {"physics", {"real_time_factor", "real_time_update_rate"}},
+    {"scene", {"grid", "origin_visual"}},
+    {"model", {"allow_auto_disable"}},
+    {"sensor", {"always_on", "visualize", "topic"}},
+    {"camera", {"optical_frame_id"}},
+    {"depth_camera", {"output"}},
+};
+
+/// What follows if an element is not represented: by the element, else by its parent, else nothing.
+const std::map<std::string, Consequence, std::less<>> kConsequenceOfElement = {
+    {"actor", Consequence::kMissing},
+    {"population", Consequence::kMissing},
+    {"road", Consequence::kMissing},
+    {"particle_emitter", Consequence::kLooksDifferent},
+    {"projector", Consequence::kLooksDifferent},
+    {"laser_retro", Consequence::kNoEffect},
+    {"enable_wind", Consequence::kBehavesDifferent},
+    {"gravity", Consequence::kBehavesDifferent},
+    {"joint", Consequence::kBehavesDifferent},
+    {"kinematic", Consequence::kBehavesDifferent},
+    {"self_collide", Consequence::kBehavesDifferent},
+    {"velocity_decay", Consequence::kBehavesDifferent},
+    {"wind", Consequence::kBehavesDifferent},
+};
+const std::map<std::string, Consequence, std::less<>> kConsequenceOfParent = {
+    {"geometry", Consequence::kMissing},           {"attenuation", Consequence::kLooksDifferent},
+    {"light", Consequence::kLooksDifferent},       {"material", Consequence::kLooksDifferent},
+    {"metal", Consequence::kLooksDifferent},       {"mesh", Consequence::kLooksDifferent},
+    {"pbr", Consequence::kLooksDifferent},         {"scene", Consequence::kLooksDifferent},
+    {"specular", Consequence::kLooksDifferent},    {"spot", Consequence::kLooksDifferent},
+    {"visual", Consequence::kLooksDifferent},      {"camera", Consequence::kBehavesDifferent},
+    {"collision", Consequence::kBehavesDifferent}, {"friction", Consequence::kBehavesDifferent},
+    {"imu", Consequence::kBehavesDifferent},       {"inertial", Consequence::kBehavesDifferent},
+    {"noise", Consequence::kBehavesDifferent},     {"ode", Consequence::kBehavesDifferent},
+    {"surface", Consequence::kBehavesDifferent},
+};
+
+Consequence consequence_of(std::string_view parent, std::string_view child) {
+  const auto of_element = kConsequenceOfElement.find(child);
+  if (of_element != kConsequenceOfElement.end()) return of_element->second;
+  const auto of_parent = kConsequenceOfParent.find(parent);
+  return of_parent != kConsequenceOfParent.end() ? of_parent->second : Consequence::kNoEffect;
+}
+
+/// Sensor types that Tether represents.
+const Names kSensorTypes = {"camera",
+                            "depth",
+                            "depth_camera",
+                            "rgbd",
+                            "rgbd_camera",
+                            "segmentation",
+                            "segmentation_camera",
+                            "imu",
+                            "ray",
+                            "gpu_ray",
+                            "lidar",
+                            "gpu_lidar"};
+
+bool contains(const ElementTable& table, std::string_view parent, std::string_view child) {
+  const auto row = table.find(parent);
+  return row != table.end() && row->second.contains(child);
+}
+
+bool is_known(SdfPurpose purpose, const std::string& parent, const std::string& child) {
+  return contains(kElements, parent, child) ||
+         contains(purpose == SdfPurpose::kWorld ? kWorldElements : kUavElements, parent, child);
+}
+
+std::string attribute(const sdf::ElementPtr& element, const std::string& key) {
+  return element->HasAttribute(key) ? element->GetAttribute(key)->GetAsString() : "";
+}
+
+bool is_numeric(const sdf::ElementPtr& element) {
+  static const Names types = {"double", "float",   "int",      "unsigned int",
+                              "pose",   "vector3", "vector2d", "color"};
+  return element->GetValue() && types.contains(element->GetValue()->GetTypeName());
+}
+
+void check_numbers_of(const SdfSource& source, const sdf::ElementPtr& element,
+                      const std::vector<double>& numbers, const std::string& text) {
+  const std::string& parent = element->GetParent()->GetName();
+  // Of an inertia, all moments together decide (`mend`).
+  const ValueRule* rule = parent == "inertia" ? nullptr : find_rule(parent, element->GetName());
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (!std::isfinite(numbers[i])) refuse(source, element, "is " + text + "; it must be finite");
+    if (rule != nullptr && i < rule->count && !rule->holds(numbers[i])) {
+      refuse(source, element, "is " + text + "; " + rule->allowed);
+    }
+  }
+}
+
+void check_value(const SdfSource& source, const sdf::ElementPtr& element) {
+  if (!is_numeric(element)) return;
+  const std::string text = element->GetValue()->GetAsString();
+  const auto numbers = parse_numbers(text);
+  if (!numbers) refuse(source, element, "is '" + text + "'; it must be numbers, without unit");
+  check_numbers_of(source, element, *numbers, text);
+}
+
+/// Lights reach as far as their attenuation lets them; from this range on, no scene shows the end.
+constexpr double kEndlessRange_m = 1000.0;
+
+bool shows_range(const sdf::ElementPtr& light, const sdf::ElementPtr& range) {
+  return attribute(light, "type") != "directional" && range->Get<double>() < kEndlessRange_m;
+}
+
+/// Inside an inner cone the light is even. It is so everywhere without a falloff.
+bool shows_inner_angle(const sdf::ElementPtr& light, const sdf::ElementPtr& angle) {
+  const sdf::ElementPtr falloff = angle->GetParent()->FindElement("falloff");
+  return attribute(light, "type") == "spot" && angle->Get<double>() > 0.0 && falloff &&
+         falloff->Get<double>() > 0.0;
+}
+
+/// Warns of what external simulators show of a light and the embedded one does not. libsdformat
+/// adds these elements to lights without them; only those of the file have a line.
+void check_light_shape(const SdfSource& source, const std::string& parent,
+                       const sdf::ElementPtr& element, const WarningSink& warn) {
+  if (!element->LineNumber()) return;
+  const sdf::ElementPtr light = element->GetParent()->GetParent();
+  if (parent == "attenuation" && element->GetName() == "range" && shows_range(light, element)) {
+    warn_at(
+        source, element, Consequence::kLooksDifferent,
+        "is not represented in the embedded simulator, whose lights have no range limit; use at "
+        "least 1000 m",
+        warn);
+  }
+  if (parent == "spot" && element->GetName() == "inner_angle" &&
+      shows_inner_angle(light, element)) {
+    warn_at(source, element, Consequence::kLooksDifferent,
+            "is not represented in the embedded simulator, whose spot lights have no inner cone; "
+            "use 0",
+            warn);
+  }
+}
+
+/// The lens is taken to be centred where the optical axis meets the image.
+void check_distortion_center(const SdfSource& source, const std::string& parent,
+                             const sdf::ElementPtr& element, const WarningSink& warn) {
+  if (parent != "distortion" || element->GetName() != "center") return;
+  const auto center = element->Get<ignition::math::Vector2d>();
+  if (center.X() == 0.5 && center.Y() == 0.5) return;
+  warn_at(source, element, Consequence::kLooksDifferent,
+          "is not represented: the distortion is centred on the optical axis; use 0.5 0.5, and set "
+          "a principal point that is not in the middle by <cx> and <cy> of <lens>",
+          warn);
+}
+
+class Walk {
+ public:
+  Walk(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn)
+      : source_(source), purpose_(purpose), warn_(warn) {}
+
+  void visit_children(const sdf::ElementPtr& element) const {
+    std::vector<sdf::ElementPtr> unrepresented;
+    for_each_child(element, [&](const sdf::ElementPtr& child) {
+      if (child->GetExplicitlySetInFile() && !visit(element->GetName(), child))
+        unrepresented.push_back(child);
+    });
+    // Only now: the place of an element depends on those before it.
+    for (const sdf::ElementPtr& child : unrepresented) child->RemoveFromParent();
+  }
+
+ private:
+  /// @return whether it is to stay. libsdformat would check it further, for nothing; but a pose may
+  /// be relative to a joint.
+  bool visit(const std::string& parent, const sdf::ElementPtr& element) const {
+    const std::string& name = element->GetName();
+    if (!is_represented(parent, element)) return name == "joint";
+    check_value(source_, element);
+    check_light_shape(source_, parent, element, warn_);
+    check_distortion_center(source_, parent, element, warn_);
+    // These two are read, and warned of, where a UAV is put together.
+    if (name != "tether:multirotor" && name != "joint" && name != "plugin") visit_children(element);
+    return true;
+  }
+
+  /// Warns of an element that is not and should be.
+  bool is_represented(const std::string& parent, const sdf::ElementPtr& element) const {
+    const std::string& name = element->GetName();
+    if (contains(kWithoutEffect, parent, name) || is_own_plugin(element)) return false;
+    if (name == "inertial" && is_static(element)) return false;
+    if (purpose_ == SdfPurpose::kUav && parent == "model" && is_battery_plugin(element)) {
+      warn_of_ignored(source_, element, warn_);
+      return true;
+    }
+    if (!is_known(purpose_, parent, name)) {
+      warn_at(source_, element, consequence_of(parent, name), unrepresented(parent, element),
+              warn_);
+      return false;
+    }
+    if (name == "sensor" && !kSensorTypes.contains(attribute(element, "type"))) {
+      if (!sdf::Sensor().SetType(attribute(element, "type")))
+        refuse(source_, element,
+               "is of type '" + attribute(element, "type") + "', which SDF does not have");
+      warn_at(
+          source_, element, Consequence::kMissing,
+          "is of type '" + attribute(element, "type") +
+              "', which is not simulated (camera, depth_camera, rgbd_camera, segmentation_camera, "
+              "imu and ray sensors are); left out",
+          warn_);
+      return false;
+    }
+    return true;
+  }
+
+  /// Whether it is in a model that is static or is nested in one that is.
+  static bool is_static(const sdf::ElementPtr& element) {
+    for (sdf::ElementPtr e = element->GetParent(); e; e = e->GetParent())
+      if (e->GetName() == "model" && e->Get<bool>("static", false).first) return true;
+    return false;
+  }
+
+  static bool is_own_plugin(const sdf::ElementPtr& element) {
+    return element->GetName() == "plugin" &&
+           attribute(element, "filename").find("tether") != std::string::npos;
+  }
+
+  std::string unrepresented(const std::string& parent, const sdf::ElementPtr& element) const {
+    const std::string& name = element->GetName();
+    if (name == "tether:multirotor") {
+      return "is ignored: the scenario places the UAVs, not the world";
+    }
+    if (name.starts_with("tether:"))
+      return "is not an element that Tether knows in a <" + parent + ">; ignored";
+    if (name == "sensor") return "is not on a UAV; left out";
+    // External simulators read the world themselves, but receive the UAVs from here.
+    const bool is_for_all = purpose_ == SdfPurpose::kUav;
+    const std::string where = is_for_all ? "" : " in the embedded simulator";
+    if (parent == "geometry") return "is a shape that is not represented" + where + "; left out";
+    return "is not represented" + where + "; ignored";
+  }
+
+  const SdfSource& source_;
+  SdfPurpose purpose_;
+  const WarningSink& warn_;
+};
+
+/// " in model 'm'" of a link and what belongs to it.
+std::string in_model(const sdf::ElementPtr& element) {
+  bool is_of_link = false;
+  for (sdf::ElementPtr e = element; e; e = e->GetParent()) {
+    is_of_link = is_of_link || e->GetName() == "link";
+    if (is_of_link && e->GetName() == "model") return " in " + describe(e);
+  }
+  return "";
+}
+
+}  // namespace
+
+void warn_at(const SdfSource& source, const sdf::ElementPtr& element, Consequence consequence,
+             const std::string& message, const WarningSink& warn) {
+  if (warn) warn({consequence, source.where(element), describe(element), message});
+}
+
+void refuse(const SdfSource& source, const sdf::ElementPtr& element, const std::string& message) {
+  const std::string subject = describe(element);
+  throw Error(ErrorCode::kBadFile, source.where(element),
+              subject + in_model(element) + " " + message)
+      .about(subject);
+}
+
+std::vector<double> read_numbers(const SdfSource& source, const sdf::ElementPtr& element,
+                                 std::size_t count) {
+  const std::string text = element->GetValue() ? element->GetValue()->GetAsString() : "";
+  const auto numbers = parse_numbers(text);
+  const auto is_finite = [](double number) { return std::isfinite(number); };
+  if (!numbers || numbers->size() != count || !std::ranges::all_of(*numbers, is_finite)) {
+    refuse(source, element,
+           "is '" + text + "'; it must be " + std::to_string(count) +
+               (count == 1 ? " finite number" : " finite numbers"));
+  }
+  check_numbers_of(source, element, *numbers, text);
+  return *numbers;
+}
+
+void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn) {
+  Walk(source, purpose, warn).visit_children(source.element());
+}
+
+}  // namespace tether::sim

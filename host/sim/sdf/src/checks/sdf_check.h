@@ -1,0 +1,29 @@
+#pragma once
+
+#include "files/sdf_source.h"
+
+#include <tether/sim/world.h>
+
+namespace tether::sim {
+
+/// What a file is read for: sensors belong to UAVs, lights and physics to worlds.
+enum class SdfPurpose { kWorld, kUav };
+
+/// Walks through everything that the file says: warns of each element that Tether does not
+/// represent and removes it, and refuses values that no scene can have.
+/// @throws Error(kBadFile) at the first impossible value.
+void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn);
+
+/// Warns about an element: its place, and `describe(element)` as the subject.
+void warn_at(const SdfSource& source, const sdf::ElementPtr& element, Consequence consequence,
+             const std::string& message, const WarningSink& warn);
+/// Refuses an element. The error has the element's place, `describe(element)` as its subject, and
+/// a message with the model of the element.
+[[noreturn]] void refuse(const SdfSource& source, const sdf::ElementPtr& element,
+                         const std::string& message);
+
+/// The finite numbers of an element's text. @throws Error(kBadFile) unless there are `count`.
+std::vector<double> read_numbers(const SdfSource& source, const sdf::ElementPtr& element,
+                                 std::size_t count);
+
+}  // namespace tether::sim

@@ -1,0 +1,128 @@
+#include "convert/sdf_convert.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
+
+namespace tether::sim {
+
+namespace {
+
+using uav::MultirotorParameters;
+
+constexpr std::size_t kMinRotors = 4;
+
+/// The numbers of <tether:multirotor>, in the order in which a missing one is reported.
+struct NumberElement {
+  const char* name;
+  double MultirotorParameters::*member;
+  bool may_be_zero;
+};
+constexpr NumberElement kNumbers[] = {
+    {"thrust_coefficient_N_s2", &MultirotorParameters::thrust_coefficient, false},
+    {"moment_coefficient_m", &MultirotorParameters::moment_coefficient_m, false},
+    {"rotor_drag_N_s2_per_m", &MultirotorParameters::drag_coefficient, true},
+    {"linear_drag_N_s_per_m", &MultirotorParameters::linear_drag_N_s_m, true},
+    {"max_rotor_speed_rad_s", &MultirotorParameters::max_rotor_speed_rad_s, false},
+    {"time_constant_up_s", &MultirotorParameters::time_constant_up_s, false},
+    {"time_constant_down_s", &MultirotorParameters::time_constant_down_s, false},
+    {"max_tilt_rad", &MultirotorParameters::max_tilt_rad, false},
+    {"max_horizontal_speed_m_s", &MultirotorParameters::max_horizontal_speed_m_s, false},
+    {"max_vertical_speed_m_s", &MultirotorParameters::max_vertical_speed_m_s, false},
+    {"max_yaw_rate_rad_s", &MultirotorParameters::max_yaw_rate_rad_s, false},
+};
+
+const NumberElement* find_number(const std::string& name) {
+  const auto* const found = std::ranges::find(kNumbers, name, &NumberElement::name);
+  return found == std::end(kNumbers) ? nullptr : found;
+}
+
+std::string allowed_elements() {
+  std::string names = "rotor";
+  for (const NumberElement& number : kNumbers) names += std::string(", ") + number.name;
+  return names;
+}
+
+sdf::ElementPtr required(const SdfSource& source, const sdf::ElementPtr& parent, const char* name) {
+  const sdf::ElementPtr element = parent->FindElement(name);
+  if (!element) refuse(source, parent, "has no <" + std::string(name) + ">, which is required");
+  return element;
+}
+
+double read_number(const SdfSource& source, const sdf::ElementPtr& element, bool may_be_zero) {
+  const double value = read_numbers(source, element, 1)[0];
+  if (value < 0.0 || (value == 0.0 && !may_be_zero)) {
+    refuse(source, element,
+           "is " + element->GetValue()->GetAsString() +
+               (may_be_zero ? "; it must not be negative" : "; it must be greater than 0"));
+  }
+  return value;
+}
+
+uav::Rotor read_rotor(const SdfSource& source, const sdf::ElementPtr& element) {
+  const auto position = read_numbers(source, required(source, element, "position_m"), 3);
+  const sdf::ElementPtr direction = required(source, element, "direction");
+  const std::string text = direction->GetValue() ? direction->GetValue()->GetAsString() : "";
+  if (text != "cw" && text != "ccw") {
+    refuse(source, direction, "is '" + text + "'; it must be cw or ccw, seen from above");
+  }
+  return {{position[0], position[1], position[2]}, text == "ccw" ? 1 : -1};
+}
+
+void read_children(const SdfSource& source, const sdf::ElementPtr& multirotor,
+                   MultirotorParameters& airframe) {
+  for_each_child(multirotor, [&](const sdf::ElementPtr& child) {
+    if (child->GetName() == "rotor") {
+      airframe.rotors.push_back(read_rotor(source, child));
+    } else if (const NumberElement* number = find_number(child->GetName())) {
+      airframe.*number->member = read_number(source, child, number->may_be_zero);
+    } else {
+      refuse(source, child,
+             "is not a parameter of a multirotor; allowed are " + allowed_elements());
+    }
+  });
+}
+
+/// The rotors' forces act on the centre of mass, along the body's axes.
+void read_body(const SdfSource& source, const sdf::ElementPtr& model, const Link& body,
+               MultirotorParameters& airframe) {
+  const uav::Pose& X_LI = body.X_LI;
+  if (uav::norm(X_LI.p) > 1e-9 || std::abs(X_LI.q.w) < 1.0 - 1e-12) {
+    refuse(source, model,
+           "has a centre of mass or principal axes that differ from the frame of link '" +
+               body.name + "'; they must coincide with it");
+  }
+  airframe.mass_kg = body.mass_kg;
+  airframe.inertia_kg_m2 = body.inertia_kg_m2;
+}
+
+}  // namespace
+
+MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPtr& model,
+                                   const Link& body, double gravity_m_s2) {
+  const sdf::ElementPtr multirotor = model->FindElement("tether:multirotor");
+  if (!multirotor) {
+    refuse(source, model,
+           "has no <tether:multirotor>; a UAV needs one, with its rotors and limits");
+  }
+  MultirotorParameters airframe;
+  for (const NumberElement& number : kNumbers) required(source, multirotor, number.name);
+  read_children(source, multirotor, airframe);
+  if (airframe.rotors.size() < kMinRotors ||
+      airframe.rotors.size() > uav::MultirotorState::kMaxRotors) {
+    refuse(source, multirotor,
+           "has " + std::to_string(airframe.rotors.size()) + " rotors; it must have 4 to 8");
+  }
+  read_body(source, model, body, airframe);
+
+  const double max_thrust_N = static_cast<double>(airframe.rotors.size()) *
+                              airframe.thrust_coefficient * airframe.max_rotor_speed_rad_s *
+                              airframe.max_rotor_speed_rad_s;
+  if (max_thrust_N <= airframe.mass_kg * gravity_m_s2) {
+    refuse(source, multirotor, "has less thrust than weight with all rotors at full speed");
+  }
+  return airframe;
+}
+
+}  // namespace tether::sim

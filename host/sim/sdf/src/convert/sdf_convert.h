@@ -1,0 +1,61 @@
+#pragma once
+
+#include "checks/sdf_check.h"
+#include "files/sdf_source.h"
+
+#include <ignition/math/Color.hh>
+#include <ignition/math/Pose3.hh>
+
+#include <tether/sim/world.h>
+
+/// From libsdformat's objects to ours, one part each. Values have been checked before
+/// (`check_elements`); errors found here involve more than one element.
+namespace tether::sim {
+
+uav::Vec3 to_vec3(const ignition::math::Vector3d& v);
+uav::Vec3 to_vec3(const ignition::math::Color& color);
+uav::Pose to_pose(const ignition::math::Pose3d& pose);
+
+/// Pose of an SDF object in the frame that it is given in by default (SDF's frame semantics): a
+/// model or light in its world, a link in its model, a visual, collision or sensor in its link.
+template <class SdfObject>
+uav::Pose resolved_pose(const SdfSource& source, const SdfObject& object) {
+  ignition::math::Pose3d pose;
+  const sdf::Errors errors = object.SemanticPose().Resolve(pose);
+  if (!errors.empty()) refuse(source, object.Element(), "has a pose that cannot be resolved");
+  return to_pose(pose);
+}
+
+/// One link, with its visuals and collisions.
+Link read_link(const SdfSource& source, const sdf::Link& link, const WarningSink& warn);
+
+/// A light of the world or of a static link; X_WP is the pose of what it is given in.
+Light read_light(const SdfSource& source, const sdf::Light& light, const uav::Pose& X_WP);
+
+/// A sensor, none if Tether does not simulate its type; X_BL is the pose of its link.
+std::optional<Sensor> read_sensor(const SdfSource& source, const sdf::Sensor& sensor,
+                                  const uav::Pose& X_BL, const WarningSink& warn);
+
+/// Airframe of a UAV: <tether:multirotor>, with mass and inertia of the body.
+uav::MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPtr& model,
+                                        const Link& body, double gravity_m_s2);
+
+/// A plugin of Gazebo's LinearBatteryPlugin, of Gazebo Sim or Gazebo 11.
+bool is_battery_plugin(const sdf::ElementPtr& element);
+/// Warns of each of its parameters that read_battery does not read.
+void warn_of_ignored(const SdfSource& source, const sdf::ElementPtr& battery_plugin,
+                     const WarningSink& warn);
+/// The battery of a UAV by such a plugin of its model; none if it has none.
+std::optional<energy::Battery> read_battery(const SdfSource& source, const sdf::ElementPtr& model);
+
+uav::Pose start_pose(const UavPlacement& placement);
+/// The UAV of a model file, without a name or place.
+Uav read_uav(const SdfSource& source, double gravity_m_s2, const WarningSink& warn);
+
+/// The model `name` of the world as an anchor.
+/// @throws Error(kBadFile) about `name`: not a model, or not one untextured box, cylinder or
+/// sphere.
+PlacedAnchor find_anchor(const SdfSource& source, const World& world, const std::string& name,
+                         const FileLocation& requested_at);
+
+}  // namespace tether::sim

@@ -1,0 +1,116 @@
+#include "files/sdf_rules.h"
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace tether::sim {
+
+namespace {
+
+/// Limits of what a scene can hold: single-precision rendering and contacts fail long before.
+constexpr double kMaxLength_m = 1e5;
+constexpr double kMaxMass_kg = 1e6;
+
+bool is_positive(double value) {
+  return value > 0.0;
+}
+bool is_not_negative(double value) {
+  return value >= 0.0;
+}
+bool is_length(double value) {
+  return value > 0.0 && value <= kMaxLength_m;
+}
+bool is_coordinate(double value) {
+  return std::abs(value) <= kMaxLength_m;
+}
+
+constexpr const char* kPositiveText = "it must be greater than 0";
+constexpr const char* kNotNegativeText = "it must not be negative";
+
+const ValueRule kPositive{is_positive, kPositiveText};
+const ValueRule kSeconds{is_positive, kPositiveText, "seconds"};
+const ValueRule kPixels{is_positive, kPositiveText, "pixels"};
+const ValueRule kInertia{is_positive, kPositiveText, "kg m^2"};
+const ValueRule kNotNegative{is_not_negative, kNotNegativeText};
+const ValueRule kAngle{is_not_negative, kNotNegativeText, "radians"};
+const ValueRule kRate{is_not_negative, kNotNegativeText, "hertz"};
+const ValueRule kFraction{[](double v) { return v >= 0.0 && v <= 1.0; },
+                          "it must be between 0 and 1"};
+const ValueRule kLength{is_length, "it must be greater than 0 and at most 100000 m", "metres"};
+const ValueRule kDistance{[](double v) { return v >= 0.0 && v <= kMaxLength_m; },
+                          "it must be at least 0 and at most 100000 m", "metres"};
+const ValueRule kScale{is_length, "it must be greater than 0 and at most 100000"};
+const ValueRule kMass{[](double v) { return v > 0.0 && v <= kMaxMass_kg; },
+                      "it must be greater than 0 and at most 1000000 kg", "kilograms"};
+const ValueRule kFieldOfView{[](double v) { return v > 0.0 && v < std::numbers::pi; },
+                             "it must be greater than 0 and less than pi radians", "radians"};
+const ValueRule kImageEdge{[](double v) { return v >= 1.0 && v <= 4096.0; },
+                           "it must be at least 1 and at most 4096 pixels", "pixels"};
+const ValueRule kPose{is_coordinate, "it must be within 100000 m of its frame's origin",
+                      "metres and radians", 3};
+const ValueRule kPosition{is_coordinate, "it must be within 100000 m of its frame's origin",
+                          "metres"};
+
+const std::map<std::string, ValueRule, std::less<>> kRules = {
+    {"physics/max_step_size", kSeconds},
+    {"inertial/mass", kMass},
+    {"inertia/ixx", kInertia},
+    {"inertia/iyy", kInertia},
+    {"inertia/izz", kInertia},
+    {"box/size", kLength},
+    {"cylinder/radius", kLength},
+    {"cylinder/length", kLength},
+    {"sphere/radius", kLength},
+    {"capsule/radius", kLength},
+    {"capsule/length", kLength},
+    {"ellipsoid/radii", kLength},
+    {"plane/size", kLength},
+    {"mesh/scale", kScale},
+    {"ode/mu", kNotNegative},
+    {"visual/transparency", kFraction},
+    {"scene/ambient", kFraction},
+    {"scene/background", kFraction},
+    {"material/ambient", kFraction},
+    {"material/diffuse", kFraction},
+    {"material/specular", kFraction},
+    {"material/emissive", kFraction},
+    {"light/diffuse", kFraction},
+    {"light/specular", kFraction},
+    {"light/intensity", kNotNegative},
+    {"attenuation/constant", kNotNegative},
+    {"attenuation/linear", kNotNegative},
+    {"attenuation/quadratic", kNotNegative},
+    {"attenuation/range", kDistance},
+    {"spot/inner_angle", kAngle},
+    {"spot/outer_angle", kAngle},
+    {"spot/falloff", kNotNegative},
+    {"sensor/update_rate", kRate},
+    {"camera/horizontal_fov", kFieldOfView},
+    {"image/width", kImageEdge},
+    {"image/height", kImageEdge},
+    {"clip/near", kLength},
+    {"clip/far", kLength},
+    {"intrinsics/fx", kPixels},
+    {"intrinsics/fy", kPixels},
+    {"noise/stddev", kNotNegative},
+    {"noise/bias_stddev", kNotNegative},
+    {"noise/dynamic_bias_stddev", kNotNegative},
+    {"noise/dynamic_bias_correlation_time", kNotNegative},
+    {"range/min", kDistance},
+    {"range/max", kLength},
+    {"range/resolution", kDistance},
+    {"rotor/position_m", kPosition},
+    {"horizontal/samples", kPositive},
+    {"vertical/samples", kPositive},
+};
+
+}  // namespace
+
+const ValueRule* find_rule(const std::string& parent, const std::string& child) {
+  if (child == "pose") return &kPose;
+  const auto rule = kRules.find(parent + "/" + child);
+  return rule == kRules.end() ? nullptr : &rule->second;
+}
+
+}  // namespace tether::sim

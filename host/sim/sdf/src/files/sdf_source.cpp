@@ -1,0 +1,303 @@
+// Reads one SDF file and those that it includes with libsdformat, each from its copy (SdfStage).
+// Reading included files alone, before the file that includes them, gives typed errors for all;
+// libsdformat repeats those of deeper ones on the console, which is discarded.
+
+#include "files/sdf_source.h"
+
+#include "files/file_kind.h"
+#include "files/sdf_numbers.h"
+#include "files/sdf_rules.h"
+
+#include <algorithm>
+#include <iostream>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+#include <streambuf>
+#include <vector>
+
+#include <console_bridge/console.h>
+#include <tinyxml2.h>
+
+namespace tether::sim {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Discards what libsdformat and the URDF reader that it tries on broken files write to the
+/// console while this lives.
+class QuietConsole {
+ public:
+  QuietConsole()
+      : messages_(sdf::Console::Instance()->GetMsgStream().GetStream()),
+        errors_(std::cerr.rdbuf(&nothing_)) {
+    sdf::Console::Instance()->GetMsgStream().SetStream(nullptr);
+    console_bridge::noOutputHandler();
+  }
+  ~QuietConsole() {
+    sdf::Console::Instance()->GetMsgStream().SetStream(messages_);
+    console_bridge::restorePreviousOutputHandler();
+    std::cerr.rdbuf(errors_);
+    std::cerr.clear();
+  }
+  QuietConsole(const QuietConsole&) = delete;
+  QuietConsole& operator=(const QuietConsole&) = delete;
+
+ private:
+  struct Nothing : std::streambuf {
+    int overflow(int c) override { return c; }
+  };
+  std::ostream* messages_;
+  Nothing nothing_;
+  std::streambuf* errors_;
+};
+
+/// Longer messages of libsdformat, which may quote a whole file, are cut: std::regex needs stack
+/// for every character.
+constexpr std::size_t kLongestMessage = 2000;
+
+/// One line, without trailing full stop.
+std::string one_line(const std::string& text) {
+  std::istringstream words(text.substr(0, kLongestMessage));
+  std::string line;
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  while (line.ends_with('.')) line.pop_back();
+  return line;
+}
+
+/// libsdformat continues after these.
+bool is_warning(const sdf::Error& error) {
+  return error.Code() == sdf::ErrorCode::ATTRIBUTE_INCORRECT_TYPE ||
+         error.Code() == sdf::ErrorCode::ELEMENT_DEPRECATED;
+}
+
+/// The element with that name attribute that is nearest to `element`, or it itself.
+sdf::ElementPtr find_named(const sdf::ElementPtr& element, const std::string& name) {
+  std::vector<sdf::ElementPtr> level{element};
+  while (!level.empty()) {
+    std::vector<sdf::ElementPtr> next;
+    for (const sdf::ElementPtr& candidate : level) {
+      if (name_attribute(candidate) == name) return candidate;
+      for_each_child(candidate, [&](const sdf::ElementPtr& child) { next.push_back(child); });
+    }
+    level = std::move(next);
+  }
+  return nullptr;
+}
+
+/// Which of its same-named siblings of the same file this is.
+int ordinal(const sdf::ElementPtr& element) {
+  int count = 0;
+  bool reached = false;
+  for_each_child(element->GetParent(), [&](const sdf::ElementPtr& sibling) {
+    reached = reached || sibling == element;
+    if (!reached && sibling->GetName() == element->GetName() &&
+        sibling->FilePath() == element->FilePath()) {
+      ++count;
+    }
+  });
+  return count;
+}
+
+const tinyxml2::XMLElement* nth_child(const tinyxml2::XMLElement* parent, const std::string& name,
+                                      int n) {
+  const tinyxml2::XMLElement* child = parent->FirstChildElement(name.c_str());
+  for (; child != nullptr && n > 0; --n) child = child->NextSiblingElement(name.c_str());
+  return child;
+}
+
+/// The last element of that name on the line: errors are of the innermost one.
+const tinyxml2::XMLElement* element_at(const tinyxml2::XMLElement& element, const std::string& name,
+                                       int line) {
+  const tinyxml2::XMLElement* found =
+      element.Name() == name && element.GetLineNum() == line ? &element : nullptr;
+  for (const auto* child = element.FirstChildElement(); child != nullptr;
+       child = child->NextSiblingElement()) {
+    if (const auto* inner = element_at(*child, name, line)) found = inner;
+  }
+  return found;
+}
+
+/// What libsdformat answers about a file; some broken ones make it throw.
+template <class Question>
+auto ask_library(const fs::path& file, Question question) try {
+  return question();
+} catch (const std::logic_error& error) {
+  throw Error(ErrorCode::kBadFile, {file.string(), 0},
+              "libsdformat cannot read it (" + std::string(error.what()) + ")");
+}
+
+/// Of any SDF document, to read a file into.
+sdf::SDFPtr empty_sdf() {
+  auto sdf = std::make_shared<sdf::SDF>();
+  sdf->Root(sdf_description()->Clone());
+  return sdf;
+}
+
+}  // namespace
+
+std::string name_attribute(const sdf::ElementPtr& element) {
+  const std::string name =
+      element->HasAttribute("name") ? element->GetAttribute("name")->GetAsString() : "";
+  return name == "__default__" ? "" : name;
+}
+
+std::string describe(const sdf::ElementPtr& element) {
+  const auto named = [](const sdf::ElementPtr& e) {
+    return e->GetName() + " '" + name_attribute(e) + "'";
+  };
+  if (!name_attribute(element).empty()) return named(element);
+  for (sdf::ElementPtr parent = element->GetParent(); parent; parent = parent->GetParent()) {
+    if (!name_attribute(parent).empty()) return "<" + element->GetName() + "> of " + named(parent);
+  }
+  return "<" + element->GetName() + ">";
+}
+
+void for_each_child(const sdf::ElementPtr& element,
+                    const std::function<void(const sdf::ElementPtr&)>& visit) {
+  if (!element) return;
+  for (sdf::ElementPtr child = element->GetFirstElement(), next; child; child = next) {
+    next = child->GetNextElement();
+    visit(child);
+  }
+}
+
+SdfSource::SdfSource(const fs::path& file, const WorldOptions& options, const WarningSink& warn)
+    : file_(fs::absolute(file).lexically_normal()),
+      options_(options),
+      path_(file_, options.model_folders),
+      stage_(file_, path_, options_, warn) {
+  read(warn);
+}
+
+void SdfSource::read(const WarningSink& warn) {
+  const QuietConsole quiet;
+  sdf::ParserConfig config;
+  config.SetFindCallback([](const std::string&) { return std::string(); });
+  // As errors they have a place. The elements that SDF does not know are named by `check_elements`.
+  config.SetWarningsPolicy(sdf::EnforcementPolicy::ERR);
+  config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
+  for (const SdfStage::File& staged : stage_.files()) {
+    sdf::Errors errors;
+    parsed_ = empty_sdf();
+    const bool is_read = ask_library(
+        staged.original, [&] { return sdf::readFile(staged.copy, config, parsed_, errors); });
+    for (const sdf::Error& error : errors) {
+      if (warn && is_warning(error)) warn(warning_of(error));
+    }
+    std::erase_if(errors, is_warning);
+    if (!errors.empty()) refuse_by(errors);
+    if (!is_read) {
+      require_a_handle_for(staged.copy);
+      throw Error(ErrorCode::kBadFile, {staged.original.string(), 0}, "not an SDF file");
+    }
+  }
+}
+
+/// Of an attribute that SDF does not know, or of a deprecated element.
+Warning SdfSource::warning_of(const sdf::Error& error) const {
+  const std::string path = error.XmlPath().value_or("");
+  const std::size_t at = path.rfind("[@");
+  const bool is_attribute = error.Code() == sdf::ErrorCode::ATTRIBUTE_INCORRECT_TYPE;
+  const std::string name = path.substr(std::min(at, path.size()));
+  return {Consequence::kNoEffect, where(error),
+          is_attribute ? "attribute " +
+                             name.substr(std::min<std::size_t>(2, name.size()), name.find('=') - 2)
+                       : "<" + path.substr(path.rfind('/') + 1) + ">",
+          is_attribute ? "is not known to SDF; ignored" : "is deprecated in SDF"};
+}
+
+void SdfSource::load() {
+  const QuietConsole quiet;
+  sdf::Errors errors = ask_library(file_, [&] { return root_.Load(parsed_); });
+  std::erase_if(errors, is_warning);
+  if (!errors.empty()) refuse_by(errors);
+}
+
+void SdfSource::refuse_by(const sdf::Errors& errors) const {
+  require_a_handle_for(file_.string());
+  const sdf::Error& first = errors.front();
+  const FileLocation at = where(first);
+  std::string reason = one_line(first.Message());
+  // Of a value, libsdformat says on the console only what is wrong.
+  static const std::regex unread("Error reading element <(\\S+)>");
+  std::smatch match;
+  if (std::regex_match(reason, match, unread) && first.LineNumber()) {
+    const auto* root = stage_.root_of(at.file);
+    const auto* xml = root != nullptr ? element_at(*root, match[1].str(), at.line) : nullptr;
+    if (xml != nullptr && xml->GetText() != nullptr)
+      reason += ": '" + one_line(xml->GetText()) + "' is not a value that SDF allows for it";
+  }
+  throw Error(ErrorCode::kBadFile, at, reason);
+}
+
+FileLocation SdfSource::where(const sdf::Error& error) const {
+  if (error.LineNumber()) {
+    const std::string file = stage_.original_of(error.FilePath().value_or(""));
+    return {file.empty() ? file_.string() : file, *error.LineNumber()};
+  }
+  // Errors between elements have names instead of lines, the inner one first: "joint with name[j]
+  // in model with name[m]". The place is that of the innermost one that is found in the outer ones.
+  static const std::regex naming("name\\[([^\\]]*)\\]");
+  const std::string message = error.Message().substr(0, kLongestMessage);
+  std::vector<std::string> names;
+  for (std::sregex_iterator it(message.begin(), message.end(), naming), end; it != end; ++it)
+    names.push_back((*it)[1].str());
+  std::ranges::reverse(names);
+  sdf::ElementPtr place;
+  for (const std::string& name : names) {
+    if (const auto inner = find_named(place ? place : element(), name)) place = inner;
+  }
+  return place ? where(place) : FileLocation{file_.string(), 0};
+}
+
+FileLocation SdfSource::where(const sdf::ElementPtr& element) const {
+  for (sdf::ElementPtr e = element; e; e = e->GetParent()) {
+    const int line = e->LineNumber() ? *e->LineNumber() : line_in_xml(e);
+    if (line > 0) return {stage_.original_of(e->FilePath()), line};
+  }
+  return {file_.string(), 0};
+}
+
+/// libsdformat keeps no lines of custom elements; their path leads to them in the XML itself.
+int SdfSource::line_in_xml(const sdf::ElementPtr& element) const {
+  std::vector<sdf::ElementPtr> path;
+  for (sdf::ElementPtr e = element; e && e->GetName() != "sdf"; e = e->GetParent()) {
+    if (e->FilePath() != element->FilePath()) break;
+    path.push_back(e);
+  }
+  const tinyxml2::XMLElement* xml = stage_.root_of(stage_.original_of(element->FilePath()));
+  for (auto it = path.rbegin(); it != path.rend() && xml != nullptr; ++it) {
+    const sdf::ElementPtr parent = (*it)->GetParent();
+    const bool is_top = !parent || parent->FilePath() != (*it)->FilePath();
+    xml = nth_child(xml, (*it)->GetName(), is_top ? 0 : ordinal(*it));
+  }
+  return xml != nullptr ? xml->GetLineNum() : 0;
+}
+
+std::set<fs::path> SdfSource::files() const {
+  std::set<fs::path> files = sdf_files();
+  files.insert(resources_.begin(), resources_.end());
+  return files;
+}
+
+std::set<fs::path> SdfSource::sdf_files() const {
+  std::set<fs::path> files;
+  for (const SdfStage::File& staged : stage_.files()) files.insert(staged.original);
+  return files;
+}
+
+fs::path SdfSource::find_resource(const sdf::ElementPtr& element, const std::string& uri) const {
+  const auto found = path_.find(uri, stage_.original_of(element->FilePath()));
+  if (found && is_file(*found))
+    return *resources_.insert(fs::absolute(*found).lexically_normal()).first;
+  if (options_.replaces_missing_models) return {};
+  const std::string subject = describe(element);
+  throw Error(
+      ErrorCode::kBadFile, where(element),
+      subject + " names the file '" + uri + "', which is not found. " + advice_on_missing(uri))
+      .about(subject);
+}
+
+}  // namespace tether::sim

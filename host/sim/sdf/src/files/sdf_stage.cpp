@@ -1,0 +1,249 @@
+// Reads a file as XML, stages what its <include> elements lead to, depth first, rewrites the URIs
+// to the copies, and prints the copy so that each element keeps its line.
+
+#include "files/sdf_stage.h"
+
+#include "files/file_kind.h"
+#include "files/sdf_numbers.h"
+#include "files/sdf_version_number.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <optional>
+#include <string_view>
+
+#include <sdf/sdf.hh>
+#include <tinyxml2.h>
+
+#include <tether/base/error.h>
+#include <tether/base/system_reason.h>
+
+namespace tether::sim {
+
+namespace fs = std::filesystem;
+
+using tinyxml2::XMLDocument;
+using tinyxml2::XMLElement;
+
+namespace {
+
+/// Prints a document so that each element is on the line that it was read from.
+class LineKeeper : public tinyxml2::XMLPrinter {
+ public:
+  LineKeeper() : XMLPrinter(nullptr, true) {}
+
+  bool VisitEnter(const XMLDocument& document) override { return XMLPrinter::VisitEnter(document); }
+  bool VisitEnter(const XMLElement& element, const tinyxml2::XMLAttribute* attribute) override {
+    SealElementIfJustOpened();
+    while (line_ < element.GetLineNum()) Putc('\n');
+    return XMLPrinter::VisitEnter(element, attribute);
+  }
+  bool Visit(const tinyxml2::XMLText& text) override { return XMLPrinter::Visit(text); }
+  bool Visit(const tinyxml2::XMLDeclaration&) override { return true; }
+  bool Visit(const tinyxml2::XMLUnknown&) override { return true; }
+  bool Visit(const tinyxml2::XMLComment&) override { return true; }
+
+ protected:
+  void Write(const char* data, std::size_t size) override {
+    line_ += static_cast<int>(std::count(data, data + size, '\n'));
+    XMLPrinter::Write(data, size);
+  }
+  void Putc(char c) override {
+    line_ += c == '\n' ? 1 : 0;
+    XMLPrinter::Putc(c);
+  }
+
+ private:
+  int line_ = 1;
+};
+
+void write(const fs::path& file, const XMLDocument& document) {
+  LineKeeper printer;
+  document.Print(&printer);
+  std::ofstream out(file, std::ios::binary);
+  if (!(out << printer.CStr() << std::flush))
+    throw Error(ErrorCode::kSetup, {file.string()}, "cannot be written: " + reason_of(errno));
+}
+
+const XMLElement& sdf_element(const fs::path& file, const XMLDocument& document) {
+  const XMLElement* root = document.RootElement();
+  if (root == nullptr) {
+    throw Error(ErrorCode::kBadFile, {file.string(), 0},
+                "has no element; the outermost element of an SDF file must be <sdf>");
+  }
+  if (std::string_view(root->Name()) != "sdf") {
+    throw Error(ErrorCode::kBadFile, {file.string(), root->GetLineNum()},
+                "the outermost element is <" + std::string(root->Name()) + ">; it must be <sdf>");
+  }
+  return *root;
+}
+
+std::unique_ptr<XMLDocument> read_xml(const fs::path& file) {
+  if (is_folder(file)) {
+    throw Error(ErrorCode::kBadFile, {file.string(), 0},
+                "is a directory; give the SDF file in it, such as model.sdf");
+  }
+  if (!is_file(file)) throw Error(ErrorCode::kBadFile, {file.string(), 0}, "there is no such file");
+  auto document = std::make_unique<XMLDocument>();
+  document->LoadFile(file.c_str());
+  if (document->Error() && document->ErrorID() != tinyxml2::XML_ERROR_EMPTY_DOCUMENT) {
+    require_a_handle_for(file.string());
+    throw Error(ErrorCode::kBadFile, {file.string(), document->ErrorLineNum()},
+                "not well-formed XML (" + std::string(document->ErrorName()) + ")");
+  }
+  sdf_element(file, *document);
+  return document;
+}
+
+/// Without the blanks around it.
+std::string content_of(const XMLElement* element) {
+  const std::string text =
+      element != nullptr && element->GetText() != nullptr ? element->GetText() : "";
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t\r\n") + 1 - first);
+}
+
+std::string describe_include(const XMLElement& include) {
+  return "<include> of '" + content_of(include.FirstChildElement("uri")) + "'";
+}
+
+/// What an included model is called if its file is not there to say.
+std::string name_of(const XMLElement& include) {
+  if (const std::string name = content_of(include.FirstChildElement("name")); !name.empty())
+    return name;
+  const std::string uri = content_of(include.FirstChildElement("uri"));
+  return uri.substr(uri.find_last_of('/', uri.size() - 2) + 1);
+}
+
+}  // namespace
+
+SdfStage::SdfStage(const fs::path& file, const ModelPath& path, const WorldOptions& options,
+                   const WarningSink& warn)
+    : path_(path), options_(options), warn_(warn), folder_("tether-sdf-") {
+  stage(file);
+}
+
+std::string SdfStage::original_of(const std::string& copy) const {
+  const auto file = std::ranges::find(files_, fs::path(copy), &File::copy);
+  return file != files_.end() ? file->original.string() : copy;
+}
+
+const XMLElement* SdfStage::root_of(const std::string& original) const {
+  const auto document = originals_.find(original);
+  return document != originals_.end() ? document->second->RootElement() : nullptr;
+}
+
+/// Stages the file unless it was. @return its copy
+fs::path SdfStage::stage(const fs::path& file) {
+  const auto staged = std::ranges::find(files_, file, &File::original);
+  if (staged != files_.end()) return staged->copy;
+  auto& original = originals_[file.string()] = read_xml(file);
+  check_numbers(file.string(), *original);
+
+  XMLDocument document;
+  document.LoadFile(file.c_str());  // a copy of the other has no lines
+  XMLElement& root = *document.RootElement();
+  lower_version(file, root);
+  open_.insert(file);
+  resolve_includes(file, root);
+  open_.erase(file);
+  const fs::path copy = folder_ / (std::to_string(files_.size()) + ".sdf");
+  write(copy, document);
+  files_.push_back({file, copy});
+  return copy;
+}
+
+/// libsdformat reads what it knows of a later version, but only under its own number.
+void SdfStage::lower_version(const fs::path& file, XMLElement& root) {
+  const FileLocation where{file.string(), root.GetLineNum()};
+  const auto version = parse_sdf_version(root.Attribute("version"));
+  if (!version) {
+    throw Error(ErrorCode::kBadFile, where,
+                "<sdf> has no version; write <sdf version='" + sdf::SDF::Version() + "'>")
+        .about("<sdf>");
+  }
+  if (version <= parse_sdf_version(sdf::SDF::Version().c_str())) return;
+  if (warn_)
+    warn_({Consequence::kNoEffect, where, "<sdf>",
+           "is of version " + to_string(*version) + "; read as " + sdf::SDF::Version()});
+  root.SetAttribute("version", sdf::SDF::Version().c_str());
+}
+
+/// Those in `element`. A plugin's elements are its own.
+void SdfStage::resolve_includes(const fs::path& file, XMLElement& element) {
+  for (XMLElement *child = element.FirstChildElement(), *next = nullptr; child != nullptr;
+       child = next) {
+    next = child->NextSiblingElement();
+    const std::string_view name = child->Name();
+    if (name == "include")
+      resolve(file, *child);
+    else if (name != "plugin" && name.find(':') == std::string_view::npos)
+      resolve_includes(file, *child);
+  }
+}
+
+void SdfStage::resolve(const fs::path& file, XMLElement& include) {
+  XMLElement* uri = include.FirstChildElement("uri");
+  if (content_of(uri).empty()) {
+    throw Error(ErrorCode::kBadFile, {file.string(), include.GetLineNum()},
+                "<include> has no <uri> of a model")
+        .about("<include>");
+  }
+  const fs::path found = find_included(file, *uri);
+  if (found.empty()) return replace(file, include);
+  if (open_.contains(found)) {
+    throw Error(ErrorCode::kBadFile, {file.string(), uri->GetLineNum()},
+                describe_include(include) + " leads back to this file (by " + found.string() +
+                    "); a model cannot include itself")
+        .about(describe_include(include));
+  }
+  uri->SetText(stage(found).c_str());
+}
+
+/// The SDF file that an <include> means; empty if it is not there and may be replaced.
+fs::path SdfStage::find_included(const fs::path& file, const XMLElement& uri) const {
+  const std::string subject = describe_include(*uri.Parent()->ToElement());
+  const FileLocation where{file.string(), uri.GetLineNum()};
+  const auto found = path_.find(content_of(&uri), file);
+  if (!found) {
+    if (options_.replaces_missing_models) return {};
+    throw Error(ErrorCode::kBadFile, where,
+                subject + " leads to nothing. " + advice_on_missing(content_of(&uri)))
+        .about(subject);
+  }
+  fs::path sdf = fs::absolute(*found).lexically_normal();
+  if (is_folder(sdf)) sdf = sdf_file_of(sdf, sdf::SDF::Version());
+  if (!is_file(sdf)) {
+    throw Error(ErrorCode::kBadFile, where,
+                subject + " leads to " + found->string() +
+                    ", whose model.config names no SDF file that exists")
+        .about(subject);
+  }
+  return sdf.lexically_normal();
+}
+
+/// An empty model of that name and pose, so that other elements can still be relative to it.
+void SdfStage::replace(const fs::path& file, XMLElement& include) {
+  if (warn_)
+    warn_({Consequence::kMissing,
+           {file.string(), include.FirstChildElement("uri")->GetLineNum()},
+           describe_include(include),
+           "is not found; an empty model replaces it"});
+  const bool has_name = include.FirstChildElement("name") != nullptr;
+  const std::string name =
+      name_of(include) + (has_name ? "" : "_missing" + std::to_string(++replaced_));
+  for (XMLElement *child = include.FirstChildElement(), *next = nullptr; child != nullptr;
+       child = next) {
+    next = child->NextSiblingElement();
+    if (std::string_view(child->Name()) != "pose") include.DeleteChild(child);
+  }
+  include.SetName("model");
+  include.DeleteAttribute("merge");
+  include.SetAttribute("name", name.c_str());
+  include.InsertNewChildElement("static")->SetText(true);
+  include.InsertNewChildElement("link")->SetAttribute("name", "link");
+}
+
+}  // namespace tether::sim
