@@ -66,7 +66,7 @@ std::string set_freezer(supervisor::Settings& settings, const std::string& freez
 
 std::string set_group(supervisor::Settings& settings, const std::string& socket) {
   settings.group = socket;
-  return socket.empty() ? "--group needs the path of a socket" : "";
+  return "";
 }
 
 std::string set_members(supervisor::Settings& settings, const std::string& number) {
@@ -114,7 +114,6 @@ Parsed parse_command_line(const std::vector<std::string>& arguments) {
   std::size_t i = 0;
   for (; i < arguments.size() && arguments[i].rfind('-', 0) == 0; ++i) {
     const std::string& option = arguments[i];
-    std::string error;
     if (option == "--") {
       ++i;
       break;
@@ -129,10 +128,13 @@ Parsed parse_command_line(const std::vector<std::string>& arguments) {
     const std::string name = option.substr(0, option.find('='));
     const auto found = std::ranges::find(kValueOptions, name, &ValueOption::name);
     if (found == kValueOptions.end()) return wrong_use("unknown option " + option);
-    const bool is_joined = name != option;
-    if (!is_joined && i + 1 == arguments.size()) return wrong_use(name + " needs " + found->value);
-    error =
-        found->set(parsed.settings, is_joined ? option.substr(name.size() + 1) : arguments[++i]);
+    std::string value;
+    if (name != option)
+      value = option.substr(name.size() + 1);
+    else if (i + 1 < arguments.size())
+      value = arguments[++i];
+    if (value.empty()) return wrong_use(name + " needs " + found->value);
+    const std::string error = found->set(parsed.settings, value);
     if (!error.empty()) return wrong_use(error);
     has_own_options = has_own_options || name == "--freezer";
   }

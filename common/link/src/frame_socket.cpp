@@ -64,11 +64,12 @@ void FrameSocket::report_slow_frame() {
   on_slow_frame_(reported_);
 }
 
-void FrameSocket::look_out() const {
-  if (!may_look_out_) return;
+void FrameSocket::look_out() {
+  if (!look_out_.is_due()) return;
   const auto end = Clock::now() + kLookOut;
-  while (!wait_readable(descriptor(), Duration(0)) && Clock::now() < end) {
-  }
+  bool is_there = false;
+  while (!is_there && Clock::now() < end) is_there = wait_readable(descriptor(), Duration(0));
+  look_out_.done(is_there);
 }
 
 Status FrameSocket::receive_more(const Deadline& deadline) {

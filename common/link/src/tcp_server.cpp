@@ -76,7 +76,7 @@ class TcpServer final : public Server {
   Peer::Deadline accept_paused_until_;
   bool is_crowded_ =
       false;  // full of strangers while others wait; the acceptor is not watched then
-  const bool may_look_out_ = may_look_out();
+  LookOut look_out_;
   PeerId spoke_last_ = 0;
   int look_outs_ = 0;
 };
@@ -166,15 +166,17 @@ std::span<Event> TcpServer::poll(Duration max_wait) {
 
 bool TcpServer::look_out(Duration max_wait) {
   Peer* const peer = find(std::exchange(spoke_last_, 0));
-  const bool worth_it = may_look_out_ && peer != nullptr && max_wait > kLookOut &&
-                        !peer->wants_to_write() && look_outs_ < kMaxLookOuts;
+  const bool worth_it = peer != nullptr && max_wait > kLookOut && !peer->wants_to_write() &&
+                        look_outs_ < kMaxLookOuts && look_out_.is_due();
   if (worth_it) {
     const auto end = steady_clock::now() + kLookOut;
     while (peer->state() == Peer::State::kOpen && steady_clock::now() < end) {
       if (!receive(*peer)) continue;
       ++look_outs_;
+      look_out_.done(true);
       return true;
     }
+    look_out_.done(false);
   }
   look_outs_ = 0;
   return false;

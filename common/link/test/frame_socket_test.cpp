@@ -26,6 +26,21 @@ Bytes frame_of(std::uint8_t content) {
   return {1, 0, 0, 0, content};
 }
 
+TEST(LookOutTest, PausesAfterSeveralInVainAndGoesOnAfterOneInTime) {
+  LookOut look_out(true);
+  for (int i = 0; i < LookOut::kMostMisses; ++i) {
+    ASSERT_TRUE(look_out.is_due());
+    look_out.done(false);
+  }
+  for (const bool in_time : {false, true}) {
+    for (int i = 0; i < LookOut::kPause; ++i) ASSERT_FALSE(look_out.is_due());
+    ASSERT_TRUE(look_out.is_due());
+    look_out.done(in_time);
+  }
+  EXPECT_TRUE(look_out.is_due());
+  EXPECT_FALSE(LookOut(false).is_due()) << "one core only";
+}
+
 TEST(FrameSocketTest, ReportsATimeoutThenAFrameThenTheEnd) {
   auto [a, b] = connected();
   FrameSocket here(std::move(a), "there", 100);

@@ -47,20 +47,29 @@ Mixer::Mixer(const MultirotorParameters& parameters)
   }
 }
 
-// Aᵀ·x with (L·Lᵀ) x = wanted.
-RotorThrusts Mixer::thrusts_for(Vec4 x) const {
+// Aᵀ·x with (L·Lᵀ) x = wanted. The demands advance side by side: most of the time, each division
+// waits for the one before.
+std::array<RotorThrusts, 3> Mixer::thrusts_for(const std::array<Vec4, 3>& wanted) const {
+  std::array<Vec4, 3> solved = wanted;
   for (std::size_t r = 0; r < 4; ++r) {
-    for (std::size_t c = 0; c < r; ++c) x[r] -= gram_[r][c] * x[c];
-    x[r] /= gram_[r][r];
+    for (Vec4& x : solved) {
+      for (std::size_t c = 0; c < r; ++c) x[r] -= gram_[r][c] * x[c];
+      x[r] /= gram_[r][r];
+    }
   }
   for (std::size_t r = 4; r-- > 0;) {
-    for (std::size_t c = r + 1; c < 4; ++c) x[r] -= gram_[c][r] * x[c];
-    x[r] /= gram_[r][r];
+    for (Vec4& x : solved) {
+      for (std::size_t c = r + 1; c < 4; ++c) x[r] -= gram_[c][r] * x[c];
+      x[r] /= gram_[r][r];
+    }
   }
-  RotorThrusts thrusts{};
+  std::array<RotorThrusts, 3> thrusts{};
   for (std::size_t i = 0; i < count_; ++i) {
     const Vec4& a = effects_[i];
-    thrusts[i] = a[0] * x[0] + a[1] * x[1] + a[2] * x[2] + a[3] * x[3];
+    for (std::size_t demand = 0; demand < 3; ++demand) {
+      const Vec4& x = solved[demand];
+      thrusts[demand][i] = a[0] * x[0] + a[1] * x[1] + a[2] * x[2] + a[3] * x[3];
+    }
   }
   return thrusts;
 }
@@ -69,9 +78,10 @@ RotorThrusts Mixer::thrusts_for(Vec4 x) const {
 RotorThrusts Mixer::mix(const Demand& demand, double limit_N) const {
   const Vec3& torque = demand.torque_B_N_m;
   RotorThrusts thrusts{};
-  add_within(limit_N, count_, thrusts_for({demand.thrust_N, 0.0, 0.0, 0.0}), thrusts);
-  add_within(limit_N, count_, thrusts_for({0.0, torque.x, torque.y, 0.0}), thrusts);
-  add_within(limit_N, count_, thrusts_for({0.0, 0.0, 0.0, torque.z}), thrusts);
+  for (const RotorThrusts& extra : thrusts_for({{{demand.thrust_N, 0.0, 0.0, 0.0},
+                                                 {0.0, torque.x, torque.y, 0.0},
+                                                 {0.0, 0.0, 0.0, torque.z}}}))
+    add_within(limit_N, count_, extra, thrusts);
   return thrusts;
 }
 

@@ -141,7 +141,6 @@ RunReport Coordinator::Impl::run(link::Server& server, const RunHooks& hooks) {
 
 void Coordinator::Impl::turn() {
   const bool moved = running_ && advance();
-  if (running_ && is_synchronised()) stepper_.announce();
   const Duration wait = pace_ ? std::min(kIdleWait, pace_->wait_for(grid().dt())) : kIdleWait;
   for (const link::Event& event : server_->poll(moved ? Duration(0) : wait)) on_event(event);
 }

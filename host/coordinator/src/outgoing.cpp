@@ -8,7 +8,8 @@ namespace tether::coordinator {
 void Coordinator::Impl::release_ready() {
   settle_radio();
   if (!is_synchronised()) return answer_free_running();
-  // While one picture is drawn for its reply, other threads draw those of the other SUTs.
+  // Other threads draw ahead: while one picture is drawn for its reply, those of other SUTs, and
+  // while the SUTs compute, what they will read.
   if (sessions_.size() > 1) stepper_.announce();
   while (const auto grant = barrier_.release(st(), next_arrival())) {
     Session& session = sessions_[grant->sut];
@@ -17,6 +18,7 @@ void Coordinator::Impl::release_ready() {
     reply(session, i, grant->released_at);
     settle_radio();
   }
+  stepper_.announce();
 }
 
 // In free running, only reads that wait for the next measurement of their sensor are not answered

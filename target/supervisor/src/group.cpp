@@ -21,12 +21,23 @@ std::optional<ExecTime> Group::stop_at() const {
   return least;
 }
 
-// No member has sent a later ET: each of them was read from the group's clock before.
+bool Group::is_due_at(ExecTime t) const {
+  return std::ranges::any_of(members_, [t](const auto* m) { return m->awaits_reply_at(t); });
+}
+
+// No member has sent a later ET: each of them was read from the group's clock before. At the time
+// of a due reply, another member, which is stopped too, could still send a message that it has to
+// wait for: all of them would wait for ever.
 void Group::stopped(ExecTime at) {
   running_ = false;
+  while (is_due_at(at)) at += Duration(1);
   stopped_at_ = at;
   for (Supervision* member : members_)
     if (!member->is_over()) member->stopped(at);
+}
+
+void Group::pass_dues() {
+  if (!running_ && is_due_at(stopped_at_)) stopped(stopped_at_);
 }
 
 bool Group::may_go_on() const {

@@ -23,9 +23,12 @@ class Group {
   bool must_stop(ExecTime now) const;
   /// The next instant at which the group must stop, as far as known.
   std::optional<ExecTime> stop_at() const;
-  /// All programs are stopped since `at`, and their earlier requests were passed on. @pre
-  /// is_running()
+  /// All programs are stopped since `at`, and their earlier requests were passed on. Their ET
+  /// becomes `at` or, if a reply is due at that very instant, a later one. @pre is_running()
   void stopped(ExecTime at);
+  /// The same for a reply that has become due at the instant of the stop since. Call it after each
+  /// message of the coordinator.
+  void pass_dues();
   /// @pre !is_running()
   bool may_go_on() const;
   /// The group continues; ET continues from `stopped_at`. @pre may_go_on()
@@ -33,6 +36,8 @@ class Group {
   ExecTime stopped_at() const { return stopped_at_; }
 
  private:
+  bool is_due_at(ExecTime t) const;
+
   std::vector<Supervision*> members_;
   bool running_ = true;
   ExecTime stopped_at_{};

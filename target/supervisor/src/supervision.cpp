@@ -159,6 +159,12 @@ std::optional<ExecTime> Supervision::stop_at() const {
   return least;
 }
 
+bool Supervision::awaits_reply_at(ExecTime t) const {
+  return !over_ && std::ranges::any_of(open_, [t](const auto& entry) {
+    return entry.second.due == t && !entry.second.reply;
+  });
+}
+
 void Supervision::stopped(ExecTime at) {
   running_ = false;
   stopped_at_ = std::max(at, last_sent_);

@@ -60,8 +60,10 @@ class Supervision {
   bool must_stop(ExecTime now) const;
   /// The next instant at which the group must stop, as far as known.
   std::optional<ExecTime> stop_at() const;
-  /// All threads are stopped since `at`, and their earlier requests were passed on. @pre
-  /// is_running()
+  /// Whether a reply is due at this very instant, and not there yet.
+  bool awaits_reply_at(ExecTime t) const;
+  /// All threads are stopped since `at`, and their earlier requests were passed on. Or they have
+  /// been stopped, and `at`, which is later, counts.
   void stopped(ExecTime at);
   /// @pre !is_running()
   bool may_go_on() const;

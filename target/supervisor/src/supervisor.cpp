@@ -58,6 +58,7 @@ int Supervisor::run() {
     take_signals();
     hear_starters();
     for (auto& member : members_) member->hear_coordinator(entries_);
+    group_.pass_dues();
     if (runs())
       for (auto& member : members_) member->hear_callers(entries_);
     begin();
@@ -272,9 +273,7 @@ void Supervisor::stop() {
   if (const Status frozen = around_.freezer->freeze(); !frozen) return give_up(frozen.failure());
   const Duration mono = read_monotonic();
   const ClockState state = around_.clock.page->state();
-  // Later than each due time and stamp: at equal times, the reply to one member can have to wait
-  // for what another one, which is stopped too, could still send.
-  const ExecTime at = state.at(mono) + Duration(1);
+  const ExecTime at = state.at(mono) + Duration(1);  // later than each stamp
   around_.clock.page->publish({at, mono, state.factor, false});
   statistics_.froze(mono - began);
   if (due && at >= *due) statistics_.overshot(at - *due);

@@ -92,6 +92,32 @@ TEST_F(TwoOnOneBoard, DoNotWaitForOneThatIsOver) {
   EXPECT_FALSE(group_.may_go_on());
 }
 
+// The coordinator sends the reply to a receive when no other SUT can send a message at its time.
+TEST_F(TwoOnOneBoard, StopLaterThanEachReplyThatTheyWaitFor) {
+  ask_both(30ms, 50ms);
+  group_.stopped(ExecTime(30ms));
+  EXPECT_EQ(stops(one_), std::vector{ExecTime(30ms + 1ns)}) << "due when they stopped";
+  EXPECT_EQ(stops(other_), std::vector{ExecTime(30ms + 1ns)});
+  ASSERT_TRUE(one_.heard(Reply{1, ExecTime(30ms), {}}).ok());
+  group_.pass_dues();
+  EXPECT_TRUE(stops(one_).empty()) << "not due any more";
+  group_.go_on();
+
+  one_.asked(kCaller, call_at(ExecTime(30ms + 2ns), link::ReceiveMessage{}));
+  group_.stopped(ExecTime(40ms));
+  ASSERT_TRUE(one_.heard(Due{2, ExecTime(90ms)}).ok());
+  stops(one_);
+  stops(other_);
+  ASSERT_TRUE(one_.heard(Due{2, ExecTime(40ms)}).ok());  // a message has arrived
+  group_.pass_dues();
+  EXPECT_EQ(stops(one_).back(), ExecTime(40ms + 1ns));
+  EXPECT_EQ(stops(other_), std::vector{ExecTime(40ms + 1ns)});
+  EXPECT_FALSE(group_.may_go_on());
+  ASSERT_TRUE(one_.heard(Reply{2, ExecTime(40ms), {}}).ok());
+  EXPECT_TRUE(group_.may_go_on());
+  EXPECT_EQ(group_.stopped_at(), ExecTime(40ms + 1ns));
+}
+
 /// One member, with a thread or several that call at any time, and what its coordinator knows.
 struct Sut {
   Supervision supervision{false, {}};
@@ -106,7 +132,8 @@ struct Sut {
 
 /// A board of several programs, a clock that runs while the group does, and a simulation that obeys
 /// the rules: ST passes no timestamp that a SUT could still put on a request, and each reply is
-/// sent when ST is there. All parts move in any order.
+/// sent when ST is there, and no SUT can send a message any more that comes before it. All parts
+/// move in any order.
 class Fleet {
  public:
   Fleet(std::uint64_t seed, std::size_t suts) : random_(RandomKey{seed, 0, 0}), suts_(suts) {
@@ -184,6 +211,11 @@ class Fleet {
       now_ += Duration(random_.bits() % 200'000);  // until the freeze has taken hold
       group_.stopped(now_);
     }
+    group_.pass_dues();
+    if (!group_.is_running()) {
+      ASSERT_LE(group_.stopped_at(), now_ + Duration(100));
+      now_ = group_.stopped_at();
+    }
     take_outgoing();
     if (group_.is_running() || !group_.may_go_on()) return;
     ASSERT_EQ(group_.stopped_at(), now_) << "a held group has gained ET";
@@ -210,16 +242,19 @@ class Fleet {
     if (std::holds_alternative<link::Finish>(asked.body)) finishing_[&sut] = asked.sequence;
   }
 
-  // A message arrives for a call, maybe at an ET that the group has passed.
+  // A message arrives for a call, maybe at an ET that the group has passed, or at which it stopped.
   void move_up(Sut& sut) {
     if (sut.dues.empty() || sut.has_finished || finishing_.contains(&sut)) return;
     auto& [sequence, due] = *sut.dues.begin();
-    due = std::max(sut.issued[sequence], due - Duration(random_.bits() % 5'000'000));
+    const ExecTime arrival = random_.bits() % 2 == 0 ? std::min(due, group_.stopped_at())
+                                                     : due - Duration(random_.bits() % 5'000'000);
+    due = std::max(sut.issued[sequence], arrival);
     ASSERT_TRUE(sut.supervision.heard(Due{sequence, due}).ok());
     take_outgoing();
   }
 
-  // The earliest reply of all, if ST can be there: each SUT that can still act has come so far.
+  // The earliest reply of all, if ST can be there: each SUT that can still act has come so far and,
+  // as each call waits for messages, each one that comes first at equal times even further.
   void reply() {
     Sut* next = nullptr;
     for (Sut& sut : suts_)
@@ -228,7 +263,7 @@ class Fleet {
     if (!next) return;
     const ExecTime at = earliest(*next);
     for (const Sut& sut : suts_)
-      if (!sut.has_finished && sut.known < at) return;
+      if (!sut.has_finished && (sut.known < at || (&sut < next && sut.known == at))) return;
     const auto due = std::ranges::find(next->dues, at, [](const auto& d) { return d.second; });
     ASSERT_TRUE(next->supervision.heard(Reply{due->first, at, {}}).ok());
     const auto finishing = finishing_.find(next);

@@ -48,11 +48,11 @@ class FrameSocket {
 
   Result<std::span<const std::uint8_t>> receive_until(const Deadline& deadline);
   Status receive_more(const Deadline& deadline);
-  void look_out() const;
+  void look_out();
   void report_slow_frame();
 
   Descriptor socket_;
-  bool may_look_out_ = may_look_out();
+  LookOut look_out_;
   std::string peer_;
   FrameBuffer input_;
   std::function<void(std::size_t)> on_slow_frame_;

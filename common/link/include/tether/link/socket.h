@@ -66,6 +66,29 @@ inline constexpr std::chrono::microseconds kLookOut{20};
 /// Whether there is more than one core, so that a polling thread leaves one to its peer.
 bool may_look_out();
 
+/// Whether one end of a connection should look out: seldom once it was in vain several times in a
+/// row. With many connections, replies take longer, and polling takes cores from those that
+/// compute.
+class LookOut {
+ public:
+  static constexpr int kMostMisses = 8;  ///< in a row, before it pauses
+  static constexpr int kPause = 32;      ///< waits without it, then one with it
+
+  explicit LookOut(bool is_possible = may_look_out()) : is_possible_(is_possible) {}
+  /// Call it before each wait.
+  bool is_due() { return is_possible_ && (misses_ < kMostMisses || ++skipped_ > kPause); }
+  /// Has looked out; `in_time`: a message came.
+  void done(bool in_time) {
+    misses_ = in_time ? 0 : misses_ + 1;
+    skipped_ = 0;
+  }
+
+ private:
+  bool is_possible_;
+  int misses_ = 0;
+  int skipped_ = 0;
+};
+
 /// Waits until the socket can be read or has ended. False: not within `timeout`.
 bool wait_readable(int descriptor, Duration timeout);
 /// Waits until the socket can be written to, or a pending connection was made or has failed.

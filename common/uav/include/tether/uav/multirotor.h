@@ -104,7 +104,8 @@ class Mixer {
  private:
   using Vec4 = std::array<double, 4>;  // thrust, roll, pitch, yaw
 
-  RotorThrusts thrusts_for(Vec4 wanted) const;
+  /// For three demands at once.
+  std::array<RotorThrusts, 3> thrusts_for(const std::array<Vec4, 3>& wanted) const;
 
   std::size_t count_;
   std::array<Vec4, MultirotorState::kMaxRotors> effects_{};  // of one newton: columns of A
