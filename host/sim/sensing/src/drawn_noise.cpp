@@ -17,61 +17,18 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // So many bytes are drawn, then added.
 constexpr std::size_t kAtOnce = 1024;
-constexpr std::size_t kBlocks = kAtOnce / sizeof(std::array<std::uint32_t, 4>);
+constexpr std::size_t kWords = kAtOnce / sizeof(std::uint32_t);
 
-// One word of several blocks, each in the lower half of a lane. The upper halves do not matter.
-using DW = hn::CappedTag<std::uint64_t, 8>;
-using Words = hn::Vec<DW>;
-
-HWY_INLINE Words product(Words a, std::uint32_t b) {
-#if HWY_TARGET == HWY_SCALAR
-  return hn::Set(DW(), (hn::GetLane(a) & 0xFFFFFFFFU) * b);
-#else
-  const hn::Repartition<std::uint32_t, DW> d;
-  return hn::MulEven(hn::BitCast(d, a), hn::Set(d, b));
-#endif
-}
-
-struct Counters {
-  Words c0, c1, c2, c3;
-};
-
-HWY_INLINE void mix(Counters& c, Words key0, Words key1) {
-  const Words p0 = product(c.c0, 0xD2511F53U);
-  const Words p1 = product(c.c2, 0xCD9E8D57U);
-  c = {hn::Xor(hn::Xor(hn::ShiftRight<32>(p1), c.c1), key0), p1,
-       hn::Xor(hn::Xor(hn::ShiftRight<32>(p0), c.c3), key1), p0};
-}
-
-// As `philox4x32` (tether/base/random.h), of kBlocks blocks; two vectors at a time, because each
-// round waits for the last one.
-void draw(const PhiloxBlock& first, std::uint64_t* words) {
-  const DW d;
-  const auto counters = [&](std::size_t i) HWY_ATTR {
-    return Counters{hn::Set(d, first.counter[0]), hn::Set(d, first.counter[1]),
-                    hn::Add(hn::Set(d, first.counter[2]), hn::Iota(d, i)),
-                    hn::Set(d, first.counter[3])};
-  };
-  const auto store = [&](const Counters& c, std::uint64_t* to) HWY_ATTR {
-    const auto pair = [&](Words low, Words high) HWY_ATTR {
-      return hn::Or(hn::And(low, hn::Set(d, 0xFFFFFFFFU)), hn::ShiftLeft<32>(high));
-    };
-    hn::StoreInterleaved2(pair(c.c0, c.c1), pair(c.c2, c.c3), d, to);
-  };
-  for (std::size_t i = 0; i < kBlocks; i += 2 * hn::Lanes(d)) {
-    Counters a = counters(i);
-    Counters b = counters(i + hn::Lanes(d));
-    std::array<std::uint32_t, 2> key = first.key;
-    for (int round = 0; round < 10; ++round) {
-      const Words key0 = hn::Set(d, key[0]);
-      const Words key1 = hn::Set(d, key[1]);
-      mix(a, key0, key1);
-      mix(b, key0, key1);
-      key[0] += 0x9E3779B9U;
-      key[1] += 0xBB67AE85U;
-    }
-    store(a, words + 2 * i);
-    store(b, words + 2 * (i + hn::Lanes(d)));
+// The words from number `first` on, kWords of them.
+void draw(const DrawKey& key, std::uint32_t first, std::uint32_t* words) {
+  const hn::CappedTag<std::uint32_t, 16> d;
+  for (std::size_t i = 0; i < kWords; i += hn::Lanes(d)) {
+    auto x = hn::Add(hn::Iota(d, static_cast<std::uint32_t>(i)), hn::Set(d, first + key.added));
+    x = hn::Mul(hn::Xor(x, hn::ShiftRight<17>(x)), hn::Set(d, 0xED5AD4BBU));
+    x = hn::Xor(x, hn::Set(d, key.mixed_in));
+    x = hn::Mul(hn::Xor(x, hn::ShiftRight<11>(x)), hn::Set(d, 0xAC4C1B51U));
+    x = hn::Mul(hn::Xor(x, hn::ShiftRight<15>(x)), hn::Set(d, 0x31848BABU));
+    hn::Store(hn::Xor(x, hn::ShiftRight<14>(x)), d, words + i);
   }
 }
 
@@ -135,14 +92,15 @@ void add_rises(const Rises& rises, std::int16_t first, const std::uint8_t* draws
 
 }  // namespace
 
-void add_drawn_on(const PixelDeltas& deltas, PhiloxBlock first, std::span<std::uint8_t> bytes) {
-  alignas(64) std::array<std::uint64_t, kAtOnce / 8> words;
+void add_drawn_on(const PixelDeltas& deltas, const DrawKey& key, std::span<std::uint8_t> bytes) {
+  alignas(64) std::array<std::uint32_t, kWords> words;
   alignas(64) std::array<std::uint8_t, kAtOnce> part;
   const auto* const draws = reinterpret_cast<const std::uint8_t*>(words.data());
   const Rises rises(deltas);
+  std::uint32_t first = 0;
   for (; !bytes.empty(); bytes = bytes.subspan(std::min(kAtOnce, bytes.size()))) {
-    draw(first, words.data());
-    first.counter[2] += kBlocks;
+    draw(key, first, words.data());
+    first += kWords;
     const std::size_t count = std::min(kAtOnce, bytes.size());
     if (!rises.are_all) {
       for (std::size_t i = 0; i < count; ++i) {
@@ -166,8 +124,8 @@ namespace tether::sim {
 
 HWY_EXPORT(add_drawn_on);
 
-void add_drawn(const PixelDeltas& deltas, const PhiloxBlock& first, std::span<std::uint8_t> bytes) {
-  HWY_DYNAMIC_DISPATCH(add_drawn_on)(deltas, first, bytes);
+void add_drawn(const PixelDeltas& deltas, const DrawKey& key, std::span<std::uint8_t> bytes) {
+  HWY_DYNAMIC_DISPATCH(add_drawn_on)(deltas, key, bytes);
 }
 
 }  // namespace tether::sim

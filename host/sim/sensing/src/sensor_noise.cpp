@@ -118,8 +118,9 @@ void add_depth_noise(const Noise& noise, const NoiseKey& key, std::span<float> d
 void add_pixel_noise(const Noise& noise, const NoiseKey& key, std::span<std::uint8_t> rgb) {
   const double offset = image_offset(noise, key);
   if (offset == 0.0 && noise.stddev == 0.0) return;
-  const PhiloxBlock first({key.seed, key.stream, key.index});
-  add_drawn(pixel_deltas(offset, noise.stddev), first, rgb);
+  KeyedRandom random({key.seed, key.stream, key.index});
+  const std::uint32_t added = random.bits();
+  add_drawn(pixel_deltas(offset, noise.stddev), {added, random.bits()}, rgb);
 }
 
 }  // namespace tether::sim
