@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <string>
 
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <turbojpeg.h>
 
 #include <tether/base/random.h>
 #include <tether/base/units.h>
@@ -39,20 +38,17 @@ void add_noise(std::vector<std::uint8_t>& rgb, std::uint64_t frame) {
 
 Result<uav::CameraSample> read_frame(std::size_t number) {
   const EmbeddedFile& file = kEmbeddedFrames[number];
-  const cv::Mat file_bytes(1, static_cast<int>(file.size), CV_8U,
-                           const_cast<unsigned char*>(file.bytes));  // NOLINT: only read
-  const cv::Mat bgr = cv::imdecode(file_bytes, cv::IMREAD_COLOR);
-  if (bgr.cols != kWidth_px || bgr.rows != kHeight_px) {
-    return Failure{Failure::Kind::kInvalid,
-                   "this OpenCV cannot decode JPEG, the format of the calibration images"};
-  }
   uav::CameraSample sample;
   sample.index = number;
   sample.width_px = kWidth_px;
   sample.height_px = kHeight_px;
   sample.rgb.resize(std::size_t{3} * kWidth_px * kHeight_px);
-  cv::Mat rgb(kHeight_px, kWidth_px, CV_8UC3, sample.rgb.data());
-  cv::cvtColor(bgr, rgb, cv::COLOR_BGR2RGB);
+  const std::unique_ptr<void, decltype(&tjDestroy)> reader(tjInitDecompress(), &tjDestroy);
+  if (tjDecompress2(reader.get(), file.bytes, file.size, sample.rgb.data(), kWidth_px, 0,
+                    kHeight_px, TJPF_RGB, TJFLAG_ACCURATEDCT) != 0) {
+    return Failure{Failure::Kind::kInvalid, std::string("cannot decode a calibration image: ") +
+                                                tjGetErrorStr2(reader.get())};
+  }
   add_noise(sample.rgb, number);
   return sample;
 }

@@ -1,24 +1,23 @@
-#include <vector>
-
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <png.h>
 
 #include <tether/rig/png.h>
 
 namespace tether::rig {
 
 Result<std::string> png_of(const uav::CameraSample& image) {
-  // OpenCV has no view of constant data; this one is only read.
-  const cv::Mat rgb(image.height_px, image.width_px, CV_8UC3,
-                    const_cast<std::uint8_t*>(image.rgb.data()));  // NOLINT
-  cv::Mat bgr;
-  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
-  std::vector<unsigned char> png;
-  if (!cv::imencode(".png", bgr, png)) {
-    return Failure{Failure::Kind::kInvalid, "the image cannot be encoded as PNG"};
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.width_px);
+  header.height = static_cast<png_uint_32>(image.height_px);
+  header.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
+  std::string png(size, '\0');
+  if (png_image_write_to_memory(&header, png.data(), &size, 0, image.rgb.data(), 0, nullptr) == 0) {
+    return Failure{Failure::Kind::kInvalid,
+                   std::string("the image cannot be encoded as PNG: ") + header.message};
   }
-  return std::string(png.begin(), png.end());
+  png.resize(size);
+  return png;
 }
 
 }  // namespace tether::rig

@@ -130,5 +130,14 @@ TEST_F(RealSensors, ThatFailLeaveNoProfileAndAreNamed) {
   }
 }
 
+TEST_F(RealSensors, NeedTheVideoReaderBesideTheProgram) {
+  const auto alone = folder_ / "tether-sut";
+  std::filesystem::copy_file(sut_program(), alone);
+  const Output output =
+      run({{alone, "characterize", "--camera", bench_.video, "--out", folder_ / "camera.toml"}});
+  EXPECT_EQ(output.code, 3);
+  EXPECT_THAT(output.err, HasSubstr("tether-video.so"));
+}
+
 }  // namespace
 }  // namespace tether::system_test

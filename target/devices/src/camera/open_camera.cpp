@@ -1,7 +1,7 @@
 #include "camera/open_camera.h"
 
-#include "camera/opencv_source.h"
 #include "camera/video4linux.h"
+#include "camera/video_reader.h"
 
 #include <algorithm>
 #include <utility>
@@ -25,6 +25,7 @@ struct Request {
   const Timeline& time;
   const std::string& label;
   const RigSensor& sensor;
+  const VideoReader& videos;
 
   Failure refuse(const std::string& why) const {
     return {Failure::Kind::kInvalid, label + ": " + why};
@@ -58,7 +59,8 @@ Result<Camera> try_out(std::unique_ptr<LiveCamera> device) {
 Result<Camera> open_device(const Request& request, const std::string& path) {
   const uav::SensorDescription& description = request.sensor.description;
   const auto& model = std::get<uav::CameraProperties>(description.properties).model;
-  auto source = open_video4linux(path, {model.width_px, model.height_px, description.rate_hz});
+  auto source =
+      request.videos.open_device(path, {model.width_px, model.height_px, description.rate_hz});
   if (!source) return request.refuse(video4linux_fault(request.system, path));
   const auto why_stopped = [&system = request.system, path] {
     FileKind kind{};
@@ -73,7 +75,7 @@ Result<Camera> open_device(const Request& request, const std::string& path) {
 }
 
 Result<Camera> open_url(const Request& request, const std::string& url) {
-  auto source = open_stream(url, kStreamTimeoutMs);
+  auto source = request.videos.open_stream(url, kStreamTimeoutMs);
   if (!source) {
     return request.refuse("timed out: OpenCV got no image from the stream for 10 s. `ffprobe " +
                           url + "` can show why");
@@ -86,20 +88,20 @@ Result<Camera> open_url(const Request& request, const std::string& url) {
 }
 
 /// Looks through a source of its own, so that playing begins with the first image.
-bool holds_image(const std::string& path) {
-  const auto source = open_video_file(path);
+bool holds_image(const Request& request, const std::string& path) {
+  const auto source = request.videos.open_file(path);
   uav::CameraSample first;
   return source && source->grab() && source->retrieve(first);
 }
 
 Result<Camera> open_file(const Request& request, const std::string& path) {
-  auto source = open_video_file(path);
+  auto source = request.videos.open_file(path);
   if (!source) {
     return request.refuse(
         "not a video file that OpenCV can read. Convert it, for example with `ffmpeg -i " + path +
         " -c:v mjpeg video.avi`");
   }
-  if (!holds_image(path)) {
+  if (!holds_image(request, path)) {
     return request.refuse("has no readable image; the file is possibly truncated. Record it again");
   }
   const ImageFormat format = source->format();
@@ -160,7 +162,9 @@ Status complete(const Request& request, const ImageFormat& format, RigSensor& se
 
 Result<std::unique_ptr<CameraDevice>> open_camera(System& system, const Timeline& time,
                                                   const std::string& label, RigSensor& sensor) {
-  const Request request{system, time, label, sensor};
+  const Result<const VideoReader*> videos = video_reader();
+  if (!videos) return Failure{videos.failure().kind, label + ": " + videos.failure().message};
+  const Request request{system, time, label, sensor, **videos};
   const std::string path = is_number(sensor.device) ? "/dev/video" + sensor.device : sensor.device;
   Result<Camera> camera = is_url(path) ? open_url(request, path) : open_path(request, path);
   if (!camera) return camera.failure();

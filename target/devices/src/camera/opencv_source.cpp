@@ -1,4 +1,5 @@
-#include "camera/opencv_source.h"
+// The shared object tether-video.so: cameras, video files and streams through OpenCV.
+#include "camera/video_reader.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -115,11 +116,9 @@ int best_for_files() {
   return cv::videoio_registry::hasBackend(cv::CAP_FFMPEG) ? cv::CAP_FFMPEG : cv::CAP_ANY;
 }
 
-}  // namespace
-
 // ---- each kind of source
 
-std::unique_ptr<FrameSource> open_video4linux(const std::string& path, const WantedFormat& wanted) {
+std::unique_ptr<FrameSource> open_device(const std::string& path, const WantedFormat& wanted) {
   return open_with([&](cv::VideoCapture& capture) {
     if (!capture.open(path, cv::CAP_V4L2)) return false;
     // One buffer to fill while the other is converted: with a single one, uvcvideo drops the
@@ -134,7 +133,7 @@ std::unique_ptr<FrameSource> open_video4linux(const std::string& path, const Wan
   });
 }
 
-std::unique_ptr<FrameSource> open_video_file(const std::string& path) {
+std::unique_ptr<FrameSource> open_file(const std::string& path) {
   return open_with([&](cv::VideoCapture& capture) { return capture.open(path, best_for_files()); });
 }
 
@@ -144,6 +143,13 @@ std::unique_ptr<FrameSource> open_stream(const std::string& url, int timeout_ms)
         url, cv::CAP_FFMPEG,
         {cv::CAP_PROP_OPEN_TIMEOUT_MSEC, timeout_ms, cv::CAP_PROP_READ_TIMEOUT_MSEC, timeout_ms});
   });
+}
+
+}  // namespace
+
+extern "C" {
+extern const VideoReader tether_video_reader;
+const VideoReader tether_video_reader{open_device, open_file, open_stream};
 }
 
 }  // namespace tether::devices

@@ -8,6 +8,7 @@
 #include "files/sdf_rules.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <string_view>
@@ -224,6 +225,24 @@ void check_light_shape(const SdfSource& source, const std::string& parent,
   }
 }
 
+/// Of a battery plugin: each parameter that read_battery does not read.
+void warn_of_ignored(const SdfSource& source, const sdf::ElementPtr& battery_plugin,
+                     const WarningSink& warn) {
+  constexpr std::array<std::string_view, 8> kRead = {"voltage",
+                                                     "open_circuit_voltage_constant_coef",
+                                                     "open_circuit_voltage_linear_coef",
+                                                     "capacity",
+                                                     "initial_charge",
+                                                     "resistance",
+                                                     "battery_name",  // there is one only
+                                                     "link_name"};
+  for_each_child(battery_plugin, [&](const sdf::ElementPtr& child) {
+    if (std::ranges::find(kRead, child->GetName()) == kRead.end())
+      warn_at(source, child, Consequence::kNoEffect,
+              "has no effect: the loads of a battery are those of the energy file", warn);
+  });
+}
+
 /// The lens is taken to be centred where the optical axis meets the image.
 void check_distortion_center(const SdfSource& source, const std::string& parent,
                              const sdf::ElementPtr& element, const WarningSink& warn) {
@@ -337,6 +356,16 @@ std::string in_model(const sdf::ElementPtr& element) {
 }
 
 }  // namespace
+
+// Gazebo Sim names the class of the plugin; of Gazebo 11's, only the file is known.
+bool is_battery_plugin(const sdf::ElementPtr& element) {
+  if (element->GetName() != "plugin") return false;
+  const auto has = [&](const char* attribute, std::string_view text) {
+    return element->HasAttribute(attribute) &&
+           element->Get<std::string>(attribute).find(text) != std::string::npos;
+  };
+  return has("name", "LinearBatteryPlugin") || has("filename", "LinearBatteryPlugin");
+}
 
 void warn_at(const SdfSource& source, const sdf::ElementPtr& element, Consequence consequence,
              const std::string& message, const WarningSink& warn) {

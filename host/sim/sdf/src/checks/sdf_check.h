@@ -14,6 +14,9 @@ enum class SdfPurpose { kWorld, kUav };
 /// @throws Error(kBadFile) at the first impossible value.
 void check_elements(const SdfSource& source, SdfPurpose purpose, const WarningSink& warn);
 
+/// A plugin of Gazebo's LinearBatteryPlugin, of Gazebo Sim or Gazebo 11.
+bool is_battery_plugin(const sdf::ElementPtr& element);
+
 /// Warns about an element: its place, and `describe(element)` as the subject.
 void warn_at(const SdfSource& source, const sdf::ElementPtr& element, Consequence consequence,
              const std::string& message, const WarningSink& warn);

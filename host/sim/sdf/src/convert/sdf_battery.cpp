@@ -1,11 +1,6 @@
 #include "checks/sdf_check.h"
 #include "convert/sdf_convert.h"
 
-#include <algorithm>
-#include <array>
-#include <string>
-#include <string_view>
-
 namespace tether::sim {
 namespace {
 
@@ -18,33 +13,6 @@ double number_or(const SdfSource& source, const sdf::ElementPtr& plugin, const c
 }
 
 }  // namespace
-
-// Gazebo Sim names the class of the plugin; of Gazebo 11's, only the file is known.
-bool is_battery_plugin(const sdf::ElementPtr& element) {
-  if (element->GetName() != "plugin") return false;
-  const auto has = [&](const char* attribute, std::string_view text) {
-    return element->HasAttribute(attribute) &&
-           element->Get<std::string>(attribute).find(text) != std::string::npos;
-  };
-  return has("name", "LinearBatteryPlugin") || has("filename", "LinearBatteryPlugin");
-}
-
-void warn_of_ignored(const SdfSource& source, const sdf::ElementPtr& battery_plugin,
-                     const WarningSink& warn) {
-  constexpr std::array<std::string_view, 8> kRead = {"voltage",
-                                                     "open_circuit_voltage_constant_coef",
-                                                     "open_circuit_voltage_linear_coef",
-                                                     "capacity",
-                                                     "initial_charge",
-                                                     "resistance",
-                                                     "battery_name",  // there is one only
-                                                     "link_name"};
-  for_each_child(battery_plugin, [&](const sdf::ElementPtr& child) {
-    if (std::ranges::find(kRead, child->GetName()) == kRead.end())
-      warn_at(source, child, Consequence::kNoEffect,
-              "has no effect: the loads of a battery are those of the energy file", warn);
-  });
-}
 
 // Gazebo's model: the voltage falls linearly with the charge, V = e0 + e1 (1 − q/c) − R i.
 std::optional<energy::Battery> read_battery(const SdfSource& source, const sdf::ElementPtr& model) {

@@ -40,12 +40,7 @@ std::optional<Sensor> read_sensor(const SdfSource& source, const sdf::Sensor& se
 uav::MultirotorParameters read_airframe(const SdfSource& source, const sdf::ElementPtr& model,
                                         const Link& body, double gravity_m_s2);
 
-/// A plugin of Gazebo's LinearBatteryPlugin, of Gazebo Sim or Gazebo 11.
-bool is_battery_plugin(const sdf::ElementPtr& element);
-/// Warns of each of its parameters that read_battery does not read.
-void warn_of_ignored(const SdfSource& source, const sdf::ElementPtr& battery_plugin,
-                     const WarningSink& warn);
-/// The battery of a UAV by such a plugin of its model; none if it has none.
+/// The battery of a UAV by a battery plugin of its model; none if it has none.
 std::optional<energy::Battery> read_battery(const SdfSource& source, const sdf::ElementPtr& model);
 
 uav::Pose start_pose(const UavPlacement& placement);

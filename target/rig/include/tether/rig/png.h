@@ -7,7 +7,7 @@
 
 namespace tether::rig {
 
-/// The image as the bytes of a PNG file. Fails with kInvalid if OpenCV cannot write PNG.
+/// The image as the bytes of a PNG file. Fails with kInvalid if libpng cannot encode it.
 Result<std::string> png_of(const uav::CameraSample& image);
 
 }  // namespace tether::rig

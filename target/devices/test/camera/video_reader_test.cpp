@@ -1,4 +1,4 @@
-#include "camera/opencv_source.h"
+#include "camera/video_reader.h"
 
 #include "video_file.h"
 
@@ -22,7 +22,11 @@
 namespace tether::devices {
 namespace {
 
-class OpencvSourceTest : public testing::Test {
+const VideoReader& reader() {
+  return *video_reader().value();
+}
+
+class VideoReaderTest : public testing::Test {
  protected:
   /// A video of one image and a bit, cut there.
   std::string cut_video(std::uintmax_t bytes) {
@@ -34,9 +38,9 @@ class OpencvSourceTest : public testing::Test {
   ScratchFolder scratch_;
 };
 
-TEST_F(OpencvSourceTest, GivesImagesInOrderAsRgb) {
+TEST_F(VideoReaderTest, GivesImagesInOrderAsRgb) {
   write_video(scratch_.path("a.avi"), {kRed, kRed, kBlue}, 12.0, {80, 48});
-  const auto source = open_video_file(scratch_.path("a.avi"));
+  const auto source = reader().open_file(scratch_.path("a.avi"));
   ASSERT_NE(source, nullptr);
   EXPECT_EQ(source->format().width_px, 80);
   EXPECT_EQ(source->format().height_px, 48);
@@ -60,22 +64,22 @@ TEST_F(OpencvSourceTest, GivesImagesInOrderAsRgb) {
   EXPECT_FALSE(source->grab());
 }
 
-TEST_F(OpencvSourceTest, GivesNoneForWhatItCannotOpen) {
-  EXPECT_EQ(open_video_file(scratch_.write("a.avi", "no video")), nullptr);
-  EXPECT_EQ(open_video_file(scratch_.write("empty.avi", "")), nullptr);
-  EXPECT_EQ(open_video_file(scratch_.path("missing.avi")), nullptr);
-  EXPECT_EQ(open_video4linux("/dev/null", {}), nullptr);
-  EXPECT_EQ(open_video4linux(scratch_.path("missing"), {}), nullptr);
+TEST_F(VideoReaderTest, GivesNoneForWhatItCannotOpen) {
+  EXPECT_EQ(reader().open_file(scratch_.write("a.avi", "no video")), nullptr);
+  EXPECT_EQ(reader().open_file(scratch_.write("empty.avi", "")), nullptr);
+  EXPECT_EQ(reader().open_file(scratch_.path("missing.avi")), nullptr);
+  EXPECT_EQ(reader().open_device("/dev/null", {}), nullptr);
+  EXPECT_EQ(reader().open_device(scratch_.path("missing"), {}), nullptr);
 }
 
-TEST_F(OpencvSourceTest, AStreamMayBeAFileToo) {
+TEST_F(VideoReaderTest, AStreamMayBeAFileToo) {
   write_video(scratch_.path("a.avi"), {kRed, kBlue});
-  const auto source = open_stream("file://" + scratch_.path("a.avi").string(), 1000);
+  const auto source = reader().open_stream("file://" + scratch_.path("a.avi").string(), 1000);
   ASSERT_NE(source, nullptr);
   EXPECT_TRUE(source->grab());
   EXPECT_TRUE(source->grab());
   EXPECT_FALSE(source->grab());
-  EXPECT_EQ(open_stream("file://" + scratch_.path("missing.avi").string(), 1000), nullptr);
+  EXPECT_EQ(reader().open_stream("file://" + scratch_.path("missing.avi").string(), 1000), nullptr);
 }
 
 // What the libraries behind it would write to the standard error (`write_video` makes a header of
@@ -83,11 +87,11 @@ TEST_F(OpencvSourceTest, AStreamMayBeAFileToo) {
 
 constexpr std::uintmax_t kInTheHeader = 600, kInTheFirstImage = 4200, kInTheSecondImage = 5000;
 
-TEST_F(OpencvSourceTest, ACutFileIsSilent) {
+TEST_F(VideoReaderTest, ACutFileIsSilent) {
   for (const std::uintmax_t bytes : {kInTheHeader, kInTheFirstImage, kInTheSecondImage}) {
     const std::string path = cut_video(bytes);
     testing::internal::CaptureStderr();
-    if (const auto source = open_video_file(path)) {
+    if (const auto source = reader().open_file(path)) {
       uav::CameraSample image;
       while (source->grab()) source->retrieve(image);
     }
@@ -96,13 +100,13 @@ TEST_F(OpencvSourceTest, ACutFileIsSilent) {
 }
 
 // In a process of its own, since the level is asked for once.
-TEST(OpencvSource, KeepsFfmpegsLogIfTheUserAsksForIt) {
+TEST(VideoReader, KeepsFfmpegsLogIfTheUserAsksForIt) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto refused_with = [](const char* variable, const char* value) {
     ::unsetenv("OPENCV_FFMPEG_LOGLEVEL");  // an earlier test's
     ::setenv(variable, value, 1);
     ::dup2(STDERR_FILENO, STDOUT_FILENO);  // OpenCV writes it there if it is asked to
-    open_stream("http://127.0.0.1:1/x", 1000);
+    reader().open_stream("http://127.0.0.1:1/x", 1000);
     std::fflush(nullptr);
     std::_Exit(0);
   };
@@ -110,13 +114,13 @@ TEST(OpencvSource, KeepsFfmpegsLogIfTheUserAsksForIt) {
   EXPECT_EXIT(refused_with("OPENCV_FFMPEG_DEBUG", "1"), testing::ExitedWithCode(0), "refused");
 }
 
-TEST_F(OpencvSourceTest, ARefusedStreamIsSilent) {
+TEST_F(VideoReaderTest, ARefusedStreamIsSilent) {
   testing::internal::CaptureStderr();
-  EXPECT_EQ(open_stream("http://127.0.0.1:1/x", 1000), nullptr);
+  EXPECT_EQ(reader().open_stream("http://127.0.0.1:1/x", 1000), nullptr);
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-TEST_F(OpencvSourceTest, StalledStreamEndsSilentlyAtItsTimeout) {
+TEST_F(VideoReaderTest, StalledStreamEndsSilentlyAtItsTimeout) {
   write_video(scratch_.path("a.avi"), std::vector<cv::Scalar>(200, kRed));
   std::ifstream file(scratch_.path("a.avi"), std::ios::binary);
   const std::string bytes(std::istreambuf_iterator<char>(file), {});
@@ -135,7 +139,8 @@ TEST_F(OpencvSourceTest, StalledStreamEndsSilentlyAtItsTimeout) {
     ::send(client.get(), bytes.data(), bytes.size() / 2, MSG_NOSIGNAL);
   });
   testing::internal::CaptureStderr();
-  const auto source = open_stream("tcp://127.0.0.1:" + std::to_string(ntohs(any.sin_port)), 300);
+  const auto source =
+      reader().open_stream("tcp://127.0.0.1:" + std::to_string(ntohs(any.sin_port)), 300);
   serving.join();
   EXPECT_NE(source, nullptr);
   int images = 0;
