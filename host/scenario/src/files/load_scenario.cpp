@@ -120,7 +120,9 @@ void read_clock(const toml::Table& table, Condition& condition) {
                "them, instead of this key.");
   condition.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
   if (condition.clock != Clock::kCpu && table.has("cpu_factor")) {
-    table.fail("cpu_factor", "scales CPU time, so it needs clock = \"cpu\".");
+    table.fail("cpu_factor",
+               "scales CPU time, so it needs clock = \"cpu\". To scale the wall clock, set it in a "
+               "target file.");
   }
   const bool is_scripted = condition.clock == Clock::kScripted;
   if (is_scripted) condition.computing = table.duration("computing_ms", kComputing_ms);

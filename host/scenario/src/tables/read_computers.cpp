@@ -39,7 +39,9 @@ Computer read_computer(const toml::Table& table, Scenario& scenario) {
       table.fail("computing_ms",
                  "replaces the measured computing time, so it needs clock = \"scripted\".");
     if (computer.clock != Clock::kCpu && table.has("cpu_factor"))
-      table.fail("cpu_factor", "scales CPU time, so it needs clock = \"cpu\".");
+      table.fail("cpu_factor",
+                 "scales CPU time, so it needs clock = \"cpu\". To scale the wall clock, set it in "
+                 "a target file.");
     computer.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
   }
   computer.by_hand = table.boolean_or("by_hand", false);
@@ -95,8 +97,8 @@ std::optional<Seat> read_seat(const toml::Table& table, const Scenario& scenario
                       computer.name));
     if (*seat.pinned_core >= computer.cores)
       table.fail("pinned_core",
-                 fmt::format("is {}, but target \"{}\" has {} cores, numbered from 0 on.",
-                             *seat.pinned_core, computer.name, computer.cores));
+                 fmt::format("is {}, but the last core of target \"{}\" has number {}.",
+                             *seat.pinned_core, computer.name, computer.cores - 1));
   }
   return seat;
 }
