@@ -12,7 +12,8 @@
 
 // Simulated experiments of `tether size` with known curves: how often the interval covers the
 // truth, and how many flights it takes, beside a fixed grid of slowdowns with the same statistics.
-// Prints the table of docs/guide/size.md:
+// The truth is what the answer is about: the slowdown up to which the share of success in each
+// neighbourhood is the wanted one. Prints the table of docs/guide/size.md:
 //   sizing_bench [EXPERIMENTS PER KIND] [KIND]
 namespace {
 
@@ -25,9 +26,11 @@ constexpr double kSuccess = 0.9;
 
 /// The outcome of a flight at a slowdown.
 using Fly = std::function<Flight(double slowdown, KeyedRandom& random)>;
+/// The share of flights that succeed at a slowdown.
+using Share = std::function<double(double slowdown)>;
 
-struct Experiment {
-  double threshold = 1.0;
+struct Known {
+  Share share;
   Fly fly;
 };
 
@@ -39,44 +42,73 @@ double logit(double share) {
   return std::log(share / (1.0 - share));
 }
 
-Fly with_share(std::function<double(double slowdown)> share) {
-  return [share = std::move(share)](double slowdown, KeyedRandom& random) {
-    return Flight{slowdown, random.uniform() < share(slowdown)};
-  };
+Known with_share(const Share& share) {
+  return {share, [=](double slowdown, KeyedRandom& random) {
+            return Flight{slowdown, random.uniform() < share(slowdown)};
+          }};
 }
 
 /// A logistic curve through kSuccess at the threshold.
-Fly logistic(double threshold, double width, double lapses) {
+Known logistic(double threshold, double width, double lapses) {
   const double offset = logit(kSuccess / (1.0 - lapses));
   return with_share([=](double slowdown) {
     return (1.0 - lapses) / (1.0 + std::exp(-std::log(threshold / slowdown) / width - offset));
   });
 }
 
-/// A margin that falls with the log slowdown, with noise of which a share of kSuccess is above
-/// −offset. Far beyond the limit there is no value.
-Fly with_margin(double threshold, double width, double scale, double offset,
-                std::function<double(KeyedRandom&)> noise, double largest) {
-  return [=](double slowdown, KeyedRandom& random) {
-    const double z = std::log(threshold / slowdown) / width + offset + noise(random);
-    const double margin = std::min(scale * width * z, largest);
-    if (margin < -0.8) return Flight{slowdown, false};
-    return Flight{slowdown, margin >= 0.0, margin};
+struct Noise {
+  std::function<double(KeyedRandom&)> draw;
+  std::function<double(double)> share_below;
+  double quantile = 0.0;  // a share of kSuccess is below
+};
+
+/// A margin that falls with the log slowdown, with symmetric noise. Far beyond the limit there is
+/// no value.
+Known with_margin(double threshold, double width, double scale, const Noise& noise) {
+  constexpr double kLargest = 0.6;
+  const auto mean = [=](double slowdown) {
+    return std::log(threshold / slowdown) / width + noise.quantile;
   };
+  return {[=](double slowdown) { return noise.share_below(mean(slowdown)); },
+          [=](double slowdown, KeyedRandom& random) {
+            const double margin =
+                std::min(scale * width * (mean(slowdown) + noise.draw(random)), kLargest);
+            if (margin < -0.8) return Flight{slowdown, false};
+            return Flight{slowdown, margin >= 0.0, margin};
+          }};
+}
+
+/// The slowdown up to which the share in each neighbourhood is at least kSuccess.
+double threshold_of(const Share& share, const sizing::Question& question) {
+  constexpr double kStep = 0.0005;  // log slowdown
+  const auto reach =
+      static_cast<std::size_t>(std::round(std::log(sizing::neighbourhood_reach(question)) / kStep));
+  std::vector<double> sums = {0.0};
+  for (std::size_t i = 0;; ++i) {
+    sums.push_back(sums.back() + share(question.least * std::exp(kStep * static_cast<double>(i))));
+    if (i < 2 * reach) continue;
+    const double mean = (sums[i + 1] - sums[i - 2 * reach]) / static_cast<double>(2 * reach + 1);
+    if (mean < kSuccess)
+      return question.least * std::exp(kStep * (static_cast<double>(i - reach) - 0.5));
+  }
 }
 
 struct Kind {
   const char* name;
   const char* description;
   bool has_margins;
-  std::function<Fly(double threshold, KeyedRandom&)> make;
+  std::function<Known(double threshold, KeyedRandom&)> make;
 };
 
 const std::vector<Kind>& kinds() {
-  const auto logistic_noise = [](KeyedRandom& random) {
-    return logit(std::clamp(random.uniform(), 1e-12, 1.0 - 1e-12));
-  };
-  const auto normal_noise = [](KeyedRandom& random) { return 1.6 * random.normal(); };
+  static const Noise logistic_noise = {
+      [](KeyedRandom& random) { return logit(std::clamp(random.uniform(), 1e-12, 1.0 - 1e-12)); },
+      [](double z) { return 1.0 / (1.0 + std::exp(-z)); }, logit(kSuccess)};
+  constexpr double kDeviation = 1.6;
+  static const Noise normal_noise = {
+      [](KeyedRandom& random) { return kDeviation * random.normal(); },
+      [](double z) { return 0.5 * std::erfc(-z / kDeviation / std::sqrt(2.0)); },
+      1.2815515655 * kDeviation};
   static const std::vector<Kind> all = {
       {"steep", "from 90 to 10 % over a factor of 1.25 to 1.6", false,
        [](double t, KeyedRandom& r) { return logistic(t, between(0.05, 0.1, r), 0.0); }},
@@ -105,15 +137,12 @@ const std::vector<Kind>& kinds() {
          });
        }},
       {"margin", "medium, with a margin of logistic noise", true,
-       [=](double t, KeyedRandom& r) {
-         return with_margin(t, between(0.1, 0.2, r), between(0.5, 1.5, r), logit(kSuccess),
-                            logistic_noise, 0.6);
+       [](double t, KeyedRandom& r) {
+         return with_margin(t, between(0.1, 0.2, r), between(0.5, 1.5, r), logistic_noise);
        }},
       {"normal margin", "medium, with a margin of normal noise", true,
-       [=](double t, KeyedRandom& r) {
-         constexpr double kOffset = 1.6 * 1.2815515655;  // the normal distribution's 90 %
-         return with_margin(t, between(0.1, 0.2, r), between(0.5, 1.5, r), kOffset, normal_noise,
-                            0.6);
+       [](double t, KeyedRandom& r) {
+         return with_margin(t, between(0.1, 0.2, r), between(0.5, 1.5, r), normal_noise);
        }},
   };
   return all;
@@ -157,19 +186,23 @@ std::size_t median(std::vector<std::size_t> values) {
 }
 
 void bench(const sizing::CurveGrid& grid, const Kind& kind, std::uint64_t count) {
-  std::uint64_t covered = 0, optimistic = 0, narrow = 0, by_levels = 0;
+  std::uint64_t covered = 0, optimistic = 0, narrow = 0, by_levels = 0, covered_exactly = 0;
   std::vector<std::size_t> flights, grid_flights;
   for (std::uint64_t i = 0; i < count; ++i) {
     KeyedRandom random({i, random_stream(kind.name, "", "experiment"), 0});
     const double threshold = std::exp(between(std::log(2.0), std::log(20.0), random));
-    const Fly fly = kind.make(threshold, random);
+    const auto [share, fly] = kind.make(threshold, random);
     const auto [used, answer] = run_adaptive(grid, kind, fly, random);
     flights.push_back(used);
     constexpr double kRounding = 1.0001;
-    if (threshold * kRounding < answer.threshold.low)
-      ++optimistic;
-    else if (threshold <= answer.threshold.high * kRounding)
-      ++covered;
+    const auto is_covered = [&](double truth) {
+      return truth * kRounding >= answer.threshold.low &&
+             truth <= answer.threshold.high * kRounding;
+    };
+    const double truth = threshold_of(share, grid.question());
+    covered += is_covered(truth);
+    optimistic += truth * kRounding < answer.threshold.low;
+    covered_exactly += is_covered(threshold);
     narrow += answer.is_narrow;
     by_levels += answer.basis == sizing::Basis::kLevels;
     if (i % 10 == 0) grid_flights.push_back(run_grid(grid, fly, random));
@@ -177,9 +210,9 @@ void bench(const sizing::CurveGrid& grid, const Kind& kind, std::uint64_t count)
   const auto percent = [&](std::uint64_t n) {
     return 100.0 * static_cast<double>(n) / static_cast<double>(count);
   };
-  fmt::print("| {} | {} | {:.1f} % | {:.1f} % | {} | {:.0f} % | {:.0f} % | {}{} |\n", kind.name,
-             kind.description, percent(covered), percent(optimistic), median(flights),
-             percent(narrow), percent(by_levels),
+  fmt::print("| {} | {} | {:.1f} % | {:.1f} % | {:.1f} % | {} | {:.0f} % | {:.0f} % | {}{} |\n",
+             kind.name, kind.description, percent(covered), percent(optimistic),
+             percent(covered_exactly), median(flights), percent(narrow), percent(by_levels),
              median(grid_flights) >= kMostGridFlights ? "more than " : "", median(grid_flights));
   std::fflush(stdout);
 }
@@ -190,10 +223,10 @@ int main(int count, char** words) {
   const sizing::CurveGrid grid({.success = kSuccess});
   const std::uint64_t experiments = count > 1 ? std::strtoull(words[1], nullptr, 10) : 1112;
   fmt::print(
-      "| curve | success | interval covers the threshold | threshold is below it | flights "
-      "(median) "
-      "| narrow enough by {} | answered by levels | flights of a fixed grid (median) |\n"
-      "|:---|:---|---:|---:|---:|---:|---:|---:|\n",
+      "| curve | success | interval covers the threshold | threshold is below it | covers that of "
+      "single slowdowns | flights (median) | narrow enough by {} | answered by levels | flights of "
+      "a fixed grid (median) |\n"
+      "|:---|:---|---:|---:|---:|---:|---:|---:|---:|\n",
       kMostFlights);
   for (const Kind& kind : kinds())
     if (count < 3 || kind.name == std::string(words[2])) bench(grid, kind, experiments);

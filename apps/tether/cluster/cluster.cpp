@@ -83,6 +83,11 @@ std::optional<int> cores_of(std::span<const campaign::TrialPlan* const> plans) {
   return most;
 }
 
+std::string how_to_continue(const std::string& out, bool is_campaign) {
+  return is_campaign ? fmt::format("To continue, type: tether campaign --collect {}", out)
+                     : "To continue, repeat tether size with --resume.";
+}
+
 bool is_asked_to_cancel() {
   if (::isatty(STDIN_FILENO) == 0 || os::terminal_columns(STDERR_FILENO) == 0) return false;
   say("\nCancel the jobs? Otherwise they go on. [y/N] ");
@@ -179,6 +184,7 @@ workers::Collected Cluster::fly(std::span<const campaign::TrialPlan* const> plan
 void Cluster::end_or_leave(const workers::Collected& collected, const std::stop_token& stop) {
   if (collected.end == workers::CollectEnd::kComplete) return;
   const std::string out = out_.string();
+  const bool is_campaign = command_.contains("campaign");
   if (!options_.slurm) {
     say("tether: trials are ready for workers. On machines that share this folder, start: {}\n"
         "Then type: tether campaign --collect {}\n",
@@ -186,11 +192,10 @@ void Cluster::end_or_leave(const workers::Collected& collected, const std::stop_
   } else if (stop.stop_requested() && is_asked_to_cancel()) {
     cancel_jobs(out_);
   } else if (collected.end == workers::CollectEnd::kCancelled) {
-    say("tether: the jobs were cancelled. To continue, type: tether campaign --collect {}\n", out);
+    say("tether: the jobs were cancelled. {}\n", how_to_continue(out, is_campaign));
   } else {
-    say("tether: the jobs go on. To collect their results, type: tether campaign --collect {}\n"
-        "To cancel them: tether campaign --cancel {}\n",
-        out, out);
+    say("tether: the jobs go on. {}\nTo cancel them: tether campaign --cancel {}\n",
+        how_to_continue(out, is_campaign), out);
   }
 }
 
@@ -213,9 +218,8 @@ int cancel_jobs(const fs::path& out) {
   ClusterOptions options;
   options.slurm = !round->settings().command.at("slurm").empty();
   workers::cancel(*round, *make_engine(options, out));
-  say("tether: the jobs are cancelled; results are kept. To continue, type: tether campaign "
-      "--collect {}\n",
-      out.string());
+  say("tether: the jobs are cancelled; results are kept. {}\n",
+      how_to_continue(out.string(), round->settings().command.contains("campaign")));
   return 0;
 }
 

@@ -33,7 +33,7 @@ inline constexpr const char* kManyMachines = "those of workers";
 
 class Cluster {
  public:
-  /// @param command what --collect needs to go on.
+  /// @param command what --collect needs to go on; empty: of tether size, which has no --collect.
   /// @throws Error(kUsage) and Error(kSetup) if there is no such engine, before anything is
   /// written.
   Cluster(const ClusterOptions& options, int jobs, std::filesystem::path out,

@@ -119,7 +119,7 @@ std::optional<campaign::CampaignOutcome> fly_by_workers(
   for (const campaign::TrialPlan& plan : folder.missing()) plans.push_back(&plan);
   ProgressBar bar;
   const auto collected =
-      cluster.fly(plans, files, folder.finished(), stop,
+      cluster.fly(plans, files, folder.finished().size(), stop,
                   [&](const campaign::CampaignProgress& progress) { bar.show(progress); });
   bar.finish();
   if (!collected.losses.empty())

@@ -32,7 +32,7 @@ void require_share(const std::string& option, double share) {
   if (share > 0.0 && share < 1.0) return;
   refuse_option(option,
                 fmt::format("{} is not between 0 and 1. {}", share,
-                            share == 1.0 ? "No number of flights shows that all succeed; use a "
+                            share == 1.0 ? "No number of flights shows that for certain; use a "
                                            "share such as 0.95."
                                          : "Use a share such as 0.9."));
 }
@@ -55,8 +55,10 @@ sizing::Question question_of(const SizeOptions& options) {
                               "and less than the second, as in 1,40.",
                               question.least, question.most));
   if (question.most < question.interval * question.least)
-    refuse_option("--between", fmt::format("{},{} is narrower than --interval {}.", question.least,
-                                           question.most, question.interval));
+    refuse_option("--between",
+                  fmt::format("{},{} is narrower than --interval {}. Use a wider range, "
+                              "or a smaller --interval.",
+                              question.least, question.most, question.interval));
   require_enough_trials(options, 1.0 - question.confidence);
   return question;
 }

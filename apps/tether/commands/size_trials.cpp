@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -75,14 +74,16 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
       stop_(std::move(stop)),
       name_(std::move(name)),
       files_(checked_files()),
+      cluster_(uses_workers(options.cluster)
+                   ? std::make_unique<Cluster>(options.cluster, jobs_, out,
+                                               std::map<std::string, std::string>{})
+                   : nullptr),
       settings_([&] {
         campaign::Settings versions = versions_of(campaign_, options.reading);
-        if (uses_workers(options.cluster)) versions["machine"] = kManyMachines;
+        if (cluster_) versions["machine"] = kManyMachines;
         return campaign::campaign_settings(campaign_, versions, files_);
       }()),
       folder_(out, campaign_, settings_, open_mode(options)) {
-  if (uses_workers(options.cluster))
-    cluster_.emplace(options.cluster, jobs_, out, std::map<std::string, std::string>{});
   for (const std::string& warning : folder_.warnings()) say("warning: {}\n", warning);
   for (const campaign::TrialPlan& plan : folder_.missing()) missing_[plan.folder] = &plan;
   for (const char* old : {kSizeFile, kSizeDrawing}) {
@@ -107,8 +108,8 @@ std::string SizeTrials::text_of(const campaign::TrialPlan& plan) const {
 
 SizeTrials::End SizeTrials::fly(const Questions& questions,
                                 const std::function<bool(const campaign::TrialPlan&)>& is_asked) {
-  for (const campaign::TrialPlan& plan : campaign::plan_trials(campaign_, folder_.path())) {
-    if (missing_.contains(plan.folder) || !is_asked(plan)) continue;
+  for (const campaign::TrialPlan& plan : folder_.finished()) {
+    if (!is_asked(plan)) continue;
     take(plan, questions);
     next_seed_ = std::max(next_seed_, plan.seed + 1);
   }
@@ -134,18 +135,17 @@ SizeTrials::End SizeTrials::fly(const Questions& questions,
 
 bool SizeTrials::fly_also(const std::vector<std::pair<Wanted, std::uint64_t>>& trials,
                           const Questions& questions) {
-  std::set<std::filesystem::path> folders;
-  Plans plans;
+  Plans all, missing;
   for (const auto& [wanted, seed] : trials) {
     const auto folder =
         folder_.path() / campaign::trial_folder(wanted.scenario, wanted.condition, seed);
-    folders.insert(folder);
     if (const auto found = missing_.find(folder); found != missing_.end())
-      plans.push_back(found->second);
+      missing.push_back(found->second), all.push_back(found->second);
+    else
+      all.push_back(&*std::ranges::find(folder_.finished(), folder, &campaign::TrialPlan::folder));
   }
-  if (!run(plans, questions)) return false;
-  for (const campaign::TrialPlan& plan : campaign::plan_trials(campaign_, folder_.path()))
-    if (folders.contains(plan.folder)) take(plan, questions);
+  if (!run(missing, questions)) return false;
+  for (const campaign::TrialPlan* plan : all) take(*plan, questions);
   return true;
 }
 
@@ -197,9 +197,8 @@ int SizeTrials::say_why(End end) const {
                   options_.scenario.string(), options_.axis == "uavs" ? " --axis uavs" : "",
                   folder_.path().string());
   if (end == End::kUndecidable)
-    say("tether: no flight says whether the computer is fast enough: all {} reached the goal of "
-        "the "
-        "program, but {}. Mend that, or remove the limit.\n",
+    say("tether: no flight shows whether the computer is fast enough: all {} reached the goal of "
+        "the program, but {}. Mend that, or remove the limit.\n",
         flown_, why_without_value_);
   else if (end == End::kInterrupted)
     say("tether: interrupted after {} flights; to continue, type: {}\n", flown_, again);

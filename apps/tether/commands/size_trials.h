@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -58,7 +59,7 @@ class SizeTrials {
              std::function<std::string(const campaign::TrialPlan&)> name);
 
   const campaign::Settings& settings() const { return settings_; }
-  /// Takes the flights that the folder has, in the order of `plan_trials`, then flies until there
+  /// Takes the flights that the folder had, in the order of `plan_trials`, then flies until there
   /// is an answer. @param is_asked whether the answer rests on such trials
   End fly(const Questions& questions,
           const std::function<bool(const campaign::TrialPlan&)>& is_asked);
@@ -85,11 +86,11 @@ class SizeTrials {
   std::stop_token stop_;
   std::function<std::string(const campaign::TrialPlan&)> name_;
   std::vector<std::filesystem::path> files_;
+  std::unique_ptr<Cluster> cluster_;  // before the folder: without Slurm, nothing is written
   campaign::Settings settings_;
   campaign::CampaignFolder folder_;
   std::map<std::filesystem::path, const campaign::TrialPlan*> missing_;  // by its folder
   runner::TrialServers servers_;
-  std::optional<Cluster> cluster_;
   StatusLine line_;
   std::uint64_t next_seed_ = 1;
   std::size_t flown_ = 0;

@@ -65,9 +65,9 @@ std::string quoted_list(std::span<const std::string_view> words) {
 
 std::string allowed_hint(std::string_view word, std::span<const std::string_view> candidates) {
   const std::string_view guess = nearest(word, candidates);
-  std::string hint;
-  if (!guess.empty()) hint.append("did you mean '").append(guess).append("'? ");
-  return hint + "Allowed: " + quoted_list(candidates);
+  const std::string all = quoted_list(candidates);
+  if (guess.empty()) return "allowed: " + all;
+  return std::string("did you mean '").append(guess).append("'? Allowed: ") + all;
 }
 
 }  // namespace tether

@@ -96,12 +96,12 @@ CampaignFolder::CampaignFolder(fs::path folder, const scenario::Campaign& campai
     check_existing(manifest, mode);
     if (mode == OpenMode::kReplace) remove_existing();
   }
-  find_missing(campaign);
-  if (mode == OpenMode::kFresh && finished_ > 0) {
+  sort_trials(campaign);
+  if (mode == OpenMode::kFresh && !finished_.empty()) {
     refuse_folder(folder_,
                   fmt::format("already contains {} of {} trials. Continue with --resume, or "
                               "choose another folder.",
-                              finished_, finished_ + missing_.size()));
+                              finished_.size(), finished_.size() + missing_.size()));
   }
   os::write_file_atomically(folder_ / kCampaignFile, to_json(manifest));
   // A report of fewer trials would lie beside the new ones.
@@ -137,17 +137,15 @@ void CampaignFolder::remove_existing() const {
 }
 
 // One listing for each condition: most of the trials that tether size plans never fly.
-void CampaignFolder::find_missing(const scenario::Campaign& campaign) {
+void CampaignFolder::sort_trials(const scenario::Campaign& campaign) {
   std::map<std::string, std::set<std::string>> trials_in;  // by the folder of the condition
   for (TrialPlan& plan : plan_trials(campaign, folder_)) {
     const fs::path condition = plan.folder.parent_path();
     const auto [listed, is_new] = trials_in.try_emplace(condition.string());
     if (is_new) listed->second = names_in(condition);
-    if (listed->second.contains(plan.folder.filename().string()) && has_usable_result(plan)) {
-      ++finished_;
-    } else {
-      missing_.push_back(std::move(plan));
-    }
+    const bool is_finished =
+        listed->second.contains(plan.folder.filename().string()) && has_usable_result(plan);
+    (is_finished ? finished_ : missing_).push_back(std::move(plan));
   }
 }
 

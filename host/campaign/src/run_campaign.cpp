@@ -196,7 +196,7 @@ CampaignOutcome run_campaign(const CampaignFolder& folder, const scenario::Campa
   require_jobs_allowed(campaign, options.jobs);
   std::vector<const TrialPlan*> missing;
   for (const TrialPlan& plan : folder.missing()) missing.push_back(&plan);
-  return Run(missing, folder.finished(), execute, options, progress).run();
+  return Run(missing, folder.finished().size(), execute, options, progress).run();
 }
 
 CampaignOutcome run_trials(std::span<const TrialPlan* const> missing, const TrialExecutor& execute,

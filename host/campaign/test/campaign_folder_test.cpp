@@ -46,7 +46,7 @@ TEST_F(Folder, IsMadeWithItsManifestAndFindsWhatIsMissing) {
   const auto report = scratch_.write("out/report.html", "of two trials");
   const CampaignFolder folder = open(OpenMode::kResume);
   EXPECT_FALSE(std::filesystem::exists(report));
-  EXPECT_EQ(folder.finished(), 2u);
+  EXPECT_EQ(folder.finished().size(), 2u);
   ASSERT_EQ(folder.missing().size(), 7u);
   EXPECT_EQ(folder.missing()[0].condition->name, "target");
   EXPECT_EQ(folder.missing()[0].seed, 1u);
@@ -59,7 +59,7 @@ TEST_F(Folder, WarnsOfACorruptResultAndOfThatOfAnotherTrial) {
   std::filesystem::resize_file(truncated, std::filesystem::file_size(truncated) / 2);
   std::filesystem::copy_file(one, other, std::filesystem::copy_options::overwrite_existing);
   const CampaignFolder folder = open(OpenMode::kResume);
-  EXPECT_EQ(folder.finished(), 1u);
+  EXPECT_EQ(folder.finished().size(), 1u);
   EXPECT_THAT(folder.warnings(), ElementsAre(StartsWith(truncated.string() + ": "),
                                              StartsWith(other.parent_path().string() + ": ")));
 }
@@ -118,7 +118,7 @@ TEST_F(Folder, TakesMoreSeedsConditionsAndScenarios) {
   campaign_.scenarios.push_back(campaign_.scenarios[0]);
   campaign_.scenarios[1].scenario.name = "second";
   const CampaignFolder folder = open(OpenMode::kResume);
-  EXPECT_EQ(folder.finished(), 1u);
+  EXPECT_EQ(folder.finished().size(), 1u);
   EXPECT_EQ(folder.missing().size(), 23u);
   EXPECT_THAT(read_manifest(out_).seeds, ElementsAre(1u, 2u, 3u, 4u));
 }
@@ -142,7 +142,7 @@ TEST_F(Folder, RefusesToDropTrials) {
 
   EXPECT_EQ(read_manifest(out_).seeds, whole.seeds);
   campaign_ = whole;
-  EXPECT_EQ(open(OpenMode::kResume).finished(), 1u);
+  EXPECT_EQ(open(OpenMode::kResume).finished().size(), 1u);
 }
 
 TEST_F(Folder, IgnoresAPartlyWrittenManifest) {

@@ -145,10 +145,10 @@ TEST_F(RunCampaign, EndsWithAnErrorOfTheUsersFilesAndDoesNotKeepThatTrial) {
   };
   EXPECT_EQ(bad_file_error([&] { run(open(), execute); }).subject(), "room.sdf");
   EXPECT_EQ(checks, 3);
-  EXPECT_EQ(open(OpenMode::kResume).finished(), 2u);
+  EXPECT_EQ(open(OpenMode::kResume).finished().size(), 2u);
   const auto resume = [&] { run(open(OpenMode::kResume), execute); };
   EXPECT_EQ(bad_file_error(resume).subject(), "mesh.obj");
-  EXPECT_EQ(open(OpenMode::kResume).finished(), 3u);
+  EXPECT_EQ(open(OpenMode::kResume).finished().size(), 3u);
 }
 
 TEST_F(RunCampaign, RunsTrialsInParallelIfTheyMayAndOthersAlone) {

@@ -48,8 +48,7 @@ double any_of(std::span<const double> slowdowns, std::size_t flight) {
 // Those around `slowdown`, as many as in a level; at an end of the range, those next to it.
 std::span<const double> neighbourhood(const Question& question, std::span<const double> slowdowns,
                                       double slowdown) {
-  constexpr double kShareOfInterval = 0.4;
-  const double reach = std::exp(0.5 * kShareOfInterval * std::log(question.interval));
+  const double reach = neighbourhood_reach(question);
   const double low = std::min(slowdown / reach, slowdowns.back() / (reach * reach));
   const double high = std::max(slowdown * reach, slowdowns.front() * (reach * reach));
   const auto begin = std::ranges::lower_bound(slowdowns, low);
@@ -57,6 +56,11 @@ std::span<const double> neighbourhood(const Question& question, std::span<const 
 }
 
 }  // namespace
+
+double neighbourhood_reach(const Question& question) {
+  constexpr double kShareOfInterval = 0.4;
+  return std::exp(0.5 * kShareOfInterval * std::log(question.interval));
+}
 
 Sizing::Sizing(const CurveGrid& grid, bool has_margins)
     : grid_(grid),

@@ -108,6 +108,11 @@ std::string threshold_advice(const ConditionVerdict& lead) {
                                : "the headroom, that is how much slower the computer may be";
   const std::string command = size_command(lead, is_too_slow);
   if (!command.empty()) return fmt::format("To find {}: {}", what, command);
+  if (lead.is_on_real_board)
+    return fmt::format(
+        "A real board cannot be slowed down. To find {}: write a virtual target of the board "
+        "(`tether-sut calibrate`), and name it with `tether size SCENARIO --target`.",
+        what);
   return fmt::format(
       "`tether size` finds {}, for a scenario's own conditions on virtual targets. Write what was "
       "flown here as one of them.",

@@ -91,8 +91,11 @@ Ruling ruling_of(const ConditionVerdict& verdict, const campaign::ConditionResul
 
 ConditionVerdict verdict_of(const campaign::ConditionResults& results) {
   ConditionVerdict verdict{.condition = results.condition, .planned = results.planned};
-  if (!results.trials.empty())
-    verdict.size_arguments = results.trials.front().this_run.size_arguments;
+  if (!results.trials.empty()) {
+    const campaign::ThisRun& first = results.trials.front().this_run;
+    verdict.size_arguments = first.size_arguments;
+    verdict.is_on_real_board = first.target && !first.target->address.empty();
+  }
   std::vector<const campaign::TrialResult*> flown;
   for (const campaign::TrialResult& trial : results.trials) {
     count(verdict, trial);

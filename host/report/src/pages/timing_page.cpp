@@ -70,10 +70,13 @@ std::vector<std::string> timing_advice(const timing::Timing& timing,
         fmt::format("Record more runs: “{}” has only {} of the {} samples that its "
                     "times need.",
                     most.stage, most.count, timing::kFewSamples));
-  advice.push_back(fmt::format(
-      "Times alone do not show whether the computer is fast enough. To find its headroom: "
-      "`tether size {}` (of a scenario of your own: its file).",
-      os::shell_word(timing.scenario)));
+  const std::string how =
+      timing.clock == "wall"
+          ? "`tether size`, with a condition that replays these times (`clock = \"replayed\"`)."
+          : fmt::format("`tether size {}` (of a scenario of your own: its file).",
+                        os::shell_word(timing.scenario));
+  advice.push_back(
+      "Times alone do not show whether the computer is fast enough. To find its headroom: " + how);
   return advice;
 }
 

@@ -194,6 +194,15 @@ TEST(Verdict, NamesTheCommandThatFindsTheThreshold) {
   EXPECT_THAT(advice(0, {}), StartsWith("`tether size` finds how much faster"));
 }
 
+// A real board cannot be slowed down.
+TEST(Verdict, OfARealBoardAdvisesToSizeAVirtualTargetOfIt) {
+  campaign::ScenarioResults scenario = flights(10, 0);
+  campaign::ThisRun& run = scenario.conditions[0].trials[0].this_run;
+  run.size_arguments.clear();
+  run.target = {.name = "pi", .address = "ssh://pi"};
+  EXPECT_THAT(advice_of({verdict_of(scenario)}).back(), StartsWith("A real board cannot"));
+}
+
 TEST(Verdict, NamesTheSlowestConditionThatWouldDo) {
   campaign::ScenarioResults scenario = flights(0, 10);
   scenario.conditions.push_back(flights(10, 0).conditions[0]);

@@ -14,7 +14,8 @@ std::string_view nearest(std::string_view word, std::span<const std::string_view
 /// "'a', 'b' and 'c'"; "none" for an empty list.
 std::string quoted_list(std::span<const std::string_view> words);
 
-/// "allowed are 'a' and 'b'", with "; did you mean 'a'?" before it where `nearest` finds one.
+/// After "…; ": "allowed: 'a' and 'b'", or "did you mean 'a'? Allowed: 'a' and 'b'" where `nearest`
+/// finds one.
 std::string allowed_hint(std::string_view word, std::span<const std::string_view> candidates);
 
 }  // namespace tether

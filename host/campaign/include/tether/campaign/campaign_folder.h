@@ -68,20 +68,20 @@ class CampaignFolder {
   const std::filesystem::path& path() const { return folder_; }
   /// In the order of `plan_trials`.
   const std::vector<TrialPlan>& missing() const { return missing_; }
-  std::size_t finished() const { return finished_; }
+  /// The others, in the same order.
+  const std::vector<TrialPlan>& finished() const { return finished_; }
   /// One line for each existing result that cannot be used; begins with its file or folder.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
   void check_existing(const CampaignManifest& now, OpenMode mode) const;
   void remove_existing() const;
-  void find_missing(const scenario::Campaign& campaign);
+  void sort_trials(const scenario::Campaign& campaign);
   bool has_usable_result(const TrialPlan& plan);
 
   std::filesystem::path folder_;
   FolderClaim claim_;
-  std::vector<TrialPlan> missing_;
-  std::size_t finished_ = 0;
+  std::vector<TrialPlan> missing_, finished_;
   std::vector<std::string> warnings_;
 };
 

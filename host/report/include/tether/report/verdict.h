@@ -68,6 +68,7 @@ struct ConditionVerdict {
   std::string unreadable{};  ///< why the pace is not known, of the first record; empty: it has none
   /// As in campaign::ThisRun, of the first flight.
   std::vector<std::string> size_arguments{};
+  bool is_on_real_board = false;  ///< as far as the first flight says
 };
 
 struct Advice {

@@ -27,6 +27,10 @@ struct Answer {
   double fit = 1.0;        ///< of the curve; of the last one that was rejected if kLevels
 };
 
+/// A neighbourhood of a slowdown is from the slowdown divided by this, to it times this. An answer
+/// is about the share of success in neighbourhoods.
+double neighbourhood_reach(const Question& question);
+
 /// Finds the threshold flight by flight: which slowdowns to fly, when to stop, and the answer.
 /// Prefers the curve with margins, then the one without, then levels: each is left for the next
 /// when the flights do not fit it (SuccessCurve::fit). Not thread-safe.
