@@ -42,6 +42,10 @@ HWY_INLINE VI byte_of_light(const LightTable& table, V light) {
   const auto* const bytes = reinterpret_cast<const std::int32_t*>(table.byte.data());
   return And(hn::GatherOffset(di, bytes, amount), whole(0xFF));
 }
+HWY_INLINE VU packed(const LightTable& table, const Colour& light) {
+  return packed(byte_of_light(table, light.r), byte_of_light(table, light.g),
+                byte_of_light(table, light.b));
+}
 
 HWY_INLINE Colour load(const TileColours& from, std::size_t at) {
   const D d;
@@ -69,12 +73,13 @@ HWY_INLINE VI of_facets(const Layer& layer, VU ids, const std::uint32_t Facet::*
 class Mean {
  public:
   Mean(const Part& part, std::span<const Layer> layers, std::span<const TileIds> ids, Block& block,
-       TileColours& light)
+       TileColours& light, TilePixels& pixels)
       : part_(part),
         layers_(layers),
         ids_(ids),
         b_(block),
         light_(light),
+        pixels_(pixels),
         middle_(layers.size() / 2),
         share_(1.0F / static_cast<float>(layers.size())) {}
 
@@ -94,12 +99,21 @@ class Mean {
   }
 
  private:
+  // The way that the texture goes under a pixel during the exposure.
+  struct Way {
+    V u, v;    // its middle
+    V du, dv;  // its length
+    VI taps;   // how many places of it are looked at: about a texel apart
+  };
   using Whole = std::array<std::int32_t, Block::kPixels>;
 
   static void put(VI value, Whole& plane, std::size_t at) {
     hn::Store(value, DI(), plane.data() + at);
   }
   static VI get(const Whole& plane, std::size_t at) { return hn::Load(DI(), plane.data() + at); }
+  void put_pixels(VU pixels, std::size_t at) {
+    hn::Store(pixels, DU(), pixels_.data() + part_.first_pixel() + at);
+  }
   VU ids_in(std::size_t layer, std::size_t at) const {
     return hn::Load(DU(), ids_[layer].id.data() + part_.first_pixel() + at);
   }
@@ -142,17 +156,33 @@ class Mean {
     load_ids(part_, b_);
     light_block(part_, b_);
     const LightTable& table = part_.shading.table;
+    const Colour background = light_of(table, colour(part_.shading.scene.background));
+    const auto put_middle = [&](std::size_t at, const Colour& light) HWY_ATTR {
+      add(light, Mul(to_float(get(count_, at)), set(share_)), at);
+      put_pixels(packed(table, load(light_, part_.first_pixel() + at)), at);
+    };
+    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
+      if (hn::AllTrue(D(), is_empty(b_, at))) put_middle(at, background);
+    });
     for (const Block::Run& run : b_.runs()) {
       for (const std::size_t at : b_.places(run)) {
-        Cell& c = b_.cell(at);
-        store(run.is_textured ? moving_texture(run, c, at) : light_of(table, lit(c)), c);
+        const Cell& c = b_.cell(at);
+        const Way way = run.is_textured ? way_at(run, c, at) : resting(c);
+        if (is_still(way, at)) {
+          const Colour own = lit(c);
+          put_pixels(packed(run.is_textured ? scaled(own, texel_at(c, way.u, way.v)) : own), at);
+        } else {
+          put_middle(at, select(is_empty(b_, at), background, along(run, way, c)));
+        }
       }
     }
-    const Colour background = light_of(table, colour(part_.shading.scene.background));
-    for_each_vector(part_, [&](std::size_t at) HWY_ATTR {
-      add(select(is_empty(b_, at), background, colour(b_.cell(at))),
-          Mul(to_float(get(count_, at)), set(share_)), at);
-    });
+  }
+
+  // Whether some pixels, all with triangles, see one place of one triangle in all layers.
+  bool is_still(const Way& way, std::size_t at) const {
+    const auto always = hn::Eq(get(count_, at), whole(static_cast<std::int32_t>(layers_.size())));
+    const auto once = hn::Eq(way.taps, whole(1));
+    return hn::AllTrue(DI(), And(always, once)) && hn::AllFalse(D(), is_empty(b_, at));
   }
 
   // Texture coordinates in the layers `of`, which differ from pixel to pixel.
@@ -178,18 +208,15 @@ class Mean {
     }
   }
 
-  // The way that the texture goes under a pixel during the exposure.
-  struct Way {
-    V u, v;    // its middle
-    V du, dv;  // its length
-    VI taps;   // how many places of it are looked at: about a texel apart
-  };
+  static Way resting(const Cell& c) {
+    return {load(c.u), load(c.v), set(0.0F), set(0.0F), whole(1)};
+  }
 
   // The first and the last layer are half a step within the ends of the way.
   Way way_at(const Block::Run& run, const Cell& c, std::size_t at) const {
     const VI first = get(first_, at);
     const VI last = get(last_, at);
-    Way way{load(c.u), load(c.v), set(0.0F), set(0.0F), whole(1)};
+    Way way = resting(c);
     const auto has_texture = hn::Gt(load(c.level), whole(255));
     const M moves = float_mask(And(has_texture, hn::Lt(first, last)));
     if (hn::AllFalse(D(), moves)) return way;
@@ -219,20 +246,25 @@ class Mean {
     return way;
   }
 
-  Colour moving_texture(const Block::Run& run, const Cell& c, std::size_t at) const {
+  Colour texel_at(const Cell& c, V u, V v) const {
+    Lookups lookups;
+    look_up(part_.shading.scene, load(c.level), u, v, lookups);
+    return sample(part_.shading.scene, load(c.level), lookups).colour;
+  }
+
+  // The mean light along the way.
+  Colour along(const Block::Run& run, const Way& way, const Cell& c) const {
     const Colour own = lit(c);
-    const Way way = way_at(run, c, at);
+    if (!run.is_textured) return light_of(part_.shading.table, own);
     const V step = Div(set(1.0F), to_float(way.taps));
     Colour sum{set(0.0F), set(0.0F), set(0.0F)};
-    Lookups lookups;
     for (std::int32_t i = 0;; ++i) {
       const M counts = float_mask(hn::Gt(way.taps, whole(i)));
       if (hn::AllFalse(D(), counts)) return sum;
-      const V along = Sub(Mul(set(static_cast<float>(i) + 0.5F), step), set(0.5F));
-      look_up(part_.shading.scene, load(c.level), Add(way.u, Mul(way.du, along)),
-              Add(way.v, Mul(way.dv, along)), lookups);
-      const Texel texel = sample(part_.shading.scene, load(c.level), lookups);
-      add_to(sum, light_of(part_.shading.table, scaled(own, texel.colour)),
+      const V place = Sub(Mul(set(static_cast<float>(i) + 0.5F), step), set(0.5F));
+      const Colour texel =
+          texel_at(c, Add(way.u, Mul(way.du, place)), Add(way.v, Mul(way.dv, place)));
+      add_to(sum, light_of(part_.shading.table, scaled(own, texel)),
              hn::IfThenElseZero(counts, step));
     }
   }
@@ -245,6 +277,7 @@ class Mean {
   std::span<const TileIds> ids_;
   Block& b_;
   TileColours& light_;
+  TilePixels& pixels_;
   std::size_t middle_;
   float share_;
   // The layers in which a pixel sees the same triangle as in the middle one.
@@ -272,11 +305,13 @@ void shade_on(const Shading& shading, const Layer& layer, const Tile& tile, cons
 }
 
 void shade_mean_on(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
-                   std::span<const TileIds> ids, TileColours& light) {
+                   std::span<const TileIds> ids, TilePixels& pixels) {
   Block b;
+  TileColours light;
   const std::size_t middle = layers.size() / 2;
-  for_each_part(shading, layers[middle], tile, ids[middle],
-                [&](const Part& part) HWY_ATTR { Mean(part, layers, ids, b, light).add_up(); });
+  for_each_part(shading, layers[middle], tile, ids[middle], [&](const Part& part) HWY_ATTR {
+    Mean(part, layers, ids, b, light, pixels).add_up();
+  });
 }
 
 void shade_over_on(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
@@ -316,10 +351,7 @@ void encode_colours_on(const TileColours& colours, TilePixels& pixels) {
 
 void encode_light_on(const LightTable& table, const TileColours& light, TilePixels& pixels) {
   for (std::size_t i = 0; i < kTilePixels; i += lanes()) {
-    const Colour c = load(light, i);
-    const VU rgb =
-        packed(byte_of_light(table, c.r), byte_of_light(table, c.g), byte_of_light(table, c.b));
-    hn::Store(rgb, DU(), pixels.data() + i);
+    hn::Store(packed(table, load(light, i)), DU(), pixels.data() + i);
   }
 }
 
@@ -382,8 +414,8 @@ void shade(const Shading& shading, const Layer& layer, const Tile& tile, const T
 }
 
 void shade_mean(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
-                std::span<const TileIds> ids, TileColours& light) {
-  HWY_DYNAMIC_DISPATCH(shade_mean_on)(shading, layers, tile, ids, light);
+                std::span<const TileIds> ids, TilePixels& pixels) {
+  HWY_DYNAMIC_DISPATCH(shade_mean_on)(shading, layers, tile, ids, pixels);
 }
 
 void shade_over(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,

@@ -34,10 +34,11 @@ struct TileColours {
 void shade(const Shading& shading, const Layer& layer, const Tile& tile, const TileIds& ids,
            TilePixels& pixels);
 
-/// The mean light of several layers, without transparent things. A triangle that a pixel sees in
-/// several layers is shaded once, and its texture is averaged along the way that it moves.
+/// The picture of the mean light of several layers, without transparent things. A triangle that a
+/// pixel sees in several layers is shaded once, and its texture is averaged along the way that it
+/// moves.
 void shade_mean(const Shading& shading, std::span<const Layer> layers, const Tile& tile,
-                std::span<const TileIds> ids, TileColours& light);
+                std::span<const TileIds> ids, TilePixels& pixels);
 
 /// Mixes the triangles of `ids` into `colours` by their opacity, or draws opaque ones on the
 /// background.

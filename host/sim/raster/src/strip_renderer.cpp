@@ -104,8 +104,7 @@ void StripRenderer::draw_tile(const Job& job, const Tile& tile, std::size_t list
     if (any_transparent) {
       shade_with_transparent(job, tile, list);
     } else if (layers_.size() > 1) {
-      shade_mean(shading, layers_, tile, ids_, light_);
-      encode_light(shading.table, light_, pixels_);
+      shade_mean(shading, layers_, tile, ids_, pixels_);
     } else {
       shade(shading, layers_[0], tile, ids_[0], pixels_);
     }
