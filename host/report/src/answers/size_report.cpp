@@ -30,6 +30,14 @@ std::string percent(double share) {
   return fmt::format("{:.4g} %", 100.0 * share);
 }
 
+// "3.1 × slower" or, of a faster computer, "0.5 × the computing time"; then "than" or "of" what.
+std::string slower(double slowdown) {
+  return digits(slowdown) + (slowdown < 1.0 ? " × the computing time" : " × slower");
+}
+std::string than(double slowdown) {
+  return slowdown < 1.0 ? "of" : "than";
+}
+
 Answer main_answer(const SizeReport& report) {
   const SizedCondition& sized = report.synchronised;
   const sizing::Threshold& threshold = sized.answer.threshold;
@@ -42,12 +50,11 @@ Answer main_answer(const SizeReport& report) {
                         digits(report.question.least), sized.condition,
                         percent(report.question.success), evidence)};
   if (sized.answer.is_above)
-    return {fmt::format("Sufficient up to {} × slower", digits(report.question.most)),
-            fmt::format(" than “{}”, the most that was flown, {}", sized.condition, evidence)};
-  const bool is_faster = threshold.estimate < 1.0;
-  return {fmt::format("Sufficient up to {} × {}", digits(threshold.estimate),
-                      is_faster ? "the computing time" : "slower"),
-          fmt::format(" {} “{}” {}, {}", is_faster ? "of" : "than", sized.condition,
+    return {"Sufficient up to " + slower(report.question.most),
+            fmt::format(" {} “{}”, the most that was flown, {}", than(report.question.most),
+                        sized.condition, evidence)};
+  return {"Sufficient up to " + slower(threshold.estimate),
+          fmt::format(" {} “{}” {}, {}", than(threshold.estimate), sized.condition,
                       interval_text(threshold, report.question), evidence)};
 }
 
@@ -76,8 +83,8 @@ Answer flattery(const SizeReport& report) {
       other.answer.threshold.estimate / report.synchronised.answer.threshold.estimate;
   return {
       "Without synchronisation",
-      fmt::format(" (“{}”), {}{} × slower would seem sufficient: {} × {}.", other.condition,
-                  other.answer.is_above ? "at least " : "", digits(other.answer.threshold.estimate),
+      fmt::format(" (“{}”), {}{} would seem sufficient: {} × {}.", other.condition,
+                  other.answer.is_above ? "at least " : "", slower(other.answer.threshold.estimate),
                   digits(ratio), ratio >= 1.0 ? "too much" : "of what really is")};
 }
 

@@ -24,6 +24,8 @@ TEST(SizeReport, SaysWhenTheAnswerIsOutsideTheRange) {
   SizeReport report = sample_size();
   report.synchronised.answer.is_above = true;
   EXPECT_THAT(size_sentences(report)[0], HasSubstr("Sufficient up to 10 × slower"));
+  report.question.most = 0.8;
+  EXPECT_THAT(size_sentences(report)[0], HasSubstr("up to 0.8 × the computing time of “target”,"));
   report.synchronised.answer.is_above = false;
   report.synchronised.answer.is_below = true;
   EXPECT_THAT(size_sentences(report)[0], HasSubstr("Not sufficient: already at 1 ×"));
@@ -57,6 +59,9 @@ TEST(SizeReport, ComparesWithTheUnsynchronisedCondition) {
   report.unsynchronised->answer.threshold = {6.2, 5.0, 7.0};
   EXPECT_EQ(size_sentences(report)[2],
             "Without synchronisation (“free”), 6.2 × slower would seem sufficient: 2 × too much.");
+  report.unsynchronised->answer.threshold.estimate = 0.8;
+  EXPECT_THAT(size_sentences(report)[2],
+              HasSubstr(", 0.8 × the computing time would seem sufficient"));
 }
 
 TEST(SizeReport, AdvisesOnTheStageAndOnWhatIsNotKnown) {
