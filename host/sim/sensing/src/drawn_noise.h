@@ -16,7 +16,8 @@ struct DrawKey {
 };
 
 /// Adds one draw to each byte, and clamps to 0..255. The draws are the bytes of words, the lowest
-/// one first. Word i is a hash of i and the key, a quarter of what KeyedRandom's words cost.
+/// one first. Word i is a hash of i and the key (triple32: C. Wellons, "Prospecting for hash
+/// functions", 2018), at a quarter of the cost of KeyedRandom's words.
 /// Computed with the processor's vectors; the result does not depend on them.
 void add_drawn(const PixelDeltas& deltas, const DrawKey& key, std::span<std::uint8_t> bytes);
 
