@@ -44,19 +44,17 @@ std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
 
 // Seed and stream (128 bits) are hashed by the generator itself into its key and one counter word;
 // the index takes two counter words, the number of the block within the sequence the last.
-PhiloxBlock::PhiloxBlock(const RandomKey& random_key)
-    : counter{low(random_key.index), high(random_key.index), 0, 0} {
-  const auto mixed = philox4x32({low(random_key.stream), high(random_key.stream),
-                                 low(random_key.seed), high(random_key.seed)},
+KeyedRandom::KeyedRandom(const RandomKey& key) : counter_{low(key.index), high(key.index), 0, 0} {
+  const auto mixed = philox4x32({low(key.stream), high(key.stream), low(key.seed), high(key.seed)},
                                 {0x54455448u, 0x45523031u});
-  key = {mixed[0], mixed[1]};
-  counter[3] = mixed[2];
+  key_ = {mixed[0], mixed[1]};
+  counter_[3] = mixed[2];
 }
 
 std::uint32_t KeyedRandom::bits() {
   if (used_ == 4) {
-    block_ = philox4x32(next_.counter, next_.key);
-    ++next_.counter[2];
+    block_ = philox4x32(counter_, key_);
+    ++counter_[2];
     used_ = 0;
   }
   return block_[static_cast<std::size_t>(used_++)];

@@ -24,20 +24,11 @@ std::uint64_t random_stream(std::string_view uav, std::string_view sensor,
 std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
                                         std::array<std::uint32_t, 2> key);
 
-/// The arguments of `philox4x32` for the first four draws of `KeyedRandom` under a key. Each
-/// further four have a `counter[2]` that is greater by 1.
-struct PhiloxBlock {
-  explicit PhiloxBlock(const RandomKey& random_key);
-
-  std::array<std::uint32_t, 4> counter;
-  std::array<std::uint32_t, 2> key{};
-};
-
 /// A sequence of draws under one key, for quantities that need more than one number (the noise of
 /// an image, a truncated normal distribution). Cheap to make and to copy. Not thread-safe.
 class KeyedRandom {
  public:
-  explicit KeyedRandom(const RandomKey& key) : next_(key) {}
+  explicit KeyedRandom(const RandomKey& key);
 
   std::uint32_t bits();
   /// Uniform in [0, 1), 53 bits.
@@ -46,7 +37,9 @@ class KeyedRandom {
   double normal();
 
  private:
-  PhiloxBlock next_;
+  // The arguments of `philox4x32` for the next four draws.
+  std::array<std::uint32_t, 4> counter_;
+  std::array<std::uint32_t, 2> key_{};
   std::array<std::uint32_t, 4> block_{};
   int used_ = 4;
 };
