@@ -17,6 +17,7 @@
 #include <tether/runner/trial_server.h>
 #include <tether/stats/sample_statistics.h>
 #include <tether/toml/table.h>
+#include <tether/workers/cluster.h>
 #include <tether/workers/files_check.h>
 #include <tether/workers/worker.h>
 
@@ -99,11 +100,8 @@ int work(const WorkerOptions& options, const std::stop_token& stop) {
                 "contains no trials for workers. Use a folder that this machine shares with the "
                 "one on which tether campaign was started (with --slurm or --detach).")
         .about(folder.root().string());
-  std::error_code failed;
-  if (const auto found = round->settings().command.find("folder");
-      found != round->settings().command.end())
-    fs::current_path(found->second,
-                     failed);  // as for the campaign, whose SUTs may name files in it
+  std::error_code ignored;
+  fs::current_path(workers::start_of(*round).working_folder, ignored);
   const auto& files = round->settings().files;
   workers::require_same_files(files);
   const os::TemporaryFolder scratch("tether-worker-");

@@ -1,5 +1,5 @@
 #include "back_ends.h"
-#include "cluster/cluster.h"
+#include "cluster/fly_by_workers.h"
 #include "commands/commands.h"
 #include "options/junit_option.h"
 #include "options/simulator_option.h"
@@ -14,7 +14,6 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -91,36 +90,33 @@ std::map<std::string, std::string> command_of(const CampaignOptions& options,
 /// The options with which the workers of the folder of --collect were started.
 CampaignOptions collecting(const CampaignOptions& options) {
   if (options.collect.empty()) return options;
-  const auto recorded = recorded_command(options.collect);
+  const workers::Start start = campaign_in(options.collect);
   const auto text = [&](const char* key) {
-    const auto found = recorded.find(key);
-    return found == recorded.end() ? std::string() : found->second;
+    const auto found = start.command.find(key);
+    return found == start.command.end() ? std::string() : found->second;
   };
   CampaignOptions all = options;
   all.campaign = text("campaign");
   all.out = options.collect;
   all.simulator = text("simulator");
   all.reading = {.tolerant = !text("tolerant").empty(), .missing_models = text("missing_models")};
-  all.jobs = std::stoi(text("jobs"));
-  all.cluster.slurm = !text("slurm").empty();
-  all.cluster.scales_nodes = !text("scale_nodes").empty();
+  all.jobs = start.jobs;
+  all.cluster = start.options;
   all.cluster.collects = true;
-  std::istringstream words(text("slurm_options"));
-  for (std::string word; std::getline(words, word);) all.cluster.slurm_options.push_back(word);
   all.resume = true;
   return all;
 }
 
 /// None: workers have not flown everything, which the user knows.
-std::optional<campaign::CampaignOutcome> fly_by_workers(
-    Cluster& cluster, const campaign::CampaignFolder& folder,
+std::optional<campaign::CampaignOutcome> fly_missing(
+    workers::Cluster& cluster, const campaign::CampaignFolder& folder,
     const std::vector<std::filesystem::path>& files, const std::stop_token& stop) {
   std::vector<const campaign::TrialPlan*> plans;
   for (const campaign::TrialPlan& plan : folder.missing()) plans.push_back(&plan);
   ProgressBar bar;
   const auto collected =
-      cluster.fly(plans, files, folder.finished().size(), stop,
-                  [&](const campaign::CampaignProgress& progress) { bar.show(progress); });
+      fly_by_workers(cluster, plans, files, folder.finished().size(), stop,
+                     [&](const campaign::CampaignProgress& progress) { bar.show(progress); });
   bar.finish();
   if (!collected.losses.empty())
     say("{} trials were lost by machines and flown again, or are reported as not flown.\n",
@@ -132,20 +128,22 @@ std::optional<campaign::CampaignOutcome> fly_by_workers(
 int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
   const CampaignOptions options = collecting(given);
   const scenario::Campaign campaign = load(options);
-  require_workers_allowed(campaign, options.cluster);
-  const int jobs = jobs_of(options.jobs, options.cluster);
+  workers::require_allowed(campaign, options.cluster);
+  const int jobs = workers::jobs_of(options.jobs, options.cluster);
   campaign::require_jobs_allowed(campaign, jobs);
   require_ports(campaign, jobs);
   const std::filesystem::path out =
       options.out.empty() ? std::filesystem::path("out/campaigns") / campaign.name : options.out;
-  std::optional<Cluster> cluster;
-  if (uses_workers(options.cluster))
-    cluster.emplace(options.cluster, jobs, out, command_of(options, campaign));
+  std::optional<workers::Cluster> cluster;
+  if (options.cluster.uses_workers())
+    cluster.emplace(workers::Start{options.cluster, jobs, std::filesystem::current_path(),
+                                   command_of(options, campaign)},
+                    out, runner::trial_arguments);
   const auto [files, warnings] = runner::files_of_trials(campaign, find_back_end);
   if (!warnings.empty())
     say("{}\n", summary_of(warnings, std::string(runner::kWarningsFile) + " of each trial"));
   campaign::Settings versions = versions_of(campaign, options.reading);
-  if (cluster) versions["machine"] = kManyMachines;
+  if (cluster) versions["machine"] = workers::kManyMachines;
   const campaign::Settings settings = campaign::campaign_settings(campaign, versions, files);
   const campaign::CampaignFolder folder(
       out, campaign, settings,
@@ -154,7 +152,7 @@ int run_trials(const CampaignOptions& given, const std::stop_token& stop) {
 
   campaign::CampaignOutcome outcome;
   if (cluster) {
-    const auto flown = fly_by_workers(*cluster, folder, files, stop);
+    const auto flown = fly_missing(*cluster, folder, files, stop);
     if (!flown) return options.cluster.detach ? 0 : exit_code(ErrorCode::kSetup);
     outcome = *flown;
   } else {

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include <tether/workers/cluster.h>
+
 namespace tether::sim {
 class WorldStore;
 }
@@ -51,15 +53,6 @@ int run_one(const RunOptions& options, const std::stop_token& stop);
 /// Reads the world of such a trial into `worlds`. @throws as run_one.
 void read_world_ahead(const RunOptions& options, sim::WorldStore& worlds);
 
-/// Trials that are flown by workers.
-struct ClusterOptions {
-  bool slurm = false;
-  std::vector<std::string> slurm_options;  ///< of sbatch
-  bool detach = false;                     ///< start workers, or have the user start them, and end
-  bool collects = false;                   ///< goes on with the workers of an earlier call
-  bool scales_nodes = false;
-};
-
 struct CampaignOptions {
   std::filesystem::path campaign;
   std::filesystem::path collect;  ///< folder of a campaign, which names everything else
@@ -67,7 +60,7 @@ struct CampaignOptions {
   std::filesystem::path out;
   std::string simulator;
   std::optional<int> jobs;
-  ClusterOptions cluster;
+  workers::ClusterOptions cluster;
   ReadingOptions reading;
   bool resume = false;
   std::filesystem::path junit;
@@ -97,7 +90,7 @@ struct SizeOptions {
   std::optional<std::vector<double>> between;
   std::size_t max_trials = 300;
   std::optional<int> jobs;
-  ClusterOptions cluster;
+  workers::ClusterOptions cluster;
   ReadingOptions reading;
   bool resume = false;
   bool force = false;

@@ -70,17 +70,19 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
                        std::function<std::string(const campaign::TrialPlan&)> name)
     : options_(options),
       campaign_(std::move(campaign)),
-      jobs_(jobs_of(options.jobs, options.cluster)),
+      jobs_(workers::jobs_of(options.jobs, options.cluster)),
       stop_(std::move(stop)),
       name_(std::move(name)),
       files_(checked_files()),
-      cluster_(uses_workers(options.cluster)
-                   ? std::make_unique<Cluster>(options.cluster, jobs_, out,
-                                               std::map<std::string, std::string>{})
-                   : nullptr),
+      cluster_(
+          options.cluster.uses_workers()
+              ? std::make_unique<workers::Cluster>(
+                    workers::Start{options.cluster, jobs_, std::filesystem::current_path(), {}},
+                    out, runner::trial_arguments)
+              : nullptr),
       settings_([&] {
         campaign::Settings versions = versions_of(campaign_, options.reading);
-        if (cluster_) versions["machine"] = kManyMachines;
+        if (cluster_) versions["machine"] = workers::kManyMachines;
         return campaign::campaign_settings(campaign_, versions, files_);
       }()),
       folder_(out, campaign_, settings_, open_mode(options)) {
@@ -93,7 +95,7 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
 }
 
 std::vector<std::filesystem::path> SizeTrials::checked_files() const {
-  require_workers_allowed(campaign_, options_.cluster);
+  workers::require_allowed(campaign_, options_.cluster);
   campaign::require_jobs_allowed(campaign_, jobs_);
   require_ports(campaign_, jobs_);
   const auto [files, warnings] = runner::files_of_trials(campaign_, find_back_end);
@@ -155,7 +157,8 @@ bool SizeTrials::run(const Plans& plans, const Questions& questions) {
   };
   const bool is_whole = [&] {
     if (cluster_)
-      return cluster_->fly(plans, files_, 0, stop_, show_it).end == workers::CollectEnd::kComplete;
+      return fly_by_workers(*cluster_, plans, files_, 0, stop_, show_it).end ==
+             workers::CollectEnd::kComplete;
     const auto fly_one = [&](const campaign::TrialPlan& plan) { return servers_.run(plan, stop_); };
     const auto check = [&] { campaign::require_unchanged(campaign_, settings_, files_); };
     return !campaign::run_trials(

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cluster/cluster.h"
+#include "cluster/fly_by_workers.h"
 #include "commands/commands.h"
 #include "terminal/status_line.h"
 
@@ -86,7 +86,8 @@ class SizeTrials {
   std::stop_token stop_;
   std::function<std::string(const campaign::TrialPlan&)> name_;
   std::vector<std::filesystem::path> files_;
-  std::unique_ptr<Cluster> cluster_;  // before the folder: without Slurm, nothing is written
+  std::unique_ptr<workers::Cluster>
+      cluster_;  // before the folder: without Slurm, nothing is written
   campaign::Settings settings_;
   campaign::CampaignFolder folder_;
   std::map<std::filesystem::path, const campaign::TrialPlan*> missing_;  // by its folder

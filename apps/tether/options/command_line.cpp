@@ -81,7 +81,7 @@ void add_junit_option(CLI::App& command, std::filesystem::path& junit) {
       "target");
 }
 
-void add_cluster_options(CLI::App& command, ClusterOptions& cluster) {
+void add_cluster_options(CLI::App& command, workers::ClusterOptions& cluster) {
   command.add_flag("--slurm", cluster.slurm,
                    "Have the trials flown by an array of Slurm jobs; the folder of --out must be "
                    "shared with their nodes");
