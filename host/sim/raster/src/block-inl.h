@@ -44,16 +44,35 @@ HWY_INLINE V depth_at(const Part& part, std::size_t at) {
   return Div(set(1.0F), hn::Load(D(), inverse));
 }
 
-// Puts places of surfaces into a block.
-HWY_INLINE void put_place(const Pixels& p, V z, const Normal& n, Cell& c) {
-  const V x = Mul(p.ray_x, z);
-  const V y = Mul(p.ray_y, z);
-  store(x, c.x);
-  store(y, c.y);
-  store(z, c.z);
-  store(dot(n.x, n.y, n.z, x, y, z), c.distance);
-  store(set(0.0F), c.diffuse);
-  store(set(0.0F), c.specular);
+// Numbers of the materials that the light needs.
+struct Shine {
+  const PreparedScene& scene;
+  const Block::Run& run;
+  const Cell& cell;
+  bool is_shiny;
+
+  V exponent() const { return of_material(run, cell, scene.materials[0].shininess); }
+  Colour specular() const {
+    const auto& first = scene.materials[0].specular;
+    return {of_material(run, cell, first[0]), of_material(run, cell, first[1]),
+            of_material(run, cell, first[2])};
+  }
+};
+
+// Out of line, for the registers' sake.
+HWY_NOINLINE void light_fully(const Part& part, const Surface& s, const Shine& shine, Cell& c) {
+  store(light_up(part.shading, part.layer, s, shine), c);
+}
+
+HWY_INLINE void light(const Part& part, const Surface& s, const Block::Run& run, bool is_shiny,
+                      Cell& c) {
+  const Layer& layer = part.layer;
+  if (layer.only_points && !(is_shiny && layer.any_specular)) {
+    store(light_up(part.shading, layer, s, nullptr), c);
+  } else {
+    const Surface copy = s;  // whose address may be known
+    light_fully(part, copy, {part.shading.scene, run, c, is_shiny}, c);
+  }
 }
 
 // Puts a flat triangle into vectors that see nothing else.
@@ -63,13 +82,14 @@ HWY_INLINE void put_flat(const Part& part, const Sight& of_part, const Block::Ru
   const Facet f = *run.flat;  // copies: nothing that is stored can change them
   const MaterialRow material = part.shading.scene.materials[f.material];
   const Normal n{set(f.normal[0][0]), set(f.normal[1][0]), set(f.normal[2][0])};
+  const Colour base = colour(material.base);
+  const Colour diffuse = colour(material.diffuse);
   for (const std::size_t at : b.places(run)) {
     Cell& c = b.cell(at);
     const Pixels p = sight.pixels(at);
     const V z = depth_at(part, at);
-    put_place(p, z, n, c);
-    store(colour(material.base), c);
-    store(whole(static_cast<std::int32_t>(f.material)), c.material);
+    light(part, {Mul(p.ray_x, z), Mul(p.ray_y, z), z, n, base, diffuse}, run,
+          material.is_shiny != 0, c);
     if (!kIsTextured) continue;
     const TexturePoint point = texture_point(f, spot(f, p, z));
     store(point.u, c.u);
@@ -81,33 +101,36 @@ HWY_INLINE void put_flat(const Part& part, const Sight& of_part, const Block::Ru
 
 // Puts what some pixels see of a triangle into a block; the first into all of the vector.
 template <bool kIsFirst>
-HWY_INLINE void put_surface(const PreparedScene& scene, const Facet& f, const Spot& s,
-                            hn::Mask<DI> same, Block::Run& run, Cell& c) {
-  const MaterialRow& material = scene.materials[f.material];
+HWY_INLINE void put_surface(const MaterialRow& material, const Facet& f, const Spot& at,
+                            hn::Mask<DI> same, Surface& s, Cell& c) {
   const M mask = float_mask(same);
-  const auto put = [&](Lanes<float>& to, V value) HWY_ATTR {
+  const auto put = [&](V& to, V value)
+                       HWY_ATTR { to = kIsFirst ? value : hn::IfThenElse(mask, value, to); };
+  const auto put_colour = [&](Colour& to, const std::array<float, 3>& value) HWY_ATTR {
+    put(to.r, set(value[0]));
+    put(to.g, set(value[1]));
+    put(to.b, set(value[2]));
+  };
+  const auto store_at = [&](Lanes<float>& to, V value) HWY_ATTR {
     store(kIsFirst ? value : hn::IfThenElse(mask, value, load(to)), to);
   };
-  const auto put_whole = [&](Lanes<std::int32_t>& to, VI value) HWY_ATTR {
+  const auto store_whole = [&](Lanes<std::int32_t>& to, VI value) HWY_ATTR {
     store(kIsFirst ? value : hn::IfThenElse(same, value, load(to)), to);
   };
-  const Normal n = normal_at(f, s);
-  put(c.nx, n.x);
-  put(c.ny, n.y);
-  put(c.nz, n.z);
-  put(c.r, set(material.base[0]));
-  put(c.g, set(material.base[1]));
-  put(c.b, set(material.base[2]));
-  put_whole(c.material, whole(static_cast<std::int32_t>(f.material)));
-  const bool is_textured = material.first_level > 0;
-  run.is_shiny = run.is_shiny || material.is_shiny != 0;
-  run.is_textured = run.is_textured || is_textured;
+  const Normal n = normal_at(f, at);
+  put(s.normal.x, n.x);
+  put(s.normal.y, n.y);
+  put(s.normal.z, n.z);
+  put_colour(s.base, material.base);
+  put_colour(s.diffuse, material.diffuse);
+  store_whole(c.material, whole(static_cast<std::int32_t>(f.material)));
   TexturePoint point{set(0.0F), set(0.0F), set(1.0F)};
-  if (is_textured) point = texture_point(f, s);
-  put(c.u, point.u);
-  put(c.v, point.v);
-  put(c.texels_per_pixel2, point.texels_per_pixel2);
-  put_whole(c.level, is_textured ? level_of(material, point) : whole(0));
+  const bool is_textured = material.first_level > 0;
+  if (is_textured) point = texture_point(f, at);
+  store_at(c.u, point.u);
+  store_at(c.v, point.v);
+  store_at(c.texels_per_pixel2, point.texels_per_pixel2);
+  store_whole(c.level, is_textured ? level_of(material, point) : whole(0));
 }
 
 // Puts several triangles, or a curved one, into vectors.
@@ -117,11 +140,19 @@ HWY_INLINE void put_mixed(const Part& part, const Sight& sight, Block::Run& run,
     const Pixels p = sight.pixels(at);
     const V z = depth_at(part, at);
     const VU ids = hn::Load(DU(), b.ids.data() + at);
+    Surface s;
+    s.x = Mul(p.ray_x, z);
+    s.y = Mul(p.ray_y, z);
+    s.z = z;
+    bool is_shiny = false;
     for_each_number(ids, [&](std::size_t index, hn::Mask<DI> same, auto is_first) HWY_ATTR {
       const Facet& f = part.layer.facets[index];
-      put_surface<is_first.value>(part.shading.scene, f, spot(f, p, z), same, run, c);
+      const MaterialRow& material = part.shading.scene.materials[f.material];
+      is_shiny = is_shiny || material.is_shiny != 0;
+      run.is_textured = run.is_textured || material.first_level > 0;
+      put_surface<is_first.value>(material, f, spot(f, p, z), same, s, c);
     });
-    put_place(p, z, normal_of(run, c), c);
+    light(part, s, run, is_shiny, c);
   }
 }
 
@@ -140,7 +171,7 @@ HWY_INLINE void find_runs(const Part& part, Block& b) {
       if (flat != nullptr && flat->is_flat == 0) flat = nullptr;
       of_run = flat == nullptr ? hn::Zero(DU()) : ids;
       if (flat != nullptr || runs == 0 || b.all_runs[runs - 1].flat != nullptr) {
-        b.all_runs[runs++] = {flat, places, places, false, false};
+        b.all_runs[runs++] = {flat, places, places, false};
       }
     }
     b.all_places[places++] = static_cast<std::uint16_t>(at);
@@ -158,23 +189,13 @@ inline void light_block(const Part& part, Block& b) {
       put_mixed(part, sight, run, b);
       continue;
     }
-    const MaterialRow& material = part.shading.scene.materials[run.flat->material];
-    run.is_shiny = material.is_shiny != 0;
-    run.is_textured = material.first_level > 0;
+    run.is_textured = part.shading.scene.materials[run.flat->material].first_level > 0;
     if (run.is_textured) {
       put_flat<true>(part, sight, run, b);
     } else {
       put_flat<false>(part, sight, run, b);
     }
   }
-  light_up(part.shading, part.layer, b);
-}
-
-// At most 1.
-HWY_INLINE Colour lit(const Cell& cell) {
-  const Colour c = colour(cell);
-  const V one = set(1.0F);
-  return {hn::Min(c.r, one), hn::Min(c.g, one), hn::Min(c.b, one)};
 }
 
 // The same with textures. Calls `use` with the place in the block of each vector with triangles,
@@ -196,7 +217,7 @@ HWY_INLINE void shade_block(const Part& part, Block& b, const Use& use) {
       const Cell& c = b.cell(at);
       Texel texel{{one, one, one}, one};
       if (run.is_textured) texel = sample(scene, load(c.level), c.lookups);
-      use(at, scaled(lit(c), texel.colour), [&]() HWY_ATTR {
+      use(at, scaled(colour(c), texel.colour), [&]() HWY_ATTR {
         return Mul(of_material(run, c, scene.materials[0].alpha), texel.alpha);
       });
     }

@@ -50,8 +50,11 @@ struct alignas(32) Facet {
 
 /// A light as the shading reads it, in C.
 struct LightRow {
-  std::array<float, 3> position{}, direction{}, diffuse{}, specular{};
-  std::array<float, 3> attenuation{};
+  /// A number for each pixel of a vector.
+  struct alignas(64) Splat : std::array<float, kMaxLanes> {};
+
+  std::array<Splat, 3> position{}, direction{}, diffuse{}, specular{};
+  std::array<Splat, 3> attenuation{};  ///< the first at least 1e-9
   float cos_cutoff = -2.0F;
   float exponent = 0.0F;
   bool is_directional = false;
@@ -81,6 +84,8 @@ struct Layer {
   /// Of each tile, those that may be seen in it: first the opaque ones.
   std::vector<std::vector<std::uint32_t>> opaque, transparent;
   std::vector<LightRow> lights;
+  bool only_points = false;   ///< the lights are points without shadows
+  bool any_specular = false;  ///< of the lights
 };
 
 /// Rows of the picture that one worker draws at once.

@@ -9,11 +9,11 @@
 #include "surface-inl.h"
 #include "vector-inl.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 // Lights, as OpenGL's fixed pipeline has them, for each pixel.
 HWY_BEFORE_NAMESPACE();
@@ -79,57 +79,60 @@ HWY_INLINE V power_of_cosine(V cosine, float e) {
   return power(hn::Min(hn::Max(cosine, set(0.0F)), set(1.0F)), e);
 }
 
-// The way from a surface to a light, and the reciprocals of its length and of what it costs.
+HWY_INLINE V load(const LightRow::Splat& from) {
+  return hn::Load(D(), from.data());
+}
+HWY_INLINE Colour colour(const std::array<LightRow::Splat, 3>& c) {
+  return {load(c[0]), load(c[1]), load(c[2])};
+}
+HWY_INLINE V dot(const Normal& n, V x, V y, V z) {
+  return dot(n.x, n.y, n.z, x, y, z);
+}
+
+// The way from a surface to a light.
 struct Ray {
   V x, y, z;
   V length;
-  V over_length;
-  V share;  // of the light that is left, over the length
+  V cost;  // what divides the light: by how much it is weakened, times the length
 };
 
-HWY_INLINE Ray sun_ray(const LightRow& light) {
-  const auto& d = light.direction;
-  const V one = set(1.0F);
-  return {set(-d[0]), set(-d[1]), set(-d[2]), one, one, one};
-}
-
-HWY_INLINE Ray aim(const LightRow& light, V px, V py, V pz) {
-  const V x = Sub(set(light.position[0]), px);
-  const V y = Sub(set(light.position[1]), py);
-  const V z = Sub(set(light.position[2]), pz);
+HWY_INLINE Ray aim(const LightRow& light, const Surface& s) {
+  const V x = Sub(load(light.position[0]), s.x);
+  const V y = Sub(load(light.position[1]), s.y);
+  const V z = Sub(load(light.position[2]), s.z);
   // Not 0: what a light gives stays finite.
   const V length2 = hn::Max(dot(x, y, z, x, y, z), set(1e-12F));
   const V length = hn::Sqrt(length2);
   const auto& a = light.attenuation;
-  const V sum = Add(Add(set(a[0]), Mul(set(a[2]), length2)), Mul(set(a[1]), length));
-  const V loss = hn::Max(sum, set(1e-9F));
-  const V share = Div(set(1.0F), Mul(length, loss));
-  return {x, y, z, length, Mul(share, loss), share};
+  const V loss = Add(Add(load(a[0]), Mul(load(a[2]), length2)), Mul(load(a[1]), length));
+  return {x, y, z, length, Mul(length, loss)};
+}
+
+HWY_INLINE Ray sun_ray(const LightRow& light) {
+  const auto& d = light.direction;
+  const V one = set(1.0F);
+  return {hn::Neg(load(d[0])), hn::Neg(load(d[1])), hn::Neg(load(d[2])), one, one};
 }
 
 // The share of a spot's light in the direction of the ray.
 HWY_INLINE V spot_share(const LightRow& light, const Ray& ray) {
   const auto& d = light.direction;
   const V cosine =
-      Mul(dot(ray.x, ray.y, ray.z, set(-d[0]), set(-d[1]), set(-d[2])), ray.over_length);
+      Div(dot(hn::Neg(load(d[0])), hn::Neg(load(d[1])), hn::Neg(load(d[2])), ray.x, ray.y, ray.z),
+          ray.length);
   return hn::IfThenElseZero(hn::Ge(cosine, set(light.cos_cutoff)),
                             power_of_cosine(cosine, light.exponent));
 }
 
 // Blinn's highlight: the cosine between the normal and the half of light and view, to a power.
-HWY_INLINE V highlight(const PreparedScene& scene, const Block::Run& run, const Cell& c,
-                       const Ray& ray) {
-  const Normal n = normal_of(run, c);
-  const V x = load(c.x);
-  const V y = load(c.y);
-  const V z = load(c.z);
-  const V view = Div(set(-1.0F), hn::Sqrt(dot(x, y, z, x, y, z)));
-  const V hx = Add(Mul(ray.x, ray.over_length), Mul(x, view));
-  const V hy = Add(Mul(ray.y, ray.over_length), Mul(y, view));
-  const V hz = Add(Mul(ray.z, ray.over_length), Mul(z, view));
+HWY_INLINE V highlight(const Surface& s, V exponent, const Ray& ray) {
+  const V over_length = Div(set(1.0F), ray.length);
+  const V view = Div(set(-1.0F), hn::Sqrt(dot(s.x, s.y, s.z, s.x, s.y, s.z)));
+  const V hx = Add(Mul(ray.x, over_length), Mul(s.x, view));
+  const V hy = Add(Mul(ray.y, over_length), Mul(s.y, view));
+  const V hz = Add(Mul(ray.z, over_length), Mul(s.z, view));
   const V length2 = hn::Max(dot(hx, hy, hz, hx, hy, hz), set(1e-20F));
-  const V cosine = Div(dot(n.x, n.y, n.z, hx, hy, hz), hn::Sqrt(length2));
-  const V exponent = of_material(run, c, scene.materials[0].shininess);
+  const V cosine = Div(dot(s.normal, hx, hy, hz), hn::Sqrt(length2));
   V result = set(0.0F);
   M rest = hn::Ge(exponent, set(0.0F));
   alignas(64) std::array<float, kMaxLanes> exponents;
@@ -143,89 +146,58 @@ HWY_INLINE V highlight(const PreparedScene& scene, const Block::Run& run, const 
   return result;
 }
 
-// Adds one light to `diffuse` and `specular`; a plain one is a point, has no shadow and is without
-// highlights in this block.
-template <bool kIsPlain>
-HWY_INLINE void add_light(const Shading& shading, const LightRow& row, Block& b) {
-  const LightRow light = row;  // which nothing that is stored can change
-  const bool is_sun = !kIsPlain && light.is_directional;
+// How much of a light reaches some surfaces: spots and shadows.
+HWY_INLINE V share_of(const Shading& shading, const LightRow& light, const Surface& s,
+                      const Ray& ray) {
+  V share = set(1.0F);
+  if (light.cos_cutoff >= -1.0F) share = spot_share(light, ray);
+  if (light.shadow < 0) return share;
+  const ShadowMap* map = &shading.shadows[static_cast<std::size_t>(light.shadow)];
+  for (const std::array<float, 12>& to_map : light.to_shadow) {
+    share = Mul(share, lit_share(*map++, to_map, s.normal, s.x, s.y, s.z));
+  }
+  return share;
+}
+
+// The colours of surfaces under all lights, before their textures, at most 1. Light of one colour
+// is added up before it is coloured. `material` has the specular colour and the exponent of
+// surfaces that shine; if there is none, all lights are points without shadows.
+template <class Material>
+HWY_INLINE Colour light_up(const Shading& shading, const Layer& layer, const Surface& s,
+                           const Material& material) {
+  constexpr bool kIsPlain = std::is_null_pointer_v<Material>;
   const V zero = set(0.0F);
-  const auto along = [&](const Normal& n) HWY_ATTR {
-    const auto& to = light.position;
-    const auto& d = light.direction;
-    return is_sun ? dot(n.x, n.y, n.z, set(-d[0]), set(-d[1]), set(-d[2]))
-                  : dot(n.x, n.y, n.z, set(to[0]), set(to[1]), set(to[2]));
-  };
-  for (const Block::Run& run : b.runs()) {
-    V light_along = along(normal_of(run, b.cell(b.all_places[run.first])));
-    for (const std::size_t at : b.places(run)) {
-      Cell& c = b.cell(at);
-      if (run.flat == nullptr) light_along = along(normal_of(run, c));
-      const V x = load(c.x);
-      const V y = load(c.y);
-      const V z = load(c.z);
-      const V toward = hn::Max(is_sun ? light_along : Sub(light_along, load(c.distance)), zero);
-      // A side that is turned away needs no shadows.
-      if (!kIsPlain && hn::AllTrue(D(), hn::Eq(toward, zero))) continue;
-      const Ray ray = is_sun ? sun_ray(light) : aim(light, x, y, z);
-      V share = ray.share;
-      if (!kIsPlain && light.cos_cutoff >= -1.0F) share = Mul(share, spot_share(light, ray));
-      if (!kIsPlain && light.shadow >= 0) {
-        const Normal n = normal_of(run, c);
-        const ShadowMap* map = &shading.shadows[static_cast<std::size_t>(light.shadow)];
-        for (const std::array<float, 12>& to_map : light.to_shadow) {
-          share = Mul(share, lit_share(*map++, to_map, n, x, y, z));
-        }
-      }
-      store(Add(load(c.diffuse), Mul(toward, share)), c.diffuse);
-      if (kIsPlain || !light.has_specular || !run.is_shiny) continue;
-      const V shine = Mul(Mul(share, ray.length), highlight(shading.scene, run, c, ray));
-      const V faced = hn::IfThenElseZero(hn::Gt(toward, zero), shine);
-      store(Add(load(c.specular), faced), c.specular);
-    }
-  }
-}
-
-// Adds `amounts` of a light's colour to the pixels' colours, and clears them. `own` is that of the
-// first material.
-HWY_INLINE void add_colour(const Block::Run& run, const Rgb& of_light,
-                           const std::array<float, 3>& own, Lanes<float> Cell::*amounts, Block& b) {
-  const auto colour_of = [&](const Cell& c) HWY_ATTR {
-    return Colour{Mul(set(of_light[0]), of_material(run, c, own[0])),
-                  Mul(set(of_light[1]), of_material(run, c, own[1])),
-                  Mul(set(of_light[2]), of_material(run, c, own[2]))};
-  };
-  Colour by = colour_of(b.cell(b.all_places[run.first]));
-  for (const std::size_t at : b.places(run)) {
-    Cell& c = b.cell(at);
-    if (run.flat == nullptr) by = colour_of(c);
-    Colour sum = colour(c);
-    add_to(sum, by, load(c.*amounts));
-    store(sum, c);
-    store(set(0.0F), c.*amounts);
-  }
-}
-
-// The colours of a block's surfaces under all lights, before their textures. Light of one colour is
-// added up before it is coloured.
-HWY_INLINE void light_up(const Shading& shading, const Layer& layer, Block& b) {
-  const bool any_shiny =
-      std::any_of(b.runs().begin(), b.runs().end(), [](const auto& run) { return run.is_shiny; });
-  const MaterialRow& first = shading.scene.materials[0];
+  Colour sum = s.base;
+  V diffuse = zero;
+  [[maybe_unused]] V specular = zero;
   for (const LightRow& light : layer.lights) {
-    const bool is_plain = !light.is_directional && light.cos_cutoff < -1.0F && light.shadow < 0 &&
-                          !(light.has_specular && any_shiny);
-    if (is_plain) {
-      add_light<true>(shading, light, b);
-    } else {
-      add_light<false>(shading, light, b);
+    const Ray ray = !kIsPlain && light.is_directional ? sun_ray(light) : aim(light, s);
+    V toward = hn::Max(dot(s.normal, ray.x, ray.y, ray.z), zero);
+    if constexpr (!kIsPlain) {
+      // A side that is turned away needs no shadows.
+      if (!hn::AllTrue(D(), hn::Eq(toward, zero))) {
+        const V share = share_of(shading, light, s, ray);
+        if (light.has_specular && material.is_shiny) {
+          const V shine =
+              Mul(Div(Mul(share, ray.length), ray.cost), highlight(s, material.exponent(), ray));
+          specular = Add(specular, hn::IfThenElseZero(hn::Gt(toward, zero), shine));
+        }
+        toward = Mul(toward, share);
+      }
     }
+    diffuse = Add(diffuse, Div(toward, ray.cost));
     if (!light.is_last_of_colour) continue;
-    for (const Block::Run& run : b.runs()) {
-      add_colour(run, light.diffuse, first.diffuse, &Cell::diffuse, b);
-      if (run.is_shiny) add_colour(run, light.specular, first.specular, &Cell::specular, b);
+    add_to(sum, scaled(colour(light.diffuse), s.diffuse), diffuse);
+    diffuse = zero;
+    if constexpr (!kIsPlain) {
+      if (material.is_shiny) {
+        add_to(sum, scaled(colour(light.specular), material.specular()), specular);
+      }
+      specular = zero;
     }
   }
+  const V one = set(1.0F);
+  return {hn::Min(sum.r, one), hn::Min(sum.g, one), hn::Min(sum.b, one)};
 }
 
 }  // namespace

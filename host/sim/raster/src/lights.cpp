@@ -15,14 +15,21 @@ std::array<float, 3> floats(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+std::array<LightRow::Splat, 3> splat(const std::array<float, 3>& numbers) {
+  std::array<LightRow::Splat, 3> all;
+  for (std::size_t i = 0; i < 3; ++i) all[i].fill(numbers[i]);
+  return all;
+}
+
 LightRow make_row(const Light& light, const Pose& X_CW) {
   LightRow row;
-  row.position = floats(transform(X_CW, light.p_WL));
-  row.direction = floats(rotate(X_CW.q, light.direction_W));
-  row.diffuse = light.diffuse;
-  row.specular = light.specular;
-  row.attenuation = {light.attenuation_constant, light.attenuation_linear,
-                     light.attenuation_quadratic};
+  constexpr float kLeastLoss = 1e-9F;  // what a light gives stays finite
+  row.position = splat(floats(transform(X_CW, light.p_WL)));
+  row.direction = splat(floats(rotate(X_CW.q, light.direction_W)));
+  row.diffuse = splat(light.diffuse);
+  row.specular = splat(light.specular);
+  row.attenuation = splat({std::max(light.attenuation_constant, kLeastLoss),
+                           light.attenuation_linear, light.attenuation_quadratic});
   row.is_directional = light.kind == LightKind::kDirectional;
   row.has_specular =
       std::any_of(light.specular.begin(), light.specular.end(), [](float c) { return c > 0.0F; });
@@ -61,6 +68,11 @@ void place_lights(const PreparedScene& scene, const std::vector<ShadowMap>& shad
       to = from_camera(of_light.from_world(), inverse(layer.X_CW));
     }
   }
+  layer.only_points = std::all_of(layer.lights.begin(), layer.lights.end(), [](const LightRow& l) {
+    return !l.is_directional && l.cos_cutoff < -1.0F && l.shadow < 0;
+  });
+  layer.any_specular = std::any_of(layer.lights.begin(), layer.lights.end(),
+                                   [](const LightRow& l) { return l.has_specular; });
   for (std::size_t i = 1; i < layer.lights.size(); ++i) {
     const LightRow& light = layer.lights[i];
     LightRow& last = layer.lights[i - 1];

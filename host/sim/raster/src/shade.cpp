@@ -169,7 +169,7 @@ class Mean {
         const Cell& c = b_.cell(at);
         const Way way = run.is_textured ? way_at(run, c, at) : resting(c);
         if (is_still(way, at)) {
-          const Colour own = lit(c);
+          const Colour own = colour(c);
           put_pixels(packed(run.is_textured ? scaled(own, texel_at(c, way.u, way.v)) : own), at);
         } else {
           put_middle(at, select(is_empty(b_, at), background, along(run, way, c)));
@@ -254,7 +254,7 @@ class Mean {
 
   // The mean light along the way.
   Colour along(const Block::Run& run, const Way& way, const Cell& c) const {
-    const Colour own = lit(c);
+    const Colour own = colour(c);
     if (!run.is_textured) return light_of(part_.shading.table, own);
     const V step = Div(set(1.0F), to_float(way.taps));
     Colour sum{set(0.0F), set(0.0F), set(0.0F)};

@@ -137,6 +137,13 @@ struct Normal {
   V x, y, z;
 };
 
+// What some pixels see, to be lit.
+struct Surface {
+  V x, y, z;  // its place in C
+  Normal normal;
+  Colour base, diffuse;
+};
+
 HWY_INLINE Normal normal_at(const Facet& f, const Spot& s) {
   const auto& n = f.normal;
   if (f.is_flat != 0) return {set(n[0][0]), set(n[1][0]), set(n[2][0])};
@@ -165,15 +172,11 @@ using Lookups = std::array<Lookup, 2>;  // on a level and the next
 
 // The pixels of a vector.
 struct Cell {
-  alignas(64) Lanes<float> x, y, z;  // the surface's place in C
-  Lanes<float> nx, ny, nz;           // its normal, unless the run is of a flat triangle
-  Lanes<float> distance;             // from the origin, along the normal
+  alignas(64) Lanes<float> r, g, b;  // under its lights, before the texture; at most 1
   Lanes<float> u, v;                 // in its texture
   Lanes<float> texels_per_pixel2;    // of its largest size, squared; at least 1
   Lanes<std::int32_t> level;         // 256 times the row of PreparedScene::levels
-  Lanes<std::int32_t> material;      // rows of PreparedScene::materials
-  Lanes<float> diffuse, specular;    // light that is not coloured yet
-  Lanes<float> r, g, b;              // under its lights, before the texture
+  Lanes<std::int32_t> material;      // rows of PreparedScene::materials, unless the run is flat
   Lookups lookups;
 };
 
@@ -188,7 +191,7 @@ struct Block {
   struct Run {
     const Facet* flat;         // the triangle of all their pixels, if it is one and flat; else null
     std::uint16_t first, end;  // of `places`
-    bool is_shiny, is_textured;
+    bool is_textured;
   };
 
   alignas(64) std::array<std::uint32_t, kPixels> ids;  // the input: 0 where nothing is to be shaded
@@ -225,12 +228,6 @@ HWY_INLINE void store(const Colour& colour, Cell& c) {
   store(colour.r, c.r);
   store(colour.g, c.g);
   store(colour.b, c.b);
-}
-
-HWY_INLINE Normal normal_of(const Block::Run& run, const Cell& c) {
-  if (run.flat == nullptr) return {load(c.nx), load(c.ny), load(c.nz)};
-  const auto& n = run.flat->normal;
-  return {set(n[0][0]), set(n[1][0]), set(n[2][0])};
 }
 
 // A number of each pixel's material, and that of the first material.
