@@ -17,7 +17,10 @@ SensorSuite::BackEnd back_end(const World& world, RayCaster& rays, int threads_a
                               const WarningSink& warn, const MeshFiles& meshes) {
   // Shared by the function's copies, and the renderers.
   const auto scene = std::make_shared<const raster::Scene>(make_scene(world, warn, meshes));
-  return {rays, [scene] { return std::make_unique<Renderer>(scene); }, threads_ahead};
+  const auto make_renderer = [scene](raster::Helpers* helpers) {
+    return std::make_unique<Renderer>(scene, helpers);
+  };
+  return {rays, make_renderer, threads_ahead};
 }
 
 class MujocoSimulator final : public Simulator {

@@ -14,8 +14,8 @@ namespace tether::sim {
 /// Draws pictures of a scene in software: the same bytes on every machine. One thread at a time.
 class Renderer final : public CameraRenderer {
  public:
-  explicit Renderer(std::shared_ptr<const raster::Scene> scene)
-      : scene_(std::move(scene)), renderer_(*scene_) {}
+  explicit Renderer(std::shared_ptr<const raster::Scene> scene, raster::Helpers* helpers = nullptr)
+      : scene_(std::move(scene)), renderer_(*scene_, helpers) {}
 
   void draw(const raster::View& view, const raster::Picture& picture) override {
     renderer_.draw(view, picture);

@@ -92,12 +92,10 @@ TEST(GoldenPictures, ShippedWorldsLookTheSameOnEveryMachine) {
     const raster::Scene scene(make_scene(world, testing::no_warnings()));
     std::vector<uav::Pose> bodies;
     for (const MovingBody& body : moving_bodies(world)) bodies.push_back(body.X_WB);
-    raster::Renderer one(scene, 1);
-    raster::Renderer three(scene, 3);
+    raster::Renderer renderer(scene);
     for (const Viewpoint& from : kViewpoints) {
       if (std::string(from.world) != name) continue;
-      hashes[from.name] = drawn_hash(one, bodies, from);
-      EXPECT_EQ(drawn_hash(three, bodies, from), hashes[from.name]) << from.name;
+      hashes[from.name] = drawn_hash(renderer, bodies, from);
     }
   }
   expect_golden(std::filesystem::path(TETHER_TEST_DIR) / "data/golden.txt", hashes);

@@ -4,7 +4,6 @@
 #include "shade.h"
 #include "shadow_map.h"
 #include "strip_renderer.h"
-#include "worker_pool.h"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +20,7 @@ namespace {
 
 constexpr std::size_t kLensesKept = 16;
 constexpr int kScoutScale = 8;
-constexpr int kStripsPerWorker = 4;
+constexpr int kStripsPerThread = 4;
 
 void require(bool condition, const char* what) {
   if (!condition) throw Error(ErrorCode::kUsage, std::string("view: ") + what);
@@ -102,8 +101,7 @@ Strip strip_of(int rows, int part, int parts, int multiple) {
 
 class Renderer::Work {
  public:
-  Work(const Scene& scene, int threads)
-      : scene_(scene), pool_(threads), strips_(static_cast<std::size_t>(threads)) {}
+  Work(const Scene& scene, Helpers* helpers) : scene_(scene), helpers_(helpers) {}
 
   const Lens& lens_of(const uav::CameraModel& camera) {
     const auto known = std::find_if(lenses_.begin(), lenses_.end(),
@@ -128,17 +126,27 @@ class Renderer::Work {
     const int rows = view.camera.height_px;
     const bool is_rolling = sampling.bands > 1;
     const int tile_rows = (rows + kTile_px - 1) / kTile_px;
-    const int strips = is_rolling ? sampling.bands
-                       : pool_.workers() == 1
-                           ? 1
-                           : std::min(tile_rows, pool_.workers() * kStripsPerWorker);
-    pool_.run(strips, [&](int worker, int i) {
-      strips_[static_cast<std::size_t>(worker)].draw(
-          job, strip_of(rows, i, strips, is_rolling ? 1 : kTile_px));
-    });
+    const int threads = helpers_ == nullptr ? 1 : helpers_->threads() + 1;
+    const int strips = is_rolling     ? sampling.bands
+                       : threads == 1 ? 1
+                                      : std::min(tile_rows, threads * kStripsPerThread);
+    const auto draw_strip = [&](int i) {
+      scratch().draw(job, strip_of(rows, i, strips, is_rolling ? 1 : kTile_px));
+    };
+    if (threads == 1 || strips == 1) {
+      for (int i = 0; i < strips; ++i) draw_strip(i);
+    } else {
+      helpers_->share(strips, draw_strip);
+    }
   }
 
  private:
+  // Memory for one strip at a time, which any renderer may use.
+  static StripRenderer& scratch() {
+    thread_local const auto of_this_thread = std::make_unique<StripRenderer>();
+    return *of_this_thread;
+  }
+
   // Shadows are those of the middle of the window.
   void update_shadows(const View& view) {
     if (!scene_.prepared().any_shadow) return;
@@ -163,24 +171,19 @@ class Renderer::Work {
     const Picture nothing;
     const StripRenderer::Job job{
         scene_.prepared(), lens_of(scout.camera), shadows_, scout, nothing, {}};
-    const double nearest_m = strips_[0].nearest_m(job, {0, scout.camera.height_px});
+    const double nearest_m = scratch().nearest_m(job, {0, scout.camera.height_px});
     return choose_sampling(view, motion_px(view, scene_.body_radii_m(), nearest_m));
   }
 
   const Scene& scene_;
-  WorkerPool pool_;
-  std::vector<StripRenderer> strips_;
+  Helpers* helpers_;
   std::list<Lens> lenses_;  ///< the last used one first
   std::vector<ShadowMap> shadows_;
   Moment moment_;
 };
 
-Renderer::Renderer(const Scene& scene, int threads) {
-  if (threads < 1 || threads > kMaxThreads) {
-    throw Error(ErrorCode::kUsage, "the renderer's threads are not 1 to 256");
-  }
-  work_ = std::make_unique<Work>(scene, threads);
-}
+Renderer::Renderer(const Scene& scene, Helpers* helpers)
+    : work_(std::make_unique<Work>(scene, helpers)) {}
 
 Renderer::~Renderer() = default;
 

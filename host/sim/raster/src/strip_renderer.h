@@ -13,7 +13,7 @@
 
 namespace tether::raster {
 
-/// Draws strips of pictures, one after the other. Each worker has its own, with its memory.
+/// Draws strips of pictures, one after the other. Each thread has its own, with its memory.
 class StripRenderer {
  public:
   /// The data that all strips of a picture share. It must outlive the strips.

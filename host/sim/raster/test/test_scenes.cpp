@@ -201,9 +201,8 @@ Drawing draw(Renderer& renderer, const View& view) {
   return drawing;
 }
 
-Drawing draw(const Scene& scene, const uav::CameraModel& camera, const uav::Pose& X_WC,
-             int threads) {
-  Renderer renderer(scene, threads);
+Drawing draw(const Scene& scene, const uav::CameraModel& camera, const uav::Pose& X_WC) {
+  Renderer renderer(scene);
   const std::vector<uav::Pose> bodies(scene.bodies());
   const Instant instant{X_WC, bodies};
   View view;

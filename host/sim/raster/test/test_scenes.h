@@ -44,8 +44,7 @@ struct Drawing {
 /// With all that a picture can hold.
 Drawing draw(Renderer& renderer, const View& view);
 /// A picture of one instant from `X_WC`.
-Drawing draw(const Scene& scene, const uav::CameraModel& camera, const uav::Pose& X_WC = {},
-             int threads = 1);
+Drawing draw(const Scene& scene, const uav::CameraModel& camera, const uav::Pose& X_WC = {});
 
 std::uint64_t hash_of(const Drawing& drawing);
 

@@ -105,7 +105,7 @@ class RemoteSimulator final : public Simulator {
 
  private:
   SensorSuite::BackEnd back_end() {
-    auto make_renderer = [this, radii_m = drawn_radii_m(world_)] {
+    auto make_renderer = [this, radii_m = drawn_radii_m(world_)](raster::Helpers* /*helpers*/) {
       return make_composite_renderer(std::make_unique<RemoteRenderer>(session_), radii_m);
     };
     return {rays_, std::move(make_renderer)};

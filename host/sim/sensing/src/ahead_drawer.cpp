@@ -50,10 +50,12 @@ std::optional<uav::Sample> AheadDrawer::take(const PictureKey& key) {
     const auto other = std::ranges::find_if(jobs_, [&](const Job& waiting) {
       return waiting.state == State::kWaiting && waiting.key.at <= key.at;
     });
-    if (other == jobs_.end()) {
-      done_.wait(lock);
-    } else {
+    if (other != jobs_.end()) {
       draw(other, threads_.size(), lock);
+    } else if (Parts* const parts = open_parts()) {
+      help(*parts, lock);
+    } else {
+      done_.wait(lock);
     }
   }
   --work_.drawn_in_vain;
@@ -86,12 +88,18 @@ void AheadDrawer::serve(std::size_t worker) {
   std::unique_lock lock(mutex_);
   for (;;) {
     auto job = jobs_.end();
+    Parts* parts = nullptr;
     begin_.wait(lock, [&] {
       job = std::ranges::find(jobs_, State::kWaiting, &Job::state);
-      return ends_ || job != jobs_.end();
+      parts = open_parts();
+      return ends_ || job != jobs_.end() || parts != nullptr;
     });
     if (ends_) return;
-    draw(job, worker, lock);
+    if (job != jobs_.end()) {
+      draw(job, worker, lock);
+    } else {
+      help(*parts, lock);
+    }
   }
 }
 
@@ -112,6 +120,52 @@ void AheadDrawer::draw(Jobs::iterator job, std::size_t worker, std::unique_lock<
   job->state = State::kDone;
   if (job->is_dropped) jobs_.erase(job);
   done_.notify_all();
+}
+
+void AheadDrawer::share(int count, const Part& draw_part) {
+  std::unique_lock lock(mutex_);
+  const auto parts = parts_.insert(parts_.end(), {.draw = draw_part, .count = count});
+  begin_.notify_all();
+  done_.notify_all();
+  draw(*parts, lock);
+  done_.wait(lock, [&] { return parts->busy == 0; });
+  const std::exception_ptr failure = parts->failure;
+  parts_.erase(parts);
+  if (failure) std::rethrow_exception(failure);
+}
+
+AheadDrawer::Parts* AheadDrawer::open_parts() {
+  const auto open =
+      std::ranges::find_if(parts_, [](const Parts& parts) { return parts.next < parts.count; });
+  return open == parts_.end() ? nullptr : &*open;
+}
+
+// A part takes so long that one lock for each costs nothing.
+void AheadDrawer::draw(Parts& parts, std::unique_lock<std::mutex>& lock) {
+  while (parts.next < parts.count) {
+    const int part = parts.next++;
+    ++parts.busy;
+    lock.unlock();
+    std::exception_ptr failure;
+    try {
+      parts.draw(part);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    lock.lock();
+    --parts.busy;
+    if (failure && !parts.failure) {
+      parts.failure = failure;
+      parts.next = parts.count;
+    }
+  }
+  if (parts.busy == 0) done_.notify_all();
+}
+
+void AheadDrawer::help(Parts& parts, std::unique_lock<std::mutex>& lock) {
+  const CpuTimer timer;
+  draw(parts, lock);
+  work_.drawing += timer.elapsed();
 }
 
 }  // namespace tether::sim

@@ -14,6 +14,7 @@
 #include <tether/base/time.h>
 #include <tether/sim/simulator.h>
 #include <tether/sim/simulator_work.h>
+#include <tether/sim_raster/renderer.h>
 #include <tether/uav/samples.h>
 
 namespace tether::sim {
@@ -28,9 +29,10 @@ struct PictureKey {
   friend bool operator==(const PictureKey&, const PictureKey&) = default;
 };
 
-/// Draws pictures on threads of its own before they are asked for. Its functions are called from
-/// one thread at a time. The destructor waits for pictures that are being drawn.
-class AheadDrawer {
+/// Draws pictures on threads of its own before they are asked for. A thread without a picture
+/// helps to draw those of others. Its functions, but for those of Helpers, are called from one
+/// thread at a time. The destructor waits for pictures that are being drawn.
+class AheadDrawer final : public raster::Helpers {
  public:
   /// Draws the picture of a snapshot on thread `worker` (0, 1, …; after the last, the thread that
   /// calls `take`). Called by several threads, with different workers.
@@ -41,21 +43,22 @@ class AheadDrawer {
 
   /// @pre `threads` ≥ 1.
   AheadDrawer(int threads, Draw draw);
-  ~AheadDrawer();
-  AheadDrawer(const AheadDrawer&) = delete;
-  AheadDrawer& operator=(const AheadDrawer&) = delete;
+  ~AheadDrawer() override;
 
   /// Draws this picture as soon as a thread is free. Does nothing if the picture is known, or if
   /// `kMostPerSensor` of its sensor are.
   void expect(const PictureKey& key, const Snapshot& snapshot);
   /// The picture. If it is being drawn, waits for it, and meanwhile draws others of snapshots that
-  /// are not later. None if no thread has begun to draw it; then none will. Drops earlier pictures
-  /// of the sensor, in vain. @throws what `Draw` threw for it.
+  /// are not later, or helps. None if no thread has begun to draw it; then none will. Drops earlier
+  /// pictures of the sensor, in vain. @throws what `Draw` threw for it.
   std::optional<uav::Sample> take(const PictureKey& key);
   /// Drops every picture, and waits until no thread draws; counts from 0 again.
   void reset();
   /// What the threads have drawn. A picture that can still be taken counts as in vain.
   SimulatorWork work() const;
+
+  int threads() const override { return static_cast<int>(threads_.size()); }
+  void share(int count, const Part& draw) override;
 
  private:
   enum class State { kWaiting, kBegun, kDone };
@@ -68,16 +71,28 @@ class AheadDrawer {
     std::exception_ptr failure{};
   };
   using Jobs = std::list<Job>;
+  /// The parts of a picture that a thread draws.
+  struct Parts {
+    const Part& draw;
+    int count;
+    int next = 0;
+    int busy = 0;
+    std::exception_ptr failure{};
+  };
 
   void serve(std::size_t worker);
   void draw(Jobs::iterator job, std::size_t worker, std::unique_lock<std::mutex>& lock);
   Jobs::iterator drop(Jobs::iterator job);
+  Parts* open_parts();
+  void draw(Parts& parts, std::unique_lock<std::mutex>& lock);
+  void help(Parts& parts, std::unique_lock<std::mutex>& lock);
 
   const Draw draw_;
   mutable std::mutex mutex_;
   std::condition_variable begin_;
   std::condition_variable done_;
   Jobs jobs_;
+  std::list<Parts> parts_;
   SimulatorWork work_;
   bool ends_ = false;
   std::vector<std::jthread> threads_;  // last: ends before what it uses

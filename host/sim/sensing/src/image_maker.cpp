@@ -10,8 +10,12 @@
 namespace tether::sim {
 
 ImageMaker::ImageMaker(const World& world, CameraRendererFactory make_renderer,
-                       const WarningSink& warn)
-    : world_(world), layout_(world), make_renderer_(std::move(make_renderer)), warn_(warn) {}
+                       raster::Helpers* helpers, const WarningSink& warn)
+    : world_(world),
+      layout_(world),
+      make_renderer_(std::move(make_renderer)),
+      helpers_(helpers),
+      warn_(warn) {}
 
 uav::CameraSample ImageMaker::make(const CameraModel& camera, const Request& r) {
   const uav::CameraModel& lens = camera.intrinsics;
@@ -78,7 +82,7 @@ void ImageMaker::warn_of_blind_pixels(const CameraModel& camera, const Sensor& s
 }
 
 CameraRenderer& ImageMaker::renderer() {
-  if (!renderer_) renderer_ = make_renderer_();
+  if (!renderer_) renderer_ = make_renderer_(helpers_);
   return *renderer_;
 }
 

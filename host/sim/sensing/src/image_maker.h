@@ -19,8 +19,10 @@ namespace tether::sim {
 /// shutter reaches back, and adds the noise.
 class ImageMaker {
  public:
-  /// `world` must outlive this object. Warns of what cannot be shown when an image is made.
-  ImageMaker(const World& world, CameraRendererFactory make_renderer, const WarningSink& warn);
+  /// `world` must outlive this object. Warns of what cannot be shown when an image is made. The
+  /// renderer gets `helpers`, which may be null.
+  ImageMaker(const World& world, CameraRendererFactory make_renderer, raster::Helpers* helpers,
+             const WarningSink& warn);
 
   /// Which camera of the world makes which image.
   struct Request {
@@ -42,6 +44,7 @@ class ImageMaker {
   const World& world_;
   StateLayout layout_;
   CameraRendererFactory make_renderer_;
+  raster::Helpers* helpers_;
   WarningSink warn_;
   std::unique_ptr<CameraRenderer> renderer_;
   std::set<const Sensor*> checked_;

@@ -12,22 +12,20 @@
 namespace tether::sim {
 
 SensorSuite::SensorSuite(const World& world, const BackEnd& back_end, const WarningSink& warn)
-    : world_(world),
-      layout_(world),
-      rays_(back_end.rays),
-      images_(std::make_unique<ImageMaker>(world, back_end.make_renderer, warn)),
-      X_WB_(layout_.bodies()) {
-  if (back_end.threads_ahead < 1) return;
-  for (int i = 0; i < back_end.threads_ahead; ++i) {
-    images_ahead_.push_back(
-        std::make_unique<ImageMaker>(world, back_end.make_renderer, [](const Warning&) {}));
+    : world_(world), layout_(world), rays_(back_end.rays), X_WB_(layout_.bodies()) {
+  if (back_end.threads_ahead > 0) {
+    ahead_ = std::make_unique<AheadDrawer>(
+        back_end.threads_ahead,
+        [this](std::size_t worker, const PictureKey& key, const Snapshot& snapshot) {
+          return draw(*images_[worker], snapshot, key.uav, key.sensor, key.index);
+        });
   }
-  ahead_ = std::make_unique<AheadDrawer>(
-      back_end.threads_ahead,
-      [this](std::size_t worker, const PictureKey& key, const Snapshot& snapshot) {
-        ImageMaker& images = worker < images_ahead_.size() ? *images_ahead_[worker] : *images_;
-        return draw(images, snapshot, key.uav, key.sensor, key.index);
-      });
+  for (int i = 0; i < back_end.threads_ahead; ++i) {
+    images_.push_back(std::make_unique<ImageMaker>(world, back_end.make_renderer, ahead_.get(),
+                                                   [](const Warning&) {}));
+  }
+  images_.push_back(
+      std::make_unique<ImageMaker>(world, back_end.make_renderer, ahead_.get(), warn));
 }
 
 SensorSuite::~SensorSuite() = default;
@@ -72,7 +70,7 @@ uav::Sample SensorSuite::picture(const Snapshot& snapshot, std::size_t uav, std:
     if (auto sample = ahead_->take({uav, sensor, index, snapshot.at})) return std::move(*sample);
   }
   const CpuTimer timer;
-  uav::Sample sample = draw(*images_, snapshot, uav, sensor, index);
+  uav::Sample sample = draw(*images_.back(), snapshot, uav, sensor, index);
   work_.drawing += timer.elapsed();
   ++work_.pictures;
   seen_.insert(&world_.uavs[uav].sensors[sensor]);
@@ -126,7 +124,7 @@ int SensorSuite::walls_between(const Snapshot& snapshot, std::size_t uav, std::s
 }
 
 std::string SensorSuite::renderer_name() const {
-  return images_->renderer_name();
+  return images_.back()->renderer_name();
 }
 
 void SensorSuite::cast(const RangeModel& range, const std::vector<double>& state, std::size_t uav,

@@ -102,6 +102,65 @@ TEST_F(AheadDrawerTest, TheCallerDrawsAnotherPictureWhileItWaits) {
   EXPECT_EQ(take(2, 1), 2.0);
 }
 
+// Part 0 waits for part 1, which the other thread therefore has to draw.
+class SharedPicture {
+ public:
+  explicit SharedPicture(raster::Helpers& helpers) : helpers_(helpers) {}
+
+  void draw() {
+    helpers_.share(2, [this](int part) {
+      ++times_.at(static_cast<std::size_t>(part));
+      if (part == 1) return second_.release();
+      first_.release();
+      second_.acquire();
+    });
+  }
+  void await_first_part() { first_.acquire(); }
+  std::array<int, 2> times() const { return {times_[0], times_[1]}; }
+
+ private:
+  raster::Helpers& helpers_;
+  std::array<std::atomic<int>, 2> times_{};
+  std::binary_semaphore first_{0};
+  std::binary_semaphore second_{0};
+};
+
+TEST(AheadDrawer, AnIdleThreadHelpsTheCaller) {
+  AheadDrawer drawer(1, [](std::size_t, const PictureKey&, const Snapshot&) -> uav::Sample {
+    return uav::RangeSample{};
+  });
+  SharedPicture picture(drawer);
+  picture.draw();
+  EXPECT_EQ(picture.times(), (std::array{1, 1}));
+}
+
+TEST(AheadDrawer, TheCallerHelpsToDrawThePictureThatItWaitsFor) {
+  SharedPicture* shared = nullptr;
+  AheadDrawer drawer(1, [&](std::size_t, const PictureKey&, const Snapshot&) -> uav::Sample {
+    shared->draw();
+    return uav::RangeSample{};
+  });
+  SharedPicture picture(drawer);
+  shared = &picture;
+  drawer.expect(key(1), {});
+  picture.await_first_part();
+  EXPECT_TRUE(drawer.take(key(1)).has_value());
+  EXPECT_EQ(picture.times(), (std::array{1, 1}));
+}
+
+TEST(AheadDrawer, ThrowsTheErrorOfAPart) {
+  AheadDrawer drawer(2, [](std::size_t, const PictureKey&, const Snapshot&) -> uav::Sample {
+    return uav::RangeSample{};
+  });
+  std::atomic<int> parts = 0;
+  const auto draw = [&](int part) {
+    ++parts;
+    if (part == 4) throw Error(ErrorCode::kSetup, "lost");
+  };
+  EXPECT_STREQ(thrown_error(ErrorCode::kSetup, [&] { drawer.share(5, draw); }).what(), "lost");
+  EXPECT_EQ(parts, 5);
+}
+
 TEST_F(AheadDrawerTest, ThrowsTheErrorOfTheThread) {
   begin(kFails);
   open(kFails);
@@ -125,6 +184,7 @@ TEST_F(AheadDrawerTest, ResetDropsEveryPicture) {
   begin(1);
   expect(2);
   open(1);
+  open(2);  // which the thread may have begun
   drawer_.reset();
   EXPECT_EQ(drawer_.work(), SimulatorWork{});
   EXPECT_EQ(take(2), 0.0);

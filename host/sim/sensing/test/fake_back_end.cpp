@@ -33,7 +33,7 @@ class FakeRenderer final : public CameraRenderer {
 }  // namespace
 
 CameraRendererFactory fake_renderers(DrawLog& log) {
-  return [&log] {
+  return [&log](raster::Helpers* /*helpers*/) {
     ++log.made;
     return std::make_unique<FakeRenderer>(log);
   };

@@ -43,7 +43,7 @@ struct Camera {
 
   explicit Camera(World w)
       : world(std::move(w)),
-        maker(world, testing::fake_renderers(log),
+        maker(world, testing::fake_renderers(log), nullptr,
               [this](const Warning& warning) { warnings.push_back(to_line(warning)); }) {}
 
   uav::CameraSample image(std::uint64_t seed = 0, std::uint64_t index = 0) {

@@ -138,8 +138,9 @@ class PlaceRenderer final : public CameraRenderer {
 };
 
 TEST_F(SensorSuiteTest, PicturesDrawnAheadAreThoseOfTheirSnapshots) {
-  SensorSuite suite{
-      world_, {rays_, [] { return std::make_unique<PlaceRenderer>(); }, 3}, [](const Warning&) {}};
+  SensorSuite suite{world_,
+                    {rays_, [](raster::Helpers*) { return std::make_unique<PlaceRenderer>(); }, 3},
+                    [](const Warning&) {}};
   std::vector<Snapshot> snapshots(100, snapshot_);
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     snapshots[i].at = SimTime(std::chrono::milliseconds(i));

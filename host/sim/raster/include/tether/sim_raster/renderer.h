@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -14,7 +15,26 @@
 namespace tether::raster {
 
 inline constexpr int kMaxImageSize_px = 8192;  ///< each way
-inline constexpr int kMaxThreads = 256;
+
+/// Other threads that can draw parts of a picture.
+class Helpers {
+ public:
+  using Part = std::function<void(int part)>;
+
+  virtual ~Helpers() = default;
+  Helpers(const Helpers&) = delete;
+  Helpers& operator=(const Helpers&) = delete;
+
+  /// How many there are; they may be busy.
+  virtual int threads() const = 0;
+  /// Calls `draw` with 0 to count − 1, on the calling thread and on those that are idle. Returns
+  /// when all parts are done. Throws the first exception of a part; parts that nobody has begun
+  /// are then left out.
+  virtual void share(int count, const Part& draw) = 0;
+
+ protected:
+  Helpers() = default;
+};
 
 /// Draws pictures of a scene.
 ///
@@ -22,9 +42,8 @@ inline constexpr int kMaxThreads = 256;
 /// with any number of threads. Used from one thread at a time.
 class Renderer {
  public:
-  /// Draws on `threads` threads, the caller's among them. `scene` must outlive this object.
-  /// @throws Error(kUsage) for no thread or more than kMaxThreads.
-  explicit Renderer(const Scene& scene, int threads = 1);
+  /// Draws on the calling thread, with `helpers` if there are any. Both must outlive this object.
+  explicit Renderer(const Scene& scene, Helpers* helpers = nullptr);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include <tether/sim_raster/renderer.h>
 #include <tether/sim_raster/view.h>
 #include <tether/uav/camera_model.h>
 
@@ -37,8 +38,10 @@ class CameraRenderer {
   CameraRenderer() = default;
 };
 
-/// Called once, for the first image: a run without a camera needs no renderer.
+/// Called once, for the first image: a run without a camera needs no renderer. Helpers may be null;
+/// else they outlive the renderer's pictures.
 /// @throws Error(kSetup) without a renderer, Error(kBadFile) for something that cannot be shown.
-using CameraRendererFactory = std::function<std::unique_ptr<CameraRenderer>()>;
+using CameraRendererFactory =
+    std::function<std::unique_ptr<CameraRenderer>(raster::Helpers* helpers)>;
 
 }  // namespace tether::sim

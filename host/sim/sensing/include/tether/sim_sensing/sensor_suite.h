@@ -28,7 +28,7 @@ class SensorSuite {
     RayCaster& rays;  ///< must outlive the suite
     CameraRendererFactory make_renderer;
     /// Threads that draw expected pictures, each with a renderer of its own, which is made and used
-    /// on that thread.
+    /// on that thread. Those that are idle help to draw the others' pictures.
     int threads_ahead = 0;
   };
 
@@ -72,14 +72,13 @@ class SensorSuite {
   const World& world_;
   StateLayout layout_;
   RayCaster& rays_;
-  std::unique_ptr<ImageMaker> images_;
   std::uint64_t seed_ = 0;
   std::vector<uav::Pose> X_WB_;
   std::vector<double> distances_m_;
-  std::set<const Sensor*> seen_;                           // cameras with a picture
-  SimulatorWork work_;                                     // on the caller's thread
-  std::vector<std::unique_ptr<ImageMaker>> images_ahead_;  // one per thread
-  std::unique_ptr<AheadDrawer> ahead_;                     // last: its threads use the rest
+  std::set<const Sensor*> seen_;                     // cameras with a picture
+  SimulatorWork work_;                               // on the caller's thread
+  std::vector<std::unique_ptr<ImageMaker>> images_;  // one per thread; the caller's is the last
+  std::unique_ptr<AheadDrawer> ahead_;               // last: its threads use the rest
 };
 
 }  // namespace tether::sim
