@@ -383,6 +383,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
   read_anchors(root, scenario);
   read_computers(root, scenario);
   read_uavs(root, scenario);
+  require_users(scenario);
   scenario.radio = read_radio(root);
   read_conditions(root, scenario);
   apply_to_profiles(of_profiles, scenario);

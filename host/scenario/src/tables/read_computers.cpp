@@ -82,7 +82,9 @@ std::optional<Seat> read_seat(const toml::Table& table, const Scenario& scenario
   std::vector<std::string_view> names;
   for (const Computer& computer : scenario.computers) names.push_back(computer.name);
   if (names.empty())
-    table.fail("target", "names a target, but the scenario has no table [[target]]. Add one.");
+    table.fail("target",
+               fmt::format("is \"{}\", but the scenario has no table [[target]]. Add one.",
+                           table.text("target")));
   Seat seat{.computer = table.choice("target", names)};
   if (table.has("pinned_core")) {
     seat.pinned_core =
@@ -101,6 +103,18 @@ std::optional<Seat> read_seat(const toml::Table& table, const Scenario& scenario
                              *seat.pinned_core, computer.name, computer.cores - 1));
   }
   return seat;
+}
+
+void require_users(const Scenario& scenario) {
+  for (std::size_t i = 0; i < scenario.computers.size(); ++i)
+    if (std::ranges::none_of(scenario.uavs, [i](const UavSetup& uav) {
+          return uav.seat && uav.seat->computer == i;
+        }))
+      throw Error(ErrorCode::kBadFile, scenario.computers[i].at,
+                  fmt::format("no UAV runs on the target \"{}\". Name it with 'target' in a "
+                              "[[uav]], or remove this table",
+                              scenario.computers[i].name))
+          .about(scenario.computers[i].name);
 }
 
 // Under this condition, each SUT runs on the [[target]] that its UAV names.
