@@ -93,7 +93,6 @@ class Coordinator::Impl {
   std::optional<sync::SutTime> next_arrival() const;
   SimTime next_radio() const;
   void settle_radio();
-  radio::Link link_of(std::size_t uav, std::size_t other);
   void take_arrival(radio::Arrival& arrival);
   void promise(Session& session, PendingInteraction& pending, ExecTime reply_at);
   static void receive(Session& session, record::Interaction& entry, link::Reply& reply,
