@@ -28,6 +28,7 @@ Stepper::Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& bar
       grid_(simulator.grid()),
       ground_truth_period_(ground_truth_period),
       samplers_(std::move(samplers)),
+      has_changed_(samplers_.size()),
       has_battery_(samplers_.size()) {
   for (std::size_t uav = 0; uav < samplers_.size(); ++uav) {
     due_.add();
@@ -107,7 +108,9 @@ void Stepper::sample() {
 // After each change of a sampler.
 void Stepper::note_change(std::size_t uav) {
   due_.set(uav, same_instant(samplers_[uav].next_due()));
-  changed_.insert(uav);
+  if (has_changed_[uav]) return;
+  has_changed_[uav] = true;
+  changed_.push_back(uav);
 }
 
 std::optional<Measurement> Stepper::plan(std::size_t uav, std::uint64_t call,
@@ -197,11 +200,13 @@ radio::Link Stepper::link(std::size_t uav, std::size_t other) {
 }
 
 void Stepper::announce() {
-  for (const std::size_t uav : changed_)
+  for (const std::size_t uav : changed_) {
+    has_changed_[uav] = false;
     samplers_[uav].announce(
         [&](const sim::Snapshot& state, std::size_t sensor, std::uint64_t index) {
           ask([&](sim::Simulator& s) { s.expect(state, uav, sensor, index); });
         });
+  }
   changed_.clear();
 }
 

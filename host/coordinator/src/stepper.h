@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -105,8 +104,9 @@ class Stepper {
   Duration ground_truth_period_;
   std::vector<Sampler> samplers_;
   StatePool states_;
-  sync::LeastTree due_;            // of each sampler
-  std::set<std::size_t> changed_;  // samplers that may have something to announce
+  sync::LeastTree due_;               // of each sampler
+  std::vector<std::size_t> changed_;  // samplers that may have something to announce
+  std::vector<bool> has_changed_;     // by UAV
   CommandQueue commands_;
   struct Computed {
     std::size_t uav = 0;
