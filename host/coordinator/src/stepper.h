@@ -88,8 +88,9 @@ class Stepper {
   void log_ground_truth();
   SimTime next_ground_truth() const;
 
+  /// Calls the simulator, whose errors become SimulatorFailure.
   template <class F>
-  auto ask(F&& f) {
+  auto guarded(F&& f) {
     try {
       return f(*simulator_);
     } catch (const Error& e) {
