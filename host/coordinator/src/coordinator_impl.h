@@ -22,9 +22,17 @@ namespace tether::coordinator {
 /// decisions are made by its parts:
 ///
 ///     validator    whether a message of a SUT is allowed
+///     SharedBoards at which instant of its virtual board a SUT has sent a request
 ///     barrier      which replies are held until when, and how far ST may advance
+///     Medium       when a message between UAVs arrives, or why it is lost
 ///     Stepper      what is due at each boundary; its Samplers: what sensors sample, and when
 ///     Watchdog     whether the run takes too long, and who is blocked on whom
+///     RunLog       what the record has of all this, and in which order
+///
+/// A request passes them in this order: it is validated; on a shared board, it waits until its
+/// instant is known (settle_board); it is planned (accept) and held by the barrier; ST advances to
+/// its reply's timestamp; release_ready sends the reply and logs the interaction. A message between
+/// UAVs that arrives meanwhile can move a reply to an earlier instant (promise).
 class Coordinator::Impl {
  public:
   Impl(sim::Simulator& simulator, record::Recorder& recorder, RunOptions options,
@@ -93,7 +101,6 @@ class Coordinator::Impl {
   std::optional<sync::SutTime> next_arrival() const;
   SimTime next_radio() const;
   void settle_radio();
-  radio::Link link_of(std::size_t uav, std::size_t other);
   void take_arrival(radio::Arrival& arrival);
   void promise(Session& session, PendingInteraction& pending, ExecTime reply_at);
   static void receive(Session& session, record::Interaction& entry, link::Reply& reply,

@@ -208,9 +208,11 @@ void Coordinator::Impl::on_request(Session& session, const link::Request& reques
   // The Finish of one thread ends a concurrent SUT; later requests of its other threads are
   // dropped.
   if (session.is_concurrent() && session.finish) return;
-  const auto fault = fault_of(request, standing(session), now);
-  if (fault && fault->kind == Fault::Kind::kFlood) return expel(session, *fault);
-  if (fault) return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
+  if (const auto fault = fault_of(request, standing(session), now))
+    return break_off(session, link::Refusal::Reason::kBadRequest, *fault);
+  if (const auto* send = std::get_if<link::SendMessage>(&request.body))
+    if (const auto flood = session.radio_budget.spend(st(), send->bytes.size()))
+      return expel(session, *flood);
   if (session.replay) check_replay(session, request);
   if (ended_) return;
   ++session.next_sequence;

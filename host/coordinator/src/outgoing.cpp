@@ -1,6 +1,8 @@
 #include "coordinator_impl.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 /// Replies to SUTs, sent when the barrier releases them.
 namespace tether::coordinator {
@@ -73,9 +75,11 @@ void Coordinator::Impl::reply(Session& session, std::size_t open_index, SimTime 
                                     : entry.wall_at_release);
   for (record::Annotation& note : session.notes) log_.annotation(st, std::move(note));
   session.notes.clear();
-  log_.interaction(st, entry);
-  if (image) log_.image(st, session.uav_name, entry.sensor, *image);
-  if (entry.kind == record::kFinish) leave(session);
+  const bool is_last = entry.kind == record::kFinish;
+  const std::string sensor = image ? entry.sensor : "";
+  log_.interaction(st, std::move(entry));
+  if (image) log_.image(st, session.uav_name, sensor, *image);
+  if (is_last) leave(session);
 }
 
 std::optional<uav::CameraSample> Coordinator::Impl::image_to_record(

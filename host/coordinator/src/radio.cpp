@@ -76,13 +76,10 @@ void Coordinator::Impl::settle_radio() {
     const auto earliest = is_synchronised() ? barrier_.earliest() : std::nullopt;
     if (earliest && *next > *earliest) return;
     arrivals_.clear();
-    medium_.handle_next([this](std::size_t a, std::size_t b) { return link_of(a, b); }, arrivals_);
+    medium_.handle_next([this](std::size_t a, std::size_t b) { return stepper_.link(a, b); },
+                        arrivals_);
     for (radio::Arrival& arrival : arrivals_) take_arrival(arrival);
   }
-}
-
-radio::Link Coordinator::Impl::link_of(std::size_t uav, std::size_t other) {
-  return stepper_.link(uav, other);
 }
 
 void Coordinator::Impl::take_arrival(radio::Arrival& arrival) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include <tether/record/png.h>
 
@@ -14,8 +15,9 @@ namespace tether::coordinator {
 
 namespace {
 
+/// Errors of the recorder become RecordFailure.
 template <class F>
-void ask(F&& f) {
+void guarded(F&& f) {
   try {
     f();
   } catch (const Error& e) {
@@ -33,15 +35,15 @@ void RunLog::begin(record::Header header, bool repeatable) {
     header.machine.clear();
     if (header.target) header.target->before.clear();
   }
-  ask([&] { recorder_->write(header); });
+  guarded([&] { recorder_->write(header); });
 }
 
-void RunLog::interaction(SimTime st, const record::Interaction& entry) {
+void RunLog::interaction(SimTime st, record::Interaction entry) {
   ++footer_.interactions;
   if (entry.violation) ++footer_.causality_violations;
   footer_.largest_lag = std::max(footer_.largest_lag, entry.lag);
   footer_.largest_grid_error = std::max(footer_.largest_grid_error, entry.grid_error);
-  put(st, entry);
+  put(st, std::move(entry));
 }
 
 void RunLog::command_effect(SimTime st, const std::string& uav, const PendingCommand& command) {
@@ -111,7 +113,7 @@ void RunLog::radio(SimTime st, record::RadioMessage message) {
   if (collects_)
     radio_.emplace_back(st, std::move(message));
   else
-    ask([&] { recorder_->write(st, message); });
+    guarded([&] { recorder_->write(st, message); });
 }
 
 void RunLog::image(SimTime st, const std::string& uav, const std::string& sensor,
@@ -139,7 +141,7 @@ void RunLog::image(SimTime st, const std::string& uav, const std::string& sensor
 }
 
 void RunLog::flush() {
-  ask([&] { recorder_->flush(); });
+  guarded([&] { recorder_->flush(); });
 }
 
 void RunLog::end() {
@@ -149,14 +151,14 @@ void RunLog::end() {
     footer.wall = {};
     footer.target_after.clear();
   }
-  ask([&] { recorder_->write(footer); });
+  guarded([&] { recorder_->write(footer); });
 }
 
 void RunLog::settle() {
   collects_ = false;
   for (Collected& collected : collected_) write(collected.st, collected.message);
   collected_.clear();
-  for (const auto& logged : radio_) ask([&] { recorder_->write(logged.first, logged.second); });
+  for (const auto& logged : radio_) guarded([&] { recorder_->write(logged.first, logged.second); });
   radio_.clear();
 }
 
@@ -200,7 +202,7 @@ void RunLog::write(SimTime st, Message& message) {
       interaction->previous_link_time.reset();
     }
   }
-  ask([&] { std::visit([&](const auto& m) { recorder_->write(st, m); }, message); });
+  guarded([&] { std::visit([&](const auto& m) { recorder_->write(st, m); }, message); });
 }
 
 }  // namespace tether::coordinator

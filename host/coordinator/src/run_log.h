@@ -37,7 +37,7 @@ class RunLog {
   explicit RunLog(record::Recorder& recorder) : recorder_(&recorder) {}
 
   void begin(record::Header header, bool repeatable);
-  void interaction(SimTime st, const record::Interaction& entry);
+  void interaction(SimTime st, record::Interaction entry);
   void command_effect(SimTime st, const std::string& uav, const PendingCommand& command);
   /// The footer keeps the least clearance.
   void ground_truth(const std::string& uav, const sim::GroundTruth& truth,

@@ -64,7 +64,8 @@ struct Session {
   // Radio.
   std::deque<radio::Arrival> inbox;  ///< arrived, in the order of time
   std::size_t promised = 0;          ///< open calls that will receive one of them
-  std::size_t full_queues = 0;       ///< messages without room, beyond nine for each that was sent
+  RadioBudget radio_budget;
+  std::size_t full_queues = 0;  ///< messages without room, beyond nine for each that was sent
   std::uint64_t dues_sent = 0;
   std::uint64_t newest_moved_due = 0;  ///< number of the last Due that was earlier than announced
 

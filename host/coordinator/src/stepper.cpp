@@ -28,6 +28,7 @@ Stepper::Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& bar
       grid_(simulator.grid()),
       ground_truth_period_(ground_truth_period),
       samplers_(std::move(samplers)),
+      has_changed_(samplers_.size()),
       has_battery_(samplers_.size()) {
   for (std::size_t uav = 0; uav < samplers_.size(); ++uav) {
     due_.add();
@@ -36,9 +37,9 @@ Stepper::Stepper(sim::Simulator& simulator, const sync::BarrierSynchronizer& bar
 }
 
 void Stepper::reset(std::uint64_t seed) {
-  ask([&](sim::Simulator& s) { s.reset(seed); });
+  guarded([&](sim::Simulator& s) { s.reset(seed); });
   for (std::size_t uav = 0; uav < samplers_.size(); ++uav)
-    has_battery_[uav] = ask([&](sim::Simulator& s) { return s.battery(uav).has_value(); });
+    has_battery_[uav] = guarded([&](sim::Simulator& s) { return s.battery(uav).has_value(); });
 }
 
 SimTime Stepper::next_ground_truth() const {
@@ -53,7 +54,7 @@ SimTime Stepper::next_due() const {
 }
 
 void Stepper::advance_to(SimTime to) {
-  ask([&](sim::Simulator& s) { s.advance_to(to); });
+  guarded([&](sim::Simulator& s) { s.advance_to(to); });
   st_ = to;
   log_->settle();
   act();
@@ -76,7 +77,7 @@ void Stepper::computed(std::size_t uav, SimTime t, Duration busy) {
 void Stepper::charge_batteries() {
   while (!computed_.empty() && computed_.begin()->first <= st_) {
     const Computed computed = computed_.begin()->second;
-    ask([&](sim::Simulator& s) { s.computed(computed.uav, computed.busy); });
+    guarded([&](sim::Simulator& s) { s.computed(computed.uav, computed.busy); });
     computed_.erase(computed_.begin());
   }
 }
@@ -84,7 +85,7 @@ void Stepper::charge_batteries() {
 std::optional<Stepper::Exhausted> Stepper::exhausted() {
   for (std::size_t uav = 0; uav < has_battery_.size(); ++uav) {
     if (!has_battery_[uav]) continue;
-    const auto status = ask([&](sim::Simulator& s) { return s.battery(uav); });
+    const auto status = guarded([&](sim::Simulator& s) { return s.battery(uav); });
     if (status && status->empty_at) return Exhausted{uav, *status->empty_at};
   }
   return std::nullopt;
@@ -94,7 +95,7 @@ std::optional<Stepper::Exhausted> Stepper::exhausted() {
 void Stepper::sample() {
   const Sampler::Capture capture = [this] {
     return states_.at(st_, [this](sim::Snapshot& snapshot) {
-      ask([&](sim::Simulator& s) { s.capture(snapshot); });
+      guarded([&](sim::Simulator& s) { s.capture(snapshot); });
     });
   };
   while (same_instant(due_.least()) <= st_) {
@@ -107,7 +108,9 @@ void Stepper::sample() {
 // After each change of a sampler.
 void Stepper::note_change(std::size_t uav) {
   due_.set(uav, same_instant(samplers_[uav].next_due()));
-  changed_.insert(uav);
+  if (has_changed_[uav]) return;
+  has_changed_[uav] = true;
+  changed_.push_back(uav);
 }
 
 std::optional<Measurement> Stepper::plan(std::size_t uav, std::uint64_t call,
@@ -124,7 +127,7 @@ void Stepper::close(std::size_t uav) {
 
 void Stepper::apply_commands() {
   while (const auto command = commands_.pop_due(st_)) {
-    ask([&](sim::Simulator& s) { s.apply(command->uav, command->command); });
+    guarded([&](sim::Simulator& s) { s.apply(command->uav, command->command); });
     log_->command_effect(st_, simulator_->world().uavs[command->uav].name, *command);
   }
 }
@@ -134,10 +137,10 @@ void Stepper::log_ground_truth() {
   ++ground_truths_;
   for (std::size_t uav = 0; uav < samplers_.size(); ++uav) {
     const std::string& name = simulator_->world().uavs[uav].name;
-    const auto truth = ask([&](sim::Simulator& s) { return s.ground_truth(uav); });
-    log_->ground_truth(name, truth, ask([&](sim::Simulator& s) { return s.clearance(uav); }));
+    const auto truth = guarded([&](sim::Simulator& s) { return s.ground_truth(uav); });
+    log_->ground_truth(name, truth, guarded([&](sim::Simulator& s) { return s.clearance(uav); }));
     if (!has_battery_[uav]) continue;
-    const auto battery = ask([&](sim::Simulator& s) { return s.battery(uav); });
+    const auto battery = guarded([&](sim::Simulator& s) { return s.battery(uav); });
     if (battery) log_->battery(st_, name, *battery);
   }
   log_contacts();
@@ -146,7 +149,7 @@ void Stepper::log_ground_truth() {
 // At the instants of the ground truth and at the end only, which do not depend on the load: how far
 // ST advances at once does.
 void Stepper::log_contacts() {
-  const auto contacts = ask([](sim::Simulator& s) { return s.take_contacts(); });
+  const auto contacts = guarded([](sim::Simulator& s) { return s.take_contacts(); });
   for (const sim::Contact& contact : contacts)
     log_->contact(st_, simulator_->world().uavs[contact.uav].name, contact);
 }
@@ -165,7 +168,7 @@ std::optional<uav::Sample> Stepper::measure(std::size_t uav, record::Interaction
   const sim::Snapshot& state = sampler.state_of(*read);
   entry.sample_state_at = state.at;
   entry.grid_error = std::max(entry.grid_error, read->measurement.sampled_at - state.at);
-  auto sample = ask([&](sim::Simulator& s) {
+  auto sample = guarded([&](sim::Simulator& s) {
     return s.measure(state, uav, read->sensor, read->measurement.index);
   });
   sampler.answered(entry.sequence, same_instant(entry.reply_at));
@@ -179,13 +182,13 @@ std::optional<uav::Sample> Stepper::measure(std::size_t uav, record::Interaction
 
 // A reply goes when ST is at the boundary of its timestamp.
 uav::BatterySample Stepper::read_battery(std::size_t uav, record::Interaction& entry) {
-  const energy::Status now = *ask([&](sim::Simulator& s) { return s.battery(uav); });
+  const energy::Status now = *guarded([&](sim::Simulator& s) { return s.battery(uav); });
   entry.battery = {now.voltage_V, now.current_A, now.charge};
   return {st_, now.voltage_V, now.current_A, now.charge};
 }
 
 radio::Link Stepper::link(std::size_t uav, std::size_t other) {
-  return ask([&](sim::Simulator& s) {
+  return guarded([&](sim::Simulator& s) {
     const uav::Vec3 p_W_m = s.ground_truth(uav).body.p_WB - s.ground_truth(other).body.p_WB;
     const auto walls = s.walls_between(uav, other);
     if (!walls)
@@ -197,11 +200,13 @@ radio::Link Stepper::link(std::size_t uav, std::size_t other) {
 }
 
 void Stepper::announce() {
-  for (const std::size_t uav : changed_)
+  for (const std::size_t uav : changed_) {
+    has_changed_[uav] = false;
     samplers_[uav].announce(
         [&](const sim::Snapshot& state, std::size_t sensor, std::uint64_t index) {
-          ask([&](sim::Simulator& s) { s.expect(state, uav, sensor, index); });
+          guarded([&](sim::Simulator& s) { s.expect(state, uav, sensor, index); });
         });
+  }
   changed_.clear();
 }
 

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -89,8 +88,9 @@ class Stepper {
   void log_ground_truth();
   SimTime next_ground_truth() const;
 
+  /// Calls the simulator, whose errors become SimulatorFailure.
   template <class F>
-  auto ask(F&& f) {
+  auto guarded(F&& f) {
     try {
       return f(*simulator_);
     } catch (const Error& e) {
@@ -105,8 +105,9 @@ class Stepper {
   Duration ground_truth_period_;
   std::vector<Sampler> samplers_;
   StatePool states_;
-  sync::LeastTree due_;            // of each sampler
-  std::set<std::size_t> changed_;  // samplers that may have something to announce
+  sync::LeastTree due_;               // of each sampler
+  std::vector<std::size_t> changed_;  // samplers that may have something to announce
+  std::vector<bool> has_changed_;     // by UAV
   CommandQueue commands_;
   struct Computed {
     std::size_t uav = 0;

@@ -1,6 +1,9 @@
 #include "validator.h"
 
 #include <algorithm>
+#include <chrono>
+#include <string_view>
+#include <utility>
 #include <variant>
 
 #include <fmt/format.h>
@@ -95,10 +98,6 @@ MaybeFault body_fault(const link::Finish&, const Standing&) {
 }
 
 MaybeFault body_fault(const link::SendMessage& send, const Standing& sut) {
-  if (sut.calls_in_step >= kMaxMessagesInAStep)
-    return Fault{Kind::kFlood, fmt::format("more than {} requests at ST {:.6f} s, and one of them "
-                                           "sends another message by radio",
-                                           kMaxMessagesInAStep, to_seconds(sut.st))};
   const auto found = std::ranges::find(sut.uavs, send.to);
   const bool is_known = send.to.empty()
                             ? sut.uavs.size() > 1
@@ -163,6 +162,25 @@ MaybeFault AnnotationBudget::spend(const link::Annotation& note) {
   if (spent_bytes_ <= kMaxAnnotatedBytes) return std::nullopt;
   return Fault{Kind::kTooMany,
                fmt::format("more than {} MiB of annotations", kMaxAnnotatedBytes >> 20)};
+}
+
+MaybeFault RadioBudget::spend(SimTime st, std::size_t bytes) {
+  if (st != std::exchange(step_, st)) in_step_ = 0;
+  const SimTime second = std::chrono::floor<std::chrono::seconds>(st);
+  if (second != std::exchange(second_, second)) in_second_ = bytes_in_second_ = 0;
+  bytes_in_second_ += bytes;
+  const auto flood = [](std::string_view limit, std::string_view where, SimTime at) {
+    return Fault{Kind::kFlood,
+                 fmt::format("more than {} by radio {} ST {:.6g} s", limit, where, to_seconds(at))};
+  };
+  if (++in_step_ > kMaxMessagesInAStep)
+    return flood(fmt::format("{} messages", kMaxMessagesInAStep), "at", st);
+  if (++in_second_ > kMaxMessagesInASecond)
+    return flood(fmt::format("{} messages", kMaxMessagesInASecond), "in the second from", second);
+  if (bytes_in_second_ > kMaxRadioBytesInASecond)
+    return flood(fmt::format("{} MiB", kMaxRadioBytesInASecond >> 20), "in the second from",
+                 second);
+  return std::nullopt;
 }
 
 }  // namespace tether::coordinator

@@ -20,10 +20,13 @@ namespace tether::coordinator {
 inline constexpr std::size_t kMaxCallsInAStep = 10'000;
 /// Limit per UAV: a latency of one second with a command every 15 us.
 inline constexpr std::size_t kMaxWaitingCommands = 65'536;
-/// Limits on the messages by radio that a SUT sends between two steps of ST, and on those for which
-/// its queue has no room (`Session::full_queues`). A SUT that exceeds them loses its session; the
-/// others finish.
+/// Limits on the messages by radio of a SUT: between two steps of ST, in a second of ST (to each of
+/// 250 UAVs 40 times a second), their bytes in a second (0.5 Gbit/s), and those for which its queue
+/// has no room (`Session::full_queues`). They bound the record and what an ideal radio has in
+/// transit. A SUT that exceeds them loses its session; the others finish.
 inline constexpr std::size_t kMaxMessagesInAStep = 1'000;
+inline constexpr std::size_t kMaxMessagesInASecond = 10'000;
+inline constexpr std::size_t kMaxRadioBytesInASecond = std::size_t{64} << 20;
 inline constexpr std::size_t kMaxFullQueues = 1'000;
 /// Limit on the annotations of a SUT in a run: two hours of 1 kB for each of 30 images a second.
 inline constexpr std::size_t kMaxAnnotatedBytes = std::size_t{256} << 20;
@@ -84,6 +87,20 @@ class AnnotationBudget {
 
  private:
   std::size_t spent_bytes_ = 0;
+};
+
+/// Limits the messages by radio of one SUT.
+class RadioBudget {
+ public:
+  /// A message is sent at `st`. @pre not before the last one
+  std::optional<Fault> spend(SimTime st, std::size_t bytes);
+
+ private:
+  SimTime step_{};
+  SimTime second_{};  // begin of the second of ST
+  std::size_t in_step_ = 0;
+  std::size_t in_second_ = 0;
+  std::size_t bytes_in_second_ = 0;
 };
 
 }  // namespace tether::coordinator

@@ -129,10 +129,16 @@ TEST_F(RadioTest, AFullInboxLosesTheNewest) {
 }
 
 TEST_F(RadioTest, AFlooderLosesItsSessionAndTheOthersFinish) {
-  // All in one step; while the queue is full; and while it has room now and then.
-  const std::vector<std::pair<int, std::size_t>> floods{{0, 60'000}, {2, 60'000}, {100, 1'000}};
-  for (const auto& [pause_us, bytes] : floods) {
-    set_channel();
+  struct Flood {
+    int pause_us;
+    std::size_t bytes;
+    bool has_channel;
+  };
+  // All in one step; while the queue is full; while it has room now and then; with an ideal radio.
+  for (const auto& [pause_us, bytes, has_channel] : std::initializer_list<Flood>{
+           {0, 60'000, true}, {2, 60'000, true}, {100, 1'000, true}, {50, 60'000, false}}) {
+    options_.radio = {};
+    if (has_channel) set_channel();
     options_.radio.queue_messages = 2;
     std::vector<Act> flood(4'000, send(microseconds(pause_us), "", bytes));
     const RunReport report = run_all({flood, {finish(milliseconds(300))}});

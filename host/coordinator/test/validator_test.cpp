@@ -141,5 +141,28 @@ TEST_F(Validator, LimitsTheBytesOfAnnotations) {
   EXPECT_EQ(budget.spend({})->kind, Kind::kTooMany);
 }
 
+/// How many messages of that size, sent at these intervals, are accepted; at most 100,000.
+std::size_t accepted_messages(Duration interval, std::size_t bytes) {
+  RadioBudget budget;
+  for (std::size_t sent = 0; sent < 100'000; ++sent)
+    if (const auto fault =
+            budget.spend(SimTime(static_cast<std::int64_t>(sent) * interval), bytes)) {
+      EXPECT_EQ(fault->kind, Kind::kFlood);
+      return sent;
+    }
+  return 100'000;
+}
+
+TEST(RadioBudget, LimitsMessagesAtOneSt) {
+  EXPECT_EQ(accepted_messages({}, 0), kMaxMessagesInAStep);
+}
+
+TEST(RadioBudget, LimitsMessagesAndBytesInEachSecondOfSt) {
+  EXPECT_EQ(accepted_messages(microseconds(99), 10), kMaxMessagesInASecond);
+  EXPECT_EQ(accepted_messages(microseconds(100), 10), 100'000u);
+  EXPECT_EQ(accepted_messages(microseconds(900), 64 << 10), 1'024u);
+  EXPECT_EQ(accepted_messages(milliseconds(1), 64 << 10), 100'000u);
+}
+
 }  // namespace
 }  // namespace tether::coordinator

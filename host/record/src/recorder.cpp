@@ -10,8 +10,9 @@
 #include "mcap/mcap_writer.h"
 
 #include <algorithm>
-#include <map>
+#include <functional>
 #include <string>
+#include <unordered_map>
 
 #include <tether/base/error.h>
 #include <tether/record/writer.h>
@@ -52,8 +53,12 @@ class Channels {
   McapWriter& mcap_;
   const Schema& schema_;
   std::uint16_t schema_id_ = 0;
-  using BySensor = std::map<std::string, std::uint16_t, std::less<>>;
-  std::map<std::string, BySensor, std::less<>> ids_;
+  struct Hash : std::hash<std::string_view> {
+    using is_transparent = void;
+  };
+  template <class Value>
+  using ByName = std::unordered_map<std::string, Value, Hash, std::equal_to<>>;
+  ByName<ByName<std::uint16_t>> ids_;  // by UAV and sensor
 };
 
 class McapRecorder final : public Recorder {

@@ -79,10 +79,11 @@ LocalSutCommand local_sut_command(const scenario::Sut& sut,
   if (program_at > 0) {
     // tether-exec and launchers search for it in PATH only.
     program = file.string();
-    const bool is_counted = target && target->emulator;
-    if (is_counted) os::require_emulated(*target->emulator, file);
-    command.programs.push_back(is_counted ? os::find_emulator(*target->emulator)
-                                          : os::find_program(words.front()));
+    if (target && target->emulator) {
+      os::require_emulated(*target->emulator, file);
+      words.front() = os::find_emulator(*target->emulator).string();
+    }
+    command.programs.push_back(os::find_program(words.front()));
     if (supervisor > 0 && is_launched)
       command.programs.push_back(os::find_program(words[supervisor]));
   }

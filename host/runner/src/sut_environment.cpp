@@ -1,5 +1,7 @@
 #include "sut_environment.h"
 
+#include "local_sut.h"
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -74,6 +76,20 @@ os::Environment environment_of(const std::string& uav, std::size_t index, const 
   return environment;
 }
 
+namespace {
+
+// A counted program runs on this machine, with whose memory it shares its counts. The emulator, and
+// the shell in which the user starts it, find programs by other rules than Tether.
+std::vector<std::string> words_by_hand(const scenario::Sut& sut,
+                                       const std::optional<scenario::Target>& target,
+                                       const std::string& group) {
+  const bool is_counted = target && target->emulator;
+  return is_counted ? local_sut_command(sut, target, group).words
+                    : sut_command(sut, target, group).words;
+}
+
+}  // namespace
+
 std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& run, bool all) {
   std::string text;
   const auto add = [&](std::size_t uav, std::vector<std::string> words) {
@@ -87,7 +103,7 @@ std::string sut_instructions(const scenario::Scenario& scenario, const SutRun& r
     if (!all && !own.by_hand) continue;
     const SutGroup* const group = group_of(run, i);
     if (group && group->uavs.front() == i) add(i, group_command(*group));
-    add(i, sut_command(scenario.uavs[i].sut, own.target, group ? group->socket : "").words);
+    add(i, words_by_hand(scenario.uavs[i].sut, own.target, group ? group->socket : ""));
   }
   return text;
 }

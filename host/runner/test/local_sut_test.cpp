@@ -12,6 +12,7 @@
 
 #include <tether/base_testing/scratch_folder.h>
 #include <tether/base_testing/thrown_error.h>
+#include <tether/os/program.h>
 
 namespace tether::runner {
 namespace {
@@ -81,6 +82,22 @@ TEST(SutInstructions, HaveOneGroupForTheProgramsOfABoard) {
                           EndsWith(" tether-exec --group /s fly"),
                           EndsWith(" tether-exec --group /s fly")));
   EXPECT_THAT(commands.front(), testing::Not(testing::HasSubstr("--group")));
+}
+
+// Emulators do not search for programs in PATH, and Tether also finds those beside itself.
+TEST(SutInstructions, HaveThePathsOfACountedProgramAndItsEmulator) {
+  scenario::Scenario scenario;
+  scenario.uavs.resize(2);
+  scenario.uavs[0].sut.command = scenario.uavs[1].sut.command = {"sh", "task"};
+  SutRun run{"127.0.0.1:4000", "token", {}};
+  run.condition.computers = {{.name = "counted", .target = target({"sh"}, ""), .by_hand = true},
+                             {.name = "board", .target = target({"sh"}, "")}};
+  run.condition.computers[0].target->emulator.emplace().program = "sh";
+  run.condition.seats = {{.computer = 0}, {.computer = 1}};
+  const std::string shell = os::find_program("sh").string();
+  EXPECT_THAT(sut_instructions(scenario, run, false),
+              testing::EndsWith(" " + shell + " " + shell + " task\n"))
+      << "only what is started by hand";
 }
 
 TEST(LocalSut, AcceptsAProgramOfAnotherMachineWithALauncher) {

@@ -6,18 +6,12 @@ namespace tether::scenario {
 
 std::string why_not_on(const Condition& condition, const Target& target) {
   const bool is_scaled_wall = target.clock == Clock::kWall && target.cpu_factor != 1.0;
-  if (condition.policy == Policy::kFreeRunning && is_scaled_wall) {
+  const bool is_counted = target.clock == Clock::kCounted;
+  if (condition.policy == Policy::kFreeRunning && (is_scaled_wall || is_counted))
     return fmt::format(
-        "the target \"{}\" scales the wall clock, which needs policy = \"conservative_barrier\", "
-        "because free running uses the real wall clock.",
-        target.name);
-  }
-  if (condition.policy == Policy::kFreeRunning && target.clock == Clock::kCounted) {
-    return fmt::format(
-        "the target \"{}\" counts instructions, which needs policy = \"conservative_barrier\", "
-        "because free running uses the wall clock.",
-        target.name);
-  }
+        "the target \"{}\" {}, which needs policy = \"conservative_barrier\", because free running "
+        "uses the real wall clock. Select another condition, or another target.",
+        target.name, is_counted ? "counts work" : "scales the wall clock");
   for (const Seat& seat : condition.seats)
     if (target.clock == Clock::kWall && seat.pinned_core)
       return fmt::format(

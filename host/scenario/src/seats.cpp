@@ -42,9 +42,10 @@ void require_sharable(const Condition& condition, std::size_t index) {
     return seat.computer == index && !seat.pinned_core;
   });
   if (has_free && pinned.size() == static_cast<std::size_t>(computer.cores))
-    fail(computer, fmt::format("all {} cores have pinned programs, and none is left for the UAVs "
-                               "without 'pinned_core'. Raise 'cores', or pin these too",
-                               computer.cores));
+    fail(computer,
+         fmt::format("each core has pinned programs (cores = {}), and none is left for the "
+                     "UAVs without 'pinned_core'. Raise 'cores', or pin these too",
+                     computer.cores));
 }
 
 void require_other_addresses(const Condition& condition) {

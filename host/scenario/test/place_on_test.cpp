@@ -27,13 +27,15 @@ TEST(PlaceOn, TheTargetsClockReplacesTheConditions) {
   EXPECT_EQ(condition.target->name, "slow");
 }
 
-TEST(PlaceOn, RefusesAScaledWallClockInFreeRunning) {
+TEST(PlaceOn, RefusesAScaledWallClockAndCountedWorkInFreeRunning) {
   Condition condition;
   condition.name = "no sync";
   condition.policy = Policy::kFreeRunning;
-  const auto place = [&] { place_on(condition, slow(Clock::kWall)); };
-  EXPECT_EQ(thrown_error(ErrorCode::kUsage, place).subject(), "no sync");
-  EXPECT_FALSE(condition.target);
+  for (const Clock clock : {Clock::kWall, Clock::kCounted}) {
+    const auto place = [&] { place_on(condition, slow(clock)); };
+    EXPECT_EQ(thrown_error(ErrorCode::kUsage, place).subject(), "no sync");
+    EXPECT_FALSE(condition.target);
+  }
   EXPECT_EQ(why_not_on(condition, slow(Clock::kCpu)), "");
   Target board = slow(Clock::kWall);
   board.cpu_factor = 1.0;

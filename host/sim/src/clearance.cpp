@@ -87,6 +87,7 @@ ClearanceMeter::ClearanceMeter(const World& world, const MeshVertices& vertices)
     starts_.push_back(body.X_WB);
   }
   of_bodies_.resize(starts_.size());
+  last_nearest_.resize(starts_.size());
 }
 
 ClearanceMeter::~ClearanceMeter() = default;
@@ -129,42 +130,33 @@ std::optional<Clearance> ClearanceMeter::measure(std::size_t uav,
                                                  std::span<const Pose> X_WB) const {
   if (!is_complete_) return std::nullopt;
   Nearest nearest;
-  for (const std::size_t own : of_bodies_[uav]) find_nearest(shapes_[own], X_WB, nearest);
+  for (const std::size_t own : of_bodies_[uav])
+    find_nearest(shapes_[own], X_WB, last_nearest_[uav], nearest);
+  last_nearest_[uav] = nearest.shape;
   if (nearest.distance_m == kInfinity) return std::nullopt;
   return Clearance{nearest.distance_m, shapes_[nearest.shape].owner};
 }
 
-// In a fleet, most others are far away. The one with the nearest centre tells how far is too far.
-void ClearanceMeter::find_nearest(const Shape& own, std::span<const Pose> X_WB,
+// In a fleet, most others are far away. The shape that was the nearest before, which is compared
+// first, tells how far is too far.
+void ClearanceMeter::find_nearest(const Shape& own, std::span<const Pose> X_WB, std::size_t first,
                                   Nearest& nearest) const {
   const Convex here = own.at(own.pose(X_WB));
   const Ball around{.body = {},
                     .p_WC = transform(here.X_WS, own.bounds.centre),
                     .radius_m = norm(own.bounds.half_m)};
-  const auto squared_to_centre = [&](const Ball& ball) {
-    const Vec3 apart_W = around.p_WC - (ball.body ? X_WB[*ball.body].p : ball.p_WC);
-    return dot(apart_W, apart_W);
-  };
   const auto compare_to = [&](std::size_t other) {
     const double distance_m =
         distance_between(here, around, shapes_[other], X_WB, nearest.distance_m);
     nearest = std::min(nearest, {distance_m, other});
   };
-
-  std::size_t first = shapes_.size();
-  double least_squared = kInfinity;
+  if (shapes_[first].body != own.body) compare_to(first);
   for (std::size_t i = 0; i < balls_.size(); ++i) {
-    if (balls_[i].body == own.body) continue;
-    const double squared = squared_to_centre(balls_[i]);
-    if (squared < least_squared) first = i;
-    least_squared = std::min(least_squared, squared);
-  }
-  if (first == shapes_.size()) return;
-  compare_to(first);
-  for (std::size_t i = 0; i < balls_.size(); ++i) {
-    if (balls_[i].body == own.body || i == first) continue;
-    const double beyond_m = nearest.distance_m + around.radius_m + balls_[i].radius_m + kRounding_m;
-    if (squared_to_centre(balls_[i]) <= beyond_m * beyond_m) compare_to(i);
+    const Ball& ball = balls_[i];
+    if (ball.body == own.body || i == first) continue;
+    const Vec3 apart_W = around.p_WC - (ball.body ? X_WB[*ball.body].p : ball.p_WC);
+    const double beyond_m = nearest.distance_m + around.radius_m + ball.radius_m + kRounding_m;
+    if (dot(apart_W, apart_W) <= beyond_m * beyond_m) compare_to(i);
   }
 }
 

@@ -20,8 +20,21 @@ namespace {
 constexpr std::size_t kDescriptors = 5;
 constexpr std::size_t kLongestMessage = 1000;
 
-struct alignas(cmsghdr) Control {
-  std::array<char, CMSG_SPACE(kDescriptors * sizeof(int))> bytes{};
+/// A message of one byte, with room for the descriptors.
+struct Envelope {
+  Envelope() {
+    header.msg_iov = &part;
+    header.msg_iovlen = 1;
+    header.msg_control = control.data();
+    header.msg_controllen = control.size();
+  }
+  Envelope(const Envelope&) = delete;  // the header points into it
+  Envelope& operator=(const Envelope&) = delete;
+
+  char byte = 0;
+  iovec part{&byte, 1};
+  alignas(cmsghdr) std::array<char, CMSG_SPACE(kDescriptors * sizeof(int))> control{};
+  msghdr header{};
 };
 
 Failure lost() {
@@ -77,39 +90,25 @@ Status send_program(int socket, const std::string& uav, const std::vector<std::s
   const os::FileDescriptor folder(::open(".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   const std::array<int, kDescriptors> descriptors{memory.descriptor(), folder.get(), STDIN_FILENO,
                                                   STDOUT_FILENO, STDERR_FILENO};
-  char byte = 0;
-  iovec part{&byte, 1};
-  Control control;
-  msghdr header{};
-  header.msg_iov = &part;
-  header.msg_iovlen = 1;
-  header.msg_control = control.bytes.data();
-  header.msg_controllen = control.bytes.size();
-  cmsghdr* const rights = CMSG_FIRSTHDR(&header);
+  Envelope envelope;
+  cmsghdr* const rights = CMSG_FIRSTHDR(&envelope.header);
   rights->cmsg_level = SOL_SOCKET;
   rights->cmsg_type = SCM_RIGHTS;
   rights->cmsg_len = CMSG_LEN(sizeof descriptors);
   std::memcpy(CMSG_DATA(rights), descriptors.data(), sizeof descriptors);
-  if (::sendmsg(socket, &header, MSG_NOSIGNAL) < 0) return lost();
+  if (::sendmsg(socket, &envelope.header, MSG_NOSIGNAL) < 0) return lost();
   return ok_status();
 } catch (const std::exception& error) {  // no memory
   return Failure{Failure::Kind::kDisconnected, error.what()};
 }
 
 Result<Program> receive_program(int socket) {
-  char byte = 0;
-  iovec part{&byte, 1};
-  Control control;
-  msghdr header{};
-  header.msg_iov = &part;
-  header.msg_iovlen = 1;
-  header.msg_control = control.bytes.data();
-  header.msg_controllen = control.bytes.size();
-  const ssize_t size = ::recvmsg(socket, &header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
+  Envelope envelope;
+  const ssize_t size = ::recvmsg(socket, &envelope.header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
   if (size < 0 && errno == EAGAIN)
     return Failure{Failure::Kind::kTimeout, "the member has not sent its command yet"};
   if (size <= 0) return lost();
-  const cmsghdr* const rights = CMSG_FIRSTHDR(&header);
+  const cmsghdr* const rights = CMSG_FIRSTHDR(&envelope.header);
   if (rights == nullptr || rights->cmsg_type != SCM_RIGHTS ||
       rights->cmsg_len != CMSG_LEN(kDescriptors * sizeof(int)))
     return Failure{Failure::Kind::kProtocol, "a member of the group has sent no descriptors"};

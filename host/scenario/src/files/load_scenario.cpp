@@ -1,4 +1,5 @@
 #include "files/settings.h"
+#include "tables/read_clock_rate.h"
 #include "tables/read_computers.h"
 #include "tables/read_radio.h"
 #include "tables/read_replay.h"
@@ -108,8 +109,6 @@ void read_uavs(const toml::Table& root, Scenario& scenario) {
 
 // Some keys and values need a certain clock or policy.
 void read_clock(const toml::Table& table, Condition& condition) {
-  constexpr toml::Range kFactor{.min = 1e-3, .max = 1e4};
-  constexpr toml::Range kComputing_ms{.min = 1e-3, .max = 60'000.0};
   if (!table.has("clock")) {
     table.fail("clock", "is missing. Add it, or a 'target' whose file specifies the clock.");
   }
@@ -118,20 +117,12 @@ void read_clock(const toml::Table& table, Condition& condition) {
     table.fail("clock",
                "is \"counted\", which needs an emulator and costs. Name a 'target' whose file has "
                "them, instead of this key.");
-  condition.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
-  if (condition.clock != Clock::kCpu && table.has("cpu_factor")) {
-    table.fail("cpu_factor",
-               "scales CPU time, so it needs clock = \"cpu\". To scale the wall clock, set it in a "
-               "target file.");
-  }
-  const bool is_scripted = condition.clock == Clock::kScripted;
-  if (is_scripted) condition.computing = table.duration("computing_ms", kComputing_ms);
-  if (!is_scripted && table.has("computing_ms")) {
-    table.fail("computing_ms",
-               "replaces the measured computing time, so it needs clock = \"scripted\".");
-  }
-  const bool needs_barrier =
-      is_scripted || condition.clock == Clock::kUnstamped || condition.clock == Clock::kReplayed;
+  const ClockRate rate = read_clock_rate(table, condition.clock);
+  condition.cpu_factor = rate.cpu_factor;
+  condition.computing = rate.computing;
+  const bool needs_barrier = condition.clock == Clock::kScripted ||
+                             condition.clock == Clock::kUnstamped ||
+                             condition.clock == Clock::kReplayed;
   if (needs_barrier && condition.policy == Policy::kFreeRunning) {
     table.fail("clock", fmt::format("is \"{}\", which needs policy = \"conservative_barrier\", "
                                     "because free running uses the wall clock.",
@@ -383,6 +374,7 @@ Scenario load_scenario(const std::filesystem::path& file, const std::vector<Sett
   read_anchors(root, scenario);
   read_computers(root, scenario);
   read_uavs(root, scenario);
+  require_users(scenario);
   scenario.radio = read_radio(root);
   read_conditions(root, scenario);
   apply_to_profiles(of_profiles, scenario);

@@ -1,5 +1,7 @@
 #include "tables/read_computers.h"
 
+#include "tables/read_clock_rate.h"
+
 #include <algorithm>
 #include <array>
 
@@ -11,8 +13,6 @@ namespace {
 constexpr std::int64_t kMostSharedCores = 1024;
 
 Computer read_computer(const toml::Table& table, Scenario& scenario) {
-  constexpr toml::Range kFactor{.min = 1e-3, .max = 1e4};
-  constexpr toml::Range kComputing_ms{.min = 1e-3, .max = 60'000.0};
   Computer computer;
   computer.name = table.identifier("name");
   computer.at = table.where("name");
@@ -33,16 +33,9 @@ Computer read_computer(const toml::Table& table, Scenario& scenario) {
     if (!table.has("clock"))
       table.fail("clock", "is missing. Add it, or a 'file' that specifies the clock.");
     computer.clock = static_cast<Clock>(table.choice("clock", kOwnClocks));
-    const bool is_scripted = computer.clock == Clock::kScripted;
-    if (is_scripted) computer.computing = table.duration("computing_ms", kComputing_ms);
-    if (!is_scripted && table.has("computing_ms"))
-      table.fail("computing_ms",
-                 "replaces the measured computing time, so it needs clock = \"scripted\".");
-    if (computer.clock != Clock::kCpu && table.has("cpu_factor"))
-      table.fail("cpu_factor",
-                 "scales CPU time, so it needs clock = \"cpu\". To scale the wall clock, set it in "
-                 "a target file.");
-    computer.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
+    const ClockRate rate = read_clock_rate(table, computer.clock);
+    computer.cpu_factor = rate.cpu_factor;
+    computer.computing = rate.computing;
   }
   computer.by_hand = table.boolean_or("by_hand", false);
   if (computer.clock == Clock::kWall) {
@@ -82,7 +75,9 @@ std::optional<Seat> read_seat(const toml::Table& table, const Scenario& scenario
   std::vector<std::string_view> names;
   for (const Computer& computer : scenario.computers) names.push_back(computer.name);
   if (names.empty())
-    table.fail("target", "names a target, but the scenario has no table [[target]]. Add one.");
+    table.fail("target",
+               fmt::format("is \"{}\", but the scenario has no table [[target]]. Add one.",
+                           table.text("target")));
   Seat seat{.computer = table.choice("target", names)};
   if (table.has("pinned_core")) {
     seat.pinned_core =
@@ -101,6 +96,18 @@ std::optional<Seat> read_seat(const toml::Table& table, const Scenario& scenario
                              *seat.pinned_core, computer.name, computer.cores - 1));
   }
   return seat;
+}
+
+void require_users(const Scenario& scenario) {
+  for (std::size_t i = 0; i < scenario.computers.size(); ++i)
+    if (std::ranges::none_of(scenario.uavs, [i](const UavSetup& uav) {
+          return uav.seat && uav.seat->computer == i;
+        }))
+      throw Error(ErrorCode::kBadFile, scenario.computers[i].at,
+                  fmt::format("no UAV runs on the target \"{}\". Name it with 'target' in a "
+                              "[[uav]], or remove this table",
+                              scenario.computers[i].name))
+          .about(scenario.computers[i].name);
 }
 
 // Under this condition, each SUT runs on the [[target]] that its UAV names.

@@ -14,6 +14,9 @@ void read_computers(const toml::Table& root, Scenario& scenario);
 /// Reads on which of them the program of a UAV runs; none: it is not said.
 std::optional<Seat> read_seat(const toml::Table& table, const Scenario& scenario);
 
+/// Checks that each of them is named by a UAV. @throws Error(kBadFile)
+void require_users(const Scenario& scenario);
+
 /// Makes the SUTs of a condition without a clock or target of its own run on them.
 void read_seats(const toml::Table& table, Condition& condition, const Scenario& scenario);
 

@@ -21,6 +21,9 @@ const char* tether_peer_at(const tether_vehicle* vehicle, size_t index) noexcept
 tether_status tether_send(tether_vehicle* vehicle, const char* to, const void* bytes,
                           size_t size) noexcept {
   if (!are_given(vehicle) || (size > 0 && !are_given(bytes))) return TETHER_INVALID;
+  if (to != nullptr && *to == '\0')
+    return fail(TETHER_INVALID,
+                "the receiver is an empty text; pass the name of a UAV, or NULL for all others");
   return guarded([&] {
     return status_of(vehicle->vehicle->send(to != nullptr ? to : std::string_view(),
                                             {static_cast<const std::uint8_t*>(bytes), size}));

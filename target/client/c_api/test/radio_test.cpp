@@ -16,6 +16,13 @@ TEST(Radio, SendsToOneOrAll) {
   EXPECT_THAT(flown.fake->said, testing::ElementsAre("to uav2: abc", "to : "));
 }
 
+TEST(Radio, RefusesAnEmptyReceiver) {
+  const Flown flown;
+  EXPECT_EQ(tether_send(flown.vehicle, "", "abc", 3), TETHER_INVALID);
+  EXPECT_THAT(tether_last_error(), testing::HasSubstr("empty"));
+  EXPECT_THAT(flown.fake->said, testing::IsEmpty());
+}
+
 TEST(Radio, ReceivesBytesAndInstants) {
   const Flown flown;
   tether_message* message = nullptr;

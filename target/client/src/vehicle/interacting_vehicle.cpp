@@ -193,6 +193,10 @@ Status InteractingVehicle::send(std::string_view to, std::span<const std::uint8_
   }
   if (peers_.empty())
     return Failure{Failure::Kind::kInvalid, "there is no other UAV to send a message to"};
+  if (bytes.size() > link::kMaxRadioBytes)
+    return Failure{Failure::Kind::kInvalid,
+                   "a message has " + std::to_string(bytes.size()) + " bytes; at most " +
+                       std::to_string(link::kMaxRadioBytes) + " are allowed"};
   return status_of(interact(link::SendMessage{std::string(to), {bytes.begin(), bytes.end()}}));
 }
 

@@ -52,7 +52,9 @@ TEST_F(RadioOfVehicle, RefusesUnknownPeersAndLongMessagesWithoutARequest) {
   const auto sender = vehicle();
   EXPECT_EQ(sender->send("nobody", {}).failure().kind, Failure::Kind::kInvalid);
   const std::vector<std::uint8_t> long_one(link::kMaxRadioBytes + 1);
-  EXPECT_EQ(sender->send("other", long_one).failure().kind, Failure::Kind::kInvalid);
+  const Failure too_long = sender->send("other", long_one).failure();
+  EXPECT_EQ(too_long.kind, Failure::Kind::kInvalid);
+  EXPECT_THAT(too_long.message, testing::HasSubstr("has 65537 bytes; at most 65536"));
   EXPECT_TRUE(coordinator_->requests().empty());
   EXPECT_TRUE(sender->send("", {}).ok()) << "the vehicle is still usable";
 }

@@ -84,8 +84,6 @@ class Medium {
   /// The messages that are still in transit, at each of their receivers, in the order of senders.
   std::vector<Arrival> in_transit(SimTime now) const;
 
-  const Settings& settings() const { return settings_; }
-
  private:
   enum class Kind : std::uint8_t { kSend, kAttempt, kEnd };
   struct Event {

@@ -60,7 +60,8 @@ class ClearanceMeter {
   void add(const Link& link, const uav::Pose& X_BL, std::optional<std::size_t> body,
            std::string_view owner, const MeshVertices& vertices);
   std::span<const uav::Vec3> vertices_of(const MeshGeometry& mesh, const MeshVertices& vertices);
-  void find_nearest(const Shape& own, std::span<const uav::Pose> X_WB, Nearest& nearest) const;
+  void find_nearest(const Shape& own, std::span<const uav::Pose> X_WB, std::size_t first,
+                    Nearest& nearest) const;
   static double distance_between(const Convex& here, const Ball& around, const Shape& other,
                                  std::span<const uav::Pose> X_WB, double enough_m);
   std::string_view shape_overhead(const uav::Vec3& p_W) const;
@@ -70,6 +71,9 @@ class ClearanceMeter {
   std::vector<Shape> shapes_;
   std::vector<Ball> balls_;                          ///< of each shape
   std::vector<std::vector<std::size_t>> of_bodies_;  ///< their shapes
+  /// Of each body, the shape that was the nearest when it was last measured; the result does not
+  /// depend on it.
+  mutable std::vector<std::size_t> last_nearest_;
   std::vector<uav::Pose> starts_;
   bool is_complete_ = true;
 };

@@ -25,9 +25,9 @@ const char* tether_peer_at(const tether_vehicle* vehicle, size_t index) TETHER_N
 /// Sends a message. An @ref interaction that returns at the same ET.
 /// @param vehicle  the UAV  @param to  name of another UAV, or NULL: all others
 /// @param bytes  the message; may be NULL if `size` is 0  @param size  0 to 65536 [bytes]
-/// @return TETHER_OK, also if it will be lost, or an @ref interaction error; TETHER_INVALID if
-/// there
-///   is no such UAV or no other one, or if the message is too long
+/// @return TETHER_OK, also if it will be lost, or an @ref interaction error; TETHER_INVALID if `to`
+///   is empty, if there is no such UAV or no other one, or if the message is too long. Then nothing
+///   is sent
 tether_status tether_send(tether_vehicle* vehicle, const char* to, const void* bytes,
                           size_t size) TETHER_NOEXCEPT;
 
