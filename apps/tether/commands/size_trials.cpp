@@ -1,6 +1,7 @@
 #include "commands/size_trials.h"
 
 #include "back_ends.h"
+#include "commands/trial_service.h"
 #include "options/refuse_option.h"
 #include "options/simulator_option.h"
 #include "options/trial_options.h"
@@ -94,13 +95,15 @@ SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
   }
 }
 
-std::vector<std::filesystem::path> SizeTrials::checked_files() const {
+std::vector<std::filesystem::path> SizeTrials::checked_files() {
   workers::require_allowed(campaign_, options_.cluster);
   campaign::require_jobs_allowed(campaign_, jobs_);
   require_ports(campaign_, jobs_);
-  const auto [files, warnings] = runner::files_of_trials(campaign_, find_back_end);
+  sim::WorldStore worlds;
+  const auto [files, warnings] = runner::files_of_trials(campaign_, find_back_end, worlds);
   if (!warnings.empty())
     say("{}\n", summary_of(warnings, std::string(runner::kWarningsFile) + " of each flight"));
+  if (!options_.cluster.uses_workers()) servers_.start(jobs_, trial_service(worlds));
   return files;
 }
 
