@@ -108,8 +108,6 @@ void read_uavs(const toml::Table& root, Scenario& scenario) {
 
 // Some keys and values need a certain clock or policy.
 void read_clock(const toml::Table& table, Condition& condition) {
-  constexpr toml::Range kFactor{.min = 1e-3, .max = 1e4};
-  constexpr toml::Range kComputing_ms{.min = 1e-3, .max = 60'000.0};
   if (!table.has("clock")) {
     table.fail("clock", "is missing. Add it, or a 'target' whose file specifies the clock.");
   }
@@ -118,20 +116,10 @@ void read_clock(const toml::Table& table, Condition& condition) {
     table.fail("clock",
                "is \"counted\", which needs an emulator and costs. Name a 'target' whose file has "
                "them, instead of this key.");
-  condition.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
-  if (condition.clock != Clock::kCpu && table.has("cpu_factor")) {
-    table.fail("cpu_factor",
-               "scales CPU time, so it needs clock = \"cpu\". To scale the wall clock, set it in a "
-               "target file.");
-  }
-  const bool is_scripted = condition.clock == Clock::kScripted;
-  if (is_scripted) condition.computing = table.duration("computing_ms", kComputing_ms);
-  if (!is_scripted && table.has("computing_ms")) {
-    table.fail("computing_ms",
-               "replaces the measured computing time, so it needs clock = \"scripted\".");
-  }
-  const bool needs_barrier =
-      is_scripted || condition.clock == Clock::kUnstamped || condition.clock == Clock::kReplayed;
+  read_computing_time(table, condition.clock, condition.cpu_factor, condition.computing);
+  const bool needs_barrier = condition.clock == Clock::kScripted ||
+                             condition.clock == Clock::kUnstamped ||
+                             condition.clock == Clock::kReplayed;
   if (needs_barrier && condition.policy == Policy::kFreeRunning) {
     table.fail("clock", fmt::format("is \"{}\", which needs policy = \"conservative_barrier\", "
                                     "because free running uses the wall clock.",

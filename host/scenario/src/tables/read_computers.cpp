@@ -11,8 +11,6 @@ namespace {
 constexpr std::int64_t kMostSharedCores = 1024;
 
 Computer read_computer(const toml::Table& table, Scenario& scenario) {
-  constexpr toml::Range kFactor{.min = 1e-3, .max = 1e4};
-  constexpr toml::Range kComputing_ms{.min = 1e-3, .max = 60'000.0};
   Computer computer;
   computer.name = table.identifier("name");
   computer.at = table.where("name");
@@ -33,16 +31,7 @@ Computer read_computer(const toml::Table& table, Scenario& scenario) {
     if (!table.has("clock"))
       table.fail("clock", "is missing. Add it, or a 'file' that specifies the clock.");
     computer.clock = static_cast<Clock>(table.choice("clock", kOwnClocks));
-    const bool is_scripted = computer.clock == Clock::kScripted;
-    if (is_scripted) computer.computing = table.duration("computing_ms", kComputing_ms);
-    if (!is_scripted && table.has("computing_ms"))
-      table.fail("computing_ms",
-                 "replaces the measured computing time, so it needs clock = \"scripted\".");
-    if (computer.clock != Clock::kCpu && table.has("cpu_factor"))
-      table.fail("cpu_factor",
-                 "scales CPU time, so it needs clock = \"cpu\". To scale the wall clock, set it in "
-                 "a target file.");
-    computer.cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
+    read_computing_time(table, computer.clock, computer.cpu_factor, computer.computing);
   }
   computer.by_hand = table.boolean_or("by_hand", false);
   if (computer.clock == Clock::kWall) {
@@ -59,6 +48,22 @@ Computer read_computer(const toml::Table& table, Scenario& scenario) {
 }
 
 }  // namespace
+
+void read_computing_time(const toml::Table& table, Clock clock, double& cpu_factor,
+                         Duration& computing) {
+  constexpr toml::Range kFactor{.min = 1e-3, .max = 1e4};
+  constexpr toml::Range kComputing_ms{.min = 1e-3, .max = 60'000.0};
+  if (clock != Clock::kCpu && table.has("cpu_factor"))
+    table.fail("cpu_factor",
+               "scales CPU time, so it needs clock = \"cpu\". To scale the wall clock, set it in a "
+               "target file.");
+  cpu_factor = table.number_or("cpu_factor", kFactor, 1.0);
+  if (clock == Clock::kScripted)
+    computing = table.duration("computing_ms", kComputing_ms);
+  else if (table.has("computing_ms"))
+    table.fail("computing_ms",
+               "replaces the measured computing time, so it needs clock = \"scripted\".");
+}
 
 void read_computers(const toml::Table& root, Scenario& scenario) {
   for (const toml::Table& table : root.tables_or_none(

@@ -11,6 +11,10 @@ namespace tether::scenario {
 /// Reads [[target]] into the scenario.
 void read_computers(const toml::Table& root, Scenario& scenario);
 
+/// Reads what depends on the clock, which is known.
+void read_computing_time(const toml::Table& table, Clock clock, double& cpu_factor,
+                         Duration& computing);
+
 /// Reads on which of them the program of a UAV runs; none: it is not said.
 std::optional<Seat> read_seat(const toml::Table& table, const Scenario& scenario);
 
