@@ -61,9 +61,10 @@ void require_enough_trials(const SizeOptions& options, double miss) {
       static_cast<std::size_t>(std::ceil(std::log(miss) / std::log(options.success)));
   if (options.max_trials >= least) return;
   refuse_option("--max-trials",
-                fmt::format("{} flights cannot show a success of {} with a confidence of {}, even "
+                fmt::format("{} flight{} cannot show a success of {} with a confidence of {}, even "
                             "if all succeed. Use at least {}.",
-                            options.max_trials, options.success, options.confidence, least));
+                            options.max_trials, options.max_trials == 1 ? "" : "s", options.success,
+                            options.confidence, least));
 }
 
 SizeTrials::SizeTrials(const SizeOptions& options, scenario::Campaign campaign,
@@ -215,13 +216,15 @@ int SizeTrials::say_why(End end) const {
   return exit_code(ErrorCode::kSetup);
 }
 
-void write_answer(const SizeAnswer& answer, const std::filesystem::path& out) {
+void write_answer(const SizeAnswer& answer, const std::filesystem::path& out,
+                  const std::filesystem::path& junit) {
   os::write_file_atomically(out / kSizeFile, answer.json);
   fmt::print("{}", report::answer_text(answer.answers, answer.advice, report::Markup::kPlain));
   os::write_file_atomically(out / kSizeDrawing, report::draw_svg(answer.plot));
   os::write_file_atomically(out / campaign::kReportFile, answer.page);
   fmt::print("Page: {}\nDrawing: {}\nNumbers: {}\n", (out / campaign::kReportFile).string(),
              (out / kSizeDrawing).string(), (out / kSizeFile).string());
+  if (!junit.empty()) os::write_file_atomically(junit, answer.junit);
 }
 
 }  // namespace tether::app

@@ -109,7 +109,10 @@ struct SizeAnswer {
   std::string json;
   report::Plot plot;
   std::string page;
+  std::string junit;
 };
-void write_answer(const SizeAnswer& answer, const std::filesystem::path& out);
+/// @param junit the file for JUnit's form of it; empty: none
+void write_answer(const SizeAnswer& answer, const std::filesystem::path& out,
+                  const std::filesystem::path& junit);
 
 }  // namespace tether::app
